@@ -100,8 +100,8 @@ impl Variant {
     /// Unknowns of a step, and entries of its tangent.
     fn sizes(&self) -> [usize; 2] {
         let model = &self.model;
-        let (motion, layout) = (&model.action.motion, model.action.layout());
-        let (n, algebraic) = (motion.coordinates, model.variables.algebraic());
+        let (map, layout) = (&model.action.map, model.action.layout());
+        let (n, algebraic) = (map.coordinates, model.variables.algebraic());
         let crossed = |&(i, j): &(usize, usize)| (i < n) != (j < n);
         let of_potential = |&(_, s): &(usize, usize)| algebraic.contains(&s);
         let both = |&(s, t): &(usize, usize)| [s, t].iter().all(|s| algebraic.contains(s));
@@ -149,8 +149,8 @@ fn simulation(voltages: &[f64], coordinates: Coordinates) -> Simulation {
 
 /// A motion of the trunk, of which only what scene and voltages call for is built.
 fn called(name: &str, system: System, voltages: &[f64], coordinates: Coordinates) -> Variant {
-    let question = simulation(voltages, coordinates).question(&system, trunk::STEP);
-    let model = Model::answering(system, question).expect("the model exists");
+    let analysis = simulation(voltages, coordinates).analysis(&system, trunk::STEP);
+    let model = Model::for_analysis(system, analysis).expect("the model exists");
     Variant::new(name, model, voltages, [trunk::STEP, STEPS as f64])
 }
 
@@ -465,7 +465,7 @@ fn by_hand(system: &System, volts: &[f64]) -> Variant {
     let scalars = model.action.intervals.scalars;
     let intervals = Functional::new(effects, Vec::new(), list.len(), scalars);
     let instants = Functional::new(Vec::new(), Vec::new(), list.len(), 0);
-    model.action = Reduced::new(model.action.motion.clone(), intervals, instants);
+    model.action = Reduced::new(model.action.map.clone(), intervals, instants);
     variant
 }
 

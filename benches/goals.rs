@@ -11,7 +11,7 @@ use proboscis::report::axes::{Axis, Extent};
 use proboscis::report::lines::{LinePlot, Series};
 use proboscis::report::origin::Origin;
 use proboscis::report::style;
-use proboscis::workflow::at_once::{at_once, cores};
+use proboscis::workflow::parallel_map::{cores, parallel_map};
 use random_goals::{Goal, Goals, Kind, trunk};
 use serde_json::Value;
 use std::collections::BTreeMap;
@@ -172,7 +172,7 @@ fn main() {
 
 /// Answers about each item, on all cores, in their order.
 fn in_parallel<T: Sync, A: Send>(items: &[T], answer: impl Fn(&T) -> A + Sync) -> Vec<A> {
-    let answers = at_once(items, cores(), answer, |_, _| ());
+    let answers = parallel_map(items, cores(), answer, |_, _| ());
     answers
         .into_iter()
         .map(|one| one.expect("no panic"))

@@ -11,7 +11,7 @@ use proboscis::control::problem::{BoundaryState, Control, Task};
 use proboscis::control::{BoundaryConditions, Transcription, guess};
 use proboscis::files::read_problem;
 use proboscis::ipopt::{Options, Solver, Start};
-use proboscis::workflow::at_once::at_once;
+use proboscis::workflow::parallel_map::parallel_map;
 use random_goals::{Goals, Kind, Solved, solved, trunk};
 use std::fs;
 use std::ops::ControlFlow;
@@ -94,7 +94,7 @@ fn throughput(goals: &mut Goals, count: usize) {
         let mut answers = [Vec::new(), Vec::new()];
         for (i, threads) in [1, 2].into_iter().enumerate() {
             let began = Instant::now();
-            let taken = at_once(&goals, threads, |changes| timed(changes), |_, _| {});
+            let taken = parallel_map(&goals, threads, |changes| timed(changes), |_, _| {});
             wall[i] += began.elapsed().as_secs_f64();
             let taken: Vec<Taken> = taken
                 .into_iter()
@@ -126,7 +126,7 @@ fn compare(goals: &mut Goals, minutes: f64) {
         let goals = batch(goals, &[10, 20, 40, 14]);
         let solve = |changes: &Vec<String>| solved(&trunk(), changes);
         let alone: Vec<Solved> = goals.iter().map(solve).collect();
-        let together = at_once(&goals, 4, solve, |_, _| {});
+        let together = parallel_map(&goals, 4, solve, |_, _| {});
         for (one, other) in alone.iter().zip(&together) {
             count += 1;
             different += usize::from(other.as_ref() != Ok(one));

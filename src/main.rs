@@ -40,9 +40,9 @@ fn main() -> ExitCode {
         tracing::warn!("a file that grows beyond the limit of the process will end it: {error}");
     }
     match answer(arguments.command) {
-        Ok(told) => {
-            told.notes.iter().for_each(|one| tell(&note(one)));
-            answered(&lines(&told.result), if told.is_solved { 0 } else { 1 })
+        Ok(output) => {
+            output.notes.iter().for_each(|one| tell(&note(one)));
+            answered(&lines(&output.result), if output.is_solved { 0 } else { 1 })
         }
         Err(error) => {
             tell(&format!("error: {}", message(&error.to_string())));
@@ -104,7 +104,7 @@ fn answer(command: Command) -> Result<CommandOutput, CommandError> {
                 ..problem.request()
             };
             let run_in = run_in(processes);
-            told(json, &request, |request| match starts {
+            output_of(json, &request, |request| match starts {
                 Some(starts) => app::solve_from_starts(request, starts, seed, run_in),
                 None if once => app::run_once(request),
                 None => app::run(request),
@@ -112,11 +112,11 @@ fn answer(command: Command) -> Result<CommandOutput, CommandError> {
         }
         Command::Simulate(problem) => {
             let json = problem.json();
-            told(json, &problem.request(), app::simulate)
+            output_of(json, &problem.request(), app::simulate)
         }
         Command::Equilibrium { problem, voltages } => {
             let json = problem.json();
-            told(json, &problem.request(), |request| {
+            output_of(json, &problem.request(), |request| {
                 app::equilibrium_of_file(request, voltages.as_deref())
             })
         }
@@ -187,13 +187,13 @@ fn completions(shell: Shell) -> String {
 }
 
 /// Runs a command that writes a folder of results, and prints its message or its summary.
-fn told(
+fn output_of(
     json: bool,
     request: &CommandInput,
     run: impl FnOnce(&CommandInput) -> Result<CommandOutput, CommandError>,
 ) -> Result<CommandOutput, CommandError> {
     interrupt::install(tell);
-    let told = match run(request) {
+    let output = match run(request) {
         // What was found is told in the summary, which is written.
         Err(error @ CommandError::NoEquilibrium { .. }) if json => CommandOutput {
             is_solved: false,
@@ -205,9 +205,9 @@ fn told(
     Ok(match json {
         true => CommandOutput {
             result: printable_json(&app::written_summary(request)?),
-            ..told
+            ..output
         },
-        false => told,
+        false => output,
     })
 }
 

@@ -15,7 +15,7 @@ use proboscis::kkt::{Plan, Solver, Unknown};
 use proboscis::model::Coordinates;
 use proboscis::model::system::System;
 use proboscis::nlp::Nlp;
-use proboscis::workflow::at_once;
+use proboscis::workflow::parallel_map;
 use std::ops::ControlFlow;
 use std::sync::atomic::Ordering;
 use std::{fs, iter, thread, time};
@@ -219,7 +219,7 @@ fn bytes_left_by_a_thread() -> isize {
     let rounds = iter::repeat_with(|| {
         let before = KEPT.load(Ordering::Relaxed);
         let work = || allocations(&trunk(3), &rest_to_rest(3, 160, 1500.0));
-        at_once::begin(work).unwrap().join().expect("no panic");
+        parallel_map::begin(work).unwrap().join().expect("no panic");
         // Threads of a pool end some time after it.
         while threads() > others {
             thread::sleep(time::Duration::from_millis(1));

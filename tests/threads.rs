@@ -16,7 +16,7 @@ use proboscis::model::Model;
 use proboscis::model::system::{Potential, System};
 use proboscis::nlp::Nlp;
 use proboscis::sparse::{Backend, Direct, Symmetry};
-use proboscis::workflow::at_once::{at_once, cores};
+use proboscis::workflow::parallel_map::{cores, parallel_map};
 use serde_json::json;
 use std::collections::BTreeSet;
 use std::ops::ControlFlow;
@@ -86,7 +86,7 @@ fn a_large_block_has_the_same_bits_on_one_thread_and_two() {
     let motion = || {
         let model = Model::new(large(), None, 0.5, &[]).unwrap();
         let start = Start::at_rest(&model, model.coordinates_at(&[]));
-        let (history, failure) = simulate(
+        let (discrete, failure) = simulate(
             &model,
             &start,
             0.5,
@@ -95,11 +95,11 @@ fn a_large_block_has_the_same_bits_on_one_thread_and_two() {
             |_| ControlFlow::Continue(()),
         );
         assert_eq!(failure, None);
-        let z = |k: usize| history.z[k].iter().zip(&history.z[0]).map(|(a, b)| a - b);
+        let z = |k: usize| discrete.z[k].iter().zip(&discrete.z[0]).map(|(a, b)| a - b);
         [
             z(3).collect(),
-            history.momenta[3].clone(),
-            history.scalars[2].clone(),
+            discrete.momenta[3].clone(),
+            discrete.scalars[2].clone(),
         ]
     };
     let program = || {
@@ -174,7 +174,7 @@ fn random_goals_in_four_threads_are_solved_to_the_same_bits() {
     assert!(driven >= 12, "{driven}");
     let ways: BTreeSet<usize> = alone.iter().map(|one| one.iterations).collect();
     assert!(ways.len() >= 5, "{ways:?}");
-    let together = at_once(&goals, 4, solve, |_, _| {});
+    let together = parallel_map(&goals, 4, solve, |_, _| {});
     for ((one, other), goal) in alone.iter().zip(&together).zip(&goals) {
         assert!(other.as_ref() == Ok(one), "{goal:?}");
     }
@@ -191,7 +191,7 @@ fn a_panic_is_the_end_of_one_answer_alone() {
     let told = |index: usize, answered: &Result<i32, String>| {
         heard.push((index, answered.clone()));
     };
-    let answers = at_once(&items, 3, square, told);
+    let answers = parallel_map(&items, 3, square, told);
     assert_eq!(answers.len(), 20);
     for (i, answer) in answers.iter().enumerate() {
         match answer {
@@ -203,7 +203,7 @@ fn a_panic_is_the_end_of_one_answer_alone() {
     let heard: Vec<_> = heard.into_iter().map(|(_, answer)| answer).collect();
     assert_eq!(heard, answers);
     let none: [i32; 0] = [];
-    assert!(at_once(&none, 3, square, |_, _| {}).is_empty());
+    assert!(parallel_map(&none, 3, square, |_, _| {}).is_empty());
 }
 
 #[test]
@@ -215,7 +215,7 @@ fn answers_are_found_at_once_each_on_its_share_of_the_cores() {
         meeting.wait();
         (rayon::current_num_threads(), thread::current().id())
     };
-    let answers = at_once(&[1, 2, 3], 3, answer, |_, _| {
+    let answers = parallel_map(&[1, 2, 3], 3, answer, |_, _| {
         assert_eq!(thread::current().id(), here);
     });
     let answers: Vec<_> = answers.into_iter().map(Result::unwrap).collect();

@@ -7,7 +7,7 @@ use std::time::{Duration, Instant};
 
 use proboscis::app::{CommandError, CommandOutput, Reached};
 use proboscis::ipopt::interrupt::{self, StopRequest};
-use proboscis::workflow::at_once;
+use proboscis::workflow::parallel_map;
 use pyo3::exceptions::PyKeyboardInterrupt;
 use pyo3::prelude::*;
 
@@ -19,11 +19,11 @@ pub(crate) const PERIOD: Duration = Duration::from_millis(20);
 const GRACE: Duration = Duration::from_millis(100);
 
 /// Answer of work: true if the task has an answer, the answer, notes.
-pub(crate) type Told = (bool, String, Vec<String>);
+pub(crate) type Answer = (bool, String, Vec<String>);
 /// End of work.
 pub(crate) type Ended = Result<CommandOutput, CommandError>;
 /// Answer of work, if there is one; the exception that ended it early, if there was one; work that still ends.
-pub(crate) type Outcome = (Option<Told>, Option<PyErr>, Option<Ending>);
+pub(crate) type Outcome = (Option<Answer>, Option<PyErr>, Option<Ending>);
 
 /// A text as an answer.
 pub(crate) const fn answer(result: String) -> CommandOutput {
@@ -34,7 +34,7 @@ pub(crate) const fn answer(result: String) -> CommandOutput {
     }
 }
 
-fn told(output: CommandOutput) -> Told {
+fn answer_of(output: CommandOutput) -> Answer {
     (output.is_solved, output.result, output.notes)
 }
 
@@ -82,14 +82,14 @@ impl Ending {
     }
 
     /// Waits for its end; returns once what is told of it, if there is anything.
-    fn wait(&self, py: Python<'_>) -> PyResult<Option<Told>> {
+    fn wait(&self, py: Python<'_>) -> PyResult<Option<Answer>> {
         while !self.is_over() {
             py.detach(|| thread::sleep(PERIOD));
             py.check_signals()?;
         }
         let thread = self.thread.lock().ok().and_then(|mut kept| kept.take());
         let ended = thread.and_then(|thread| thread.join().ok());
-        Ok(ended.and_then(Result::ok).map(told))
+        Ok(ended.and_then(Result::ok).map(answer_of))
     }
 }
 
@@ -116,7 +116,7 @@ pub(crate) fn supervised(
             }
         })
     };
-    let thread = at_once::begin(work).map_err(|cause| broke_off(py, &cause.to_string()))?;
+    let thread = parallel_map::begin(work).map_err(|cause| broke_off(py, &cause.to_string()))?;
     let mut failure: Option<PyErr> = None;
     let mut interrupted: Option<Instant> = None;
     loop {
@@ -150,7 +150,7 @@ pub(crate) fn supervised(
         ended.map_err(|_| broke_off(py, "see standard error"))?,
         failure,
     ) {
-        (Ok(output), failure) => Ok((Some(told(output)), failure, None)),
+        (Ok(output), failure) => Ok((Some(answer_of(output)), failure, None)),
         (Err(_), Some(failure)) => Ok((None, Some(failure), None)),
         (Err(mistake), None) => Err(error(py, &mistake)),
     }

@@ -9,13 +9,13 @@ use proboscis::Nlp;
 use proboscis::app::with_program;
 use proboscis::ipopt::interrupt::{self, StopRequest};
 use proboscis::nlp::{Bounds, Entries};
-use proboscis::workflow::at_once;
+use proboscis::workflow::parallel_map;
 use pyo3::prelude::*;
 
 use crate::background::PERIOD;
 use crate::{broke_off, error, mistake};
 
-type Question = Box<dyn FnOnce(&mut dyn Nlp) + Send>;
+type Call = Box<dyn FnOnce(&mut dyn Nlp) + Send>;
 type Array<'py> = Bound<'py, PyArray1<f64>>;
 type Indices<'py> = Bound<'py, PyArray1<u32>>;
 
@@ -30,7 +30,7 @@ struct Sizes {
 /// A nonlinear program; values are in the order of the structures.
 #[pyclass(frozen)]
 pub(crate) struct Program {
-    ask: Mutex<Sender<Question>>,
+    ask: Mutex<Sender<Call>>,
     sizes: Sizes,
 }
 
@@ -39,13 +39,13 @@ impl Program {
     fn answer<R: Send + 'static>(
         &self,
         py: Python<'_>,
-        question: impl FnOnce(&mut dyn Nlp) -> R + Send + 'static,
+        call: impl FnOnce(&mut dyn Nlp) -> R + Send + 'static,
     ) -> PyResult<R> {
         let (tell, told) = mpsc::channel();
-        let question: Question = Box::new(move |program| {
-            tell.send(question(program)).ok();
+        let call: Call = Box::new(move |program| {
+            tell.send(call(program)).ok();
         });
-        let asked = py.detach(|| self.ask.lock().ok()?.send(question).ok());
+        let asked = py.detach(|| self.ask.lock().ok()?.send(call).ok());
         asked.ok_or_else(|| broke_off(py, "see standard error"))?;
         heard(py, told)
     }
@@ -90,7 +90,7 @@ fn taken(array: &PyReadonlyArray1<'_, f64>, length: usize, of: &str) -> PyResult
 impl Program {
     #[new]
     fn new(py: Python<'_>, input: PathBuf, text: String) -> PyResult<Self> {
-        let (ask, questions) = mpsc::channel::<Question>();
+        let (ask, calls) = mpsc::channel::<Call>();
         let (tell, told) = mpsc::channel();
         let stop = StopRequest::default();
         let request = stop.clone();
@@ -110,15 +110,15 @@ impl Program {
                 };
                 tell.send(Ok(sizes)).ok();
                 drop(tell);
-                for question in questions {
-                    question(program);
+                for call in calls {
+                    call(program);
                 }
             });
             if let Err(mistake) = ended {
                 failed.send(Err(mistake)).ok();
             }
         };
-        at_once::begin(work).map_err(|cause| broke_off(py, &cause.to_string()))?;
+        parallel_map::begin(work).map_err(|cause| broke_off(py, &cause.to_string()))?;
         let sizes = heard(py, told).inspect_err(|_| stop.make())?;
         let sizes = sizes.map_err(|mistake| error(py, &mistake))?;
         let ask = Mutex::new(ask);

@@ -44,13 +44,13 @@ pub struct BlockSizes {
 
 impl BlockSizes {
     /// Those of a model; `None` where nothing is elastic.
-    pub fn of(model: &Model) -> Option<Self> {
+    pub fn from_model(model: &Model) -> Option<Self> {
         if model.solids.is_empty() {
             return None;
         }
         let named = model.solids.iter();
         let blocks: BTreeMap<_, _> = named
-            .map(|c| (c.solid.name.clone(), BlockSize::of(model, c)))
+            .map(|c| (c.solid.name.clone(), BlockSize::from_block(model, c)))
             .collect();
         let sum = |part: fn(&BlockSize) -> usize| blocks.values().map(part).sum();
         Some(Self {
@@ -85,23 +85,23 @@ impl BlockSizes {
 }
 
 impl BlockSize {
-    fn of(model: &Model, continuum: &SolidBlock) -> Self {
+    fn from_block(model: &Model, block: &SolidBlock) -> Self {
         let coordinates = |&vector: &usize| {
             let is_node = |carrier| matches!(carrier, Carrier::Node(_));
             let terms = &model.vectors[vector].terms;
             match terms.iter().any(|term| is_node(term.carrier)) {
-                true => model.action.motion.support(vector).len(),
+                true => model.action.map.support(vector).len(),
                 false => 0,
             }
         };
-        let scalars = continuum.terminals.iter().flatten();
+        let scalars = block.terminals.iter().flatten();
         let scalars = scalars.filter_map(|terminal| terminal.scalar.map(|(s, _)| s));
         let all = model.variables.range(Role::Potential);
         let potentials: BTreeSet<usize> = scalars.filter(|s| all.contains(s)).collect();
         Self {
-            nodes: continuum.solid.mesh.nodes.len(),
-            elements: continuum.shapes.len(),
-            unknowns: continuum.vectors.iter().map(coordinates).sum(),
+            nodes: block.solid.mesh.nodes.len(),
+            elements: block.shapes.len(),
+            unknowns: block.vectors.iter().map(coordinates).sum(),
             potentials: potentials.len(),
         }
     }

@@ -16,7 +16,7 @@ use crate::ipopt::interrupt::{self, TimeLimit};
 use crate::mesh::Mesh;
 use crate::model::{Coordinates, Model, System};
 use crate::nlp::Nlp;
-use crate::nlp::differences::{self, Along, Matrix, WrongEntry};
+use crate::nlp::differences::{self, DifferenceVariables, Matrix, WrongEntry};
 use crate::workflow::effects;
 use crate::workflow::prepare::{Counted, Prepared, prepare};
 use crate::workflow::resolve::resolve;
@@ -106,17 +106,17 @@ pub fn checked(request: &CommandInput, text: Option<&str>) -> Result<Checked, Co
     let loaded = read(&request.input, text, &request.set)?;
     let control = as_control(loaded.task, &loaded.system);
     let (model, boundary) =
-        resolve(&loaded.system, &control).map_err(CommandError::of(&request.input))?;
+        resolve(&loaded.system, &control).map_err(CommandError::in_file(&request.input))?;
     let Prepared {
         mut program, point, ..
     } = prepare(&model, &boundary, &control, None, Counted::No)
-        .map_err(CommandError::of(&request.input))?;
+        .map_err(CommandError::in_file(&request.input))?;
     let sizes = sizes(&program, &model);
     let mut noise = Noise(SEED);
     let mut moved = |(x, size): (&f64, &f64)| x + NOISE * size * noise.next();
     let x: Vec<f64> = point.x.iter().zip(&sizes).map(&mut moved).collect();
     let columns = columns(&program, &mut noise);
-    let along = Along {
+    let along = DifferenceVariables {
         columns: &columns,
         sizes: &sizes,
     };
@@ -193,7 +193,7 @@ fn sizes(program: &Transcription<'_>, model: &Model) -> Vec<f64> {
         .map(Mesh::shortest_edge)
         .fold(f64::INFINITY, f64::min);
     let size = (edge / model.length()).min(1.0);
-    let nodes = model.action.motion.nodes();
+    let nodes = model.action.map.nodes();
     let of = |column: &Column| match *column {
         Column::Instant { i, .. } if nodes.contains(&i) => size,
         _ => 1.0,
@@ -273,7 +273,7 @@ fn as_control(task: Task, system: &System) -> Control {
     match task {
         Task::Control(control) => *control,
         Task::Simulate(simulation) => {
-            let zero_voltage = simulation.question(system, simulation.step).zero_voltage;
+            let zero_voltage = simulation.analysis(system, simulation.step).zero_voltage;
             let Simulation {
                 step,
                 start,

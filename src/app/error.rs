@@ -123,7 +123,7 @@ impl CommandError {
     }
 
     /// Makes the error of a command from that of a workflow on the problem in a file.
-    pub(crate) fn of(file: &Path) -> impl Fn(WorkflowError) -> Self {
+    pub(crate) fn in_file(file: &Path) -> impl Fn(WorkflowError) -> Self {
         let file = file.to_owned();
         move |error| match error {
             WorkflowError::Problem { place, reason } => Self::Problem {

@@ -23,19 +23,19 @@ const FOLDER: &str = "fields";
 pub(super) fn write(
     files: &mut FileSet,
     model: &Model,
-    history: &DiscreteTrajectory,
+    discrete: &DiscreteTrajectory,
     origin: &Origin,
 ) -> Result<usize, WriteError> {
     if model.solids.is_empty() {
         return Ok(0);
     }
-    let instants = spread(history.z.len(), MOST);
+    let instants = spread(discrete.z.len(), MOST);
     let mut series = Series::new("trajectory", origin).within(FOLDER, files)?;
-    let mut states = SolidStates::new(model, history);
+    let mut states = SolidStates::new(model, discrete);
     for &k in &instants {
         let blocks: Vec<Block<'_>> = states.at(k);
         let grids: Vec<UnstructuredGrid<'_>> = blocks.iter().map(Block::grid).collect();
-        series.add(history.times[k] / 1e3, &grids, files)?;
+        series.add(discrete.times[k] / 1e3, &grids, files)?;
     }
     series.finish(files)?;
     // Those of a longer motion that stood here before.
@@ -48,19 +48,16 @@ pub(super) fn write(
 /// Largest reference field −∂φ/∂X of an element in V/m at an instant; `None` where there is none.
 pub(super) fn largest_nominal_field(
     model: &Model,
-    history: &DiscreteTrajectory,
+    discrete: &DiscreteTrajectory,
     k: usize,
 ) -> Option<f64> {
-    let mut states = SolidStates::new(model, history);
+    let mut states = SolidStates::new(model, discrete);
     let state = states.place(k);
-    let each = model.solids.iter().flat_map(|continuum| {
-        let (places, potentials) = (
-            continuum.places(&state.here.x),
-            continuum.potentials(state.scalars),
-        );
-        let elements = (0..continuum.shapes.len()).filter(|&e| continuum.is_dielectric[e]);
+    let each = model.solids.iter().flat_map(|block| {
+        let (places, potentials) = (block.places(&state.here.x), block.potentials(state.scalars));
+        let elements = (0..block.shapes.len()).filter(|&e| block.is_dielectric[e]);
         let field = move |e: usize| {
-            let fields = continuum.fields(e, &places, &potentials);
+            let fields = block.fields(e, &places, &potentials);
             fields.reference_electric_field.norm() * 1e3
         };
         elements.map(field).collect::<Vec<_>>()
@@ -80,7 +77,7 @@ fn spread(count: usize, most: usize) -> Vec<usize> {
 /// The instants of a motion, one at a time.
 struct SolidStates<'m> {
     model: &'m Model,
-    history: &'m DiscreteTrajectory,
+    discrete: &'m DiscreteTrajectory,
     here: Configuration,
     there: Configuration,
     none: Vec<f64>,
@@ -94,29 +91,31 @@ struct SolidState<'s> {
 }
 
 impl<'m> SolidStates<'m> {
-    fn new(model: &'m Model, history: &'m DiscreteTrajectory) -> Self {
+    fn new(model: &'m Model, discrete: &'m DiscreteTrajectory) -> Self {
         Self {
             model,
-            history,
-            here: model.action.motion.instant(),
-            there: model.action.motion.instant(),
+            discrete,
+            here: model.action.map.instant(),
+            there: model.action.map.instant(),
             none: vec![0.0; model.action.intervals.scalars],
         }
     }
 
     fn place(&mut self, k: usize) -> SolidState<'_> {
-        let Self { model, history, .. } = *self;
-        let last = history.z.len() - 1;
+        let Self {
+            model, discrete, ..
+        } = *self;
+        let last = discrete.z.len() - 1;
         let other = match k {
             0 => 1.min(last),
             _ => k - 1,
         };
         for (instant, k) in [(&mut self.here, k), (&mut self.there, other)] {
-            instant.z.copy_from_slice(&history.z[k]);
-            model.action.motion.place(instant);
+            instant.z.copy_from_slice(&discrete.z[k]);
+            model.action.map.place(instant);
         }
-        let time = history.times[other] - history.times[k];
-        let scalars = history.scalars.get(k.saturating_sub(1));
+        let time = discrete.times[other] - discrete.times[k];
+        let scalars = discrete.scalars.get(k.saturating_sub(1));
         SolidState {
             here: &self.here,
             there: (other != k).then_some((&self.there, time)),
@@ -141,12 +140,12 @@ struct Block<'m> {
 }
 
 impl<'m> Block<'m> {
-    fn new(number: usize, continuum: &'m SolidBlock, state: &SolidState<'_>) -> Self {
-        let mesh = &continuum.solid.mesh;
-        let places = continuum.places(&state.here.x);
-        let potentials = continuum.potentials(state.scalars);
+    fn new(number: usize, block: &'m SolidBlock, state: &SolidState<'_>) -> Self {
+        let mesh = &block.solid.mesh;
+        let places = block.places(&state.here.x);
+        let potentials = block.potentials(state.scalars);
         let velocities = state.there.map(|(there, time)| {
-            let others = continuum.places(&there.x);
+            let others = block.places(&there.x);
             let pairs = others.iter().zip(&places);
             pairs
                 .map(|(there, here)| (there - here) / time)
@@ -159,19 +158,13 @@ impl<'m> Block<'m> {
             let values = velocities.iter().flat_map(|v| components(v, 1.0));
             point_data.push(field("velocity [m/s]", 3, values));
         }
-        if continuum.terminals.iter().any(Option::is_some) {
-            let known = potentials.iter().zip(&continuum.terminals);
+        if block.terminals.iter().any(Option::is_some) {
+            let known = potentials.iter().zip(&block.terminals);
             let values = known.map(|(phi, terminal)| terminal.map_or(f64::NAN, |_| *phi));
             point_data.push(field("potential [V]", 1, values));
         }
-        let is_dielectric = continuum.is_dielectric.contains(&true);
-        let cell_data = cells(
-            number,
-            continuum,
-            &places,
-            &potentials,
-            velocities.as_deref(),
-        );
+        let is_dielectric = block.is_dielectric.contains(&true);
+        let cell_data = cells(number, block, &places, &potentials, velocities.as_deref());
         Self {
             hexahedra: &mesh.hexahedra,
             points: places.iter().map(|x| x * 1e-3).collect(),
@@ -196,23 +189,23 @@ impl<'m> Block<'m> {
 /// Quantities of the elements.
 fn cells(
     number: usize,
-    continuum: &SolidBlock,
+    block: &SolidBlock,
     places: &[Vector],
     potentials: &[f64],
     velocities: Option<&[Vector]>,
 ) -> Vec<Field<'static>> {
-    let count = continuum.shapes.len();
+    let count = block.shapes.len();
     let mut all: Vec<Fields> = (0..count)
-        .map(|e| continuum.fields(e, places, potentials))
+        .map(|e| block.fields(e, places, potentials))
         .collect();
     if let Some(velocities) = velocities {
         for (e, fields) in all.iter_mut().enumerate() {
-            let Some(viscosity) = continuum.material(e).viscosity else {
+            let Some(viscosity) = block.material(e).viscosity else {
                 continue;
             };
-            let nodes = continuum.solid.mesh.hexahedra[e];
+            let nodes = block.solid.mesh.hexahedra[e];
             let (x, v) = (nodes.map(|n| places[n]), nodes.map(|n| velocities[n]));
-            fields.stress += Viscosity { viscosity }.stress(&continuum.shapes[e], &x, &v);
+            fields.stress += Viscosity { viscosity }.stress(&block.shapes[e], &x, &v);
         }
     }
     let each = all.iter();
@@ -244,7 +237,7 @@ fn cells(
         field(
             "region",
             1,
-            continuum.solid.mesh.regions.iter().map(|&r| r as f64),
+            block.solid.mesh.regions.iter().map(|&r| r as f64),
         ),
         field("block", 1, (0..count).map(|_| number as f64)),
     ]

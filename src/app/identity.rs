@@ -4,7 +4,7 @@ use std::fmt;
 use std::fs;
 use std::path::Path;
 
-use crate::app::digest::{digest, digest_of};
+use crate::app::content_hash::{digest, digest_of};
 use crate::app::request::CommandInput;
 use crate::control::problem::{Guess, Task};
 use crate::files::Loaded;
@@ -29,7 +29,7 @@ impl Identity {
             ..
         } = loaded;
         let earlier = earlier(task);
-        Self::of(format_args!("{system:?}{task:?}{output:?}{earlier:?}"))
+        Self::from_text(format_args!("{system:?}{task:?}{output:?}{earlier:?}"))
     }
 
     /// Of a problem with the options of a run that have a part in its files.
@@ -42,17 +42,17 @@ impl Identity {
             ..
         } = request;
         let Self(problem) = Self::of_problem(loaded);
-        Self::of(format_args!(
+        Self::from_text(format_args!(
             "{problem}{max_iterations:?}{wanted:?}{figures:?}{page:?}"
         ))
     }
 
     /// Of overrides that make no problem.
     pub(crate) fn of_words(words: &[String]) -> Self {
-        Self::of(format_args!("{words:?}"))
+        Self::from_text(format_args!("{words:?}"))
     }
 
-    fn of(written: fmt::Arguments<'_>) -> Self {
+    fn from_text(written: fmt::Arguments<'_>) -> Self {
         let program = Origin::program();
         Self(digest(format_args!("{program}\n{written}"), DIGITS))
     }

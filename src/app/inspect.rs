@@ -6,13 +6,13 @@ use serde::Serialize;
 
 use crate::app::blocks::BlockSizes;
 use crate::app::error::CommandError;
-use crate::app::extent;
 use crate::app::folder::make_folder;
+use crate::app::length_unit_check;
+use crate::app::messages::key;
 use crate::app::moved_markers::moved_markers;
 use crate::app::request::{CommandInput, CommandOutput};
 use crate::app::sparsity;
 use crate::app::task::read;
-use crate::app::words::key;
 use crate::control::problem::{Control, Task};
 use crate::model::{Model, Role, System};
 use crate::nlp::Nlp;
@@ -69,17 +69,17 @@ pub fn inspected(request: &CommandInput, text: Option<&str>) -> Result<Inspected
     let loaded = read(&request.input, text, &request.set)?;
     let system = &loaded.system;
     let wrong = |error| {
-        CommandError::of(&request.input)(WorkflowError::boundary(key(&loaded.task), &error))
+        CommandError::in_file(&request.input)(WorkflowError::boundary(key(&loaded.task), &error))
     };
     let mut found = match &loaded.task {
         Task::Control(control) => of_control(request, system, control),
         Task::Simulate(task) => {
-            let model = Model::answering(system.clone(), task.question(system, task.step))
+            let model = Model::for_analysis(system.clone(), task.analysis(system, task.step))
                 .map_err(|error| wrong(error.into()))?;
             Ok(of_model(&model, None))
         }
         Task::Equilibrium(task) => {
-            let model = Model::answering(system.clone(), task.question(system))
+            let model = Model::for_analysis(system.clone(), task.analysis(system))
                 .map_err(|error| wrong(error.into()))?;
             Ok(of_model(&model, None))
         }
@@ -92,7 +92,7 @@ pub fn inspected(request: &CommandInput, text: Option<&str>) -> Result<Inspected
 const MEASURED: f64 = 5e-3;
 
 fn of_model(model: &Model, control: Option<&Control>) -> Inspected {
-    let plan = Plan::of(model, control, MEASURED);
+    let plan = Plan::from_model(model, control, MEASURED);
     let system = &model.system;
     let count = |role| model.variables.count(role);
     let mut sizes = vec![
@@ -115,7 +115,7 @@ fn of_model(model: &Model, control: Option<&Control>) -> Inspected {
     if !system.solids.is_empty() {
         sizes.insert(3, ("elastic blocks", system.solids.len()));
     }
-    if let Some(blocks) = BlockSizes::of(model) {
+    if let Some(blocks) = BlockSizes::from_model(model) {
         sizes.extend([
             ("potentials of an interval", blocks.potentials),
             ("nodes", blocks.nodes),
@@ -134,7 +134,7 @@ fn of_model(model: &Model, control: Option<&Control>) -> Inspected {
         reasons(&plan),
         missing(&plan),
         numbers(&sizes),
-        extent::lines(system)
+        length_unit_check::lines(system)
     );
     Inspected {
         system: system.name.clone(),
@@ -209,9 +209,10 @@ fn of_control(
     system: &System,
     control: &Control,
 ) -> Result<Inspected, CommandError> {
-    let (model, boundary) = resolve(system, control).map_err(CommandError::of(&request.input))?;
+    let (model, boundary) =
+        resolve(system, control).map_err(CommandError::in_file(&request.input))?;
     let Prepared { program, start, .. } = prepare(&model, &boundary, control, None, Counted::Yes)
-        .map_err(CommandError::of(&request.input))?;
+        .map_err(CommandError::in_file(&request.input))?;
     let (jacobian, hessian) = (program.jacobian_structure(), program.hessian_structure());
     let rows = program.constraints();
     let equalities = rows.lower.iter().zip(&rows.upper).filter(|(l, u)| l == u);

@@ -1,36 +1,37 @@
 //! Commands: files in, files and messages out.
 //!
-//! - `solve`, `forward`, `rest`: the three tasks; `task` chooses the one of a file; `path`, `followed`: paths of equilibria.
+//! - `solve`, `simulation`, `equilibrium`: the three tasks; `task` chooses the one of a file; `path`, `path_summary`: paths of equilibria.
 //! - `batch`: several solves in parallel, in threads or processes; `multistart`: a control problem from several guesses.
 //! - `inspect`, `sparsity`, `check`, `templates`: the other commands; `program`: entry points for other languages in place of files.
 //! - `solution_file`, `unfinished`, `summary`: JSON files; `fields`: those of elastic blocks; figures, tables and page are written by [`report`](crate::report).
-//! - `continuation`: runs that go on from the result of another; `digest`, `identity`: content hash, and identity of problems.
+//! - `resume_file`: runs that go on from the result of another; `content_hash`, `identity`: content hash, and identity of problems.
 //! - `once`, `record`: a result that is made once, and the hashes of its files.
-//! - `shown`: part of a motion that tables, figures and page show.
+//! - `displayed_motion`: part of a motion that tables, figures and page show.
 //! - `side_by_side`: several results on one page.
-//! - `accuracy_table`, `blocks`, `comparison`, `exchanged`, `extent`, `moved_markers`: texts about a result.
+//! - `accuracy_table`, `blocks`, `comparison`, `energy_summary`, `length_unit_check`, `moved_markers`: texts about a result.
 //! - `other_task`: messages where a problem asks for another command; `no_equilibrium`: the summary where there is no state of rest.
-//! - `page`, `forward_page`, `solve_page`: texts of the page; `solve_summary`, `rest_model`, `rest_observed`, `rest_refused`, `rest_words`, `solve_words`, `tracking_words`, `words`, `folder`, `foreign`, `progress`, `ticker`, `request`, `error`: common parts of commands.
+//! - `page`, `simulation_page`, `solve_page`: texts of the page; `solve_summary`, `equilibrium_model`, `equilibrium_summary`, `solve_messages`, `tracking_messages`, `messages`, `folder`, `foreign`, `progress`, `ticker`, `request`, `error`: common parts of commands.
 
 mod accuracy_table;
 mod batch;
 mod blocks;
 mod check;
 mod comparison;
-mod continuation;
-mod digest;
+mod content_hash;
+mod displayed_motion;
+mod energy_summary;
+mod equilibrium;
+mod equilibrium_model;
+mod equilibrium_summary;
 mod error;
-mod exchanged;
-mod extent;
 mod fields;
 mod folder;
-mod followed;
 mod foreign;
-mod forward;
-mod forward_page;
 mod identity;
 mod inspect;
+mod length_unit_check;
 mod linear_systems;
+mod messages;
 mod moved_markers;
 mod multistart;
 mod no_equilibrium;
@@ -38,35 +39,33 @@ mod once;
 mod other_task;
 mod page;
 mod path;
+mod path_summary;
 mod program;
 mod progress;
 mod record;
 mod request;
-mod rest;
-mod rest_model;
-mod rest_observed;
-mod rest_refused;
-mod rest_words;
-mod shown;
+mod resume_file;
 mod side_by_side;
+mod simulation;
+mod simulation_page;
 mod solution_file;
 mod solve;
+mod solve_messages;
 mod solve_page;
 mod solve_summary;
-mod solve_words;
 mod sparsity;
 mod summary;
 mod task;
 mod templates;
 mod ticker;
-mod tracking_words;
+mod tracking_messages;
 mod unfinished;
-mod words;
 
 pub(crate) use batch::{Batch, RunEnd, Said, check_run_in, run_all, task_runs_at_once};
 pub use batch::{RunIn, end_with_parent};
 pub use blocks::{BlockSize, BlockSizes};
 pub use check::{Checked, check, checked};
+pub use equilibrium::equilibrium_of_file;
 pub use error::CommandError;
 pub(crate) use folder::make_folder;
 pub(crate) use identity::Identity;
@@ -78,7 +77,6 @@ pub(crate) use progress::{Progress, progress_bar};
 pub use progress::{ProgressDisplay, Reached};
 pub(crate) use record::{FileRecords, Found, OF_VARIANT, is_unfinished};
 pub use request::{CommandInput, CommandOutput, PageWanted};
-pub use rest::equilibrium_of_file;
 pub use side_by_side::compare;
 pub use summary::written_summary;
 pub use task::{run, run_observed, simulate};

@@ -2,8 +2,9 @@
 
 use crate::app::error::CommandError;
 use crate::app::folder::make_folder;
-use crate::app::request::CommandInput;
+use crate::app::request::{CommandInput, CommandOutput};
 use crate::app::summary::Summary;
+use crate::dynamics::EquilibriumError;
 use crate::report::file_set::FileSet;
 
 /// The status of such a run.
@@ -57,7 +58,32 @@ pub(super) fn write(request: &CommandInput, reason: &str) -> Result<(), CommandE
     make_folder(&folder)?;
     let mut summary = Summary::new(request, STATUS, None);
     summary.message = Some(reason.to_owned());
-    let mut files = FileSet::of(&folder);
+    let mut files = FileSet::in_folder(&folder);
     EARLIER.iter().for_each(|name| files.remove(name));
     Ok(summary.write(files)?)
+}
+
+/// Handles a missing equilibrium: a floating block is wrong input, anything else a result of which the summary alone is written.
+pub(super) fn refused(
+    request: &CommandInput,
+    error: &EquilibriumError,
+    result: &str,
+) -> Result<CommandOutput, CommandError> {
+    match error {
+        EquilibriumError::Floating { .. } => {
+            return Err(CommandError::Problem {
+                file: request.input.clone(),
+                place: "equilibrium".to_owned(),
+                reason: error.to_string(),
+            });
+        }
+        EquilibriumError::Stopped(status) => return Err(CommandError::Stopped(*status)),
+        _ => {}
+    }
+    write(request, &error.to_string())?;
+    Ok(CommandOutput {
+        is_solved: false,
+        result: format!("{result}, {}", request.folder().display()),
+        notes: vec![error.to_string()],
+    })
 }

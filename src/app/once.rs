@@ -44,13 +44,13 @@ pub fn run_once(request: &CommandInput) -> Result<CommandOutput, CommandError> {
         Found::Deviates(deviation) => Some(deviation),
         Found::Nothing => None,
     };
-    let mut told = run(request)?;
+    let mut output = run(request)?;
     if !status(&folder).is_none_or(|status| is_unfinished(&status)) {
-        write(&folder, &identity, &told)?;
+        write(&folder, &identity, &output)?;
     }
     let again = deviation.map(|words| format!("made again: {words}"));
-    told.notes.splice(0..0, again);
-    Ok(told)
+    output.notes.splice(0..0, again);
+    Ok(output)
 }
 
 /// Returns the result of a run that a folder holds.
@@ -77,17 +77,17 @@ fn status(folder: &Path) -> Option<String> {
     Some(summary.get("status")?.as_str()?.to_owned())
 }
 
-fn write(folder: &Path, identity: &Identity, told: &CommandOutput) -> Result<(), WriteError> {
+fn write(folder: &Path, identity: &Identity, output: &CommandOutput) -> Result<(), WriteError> {
     let path = folder.join(OF_RUN);
-    let files = FileRecords::of(folder).map_err(|cause| WriteError {
+    let files = FileRecords::from_folder(folder).map_err(|cause| WriteError {
         path: path.clone(),
         cause,
     })?;
     let record = Record {
         identity: identity.as_str().to_owned(),
-        is_solved: told.is_solved,
-        result: told.result.clone(),
-        notes: told.notes.clone(),
+        is_solved: output.is_solved,
+        result: output.result.clone(),
+        notes: output.notes.clone(),
         files,
     };
     let text = serde_json::to_string(&record).expect("words and numbers are JSON");

@@ -1,8 +1,8 @@
 //! Message that names the command for the task of a problem, where another one was typed.
 
 use crate::app::error::CommandError;
+use crate::app::messages::key;
 use crate::app::request::CommandInput;
-use crate::app::words::key;
 use crate::control::problem::Task;
 use crate::report::shell;
 
@@ -22,7 +22,7 @@ pub(super) fn refuse_all_but_motions(
             command(request, "equilibrium")
         ),
     };
-    Err(of(request, task, reason))
+    Err(command_error(request, task, reason))
 }
 
 /// The refusal of a problem that asks for no state of rest.
@@ -35,10 +35,10 @@ pub(super) fn no_equilibrium(request: &CommandInput, task: &Task) -> CommandErro
         "asks for {asks}, found by `{}`, and for no equilibrium; for that of its scene name the voltages with --voltages",
         command(request, word)
     );
-    of(request, task, reason)
+    command_error(request, task, reason)
 }
 
-fn of(request: &CommandInput, task: &Task, reason: String) -> CommandError {
+fn command_error(request: &CommandInput, task: &Task, reason: String) -> CommandError {
     CommandError::Problem {
         file: request.input.clone(),
         place: key(task).to_owned(),

@@ -2,7 +2,7 @@
 
 use crate::app::summary::Summary;
 use crate::files::{Loaded, compact, lay_out};
-use crate::report::Told;
+use crate::report::PageContent;
 
 /// Names and texts of problem and scene as they were read, overrides applied.
 pub(super) fn asked(loaded: &Loaded) -> Vec<(String, String)> {
@@ -15,10 +15,10 @@ pub(super) fn asked(loaded: &Loaded) -> Vec<(String, String)> {
 }
 
 /// Texts of a summary, before rows and plots; `asked` are the texts of problem and scene.
-pub(super) fn told(title: &str, summary: &Summary, asked: &[(String, String)]) -> Told {
+pub(super) fn content(title: &str, summary: &Summary, asked: &[(String, String)]) -> PageContent {
     let mut documents = vec![("Summary".to_owned(), summary.text())];
     documents.extend_from_slice(asked);
-    Told {
+    PageContent {
         title: title.to_owned(),
         is_solved: summary.message.is_none(),
         answer: summary.status.replace('_', " "),
@@ -29,6 +29,6 @@ pub(super) fn told(title: &str, summary: &Summary, asked: &[(String, String)]) -
             .chain(summary.notes.lines())
             .collect(),
         documents,
-        ..Told::default()
+        ..PageContent::default()
     }
 }

@@ -4,17 +4,17 @@ use std::ops::RangeInclusive;
 use std::path::Path;
 use std::time::Instant;
 
+use crate::app::equilibrium_model::{model_at_rest, reference};
+use crate::app::equilibrium_summary::at_rest;
 use crate::app::error::CommandError;
 use crate::app::fields;
 use crate::app::folder::make_folder;
-use crate::app::followed::Followed;
+use crate::app::messages::counted;
+use crate::app::no_equilibrium::refused;
 use crate::app::page;
+use crate::app::path_summary::PathSummary;
 use crate::app::request::{CommandInput, CommandOutput};
-use crate::app::rest_model::{model_at_rest, reference};
-use crate::app::rest_observed::at_rest;
-use crate::app::rest_refused::refused;
 use crate::app::summary::{MEASURED, Seconds, Summary};
-use crate::app::words::counted;
 use crate::control::problem::AtRest;
 use crate::dynamics::trajectory::{Column, Observations, Trajectory};
 use crate::dynamics::{
@@ -30,7 +30,7 @@ use crate::report::lines::{LinePlot, Mark, Series};
 use crate::report::origin::Origin;
 use crate::report::skins::Skins;
 use crate::report::style::Dash;
-use crate::report::{Branch, Run, Told, style, write_still};
+use crate::report::{Branch, PageContent, Run, style, write_still};
 use crate::workflow::domain;
 use crate::workflow::effects::Plan;
 use crate::workflow::phase::phase;
@@ -58,18 +58,18 @@ pub(super) fn follow(
     let origin = request.origin(false);
     let path = EquilibriumPath::new(&model, &found);
     let writing = Instant::now();
-    let mut files = FileSet::of(&folder);
+    let mut files = FileSet::in_folder(&folder);
     let plot = path.figure();
     files.add("path.svg", plot.svg(&origin).as_bytes())?;
-    fields::write(&mut files, &model, &path.history, &origin)?;
+    fields::write(&mut files, &model, &path.discrete, &origin)?;
     let word = stopped.map_or("path_followed", Status::word);
     let mut summary = Summary::new(request, word, model.coordinates.name());
-    summary.plan = Plan::of(&model, None, MEASURED);
-    let followed = Followed::new(&found);
+    summary.plan = Plan::from_model(&model, None, MEASURED);
+    let followed = PathSummary::new(&found);
     let rows = followed.rows(path.stops[path.shown()].fraction);
-    let told = told(&followed, found.points.len(), stopped, &folder);
+    let output = command_output(&followed, found.points.len(), stopped, &folder);
     summary.path = Some(followed);
-    summary.domain = domain::told(&out_of_domain(&model, &path.history));
+    summary.domain = domain::records(&out_of_domain(&model, &path.discrete));
     let note = domain::note(&summary.domain, false);
     summary.notes.warn("outside_domain", note);
     summary.seconds = Seconds {
@@ -77,7 +77,7 @@ pub(super) fn follow(
         setup,
         ..Seconds::default()
     };
-    let mut page = page::told("Path of equilibria", &summary, asked);
+    let mut page = page::content("Path of equilibria", &summary, asked);
     page.rows = rows;
     page.plots.push(("Path".to_owned(), plot));
     path.write(request, &page, &mut files, &origin)?;
@@ -85,13 +85,18 @@ pub(super) fn follow(
     let notes = summary.notes.lines();
     summary.write(files)?;
     Ok(CommandOutput {
-        notes: told.notes.into_iter().chain(notes).collect(),
-        ..told
+        notes: output.notes.into_iter().chain(notes).collect(),
+        ..output
     })
 }
 
 /// The answer of the command without its warnings.
-fn told(path: &Followed, points: usize, stopped: Option<Status>, folder: &Path) -> CommandOutput {
+fn command_output(
+    path: &PathSummary,
+    points: usize,
+    stopped: Option<Status>,
+    folder: &Path,
+) -> CommandOutput {
     let losses = path.lost.iter().map(|loss| {
         format!(
             "{} at {:.6} % of the voltages",
@@ -145,24 +150,24 @@ impl<'a> Stop<'a> {
     }
 }
 
-/// The history up to an instant.
-fn up_to(history: &DiscreteTrajectory, k: usize) -> DiscreteTrajectory {
+/// The discrete trajectory up to an instant.
+fn up_to(discrete: &DiscreteTrajectory, k: usize) -> DiscreteTrajectory {
     DiscreteTrajectory {
-        times: history.times[..=k].to_vec(),
-        z: history.z[..=k].to_vec(),
-        momenta: history.momenta[..=k].to_vec(),
-        scalars: history.scalars[..k].to_vec(),
+        times: discrete.times[..=k].to_vec(),
+        z: discrete.z[..=k].to_vec(),
+        momenta: discrete.momenta[..=k].to_vec(),
+        scalars: discrete.scalars[..k].to_vec(),
         ..DiscreteTrajectory::default()
     }
 }
 
 /// The state at an instant, alone.
-fn single_instant(history: &DiscreteTrajectory, k: usize) -> DiscreteTrajectory {
+fn single_instant(discrete: &DiscreteTrajectory, k: usize) -> DiscreteTrajectory {
     DiscreteTrajectory {
         times: vec![0.0],
-        z: vec![history.z[k].clone()],
-        momenta: vec![history.momenta[k].clone()],
-        scalars: vec![history.scalars[k - 1].clone()],
+        z: vec![discrete.z[k].clone()],
+        momenta: vec![discrete.momenta[k].clone()],
+        scalars: vec![discrete.scalars[k - 1].clone()],
         ..DiscreteTrajectory::default()
     }
 }
@@ -172,14 +177,14 @@ struct EquilibriumPath<'a> {
     model: &'a Model,
     stops: Vec<Stop<'a>>,
     /// The first equilibrium stands at both ends of an interval of its own, so that each has its potentials.
-    history: DiscreteTrajectory,
+    discrete: DiscreteTrajectory,
 }
 
 impl<'a> EquilibriumPath<'a> {
     fn new(model: &'a Model, found: &'a Continuation) -> Self {
         let stops = Stop::all(found);
         let first = std::iter::once(&stops[0]);
-        let history = DiscreteTrajectory {
+        let discrete = DiscreteTrajectory {
             times: std::iter::once(0.0)
                 .chain(stops.iter().map(|stop| stop.fraction))
                 .collect(),
@@ -194,7 +199,7 @@ impl<'a> EquilibriumPath<'a> {
         Self {
             model,
             stops,
-            history,
+            discrete,
         }
     }
 
@@ -208,26 +213,26 @@ impl<'a> EquilibriumPath<'a> {
     fn write(
         &self,
         request: &CommandInput,
-        page: &Told,
+        page: &PageContent,
         files: &mut FileSet,
         origin: &Origin,
     ) -> Result<(), WriteError> {
         let Self {
             model,
             stops,
-            history,
+            discrete,
         } = self;
         let shown = self.shown();
-        let state = single_instant(history, shown + 1);
-        let motion = Trajectory::from_history(model, &state);
-        let way = Trajectory::from_history(model, &up_to(history, shown + 1));
+        let state = single_instant(discrete, shown + 1);
+        let motion = Trajectory::from_discrete(model, &state);
+        let way = Trajectory::from_discrete(model, &up_to(discrete, shown + 1));
         let steps = DiscreteTrajectory {
             times: (0..=stops.len()).map(|k| 1e3 * (k as f64 - 1.0)).collect(),
-            ..history.clone()
+            ..discrete.clone()
         };
         let fractions: Vec<f64> = stops.iter().map(|stop| stop.fraction).collect();
         let branch = Branch {
-            trajectory: &Trajectory::from_history(model, &steps),
+            trajectory: &Trajectory::from_discrete(model, &steps),
             skins: &Skins::new(model, &steps),
             fractions: &fractions,
             shown,
@@ -239,8 +244,8 @@ impl<'a> EquilibriumPath<'a> {
             equilibria: Some(&way),
             branch: Some(branch),
             figures: request.figures,
-            told: request.page.of(page),
-            ..Run::of(&model.system, &motion, &skins, &observed, origin)
+            page: request.page.of(page),
+            ..Run::from_trajectory(&model.system, &motion, &skins, &observed, origin)
         };
         write_still(files, "path.csv", &run)
     }
@@ -251,7 +256,7 @@ impl<'a> EquilibriumPath<'a> {
         let Self {
             model,
             stops,
-            history,
+            discrete,
         } = self;
         let mut columns = Vec::new();
         let mut add = |name: String, unit: &'static str, values: Vec<f64>| {
@@ -264,7 +269,7 @@ impl<'a> EquilibriumPath<'a> {
             let values = each(&|stop| stop.rest.scalars[s]);
             add(voltage.name.clone(), "V", values);
         }
-        for mut column in at_rest(observations(model, history)).columns {
+        for mut column in at_rest(observations(model, discrete)).columns {
             column.values.remove(0);
             add(column.name, column.unit, column.values);
         }
@@ -295,9 +300,9 @@ impl<'a> EquilibriumPath<'a> {
         let Self {
             model,
             stops,
-            history,
+            discrete,
         } = self;
-        let marks = Trajectory::from_history(model, history).marks;
+        let marks = Trajectory::from_discrete(model, discrete).marks;
         let reference = &reference(model);
         let distance = |m: usize, k: usize| (marks[k + 1][m] - marks[0][m]).norm();
         let mut series = Vec::new();

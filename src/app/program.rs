@@ -5,8 +5,8 @@ use std::path::{Path, PathBuf};
 use serde_json::Value;
 
 use crate::app::error::CommandError;
+use crate::app::messages::key;
 use crate::app::task::read;
-use crate::app::words::key;
 use crate::control::problem::Task;
 use crate::nlp::Nlp;
 use crate::workflow::prepare::{Counted, Prepared, prepare};
@@ -66,9 +66,11 @@ pub fn with_program<R>(
             reason: "only \"control\" is a nonlinear program".to_owned(),
         });
     };
-    let (model, boundary) = resolve(&loaded.system, control).map_err(CommandError::of(input))?;
+    let (model, boundary) =
+        resolve(&loaded.system, control).map_err(CommandError::in_file(input))?;
     let Prepared {
         mut program, point, ..
-    } = prepare(&model, &boundary, control, None, Counted::Yes).map_err(CommandError::of(input))?;
+    } = prepare(&model, &boundary, control, None, Counted::Yes)
+        .map_err(CommandError::in_file(input))?;
     Ok(read_program(&mut program, &point.x))
 }

@@ -86,7 +86,7 @@ impl Progress {
         bar.set_style(style(template));
         let ticker = match bar.is_hidden() {
             true => None,
-            false => Ticker::of(&bar),
+            false => Ticker::for_bar(&bar),
         };
         show_phases();
         let before = LINE.replace(Some(bar.clone()));
@@ -113,7 +113,7 @@ impl Progress {
         ));
     }
 
-    /// So many starts have ended, some of them solved, with this objective at best.
+    /// Numbers of starts that have ended and of those that are solved, and the best objective.
     pub(crate) fn run(&self, ended: usize, solved: usize, best: Option<f64>) {
         self.bar.set_position(ended as u64);
         let best = best.map_or_else(String::new, |best| format!(", best objective {best:.6e}"));

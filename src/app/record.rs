@@ -7,7 +7,7 @@ use std::path::Path;
 
 use serde::{Deserialize, Serialize};
 
-use crate::app::digest::digest_of;
+use crate::app::content_hash::digest_of;
 
 /// Statuses that may be otherwise the next time.
 const UNFINISHED: [&str; 5] = [
@@ -56,7 +56,7 @@ impl FileRecords {
     ///
     /// # Errors
     /// A file cannot be read.
-    pub(crate) fn of(folder: &Path) -> io::Result<Self> {
+    pub(crate) fn from_folder(folder: &Path) -> io::Result<Self> {
         let mut files = Self::default();
         if folder.is_dir() {
             files.read(folder, "")?;

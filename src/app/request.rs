@@ -6,7 +6,7 @@ use std::path::{Path, PathBuf};
 use crate::app::progress::ProgressDisplay;
 use crate::files::is_standard_input;
 use crate::report::origin::Origin;
-use crate::report::{Figures, Told};
+use crate::report::{Figures, PageContent};
 use crate::workflow::accuracy::AccuracyTarget;
 
 /// A command on a problem file.
@@ -48,8 +48,8 @@ pub enum PageWanted {
 
 impl PageWanted {
     /// Returns the texts of the page, where it is written.
-    pub(super) fn of(self, told: &Told) -> Option<&Told> {
-        (self == Self::Written).then_some(told)
+    pub(super) fn of(self, content: &PageContent) -> Option<&PageContent> {
+        (self == Self::Written).then_some(content)
     }
 }
 

@@ -5,20 +5,20 @@ use std::path::{Path, PathBuf};
 use std::time::Instant;
 
 use crate::app::blocks::BlockSizes;
-use crate::app::continuation;
+use crate::app::displayed_motion::{DisplayedMotion, Motion};
+use crate::app::energy_summary::EnergySummary;
 use crate::app::error::CommandError;
-use crate::app::exchanged::Exchanged;
 use crate::app::fields;
 use crate::app::page;
 use crate::app::progress::{Progress, Reached};
 use crate::app::request::{CommandInput, CommandOutput};
-use crate::app::shown::{Motion, Shown};
+use crate::app::resume_file;
 use crate::app::solution_file;
+use crate::app::solve_messages::ends;
 use crate::app::solve_page::{convergence, goal, rows, targets};
-use crate::app::solve_summary::{Verdict, add_notes, program, seconds, told};
-use crate::app::solve_words::ends;
+use crate::app::solve_summary::{Verdict, add_notes, command_output, program, seconds};
 use crate::app::summary::{MEASURED, Summary};
-use crate::app::tracking_words;
+use crate::app::tracking_messages;
 use crate::app::unfinished::{self, Unfinished};
 use crate::control::problem::Control;
 use crate::dynamics::trajectory::Trajectory;
@@ -32,13 +32,13 @@ use crate::report::origin::Origin;
 use crate::report::{Run, write_run};
 use crate::workflow::Iterate;
 use crate::workflow::accuracy::{Accuracy, AccuracyTarget, Refined};
-use crate::workflow::cure::{Cured, reproduced};
 use crate::workflow::domain;
 use crate::workflow::effects::Plan;
 use crate::workflow::final_values::final_values;
 use crate::workflow::grids::optimise_to;
-use crate::workflow::motion::{history, solved, trajectory};
+use crate::workflow::motion::{discrete_trajectory, solved, trajectory};
 use crate::workflow::optimum::{Optimum, SolveLimits};
+use crate::workflow::refine_until_reproduced::{RefinedOptimum, reproduced};
 use crate::workflow::resimulate::under_constant_voltages;
 use crate::workflow::tracking::followed;
 use crate::workflow::verified::{ACCURACY, verified};
@@ -66,7 +66,7 @@ pub(super) fn control(
         note,
     } = found;
     optimum.hold(control);
-    let verdict = Verdict::of(control, &optimum);
+    let verdict = Verdict::from_optimum(control, &optimum);
     let mut summary = Summary::new(request, verdict.word, optimum.model.coordinates.name());
     summary.message.clone_from(&verdict.message);
     let program = program(system, control, &optimum, iterations, verdict.is_solved);
@@ -74,7 +74,7 @@ pub(super) fn control(
     add_notes(&mut summary, system, control, &optimum, note, &verdict);
     summary.accuracy = accuracy;
     let model = optimum.sought.as_ref().unwrap_or(&optimum.model);
-    summary.plan = Plan::of(model, Some(control), MEASURED);
+    summary.plan = Plan::from_model(model, Some(control), MEASURED);
     summary.seconds = seconds(&optimum, read, began);
     write_files(
         (request, asked),
@@ -84,12 +84,13 @@ pub(super) fn control(
         began,
     )?;
     unfinished::done(&folder);
-    let mut told = told(&summary, control.is_refined, &optimum.violated, &folder);
+    let mut output = command_output(&summary, control.is_refined, &optimum.violated, &folder);
     if STOPPED.contains(&verdict.word) {
-        told.notes
-            .extend(continuation::command(request, &loaded.task));
+        output
+            .notes
+            .extend(resume_file::command(request, &loaded.task));
     }
-    Ok(told)
+    Ok(output)
 }
 
 /// Solves a control problem whose files were `read` in some seconds, and keeps its iterates in the folder of the results until it has ended.
@@ -100,7 +101,7 @@ fn solve(
     read: f64,
     observer: &mut dyn FnMut(Reached<'_>),
 ) -> Result<(Found, PathBuf), CommandError> {
-    let mut unfinished = Unfinished::of(request.folder(), solution_file::UNFINISHED);
+    let mut unfinished = Unfinished::in_folder(request.folder(), solution_file::UNFINISHED);
     let allowed = SolveLimits {
         iterations: request.max_iterations,
         seconds: request.max_seconds.map(|s| (s - read).max(0.0)),
@@ -144,7 +145,7 @@ fn find(
 ) -> Result<Found, CommandError> {
     let wanted = request.wanted.filter(|_| !control.is_refined);
     let Some(wanted) = wanted else {
-        let Cured {
+        let RefinedOptimum {
             optimum,
             iterations,
             note,
@@ -155,7 +156,7 @@ fn find(
             (true, _) => verified(system, control, ACCURACY, allowed, observer),
             (false, _) => reproduced(system, control, allowed, observer),
         }
-        .map_err(CommandError::of(&request.input))?;
+        .map_err(CommandError::in_file(&request.input))?;
         return Ok(Found {
             optimum,
             iterations,
@@ -169,7 +170,7 @@ fn find(
         accuracy,
         ..
     } = optimise_to(system, control, wanted, allowed, observer)
-        .map_err(CommandError::of(&request.input))?;
+        .map_err(CommandError::in_file(&request.input))?;
     Ok(Found {
         optimum,
         iterations,
@@ -188,23 +189,23 @@ fn write_files(
 ) -> Result<(), WriteError> {
     let writing = Instant::now();
     let (model, kept) = (&optimum.model, &optimum.motion);
-    let mut files = FileSet::of(folder);
+    let mut files = FileSet::in_folder(folder);
     solution_file::add(&mut files, model, kept)?;
-    let history = history(model, kept);
-    let mut observed = observations(model, &history);
+    let discrete = discrete_trajectory(model, kept);
+    let mut observed = observations(model, &discrete);
     let origin = request.origin(true);
-    let written = fields::write(&mut files, model, &history, &origin)?;
-    summary.blocks = BlockSizes::of(model).map(|b| b.after(model, &observed, written));
+    let written = fields::write(&mut files, model, &discrete, &origin)?;
+    summary.blocks = BlockSizes::from_model(model).map(|b| b.after(model, &observed, written));
     let motion = trajectory(model, kept);
-    let exchange = add_observed(summary, control, optimum, (&history, &motion));
+    let exchange = add_observed(summary, control, optimum, (&discrete, &motion));
     observed.columns.extend(exchange.columns());
     let motion = Motion {
         model,
-        history: &history,
+        discrete: &discrete,
         trajectory: &motion,
         observations: &observed,
     };
-    let shown = Shown::of(motion, output, false, &mut files)?;
+    let shown = DisplayedMotion::from_motion(motion, output, false, &mut files)?;
     summary.notes.note("shown", shown.notes.iter().cloned());
     summary.shown = shown.part;
     write_pictures(
@@ -224,20 +225,20 @@ fn add_observed(
     summary: &mut Summary,
     control: &Control,
     optimum: &Optimum,
-    (history, motion): (&DiscreteTrajectory, &Trajectory),
+    (discrete, motion): (&DiscreteTrajectory, &Trajectory),
 ) -> EnergyExchange {
     let Optimum {
         model, boundary, ..
     } = optimum;
-    summary.domain = domain::told(&out_of_domain(model, history));
+    summary.domain = domain::records(&out_of_domain(model, discrete));
     let held = boundary.rest.each_ref().map(Option::as_deref);
     let exchange = EnergyExchange::new(&model.system, motion, held);
-    summary.energies = Exchanged::new(&exchange);
+    summary.energies = EnergySummary::new(&exchange);
     summary.tracking = followed(optimum, control, motion);
     summary.final_values = final_values(&model.system, control, motion);
     let notes = &mut summary.notes;
     notes.warn("outside_domain", domain::note(&summary.domain, true));
-    notes.note("tracking", tracking_words::told(&summary.tracking));
+    notes.note("tracking", tracking_messages::notes(&summary.tracking));
     notes.note("final_value", ends(&summary.final_values));
     exchange
 }
@@ -247,7 +248,7 @@ fn write_pictures(
     (request, asked): (&CommandInput, &[(String, String)]),
     (control, optimum): (&Control, &Optimum),
     summary: &Summary,
-    (motion, shown): (Motion<'_>, &Shown),
+    (motion, shown): (Motion<'_>, &DisplayedMotion),
     files: &mut FileSet,
     origin: &Origin,
 ) -> Result<(), WriteError> {
@@ -258,12 +259,14 @@ fn write_pictures(
     let compared = is_solved
         .then(|| under_constant_voltages(model, boundary, &optimum.motion, COMPARED))
         .flatten()
-        .map(|(history, _)| trajectory(model, &solved(model, &history, None)))
+        .map(|(discrete, _)| trajectory(model, &solved(model, &discrete, None)))
         .map(|other| shown.beside(other));
     let goal = goal(model, boundary);
-    let mut told = page::told("Optimal control", summary, asked);
-    told.rows = rows(summary);
-    told.plots.push(convergence(&optimum.solution.iterations));
+    let mut content = page::content("Optimal control", summary, asked);
+    content.rows = rows(summary);
+    content
+        .plots
+        .push(convergence(&optimum.solution.iterations));
     let run = Run {
         name: match summary.status.as_str() {
             _ if is_solved => "optimal voltages",
@@ -276,7 +279,7 @@ fn write_pictures(
         tracked: &shown.tracked(&summary.tracking),
         goal: goal.as_deref(),
         targets: &targets(control, motion.trajectory),
-        told: request.page.of(&told),
+        page: request.page.of(&content),
         ..shown.run(&model.system, origin)
     };
     write_run(files, &run)

@@ -1,8 +1,8 @@
 //! Texts of the page of a control problem: rows of its table, the convergence of the solver, the goal.
 
-use crate::app::exchanged::Exchanged;
+use crate::app::energy_summary::EnergySummary;
 use crate::app::summary::{Program, Summary};
-use crate::app::tracking_words;
+use crate::app::tracking_messages;
 use crate::control::BoundaryConditions;
 use crate::control::problem::{BoundaryState, Control, CostFunction, During, Place};
 use crate::dynamics::trajectory::Trajectory;
@@ -27,7 +27,7 @@ pub(super) fn rows(summary: &Summary) -> Vec<(String, String)> {
         row("duration", format!("{:.6} s", program.duration));
         row("intervals", program.intervals.to_string());
         for parameter in &program.parameters {
-            row(&parameter.name, parameter.told());
+            row(&parameter.name, parameter.text());
         }
         row(
             "coordinates",
@@ -36,7 +36,7 @@ pub(super) fn rows(summary: &Summary) -> Vec<(String, String)> {
         row("variables", program.variables.to_string());
         row("constraints", program.constraints.to_string());
         row("time", format!("{:.3} s", summary.seconds.total));
-        for (key, value) in summary.energies.iter().flat_map(Exchanged::rows) {
+        for (key, value) in summary.energies.iter().flat_map(EnergySummary::rows) {
             row(&key, value);
         }
         for (name, error) in summary.accuracy.iter().flat_map(|a| &a.estimate) {
@@ -51,7 +51,7 @@ pub(super) fn rows(summary: &Summary) -> Vec<(String, String)> {
                 row(&format!("drift when held for {held} s"), of(drift));
             }
         }
-        for (key, value) in summary.tracking.iter().map(tracking_words::row) {
+        for (key, value) in summary.tracking.iter().map(tracking_messages::row) {
             row(&key, value);
         }
         for violation in &program.violations {
@@ -151,10 +151,10 @@ pub(super) fn goal(model: &Model, boundary: &BoundaryConditions) -> Option<Vec<P
             .copied()
             .collect::<Option<Vec<f64>>>()?,
     };
-    let mut instant = model.action.motion.instant();
+    let mut instant = model.action.map.instant();
     (z.len() == instant.z.len()).then(|| {
         instant.z.copy_from_slice(&z);
-        model.action.motion.place(&mut instant);
+        model.action.map.place(&mut instant);
         model.poses(&instant)
     })
 }

@@ -4,17 +4,17 @@ use std::path::Path;
 use std::time::Instant;
 
 use crate::app::linear_systems::LinearSystems;
+use crate::app::messages::counted;
 use crate::app::moved_markers::moved_markers;
 use crate::app::request::CommandOutput;
+use crate::app::solve_messages::{carried, meaning, redundancy, restarted, unresolved};
 use crate::app::solve_page::describe;
-use crate::app::solve_words::{carried, meaning, redundancy, restarted, unresolved};
 use crate::app::summary::{Evaluations, PerInterval, Program, Seconds, SoughtValue, Summary};
-use crate::app::words::counted;
 use crate::control::problem::{Control, Hold};
 use crate::ipopt::{Status, interrupt};
 use crate::model::System;
 use crate::workflow::cause::Cause;
-use crate::workflow::holding;
+use crate::workflow::hold_check;
 use crate::workflow::optimum::Optimum;
 use crate::workflow::solve_remarks::add_remarks;
 use crate::workflow::violations::Violation;
@@ -32,14 +32,14 @@ pub(super) struct Verdict {
 
 impl Verdict {
     /// The verdict by verification, by the end where it has to be held, and by the solver.
-    pub(super) fn of(control: &Control, optimum: &Optimum) -> Self {
+    pub(super) fn from_optimum(control: &Control, optimum: &Optimum) -> Self {
         let Optimum {
             model, boundary, ..
         } = optimum;
         let refuted = optimum.reversed.map(|(k, m)| unresolved(model, k, m));
-        let refuted = refuted.or_else(|| optimum.cause().map(Cause::told));
+        let refuted = refuted.or_else(|| optimum.cause().map(Cause::message));
         let tested = optimum.resimulation.as_ref();
-        let not_kept = holding::warning(control, model, boundary, tested);
+        let not_kept = hold_check::warning(control, model, boundary, tested);
         let mut is_solved = optimum.is_solved();
         let mut word = optimum.word();
         if interrupt::requested() && word == "not_reproduced" {
@@ -145,7 +145,7 @@ pub(super) fn seconds(optimum: &Optimum, read: f64, began: Instant) -> Seconds {
 }
 
 /// The answer of the command.
-pub(super) fn told(
+pub(super) fn command_output(
     summary: &Summary,
     is_refined: bool,
     violated: &[Violation],
@@ -163,7 +163,7 @@ pub(super) fn told(
     notes.extend(violated.iter().map(describe));
     notes.extend(summary.notes.lines());
     let parameters = program.iter().flat_map(|program| &program.parameters);
-    notes.extend(parameters.map(|found| format!("{}: {}", found.name, found.told())));
+    notes.extend(parameters.map(|found| format!("{}: {}", found.name, found.text())));
     if let (true, Some(accuracy)) = (is_solved, &summary.accuracy) {
         notes.extend(accuracy.notes());
         (word, is_solved) = accuracy.outcome(&word);

@@ -7,13 +7,13 @@ use serde::Serialize;
 
 use crate::app::blocks::BlockSizes;
 use crate::app::comparison::Comparison;
+use crate::app::displayed_motion::ShownPart;
+use crate::app::energy_summary::EnergySummary;
+use crate::app::equilibrium_summary::Rest;
 use crate::app::error::CommandError;
-use crate::app::exchanged::Exchanged;
-use crate::app::followed::Followed;
 use crate::app::linear_systems::LinearSystems;
+use crate::app::path_summary::PathSummary;
 use crate::app::request::CommandInput;
-use crate::app::rest_words::Rest;
-use crate::app::shown::ShownPart;
 use crate::control::problem;
 use crate::dynamics::{DiscreteTrajectory, LocalError};
 use crate::files::lay_out;
@@ -64,13 +64,13 @@ pub(super) struct Summary {
     pub(super) final_values: Vec<FinalValue>,
     /// Electrical energy and mechanical work of a motion.
     #[serde(skip_serializing_if = "Option::is_none")]
-    pub(super) energies: Option<Exchanged>,
+    pub(super) energies: Option<EnergySummary>,
     #[serde(skip_serializing_if = "Option::is_none")]
     pub(super) comparison: Option<Comparison>,
     #[serde(flatten)]
     pub(super) rest: Option<Rest>,
     #[serde(skip_serializing_if = "Option::is_none")]
-    pub(super) path: Option<Followed>,
+    pub(super) path: Option<PathSummary>,
     /// Muscles and blocks that leave the domain of the first-order dielectric.
     #[serde(skip_serializing_if = "Vec::is_empty")]
     pub(super) domain: Vec<Outside>,
@@ -147,7 +147,7 @@ impl SoughtValue {
     }
 
     /// In words.
-    pub(super) fn told(&self) -> String {
+    pub(super) fn text(&self) -> String {
         let value = format!("{} {}", significant(self.value, 8), self.unit);
         match self.at_bound {
             true => format!("{}, at its bound", value.trim_end()),
@@ -253,14 +253,14 @@ impl Neglected {
 impl Simulation {
     /// Of a motion.
     pub(super) fn new(
-        (history, estimated): (&DiscreteTrajectory, Option<EstimatedError>),
+        (discrete, estimated): (&DiscreteTrajectory, Option<EstimatedError>),
         task: &problem::Simulation,
         error: Option<LocalError>,
     ) -> Self {
-        let (steps, report) = (history.intervals(), history.report);
+        let (steps, report) = (discrete.intervals(), discrete.report);
         Self {
             steps,
-            duration: history.times[steps] / 1e3,
+            duration: discrete.times[steps] / 1e3,
             local_error: error.map(Neglected::new),
             integrator: task.solving.integrator.name(),
             tolerance: task.tolerance,
@@ -268,7 +268,7 @@ impl Simulation {
             is_confirmed: estimated.map(|estimated| estimated.is_confirmed),
             newton_iterations: report.iterations,
             halved_steps: report.halved,
-            linear_solver: history.solver.clone(),
+            linear_solver: discrete.solver.clone(),
             factorisations: report.factorisations,
             assembly_seconds: report.assembly,
             factorisation_seconds: report.factorisation,

@@ -3,16 +3,16 @@
 use std::path::Path;
 use std::time::Instant;
 
-use crate::app::continuation;
+use crate::app::equilibrium;
 use crate::app::error::CommandError;
 use crate::app::foreign::refuse_foreign;
-use crate::app::forward;
 use crate::app::no_equilibrium;
 use crate::app::other_task::refuse_all_but_motions;
 use crate::app::page::asked;
 use crate::app::progress::{Progress, Reached};
 use crate::app::request::{CommandInput, CommandOutput};
-use crate::app::rest;
+use crate::app::resume_file;
+use crate::app::simulation;
 use crate::app::solve;
 use crate::control::Earlier;
 use crate::control::problem::{BoundaryState, Guess, Task};
@@ -70,15 +70,15 @@ fn run_checked(
         Task::Control(control) => {
             let mut control = control.clone();
             if let Some(folder) = &request.from {
-                let file = SolutionFile(continuation::solution(folder)?);
+                let file = SolutionFile(resume_file::solution(folder)?);
                 control.guess = Guess::Solution(Earlier::new(file));
             }
             solve::control(told, &loaded, &control, began, observer)
         }
         Task::Simulate(simulation) => {
-            forward::simulation(told, &loaded, simulation, began, observer)
+            simulation::simulation(told, &loaded, simulation, began, observer)
         }
-        Task::Equilibrium(task) => rest::at(told, &loaded.system, task, began),
+        Task::Equilibrium(task) => equilibrium::at(told, &loaded.system, task, began),
     };
     no_equilibrium::kept(request, answer)
 }
@@ -93,7 +93,7 @@ pub(super) fn read(
         Some(text) => read_problem_text(input, text, set),
         None => read_problem(input, set),
     }?;
-    memory::of_elements(&loaded.system).map_err(CommandError::of(input))?;
+    memory::of_elements(&loaded.system).map_err(CommandError::in_file(input))?;
     Ok(loaded)
 }
 

@@ -18,7 +18,7 @@ pub(super) struct Ticker {
 
 impl Ticker {
     /// Draws a line; none where no thread can be had, and then it is drawn at the next message.
-    pub(super) fn of(bar: &ProgressBar) -> Option<Self> {
+    pub(super) fn for_bar(bar: &ProgressBar) -> Option<Self> {
         let (alive, gone) = mpsc::channel();
         let bar = bar.downgrade();
         let draw = move || {

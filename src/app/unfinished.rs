@@ -6,7 +6,7 @@ use std::path::{Path, PathBuf};
 use std::time::{Duration, Instant};
 
 use crate::app::folder::make_folder;
-use crate::app::{continuation, solution_file};
+use crate::app::{resume_file, solution_file};
 use crate::report::atomic::WriteError;
 
 /// Shortest and longest time between two writings.
@@ -31,7 +31,7 @@ pub(super) struct Unfinished {
 
 impl Unfinished {
     /// Nothing is written yet; the first time comes after two seconds.
-    pub(super) fn of(folder: PathBuf, file: &str) -> Self {
+    pub(super) fn in_folder(folder: PathBuf, file: &str) -> Self {
         Self {
             path: folder.join(file),
             folder,
@@ -88,5 +88,5 @@ impl Unfinished {
 /// The results of a folder are complete: nothing is unfinished, of this run or an earlier one.
 pub(super) fn done(folder: &Path) {
     solution_file::remove(&folder.join(solution_file::UNFINISHED));
-    fs::remove_file(folder.join(continuation::UNFINISHED)).ok();
+    fs::remove_file(folder.join(resume_file::UNFINISHED)).ok();
 }

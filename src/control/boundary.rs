@@ -1,7 +1,7 @@
 //! Start and goal: the coordinates that they give, the equations that they add, and the voltages at rest.
 
-use crate::control::conditions::{BoundaryConditions, Rests, TerminalState};
-use crate::control::ends;
+use crate::control::boundary_conditions::{BoundaryConditions, Rests, TerminalState};
+use crate::control::endpoint_checks;
 use crate::control::energy_cost::sources;
 use crate::control::error::BoundaryError;
 use crate::control::goal_rows;
@@ -38,7 +38,7 @@ impl BoundaryConditions {
             return Ok((model, boundary));
         };
         let names_markers = matches!(goal, BoundaryState::Markers { .. });
-        if !names_markers && model.action.motion.of_bodies == 0 {
+        if !names_markers && model.action.map.of_bodies == 0 {
             return Err(error);
         }
         let eased = Control {
@@ -62,16 +62,16 @@ impl BoundaryConditions {
         h0: f64,
     ) -> Result<(Model, Self), BoundaryError> {
         let system = &sought::at_guess(system, control)?;
-        let question = control.question(system, h0);
-        let presolved = Presolved::new(system, &question);
+        let analysis = control.analysis(system, h0);
+        let presolved = Presolved::new(system, &analysis);
         let coordinates = Model::choose(&presolved.system, control.coordinates)?;
         let redundant = coordinates == Coordinates::Redundant;
         let limits = limits_with_goal(system, control, redundant);
-        let question = Analysis {
+        let analysis = Analysis {
             coordinates: Some(coordinates),
-            ..with_quantities(question, &limits, control)
+            ..with_quantities(analysis, &limits, control)
         };
-        let mut model = Model::of_presolved(system.clone(), question, presolved)?;
+        let mut model = Model::of_presolved(system.clone(), analysis, presolved)?;
         let (start, of_start) = start_of(&model, &control.start)?;
         goal_rows::leave_out_constant(&mut model, &limits, &start.z)?;
         let (given, of_goal) = coordinates_at_goal(&model, &control.goal)?;
@@ -94,7 +94,7 @@ impl BoundaryConditions {
         let rest = boundary.goal.rest.as_ref();
         let ends = [Some(&boundary.start.z[..]), rest.map(|rest| &rest.z[..])];
         sought::check(&model, control, ends)?;
-        ends::check(&model, &boundary, control, scalars)?;
+        endpoint_checks::check(&model, &boundary, control, scalars)?;
         Ok((model, boundary))
     }
 }
@@ -126,7 +126,7 @@ fn limits_with_goal(system: &System, control: &Control, redundant: bool) -> Limi
 }
 
 /// The analysis with the quantities of limits, goal and costs.
-fn with_quantities(question: Analysis, limits: &Limits, control: &Control) -> Analysis {
+fn with_quantities(analysis: Analysis, limits: &Limits, control: &Control) -> Analysis {
     let mut quantities = limits.quantities();
     let paid = &control.objective.quantities;
     let curved = paid.iter().enumerate().filter(|(_, c)| c.is_curved());
@@ -137,7 +137,7 @@ fn with_quantities(question: Analysis, limits: &Limits, control: &Control) -> An
     Analysis {
         curved,
         quantities,
-        ..question
+        ..analysis
     }
 }
 
@@ -168,7 +168,7 @@ fn coordinates_at_goal(
             let rest = rest_at(model, voltages, "goal")?;
             let reached = match of {
                 Rest::Everything | Rest::Attainable => n,
-                Rest::Bodies => model.action.motion.of_bodies.min(n),
+                Rest::Bodies => model.action.map.of_bodies.min(n),
             };
             for (given, value) in given.iter_mut().zip(&rest.z[..reached]) {
                 *given = Some(*value);
@@ -178,7 +178,7 @@ fn coordinates_at_goal(
         }
         BoundaryState::JointAngles { angles, .. } if !redundant => {
             for (&joint, &value) in angles {
-                if let Some(c) = model.gauges[joint].coordinate {
+                if let Some(c) = model.joint_readings[joint].coordinate {
                     given[c] = Some(value);
                 }
             }
@@ -258,7 +258,7 @@ pub fn resolve_start(
                 map.get(&j).copied().unwrap_or(0.0)
             };
             let joints = |map| {
-                (0..model.gauges.len())
+                (0..model.joint_readings.len())
                     .map(|j| value(map, j))
                     .collect::<Vec<f64>>()
             };
@@ -298,10 +298,10 @@ fn check_muscles(model: &Model, z: &[f64], place: &'static str) -> Result<(), Bo
 
 /// Checks the constraints that the coordinates leave open.
 fn check_constraints(model: &Model, z: &[f64], place: &'static str) -> Result<(), BoundaryError> {
-    let mut instant = model.action.motion.instant();
+    let mut instant = model.action.map.instant();
     let mut scratch = model.action.scratch(Order::Gradient);
     instant.z.copy_from_slice(z);
-    model.action.motion.place(&mut instant);
+    model.action.map.place(&mut instant);
     model
         .action
         .evaluate_instant(Order::Gradient, &mut instant, &[], &mut scratch);

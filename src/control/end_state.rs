@@ -1,6 +1,6 @@
 //! The end of another motion, as the start of a new one.
 
-use crate::control::meshes::other_mesh;
+use crate::control::mesh_match::other_mesh;
 use crate::dynamics::{Start, StepState};
 use crate::kinematics::Pose;
 use crate::model::{Coordinates, Model};
@@ -39,7 +39,7 @@ impl EndState {
     /// # Errors
     /// It is no state of this model; the text says what differs.
     pub(super) fn start(&self, model: &Model) -> Result<Start, String> {
-        let (source, motion) = (self.source.display(), &model.action.motion);
+        let (source, map) = (self.source.display(), &model.action.map);
         let [there, here] = [self.coordinates, model.coordinates].map(Coordinates::name);
         if self.coordinates != model.coordinates {
             return Err(format!(
@@ -51,7 +51,7 @@ impl EndState {
                 "{source} has other nodes of \"{solid}\"; expected a result of the same robot on the same mesh"
             ));
         }
-        let [count, length] = [motion.coordinates, motion.instant().z.len()];
+        let [count, length] = [map.coordinates, map.instant().z.len()];
         if [self.momentum.len(), self.z.len()] != [count, length] {
             return Err(format!(
                 "{source} has {} coordinates, and this motion {count}; expected a result of the same robot, of which everything could move",
@@ -63,12 +63,12 @@ impl EndState {
                 "{source} ends with a coordinate or momentum that is no number; expected a motion"
             ));
         }
-        if !motion.has_unit_charts(&self.z) {
+        if !map.has_unit_charts(&self.z) {
             return Err(format!(
                 "{source} ends with a rotation whose quaternion does not have length one; expected a motion"
             ));
         }
-        let poses = model.poses(&motion.placed(&self.z));
+        let poses = model.poses(&map.placed(&self.z));
         let tolerance = SAME_PLACE * model.length();
         let bodies = poses.iter().zip(&self.poses).zip(&model.system.bodies);
         for ((here, there), body) in bodies {

@@ -86,7 +86,7 @@ pub(super) fn leave_out_constant(
         if bounded.when != When::Goal || !is_direction || changes(model, measure, start) {
             continue;
         }
-        let instant = model.action.motion.placed(start);
+        let instant = model.action.map.placed(start);
         let measure = Site::Instants.measure(model, measure);
         let value = measure.value(&Sample::of_instant(&instant.x, &[]));
         if let Some(reason) = bounded.broken(value, &model.system) {
@@ -101,24 +101,24 @@ pub(super) fn leave_out_constant(
 
 /// Returns true if coordinates change a quantity of the instants somewhere.
 fn changes(model: &Model, measure: usize, start: &[f64]) -> bool {
-    let motion = &model.action.motion;
+    let map = &model.action.map;
     let measure = Site::Instants.measure(model, measure);
     let length = model.length();
     (0..TRIALS).any(|seed| {
         let mut random = Random::new(seed);
         let mut z = start.to_vec();
-        for (i, value) in z[..motion.of_bodies].iter_mut().enumerate() {
+        for (i, value) in z[..map.of_bodies].iter_mut().enumerate() {
             let size = if model.is_length(i) { length } else { 1.0 };
             *value += random.between(-NEAR, NEAR) * size;
         }
-        let mut instant = motion.placed(&z);
-        motion.tangent(&mut instant);
+        let mut instant = map.placed(&z);
+        map.tangent(&mut instant);
         let zeros = || vec![Vector::zeros(); instant.x.len()];
         let (mut forces, mut rows) = ([zeros(), zeros()], Vec::new());
         measure.gradient(&Sample::of_instant(&instant.x, &[]), &mut forces, &mut rows);
-        let mut slopes = vec![0.0; motion.unknowns()];
+        let mut slopes = vec![0.0; map.unknowns()];
         for vector in measure.vectors() {
-            motion.pull_back_one(vector, &instant.columns, &forces[0][vector], &mut slopes);
+            map.pull_back_one(vector, &instant.columns, &forces[0][vector], &mut slopes);
         }
         slopes.iter().any(|slope| slope.abs() > ROUNDING)
     })

@@ -1,11 +1,11 @@
 //! Initial guess of the solver: interpolated between start and goal, simulated, or an earlier solution.
 
-use crate::control::conditions::BoundaryConditions;
-use crate::control::evened::evened;
-use crate::control::meshes::other_mesh;
+use crate::control::boundary_conditions::BoundaryConditions;
+use crate::control::mesh_match::other_mesh;
 use crate::control::problem::{Control, Guess};
 use crate::control::resample::{self, Grids};
 use crate::control::solution::{Costates, Solution};
+use crate::control::uniform_grid::on_uniform_grid;
 use crate::dynamics::{DiscreteTrajectory, simulate};
 use crate::kinematics::Pose;
 use crate::model::{Coordinates, Graph, Model, Role};
@@ -19,7 +19,7 @@ const LIFT: f64 = 0.1;
 #[derive(Clone, Debug)]
 pub struct InitialGuess {
     /// Coordinates, multipliers and voltages.
-    pub history: DiscreteTrajectory,
+    pub discrete: DiscreteTrajectory,
     /// Interval length in ms.
     pub h: f64,
     /// Costates and bound multipliers.
@@ -55,7 +55,7 @@ pub fn guess(
         (Guess::Simulate(voltages), _) => {
             let voltages = |time| voltages.at(time).to_vec();
             InitialGuess {
-                history: under_voltages(model, boundary, control, h, voltages),
+                discrete: under_voltages(model, boundary, control, h, voltages),
                 h,
                 costates: None,
                 carried: Carried::default(),
@@ -84,17 +84,17 @@ fn under_voltages(
         model.scalars(&voltages)
     };
     let start = &boundary.start;
-    let (mut history, _) = simulate(model, start, h, intervals, scalars, |_| {
+    let (mut discrete, _) = simulate(model, start, h, intervals, scalars, |_| {
         ControlFlow::Continue(())
     });
     // A simulation that ends early is held where it ended.
-    while history.intervals() < intervals {
-        history.z.push(history.z[history.z.len() - 1].clone());
-        let last = history.scalars.last().cloned();
+    while discrete.intervals() < intervals {
+        discrete.z.push(discrete.z[discrete.z.len() - 1].clone());
+        let last = discrete.scalars.last().cloned();
         let still = || model.variables.scalars(&scalars(0.0, h));
-        history.scalars.push(last.unwrap_or_else(still));
+        discrete.scalars.push(last.unwrap_or_else(still));
     }
-    history
+    discrete
 }
 
 /// 3s² − 2s³ between start and goal; rest voltages of the goal lifted a little.
@@ -118,7 +118,7 @@ fn interpolate(
             end
         }
     };
-    let motion = &model.action.motion;
+    let map = &model.action.map;
     let smooth = |s: f64| s * s * (3.0 - 2.0 * s);
     let ends = joints_of(model, start).zip(joints_of(model, &end));
     let z = (0..=intervals).map(|k| {
@@ -134,8 +134,8 @@ fn interpolate(
                 for i in 0..n {
                     z[i] += s * (end[i] - start[i]);
                 }
-                z[n..motion.unknowns()].fill(0.0);
-                motion.mean_of_charts(&[(1.0 - s, start), (s, &end)], &mut z);
+                z[n..map.unknowns()].fill(0.0);
+                map.mean_of_charts(&[(1.0 - s, start), (s, &end)], &mut z);
                 z
             }
         }
@@ -144,14 +144,14 @@ fn interpolate(
     let mut held: Vec<f64> = rest.map_or_else(|| vec![0.0; model.sources.len()], Clone::clone);
     held.iter_mut().for_each(|voltage| *voltage += lift);
     let scalars = model.scalars(&held);
-    let history = DiscreteTrajectory {
+    let discrete = DiscreteTrajectory {
         times: (0..=intervals).map(|k| k as f64 * h).collect(),
         z: z.collect(),
         scalars: vec![model.variables.scalars(&scalars); intervals],
         ..DiscreteTrajectory::default()
     };
     InitialGuess {
-        history,
+        discrete,
         h,
         costates: None,
         carried: Carried::default(),
@@ -162,10 +162,10 @@ fn interpolate(
 fn joints_of(model: &Model, z: &[f64]) -> Option<Vec<f64>> {
     let tells_all = Graph::new(&model.system).has_one_coordinate_a_joint(&model.system);
     tells_all.then_some(())?;
-    let mut instant = model.action.motion.instant();
+    let mut instant = model.action.map.instant();
     instant.z.copy_from_slice(z);
-    model.action.motion.place(&mut instant);
-    Some(model.joints(&instant, &vec![0.0; model.gauges.len()]))
+    model.action.map.place(&mut instant);
+    Some(model.joints(&instant, &vec![0.0; model.joint_readings.len()]))
 }
 
 /// Poses on the way from one list to another, at a part of it.
@@ -193,11 +193,11 @@ fn from_solution(
     control: &Control,
     solved: &Solution,
 ) -> InitialGuess {
-    let motion = &model.action.motion;
+    let map = &model.action.map;
     let has_same_coordinates = solved.coordinates == model.coordinates
         && other_mesh(model, &solved.meshes).is_none()
         && solved.z.iter().all(|z| z.len() == boundary.start.z.len());
-    let solved = &*evened(solved, has_same_coordinates.then_some(motion));
+    let solved = &*on_uniform_grid(solved, has_same_coordinates.then_some(map));
     let intervals = control.intervals;
     let before = solved.times[solved.intervals()];
     let duration = control.duration.nearest(before);
@@ -207,7 +207,7 @@ fn from_solution(
     let grids = Grids::new(solved.intervals(), intervals, stretch);
     let carried = Carried {
         stretched: is_stretched.then_some([before, duration]),
-        simulated: !has_same_coordinates && !motion.of_nodes.is_empty(),
+        simulated: !has_same_coordinates && !map.of_nodes.is_empty(),
     };
     if carried.simulated {
         let voltages = |time: f64| {
@@ -215,24 +215,24 @@ fn from_solution(
             grids.mean(&solved.voltages, k.min(intervals - 1))
         };
         return InitialGuess {
-            history: under_voltages(model, boundary, control, h, voltages),
+            discrete: under_voltages(model, boundary, control, h, voltages),
             h,
             costates: None,
             carried,
         };
     }
     let z = match has_same_coordinates {
-        true => resample::coordinates(solved, grids, motion, model.multiplier_time),
+        true => resample::coordinates(solved, grids, map, model.multiplier_time),
         false => along_joints(model, solved, intervals),
     };
-    let history = DiscreteTrajectory {
+    let discrete = DiscreteTrajectory {
         times: (0..=intervals).map(|k| k as f64 * h).collect(),
         z,
         scalars: scalars(model, solved, grids, intervals),
         ..DiscreteTrajectory::default()
     };
     InitialGuess {
-        history,
+        discrete,
         h,
         costates: has_same_coordinates
             .then(|| resample::costates(model, boundary, control, solved, grids))

@@ -1,33 +1,33 @@
 //! Optimal control: direct transcription of the discrete action (DMOCC).
 
 mod boundary;
+mod boundary_conditions;
 mod boundary_state;
-mod calls;
-mod conditions;
 mod earlier;
 mod end_state;
-mod ends;
+mod endpoint_checks;
 mod energy_cost;
 mod error;
-mod evened;
 mod goal;
 mod goal_rows;
 mod guess;
 mod limits;
-mod meshes;
+mod mesh_match;
 mod numbering;
 mod objective;
 pub mod problem;
 mod quantity_cost;
+mod required_analysis;
 mod resample;
 mod rest;
 mod signal;
 mod solution;
 mod sought;
 mod transcription;
+mod uniform_grid;
 
 pub use boundary::resolve_start;
-pub use conditions::{BoundaryConditions, Rests, TerminalState};
+pub use boundary_conditions::{BoundaryConditions, Rests, TerminalState};
 pub use earlier::{Earlier, EarlierSolution};
 pub use end_state::EndState;
 pub use error::BoundaryError;

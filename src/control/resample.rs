@@ -4,7 +4,7 @@
 //! momentum balances and of Gauss's laws. Sums over a step go with its length: impulses of constraints, costates
 //! of path limits and of bounds. A finer grid has more and smaller ones.
 
-use crate::control::conditions::BoundaryConditions;
+use crate::control::boundary_conditions::BoundaryConditions;
 use crate::control::numbering::{Column, Row};
 use crate::control::problem::Control;
 use crate::control::solution::{Costates, Solution};
@@ -102,7 +102,7 @@ fn slope(rows: &[Vec<f64>], i: usize, s: usize) -> f64 {
 pub(super) fn coordinates(
     solved: &Solution,
     grids: Grids,
-    motion: &CoordinateMap,
+    map: &CoordinateMap,
     unit: f64,
 ) -> Vec<Vec<f64>> {
     let impulse = grids.ratio() * solved.multiplier_time / unit;
@@ -113,12 +113,12 @@ pub(super) fn coordinates(
                 *value += weight * old;
             }
         }
-        for multiplier in &mut z[motion.coordinates..motion.unknowns()] {
+        for multiplier in &mut z[map.coordinates..map.unknowns()] {
             *multiplier *= impulse;
         }
         let weights = grids.weights(k);
         let parts = weights.iter().map(|&(j, weight)| (weight, &*solved.z[j]));
-        motion.mean_of_charts(&parts.collect::<Vec<_>>(), &mut z);
+        map.mean_of_charts(&parts.collect::<Vec<_>>(), &mut z);
         z
     };
     (0..=grids.to).map(at).collect()
@@ -172,7 +172,7 @@ pub(super) fn costates(
             ratio * place.map_or(0.0, |v| list[v])
         }
         Column::Parameter { s } => from.unknowns.scalar(0, s).map_or(0.0, |v| list[v]),
-        // The duration is so many times the interval length.
+        // The duration is a multiple of the interval length.
         Column::Horizon => {
             let intervals = grids.to as f64 / grids.from as f64;
             from.unknowns.horizon().map_or(0.0, |v| list[v]) * intervals

@@ -1,6 +1,6 @@
 //! The same sums as functions of coordinates: x = F(u).
 //!
-//! Effects read material vectors x. Coordinates u of an instant are the joint coordinates of a kinematic tree
+//! Terms read material vectors x. Coordinates u of an instant are the joint coordinates of a kinematic tree
 //! ([`Tree`]), or the directors of all bodies, in which every vector is linear; multipliers of constraints that the
 //! coordinates leave open follow them in the same list z = (u, λ). With P = ∂x/∂u, forces R, blocks H of the sum, and
 //! w = P l for a direction l (of costates) the pull-back of a sum reads

@@ -4,7 +4,7 @@
 //! over a horizon exist only at (z_k, z_k), (z_{k+1}, z_k), (z_k, z_{k+1}), (z_k, s_k), (z_{k+1}, s_k), (s_k, s_k), and
 //! at the interval length against all of these. One table of slots serves every interval.
 
-use crate::math::counted;
+use crate::math::compact_index;
 
 /// Places of the entries of one kind of block, in the order in which they were asked for.
 #[derive(Clone, Debug, Default)]
@@ -26,8 +26,8 @@ impl BlockPattern {
             Some(&(other, slot)) if other as usize == col => slot as usize,
             _ => {
                 let slot = self.entries.len();
-                of_row.insert(at, (counted(col), counted(slot)));
-                self.entries.push((counted(row), counted(col)));
+                of_row.insert(at, (compact_index(col), compact_index(slot)));
+                self.entries.push((compact_index(row), compact_index(col)));
                 slot
             }
         }

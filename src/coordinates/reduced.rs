@@ -6,14 +6,16 @@ use crate::coordinates::map::CoordinateMap;
 use crate::coordinates::pattern::StepPattern;
 use crate::coordinates::pull_back::{Destination, PullBack, Site};
 use crate::coordinates::scratch::{Carried, Scratch};
-use crate::functional::{BlockMask, Blocks, Functional, Horizon, Order, Outer, Part, Sample};
+use crate::functional::{
+    BlockMask, Blocks, Functional, Horizon, Order, Outer, Sample, SumDerivatives,
+};
 use crate::math::Vector;
 
 /// Sums over intervals and instants as functions of the coordinates z of the instants and the scalars of the intervals.
 #[derive(Debug)]
 pub struct Reduced {
     /// Coordinates and the vectors that follow from them.
-    pub motion: CoordinateMap,
+    pub map: CoordinateMap,
     /// Sum over intervals; its scalars are those of an interval.
     pub intervals: Functional,
     /// Sum over instants; its scalars are multipliers.
@@ -26,22 +28,21 @@ pub struct Reduced {
 
 impl Reduced {
     /// Lays down the structure.
-    pub fn new(motion: CoordinateMap, intervals: Functional, instants: Functional) -> Self {
+    pub fn new(map: CoordinateMap, intervals: Functional, instants: Functional) -> Self {
         let mut layout = StepPattern {
-            unknowns: motion.unknowns(),
+            unknowns: map.unknowns(),
             interval_scalars: intervals.scalars,
             ..StepPattern::default()
         };
-        let interval_plan =
-            PullBack::new(&intervals.couplings, &motion, &mut layout, Site::Intervals);
-        let instant_plan = PullBack::new(&instants.couplings, &motion, &mut layout, Site::Instants);
-        let entries = motion.tree.iter().flat_map(|tree| tree.curvature_entries());
+        let interval_plan = PullBack::new(&intervals.couplings, &map, &mut layout, Site::Intervals);
+        let instant_plan = PullBack::new(&instants.couplings, &map, &mut layout, Site::Instants);
+        let entries = map.tree.iter().flat_map(|tree| tree.curvature_entries());
         let curvature = entries
             .map(|(i, k)| [layout.same.slot(i, k), layout.same.slot(k, i)])
             .collect();
         layout.shrink_to_fit();
         Self {
-            motion,
+            map,
             intervals,
             instants,
             interval_plan,
@@ -159,12 +160,11 @@ impl Reduced {
             for (side, instant) in [a, b].into_iter().enumerate() {
                 let at = layout.horizon_at(k + side);
                 let rows = &mut values[at..at + layout.unknowns];
-                self.motion
+                self.map
                     .pull_back(&instant.columns, &part.horizon_forces[side], rows);
                 if order == Order::Third {
                     let forces = &plain.horizon_forces[side];
-                    self.motion
-                        .pull_back_along(&instant.columns_l, forces, rows);
+                    self.map.pull_back_along(&instant.columns_l, forces, rows);
                 }
             }
             let at = layout.horizon_scalars_at(k);
@@ -182,7 +182,7 @@ impl Reduced {
     pub fn pull_back_part(
         &self,
         ends: [&Configuration; 2],
-        part: &Part,
+        part: &SumDerivatives,
         sides: BlockMask,
         target: &Destination,
         scratch: &mut Scratch,
@@ -242,11 +242,11 @@ impl Reduced {
         outer: &[Outer],
         scratch: &mut Scratch,
     ) {
-        let n = self.motion.coordinates;
+        let n = self.map.coordinates;
         let sample = Sample {
             vectors: [&instant.x, &instant.x],
             along: [&instant.w, &instant.w],
-            scalars: &instant.z[n..self.motion.unknowns()],
+            scalars: &instant.z[n..self.map.unknowns()],
             scalars_along: &instant.l[n..],
             h: 1.0,
             horizon: Horizon::Given,
@@ -304,7 +304,7 @@ impl Reduced {
                 values,
             ),
         }
-        if let Some(tree) = &self.motion.tree {
+        if let Some(tree) = &self.map.tree {
             let values = &mut values[same..];
             match order {
                 Order::Third => tree.curvature_along(instant, &self.curvature, values),
@@ -317,13 +317,13 @@ impl Reduced {
     pub fn momentum(&self, instant: &mut Configuration, rates: &[f64]) -> Vec<f64> {
         instant.l.fill(0.0);
         instant.l[..rates.len()].copy_from_slice(rates);
-        self.motion.along(instant);
+        self.map.along(instant);
         let mut momenta = vec![Vector::zeros(); instant.x.len()];
         for term in &self.intervals.terms {
             term.momentum(&instant.x, &instant.w, &mut momenta);
         }
-        let mut rows = vec![0.0; self.motion.coordinates];
-        self.motion.pull_back(&instant.columns, &momenta, &mut rows);
+        let mut rows = vec![0.0; self.map.coordinates];
+        self.map.pull_back(&instant.columns, &momenta, &mut rows);
         rows
     }
 
@@ -331,8 +331,8 @@ impl Reduced {
     ///
     /// The instant has to be evaluated last.
     pub fn rows(&self, instant: &mut Configuration, scratch: &Scratch, rows: &mut [f64]) {
-        self.motion.rows(instant, rows);
-        for (row, value) in rows[self.motion.coordinates..]
+        self.map.rows(instant, rows);
+        for (row, value) in rows[self.map.coordinates..]
             .iter_mut()
             .zip(&scratch.instant.plain.rows)
         {

@@ -28,36 +28,36 @@ impl<'m> AtInstant<'m> {
     /// it, and otherwise that of the last instant.
     pub(super) fn momentum(
         &self,
-        history: &DiscreteTrajectory,
+        discrete: &DiscreteTrajectory,
         k: usize,
         here: &Configuration,
         scratch: &mut Scratch,
     ) -> Vec<f64> {
         let model = self.model;
-        if let Some(momentum) = history.momenta.get(k) {
+        if let Some(momentum) = discrete.momenta.get(k) {
             return momentum.clone();
         }
         let n = model.coordinate_count();
         if k > 0 {
-            return last_momentum(model, history).unwrap_or_else(|| vec![f64::NAN; n]);
+            return last_momentum(model, discrete).unwrap_or_else(|| vec![f64::NAN; n]);
         }
-        let Some(scalars) = history.scalars.first() else {
+        let Some(scalars) = discrete.scalars.first() else {
             return vec![0.0; n];
         };
         let (mut a, mut b) = (here.clone(), here.clone());
-        b.z.copy_from_slice(&history.z[1]);
-        model.action.motion.place(&mut b);
+        b.z.copy_from_slice(&discrete.z[1]);
+        model.action.map.place(&mut b);
         a.forces.fill(Vector::zeros());
         model.action.evaluate_interval(
             Order::Gradient,
             [&mut a, &mut b],
-            &Interval::given(scalars, history.times[1] - history.times[0]),
+            &Interval::given(scalars, discrete.times[1] - discrete.times[0]),
             scratch,
         );
         model
             .action
             .evaluate_instant(Order::Gradient, &mut a, &[], scratch);
-        let mut rows = vec![0.0; model.action.motion.unknowns()];
+        let mut rows = vec![0.0; model.action.map.unknowns()];
         model.action.rows(&mut a, scratch, &mut rows);
         rows[..n].iter().map(|row| -row).collect()
     }
@@ -66,17 +66,17 @@ impl<'m> AtInstant<'m> {
     /// meet the constraints.
     pub(super) fn rates(
         &mut self,
-        history: &DiscreteTrajectory,
+        discrete: &DiscreteTrajectory,
         k: usize,
         here: &mut Configuration,
         momentum: &[f64],
     ) -> Vec<f64> {
         let model = self.model;
-        if let (0, Some(known)) = (k, &history.rates) {
+        if let (0, Some(known)) = (k, &discrete.rates) {
             return known.clone();
         }
-        let is_constrained = model.action.motion.multipliers > 0;
-        if history.reading == Reading::Instants || is_constrained {
+        let is_constrained = model.action.map.multipliers > 0;
+        if discrete.reading == Reading::Instants || is_constrained {
             let kinetic = self.kinetic.get_or_insert_with(|| Kinetic::new(model));
             if let Some(rates) = kinetic.rates(here, momentum) {
                 return rates;

@@ -47,7 +47,7 @@ pub fn largest_stretch(electric: &ElectricConstants, J: f64) -> Option<f64> {
 
 /// Returns the parts that leave the domain at the instants of a motion, in the order of muscles and blocks. The voltages of an instant are
 /// those of the interval that ends there.
-pub fn out_of_domain(model: &Model, history: &DiscreteTrajectory) -> Vec<OutOfDomain> {
+pub fn out_of_domain(model: &Model, discrete: &DiscreteTrajectory) -> Vec<OutOfDomain> {
     let muscles = model.system.muscles.iter().enumerate();
     let lumped: Vec<Watched<'_>> = muscles
         .filter(|(_, muscle)| muscle.fidelity == Fidelity::Lumped)
@@ -63,27 +63,27 @@ pub fn out_of_domain(model: &Model, history: &DiscreteTrajectory) -> Vec<OutOfDo
             Some(Watched::new(&muscle.name, of))
         })
         .collect();
-    let blocks = model.solids.iter().filter(|continuum| {
-        let electric = continuum.solid.materials.iter().filter_map(|m| m.electric);
-        continuum.is_dielectric.contains(&true)
+    let blocks = model.solids.iter().filter(|block| {
+        let electric = block.solid.materials.iter().filter_map(|m| m.electric);
+        block.is_dielectric.contains(&true)
             && electric
                 .into_iter()
                 .any(|e| largest_stretch(&e, 1.0).is_some())
     });
-    let blocks = blocks.map(|continuum| Watched::new(&continuum.solid.name, Of::Block(continuum)));
+    let blocks = blocks.map(|block| Watched::new(&block.solid.name, Of::Block(block)));
     let mut watched: Vec<Watched<'_>> = lumped.into_iter().chain(blocks).collect();
     if watched.is_empty() {
         return Vec::new();
     }
-    let mut instant = model.action.motion.instant();
-    for (k, z) in history.z.iter().enumerate() {
-        let Some(scalars) = history.scalars.get(k.saturating_sub(1)) else {
+    let mut instant = model.action.map.instant();
+    for (k, z) in discrete.z.iter().enumerate() {
+        let Some(scalars) = discrete.scalars.get(k.saturating_sub(1)) else {
             continue;
         };
         instant.z.copy_from_slice(z);
-        model.action.motion.vectors(&mut instant);
+        model.action.map.vectors(&mut instant);
         for one in &mut watched {
-            one.look(&instant.x, scalars, history.times[k]);
+            one.look(&instant.x, scalars, discrete.times[k]);
         }
     }
     watched.into_iter().filter_map(|one| one.found).collect()
@@ -127,7 +127,7 @@ impl<'m> Watched<'m> {
                 let stretch = x[span].norm() / length;
                 (scalars[scalar] != 0.0 && stretch > limit).then_some((stretch, limit))
             }
-            Of::Block(continuum) => worst_of_block(continuum, x, scalars),
+            Of::Block(block) => worst_of_block(block, x, scalars),
         };
         let Some((stretch, limit)) = worst else {
             return;
@@ -150,20 +150,20 @@ impl<'m> Watched<'m> {
 }
 
 /// The largest principal stretch at the Gauss points of the elements outside the domain that have a field, and its limit.
-fn worst_of_block(continuum: &SolidBlock, x: &[Vector], scalars: &[f64]) -> Option<(f64, f64)> {
-    let potentials = continuum.potentials(scalars);
+fn worst_of_block(block: &SolidBlock, x: &[Vector], scalars: &[f64]) -> Option<(f64, f64)> {
+    let potentials = block.potentials(scalars);
     let mut worst: Option<(f64, f64)> = None;
-    for (e, nodes) in continuum.solid.mesh.hexahedra.iter().enumerate() {
-        let Some(electric) = continuum.material(e).electric else {
+    for (e, nodes) in block.solid.mesh.hexahedra.iter().enumerate() {
+        let Some(electric) = block.material(e).electric else {
             continue;
         };
         let has_field = nodes.iter().any(|&n| potentials[n] != potentials[nodes[0]]);
-        if !continuum.is_dielectric[e] || !has_field {
+        if !block.is_dielectric[e] || !has_field {
             continue;
         }
-        let at = nodes.map(|n| x[continuum.vectors[n]]);
+        let at = nodes.map(|n| x[block.vectors[n]]);
         for g in 0..8 {
-            let F: Matrix = continuum.shapes[e].gradient_of(&at, g);
+            let F: Matrix = block.shapes[e].gradient_of(&at, g);
             let Some(limit) = largest_stretch(&electric, F.determinant()) else {
                 continue;
             };

@@ -1,7 +1,7 @@
 //! Errors of steps and of equilibria.
 
-use crate::dynamics::rest::{Equilibrium, Instability, Load};
-use crate::dynamics::spans::NOTHING;
+use crate::dynamics::equilibrium::{Equilibrium, Instability, Load};
+use crate::dynamics::singular_configurations::NOTHING;
 use crate::ipopt::Status;
 use thiserror::Error;
 

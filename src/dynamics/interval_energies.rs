@@ -1,7 +1,7 @@
 //! Energies of one interval, term by term.
 
 use crate::coordinates::{Configuration, Interval};
-use crate::functional::Kind;
+use crate::functional::TermKind;
 use crate::model::Model;
 
 /// Energies of one interval at its midpoint, in mJ.
@@ -35,10 +35,10 @@ pub fn energies(
     let mut energies = Energies::default();
     for term in &model.action.intervals.terms {
         match term.kind() {
-            Kind::Kinetic => energies.kinetic += term.energy(&sample),
-            Kind::Potential => term.energies(&sample, &mut energies.potential),
-            Kind::VirtualWork => energies.work += term.energy(&sample),
-            Kind::Constraint => {}
+            TermKind::Kinetic => energies.kinetic += term.energy(&sample),
+            TermKind::Potential => term.energies(&sample, &mut energies.potential),
+            TermKind::VirtualWork => energies.work += term.energy(&sample),
+            TermKind::Constraint => {}
         }
     }
     energies

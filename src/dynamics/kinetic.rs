@@ -12,7 +12,7 @@
 use crate::coordinates::{Configuration, Destination, Scratch};
 use crate::dynamics::momenta::{DECOMPOSED, rates_within};
 use crate::dynamics::tangent::{EntryList, Tangent};
-use crate::functional::{BlockMask, Blocks, Kind, Order, Part, Sample};
+use crate::functional::{BlockMask, Blocks, Order, Sample, SumDerivatives, TermKind};
 use crate::math::Vector;
 use crate::model::Model;
 use crate::sparse::Symmetry;
@@ -26,7 +26,7 @@ const DEPENDENT: f64 = 1e-14;
 pub(super) struct Kinetic<'m> {
     model: &'m Model,
     scratch: Scratch,
-    masses: Part,
+    masses: SumDerivatives,
     values: Vec<f64>,
     tangent: Tangent,
 }
@@ -35,14 +35,14 @@ impl<'m> Kinetic<'m> {
     /// Lays the matrix down.
     pub(super) fn new(model: &'m Model) -> Self {
         let action = &model.action;
-        let (layout, n) = (action.layout(), action.motion.coordinates);
+        let (layout, n) = (action.layout(), action.map.coordinates);
         let mut entries = EntryList::default();
         for (slot, (i, j)) in layout.same.entries().enumerate() {
             if i < n || j < n {
                 entries.add(slot, (i, j));
             }
         }
-        let size = action.motion.unknowns();
+        let size = action.map.unknowns();
         Self {
             scratch: action.scratch(Order::Hessian),
             masses: action.intervals.output(Order::Hessian).plain,
@@ -63,7 +63,7 @@ impl<'m> Kinetic<'m> {
         self.values.fill(0.0);
         // The gradients of the constraints alone: neither forces nor multipliers bend them.
         let mut bare = instant.clone();
-        bare.z[momentum.len()..action.motion.unknowns()].fill(0.0);
+        bare.z[momentum.len()..action.map.unknowns()].fill(0.0);
         bare.forces.fill(Vector::zeros());
         action.evaluate_instant(Order::Hessian, &mut bare, &[], &mut self.scratch);
         action.pull_back_instant(
@@ -105,7 +105,7 @@ impl<'m> Kinetic<'m> {
     fn solved(&mut self, momentum: &[f64]) -> Option<Vec<f64>> {
         self.tangent.factor(&self.values).ok()?;
         let mut rates = momentum.to_vec();
-        rates.resize(self.model.action.motion.unknowns(), 0.0);
+        rates.resize(self.model.action.map.unknowns(), 0.0);
         self.tangent.solve(&mut rates);
         rates.truncate(momentum.len());
         rates.iter().all(|rate| rate.is_finite()).then_some(rates)
@@ -118,7 +118,7 @@ impl<'m> Kinetic<'m> {
             return None;
         }
         let mut mass = DMatrix::<f64>::zeros(n, n);
-        let mut gradients = DMatrix::<f64>::zeros(n, self.model.action.motion.multipliers);
+        let mut gradients = DMatrix::<f64>::zeros(n, self.model.action.map.multipliers);
         let entries = self.model.action.layout().same.entries();
         for ((i, j), &value) in entries.zip(&self.values) {
             match (i < n, j < n) {
@@ -147,7 +147,7 @@ pub(super) fn masses(model: &Model, x: &[Vector]) -> Blocks {
     let scalars = vec![0.0; action.scalars];
     let sample = Sample::of_instant(x, &scalars);
     for (term, slots) in action.terms() {
-        if term.kind() == Kind::Kinetic {
+        if term.kind() == TermKind::Kinetic {
             term.evaluate(Order::Hessian, &sample, slots, &mut out);
         }
     }

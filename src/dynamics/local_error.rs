@@ -2,7 +2,7 @@
 //!
 //! A method of order p neglects in a step of h the term c hᵖ⁺¹ x⁽ᵖ⁺¹⁾ of the motion x of a point; for p = 2s the constant is
 //! that of the diagonal Padé approximation of the exponential, c = (s!)²/((2s)! (2s + 1)!), 1/12 for the midpoint rule, and 1/2
-//! for implicit Euler. The derivative is a divided difference of p + 2 recorded instants: those around the step, beside
+//! for implicit Euler. The derivative is a divided difference of p + 2 recorded instants: those around the step, next to
 //! switches of the voltages where there is room.
 //!
 //! The sum over all steps is an estimate of how far the motion ends from the exact one where errors neither grow nor decay.
@@ -52,36 +52,36 @@ impl LocalError {
 /// Estimates the error of a motion by a method of an order; nothing where it has fewer than order + 1 steps.
 pub fn local_error(
     model: &Model,
-    history: &DiscreteTrajectory,
+    discrete: &DiscreteTrajectory,
     order: usize,
 ) -> Option<LocalError> {
-    let motion = Trajectory::from_history(model, history);
-    local_error_of(model, (history, &motion), order)
+    let motion = Trajectory::from_discrete(model, discrete);
+    local_error_of(model, (discrete, &motion), order)
 }
 
 /// The same of a motion whose poses and markers are known.
 pub fn local_error_of(
     model: &Model,
-    (history, motion): (&DiscreteTrajectory, &Trajectory),
+    (discrete, motion): (&DiscreteTrajectory, &Trajectory),
     order: usize,
 ) -> Option<LocalError> {
-    let (steps, window) = (history.intervals(), order + 1);
+    let (steps, window) = (discrete.intervals(), order + 1);
     if steps < window {
         return None;
     }
-    let places = places(model, history, motion);
+    let places = places(model, discrete, motion);
     let points = places[0].len();
     let constant = constant(order);
-    let switches = switches(model, history);
+    let switches = switches(model, discrete);
     // By point: what is neglected, the distance, and the sums of the differences of the two highest orders.
     let mut sums = vec![[0.0; 4]; points];
     for k in 0..steps {
-        let h = history.times[k + 1] - history.times[k];
+        let h = discrete.times[k + 1] - discrete.times[k];
         let first = k.saturating_sub(order)..=k.min(steps - window);
         let centred = |j: &usize| (2 * j + window).abs_diff(2 * k + 1);
         let crossed = |j: &usize| switches[j + order] - switches[*j];
         let j = first.min_by_key(|j| (crossed(j), centred(j))).unwrap_or(0);
-        let times = &history.times[j..=j + window];
+        let times = &discrete.times[j..=j + window];
         let [high, low] = [times, &times[..window]].map(|t| weights(t, h));
         for (point, sum) in sums.iter_mut().enumerate() {
             let difference = |weights: &[f64]| {
@@ -105,7 +105,7 @@ pub fn local_error_of(
         path: sums.iter().map(|sum| sum[1]).fold(0.0, f64::max),
         order,
         is_resolved: worst[2] <= worst[3],
-        step: (history.times[steps] - history.times[0]) / steps as f64,
+        step: (discrete.times[steps] - discrete.times[0]) / steps as f64,
     })
 }
 
@@ -131,11 +131,11 @@ fn weights(times: &[f64], h: f64) -> Vec<f64> {
 }
 
 /// Returns the number of switches of voltages up to each instant.
-fn switches(model: &Model, history: &DiscreteTrajectory) -> Vec<usize> {
-    let voltages = |k: usize| model.variables.split(&history.scalars[k])[0];
+fn switches(model: &Model, discrete: &DiscreteTrajectory) -> Vec<usize> {
+    let voltages = |k: usize| model.variables.split(&discrete.scalars[k])[0];
     let mut count = 0;
     let mut counts = vec![0];
-    for k in 1..history.intervals() {
+    for k in 1..discrete.intervals() {
         count += usize::from(voltages(k) != voltages(k - 1));
         counts.push(count);
     }
@@ -145,9 +145,9 @@ fn switches(model: &Model, history: &DiscreteTrajectory) -> Vec<usize> {
 
 /// Points that show a motion, by instant, in mm: markers; of each body the centre and the ends of its directors at the radius
 /// of gyration; nodes.
-fn places(model: &Model, history: &DiscreteTrajectory, motion: &Trajectory) -> Vec<Vec<Vector>> {
-    let nodes = &model.action.motion.of_nodes;
-    let first = model.action.motion.of_bodies;
+fn places(model: &Model, discrete: &DiscreteTrajectory, motion: &Trajectory) -> Vec<Vec<Vector>> {
+    let nodes = &model.action.map.of_nodes;
+    let first = model.action.map.of_bodies;
     let radius: Vec<f64> = model
         .system
         .bodies
@@ -163,11 +163,11 @@ fn places(model: &Model, history: &DiscreteTrajectory, motion: &Trajectory) -> V
             places.extend(ends.map(|d| pose.centre + d * *radius));
         }
         let bodies = places.len();
-        for (&(node, axis), value) in nodes.iter().zip(&history.z[k][first..]) {
+        for (&(node, axis), value) in nodes.iter().zip(&discrete.z[k][first..]) {
             places.resize((bodies + node + 1).max(places.len()), Vector::zeros());
             places[bodies + node][axis] = *value;
         }
         places
     };
-    (0..history.z.len()).map(at).collect()
+    (0..discrete.z.len()).map(at).collect()
 }

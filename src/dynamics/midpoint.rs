@@ -54,8 +54,8 @@ pub struct Midpoint<'m> {
 impl<'m> Stepper<'m> {
     /// Starts at coordinates `z` with the momentum of each coordinate at time zero.
     pub fn new(model: &'m Model, z: &[f64], momentum: &[f64], solving: Solving) -> Self {
-        let motion = &model.action.motion;
-        let (n, layout) = (motion.coordinates, model.action.layout());
+        let map = &model.action.map;
+        let (n, layout) = (map.coordinates, model.action.layout());
         let mut entries = EntryList::default();
         for (slot, entry) in layout.cross.entries().enumerate() {
             entries.add(layout.upper_at(0) + slot, entry);
@@ -70,9 +70,9 @@ impl<'m> Stepper<'m> {
         }
         entries.add_scalars(model, &[[0, 1]]);
         let (sizes, algebraic) = (model.sizes(), model.variables.algebraic());
-        let (mut here, next) = (motion.instant(), motion.instant());
+        let (mut here, next) = (map.instant(), map.instant());
         here.z.copy_from_slice(z);
-        motion.place(&mut here);
+        map.place(&mut here);
         let equations = Midpoint {
             model,
             here,
@@ -88,11 +88,11 @@ impl<'m> Stepper<'m> {
             scratch: model.action.scratch(Order::Hessian),
             values: vec![0.0; layout.values(1)],
             scalars: vec![0.0; layout.interval_scalars],
-            saved: [motion.multipliers, algebraic.len()].map(|count| vec![0.0; count]),
+            saved: [map.multipliers, algebraic.len()].map(|count| vec![0.0; count]),
         };
         let symmetry = model.step_symmetry();
         let is_corrected = solving.newton == Newton::Modified && solving.backend.is_none();
-        let tangent = match is_corrected && motion.multipliers == 0 && sizes.len() > DENSE {
+        let tangent = match is_corrected && map.multipliers == 0 && sizes.len() > DENSE {
             true => entries.corrected_tangent(model, symmetry),
             false => entries.tangent(sizes.len(), symmetry, solving.backend),
         };
@@ -116,7 +116,7 @@ impl Equations for Midpoint<'_> {
     }
 
     fn guess(&mut self, h: f64) {
-        let n = self.model.action.motion.coordinates;
+        let n = self.model.action.map.coordinates;
         let [last, before] = self.lengths;
         // Rates belong to the middle of steps; the last change took from the middle of one to that of the other.
         let ratio = match before > 0.0 {
@@ -126,7 +126,7 @@ impl Equations for Midpoint<'_> {
         for i in 0..n {
             self.next.z[i] = self.here.z[i] + h * (self.rates[i] + ratio * self.changes[i]);
         }
-        let m = self.model.action.motion.unknowns();
+        let m = self.model.action.map.unknowns();
         let [multipliers, scalars] = &mut self.saved;
         multipliers.copy_from_slice(&self.here.z[n..m]);
         scalars.copy_from_slice(&self.scalars[self.model.variables.algebraic()]);
@@ -136,7 +136,7 @@ impl Equations for Midpoint<'_> {
 
     fn evaluate(&mut self, order: Order, h: f64, residual: &mut [f64]) {
         let action = &self.model.action;
-        let (n, m) = (action.motion.coordinates, action.motion.unknowns());
+        let (n, m) = (action.map.coordinates, action.map.unknowns());
         let Self {
             here,
             next,
@@ -145,7 +145,7 @@ impl Equations for Midpoint<'_> {
             scalars,
             ..
         } = self;
-        action.motion.place(next);
+        action.map.place(next);
         for instant in [&mut *here, &mut *next] {
             instant.forces.fill(Vector::zeros());
         }
@@ -178,7 +178,7 @@ impl Equations for Midpoint<'_> {
             action.pull_back_instant(order, here, 0, scratch, values);
         }
         action
-            .motion
+            .map
             .pull_back(&here.columns, &here.forces, &mut residual[..n]);
     }
 
@@ -187,7 +187,7 @@ impl Equations for Midpoint<'_> {
     }
 
     fn update(&mut self, update: &[f64]) {
-        let m = self.model.action.motion.unknowns();
+        let m = self.model.action.map.unknowns();
         for (z, update) in self.next.z[..m].iter_mut().zip(update) {
             *z -= update;
         }
@@ -198,9 +198,9 @@ impl Equations for Midpoint<'_> {
     }
 
     fn restore(&mut self) {
-        let motion = &self.model.action.motion;
+        let map = &self.model.action.map;
         let [multipliers, scalars] = &self.saved;
-        self.here.z[motion.coordinates..motion.unknowns()].copy_from_slice(multipliers);
+        self.here.z[map.coordinates..map.unknowns()].copy_from_slice(multipliers);
         self.scalars[self.model.variables.algebraic()].copy_from_slice(scalars);
     }
 
@@ -209,7 +209,7 @@ impl Equations for Midpoint<'_> {
     }
 
     fn place_end(&mut self) {
-        self.model.action.motion.place(&mut self.next);
+        self.model.action.map.place(&mut self.next);
     }
 
     fn ends(&self) -> [&Place; 2] {
@@ -274,7 +274,7 @@ impl Equations for Midpoint<'_> {
     }
 
     fn take_state(&mut self) {
-        self.model.action.motion.place(&mut self.here);
+        self.model.action.map.place(&mut self.here);
     }
 
     /// With the forces that the balance evaluated.
@@ -288,8 +288,8 @@ impl Equations for Midpoint<'_> {
         } = self;
         self.momentum_next.fill(0.0);
         let forces = &scratch.interval.plain.forces[1];
-        let motion = &action.motion;
-        motion.pull_back(&next.columns, forces, &mut self.momentum_next);
+        let map = &action.map;
+        map.pull_back(&next.columns, forces, &mut self.momentum_next);
         if !self.momentum_next.iter().all(|p| p.is_finite()) {
             return false;
         }
@@ -302,11 +302,11 @@ impl Equations for Midpoint<'_> {
             *rate = new;
         }
         self.lengths = [h, self.lengths[0]];
-        let (n, m) = (motion.coordinates, motion.unknowns());
+        let (n, m) = (map.coordinates, map.unknowns());
         here.z[n..m].copy_from_slice(&next.z[n..m]);
-        if motion.recentre(next) {
+        if map.recentre(next) {
             self.momentum.fill(0.0);
-            motion.pull_back(&next.columns, forces, &mut self.momentum);
+            map.pull_back(&next.columns, forces, &mut self.momentum);
         }
         std::mem::swap(&mut self.here, &mut self.next);
         self.time += h;
@@ -335,7 +335,7 @@ impl Equations for Midpoint<'_> {
 
     fn multipliers(&self) -> &[f64] {
         // Those of the step stay in the list of both of its ends.
-        let motion = &self.model.action.motion;
-        &self.here.z[motion.coordinates..motion.unknowns()]
+        let map = &self.model.action.map;
+        &self.here.z[map.coordinates..map.unknowns()]
     }
 }

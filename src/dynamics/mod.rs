@@ -1,15 +1,15 @@
 //! Motion in time and rest: two readers of the discrete action.
 //!
-//! - `stepper`: Newton on the equations of one step; `midpoint`: those of the midpoint rule; `stages`: those of every other
+//! - `stepper`: Newton on the equations of one step; `midpoint`: those of the midpoint rule; `galerkin`: those of every other
 //!   method.
 //! - `updates`, `anderson`, `contraction`: updates of an iteration, with kept factors, and how they shrink.
 //! - `step_state`, `resume`: the state from which a motion is resumed.
 //! - `domain`: where the first-order dielectric ends.
-//! - `resolution`, `spans`: which steps are refused; `local_error`: what those neglect that are not.
-//! - `simulate`, `history`, `observe`, `at_instant`, `interval_energies`, `kinetic`: step after step, recorded and observed.
+//! - `resolution`, `singular_configurations`: which steps are refused; `local_error`: what those neglect that are not.
+//! - `simulate`, `discrete_trajectory`, `observe`, `at_instant`, `interval_energies`, `kinetic`: step after step, recorded and observed.
 //! - `exchange`: electrical energy from the sources and mechanical work of their muscles.
-//! - `statics`: the rows of rest; `ramp`, `equilibrium`, `continuation`: paths of rest under growing loads; `minimum`: minima
-//!   of the potential energy; `stable`: a stable equilibrium by all of these; `softest`: its softest mode.
+//! - `statics`: the rows of rest; `ramp`, `growth`, `load_path`: paths of rest under growing loads; `minimum`: minima
+//!   of the potential energy; `stable`: a stable equilibrium by all of these; `softest_mode`: its softest mode.
 
 mod anderson;
 mod at_instant;
@@ -19,8 +19,10 @@ mod discrete_trajectory;
 mod domain;
 mod drive;
 mod equations;
+mod equilibrium;
 mod error;
 mod exchange;
+mod galerkin;
 mod interval_energies;
 mod kinetic;
 mod local_error;
@@ -28,12 +30,10 @@ mod midpoint;
 mod momenta;
 mod observe;
 mod resolution;
-mod rest;
 mod resume;
 mod simulate;
+mod singular_configurations;
 mod solving;
-mod spans;
-mod stages;
 mod step_report;
 mod step_state;
 mod stepper;
@@ -45,24 +45,24 @@ pub use discrete_trajectory::{DiscreteTrajectory, Reading};
 pub use domain::{OutOfDomain, largest_stretch, out_of_domain};
 pub use drive::Drive;
 pub use equations::Equations;
+pub use equilibrium::{
+    Continuation, Equilibrium, Instability, Load, Mode, Route, Softening, StabilityLoss,
+    continuation, equilibrium, stable_equilibrium,
+};
 pub use error::{EquilibriumError, StepError};
 pub use exchange::{EnergyExchange, SourceEnergies};
+pub use galerkin::GalerkinEquations;
 pub use interval_energies::{Energies, energies};
 pub use local_error::{LocalError, local_error, local_error_of};
 pub use midpoint::{Midpoint, Stepper};
 pub use momenta::last_momentum;
 pub use observe::{observations, observed};
 pub use resolution::Balance;
-pub use rest::{
-    Continuation, Equilibrium, Instability, Load, Mode, Route, Softening, StabilityLoss,
-    continuation, equilibrium, stable_equilibrium,
-};
 pub use simulate::{
     Lengths, Start, StepControl, TimeGrid, go_on, simulate, simulate_by, simulate_within,
 };
+pub use singular_configurations::{muscle_without_length, reversed_muscle};
 pub use solving::{Integrator, Newton, Solving};
-pub use spans::{muscle_without_length, reversed_muscle};
-pub use stages::Stages;
 pub use step_report::StepperReport;
 pub use step_state::{StepState, TangentState};
 pub use stepper::Steps;

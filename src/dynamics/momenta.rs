@@ -87,22 +87,20 @@ fn iterated(model: &Model, instant: &mut Configuration, momentum: &[f64]) -> Vec
 
 /// Momentum `P_Nᵀ (D₂L_d + f⁺)` of each coordinate at the end of the last interval of a motion by the midpoint rule; none of a motion without an
 /// interval, or where it is not finite.
-pub fn last_momentum(model: &Model, history: &DiscreteTrajectory) -> Option<Vec<f64>> {
-    let (scalars, k) = (history.scalars.last()?, history.intervals() - 1);
+pub fn last_momentum(model: &Model, discrete: &DiscreteTrajectory) -> Option<Vec<f64>> {
+    let (scalars, k) = (discrete.scalars.last()?, discrete.intervals() - 1);
     let action = &model.action;
-    let mut ends = [k, k + 1].map(|k| action.motion.placed(&history.z[k]));
+    let mut ends = [k, k + 1].map(|k| action.map.placed(&discrete.z[k]));
     let mut scratch = action.scratch(Order::Gradient);
     let interval = Interval {
         sides: BlockMask::FORWARD,
-        ..Interval::given(scalars, history.times[k + 1] - history.times[k])
+        ..Interval::given(scalars, discrete.times[k + 1] - discrete.times[k])
     };
     let [here, next] = &mut ends;
     action.evaluate_interval(Order::Gradient, [here, next], &interval, &mut scratch);
-    let mut momentum = vec![0.0; action.motion.coordinates];
+    let mut momentum = vec![0.0; action.map.coordinates];
     let forces = &scratch.interval.plain.forces[1];
-    action
-        .motion
-        .pull_back(&next.columns, forces, &mut momentum);
+    action.map.pull_back(&next.columns, forces, &mut momentum);
     momentum.iter().all(|p| p.is_finite()).then_some(momentum)
 }
 
@@ -110,7 +108,7 @@ pub fn last_momentum(model: &Model, history: &DiscreteTrajectory) -> Option<Vec<
 pub(super) fn moving(model: &Model, instant: &mut Configuration, rates: &[f64]) -> Vec<Vector> {
     instant.l.fill(0.0);
     instant.l[..rates.len()].copy_from_slice(rates);
-    model.action.motion.along(instant);
+    model.action.map.along(instant);
     vector_momenta(model, &instant.x, &instant.w)
 }
 
@@ -150,7 +148,7 @@ pub(super) fn momentum_maps(
             let (place, total) = match term.carrier {
                 Carrier::Body(body) => (term.at(&places.poses[body]), momentum + impulse),
                 Carrier::Ground => (term.at(&Pose::GROUND), *momentum),
-                // A vector that terms read holds no more than one node, and nothing else beside it.
+                // A vector that terms read holds no more than one node, and nothing else.
                 Carrier::Node(_) => (*x, momentum + impulse),
                 Carrier::Coordinate(coordinate) => {
                     let Some([force, torque]) = places.pulls.get(coordinate) else {

@@ -15,7 +15,7 @@ use crate::dynamics::discrete_trajectory::{DiscreteTrajectory, Reading};
 use crate::dynamics::interval_energies::energies;
 use crate::dynamics::momenta::{Places, momentum_maps, moving, vector_momenta};
 use crate::dynamics::trajectory::{Column, Observations, Trajectory};
-use crate::functional::{Kind, Order};
+use crate::functional::{Order, TermKind};
 use crate::math::{Vector, has_pool};
 use crate::model::{Model, Role, SolidBlock};
 use rayon::prelude::*;
@@ -25,16 +25,16 @@ use std::ops::Range;
 const PIECE: usize = 256;
 
 /// All that is observed along a motion, time, joint coordinates and markers first.
-pub fn observations(model: &Model, history: &DiscreteTrajectory) -> Observations {
-    let mut observations = Trajectory::from_history(model, history).observe(&model.system);
-    observations.columns.extend(observed(model, history));
+pub fn observations(model: &Model, discrete: &DiscreteTrajectory) -> Observations {
+    let mut observations = Trajectory::from_discrete(model, discrete).observe(&model.system);
+    observations.columns.extend(observed(model, discrete));
     observations
 }
 
 /// Returns the observations in addition to time, joint coordinates and markers; pieces of a long motion in parallel.
-pub fn observed(model: &Model, history: &DiscreteTrajectory) -> Vec<Column> {
-    let count = history.z.len();
-    let piece = match history.reading {
+pub fn observed(model: &Model, discrete: &DiscreteTrajectory) -> Vec<Column> {
+    let count = discrete.z.len();
+    let piece = match discrete.reading {
         Reading::Intervals => PIECE,
         // The factorisation of the masses keeps its order from the first instant on.
         Reading::Instants => count.max(1),
@@ -43,9 +43,9 @@ pub fn observed(model: &Model, history: &DiscreteTrajectory) -> Vec<Column> {
     let rows = |i: usize| {
         let mut observer = Observer::new(model);
         let instants = i * piece..count.min((i + 1) * piece);
-        observer.begin(history, instants.start);
+        observer.begin(discrete, instants.start);
         instants
-            .map(|k| observer.row(history, k))
+            .map(|k| observer.row(discrete, k))
             .collect::<Vec<_>>()
     };
     let rows: Vec<_> = match has_pool() {
@@ -66,18 +66,18 @@ pub fn observed(model: &Model, history: &DiscreteTrajectory) -> Vec<Column> {
         }
     }
     let [of_intervals, of_momenta] = [observer.of_intervals(), observer.of_momenta()];
-    if observer.has(Kind::VirtualWork) {
+    if observer.has(TermKind::VirtualWork) {
         let mut dissipated = 0.0;
         for work in &mut columns[of_intervals.end].values {
             dissipated -= *work;
             *work = dissipated;
         }
     }
-    if history.reading == Reading::Intervals && history.times.len() > 1 {
-        let last = observer.last(history);
-        to_instants(&history.times, &mut columns[of_intervals], &last);
+    if discrete.reading == Reading::Intervals && discrete.times.len() > 1 {
+        let last = observer.last(discrete);
+        to_instants(&discrete.times, &mut columns[of_intervals], &last);
         let before: Vec<_> = rows.iter().flatten().map(|row| row.before).collect();
-        means(&history.times, &mut columns[of_momenta], &before, &last);
+        means(&discrete.times, &mut columns[of_momenta], &before, &last);
     }
     columns
 }
@@ -102,7 +102,7 @@ fn to_instants(times: &[f64], columns: &mut [Column], last: &Last) {
     }
 }
 
-/// Turns momenta as the interval before each row sees them into means of both intervals beside it, each weighted by the length of
+/// Turns momenta as the interval before each row sees them into means of both intervals next to it, each weighted by the length of
 /// the other, so that a constant reaction cancels; `before` holds what the interval that ends at a row sees at the row before.
 fn means(times: &[f64], columns: &mut [Column], before: &[Momenta], last: &Last) {
     let end = times.len() - 1;
@@ -151,8 +151,8 @@ impl<'m> Observer<'m> {
     fn new(model: &'m Model) -> Self {
         Self {
             model,
-            before: model.action.motion.instant(),
-            here: model.action.motion.instant(),
+            before: model.action.map.instant(),
+            here: model.action.map.instant(),
             scratch: model.action.scratch(Order::Gradient),
             at_instant: AtInstant::new(model),
             pulls: model.pulls(),
@@ -160,10 +160,10 @@ impl<'m> Observer<'m> {
     }
 
     /// Goes to the instant before this one.
-    fn begin(&mut self, history: &DiscreteTrajectory, k: usize) {
+    fn begin(&mut self, discrete: &DiscreteTrajectory, k: usize) {
         if let Some(k) = k.checked_sub(1) {
-            self.before.z.copy_from_slice(&history.z[k]);
-            self.model.action.motion.place(&mut self.before);
+            self.before.z.copy_from_slice(&discrete.z[k]);
+            self.model.action.map.place(&mut self.before);
         }
     }
 
@@ -184,18 +184,18 @@ impl<'m> Observer<'m> {
     }
 
     /// Charges and energies at the last instant under the last voltages, and the momenta there.
-    fn last(&mut self, history: &DiscreteTrajectory) -> Last {
-        let (model, end) = (self.model, history.intervals());
-        let scalars = &history.scalars[end - 1];
-        self.here.z.copy_from_slice(&history.z[end]);
-        model.action.motion.place(&mut self.here);
+    fn last(&mut self, discrete: &DiscreteTrajectory) -> Last {
+        let (model, end) = (self.model, discrete.intervals());
+        let scalars = &discrete.scalars[end - 1];
+        self.here.z.copy_from_slice(&discrete.z[end]);
+        model.action.map.place(&mut self.here);
         self.before.clone_from(&self.here);
         let potential = energies(model, &self.here, &self.here, scalars, 1.0).potential;
         let immobile = model.solids.iter();
         let immobile = immobile.flat_map(|block| block.immobile_charges(&self.here.x, scalars));
         let mut charges: Vec<f64> = immobile.collect();
         charges.extend(self.interval(scalars, 1.0));
-        let (kinetic, momenta) = self.moves(history, end);
+        let (kinetic, momenta) = self.moves(discrete, end);
         Last {
             charges,
             kinetic,
@@ -204,7 +204,7 @@ impl<'m> Observer<'m> {
         }
     }
 
-    fn has(&self, kind: Kind) -> bool {
+    fn has(&self, kind: TermKind) -> bool {
         let mut terms = self.model.action.intervals.terms.iter();
         terms.any(|term| term.kind() == kind)
     }
@@ -237,14 +237,14 @@ impl<'m> Observer<'m> {
         }
         add("kinetic_energy".to_owned(), "N mm");
         for term in &self.model.action.intervals.terms {
-            if term.kind() == Kind::Potential {
+            if term.kind() == TermKind::Potential {
                 for part in term.energy_parts() {
                     add(format!("{}_energy", part.replace(' ', "_")), "N mm");
                 }
             }
         }
         add("total_energy".to_owned(), "N mm");
-        if self.has(Kind::VirtualWork) {
+        if self.has(TermKind::VirtualWork) {
             add("dissipated_energy".to_owned(), "N mm");
         }
         for (name, unit) in [("linear_momentum", "N ms"), ("angular_momentum", "N mm ms")] {
@@ -265,30 +265,30 @@ impl<'m> Observer<'m> {
     }
 
     /// Returns the observations at instant k.
-    fn row(&mut self, history: &DiscreteTrajectory, k: usize) -> Row {
+    fn row(&mut self, discrete: &DiscreteTrajectory, k: usize) -> Row {
         let model = self.model;
         let none = vec![0.0; model.action.intervals.scalars];
-        let scalars = history.scalars.get(k.saturating_sub(1)).unwrap_or(&none);
-        self.here.z.copy_from_slice(&history.z[k]);
-        model.action.motion.place(&mut self.here);
-        let is_at_instant = k == 0 || history.reading == Reading::Instants;
+        let scalars = discrete.scalars.get(k.saturating_sub(1)).unwrap_or(&none);
+        self.here.z.copy_from_slice(&discrete.z[k]);
+        model.action.map.place(&mut self.here);
+        let is_at_instant = k == 0 || discrete.reading == Reading::Instants;
         let h = match is_at_instant {
             true => {
                 self.before = self.here.clone();
                 1.0
             }
-            false => history.times[k] - history.times[k - 1],
+            false => discrete.times[k] - discrete.times[k - 1],
         };
         let mut energies = energies(model, &self.before, &self.here, scalars, h);
-        if history.reading == Reading::Instants {
-            let works = k.checked_sub(1).and_then(|k| history.works.get(k));
+        if discrete.reading == Reading::Instants {
+            let works = k.checked_sub(1).and_then(|k| discrete.works.get(k));
             energies.work = works.copied().unwrap_or_default();
         }
         let charges = self.interval(scalars, h);
         let [before, momenta] = match is_at_instant {
             true => {
                 let momenta;
-                (energies.kinetic, momenta) = self.moves(history, k);
+                (energies.kinetic, momenta) = self.moves(discrete, k);
                 let none = vec![Vector::zeros(); momenta.len()];
                 [[0.0; 6], self.maps(&self.here, &momenta, &none)]
             }
@@ -307,7 +307,7 @@ impl<'m> Observer<'m> {
         row.push(energies.kinetic);
         row.extend(&energies.potential);
         row.push(energies.total());
-        if self.has(Kind::VirtualWork) {
+        if self.has(TermKind::VirtualWork) {
             row.push(energies.work);
         }
         row.extend(momenta);
@@ -331,12 +331,12 @@ impl<'m> Observer<'m> {
     }
 
     /// Kinetic energy ½ p·v at instant k, and the momenta of all vectors with its rates v.
-    fn moves(&mut self, history: &DiscreteTrajectory, k: usize) -> (f64, Vec<Vector>) {
+    fn moves(&mut self, discrete: &DiscreteTrajectory, k: usize) -> (f64, Vec<Vector>) {
         let momentum = self
             .at_instant
-            .momentum(history, k, &self.here, &mut self.scratch);
+            .momentum(discrete, k, &self.here, &mut self.scratch);
         let at_instant = &mut self.at_instant;
-        let rates = at_instant.rates(history, k, &mut self.here, &momentum);
+        let rates = at_instant.rates(discrete, k, &mut self.here, &momentum);
         let products = momentum.iter().zip(&rates).map(|(p, v)| p * v);
         let kinetic = 0.5 * products.sum::<f64>();
         (kinetic, moving(self.model, &mut self.here, &rates))

@@ -9,7 +9,7 @@
 
 use crate::coordinates::{Configuration, Interval};
 use crate::dynamics::error::StepError;
-use crate::functional::Kind;
+use crate::functional::TermKind;
 use crate::math::Vector;
 use crate::model::Model;
 use std::f64::consts::PI;
@@ -45,15 +45,15 @@ impl Balance {
         let (mut kinetic, mut viscous, mut change, mut size) = (0.0, 0.0, 0.0, 0.0_f64);
         for term in &model.action.intervals.terms {
             match term.kind() {
-                Kind::Kinetic => kinetic += term.energy(&sample),
-                Kind::VirtualWork => viscous += term.energy(&sample),
-                Kind::Potential => {
+                TermKind::Kinetic => kinetic += term.energy(&sample),
+                TermKind::VirtualWork => viscous += term.energy(&sample),
+                TermKind::Potential => {
                     let energy = |at| term.energy(&interval.sample([at, at]));
                     let (before, after) = (energy(start), energy(end));
                     change += after - before;
                     size += before.abs() + after.abs();
                 }
-                Kind::Constraint => {}
+                TermKind::Constraint => {}
             }
         }
         let [a, b] = forces;
@@ -129,8 +129,8 @@ pub(super) fn turned(
     start: &Configuration,
     end: &Configuration,
 ) -> Option<(String, f64)> {
-    let motion = &model.action.motion;
-    let of_joints = motion.tree.as_ref().map_or(0, |tree| tree.coordinates());
+    let map = &model.action.map;
+    let of_joints = map.tree.as_ref().map_or(0, |tree| tree.coordinates());
     let turns = |&i: &usize| {
         let turn = (end.z[i] - start.z[i]).abs();
         (turn > PI || turn.is_nan()) && !model.is_length(i)
@@ -143,7 +143,7 @@ pub(super) fn turned(
     }
     let bodies = &model.presolved.system.bodies;
     bodies.iter().enumerate().find_map(|(body, named)| {
-        let [before, after] = [start, end].map(|at| motion.directors(at, body));
+        let [before, after] = [start, end].map(|at| map.directors(at, body));
         // 1 + 2 cos θ of the rotation from one to the other.
         let trace = before.dot(&after);
         let angle = (0.5 * (trace - 1.0)).clamp(-1.0, 1.0).acos();

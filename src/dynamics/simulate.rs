@@ -38,9 +38,9 @@ impl Start {
 
     /// With given rates of the coordinates.
     pub fn with_rates(model: &Model, z: Vec<f64>, rates: &[f64]) -> Self {
-        let mut instant = model.action.motion.instant();
+        let mut instant = model.action.map.instant();
         instant.z.copy_from_slice(&z);
-        model.action.motion.place(&mut instant);
+        model.action.map.place(&mut instant);
         let momentum = model.action.momentum(&mut instant, rates);
         Self {
             z,
@@ -51,7 +51,7 @@ impl Start {
 
     /// With the momentum of each coordinate.
     pub fn moving(model: &Model, z: Vec<f64>, momentum: Vec<f64>) -> Self {
-        let mut instant = model.action.motion.placed(&z);
+        let mut instant = model.action.map.placed(&z);
         let rates = rates(model, &mut instant, &momentum);
         Self {
             z,
@@ -63,8 +63,8 @@ impl Start {
     /// With a velocity of the centre of mass (mm/ms) and an angular velocity (rad/ms), both in the ground frame, of each body that is solved for;
     /// nodes rest. What the coordinates do not let move counts as an impulse on its supports.
     pub fn with_velocities(model: &Model, z: Vec<f64>, velocities: &[[Vector; 2]]) -> Self {
-        let motion = &model.action.motion;
-        let instant = motion.placed(&z);
+        let map = &model.action.map;
+        let instant = map.placed(&z);
         let poses = model.condensed_poses(&instant);
         let rate = |vector: &MaterialVector| {
             let terms = vector.terms.iter().map(|term| match term.carrier {
@@ -79,7 +79,7 @@ impl Start {
         let rates: Vec<Vector> = model.vectors.iter().map(rate).collect();
         let momenta = vector_momenta(model, &instant.x, &rates);
         let mut momentum = vec![0.0; model.coordinate_count()];
-        motion.pull_back(&instant.columns, &momenta, &mut momentum);
+        map.pull_back(&instant.columns, &momenta, &mut momentum);
         Self {
             z,
             momentum,
@@ -93,7 +93,7 @@ impl Start {
 /// After each step `observer` sees the motion so far and may end it; so may a [watch](crate::ipopt::interrupt::watch), within a
 /// step too.
 ///
-/// The history ends where a step fails; the error says why.
+/// The trajectory ends where a step fails; the error says why.
 pub fn simulate(
     model: &Model,
     start: &Start,
@@ -169,46 +169,46 @@ pub fn simulate_within(
 pub fn go_on(
     solving: Solving,
     model: &Model,
-    mut history: DiscreteTrajectory,
+    mut discrete: DiscreteTrajectory,
     lengths: Lengths<'_>,
     drive: impl Drive,
     observer: impl FnMut(&DiscreteTrajectory) -> ControlFlow<()>,
 ) -> (DiscreteTrajectory, Option<StepError>) {
-    if !history.is_of(model) {
-        let time = history.times.last().copied().unwrap_or(0.0);
-        return (history, Some(StepError::Foreign { time }));
+    if !discrete.is_of(model) {
+        let time = discrete.times.last().copied().unwrap_or(0.0);
+        return (discrete, Some(StepError::Foreign { time }));
     }
     let start = Start {
-        z: history.z[0].clone(),
-        momentum: history.momenta[0].clone(),
-        rates: history.rates.clone(),
+        z: discrete.z[0].clone(),
+        momentum: discrete.momenta[0].clone(),
+        rates: discrete.rates.clone(),
     };
     let is_midpoint = solving.integrator == Integrator::Midpoint;
-    history.reading = match is_midpoint {
+    discrete.reading = match is_midpoint {
         true => Reading::Intervals,
         false => Reading::Instants,
     };
     let failure = match (lengths.first(), is_midpoint) {
         (Some(first), false) => match Steps::stages(model, &start, solving, first, &drive) {
-            Ok(mut stages) => record(&mut stages, lengths, &drive, observer, &mut history),
+            Ok(mut stages) => record(&mut stages, lengths, &drive, observer, &mut discrete),
             Err(error) => Some(error),
         },
         _ => {
             let mut stepper = Stepper::new(model, &start.z, &start.momentum, solving);
             match lengths {
                 Lengths::Equal(_) | Lengths::Between(_) => {
-                    record(&mut stepper, lengths, &drive, observer, &mut history)
+                    record(&mut stepper, lengths, &drive, observer, &mut discrete)
                 }
                 Lengths::Controlled(control) => {
                     if let Some(rates) = &start.rates {
                         stepper.began_with(rates);
                     }
-                    controlled(&mut stepper, control, &drive, observer, &mut history)
+                    controlled(&mut stepper, control, &drive, observer, &mut discrete)
                 }
             }
         }
     };
-    (history, failure)
+    (discrete, failure)
 }
 
 /// Takes steps that a tolerance controls and records them; returns why they end early.
@@ -217,7 +217,7 @@ fn controlled(
     control: StepControl<'_>,
     drive: &dyn Drive,
     mut observer: impl FnMut(&DiscreteTrajectory) -> ControlFlow<()>,
-    history: &mut DiscreteTrajectory,
+    discrete: &mut DiscreteTrajectory,
 ) -> Option<StepError> {
     let StepControl {
         duration,
@@ -226,13 +226,13 @@ fn controlled(
         switches,
     } = control;
     let n = stepper.momentum().len();
-    let mut k = history.intervals();
-    let mut time = history.times[k];
-    if !stepper.take(&history.end) {
+    let mut k = discrete.intervals();
+    let mut time = discrete.times[k];
+    if !stepper.take(&discrete.end) {
         return Some(StepError::Foreign { time });
     }
-    let mut wanted = history.end.wanted.unwrap_or(first);
-    let tolerance = *history.end.tolerance.get_or_insert(tolerance);
+    let mut wanted = discrete.end.wanted.unwrap_or(first);
+    let tolerance = *discrete.end.tolerance.get_or_insert(tolerance);
     let mut failure = None;
     while time < duration * (1.0 - 1e-12) {
         let mut later = switches.iter().filter(|&&at| at > time * (1.0 + 1e-12));
@@ -267,17 +267,17 @@ fn controlled(
         } else {
             step.next
         };
-        history.z[k][n..n + step.multipliers.len()].copy_from_slice(&step.multipliers);
-        history.push([begun, time], stepper, drive);
-        history.end.wanted = Some(wanted);
-        history.end.tolerance = Some(tolerance);
+        discrete.z[k][n..n + step.multipliers.len()].copy_from_slice(&step.multipliers);
+        discrete.push([begun, time], stepper, drive);
+        discrete.end.wanted = Some(wanted);
+        discrete.end.tolerance = Some(tolerance);
         k += 1;
-        if observer(history).is_break() {
+        if observer(discrete).is_break() {
             break;
         }
     }
-    history.report = stepper.report();
-    history.solver = stepper.solver();
+    discrete.report = stepper.report();
+    discrete.solver = stepper.solver();
     failure
 }
 
@@ -296,16 +296,16 @@ impl DiscreteTrajectory {
     /// Returns true if its lists have the lengths of a motion of this model.
     fn is_of(&self, model: &Model) -> bool {
         let (instants, intervals) = (self.times.len(), self.scalars.len());
-        let motion = &model.action.motion;
+        let map = &model.action.map;
         let have = |rows: &[Vec<f64>], length: usize| rows.iter().all(|row| row.len() == length);
-        let n = motion.coordinates;
+        let n = map.coordinates;
         instants == intervals + 1
             && [self.z.len(), self.momenta.len()] == [instants; 2]
-            && have(&self.z, motion.instant().z.len())
+            && have(&self.z, map.instant().z.len())
             && have(&self.momenta, n)
             && have(&self.scalars, model.action.intervals.scalars)
             && self.rates.as_ref().is_none_or(|rates| rates.len() == n)
-            && self.z.iter().all(|z| motion.has_unit_charts(z))
+            && self.z.iter().all(|z| map.has_unit_charts(z))
     }
 
     /// Takes in the step between two times in ms, with the voltages in its middle.
@@ -322,7 +322,7 @@ impl DiscreteTrajectory {
     }
 }
 
-/// So many steps of h ms.
+/// A number of steps of h ms.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct TimeGrid {
     /// Length in ms.
@@ -358,13 +358,13 @@ fn record<E: Equations>(
     lengths: Lengths<'_>,
     drive: &dyn Drive,
     mut observer: impl FnMut(&DiscreteTrajectory) -> ControlFlow<()>,
-    history: &mut DiscreteTrajectory,
+    discrete: &mut DiscreteTrajectory,
 ) -> Option<StepError> {
     let n = stepper.momentum().len();
     let mut failure = None;
-    let done = history.intervals();
-    if !stepper.take(&history.end) {
-        let time = history.times[done];
+    let done = discrete.intervals();
+    if !stepper.take(&discrete.end) {
+        let time = discrete.times[done];
         return Some(StepError::Foreign { time });
     }
     for k in done.. {
@@ -373,8 +373,8 @@ fn record<E: Equations>(
         };
         match stepper.go([from, to], h, drive) {
             Ok(multipliers) => {
-                history.z[k][n..n + multipliers.len()].copy_from_slice(&multipliers);
-                history.push([from, to], stepper, drive);
+                discrete.z[k][n..n + multipliers.len()].copy_from_slice(&multipliers);
+                discrete.push([from, to], stepper, drive);
             }
             Err(StepError::Stopped { .. }) => break,
             Err(error) => {
@@ -382,11 +382,11 @@ fn record<E: Equations>(
                 break;
             }
         }
-        if observer(history).is_break() {
+        if observer(discrete).is_break() {
             break;
         }
     }
-    history.report = stepper.report();
-    history.solver = stepper.solver();
+    discrete.report = stepper.report();
+    discrete.solver = stepper.solver();
     failure
 }

@@ -70,7 +70,7 @@ pub struct Solving {
 impl Newton {
     /// Returns the setting that suits a system: the factorisation of finite elements is worth keeping, that of a few joint coordinates is not
     /// (benches/README.md).
-    pub fn of(system: &System) -> Self {
+    pub fn for_system(system: &System) -> Self {
         let mut muscles = system.muscles.iter();
         let of_muscles = muscles.any(|muscle| muscle.fidelity != Fidelity::Lumped);
         match of_muscles || !system.solids.is_empty() {

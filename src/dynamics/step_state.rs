@@ -12,7 +12,7 @@ use std::fmt::{self, Write};
 /// All that the next steps follow from.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct StepState {
-    /// Identity of the equations and method: the digits of [`StepState::of`].
+    /// Identity of the equations and method: the digits of [`StepState::equations_hash`].
     pub of: String,
     /// State of the equations, list by list; none before the first step.
     pub lists: Vec<(String, Vec<f64>)>,
@@ -41,7 +41,7 @@ pub struct TangentState {
 
 impl StepState {
     /// Returns the hash of the equations of a method for a model.
-    pub fn of(model: &Model, solving: Solving) -> String {
+    pub fn equations_hash(model: &Model, solving: Solving) -> String {
         let mut digits = Digits(0xcbf2_9ce4_8422_2325);
         let (coordinates, system) = (model.coordinates, &model.presolved.system);
         write!(digits, "{solving:?} {coordinates:?} {system:?}").expect("digits take everything");

@@ -5,8 +5,8 @@ use crate::dynamics::drive::Drive;
 use crate::dynamics::equations::Equations;
 use crate::dynamics::error::StepError;
 use crate::dynamics::resolution::{Balance, turned};
+use crate::dynamics::singular_configurations;
 use crate::dynamics::solving::Newton;
-use crate::dynamics::spans;
 use crate::dynamics::step_report::StepperReport;
 use crate::dynamics::tangent::Tangent;
 use crate::dynamics::updates::Updates;
@@ -223,7 +223,10 @@ impl<E: Equations> Steps<E> {
             step: h,
             residuals: last.iter().map(|r| r / first).collect(),
             muscle: self.short_muscle(),
-            overflow: spans::overflow(self.equations.model(), self.equations.scalars()),
+            overflow: singular_configurations::overflow(
+                self.equations.model(),
+                self.equations.scalars(),
+            ),
         })
     }
 
@@ -266,7 +269,7 @@ impl<E: Equations> Steps<E> {
         let time = self.equations.time();
         let model = self.equations.model();
         let [start, end] = self.equations.ends();
-        if let Some(muscle) = spans::reversed(model, start, end) {
+        if let Some(muscle) = singular_configurations::reversed(model, start, end) {
             let muscle = self.muscle_name(muscle);
             return Some(StepError::Reversed { time, step, muscle });
         }
@@ -284,7 +287,7 @@ impl<E: Equations> Steps<E> {
             None => {
                 let [_, end] = self.equations.ends();
                 let scalars = self.equations.scalars();
-                spans::is_inverted(self.equations.model(), end, scalars)
+                singular_configurations::is_inverted(self.equations.model(), end, scalars)
                     .then_some(StepError::Inverted { time, step })
             }
         };
@@ -305,7 +308,7 @@ impl<E: Equations> Steps<E> {
     /// The muscle that a failure at this instant is laid to: its name and stretch.
     fn short_muscle(&self) -> Option<(String, f64)> {
         let [start, _] = self.equations.ends();
-        let (muscle, stretch) = spans::shortest(self.equations.model(), start)?;
+        let (muscle, stretch) = singular_configurations::shortest(self.equations.model(), start)?;
         Some((self.muscle_name(muscle), stretch))
     }
 

@@ -4,7 +4,7 @@
 
 use crate::coordinates::StepPattern;
 use crate::dynamics::step_state::TangentState;
-use crate::math::{IsOver, Stopped, counted};
+use crate::math::{IsOver, Stopped, compact_index};
 use crate::model::Model;
 use crate::sparse::{Backend, Direct, Precision, Singular, Symmetry};
 
@@ -21,7 +21,7 @@ pub(super) struct Tangent {
 }
 
 fn pair((i, j): (usize, usize)) -> (u32, u32) {
-    (counted(i), counted(j))
+    (compact_index(i), compact_index(j))
 }
 
 fn uncounted((i, j): (u32, u32)) -> (usize, usize) {
@@ -84,7 +84,7 @@ impl EntryList {
             *entry = pair((row - first, col - first));
         }
         let entries = self.entries.iter().copied().map(uncounted);
-        let solver = Direct::of(size, entries, symmetry, backend);
+        let solver = Direct::with_entries(size, entries, symmetry, backend);
         self.tangent_by(solver, false)
     }
 
@@ -170,7 +170,7 @@ impl Tangent {
         let mut rest = vec![0.0; update.len()];
         for (&(row, col), value) in self.entries.iter().zip(&self.matrix) {
             if row != col {
-                // The matrix holds halves beside the diagonal.
+                // The matrix holds halves next to the diagonal.
                 rest[row as usize] += value * update[col as usize];
                 rest[col as usize] -= value * update[row as usize];
             }
@@ -190,7 +190,8 @@ impl Tangent {
             return false;
         }
         let entries = self.entries.iter().copied().map(uncounted);
-        self.solver = Direct::of(self.solver.size(), entries, Symmetry::Unsymmetric, None);
+        self.solver =
+            Direct::with_entries(self.solver.size(), entries, Symmetry::Unsymmetric, None);
         true
     }
 

@@ -24,16 +24,16 @@ pub struct Trajectory {
 
 impl Trajectory {
     /// The motion of a model: poses, joint coordinates without jumps, and a voltage for every muscle.
-    pub fn from_history(model: &Model, history: &DiscreteTrajectory) -> Self {
-        let mut instant = model.action.motion.instant();
-        let mut near = vec![0.0; model.gauges.len()];
+    pub fn from_discrete(model: &Model, discrete: &DiscreteTrajectory) -> Self {
+        let mut instant = model.action.map.instant();
+        let mut near = vec![0.0; model.joint_readings.len()];
         let mut trajectory = Self {
-            times: history.times.clone(),
+            times: discrete.times.clone(),
             ..Self::default()
         };
-        for z in &history.z {
+        for z in &discrete.z {
             instant.z.copy_from_slice(z);
-            model.action.motion.vectors(&mut instant);
+            model.action.map.vectors(&mut instant);
             near = model.joints(&instant, &near);
             let with_coordinate = near
                 .iter()
@@ -46,7 +46,7 @@ impl Trajectory {
             let marks = model.markers.iter().map(|&vector| instant.x[vector]);
             trajectory.marks.push(marks.collect());
         }
-        for scalars in &history.scalars {
+        for scalars in &discrete.scalars {
             let mut voltages = vec![0.0; model.sources.len()];
             for (variable, &scalar) in model.variables.of(Time::Interval).iter().zip(scalars) {
                 if let Some(source) = variable.source {

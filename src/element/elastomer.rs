@@ -51,7 +51,7 @@ impl<F: Field> Elastomer<F> {
         potentials: &F::Potentials<NODES>,
     ) -> f64 {
         let mut energy = 0.0;
-        dispatch(Plain::<_, _, 0, NODES> {
+        dispatch(DerivativesTask::<_, _, 0, NODES> {
             law: self,
             shape,
             x,
@@ -69,7 +69,7 @@ impl<F: Field> Elastomer<F> {
         potentials: &F::Potentials<NODES>,
         local: &mut Local<F, NODES>,
     ) {
-        dispatch(Plain::<_, _, 1, NODES> {
+        dispatch(DerivativesTask::<_, _, 1, NODES> {
             law: self,
             shape,
             x,
@@ -86,7 +86,7 @@ impl<F: Field> Elastomer<F> {
         potentials: &F::Potentials<NODES>,
         local: &mut Local<F, NODES>,
     ) {
-        dispatch(Plain::<_, _, 2, NODES> {
+        dispatch(DerivativesTask::<_, _, 2, NODES> {
             law: self,
             shape,
             x,
@@ -111,7 +111,7 @@ impl<F: Field> Elastomer<F> {
         plain: &mut Local<F, NODES>,
         along: &mut Local<F, NODES>,
     ) {
-        dispatch(Along {
+        dispatch(RatesTask {
             law: self,
             shape,
             x,
@@ -124,7 +124,7 @@ impl<F: Field> Elastomer<F> {
 }
 
 /// Derivatives to the order `ORDER` at a state.
-struct Plain<'a, F: Field, O, const ORDER: usize, const NODES: usize> {
+struct DerivativesTask<'a, F: Field, O, const ORDER: usize, const NODES: usize> {
     law: &'a Elastomer<F>,
     shape: &'a ElementGeometry<NODES>,
     x: &'a [Vector; NODES],
@@ -133,7 +133,7 @@ struct Plain<'a, F: Field, O, const ORDER: usize, const NODES: usize> {
 }
 
 impl<F: Field, O: Output<f64>, const ORDER: usize, const NODES: usize> Task
-    for Plain<'_, F, O, ORDER, NODES>
+    for DerivativesTask<'_, F, O, ORDER, NODES>
 {
     type Output = ();
 
@@ -158,7 +158,7 @@ impl<F: Field, O: Output<f64>, const ORDER: usize, const NODES: usize> Task
 }
 
 /// Second derivatives at a state, and their rates along a direction.
-struct Along<'a, F: Field, const NODES: usize> {
+struct RatesTask<'a, F: Field, const NODES: usize> {
     law: &'a Elastomer<F>,
     shape: &'a ElementGeometry<NODES>,
     x: &'a [Vector; NODES],
@@ -168,7 +168,7 @@ struct Along<'a, F: Field, const NODES: usize> {
     out: Pair<'a, F, NODES>,
 }
 
-impl<F: Field, const NODES: usize> Task for Along<'_, F, NODES> {
+impl<F: Field, const NODES: usize> Task for RatesTask<'_, F, NODES> {
     type Output = ();
 
     #[inline(always)]

@@ -23,7 +23,7 @@ impl From<f64> for Affine {
 
 impl Affine {
     /// A multiple of an argument.
-    pub fn of(argument: usize, factor: f64) -> Self {
+    pub fn single(argument: usize, factor: f64) -> Self {
         Self {
             value: 0.0,
             slopes: vec![(argument, factor)],

@@ -23,7 +23,7 @@ struct At {
     entry: f64,
 }
 
-struct Along {
+struct SquareRates {
     at: At,
     rates: At,
 }
@@ -86,7 +86,7 @@ impl Local for OfSquare {
     #[inline(always)]
     fn along<const NV: usize>(&self) -> impl Derivatives {
         let Self { at, rates, .. } = *self;
-        Along { at, rates }
+        SquareRates { at, rates }
     }
 }
 
@@ -117,7 +117,7 @@ impl Derivatives for At {
     }
 }
 
-impl Derivatives for Along {
+impl Derivatives for SquareRates {
     #[inline(always)]
     fn force(&self, _: usize) -> Vector {
         self.at.r * self.rates.a + self.rates.r * self.at.a

@@ -23,7 +23,7 @@ const STATE: &str = "state/";
 #[derive(Clone, Debug)]
 pub struct Continuation {
     /// The motion.
-    pub history: DiscreteTrajectory,
+    pub discrete: DiscreteTrajectory,
     /// The JSON text of the problem.
     pub problem: String,
 }
@@ -43,15 +43,15 @@ pub enum ContinuationError {
 ///
 /// # Errors
 /// A motion with names too long for the format; no method has them.
-pub fn bytes(history: &DiscreteTrajectory, problem: &str) -> io::Result<Vec<u8>> {
+pub fn bytes(discrete: &DiscreteTrajectory, problem: &str) -> io::Result<Vec<u8>> {
     let mut arrays = NpzWriter::default();
     arrays.text(PROBLEM, problem);
-    arrays.list("times", &history.times);
-    arrays.rows("z", &history.z);
-    arrays.rows("momenta", &history.momenta);
-    arrays.rows("scalars", &history.scalars);
-    arrays.list("works", &history.works);
-    if let Some(rates) = &history.rates {
+    arrays.list("times", &discrete.times);
+    arrays.rows("z", &discrete.z);
+    arrays.rows("momenta", &discrete.momenta);
+    arrays.rows("scalars", &discrete.scalars);
+    arrays.list("works", &discrete.works);
+    if let Some(rates) = &discrete.rates {
         arrays.list("rates", rates);
     }
     let StepState {
@@ -61,7 +61,7 @@ pub fn bytes(history: &DiscreteTrajectory, problem: &str) -> io::Result<Vec<u8>>
         report,
         wanted,
         tolerance,
-    } = &history.end;
+    } = &discrete.end;
     arrays.text(OF, of);
     for (i, (name, list)) in lists.iter().enumerate() {
         arrays.list(&format!("{STATE}{i:04} {name}"), list);
@@ -107,7 +107,7 @@ pub fn read(path: &Path) -> Result<Continuation, ContinuationError> {
     let problem = file.texts.remove(PROBLEM);
     let problem = problem.ok_or(ContinuationError::Missing(PROBLEM))?;
     let end = state(&mut file)?;
-    let history = DiscreteTrajectory {
+    let discrete = DiscreteTrajectory {
         times: list(&mut file, "times")?,
         z: rows(&mut file, "z")?,
         momenta: rows(&mut file, "momenta")?,
@@ -118,11 +118,11 @@ pub fn read(path: &Path) -> Result<Continuation, ContinuationError> {
         end,
         ..DiscreteTrajectory::default()
     };
-    let is_whole = history.times.len() > 1 && history.z.len() == history.times.len();
-    if !is_whole || history.momenta.len() != history.times.len() {
+    let is_whole = discrete.times.len() > 1 && discrete.z.len() == discrete.times.len();
+    if !is_whole || discrete.momenta.len() != discrete.times.len() {
         return Err(ContinuationError::Missing("a motion of one step or more"));
     }
-    Ok(Continuation { history, problem })
+    Ok(Continuation { discrete, problem })
 }
 
 fn state(file: &mut Npz) -> Result<StepState, ContinuationError> {

@@ -108,7 +108,7 @@ impl BlockMask {
 
 /// First and second derivatives of a sum on one interval.
 #[derive(Clone, Debug, Default)]
-pub struct Part {
+pub struct SumDerivatives {
     /// ∂/∂x_k and ∂/∂x_{k+1}.
     pub forces: [Vec<Vector>; 2],
     /// ∂/∂s.
@@ -123,7 +123,7 @@ pub struct Part {
     pub horizon: f64,
 }
 
-impl Part {
+impl SumDerivatives {
     /// Zeros for first derivatives, and for second ones at these couplings.
     pub fn new(vectors: usize, scalars: usize, couplings: Option<&Couplings>) -> Self {
         let zeros = || vec![Vector::zeros(); vectors];

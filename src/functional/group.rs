@@ -4,7 +4,9 @@ use crate::functional::batches::Batches;
 use crate::functional::border::{Border, BorderAlong, Rates};
 use crate::functional::scatter::{ALL, Places};
 use crate::functional::slots::{self, Slots};
-use crate::functional::{Couplings, Horizon, Kernel, Kind, Order, Output, Sample, Scatter, Term};
+use crate::functional::{
+    Couplings, Horizon, Kernel, Order, Output, Sample, Scatter, Term, TermKind,
+};
 use crate::math::{Derivatives, Vector};
 use pulp::{Arch, Simd, WithSimd};
 use std::fmt;
@@ -203,19 +205,19 @@ impl<K: Kernel> Term for Group<K> {
     }
 
     fn is_dead_load(&self) -> bool {
-        self.kind() == Kind::Potential && K::DEGREE == 1
+        self.kind() == TermKind::Potential && K::DEGREE == 1
     }
 
     fn not_by_squares(&self) -> Vec<usize> {
         self.scalars_not_by_squares()
     }
 
-    fn kind(&self) -> Kind {
+    fn kind(&self) -> TermKind {
         match (self.site, K::VIRTUAL) {
-            (Site::Instants, _) => Kind::Constraint,
-            (Site::Intervals, 0) if self.scale > 0.0 => Kind::Kinetic,
-            (Site::Intervals, 0) => Kind::Potential,
-            (Site::Intervals, _) => Kind::VirtualWork,
+            (Site::Instants, _) => TermKind::Constraint,
+            (Site::Intervals, 0) if self.scale > 0.0 => TermKind::Kinetic,
+            (Site::Intervals, 0) => TermKind::Potential,
+            (Site::Intervals, _) => TermKind::VirtualWork,
         }
     }
 
@@ -243,7 +245,7 @@ impl<K: Kernel> Term for Group<K> {
     }
 
     fn momentum(&self, x: &[Vector], v: &[Vector], out: &mut [Vector]) {
-        if self.kind() == Kind::Kinetic {
+        if self.kind() == TermKind::Kinetic {
             for element in &self.elements {
                 K::momentum(element, self.scale, x, v, out);
             }

@@ -1,7 +1,7 @@
 //! Kinetic energy of constant masses: the one term whose second derivative never changes.
 
-use crate::functional::{BlockMask, Couplings, Horizon, Kind, Order, Output, Sample, Term};
-use crate::math::{Vector, counted};
+use crate::functional::{BlockMask, Couplings, Horizon, Order, Output, Sample, Term, TermKind};
+use crate::math::{Vector, compact_index};
 
 /// A mass m on a material vector, ½ m |ẋ|², or between two, m ẋ·ẏ.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -31,18 +31,18 @@ impl Mass {
 pub struct Inertia {
     name: String,
     masses: usize,
-    entries: Vec<Entry>,
+    entries: Vec<MassEntry>,
 }
 
 /// One entry of the mass matrix.
 #[derive(Clone, Copy, Debug)]
-struct Entry {
+struct MassEntry {
     row: u32,
     column: u32,
     mass: f64,
 }
 
-impl Entry {
+impl MassEntry {
     /// The two vectors.
     fn vectors(self) -> [usize; 2] {
         [self.row as usize, self.column as usize]
@@ -57,9 +57,9 @@ impl Inertia {
             let [a, b] = m.vectors;
             let pairs = [(a, b), (b, a)];
             let count = if a == b { 1 } else { 2 };
-            entries.extend(pairs[..count].iter().map(|&(row, column)| Entry {
-                row: counted(row),
-                column: counted(column),
+            entries.extend(pairs[..count].iter().map(|&(row, column)| MassEntry {
+                row: compact_index(row),
+                column: compact_index(column),
                 mass: m.mass,
             }));
         }
@@ -86,13 +86,13 @@ impl Term for Inertia {
         }
     }
 
-    fn kind(&self) -> Kind {
-        Kind::Kinetic
+    fn kind(&self) -> TermKind {
+        TermKind::Kinetic
     }
 
     fn energy(&self, sample: &Sample<'_>) -> f64 {
         let [x, y] = sample.vectors;
-        let product = |e: &Entry| {
+        let product = |e: &MassEntry| {
             let [a, b] = e.vectors();
             e.mass * (y[a] - x[a]).dot(&(y[b] - x[b]))
         };

@@ -3,7 +3,9 @@
 use crate::functional::curved::OfQuantity;
 use crate::functional::scatter::{ALL, Places};
 use crate::functional::slots::Slots;
-use crate::functional::{Couplings, Group, Kernel, Measure, Order, Outer, Part, Sample, Scatter};
+use crate::functional::{
+    Couplings, Group, Kernel, Measure, Order, Outer, Sample, Scatter, SumDerivatives,
+};
 use crate::math::{Derivatives, Vector};
 
 /// The gradient of a quantity.
@@ -29,7 +31,7 @@ struct Weighted<'a, K: Kernel> {
     places: Places<'a, K>,
     scale: f64,
     outer: Outer,
-    part: &'a mut Part,
+    part: &'a mut SumDerivatives,
 }
 
 impl<K: Kernel> Weighted<'_, K> {
@@ -104,7 +106,13 @@ impl<K: Kernel> Measure for Group<K> {
         }
     }
 
-    fn add_function(&self, outer: Outer, sample: &Sample<'_>, slots: &[u32], part: &mut Part) {
+    fn add_function(
+        &self,
+        outer: Outer,
+        sample: &Sample<'_>,
+        slots: &[u32],
+        part: &mut SumDerivatives,
+    ) {
         let is_one = self.elements.len() == 1;
         debug_assert!(outer.curvature == 0.0 || is_one, "a sum has one square");
         let order = Order::Hessian;

@@ -33,7 +33,7 @@ mod stencil;
 mod term;
 mod viscous_elements;
 
-pub use couplings::{BlockMask, Blocks, Couplings, Part};
+pub use couplings::{BlockMask, Blocks, Couplings, SumDerivatives};
 pub use curved::Curved;
 pub use element_fields::{ElementField, ElementFields};
 pub use finite_elements::{Electrical, FiniteElement, FiniteElements, Variations};
@@ -46,5 +46,5 @@ pub use paths::{Path, Paths};
 pub use scalar_arg::ScalarArg;
 pub use sought::{SoughtElement, SoughtFormulas, SpanMove};
 pub use stencil::{Stencil, VectorArg};
-pub use term::{Functional, Horizon, Kind, Measure, Order, Output, Sample, Term};
+pub use term::{Functional, Horizon, Measure, Order, Output, Sample, Term, TermKind};
 pub use viscous_elements::{ViscousElement, ViscousElements, ViscousVariations};

@@ -1,7 +1,7 @@
 //! The one loop that adds derivatives of elements to forces, blocks and couplings.
 
 use crate::functional::slots::Slots;
-use crate::functional::{BlockMask, Kernel, Part, Sample};
+use crate::functional::{BlockMask, Kernel, Sample, SumDerivatives};
 use crate::math::{Derivatives, Matrix, Vector};
 use std::ops::Range;
 
@@ -63,7 +63,7 @@ impl<'a, K: Kernel> Places<'a, K> {
         c: f64,
         (rows, columns): (Range<usize>, Range<usize>),
         d: &D,
-        part: &mut Part,
+        part: &mut SumDerivatives,
     ) {
         self.blocks(c, (rows.clone(), columns), d, part);
         let vectors = K::vectors(self.element);
@@ -84,7 +84,7 @@ impl<'a, K: Kernel> Places<'a, K> {
         c: f64,
         (rows, columns): (Range<usize>, Range<usize>),
         d: &D,
-        part: &mut Part,
+        part: &mut SumDerivatives,
     ) {
         let vectors = K::vectors(self.element);
         for a in 0..vectors {
@@ -130,7 +130,7 @@ impl<'a, K: Kernel> Places<'a, K> {
 
     /// Adds the blocks of an argument and all scalars.
     #[inline(always)]
-    fn columns<D: Derivatives>(&self, c: f64, i: usize, d: &D, part: &mut Part) {
+    fn columns<D: Derivatives>(&self, c: f64, i: usize, d: &D, part: &mut SumDerivatives) {
         let vectors = K::vectors(self.element);
         let weights = K::vector(self.element, i).stencil.weights(self.h);
         for s in 0..K::scalars(self.element) {
@@ -145,7 +145,7 @@ impl<'a, K: Kernel> Places<'a, K> {
 
     /// Adds the entries of a scalar and all others.
     #[inline(always)]
-    fn entries<D: Derivatives>(&self, c: f64, s: usize, d: &D, part: &mut Part) {
+    fn entries<D: Derivatives>(&self, c: f64, s: usize, d: &D, part: &mut SumDerivatives) {
         let Some((_, factor)) = K::scalar(self.element, s) else {
             return;
         };

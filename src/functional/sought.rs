@@ -135,7 +135,7 @@ impl<const M: usize, const R: usize, const N: usize> Derivatives for OfSpan<'_, 
 }
 
 /// Rates along the direction of what [`OfSpan`] is at the point.
-struct Along<'a, const M: usize, const R: usize, const N: usize> {
+struct SpanRates<'a, const M: usize, const R: usize, const N: usize> {
     plain: OfSpan<'a, M, R, N>,
     /// With the rates of gradient and Hessian in place of them.
     rates: OfSpan<'a, M, R, N>,
@@ -143,13 +143,13 @@ struct Along<'a, const M: usize, const R: usize, const N: usize> {
     along: &'a Arguments<M, R, N>,
 }
 
-impl<const M: usize, const R: usize, const N: usize> Along<'_, M, R, N> {
+impl<const M: usize, const R: usize, const N: usize> SpanRates<'_, M, R, N> {
     fn turned(&self, s: usize) -> SVector<f64, M> {
         self.along.by_scalar(self.plain.moves, s, 0.0)
     }
 }
 
-impl<const M: usize, const R: usize, const N: usize> Derivatives for Along<'_, M, R, N> {
+impl<const M: usize, const R: usize, const N: usize> Derivatives for SpanRates<'_, M, R, N> {
     fn force(&self, i: usize) -> Vector {
         let own = OfSpan::<M, R, N>::three(self.plain.gradient, i / N);
         own * self.along.factors[i % N] + self.rates.force(i)
@@ -309,7 +309,7 @@ where
         match &along {
             Some(along) => to.along(
                 &plain,
-                &Along {
+                &SpanRates {
                     plain: of(&jet.gradient, &jet.hessian),
                     rates: of(&jet.gradient_w, &jet.hessian_w),
                     along,

@@ -1,6 +1,6 @@
 //! A term of a sum, and the sum.
 
-use crate::functional::{BlockMask, Couplings, Outer, Part};
+use crate::functional::{BlockMask, Couplings, Outer, SumDerivatives};
 use crate::math::Vector;
 use std::fmt::Debug;
 
@@ -65,14 +65,14 @@ pub enum Horizon {
 #[derive(Clone, Debug)]
 pub struct Output {
     /// The derivatives.
-    pub plain: Part,
+    pub plain: SumDerivatives,
     /// The derivatives contracted with the direction.
-    pub contracted: Part,
+    pub contracted: SumDerivatives,
 }
 
 /// Role of a term in the energy balance.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Kind {
+pub enum TermKind {
     /// Kinetic energy.
     Kinetic,
     /// Potential energy.
@@ -95,7 +95,7 @@ pub trait Term: Debug + Send + Sync {
     fn couple(&self, couplings: &mut Couplings, slots: &mut Vec<u32>);
 
     /// Returns the role of the term in the energy balance.
-    fn kind(&self) -> Kind;
+    fn kind(&self) -> TermKind;
 
     /// Returns true if it is the potential of constant forces, such as weights: of degree one in places, and of nothing else.
     fn is_dead_load(&self) -> bool {
@@ -151,7 +151,13 @@ pub trait Measure: Debug + Send + Sync {
     fn gradient(&self, sample: &Sample<'_>, forces: &mut [Vec<Vector>; 2], rows: &mut [f64]);
 
     /// Adds the gradient and Hessian of a function of it; `slots` are those of its couplings.
-    fn add_function(&self, outer: Outer, sample: &Sample<'_>, slots: &[u32], part: &mut Part);
+    fn add_function(
+        &self,
+        outer: Outer,
+        sample: &Sample<'_>,
+        slots: &[u32],
+        part: &mut SumDerivatives,
+    );
 }
 
 /// A sum of terms at one site, and the quantities that are measured there.
@@ -212,14 +218,14 @@ impl Functional {
     pub fn output(&self, order: Order) -> Output {
         let part = |least: Order| {
             let couplings = (order >= least).then_some(&self.couplings);
-            Part::new(self.vectors, self.scalars, couplings)
+            SumDerivatives::new(self.vectors, self.scalars, couplings)
         };
         Output {
             plain: part(Order::Hessian),
             contracted: if order == Order::Third {
                 part(Order::Third)
             } else {
-                Part::default()
+                SumDerivatives::default()
             },
         }
     }
@@ -227,7 +233,7 @@ impl Functional {
     /// The derivatives of the potential energy alone up to the second, on one interval, in place of the contents of `out`.
     pub fn evaluate_potential(&self, sample: &Sample<'_>, out: &mut Output) {
         out.plain.clear(true);
-        let potential = |(term, _): &(&dyn Term, &[u32])| term.kind() == Kind::Potential;
+        let potential = |(term, _): &(&dyn Term, &[u32])| term.kind() == TermKind::Potential;
         for (term, slots) in self.terms().filter(potential) {
             term.evaluate(Order::Hessian, sample, slots, out);
         }

@@ -16,14 +16,14 @@ use crate::model::system::{Joint, Muscle};
 use crate::model::{Parameter, Quantity, System};
 use crate::nlp::Nlp;
 use crate::workflow::cause::Cause;
-use crate::workflow::cure::{Cured, reproduced};
 use crate::workflow::domain;
 use crate::workflow::final_values::final_values;
-use crate::workflow::holding;
+use crate::workflow::hold_check;
 use crate::workflow::memory;
-use crate::workflow::motion::{history, trajectory};
+use crate::workflow::motion::{discrete_trajectory, trajectory};
 use crate::workflow::optimum::SolveLimits;
 use crate::workflow::prepare::{Counted, Prepared, prepare};
+use crate::workflow::refine_until_reproduced::{RefinedOptimum, reproduced};
 use crate::workflow::remark::Remarks;
 use crate::workflow::resolve::resolve;
 use crate::workflow::solve_remarks::add_remarks;
@@ -189,7 +189,7 @@ impl Control {
             iterations: None,
             seconds: self.max_seconds,
         };
-        let Cured {
+        let RefinedOptimum {
             optimum: mut found,
             iterations,
             note,
@@ -198,18 +198,21 @@ impl Control {
         })?;
         found.hold(&control);
         let model = &found.model;
-        let outside = domain::told(&out_of_domain(model, &history(model, &found.motion)));
+        let outside = domain::records(&out_of_domain(
+            model,
+            &discrete_trajectory(model, &found.motion),
+        ));
         let message = match found.is_solved() {
             true => None,
             false => Some(
                 found
                     .cause()
-                    .map_or_else(|| found.word().replace('_', " "), Cause::told),
+                    .map_or_else(|| found.word().replace('_', " "), Cause::message),
             ),
         };
         let mut remarks = Remarks::default();
         let tested = found.resimulation.as_ref();
-        let not_kept = holding::warning(&control, model, &found.boundary, tested);
+        let not_kept = hold_check::warning(&control, model, &found.boundary, tested);
         add_remarks(&mut remarks, &control, &found, note, not_kept);
         remarks.warn("outside_domain", domain::note(&outside, true));
         let trajectory = trajectory(model, &found.motion);

@@ -20,7 +20,7 @@ fn attachment(carrier: impl Into<Carrier>, at: Vector3<f64>) -> Attachment {
 }
 
 impl Body {
-    fn of(shape: Shape) -> Self {
+    fn from_shape(shape: Shape) -> Self {
         Self {
             name: String::new(),
             mass: 0.0,
@@ -33,17 +33,17 @@ impl Body {
 
     /// A homogeneous cylinder along z, lengths in mm.
     pub fn cylinder(length: f64, radius: f64) -> Self {
-        Self::of(Shape::Cylinder { length, radius })
+        Self::from_shape(Shape::Cylinder { length, radius })
     }
 
     /// A homogeneous box with edges along the axes, lengths in mm.
     pub fn cuboid(size: [f64; 3]) -> Self {
-        Self::of(Shape::Box { size })
+        Self::from_shape(Shape::Box { size })
     }
 
     /// A homogeneous sphere, radius in mm.
     pub fn sphere(radius: f64) -> Self {
-        Self::of(Shape::Sphere { radius })
+        Self::from_shape(Shape::Sphere { radius })
     }
 
     /// Mass in g; the moments of inertia follow from the shape.

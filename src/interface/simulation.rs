@@ -75,7 +75,7 @@ impl Simulation {
             false => ControlFlow::Continue(()),
         })?;
         let is_whole = run
-            .history
+            .discrete
             .times
             .last()
             .is_some_and(|&end| end >= self.duration * (1.0 - 1e-12));
@@ -135,7 +135,7 @@ impl Simulation {
             coordinates: None,
             solving: Solving {
                 integrator: self.integrator,
-                newton: Newton::of(system),
+                newton: Newton::for_system(system),
                 backend: None,
             },
         })
@@ -144,13 +144,13 @@ impl Simulation {
 
 /// Returns the motion of a run.
 fn motion(run: &Simulated, task: &problem::Simulation) -> Motion {
-    let trajectory = Trajectory::from_history(&run.model, &run.history);
+    let trajectory = Trajectory::from_discrete(&run.model, &run.discrete);
     let order = task.solving.integrator.order();
-    let error = local_error_of(&run.model, (&run.history, &trajectory), order);
-    let outside = domain::told(&out_of_domain(&run.model, &run.history));
+    let error = local_error_of(&run.model, (&run.discrete, &trajectory), order);
+    let outside = domain::records(&out_of_domain(&run.model, &run.discrete));
     let mut remarks = Remarks::default();
-    remarks.warn("coarse_steps", steps::told(error, &run.history, task));
-    remarks.warn("energy_balance", steps::unbalanced(&run.history));
+    remarks.warn("coarse_steps", steps::warning(error, &run.discrete, task));
+    remarks.warn("energy_balance", steps::unbalanced(&run.discrete));
     remarks.warn("outside_domain", domain::note(&outside, true));
     let system = run.model.system.clone();
     Motion {

@@ -5,7 +5,7 @@ use std::ops::ControlFlow;
 use std::time::Instant;
 
 use crate::ipopt::interrupt::{self, Watch};
-use crate::ipopt::reached::{Before, Reached};
+use crate::ipopt::iterate::{Before, Reached};
 use crate::ipopt::record::Record;
 use crate::ipopt::session;
 use crate::ipopt::solution::Iteration;
@@ -172,7 +172,7 @@ impl<'a> Evaluator<'a> {
         let squares = self.asked.squares;
         let x = squares.point(&self.record.derivatives_at, now);
         let before = squares.point(&self.record.latest, before);
-        let before = Before::of(self.record, before, (bounds, squares), self.scale);
+        let before = Before::from_record(self.record, before, (bounds, squares), self.scale);
         let reached = Reached { x, before };
         let verdict = timed(&mut seconds, || (self.asked.observer)(iteration, &reached));
         let record = &mut *self.record;

@@ -89,7 +89,7 @@ pub struct TimeLimit {
 }
 
 impl TimeLimit {
-    /// So many seconds from now; a time that no clock reaches is no limit.
+    /// The limit `seconds` from now; a time that no clock reaches is no limit.
     #[must_use]
     pub fn after(seconds: Option<f64>) -> Self {
         let length = seconds.and_then(|s| Duration::try_from_secs_f64(s.max(0.0)).ok());

@@ -31,13 +31,21 @@ impl KnownBounds {
         self.right.extend(rights);
         let known = &mut self.constraints;
         let are_known = self.variables == *variables
-            && known.lower.iter().copied().eq(told(lower, &self.right))
-            && known.upper.iter().copied().eq(told(upper, &self.right));
+            && known
+                .lower
+                .iter()
+                .copied()
+                .eq(differences(lower, &self.right))
+            && known
+                .upper
+                .iter()
+                .copied()
+                .eq(differences(upper, &self.right));
         if !are_known {
             self.variables.clone_from(variables);
             for (known, bounds) in [(&mut known.lower, lower), (&mut known.upper, upper)] {
                 known.clear();
-                known.extend(told(bounds, &self.right));
+                known.extend(differences(bounds, &self.right));
             }
         }
         !are_known
@@ -54,6 +62,6 @@ impl KnownBounds {
 }
 
 /// Bounds less the right-hand sides.
-fn told<'a>(bounds: &'a [f64], right: &'a [f64]) -> impl Iterator<Item = f64> + 'a {
+fn differences<'a>(bounds: &'a [f64], right: &'a [f64]) -> impl Iterator<Item = f64> + 'a {
     bounds.iter().zip(right).map(|(bound, right)| bound - right)
 }

@@ -1,6 +1,6 @@
 //! Choice of the solver of the linear systems of Ipopt.
 
-use crate::ipopt::hook;
+use crate::ipopt::ma57_adapter;
 use crate::ipopt::no_stages::NoStages;
 
 /// Name of MUMPS in Ipopt.
@@ -43,8 +43,10 @@ impl LinearSolver {
             why_not,
         };
         match self {
-            Self::Auto => Ok(hook::install().map_or_else(|why| mumps(Some(why)), |()| stages)),
-            Self::Stages => hook::install().map(|()| stages),
+            Self::Auto => {
+                Ok(ma57_adapter::install().map_or_else(|why| mumps(Some(why)), |()| stages))
+            }
+            Self::Stages => ma57_adapter::install().map(|()| stages),
             Self::Mumps => Ok(mumps(None)),
         }
     }
@@ -52,6 +54,6 @@ impl LinearSolver {
     /// Returns true if this Ipopt takes [`LinearSolver::Stages`].
     #[must_use]
     pub fn has_stages() -> bool {
-        hook::install().is_ok()
+        ma57_adapter::install().is_ok()
     }
 }

@@ -3,21 +3,20 @@
 //! Solves with the linear solver along the horizon run in any number of threads, also within a callback. With MUMPS, which is not made for
 //! more, one runs at a time in a process and a second call waits; an observer or an [`Nlp`] must not call [`solve`] itself then.
 
-mod centre;
 mod declarations;
 mod error;
 mod evaluation;
 mod ffi;
-mod hook;
 pub mod interrupt;
+mod iterate;
 mod known_bounds;
 mod linear_report;
 mod linear_solver;
 mod loaded;
+mod ma57_adapter;
 mod no_stages;
 mod option_value;
 mod options;
-mod reached;
 mod record;
 mod session;
 mod signals;
@@ -25,20 +24,21 @@ mod solution;
 mod solver;
 mod squares;
 mod status;
+mod warm_start_centring;
 
 use std::ops::ControlFlow;
 
 use crate::nlp::Nlp;
 
 pub use error::IpoptError;
-#[doc(hidden)]
-pub use hook::functions_of_ma57;
+pub use iterate::{Before, Reached};
 pub use linear_report::{LinearReport, StagesReport};
 pub use linear_solver::LinearSolver;
+#[doc(hidden)]
+pub use ma57_adapter::functions_of_ma57;
 pub use no_stages::{NoStages, VERSION};
 pub use option_value::OptionValue;
 pub use options::{MUMPS_ORDERING, Options, Start};
-pub use reached::{Before, Reached};
 pub use solution::{Evaluations, Iteration, Multipliers, Seconds, SolverResult, StartingPoint};
 pub use solver::Solver;
 pub use status::Status;

@@ -4,19 +4,19 @@ use std::fmt;
 use std::mem;
 use std::ops::ControlFlow;
 
-use crate::ipopt::centre::centre;
 use crate::ipopt::error::IpoptError;
 use crate::ipopt::evaluation::{Asked, Evaluator, Structures};
 use crate::ipopt::ffi::Problem;
 use crate::ipopt::interrupt;
+use crate::ipopt::iterate::Reached;
 use crate::ipopt::known_bounds::KnownBounds;
 use crate::ipopt::options::{self, Options, Start};
-use crate::ipopt::reached::Reached;
 use crate::ipopt::record::Record;
 use crate::ipopt::session::Session;
 use crate::ipopt::solution::{Iteration, SolverResult, StartingPoint};
 use crate::ipopt::squares::{InSquares, Squares};
 use crate::ipopt::status::Status;
+use crate::ipopt::warm_start_centring::centre;
 use crate::nlp::{Entries, Nlp};
 use crate::sparse::mumps;
 
@@ -63,7 +63,7 @@ impl<N: Nlp> Solver<N> {
             places.all(|(row, col)| row >= col),
             "lower triangle of the Hessian"
         );
-        let squares = Squares::of(&program);
+        let squares = Squares::from_program(&program);
         Self {
             program: InSquares::new(program, squares.clone(), jacobian, hessian),
             squares,

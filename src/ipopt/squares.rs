@@ -26,7 +26,7 @@ pub(super) struct Squares {
 
 impl Squares {
     /// Those of a program; u is the upper bound where there is one.
-    pub(super) fn of(program: &impl Nlp) -> Self {
+    pub(super) fn from_program(program: &impl Nlp) -> Self {
         let upper = &program.variables().upper;
         let unit = |i: usize| match upper[i].is_finite() && upper[i] > 0.0 {
             true => upper[i],

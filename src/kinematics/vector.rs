@@ -1,4 +1,4 @@
-//! Material vectors: points, directors and spans, the only thing effects ever read of a configuration.
+//! Material vectors: points, directors and spans, all that terms read of a configuration.
 //!
 //! On director coordinates q = [φ; d₁; d₂; d₃] of a body every point φ + ρᵢ dᵢ, every director dᵢ and every difference
 //! of points of two bodies is linear: x = Σ (c φ + ρᵢ dᵢ) over a few terms. So is the place of a node of an elastic
@@ -48,7 +48,7 @@ pub enum Carrier {
 
 impl Carrier {
     /// A body, or the ground.
-    pub fn of(body: Option<usize>) -> Self {
+    pub fn from_body(body: Option<usize>) -> Self {
         body.map_or(Self::Ground, Self::Body)
     }
 }
@@ -85,7 +85,7 @@ impl MaterialVector {
         let pose = body.map_or(Pose::GROUND, |b| reference[b]);
         Self {
             terms: vec![VectorTerm {
-                carrier: Carrier::of(body),
+                carrier: Carrier::from_body(body),
                 centre: 1.0,
                 directors: pose.local(place),
             }],
@@ -97,7 +97,7 @@ impl MaterialVector {
         let pose = body.map_or(Pose::GROUND, |b| reference[b]);
         Self {
             terms: vec![VectorTerm {
-                carrier: Carrier::of(body),
+                carrier: Carrier::from_body(body),
                 centre: 0.0,
                 directors: pose.directors.tr_mul(direction),
             }],
@@ -173,7 +173,7 @@ impl MaterialVector {
     }
 }
 
-/// The list of vectors that effects read, each once.
+/// The list of vectors that terms read, each once.
 #[derive(Clone, Debug, Default)]
 pub struct Vectors {
     list: Vec<MaterialVector>,

@@ -49,7 +49,7 @@ impl fmt::Debug for Room {
 
 impl Room {
     /// For any of these blocks.
-    pub(super) fn of(blocks: &[BlockLu]) -> Self {
+    pub(super) fn for_blocks(blocks: &[BlockLu]) -> Self {
         let panels = blocks.iter().flat_map(|block| &block.envelope.panels);
         let scratch = panels.map(|panel| {
             let (rows, columns) = (panel.height(), panel.equations.len());

@@ -12,7 +12,7 @@ use super::envelope::Panel;
 use super::lanes::{dot, subtract};
 
 /// Factors of a panel, and the rows of right-hand sides that they meet.
-struct Part<'a> {
+struct PanelRows<'a> {
     /// Triangle of its own equations.
     own: MatRef<'a, f64>,
     /// The other rows: above it of the upper factor, below it of the lower one.
@@ -21,7 +21,7 @@ struct Part<'a> {
     of_rest: MatMut<'a, f64>,
 }
 
-impl Part<'_> {
+impl PanelRows<'_> {
     fn subtract_rest_from_own(&mut self) {
         let (rest, known) = (self.rest.transpose(), self.of_rest.as_ref());
         matmul(
@@ -106,12 +106,12 @@ impl BlockLu {
     }
 
     /// The part of a panel in the upper factor.
-    fn upper<'a>(&'a self, panel: &Panel, right: &'a mut [f64]) -> Part<'a> {
+    fn upper<'a>(&'a self, panel: &Panel, right: &'a mut [f64]) -> PanelRows<'a> {
         let rows = panel.rows.start..panel.equations.end;
         let before = panel.equations.start - rows.start;
         let (rest, own) = self.rectangle(rows.clone(), panel).split_at_row(before);
         let (of_rest, of_own) = self.rows(right, rows).split_at_row_mut(before);
-        Part {
+        PanelRows {
             own,
             rest,
             of_own,
@@ -120,11 +120,11 @@ impl BlockLu {
     }
 
     /// The part of a panel in the lower factor.
-    fn lower<'a>(&'a self, panel: &Panel, right: &'a mut [f64]) -> Part<'a> {
+    fn lower<'a>(&'a self, panel: &Panel, right: &'a mut [f64]) -> PanelRows<'a> {
         let (rows, width) = (panel.equations.start..panel.rows.end, panel.equations.len());
         let (own, rest) = self.rectangle(rows.clone(), panel).split_at_row(width);
         let (of_own, of_rest) = self.rows(right, rows).split_at_row_mut(width);
-        Part {
+        PanelRows {
             own,
             rest,
             of_own,
@@ -243,7 +243,7 @@ mod tests {
         for &(i, j, value) in entries {
             block.add(i, j, value);
         }
-        let mut room = Room::of(std::slice::from_ref(&block));
+        let mut room = Room::for_blocks(std::slice::from_ref(&block));
         let is_regular = block.factor(&mut room);
         (block, is_regular)
     }

@@ -13,11 +13,11 @@
 use std::collections::{BTreeMap, BTreeSet};
 use std::mem;
 
-use super::arrange::arrange;
+use super::bandwidth_order::arrange;
 use super::block::{Block, Item};
+use super::eliminable_groups::{self, Group};
 use super::fronts::Fronts;
 use super::graph::Graph;
-use super::groups::{self, Group};
 use super::order::Unknown;
 use super::progress::Progress;
 use crate::math::Stopped;
@@ -57,7 +57,7 @@ pub(super) struct Condensation {
 
 /// Kind of an unknown, with the number of its block, and its number among its kind.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
-enum Kind {
+enum UnknownKind {
     State(usize, u32),
     Equation(usize, u32),
     Rest(u32),
@@ -74,7 +74,7 @@ impl Condensation {
     ) -> Result<Option<Self>, Stopped> {
         let most = WORTH * multiplications;
         let mut all = Vec::new();
-        for choose in [groups::constraints, groups::squares] {
+        for choose in [eliminable_groups::constraints, eliminable_groups::squares] {
             progress.add(rows.len())?;
             let mut groups = choose(graph, unknowns);
             arrange(graph, &mut groups, progress)?;
@@ -123,16 +123,17 @@ impl Condensation {
         Ok((all < most).then_some((all, out)))
     }
 
-    fn number(&mut self, groups: &[Group], count: usize) -> Vec<Kind> {
-        let mut kinds = vec![Kind::Rest(NONE); count];
+    fn number(&mut self, groups: &[Group], count: usize) -> Vec<UnknownKind> {
+        let mut kinds = vec![UnknownKind::Rest(NONE); count];
         for (block, group) in groups.iter().enumerate() {
             let (states, equations) = (self.states.len(), self.equations.len());
             for &state in &group.states {
-                kinds[state as usize] = Kind::State(block, self.states.len() as u32);
+                kinds[state as usize] = UnknownKind::State(block, self.states.len() as u32);
                 self.states.push(state);
             }
             for &equation in &group.equations {
-                kinds[equation as usize] = Kind::Equation(block, self.equations.len() as u32);
+                kinds[equation as usize] =
+                    UnknownKind::Equation(block, self.equations.len() as u32);
                 self.equations.push(equation);
             }
             self.blocks.push(Block {
@@ -142,7 +143,7 @@ impl Condensation {
             });
         }
         for (i, kind) in kinds.iter_mut().enumerate() {
-            if let Kind::Rest(number) = kind {
+            if let UnknownKind::Rest(number) = kind {
                 *number = self.rest.len() as u32;
                 self.rest.push(i as u32);
             }
@@ -151,7 +152,7 @@ impl Condensation {
     }
 
     /// Gives each entry to a block, and returns true if no equation holds a state of a later group.
-    fn sort(&mut self, kinds: &[Kind], rows: &[u32], cols: &[u32]) -> bool {
+    fn sort(&mut self, kinds: &[UnknownKind], rows: &[u32], cols: &[u32]) -> bool {
         let mut is_triangular = true;
         for (entry, (&row, &col)) in rows.iter().zip(cols).enumerate() {
             let (a, b) = (kinds[row as usize], kinds[col as usize]);
@@ -162,10 +163,10 @@ impl Condensation {
                 place: NONE,
             };
             match (a.min(b), a.max(b)) {
-                (Kind::State(_, a), Kind::State(block, b)) => {
+                (UnknownKind::State(_, a), UnknownKind::State(block, b)) => {
                     self.blocks[block].curvature.push(item(b, a));
                 }
-                (Kind::State(of, state), Kind::Equation(block, equation)) => {
+                (UnknownKind::State(of, state), UnknownKind::Equation(block, equation)) => {
                     is_triangular &= of <= block;
                     let list = match of == block {
                         true => &mut self.blocks[block].own,
@@ -173,14 +174,14 @@ impl Condensation {
                     };
                     list.push(item(equation, state));
                 }
-                (Kind::State(block, state), Kind::Rest(rest)) => {
+                (UnknownKind::State(block, state), UnknownKind::Rest(rest)) => {
                     self.blocks[block].coupling.push(item(state, rest));
                 }
-                (Kind::Equation(block, equation), Kind::Rest(rest)) => {
+                (UnknownKind::Equation(block, equation), UnknownKind::Rest(rest)) => {
                     self.blocks[block].inputs.push(item(equation, rest));
                 }
-                (Kind::Rest(a), Kind::Rest(b)) => self.corner.push(item(a, b)),
-                (Kind::Equation(block, a), Kind::Equation(_, b)) if a == b => {
+                (UnknownKind::Rest(a), UnknownKind::Rest(b)) => self.corner.push(item(a, b)),
+                (UnknownKind::Equation(block, a), UnknownKind::Equation(_, b)) if a == b => {
                     self.blocks[block].diagonal.push(item(a, a));
                 }
                 _ => self.zeros.push(entry as u32),

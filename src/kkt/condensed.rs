@@ -18,13 +18,13 @@ use pulp::Arch;
 use super::block::{Block, Item};
 use super::block_lu::{BlockLu, Room};
 use super::condense::Condensation;
-use super::halves::{halves, middle};
 use super::inertia::Inertia;
 use super::numeric::{Factors, Outcome};
 use super::pivot::Rules;
 use super::products::Product;
 use super::progress::Progress;
 use super::reduce::{Reduce, Weights};
+use super::two_threads::{halves, middle};
 use crate::math::Stopped;
 
 /// Greatest response of a state against the greatest direct one. Beyond, what is left of R are errors of rounding;
@@ -84,8 +84,8 @@ impl Condensed {
         let entries = plans.map(|plan| plan.pattern().0.len()).max().unwrap_or(0);
         Self {
             middle: middle(parts.blocks.iter().map(Block::multiplications)),
-            rooms: [0, 1].map(|_| Room::of(&blocks)),
-            weights: [0, 1].map(|_| Weights::of(&parts.blocks)),
+            rooms: [0, 1].map(|_| Room::for_blocks(&blocks)),
+            weights: [0, 1].map(|_| Weights::from_blocks(&parts.blocks)),
             blocks,
             responses: vec![0.0; starts[starts.len() - 1]],
             starts,

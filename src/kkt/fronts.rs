@@ -27,7 +27,7 @@ pub(super) struct Front {
 
 /// An entry of the matrix in a front.
 #[derive(Clone, Copy, Debug)]
-pub(super) struct Entry {
+pub(super) struct FrontEntry {
     /// Its number among the entries.
     pub(super) entry: u32,
     /// Its row in the front.
@@ -45,7 +45,7 @@ pub(super) struct Fronts {
     pub(super) list: Vec<Front>,
     pub(super) unknowns: Vec<u32>,
     pub(super) children: Vec<u32>,
-    pub(super) entries: Vec<Entry>,
+    pub(super) entries: Vec<FrontEntry>,
     pub(super) places: Vec<u32>,
 }
 
@@ -60,7 +60,7 @@ impl Fronts {
     ) -> Result<(Graph, Self), Stopped> {
         let graph = Graph::new(order, rows, cols, progress)?;
         progress.add(rows.len())?;
-        let elimination = order::of(&graph, unknowns);
+        let elimination = order::elimination(&graph, unknowns);
         let nodes = tree::nodes(&graph, &elimination, progress)?;
         let mut fronts = Self {
             order,
@@ -153,7 +153,7 @@ impl Fronts {
             begins[k + 1] += begins[k];
         }
         let mut next = begins.clone();
-        let nothing = Entry {
+        let nothing = FrontEntry {
             entry: 0,
             row: 0,
             column: 0,
@@ -161,7 +161,7 @@ impl Fronts {
         self.entries.resize(self.rows.len(), nothing);
         for (entry, (&row, &column)) in self.rows.iter().zip(&self.cols).enumerate() {
             let place = &mut next[front_of(row, column)];
-            self.entries[*place] = Entry {
+            self.entries[*place] = FrontEntry {
                 entry: entry as u32,
                 row,
                 column,

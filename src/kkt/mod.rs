@@ -16,33 +16,33 @@
 //! | `graph`, `order`, `tree`, `fronts`, `plan` | once for a pattern: order of elimination, fronts, where each entry goes |
 //! | `pivot`, `dense`, `update`, `eliminate` | one dense front |
 //! | `numeric`, `solve`, `scales` | factors, solutions, equilibration |
-//! | `groups`, `arrange`, `block`, `condense`, `condensed`, `reduce`, `products`, `substitute` | unknowns that equations determine, eliminated before all others |
+//! | `eliminable_groups`, `bandwidth_order`, `block`, `condense`, `condensed`, `reduce`, `products`, `substitute` | unknowns that equations determine, eliminated before all others |
 //! | `envelope`, `block_lu`, `block_solve` | the equations of one group |
-//! | `solver`, `care` | when to scale, how strictly to pivot, whether the factors are good |
-//! | `trial` | how exact factors are, by a system solved with them |
-//! | `progress`, `halves` | whether a long factorisation is to go on, and that on two cores |
+//! | `solver`, `pivot_strategy` | when to scale, how strictly to pivot, whether the factors are good |
+//! | `accuracy_check` | how exact factors are, by a system solved with them |
+//! | `progress`, `two_threads` | whether a long factorisation is to go on, and that on two cores |
 //!
 //! After the first matrix nothing is allocated, unless more pivots are delayed than ever before.
 
-mod arrange;
+mod accuracy_check;
+mod bandwidth_order;
 mod block;
 mod block_lu;
 mod block_solve;
-mod care;
 mod condense;
 mod condensed;
 mod dense;
+mod eliminable_groups;
 mod eliminate;
 mod envelope;
 mod fronts;
 mod graph;
-mod groups;
-mod halves;
 mod inertia;
 mod lanes;
 mod numeric;
 mod order;
 mod pivot;
+mod pivot_strategy;
 mod plan;
 mod products;
 mod progress;
@@ -52,7 +52,7 @@ mod solve;
 mod solver;
 mod substitute;
 mod tree;
-mod trial;
+mod two_threads;
 mod update;
 
 pub use crate::math::Stopped;

@@ -56,7 +56,7 @@ pub(super) struct Elimination {
 }
 
 /// The order along the horizon where stages are known. Constraints make a stage sparse, so that minimum degree is better there.
-pub(super) fn of(graph: &Graph, unknowns: Option<&[Unknown]>) -> Elimination {
+pub(super) fn elimination(graph: &Graph, unknowns: Option<&[Unknown]>) -> Elimination {
     let has_constraints =
         |list: &&[Unknown]| list.iter().any(|one| matches!(one, Unknown::Multiplier(_)));
     match unknowns.filter(|list| !has_constraints(list)) {

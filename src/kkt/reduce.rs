@@ -35,7 +35,7 @@ pub(super) struct Weights {
 
 impl Weights {
     /// For any of these blocks.
-    pub(super) fn of(parts: &[Block]) -> Self {
+    pub(super) fn from_blocks(parts: &[Block]) -> Self {
         let most = |size: fn(&Block) -> usize| vec![0.0; parts.iter().map(size).max().unwrap_or(0)];
         Self {
             rows: most(|b| b.states.len() * b.weighted.len()),

@@ -9,15 +9,15 @@
 //! * Long work asks now and then whether it is to stop; there are no factors then.
 //! * Zero pivots are counted in an equilibrated matrix under the strictest rule.
 
-use super::care::Care;
+use super::accuracy_check::Trial;
 use super::condensed::Condensed;
 use super::inertia::Inertia;
 use super::numeric::{Factors, Outcome};
+use super::pivot_strategy::PivotStrategy;
 use super::plan::Plan;
 use super::progress::Progress;
 use super::scales::Scales;
 use super::solve::solve;
-use super::trial::Trial;
 use crate::math::{IsOver, Stopped};
 
 /// Delays, as a part of the unknowns, that call for scales.
@@ -71,16 +71,16 @@ pub struct Solver {
     factors: Factors,
     scales: Scales,
     /// Of the factors.
-    care: Care,
+    strategy: PivotStrategy,
     /// With which a factorisation begins.
-    least: Care,
+    least: PivotStrategy,
     /// With which that of the last matrix begins when it is given again, and that of some matrices behind it.
-    again: Care,
+    again: PivotStrategy,
     /// Number of these, and of requests for better factors than condensed ones.
     followers: usize,
     requests: u32,
     /// With which one that is not condensed begins for a while.
-    lately: Care,
+    lately: PivotStrategy,
     /// Factorisations that this while lasts.
     kept: usize,
     is_factored: bool,
@@ -104,7 +104,7 @@ impl Solver {
             plan,
             factors: Factors::default(),
             scales: Scales::default(),
-            care: least,
+            strategy: least,
             least,
             again: least,
             followers: 0,
@@ -148,8 +148,8 @@ impl Solver {
     /// Asks for a stricter rule: from now on where matrices are not condensed; where they are, for the last matrix and for twice as many
     /// behind it as at the request before, of which there are none at first.
     pub fn improve(&mut self) {
-        self.again = self.care.max(self.again).stricter();
-        if self.least == Care::Condensed {
+        self.again = self.strategy.max(self.again).stricter();
+        if self.least == PivotStrategy::Condensed {
             self.followers = (1_usize << self.requests.min(MOST_REQUESTS)) - 1;
             self.requests += 1;
         } else {
@@ -205,8 +205,8 @@ impl Solver {
         }
         let progress = &mut Progress::new(is_over);
         // Condensed factors cost so much less than others that they are tried whatever the matrices before needed.
-        self.care = match self.again {
-            Care::Condensed => Care::Condensed,
+        self.strategy = match self.again {
+            PivotStrategy::Condensed => PivotStrategy::Condensed,
             again => again.max(self.lately()),
         };
         let mut why = None;
@@ -216,14 +216,14 @@ impl Solver {
                 Ok(outcome) => break outcome,
                 Err(doubt) => doubt,
             };
-            let was = self.care;
-            self.care = match doubt {
+            let was = self.strategy;
+            self.strategy = match doubt {
                 // Growth hides zeros, so that no weak rule counts them all.
-                Doubt::Zeros => Care::Strict,
+                Doubt::Zeros => PivotStrategy::Strict,
                 Doubt::Structure | Doubt::Growth => was.stricter().max(self.lately()),
             };
-            if doubt == Doubt::Growth && was != Care::Condensed {
-                (self.lately, self.kept) = (self.care, KEPT + 1);
+            if doubt == Doubt::Growth && was != PivotStrategy::Condensed {
+                (self.lately, self.kept) = (self.strategy, KEPT + 1);
             }
             why = Some(doubt);
         };
@@ -233,19 +233,19 @@ impl Solver {
         Ok(outcome.inertia)
     }
 
-    /// With which care one that is not condensed begins at least, by the matrices before.
-    const fn lately(&self) -> Care {
+    /// Strategy with which one that is not condensed begins at least, by the matrices before.
+    const fn lately(&self) -> PivotStrategy {
         match self.kept {
-            0 => Care::Condensed,
+            0 => PivotStrategy::Condensed,
             _ => self.lately,
         }
     }
 
-    /// A factorisation with the care at hand, unless a stricter one may be better.
+    /// A factorisation with the strategy at hand, unless a stricter one may be better.
     fn attempt(&mut self, progress: &mut Progress<'_>) -> Result<Result<Outcome, Doubt>, Stopped> {
-        let outcome = match self.care {
-            Care::Condensed => self.condensed(progress)?.ok_or(Doubt::Structure),
-            Care::Plain => self.plain(progress)?.ok_or(Doubt::Growth),
+        let outcome = match self.strategy {
+            PivotStrategy::Condensed => self.condensed(progress)?.ok_or(Doubt::Structure),
+            PivotStrategy::Plain => self.plain(progress)?.ok_or(Doubt::Growth),
             _ => Ok(self.equilibrated(progress)?),
         };
         Ok(outcome.and_then(|outcome| self.judge(outcome)))
@@ -255,13 +255,13 @@ impl Solver {
     fn judge(&mut self, outcome: Outcome) -> Result<Outcome, Doubt> {
         if outcome.inertia.zero > 0 {
             // The solution of a singular system tells nothing.
-            return match self.care {
-                Care::Strict => Ok(outcome),
+            return match self.strategy {
+                PivotStrategy::Strict => Ok(outcome),
                 _ => Err(Doubt::Zeros),
             };
         }
         let error = self.backward_error();
-        if error > ERROR && self.care < Care::Strict {
+        if error > ERROR && self.strategy < PivotStrategy::Strict {
             self.statistics.repeated += 1;
             return Err(Doubt::Growth);
         }
@@ -282,14 +282,14 @@ impl Solver {
     /// The matrix as it is, if there are few delays.
     fn plain(&mut self, progress: &mut Progress<'_>) -> Result<Option<Outcome>, Stopped> {
         let few = self.plan.order() / MANY;
-        let rules = self.care.rules();
+        let rules = self.strategy.rules();
         self.factors
             .factor(&self.plan.fronts, &self.entries, rules, few, progress)
     }
 
     /// The matrix with its scales: those of an earlier one as long as they do.
     fn equilibrated(&mut self, progress: &mut Progress<'_>) -> Result<Outcome, Stopped> {
-        let are_kept = self.kept > 0 && self.kept < KEPT && self.least == Care::Plain;
+        let are_kept = self.kept > 0 && self.kept < KEPT && self.least == PivotStrategy::Plain;
         if are_kept {
             let outcome = self.scaled(self.plan.order() / MANY, progress)?;
             if let Some(outcome) = outcome.filter(|outcome| outcome.inertia.zero == 0) {
@@ -312,7 +312,7 @@ impl Solver {
     ) -> Result<Option<Outcome>, Stopped> {
         self.scales
             .scale(self.plan.pattern(), &self.entries, &mut self.scaled);
-        let rules = self.care.rules();
+        let rules = self.strategy.rules();
         let (factors, fronts) = (&mut self.factors, &self.plan.fronts);
         factors.factor(fronts, &self.scaled, rules, most_delays, progress)
     }
@@ -320,7 +320,7 @@ impl Solver {
     /// Returns true if this matrix is factored as a whole although others of its pattern are condensed.
     #[must_use]
     pub fn is_whole(&self) -> bool {
-        self.condensed.is_some() && self.care != Care::Condensed
+        self.condensed.is_some() && self.strategy != PivotStrategy::Condensed
     }
 
     /// Tells, once between two restarts, that the factorisation to come takes long, and why it is made.
@@ -363,10 +363,10 @@ impl Solver {
     }
 
     fn substitute(&mut self, x: &mut [f64]) {
-        if let (Care::Condensed, Some(condensed)) = (self.care, &mut self.condensed) {
+        if let (PivotStrategy::Condensed, Some(condensed)) = (self.strategy, &mut self.condensed) {
             return condensed.solve(x);
         }
-        let is_scaled = self.care != Care::Plain;
+        let is_scaled = self.strategy != PivotStrategy::Plain;
         if is_scaled {
             self.scales.apply(x);
         }
@@ -386,12 +386,12 @@ impl Solver {
     }
 }
 
-/// With which care a solver begins.
-fn begin(plan: &Plan) -> Care {
+/// Strategy with which a solver begins.
+fn begin(plan: &Plan) -> PivotStrategy {
     let cost = plan.multiplications() / plan.pattern().0.len().max(1) as f64;
     match cost > EXPENSIVE {
-        _ if plan.condensation.is_some() => Care::Condensed,
-        true => Care::Scaled,
-        false => Care::Plain,
+        _ if plan.condensation.is_some() => PivotStrategy::Condensed,
+        true => PivotStrategy::Scaled,
+        false => PivotStrategy::Plain,
     }
 }

@@ -102,7 +102,7 @@ fn postorder(order: &[u32], parents: &[u32]) -> Vec<u32> {
 
 /// A node that may still join another.
 #[derive(Clone, Copy)]
-struct Part {
+struct OpenNode {
     /// First and last column; the others are linked.
     columns: (u32, u32),
     count: usize,
@@ -121,7 +121,7 @@ struct Build<'a> {
     elimination: &'a Elimination,
     order: &'a [u32],
     place: Vec<u32>,
-    parts: Vec<Part>,
+    parts: Vec<OpenNode>,
     /// Rows of all parts, in places of the order.
     rows: Vec<u32>,
     /// Next column of the same part.
@@ -158,7 +158,7 @@ impl<'a> Build<'a> {
         let rows = self.inherited(column);
         let rows = rows.unwrap_or_else(|| self.gather(column));
         let unknown = self.order[column] as usize;
-        let mut part = Part {
+        let mut part = OpenNode {
             columns: (column as u32, column as u32),
             count: 1,
             rows,
@@ -228,7 +228,7 @@ impl<'a> Build<'a> {
     }
 
     /// Stored zeros of a node made of two, if they are few enough.
-    fn zeros_together(&self, child: &Part, part: &Part) -> Option<usize> {
+    fn zeros_together(&self, child: &OpenNode, part: &OpenNode) -> Option<usize> {
         if child.is_alone || part.is_alone {
             return None;
         }
@@ -244,7 +244,7 @@ impl<'a> Build<'a> {
         (more == 0 || few).then_some(zeros)
     }
 
-    fn join(&mut self, child: u32, part: &mut Part, zeros: usize) {
+    fn join(&mut self, child: u32, part: &mut OpenNode, zeros: usize) {
         let joined = &mut self.parts[child as usize];
         joined.is_alive = false;
         let joined = *joined;

@@ -1,23 +1,23 @@
 //! Numbers that carry their derivatives, numbers drawn at random, numbers as people read them, disjoint sets of them, two
 //! computations at once, when to stop them, and the memory that is there for them.
 
-mod both;
-mod counted;
+mod compact_index;
 mod derivatives;
 mod digits;
 mod jet;
+mod join;
 pub(crate) mod memory;
 mod pool;
 pub mod random;
 mod sets;
 mod stopped;
 
-pub(crate) use both::both;
-pub use both::cores;
-pub(crate) use counted::counted;
+pub(crate) use compact_index::compact_index;
 pub use derivatives::{Derivatives, Local};
 pub use digits::{shortest, significant};
 pub use jet::Jet;
+pub use join::cores;
+pub(crate) use join::join_if;
 pub(crate) use pool::has_pool;
 #[cfg(feature = "report")]
 pub(crate) use pool::join;

@@ -30,7 +30,7 @@ impl Coordinates {
     }
 }
 
-/// A question to a system.
+/// Request to a model: motion or equilibrium, coordinates, quantities.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Analysis {
     /// Coordinates; without a choice reduced where the joints form a tree.
@@ -48,7 +48,7 @@ pub struct Analysis {
     /// Sources whose voltage is zero all the time.
     pub zero_voltage: BTreeSet<usize>,
     /// Bodies and blocks that may start to move; `None`: anything may be set in motion by hand.
-    pub stirred: Option<InitiallyMoving>,
+    pub initially_moving: Option<InitiallyMoving>,
 }
 
 /// Bodies and blocks that a start, a goal or a limit names; all others start at rest in the reference configuration, and
@@ -72,7 +72,7 @@ impl Analysis {
             parameters: Vec::new(),
             of_motion: true,
             zero_voltage: BTreeSet::new(),
-            stirred: None,
+            initially_moving: None,
         }
     }
 

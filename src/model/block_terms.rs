@@ -17,8 +17,8 @@ impl Solids {
     fn elements(&self) -> impl Iterator<Item = (&SolidBlock, usize)> + '_ {
         self.list
             .iter()
-            .filter(|continuum| !continuum.is_immobile)
-            .flat_map(|continuum| (0..continuum.shapes.len()).map(move |e| (continuum, e)))
+            .filter(|block| !block.is_immobile)
+            .flat_map(|block| (0..block.shapes.len()).map(move |e| (block, e)))
     }
 
     /// Terms of all blocks.
@@ -40,7 +40,7 @@ impl Solids {
 
     /// Consistent masses, and the weight at each node.
     fn add_inertia(&self, terms: &mut Terms<'_>) {
-        let moving = || self.list.iter().filter(|continuum| !continuum.is_immobile);
+        let moving = || self.list.iter().filter(|block| !block.is_immobile);
         let is_heavy = |c: &&SolidBlock| c.solid.materials.iter().any(|m| m.density.is_some());
         for (vector, mass) in self.loads() {
             terms.weigh_vector(vector, mass);
@@ -56,8 +56,8 @@ impl Solids {
         }
         match moving().any(|c| is_heavy(&c)) {
             true => {
-                for continuum in moving().filter(is_heavy) {
-                    terms.note(INERTIA, "density of", &continuum.solid.name);
+                for block in moving().filter(is_heavy) {
+                    terms.note(INERTIA, "density of", &block.solid.name);
                 }
             }
             false => terms.without(INERTIA, "no elastic block names a density"),

@@ -7,10 +7,10 @@ use crate::model::presolved::{Presolved, clamp};
 use crate::model::system::{Discretisation, Electrode, Fidelity, Glue, Muscle, Potential, Solid};
 use nalgebra::Vector3;
 
-/// All blocks, those of the scene taken out of the condensed system; every node of a muscle that nothing moves is held.
-pub(super) fn blocks(condensed: &mut Presolved) -> Vec<Solid> {
-    let of_scene = std::mem::take(&mut condensed.system.solids);
-    let (system, immobile) = (&condensed.system, &condensed.immobile);
+/// All blocks, those of the scene taken out of the presolved system; every node of a muscle that nothing moves is held.
+pub(super) fn blocks(presolved: &mut Presolved) -> Vec<Solid> {
+    let of_scene = std::mem::take(&mut presolved.system.solids);
+    let (system, immobile) = (&presolved.system, &presolved.immobile);
     let muscles = system.muscles.iter().enumerate();
     let of_muscles = muscles.filter_map(|(source, muscle)| match muscle.fidelity {
         Fidelity::Lumped => None,

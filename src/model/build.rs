@@ -35,42 +35,42 @@ impl Model {
         h0: f64,
         quantities: &[Quantity],
     ) -> Result<Self, ModelError> {
-        let question = Analysis {
+        let analysis = Analysis {
             coordinates,
             quantities: quantities.to_vec(),
             ..Analysis::of_motion(h0)
         };
-        Self::answering(system, question)
+        Self::for_analysis(system, analysis)
     }
 
     /// Builds the model of the terms that an analysis needs, and of no others.
     ///
     /// # Errors
     /// Reduced coordinates were asked for and do not exist.
-    pub fn answering(system: System, question: Analysis) -> Result<Self, ModelError> {
-        let condensed = Presolved::new(&system, &question);
-        Self::of_presolved(system, question, condensed)
+    pub fn for_analysis(system: System, analysis: Analysis) -> Result<Self, ModelError> {
+        let presolved = Presolved::new(&system, &analysis);
+        Self::of_presolved(system, analysis, presolved)
     }
 
-    /// Builds the same model from what remains of the system, which depends neither on coordinates nor on quantities of the question.
+    /// Builds the same model from what remains of the system, which depends neither on coordinates nor on quantities of the analysis.
     ///
     /// # Errors
     /// Reduced coordinates were asked for and do not exist.
     pub fn of_presolved(
         system: System,
-        question: Analysis,
-        mut condensed: Presolved,
+        analysis: Analysis,
+        mut presolved: Presolved,
     ) -> Result<Self, ModelError> {
-        let voltages = field_extent::voltages(&condensed.system);
-        let reached = reached(&system, &question, &voltages);
-        let solids = blocks::blocks(&mut condensed);
-        let rest = &condensed.system;
-        let coordinates = Self::choose(rest, question.coordinates)?;
+        let voltages = field_extent::voltages(&presolved.system);
+        let reached = reached(&system, &analysis, &voltages);
+        let solids = blocks::blocks(&mut presolved);
+        let rest = &presolved.system;
+        let coordinates = Self::choose(rest, analysis.coordinates)?;
         let graph = Graph::new(rest);
         let reference: Vec<Pose> = rest.bodies.iter().map(Body::pose).collect();
         let sources = system.sources();
         let mut vectors = Vectors::default();
-        let mut variables = interval_variables(&voltages, &sources, &question);
+        let mut variables = interval_variables(&voltages, &sources, &analysis);
         let blocks = Solids::new(
             solids,
             system.solids.len(),
@@ -80,15 +80,15 @@ impl Model {
             &mut vectors,
         )?;
         let internals = Internals::new(
-            (&system, &condensed),
-            &question,
+            (&system, &presolved),
+            &analysis,
             (coordinates, &graph),
             &blocks,
         );
         let construction = Construction {
             system: &system,
-            presolved: &condensed,
-            analysis: &question,
+            presolved: &presolved,
+            analysis: &analysis,
             coordinates,
             reference: &reference,
             blocks: &blocks,
@@ -105,14 +105,14 @@ impl Model {
         let measures = construction.measures(&variables, &markers, &mut vectors);
         let list = vectors.list();
         let multipliers = made.multipliers.len();
-        let motion = construction.coordinate_map(&graph, list, multipliers);
+        let map = construction.coordinate_map(&graph, list, multipliers);
         let scalars = variables.of(Time::Interval).len();
         let intervals = Functional::new(intervals, measures.intervals, list.len(), scalars);
         let instants = Functional::new(made.terms, measures.instants, list.len(), multipliers);
-        construction.name_unknowns(&graph, &motion, made.multipliers, &mut variables);
+        construction.name_unknowns(&graph, &map, made.multipliers, &mut variables);
         Ok(Self {
             coordinates,
-            action: Reduced::new(motion, intervals, instants),
+            action: Reduced::new(map, intervals, instants),
             vectors: list.to_vec(),
             variables,
             reached,
@@ -124,27 +124,27 @@ impl Model {
             spans,
             markers,
             measured: measures.places,
-            gauges: Self::gauges(&system, &condensed),
-            multiplier_time: question.interval,
+            joint_readings: Self::joint_readings(&system, &presolved),
+            multiplier_time: analysis.interval,
             graph,
             reference,
             present,
             left_out,
             system,
-            analysis: question,
-            presolved: condensed,
+            analysis,
+            presolved,
         })
     }
 
     /// Returns the readings of the joint coordinates of the scene from the poses of its bodies.
-    fn gauges(system: &System, condensed: &Presolved) -> Vec<JointReading> {
+    fn joint_readings(system: &System, presolved: &Presolved) -> Vec<JointReading> {
         let reference: Vec<Pose> = system.bodies.iter().map(Body::pose).collect();
-        let coordinates = condensed.system.joint_coordinates();
-        let gauge = |(j, joint)| {
-            let coordinate = condensed.joint(j).and_then(|kept| coordinates[kept]);
+        let coordinates = presolved.system.joint_coordinates();
+        let reading = |(j, joint)| {
+            let coordinate = presolved.joint(j).and_then(|kept| coordinates[kept]);
             JointReading::new(joint, coordinate, &reference)
         };
-        system.joints.iter().enumerate().map(gauge).collect()
+        system.joints.iter().enumerate().map(reading).collect()
     }
 
     /// The coordinates of a system: those asked for, or reduced where the joints form a tree.
@@ -249,7 +249,7 @@ impl Construction<'_> {
                 system: &self.presolved.system,
                 reference: self.reference,
                 vectors,
-                continua: self.blocks,
+                blocks: self.blocks,
                 internals: self.internals,
             }
             .constraints(self.analysis.interval),
@@ -277,11 +277,11 @@ impl Construction<'_> {
         vectors: &mut Vectors,
     ) -> Measures {
         let known = measures::Known {
-            condensed: self.presolved,
+            presolved: self.presolved,
             reference: self.reference,
             variables,
             markers,
-            continua: &self.blocks.list,
+            blocks: &self.blocks.list,
         };
         Measures::new(self.analysis, &known, vectors)
     }
@@ -310,7 +310,7 @@ impl Construction<'_> {
     fn name_unknowns(
         &self,
         graph: &Graph,
-        motion: &CoordinateMap,
+        map: &CoordinateMap,
         multipliers: Vec<String>,
         variables: &mut Variables,
     ) {
@@ -318,13 +318,13 @@ impl Construction<'_> {
             coordinates: self.coordinates,
             system: &self.presolved.system,
             graph,
-            motion,
+            map,
             nodes: &self.blocks.names,
             solids: &self.blocks.list,
             internals: &self.internals.list,
         };
-        (0..motion.coordinates).for_each(|i| _ = variables.add(named.coordinate(i)));
-        let multiplier = |name| Variable::of(Role::Multiplier, name, Size::Unknown);
+        (0..map.coordinates).for_each(|i| _ = variables.add(named.coordinate(i)));
+        let multiplier = |name| Variable::with_role(Role::Multiplier, name, Size::Unknown);
         multipliers
             .into_iter()
             .for_each(|name| _ = variables.add(multiplier(name)));

@@ -30,7 +30,7 @@ pub(super) struct Builder<'a> {
     pub(super) reference: &'a [Pose],
     pub(super) vectors: &'a mut Vectors,
     /// Elastic blocks.
-    pub(super) continua: &'a Solids,
+    pub(super) blocks: &'a Solids,
     /// Internal coordinates, those of joints among them.
     pub(super) internals: &'a Internals,
 }
@@ -108,7 +108,7 @@ impl Builder<'_> {
             names: joints.names,
             ..Constraints::default()
         };
-        for (span, name) in &self.continua.ties {
+        for (span, name) in &self.blocks.ties {
             ties.point(self.vectors, name, span.clone());
         }
         let mut measured = Measured {
@@ -121,7 +121,7 @@ impl Builder<'_> {
         let named = self.system.joints.iter().map(|joint| joint.name.as_str());
         let named: Vec<&str> = named.collect();
         let is_glued = |glue: &Glue| glue.body.is_some();
-        let glued = self.continua.list.iter().filter(|c| !c.is_immobile);
+        let glued = self.blocks.list.iter().filter(|c| !c.is_immobile);
         let glued = glued.filter(|c| c.solid.glued.iter().any(is_glued));
         let glued: Vec<&str> = glued.map(|c| c.solid.name.as_str()).collect();
         let (directors, ends) = (

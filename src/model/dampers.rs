@@ -14,7 +14,7 @@ const DAMPING: &str = "joint damping";
 
 /// Dampers of the joints that are solved for.
 pub(super) fn build(
-    condensed: &Presolved,
+    presolved: &Presolved,
     reference: &[Pose],
     coordinates: Coordinates,
     terms: &mut Terms<'_>,
@@ -22,9 +22,9 @@ pub(super) fn build(
     if !terms.is_of_motion() {
         return terms.without(DAMPING, "a state of rest dissipates nothing");
     }
-    let system = &condensed.system;
+    let system = &presolved.system;
     let joints = system.joints.iter().zip(system.joint_coordinates());
-    for ((joint, coordinate), &index) in joints.zip(&condensed.joints) {
+    for ((joint, coordinate), &index) in joints.zip(&presolved.joints) {
         let Some(coefficient) = joint.damping else {
             continue;
         };

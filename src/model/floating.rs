@@ -16,19 +16,19 @@ pub struct Floating {
 
 /// The first part of the blocks that neither supports nor bodies hold.
 pub(super) fn floating(
-    continua: &[SolidBlock],
+    blocks: &[SolidBlock],
     vectors: &[MaterialVector],
     nodes: &[NodePlace],
 ) -> Option<Floating> {
-    continua.iter().find_map(|continuum| {
-        let mesh = &continuum.solid.mesh;
+    blocks.iter().find_map(|block| {
+        let mesh = &block.solid.mesh;
         mesh.parts().iter().find_map(|part| {
             let mut members: Vec<usize> = part.iter().flat_map(|&e| mesh.hexahedra[e]).collect();
             members.sort_unstable();
             members.dedup();
-            let motion = free_motion(&members, continuum, vectors, nodes)?;
+            let motion = free_motion(&members, block, vectors, nodes)?;
             Some(Floating {
-                name: continuum.solid.name.clone(),
+                name: block.solid.name.clone(),
                 motion,
             })
         })
@@ -38,11 +38,11 @@ pub(super) fn floating(
 /// A rigid motion of nodes that leaves every held direction alone, to first order.
 fn free_motion(
     members: &[usize],
-    continuum: &SolidBlock,
+    block: &SolidBlock,
     vectors: &[MaterialVector],
     nodes: &[NodePlace],
 ) -> Option<String> {
-    let mesh = &continuum.solid.mesh;
+    let mesh = &block.solid.mesh;
     let centre = members.iter().map(|&n| mesh.nodes[n]).sum::<Vector>() / members.len() as f64;
     let size = members
         .iter()
@@ -50,12 +50,8 @@ fn free_motion(
         .fold(f64::MIN_POSITIVE, f64::max);
     let mut gram = nalgebra::Matrix6::<f64>::zeros();
     for &node in members {
-        let VectorTerm { carrier, .. } = vectors[continuum.vectors[node]].terms[0];
-        let is_glued = continuum
-            .solid
-            .glued
-            .iter()
-            .any(|g| g.nodes.contains(&node));
+        let VectorTerm { carrier, .. } = vectors[block.vectors[node]].terms[0];
+        let is_glued = block.solid.glued.iter().any(|g| g.nodes.contains(&node));
         let held = match carrier {
             Carrier::Node(number) if !is_glued => nodes[number].free.map(|free| !free),
             _ => [true; 3],

@@ -140,9 +140,9 @@ impl Graph {
 
     /// Poses at joint coordinates (by joint), along the spanning tree.
     pub fn poses(&self, system: &System, reference: &[Pose], joints: &[f64]) -> Vec<Pose> {
-        let motion = CoordinateMap::articulated(self.tree(system, reference, &[]), &[], &[], 0, 0);
-        let instant = motion.placed(&self.coordinates(system, joints));
-        motion.poses(&instant, system.bodies.len())
+        let map = CoordinateMap::articulated(self.tree(system, reference, &[]), &[], &[], 0, 0);
+        let instant = map.placed(&self.coordinates(system, joints));
+        map.poses(&instant, system.bodies.len())
     }
 
     /// The tree at joint coordinates with given rates (by joint), and the vectors φ, d₁, d₂, d₃ of all bodies on it.
@@ -168,12 +168,12 @@ impl Graph {
                 terms: vec![term(b, i)],
             })
             .collect();
-        let motion =
+        let map =
             CoordinateMap::articulated(self.tree(system, reference, &vectors), &vectors, &[], 0, 0);
-        let mut instant = motion.placed(&self.coordinates(system, joints));
+        let mut instant = map.placed(&self.coordinates(system, joints));
         instant.l.copy_from_slice(&self.coordinates(system, rates));
-        motion.along(&mut instant);
-        (motion, instant)
+        map.along(&mut instant);
+        (map, instant)
     }
 
     /// Index of the first coordinate of each joint of the tree; joints that close loops have none.

@@ -22,18 +22,18 @@ pub struct Immobile {
 }
 
 /// Returns the immobile parts of a system whose sources at zero voltage drive nothing any more.
-pub(super) fn immobile(system: &System, question: &Analysis) -> Immobile {
+pub(super) fn immobile(system: &System, analysis: &Analysis) -> Immobile {
     let parts = Parts {
         bodies: system.bodies.len(),
         solids: system.solids.len(),
         muscles: system.muscles.len(),
     };
-    let Some(stirred) = &question.stirred else {
+    let Some(initially_moving) = &analysis.initially_moving else {
         return parts.resting(|_| false);
     };
     let set_of = parts.connected(system).all();
     let mut is_moved = vec![false; parts.count()];
-    for part in parts.moved(system, stirred, question) {
+    for part in parts.moved(system, initially_moving, analysis) {
         is_moved[set_of[part]] = true;
     }
     parts.resting(|part| !is_moved[set_of[part]])
@@ -100,25 +100,30 @@ impl Parts {
     }
 
     /// Parts that move by themselves: a force acts on them, or they are set in motion.
-    fn moved(self, system: &System, stirred: &InitiallyMoving, question: &Analysis) -> Vec<usize> {
+    fn moved(
+        self,
+        system: &System,
+        initially_moving: &InitiallyMoving,
+        analysis: &Analysis,
+    ) -> Vec<usize> {
         let weighs = system.gravity.is_some();
         let mut moved: Vec<usize> = Vec::new();
         for (index, component) in system.components.iter().enumerate() {
             // Springs come first.
-            if component.is_prestressed() || is_sought(index, question) {
+            if component.is_prestressed() || is_sought(index, analysis) {
                 moved.extend(bodies_of(component));
             }
         }
         let is_loaded = |joint: &&Joint| joint.spring.is_some_and(|spring| spring.rest != 0.0);
         let loaded = system.joints.iter().filter(is_loaded);
         moved.extend(loaded.flat_map(|joint| joint.parent.into_iter().chain([joint.child])));
-        moved.extend((0..self.bodies).filter(|b| weighs || stirred.bodies.contains(b)));
+        moved.extend((0..self.bodies).filter(|b| weighs || initially_moving.bodies.contains(b)));
         for (s, solid) in system.solids.iter().enumerate() {
             let is_heavy = weighs && solid.materials.iter().any(|m| m.density.is_some());
             let starts = solid.velocities.iter().any(|v| v.norm() > 0.0);
             if is_heavy
                 || starts
-                || stirred.solids.contains(&s)
+                || initially_moving.solids.contains(&s)
                 || field_extent::dielectric(solid).contains(&true)
             {
                 moved.push(self.solid(s));
@@ -141,7 +146,7 @@ fn bodies_of(component: &dyn Component) -> Vec<usize> {
 }
 
 /// Returns true if the length of a spring is a free parameter.
-fn is_sought(spring: usize, question: &Analysis) -> bool {
-    let mut constants = question.parameters.iter().flat_map(|p| &p.constants);
+fn is_sought(spring: usize, analysis: &Analysis) -> bool {
+    let mut constants = analysis.parameters.iter().flat_map(|p| &p.constants);
     constants.any(|c| c.constant == Constant::SpringLength(spring))
 }

@@ -103,7 +103,7 @@ impl System {
 }
 
 impl JointReading {
-    /// The gauge of joint `index` of a system; `coordinates` are those of [`System::joint_coordinates`].
+    /// The reading of joint `index` of a system; `coordinates` are those of [`System::joint_coordinates`].
     pub fn new(joint: &Joint, coordinate: Option<usize>, reference: &[Pose]) -> Self {
         let parent =
             |direction: &Vector| MaterialVector::direction(joint.parent, direction, reference);

@@ -12,7 +12,7 @@ use crate::kinematics::{MaterialVector, Pose, Vectors};
 use crate::math::Vector;
 use crate::model::analysis::Analysis;
 use crate::model::components::capacitance;
-use crate::model::joints::{JointCoordinate as Gauge, JointReading};
+use crate::model::joints::{JointCoordinate, JointReading};
 use crate::model::presolved::Presolved;
 use crate::model::quantity::{FieldPlace, Quantity, Region};
 use crate::model::solid_block::SolidBlock;
@@ -30,20 +30,20 @@ pub(super) struct Measures {
 /// Data on which quantities are measured.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Known<'a> {
-    pub(super) condensed: &'a Presolved,
+    pub(super) presolved: &'a Presolved,
     pub(super) reference: &'a [Pose],
     pub(super) variables: &'a Variables,
     /// Vector of each marker.
     pub(super) markers: &'a [usize],
-    pub(super) continua: &'a [SolidBlock],
+    pub(super) blocks: &'a [SolidBlock],
 }
 
 impl Measures {
-    /// The measures of the quantities of a question.
-    pub(super) fn new(question: &Analysis, known: &Known<'_>, vectors: &mut Vectors) -> Self {
+    /// The measures of the quantities of an analysis.
+    pub(super) fn new(analysis: &Analysis, known: &Known<'_>, vectors: &mut Vectors) -> Self {
         let mut out = Self::default();
-        for (index, quantity) in question.quantities.iter().enumerate() {
-            let shape = match question.curved.contains(&index) {
+        for (index, quantity) in analysis.quantities.iter().enumerate() {
+            let shape = match analysis.curved.contains(&index) {
                 true => Shape::Curved,
                 false => Shape::Linear,
             };
@@ -72,13 +72,13 @@ impl Known<'_> {
             Quantity::SquaredStretch { muscle } => {
                 let energy = SquaredDistance {
                     centre: origin,
-                    scale: self.condensed.system.muscles[muscle].length(),
+                    scale: self.presolved.system.muscles[muscle].length(),
                 };
                 instant(shape, energy, [self.span(muscle, vectors)])
             }
             Quantity::Capacitance { muscle } => {
                 self.variables.voltage(muscle)?;
-                let energy = capacitance(&self.condensed.system.muscles[muscle])?;
+                let energy = capacitance(&self.presolved.system.muscles[muscle])?;
                 instant(shape, energy, [self.span(muscle, vectors)])
             }
             Quantity::MarkerPlace { marker, axis } => {
@@ -90,7 +90,7 @@ impl Known<'_> {
                 )
             }
             Quantity::Direction { body, axis, along } => {
-                let body = self.condensed.carrier(Some(body));
+                let body = self.presolved.carrier(Some(body));
                 let direction = MaterialVector::direction(body, &axis, self.reference);
                 let normal = along;
                 let component = PositionComponent { origin, normal };
@@ -125,18 +125,18 @@ impl Known<'_> {
         shape: Shape,
         vectors: &mut Vectors,
     ) -> Option<Box<dyn Measure>> {
-        let joint = self.condensed.joint(joint)?;
-        let joint = &self.condensed.system.joints[joint];
+        let joint = self.presolved.joint(joint)?;
+        let joint = &self.presolved.system.joints[joint];
         match JointReading::new(joint, None, self.reference).measure {
-            Gauge::Angle { vectors: v } => {
+            JointCoordinate::Angle { vectors: v } => {
                 let read = v.map(|x| vectors.index(x));
                 Some(instant(shape, Angle { near }, read))
             }
-            Gauge::Displacement { axis, span } => {
+            JointCoordinate::Displacement { axis, span } => {
                 let read = [axis, span].map(|x| vectors.index(x));
                 Some(instant(shape, Projection, read))
             }
-            Gauge::None => None,
+            JointCoordinate::None => None,
         }
     }
 
@@ -149,7 +149,7 @@ impl Known<'_> {
         vectors: &mut Vectors,
     ) -> Option<Box<dyn Measure>> {
         let scalar = self.variables.voltage(muscle)?;
-        let of = &self.condensed.system.muscles[muscle];
+        let of = &self.presolved.system.muscles[muscle];
         let energy = SquaredField {
             length: of.length(),
             voltage: of.layer_thickness * limit,
@@ -166,7 +166,7 @@ impl Known<'_> {
         (limit, at): (f64, Stencil),
         shape: Shape,
     ) -> Option<Box<dyn Measure>> {
-        let block = &self.continua[block];
+        let block = &self.blocks[block];
         if !block.is_dielectric[element] {
             return None;
         }
@@ -184,7 +184,7 @@ impl Known<'_> {
 
     /// Vector of the span of a muscle.
     fn span(&self, muscle: usize, vectors: &mut Vectors) -> usize {
-        let muscle = &self.condensed.system.muscles[muscle];
+        let muscle = &self.presolved.system.muscles[muscle];
         let [from, to] = [&muscle.from, &muscle.to]
             .map(|a| MaterialVector::point(a.body, &a.at, self.reference));
         vectors.index(MaterialVector::span(&from, &to))

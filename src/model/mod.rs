@@ -26,7 +26,6 @@ mod measures;
 mod model;
 mod named;
 mod parameter;
-mod places;
 pub mod plan;
 mod presolved;
 mod quantity;
@@ -37,6 +36,7 @@ mod sought;
 mod states;
 pub mod system;
 mod terms;
+mod unknown_positions;
 mod variables;
 
 pub use analysis::{Analysis, Coordinates, InitiallyMoving};

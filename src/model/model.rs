@@ -1,7 +1,7 @@
 //! The model of a system, and what is read off its instants.
 
 use crate::coordinates::{Configuration, NodePlace, Reduced};
-use crate::functional::Kind;
+use crate::functional::TermKind;
 use crate::kinematics::{MaterialVector, Pose};
 use crate::math::Vector;
 use crate::model::analysis::{Analysis, Coordinates};
@@ -44,10 +44,10 @@ pub struct Model {
     pub spans: Vec<usize>,
     /// Vector of each marker.
     pub markers: Vec<usize>,
-    /// Index of each quantity of the question among the measures of its site; `None` where nothing of the model can change it.
+    /// Index of each quantity of the analysis among the measures of its site; `None` where nothing of the model can change it.
     pub measured: Vec<Option<usize>>,
     /// Readings of the coordinates of each joint from poses.
-    pub gauges: Vec<JointReading>,
+    pub joint_readings: Vec<JointReading>,
     /// Time that scales multipliers: the action holds −h₀ λ·g, in ms.
     pub multiplier_time: f64,
     pub(super) graph: Graph,
@@ -64,14 +64,14 @@ pub struct Model {
 }
 
 impl Model {
-    /// Poses of the condensed bodies in the reference configuration.
+    /// Poses of the presolved bodies in the reference configuration.
     pub fn reference(&self) -> &[Pose] {
         &self.reference
     }
 
     /// Number of coordinates of an instant, without multipliers.
     pub fn coordinate_count(&self) -> usize {
-        self.action.motion.coordinates
+        self.action.map.coordinates
     }
 
     /// Coordinates of an instant at given joint coordinates (rad or mm, by joint; zero where a joint has none): other joints and
@@ -79,9 +79,9 @@ impl Model {
     pub fn coordinates_at(&self, joints: &[f64]) -> Vec<f64> {
         match self.coordinates {
             Coordinates::Reduced => {
-                let mut z = self.action.motion.instant().z;
-                for (gauge, &value) in self.gauges.iter().zip(joints) {
-                    if let Some(c) = gauge.coordinate {
+                let mut z = self.action.map.instant().z;
+                for (reading, &value) in self.joint_readings.iter().zip(joints) {
+                    if let Some(c) = reading.coordinate {
                         z[c] = value;
                     }
                 }
@@ -100,7 +100,7 @@ impl Model {
 
     /// Director coordinates of given poses, with joint coordinates (by joint of the scene) that count whole turns; multipliers zero.
     pub(super) fn coordinates_of(&self, poses: &[Pose], joints: &[f64]) -> Vec<f64> {
-        let mut z = vec![0.0; self.action.motion.unknowns()];
+        let mut z = vec![0.0; self.action.map.unknowns()];
         for (body, pose) in poses.iter().enumerate() {
             let q = &mut z[12 * body..12 * body + 12];
             q[..3].copy_from_slice(pose.centre.as_slice());
@@ -113,10 +113,10 @@ impl Model {
 
     /// Gives internal coordinates their values at joint coordinates (by joint of the scene); muscles have been held there for long.
     pub(super) fn place_internals(&self, z: &mut [f64], joints: &[f64]) {
-        let internal = self.action.motion.internal();
+        let internal = self.action.map.internal();
         let is_branch = |own: &Internal| matches!(own.kind, InternalKind::Branch { .. });
         let placed = self.internals.iter().any(is_branch);
-        let placed = placed.then(|| self.action.motion.placed(z));
+        let placed = placed.then(|| self.action.map.placed(z));
         for (value, own) in z[internal].iter_mut().zip(&self.internals) {
             *value = match (own.kind, &placed) {
                 (InternalKind::Joint(joint), _) => joints[self.presolved.joints[joint]],
@@ -139,7 +139,7 @@ impl Model {
 
     /// Viscous stretches of the Maxwell branches: name, and coordinate that is the logarithm.
     pub fn viscous_stretches(&self) -> impl Iterator<Item = (String, usize)> + '_ {
-        let all = self.action.motion.internal().zip(&self.internals);
+        let all = self.action.map.internal().zip(&self.internals);
         all.filter_map(|(coordinate, own)| match own.kind {
             InternalKind::Branch { muscle, branch } => {
                 let muscle = &self.system.muscles[muscle].name;
@@ -154,7 +154,7 @@ impl Model {
 
     /// Returns true if coordinate `i` is what a muscle remembers: it has no momentum, and nothing brings it to rest but time.
     pub fn is_memory(&self, i: usize) -> bool {
-        let internal = i.checked_sub(self.action.motion.internal().start);
+        let internal = i.checked_sub(self.action.map.internal().start);
         let own = internal.and_then(|index| self.internals.get(index));
         own.is_some_and(|own| matches!(own.kind, InternalKind::Branch { .. }))
     }
@@ -163,9 +163,9 @@ impl Model {
     pub fn rates_of_all(&self, bodies: &[f64], joints: &[f64]) -> Vec<f64> {
         let zeros = || vec![0.0; self.coordinate_count()];
         let mut rates = self.node_rates().unwrap_or_else(zeros);
-        let count = bodies.len().min(self.action.motion.of_bodies);
+        let count = bodies.len().min(self.action.map.of_bodies);
         rates[..count].copy_from_slice(&bodies[..count]);
-        let internal = self.action.motion.internal();
+        let internal = self.action.map.internal();
         for (rate, own) in rates[internal].iter_mut().zip(&self.internals) {
             if let InternalKind::Joint(joint) = own.kind {
                 *rate = joints[self.presolved.joints[joint]];
@@ -176,18 +176,18 @@ impl Model {
 
     /// Puts the nodes at their reference places.
     fn place_nodes(&self, z: &mut [f64]) {
-        let motion = &self.action.motion;
-        for (value, &(node, axis)) in z[motion.of_bodies..].iter_mut().zip(&motion.of_nodes) {
+        let map = &self.action.map;
+        for (value, &(node, axis)) in z[map.of_bodies..].iter_mut().zip(&map.of_nodes) {
             *value = self.nodes[node].reference[axis];
         }
     }
 
     /// Rates of the coordinates of the nodes at the start, after zeros for those of the bodies; `None` at rest.
     pub fn node_rates(&self) -> Option<Vec<f64>> {
-        let motion = &self.action.motion;
-        let mut rates = vec![0.0; motion.coordinates];
+        let map = &self.action.map;
+        let mut rates = vec![0.0; map.coordinates];
         let mut moves = false;
-        for (rate, &(node, axis)) in rates[motion.of_bodies..].iter_mut().zip(&motion.of_nodes) {
+        for (rate, &(node, axis)) in rates[map.of_bodies..].iter_mut().zip(&map.of_nodes) {
             let (block, node) = self.node_names[node];
             if let Some(velocity) = self.solids[block].solid.velocities.get(node) {
                 *rate = velocity[axis];
@@ -199,10 +199,10 @@ impl Model {
 
     /// Returns the symmetry of the tangent of a step: symmetric if all coordinates are nodes', and every force has a potential.
     pub fn step_symmetry(&self) -> Symmetry {
-        let motion = &self.action.motion;
+        let map = &self.action.map;
         let terms = &self.action.intervals.terms;
-        let has_potential = terms.iter().all(|e| e.kind() != Kind::VirtualWork);
-        match motion.of_bodies == 0 && motion.multipliers == 0 && has_potential {
+        let has_potential = terms.iter().all(|e| e.kind() != TermKind::VirtualWork);
+        match map.of_bodies == 0 && map.multipliers == 0 && has_potential {
             true => Symmetry::Symmetric,
             false => Symmetry::Unsymmetric,
         }
@@ -215,7 +215,7 @@ impl Model {
 
     /// Joint coordinates (rad or mm, zero where a joint has none) at poses, angles in the branch nearest to `near`.
     pub fn read_joints(&self, poses: &[Pose], near: &[f64]) -> Vec<f64> {
-        self.gauges
+        self.joint_readings
             .iter()
             .zip(near)
             .map(|(g, &near)| g.read(poses, near))
@@ -226,13 +226,13 @@ impl Model {
     pub fn joints(&self, instant: &Configuration, near: &[f64]) -> Vec<f64> {
         match self.coordinates {
             Coordinates::Reduced => self
-                .gauges
+                .joint_readings
                 .iter()
                 .map(|g| g.coordinate.map_or(0.0, |c| instant.z[c]))
                 .collect(),
             Coordinates::Redundant => {
                 let mut joints = self.read_joints(&self.poses(instant), near);
-                let internals = instant.z[self.action.motion.internal()].iter();
+                let internals = instant.z[self.action.map.internal()].iter();
                 for (value, internal) in internals.zip(&self.internals) {
                     if let InternalKind::Joint(joint) = internal.kind {
                         joints[self.presolved.joints[joint]] = *value;
@@ -249,10 +249,10 @@ impl Model {
         self.presolved.poses(&poses, &self.system.bodies)
     }
 
-    /// Poses of the condensed bodies at an instant, which carry the vectors.
+    /// Poses of the presolved bodies at an instant, which carry the vectors.
     pub fn condensed_poses(&self, instant: &Configuration) -> Vec<Pose> {
         let bodies = self.presolved.system.bodies.len();
-        self.action.motion.poses(instant, bodies)
+        self.action.map.poses(instant, bodies)
     }
 
     /// Inputs of an interval from one voltage a source; sought parameters are at their guesses.

@@ -15,10 +15,10 @@ use crate::model::variables::{Role, Size, Variable};
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Named<'a> {
     pub(super) coordinates: Coordinates,
-    /// The condensed system.
+    /// The presolved system.
     pub(super) system: &'a System,
     pub(super) graph: &'a Graph,
-    pub(super) motion: &'a CoordinateMap,
+    pub(super) map: &'a CoordinateMap,
     /// Block and node of the mesh of each node with coordinates.
     pub(super) nodes: &'a [(usize, usize)],
     pub(super) solids: &'a [SolidBlock],
@@ -28,13 +28,13 @@ pub(super) struct Named<'a> {
 impl Named<'_> {
     /// Coordinate `i` of an instant.
     pub(super) fn coordinate(&self, i: usize) -> Variable {
-        let internal = i.checked_sub(self.motion.internal().start);
+        let internal = i.checked_sub(self.map.internal().start);
         if let Some(Internal { name, size, .. }) = internal.map(|index| &self.internals[index]) {
-            return Variable::of(Role::Coordinate, name.clone(), *size);
+            return Variable::with_role(Role::Coordinate, name.clone(), *size);
         }
-        let (name, size) = match i.checked_sub(self.motion.of_bodies) {
+        let (name, size) = match i.checked_sub(self.map.of_bodies) {
             Some(place) => {
-                let (node, axis) = self.motion.of_nodes[place];
+                let (node, axis) = self.map.of_nodes[place];
                 let (block, node) = self.nodes[node];
                 let name = &self.solids[block].solid.name;
                 let axis = ["x", "y", "z"][axis];
@@ -42,7 +42,7 @@ impl Named<'_> {
             }
             None => self.of_body(i),
         };
-        Variable::of(Role::Coordinate, name, size)
+        Variable::with_role(Role::Coordinate, name, size)
     }
 
     fn of_body(&self, i: usize) -> (String, Size) {
@@ -97,7 +97,7 @@ pub struct Freedom<'m> {
     pub is_only: bool,
 }
 
-/// Joint coordinate `i` of a condensed system.
+/// Joint coordinate `i` of a presolved system.
 fn freedom<'m>(system: &'m System, graph: &Graph, i: usize) -> Freedom<'m> {
     let mut at = i;
     for joint in &system.joints {

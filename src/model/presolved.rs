@@ -1,7 +1,7 @@
 //! Presolved system: welded bodies are merged, immobile parts belong to the ground, and sources without voltage drive
 //! nothing.
 //!
-//! The muscles, blocks and markers of the condensed system are those of the scene in its order; bodies and joints are fewer.
+//! The muscles, blocks and markers of the presolved system are those of the scene in its order; bodies and joints are fewer.
 
 use crate::kinematics::Pose;
 use crate::math::{DisjointSets, Matrix, Vector};
@@ -15,7 +15,7 @@ use nalgebra::SymmetricEigen;
 /// Location of a body of the scene in the presolved system.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum BodyLocation {
-    /// It is this body of the condensed system.
+    /// It is this body of the presolved system.
     Body(usize),
     /// It is fixed to this body.
     Welded {
@@ -45,10 +45,10 @@ pub struct Presolved {
 
 impl Presolved {
     /// Presolves a system for an analysis.
-    pub fn new(system: &System, question: &Analysis) -> Self {
+    pub fn new(system: &System, analysis: &Analysis) -> Self {
         let mut rest = system.clone();
-        set_to_zero(&mut rest, question);
-        let immobile = immobile::immobile(&rest, question);
+        set_to_zero(&mut rest, analysis);
+        let immobile = immobile::immobile(&rest, analysis);
         for (solid, &is_immobile) in rest.solids.iter_mut().zip(&immobile.solids) {
             if is_immobile {
                 clamp(solid);
@@ -105,7 +105,7 @@ impl Presolved {
         }
     }
 
-    /// Poses of the bodies of the scene from those of the condensed system.
+    /// Poses of the bodies of the scene from those of the presolved system.
     pub fn poses(&self, poses: &[Pose], reference: &[Body]) -> Vec<Pose> {
         let pose = |(place, body): (&BodyLocation, &Body)| match *place {
             BodyLocation::Ground => body.pose(),
@@ -122,7 +122,7 @@ impl Presolved {
         self.bodies.iter().zip(reference).map(pose).collect()
     }
 
-    /// Body of the condensed system that carries a body of the scene; `None` is the ground.
+    /// Body of the presolved system that carries a body of the scene; `None` is the ground.
     pub fn carrier(&self, body: Option<usize>) -> Option<usize> {
         match self.bodies[body?] {
             BodyLocation::Ground => None,
@@ -130,43 +130,43 @@ impl Presolved {
         }
     }
 
-    /// Poses of the condensed bodies from those of the bodies of the scene; `reference` where none is known.
+    /// Poses of the presolved bodies from those of the bodies of the scene; `reference` where none is known.
     pub fn condense(&self, poses: &[Pose], reference: &[Pose]) -> Vec<Pose> {
-        let mut condensed = reference.to_vec();
+        let mut presolved = reference.to_vec();
         for (place, pose) in self.bodies.iter().zip(poses) {
             match *place {
                 BodyLocation::Ground => {}
-                BodyLocation::Body(b) => condensed[b] = *pose,
+                BodyLocation::Body(b) => presolved[b] = *pose,
                 BodyLocation::Welded {
                     to,
                     centre,
                     directors,
                 } => {
                     let directors = pose.directors * directors.transpose();
-                    condensed[to] = Pose {
+                    presolved[to] = Pose {
                         centre: pose.centre - directors * centre,
                         directors,
                     };
                 }
             }
         }
-        condensed
+        presolved
     }
 
-    /// Values by joint of the condensed system from values by joint of the scene.
+    /// Values by joint of the presolved system from values by joint of the scene.
     pub fn by_joint(&self, values: &[f64]) -> Vec<f64> {
         self.joints.iter().map(|&j| values[j]).collect()
     }
 
-    /// Joint of the condensed system that is this one of the scene.
+    /// Joint of the presolved system that is this one of the scene.
     pub fn joint(&self, joint: usize) -> Option<usize> {
         self.joints.iter().position(|&j| j == joint)
     }
 }
 
 /// Without voltage a muscle is passive and a driven electrode is grounded.
-fn set_to_zero(system: &mut System, question: &Analysis) {
-    for &source in &question.zero_voltage {
+fn set_to_zero(system: &mut System, analysis: &Analysis) {
+    for &source in &analysis.zero_voltage {
         if let Some(muscle) = system.muscles.get_mut(source) {
             let material = muscle.material;
             muscle.material = Material {
@@ -179,7 +179,7 @@ fn set_to_zero(system: &mut System, question: &Analysis) {
         let mut electrodes: Vec<Electrode> = Vec::new();
         for electrode in std::mem::take(&mut solid.electrodes) {
             let is_silent = matches!(electrode.potential, Potential::Driven { source, .. }
-                if question.zero_voltage.contains(&source));
+                if analysis.zero_voltage.contains(&source));
             if !is_silent {
                 electrodes.push(electrode);
                 continue;
@@ -243,7 +243,7 @@ fn groups(system: &System, immobile: &Immobile) -> Vec<usize> {
     (1..=ground).chain([0]).map(first).collect()
 }
 
-/// A joint between bodies of the condensed system; `None` where it is within one.
+/// A joint between bodies of the presolved system; `None` where it is within one.
 fn between(joint: &Joint, parent: Option<usize>, child: Option<usize>) -> Option<Joint> {
     if parent == child {
         return None;

@@ -23,7 +23,7 @@ impl Model {
         let layout = action.layout();
         let mut scratch = action.scratch(Order::Hessian);
         let mut values = vec![0.0; layout.values(1)];
-        let mut instant = action.motion.placed(z);
+        let mut instant = action.map.placed(z);
         action.evaluate_instant(Order::Hessian, &mut instant, &[], &mut scratch);
         action.pull_back_instant(Order::Hessian, &mut instant, 0, &mut scratch, &mut values);
         let mut gradients = DMatrix::<f64>::zeros(n, m);

@@ -48,7 +48,7 @@ impl Sought {
         match self.find(constant) {
             Some((parameter, follower)) => {
                 let argument = arguments.of(self.scalar(parameter));
-                Affine::of(argument, follower.factor).scaled(1.0, follower.offset)
+                Affine::single(argument, follower.factor).scaled(1.0, follower.offset)
             }
             None => value.into(),
         }

@@ -28,7 +28,7 @@ impl Model {
     ) -> Result<Vec<f64>, usize> {
         let instant = self.moving(joints, rates, velocities)?;
         Ok(match self.coordinates {
-            Coordinates::Reduced => instant.l[..self.action.motion.of_bodies].to_vec(),
+            Coordinates::Reduced => instant.l[..self.action.map.of_bodies].to_vec(),
             Coordinates::Redundant => instant.w.iter().flat_map(|w| [w.x, w.y, w.z]).collect(),
         })
     }
@@ -81,12 +81,12 @@ impl Model {
             return z;
         }
         let poses = self.presolved.condense(poses, &self.reference);
-        let motion = &self.action.motion;
-        match &motion.tree {
+        let map = &self.action.map;
+        match &map.tree {
             None => self.coordinates_of(&poses, joints),
             Some(_) => {
-                let mut instant = motion.placed(&z);
-                motion.follow(&poses, &mut instant);
+                let mut instant = map.placed(&z);
+                map.follow(&poses, &mut instant);
                 self.place_internals(&mut instant.z, joints);
                 instant.z
             }

@@ -17,11 +17,11 @@ use crate::model::variables::{Role, Variables};
 use std::any::Any;
 use std::fmt;
 
-/// The bodies of the condensed system that carry those of the scene.
+/// The bodies of the presolved system that carry those of the scene.
 pub(super) struct Carriers<'a> {
-    /// The condensed body of each body of the scene; `None` is the ground.
+    /// The presolved body of each body of the scene; `None` is the ground.
     pub(super) of: Vec<Option<usize>>,
-    /// Poses of the condensed bodies in the reference configuration.
+    /// Poses of the presolved bodies in the reference configuration.
     pub(super) reference: &'a [Pose],
 }
 

@@ -103,25 +103,25 @@ impl Variable {
     pub fn voltage(source: usize, name: String) -> Self {
         Self {
             source: Some(source),
-            ..Self::of(Role::Voltage, name, Size::Unknown)
+            ..Self::with_role(Role::Voltage, name, Size::Unknown)
         }
     }
 
     /// A sought parameter.
     pub(super) fn parameter(name: String) -> Self {
-        Self::of(Role::Parameter, name, Size::Unknown)
+        Self::with_role(Role::Parameter, name, Size::Unknown)
     }
 
     /// A potential, counted in `unit` V, in which it is as large as a length.
     pub(super) fn potential(name: String, unit: f64) -> Self {
         Self {
             unit,
-            ..Self::of(Role::Potential, name, Size::Length)
+            ..Self::with_role(Role::Potential, name, Size::Length)
         }
     }
 
     /// A variable that is counted in rad, mm, ms or V.
-    pub(super) fn of(role: Role, name: String, size: Size) -> Self {
+    pub(super) fn with_role(role: Role, name: String, size: Size) -> Self {
         Self {
             role,
             name,
@@ -168,7 +168,7 @@ impl Default for Variables {
             inputs: 0,
         };
         let name = "interval length".to_owned();
-        variables.add(Variable::of(Role::Duration, name, Size::Unknown));
+        variables.add(Variable::with_role(Role::Duration, name, Size::Unknown));
         variables
     }
 }

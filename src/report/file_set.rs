@@ -27,7 +27,7 @@ pub struct FileSet {
 
 impl FileSet {
     /// No file yet, of a folder that exists.
-    pub fn of(folder: &Path) -> Self {
+    pub fn in_folder(folder: &Path) -> Self {
         Self {
             folder: folder.to_owned(),
             written: Vec::new(),

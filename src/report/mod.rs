@@ -34,7 +34,7 @@ pub mod view;
 pub mod viewpoint;
 pub mod voltages;
 
-pub use run::{Branch, Figures, Run, Told};
+pub use run::{Branch, Figures, PageContent, Run};
 
 use rayon::prelude::*;
 
@@ -52,7 +52,7 @@ const PAGE: &str = "report.html";
 /// # Errors
 /// A file cannot be written.
 pub fn write_run(files: &mut FileSet, run: &Run<'_>) -> Result<(), WriteError> {
-    let page = || run.told.map(|told| page::html(run, told));
+    let page = || run.page.map(|content| page::html(run, content));
     let (page, mut texts) = join(page, || tables_and_figures(run));
     match page {
         Some(page) => texts.push((PAGE, page)),
@@ -169,8 +169,8 @@ pub fn write_still(files: &mut FileSet, table: &str, run: &Run<'_>) -> Result<()
     }
     files.add(table, csv.as_bytes())?;
     files.add("configuration.svg", svg.as_bytes())?;
-    match run.told {
-        Some(told) => files.add(PAGE, page::html(run, told).as_bytes())?,
+    match run.page {
+        Some(content) => files.add(PAGE, page::html(run, content).as_bytes())?,
         None => files.remove(PAGE),
     }
     Ok(())

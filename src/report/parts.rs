@@ -19,7 +19,7 @@ const NAME: &str = "parts";
 
 /// Kind of a part, as a number in the files.
 #[derive(Clone, Copy, Debug)]
-enum Kind {
+enum ScenePartKind {
     Body,
     Muscle,
     Marker,
@@ -75,13 +75,14 @@ impl Parts {
             markers: trajectory.marks[k].iter().map(|mark| mark / 1e3).collect(),
             ..Self::default()
         };
-        let number = |kind: Kind, i: usize| [f64::from(kind as u8), i as f64, f64::NAN, f64::NAN];
+        let number =
+            |kind: ScenePartKind, i: usize| [f64::from(kind as u8), i as f64, f64::NAN, f64::NAN];
         for m in 0..parts.markers.len() {
-            parts.data.push(number(Kind::Marker, m));
+            parts.data.push(number(ScenePartKind::Marker, m));
         }
         for (b, (body, pose)) in system.bodies.iter().zip(&trajectory.poses[k]).enumerate() {
             parts.surface.add_body(&body.shape, pose);
-            parts.fill(number(Kind::Body, b));
+            parts.fill(number(ScenePartKind::Body, b));
         }
         let voltages = trajectory.voltages.get(k.saturating_sub(1));
         for m in lumped(system) {
@@ -89,7 +90,7 @@ impl Parts {
             let prism = Prism::muscle(system, trajectory, k, m);
             parts.surface.add_prism(&prism);
             let rest = (muscle.to.at - muscle.from.at).norm();
-            let [kind, number, ..] = number(Kind::Muscle, m);
+            let [kind, number, ..] = number(ScenePartKind::Muscle, m);
             let voltage = voltages.map_or(0.0, |voltages| voltages[m]);
             let stretch = 2.0 * prism.halves[2].norm() / rest;
             parts.fill([kind, number, voltage, stretch]);

@@ -57,7 +57,7 @@ pub struct Run<'a> {
     /// Places in mm where markers were to end, with their indices.
     pub targets: &'a [(usize, Vector3<f64>)],
     /// Texts of the page; none where no page is wanted.
-    pub told: Option<&'a Told>,
+    pub page: Option<&'a PageContent>,
 }
 
 /// A path of equilibria.
@@ -75,7 +75,7 @@ pub struct Branch<'a> {
 
 /// Texts of a page about a run, and its plots in addition to the motion.
 #[derive(Clone, Debug, Default, PartialEq)]
-pub struct Told {
+pub struct PageContent {
     /// Title of the page.
     pub title: String,
     /// True if the task has an answer.
@@ -106,7 +106,7 @@ impl<'a> Run<'a> {
     }
 
     /// A motion with all that is observed of it in its table, alone and without a page.
-    pub fn of(
+    pub fn from_trajectory(
         system: &'a System,
         trajectory: &'a Trajectory,
         skins: &'a Skins,
@@ -129,7 +129,7 @@ impl<'a> Run<'a> {
             origin,
             goal: None,
             targets: &[],
-            told: None,
+            page: None,
         }
     }
 

@@ -22,7 +22,7 @@ pub struct Sampled {
 impl Sampled {
     /// Of a motion with these observations those nearest to multiples of `every` ms, or as many as are needed to see it; `None` where
     /// all are shown.
-    pub fn of(observations: &Observations, every: Option<f64>) -> Option<Self> {
+    pub fn from_observations(observations: &Observations, every: Option<f64>) -> Option<Self> {
         let times = &observations.columns.first()?.values;
         let last = times.len().checked_sub(1)?;
         let mut instants: Vec<usize> = match every {
@@ -71,7 +71,7 @@ impl Sampled {
     }
 
     /// Coordinates at these instants, and the voltages and potentials before them.
-    pub fn history(&self, full: &DiscreteTrajectory) -> DiscreteTrajectory {
+    pub fn discrete_trajectory(&self, full: &DiscreteTrajectory) -> DiscreteTrajectory {
         let before = |&k: &usize| full.scalars[k - 1].clone();
         DiscreteTrajectory {
             times: self.pick(&full.times),
@@ -124,12 +124,16 @@ fn seen(times: &[f64], observations: &Observations) -> Vec<usize> {
     let stride = (last / FEWEST).max(1);
     let columns = &observations.columns[1..];
     let moves = |column: &&Column| matches!(column.unit, "mm" | "rad");
-    let mut curves: Vec<Curve<'_>> = columns.iter().filter(moves).map(Curve::of).collect();
+    let mut curves: Vec<Curve<'_>> = columns
+        .iter()
+        .filter(moves)
+        .map(Curve::from_column)
+        .collect();
     if curves.is_empty() {
         let kinetic = columns
             .iter()
             .find(|column| column.name == "kinetic_energy");
-        curves.extend(kinetic.map(Curve::of));
+        curves.extend(kinetic.map(Curve::from_column));
     }
     let mut instants = Vec::new();
     let mut spans = Vec::new();
@@ -154,7 +158,7 @@ struct Curve<'a> {
 }
 
 impl<'a> Curve<'a> {
-    fn of(column: &'a Column) -> Self {
+    fn from_column(column: &'a Column) -> Self {
         let ends = (f64::INFINITY, f64::NEG_INFINITY);
         let wider = |(low, high): (f64, f64), value: &f64| (low.min(*value), high.max(*value));
         let (low, high) = column.values.iter().fold(ends, wider);

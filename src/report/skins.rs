@@ -73,7 +73,7 @@ pub fn shown(times: &[f64], places: usize) -> Vec<usize> {
 
 impl Skins {
     /// Surfaces of the blocks of a model along a motion of one instant or more.
-    pub fn new(model: &Model, history: &DiscreteTrajectory) -> Self {
+    pub fn new(model: &Model, discrete: &DiscreteTrajectory) -> Self {
         let mut muscles = model
             .system
             .muscles
@@ -81,29 +81,29 @@ impl Skins {
             .enumerate()
             .filter_map(|(i, m)| (m.fidelity != Fidelity::Lumped).then_some(i));
         let mut parts = Vec::new();
-        for continuum in &model.solids {
-            let muscle = continuum.of_muscle.then(|| muscles.next()).flatten();
-            parts.push(Skin::immobile(continuum, muscle));
+        for block in &model.solids {
+            let muscle = block.of_muscle.then(|| muscles.next()).flatten();
+            parts.push(Skin::immobile(block, muscle));
         }
         let places = parts.iter().map(|(skin, _)| skin.reference.len()).sum();
-        let instants = shown(&history.times, places);
+        let instants = shown(&discrete.times, places);
         let none = vec![0.0; model.action.intervals.scalars];
-        let mut instant = model.action.motion.instant();
+        let mut instant = model.action.map.instant();
         for &k in &instants {
-            instant.z.copy_from_slice(&history.z[k]);
-            model.action.motion.vectors(&mut instant);
-            let scalars = history.scalars.get(k.saturating_sub(1)).unwrap_or(&none);
-            for (continuum, (skin, nodes)) in model.solids.iter().zip(&mut parts) {
-                let vectors = nodes.iter().map(|&n| instant.x[continuum.vectors[n]]);
+            instant.z.copy_from_slice(&discrete.z[k]);
+            model.action.map.vectors(&mut instant);
+            let scalars = discrete.scalars.get(k.saturating_sub(1)).unwrap_or(&none);
+            for (block, (skin, nodes)) in model.solids.iter().zip(&mut parts) {
+                let vectors = nodes.iter().map(|&n| instant.x[block.vectors[n]]);
                 skin.places.push(vectors.collect());
-                skin.observe(continuum, nodes, &instant.x, scalars);
+                skin.observe(block, nodes, &instant.x, scalars);
                 let potentials = match skin.muscle {
                     Some(muscle) => {
                         let s = model.variables.voltage(muscle);
                         vec![s.map_or(0.0, |s| scalars[s].abs()); nodes.len()]
                     }
                     None => {
-                        let all = continuum.potentials(scalars);
+                        let all = block.potentials(scalars);
                         nodes.iter().map(|&n| all[n].abs()).collect()
                     }
                 };
@@ -132,8 +132,8 @@ impl Skins {
 
 impl Skin {
     /// A surface at no instants yet, and the nodes of the mesh that its corners are.
-    fn immobile(continuum: &SolidBlock, muscle: Option<usize>) -> (Self, Vec<usize>) {
-        let mesh = &continuum.solid.mesh;
+    fn immobile(block: &SolidBlock, muscle: Option<usize>) -> (Self, Vec<usize>) {
+        let mesh = &block.solid.mesh;
         let mut nodes = Vec::new();
         let mut corner = HashMap::new();
         let mut number = |node: usize| {
@@ -146,9 +146,9 @@ impl Skin {
         let quads: Vec<_> = boundary.iter().map(|quad| quad.map(&mut number)).collect();
         let reference: Vec<_> = nodes.iter().map(|&node| mesh.nodes[node]).collect();
         let skin = Self {
-            name: continuum.solid.name.clone(),
+            name: block.solid.name.clone(),
             muscle,
-            is_charged: continuum.terminals.iter().any(Option::is_some),
+            is_charged: block.terminals.iter().any(Option::is_some),
             sharp: sharp(&quads, &reference),
             quads,
             reference,
@@ -160,19 +160,19 @@ impl Skin {
     /// Adds fields and stresses of an instant at the nodes that the corners are.
     fn observe(
         &mut self,
-        continuum: &SolidBlock,
+        block: &SolidBlock,
         nodes: &[usize],
         x: &[Vector3<f64>],
         scalars: &[f64],
     ) {
-        let (places, potentials) = (continuum.places(x), continuum.potentials(scalars));
+        let (places, potentials) = (block.places(x), block.potentials(scalars));
         let mut sums = vec![[0.0; 3]; places.len()];
         let at_surface = nodes.iter().copied().collect::<HashSet<_>>();
-        for (e, corners) in continuum.solid.mesh.hexahedra.iter().enumerate() {
+        for (e, corners) in block.solid.mesh.hexahedra.iter().enumerate() {
             if !corners.iter().any(|node| at_surface.contains(node)) {
                 continue;
             }
-            let fields = continuum.fields(e, &places, &potentials);
+            let fields = block.fields(e, &places, &potentials);
             let values = [1.0, fields.electric_field.norm(), fields.von_mises()];
             for &node in corners {
                 for (sum, value) in sums[node].iter_mut().zip(values) {

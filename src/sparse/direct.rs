@@ -18,7 +18,7 @@ use crate::sparse::{Factorisation, Precision, Singular, Symmetry};
 
 /// Above this size, factors for an iteration are in single precision, as `benches/block.rs` measures.
 const SINGLE: usize = 5_000;
-/// So many further matrices are tried in single precision in a row; then double precision stays.
+/// Most further matrices tried in single precision in a row; then double precision stays.
 const RETRIES: usize = 2;
 /// Number added to entries near 1 to make a singular matrix regular.
 const NEARBY: f64 = 1e-10;
@@ -66,11 +66,11 @@ impl Direct {
         symmetry: Symmetry,
         backend: Option<Backend>,
     ) -> Self {
-        Self::of(size, entries.iter().copied(), symmetry, backend)
+        Self::with_entries(size, entries.iter().copied(), symmetry, backend)
     }
 
     /// [`with`](Self::with), of entries that are listed in another way.
-    pub(crate) fn of(
+    pub(crate) fn with_entries(
         size: usize,
         entries: impl Iterator<Item = (usize, usize)> + Clone,
         symmetry: Symmetry,
@@ -102,7 +102,7 @@ impl Direct {
         // Those without a place come last, in a dense block.
         let missing = places.iter().filter(|place| place.is_none()).count();
         if size <= SINGLE || missing.pow(2) > size {
-            return Self::of(size, entries, Symmetry::Symmetric, None);
+            return Self::with_entries(size, entries, Symmetry::Symmetric, None);
         }
         let pattern = Arc::new(Pattern::new(size, entries, Symmetry::Symmetric));
         let factorisation = Box::new(Fronts::new(&pattern, places));

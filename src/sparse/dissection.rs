@@ -28,12 +28,12 @@ pub(crate) struct Dissection {
     /// Rows in the order of elimination.
     pub(crate) order: Vec<usize>,
     /// Each part after its sides; the last one is the whole.
-    pub(crate) parts: Vec<Part>,
+    pub(crate) parts: Vec<DissectionPart>,
 }
 
 /// A part of the unknowns: its two sides and what separates them, or unknowns that were not cut.
 #[derive(Debug)]
-pub(crate) struct Part {
+pub(crate) struct DissectionPart {
     /// Range of the order that holds the rows of the separator, or of the part that was not cut.
     pub(crate) own: Range<usize>,
     /// The parts before and behind the cut.
@@ -61,7 +61,7 @@ impl Dissection {
     fn push(&mut self, sides: Option<[usize; 2]>, rows: impl Iterator<Item = usize>) -> usize {
         let start = self.order.len();
         self.order.extend(rows);
-        self.parts.push(Part {
+        self.parts.push(DissectionPart {
             own: start..self.order.len(),
             sides,
         });

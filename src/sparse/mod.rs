@@ -2,7 +2,6 @@
 //!
 //! [`Direct`] lays the pattern, scales, checks and refines; a [`Factorisation`] is what it does so with.
 
-mod again;
 mod backend;
 mod dense;
 mod direct;
@@ -10,16 +9,17 @@ mod dissection;
 mod factorisation;
 mod faer;
 mod fronts;
+mod method_state;
 pub(crate) mod mumps;
 mod pattern;
 mod precision;
 mod scaling;
 mod symmetry;
 
-pub use again::MethodState;
 pub use backend::{Backend, DENSE};
 pub use direct::Direct;
 pub use dissection::Places;
 pub use factorisation::{Factorisation, Singular};
+pub use method_state::MethodState;
 pub use precision::Precision;
 pub use symmetry::Symmetry;

@@ -3,9 +3,9 @@
 use crate::control::problem::{Task, Voltages};
 use crate::math::significant;
 use crate::study::compare::Judged;
+use crate::study::cost_at_accuracy::{CostAtAccuracy, costs_at_accuracy, error_text, surely};
 use crate::study::limit::How;
 use crate::study::measure::{StudyMeasure, Unit};
-use crate::study::price::{Price, prices, surely, told};
 use crate::study::read::{Study, StudyPoint};
 use crate::study::record::of_reference;
 use crate::study::schedule::{Done, Results};
@@ -67,20 +67,20 @@ fn chosen(judged: &[Judged]) -> Vec<&Judged> {
 fn cost(study: &Study, results: &Results<'_>, judged: &Judged) -> Option<String> {
     let unit = judged.measure.unit();
     let mut parts = Vec::new();
-    for price in prices(results, judged) {
-        let Some(cheapest) = price.cheapest() else {
+    for at_accuracy in costs_at_accuracy(results, judged) {
+        let Some(cheapest) = at_accuracy.cheapest() else {
             let (m, error) = least(judged)?;
             let found = format!(
                 "{} is not reached{}: the least error is {}",
-                told(unit, price.error),
+                error_text(unit, at_accuracy.error),
                 if several(study) { " by any method" } else { "" },
-                told(unit, error)
+                error_text(unit, error)
             );
             let by = format!(" by {}", name(study, m));
             parts.push(found + if several(study) { &by } else { "" });
             break;
         };
-        parts.push(paid(study, &price, cheapest, unit));
+        parts.push(paid(study, &at_accuracy, cheapest, unit));
     }
     let label = judged.measure.label();
     Some(format!(
@@ -92,10 +92,10 @@ fn cost(study: &Study, results: &Results<'_>, judged: &Judged) -> Option<String>
 }
 
 /// Describes the cost of one accuracy by the cheapest method, and by the next.
-fn paid(study: &Study, price: &Price, cheapest: usize, unit: Unit) -> String {
-    let error = told(unit, price.error);
-    let [_, median, upper] = price.costs[cheapest].unwrap_or([f64::NAN; 3]);
-    let mut others: Vec<(usize, [f64; 3])> = (price.costs.iter().enumerate())
+fn paid(study: &Study, at_accuracy: &CostAtAccuracy, cheapest: usize, unit: Unit) -> String {
+    let error = error_text(unit, at_accuracy.error);
+    let [_, median, upper] = at_accuracy.costs[cheapest].unwrap_or([f64::NAN; 3]);
+    let mut others: Vec<(usize, [f64; 3])> = (at_accuracy.costs.iter().enumerate())
         .filter(|(m, _)| *m != cheapest)
         .filter_map(|(m, cost)| Some((m, (*cost)?)))
         .collect();
@@ -120,7 +120,7 @@ fn paid(study: &Study, price: &Price, cheapest: usize, unit: Unit) -> String {
             significant(cost[1] / median, 2)
         ),
         (_, [.., last]) => {
-            let most = price.costs[*last].map_or(f64::NAN, |cost| cost[1]);
+            let most = at_accuracy.costs[*last].map_or(f64::NAN, |cost| cost[1]);
             let range = match seconds(most) {
                 same if same == time => time,
                 most => format!("{time} to {most}"),
@@ -227,7 +227,7 @@ fn risen(judged: &Judged, known: &[(&str, [f64; 2])]) -> Option<String> {
         return None;
     };
     let unit = judged.measure.unit();
-    let (less, more) = (told(unit, *less), told(unit, *more));
+    let (less, more) = (error_text(unit, *less), error_text(unit, *more));
     let again = match risen.len() {
         1 => String::new(),
         count => format!(", and so {count} times"),

@@ -3,17 +3,17 @@
 //! - `request`: the command; `read`, `sizes`: the study file and all its problems; `measure`: measures of them.
 //! - `outcome`, `schedule`: one run, and all of them in rounds.
 //! - `limit`, `compare`: observed orders and Richardson's limits; errors of all points.
-//! - `price`, `conclusion`, `words`: costs of accuracies; the conclusion in words.
+//! - `cost_at_accuracy`, `conclusion`, `words`: costs of accuracies; the conclusion in words.
 //! - `table`, `diagram`, `record`, `page`: output.
 
 pub mod compare;
 pub mod conclusion;
+pub mod cost_at_accuracy;
 mod diagram;
 pub mod limit;
 pub mod measure;
 pub mod outcome;
 mod page;
-pub mod price;
 pub mod read;
 mod record;
 mod request;
@@ -31,7 +31,7 @@ use crate::app::{CommandError, CommandOutput, make_folder};
 use crate::ipopt;
 use crate::report::origin::Origin;
 use crate::report::page::of_plots;
-use crate::report::{Told, atomic};
+use crate::report::{PageContent, atomic};
 use crate::study::compare::{Judged, judge, moved_marker};
 use crate::study::conclusion::conclusion;
 use crate::study::measure::StudyTask;
@@ -66,7 +66,12 @@ pub fn study(request: &StudyRequest) -> Result<CommandOutput, CommandError> {
     let judged = judge(&study, &results);
     let said = conclusion(&study, &results, &judged);
     let table = write(&folder, request, &study, &results, &judged, &said)?;
-    Ok(told(&results, &format!("{table}{said}\n"), &folder, began))
+    Ok(command_output(
+        &results,
+        &format!("{table}{said}\n"),
+        &folder,
+        began,
+    ))
 }
 
 /// Writes all files; the table to read.
@@ -106,7 +111,7 @@ fn write(
     put("study.md", &page)?;
     let points = || results.methods.iter().flatten();
     let solved = points().filter(|done| done.first.is_solved).count();
-    let said_of_all = Told {
+    let said_of_all = PageContent {
         title: "Study".to_owned(),
         is_solved: solved > 0 && !results.is_interrupted,
         answer: format!("{solved} of {} points solved", points().count()),
@@ -129,7 +134,12 @@ fn write(
     Ok(text)
 }
 
-fn told(results: &Results<'_>, text: &str, folder: &Path, began: Instant) -> CommandOutput {
+fn command_output(
+    results: &Results<'_>,
+    text: &str,
+    folder: &Path,
+    began: Instant,
+) -> CommandOutput {
     let points = || results.methods.iter().flatten();
     let solved = points().filter(|done| done.first.is_solved).count();
     let failed = points().filter(|done| !done.first.is_solved);

@@ -83,7 +83,7 @@ fn control(
         Ok(optimum) => optimum,
         Err(error) => {
             return (
-                refused(&CommandError::of(&point.problem)(error), seconds),
+                refused(&CommandError::in_file(&point.problem)(error), seconds),
                 None,
             );
         }
@@ -92,7 +92,7 @@ fn control(
     let none = || "the solver found no solution".to_owned();
     let ended = RunOutcome {
         status: optimum.word(),
-        message: (!is_solved).then(|| optimum.cause().map_or_else(none, Cause::told)),
+        message: (!is_solved).then(|| optimum.cause().map_or_else(none, Cause::message)),
         // Verifying voltages is no part of finding them.
         seconds: seconds - optimum.tested,
         is_solved,
@@ -116,7 +116,7 @@ fn of_optimum(optimum: &Optimum, names: &[String]) -> Observed {
     let h = motion.times[n] / n as f64;
     let mut seen = Observed {
         iterations: solution.iterations.len().saturating_sub(1),
-        ..Observed::of(model, &trajectory(model, motion), names)
+        ..Observed::from_motion(model, &trajectory(model, motion), names)
     };
     let mut number = |measure, value| seen.numbers.insert(measure, value);
     number(StudyMeasure::Objective, solution.objective);
@@ -126,11 +126,12 @@ fn of_optimum(optimum: &Optimum, names: &[String]) -> Observed {
         let k = (0.5 * (from + to) / h) as usize;
         model.scalars(&motion.voltages[k.min(n - 1)])
     };
-    let (history, failure) = simulate(model, &boundary.start, fine, FINER * n, scalars, |_| {
+    let (discrete, failure) = simulate(model, &boundary.start, fine, FINER * n, scalars, |_| {
         ControlFlow::Continue(())
     });
     if failure.is_none() {
-        let again = Observed::of(model, &Trajectory::from_history(model, &history), names);
+        let again =
+            Observed::from_motion(model, &Trajectory::from_discrete(model, &discrete), names);
         let apart = |k: usize| furthest(&seen.places[k], &again.places[FINER * k]);
         let distances: Vec<f64> = (0..=n).map(apart).collect();
         let greatest = distances.iter().fold(0.0_f64, |m, d| m.max(*d));
@@ -160,7 +161,7 @@ fn motion(
         Ok(simulated) => simulated,
         Err(error) => {
             return (
-                refused(&CommandError::of(&point.problem)(error), seconds),
+                refused(&CommandError::in_file(&point.problem)(error), seconds),
                 None,
             );
         }
@@ -181,18 +182,20 @@ fn motion(
 }
 
 fn of_motion(simulated: &Simulated, task: &Simulation, names: &[String]) -> Observed {
-    let Simulated { model, history, .. } = simulated;
+    let Simulated {
+        model, discrete, ..
+    } = simulated;
     let conservative = matches!(task.voltages, Voltages::Constant(_));
     let mut seen = Observed {
-        iterations: history.report.iterations,
+        iterations: discrete.report.iterations,
         // Steps by a tolerance have the length that they need.
         halved: match task.tolerance {
-            None => history.report.halved,
+            None => discrete.report.halved,
             Some(_) => 0,
         },
-        ..Observed::of(model, &Trajectory::from_history(model, history), names)
+        ..Observed::from_motion(model, &Trajectory::from_discrete(model, discrete), names)
     };
-    let observed = observations(model, history);
+    let observed = observations(model, discrete);
     if let Some(violations) = column(&observed, "constraint_violation") {
         let greatest = violations.iter().fold(0.0_f64, |m, v| m.max(v.abs()));
         seen.numbers
@@ -239,12 +242,12 @@ fn rest(
         seconds: began.elapsed().as_secs_f64(),
         is_solved: false,
     };
-    let question = task.question(&system);
-    let model = match Model::answering(system, question) {
+    let analysis = task.analysis(&system);
+    let model = match Model::for_analysis(system, analysis) {
         Ok(model) => model,
         Err(error) => return (failed(REFUSED, error.to_string(), began), None),
     };
-    let zero = model.coordinates_at(&vec![0.0; model.gauges.len()]);
+    let zero = model.coordinates_at(&vec![0.0; model.joint_readings.len()]);
     let found = stable_equilibrium(&model, &zero, &model.scalars(&task.voltages));
     let seconds = began.elapsed().as_secs_f64();
     let found = match found {
@@ -289,9 +292,9 @@ fn refused(error: &CommandError, seconds: f64) -> RunOutcome {
 
 impl Observed {
     /// Instants and places of a motion.
-    fn of(model: &Model, motion: &Trajectory, names: &[String]) -> Self {
+    fn from_motion(model: &Model, motion: &Trajectory, names: &[String]) -> Self {
         let duration = motion.times[motion.intervals()];
-        let zero = model.coordinates_at(&vec![0.0; model.gauges.len()]);
+        let zero = model.coordinates_at(&vec![0.0; model.joint_readings.len()]);
         let list = markers(model, names);
         let of = |row: &Vec<Vector3<f64>>| list.iter().map(|&m| row[m]).collect();
         Self {
@@ -312,7 +315,7 @@ fn markers(model: &Model, names: &[String]) -> Vec<usize> {
 
 /// Places of the markers with these names at coordinates z.
 fn marks(model: &Model, z: &[f64], names: &[String]) -> Vec<Vector3<f64>> {
-    let instant = model.action.motion.placed(z);
+    let instant = model.action.map.placed(z);
     let all: Vec<_> = model.markers.iter().map(|&v| instant.x[v]).collect();
     markers(model, names).into_iter().map(|m| all[m]).collect()
 }

@@ -5,9 +5,9 @@ use std::fmt::Write;
 use crate::math::significant;
 use crate::report::origin::Origin;
 use crate::study::compare::{Judged, common};
+use crate::study::cost_at_accuracy;
 use crate::study::limit::How;
 use crate::study::measure::{StudyMeasure, Unit};
-use crate::study::price;
 use crate::study::read::Study;
 use crate::study::record::{command, machine, of_reference};
 use crate::study::schedule::Results;
@@ -32,8 +32,8 @@ pub(super) fn markdown(
     }
     add(format!("**Conclusion.** {conclusion}"));
     add(how_it_was_run(results));
-    if let Some(prices) = prices(study, results, judged) {
-        add(prices);
+    if let Some(table) = cost_table(study, results, judged) {
+        add(table);
     }
     for (judged, figure) in judged.iter().zip(figures) {
         add(section(study, judged, figure.as_deref()));
@@ -87,31 +87,39 @@ fn how_it_was_run(results: &Results<'_>) -> String {
 }
 
 /// Returns the table of costs of each accuracy by each method.
-fn prices(study: &Study, results: &Results<'_>, judged: &[Judged]) -> Option<String> {
+fn cost_table(study: &Study, results: &Results<'_>, judged: &[Judged]) -> Option<String> {
     let mut rows = String::new();
     for judged in judged.iter().filter(|judged| judged.measure.has_order()) {
-        for price in price::prices(results, judged) {
-            let Some(cheapest) = price.cheapest() else {
+        for at_accuracy in cost_at_accuracy::costs_at_accuracy(results, judged) {
+            let Some(cheapest) = at_accuracy.cheapest() else {
                 continue;
             };
-            let cells = price.costs.iter().enumerate().map(|(m, cost)| match cost {
-                None => "–".to_owned(),
-                Some([_, seconds, _]) if m == cheapest && price.costs.len() > 1 => {
-                    format!("**{}**", significant(*seconds, 3))
-                }
-                Some([_, seconds, _]) => significant(*seconds, 3),
-            });
+            let cells = at_accuracy
+                .costs
+                .iter()
+                .enumerate()
+                .map(|(m, cost)| match cost {
+                    None => "–".to_owned(),
+                    Some([_, seconds, _]) if m == cheapest && at_accuracy.costs.len() > 1 => {
+                        format!("**{}**", significant(*seconds, 3))
+                    }
+                    Some([_, seconds, _]) => significant(*seconds, 3),
+                });
             let cells: Vec<_> = cells.collect();
             let unit = judged.measure.unit();
-            let told = match unit {
+            let text = match unit {
                 Unit::Length => {
-                    format!("{:.0e}, {}", price.accuracy, price::told(unit, price.error))
+                    format!(
+                        "{:.0e}, {}",
+                        at_accuracy.accuracy,
+                        cost_at_accuracy::error_text(unit, at_accuracy.error)
+                    )
                 }
-                Unit::Relative => price::told(unit, price.error),
+                Unit::Relative => cost_at_accuracy::error_text(unit, at_accuracy.error),
             };
             writeln!(
                 rows,
-                "| {} | {told} | {} |",
+                "| {} | {text} | {} |",
                 judged.measure.label(),
                 cells.join(" | ")
             )

@@ -207,7 +207,7 @@ fn same_question(
         .chain(extra.iter().map(|point| (scope.key("reference"), point)));
     let mut first: Option<(StudyTask, Option<f64>)> = None;
     for (place, point) in all {
-        let (asked, duration) = question(&point.loaded.task);
+        let (asked, duration) = task_of(&point.loaded.task);
         if let Task::Equilibrium(task) = &point.loaded.task
             && task.path.is_some()
         {
@@ -234,7 +234,7 @@ fn same_question(
 }
 
 /// The kind of a task, and its length in ms where that is given.
-fn question(task: &Task) -> (StudyTask, Option<f64>) {
+fn task_of(task: &Task) -> (StudyTask, Option<f64>) {
     match task {
         Task::Simulate(task) => (StudyTask::Motion, Some(task.duration)),
         Task::Equilibrium(_) => (StudyTask::Rest, None),

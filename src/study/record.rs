@@ -16,7 +16,7 @@ use crate::study::outcome::FINER;
 use crate::study::read::{Method, Study, StudyPoint};
 use crate::study::request::StudyRequest;
 use crate::study::schedule::{Done, Results};
-use crate::workflow::at_once::cores;
+use crate::workflow::parallel_map::cores;
 
 /// The file.
 #[derive(Debug, Serialize)]

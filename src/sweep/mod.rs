@@ -1,14 +1,14 @@
 //! Variants of one problem, solved in parallel, each in a folder of its own; variants that are solved already are not solved again.
 //!
 //! - `request`: the command; `read`, `values`: the sweep file and its variants.
-//! - `kept`: record of a variant; `table`, `page`: all of them together.
+//! - `variant_record`: record of a variant; `table`, `page`: all of them together.
 
-mod kept;
 mod page;
 mod read;
 mod request;
 mod table;
 mod values;
+mod variant_record;
 
 pub use request::{Shard, SweepRequest};
 
@@ -26,8 +26,8 @@ use crate::ipopt::interrupt;
 use crate::report::origin::Origin;
 use crate::report::table::cells_csv;
 use crate::report::{Figures, atomic};
-use crate::sweep::kept::Kept;
 use crate::sweep::read::{Sweep, Variant, read_sweep};
+use crate::sweep::variant_record::VariantRecord;
 
 /// Folder of the variants within that of the results.
 const VARIANTS: &str = "variants";
@@ -47,7 +47,7 @@ pub fn sweep(request: &SweepRequest) -> Result<CommandOutput, CommandError> {
     let of = |variant: &Variant| folder.join(VARIANTS).join(variant.identity.as_str());
 
     // By identity, so that equal variants are solved once.
-    let mut ends: BTreeMap<&str, Kept> = BTreeMap::new();
+    let mut ends: BTreeMap<&str, VariantRecord> = BTreeMap::new();
     let mut todo: Vec<&Variant> = Vec::new();
     let mut chosen = BTreeSet::new();
     let mut before = Before::default();
@@ -57,7 +57,7 @@ pub fn sweep(request: &SweepRequest) -> Result<CommandOutput, CommandError> {
             continue;
         }
         let kept = match &variant.refused {
-            Some(message) => Some(Kept::refused(variant, message)),
+            Some(message) => Some(VariantRecord::refused(variant, message)),
             None => before.of(variant, &of(variant)),
         };
         match kept {
@@ -70,16 +70,23 @@ pub fn sweep(request: &SweepRequest) -> Result<CommandOutput, CommandError> {
     }
     solve(request, &sweep, &todo, &of, began, &mut ends)?;
 
-    let ends: Vec<Kept> = sweep
+    let ends: Vec<VariantRecord> = sweep
         .variants
         .iter()
         .map(|variant| match ends.get(variant.identity.as_str()) {
             Some(end) => end.clone(),
-            None => Kept::of(variant, &RunEnd::NOT_STARTED, Path::new("")),
+            None => VariantRecord::from_end(variant, &RunEnd::NOT_STARTED, Path::new("")),
         })
         .collect();
     write(request, &sweep, &ends, &folder)?;
-    Ok(told(request.shard, &sweep, &ends, before, &folder, began))
+    Ok(command_output(
+        request.shard,
+        &sweep,
+        &ends,
+        before,
+        &folder,
+        began,
+    ))
 }
 
 /// Records that the folders of the variants held before.
@@ -93,8 +100,8 @@ struct Before {
 
 impl Before {
     /// The end of a variant, where its folder holds all of it.
-    fn of(&mut self, variant: &Variant, folder: &Path) -> Option<Kept> {
-        match Kept::found(variant, folder) {
+    fn of(&mut self, variant: &Variant, folder: &Path) -> Option<VariantRecord> {
+        match VariantRecord::found(variant, folder) {
             Found::Whole(kept) => {
                 self.found += 1;
                 Some(kept)
@@ -117,7 +124,7 @@ fn solve<'a>(
     todo: &[&'a Variant],
     folder: &dyn Fn(&Variant) -> PathBuf,
     began: Instant,
-    ends: &mut BTreeMap<&'a str, Kept>,
+    ends: &mut BTreeMap<&'a str, VariantRecord>,
 ) -> Result<(), CommandError> {
     let run = |variant: &&Variant| CommandInput {
         command: String::new(),
@@ -146,7 +153,7 @@ fn solve<'a>(
     let mut counts = [0, 0];
     let mut unwritten = None;
     run_all(&batch, &mut |index, end| {
-        let mut kept = Kept::of(todo[index], &end, &folder(todo[index]));
+        let mut kept = VariantRecord::from_end(todo[index], &end, &folder(todo[index]));
         if !kept.is_unfinished() {
             unwritten = kept.write(&folder(todo[index])).err();
         }
@@ -166,7 +173,7 @@ fn solve<'a>(
 fn write(
     request: &SweepRequest,
     sweep: &Sweep,
-    ends: &[Kept],
+    ends: &[VariantRecord],
     folder: &Path,
 ) -> Result<(), CommandError> {
     let origin = Origin {
@@ -183,10 +190,10 @@ fn write(
 }
 
 /// Returns the numbers of variants by their ends.
-fn told(
+fn command_output(
     shard: Shard,
     sweep: &Sweep,
-    ends: &[Kept],
+    ends: &[VariantRecord],
     before: Before,
     folder: &Path,
     began: Instant,
@@ -199,15 +206,15 @@ fn told(
     let words = words.iter().map(|(word, count)| format!("{count} {word}"));
     let words: Vec<String> = words.collect();
     let mut messages = BTreeSet::new();
-    let mut told = Vec::new();
+    let mut first_messages = Vec::new();
     for (variant, end) in sweep.variants.iter().zip(ends) {
         let message = end.message.as_ref();
         if let Some(message) = message.filter(|message| messages.insert(message.as_str())) {
-            told.push(format!("{}: {message}", variant.set.join(", ")));
+            first_messages.push(format!("{}: {message}", variant.set.join(", ")));
         }
     }
     let mut notes = first(before.deviations);
-    notes.extend(first(told));
+    notes.extend(first(first_messages));
     let own = ends.iter().enumerate();
     let mut own = own.filter(|(index, _)| shard.has(*index));
     let is_complete = own.all(|(_, end)| !end.is_unfinished());

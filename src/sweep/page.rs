@@ -4,8 +4,8 @@ use serde_json::json;
 
 use crate::report::origin::Origin;
 use crate::report::page::framed;
-use crate::sweep::kept::Kept;
 use crate::sweep::read::Sweep;
+use crate::sweep::variant_record::VariantRecord;
 
 /// The page around everything, as that of a run.
 const FRAME: &str = include_str!("page.html");
@@ -13,7 +13,12 @@ const FRAME: &str = include_str!("page.html");
 const MODULE: &str = include_str!("page.js");
 
 /// The page; `table` has a row of headings first.
-pub(super) fn html(sweep: &Sweep, ends: &[Kept], table: &[Vec<String>], origin: &Origin) -> String {
+pub(super) fn html(
+    sweep: &Sweep,
+    ends: &[VariantRecord],
+    table: &[Vec<String>],
+    origin: &Origin,
+) -> String {
     let solved: Vec<bool> = ends.iter().map(|end| end.is_solved).collect();
     let count = solved.iter().filter(|&&is_solved| is_solved).count();
     let problem = sweep.problem.display();

@@ -112,7 +112,7 @@ fn varied(
     let read: BTreeMap<&String, Values> = spec
         .vary
         .iter()
-        .map(|(place, written)| Ok((place, Values::of(written, &scope.key(place))?)))
+        .map(|(place, written)| Ok((place, Values::from_spec(written, &scope.key(place))?)))
         .collect::<Result<_, SceneError>>()?;
     let lists = || -> Result<Vec<Vec<Value>>, SceneError> {
         let each = read.iter();

@@ -3,11 +3,11 @@
 use serde_json::Value;
 
 use crate::files::si;
-use crate::sweep::kept::{END, Kept};
 use crate::sweep::read::Sweep;
+use crate::sweep::variant_record::{END, VariantRecord};
 
 /// Headings and rows of cells; a cell without a value is empty.
-pub(super) fn table(sweep: &Sweep, ends: &[Kept]) -> Vec<Vec<String>> {
+pub(super) fn table(sweep: &Sweep, ends: &[VariantRecord]) -> Vec<Vec<String>> {
     let mut names: Vec<&String> = Vec::new();
     for name in ends.iter().flat_map(|end| end.numbers.keys()) {
         if !names.contains(&name) {

@@ -28,13 +28,13 @@ pub(super) struct Range {
 
 impl Values {
     /// Reads the values of an entry.
-    pub(super) fn of(written: &VarySpec, scope: &Scope<'_>) -> Result<Self, SceneError> {
+    pub(super) fn from_spec(written: &VarySpec, scope: &Scope<'_>) -> Result<Self, SceneError> {
         match written {
             VarySpec::Values(values) if values.is_empty() => {
                 Err(scope.wrong("an empty list", "1 value or more"))
             }
             VarySpec::Values(values) => Ok(Self::List(values.clone())),
-            VarySpec::Range(range) => Range::of(range, scope).map(Self::Range),
+            VarySpec::Range(range) => Range::from_spec(range, scope).map(Self::Range),
         }
     }
 
@@ -67,7 +67,7 @@ impl Values {
 }
 
 impl Range {
-    fn of(written: &RangeSpec, scope: &Scope<'_>) -> Result<Self, SceneError> {
+    fn from_spec(written: &RangeSpec, scope: &Scope<'_>) -> Result<Self, SceneError> {
         let expected = "a number, or a text such as \"50 kPa\"";
         let end = |name: &str, value: &Value| {
             parts(value).ok_or_else(|| scope.key(name).wrong(value.to_string(), expected))

@@ -99,8 +99,8 @@ impl ActiveLimits {
 
     /// The limits of the joint of a coordinate at an instant.
     fn add_coordinate(&mut self, i: usize, model: &Model, control: &Control, side: [bool; 2]) {
-        let of = |gauge: &JointReading| gauge.coordinate == Some(i);
-        let Some(joint) = model.gauges.iter().position(of) else {
+        let of = |reading: &JointReading| reading.coordinate == Some(i);
+        let Some(joint) = model.joint_readings.iter().position(of) else {
             return;
         };
         for limit in &control.limits {
@@ -183,7 +183,7 @@ impl ActiveLimits {
 
 impl Active {
     /// In words, such as `m1b at its bound of 500 V in 43 of 60 intervals`.
-    pub fn told(&self) -> String {
+    pub fn message(&self) -> String {
         let Self {
             what,
             count,

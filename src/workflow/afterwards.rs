@@ -125,7 +125,7 @@ fn departures(model: &Model, goal: &BoundaryState, motion: &Trajectory) -> Vec<D
 
 impl Departure {
     /// In words, lengths in mm and angles in degrees.
-    fn told(&self) -> String {
+    fn message(&self) -> String {
         let Self { name, time, .. } = self;
         let far = match self.unit {
             "m" => format!("{} mm", significant(1e3 * self.deviation, 3)),
@@ -144,7 +144,12 @@ impl Afterwards {
         if self.is_held {
             return None;
         }
-        let mut far: Vec<String> = self.goal.iter().take(TOLD).map(Departure::told).collect();
+        let mut far: Vec<String> = self
+            .goal
+            .iter()
+            .take(TOLD)
+            .map(Departure::message)
+            .collect();
         far.push(format!("the system moves by {}", self.drift));
         far.extend(
             self.failure

@@ -73,9 +73,9 @@ pub(crate) fn attempt(
     let solution = solves.tighten(solution)?;
     let mut program = solves.solver.into_program();
     drop(watch);
-    let history = program.decode(&solution.x);
+    let discrete = program.decode(&solution.x);
     let costates = program.costates(&solution.costates);
-    let motion = final_motion(&model, &boundary, (&history, costates), &solution);
+    let motion = final_motion(&model, &boundary, (&discrete, costates), &solution);
     let point = FinalPoint::new(&mut program, &solution, &model, control);
     drop(program);
     let (model, boundary, sought) = of_motion(system, control, (model, boundary), &motion)?;
@@ -84,7 +84,7 @@ pub(crate) fn attempt(
         resimulation,
         tested,
     } = match solution.status.is_solved() {
-        true => Verification::new(&model, &boundary, control, (&history, &motion)),
+        true => Verification::new(&model, &boundary, control, (&discrete, &motion)),
         false => Verification::default(),
     };
     Ok(Optimum {
@@ -127,7 +127,7 @@ fn options(model: &Model, control: &Control, allowed: SolveLimits) -> Options {
 fn final_motion(
     model: &Model,
     boundary: &BoundaryConditions,
-    (history, costates): (&DiscreteTrajectory, Costates),
+    (discrete, costates): (&DiscreteTrajectory, Costates),
     solution: &SolverResult,
 ) -> Solution {
     Solution {
@@ -136,7 +136,7 @@ fn final_motion(
             true => None,
             false => solution.iterations.last().map(|last| last.mu),
         },
-        ..solved(model, history, Some(costates))
+        ..solved(model, discrete, Some(costates))
     }
 }
 
@@ -210,9 +210,9 @@ impl Verification {
         model: &Model,
         boundary: &BoundaryConditions,
         control: &Control,
-        (history, motion): (&DiscreteTrajectory, &Solution),
+        (discrete, motion): (&DiscreteTrajectory, &Solution),
     ) -> Self {
-        let reversed = reversed_muscle(model, history);
+        let reversed = reversed_muscle(model, discrete);
         if reversed.is_some() {
             return Self {
                 reversed,

@@ -43,7 +43,7 @@ pub enum Cause {
 
 impl Cause {
     /// In words.
-    pub(crate) fn told(&self) -> String {
+    pub(crate) fn message(&self) -> String {
         match self {
             Self::Root {
                 interval,

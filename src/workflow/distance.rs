@@ -37,7 +37,7 @@ impl Distance {
 
     /// The longest path of a joint, and of a body or a node, along a motion.
     pub(crate) fn path_length(model: &Model, motion: &Solution) -> Self {
-        let mut lengths: Vec<(Kind, f64)> = Vec::new();
+        let mut lengths: Vec<(DistanceKind, f64)> = Vec::new();
         for k in 1..motion.times.len() {
             each(model, motion, k - 1, motion, k, |i, kind, apart| {
                 lengths.resize(lengths.len().max(i + 1), (kind, 0.0));
@@ -72,10 +72,10 @@ impl Distance {
         turned.max(self.length / path_length.length.max(NO_LENGTH * length))
     }
 
-    fn part(&mut self, kind: Kind) -> &mut f64 {
+    fn part(&mut self, kind: DistanceKind) -> &mut f64 {
         match kind {
-            Kind::Angle => &mut self.angle,
-            Kind::Length => &mut self.length,
+            DistanceKind::Angle => &mut self.angle,
+            DistanceKind::Length => &mut self.length,
         }
     }
 }
@@ -105,7 +105,7 @@ fn digits(value: f64) -> String {
 }
 
 #[derive(Clone, Copy, Debug)]
-enum Kind {
+enum DistanceKind {
     Angle,
     Length,
 }
@@ -123,28 +123,28 @@ fn each(
     k: usize,
     other: &Solution,
     l: usize,
-    mut visit: impl FnMut(usize, Kind, f64),
+    mut visit: impl FnMut(usize, DistanceKind, f64),
 ) {
     let mut number = 0..;
     let mut next = |kind, apart| visit(number.next().unwrap_or_default(), kind, apart);
     let joints = motion.joints[k].iter().zip(&other.joints[l]);
     for ((a, b), joint) in joints.zip(&model.system.joints) {
         match joint.kind {
-            JointKind::Prismatic { .. } => next(Kind::Length, (a - b).abs() / 1e3),
-            _ => next(Kind::Angle, (a - b).abs()),
+            JointKind::Prismatic { .. } => next(DistanceKind::Length, (a - b).abs() / 1e3),
+            _ => next(DistanceKind::Angle, (a - b).abs()),
         }
     }
     let turns_freely = model.turns_freely();
     for (a, b) in motion.poses[k].iter().zip(&other.poses[l]) {
-        next(Kind::Length, (a.centre - b.centre).norm() / 1e3);
+        next(DistanceKind::Length, (a.centre - b.centre).norm() / 1e3);
         if turns_freely {
             // ‖A − B‖ = 2√2 sin(θ/2), exact where both are nearly the same.
             let half = (a.directors - b.directors).norm() / 8.0_f64.sqrt();
-            next(Kind::Angle, 2.0 * half.min(1.0).asin());
+            next(DistanceKind::Angle, 2.0 * half.min(1.0).asin());
         }
     }
-    let nodes = model.action.motion.nodes();
+    let nodes = model.action.map.nodes();
     for (a, b) in motion.z[k][nodes.clone()].iter().zip(&other.z[l][nodes]) {
-        next(Kind::Length, (a - b).abs() / 1e3);
+        next(DistanceKind::Length, (a - b).abs() / 1e3);
     }
 }

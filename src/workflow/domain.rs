@@ -4,7 +4,7 @@ use serde::Serialize;
 
 use crate::dynamics::OutOfDomain;
 
-/// So many muscles and blocks are written out.
+/// Most muscles and blocks that are written out.
 const LISTED: usize = 4;
 
 /// A muscle or block outside the domain of its first-order dielectric.
@@ -23,7 +23,7 @@ pub(crate) struct Outside {
 }
 
 /// As `summary.json` has it.
-pub(crate) fn told(list: &[OutOfDomain]) -> Vec<Outside> {
+pub(crate) fn records(list: &[OutOfDomain]) -> Vec<Outside> {
     let outside = |one: &OutOfDomain| Outside {
         name: one.name.clone(),
         stretch: one.stretch,

@@ -4,7 +4,7 @@ use serde::Serialize;
 
 use crate::control::problem::Control;
 use crate::coordinates::CoordinateMap;
-use crate::functional::{Couplings, Kind, Term};
+use crate::functional::{Couplings, Term, TermKind};
 use crate::model::{Model, Time, Variable};
 use crate::workflow::reasons::{self, Absent, absent};
 use crate::workflow::stopwatch;
@@ -47,7 +47,7 @@ pub struct Plan {
 
 impl Plan {
     /// The plan of a model, each effect measured for `spent` seconds or one evaluation.
-    pub fn of(model: &Model, control: Option<&Control>, spent: f64) -> Self {
+    pub fn from_model(model: &Model, control: Option<&Control>, spent: f64) -> Self {
         Self {
             effects: effect_counts(model, control, spent),
             absent: absent(model, control),
@@ -143,37 +143,37 @@ pub fn coupling(model: &Model, i: usize, j: usize) -> Vec<String> {
 fn each(model: &Model) -> impl Iterator<Item = Coupled<'_>> {
     let sums = [&model.action.intervals, &model.action.instants];
     let effects = sums.into_iter().flat_map(|sum| &sum.terms);
-    effects.map(|effect| Coupled::new(effect.as_ref(), &model.action.motion))
+    effects.map(|effect| Coupled::new(effect.as_ref(), &model.action.map))
 }
 
 impl<'a> Coupled<'a> {
-    fn new(effect: &'a dyn Term, motion: &CoordinateMap) -> Self {
+    fn new(effect: &'a dyn Term, map: &CoordinateMap) -> Self {
         let mut couplings = Couplings::default();
         effect.couple(&mut couplings, &mut Vec::new());
-        let scalar = |s: usize| motion.coordinates + s;
+        let scalar = |s: usize| map.coordinates + s;
         let mut pairs: Vec<[u32; 2]> = Vec::new();
         let mut add = |a: usize, b: usize| pairs.push([a.min(b) as u32, a.max(b) as u32]);
         // Pairs of vectors come in both orders.
         for &(a, b) in couplings.full.iter().filter(|(a, b)| a <= b) {
-            let others = motion.support(b);
-            for i in motion.support(a) {
+            let others = map.support(b);
+            for i in map.support(a) {
                 others.iter().for_each(|&j| add(i, j));
             }
         }
         for &(a, b) in couplings.isotropic.iter().filter(|(a, b)| a <= b) {
             // Directors and nodes couple component by component, joint coordinates all with all.
-            let meets = |i, j| match (axis(motion, i), axis(motion, j)) {
+            let meets = |i, j| match (axis(map, i), axis(map, j)) {
                 (Some(a), Some(b)) => a == b,
                 _ => true,
             };
-            let others = motion.support(b);
-            for i in motion.support(a) {
+            let others = map.support(b);
+            for i in map.support(a) {
                 let others = others.iter().filter(|&&j| meets(i, j));
                 others.for_each(|&j| add(i, j));
             }
         }
         for &(a, s) in &couplings.mixed {
-            let support = motion.support(a).into_iter();
+            let support = map.support(a).into_iter();
             support.for_each(|i| add(i, scalar(s)));
         }
         for &(s, t) in &couplings.scalars {
@@ -190,14 +190,14 @@ impl<'a> Coupled<'a> {
         unknowns.sort_unstable();
         unknowns.dedup();
         let kind = match self.effect.kind() {
-            Kind::Kinetic => "kinetic",
-            Kind::Potential => "potential",
-            Kind::VirtualWork => "virtual work",
-            Kind::Constraint => "constraint",
+            TermKind::Kinetic => "kinetic",
+            TermKind::Potential => "potential",
+            TermKind::VirtualWork => "virtual work",
+            TermKind::Constraint => "constraint",
         };
         let scalars = unknowns.iter();
         let scalars = scalars.filter_map(|&i| (i as usize).checked_sub(of.coordinates));
-        let is_of_instant = self.effect.kind() == Kind::Constraint;
+        let is_of_instant = self.effect.kind() == TermKind::Constraint;
         let equations = scalars.filter(|&s| is_of_instant || of.scalars[s].has_equation);
         let diagonal = self.pairs.iter().filter(|[i, j]| i == j).count();
         let touched = self.pairs.iter().map(|pair| self.touched(pair, of));
@@ -220,7 +220,7 @@ impl<'a> Coupled<'a> {
     fn touched(&self, &[i, j]: &[u32; 2], of: &Unknowns) -> [usize; 2] {
         let (i, j) = (i as usize, j as usize);
         let both_orders = if i == j { 1 } else { 2 };
-        let is_instantaneous = self.effect.kind() == Kind::Constraint;
+        let is_instantaneous = self.effect.kind() == TermKind::Constraint;
         if is_instantaneous {
             // A multiplier has a column in the balances of its instant, its constraint a row in the coordinates.
             let is_pair_of_coordinates = j < of.coordinates;
@@ -253,9 +253,9 @@ impl<'a> Coupled<'a> {
 }
 
 /// Direction of a coordinate that moves along one; `None` for a joint's.
-fn axis(motion: &CoordinateMap, i: usize) -> Option<usize> {
-    match i.checked_sub(motion.of_bodies) {
-        Some(of_node) => motion.of_nodes.get(of_node).map(|&(_, axis)| axis),
-        None => motion.tree.is_none().then_some(i % 3),
+fn axis(map: &CoordinateMap, i: usize) -> Option<usize> {
+    match i.checked_sub(map.of_bodies) {
+        Some(of_node) => map.of_nodes.get(of_node).map(|&(_, axis)| axis),
+        None => map.tree.is_none().then_some(i % 3),
     }
 }

@@ -41,8 +41,8 @@ pub struct ErrorSample {
 
 impl ErrorSample {
     /// A motion without objective.
-    pub fn of_motion(model: &Model, history: &DiscreteTrajectory) -> Self {
-        let motion = Trajectory::from_history(model, history);
+    pub fn of_motion(model: &Model, discrete: &DiscreteTrajectory) -> Self {
+        let motion = Trajectory::from_discrete(model, discrete);
         let length = model.length();
         let places = |k: usize| -> Vec<Vector3<f64>> {
             if !model.markers.is_empty() {
@@ -50,15 +50,15 @@ impl ErrorSample {
             }
             let mut places: Vec<_> = motion.poses[k].iter().map(|p| p.centre / length).collect();
             let bodies = places.len();
-            let coordinates = history.z[k][model.action.motion.nodes()].iter();
-            for (value, &(node, axis)) in coordinates.zip(&model.action.motion.of_nodes) {
+            let coordinates = discrete.z[k][model.action.map.nodes()].iter();
+            for (value, &(node, axis)) in coordinates.zip(&model.action.map.of_nodes) {
                 let least = bodies + node + 1;
                 places.resize(least.max(places.len()), Vector3::zeros());
                 places[least - 1][axis] = value / length;
             }
             places
         };
-        let last = history.intervals();
+        let last = discrete.intervals();
         let kinds = model
             .system
             .joints
@@ -74,7 +74,7 @@ impl ErrorSample {
         let poses = &motion.poses[last];
         let directors = poses.iter().flat_map(|p| p.directors.iter().copied());
         let centres = poses.iter().flat_map(|p| p.centre.iter());
-        let nodes = &history.z[last][model.action.motion.nodes()];
+        let nodes = &discrete.z[last][model.action.map.nodes()];
         let lengths = centres.chain(nodes).map(|x| x / length);
         Self {
             path: (0..=last).map(places).collect(),

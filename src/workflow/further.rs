@@ -71,7 +71,7 @@ impl Further<'_> {
             || self.seconds().is_some_and(|s| s <= 0.0)
     }
 
-    /// Solves a problem of the same system, within so many iterations; none where it cannot be stated.
+    /// Solves a problem of the same system, within a number of iterations; none where it cannot be stated.
     pub(crate) fn solve(
         &self,
         control: &Control,

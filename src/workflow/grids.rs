@@ -109,10 +109,10 @@ pub fn integrate_to(
                 step: task.duration / steps as f64,
                 ..task.clone()
             };
-            let run = integrate(system, &task, |model, history| {
-                observer(steps, model, history)
+            let run = integrate(system, &task, |model, discrete| {
+                observer(steps, model, discrete)
             })?;
-            let is_complete = run.failure.is_none() && run.history.intervals() == steps;
+            let is_complete = run.failure.is_none() && run.discrete.intervals() == steps;
             let status = match (&run.failure, stop(left())) {
                 _ if is_complete => "simulated",
                 (Some(_), _) => "step_failed",
@@ -120,12 +120,12 @@ pub fn integrate_to(
             };
             Ok(Attempt {
                 sample: match is_complete {
-                    true => ErrorSample::of_motion(&run.model, &run.history),
+                    true => ErrorSample::of_motion(&run.model, &run.discrete),
                     false => ErrorSample::default(),
                 },
-                intervals: run.history.intervals(),
-                iterations: run.history.report.iterations,
-                variables: steps * run.model.action.motion.unknowns(),
+                intervals: run.discrete.intervals(),
+                iterations: run.discrete.report.iterations,
+                variables: steps * run.model.action.map.unknowns(),
                 status,
                 is_complete,
                 run,
@@ -149,7 +149,10 @@ fn sample(optimum: &Optimum, is_free: bool) -> ErrorSample {
     let sample = ErrorSample {
         objective: Some(optimum.solution.objective),
         duration: is_free.then(|| kept.times[kept.intervals()]),
-        ..ErrorSample::of_motion(&optimum.model, &motion::history(&optimum.model, kept))
+        ..ErrorSample::of_motion(
+            &optimum.model,
+            &motion::discrete_trajectory(&optimum.model, kept),
+        )
     };
     ErrorSample {
         response: Some(response(optimum, &sample)),
@@ -161,7 +164,7 @@ fn sample(optimum: &Optimum, is_free: bool) -> ErrorSample {
 fn response(optimum: &Optimum, optimal: &ErrorSample) -> f64 {
     let tested = optimum.resimulation.as_ref();
     let half = tested.and_then(|tested| tested.half.as_ref());
-    half.map_or(f64::INFINITY, |history| {
-        optimal.deviation(&ErrorSample::of_motion(&optimum.model, history))
+    half.map_or(f64::INFINITY, |discrete| {
+        optimal.deviation(&ErrorSample::of_motion(&optimum.model, discrete))
     })
 }

@@ -26,8 +26,8 @@ pub(crate) struct Held {
 
 /// Simulates the voltages of an instant, from the end of an optimum on.
 pub(crate) fn held(model: &Model, end: &Start, optimal: &Solution, voltages: &[f64]) -> Held {
-    let (history, failure) = constant(model, end, optimal, voltages, DURATIONS, go_on);
-    let motion = solved(model, &history, None);
+    let (discrete, failure) = constant(model, end, optimal, voltages, DURATIONS, go_on);
+    let motion = solved(model, &discrete, None);
     let n = optimal.intervals();
     let of = |k: usize| Distance::between(model, &motion, k, optimal, n);
     let drift = (0..motion.times.len()).map(of);
@@ -54,7 +54,7 @@ pub(crate) fn constant(
     simulate(model, start, h, durations * n, constant, |_| go_on())
 }
 
-/// Returns true if a drift beside a path is so small that the end counts as held.
+/// Returns true if a drift compared with a path is so small that the end counts as held.
 pub(crate) fn is_small(drift: Distance, path_length: Distance, model: &Model) -> bool {
     drift.over(path_length, model) <= DRIFTS
 }

@@ -23,7 +23,13 @@ const SLOW: f64 = 1e-4;
 /// Explains a problem whose solve found no motion, line by line.
 pub(crate) fn explain(control: &Control, optimum: &Optimum) -> Vec<String> {
     let mut lines: Vec<String> = miss(control, optimum).into_iter().collect();
-    lines.extend(optimum.active.iter().take(TOLD).map(|active| active.told()));
+    lines.extend(
+        optimum
+            .active
+            .iter()
+            .take(TOLD)
+            .map(|active| active.message()),
+    );
     lines.extend(changes(control, optimum));
     lines.extend(kinks(optimum));
     lines
@@ -76,19 +82,19 @@ fn miss(control: &Control, optimum: &Optimum) -> Option<String> {
         let k = ((from / h).round() as usize).min(n - 1);
         model.scalars(&motion.voltages[k])
     };
-    let (history, failure) = simulate(model, &boundary.start, h, n, scalars, |_| {
+    let (discrete, failure) = simulate(model, &boundary.start, h, n, scalars, |_| {
         ControlFlow::Continue(())
     });
-    if failure.is_some() || history.intervals() < n {
+    if failure.is_some() || discrete.intervals() < n {
         return None;
     }
     let placed = |z: &[f64]| {
-        let mut instant = model.action.motion.instant();
+        let mut instant = model.action.map.instant();
         instant.z[..z.len()].copy_from_slice(z);
-        model.action.motion.place(&mut instant);
+        model.action.map.place(&mut instant);
         instant
     };
-    let [end, before] = [n, n - 1].map(|k| placed(&history.z[k]));
+    let [end, before] = [n, n - 1].map(|k| placed(&discrete.z[k]));
     let parts = distances(model, boundary, &control.goal, &end);
     let (what, _) = parts.into_iter().max_by(|a, b| a.1.total_cmp(&b.1))?;
     let speed = |v: &usize| (end.x[*v] - before.x[*v]).norm() / h;
@@ -117,7 +123,8 @@ fn distances(
         let words = format!("{name} comes within {} mm of its goal", significant(far, 3));
         (words, far / model.length())
     };
-    let joints = |instant: &Configuration| model.joints(instant, &vec![0.0; model.gauges.len()]);
+    let joints =
+        |instant: &Configuration| model.joints(instant, &vec![0.0; model.joint_readings.len()]);
     let of_joint = |joint: usize, value: f64, found: f64| {
         let unit = joint_unit(&model.system, joint);
         let far = (found - value).abs();
@@ -142,9 +149,9 @@ fn distances(
             let Some(rest) = &boundary.goal.rest else {
                 return Vec::new();
             };
-            let mut there = model.action.motion.instant();
+            let mut there = model.action.map.instant();
             there.z.copy_from_slice(&rest.z);
-            model.action.motion.place(&mut there);
+            model.action.map.place(&mut there);
             let markers = 0..model.markers.len();
             let places = markers.map(|m| of_marker(m, &there.x[model.markers[m]].into()));
             let (asked, found) = (joints(&there), joints(end));
@@ -180,7 +187,7 @@ fn changes(control: &Control, optimum: &Optimum) -> Vec<String> {
     if optimum.active.iter().any(|active| active.is_voltage) {
         lines.push("change: wider voltage_bounds, if the muscles withstand them".to_owned());
     }
-    let has_nodes = !model.action.motion.of_nodes.is_empty();
+    let has_nodes = !model.action.map.of_nodes.is_empty();
     if has_nodes && optimum.boundary.goal.rests == Rests::Everything {
         let few = "a few voltages cannot bring every node of an elastic block to rest";
         lines.push(format!("change: \"rest\": \"bodies\" in the goal; {few}"));

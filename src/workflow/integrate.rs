@@ -22,7 +22,7 @@ pub struct Simulated {
     /// The model that moved.
     pub model: Model,
     /// The motion as far as it went.
-    pub history: DiscreteTrajectory,
+    pub discrete: DiscreteTrajectory,
     /// Reason why it ended early.
     pub failure: Option<StepError>,
     /// Its error, where a tolerance controls its steps and it came to its end.
@@ -72,7 +72,7 @@ pub fn integrate_on(
     let (steps, h) = grid(task);
     let wrong = |error| WorkflowError::boundary("simulate", &error);
     phase("building");
-    let model = Model::answering(system.clone(), task.question(system, h))
+    let model = Model::for_analysis(system.clone(), task.analysis(system, h))
         .map_err(|error| wrong(error.into()))?;
     if task.tolerance.is_none() {
         memory::of_motion(&model, steps)?;
@@ -81,7 +81,7 @@ pub fn integrate_on(
         return Err(WorkflowError::Stopped(status));
     }
     phase("finding the start");
-    let of = StepState::of(&model, task.solving);
+    let of = StepState::equations_hash(&model, task.solving);
     let mut begun = match begun {
         Some(begun) => begun,
         None => {
@@ -98,13 +98,13 @@ pub fn integrate_on(
     begun.end.of = of;
     let setup = began.elapsed().as_secs_f64();
     phase("ordering and first factorisation");
-    let observer = |history: &DiscreteTrajectory| observer(&model, history);
+    let observer = |discrete: &DiscreteTrajectory| observer(&model, discrete);
     let drive = Driven {
         model: &model,
         voltages: &task.voltages,
     };
     let switches = task.voltages.switches();
-    let (history, failure, error) = match task.tolerance {
+    let (discrete, failure, error) = match task.tolerance {
         Some(tolerance) => ByTolerance {
             model: &model,
             solving: task.solving,
@@ -119,14 +119,14 @@ pub fn integrate_on(
         .run(begun, observer),
         None => {
             let lengths = Lengths::Equal(TimeGrid { h, steps });
-            let (history, failure) = go_on(task.solving, &model, begun, lengths, drive, observer);
-            (history, failure, None)
+            let (discrete, failure) = go_on(task.solving, &model, begun, lengths, drive, observer);
+            (discrete, failure, None)
         }
     };
     let seconds = began.elapsed().as_secs_f64() - setup;
     Ok(Simulated {
         model,
-        history,
+        discrete,
         failure,
         error,
         setup,

@@ -47,9 +47,9 @@ fn unknowns(system: &System) -> usize {
 /// # Errors
 /// Its instants need more than there is.
 pub(crate) fn of_motion(model: &Model, steps: usize) -> Result<(), WorkflowError> {
-    let motion = &model.action.motion;
+    let map = &model.action.map;
     let scalars = model.variables.of(Time::Interval).len();
-    let numbers = 3 * motion.unknowns() + 2 * motion.coordinates + 2 * scalars;
+    let numbers = 3 * map.unknowns() + 2 * map.coordinates + 2 * scalars;
     let instant = 8.0 * numbers as f64 + OF_POSE * model.system.bodies.len() as f64 + OF_INSTANT;
     let what = format!("a motion of {steps} steps");
     enough("simulate.step", &what, steps as f64 * instant)

@@ -3,24 +3,22 @@
 //! - `integrate`, `optimise`: a simulation, a control problem, with its result, the `optimum`; each `attempt` from one start, `prepare`d, by one of its `solves` or more; `error`: errors of tasks; `phase`: the present
 //!   phase of work; `remark`, `solve_remarks`: warnings and notes.
 //! - `grids`, `accuracy`, `estimate`: as finely as an accuracy needs.
-//! - `resimulate`: verification of an optimum, by the `distance` of motions; `cure`: finer grids where it fails; `gap`: duality gap of its
-//!  objective; `held`, `holding`, `afterwards`: its end; `final_values`: deviations from final costs.
+//! - `resimulate`: verification of an optimum, by the `distance` of motions; `refine_until_reproduced`: finer grids where it fails; `gap`: duality gap of its
+//!  objective; `held`, `hold_check`, `afterwards`: its end; `final_values`: deviations from final costs.
 //! - `recentre`: a motion with other charts.
-//! - `further`, `second_start`, `shortest`, `combined`, `infeasible`, `active`, `violations`: attempts before a problem is called infeasible, and the explanation.
+//! - `further`, `retry_displaced`, `shortest`, `combined`, `infeasible`, `active`, `violations`: attempts before a problem is called infeasible, and the explanation.
 //! - `effects`, `reasons`, `stopwatch`: terms of a model, their reasons and times; `memory`: a refusal of more than the machine has.
 //! - `steps`, `domain`: warnings of a motion: steps that do not resolve it, muscles outside the domain of their material.
 //! - `tracking`: deviations of a motion from the references of its objective.
-//! - `motion`: conversion between unknowns and a trajectory; `at_once`: pieces of work in several threads.
+//! - `motion`: conversion between unknowns and a trajectory; `parallel_map`: pieces of work in several threads.
 
 pub mod accuracy;
 pub(crate) mod active;
 pub(crate) mod afterwards;
-pub mod at_once;
 pub(crate) mod attempt;
 pub(crate) mod cause;
 pub(crate) mod combined;
 pub(crate) mod confirmed;
-pub(crate) mod cure;
 pub(crate) mod distance;
 pub(crate) mod domain;
 pub(crate) mod effects;
@@ -31,7 +29,7 @@ pub(crate) mod further;
 pub(crate) mod gap;
 pub(crate) mod grids;
 pub(crate) mod held;
-pub(crate) mod holding;
+pub(crate) mod hold_check;
 pub(crate) mod infeasible;
 pub(crate) mod integrate;
 mod iterate;
@@ -40,15 +38,17 @@ pub(crate) mod motion;
 pub(crate) mod optimise;
 pub(crate) mod optimum;
 mod ordering;
+pub mod parallel_map;
 pub(crate) mod phase;
 pub(crate) mod prepare;
 pub(crate) mod reasons;
 mod recentre;
+pub(crate) mod refine_until_reproduced;
 pub(crate) mod remark;
 pub(crate) mod repeat;
 pub(crate) mod resimulate;
 pub(crate) mod resolve;
-pub(crate) mod second_start;
+pub(crate) mod retry_displaced;
 pub(crate) mod shortest;
 pub(crate) mod solve_remarks;
 mod solves;
@@ -63,7 +63,6 @@ pub use active::{Active, active};
 pub use afterwards::{Afterwards, Departure};
 pub use cause::Cause;
 pub use confirmed::EstimatedError;
-pub use cure::Cured;
 pub use effects::{EffectCounts, Plan, coupling, effect_counts};
 pub use error::WorkflowError;
 pub use final_values::FinalValue;
@@ -76,6 +75,7 @@ pub use optimum::{Optimum, Restarted, Shortest, SolveLimits};
 pub use phase::listen_to_phases;
 pub use prepare::Counted;
 pub use reasons::{Absent, absent};
+pub use refine_until_reproduced::RefinedOptimum;
 pub use remark::{Remark, Remarks, Severity};
 pub use resimulate::{Resimulation, under_constant_voltages};
 pub use steps::{beyond, counted, divided};

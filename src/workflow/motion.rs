@@ -10,11 +10,15 @@ use crate::model::system::Joint;
 use crate::model::{FoundParameter, Model, Role};
 
 /// Returns the solution that is stored of a motion.
-pub fn solved(model: &Model, history: &DiscreteTrajectory, costates: Option<Costates>) -> Solution {
+pub fn solved(
+    model: &Model,
+    discrete: &DiscreteTrajectory,
+    costates: Option<Costates>,
+) -> Solution {
     solved_of(
         model,
-        history,
-        Trajectory::from_history(model, history),
+        discrete,
+        Trajectory::from_discrete(model, discrete),
         costates,
     )
 }
@@ -22,7 +26,7 @@ pub fn solved(model: &Model, history: &DiscreteTrajectory, costates: Option<Cost
 /// The same of a motion whose poses and joint coordinates are known.
 pub(crate) fn solved_of(
     model: &Model,
-    history: &DiscreteTrajectory,
+    discrete: &DiscreteTrajectory,
     motion: Trajectory,
     costates: Option<Costates>,
 ) -> Solution {
@@ -38,17 +42,17 @@ pub(crate) fn solved_of(
         times: motion.times,
         joints: motion.joints.into_iter().map(by_joint).collect(),
         poses: motion.poses,
-        z: history.z.clone(),
-        momentum: match history.momenta.last() {
+        z: discrete.z.clone(),
+        momentum: match discrete.momenta.last() {
             Some(momentum) => momentum.clone(),
-            None => last_momentum(model, history).unwrap_or_default(),
+            None => last_momentum(model, discrete).unwrap_or_default(),
         },
         meshes: meshes(model),
         multiplier_time: model.multiplier_time,
         voltages: motion.voltages,
         hold: None,
-        potentials: potentials(model, history),
-        parameters: parameters(model, history),
+        potentials: potentials(model, discrete),
+        parameters: parameters(model, discrete),
         costates,
         barrier: None,
     }
@@ -66,9 +70,9 @@ fn meshes(model: &Model) -> BTreeMap<String, Vec<[f64; 3]>> {
 }
 
 /// Values of the parameters that a motion was found with; none where none is sought.
-pub(crate) fn parameters(model: &Model, history: &DiscreteTrajectory) -> Vec<FoundParameter> {
+pub(crate) fn parameters(model: &Model, discrete: &DiscreteTrajectory) -> Vec<FoundParameter> {
     let range = model.variables.range(Role::Parameter);
-    let values = history
+    let values = discrete
         .scalars
         .first()
         .into_iter()
@@ -99,22 +103,22 @@ pub fn trajectory(model: &Model, solved: &Solution) -> Trajectory {
 
 /// Places of the markers at instants with coordinates z.
 fn marks(model: &Model, z: &[Vec<f64>]) -> Vec<Vec<Vector>> {
-    let mut instant = model.action.motion.instant();
+    let mut instant = model.action.map.instant();
     let mut at = |z: &Vec<f64>| {
         instant.z.copy_from_slice(z);
-        model.action.motion.vectors(&mut instant);
+        model.action.map.vectors(&mut instant);
         model.markers.iter().map(|&v| instant.x[v]).collect()
     };
     z.iter().map(&mut at).collect()
 }
 
 /// Potentials of a motion by interval; none where a scene has none.
-fn potentials(model: &Model, history: &DiscreteTrajectory) -> Vec<Vec<f64>> {
+fn potentials(model: &Model, discrete: &DiscreteTrajectory) -> Vec<Vec<f64>> {
     let potentials = model.variables.range(Role::Potential);
     if potentials.is_empty() {
         return Vec::new();
     }
-    let rows = history.scalars.iter();
+    let rows = discrete.scalars.iter();
     rows.map(|row| row[potentials.clone()].to_vec()).collect()
 }
 
@@ -134,7 +138,7 @@ pub(crate) fn scalars(model: &Model, kept: &Solution) -> Vec<Vec<f64>> {
 }
 
 /// The record of a motion that is kept.
-pub(crate) fn history(model: &Model, kept: &Solution) -> DiscreteTrajectory {
+pub(crate) fn discrete_trajectory(model: &Model, kept: &Solution) -> DiscreteTrajectory {
     DiscreteTrajectory {
         times: kept.times.clone(),
         z: kept.z.clone(),

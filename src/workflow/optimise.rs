@@ -11,7 +11,7 @@ use crate::workflow::error::WorkflowError;
 use crate::workflow::further::is_unreached;
 use crate::workflow::iterate::Iterate;
 use crate::workflow::optimum::{Optimum, SolveLimits};
-use crate::workflow::second_start::second_starts;
+use crate::workflow::retry_displaced::second_starts;
 
 /// Solves a control problem, from an `earlier` solution where one is given; from its guess, and from others where that leads nowhere;
 /// `observer` sees every iterate.

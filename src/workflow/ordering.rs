@@ -13,7 +13,7 @@ use crate::model::{Coordinates, Model};
 /// blocks. Measurements: `benches/README.md`.
 pub(super) fn ordering(model: &Model, control: &Control) -> BTreeMap<String, OptionValue> {
     let free = matches!(control.duration, Duration::Free { .. });
-    let ordering = if !model.action.motion.of_nodes.is_empty() {
+    let ordering = if !model.action.map.of_nodes.is_empty() {
         3
     } else if free && model.coordinates == Coordinates::Redundant {
         2

@@ -79,9 +79,9 @@ pub fn absent(model: &Model, control: Option<&Control>) -> Vec<Absent> {
         };
         add(format!("body {}", body.name), why);
     }
-    for continuum in model.solids.iter().filter(|c| c.is_immobile) {
+    for block in model.solids.iter().filter(|c| c.is_immobile) {
         let why = "it starts at rest and nothing moves it";
-        add(format!("block {}", continuum.solid.name), why.to_owned());
+        add(format!("block {}", block.solid.name), why.to_owned());
     }
     if let Some(control) = control {
         absent_of_control(model, control, &mut add);

@@ -16,7 +16,7 @@ const JUMP: f64 = 1e3;
 
 /// A simulation under optimal voltages, with this number of steps for an interval.
 pub(crate) struct Repeat {
-    pub(crate) history: DiscreteTrajectory,
+    pub(crate) discrete: DiscreteTrajectory,
     motion: Solution,
     /// Distances from the optimum at its instants, as far as it goes.
     distances: Vec<Distance>,
@@ -28,7 +28,12 @@ pub(crate) struct Repeat {
 }
 
 impl Repeat {
-    pub(crate) fn of(model: &Model, start: &Start, optimal: &Solution, steps: usize) -> Self {
+    pub(crate) fn from_solution(
+        model: &Model,
+        start: &Start,
+        optimal: &Solution,
+        steps: usize,
+    ) -> Self {
         let n = optimal.intervals();
         let h = optimal.times[n] / n as f64;
         let scalars = |from: f64, to: f64| {
@@ -36,19 +41,19 @@ impl Repeat {
             model.scalars(&optimal.voltages[k.min(n - 1)])
         };
         let step = h / steps as f64;
-        let (history, failure) = simulate(model, start, step, steps * n, scalars, |_| go_on());
-        let motion = solved(model, &history, None);
-        let instants = 0..=history.intervals() / steps;
+        let (discrete, failure) = simulate(model, start, step, steps * n, scalars, |_| go_on());
+        let motion = solved(model, &discrete, None);
+        let instants = 0..=discrete.intervals() / steps;
         let of = |k: usize| Distance::between(model, &motion, steps * k, optimal, k);
-        let ended = (history.intervals() < steps * n).then(|| "interrupted".to_owned());
-        let is_untestable = history.intervals() == 0
+        let ended = (discrete.intervals() < steps * n).then(|| "interrupted".to_owned());
+        let is_untestable = discrete.intervals() == 0
             && matches!(&failure, Some(StepError::Singular { redundant, .. }) if !redundant.is_empty());
         Self {
             is_untestable,
-            is_halved: history.report.halved > 0,
+            is_halved: discrete.report.halved > 0,
             distances: instants.map(of).collect(),
             failure: failure.map(|error| error.to_string()).or(ended),
-            history,
+            discrete,
             motion,
         }
     }

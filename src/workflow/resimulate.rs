@@ -89,7 +89,7 @@ pub(crate) fn resimulate(
     tolerance: f64,
 ) -> Resimulation {
     let path_length = Distance::path_length(model, optimal);
-    let own = Repeat::of(model, start, optimal, 1);
+    let own = Repeat::from_solution(model, start, optimal, 1);
     let mut out = Resimulation {
         deviation: own.greatest(),
         path_length,
@@ -113,10 +113,10 @@ pub(crate) fn resimulate(
     if !out.refine(model, start, optimal, least) {
         return out;
     }
-    let last = own.history.z.len() - 1;
+    let last = own.discrete.z.len() - 1;
     out.end = Some(Start {
-        z: own.history.z[last].clone(),
-        momentum: own.history.momenta[last].clone(),
+        z: own.discrete.z[last].clone(),
+        momentum: own.discrete.momenta[last].clone(),
         rates: None,
     });
     out
@@ -125,7 +125,7 @@ pub(crate) fn resimulate(
 impl Resimulation {
     /// Estimates the error with finer and finer steps until their distances fall; returns true if no simulation ended early.
     fn refine(&mut self, model: &Model, start: &Start, optimal: &Solution, least: f64) -> bool {
-        let with = |steps: usize| Repeat::of(model, start, optimal, steps);
+        let with = |steps: usize| Repeat::from_solution(model, start, optimal, steps);
         let mut before: Option<(Repeat, f64)> = None;
         let mut greatest = Distance::default();
         let (mut error, mut is_confirmed) = (0.0, false);
@@ -142,7 +142,7 @@ impl Resimulation {
                 return false;
             }
             if steps == FINER[0] {
-                self.half = Some(repeat.history.clone());
+                self.half = Some(repeat.discrete.clone());
             }
             greatest = greatest.max(deviation);
             let apart = match &before {

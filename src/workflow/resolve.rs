@@ -4,7 +4,7 @@ use crate::control::problem::Control;
 use crate::control::{BoundaryConditions, Solution};
 use crate::model::{Model, System, with_parameters};
 use crate::workflow::error::WorkflowError;
-use crate::workflow::holding;
+use crate::workflow::hold_check;
 
 /// Model and boundary of a control problem.
 pub(crate) fn resolve(
@@ -13,7 +13,7 @@ pub(crate) fn resolve(
 ) -> Result<(Model, BoundaryConditions), WorkflowError> {
     let (model, boundary) = BoundaryConditions::resolve(system, control, interval(control))
         .map_err(|error| WorkflowError::boundary("control", &error))?;
-    holding::check(control, &model, &boundary)?;
+    hold_check::check(control, &model, &boundary)?;
     Ok((model, boundary))
 }
 
@@ -37,7 +37,7 @@ pub(crate) fn with_found(
     };
     let system = with_parameters(system, &control.parameters, &values);
     let (model, boundary) = resolve(&system, &given)?;
-    if model.action.motion.unknowns() != sought.action.motion.unknowns() {
+    if model.action.map.unknowns() != sought.action.map.unknowns() {
         return Err(WorkflowError::Problem {
             place: "control.free".to_owned(),
             reason: "with the values found other parts of the system move than with the guesses; take other guesses"

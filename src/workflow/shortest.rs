@@ -10,10 +10,10 @@ use crate::workflow::further::{Further, ITERATIONS, displaced, is_infeasible};
 use crate::workflow::iterate::Iterate;
 use crate::workflow::optimum::{Optimum, Shortest};
 
-/// The free duration goes up to so many times the given one, and starts from so many times.
+/// Largest free duration and the first one, as multiples of the given one.
 const LONGEST: f64 = 20.0;
 const FIRST: f64 = 2.0;
-/// Iterations of its solve: so many times those of the first one, within these limits.
+/// Iterations of its solve, as a multiple of those of the first one, within these limits.
 const TIMES: usize = 2;
 const FEWEST: usize = 60;
 const MOST: usize = 200;
@@ -65,7 +65,7 @@ pub(crate) fn shortest(
             break;
         };
         put_after(&mut first.solution, &found.solution);
-        said = told(&found, given);
+        said = outcome(&found, given);
         if matches!(said, Shortest::AsGiven | Shortest::Longer(_)) {
             return (said, Some(found.motion));
         }
@@ -74,7 +74,7 @@ pub(crate) fn shortest(
 }
 
 /// Reads the end of a solve with a free duration for a given one.
-fn told(found: &Optimum, given: f64) -> Shortest {
+fn outcome(found: &Optimum, given: f64) -> Shortest {
     let duration = found.motion.times[found.motion.intervals()];
     match found.solution.status {
         Status::Solved if duration <= given * (1.0 + ON_BOUND) => Shortest::AsGiven,

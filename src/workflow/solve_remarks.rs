@@ -3,7 +3,7 @@
 use crate::control::problem::Control;
 use crate::workflow::afterwards::Afterwards;
 use crate::workflow::further::is_unreached;
-use crate::workflow::holding::free_end;
+use crate::workflow::hold_check::free_end;
 use crate::workflow::infeasible::explain;
 use crate::workflow::optimum::Optimum;
 use crate::workflow::remark::Remarks;

@@ -13,11 +13,11 @@ const FINE: f64 = 0.01;
 const BALANCED: f64 = 0.05;
 
 /// A warning where the steps make or lose energy of their own.
-pub(crate) fn unbalanced(history: &DiscreteTrajectory) -> Option<String> {
-    let report = history.report;
+pub(crate) fn unbalanced(discrete: &DiscreteTrajectory) -> Option<String> {
+    let report = discrete.report;
     let part = report.made / report.exchanged;
-    let count = history.intervals();
-    let step = rounded(history.times.last()? / count.max(1) as f64);
+    let count = discrete.intervals();
+    let step = rounded(discrete.times.last()? / count.max(1) as f64);
     (count > 0 && part.abs() > BALANCED).then(|| {
         format!(
             "the steps of {step} ms {} {} mJ, {:.0} % of the energy that moves at most: shorter steps keep the balance",
@@ -42,13 +42,13 @@ pub fn divided(task: &Simulation) -> Option<String> {
 }
 
 /// A warning where the steps do not resolve the motion well, or are too few for an estimate.
-pub(crate) fn told(
+pub(crate) fn warning(
     error: Option<LocalError>,
-    history: &DiscreteTrajectory,
+    discrete: &DiscreteTrajectory,
     task: &Simulation,
 ) -> Option<String> {
     let Some(error) = error else {
-        return (history.intervals() > 0).then(|| {
+        return (discrete.intervals() > 0).then(|| {
             format!(
                 "the error of so few steps cannot be estimated; {} would be enough",
                 task.solving.integrator.order() + 1
@@ -109,9 +109,9 @@ fn rounded(step: f64) -> f64 {
 }
 
 /// The number of steps, and between what their lengths lie where a tolerance controls them.
-pub fn counted(history: &DiscreteTrajectory, task: &Simulation) -> String {
-    let count = history.intervals().to_string();
-    let lengths = history.times.windows(2).map(|ends| ends[1] - ends[0]);
+pub fn counted(discrete: &DiscreteTrajectory, task: &Simulation) -> String {
+    let count = discrete.intervals().to_string();
+    let lengths = discrete.times.windows(2).map(|ends| ends[1] - ends[0]);
     let ends = (f64::INFINITY, 0.0_f64);
     let (least, most) = lengths.fold(ends, |(low, high), h| (low.min(h), high.max(h)));
     match task.tolerance {

@@ -84,18 +84,23 @@ impl ByTolerance<'_> {
     }
 
     /// The error of a whole motion; none of one that ended early.
-    fn error(&self, history: &DiscreteTrajectory) -> Option<EstimatedError> {
-        let end = history.times.last().copied()?;
+    fn error(&self, discrete: &DiscreteTrajectory) -> Option<EstimatedError> {
+        let end = discrete.times.last().copied()?;
         if end < self.control.duration * (1.0 - 1e-12) {
             return None;
         }
-        let all: Vec<usize> = (0..history.times.len()).collect();
-        let pairs = self.pairs(history, &all);
-        let fours = self.pairs(history, &pairs);
-        let kept = |places: &[usize]| places.iter().map(|&k| history.times[k]).collect::<Vec<_>>();
-        let in_pairs = self.repeated(history, &kept(&pairs));
-        let in_fours = self.repeated(history, &kept(&fours));
-        let by_pairs = in_pairs.as_ref().map(|m| self.apart(history, &pairs, m));
+        let all: Vec<usize> = (0..discrete.times.len()).collect();
+        let pairs = self.pairs(discrete, &all);
+        let fours = self.pairs(discrete, &pairs);
+        let kept = |places: &[usize]| {
+            places
+                .iter()
+                .map(|&k| discrete.times[k])
+                .collect::<Vec<_>>()
+        };
+        let in_pairs = self.repeated(discrete, &kept(&pairs));
+        let in_fours = self.repeated(discrete, &kept(&fours));
+        let by_pairs = in_pairs.as_ref().map(|m| self.apart(discrete, &pairs, m));
         if let (Some(by_pairs), Some(in_pairs), Some(in_fours)) = (by_pairs, &in_pairs, &in_fours) {
             let among: Vec<usize> = fours
                 .iter()
@@ -107,10 +112,10 @@ impl ByTolerance<'_> {
                 return Some(error);
             }
         }
-        let halves: Vec<f64> = halved(&history.times);
-        let in_halves = self.repeated(history, &halves)?;
+        let halves: Vec<f64> = halved(&discrete.times);
+        let in_halves = self.repeated(discrete, &halves)?;
         let every_other: Vec<usize> = (0..halves.len()).step_by(2).collect();
-        let last = self.apart(&in_halves, &every_other, history);
+        let last = self.apart(&in_halves, &every_other, discrete);
         Some(match by_pairs {
             Some(before) => EstimatedError::of_middle(before, last),
             None => EstimatedError {
@@ -121,12 +126,12 @@ impl ByTolerance<'_> {
     }
 
     /// Every other of some instants of a motion, those at which voltages may switch included.
-    fn pairs(&self, history: &DiscreteTrajectory, places: &[usize]) -> Vec<usize> {
+    fn pairs(&self, discrete: &DiscreteTrajectory, places: &[usize]) -> Vec<usize> {
         let switches = self.control.switches;
         let is_end = |&&place: &&usize| {
             place == 0
-                || place + 1 == history.times.len()
-                || switches.contains(&history.times[place])
+                || place + 1 == discrete.times.len()
+                || switches.contains(&discrete.times[place])
         };
         let mut kept = Vec::new();
         let mut since = 0;
@@ -142,10 +147,10 @@ impl ByTolerance<'_> {
     }
 
     /// The motion in steps between other times; none where a step fails.
-    fn repeated(&self, history: &DiscreteTrajectory, times: &[f64]) -> Option<DiscreteTrajectory> {
+    fn repeated(&self, discrete: &DiscreteTrajectory, times: &[f64]) -> Option<DiscreteTrajectory> {
         let lengths = Lengths::Between(times);
         let (motion, failure) =
-            self.go_on(at_start(history), lengths, |_| ControlFlow::Continue(()));
+            self.go_on(at_start(discrete), lengths, |_| ControlFlow::Continue(()));
         let is_whole = failure.is_none() && motion.times.len() == times.len();
         is_whole.then_some(motion)
     }
@@ -158,7 +163,7 @@ impl ByTolerance<'_> {
         coarse: &DiscreteTrajectory,
     ) -> f64 {
         let model = self.model;
-        let [fine, coarse] = [fine, coarse].map(|history| solved(model, history, None));
+        let [fine, coarse] = [fine, coarse].map(|discrete| solved(model, discrete, None));
         let each = places.iter().enumerate();
         let distances = each.map(|(k, &place)| Distance::between(model, &fine, place, &coarse, k));
         distances
@@ -177,15 +182,15 @@ impl Drive for Shared<'_> {
 }
 
 /// A motion before its first step.
-fn at_start(history: &DiscreteTrajectory) -> DiscreteTrajectory {
+fn at_start(discrete: &DiscreteTrajectory) -> DiscreteTrajectory {
     let mut start = DiscreteTrajectory {
         times: vec![0.0],
-        z: history.z[..1].to_vec(),
-        momenta: history.momenta[..1].to_vec(),
-        rates: history.rates.clone(),
+        z: discrete.z[..1].to_vec(),
+        momenta: discrete.momenta[..1].to_vec(),
+        rates: discrete.rates.clone(),
         ..DiscreteTrajectory::default()
     };
-    start.end.of.clone_from(&history.end.of);
+    start.end.of.clone_from(&discrete.end.of);
     start
 }
 

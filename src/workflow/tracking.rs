@@ -77,7 +77,7 @@ pub fn followed(optimum: &Optimum, control: &Control, motion: &Trajectory) -> Ve
     let model = &optimum.model;
     let tested = optimum.resimulation.as_ref();
     let half = tested.and_then(|tested| tested.half.as_ref());
-    let half = half.map(|history| Trajectory::from_history(model, history));
+    let half = half.map(|discrete| Trajectory::from_discrete(model, discrete));
     tracked(&model.system, control, motion, half.as_ref())
 }
 
@@ -123,13 +123,13 @@ pub fn tracked(
                 .iter()
                 .filter_map(|c| path(system, c, motion))
                 .collect();
-            TrackingError::of(&motion.times, &deviations(&paths), scale)
+            TrackingError::from_deviations(&motion.times, &deviations(&paths), scale)
         });
         Some(Tracked {
             kind,
             name: name.clone(),
             unit,
-            error: TrackingError::of(&motion.times, &deviation, scale),
+            error: TrackingError::from_deviations(&motion.times, &deviation, scale),
             simulated: again,
             paths,
             deviation,
@@ -194,7 +194,7 @@ fn deviations(paths: &[TrackedPath]) -> Vec<f64> {
 
 impl TrackingError {
     /// Of deviations at times in ms, by the trapezoidal rule.
-    fn of(times: &[f64], deviations: &[f64], scale: f64) -> Self {
+    fn from_deviations(times: &[f64], deviations: &[f64], scale: f64) -> Self {
         let mut integral = 0.0;
         for (t, e) in times.windows(2).zip(deviations.windows(2)) {
             integral += 0.5 * (t[1] - t[0]) * (e[0] * e[0] + e[1] * e[1]);

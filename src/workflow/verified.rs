@@ -9,11 +9,11 @@ use std::time::Instant;
 use crate::control::problem::Control;
 use crate::ipopt::interrupt;
 use crate::model::System;
-use crate::workflow::cure::Cured;
 use crate::workflow::error::WorkflowError;
 use crate::workflow::iterate::Iterate;
 use crate::workflow::optimise::optimise;
 use crate::workflow::optimum::{Optimum, SolveLimits};
+use crate::workflow::refine_until_reproduced::RefinedOptimum;
 
 /// Deviation of the motion under the optimal voltages that is confirmed where no accuracy is set, as a part of the path length.
 pub const ACCURACY: f64 = 0.01;
@@ -38,7 +38,7 @@ pub fn verified(
     accuracy: f64,
     allowed: SolveLimits,
     observer: &mut dyn FnMut(usize, &Iterate<'_>) -> ControlFlow<()>,
-) -> Result<Cured, WorkflowError> {
+) -> Result<RefinedOptimum, WorkflowError> {
     let began = Instant::now();
     let left = || {
         let spent = began.elapsed().as_secs_f64();
@@ -99,7 +99,7 @@ pub fn verified(
             why.map_or(String::new(), |why| format!(": {why}")),
         )
     });
-    Ok(Cured {
+    Ok(RefinedOptimum {
         optimum: best,
         iterations,
         note,

@@ -83,7 +83,7 @@ fn apart(
     fine: &DiscreteTrajectory,
     parts: usize,
 ) -> f64 {
-    let [motion, fine] = [motion, fine].map(|history| solved(model, history, None));
+    let [motion, fine] = [motion, fine].map(|discrete| solved(model, discrete, None));
     let mut worst = 0.0_f64;
     for k in 0..motion.times.len() {
         for (a, b) in motion.joints[k].iter().zip(&fine.joints[parts * k]) {
@@ -146,8 +146,8 @@ fn steps_by_a_tolerance_keep_it_under_functions_of_time() {
         let run = integrate(&system, &task, |_, _| ControlFlow::Continue(())).unwrap();
         assert_eq!(run.failure, None, "{seed}");
         let told = run.error.expect("it came to its end");
-        let fine = exact(&run.model, &signals, &run.history.times, 2);
-        let error = apart(&run.model, &run.history, &fine, 2);
+        let fine = exact(&run.model, &signals, &run.discrete.times, 2);
+        let error = apart(&run.model, &run.discrete, &fine, 2);
         count += 1;
         unconfirmed += usize::from(!told.is_confirmed);
         worst = worst.max(error / tolerance);
@@ -214,14 +214,14 @@ fn every_method_has_its_order_under_ramps_and_sines() {
                 task.step = 16.0 / steps as f64;
                 let run = integrate(&system, &task, |_, _| ControlFlow::Continue(())).unwrap();
                 assert_eq!(run.failure, None);
-                let last = |history: &DiscreteTrajectory| {
-                    let z = history.z.last().unwrap().iter().enumerate();
+                let last = |discrete: &DiscreteTrajectory| {
+                    let z = discrete.z.last().unwrap().iter().enumerate();
                     let z = z.take(model.coordinate_count());
                     // What muscles remember has a lower order with Galerkin's method.
                     let places = z.filter(|&(i, _)| !model.is_memory(i));
                     places.map(|(_, &z)| z).collect::<Vec<_>>()
                 };
-                let both = last(&run.history).into_iter().zip(last(&fine));
+                let both = last(&run.discrete).into_iter().zip(last(&fine));
                 both.map(|(a, b)| (a - b).abs()).fold(0.0, f64::max)
             };
             let [coarse, finer] = [error(steps), error(2 * steps)];

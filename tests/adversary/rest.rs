@@ -16,13 +16,13 @@ fn rest(robot: &Robot, h: f64, coordinates: Option<Coordinates>) -> Places {
     let system = system(&robot.scene);
     let voltages = robot.voltages_of(&system);
     let model = Model::new(system, coordinates, h, &[]).unwrap();
-    let start = model.coordinates_at(&vec![0.0; model.gauges.len()]);
+    let start = model.coordinates_at(&vec![0.0; model.joint_readings.len()]);
     let found = stable_equilibrium(&model, &start, &model.scalars(&voltages));
     let found = found.map_err(|error| error.to_string())?;
     if found.is_stable() != Some(true) {
         return Err("unstable".to_owned());
     }
-    let poses = model.poses(&model.action.motion.placed(&found.z));
+    let poses = model.poses(&model.action.map.placed(&found.z));
     let bodies = model.system.bodies.iter().zip(poses);
     Ok(bodies
         .map(|(b, pose)| (b.name.clone(), pose.centre))

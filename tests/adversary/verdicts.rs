@@ -173,5 +173,5 @@ fn where_nothing_moves_no_method_panics() {
         panic!("a simulation")
     };
     let run = integrate(&loaded.system, task, |_, _| ControlFlow::Continue(())).unwrap();
-    assert_eq!((run.failure, run.history.intervals()), (None, 100));
+    assert_eq!((run.failure, run.discrete.intervals()), (None, 100));
 }

@@ -44,7 +44,7 @@ pub fn with_control<E: Energy<4> + 'static>(
     };
     let control = Group::<Formulas<E, 4, 1, 1>>::intervals("control", -1.0, vec![element]);
     let Reduced {
-        motion,
+        map,
         intervals,
         instants,
         ..
@@ -52,7 +52,7 @@ pub fn with_control<E: Energy<4> + 'static>(
     let mut terms = intervals.terms;
     terms.push(Box::new(control) as Box<dyn Term>);
     let intervals = Functional::new(terms, intervals.measures, intervals.vectors, 1);
-    model.action = Reduced::new(motion, intervals, instants);
+    model.action = Reduced::new(map, intervals, instants);
     let control = Variable::voltage(0, "control".to_owned());
     assert_eq!(model.variables.add(control), 0);
     model

@@ -184,14 +184,14 @@ pub(crate) fn bare(bodies: Vec<Body>, joints: Vec<Joint>, gravity: Option<Vector
 
 /// Coordinates of the reference configuration.
 pub(crate) fn at_reference(model: &Model) -> Vec<f64> {
-    model.coordinates_at(&vec![0.0; model.gauges.len()])
+    model.coordinates_at(&vec![0.0; model.joint_readings.len()])
 }
 
 /// A placed instant.
 pub(crate) fn placed(model: &Model, z: &[f64]) -> Configuration {
-    let mut instant = model.action.motion.instant();
+    let mut instant = model.action.map.instant();
     instant.z.copy_from_slice(z);
-    model.action.motion.place(&mut instant);
+    model.action.map.place(&mut instant);
     instant
 }
 
@@ -212,7 +212,7 @@ pub(crate) fn motion(
     steps: usize,
     scalars: &[f64],
 ) -> DiscreteTrajectory {
-    let (history, failure) = simulate(
+    let (discrete, failure) = simulate(
         model,
         start,
         h,
@@ -221,8 +221,8 @@ pub(crate) fn motion(
         |_| ControlFlow::Continue(()),
     );
     assert_eq!(failure, None);
-    assert_eq!(history.report.halved, 0);
-    history
+    assert_eq!(discrete.report.halved, 0);
+    discrete
 }
 
 /// The limit of a sequence with steps h, h/2, h/4, … whose error is even in h.

@@ -107,7 +107,7 @@ impl Goals {
     /// The next goal; voltages without an equilibrium are drawn again.
     pub(crate) fn draw(&mut self, kind: Kind) -> Goal {
         let Self { random, model } = self;
-        let zero = model.coordinates_at(&vec![0.0; model.gauges.len()]);
+        let zero = model.coordinates_at(&vec![0.0; model.joint_readings.len()]);
         loop {
             // Whole volts, so that what is written is what is meant.
             let voltages: Vec<f64> = (0..model.sources.len())
@@ -116,9 +116,9 @@ impl Goals {
             let Ok(rest) = equilibrium(model, &zero, &model.scalars(&voltages)) else {
                 continue;
             };
-            let mut instant = model.action.motion.instant();
+            let mut instant = model.action.map.instant();
             instant.z.copy_from_slice(&rest.z);
-            model.action.motion.place(&mut instant);
+            model.action.map.place(&mut instant);
             let tip = instant.x[model.markers[0]];
             let json = match kind {
                 Kind::Rest => {

@@ -178,9 +178,9 @@ pub(crate) fn published(viscosity: Option<f64>) -> Material {
 
 /// Places of the nodes of the first block at the coordinates of an instant.
 pub(crate) fn placed(model: &Model, z: &[f64]) -> Vec<Vector3<f64>> {
-    let mut instant = model.action.motion.instant();
+    let mut instant = model.action.map.instant();
     instant.z.copy_from_slice(z);
-    model.action.motion.place(&mut instant);
+    model.action.map.place(&mut instant);
     model.solids[0].places(&instant.x)
 }
 

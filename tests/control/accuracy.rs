@@ -91,12 +91,12 @@ fn double_integrator(intervals: usize) -> Attempt<usize> {
         ControlFlow::Continue(())
     })
     .unwrap();
-    let history = program.decode(&solution.x);
+    let discrete = program.decode(&solution.x);
     Attempt {
         run: intervals,
         sample: ErrorSample {
             objective: Some(solution.objective),
-            ..ErrorSample::of_motion(&plain, &history)
+            ..ErrorSample::of_motion(&plain, &discrete)
         },
         intervals,
         iterations: solution.iterations.len() - 1,
@@ -304,13 +304,13 @@ fn a_pendulum_is_where_elliptic_functions_say_to_the_accuracy_asked_for() {
         )
         .unwrap();
         let accuracy = &found.accuracy;
-        let history = &found.run.history;
-        let placed = crate::common::placed(&found.run.model, &history.z[history.intervals()]);
+        let discrete = &found.run.discrete;
+        let placed = crate::common::placed(&found.run.model, &discrete.z[discrete.intervals()]);
         let error = (found.run.model.poses(&placed)[0].centre - exact).norm();
         let estimate = accuracy.estimate["end"];
         println!(
             "{request:e}: {} steps, {error:e}, {estimate:e}",
-            history.intervals()
+            discrete.intervals()
         );
         assert_eq!(accuracy.is_met, Some(true));
         assert!(!accuracy.estimate.contains_key("objective"));
@@ -321,8 +321,8 @@ fn a_pendulum_is_where_elliptic_functions_say_to_the_accuracy_asked_for() {
             estimate / error
         );
         assert!(accuracy.estimate["path"] >= 0.5 * estimate);
-        assert_eq!(history.intervals(), 20 * found.times);
-        steps.push(history.intervals());
+        assert_eq!(discrete.intervals(), 20 * found.times);
+        steps.push(discrete.intervals());
     }
     // An estimate needs three grids, so that the first accuracy asks for no fewer than the second.
     for (coarse, fine) in steps[1..].iter().zip(&steps[3..]) {
@@ -332,8 +332,8 @@ fn a_pendulum_is_where_elliptic_functions_say_to_the_accuracy_asked_for() {
 
 #[test]
 fn a_motion_stopped_on_a_finer_grid_is_kept_as_it_was_on_the_one_before() {
-    let stop_at_80 = &mut |steps: usize, _: &Model, history: &DiscreteTrajectory| match steps == 80
-        && history.intervals() == 7
+    let stop_at_80 = &mut |steps: usize, _: &Model, discrete: &DiscreteTrajectory| match steps == 80
+        && discrete.intervals() == 7
     {
         true => ControlFlow::Break(()),
         false => ControlFlow::Continue(()),
@@ -342,7 +342,7 @@ fn a_motion_stopped_on_a_finer_grid_is_kept_as_it_was_on_the_one_before() {
     let task = swing(0.05);
     let found = integrate_to(&pendulum(), &task, wanted, None, stop_at_80);
     let found = found.unwrap();
-    assert_eq!(found.run.history.intervals(), 40);
+    assert_eq!(found.run.discrete.intervals(), 40);
     assert_eq!(found.accuracy.is_met, Some(false));
     let levels: Vec<usize> = found.accuracy.levels.iter().map(|l| l.intervals).collect();
     assert_eq!(levels, [20, 40, 7]);

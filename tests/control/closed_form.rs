@@ -93,8 +93,8 @@ fn optimum(
     })
     .unwrap();
     assert!(solution.status.is_solved(), "{:?}", solution.status);
-    let history = program.decode(&solution.x);
-    let s: Vec<f64> = history.scalars.iter().map(|s| s[0] * UNIT).collect();
+    let discrete = program.decode(&solution.x);
+    let s: Vec<f64> = discrete.scalars.iter().map(|s| s[0] * UNIT).collect();
     let effort: f64 = s.iter().map(|s| h * s * s).sum();
     assert!((effort - solution.objective).abs() < 1e-12 * effort);
     (effort, s)

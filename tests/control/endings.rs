@@ -1,6 +1,6 @@
 //! Messages about the end of a motion: goals that nothing holds, final costs that are missed, objectives above their least value.
 
-use crate::verdicts::{kept, read, told};
+use crate::verdicts::{kept, output_of, read};
 use serde_json::Value;
 use std::path::Path;
 use tempfile::tempdir;
@@ -27,7 +27,7 @@ fn a_leg_that_nothing_holds_at_its_goal_falls_and_the_warning_says_how_far() {
     let folder = tempdir().unwrap();
     let out = folder.path().join("leg");
     let leg = Path::new(env!("CARGO_MANIFEST_DIR")).join("tests/trust/leg_swing.json");
-    let ended = told(&leg, &[], &out);
+    let ended = output_of(&leg, &[], &out);
     assert!(ended.is_solved);
     let summary = read(&out.join("summary.json"));
     let after = &summary["afterwards"];
@@ -75,7 +75,7 @@ fn a_leg_that_nothing_holds_at_its_goal_falls_and_the_warning_says_how_far() {
     });
     std::fs::write(&continued, text.to_string()).unwrap();
     let after = folder.path().join("after");
-    told(&continued, &[], &after);
+    output_of(&continued, &[], &after);
     let (names, rows) = table(&after.join("trajectory.csv"));
     let [x, y] = ["foot_x", "foot_y"].map(|name| names.iter().position(|n| n == name).unwrap());
     let far = rows.iter().map(|row| (row[x] - 40.0).hypot(row[y] + 150.0));
@@ -90,7 +90,7 @@ fn a_goal_of_joint_angles_is_left_in_degrees() {
     let out = folder.path().join("leg");
     let leg = Path::new(env!("CARGO_MANIFEST_DIR")).join("tests/trust/leg_swing.json");
     let goal = r#"control.goal={"joint_angles":{"hip":"20 deg","knee":"10 deg"}}"#;
-    let ended = told(&leg, &[goal], &out);
+    let ended = output_of(&leg, &[goal], &out);
     assert!(ended.is_solved);
     let warning = ended
         .notes
@@ -99,7 +99,7 @@ fn a_goal_of_joint_angles_is_left_in_degrees() {
     assert!(warning.unwrap().contains("° from its goal"), "{warning:?}");
     // What voltages hold gets no such warning.
     let goal = r#"control.goal={"rest_at_voltages":{"hip_front":"1.5 kV"}}"#;
-    let ended = told(&leg, &[goal], &folder.path().join("held"));
+    let ended = output_of(&leg, &[goal], &folder.path().join("held"));
     assert!(ended.is_solved);
     assert!(!ended.notes.iter().any(|n| n.contains("holds the goal")));
 }
@@ -111,7 +111,7 @@ fn final_costs_tell_where_they_end() {
     let leg = Path::new(env!("CARGO_MANIFEST_DIR")).join("tests/trust/leg_swing.json");
     let objective = r#"control.objective={"effort":1.0,"final":[
         {"joint":{"joint":"hip","at":"90 deg","weight":1}},{"joint":{"joint":"knee","at":"-90 deg","weight":1}}]}"#;
-    let ended = told(&leg, &[r#"control.goal="free""#, objective], &out);
+    let ended = output_of(&leg, &[r#"control.goal="free""#, objective], &out);
     assert!(ended.is_solved);
     let summary = read(&out.join("summary.json"));
     let (names, rows) = table(&out.join("trajectory.csv"));
@@ -143,7 +143,7 @@ fn an_objective_that_falls_far_below_its_first_size_is_found_at_a_coarse_toleran
         let out = folder.path().join(name);
         let tolerance = format!("control.solver.tolerance={tolerance}");
         let set = [r#"control.goal="free""#, objective, &tolerance];
-        let ended = told(&leg, &set, &out);
+        let ended = output_of(&leg, &set, &out);
         assert!(ended.is_solved);
         let summary = read(&out.join("summary.json"));
         (number(&summary["objective"]), number(&summary["gap"]))
@@ -161,7 +161,7 @@ fn an_objective_that_falls_far_below_its_first_size_is_found_at_a_coarse_toleran
 fn the_finger_with_a_tendon_that_grows_taut_is_steered() {
     let folder = tempdir().unwrap();
     let out = folder.path().join("finger");
-    let ended = told(&kept("tendon_finger_control"), &[], &out);
+    let ended = output_of(&kept("tendon_finger_control"), &[], &out);
     assert!(ended.is_solved, "{:?}", ended.notes);
     // The slack part is passed on the way: the tension is zero somewhere or grows from little.
     let (names, rows) = table(&out.join("trajectory.csv"));
@@ -181,7 +181,7 @@ fn a_kink_and_a_limit_of_iterations_are_explained() {
     let file = folder.path().join("scene.json");
     std::fs::write(&file, hard).unwrap();
     let change = format!("scene={}", serde_json::json!(file));
-    let ended = told(
+    let ended = output_of(
         &kept("tendon_finger_control"),
         &[
             &change,

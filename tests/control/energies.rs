@@ -16,10 +16,10 @@ fn paid(optimum: &Optimum, after: &[f64]) -> [f64; 2] {
     for (m, &span) in model.spans.iter().enumerate() {
         let scalar = model.variables.voltage(m).unwrap();
         let charge = |k: usize, v: f64| {
-            let i = (placed(model, &optimum.history.z[k]).x[span].norm() / 40.0).powi(2);
+            let i = (placed(model, &optimum.discrete.z[k]).x[span].norm() / 40.0).powi(2);
             2.0 * 4000.0 * VACUUM_PERMITTIVITY * (2.0 - i + 0.5 / i) / (0.05 * 0.05) * v
         };
-        let rows = optimum.history.scalars.iter();
+        let rows = optimum.discrete.scalars.iter();
         let mut voltages: Vec<f64> = rows.map(|row| row[scalar]).collect();
         paid[1] += voltages
             .iter()

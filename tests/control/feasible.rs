@@ -46,18 +46,18 @@ fn law(
         ..boundary.start.clone()
     };
     let scalars = |from: f64, _: f64| model.scalars(&voltage((from / STEP).round() as usize));
-    let (mut history, failure) = simulate(&model, &start, STEP, INTERVALS, scalars, |_| {
+    let (mut discrete, failure) = simulate(&model, &start, STEP, INTERVALS, scalars, |_| {
         ControlFlow::Continue(())
     });
     assert_eq!(failure, None);
     assert_eq!(
-        history.report.halved, 0,
+        discrete.report.halved, 0,
         "{name}: all steps are those of the grid"
     );
     let n = model.coordinate_count();
-    history.z[INTERVALS][n..].fill(0.0);
-    let first = &history.z[0][..n];
-    let moved = history
+    discrete.z[INTERVALS][n..].fill(0.0);
+    let first = &discrete.z[0][..n];
+    let moved = discrete
         .z
         .iter()
         .flat_map(|z| z[..n].iter().zip(first).map(|(a, b)| (a - b).abs()));
@@ -65,7 +65,7 @@ fn law(
 
     let initial = guess(&model, &boundary, &control, STEP, None);
     let mut program = Transcription::new(&model, &boundary, &control, &initial).unwrap();
-    let x = program.encode(&history, STEP);
+    let x = program.encode(&discrete, STEP);
     let rows = program.unknowns().rows.clone();
     let mut g = vec![0.0; rows.len()];
     program.constraint(&x, &mut g);
@@ -75,7 +75,7 @@ fn law(
             // At the end the motion is not at rest: the row is minus the momentum there, in the scale of the rows of i.
             Row::Instant { k: INTERVALS, i } if i < n => {
                 let scale = momentum_scale(&mut program, &x, i);
-                let momentum = history.momenta[INTERVALS][i] * scale;
+                let momentum = discrete.momenta[INTERVALS][i] * scale;
                 assert!(
                     (value - momentum).abs() < 1e-12 * (1.0 + momentum.abs()),
                     "{value} against {momentum}"
@@ -94,8 +94,8 @@ fn law(
     }
     println!("{name} {coordinates:?}: largest row {worst:.1e}");
     // Any other voltages violate them.
-    history.scalars[3][0] += 50.0;
-    let x = program.encode(&history, STEP);
+    discrete.scalars[3][0] += 50.0;
+    let x = program.encode(&discrete, STEP);
     program.constraint(&x, &mut g);
     assert!(g.iter().any(|value| value.abs() > 1e-7), "{name}");
 }

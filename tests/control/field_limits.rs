@@ -33,9 +33,9 @@ fn largest_field(ran: &Ran) -> [f64; 2] {
     // Ends of each muscle, from the poses of the bodies.
     let span = |k: usize, muscle: &proboscis::model::system::Muscle| {
         let values: Vec<f64> = joints.iter().map(|list| list[k]).collect();
-        let mut instant = model.action.motion.instant();
+        let mut instant = model.action.map.instant();
         instant.z.copy_from_slice(&model.coordinates_at(&values));
-        model.action.motion.place(&mut instant);
+        model.action.map.place(&mut instant);
         let poses = model.poses(&instant);
         let end = |a: &proboscis::model::system::Attachment| match a.body {
             None => a.at,
@@ -222,19 +222,19 @@ fn solved_field(problem: &Value) -> (f64, f64) {
     })
     .unwrap();
     assert!(solution.status.is_solved(), "{:?}", solution.status);
-    let history = program.decode(&solution.x);
-    let places: Vec<Vec<Vector3<f64>>> = history
+    let discrete = program.decode(&solution.x);
+    let places: Vec<Vec<Vector3<f64>>> = discrete
         .z
         .iter()
         .map(|z| {
-            let mut instant = model.action.motion.instant();
+            let mut instant = model.action.map.instant();
             instant.z.copy_from_slice(z);
-            model.action.motion.vectors(&mut instant);
+            model.action.map.vectors(&mut instant);
             model.solids[0].places(&instant.x)
         })
         .collect();
     let mut largest = 0.0_f64;
-    for (k, scalars) in history.scalars.iter().enumerate() {
+    for (k, scalars) in discrete.scalars.iter().enumerate() {
         let phi = model.solids[0].potentials(scalars);
         let middle: Vec<_> = (0..phi.len())
             .map(|n| (places[k][n] + places[k + 1][n]) * 0.5)

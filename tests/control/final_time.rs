@@ -32,7 +32,7 @@ fn a_free_final_time_is_the_best_of_a_scan() {
     };
     let best = cold(&system, &free);
     let (t, value) = (
-        best.history.times[control.intervals],
+        best.discrete.times[control.intervals],
         best.solution.objective,
     );
     println!("free time {t} ms, {value}");
@@ -56,7 +56,7 @@ fn a_free_final_time_is_the_best_of_a_scan() {
 fn the_shortest_time_is_where_feasible_times_begin() {
     let (system, control) = problem("pair_time");
     let shortest = cold(&system, &control);
-    let t = shortest.history.times[control.intervals];
+    let t = shortest.discrete.times[control.intervals];
     let mut fixed = control.clone();
     fixed.objective = Objective {
         effort: 1.0,
@@ -65,7 +65,7 @@ fn the_shortest_time_is_where_feasible_times_begin() {
     for (factor, feasible) in [(0.9, false), (0.999, false), (1.001, true), (1.1, true)] {
         fixed.duration = Duration::Given(factor * t);
         let h = guessed_step(&fixed);
-        let from = shortest.history.clone();
+        let from = shortest.discrete.clone();
         let found = solve(
             &system,
             &fixed,

@@ -46,19 +46,19 @@ fn solve(goal: &Goal, kind: Kind) -> bool {
     let h = motion.times[steps] / steps as f64;
     let voltages = |from: f64, _: f64| model.scalars(&motion.voltages[(from / h).round() as usize]);
     let start = &optimum.boundary.start;
-    let (history, failure) = simulate(model, start, h, steps, voltages, |_| {
+    let (discrete, failure) = simulate(model, start, h, steps, voltages, |_| {
         ControlFlow::Continue(())
     });
     assert_eq!(failure, None);
-    let mut end = model.action.motion.instant();
-    end.z.copy_from_slice(&history.z[steps]);
-    model.action.motion.place(&mut end);
+    let mut end = model.action.map.instant();
+    end.z.copy_from_slice(&discrete.z[steps]);
+    model.action.map.place(&mut end);
     let far = (end.x[model.markers[0]] - goal.tip).norm();
     assert!(far < 1e-4, "{far} mm from {}", goal.json);
-    let momentum = history.momenta[steps]
+    let momentum = discrete.momenta[steps]
         .iter()
         .fold(0.0, |m: f64, p| m.max(p.abs()));
-    let largest = history
+    let largest = discrete
         .momenta
         .iter()
         .flatten()

@@ -1,6 +1,6 @@
 //! A guess changes nothing that is asked.
 
-use crate::verdicts::{control, kept, read, told};
+use crate::verdicts::{control, kept, output_of, read};
 use proboscis::control::problem::{Control, Duration, Guess, Task};
 use proboscis::control::{BoundaryConditions, InitialGuess, Solution, guess};
 use proboscis::files::read_problem;
@@ -31,7 +31,7 @@ pub(crate) fn start(
     let h = control.duration.first() / control.intervals as f64;
     let (model, boundary) = BoundaryConditions::resolve(system, control, h).unwrap();
     let initial = guess(&model, &boundary, control, h, Some(earlier));
-    let joints = solved(&model, &initial.history, None).joints;
+    let joints = solved(&model, &initial.discrete, None).joints;
     (initial, joints)
 }
 
@@ -77,7 +77,7 @@ fn a_guess_changes_nothing_that_is_asked() {
         optimum(&system, &given),
         optimum(&system, &changed(free, None, 20)),
         optimum(&system, &changed(Duration::Given(90.0), redundant, 15)),
-        solved(&simulated.model, &simulated.history, None),
+        solved(&simulated.model, &simulated.discrete, None),
     ];
     let lengths = earlier.each_ref().map(|e| e.times[e.intervals()]);
     assert!(
@@ -94,7 +94,7 @@ fn a_guess_changes_nothing_that_is_asked() {
                 for intervals in [20, 13] {
                     let asked = changed(duration, coordinates, intervals);
                     let (initial, joints) = start(&system, &asked, before);
-                    let end = initial.history.times[intervals];
+                    let end = initial.discrete.times[intervals];
                     let place = format!("{length} ms, {duration:?}, {coordinates:?}, {intervals}");
                     assert!(
                         (initial.h * intervals as f64 - expected).abs() < 1e-9,
@@ -120,13 +120,13 @@ fn a_duration_that_is_given_stays_and_the_stretched_guess_is_told() {
     let folder = tempdir().unwrap();
     let [first, second] = ["p", "q"].map(|name| folder.path().join(name));
     let pair = kept("pair");
-    assert!(told(&pair, &[], &first).is_solved);
+    assert!(output_of(&pair, &[], &first).is_solved);
     let solution = first.join("solution.json");
     let from = format!(
         "control.guess={{\"solution\":{:?}}}",
         solution.display().to_string()
     );
-    let answer = told(&pair, &["control.duration=0.4 s", &from], &second);
+    let answer = output_of(&pair, &["control.duration=0.4 s", &from], &second);
     assert!(answer.is_solved, "{answer:?}");
     let line = "the guess lasts 0.2 s; it was stretched in time to 0.4 s";
     assert!(
@@ -144,7 +144,7 @@ fn a_duration_that_is_given_stays_and_the_stretched_guess_is_told() {
     let time = &read(&second.join("solution.json"))["time"];
     assert_eq!(time.as_array().unwrap().last().unwrap(), 0.4);
     // One of the same length is taken as it is, in silence.
-    let again = told(&pair, &[&from], &second);
+    let again = output_of(&pair, &[&from], &second);
     assert!(
         again.notes.iter().all(|note| !note.contains("stretched")),
         "{again:?}"

@@ -1,6 +1,6 @@
 //! Ends that are held, and those that cannot be.
 
-use crate::verdicts::{control, kept, read, request, told, trust};
+use crate::verdicts::{control, kept, output_of, read, request, trust};
 use proboscis::app::CommandInput;
 use proboscis::app::run;
 use proboscis::control::BoundaryConditions;
@@ -13,7 +13,7 @@ use tempfile::tempdir;
 fn a_solution_holds_its_goal_after_its_end() {
     let folder = tempdir().unwrap();
     let place = |name: &str| folder.path().join(name);
-    assert!(told(&kept("pair"), &[], &place("p")).is_solved);
+    assert!(output_of(&kept("pair"), &[], &place("p")).is_solved);
     let path = place("p").join("solution.json");
     let mut solution = read(&path);
     assert_eq!(solution["hold"]["muscle2"], 1700.0);
@@ -32,7 +32,7 @@ fn a_solution_holds_its_goal_after_its_end() {
             solution.display().to_string()
         );
         let set = ["simulate.duration=1 s", "simulate.step=10 ms", &voltages];
-        let answer = told(&kept("pair_constant"), &set, &place(name));
+        let answer = output_of(&kept("pair_constant"), &set, &place(name));
         assert!(answer.is_solved, "{answer:?}");
         let motion = read(&place(name).join("solution.json"));
         let joint = motion["configuration"]["joints"]["joint1"]
@@ -90,7 +90,7 @@ fn an_end_that_cannot_be_kept_is_told_or_refused() {
     let line = "control.goal.hold.muscle1: a hold of 4000 V is beyond the bounds 0 V to 3000 V";
     assert!(beyond.ends_with(line), "{beyond}");
     // Without the word it is solved, with one line; a hold that leads into pull-in ends early.
-    let answer = told(&trust("07_hold_beyond_bounds"), &[], folder.path());
+    let answer = output_of(&trust("07_hold_beyond_bounds"), &[], folder.path());
     assert!(answer.is_solved, "{answer:?}");
     let lines = answer
         .notes
@@ -103,7 +103,7 @@ fn an_end_that_cannot_be_kept_is_told_or_refused() {
             && lines[0].contains("ends early")
     );
     // Of an unstable and a stable equilibrium under the same voltages the goal is the one that stays.
-    let answer = told(
+    let answer = output_of(
         &trust("08_unstable_ends_solved"),
         &["control.hold=\"required\""],
         folder.path(),
@@ -115,7 +115,7 @@ fn an_end_that_cannot_be_kept_is_told_or_refused() {
     // Voltages that hold a stable goal are no matter; a goal without any cannot be promised.
     let pair = kept("pair");
     let required = "control.hold=\"required\"";
-    let stays = told(&pair, &[required], folder.path());
+    let stays = output_of(&pair, &[required], folder.path());
     assert!(
         stays.is_solved && stays.notes.iter().all(|note| !note.contains("kept")),
         "{stays:?}"
@@ -137,7 +137,7 @@ fn an_end_that_cannot_be_kept_is_told_or_refused() {
 
     // A hold that is within its bounds and leads elsewhere is seen after the solve.
     let zero = "control.goal.hold={\"muscle1\":0}";
-    let leaves = told(
+    let leaves = output_of(
         &trust("07_hold_beyond_bounds"),
         &[zero, required],
         folder.path(),

@@ -58,20 +58,20 @@ fn voltages() -> Voltages {
 fn measured(system: &System) -> Vec<Signal> {
     let system = with_parameters(system, &material(system), &TRUE);
     let model = Model::new(system, None, H, &[]).unwrap();
-    let zero = vec![0.0; model.gauges.len()];
+    let zero = vec![0.0; model.joint_readings.len()];
     let start = Initial::at_rest(&model, model.coordinates_at(&zero));
     let scalars = |from: f64, to: f64| model.scalars(&voltages().at(0.5 * (from + to)));
-    let (history, failure) = simulate(&model, &start, H, INTERVALS, scalars, |_| {
+    let (discrete, failure) = simulate(&model, &start, H, INTERVALS, scalars, |_| {
         ControlFlow::Continue(())
     });
     assert!(failure.is_none());
-    let joints: Vec<Vec<f64>> = history
+    let joints: Vec<Vec<f64>> = discrete
         .z
         .iter()
-        .map(|z| model.joints(&model.action.motion.placed(z), &zero))
+        .map(|z| model.joints(&model.action.map.placed(z), &zero))
         .collect();
     let signal = |joint: usize| Signal::Table {
-        times: history.times.clone(),
+        times: discrete.times.clone(),
         values: joints.iter().map(|row| row[joint]).collect(),
     };
     (0..zero.len()).map(signal).collect()
@@ -113,7 +113,7 @@ fn shear_modulus_and_viscosity_are_recovered_from_a_motion() {
     let first = found.solution.iterations[0].objective;
     assert!(first > 1e6 * found.solution.objective.abs(), "{first}");
     let range = found.model.variables.range(Role::Parameter);
-    let values = &found.history.scalars[0][range];
+    let values = &found.discrete.scalars[0][range];
     for (value, truth) in values.iter().zip(TRUE) {
         println!("{value} {truth}");
         assert!((value - truth).abs() < 1e-8 * truth, "{value} {truth}");

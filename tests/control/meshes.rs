@@ -3,7 +3,7 @@
 use crate::common::cases::rest_to_rest;
 use crate::common::trunk;
 use crate::guesses::{optimum, start};
-use crate::verdicts::{control, kept, read, told};
+use crate::verdicts::{control, kept, output_of, read};
 use proboscis::control::problem::{Afterwards, Control, Guess, Voltages};
 use proboscis::control::{BoundaryConditions, guess};
 use proboscis::model::System;
@@ -36,7 +36,7 @@ fn under(system: &System, control: &Control, ends: &[f64], rows: &[Vec<f64>]) ->
     let h = control.duration.first() / control.intervals as f64;
     let (model, boundary) = BoundaryConditions::resolve(system, &control, h).unwrap();
     let initial = guess(&model, &boundary, &control, h, None);
-    initial.history.z
+    initial.discrete.z
 }
 
 #[test]
@@ -47,20 +47,20 @@ fn a_solution_on_another_mesh_lends_its_voltages() {
     assert_eq!(before.meshes["beam"].len(), 6 * 2 * 3);
     let (same, _) = start(&system, &problem, &before);
     assert!(!same.carried.simulated);
-    assert_eq!(same.history.z, before.z);
+    assert_eq!(same.discrete.z, before.z);
     // As many coordinates, other nodes; then more coordinates, and as many nodes at other places.
     for (elements, width) in [([3, 1, 4], 0), ([7, 1, 2], 0), ([5, 1, 2], 1)] {
         let size = format!("scene.solids[0].box.size[1]=\"{} mm\"", 4 + width);
         let set = [&changes(elements)[..], &[size]].concat();
         let (system, problem) = control("fe_bending_control", &set);
         let (initial, _) = start(&system, &problem, &before);
-        let count = initial.history.z[0].len();
+        let count = initial.discrete.z[0].len();
         assert_eq!(count == before.z[0].len(), elements != [7, 1, 2]);
         assert!(initial.carried.simulated && initial.costates.is_none());
         let expected = under(&system, &problem, &before.times[1..], &before.voltages);
         let way = (0..count).map(|i| (expected[0][i] - expected[8][i]).abs());
         assert!(way.fold(0.0, f64::max) > 0.1);
-        assert_eq!(initial.history.z, expected);
+        assert_eq!(initial.discrete.z, expected);
     }
 }
 
@@ -72,7 +72,7 @@ fn a_file_of_a_coarse_mesh_starts_a_finer_one() {
         let mut set = changes(elements).to_vec();
         set.push(format!("control.guess={guess}"));
         let set: Vec<&str> = set.iter().map(String::as_str).collect();
-        let answer = told(&problem, &set, &folder.path().join(name));
+        let answer = output_of(&problem, &set, &folder.path().join(name));
         assert!(answer.is_solved, "{answer:?}");
         read(&folder.path().join(name).join("summary.json"))
     };
@@ -113,5 +113,5 @@ fn a_solution_of_lumped_muscles_starts_finite_elements() {
     let expected = under(&system, &problem, &before.times[1..], &before.voltages);
     let ends = [0, 10].map(|k: usize| expected[k][0]);
     assert!((ends[1] - ends[0]).abs() > 0.01, "{ends:?}");
-    assert_eq!(initial.history.z, expected);
+    assert_eq!(initial.discrete.z, expected);
 }

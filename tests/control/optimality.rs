@@ -16,7 +16,7 @@ use std::ops::ControlFlow;
 pub(crate) struct Optimum {
     pub(crate) model: Model,
     pub(crate) boundary: BoundaryConditions,
-    pub(crate) history: DiscreteTrajectory,
+    pub(crate) discrete: DiscreteTrajectory,
     pub(crate) h: f64,
     pub(crate) solution: SolverResult,
     pub(crate) costates: Costates,
@@ -45,8 +45,8 @@ pub(crate) fn solve(
         BoundaryConditions::resolve(system, control, guessed_step(control)).unwrap();
     let h = from.map_or(guessed_step(control), |(_, h, _)| h);
     let mut initial = guess(&model, &boundary, control, h, None);
-    if let Some((history, _, costates)) = from {
-        initial.history = history.clone();
+    if let Some((discrete, _, costates)) = from {
+        initial.discrete = discrete.clone();
         initial.costates = costates.cloned();
     }
     let options = Options {
@@ -61,8 +61,8 @@ pub(crate) fn solve(
     })
     .unwrap();
     let (conditions, multipliers) = karush_kuhn_tucker(&mut program, &solution);
-    let history = program.decode(&solution.x);
-    let h = history.times[1];
+    let discrete = program.decode(&solution.x);
+    let h = discrete.times[1];
     let costates = program.costates(&solution.costates);
     let (columns, rows) = (
         program.unknowns().columns.clone(),
@@ -72,7 +72,7 @@ pub(crate) fn solve(
     Optimum {
         model,
         boundary,
-        history,
+        discrete,
         h,
         solution,
         costates,
@@ -169,12 +169,12 @@ fn reference_motion(name: &str) -> (DiscreteTrajectory, f64) {
             .map(|row| numbers(row).iter().map(|v| v * scale).collect())
             .collect()
     };
-    let history = DiscreteTrajectory {
+    let discrete = DiscreteTrajectory {
         z: rows("theta_rad", 1.0),
         scalars: rows("voltage_kV", 1e3),
         ..DiscreteTrajectory::default()
     };
-    (history, 1e3 * file["control"]["h"].as_f64().unwrap())
+    (discrete, 1e3 * file["control"]["h"].as_f64().unwrap())
 }
 
 pub(crate) fn cold(system: &System, control: &Control) -> Optimum {
@@ -212,7 +212,7 @@ fn optima_are_motions_that_stay_at_rest() {
         let held = optimum.model.scalars(&hold(system.bodies.len()));
         let voltages = |from: f64, _: f64| {
             let k = (from / optimum.h).round() as usize;
-            optimum.history.scalars.get(k).unwrap_or(&held).clone()
+            optimum.discrete.scalars.get(k).unwrap_or(&held).clone()
         };
         let start = &optimum.boundary.start;
         let (again, failure) = simulate(
@@ -224,7 +224,7 @@ fn optima_are_motions_that_stay_at_rest() {
             |_| ControlFlow::Continue(()),
         );
         assert_eq!(failure, None);
-        let goal = &optimum.history.z[intervals][..n];
+        let goal = &optimum.discrete.z[intervals][..n];
         let length = |i: usize| {
             if optimum.model.is_length(i) {
                 optimum.model.length()
@@ -238,7 +238,7 @@ fn optima_are_motions_that_stay_at_rest() {
                 .fold(0.0, f64::max)
         };
         assert!(distance(&again.z[0], goal) > 0.05, "{name} goes somewhere");
-        let expected = |k: usize| optimum.history.z.get(k).map_or(goal, |z| &z[..n]);
+        let expected = |k: usize| optimum.discrete.z.get(k).map_or(goal, |z| &z[..n]);
         let apart = |k: usize| distance(&again.z[k], expected(k));
         let on_the_way = (0..=intervals).map(apart).fold(0.0, f64::max);
         let at_rest = (intervals..=6 * intervals).map(apart).fold(0.0, f64::max);
@@ -265,9 +265,9 @@ fn both_coordinates_have_the_same_optimum_and_costates() {
             (0..control.intervals).map(difference).fold(0.0, f64::max)
         };
         let volts = worst(&|k| {
-            let pairs = reduced.history.scalars[k]
+            let pairs = reduced.discrete.scalars[k]
                 .iter()
-                .zip(&redundant.history.scalars[k]);
+                .zip(&redundant.discrete.scalars[k]);
             pairs.map(|(a, b)| (a - b).abs()).fold(0.0, f64::max)
         });
         println!("{name}: voltages agree to {volts:.1e} V");
@@ -289,7 +289,7 @@ fn both_coordinates_have_the_same_optimum_and_costates() {
             };
             let l = of(&reduced, reduced.model.coordinate_count());
             let y = of(&redundant, redundant.model.coordinate_count());
-            let expected = reduced.model.redundant_rates(&reduced.history.z[k], &l);
+            let expected = reduced.model.redundant_rates(&reduced.discrete.z[k], &l);
             let size = expected.iter().fold(0.0_f64, |m, v| m.max(v.abs()));
             seen = seen.max(size);
             error = expected
@@ -352,13 +352,13 @@ fn warm_starts_are_short() {
             assert!((a - b).abs() < 1e-6 * b, "{name}: {a} against {b}");
             o.solution.iterations.len() - 1
         };
-        let from = Some((&first.history, first.h, Some(&first.costates)));
+        let from = Some((&first.discrete, first.h, Some(&first.costates)));
         let again = count(&solve(&system, &control, from, Start::PrimalDual));
-        let (history, h) = reference_motion(name);
+        let (discrete, h) = reference_motion(name);
         let primal = count(&solve(
             &system,
             &control,
-            Some((&history, h, None)),
+            Some((&discrete, h, None)),
             Start::PRIMAL,
         ));
         println!(
@@ -378,7 +378,7 @@ fn warm_starts_are_short() {
     let (system, control) = problem("pair_time");
     let [_, redundant] = reduced_and_redundant(&control);
     let first = cold(&system, &redundant);
-    let from = Some((&first.history, first.h, Some(&first.costates)));
+    let from = Some((&first.discrete, first.h, Some(&first.costates)));
     let again = solve(&system, &redundant, from, Start::PrimalDual);
     println!(
         "redundant: {:?} {}",

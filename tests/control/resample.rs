@@ -107,7 +107,7 @@ fn what_is_carried_to_a_finer_grid_is_close_to_the_solution_there() {
         let control = problem(coordinates, 80);
         let fine = solve(&control);
         let (initial, variables, rows, count) = carried(&control, &coarse);
-        assert_eq!(initial.history.intervals(), 80);
+        assert_eq!(initial.discrete.intervals(), 80);
         assert!((initial.h - 1.5).abs() < 1e-3, "{}", initial.h);
 
         let costates = initial.costates.expect("the coarse optimum has costates");
@@ -138,7 +138,7 @@ fn what_is_carried_to_a_finer_grid_is_close_to_the_solution_there() {
         // Coordinates and impulses of constraints, instant by instant; voltages in the intervals.
         for (range, name) in [
             (0..count, "coordinates"),
-            (count..initial.history.z[0].len(), "impulses"),
+            (count..initial.discrete.z[0].len(), "impulses"),
         ] {
             if range.is_empty() {
                 continue;
@@ -150,14 +150,14 @@ fn what_is_carried_to_a_finer_grid_is_close_to_the_solution_there() {
                     .collect::<Vec<_>>()
             };
             // Both models are made for the same guessed step, so that multipliers have one unit.
-            let (new, known) = (inner(&initial.history.z), inner(&fine.motion.z));
+            let (new, known) = (inner(&initial.discrete.z), inner(&fine.motion.z));
             let size = norm(known.iter().copied());
             let apart = norm(new.iter().zip(&known).map(|(a, b)| a - b)) / size;
             println!("{coordinates:?}, {name}: {size:.2e}, apart by {apart:.4}");
             assert!(size > 1e-3 && apart < 0.1, "{name}: {apart}");
         }
         let (new, known) = (
-            initial.history.scalars.concat(),
+            initial.discrete.scalars.concat(),
             fine.motion.voltages.concat(),
         );
         let size = norm(known.iter().copied());
@@ -171,8 +171,8 @@ fn on_its_own_grid_a_solution_is_kept_to_the_last_digit() {
     let control = problem(Coordinates::Redundant, 20);
     let solved = solve(&control);
     let (initial, ..) = carried(&control, &solved);
-    assert_eq!(initial.history.z, solved.motion.z);
-    assert_eq!(initial.history.scalars, solved.motion.voltages);
+    assert_eq!(initial.discrete.z, solved.motion.z);
+    assert_eq!(initial.discrete.scalars, solved.motion.voltages);
     assert_eq!(initial.costates, solved.motion.costates);
     assert!(
         initial
@@ -189,7 +189,7 @@ fn a_coarser_grid_and_one_that_fits_nowhere_are_reached_as_well() {
         let (initial, ..) = carried(&control, &solved);
         let cold = solve(&control);
         let pairs = initial
-            .history
+            .discrete
             .z
             .concat()
             .into_iter()
@@ -222,7 +222,7 @@ fn voltages_keep_their_mean_and_stay_between_their_neighbours() {
     let old = &solved.motion.voltages;
     for intervals in [20, 33, 57, 80] {
         let (initial, ..) = carried(&problem(Coordinates::Reduced, intervals), &solved);
-        let new = &initial.history.scalars;
+        let new = &initial.discrete.scalars;
         for s in 0..old[0].len() {
             let mean =
                 |rows: &[Vec<f64>]| rows.iter().map(|row| row[s]).sum::<f64>() / rows.len() as f64;

@@ -59,7 +59,7 @@ fn turn(system: &System) -> Control {
 /// The effort with a given arm, from the motion that was found: there are other optima, in which the muscles pull in another order.
 fn effort(arm_length: f64, found: &Optimum) -> f64 {
     let system = with_parameters(&pair(), &[arm([1.0, 99.0], 15.0)], &[arm_length]);
-    let from = Some((&found.history, found.h, None));
+    let from = Some((&found.discrete, found.h, None));
     let found = solve(&system, &turn(&system), from, Start::PRIMAL);
     assert!(found.solution.status.is_solved());
     found.solution.objective
@@ -75,7 +75,7 @@ fn a_free_arm_lowers_the_effort_and_meets_the_conditions() {
     let found = solve(&system, &with([4.0, 60.0], 15.0), None, Start::Cold);
     assert!(found.solution.status.is_solved());
     let scalars = found.model.variables.range(Role::Parameter);
-    let best = found.history.scalars[0][scalars.start];
+    let best = found.discrete.scalars[0][scalars.start];
     println!(
         "arm {best}, {:?}, effort {}",
         found.conditions, found.solution.objective
@@ -107,7 +107,7 @@ fn a_free_arm_lowers_the_effort_and_meets_the_conditions() {
         None,
         Start::Cold,
     );
-    let at = held.history.scalars[0][scalars.start];
+    let at = held.discrete.scalars[0][scalars.start];
     assert!((at - bound).abs() < 1e-5 * bound, "{at} {bound}");
     assert!(held.solution.objective > least && held.conditions.iter().all(|c| *c < 1e-7));
 }

@@ -61,8 +61,8 @@ fn voltages_are_found_again_from_the_motion_of_the_joints() {
     let h = 10.0;
     let (model, boundary) =
         proboscis::control::BoundaryConditions::resolve(&system, &known, h).unwrap();
-    let history = proboscis::control::guess(&model, &boundary, &known, h, None).history;
-    let motion = proboscis::workflow::solved(&model, &history, None);
+    let discrete = proboscis::control::guess(&model, &boundary, &known, h, None).discrete;
+    let motion = proboscis::workflow::solved(&model, &discrete, None);
     assert!(motion.joints[20].iter().all(|angle| angle.abs() > 0.02));
     for coordinates in [Coordinates::Reduced, Coordinates::Redundant] {
         let mut problem = free(&system, 20);

@@ -27,7 +27,7 @@ pub(crate) fn kept(name: &str) -> PathBuf {
 }
 
 /// Runs a problem with changes into a folder.
-pub(crate) fn told(input: &Path, set: &[&str], output: &Path) -> CommandOutput {
+pub(crate) fn output_of(input: &Path, set: &[&str], output: &Path) -> CommandOutput {
     let request = CommandInput {
         input: input.to_owned(),
         set: set.iter().map(|&change| change.to_owned()).collect(),
@@ -112,7 +112,7 @@ fn beside(folder: &Path, problem: &Value, steps: usize) -> (f64, f64) {
         panic!("a simulation")
     };
     let found = integrate(&loaded.system, &task, |_, _| ControlFlow::Continue(())).unwrap();
-    let motion = solved(&found.model, &found.history, None);
+    let motion = solved(&found.model, &found.discrete, None);
     let (mut way, mut apart) = (0.0_f64, 0.0_f64);
     for (j, joint) in loaded.system.joints.iter().enumerate() {
         let optimal = rows(&solution["configuration"]["joints"][&joint.name]);
@@ -129,7 +129,7 @@ fn beside(folder: &Path, problem: &Value, steps: usize) -> (f64, f64) {
 fn a_grid_that_resolves_no_motion_is_refined() {
     let folder = tempdir().unwrap();
     let trunk = kept("elephant_trunk_effort");
-    let answer = told(&trunk, &["control.intervals=3"], folder.path());
+    let answer = output_of(&trunk, &["control.intervals=3"], folder.path());
     assert!(answer.is_solved, "{answer:?}");
     let summary = read(&folder.path().join("summary.json"));
     let intervals = summary["intervals"].as_u64().unwrap();

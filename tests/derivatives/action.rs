@@ -97,13 +97,13 @@ fn dense(system: &System, coordinates: Coordinates) -> nalgebra::DMatrix<f64> {
             .map(|_| 0.4 * random.unit())
             .collect::<Vec<_>>()
     };
-    let (mut a, mut b) = (action.motion.instant(), action.motion.instant());
+    let (mut a, mut b) = (action.map.instant(), action.map.instant());
     for instant in [&mut a, &mut b] {
         instant.z = model.coordinates_at(&joints(&mut random));
         for multiplier in &mut instant.z[model.coordinate_count()..] {
             *multiplier = random.unit();
         }
-        action.motion.place(instant);
+        action.map.place(instant);
     }
     let voltages = model.variables.range(Role::Voltage);
     let size = |s: usize| if voltages.contains(&s) { 2e3 } else { 0.02 };
@@ -120,7 +120,7 @@ fn dense(system: &System, coordinates: Coordinates) -> nalgebra::DMatrix<f64> {
         action.evaluate_instant(level, instant, &[], &mut scratch);
         action.pull_back_instant(level, instant, k, &mut scratch, &mut values);
     }
-    let n = action.motion.unknowns();
+    let n = action.map.unknowns();
     let mut matrix = nalgebra::DMatrix::zeros(2 * n, 2 * n);
     for (slot, (i, j)) in layout.same.entries().enumerate() {
         matrix[(i, j)] += values[layout.same_at(0) + slot];

@@ -45,7 +45,7 @@ fn follow(signal: &Signal, t: f64) -> f64 {
 fn marker(system: &System, model: &Model, z: &[f64], marker: usize) -> Vector3<f64> {
     let point = &system.markers[marker].point;
     let body = point.body.unwrap();
-    let pose = &model.poses(&model.action.motion.placed(z))[body];
+    let pose = &model.poses(&model.action.map.placed(z))[body];
     let of = &system.bodies[body];
     pose.centre + pose.directors * of.directors.transpose() * (point.at - of.centre)
 }
@@ -57,8 +57,8 @@ fn deviation(system: &System, model: &Model, z: &[f64], cost: &QuantityCost, t: 
             marker(system, model, z, m)[axis] - follow(reference, t)
         }
         Quantity::Joint { joint, .. } => {
-            let instant = model.action.motion.placed(z);
-            let value = model.joints(&instant, &vec![0.0; model.gauges.len()])[joint];
+            let instant = model.action.map.placed(z);
+            let value = model.joints(&instant, &vec![0.0; model.joint_readings.len()])[joint];
             let e = value - follow(reference, t);
             match cost.quantity.period(system) {
                 Some(_) => (e + PI).rem_euclid(TAU) - PI,

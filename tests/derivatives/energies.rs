@@ -13,7 +13,7 @@ use proboscis::nlp::Nlp;
 
 /// Q/V of a muscle at an instant, as −∂²/∂V² of its energy V₀ [c₁ + c₂ Λ² − ε/(2Λ²)] (V/t)².
 fn capacitance(system: &System, model: &Model, z: &[f64], muscle: &Muscle) -> f64 {
-    let poses = model.poses(&model.action.motion.placed(z));
+    let poses = model.poses(&model.action.map.placed(z));
     let place = |point: &Attachment| match point.body {
         None => point.at,
         Some(body) => {

@@ -6,7 +6,7 @@ use crate::common::random::Random;
 use crate::common::systems::{BRANCHED_VOLTAGES, branched};
 use proboscis::control::problem::Duration;
 use proboscis::control::{BoundaryConditions, Transcription, guess};
-use proboscis::functional::{BlockMask, Horizon, Kind, Order, Sample};
+use proboscis::functional::{BlockMask, Horizon, Order, Sample, TermKind};
 use proboscis::math::Vector;
 use proboscis::model::{Coordinates, Model};
 use proboscis::nlp::Nlp;
@@ -111,9 +111,9 @@ impl Interval {
         let mut random = Random(21);
         let vectors = [0.1, 0.4].map(|size| {
             let joints: Vec<f64> = (0..4).map(|_| size * random.unit()).collect();
-            let mut instant = model.action.motion.instant();
+            let mut instant = model.action.map.instant();
             instant.z = model.coordinates_at(&joints);
-            model.action.motion.place(&mut instant);
+            model.action.map.place(&mut instant);
             instant.x
         });
         let scalars = model.scalars(&BRANCHED_VOLTAGES);
@@ -140,14 +140,14 @@ impl Interval {
     /// Kinetic and potential energy.
     fn energies(&self, vectors: [&[Vector]; 2], h: f64) -> [f64; 2] {
         let frame = self.frame(vectors, h, Horizon::Given);
-        let of = |kind: Kind| {
+        let of = |kind: TermKind| {
             let effects = self.model.action.intervals.terms.iter();
             effects
                 .filter(|e| e.kind() == kind)
                 .map(|e| e.energy(&frame))
                 .sum()
         };
-        [of(Kind::Kinetic), of(Kind::Potential)]
+        [of(TermKind::Kinetic), of(TermKind::Potential)]
     }
 
     /// Forces at both instants, and their derivatives with h, of potentials and inertia alone.
@@ -157,7 +157,7 @@ impl Interval {
         let [a, b] = &self.vectors;
         let frame = self.frame([a, b], h, Horizon::Free);
         for (effect, slots) in action.intervals.terms() {
-            if effect.kind() != Kind::VirtualWork {
+            if effect.kind() != TermKind::VirtualWork {
                 effect.evaluate(Order::Hessian, &frame, slots, &mut out);
             }
         }

@@ -3,8 +3,8 @@
 
 use crate::common::random::Random;
 use proboscis::functional::{
-    BlockMask, Functional, Group, Horizon, Kernel, Order, Part, Sample, ScalarArg, Scatter,
-    Stencil, VectorArg,
+    BlockMask, Functional, Group, Horizon, Kernel, Order, Sample, ScalarArg, Scatter, Stencil,
+    SumDerivatives, VectorArg,
 };
 use proboscis::math::{Derivatives, Matrix, Vector};
 
@@ -153,7 +153,7 @@ fn unpack(u: &[f64]) -> ([Vec<Vector>; 2], &[f64], f64) {
 }
 
 /// Gradient and Hessian with the border of the length; what the length alone gives is not part of a gradient.
-fn dense(part: &Part, sum: &Functional) -> (Vec<f64>, Vec<Vec<f64>>) {
+fn dense(part: &SumDerivatives, sum: &Functional) -> (Vec<f64>, Vec<Vec<f64>>) {
     let place = |v: usize, side: usize, c: usize| 3 * (VECTORS * side + v) + c;
     let scalar = |s: usize| 6 * VECTORS + s;
     let mut gradient = vec![0.0; UNKNOWNS];

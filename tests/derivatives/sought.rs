@@ -105,12 +105,12 @@ fn numbers(program: &mut Transcription<'_>, model: &Model, x: &[f64]) -> Numbers
 fn a_program_with_parameters_is_that_of_the_system_made_with_their_values() {
     let system = robot();
     for_each_program(|control, model, initial, program, x| {
-        let history = program.decode(x);
+        let discrete = program.decode(x);
         let parameters = parameters(&system);
         let values: Vec<f64> = {
             let range = model.variables.range(Role::Parameter);
             assert_eq!(range.len(), parameters.len());
-            history.scalars[0][range].to_vec()
+            discrete.scalars[0][range].to_vec()
         };
         for (parameter, value) in parameters.iter().zip(&values) {
             assert!((value - parameter.guess).abs() > 1e-4 * parameter.size());
@@ -124,13 +124,13 @@ fn a_program_with_parameters_is_that_of_the_system_made_with_their_values() {
         assert_eq!(other.variables.count(Role::Parameter), 0);
         let mut plain = Transcription::new(&other, &boundary, &given, initial).unwrap();
         // The same point: columns of parameters left out, multipliers in the scales of the other program.
-        let mut history = history;
+        let mut discrete = discrete;
         let count = other.variables.of(proboscis::model::Time::Interval).len();
-        history
+        discrete
             .scalars
             .iter_mut()
             .for_each(|row| row.truncate(count));
-        let y = plain.encode(&history, history.times[1]);
+        let y = plain.encode(&discrete, discrete.times[1]);
         let (g, matrices) = numbers(program, model, x);
         let (expected, expected_matrices) = numbers(&mut plain, &other, &y);
         let size = expected.values().fold(0.0_f64, |a, b| a.max(b.abs()));

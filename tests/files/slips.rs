@@ -3,7 +3,7 @@
 use crate::scene::{PROBLEM, SCENE, mistake};
 
 /// A mistake has these words, and no others.
-fn told(scene: &str, problem: &str, words: &[&str], silent: &[&str]) {
+fn assert_words(scene: &str, problem: &str, words: &[&str], silent: &[&str]) {
     let error = mistake(scene, problem, &[]);
     let text = error.to_string();
     words
@@ -34,7 +34,7 @@ fn what_is_not_offered_is_answered_so() {
             LIMITS,
             "expected one of \"$schema\"",
         ];
-        told(&scene, PROBLEM, &words[..4], &["did you mean"]);
+        assert_words(&scene, PROBLEM, &words[..4], &["did you mean"]);
         assert!(
             mistake(&scene, PROBLEM, &[])
                 .to_string()
@@ -42,7 +42,7 @@ fn what_is_not_offered_is_answered_so() {
         );
     }
     let scene = SCENE.replacen("\"revolute\"", "\"universal\"", 1);
-    told(
+    assert_words(
         &scene,
         PROBLEM,
         &["\"universal\"", "not offered", "two revolute ones"],
@@ -50,7 +50,7 @@ fn what_is_not_offered_is_answered_so() {
     );
     // A slip of the pen is none of these.
     let scene = SCENE.replacen("\"joints\"", "\"joint\"", 1);
-    told(
+    assert_words(
         &scene,
         PROBLEM,
         &["did you mean \"joints\""],
@@ -72,7 +72,7 @@ fn methods_of_other_programs_are_answered_with_those_here() {
         ("newmark", "\"generalised_alpha\""),
     ] {
         let words = [word, "not offered", said, "an object with \"galerkin\""];
-        told(
+        assert_words(
             SCENE,
             &simulate(&format!("\"{word}\"")),
             &words,
@@ -84,9 +84,9 @@ fn methods_of_other_programs_are_answered_with_those_here() {
         "did you mean \"midpoint\"",
         "an object with \"galerkin\"",
     ];
-    told(SCENE, &simulate("\"midpont\""), &words, &["not offered"]);
+    assert_words(SCENE, &simulate("\"midpont\""), &words, &["not offered"]);
     let words = ["\"elsewhere\"", "expected \"midpoint\""];
-    told(
+    assert_words(
         SCENE,
         &simulate("\"elsewhere\""),
         &words,
@@ -97,7 +97,7 @@ fn methods_of_other_programs_are_answered_with_those_here() {
 #[test]
 fn slips_of_units_are_refused() {
     let layer = SCENE.replacen("\"50 um\"", "50", 1);
-    told(
+    assert_words(
         &layer,
         PROBLEM,
         &[
@@ -109,7 +109,7 @@ fn slips_of_units_are_refused() {
         &[],
     );
     let wide = SCENE.replacen("[\"10 mm\", \"10 mm\"]", "[10, \"10 mm\"]", 1);
-    told(
+    assert_words(
         &wide,
         PROBLEM,
         &[
@@ -120,7 +120,7 @@ fn slips_of_units_are_refused() {
         &[],
     );
     let dense = SCENE.replacen("\"1000 kg/m^3\"", "\"1000 g/cm^3\"", 1);
-    told(
+    assert_words(
         &dense,
         PROBLEM,
         &["density", "1000 g/cm^3", "below 1e5 kg/m^3"],

@@ -153,8 +153,8 @@ impl Loop {
         let model = Model::new(self.scene(), None, h, &[]).unwrap();
         assert_eq!(model.coordinates, Coordinates::Redundant);
         let start = Start::at_rest(&model, at_reference(&model));
-        let history = motion(&model, &start, h, steps, &[]);
-        let seen = observations(&model, &history);
+        let discrete = motion(&model, &start, h, steps, &[]);
+        let seen = observations(&model, &discrete);
         let violation = column(&seen, "constraint_violation")
             .iter()
             .fold(0.0_f64, |m, &v| m.max(v));
@@ -229,11 +229,11 @@ fn a_spatial_four_bar_moves_like_its_one_degree_of_freedom() {
         let h = time / n as f64;
         let model = Model::new(linkage.scene(), None, h, &[]).unwrap();
         let start = Start::at_rest(&model, at_reference(&model));
-        let history = motion(&model, &start, h, n, &[]);
+        let discrete = motion(&model, &start, h, n, &[]);
         let rest = placed(&model, &start.z);
         let initial = energies(&model, &rest, &rest, &[], h).total();
         let energy = |k: usize| {
-            let [a, b] = [k, k + 1].map(|k| placed(&model, &history.z[k]));
+            let [a, b] = [k, k + 1].map(|k| placed(&model, &discrete.z[k]));
             energies(&model, &a, &b, &[], h)
         };
         let kinetic = (0..n).map(|k| energy(k).kinetic).fold(0.0, f64::max);
@@ -318,8 +318,8 @@ fn a_spherical_joint_in_its_plane_is_a_hinge() {
         let omega = Vector3::z() * 2.0;
         let rates = spin(&model.reference()[0], omega.cross(&bob.centre), omega);
         let start = Start::with_rates(&model, at_reference(&model), &rates);
-        let history = motion(&model, &start, 0.01, 300, &[]);
-        Trajectory::from_history(&model, &history)
+        let discrete = motion(&model, &start, 0.01, 300, &[]);
+        Trajectory::from_discrete(&model, &discrete)
     };
     let hinge = run(JointKind::Revolute { axis: Vector3::z() });
     let ball = run(JointKind::Spherical);

@@ -71,7 +71,7 @@ fn the_finger_with_a_tendon_bends() {
     let run = integrate(&loaded.system, task, |_, _| ControlFlow::Continue(()));
     let run = run.unwrap();
     assert_eq!(run.failure, None);
-    let of = |name: &str| column(&run.model, &run.history, name);
+    let of = |name: &str| column(&run.model, &run.discrete, name);
     let (tension, bend) = (of("flexor_tension"), of("knuckle3"));
     assert!(tension.iter().all(|&t| t >= 0.0) && tension[5] > 0.1);
     assert!(bend[bend.len() - 1] > 0.3, "{bend:?}");

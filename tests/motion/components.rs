@@ -64,10 +64,10 @@ fn oscillator(damping: Option<f64>) -> System {
 
 pub(crate) fn column(
     model: &Model,
-    history: &proboscis::dynamics::DiscreteTrajectory,
+    discrete: &proboscis::dynamics::DiscreteTrajectory,
     name: &str,
 ) -> Vec<f64> {
-    let observed = observations(model, history);
+    let observed = observations(model, discrete);
     let column = observed.columns.iter().find(|c| c.name == name);
     column.unwrap_or_else(|| panic!("{name}")).values.clone()
 }
@@ -79,7 +79,7 @@ fn a_mass_on_a_spring_swings_as_its_closed_form() {
             let model = Model::new(oscillator(damping), Some(coordinates), 0.5, &[]).unwrap();
             let z = model.coordinates_at(&[0.0]);
             let start = Start::at_rest(&model, z);
-            let history = motion(&model, &start, 0.5, 400, &[]);
+            let discrete = motion(&model, &start, 0.5, 400, &[]);
             // x(t) = 25 + 5 e^(−δt) (cos ωt + δ/ω sin ωt).
             let delta = 0.5 * damping.unwrap_or(0.0) / 10.0;
             let omega = (0.4 / 10.0 - delta * delta).sqrt();
@@ -87,8 +87,8 @@ fn a_mass_on_a_spring_swings_as_its_closed_form() {
                 let wave = (omega * t).cos() + delta / omega * (omega * t).sin();
                 25.0 + 5.0 * (-delta * t).exp() * wave
             };
-            let length = column(&model, &history, "spring_length");
-            let force = column(&model, &history, "spring_force");
+            let length = column(&model, &discrete, "spring_length");
+            let force = column(&model, &discrete, "spring_force");
             assert!(200.0 * omega > 5.0 * TAU, "several periods");
             for (k, &length) in length.iter().enumerate() {
                 let t = 0.5 * k as f64;
@@ -97,9 +97,9 @@ fn a_mass_on_a_spring_swings_as_its_closed_form() {
                 assert!((length - exact(t)).abs() < bound, "{t}: {length}");
                 assert!((force[k] - 0.4 * (length - 25.0)).abs() < 1e-12);
             }
-            let total = column(&model, &history, "total_energy");
+            let total = column(&model, &discrete, "total_energy");
             let lost = match damping {
-                Some(_) => column(&model, &history, "dissipated_energy"),
+                Some(_) => column(&model, &discrete, "dissipated_energy"),
                 None => vec![0.0; total.len()],
             };
             let stored = 0.5 * 0.4 * 25.0;
@@ -131,9 +131,9 @@ fn a_taut_tendon_between_two_points_is_a_spring() {
         let model = Model::new(system.clone(), None, 0.5, &[]).unwrap();
         let start = Start::at_rest(&model, model.coordinates_at(&[0.0]));
         // Up to the length without force, where the tendon goes slack.
-        let history = motion(&model, &start, 0.5, 14, &[]);
+        let discrete = motion(&model, &start, 0.5, 14, &[]);
         let name = format!("{}_length", system.components.iter().next().unwrap().name());
-        column(&model, &history, &name)
+        column(&model, &discrete, &name)
     });
     let [spring, tendon] = &lengths;
     assert!(spring[14] < 26.5 && spring[14] > 25.0, "{}", spring[14]);
@@ -155,9 +155,9 @@ fn a_slack_tendon_pulls_at_nothing() {
     }];
     let model = Model::new(system, None, 0.5, &[]).unwrap();
     let start = Start::at_rest(&model, model.coordinates_at(&[0.0]));
-    let history = motion(&model, &start, 0.5, 20, &[]);
-    assert_eq!(history.z[20], history.z[0]);
-    assert_eq!(column(&model, &history, "tendon_tension"), vec![0.0; 21]);
+    let discrete = motion(&model, &start, 0.5, 20, &[]);
+    assert_eq!(discrete.z[20], discrete.z[0]);
+    assert_eq!(column(&model, &discrete, "tendon_tension"), vec![0.0; 21]);
 }
 
 /// Two masses on slides that a tendon joins around an eye of the ground.
@@ -184,20 +184,20 @@ fn around_an_eye() -> System {
 #[test]
 fn a_tendon_ties_bodies_around_an_eye_of_the_ground() {
     // The far mass is thrown outwards: the near one follows, though no term has both without the eye.
-    let question = |body: Option<usize>| Analysis {
-        stirred: Some(InitiallyMoving {
+    let analysis = |body: Option<usize>| Analysis {
+        initially_moving: Some(InitiallyMoving {
             bodies: body.into_iter().collect(),
             ..InitiallyMoving::default()
         }),
         ..Analysis::of_motion(0.5)
     };
-    let model = Model::answering(around_an_eye(), question(Some(1))).unwrap();
+    let model = Model::for_analysis(around_an_eye(), analysis(Some(1))).unwrap();
     assert_eq!(model.coordinate_count(), 2);
     let start = Start::with_rates(&model, model.coordinates_at(&[0.0; 2]), &[0.0, 1.0]);
-    let history = motion(&model, &start, 0.5, 60, &[]);
-    assert!(history.z[60][0] > 1.0, "{:?}", history.z[60]);
+    let discrete = motion(&model, &start, 0.5, 60, &[]);
+    assert!(discrete.z[60][0] > 1.0, "{:?}", discrete.z[60]);
     // Where nobody throws it nothing moves, and the tendon is no term.
-    let model = Model::answering(around_an_eye(), question(None)).unwrap();
+    let model = Model::for_analysis(around_an_eye(), analysis(None)).unwrap();
     assert_eq!(model.coordinate_count(), 0);
     assert!(model.present.is_empty());
     let why = model
@@ -208,7 +208,7 @@ fn a_tendon_ties_bodies_around_an_eye_of_the_ground() {
     // A prestressed one moves both by itself.
     let mut system = around_an_eye();
     system.components.tendons[0].rest_length = 39.0;
-    let model = Model::answering(system, question(None)).unwrap();
+    let model = Model::for_analysis(system, analysis(None)).unwrap();
     assert_eq!(model.coordinate_count(), 2);
     let tendons = model.present.iter().find(|p| p.term == "tendon elasticity");
     assert_eq!(tendons.unwrap().of, ["cord"]);
@@ -260,9 +260,9 @@ fn forces_of_a_path_are_those_of_its_length() {
         .evaluate_interval(Order::Gradient, ends, &interval, &mut scratch);
     let mut forces = [0.0; 3];
     for instant in [&mut a, &mut b] {
-        model.action.motion.tangent(instant);
+        model.action.map.tangent(instant);
         let mut rows = [0.0; 3];
-        model.action.motion.rows(instant, &mut rows);
+        model.action.map.rows(instant, &mut rows);
         forces.iter_mut().zip(rows).for_each(|(f, row)| *f += row);
     }
     for i in 0..3 {
@@ -332,11 +332,11 @@ fn a_component_of_another_crate_works() {
     let start = Start::at_rest(&model, model.coordinates_at(&[0.0]));
     // Half a period of √(k/m) = 0.2 /ms brings the mass to the other side of the origin.
     let steps = (0.5 * TAU / 0.2 / 0.05).round() as usize;
-    let history = motion(&model, &start, 0.05, steps, &[]);
+    let discrete = motion(&model, &start, 0.05, steps, &[]);
     assert!(
-        (history.z[steps][0] + 60.0).abs() < 0.01,
+        (discrete.z[steps][0] + 60.0).abs() < 0.01,
         "{:?}",
-        history.z[steps]
+        discrete.z[steps]
     );
 }
 

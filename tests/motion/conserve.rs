@@ -39,9 +39,9 @@ fn a_free_body_keeps_its_momenta_while_it_tumbles() {
     let rates = spin(&model.reference()[0], velocity, omega);
     let start = Start::with_rates(&model, at_reference(&model), &rates);
     let steps = 2000;
-    let history = motion(&model, &start, h, steps, &[]);
+    let discrete = motion(&model, &start, h, steps, &[]);
 
-    let seen = observations(&model, &history);
+    let seen = observations(&model, &discrete);
     let linear = columns(&seen, "linear_momentum");
     assert!((linear[0] - velocity * 2.0).norm() < 1e-14);
     assert!(
@@ -51,10 +51,10 @@ fn a_free_body_keeps_its_momenta_while_it_tumbles() {
     );
 
     // About the centre: Σ d_I × p_I; about the origin the moment of the linear momentum joins.
-    let about_centre: Vec<_> = history
+    let about_centre: Vec<_> = discrete
         .z
         .iter()
-        .zip(&history.momenta)
+        .zip(&discrete.momenta)
         .map(|(z, p)| {
             let part = |q: &[f64], i: usize| Vector3::new(q[3 * i], q[3 * i + 1], q[3 * i + 2]);
             (1..4)
@@ -78,7 +78,7 @@ fn a_free_body_keeps_its_momenta_while_it_tumbles() {
 
     // It did tumble: its second axis pointed along L and against it.
     let along = |z: &Vec<f64>| Vector3::new(z[6], z[7], z[8]).dot(&exact) / exact.norm();
-    let turns: Vec<f64> = history.z.iter().map(along).collect();
+    let turns: Vec<f64> = discrete.z.iter().map(along).collect();
     assert!(turns.iter().any(|&c| c > 0.99) && turns.iter().any(|&c| c < -0.99));
 
     // Rigid: six products of directors.
@@ -123,8 +123,8 @@ fn bodies_that_pull_at_each_other_keep_their_momenta() {
     rates.extend(spin(&b, at(-0.03, 0.1, 0.0), at(0.01, 0.0, -0.01)));
     let start = Start::with_rates(&model, at_reference(&model), &rates);
     let steps = 500;
-    let history = motion(&model, &start, h, steps, &[2000.0, 500.0]);
-    let seen = observations(&model, &history);
+    let discrete = motion(&model, &start, h, steps, &[2000.0, 500.0]);
+    let seen = observations(&model, &discrete);
     // The muscles do work and the energy goes, the momenta stay.
     let stretch = column(&seen, "upper_stretch");
     assert!(stretch.iter().any(|s| (s - 1.0).abs() > 0.05));
@@ -156,8 +156,8 @@ fn a_top_keeps_its_momentum_about_the_vertical() {
     let rates = spin(&model.reference()[0], omega.cross(&(axis * 0.075)), omega);
     let start = Start::with_rates(&model, at_reference(&model), &rates);
     let steps = 1000;
-    let history = motion(&model, &start, h, steps, &[]);
-    let angular = columns(&observations(&model, &history), "angular_momentum");
+    let discrete = motion(&model, &start, h, steps, &[]);
+    let angular = columns(&observations(&model, &discrete), "angular_momentum");
     // Gravity turns L about the vertical and leaves its height.
     assert!(spread(&angular) > 0.2 * angular[0].norm());
     let heights = angular.iter().map(|l| (l.z - angular[0].z).abs());
@@ -241,8 +241,8 @@ fn redundant_coordinates_stay_on_their_constraints() {
         .map(|m| if m % 4 == 0 { 2000.0 } else { 0.0 })
         .collect();
     let start = Start::at_rest(&model, at_reference(&model));
-    let history = motion(&model, &start, h, 400, &model.scalars(&voltages));
-    let seen = observations(&model, &history);
+    let discrete = motion(&model, &start, h, 400, &model.scalars(&voltages));
+    let seen = observations(&model, &discrete);
     assert!(column(&seen, "joint1").iter().any(|a| a.abs() > 0.1));
     let worst = column(&seen, "constraint_violation")
         .iter()

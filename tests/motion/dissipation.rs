@@ -94,8 +94,8 @@ fn a_damped_hinge_decays_exponentially() {
                 Coordinates::Redundant => model.redundant_rates(&[0.0], &[rate]),
             };
             let start = Start::with_rates(&model, at_reference(&model), &rates);
-            let history = motion(&model, &start, h, n, &[]);
-            let seen = observations(&model, &history);
+            let discrete = motion(&model, &start, h, n, &[]);
+            let seen = observations(&model, &discrete);
             (
                 column(&seen, "pivot")[n],
                 column(&seen, "angular_momentum_z")[n],

@@ -24,9 +24,9 @@ fn moved(
     let start = Start::at_rest(&model, at_reference(&model));
     let scalars = |from: f64, to: f64| model.scalars(&voltages(0.5 * (from + to)));
     let go_on = |_: &DiscreteTrajectory| ControlFlow::Continue(());
-    let (history, failure) = simulate(&model, &start, h, steps, scalars, go_on);
-    assert_eq!((failure, history.report.halved), (None, 0));
-    (model, history)
+    let (discrete, failure) = simulate(&model, &start, h, steps, scalars, go_on);
+    assert_eq!((failure, discrete.report.halved), (None, 0));
+    (model, discrete)
 }
 
 #[test]
@@ -42,8 +42,8 @@ fn sources_pay_for_work_stored_energy_and_charging() {
             vec![a, b, 0.0, c]
         };
         let before = [800.0, 0.0, 0.0, 1700.0];
-        let (model, history) = moved(coordinates, (5.0, 40), voltages);
-        let motion = Trajectory::from_history(&model, &history);
+        let (model, discrete) = moved(coordinates, (5.0, 40), voltages);
+        let motion = Trajectory::from_discrete(&model, &discrete);
         let found = EnergyExchange::new(&model.system, &motion, [Some(&before), None]);
         assert!(found.is_complete);
         assert_eq!(
@@ -52,7 +52,7 @@ fn sources_pay_for_work_stored_energy_and_charging() {
         );
         for source in &found.sources {
             let m = source.source;
-            let c: Vec<f64> = history
+            let c: Vec<f64> = discrete
                 .z
                 .iter()
                 .map(|z| capacitance(&model, z, m))
@@ -100,7 +100,7 @@ fn sources_pay_for_work_stored_energy_and_charging() {
         );
         // Muscles that were not charged before take as much more as their first charge.
         let uncharged = EnergyExchange::new(&model.system, &motion, [None; 2]);
-        let first = capacitance(&model, &history.z[0], 0) * rows[0][0] * before[0];
+        let first = capacitance(&model, &discrete.z[0], 0) * rows[0][0] * before[0];
         let more =
             uncharged.sources[0].electrical_energy[40] - found.sources[0].electrical_energy[40];
         assert!((more - first).abs() < 1e-10 * first);
@@ -110,7 +110,7 @@ fn sources_pay_for_work_stored_energy_and_charging() {
         for (source, other) in held.sources.iter().zip(&found.sources) {
             let m = source.source;
             let [last, next] = [voltages(197.5)[m], after[m]];
-            let expected = capacitance(&model, &history.z[40], m) * next * (next - last);
+            let expected = capacitance(&model, &discrete.z[40], m) * next * (next - last);
             let switch = source.electrical_energy[40] - other.electrical_energy[40];
             assert!((switch - expected).abs() < 1e-12 * source.electrical_energy[40].abs());
             assert_eq!(
@@ -131,14 +131,14 @@ fn the_motion_has_what_the_muscles_work() {
     };
     let error = |steps: usize| {
         let h = 180.0 / steps as f64;
-        let (model, history) = moved(Coordinates::Reduced, (h, steps), voltages);
-        let motion = Trajectory::from_history(&model, &history);
+        let (model, discrete) = moved(Coordinates::Reduced, (h, steps), voltages);
+        let motion = Trajectory::from_discrete(&model, &discrete);
         let exchange = EnergyExchange::new(&model.system, &motion, [None; 2]);
-        let seen = observations(&model, &history);
+        let seen = observations(&model, &discrete);
         // The energy of the system less the electric part −½ C V² of that of the muscles.
         let energy = |k: usize, t: f64| {
             let v = voltages(t);
-            let electric = |m: usize| -0.5 * capacitance(&model, &history.z[k], m) * v[m] * v[m];
+            let electric = |m: usize| -0.5 * capacitance(&model, &discrete.z[k], m) * v[m] * v[m];
             column(&seen, "total_energy")[k] - (0..4).map(electric).sum::<f64>()
         };
         let gained =
@@ -159,8 +159,8 @@ fn the_motion_has_what_the_muscles_work() {
 #[test]
 fn what_drives_finite_elements_is_left_out() {
     let mut system = trunk(1);
-    let (model, history) = moved(Coordinates::Reduced, (5.0, 1), |_| vec![0.0; 4]);
-    let mut motion = Trajectory::from_history(&model, &history);
+    let (model, discrete) = moved(Coordinates::Reduced, (5.0, 1), |_| vec![0.0; 4]);
+    let mut motion = Trajectory::from_discrete(&model, &discrete);
     motion.voltages = vec![vec![1000.0, 500.0]];
     motion.poses.iter_mut().for_each(|poses| poses.truncate(1));
     let whole = EnergyExchange::new(&system, &motion, [None; 2]);

@@ -32,7 +32,7 @@ fn both(
             ..Solving::default()
         };
         let scalars = model.scalars(voltages);
-        let (history, failure) = simulate_by(
+        let (discrete, failure) = simulate_by(
             solving,
             &model,
             &start,
@@ -42,10 +42,10 @@ fn both(
             |_| ControlFlow::Continue(()),
         );
         assert_eq!(failure, None);
-        assert_eq!(history.report.halved, 0);
-        (model, history)
+        assert_eq!(discrete.report.halved, 0);
+        (model, discrete)
     });
-    let [a, b] = [0, 1].map(|i| Trajectory::from_history(&runs[i].0, &runs[i].1));
+    let [a, b] = [0, 1].map(|i| Trajectory::from_discrete(&runs[i].0, &runs[i].1));
     let apart = distance(&a, &b, runs[0].0.length());
     (runs, apart)
 }
@@ -71,14 +71,14 @@ fn a_free_body_tumbles_through_every_orientation() {
     // Errors of the start grow along the unstable axis.
     println!("tumbling: {apart:e}");
     assert!(apart < 1e-6, "{apart:e}");
-    let (model, history) = &runs[0];
-    let seen = observations(model, history);
+    let (model, discrete) = &runs[0];
+    let seen = observations(model, discrete);
     let linear = columns(&seen, "linear_momentum");
     for p in &linear {
         assert!((p - velocity * 2.0).amax() < 1e-11, "{p}");
     }
     let exact = directors * Vector3::new(0.02 * 1.0, 3.0 * 2.0, 0.01 * 2.5);
-    let track = Trajectory::from_history(model, history);
+    let track = Trajectory::from_discrete(model, discrete);
     let angular = columns(&seen, "angular_momentum");
     let about_centre = angular[0] - centre.cross(&(velocity * 2.0));
     assert!((about_centre - exact).norm() < 1e-12, "{about_centre}");
@@ -137,8 +137,8 @@ fn a_heavy_top_nutates_as_another_program_says() {
                 at_reference(&model),
                 &[[Vector3::zeros(), axis * 0.25]],
             );
-            let history = motion(&model, &start, h, steps, &[]);
-            model.poses(&placed(&model, &history.z[steps]))[0].centre / 30.0
+            let discrete = motion(&model, &start, h, steps, &[]);
+            model.poses(&placed(&model, &discrete.z[steps]))[0].centre / 30.0
         });
         let limit = Vector3::from_fn(|i, _| richardson(&places.map(|x| x[i])));
         let errors = places.map(|x| (x - Vector3::from(exact)).norm());
@@ -188,7 +188,7 @@ fn a_satellite_with_a_trunk_keeps_its_momenta() {
         }
         let seen = runs
             .each_ref()
-            .map(|(model, history)| observations(model, history));
+            .map(|(model, discrete)| observations(model, discrete));
         for name in ["linear_momentum", "angular_momentum"] {
             let list = columns(&seen[0], name);
             let drift = list

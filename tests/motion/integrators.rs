@@ -30,12 +30,12 @@ fn run(
         ..Solving::default()
     };
     let held = |_: f64, _: f64| scalars.to_vec();
-    let (history, failure) = simulate_by(solving, model, start, h, steps, held, |_| {
+    let (discrete, failure) = simulate_by(solving, model, start, h, steps, held, |_| {
         ControlFlow::Continue(())
     });
     assert_eq!(failure, None);
-    assert_eq!(history.report.halved, 0);
-    history
+    assert_eq!(discrete.report.halved, 0);
+    discrete
 }
 
 /// A point mass on a rod, from (−1, 0) at rest, in m, kg and s; all laws are free of units.
@@ -81,8 +81,8 @@ fn error_of_pendulum(
     let h = 1.0 / n as f64;
     let model = Model::new(pendulum(), Some(coordinates), h, &[]).unwrap();
     let start = Start::at_rest(&model, at_reference(&model));
-    let history = run(integrator, &model, &start, h, n, &[]);
-    (model.poses(&placed(&model, &history.z[n]))[0].centre - exact).norm()
+    let discrete = run(integrator, &model, &start, h, n, &[]);
+    (model.poses(&placed(&model, &discrete.z[n]))[0].centre - exact).norm()
 }
 
 #[test]
@@ -135,8 +135,8 @@ fn tip(integrator: Integrator, coordinates: Coordinates, n: usize) -> Vector3<f6
     let model = Model::new(scene, Some(coordinates), h, &[]).unwrap();
     let start = Start::at_rest(&model, at_reference(&model));
     let scalars = model.scalars(&[2000.0, 0.0, 0.0, 1500.0]);
-    let history = run(integrator, &model, &start, h, n, &scalars);
-    columns(&observations(&model, &history), "tip")[n]
+    let discrete = run(integrator, &model, &start, h, n, &scalars);
+    columns(&observations(&model, &discrete), "tip")[n]
 }
 
 #[test]
@@ -173,8 +173,8 @@ fn newton_meets_exact_tangents() {
             let model = Model::new(trunk(3), Some(coordinates), 10.0, &[]).unwrap();
             let start = Start::at_rest(&model, at_reference(&model));
             let scalars = model.scalars(&[2000.0, 0.0, 0.0, 1500.0, 900.0, 0.0]);
-            let history = run(integrator, &model, &start, 10.0, 20, &scalars);
-            let mean = history.report.iterations as f64 / 20.0;
+            let discrete = run(integrator, &model, &start, 10.0, 20, &scalars);
+            let mean = discrete.report.iterations as f64 / 20.0;
             println!(
                 "{} {coordinates:?}: {mean} iterations a step",
                 integrator.name()
@@ -200,10 +200,10 @@ fn variational_methods_conserve_the_angular_momentum_of_a_free_body() {
     let (omega, velocity) = (Vector3::new(0.4, 1.1, -0.7), Vector3::new(0.1, 0.0, 0.2));
     let start = Start::with_rates(&model, at_reference(&model), &spin(&pose, velocity, omega));
     let climb = |integrator| {
-        let history = run(integrator, &model, &start, h, 400, &[]);
-        let seen = observations(&model, &history);
+        let discrete = run(integrator, &model, &start, h, 400, &[]);
+        let seen = observations(&model, &discrete);
         let angular = columns(&seen, "angular_momentum");
-        let turned = history.z[400][3] - history.z[0][3];
+        let turned = discrete.z[400][3] - discrete.z[0][3];
         assert!(angular[0].norm() > 1.0 && turned.abs() > 1e-3);
         (angular[400] - angular[0]).norm()
     };
@@ -228,8 +228,8 @@ fn variational_methods_keep_energy_and_engineering_methods_lose_it() {
     let start = Start::at_rest(&model, at_reference(&model));
     let scalars = model.scalars(&[1500.0, 0.0, 0.0, 1200.0]);
     let energy = |integrator| {
-        let history = run(integrator, &model, &start, h, steps, &scalars);
-        let seen = observations(&model, &history);
+        let discrete = run(integrator, &model, &start, h, steps, &scalars);
+        let seen = observations(&model, &discrete);
         let kinetic = crate::common::column(&seen, "kinetic_energy");
         let scale = kinetic.iter().fold(0.0_f64, |m, e| m.max(*e));
         assert!(scale > 1e-3);
@@ -270,7 +270,7 @@ fn elastic_blocks_with_potentials_have_the_same_limit() {
         .unwrap();
         assert!(model.variables.count(Role::Potential) > 0);
         let start = Start::at_rest(&model, model.coordinates_at(&[]));
-        let history = run(
+        let discrete = run(
             integrator,
             &model,
             &start,
@@ -279,7 +279,7 @@ fn elastic_blocks_with_potentials_have_the_same_limit() {
             &[0.5 * crate::common::solid::VOLTAGE],
         );
         let count = model.coordinate_count();
-        history.z[n][..count].to_vec()
+        discrete.z[n][..count].to_vec()
     };
     let distance = |a: &[f64], b: &[f64]| {
         a.iter()

@@ -50,15 +50,15 @@ fn a_hinge_swings_about_a_rest_angle_of_several_turns_as_its_closed_form() {
                     let model =
                         Model::new(on(kind, rest, damping), Some(coordinates), h, &[]).unwrap();
                     let start = Start::at_rest(&model, model.coordinates_at(&[0.0]));
-                    let history = motion(&model, &start, h, steps, &[]);
-                    let found = column(&model, &history, "joint");
+                    let discrete = motion(&model, &start, h, steps, &[]);
+                    let found = column(&model, &discrete, "joint");
                     let far = found.iter().copied().fold(0.0, f64::max);
                     assert!(
                         far > 1.8 * rest,
                         "it swings to {far}, not to {}",
                         2.0 * rest
                     );
-                    let total = column(&model, &history, "total_energy");
+                    let total = column(&model, &discrete, "total_energy");
                     let stored = 0.5 * STIFFNESS * rest * rest;
                     assert!((total[0] / stored - 1.0).abs() < 1e-12, "{}", total[0]);
                     let at = |k: usize| (found[k] - exact(k as f64 * h)).abs();
@@ -115,7 +115,7 @@ fn a_joint_without_a_spring_has_no_unknown_and_no_term_of_one() {
         let (with, without) = (of(&with), of(&without));
         let [a, b] = [&with, &without].map(|m| m.coordinate_count());
         assert_eq!(a, b + more);
-        let [a, b] = [&with, &without].map(|m| m.action.motion.multipliers);
+        let [a, b] = [&with, &without].map(|m| m.action.map.multipliers);
         assert_eq!(a, b + more);
         let names = |model: &Model, term: &str| model.present.iter().any(|p| p.term == term);
         assert!(names(&with, "joint elasticity") && !names(&without, "joint elasticity"));

@@ -67,7 +67,7 @@ fn model(system: &System, coordinates: Coordinates, h: f64) -> Model {
 
 /// Places of the internal coordinates.
 fn internal(model: &Model) -> std::ops::Range<usize> {
-    model.action.motion.internal()
+    model.action.map.internal()
 }
 
 /// A start at rest at a displacement, with branches that have not felt it yet.
@@ -99,14 +99,14 @@ fn stress_relaxes_as_the_published_law_says() {
             let model = model(&system, coordinates, h);
             let start = suddenly(&model, -0.2 * LENGTH);
             let steps = (300.0 / h) as usize;
-            let history = motion(&model, &start, h, steps, &[0.0]);
-            let stretch = column(&model, &history, "muscle_stretch");
+            let discrete = motion(&model, &start, h, steps, &[0.0]);
+            let stretch = column(&model, &discrete, "muscle_stretch");
             assert!((stretch[steps] - 0.8).abs() < 1e-7, "{}", stretch[steps]);
-            let viscous = column(&model, &history, "muscle_viscous_stretch1");
+            let viscous = column(&model, &discrete, "muscle_viscous_stretch1");
             let at = |time: f64| stress(0.8, 0.05, viscous[(time / h).round() as usize].ln());
             let found = [0.0, 50.0, 100.0, 300.0].map(at);
             let errors = found.iter().zip(expected).map(|(a, b)| (a - b).abs());
-            let lost = column(&model, &history, "dissipated_energy");
+            let lost = column(&model, &discrete, "dissipated_energy");
             assert!(
                 lost.windows(2).all(|pair| pair[1] > pair[0]),
                 "it dissipates"
@@ -147,8 +147,8 @@ fn runge_kutta(mass: f64, list: &[[f64; 2]; 2], from: [f64; 4], time: f64) -> [f
     y
 }
 
-fn end(model: &Model, history: &DiscreteTrajectory) -> Vec<f64> {
-    let z = history.z.last().unwrap();
+fn end(model: &Model, discrete: &DiscreteTrajectory) -> Vec<f64> {
+    let z = discrete.z.last().unwrap();
     let instant = placed(model, z);
     let joint = model.joints(&instant, &[0.0]);
     joint
@@ -168,9 +168,9 @@ fn a_swing_with_two_branches_is_that_of_another_method() {
         let errors = [0.2, 0.1].map(|h| {
             let model = model(&system, coordinates, h);
             let start = suddenly(&model, 6.0);
-            let history = motion(&model, &start, h, (40.0 / h).round() as usize, &[0.0]);
-            let total = column(&model, &history, "total_energy");
-            let lost = column(&model, &history, "dissipated_energy");
+            let discrete = motion(&model, &start, h, (40.0 / h).round() as usize, &[0.0]);
+            let total = column(&model, &discrete, "total_energy");
+            let lost = column(&model, &discrete, "dissipated_energy");
             let balance = total[total.len() - 1] + lost[lost.len() - 1];
             assert!(lost[lost.len() - 1] > 0.1 * total[0], "little is lost");
             assert!(
@@ -178,7 +178,7 @@ fn a_swing_with_two_branches_is_that_of_another_method() {
                 "{balance} of {}",
                 total[0]
             );
-            let found = end(&model, &history);
+            let found = end(&model, &discrete);
             let errors = found.iter().zip(exact).map(|(a, b)| (a - b).abs());
             errors.fold(0.0, f64::max)
         });
@@ -209,9 +209,9 @@ fn what_is_held_for_long_and_what_rests_is_relaxed() {
             coordinates: Some(coordinates),
             ..Analysis::of_rest()
         };
-        let resting = Model::answering(with.clone(), analysis.clone()).unwrap();
-        assert_eq!(resting.action.motion.of_internal, 0);
-        let plain = Model::answering(without.clone(), analysis).unwrap();
+        let resting = Model::for_analysis(with.clone(), analysis.clone()).unwrap();
+        assert_eq!(resting.action.map.of_internal, 0);
+        let plain = Model::for_analysis(without.clone(), analysis).unwrap();
         let place = |model: &Model, z: &[f64]| model.joints(&placed(model, z), &[0.0])[0];
         let expected = stable_equilibrium(&plain, &zero(&plain), &[2000.0]).unwrap();
         let expected = place(&plain, &expected.z);
@@ -295,9 +295,9 @@ fn galerkin_methods_have_their_order() {
             let (steps, zero) = ((40.0 / h) as usize, model.scalars(&[0.0]));
             let drive = |_: f64, _: f64| zero.clone();
             let go_on = |_: &DiscreteTrajectory| ControlFlow::Continue(());
-            let (history, failure) = simulate_by(solving, &model, &start, h, steps, drive, go_on);
+            let (discrete, failure) = simulate_by(solving, &model, &start, h, steps, drive, go_on);
             assert_eq!(failure, None);
-            let found = end(&model, &history);
+            let found = end(&model, &discrete);
             let errors = found.iter().zip(exact).map(|(a, b)| (a - b).abs());
             errors.collect::<Vec<f64>>()
         });

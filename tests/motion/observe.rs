@@ -15,9 +15,9 @@ fn stretches_and_charges_follow_their_formulas() {
         let model = Model::new(trunk(2), Some(coordinates), h, &[]).unwrap();
         let voltages = [2000.0, 0.0, 700.0, 1500.0];
         let start = Start::at_rest(&model, at_reference(&model));
-        let history = motion(&model, &start, h, 40, &model.scalars(&voltages));
-        let seen = observations(&model, &history);
-        let instants: Vec<_> = history.z.iter().map(|z| placed(&model, z)).collect();
+        let discrete = motion(&model, &start, h, 40, &model.scalars(&voltages));
+        let seen = observations(&model, &discrete);
+        let instants: Vec<_> = discrete.z.iter().map(|z| placed(&model, z)).collect();
         for (m, muscle) in model.system.muscles.iter().enumerate() {
             let span = |k: usize| instants[k].x[model.spans[m]];
             let stretch = column(&seen, &format!("{}_stretch", muscle.name));
@@ -92,14 +92,14 @@ fn the_first_row_is_the_start() {
             Coordinates::Redundant => model.redundant_rates(&[0.1, 0.2], &rates),
         };
         let start = Start::with_rates(&model, model.coordinates_at(&[0.1, 0.2]), &by_coordinate);
-        let history = motion(
+        let discrete = motion(
             &model,
             &start,
             h,
             10,
             &model.scalars(&[1000.0, 0.0, 0.0, 500.0]),
         );
-        let seen = observations(&model, &history);
+        let seen = observations(&model, &discrete);
         // ½ p·v, and the momentum of the centres of bodies and muscles, from differences of poses a short time apart.
         let kinetic: f64 = start
             .momentum
@@ -138,7 +138,7 @@ fn the_first_row_is_the_start() {
         // Without recorded momenta, as after an optimisation, the first interval tells them.
         let bare = DiscreteTrajectory {
             momenta: Vec::new(),
-            ..history.clone()
+            ..discrete.clone()
         };
         for (a, b) in seen
             .columns
@@ -197,8 +197,8 @@ fn angles_go_on_beyond_a_turn() {
             Coordinates::Redundant => model.redundant_rates(&[0.0; 2], &[0.0, 1.0]),
         };
         let start = Start::with_rates(&model, at_reference(&model), &rates);
-        let history = motion(&model, &start, 0.5, 60, &[]);
-        Trajectory::from_history(&model, &history)
+        let discrete = motion(&model, &start, 0.5, 60, &[]);
+        Trajectory::from_discrete(&model, &discrete)
     });
     // sin Δθ = h θ̇: a steady turn, a little faster than the exact one.
     let step = 0.5_f64.asin();
@@ -237,8 +237,8 @@ fn what_hangs_still_has_no_momentum_and_no_kinetic_energy() {
         for h in [5.0, 2.5] {
             let model = pendulum(coordinates, h);
             let start = Start::at_rest(&model, model.coordinates_at(&[0.0]));
-            let history = motion(&model, &start, h, 20, &[]);
-            let seen = observations(&model, &history);
+            let discrete = motion(&model, &start, h, 20, &[]);
+            let seen = observations(&model, &discrete);
             // p⁺ alone is −m g h/2.
             let weight = 25.0 * 9.81e-3;
             assert!(weight * h / 2.0 > 0.1);
@@ -260,8 +260,8 @@ fn momenta_and_kinetic_energies_of_a_pendulum_are_those_of_its_instants() {
             let h = 200.0 / steps as f64;
             let model = pendulum(coordinates, h);
             let start = Start::at_rest(&model, model.coordinates_at(&[1.0]));
-            let history = motion(&model, &start, h, steps, &[]);
-            let seen = observations(&model, &history);
+            let discrete = motion(&model, &start, h, steps, &[]);
+            let seen = observations(&model, &discrete);
             // In the middle, and at the last instant.
             [steps / 2, steps].map(|k| {
                 let p = columns(&seen, "linear_momentum")[k];

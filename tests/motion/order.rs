@@ -26,8 +26,8 @@ fn ends(
         let z = at_reference(&model);
         let velocity = omega.cross(&model.reference()[0].centre);
         let start = Start::with_velocities(&model, z, &[[velocity, omega]]);
-        let history = motion(&model, &start, h, n, &[]);
-        let last = crate::common::placed(&model, &history.z[n]);
+        let discrete = motion(&model, &start, h, n, &[]);
+        let last = crate::common::placed(&model, &discrete.z[n]);
         model.poses(&last)[0].centre
     };
     steps.iter().map(end).collect()
@@ -51,8 +51,8 @@ fn the_tip_of_a_driven_trunk_converges_with_order_two() {
                 let model = Model::new(scene.clone(), Some(coordinates), h, &[]).unwrap();
                 let start = Start::at_rest(&model, at_reference(&model));
                 let scalars = model.scalars(&[2000.0, 0.0, 0.0, 1500.0]);
-                let history = motion(&model, &start, h, n, &scalars);
-                columns(&observations(&model, &history), "tip")[n]
+                let discrete = motion(&model, &start, h, n, &scalars);
+                columns(&observations(&model, &discrete), "tip")[n]
             })
             .collect();
         assert!((tips[4] - Vector3::new(0.0, 100.0, 0.0)).norm() > 5.0);

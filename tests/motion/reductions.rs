@@ -31,8 +31,8 @@ fn run(
         // Rates of joints say nothing of nodes.
         false => Start::at_rest(&model, z),
     };
-    let history = motion(&model, &start, h, steps, &model.scalars(voltages));
-    (model, history)
+    let discrete = motion(&model, &start, h, steps, &model.scalars(voltages));
+    (model, discrete)
 }
 
 /// Largest difference of the motions in both coordinates, and the motion.
@@ -46,9 +46,9 @@ fn compare(
 ) -> (f64, Trajectory) {
     let [reduced, redundant] = [Coordinates::Reduced, Coordinates::Redundant]
         .map(|c| run(system, c, joints, rates, h, steps, voltages));
-    let [a, b] = [&reduced, &redundant].map(|(m, history)| Trajectory::from_history(m, history));
+    let [a, b] = [&reduced, &redundant].map(|(m, discrete)| Trajectory::from_discrete(m, discrete));
     // What is observed agrees as well; momenta of reduced coordinates hold no reactions of the ground.
-    let [seen, other] = [&reduced, &redundant].map(|(m, history)| observations(m, history));
+    let [seen, other] = [&reduced, &redundant].map(|(m, discrete)| observations(m, discrete));
     for (x, y) in seen.columns.iter().zip(&other.columns) {
         assert_eq!(x.name, y.name);
         if x.name == "constraint_violation" {
@@ -89,8 +89,8 @@ fn dampers_agree_to_second_order() {
     assert!(system.joints.iter().filter(|j| j.damping.is_some()).count() == 3);
     let seen = |coordinates: Coordinates, n: usize| {
         let h = 240.0 / n as f64;
-        let (model, history) = run(&system, coordinates, &JOINTS, &RATES, h, n, &VOLTAGES);
-        let seen = observations(&model, &history);
+        let (model, discrete) = run(&system, coordinates, &JOINTS, &RATES, h, n, &VOLTAGES);
+        let seen = observations(&model, &discrete);
         let column = |name: &str| {
             let found = seen.columns.iter().find(|c| c.name == name);
             found.unwrap().values.clone()
@@ -101,9 +101,9 @@ fn dampers_agree_to_second_order() {
             "dissipated_energy",
         ];
         let columns = names.map(column);
-        (columns, Trajectory::from_history(&model, &history))
+        (columns, Trajectory::from_discrete(&model, &discrete))
     };
-    let (model, history) = run(
+    let (model, discrete) = run(
         &undamped(),
         Coordinates::Reduced,
         &JOINTS,
@@ -112,7 +112,7 @@ fn dampers_agree_to_second_order() {
         160,
         &VOLTAGES,
     );
-    let free = Trajectory::from_history(&model, &history);
+    let free = Trajectory::from_discrete(&model, &discrete);
     let effect = distance(&free, &seen(Coordinates::Reduced, 160).1, 100.0);
     println!("without dampers: {effect}");
     assert!(effect > 1e-2, "{effect}");
@@ -194,7 +194,7 @@ fn exchanged(system: &System, reversed: &[usize]) -> (System, [f64; 5], [f64; 5]
 #[test]
 fn dampers_on_joint_coordinates_know_no_direction() {
     let motion = |system: &System, joints: &[f64; 5], rates: &[f64; 5]| {
-        let (model, history) = run(
+        let (model, discrete) = run(
             system,
             Coordinates::Reduced,
             joints,
@@ -203,7 +203,7 @@ fn dampers_on_joint_coordinates_know_no_direction() {
             50,
             &VOLTAGES,
         );
-        Trajectory::from_history(&model, &history)
+        Trajectory::from_discrete(&model, &discrete)
     };
     let expected = motion(&tree(), &JOINTS, &RATES);
     for reversed in [[1], [3]] {
@@ -230,14 +230,14 @@ fn of_segments_with_blocks() {
     assert!(difference < 1e-9, "{difference:e}");
     // All nodes of all blocks, glued ones too.
     let [a, b] = [Coordinates::Reduced, Coordinates::Redundant].map(|coordinates| {
-        let (model, history) = run(&system, coordinates, &joints, &rates, 2.0, 20, &voltages);
+        let (model, discrete) = run(&system, coordinates, &joints, &rates, 2.0, 20, &voltages);
         let nodes = |z: &Vec<f64>| -> Vec<Vector3<f64>> {
             let instant = placed(&model, z);
             let places = model.solids.iter().map(|c| c.places(&instant.x));
             places.flatten().collect()
         };
-        let potentials: Vec<Vec<f64>> = history.scalars.clone();
-        (history.z.iter().map(nodes).collect::<Vec<_>>(), potentials)
+        let potentials: Vec<Vec<f64>> = discrete.scalars.clone();
+        (discrete.z.iter().map(nodes).collect::<Vec<_>>(), potentials)
     });
     let mut moved = 0.0_f64;
     for (k, (x, y)) in a.0.iter().zip(&b.0).enumerate() {

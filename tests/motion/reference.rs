@@ -13,9 +13,9 @@ fn case(name: &str, segments: usize, coordinates: Coordinates) {
     let scalars = model.scalars(&hold);
 
     let rest = equilibrium(&model, &zero, &scalars).unwrap();
-    let mut instant = model.action.motion.instant();
+    let mut instant = model.action.map.instant();
     instant.z.copy_from_slice(&rest.z);
-    model.action.motion.place(&mut instant);
+    model.action.map.place(&mut instant);
     let angles = model.joints(&instant, &vec![0.0; segments]);
     let expected = numbers(&file["equilibrium"]["theta_rad"]);
     assert!(expected.iter().any(|a| a.abs() > 0.1));
@@ -36,7 +36,7 @@ fn case(name: &str, segments: usize, coordinates: Coordinates) {
     }
 
     let start = Start::at_rest(&model, zero);
-    let (history, failure) = simulate(
+    let (discrete, failure) = simulate(
         &model,
         &start,
         5.0,
@@ -50,9 +50,9 @@ fn case(name: &str, segments: usize, coordinates: Coordinates) {
         .unwrap();
     assert!(steps.len() > 3);
     let mut near = vec![0.0; segments];
-    for (k, z) in history.z.iter().enumerate() {
+    for (k, z) in discrete.z.iter().enumerate() {
         instant.z.copy_from_slice(z);
-        model.action.motion.place(&mut instant);
+        model.action.map.place(&mut instant);
         near = model.joints(&instant, &near);
         if let Some(expected) = steps.get(&k.to_string()) {
             for (a, b) in near.iter().zip(numbers(expected)) {

@@ -40,7 +40,7 @@ fn motion_of(file: &Path, step: Option<f64>) -> Simulated {
 
 /// Greatest distance in mm of the markers of two motions, at the instants of the first, which has so many times fewer steps.
 fn apart(coarse: &Simulated, fine: &Simulated, times: usize) -> f64 {
-    let [a, b] = [coarse, fine].map(|run| Trajectory::from_history(&run.model, &run.history));
+    let [a, b] = [coarse, fine].map(|run| Trajectory::from_discrete(&run.model, &run.discrete));
     let pairs = a.marks.iter().enumerate();
     let distance = |(k, marks): (usize, &Vec<Vector3<f64>>)| {
         let others = marks.iter().zip(&b.marks[k * times]);
@@ -50,7 +50,7 @@ fn apart(coarse: &Simulated, fine: &Simulated, times: usize) -> f64 {
 }
 
 pub(crate) fn estimate(run: &Simulated) -> LocalError {
-    local_error(&run.model, &run.history, 2).expect("there are steps enough")
+    local_error(&run.model, &run.discrete, 2).expect("there are steps enough")
 }
 
 #[test]
@@ -61,9 +61,9 @@ fn a_joint_does_not_turn_by_many_turns_in_a_step() {
     ] {
         let coarse = motion_of(&trust(name), None);
         assert_eq!(coarse.failure, None, "{name}");
-        assert!(coarse.history.report.halved > 0, "{name}");
+        assert!(coarse.discrete.report.halved > 0, "{name}");
         // No step turns a joint by a turn, and the energy stays where the gravity and the muscles put it.
-        let joints = Trajectory::from_history(&coarse.model, &coarse.history).joints;
+        let joints = Trajectory::from_discrete(&coarse.model, &coarse.discrete).joints;
         let largest = joints
             .windows(2)
             .flat_map(|w| {
@@ -75,8 +75,8 @@ fn a_joint_does_not_turn_by_many_turns_in_a_step() {
             .fold(0.0, f64::max);
         assert!(largest > 0.1 && largest < 6.3, "{name}: {largest}");
         let fine = motion_of(&trust(name), Some(step / 64.0));
-        let seen = observations(&coarse.model, &coarse.history);
-        let exact = observations(&fine.model, &fine.history);
+        let seen = observations(&coarse.model, &coarse.discrete);
+        let exact = observations(&fine.model, &fine.discrete);
         let [total, reference] = [&seen, &exact].map(|seen| column(seen, "total_energy"));
         let range = |list: &[f64]| {
             let most = list.iter().copied().fold(f64::NEG_INFINITY, f64::max);
@@ -106,7 +106,7 @@ fn elements_beyond_pull_in_are_refused_with_long_steps_too() {
         let failure = run.failure.expect("there is no such motion").to_string();
         assert!(failure.contains("from t = 5"), "{step}: {failure}");
         assert!(
-            run.history
+            run.discrete
                 .times
                 .last()
                 .is_some_and(|t| *t >= 40.0 && *t < 60.0)
@@ -228,7 +228,7 @@ fn slider(h: f64, integrator: Integrator, steps: usize) -> (Model, DiscreteTraje
         ..Solving::default()
     };
     let go_on = |_: &_| ControlFlow::Continue(());
-    let (history, failure) = simulate_by(
+    let (discrete, failure) = simulate_by(
         solving,
         &model,
         &start,
@@ -238,7 +238,7 @@ fn slider(h: f64, integrator: Integrator, steps: usize) -> (Model, DiscreteTraje
         go_on,
     );
     assert_eq!(failure, None);
-    (model, history)
+    (model, discrete)
 }
 
 #[test]
@@ -266,8 +266,8 @@ fn the_estimate_is_of_the_size_of_the_error_for_every_integrator() {
             .zip(exact.iter().step_by(4))
             .map(|(a, b)| (a - b).abs())
             .fold(0.0, f64::max);
-        let (model, history) = slider(h, integrator, steps);
-        let told = local_error(&model, &history, integrator.order()).unwrap();
+        let (model, discrete) = slider(h, integrator, steps);
+        let told = local_error(&model, &discrete, integrator.order()).unwrap();
         println!(
             "{integrator:?}: told {:e}, truly {error:e} of {}",
             told.error, told.path
@@ -283,12 +283,12 @@ fn the_estimate_is_of_the_size_of_the_error_for_every_integrator() {
 
 #[test]
 fn the_step_that_would_do_does() {
-    let (model, history) = slider(2.0, Integrator::Midpoint, 200);
-    let told = local_error(&model, &history, 2).unwrap();
+    let (model, discrete) = slider(2.0, Integrator::Midpoint, 200);
+    let told = local_error(&model, &discrete, 2).unwrap();
     let better = told.step_for(0.2 * told.relative());
     let steps = (400.0 / better).ceil();
-    let (model, history) = slider(400.0 / steps, Integrator::Midpoint, steps as usize);
-    let after = local_error(&model, &history, 2).unwrap();
+    let (model, discrete) = slider(400.0 / steps, Integrator::Midpoint, steps as usize);
+    let after = local_error(&model, &discrete, 2).unwrap();
     println!("{} by {better} ms to {}", told.relative(), after.relative());
     assert!(after.relative() < 0.25 * told.relative() && after.relative() > 0.1 * told.relative());
 }
@@ -300,7 +300,7 @@ fn energies_and_dissipation_belong_to_the_instants_of_their_rows() {
         let start = Start::at_rest(&model, at_reference(&model));
         let scalars = model.scalars(&[2000.0, 0.0, 700.0, 1500.0]);
         let go_on = |_: &_| ControlFlow::Continue(());
-        let (history, _) = simulate_by(
+        let (discrete, _) = simulate_by(
             Solving::default(),
             &model,
             &start,
@@ -309,7 +309,7 @@ fn energies_and_dissipation_belong_to_the_instants_of_their_rows() {
             |_, _| scalars.clone(),
             go_on,
         );
-        let seen = observations(&model, &history);
+        let seen = observations(&model, &discrete);
         let names = [
             "kinetic_energy",
             "muscle_electroelasticity_energy",

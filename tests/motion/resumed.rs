@@ -24,7 +24,7 @@ fn simulation(name: &str, set: &[&str]) -> (System, Simulation) {
 fn all(system: &System, task: &Simulation) -> DiscreteTrajectory {
     let run = integrate(system, task, |_, _| ControlFlow::Continue(())).unwrap();
     assert_eq!(run.failure, None);
-    run.history
+    run.discrete
 }
 
 fn bits(rows: &[Vec<f64>]) -> Vec<Vec<u64>> {
@@ -76,20 +76,20 @@ fn stop(name: &str, set: &[&str], after: &[usize]) {
     );
     let mut begun = None;
     for &steps in after {
-        let run = integrate_on(&system, &task, begun, |_, history| {
-            match history.intervals() >= steps {
+        let run = integrate_on(&system, &task, begun, |_, discrete| {
+            match discrete.intervals() >= steps {
                 true => ControlFlow::Break(()),
                 false => ControlFlow::Continue(()),
             }
         });
         let Simulated {
-            history, failure, ..
+            discrete, failure, ..
         } = run.unwrap();
-        assert_eq!((failure, history.intervals()), (None, steps), "{told}");
-        begun = Some(history);
+        assert_eq!((failure, discrete.intervals()), (None, steps), "{told}");
+        begun = Some(discrete);
     }
     let run = integrate_on(&system, &task, begun, |_, _| ControlFlow::Continue(()));
-    assert_same(&run.unwrap().history, &whole, &told);
+    assert_same(&run.unwrap().discrete, &whole, &told);
 }
 
 const SHORT: &str = "simulate.duration=0.2 s";
@@ -192,7 +192,7 @@ fn a_stop_within_a_step_changes_nothing() {
         (run, questions.asked())
     };
     let (whole, asked) = watched(None, u64::MAX);
-    let whole = whole.unwrap().history;
+    let whole = whole.unwrap().discrete;
     let steps = whole.intervals() as u64;
     assert!(asked > 3 * steps, "{asked} questions in {steps} steps");
     let (mut begun, mut stops, mut allowed) = (None, 0, asked / 7 + 1);
@@ -200,12 +200,12 @@ fn a_stop_within_a_step_changes_nothing() {
         let (run, _) = watched(begun.clone(), allowed);
         let run = run.expect("time for the first step");
         assert_eq!(run.failure, None);
-        if run.history.intervals() == whole.intervals() {
-            assert_same(&run.history, &whole, "stopped anywhere");
+        if run.discrete.intervals() == whole.intervals() {
+            assert_same(&run.discrete, &whole, "stopped anywhere");
             break;
         }
         // No multiple of the questions of a step.
-        (begun, stops, allowed) = (Some(run.history), stops + 1, allowed + 1);
+        (begun, stops, allowed) = (Some(run.discrete), stops + 1, allowed + 1);
         assert!(stops < 20, "it does not go on");
     }
     assert!(stops > 2, "stopped {stops} times on its way");

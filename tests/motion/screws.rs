@@ -72,8 +72,8 @@ fn nothing_moves_when_charts_follow() {
         let z = anywhere(&model, &mut random);
         let before = placed(&model, &z);
         let mut after = before.clone();
-        assert!(model.action.motion.recentre(&mut after));
-        let charted = model.action.motion.charted();
+        assert!(model.action.map.recentre(&mut after));
+        let charted = model.action.map.charted();
         assert!(
             charted
                 .iter()
@@ -90,7 +90,7 @@ fn nothing_moves_when_charts_follow() {
         }
         // Poses tell the same configuration.
         let poses = model.poses(&before);
-        let values = model.read_joints(&poses, &vec![0.0; model.gauges.len()]);
+        let values = model.read_joints(&poses, &vec![0.0; model.joint_readings.len()]);
         let back = placed(&model, &model.coordinates_of_poses(&poses, &values));
         for (a, b) in poses.iter().zip(model.poses(&back)) {
             assert!((a.centre - b.centre).amax() < 1e-10);
@@ -108,7 +108,7 @@ fn derivatives_far_from_charts_are_differences() {
         let mut initial = guess(&model, &boundary, &control, 10.0, None);
         let mut random = Random(7);
         // Each instant has charts of its own.
-        for z in &mut initial.history.z[1..] {
+        for z in &mut initial.discrete.z[1..] {
             *z = anywhere(&model, &mut random);
         }
         let mut program = Transcription::new(&model, &boundary, &control, &initial).unwrap();
@@ -117,7 +117,7 @@ fn derivatives_far_from_charts_are_differences() {
         println!("{}: {report}", system.name);
         assert!(report.is_consistent(), "{report}");
         let decoded = program.decode(&x);
-        assert_eq!(decoded.z, initial.history.z);
+        assert_eq!(decoded.z, initial.discrete.z);
     }
 }
 
@@ -166,26 +166,26 @@ fn velocities_of_bodies_are_rates_of_coordinates() {
 fn charts_are_exchanged_and_the_configuration_stays() {
     for system in [ball(), satellite()] {
         let model = Model::new(system, None, 1.0, &[]).unwrap();
-        let motion = &model.action.motion;
+        let map = &model.action.map;
         let mut random = Random(3);
         let (z, other) = (anywhere(&model, &mut random), anywhere(&model, &mut random));
         let mut taken = z.clone();
-        motion.take_charts(&other, &mut taken);
+        map.take_charts(&other, &mut taken);
         let mut wrong = taken.clone();
         wrong[model.coordinate_count()] += 0.1;
-        assert!(motion.has_unit_charts(&taken) && !motion.has_unit_charts(&wrong));
+        assert!(map.has_unit_charts(&taken) && !map.has_unit_charts(&wrong));
         assert_eq!(
             taken[model.coordinate_count()..],
             other[model.coordinate_count()..]
         );
-        assert!(motion.angle_from_charts(&taken) > 1.0);
+        assert!(map.angle_from_charts(&taken) > 1.0);
         let (a, b) = (placed(&model, &z), placed(&model, &taken));
         for (a, b) in a.x.iter().zip(&b.x) {
             assert!((a - b).amax() < 1e-12 * 300.0);
         }
         // Half way between two configurations the rotation has half of the angle.
         let mut mean = z.clone();
-        motion.mean_of_charts(&[(0.5, &z), (0.5, &other)], &mut mean);
+        map.mean_of_charts(&[(0.5, &z), (0.5, &other)], &mut mean);
         let [from, half, to] = [&z, &mean, &other].map(|z| {
             let body = model.system.bodies.len() - 1;
             let joint = model.poses(&placed(&model, z));
@@ -230,7 +230,7 @@ fn a_satellite_turns_by_bending_its_trunk_in_both_coordinates() {
             problem.coordinates = Some(other);
             let (model, boundary) = BoundaryConditions::resolve(&system, &problem, 25.0).unwrap();
             let initial = guess(&model, &boundary, &problem, 25.0, Some(&found.motion));
-            let track = Trajectory::from_history(&model, &initial.history);
+            let track = Trajectory::from_discrete(&model, &initial.discrete);
             for (a, b) in track
                 .poses
                 .iter()

@@ -27,8 +27,8 @@ fn a_conical_pendulum_circles_at_its_speed() {
                 Vector3::z() * omega,
             );
             let start = Start::with_rates(&model, at_reference(&model), &rates);
-            let history = motion(&model, &start, h, n, &[]);
-            history.z[n][axis]
+            let discrete = motion(&model, &start, h, n, &[]);
+            discrete.z[n][axis]
         };
         [100, 200, 400].map(place).to_vec()
     });
@@ -73,11 +73,15 @@ fn a_slider_falls_on_a_parabola_without_error() {
     for coordinates in [Coordinates::Reduced, Coordinates::Redundant] {
         let model = Model::new(scene.clone(), Some(coordinates), h, &[]).unwrap();
         let start = Start::at_rest(&model, at_reference(&model));
-        let history = motion(&model, &start, h, 100, &[]);
-        let seen = observations(&model, &history);
+        let discrete = motion(&model, &start, h, 100, &[]);
+        let seen = observations(&model, &discrete);
         let acceleration = axis.dot(&Vector3::new(0.1, 0.2, -9.81e-3));
         let nose = columns(&seen, "nose");
-        for (k, (y, t)) in column(&seen, "rail").iter().zip(&history.times).enumerate() {
+        for (k, (y, t)) in column(&seen, "rail")
+            .iter()
+            .zip(&discrete.times)
+            .enumerate()
+        {
             let exact = 0.5 * acceleration * t * t;
             // Sums of k² terms of size h²: relative rounding grows like k.
             assert!(
@@ -142,8 +146,8 @@ fn two_bodies_fixed_together_are_one() {
     let run = |scene: &System, coordinates| {
         let model = Model::new(scene.clone(), Some(coordinates), h, &[]).unwrap();
         let start = Start::at_rest(&model, at_reference(&model));
-        let history = motion(&model, &start, h, 300, &[]);
-        column(&observations(&model, &history), "pivot").to_vec()
+        let discrete = motion(&model, &start, h, 300, &[]);
+        column(&observations(&model, &discrete), "pivot").to_vec()
     };
     let expected = run(&one, Coordinates::Reduced);
     assert!(expected.iter().any(|a| a.abs() > 1.0));

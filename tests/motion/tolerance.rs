@@ -49,28 +49,28 @@ fn steps_by_a_tolerance_keep_it() {
     let end = exact.z.last().unwrap();
     let mut before = usize::MAX;
     for tolerance in [1e-4, 1e-3, 1e-2] {
-        let (history, failure) = run(tolerance);
+        let (discrete, failure) = run(tolerance);
         assert_eq!(failure, None);
-        let steps = history.intervals();
-        assert_eq!(*history.times.last().unwrap(), 400.0);
+        let steps = discrete.intervals();
+        assert_eq!(*discrete.times.last().unwrap(), 400.0);
         assert!(
-            history.times.contains(&150.0),
+            discrete.times.contains(&150.0),
             "steps end where voltages switch"
         );
-        let lengths: Vec<f64> = history.times.windows(2).map(|w| w[1] - w[0]).collect();
+        let lengths: Vec<f64> = discrete.times.windows(2).map(|w| w[1] - w[0]).collect();
         let [least, most] = [
             lengths.iter().copied().fold(f64::INFINITY, f64::min),
             lengths.iter().copied().fold(0.0, f64::max),
         ];
         assert!(least > 0.0 && most > 5.0 * least, "{least} to {most}");
-        let error = history.z[steps]
+        let error = discrete.z[steps]
             .iter()
             .zip(end)
             .map(|(a, b)| (a - b).abs())
             .fold(0.0, f64::max);
         println!(
             "{tolerance:e}: {steps} steps from {least} to {most} ms, {error:e}, {:?}",
-            history.report
+            discrete.report
         );
         assert!(error < 2.0 * tolerance && steps < before, "{error:e}");
         before = steps;

@@ -15,7 +15,7 @@ pub(crate) fn good(folder: &Path, words: &[&str]) {
 /// Coordinates and momenta of a simulation, instant by instant.
 fn motion(folder: &Path) -> [Vec<Vec<f64>>; 2] {
     let kept = continuation::read(&folder.join("continuation.npz")).unwrap();
-    [kept.history.z, kept.history.momenta]
+    [kept.discrete.z, kept.discrete.momenta]
 }
 
 /// Greatest difference of two lists, and greatest entry.
@@ -67,7 +67,7 @@ fn halves(name: &str, half: &str, whole: &str, set: &[&str]) -> [[Vec<Vec<f64>>;
     assert!(counted.1 < seconds.1);
     // Time begins at zero for the method too.
     let kept = continuation::read(&folder.join("on/continuation.npz")).unwrap();
-    let mut lists = kept.history.end.lists.iter();
+    let mut lists = kept.discrete.end.lists.iter();
     let (_, time) = lists.find(|(name, _)| name == "time").unwrap();
     assert!((time[0] - 1e3 * counted.0).abs() < 1e-9, "{time:?}");
     [expected, motion(&folder.join("on"))]

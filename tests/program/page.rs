@@ -11,7 +11,7 @@ use proboscis::model::System;
 use proboscis::model::system::{ElectricConstants, VACUUM_PERMITTIVITY};
 use proboscis::report::origin::Origin;
 use proboscis::report::skins::Skins;
-use proboscis::report::{Run, Told, page};
+use proboscis::report::{PageContent, Run, page};
 use serde_json::Value;
 
 use crate::report::swing;
@@ -45,17 +45,18 @@ fn a_page_has_the_motion_and_the_curves_of_its_run() {
         targets: &[(0, Vector3::new(1.0, -2.0, 3.5))],
         ..run(&system, &trajectory)
     };
-    let data = page_data(&page::html(&run, run.told.unwrap()));
+    let data = page_data(&page::html(&run, run.page.unwrap()));
     assert_scene(&data["scene"], &run);
     assert_charts(&data["charts"], &run);
 }
 
 fn run<'a>(system: &'a System, trajectory: &'a Trajectory) -> Run<'a> {
-    static PARTS: LazyLock<(Skins, Observations, Origin, Told)> = LazyLock::new(Default::default);
-    let (skins, observations, origin, told) = &*PARTS;
+    static PARTS: LazyLock<(Skins, Observations, Origin, PageContent)> =
+        LazyLock::new(Default::default);
+    let (skins, observations, origin, content) = &*PARTS;
     Run {
-        told: Some(told),
-        ..Run::of(system, trajectory, skins, observations, origin)
+        page: Some(content),
+        ..Run::from_trajectory(system, trajectory, skins, observations, origin)
     }
 }
 
@@ -156,7 +157,7 @@ fn a_page_has_its_code_in_less_than_half_a_megabyte_and_asks_for_nothing() {
     trajectory.joints.resize(count as usize + 1, vec![0.0; 6]);
     trajectory.joints[7777][2] = 1.5;
     let run = run(&system, &trajectory);
-    let html = page::html(&run, run.told.unwrap());
+    let html = page::html(&run, run.page.unwrap());
     let data = page_data(&html);
     let size = data.to_string().len();
     assert!(html.len() - size < 500_000, "{} of code", html.len() - size);
@@ -209,7 +210,7 @@ fn each_muscle_looks_the_same_in_all_charts() {
         observations: &observations,
         ..run(&system, &trajectory)
     };
-    let data = page_data(&page::html(&run, run.told.unwrap()));
+    let data = page_data(&page::html(&run, run.page.unwrap()));
     let mut looks: BTreeMap<String, Vec<(Value, Value)>> = BTreeMap::new();
     let named = [
         "Voltages",
@@ -250,7 +251,7 @@ fn a_page_shows_the_ground_and_names_the_motion_beside() {
         name: "optimal voltages",
         ..run(&system, &trajectory)
     };
-    let data = page_data(&page::html(&run, run.told.unwrap()));
+    let data = page_data(&page::html(&run, run.page.unwrap()));
     let scene = &data["scene"];
     assert_eq!(scene["names"][0], "optimal voltages");
     assert_eq!(scene["names"][1], "constant voltages");

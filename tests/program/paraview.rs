@@ -209,7 +209,7 @@ fn a_series_lists_what_it_wrote() {
     }];
     let origin = origin();
     fs::create_dir_all(&folder).unwrap();
-    let mut files = FileSet::of(&folder);
+    let mut files = FileSet::in_folder(&folder);
     let mut series = Series::new("trajectory", &origin);
     let times = [0.0, 1e-3, 0.1 + 0.2];
     for time in times {

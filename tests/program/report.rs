@@ -13,7 +13,9 @@ use proboscis::report::origin::Origin;
 use proboscis::report::pose::Shown;
 use proboscis::report::skins::Skins;
 use proboscis::report::viewpoint::Viewpoint;
-use proboscis::report::{Run, Told, markup, pose, style, table, tip_path, voltages, write_run};
+use proboscis::report::{
+    PageContent, Run, markup, pose, style, table, tip_path, voltages, write_run,
+};
 
 fn origin() -> Origin {
     Origin {
@@ -289,17 +291,17 @@ fn a_run_leaves_all_its_files_and_the_page_escapes_names() {
     let run = Run {
         comparison: Some(("again", &trajectory)),
         tracked: &tracked,
-        told: Some(&Told {
+        page: Some(&PageContent {
             title: "A <title>".to_owned(),
             rows: vec![("status".to_owned(), "a < b".to_owned())],
-            ..Told::default()
+            ..PageContent::default()
         }),
-        ..Run::of(&system, &trajectory, &skins, &observations, &origin)
+        ..Run::from_trajectory(&system, &trajectory, &skins, &observations, &origin)
     };
     let folder = tempfile::tempdir().unwrap();
     let inner = folder.path().join("results").join("swing");
     fs::create_dir_all(&inner).unwrap();
-    let mut set = FileSet::of(&inner);
+    let mut set = FileSet::in_folder(&inner);
     write_run(&mut set, &run).unwrap();
     // None has its name before all are finished.
     assert!(!inner.join("trajectory.csv").exists());

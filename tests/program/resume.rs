@@ -159,7 +159,7 @@ fn a_killed_simulation_goes_on_from_its_last_steps() {
     let continuation = folder.join("out/continuation.npz");
     let continued = proboscis::files::continuation::read(&continuation)
         .unwrap()
-        .history;
+        .discrete;
     for (row, expected) in continued.z.iter().zip(whole.as_array().unwrap()).take(100) {
         let expected: Vec<f64> = serde_json::from_value(expected.clone()).unwrap();
         assert_eq!(*row, expected);

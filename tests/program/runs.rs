@@ -81,9 +81,9 @@ pub(crate) fn write_motion(
     let skins = Skins::default();
     let run = Run {
         figures,
-        ..Run::of(system, trajectory, &skins, &observations, &origin)
+        ..Run::from_trajectory(system, trajectory, &skins, &observations, &origin)
     };
-    let mut files = FileSet::of(folder);
+    let mut files = FileSet::in_folder(folder);
     write_run(&mut files, &run).unwrap();
     files.finish().unwrap();
 }

@@ -49,7 +49,7 @@ proptest! {
             nearest.extend((0..=last).min_by(|a, b| far(a).total_cmp(&far(b))));
         }
         let expected = (nearest.len() <= last).then(|| nearest.into_iter().collect::<Vec<_>>());
-        let found = Sampled::of(&observed(&times), Some(1.0));
+        let found = Sampled::from_observations(&observed(&times), Some(1.0));
         prop_assert_eq!(found.map(|sampled| sampled.instants), expected);
     }
 
@@ -84,7 +84,7 @@ fn an_instant_comes_with_the_voltages_before_it_and_its_deviation() {
         scalars: numbers(5),
         ..DiscreteTrajectory::default()
     };
-    let shown = sampled.history(&full);
+    let shown = sampled.discrete_trajectory(&full);
     assert_eq!(shown.times, [0.0, 3.0, 4.0, 8.0]);
     assert_eq!(shown.z.concat(), [0.0, 2.0, 3.0, 5.0]);
     assert_eq!(shown.scalars.concat(), [1.0, 2.0, 4.0]);

@@ -236,7 +236,7 @@ fn each_point_runs_again_from_its_overrides_to_the_last_bit() {
                 panic!("a simulation");
             };
             let moved = integrate(&loaded.system, task, |_, _| ControlFlow::Continue(())).unwrap();
-            let kept = proboscis::workflow::solved(&moved.model, &moved.history, None);
+            let kept = proboscis::workflow::solved(&moved.model, &moved.discrete, None);
             let places = trajectory(&moved.model, &kept).path(0);
             let last = places.last().unwrap();
             let told = numbers(&point["values"]["end"]);

@@ -63,7 +63,7 @@ fn optimal_voltages_are_put_to_the_test_on_a_finer_grid() {
     }
     let h = 200.0 / fine.len() as f64;
     let voltages = |from: f64, _: f64| model.scalars(&fine[(from / h).round() as usize]);
-    let (history, failure) = simulate(
+    let (discrete, failure) = simulate(
         model,
         &optimum.boundary.start,
         h,
@@ -72,7 +72,7 @@ fn optimal_voltages_are_put_to_the_test_on_a_finer_grid() {
         |_| ControlFlow::Continue(()),
     );
     assert_eq!(failure, None);
-    let kept = proboscis::workflow::solved(model, &history, None);
+    let kept = proboscis::workflow::solved(model, &discrete, None);
     let again = trajectory(model, &kept).path(0);
     let optimal = trajectory(model, &optimum.motion).path(0);
     let distances: Vec<f64> = (0..=20)

@@ -36,7 +36,7 @@ fn a_set_of_files_has_no_summary_before_all_others_have_their_names() {
     let at = |name: &str| folder.path().join(name);
     let read = |name: &str| fs::read_to_string(at(name)).unwrap();
     let written = |names: [&str; 3]| {
-        let mut files = FileSet::of(folder.path());
+        let mut files = FileSet::in_folder(folder.path());
         for name in names {
             files.add(name, name.as_bytes()).unwrap();
         }

@@ -53,7 +53,7 @@ fn a_block_outside_the_domain_is_told_with_its_instants() {
     let model = model(system);
     let zero = reference(&model);
     let stretched = |l: f64| -> Vec<f64> {
-        let axes = model.action.motion.of_nodes.iter().zip(&zero);
+        let axes = model.action.map.of_nodes.iter().zip(&zero);
         axes.map(|(&(_, axis), x)| if axis == 2 { l * x } else { x / l.sqrt() })
             .collect()
     };

@@ -31,7 +31,7 @@ pub(crate) fn model(system: System) -> Model {
 }
 
 pub(crate) fn reference(model: &Model) -> Vec<f64> {
-    model.coordinates_at(&vec![0.0; model.gauges.len()])
+    model.coordinates_at(&vec![0.0; model.joint_readings.len()])
 }
 
 fn found(model: &Model, voltages: &[f64]) -> Equilibrium {
@@ -87,7 +87,7 @@ fn redundant_coordinates_rest_where_joint_coordinates_do() {
     let other = found(&redundant, &voltages);
     assert_eq!(other.is_stable(), Some(true));
     let tip = |model: &Model, rest: &Equilibrium| {
-        let instant = model.action.motion.placed(&rest.z);
+        let instant = model.action.map.placed(&rest.z);
         instant.x[model.markers[0]]
     };
     let (a, b) = (tip(&reduced, &rest), tip(&redundant, &other));
@@ -107,7 +107,7 @@ fn redundant_coordinates_rest_where_joint_coordinates_do() {
 /// Potential energy in N mm, written out: W(Λ, V) of the lumped muscles by docs/theory.md, 3.1, weights of bodies and of halves of
 /// muscles at their ends.
 fn energy(system: &System, model: &Model, z: &[f64], voltages: &[f64]) -> f64 {
-    let instant = model.action.motion.placed(z);
+    let instant = model.action.map.placed(z);
     let poses = model.poses(&instant);
     let place = |body: Option<usize>, at: &Vector3<f64>| match body {
         None => *at,

@@ -65,9 +65,9 @@ fn single(shear_modulus: f64, electric: ElectricConstants) -> System {
 fn stretch(system: &System, coordinates: Coordinates, field: f64) -> Result<f64, EquilibriumError> {
     let model = Model::new(system.clone(), Some(coordinates), 5.0, &[]).unwrap();
     let rest = equilibrium(&model, &model.coordinates_at(&[0.0]), &[field * LAYER])?;
-    let mut instant = model.action.motion.instant();
+    let mut instant = model.action.map.instant();
     instant.z.copy_from_slice(&rest.z);
-    model.action.motion.place(&mut instant);
+    model.action.map.place(&mut instant);
     Ok(1.0 + model.joints(&instant, &[0.0])[0] / LENGTH)
 }
 

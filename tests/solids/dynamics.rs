@@ -1,4 +1,4 @@
-//! Blocks in motion: reference histories, conservation, and the balance of energy.
+//! Blocks in motion: reference motions, conservation, and the balance of energy.
 
 use crate::common::solid::{block, material, mesh, numbers, reference, stack, system};
 use nalgebra::Vector3;
@@ -23,29 +23,29 @@ fn run(system: System, h: f64, steps: usize, voltages: &[f64]) -> (Model, Discre
         None => Start::at_rest(&model, z),
     };
     let constant = |_: f64, _: f64| voltages.to_vec();
-    let (history, failure) = simulate(&model, &start, h, steps, constant, |_| {
+    let (discrete, failure) = simulate(&model, &start, h, steps, constant, |_| {
         ControlFlow::Continue(())
     });
     assert_eq!(failure, None);
-    (model, history)
+    (model, discrete)
 }
 
 /// Places of the nodes of the first block at instant k.
-fn places(model: &Model, history: &DiscreteTrajectory, k: usize) -> Vec<Vector3<f64>> {
-    let mut instant = model.action.motion.instant();
-    instant.z.copy_from_slice(&history.z[k]);
-    model.action.motion.place(&mut instant);
+fn places(model: &Model, discrete: &DiscreteTrajectory, k: usize) -> Vec<Vector3<f64>> {
+    let mut instant = model.action.map.instant();
+    instant.z.copy_from_slice(&discrete.z[k]);
+    model.action.map.place(&mut instant);
     model.solids[0].places(&instant.x)
 }
 
 /// Compares the probes of all instants; `scale` is the size of the motion in mm.
-fn compare(entry: &Value, model: &Model, history: &DiscreteTrajectory, scale: f64) -> f64 {
+fn compare(entry: &Value, model: &Model, discrete: &DiscreteTrajectory, scale: f64) -> f64 {
     let nodes = numbers(&entry["probe_nodes"]);
-    let histories = entry["probe_u"].as_array().unwrap();
+    let probes = entry["probe_u"].as_array().unwrap();
     let mut worst = 0.0_f64;
     let mut largest = 0.0_f64;
-    for (k, row) in histories.iter().enumerate().take(history.z.len()) {
-        let places = places(model, history, k);
+    for (k, row) in probes.iter().enumerate().take(discrete.z.len()) {
+        let places = places(model, discrete, k);
         for (node, expected) in nodes.iter().zip(row.as_array().unwrap()) {
             let node = *node as usize;
             let moved = places[node] - model.solids[0].solid.mesh.nodes[node];
@@ -64,9 +64,9 @@ fn a_voltage_step_is_the_reference() {
         let coarse = numbers(&entry["mesh"]["elements"])[0] < 3.0;
         let steps = if coarse { 200 } else { 20 };
         let h = entry["h"].as_f64().unwrap() * 1e3;
-        let (model, history) = run(stack(entry), h, steps, &[3e5]);
+        let (model, discrete) = run(stack(entry), h, steps, &[3e5]);
         let scale = if coarse { 3.0 } else { 1.0 };
-        let worst = compare(entry, &model, &history, scale);
+        let worst = compare(entry, &model, &discrete, scale);
         assert!(worst < 1e-7, "{worst:e}");
     }
 }
@@ -87,11 +87,11 @@ fn free_flight_is_the_reference_and_keeps_momenta() {
     for entry in reference("caseF")["runs"].as_array().unwrap() {
         let coarse = numbers(&entry["mesh"]["elements"])[0] < 3.0;
         let steps = if coarse { 500 } else { 15 };
-        let (model, history) = run(flight(entry), 1.0, steps, &[]);
+        let (model, discrete) = run(flight(entry), 1.0, steps, &[]);
         let scale = if coarse { 10.0 } else { 1.0 };
-        let worst = compare(entry, &model, &history, scale);
+        let worst = compare(entry, &model, &discrete, scale);
         assert!(worst < 1e-7, "{worst:e}");
-        let columns = observations(&model, &history).columns;
+        let columns = observations(&model, &discrete).columns;
         for name in ["linear_momentum", "angular_momentum"] {
             let of = |axis: &str| {
                 let column = columns.iter().find(|c| c.name == format!("{name}_{axis}"));
@@ -127,15 +127,15 @@ fn gauss_holds_in_every_interval_and_the_balance_closes() {
     };
     let entry = entries.iter().find(viscous).unwrap();
     let h = 0.5;
-    let (model, history) = run(stack(entry), h, 60, &[3e5]);
-    let (mut a, mut b) = (model.action.motion.instant(), model.action.motion.instant());
+    let (model, discrete) = run(stack(entry), h, 60, &[3e5]);
+    let (mut a, mut b) = (model.action.map.instant(), model.action.map.instant());
     let mut scratch = model.action.scratch(Order::Gradient);
     for k in 0..60 {
-        for (instant, z) in [(&mut a, &history.z[k]), (&mut b, &history.z[k + 1])] {
+        for (instant, z) in [(&mut a, &discrete.z[k]), (&mut b, &discrete.z[k + 1])] {
             instant.z.copy_from_slice(z);
-            model.action.motion.place(instant);
+            model.action.map.place(instant);
         }
-        let interval = Interval::given(&history.scalars[k], h);
+        let interval = Interval::given(&discrete.scalars[k], h);
         model
             .action
             .evaluate_interval(Order::Gradient, [&mut a, &mut b], &interval, &mut scratch);
@@ -147,7 +147,7 @@ fn gauss_holds_in_every_interval_and_the_balance_closes() {
             assert!(row.abs() < 1e-9 * charge, "{row:e} of {charge:e}");
         }
     }
-    let columns = observations(&model, &history).columns;
+    let columns = observations(&model, &discrete).columns;
     let column = |name: &str| {
         let found = columns.iter().find(|c| c.name == name);
         found.unwrap_or_else(|| panic!("{name}")).values.clone()
@@ -170,10 +170,10 @@ fn reused_tangents_and_other_solvers_give_the_same_motion() {
             let start = Start::at_rest(&model, model.coordinates_at(&[]));
             let constant = |_: f64, _: f64| vec![3e5];
             let observer = |_: &_| ControlFlow::Continue(());
-            let (history, failure) =
+            let (discrete, failure) =
                 simulate_by(solving, &model, &start, 0.5, steps, constant, observer);
             assert_eq!(failure, None);
-            history
+            discrete
         };
         let full = motion(Solving::default());
         let moved = full.z[steps].iter().zip(&full.z[0]);
@@ -212,9 +212,9 @@ fn released(solid: Solid, solving: Solving, h: f64, steps: usize) -> DiscreteTra
     let start = Start::with_rates(&model, model.coordinates_at(&[]), &rates);
     let observer = |_: &_| ControlFlow::Continue(());
     let none = |_: f64, _: f64| Vec::new();
-    let (history, failure) = simulate_by(solving, &model, &start, h, steps, none, observer);
+    let (discrete, failure) = simulate_by(solving, &model, &start, h, steps, none, observer);
     assert_eq!(failure, None);
-    history
+    discrete
 }
 
 /// A few long steps of a very viscous block of 40 mm that stretches and turns.

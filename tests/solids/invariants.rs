@@ -15,7 +15,7 @@ fn run(solid: Solid, h: f64, steps: usize, voltage: f64) -> (Model, DiscreteTraj
         Some(rates) => Start::with_rates(&model, z, &rates),
         None => Start::at_rest(&model, z),
     };
-    let (history, failure) = simulate(
+    let (discrete, failure) = simulate(
         &model,
         &start,
         h,
@@ -24,8 +24,8 @@ fn run(solid: Solid, h: f64, steps: usize, voltage: f64) -> (Model, DiscreteTraj
         |_| ControlFlow::Continue(()),
     );
     assert_eq!(failure, None);
-    assert_eq!(history.report.halved, 0);
-    (model, history)
+    assert_eq!(discrete.report.halved, 0);
+    (model, discrete)
 }
 
 /// One Gauss point of a hexahedron: shape functions, their gradients in the reference, weight.
@@ -123,11 +123,11 @@ fn loads(
 /// Midpoint and rate of two instants.
 fn interval(
     model: &Model,
-    history: &DiscreteTrajectory,
+    discrete: &DiscreteTrajectory,
     k: usize,
     h: f64,
 ) -> [Vec<Vector3<f64>>; 2] {
-    let [a, b] = [k, k + 1].map(|k| placed(model, &history.z[k]));
+    let [a, b] = [k, k + 1].map(|k| placed(model, &discrete.z[k]));
     let pairs = || a.iter().zip(&b);
     let middle = pairs().map(|(a, b)| (a + b) * 0.5).collect();
     [middle, pairs().map(|(a, b)| (b - a) / h).collect()]
@@ -137,12 +137,12 @@ fn interval(
 fn the_balance_of_energy_closes_in_every_step() {
     let h = 0.1;
     let (steps, solid) = (60, clamped(Some(0.02)));
-    let (model, history) = run(solid.clone(), h, steps, VOLTAGE);
+    let (model, discrete) = run(solid.clone(), h, steps, VOLTAGE);
     // All nodes above the clamped face have three coordinates each, in the order of the mesh.
     let free: Vec<usize> = (0..solid.mesh.nodes.len())
         .filter(|n| !solid.supports[0].nodes.contains(n))
         .collect();
-    let of_nodes = &model.action.motion.of_nodes;
+    let of_nodes = &model.action.map.of_nodes;
     assert_eq!(of_nodes.len(), 3 * free.len());
     let mass = mass(&solid.mesh, 1e-3)
         .select_rows(&free)
@@ -161,11 +161,11 @@ fn the_balance_of_energy_closes_in_every_step() {
         of(0) + of(1) + of(2)
     };
     let (mut largest, mut worst, mut dissipated) = (0.0_f64, 0.0_f64, 0.0);
-    let seen = observations(&model, &history).columns;
+    let seen = observations(&model, &discrete).columns;
     let column = |name: &str| &seen.iter().find(|c| c.name == name).unwrap().values;
     for k in 0..steps {
-        let [middle, rates] = interval(&model, &history, k, h);
-        let phi = model.solids[0].potentials(&history.scalars[k]);
+        let [middle, rates] = interval(&model, &discrete, k, h);
+        let phi = model.solids[0].potentials(&discrete.scalars[k]);
         let (slopes, _, viscous) = loads(&solid, &middle, &phi, &rates);
         let work = |forces: &[Vector3<f64>]| -> f64 {
             h * forces
@@ -174,7 +174,7 @@ fn the_balance_of_energy_closes_in_every_step() {
                 .map(|(f, v)| f.dot(v))
                 .sum::<f64>()
         };
-        let [before, after] = [k, k + 1].map(|k| kinetic(&history.momenta[k]));
+        let [before, after] = [k, k + 1].map(|k| kinetic(&discrete.momenta[k]));
         let lost = -work(&viscous);
         assert!(lost >= 0.0);
         dissipated += lost;
@@ -195,14 +195,14 @@ fn the_balance_of_energy_closes_in_every_step() {
 fn gauss_holds_in_every_interval() {
     let (h, steps) = (0.1, 40);
     let solid = clamped(Some(0.02));
-    let (model, history) = run(solid.clone(), h, steps, VOLTAGE);
-    let seen = observations(&model, &history).columns;
+    let (model, discrete) = run(solid.clone(), h, steps, VOLTAGE);
+    let seen = observations(&model, &discrete).columns;
     let column = |name: &str| &seen.iter().find(|c| c.name == name).unwrap().values;
     let mut island = (f64::INFINITY, 0.0_f64);
     let mut before = None;
     for k in 0..steps {
-        let [middle, rates] = interval(&model, &history, k, h);
-        let phi = model.solids[0].potentials(&history.scalars[k]);
+        let [middle, rates] = interval(&model, &discrete, k, h);
+        let phi = model.solids[0].potentials(&discrete.scalars[k]);
         let (_, charges, _) = loads(&solid, &middle, &phi, &rates);
         let of = |e: &Electrode| e.nodes.iter().map(|&n| charges[n]).sum::<f64>();
         let [bottom, floating, top] = [0, 1, 2].map(|e| of(&solid.electrodes[e]));
@@ -248,12 +248,12 @@ fn a_free_block_keeps_its_momenta() {
     let velocity = |x: &Vector3<f64>| omega.cross(x) + Vector3::new(0.5, 0.0, 0.02 * x.z);
     solid.velocities = solid.mesh.nodes.iter().map(velocity).collect();
     let (steps, volume) = (200, 2000.0);
-    let (model, history) = run(solid, 0.1, steps, VOLTAGE);
-    let seen = observations(&model, &history).columns;
+    let (model, discrete) = run(solid, 0.1, steps, VOLTAGE);
+    let seen = observations(&model, &discrete).columns;
     let column = |name: &str| &seen.iter().find(|c| c.name == name).unwrap().values;
     assert!(column("dissipated_energy")[steps] > 0.3);
     let turned = |k: usize| {
-        let x = placed(&model, &history.z[k]);
+        let x = placed(&model, &discrete.z[k]);
         (x[44] - x[0]).normalize()
     };
     assert!(

@@ -48,12 +48,12 @@ fn contraction(viscosity: Option<f64>, first: f64) -> (Model, DiscreteTrajectory
     let model = Model::new(bar(viscosity), None, STEP, &[]).unwrap();
     let start = Start::at_rest(&model, model.coordinates_at(&[]));
     let voltage = |from: f64, _: f64| vec![if from == 0.0 { first } else { 2e4 }];
-    let (history, failure) = simulate(&model, &start, STEP, 100, voltage, |_| {
+    let (discrete, failure) = simulate(&model, &start, STEP, 100, voltage, |_| {
         ControlFlow::Continue(())
     });
     assert_eq!(failure, None);
-    assert_eq!(history.report.halved, 0);
-    (model, history)
+    assert_eq!(discrete.report.halved, 0);
+    (model, discrete)
 }
 
 /// Instants by number and the tip there in mm.
@@ -117,9 +117,9 @@ fn a_bar_contracts_by_the_tables() {
         (Some(0.25), 2e4, viscous_jump),
         (None, 2e4, jump),
     ] {
-        let (model, history) = contraction(viscosity, first);
+        let (model, discrete) = contraction(viscosity, first);
         for &(k, expected) in table {
-            let tip = placed(&model, &history.z[k])[20].z;
+            let tip = placed(&model, &discrete.z[k])[20].z;
             // The tables have nine decimals.
             assert!((tip - expected).abs() < 6e-10, "{k}: {tip} {expected}");
         }
@@ -128,15 +128,15 @@ fn a_bar_contracts_by_the_tables() {
 
 #[test]
 fn the_energy_of_the_bar_keeps_to_its_interval() {
-    let (model, history) = contraction(None, 1e4);
-    let [mut a, mut b] = [(); 2].map(|()| model.action.motion.instant());
+    let (model, discrete) = contraction(None, 1e4);
+    let [mut a, mut b] = [(); 2].map(|()| model.action.map.instant());
     let (mut low, mut high, mut kinetic) = (f64::INFINITY, 0.0_f64, 0.0_f64);
     for n in 1..99 {
         for (instant, k) in [(&mut a, n), (&mut b, n + 1)] {
-            instant.z.copy_from_slice(&history.z[k]);
-            model.action.motion.place(instant);
+            instant.z.copy_from_slice(&discrete.z[k]);
+            model.action.map.place(instant);
         }
-        let energy = energies(&model, &a, &b, &history.scalars[n], STEP);
+        let energy = energies(&model, &a, &b, &discrete.scalars[n], STEP);
         kinetic = kinetic.max(energy.kinetic);
         (low, high) = (low.min(energy.total()), high.max(energy.total()));
     }
@@ -150,12 +150,12 @@ fn the_energy_of_the_bar_keeps_to_its_interval() {
 fn the_bar_has_its_frequency_and_damping() {
     let model = Model::new(bar(Some(0.25)), None, STEP, &[]).unwrap();
     // The first mode of equal elements is a sine at their nodes.
-    let (z, motion) = (model.coordinates_at(&[]), &model.action.motion);
+    let (z, map) = (model.coordinates_at(&[]), &model.action.map);
     let sine = |z: &f64| 1e-6 * (std::f64::consts::FRAC_PI_2 * z / LENGTH).sin();
     let rates: Vec<f64> = z.iter().map(sine).collect();
-    assert!(motion.of_nodes.iter().all(|&(_, axis)| axis == 2));
+    assert!(map.of_nodes.iter().all(|&(_, axis)| axis == 2));
     let start = Start::with_rates(&model, z, &rates);
-    let (history, failure) = simulate(
+    let (discrete, failure) = simulate(
         &model,
         &start,
         STEP,
@@ -165,7 +165,7 @@ fn the_bar_has_its_frequency_and_damping() {
     );
     assert_eq!(failure, None);
     let u: Vec<f64> = (0..8)
-        .map(|k| placed(&model, &history.z[k])[20].z - LENGTH)
+        .map(|k| placed(&model, &discrete.z[k])[20].z - LENGTH)
         .collect();
     // u₊ = a u − b u₋ along a damped mode, solved for a and b from two triples.
     let determinant = u[5] * u[3] - u[4] * u[4];

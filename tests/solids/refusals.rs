@@ -195,14 +195,14 @@ fn steps(
 ) -> (Model, DiscreteTrajectory, Option<StepError>) {
     let model = Model::new(stack(), None, h, &[]).unwrap();
     let z = model.coordinates_at(&[]);
-    let of_nodes = &model.action.motion.of_nodes;
+    let of_nodes = &model.action.map.of_nodes;
     let rate = |(&(_, axis), z): (&(usize, usize), &f64)| match axis {
         2 => -speed * z / 40.0,
         _ => 0.0,
     };
     let rates: Vec<f64> = of_nodes.iter().zip(&z).map(rate).collect();
     let start = Start::with_rates(&model, z, &rates);
-    let (history, failure) = simulate(
+    let (discrete, failure) = simulate(
         &model,
         &start,
         h,
@@ -210,20 +210,20 @@ fn steps(
         |_, _| vec![voltage],
         |_| ControlFlow::Continue(()),
     );
-    let lists = [&history.z, &history.momenta, &history.scalars];
+    let lists = [&discrete.z, &discrete.momenta, &discrete.scalars];
     assert!(lists.into_iter().flatten().flatten().all(|v| v.is_finite()));
-    assert_eq!(history.times.len(), history.z.len());
-    assert_eq!(history.times.len(), history.momenta.len());
-    assert_eq!(history.times.len(), history.scalars.len() + 1);
-    (model, history, failure)
+    assert_eq!(discrete.times.len(), discrete.z.len());
+    assert_eq!(discrete.times.len(), discrete.momenta.len());
+    assert_eq!(discrete.times.len(), discrete.scalars.len() + 1);
+    (model, discrete, failure)
 }
 
 #[test]
 fn far_beyond_pull_in_a_motion_ends_without_nan() {
     for voltage in [8e5, 2e6, 1e8] {
-        let (model, history, failure) = steps(0.2, 300, voltage, 0.0);
-        let height = |k: usize| placed(&model, &history.z[k]).last().unwrap().z;
-        let last = history.z.len() - 1;
+        let (model, discrete, failure) = steps(0.2, 300, voltage, 0.0);
+        let height = |k: usize| placed(&model, &discrete.z[k]).last().unwrap().z;
+        let last = discrete.z.len() - 1;
         println!(
             "{voltage}: {last} steps to a height of {}, {failure:?}",
             height(last)
@@ -238,7 +238,7 @@ fn far_beyond_pull_in_a_motion_ends_without_nan() {
                 | StepError::Inaccurate { time, step, .. }
                 | StepError::Singular { time, step, .. },
             ) => {
-                assert!(time >= history.times[last] && time < history.times[last] + 0.2);
+                assert!(time >= discrete.times[last] && time < discrete.times[last] + 0.2);
                 assert!(step < 0.2);
             }
             Some(error @ (StepError::Stopped { .. } | StepError::Foreign { .. })) => {
@@ -258,11 +258,11 @@ fn a_huge_step_is_halved_or_refused() {
         (5.0, 6e5, Some(false)),
         (1e3, 6e5, None),
     ] {
-        let (model, history, failure) = steps(h, 5, voltage, 5.0);
-        println!("{h}: {} halved, {failure:?}", history.report.halved);
-        assert!(history.report.halved > 0);
+        let (model, discrete, failure) = steps(h, 5, voltage, 5.0);
+        println!("{h}: {} halved, {failure:?}", discrete.report.halved);
+        assert!(discrete.report.halved > 0);
         assert_eq!(failure.is_some(), is_refused.unwrap_or(failure.is_some()));
-        assert_eq!(history.scalars.len() < 5, failure.is_some());
+        assert_eq!(discrete.scalars.len() < 5, failure.is_some());
         if let Some(error) = failure {
             let (StepError::NoConvergence { step, .. }
             | StepError::Unbalanced { step, .. }
@@ -277,7 +277,7 @@ fn a_huge_step_is_halved_or_refused() {
                 "{message}"
             );
         }
-        let height = placed(&model, history.z.last().unwrap()).last().unwrap().z;
+        let height = placed(&model, discrete.z.last().unwrap()).last().unwrap().z;
         assert!(height > 10.0 && height < 45.0, "{height}");
     }
 }
@@ -350,7 +350,7 @@ fn a_column_buckles_while_it_may_stay_straight() {
         // What inertia says is what a push aside does.
         let rates: Vec<f64> = model
             .action
-            .motion
+            .map
             .of_nodes
             .iter()
             .map(|&(_, axis)| {
@@ -362,7 +362,7 @@ fn a_column_buckles_while_it_may_stay_straight() {
             })
             .collect();
         let start = Start::with_rates(&model, found.z.clone(), &rates);
-        let (history, failure) = simulate(
+        let (discrete, failure) = simulate(
             &model,
             &start,
             0.5,
@@ -371,12 +371,12 @@ fn a_column_buckles_while_it_may_stay_straight() {
             |_| ControlFlow::Continue(()),
         );
         assert_eq!(failure, None);
-        let largest = history
+        let largest = discrete
             .z
             .iter()
             .map(|z| aside(&model, z))
             .fold(0.0, f64::max);
-        let end = aside(&model, history.z.last().unwrap());
+        let end = aside(&model, discrete.z.last().unwrap());
         println!("  pushed aside by {largest} mm, at the end {end} mm");
         assert!(largest > 1e-6);
         assert_eq!(end < 1e-4, stable);

@@ -10,9 +10,9 @@ fn solve(system: System, voltage: f64) -> (Model, Vec<[f64; 3]>, Vec<f64>) {
     let model = Model::new(system, None, 1.0, &[]).unwrap();
     let found = equilibrium(&model, &model.coordinates_at(&[]), &[voltage]).unwrap();
     assert_eq!(found.is_stable(), Some(true));
-    let mut instant = model.action.motion.instant();
+    let mut instant = model.action.map.instant();
     instant.z.copy_from_slice(&found.z);
-    model.action.motion.place(&mut instant);
+    model.action.map.place(&mut instant);
     let block = &model.solids[0];
     let places = block.places(&instant.x);
     let moved = places.iter().zip(&block.solid.mesh.nodes);

@@ -7,7 +7,7 @@ use crate::common::systems::{GRAVITY, blocks};
 use nalgebra::Vector3;
 use proboscis::control::{BoundaryConditions, Transcription, guess};
 use proboscis::coordinates::Interval;
-use proboscis::functional::{Kind, Order};
+use proboscis::functional::{Order, TermKind};
 use proboscis::mesh::grid::Grid;
 use proboscis::model::system::{Electrode, Fidelity, Material, Potential, Solid, System};
 use proboscis::model::{Coordinates, Model, Role, Time};
@@ -235,7 +235,7 @@ fn inner_nodes_of_dielectric_elements_have_a_potential() {
 }
 
 /// Kinds of the effects of a model.
-fn kinds(solid: Solid) -> Vec<Kind> {
+fn kinds(solid: Solid) -> Vec<TermKind> {
     let model = model(solid);
     model
         .action
@@ -249,8 +249,12 @@ fn kinds(solid: Solid) -> Vec<Kind> {
 #[test]
 fn what_a_material_lacks_is_no_effect() {
     let all = kinds(driven([1, 1, 2]));
-    let count = |kinds: &[Kind], kind| kinds.iter().filter(|&&k| k == kind).count();
-    for kind in [Kind::Kinetic, Kind::Potential, Kind::VirtualWork] {
+    let count = |kinds: &[TermKind], kind| kinds.iter().filter(|&&k| k == kind).count();
+    for kind in [
+        TermKind::Kinetic,
+        TermKind::Potential,
+        TermKind::VirtualWork,
+    ] {
         assert_eq!(count(&all, kind), 1);
     }
     let with = |change: &dyn Fn(&mut Material)| {
@@ -258,10 +262,13 @@ fn what_a_material_lacks_is_no_effect() {
         change(&mut solid.materials[0]);
         kinds(solid)
     };
-    assert_eq!(count(&with(&|m| m.density = None), Kind::Kinetic), 0);
-    assert_eq!(count(&with(&|m| m.viscosity = None), Kind::VirtualWork), 0);
+    assert_eq!(count(&with(&|m| m.density = None), TermKind::Kinetic), 0);
+    assert_eq!(
+        count(&with(&|m| m.viscosity = None), TermKind::VirtualWork),
+        0
+    );
     let bare = with(&|m| (m.density, m.viscosity) = (None, None));
-    assert_eq!(bare, vec![Kind::Potential]);
+    assert_eq!(bare, vec![TermKind::Potential]);
     // Nothing remains of a mass: any rates have no momentum.
     let momenta = |density| {
         let mut solid = plain([1, 1, 2]);
@@ -280,7 +287,7 @@ fn what_a_material_lacks_is_no_effect() {
 /// of the first `n` coordinates.
 fn numbers(model: &Model, n: usize) -> Vec<(usize, usize, f64)> {
     let mut random = Random(11);
-    let rest = model.coordinates_at(&vec![0.0; model.gauges.len()]);
+    let rest = model.coordinates_at(&vec![0.0; model.joint_readings.len()]);
     let noise: Vec<f64> = (0..2 * n).map(|_| 0.02 * random.unit()).collect();
     let [mut a, mut b] = [0, 1].map(|side| {
         let mut z = rest.clone();
@@ -308,7 +315,7 @@ fn numbers(model: &Model, n: usize) -> Vec<(usize, usize, f64)> {
     for (side, instant) in [&a, &b].into_iter().enumerate() {
         let mut rows = vec![0.0; model.coordinate_count()];
         action
-            .motion
+            .map
             .pull_back(&instant.columns, &instant.forces, &mut rows);
         out.extend(rows[..n].iter().enumerate().map(|(i, &row)| (i, side, row)));
         for (slot, (i, s)) in layout.mixed.entries().enumerate() {

@@ -5,7 +5,7 @@ use crate::common::{at_reference, trunk};
 use proboscis::control::problem::Control;
 use proboscis::control::{BoundaryConditions, InitialGuess, Transcription, guess};
 use proboscis::dynamics::{DiscreteTrajectory, Start, StepError, simulate};
-use proboscis::functional::{Couplings, Kind, Order, Output, Sample, Term};
+use proboscis::functional::{Couplings, Order, Output, Sample, Term, TermKind};
 use proboscis::ipopt::{
     self, Iteration, LinearSolver, Options, Reached, SolverResult, StartingPoint, Status,
 };
@@ -298,7 +298,7 @@ impl Term for Failing {
         self.effect.couple(couplings, slots);
     }
 
-    fn kind(&self) -> Kind {
+    fn kind(&self) -> TermKind {
         self.effect.kind()
     }
 
@@ -344,12 +344,12 @@ fn swing(
     let scalars = model.scalars(&[0.0, 1700.0]);
     let voltages = |_: f64, _: f64| scalars.clone();
     let go_on = |_: &_| ControlFlow::Continue(());
-    let (history, failure) = simulate(&model, &start, 10.0, STEPS, voltages, go_on);
-    (history, failure, calls.load(Ordering::SeqCst))
+    let (discrete, failure) = simulate(&model, &start, 10.0, STEPS, voltages, go_on);
+    (discrete, failure, calls.load(Ordering::SeqCst))
 }
 
-fn all_finite(history: &DiscreteTrajectory) -> bool {
-    let mut rows = history.z.iter().chain(&history.momenta);
+fn all_finite(discrete: &DiscreteTrajectory) -> bool {
+    let mut rows = discrete.z.iter().chain(&discrete.momenta);
     rows.all(|row| row.iter().all(|value| value.is_finite()))
 }
 
@@ -366,21 +366,21 @@ fn every_evaluation_of_a_simulation_may_fail() {
         for call in 1..=calls {
             let told = format!("{coordinates:?}, evaluation {call} of {calls}");
             // For good: the motion ends where it was, with the time.
-            let (history, failure, _) = swing(coordinates, call, usize::MAX);
+            let (discrete, failure, _) = swing(coordinates, call, usize::MAX);
             let Some(StepError::NoConvergence { time, .. }) = failure else {
                 panic!("{told}: {failure:?}");
             };
-            let steps = history.intervals();
+            let steps = discrete.intervals();
             reached.push(steps);
             assert!((time - 10.0 * steps as f64).abs() < 1e-9, "{told}: {time}");
-            assert!(all_finite(&history), "{told}");
-            assert_eq!(history.momenta, whole.momenta[..=steps], "{told}");
+            assert!(all_finite(&discrete), "{told}");
+            assert_eq!(discrete.momenta, whole.momenta[..=steps], "{told}");
             // Once: the step is halved and the motion goes on.
-            let (history, failure, _) = swing(coordinates, call, call + 1);
-            assert_eq!((failure, history.intervals()), (None, STEPS), "{told}");
-            assert!(all_finite(&history), "{told}");
-            assert_eq!(history.report.halved, 1, "{told}");
-            let error = (history.z[STEPS][0] - whole.z[STEPS][0]).abs();
+            let (discrete, failure, _) = swing(coordinates, call, call + 1);
+            assert_eq!((failure, discrete.intervals()), (None, STEPS), "{told}");
+            assert!(all_finite(&discrete), "{told}");
+            assert_eq!(discrete.report.halved, 1, "{told}");
+            let error = (discrete.z[STEPS][0] - whole.z[STEPS][0]).abs();
             assert!(error < 0.05 * turn, "{told}: {error}");
         }
         assert_eq!(reached.first(), Some(&0));

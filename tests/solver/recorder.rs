@@ -1,4 +1,4 @@
-//! The writer of the systems that `recorded.rs` reads: it stands in the place of MA57, as `src/ipopt/hook.rs` does.
+//! The writer of the systems that `recorded.rs` reads: it stands in the place of MA57, as `src/ipopt/ma57_adapter.rs` does.
 //!
 //! `cargo test --test solver -- --ignored --exact recorder::systems_are_recorded` writes the folder `systems` anew.
 

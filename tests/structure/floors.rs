@@ -82,7 +82,7 @@ fn words_stay_in_their_place() {
                 let bindings = [
                     "ipopt/declarations.rs",
                     "ipopt/ffi.rs",
-                    "ipopt/hook.rs",
+                    "ipopt/ma57_adapter.rs",
                     "ipopt/loaded.rs",
                     "sparse/mumps/ffi.rs",
                     "sparse/mumps/libraries.rs",

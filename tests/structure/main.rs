@@ -5,14 +5,15 @@ mod common;
 
 mod absent;
 mod circles;
-mod condensed;
 mod documents;
 mod floors;
 mod functions;
 mod heads;
 mod lengths;
 mod numbering;
+mod presolved;
 mod roles;
 mod sources;
 mod trace;
 mod welded;
+mod words;

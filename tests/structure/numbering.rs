@@ -58,8 +58,8 @@ fn check(system: &System, control: &Control) -> [usize; 2] {
         of(laws, "Gauss's law of ")
     );
 
-    let motion = &model.action.motion;
-    let (n, m) = (motion.coordinates, motion.multipliers);
+    let map = &model.action.map;
+    let (n, m) = (map.coordinates, map.multipliers);
     let goal = &boundary.goal.coordinates[..n];
     let open = goal.iter().filter(|value| value.is_none()).count();
     let multipliers = names(&columns, "multiplier of ").len();

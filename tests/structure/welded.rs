@@ -3,7 +3,7 @@
 use crate::common::cases::joints;
 use crate::common::systems::{GRAVITY, branched};
 use crate::common::{bare, body, joint, placed, trunk};
-use crate::condensed::{BOTH, moved, names, under};
+use crate::presolved::{BOTH, moved, names, under};
 use nalgebra::{Matrix3, Vector3};
 use proboscis::model::system::{Body, JointKind};
 use proboscis::model::{Analysis, BodyLocation, Coordinates, Model, Role};
@@ -85,7 +85,7 @@ fn welded_and_fixed_bodies_have_no_unknown() {
         coordinates: Some(Coordinates::Redundant),
         ..Analysis::of_motion(1.0)
     };
-    let model = Model::answering(branched(), redundant.clone()).unwrap();
+    let model = Model::for_analysis(branched(), redundant.clone()).unwrap();
     assert_eq!(model.coordinate_count(), 3 * 12);
     assert_eq!(multipliers(&model), 3 * 6 + 3 * 5);
     assert!(matches!(
@@ -128,8 +128,8 @@ fn welded_and_fixed_bodies_have_no_unknown() {
                 assert_eq!(found.z, by_hand.z);
             } else {
                 // The joint goes the other way round.
-                let tips = [(&model, &found), (&other, &by_hand)].map(|(model, history)| {
-                    let z = &history.z[20];
+                let tips = [(&model, &found), (&other, &by_hand)].map(|(model, discrete)| {
+                    let z = &discrete.z[20];
                     placed(model, z).x[model.markers[0]]
                 });
                 assert!((tips[0] - Vector3::new(0.0, 150.0, 0.0)).norm() > 0.1);

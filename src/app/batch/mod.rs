@@ -14,7 +14,7 @@ mod threads;
 use std::ops::ControlFlow;
 
 use crate::app::error::CommandError;
-use crate::workflow::at_once::cores;
+use crate::workflow::parallel_map::cores;
 pub use end::RunIn;
 pub(crate) use end::{RunEnd, Said, task_runs_at_once};
 pub use parent::end_with_parent;

@@ -15,7 +15,7 @@ use super::plan::Batch;
 use crate::app::error::CommandError;
 use crate::ipopt::interrupt;
 use crate::report::atomic::WriteError;
-use crate::workflow::at_once::cores;
+use crate::workflow::parallel_map::cores;
 
 /// Time between two looks at the processes.
 const PATIENCE: Duration = Duration::from_millis(10);

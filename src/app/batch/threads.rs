@@ -9,7 +9,7 @@ use super::plan::Batch;
 use crate::app::error::CommandError;
 use crate::app::request::CommandInput;
 use crate::app::task;
-use crate::workflow::at_once::at_once;
+use crate::workflow::parallel_map::parallel_map;
 
 /// Runs all of a batch, at most this number in parallel.
 pub(super) fn run_all(
@@ -25,7 +25,7 @@ pub(super) fn run_all(
         };
         let began = Instant::now();
         let said = match task::run_observed(&command, batch.text, &mut |_| {}) {
-            Ok(told) if told.is_solved => Said::Solved,
+            Ok(output) if output.is_solved => Said::Solved,
             Ok(_) => Said::Unsolved(String::new()),
             Err(error) => said(&error),
         };
@@ -34,7 +34,7 @@ pub(super) fn run_all(
             seconds: began.elapsed().as_secs_f64(),
         }
     };
-    at_once(batch.runs, threads, solve, |index, answered| {
+    parallel_map(batch.runs, threads, solve, |index, answered| {
         let end = answered.clone().unwrap_or_else(|panic| RunEnd {
             said: Said::Failed(panic),
             seconds: 0.0,
@@ -46,12 +46,12 @@ pub(super) fn run_all(
 }
 
 fn said(error: &CommandError) -> Said {
-    let told = match error.excerpt() {
+    let text = match error.excerpt() {
         Some(excerpt) => format!("{error}\n{}", excerpt.trim_end()),
         None => error.to_string(),
     };
     match error.exit_status() {
-        2 => Said::Refused(told),
-        _ => Said::Unsolved(told),
+        2 => Said::Refused(text),
+        _ => Said::Unsolved(text),
     }
 }

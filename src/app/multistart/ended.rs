@@ -93,7 +93,7 @@ impl Ended {
     ///
     /// # Errors
     /// It says that the input is wrong.
-    pub(super) fn of(
+    pub(super) fn from_run(
         start: Start,
         RunEnd { said, seconds }: RunEnd,
         folder: &Path,

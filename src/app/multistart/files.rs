@@ -150,7 +150,7 @@ fn cells(ended: &[Ended]) -> Vec<Vec<String>> {
 
 /// Copies the files of a start, its summary last and with the table of all.
 pub(super) fn copy(from: &Path, to: &Path, section: &Section<'_>) -> Result<(), WriteError> {
-    let mut files = FileSet::of(to);
+    let mut files = FileSet::in_folder(to);
     copy_folder(from, "", to, &mut files)?;
     let path = from.join("summary.json");
     let summary = match fs::read_to_string(&path) {

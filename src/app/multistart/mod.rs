@@ -15,11 +15,11 @@ use std::time::Instant;
 use crate::app::batch::{Batch, RunIn, run_all, task_runs_at_once};
 use crate::app::error::CommandError;
 use crate::app::folder::make_folder;
+use crate::app::messages::key;
 use crate::app::no_equilibrium;
 use crate::app::progress::Progress;
 use crate::app::request::{CommandInput, CommandOutput};
 use crate::app::task::{read, refuse_replacing};
-use crate::app::words::key;
 use crate::control::problem::Task;
 use crate::files::{Loaded, is_standard_input};
 use crate::workflow::resolve::resolve;
@@ -118,7 +118,7 @@ fn check_problem(request: &CommandInput, loaded: &Loaded) -> Result<(), CommandE
         )));
     };
     refuse_replacing(request, &loaded.task)?;
-    let ends = resolve(&loaded.system, control).map_err(CommandError::of(&request.input));
+    let ends = resolve(&loaded.system, control).map_err(CommandError::in_file(&request.input));
     no_equilibrium::kept(request, ends)?;
     Ok(())
 }
@@ -144,7 +144,7 @@ fn run_starts(
     let mut ended: Vec<Ended> = Vec::new();
     let mut refused = None;
     run_all(batch, &mut |index, end| {
-        match Ended::of(plan[index], end, batch.folder) {
+        match Ended::from_run(plan[index], end, batch.folder) {
             Ok(one) => ended.push(one),
             Err(error) => refused = refused.take().or(Some(error)),
         }

@@ -52,7 +52,7 @@ pub(super) fn cost_rows(
 ) -> Vec<CostRow> {
     let row = |(cost, measure): (&QuantityCost, &Option<usize>)| {
         let measure = (*measure)?;
-        let site = Site::of(&cost.quantity);
+        let site = Site::from_quantity(&cost.quantity);
         let reads = site.measure(model, measure);
         let mut vectors = reads.vectors();
         vectors.sort_unstable();

@@ -3,7 +3,7 @@
 use crate::control::numbering::Column;
 use crate::control::transcription::Transcription;
 use crate::control::transcription::cost_rows::Summand;
-use crate::control::transcription::placed::Placed;
+use crate::control::transcription::kinematic_state::Placed;
 use crate::math::Vector;
 
 impl Transcription<'_> {
@@ -32,8 +32,8 @@ impl Transcription<'_> {
         by_horizon: impl Fn(&Summand) -> f64,
     ) -> f64 {
         self.place(Placed::Columns);
-        let motion = &self.model.action.motion;
-        let (stride, coordinates) = (self.stride(), motion.unknowns());
+        let map = &self.model.action.map;
+        let (stride, coordinates) = (self.stride(), map.unknowns());
         self.workspace.rows.fill(0.0);
         let mut sum = 0.0;
         let mut part = std::mem::take(&mut self.workspace.measured);
@@ -50,7 +50,7 @@ impl Transcription<'_> {
                         let force = part.forces[side][vector] * factor;
                         let rows = &mut self.workspace.rows[(k + side) * stride..][..coordinates];
                         let columns = &self.workspace.instants[k + side].columns;
-                        motion.pull_back_one(vector, columns, &force, rows);
+                        map.pull_back_one(vector, columns, &force, rows);
                     }
                 }
                 for &s in &cost.scalars {
@@ -70,7 +70,7 @@ impl Transcription<'_> {
 
     /// Adds the gradients in the rows to those by the variables.
     pub(super) fn gather_cost_gradient(&self, grad: &mut [f64]) {
-        let (stride, coordinates) = (self.stride(), self.model.action.motion.unknowns());
+        let (stride, coordinates) = (self.stride(), self.model.action.map.unknowns());
         let columns = self.layout.unknowns.columns.iter();
         let columns = columns.zip(&self.variable_scales);
         for (sum, (column, scale)) in grad.iter_mut().zip(columns) {
@@ -91,7 +91,7 @@ impl Transcription<'_> {
         }
         let square = self.cost_gradients(|s| sigma * s.by_value_and_h, |s| sigma * s.by_h_twice);
         let pattern = self.model.action.layout();
-        let (stride, coordinates) = (self.stride(), self.model.action.motion.unknowns());
+        let (stride, coordinates) = (self.stride(), self.model.action.map.unknowns());
         for k in 0..=self.layout.intervals {
             let rows = &self.workspace.rows[k * stride..][..coordinates];
             let values = &mut self.workspace.values[pattern.horizon_at(k)..][..coordinates];
@@ -108,19 +108,19 @@ impl Transcription<'_> {
 
     /// Places all instants at the present point as far as it is needed, the copy where stretches meet too.
     pub(super) fn place(&mut self, needed: Placed) {
-        let motion = &self.model.action.motion;
+        let map = &self.model.action.map;
         let workspace = &mut self.workspace;
         if let Some(middle) = self.layout.middle() {
             let here = &workspace.instants[middle];
-            workspace.halo.z.copy_from_slice(&here.z);
+            workspace.boundary_instant.z.copy_from_slice(&here.z);
         }
         let instants = workspace.instants.iter_mut();
-        for instant in instants.chain([&mut workspace.halo]) {
+        for instant in instants.chain([&mut workspace.boundary_instant]) {
             if workspace.placed < Placed::Vectors {
-                motion.vectors(instant);
+                map.vectors(instant);
             }
             if workspace.placed < needed && needed == Placed::Columns {
-                motion.tangent(instant);
+                map.tangent(instant);
             }
         }
         workspace.placed = workspace.placed.max(needed);

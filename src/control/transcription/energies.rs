@@ -4,8 +4,8 @@
 
 use crate::control::transcription::Transcription;
 use crate::control::transcription::energy_rows::{EnergyRow, Jump};
+use crate::control::transcription::kinematic_state::Placed;
 use crate::control::transcription::limit_rows::Site;
-use crate::control::transcription::placed::Placed;
 use crate::control::transcription::units::KILOVOLT;
 use crate::math::Vector;
 
@@ -65,15 +65,15 @@ impl Transcription<'_> {
         first: usize,
         forces: &mut [Vec<Vector>; 2],
     ) {
-        let motion = &self.model.action.motion;
+        let map = &self.model.action.map;
         let row = &self.objective.energies[index];
         let measure = Site::Instants.measure(self.model, row.measure);
         let sample = self.sample(Site::Instants, k);
         measure.gradient(&sample, forces, &mut []);
-        let rows = &mut self.workspace.rows[first..first + motion.unknowns()];
+        let rows = &mut self.workspace.rows[first..first + map.unknowns()];
         for &vector in &row.vectors {
             let force = std::mem::replace(&mut forces[0][vector], Vector::zeros()) * factor;
-            motion.pull_back_one(vector, &self.workspace.instants[k].columns, &force, rows);
+            map.pull_back_one(vector, &self.workspace.instants[k].columns, &force, rows);
         }
     }
 

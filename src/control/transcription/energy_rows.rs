@@ -112,8 +112,8 @@ fn mixed(
     scalar: usize,
     layout: &StepPattern,
 ) -> Vec<(usize, usize)> {
-    let motion = &model.action.motion;
-    let mut coordinates: Vec<usize> = vectors.iter().flat_map(|&v| motion.support(v)).collect();
+    let map = &model.action.map;
+    let mut coordinates: Vec<usize> = vectors.iter().flat_map(|&v| map.support(v)).collect();
     coordinates.sort_unstable();
     coordinates.dedup();
     let slot = |i: usize| {

@@ -2,7 +2,7 @@
 
 use std::ops::Range;
 
-use crate::control::conditions::{BoundaryConditions, Rests};
+use crate::control::boundary_conditions::{BoundaryConditions, Rests};
 use crate::control::limits::When;
 use crate::control::numbering::{Column, Numbering, Row};
 use crate::control::problem::{Control, Duration};
@@ -32,7 +32,7 @@ impl Layout {
         control: &Control,
         intervals: usize,
     ) -> Self {
-        let motion = &model.action.motion;
+        let map = &model.action.map;
         let goal = &boundary.goal.coordinates;
         let ends_anyhow = boundary.goal.rests == Rests::Nothing;
         let is_given = |column: Column| {
@@ -51,15 +51,15 @@ impl Layout {
             }
         };
         // A node that multipliers hold rests with what they hold it to: its balance gives their last value.
-        let mut is_held = vec![false; motion.coordinates];
+        let mut is_held = vec![false; map.coordinates];
         for (i, j) in model.action.layout().same.entries() {
-            if i >= motion.coordinates && j < motion.coordinates {
+            if i >= map.coordinates && j < map.coordinates {
                 is_held[j] = true;
             }
         }
         let rests = |i: usize| match boundary.goal.rests {
             Rests::Everything => !model.is_memory(i),
-            Rests::Bodies => !motion.nodes().contains(&i) && !model.is_memory(i) || is_held[i],
+            Rests::Bodies => !map.nodes().contains(&i) && !model.is_memory(i) || is_held[i],
             Rests::Nothing => false,
         };
         let is_balanced = |k: usize, i: usize| k < intervals || rests(i);

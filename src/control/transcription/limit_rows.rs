@@ -43,16 +43,16 @@ pub(super) fn limit_rows(
     intervals: usize,
     unknowns: &Numbering,
 ) -> Vec<LimitRow> {
-    let motion = &model.action.motion;
+    let map = &model.action.map;
     let mut first = 0;
     let row = |(bounded, measure): (&BoundedQuantity, &Option<usize>)| {
         let measure = (*measure)?;
-        let site = Site::of(&bounded.quantity);
+        let site = Site::from_quantity(&bounded.quantity);
         let reads = site.measure(model, measure);
         let mut support: Vec<usize> = reads
             .vectors()
             .iter()
-            .flat_map(|&v| motion.support(v))
+            .flat_map(|&v| map.support(v))
             .collect();
         support.sort_unstable();
         support.dedup();
@@ -105,7 +105,7 @@ pub(super) fn limit_rows(
 
 impl Site {
     /// Returns the site at which a quantity is measured.
-    pub(in crate::control) fn of(quantity: &Quantity) -> Self {
+    pub(in crate::control) fn from_quantity(quantity: &Quantity) -> Self {
         match quantity.is_of_intervals() {
             true => Self::Intervals,
             false => Self::Instants,

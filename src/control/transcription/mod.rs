@@ -9,31 +9,31 @@
 //! thousand, so that one tolerance means the same everywhere.
 //!
 //! A [`Transcription`] has constant parts, `layout` (unknowns, equations, limits), `objective` and `structure` (entries of the derivatives),
-//! and one that every evaluation changes, `workspace`. Its methods are in `program` (the trait [`Nlp`]), `point`, `sweep`, `scaling`,
-//! `costs`, `energies`, `moved` and `squares`.
+//! and one that every evaluation changes, `workspace`. Its methods are in `program` (the trait [`Nlp`]), `point`, `interval_pass`, `scaling`,
+//! `costs`, `energies`, `update_endpoints` and `squares`.
 
 mod cost_rows;
 mod costs;
 pub(super) mod count;
 mod energies;
 mod energy_rows;
+mod interval_pass;
+mod kinematic_state;
 pub(super) mod layout;
 mod limit_rows;
-mod moved;
 mod objective;
-mod placed;
 mod point;
 mod program;
 mod scaling;
 mod segment;
 mod squares;
 mod structure;
-mod sweep;
 mod units;
+mod update_endpoints;
 mod workspace;
 
 use crate::control::BoundaryError;
-use crate::control::conditions::{BoundaryConditions, Rests};
+use crate::control::boundary_conditions::{BoundaryConditions, Rests};
 use crate::control::guess::InitialGuess;
 use crate::control::limits::BoundedQuantity;
 use crate::control::numbering::Numbering;
@@ -125,7 +125,7 @@ impl<'m> Transcription<'m> {
             bounded: boundary.limits.list.len(),
             workspace,
         };
-        out.set_scales(&initial.history, initial.h);
+        out.set_scales(&initial.discrete, initial.h);
         out.set_bounds(control);
         out.set_row_bounds();
         Ok(out)

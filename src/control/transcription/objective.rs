@@ -1,6 +1,6 @@
 //! The objective on a horizon: costs of voltages, of quantities and of energies, with its scale.
 
-use crate::control::conditions::BoundaryConditions;
+use crate::control::boundary_conditions::BoundaryConditions;
 use crate::control::guess::InitialGuess;
 use crate::control::objective::{Cost, objective_scale};
 use crate::control::problem::Control;

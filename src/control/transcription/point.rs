@@ -4,7 +4,7 @@ use crate::control::guess::InitialGuess;
 use crate::control::numbering::{Column, Row};
 use crate::control::solution::Costates;
 use crate::control::transcription::Transcription;
-use crate::control::transcription::placed::Placed;
+use crate::control::transcription::kinematic_state::Placed;
 use crate::control::transcription::units::KILOVOLT;
 use crate::coordinates::Configuration;
 use crate::dynamics::DiscreteTrajectory;
@@ -50,14 +50,14 @@ impl Decoder {
 
 impl Transcription<'_> {
     /// The variables of a motion with interval length h (ms).
-    pub fn encode(&self, history: &DiscreteTrajectory, h: f64) -> Vec<f64> {
-        let motion = &self.model.action.motion;
+    pub fn encode(&self, discrete: &DiscreteTrajectory, h: f64) -> Vec<f64> {
+        let map = &self.model.action.map;
         let here = |(z, instant): (&Vec<f64>, &Configuration)| {
             let mut z = z.clone();
-            motion.take_charts(&instant.z, &mut z);
+            map.take_charts(&instant.z, &mut z);
             z
         };
-        let z: Vec<_> = history
+        let z: Vec<_> = discrete
             .z
             .iter()
             .zip(&self.workspace.instants)
@@ -65,8 +65,8 @@ impl Transcription<'_> {
             .collect();
         let value = |column: &Column| match *column {
             Column::Instant { k, i } => z[k][i],
-            Column::Interval { k, s } => history.scalars[k][s],
-            Column::Parameter { s } => history.scalars[0][s],
+            Column::Interval { k, s } => discrete.scalars[k][s],
+            Column::Parameter { s } => discrete.scalars[0][s],
             Column::Horizon => h,
         };
         self.layout
@@ -105,7 +105,7 @@ impl Transcription<'_> {
 
     /// A start of the solver from a guess.
     pub fn start(&self, initial: &InitialGuess) -> ipopt::StartingPoint {
-        let x = self.encode(&initial.history, initial.h);
+        let x = self.encode(&initial.discrete, initial.h);
         let fits = |c: &&Costates| {
             c.rows.len() == self.layout.unknowns.rows.len()
                 && c.lower.len() == x.len()

@@ -68,7 +68,7 @@ impl Nlp for Transcription<'_> {
         self.load(x);
         self.sweep(Order::Gradient);
         let stride = self.stride();
-        let count = self.model.action.motion.unknowns();
+        let count = self.model.action.map.unknowns();
         for (value, (row, scale)) in g
             .iter_mut()
             .zip(self.layout.unknowns.rows.iter().zip(&self.row_scales))

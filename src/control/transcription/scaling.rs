@@ -32,8 +32,8 @@ impl Transcription<'_> {
     }
 
     /// Scales rows and multipliers by the largest entries of the Jacobian at the guess, kind by kind.
-    pub(super) fn set_scales(&mut self, history: &DiscreteTrajectory, h: f64) {
-        let x = self.encode(history, h);
+    pub(super) fn set_scales(&mut self, discrete: &DiscreteTrajectory, h: f64) {
+        let x = self.encode(discrete, h);
         let mut values = vec![0.0; self.structure.jacobian.kept.len()];
         self.jacobian(&x, &mut values);
         let of_kinds = self.scales_of_kinds(&values);
@@ -44,7 +44,7 @@ impl Transcription<'_> {
                 *scale = of_multipliers[i];
             }
         }
-        let count = self.model.action.motion.unknowns();
+        let count = self.model.action.map.unknowns();
         let rows = self.layout.unknowns.rows.iter();
         for (scale, row) in self.row_scales.iter_mut().zip(rows) {
             *scale = match *row {
@@ -61,7 +61,7 @@ impl Transcription<'_> {
     /// Scale of each kind of row but limits: one over the largest entry of these rows by variables of instants and intervals.
     fn scales_of_kinds(&self, values: &[f64]) -> Vec<f64> {
         let Numbering { rows, columns, .. } = &self.layout.unknowns;
-        let count = self.model.action.motion.unknowns();
+        let count = self.model.action.map.unknowns();
         let is_of_horizon = |column: Column| {
             let variable = column.of(&self.model.variables);
             variable.role.time() == Time::Horizon
@@ -81,7 +81,7 @@ impl Transcription<'_> {
     /// Scale of each multiplier of an instant: one over its largest entry in scaled rows.
     fn scales_of_multipliers(&self, values: &[f64], of_kinds: &[f64]) -> Vec<f64> {
         let Numbering { rows, columns, .. } = &self.layout.unknowns;
-        let count = self.model.action.motion.unknowns();
+        let count = self.model.action.map.unknowns();
         let mut largest = vec![0.0_f64; count];
         for (row, col, value) in self.structure.jacobian.with(values) {
             let of = (kind(rows[row], count), multiplier(columns[col], self.model));
@@ -99,7 +99,7 @@ impl Transcription<'_> {
         if self.model.coordinates == Coordinates::Reduced {
             for limit in &control.limits {
                 if let PathConstraint::JointAngle { joint, min, max } = *limit
-                    && let Some(c) = self.model.gauges[joint].coordinate
+                    && let Some(c) = self.model.joint_readings[joint].coordinate
                 {
                     (lower[c], upper[c]) = (lower[c].max(min), upper[c].min(max));
                 }

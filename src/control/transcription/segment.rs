@@ -6,8 +6,8 @@
 
 use crate::control::transcription::cost_rows::{CostRow, fill_costs};
 use crate::control::transcription::energy_rows::{EnergyRow, fill_energies};
+use crate::control::transcription::kinematic_state::Placed;
 use crate::control::transcription::limit_rows::{LimitRow, Site, fill_limits};
-use crate::control::transcription::placed::Placed;
 use crate::coordinates::{Configuration, Interval, Reduced, Scratch};
 use crate::functional::{BlockMask, Horizon, Order, Outer, Sample};
 use crate::ipopt::interrupt::TimeLimit;
@@ -124,18 +124,18 @@ impl Segment<'_> {
         if order >= Order::Hessian && segment.end <= self.values.len() {
             self.values[segment].fill(0.0);
         }
-        let motion = &action.motion;
+        let map = &action.map;
         let instant = self.instants.get_mut(j).unwrap_or(self.end);
         if placed < Placed::Vectors {
-            motion.vectors(instant);
+            map.vectors(instant);
         }
         if placed < needed(order) && needed(order) == Placed::Columns {
-            motion.tangent(instant);
+            map.tangent(instant);
         }
         instant.forces.fill(Vector::zeros());
         if order == Order::Third {
             instant.contracted.fill(Vector::zeros());
-            motion.along(instant);
+            map.along(instant);
         }
     }
 
@@ -175,7 +175,7 @@ impl Segment<'_> {
         let interval = Interval { outer, ..plain };
         action.evaluate_interval(order, [a, b], &interval, scratch);
         if order == Order::Gradient {
-            let rows = &mut self.rows[j * stride + action.motion.unknowns()..(j + 1) * stride];
+            let rows = &mut self.rows[j * stride + action.map.unknowns()..(j + 1) * stride];
             rows.copy_from_slice(&scratch.interval.plain.rows);
         }
         scratch.carry(order);
@@ -218,7 +218,7 @@ pub(super) fn instant_of(
     action.evaluate_instant(order, instant, outer, scratch);
     action.pull_back_instant(order, instant, j, scratch, values);
     if order == Order::Gradient {
-        let count = action.motion.unknowns();
+        let count = action.map.unknowns();
         let rows = &mut rows[j * shared.stride..j * shared.stride + count];
         rows.fill(0.0);
         action.rows(instant, scratch, rows);

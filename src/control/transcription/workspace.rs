@@ -1,14 +1,14 @@
 //! The point of a transcription and what is evaluated there: all that changes from one evaluation to the next.
 
-use crate::control::conditions::BoundaryConditions;
+use crate::control::boundary_conditions::BoundaryConditions;
 use crate::control::guess::InitialGuess;
 use crate::control::problem::Control;
+use crate::control::transcription::kinematic_state::Placed;
 use crate::control::transcription::layout::Layout;
-use crate::control::transcription::placed::Placed;
 use crate::control::transcription::segment::SegmentWorkspace;
 use crate::control::transcription::units::KILOVOLT;
 use crate::coordinates::Configuration;
-use crate::functional::Part;
+use crate::functional::SumDerivatives;
 use crate::model::{Model, Role, Time};
 
 /// Storage of the evaluations.
@@ -29,8 +29,8 @@ pub(super) struct Workspace {
     /// Storage of each stretch of a horizon.
     pub(super) stretches: [SegmentWorkspace; 2],
     /// Copy of the instant at which a long horizon is cut in two.
-    pub(super) halo: Configuration,
-    pub(super) measured: Part,
+    pub(super) boundary_instant: Configuration,
+    pub(super) measured: SumDerivatives,
     /// Factor of the objective in the Hessian.
     pub(super) sigma: f64,
     /// Step by step the rows of an instant and those of the scalars of an interval, then costates of the limits.
@@ -51,11 +51,11 @@ impl Workspace {
         layout: &Layout,
     ) -> Self {
         let (action, intervals) = (&model.action, layout.intervals);
-        let motion = &action.motion;
+        let map = &action.map;
         let scalars = given_scalars(model, control, intervals);
         let scalar_count = model.variables.of(Time::Interval).len();
         let kilovolts = kilovolts(model, &scalars, scalar_count, intervals);
-        let stride = motion.unknowns() + scalar_count;
+        let stride = map.unknowns() + scalar_count;
         let limits = layout.limit_rows.iter();
         let limit_entries: usize = limits.map(|&(l, _)| layout.limits[l].entries.len()).sum();
         Self {
@@ -68,8 +68,8 @@ impl Workspace {
             kilovolts,
             h: initial.h,
             stretches: [SegmentWorkspace::new(action), SegmentWorkspace::new(action)],
-            halo: motion.instant(),
-            measured: Part::new(motion.vectors.len(), scalar_count, None),
+            boundary_instant: map.instant(),
+            measured: SumDerivatives::new(map.vectors.len(), scalar_count, None),
             sigma: 0.0,
             rows: vec![0.0; (intervals + 1) * stride + layout.limit_rows.len()],
             values: vec![0.0; action.layout().values(intervals) + limit_entries],
@@ -84,10 +84,10 @@ fn given_instants(
     initial: &InitialGuess,
     intervals: usize,
 ) -> Vec<Configuration> {
-    let motion = &model.action.motion;
-    let unknowns = motion.unknowns();
-    let mut instants = vec![motion.instant(); intervals + 1];
-    for (instant, z) in instants.iter_mut().zip(&initial.history.z) {
+    let map = &model.action.map;
+    let unknowns = map.unknowns();
+    let mut instants = vec![map.instant(); intervals + 1];
+    for (instant, z) in instants.iter_mut().zip(&initial.discrete.z) {
         instant.z[unknowns..].copy_from_slice(&z[unknowns..]);
     }
     instants[0].z.copy_from_slice(&boundary.start.z);

@@ -77,7 +77,7 @@ impl Groups {
         sides: BlockMask,
         place: BlockDestination<'_>,
     ) {
-        dispatch(Plain {
+        dispatch(SecondDerivativesTask {
             groups: self,
             ends,
             blocks,
@@ -94,7 +94,7 @@ impl Groups {
         sides: BlockMask,
         place: BlockDestination<'_>,
     ) {
-        dispatch(Along {
+        dispatch(ContractedTask {
             groups: self,
             ends,
             blocks,
@@ -105,7 +105,7 @@ impl Groups {
 }
 
 /// Pᵀ H P of all groups.
-struct Plain<'a> {
+struct SecondDerivativesTask<'a> {
     groups: &'a Groups,
     ends: Ends<'a>,
     blocks: &'a Blocks,
@@ -113,7 +113,7 @@ struct Plain<'a> {
     place: BlockDestination<'a>,
 }
 
-impl Task for Plain<'_> {
+impl Task for SecondDerivativesTask<'_> {
     #[inline(always)]
     fn run<S: Simd>(self, unit: S) {
         let BlockDestination {
@@ -136,7 +136,7 @@ impl Task for Plain<'_> {
 /// `Pᵀ H_w P + P′_lᵀ H P + Pᵀ Hᵀ P′_l` of all groups.
 ///
 /// Within an instant the sum is symmetric: half of it is `Pᵀ (½ H_w P + Hᵀ P′_l)`, and the other half its transpose.
-struct Along<'a> {
+struct ContractedTask<'a> {
     groups: &'a Groups,
     ends: Ends<'a>,
     blocks: [&'a Blocks; 2],
@@ -144,7 +144,7 @@ struct Along<'a> {
     place: BlockDestination<'a>,
 }
 
-impl Task for Along<'_> {
+impl Task for ContractedTask<'_> {
     #[inline(always)]
     fn run<S: Simd>(self, unit: S) {
         let BlockDestination {

@@ -30,14 +30,14 @@ impl Site {
     pub(super) fn mixed(
         self,
         layout: &mut StepPattern,
-        motion: &CoordinateMap,
+        map: &CoordinateMap,
         row: usize,
         s: usize,
     ) -> Vec<usize> {
         match self {
             Self::Intervals => vec![layout.mixed.slot(row, s)],
             Self::Instants => {
-                let multiplier = motion.coordinates + s;
+                let multiplier = map.coordinates + s;
                 vec![
                     layout.same.slot(row, multiplier),
                     layout.same.slot(multiplier, row),

@@ -8,7 +8,7 @@ use crate::coordinates::pattern::{BlockPattern, StepPattern};
 use crate::coordinates::pull_back::destination::Site;
 use crate::coordinates::pull_back::images::{Columns, Pairs};
 use crate::coordinates::pull_back::product::Product;
-use crate::math::counted;
+use crate::math::compact_index;
 use pulp::Simd;
 
 /// Pairs of vectors with two supports, or with beginnings of these that are padded to as many columns.
@@ -67,9 +67,9 @@ impl Group {
                 for (j, &col) in supports[1].iter().enumerate() {
                     if !is_taken(i, j) {
                         list.push(Scatter {
-                            from: counted(i * stride + j),
-                            to: counted(pattern.slot(row, col)),
-                            transposed: counted(pattern.slot(col, row)),
+                            from: compact_index(i * stride + j),
+                            to: compact_index(pattern.slot(row, col)),
+                            transposed: compact_index(pattern.slot(col, row)),
                         });
                     }
                 }

@@ -11,7 +11,7 @@ use crate::math::{Matrix, Vector};
 
 /// One entry: a column of the articulated vector against one coordinate of the linear vector.
 #[derive(Clone, Copy, Debug)]
-struct Entry {
+struct JoinedEntry {
     slot: usize,
     /// Slot of the pair in the other order.
     transposed: usize,
@@ -28,8 +28,8 @@ struct Entry {
 /// Entries of all such pairs.
 #[derive(Clone, Debug, Default)]
 pub(super) struct Joined {
-    full: Vec<Entry>,
-    isotropic: Vec<Entry>,
+    full: Vec<JoinedEntry>,
+    isotropic: Vec<JoinedEntry>,
 }
 
 impl Joined {
@@ -54,7 +54,7 @@ impl Joined {
                     Site::Intervals => layout.cross.slot(row, col),
                     Site::Instants => usize::MAX,
                 };
-                let entry = Entry {
+                let entry = JoinedEntry {
                     slot,
                     transposed,
                     row_is_articulated,
@@ -133,7 +133,7 @@ impl Joined {
 }
 
 /// Returns the vector that the articulated columns meet in a block: its column or row at the axis of the linear coordinate.
-fn line(entry: &Entry, block: &Matrix) -> Vector {
+fn line(entry: &JoinedEntry, block: &Matrix) -> Vector {
     if entry.row_is_articulated {
         block.column(entry.axis).into()
     } else {
@@ -141,18 +141,18 @@ fn line(entry: &Entry, block: &Matrix) -> Vector {
     }
 }
 
-fn dot(columns: &[f64], e: &Entry, v: &Vector) -> f64 {
+fn dot(columns: &[f64], e: &JoinedEntry, v: &Vector) -> f64 {
     let (c, s) = (e.column, e.stride);
     columns[c] * v.x + columns[c + s] * v.y + columns[c + 2 * s] * v.z
 }
 
 /// Adds `value(entry, side, instant of the articulated vector)` for all sides that are asked for.
 fn each(
-    list: &[Entry],
+    list: &[JoinedEntry],
     sides: BlockMask,
     target: &Destination,
     values: &mut [f64],
-    value: impl Fn(&Entry, usize, usize) -> f64,
+    value: impl Fn(&JoinedEntry, usize, usize) -> f64,
 ) {
     for side in (0..4).filter(|&s| sides.blocks[s]) {
         let (row, col) = (side / 2, side % 2);

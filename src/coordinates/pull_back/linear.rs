@@ -8,7 +8,7 @@ use crate::math::Matrix;
 
 /// One scalar entry c · block[i, j] of a pair of linear vectors; compact, since a mesh has millions.
 #[derive(Clone, Copy, Debug)]
-struct Entry {
+struct LinearEntry {
     factor: f64,
     slot: u32,
     same: u32,
@@ -19,8 +19,8 @@ struct Entry {
 /// Entries of all pairs of linear vectors.
 #[derive(Clone, Debug, Default)]
 pub(super) struct Linear {
-    full: Vec<Entry>,
-    isotropic: Vec<Entry>,
+    full: Vec<LinearEntry>,
+    isotropic: Vec<LinearEntry>,
 }
 
 impl Linear {
@@ -66,7 +66,7 @@ impl Linear {
         for side in (0..4).filter(|&s| sides.blocks[s]) {
             let base = target.blocks[side];
             let crosses = side == 1 || side == 2;
-            let place = |e: &Entry| base + if crosses { e.cross } else { e.same } as usize;
+            let place = |e: &LinearEntry| base + if crosses { e.cross } else { e.same } as usize;
             for e in &self.full {
                 let (i, j) = (e.entry.0 as usize, e.entry.1 as usize);
                 values[place(e)] += e.factor * full[e.slot as usize][side][(i, j)];
@@ -79,7 +79,7 @@ impl Linear {
 }
 
 fn add(
-    list: &mut Vec<Entry>,
+    list: &mut Vec<LinearEntry>,
     slot: usize,
     [s, t]: [&[LinearPart]; 2],
     layout: &mut StepPattern,
@@ -93,7 +93,7 @@ fn add(
                 Site::Intervals => layout.cross.slot(row, col) as u32,
                 Site::Instants => u32::MAX,
             };
-            list.push(Entry {
+            list.push(LinearEntry {
                 factor: p.factor * q.factor,
                 slot: slot as u32,
                 same: layout.same.slot(row, col) as u32,

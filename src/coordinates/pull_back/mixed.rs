@@ -3,12 +3,12 @@
 use crate::coordinates::map::{CoordinateMap, Dependence};
 use crate::coordinates::pattern::StepPattern;
 use crate::coordinates::pull_back::destination::{Destination, Site};
-use crate::functional::Part;
-use crate::math::{Vector, counted};
+use crate::functional::SumDerivatives;
+use crate::math::{Vector, compact_index};
 
 /// One entry of a vector against a scalar; compact, since a mesh with potentials has millions.
 #[derive(Clone, Copy, Debug)]
-enum Entry {
+enum MixedEntry {
     Articulated {
         slot: u32,
         column: u32,
@@ -26,7 +26,7 @@ enum Entry {
 /// Entries of all couplings of a vector and a scalar.
 #[derive(Clone, Debug, Default)]
 pub(super) struct Mixed {
-    list: Vec<Entry>,
+    list: Vec<MixedEntry>,
 }
 
 impl Mixed {
@@ -36,31 +36,31 @@ impl Mixed {
         slot: usize,
         vector: usize,
         s: usize,
-        motion: &CoordinateMap,
+        map: &CoordinateMap,
         layout: &mut StepPattern,
         site: Site,
     ) {
-        match &motion.vectors[vector] {
+        match &map.vectors[vector] {
             Dependence::Articulated(packed) => {
                 for (i, &row) in packed.support.iter().enumerate() {
-                    for place in site.mixed(layout, motion, row, s) {
-                        self.list.push(Entry::Articulated {
-                            slot: counted(slot),
-                            column: counted(packed.first + i),
-                            stride: counted(packed.stride),
-                            place: counted(place),
+                    for place in site.mixed(layout, map, row, s) {
+                        self.list.push(MixedEntry::Articulated {
+                            slot: compact_index(slot),
+                            column: compact_index(packed.first + i),
+                            stride: compact_index(packed.stride),
+                            place: compact_index(place),
                         });
                     }
                 }
             }
             Dependence::Linear { parts, .. } => {
                 for part in parts {
-                    for place in site.mixed(layout, motion, part.coordinate, s) {
-                        self.list.push(Entry::Linear {
-                            slot: counted(slot),
+                    for place in site.mixed(layout, map, part.coordinate, s) {
+                        self.list.push(MixedEntry::Linear {
+                            slot: compact_index(slot),
                             factor: part.factor,
                             component: part.axis as u8,
-                            place: counted(place),
+                            place: compact_index(place),
                         });
                     }
                 }
@@ -77,12 +77,12 @@ impl Mixed {
     pub(super) fn plain(
         &self,
         columns: [&[f64]; 2],
-        part: &Part,
+        part: &SumDerivatives,
         target: &Destination,
         values: &mut [f64],
     ) {
         self.each(target, values, |entry, side| match *entry {
-            Entry::Articulated {
+            MixedEntry::Articulated {
                 slot,
                 column,
                 stride,
@@ -93,7 +93,7 @@ impl Mixed {
                 stride,
                 &part.blocks.mixed[slot as usize][side],
             ),
-            Entry::Linear {
+            MixedEntry::Linear {
                 slot,
                 factor,
                 component,
@@ -107,12 +107,12 @@ impl Mixed {
         &self,
         columns: [&[f64]; 2],
         columns_l: [&[f64]; 2],
-        [plain, contracted]: [&Part; 2],
+        [plain, contracted]: [&SumDerivatives; 2],
         target: &Destination,
         values: &mut [f64],
     ) {
         self.each(target, values, |entry, side| match *entry {
-            Entry::Articulated {
+            MixedEntry::Articulated {
                 slot,
                 column,
                 stride,
@@ -130,7 +130,7 @@ impl Mixed {
                     &plain.blocks.mixed[slot as usize][side],
                 )
             }
-            Entry::Linear {
+            MixedEntry::Linear {
                 slot,
                 factor,
                 component,
@@ -139,10 +139,16 @@ impl Mixed {
         });
     }
 
-    fn each(&self, target: &Destination, values: &mut [f64], value: impl Fn(&Entry, usize) -> f64) {
+    fn each(
+        &self,
+        target: &Destination,
+        values: &mut [f64],
+        value: impl Fn(&MixedEntry, usize) -> f64,
+    ) {
         for side in (0..2).filter(|&side| target.mixed[side] != usize::MAX) {
             for entry in &self.list {
-                let (Entry::Articulated { place, .. } | Entry::Linear { place, .. }) = *entry;
+                let (MixedEntry::Articulated { place, .. } | MixedEntry::Linear { place, .. }) =
+                    *entry;
                 values[target.mixed[side] + place as usize] += value(entry, side);
             }
         }

@@ -14,8 +14,8 @@ mod product;
 use crate::coordinates::configuration::Configuration;
 use crate::coordinates::map::{CoordinateMap, Dependence};
 use crate::coordinates::pattern::StepPattern;
-use crate::functional::{BlockMask, Couplings, Part};
-use crate::math::counted;
+use crate::functional::{BlockMask, Couplings, SumDerivatives};
+use crate::math::compact_index;
 use articulated::{BlockDestination, Ends, Groups};
 pub use destination::Destination;
 pub(super) use destination::Site;
@@ -39,21 +39,21 @@ impl PullBack {
     /// Plans the pull-back of a site; entries join the layout. Scalars of an instant are its multipliers.
     pub(super) fn new(
         couplings: &Couplings,
-        motion: &CoordinateMap,
+        map: &CoordinateMap,
         layout: &mut StepPattern,
         site: Site,
     ) -> Self {
         let mut plan = Self::default();
         for (slot, &pair) in couplings.full.iter().enumerate() {
             let slots = [slot, couplings.transposed_full(slot)];
-            plan.pair(BlockKind::Full, slots, pair, motion, layout, site);
+            plan.pair(BlockKind::Full, slots, pair, map, layout, site);
         }
         for (slot, &pair) in couplings.isotropic.iter().enumerate() {
             let slots = [slot, couplings.transposed_isotropic(slot)];
-            plan.pair(BlockKind::Isotropic, slots, pair, motion, layout, site);
+            plan.pair(BlockKind::Isotropic, slots, pair, map, layout, site);
         }
         for (slot, &(a, s)) in couplings.mixed.iter().enumerate() {
-            plan.mixed.add(slot, a, s, motion, layout, site);
+            plan.mixed.add(slot, a, s, map, layout, site);
         }
         plan.linear.shrink_to_fit();
         plan.mixed.shrink_to_fit();
@@ -71,18 +71,18 @@ impl PullBack {
         kind: BlockKind,
         slots: [usize; 2],
         (a, b): (usize, usize),
-        motion: &CoordinateMap,
+        map: &CoordinateMap,
         layout: &mut StepPattern,
         site: Site,
     ) {
         use Dependence::{Articulated, Linear};
         let [slot, transposed] = slots;
-        match (&motion.vectors[a], &motion.vectors[b]) {
+        match (&map.vectors[a], &map.vectors[b]) {
             (Articulated(a), Articulated(b)) => {
                 let pair = Pair {
-                    slot: counted(slot),
-                    transposed: counted(transposed),
-                    first: [counted(a.first), counted(b.first)],
+                    slot: compact_index(slot),
+                    transposed: compact_index(transposed),
+                    first: [compact_index(a.first), compact_index(b.first)],
                 };
                 self.articulated.add((kind, pair), [a, b], layout, site);
             }
@@ -109,7 +109,7 @@ impl PullBack {
     pub(super) fn hessian(
         &self,
         ends: [&Configuration; 2],
-        part: &Part,
+        part: &SumDerivatives,
         sides: BlockMask,
         target: &Destination,
         local: &mut [f64],
@@ -139,7 +139,7 @@ impl PullBack {
     pub(super) fn third(
         &self,
         ends: [&Configuration; 2],
-        [plain, contracted]: [&Part; 2],
+        [plain, contracted]: [&SumDerivatives; 2],
         sides: BlockMask,
         target: &Destination,
         local: &mut [f64],

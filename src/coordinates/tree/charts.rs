@@ -130,7 +130,7 @@ impl Tree {
         let root = self.root(first);
         let twist = self.links[root].parent.map(|b| state.twists[b]);
         let [omega, origin] = twist.unwrap_or_default();
-        // The point of the joint as a point of the body, beside the same point of the parent.
+        // The point of the joint as a point of the body, next to the same point of the parent.
         let point = state.points[first];
         let passes = velocity + spin.cross(&(point - state.poses[body].centre));
         let passes = passes - (origin + omega.cross(&point));

@@ -22,7 +22,7 @@ mod motion;
 
 use crate::coordinates::configuration::{Moments, TreeState};
 use crate::kinematics::{Carrier, MaterialVector, Pose, VectorTerm};
-use crate::math::{Matrix, Vector, counted};
+use crate::math::{Matrix, Vector, compact_index};
 
 /// Motion that a link of a tree permits.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -251,8 +251,8 @@ impl Tree {
                 self.moved_parts.len() - 1
             });
             self.columns.push(Column {
-                link: counted(link),
-                arm: counted(arm),
+                link: compact_index(link),
+                arm: compact_index(arm),
                 centre: part.centre,
             });
         }

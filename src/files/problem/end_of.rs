@@ -222,11 +222,11 @@ fn method(
     let shown = beside.display();
     let read = continuation::read(&beside);
     let read = read.map_err(|error| scope.wrong(format!("{shown}: {error}"), WRITTEN))?;
-    let history = read.history;
-    let ends = [&history.z, &history.momenta].map(|rows| rows.last().map(Vec::as_slice));
+    let discrete = read.discrete;
+    let ends = [&discrete.z, &discrete.momenta].map(|rows| rows.last().map(Vec::as_slice));
     if ends != [Some(z), Some(momentum)] {
         let found = format!("{shown}, which is not of the motion in {}", file.display());
         return Err(scope.wrong(found, "files of one run"));
     }
-    Ok(history.end.begun_anew())
+    Ok(discrete.end.begun_anew())
 }

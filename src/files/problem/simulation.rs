@@ -45,7 +45,9 @@ pub(crate) fn simulation(
         coordinates: coordinates(spec.coordinates, system, scope)?,
         solving: Solving {
             integrator: method,
-            newton: spec.newton.map_or_else(|| Newton::of(system), Into::into),
+            newton: spec
+                .newton
+                .map_or_else(|| Newton::for_system(system), Into::into),
             backend: spec.linear_solver.map(Into::into),
         },
     })

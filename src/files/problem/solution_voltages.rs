@@ -33,9 +33,9 @@ pub(crate) fn of_solution(path: &Path, system: &System) -> Result<Voltages, Scen
     let solution: SolutionRecord = document.parse()?;
     let scope = Scope::of(document);
     let instants: Vec<f64> = solution.time.iter().map(|time| 1e3 * time).collect();
-    let histories = solution.voltages.iter();
-    let histories = histories.map(|(name, history)| (name, history.iter().copied()));
-    let rows = rows(&instants, histories, system, &scope)?;
+    let all_series = solution.voltages.iter();
+    let all_series = all_series.map(|(name, series)| (name, series.iter().copied()));
+    let rows = rows(&instants, all_series, system, &scope)?;
     let hold = match &solution.hold {
         Some(hold) => {
             let sources = system.sources();
@@ -57,9 +57,9 @@ pub(crate) fn of_table(
     scope: &Scope<'_>,
 ) -> Result<Voltages, SceneError> {
     let instants: Vec<f64> = table.time.iter().map(|time| time.value()).collect();
-    let histories = table.voltages.iter();
-    let histories = histories.map(|(name, history)| (name, history.iter().map(Quantity::value)));
-    let rows = rows(&instants, histories, system, scope)?;
+    let all_series = table.voltages.iter();
+    let all_series = all_series.map(|(name, series)| (name, series.iter().map(Quantity::value)));
+    let rows = rows(&instants, all_series, system, scope)?;
     if instants[0] != 0.0 {
         let found = format!("{} s", instants[0] / 1e3);
         return Err(scope.key("time").index(0).wrong(found, "0"));
@@ -74,7 +74,7 @@ pub(crate) fn of_table(
 /// A row of voltages for each interval between instants in ms, and one of zeros for what follows.
 fn rows<'a>(
     instants: &[f64],
-    histories: impl Iterator<Item = (&'a String, impl ExactSizeIterator<Item = f64>)>,
+    all_series: impl Iterator<Item = (&'a String, impl ExactSizeIterator<Item = f64>)>,
     system: &System,
     scope: &Scope<'_>,
 ) -> Result<Vec<Vec<f64>>, SceneError> {
@@ -87,15 +87,15 @@ fn rows<'a>(
     let intervals = instants.len() - 1;
     let sources = system.sources();
     let mut rows = vec![vec![0.0; sources.len()]; intervals + 1];
-    for (name, history) in histories {
+    for (name, series) in all_series {
         let place = scope.key("voltages").key(name);
         let source = driven(name, &sources, &place)?;
-        if history.len() != intervals {
-            let found = format!("{} voltages", history.len());
+        if series.len() != intervals {
+            let found = format!("{} voltages", series.len());
             let expected = format!("{intervals}, one per interval");
             return Err(place.wrong(found, expected));
         }
-        for (row, voltage) in rows.iter_mut().zip(history) {
+        for (row, voltage) in rows.iter_mut().zip(series) {
             row[source] = voltage;
         }
     }

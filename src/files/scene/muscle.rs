@@ -139,7 +139,7 @@ pub(crate) fn positive_sides(
         let found = format!("{written}, {:.0} lengths of the muscle", side / length);
         let expected = format!(
             "a side of no more than {WIDEST} lengths of the muscle, {}; a number without a unit is in m",
-            told(length)
+            millimetres(length)
         );
         Err(place.wrong(found, expected))
     };
@@ -160,12 +160,12 @@ pub(crate) fn layer(
     }
     let expected = format!(
         "a layer no thicker than the muscle is long, {}, such as \"50 um\"; a number without a unit is in m",
-        told(length)
+        millimetres(length)
     );
     Err(place.wrong(thickness.to_string(), expected))
 }
 
 /// A length in mm.
-fn told(length: f64) -> String {
+fn millimetres(length: f64) -> String {
     format!("{} mm", shortest(length, 6))
 }

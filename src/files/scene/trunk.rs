@@ -23,7 +23,7 @@ const RATE: f64 = 0.01;
 /// Fewest intervals, and intervals for each segment.
 const FEWEST: usize = 40;
 const OF_SEGMENT: f64 = 1.4;
-/// A longer trunk than one of so many segments bends as far as that one as a whole.
+/// Number of segments; a trunk with more bends as far as one with these as a whole.
 const BENT: f64 = 12.0;
 
 /// A scene and a problem of a trunk; the problem reads the scene from `scene.json` beside it.

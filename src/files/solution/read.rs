@@ -210,8 +210,8 @@ fn checked_state(
 ) -> Result<StateRecord, Reason> {
     same_length("state.times_ms", state.times_ms.len(), instants, "instants")?;
     same_length("state.z", state.z.len(), instants, "instants")?;
-    let motion = &model.action.motion;
-    let is_wrong = |z: &Vec<f64>| !motion.has_unit_charts(z);
+    let map = &model.action.map;
+    let is_wrong = |z: &Vec<f64>| !map.has_unit_charts(z);
     let wrong = state.z.iter().position(is_wrong);
     match wrong.filter(|_| coordinates == model.coordinates) {
         Some(k) => Err(Reason::NoSolution {

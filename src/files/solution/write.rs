@@ -70,8 +70,8 @@ fn record(model: &Model, solved: &Solution) -> File {
     let bodies = system.bodies.iter().enumerate();
     let sources = system.sources();
     let voltage = |&s: &usize| {
-        let history = solved.voltages.iter().map(|row| row[s]).collect();
-        (sources[s].name.clone(), history)
+        let discrete = solved.voltages.iter().map(|row| row[s]).collect();
+        (sources[s].name.clone(), discrete)
     };
     File {
         arrays: None,

@@ -39,7 +39,7 @@ const LISTED: usize = 20;
 
 /// The variables along which differences are taken.
 #[derive(Clone, Copy, Debug)]
-pub struct Along<'a> {
+pub struct DifferenceVariables<'a> {
     /// The variables, ascending.
     pub columns: &'a [usize],
     /// The size of every variable of the program: a change of that size matters.
@@ -55,7 +55,7 @@ pub struct Along<'a> {
 /// If `x` has the wrong length, or if an entry of a structure lies outside its matrix or above the diagonal of the Hessian.
 pub fn check(nlp: &mut dyn Nlp, x: &[f64], seed: u64) -> Report {
     let (columns, sizes) = ((0..x.len()).collect::<Vec<_>>(), vec![1.0; x.len()]);
-    let along = Along {
+    let along = DifferenceVariables {
         columns: &columns,
         sizes: &sizes,
     };
@@ -71,7 +71,7 @@ pub fn check(nlp: &mut dyn Nlp, x: &[f64], seed: u64) -> Report {
 pub fn check_along(
     nlp: &mut dyn Nlp,
     x: &[f64],
-    Along { columns, sizes }: Along<'_>,
+    DifferenceVariables { columns, sizes }: DifferenceVariables<'_>,
     seed: u64,
     mut stop: impl FnMut() -> bool,
 ) -> Report {

@@ -8,7 +8,7 @@ use crate::report::axes::Scale;
 use crate::report::lines::{Aspect, LinePlot, Mark, Series};
 use crate::report::page::numbers::numbers;
 use crate::report::style::{self, Dash};
-use crate::report::{Run, Told, joints, sources, tip_path, tracking, voltages};
+use crate::report::{PageContent, Run, joints, sources, tip_path, tracking, voltages};
 
 /// Panels beyond which voltages are shown as colours.
 const PANELS: usize = 12;
@@ -16,14 +16,14 @@ const PANELS: usize = 12;
 const POINTS: usize = 2000;
 
 /// All charts of a run, in the order of the page.
-pub(super) fn charts(run: &Run<'_>, told: &Told) -> Vec<Value> {
+pub(super) fn charts(run: &Run<'_>, content: &PageContent) -> Vec<Value> {
     let mut charts = Vec::new();
     if run.trajectory.times.len() > 1 && run.branch.is_none() {
         charts.extend(of_voltages(run));
         charts.extend(paths(run));
         charts.extend(over_time(run));
     }
-    charts.extend(plots(told).into_iter().map(|mut chart| {
+    charts.extend(plots(content).into_iter().map(|mut chart| {
         // The path of equilibria has their fraction of the voltages upwards.
         chart["level"] = run.branch.is_some().into();
         chart
@@ -32,8 +32,8 @@ pub(super) fn charts(run: &Run<'_>, told: &Told) -> Vec<Value> {
 }
 
 /// Returns the plots that are not functions of time.
-pub(super) fn plots(told: &Told) -> Vec<Value> {
-    let plots = told.plots.iter();
+pub(super) fn plots(content: &PageContent) -> Vec<Value> {
+    let plots = content.plots.iter();
     let chart = |(title, plot): &(String, LinePlot)| json!({ "title": title, "kind": "plot", "panels": [panel("", plot)] });
     plots.map(chart).collect()
 }

@@ -13,48 +13,48 @@ use serde_json::{Value, json};
 
 use crate::report::markup::escape;
 use crate::report::origin::Origin;
-use crate::report::{Run, Told};
+use crate::report::{PageContent, Run};
 
 /// The page of a run, or of a path of equilibria.
-pub fn html(run: &Run<'_>, told: &Told) -> String {
+pub fn html(run: &Run<'_>, content: &PageContent) -> String {
     let run = &run.along_branch();
-    let documents = told.documents.iter();
+    let documents = content.documents.iter();
     let documents = documents.map(|(name, text)| json!({ "name": name, "text": text }));
     let data = json!({
-        "title": told.title,
+        "title": content.title,
         "system": run.system.name,
-        "isSolved": told.is_solved,
-        "answer": told.answer,
-        "notes": told.notes,
-        "rows": told.rows,
+        "isSolved": content.is_solved,
+        "answer": content.answer,
+        "notes": content.notes,
+        "rows": content.rows,
         "command": run.origin.command,
         "scene": scene::scene(run),
-        "charts": charts::charts(run, told),
+        "charts": charts::charts(run, content),
         "documents": documents.collect::<Vec<_>>(),
     });
     page(
-        &format!("{}: {}", run.system.name, told.title),
+        &format!("{}: {}", run.system.name, content.title),
         run.origin,
         &data,
     )
 }
 
 /// A page of plots and words without a motion; `subject` stands before the title.
-pub fn of_plots(subject: &str, told: &Told, origin: &Origin) -> String {
-    let documents = told.documents.iter();
+pub fn of_plots(subject: &str, content: &PageContent, origin: &Origin) -> String {
+    let documents = content.documents.iter();
     let documents = documents.map(|(name, text)| json!({ "name": name, "text": text }));
     let data = json!({
-        "title": told.title,
+        "title": content.title,
         "system": subject,
-        "isSolved": told.is_solved,
-        "answer": told.answer,
-        "notes": told.notes,
-        "rows": told.rows,
+        "isSolved": content.is_solved,
+        "answer": content.answer,
+        "notes": content.notes,
+        "rows": content.rows,
         "command": origin.command,
-        "charts": charts::plots(told),
+        "charts": charts::plots(content),
         "documents": documents.collect::<Vec<_>>(),
     });
-    page(&format!("{subject}: {}", told.title), origin, &data)
+    page(&format!("{subject}: {}", content.title), origin, &data)
 }
 
 /// A page with its title, its origin, and its contents.

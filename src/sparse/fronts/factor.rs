@@ -8,7 +8,7 @@ use faer::prelude::{Reborrow, ReborrowMut};
 use faer::traits::ext::ComplexFieldExt;
 use faer::{Accum, MatMut, Par};
 
-use crate::math::{IsOver, both};
+use crate::math::{IsOver, join_if};
 use crate::sparse::Singular;
 use crate::sparse::fronts::number::Number;
 use crate::sparse::fronts::tree::{Front, STRIP, Tree};
@@ -54,7 +54,7 @@ impl Elimination<'_> {
             let (a_panels, b_panels) = below.split_at_mut(self.tree.fronts[a].panels);
             if sides.at_once {
                 let (a_space, b_space) = space.split_at_mut(sides.second);
-                let (first, second) = both(
+                let (first, second) = join_if(
                     true,
                     || self.run(a, a_panels, a_space, memory),
                     || self.run(b, b_panels, b_space, &mut self.memory::<T>()),

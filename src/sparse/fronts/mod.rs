@@ -39,12 +39,12 @@ impl Fronts<f32> {
     /// With factors in single precision.
     pub(crate) fn new(pattern: &Arc<Pattern>, places: &Places) -> Self {
         let tree = Tree::new(pattern, &Dissection::new(pattern, places));
-        Self::of(pattern, &Arc::new(tree))
+        Self::from_tree(pattern, &Arc::new(tree))
     }
 }
 
 impl<T: Number> Fronts<T> {
-    fn of(pattern: &Arc<Pattern>, tree: &Arc<Tree>) -> Self {
+    fn from_tree(pattern: &Arc<Pattern>, tree: &Arc<Tree>) -> Self {
         let whole = tree.whole();
         let zeros = |count| vec![T::default(); count];
         Self {
@@ -134,13 +134,19 @@ impl<T: Number> Factorisation for Fronts<T> {
     }
 
     fn in_single_precision(&self) -> Option<Box<dyn Factorisation>> {
-        Some(Box::new(Fronts::<f32>::of(&self.pattern, &self.tree)))
+        Some(Box::new(Fronts::<f32>::from_tree(
+            &self.pattern,
+            &self.tree,
+        )))
     }
 
     /// The same with more digits, and then with exchanges: the matrix may merely not be quasi-definite.
     fn more_robust(&self) -> Option<Box<dyn Factorisation>> {
         match T::PRECISION {
-            Precision::Single => Some(Box::new(Fronts::<f64>::of(&self.pattern, &self.tree))),
+            Precision::Single => Some(Box::new(Fronts::<f64>::from_tree(
+                &self.pattern,
+                &self.tree,
+            ))),
             Precision::Double => Some(Box::new(Mumps::new(&self.pattern))),
         }
     }

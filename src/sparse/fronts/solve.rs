@@ -8,7 +8,7 @@ use faer::prelude::{Reborrow, ReborrowMut};
 use faer::traits::ext::ComplexFieldExt;
 use faer::{Accum, MatRef, Par};
 
-use crate::math::both;
+use crate::math::join_if;
 use crate::sparse::faer::column;
 use crate::sparse::fronts::number::Number;
 use crate::sparse::fronts::tree::{Front, Tree};
@@ -65,7 +65,7 @@ impl<'a, T: Number> Passage<'a, T> {
         passed.fill(T::default());
         if let (Some([mut a, mut b]), Some(sides)) = (sides, front.sides) {
             let [f, g] = sides.fronts;
-            both(
+            join_if(
                 sides.at_once,
                 || a.reborrow().upwards(tree, f),
                 || b.reborrow().upwards(tree, g),
@@ -127,7 +127,7 @@ impl<'a, T: Number> Passage<'a, T> {
             let (mut a, mut b) = (a, b);
             tell(&mut a, f);
             tell(&mut b, g);
-            both(
+            join_if(
                 sides.at_once,
                 || a.downwards(tree, f),
                 || b.downwards(tree, g),

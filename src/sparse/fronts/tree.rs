@@ -2,8 +2,8 @@
 
 use std::ops::Range;
 
-use crate::math::counted;
-use crate::sparse::dissection::{Dissection, Part};
+use crate::math::compact_index;
+use crate::sparse::dissection::{Dissection, DissectionPart};
 use crate::sparse::pattern::Pattern;
 
 /// Columns of a front whose products with their pivots are in memory at once.
@@ -132,14 +132,14 @@ impl Tree {
             for slot in pattern.slots(col) {
                 let pair = [self.places[pattern.rows[slot]], self.places[col]];
                 let [earlier, later] = [pair[0].min(pair[1]), pair[0].max(pair[1])];
-                by_front[of_place[earlier]].push([slot, earlier, later].map(counted));
+                by_front[of_place[earlier]].push([slot, earlier, later].map(compact_index));
             }
         }
         by_front
     }
 
     /// The front of a part whose sides have theirs; its space is not known yet.
-    fn front(&mut self, part: &Part, slots: &[[u32; 3]]) -> Front {
+    fn front(&mut self, part: &DissectionPart, slots: &[[u32; 3]]) -> Front {
         let Range { start, end } = part.own;
         let is_later = |place: &u32| *place as usize >= end;
         let mut boundary: Vec<u32> = slots.iter().map(|&[.., later]| later).collect();
@@ -158,12 +158,16 @@ impl Tree {
         let first_entry = self.entries.len();
         for &[slot, earlier, later] in slots {
             let place = within(later) + rows * (earlier as usize - start);
-            self.entries.push((slot, counted(place)));
+            self.entries.push((slot, compact_index(place)));
         }
         let [mut first, mut panels, mut updates] = [start, rows * own, boundary.len()];
         for side in part.sides.into_iter().flatten() {
             let side = &mut self.fronts[side];
-            side.above = side.boundary.iter().map(|&b| counted(within(b))).collect();
+            side.above = side
+                .boundary
+                .iter()
+                .map(|&b| compact_index(within(b)))
+                .collect();
             first = first.min(side.first);
             panels += side.panels;
             updates += side.updates;

@@ -102,7 +102,7 @@ impl Instance {
 
     /// Sets ICNTL(`number`).
     pub(super) fn control(&mut self, number: usize, value: c_int) {
-        // SAFETY: the structure is valid and has so many controls.
+        // SAFETY: the structure is valid and has `ICNTL` controls.
         let controls = unsafe {
             slice::from_raw_parts_mut(proboscis_mumps_icntl(self.structure.as_ptr()), ICNTL)
         };

@@ -63,8 +63,8 @@ pub(super) fn start() {
 }
 
 /// Answer of an MPI function; nothing without MPI.
-fn answer(question: &CStr) -> Option<bool> {
-    let symbol = loaded(question)?;
+fn answer(name: &CStr) -> Option<bool> {
+    let symbol = loaded(name)?;
     let mut flag = 0;
     // SAFETY: MPI declares both functions that are asked with these types; they may be called at any time.
     unsafe { mem::transmute::<NonNull<c_void>, Ask>(symbol)(&raw mut flag) };

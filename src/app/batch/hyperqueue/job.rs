@@ -109,7 +109,7 @@ impl Job {
     }
 
     /// The file of the standard error of a task.
-    pub(super) fn told(&self, task: usize) -> PathBuf {
+    pub(super) fn standard_error(&self, task: usize) -> PathBuf {
         self.files.join(format!("{task}.txt"))
     }
 

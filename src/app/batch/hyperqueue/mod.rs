@@ -68,7 +68,8 @@ fn follow(
                 continue;
             };
             left.remove(&task.id);
-            let Some(end) = task.end(&job.told(task.id), &batch.runs[index].folder()) else {
+            let Some(end) = task.end(&job.standard_error(task.id), &batch.runs[index].folder())
+            else {
                 continue;
             };
             open.remove(&index);

@@ -25,10 +25,10 @@ impl Task {
         !matches!(self.state.as_str(), "waiting" | "running")
     }
 
-    /// Returns its end, with what it wrote to standard error in the file `told`, and its results in `folder`; none where it was
+    /// Returns its end, with what it wrote to standard error in the file `standard_error`, and its results in `folder`; none where it was
     /// cancelled.
-    pub(super) fn end(&self, told: &Path, folder: &Path) -> Option<RunEnd> {
-        let words = fs::read_to_string(told).unwrap_or_default();
+    pub(super) fn end(&self, standard_error: &Path, folder: &Path) -> Option<RunEnd> {
+        let words = fs::read_to_string(standard_error).unwrap_or_default();
         let said = match (self.state.as_str(), self.exit_status()) {
             ("finished", _) => Said::Solved,
             ("failed", Some(status)) => of_status(Some(status), &words),

@@ -1,0 +1,196 @@
+//! Displayed part of a motion, and the notes on it.
+
+use std::collections::HashSet;
+use std::io;
+
+use serde::Serialize;
+
+use crate::dynamics::DiscreteTrajectory;
+use crate::dynamics::trajectory::{Observations, Trajectory};
+use crate::files::npz::NpzWriter;
+use crate::files::problem::output::Output;
+use crate::math::join;
+use crate::model::{Model, System};
+use crate::report::Run;
+use crate::report::atomic::WriteError;
+use crate::report::file_set::FileSet;
+use crate::report::origin::Origin;
+use crate::report::sampled::{Sampled, thinned};
+use crate::report::skins::Skins;
+use crate::report::table;
+use crate::workflow::Tracked;
+
+/// The complete tables of a long motion.
+const TABLES: &str = "tables.npz";
+
+/// A motion as tables, figures and page show it.
+#[derive(Debug)]
+pub(super) struct DisplayedMotion {
+    pub(super) trajectory: Trajectory,
+    pub(super) observations: Observations,
+    /// Columns of the table.
+    pub(super) tabulated: Observations,
+    pub(super) skins: Skins,
+    /// Size of the displayed part, where not all instants are shown.
+    pub(super) part: Option<ShownPart>,
+    /// Notes on it.
+    pub(super) notes: Vec<String>,
+    sampled: Option<Sampled>,
+}
+
+/// Size of the displayed part of a motion.
+#[derive(Clone, Copy, Debug, Serialize)]
+pub(super) struct ShownPart {
+    instants: usize,
+    of: usize,
+}
+
+/// A motion with its observations.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Motion<'a> {
+    pub(super) model: &'a Model,
+    pub(super) discrete: &'a DiscreteTrajectory,
+    pub(super) trajectory: &'a Trajectory,
+    pub(super) observations: &'a Observations,
+}
+
+impl DisplayedMotion {
+    /// Returns the displayed part of a motion: all that is asked for, or where nothing is asked all of it, and of a long simulation fewer instants,
+    /// between which the motion is straight to the eye; its complete tables are then a file of the result.
+    ///
+    /// # Errors
+    /// That file cannot be written.
+    pub(super) fn from_motion(
+        motion: Motion<'_>,
+        output: &Output,
+        is_simulated: bool,
+        files: &mut FileSet,
+    ) -> Result<Self, WriteError> {
+        let Motion {
+            model,
+            discrete,
+            trajectory,
+            observations,
+        } = motion;
+        let is_asked = output.every.is_some();
+        let sampled = (is_asked || is_simulated)
+            .then(|| Sampled::from_observations(observations, output.every))
+            .flatten();
+        let choose = || match &sampled {
+            None => (
+                trajectory.clone(),
+                observations.clone(),
+                Skins::new(model, discrete),
+            ),
+            Some(sampled) => (
+                sampled.trajectory(trajectory),
+                sampled.observations(observations),
+                Skins::new(model, &sampled.discrete_trajectory(discrete)),
+            ),
+        };
+        let is_complete_beside = sampled.is_some() && !is_asked;
+        let complete =
+            || is_complete_beside.then(|| tables(&model.system, trajectory, observations));
+        let ((trajectory_shown, observations_shown, skins), complete) = join(choose, complete);
+        let of = discrete.times.len();
+        let mut shown = Self {
+            trajectory: trajectory_shown,
+            observations: observations_shown,
+            tabulated: Observations::default(),
+            skins,
+            part: sampled.as_ref().map(|sampled| ShownPart {
+                instants: sampled.instants.len(),
+                of,
+            }),
+            notes: Vec::new(),
+            sampled,
+        };
+        let columns = shown.observations.columns.iter();
+        let taken = columns.filter(|column| output.takes(&column.name, &model.system));
+        shown.tabulated.columns = taken.cloned().collect();
+        for name in output.quantities.iter().flatten() {
+            let alone = Output {
+                every: None,
+                quantities: Some(vec![name.clone()]),
+            };
+            let mut columns = shown.observations.columns[1..].iter();
+            if !columns.any(|column| alone.takes(&column.name, &model.system)) {
+                shown.notes.push(format!(
+                    "\"quantities\": this motion has no column of {name:?}"
+                ));
+            }
+        }
+        match (shown.part, complete) {
+            (Some(ShownPart { instants, of }), Some(bytes)) => {
+                shown.notes.push(format!(
+                    "tables, figures and page show {instants} of {of} instants, between which nothing is lost to the eye; {TABLES} and the solution have all, \"output\": {{\"every\": …}} chooses"
+                ));
+                let bytes = bytes.map_err(|cause| WriteError {
+                    path: files.folder().join(TABLES),
+                    cause,
+                })?;
+                files.add(TABLES, &bytes)?;
+            }
+            _ => files.remove(TABLES),
+        }
+        Ok(shown)
+    }
+
+    /// The run that is shown, without what it is compared with.
+    pub(super) fn run<'a>(&'a self, system: &'a System, origin: &'a Origin) -> Run<'a> {
+        let (trajectory, observations) = (&self.trajectory, &self.observations);
+        Run {
+            tabulated: &self.tabulated,
+            ..Run::from_trajectory(system, trajectory, &self.skins, observations, origin)
+        }
+    }
+
+    /// Returns the references at the instants that are shown.
+    pub(super) fn tracked(&self, full: &[Tracked]) -> Vec<Tracked> {
+        match &self.sampled {
+            Some(sampled) => sampled.tracked(full),
+            None => full.to_vec(),
+        }
+    }
+
+    /// Another motion that is drawn next to it.
+    pub(super) fn beside(&self, other: Trajectory) -> Trajectory {
+        match &self.sampled {
+            Some(_) => thinned(&other),
+            None => other,
+        }
+    }
+}
+
+/// All rows of both tables.
+fn tables(
+    system: &System,
+    trajectory: &Trajectory,
+    observations: &Observations,
+) -> io::Result<Vec<u8>> {
+    let mut arrays = NpzWriter::default();
+    let mut names = HashSet::new();
+    // Of columns with one heading the second one ends with a stroke.
+    let mut unique = |table: &str, heading: &str| {
+        let mut name = format!("{table}/{heading}");
+        while !names.insert(name.clone()) {
+            name.push('′');
+        }
+        name
+    };
+    for column in table::columns(observations) {
+        let values = column.values();
+        let name = unique("trajectory", &column.heading);
+        arrays.array(&name, &[values.len()], values);
+    }
+    let intervals = trajectory.voltages.len();
+    for (i, heading) in table::control_headings(system).iter().enumerate() {
+        let value = |k: usize| match i {
+            0 | 1 => trajectory.times[k + i],
+            _ => trajectory.voltages[k][i - 2],
+        };
+        let name = unique("controls", heading);
+        arrays.array(&name, &[intervals], (0..intervals).map(value));
+    }
+    Ok(arrays.finish()?.0)
+}

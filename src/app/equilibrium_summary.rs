@@ -1,0 +1,330 @@
+//! A static equilibrium in words and in `summary.json`: joint coordinates, marker places, stiffness, and the route to it.
+
+use std::collections::BTreeMap;
+use std::path::Path;
+
+use serde::Serialize;
+
+use crate::dynamics::trajectory::{Observations, Trajectory};
+use crate::dynamics::{
+    DiscreteTrajectory, Equilibrium, Instability, Load, Route, Softening, StabilityLoss,
+};
+use crate::model::Model;
+use crate::model::system::{Joint, JointKind};
+use crate::report::table;
+use crate::workflow::motion::solved;
+
+/// A static equilibrium, or the last one on the way to the loads asked for.
+#[derive(Debug, Serialize)]
+pub(super) struct Rest {
+    /// Voltage of each muscle and electrode in V.
+    voltages: BTreeMap<String, f64>,
+    /// Fraction of the voltages asked for that these are, where they were not reached.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    fraction: Option<f64>,
+    /// Largest electric field of an element of a block in its reference configuration in V/m.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub(super) largest_nominal_field: Option<f64>,
+    /// Coordinate of each joint in rad or m.
+    joints: BTreeMap<String, f64>,
+    /// Place of each marker in m.
+    markers: BTreeMap<String, [f64; 3]>,
+    /// Stretch of each lumped muscle.
+    stretches: BTreeMap<String, f64>,
+    /// Eigenvalues of the stiffness in joint coordinates, N m/rad for angles, N/m for displacements; where there are both, those
+    /// in rad and mm, in N mm.
+    stiffness: Vec<f64>,
+    /// Motion of the softest mode, and the cause of its softness.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    softest_mode: Option<Softest>,
+    /// True if the equilibrium is stable, by them or by the inertia of the tangent; nothing where that is not known.
+    is_stable: Option<bool>,
+    /// Number of directions in which the potential energy falls, by the inertia of the tangent.
+    unstable_directions: Option<usize>,
+    /// `growing_loads`, `path_continued` or `energy_minimum`.
+    route: &'static str,
+    /// State at which the path of growing loads loses its stable equilibrium, if this one does not lie on it.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    lost: Option<Lost>,
+    /// Newton iterations.
+    newton_iterations: usize,
+    /// Unit of the stiffness in the text, and the factor to it from that of the list.
+    #[serde(skip)]
+    unit: (&'static str, f64),
+}
+
+/// The softest mode.
+#[derive(Debug, Serialize)]
+struct Softest {
+    /// Parts that move most.
+    moves: String,
+    /// `voltages`, `weight` or `elastic_forces`; absent where nothing takes from the elastic stiffness.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    softened_by: Option<&'static str>,
+}
+
+/// A loss of the stable equilibrium under a growing load.
+#[derive(Debug, Serialize)]
+struct Lost {
+    /// `weight` or `voltages`.
+    load: &'static str,
+    /// Fraction of the load.
+    fraction: f64,
+    /// `pull_in`, `collapse`, `buckling` or `limit_point`.
+    kind: &'static str,
+}
+
+/// The word in files for how an equilibrium is lost.
+pub(super) fn status(loss: StabilityLoss) -> &'static str {
+    loss.kind.map_or("limit_point", Instability::key)
+}
+
+fn load(load: Load) -> (&'static str, &'static str) {
+    match load {
+        Load::Weight => ("weight", "weights"),
+        Load::Voltages => ("voltages", "voltages"),
+    }
+}
+
+fn kind(loss: StabilityLoss) -> &'static str {
+    loss.kind.map_or("a limit point", Instability::words)
+}
+
+/// Describes an equilibrium; the last one where growing loads lose it.
+pub(super) fn describe(
+    model: &Model,
+    state: &DiscreteTrajectory,
+    motion: &Trajectory,
+    observed: &Observations,
+    found: &Equilibrium,
+    failure: Option<StabilityLoss>,
+) -> Rest {
+    let system = &model.system;
+    let kept = solved(model, state, None);
+    let joints = system.joints.iter().zip(&kept.joints[0]);
+    let markers = system.markers.iter().zip(&motion.marks[0]);
+    let voltages = model.sources.iter().zip(&motion.voltages[0]);
+    let driven = voltages.filter(|(source, _)| source.takes_voltage);
+    let prismatic = |joint: &Joint| matches!(joint.kind, JointKind::Prismatic { .. });
+    let moving = || system.joints.iter().filter(|joint| joint.has_coordinate());
+    let (slides, turns) = (
+        moving().any(prismatic),
+        moving().any(|joint| !prismatic(joint)),
+    );
+    // From N mm/rad and N/mm to SI, and from there to the text.
+    let (factor, unit) = match (slides, turns) {
+        (false, _) => (1e-3, ("N mm/rad", 1e3)),
+        (true, false) => (1e3, ("N/mm", 1e-3)),
+        (true, true) => (1.0, ("N mm, coordinates in rad and mm", 1.0)),
+    };
+    let stretches = observed.columns.iter().filter_map(|column| {
+        let muscle = column.name.strip_suffix("_stretch")?;
+        let value = column.values.first().filter(|v| v.is_finite())?;
+        Some((muscle.to_owned(), *value))
+    });
+    Rest {
+        voltages: driven.map(|(s, v)| (s.name.clone(), *v)).collect(),
+        fraction: failure.map(|loss| match loss.load {
+            Load::Weight => 0.0,
+            Load::Voltages => loss.fraction,
+        }),
+        largest_nominal_field: None,
+        joints: joints
+            .filter(|(joint, _)| joint.has_coordinate())
+            .map(|(joint, &value)| {
+                let unit = if prismatic(joint) { 1e3 } else { 1.0 };
+                (joint.name.clone(), value / unit)
+            })
+            .collect(),
+        markers: markers
+            .map(|(marker, place)| (marker.name.clone(), (place / 1e3).into()))
+            .collect(),
+        stretches: stretches.collect(),
+        stiffness: found.stiffness.iter().map(|k| factor * k).collect(),
+        softest_mode: found.softest.as_ref().map(|mode| Softest {
+            moves: mode.moves.clone(),
+            softened_by: mode.softening.map(|softening| match softening {
+                Softening::Voltages => "voltages",
+                Softening::Weight => "weight",
+                Softening::Elastic => "elastic_forces",
+            }),
+        }),
+        is_stable: found.is_stable(),
+        unstable_directions: found.unstable,
+        route: match (failure, found.route) {
+            (Some(_), _) | (None, Route::Loads) => "growing_loads",
+            (None, Route::Beyond(_)) => "path_continued",
+            (None, Route::Minimum(_)) => "energy_minimum",
+        },
+        lost: failure.or(found.loss()).map(|loss| Lost {
+            load: load(loss.load).0,
+            fraction: loss.fraction,
+            kind: status(loss),
+        }),
+        newton_iterations: found.iterations,
+        unit,
+    }
+}
+
+impl Rest {
+    /// `183.5 N mm/rad: joint1, stretch of muscle2 (at 0.7)`.
+    fn softest(&self) -> Option<String> {
+        let moves = &self.softest_mode.as_ref()?.moves;
+        let (unit, factor) = self.unit;
+        let number = self.stiffness.first();
+        let number = number.map(|k| format!("{:.6} {unit}", factor * k));
+        let parts = [number, Some(moves.clone()).filter(|m| !m.is_empty())];
+        let parts: Vec<String> = parts.into_iter().flatten().collect();
+        (!parts.is_empty()).then(|| parts.join(": "))
+    }
+
+    /// Smallest and largest stretch with their muscles.
+    fn stretched(&self) -> Option<String> {
+        let least = self.stretches.iter().min_by(|a, b| a.1.total_cmp(b.1))?;
+        let most = self.stretches.iter().max_by(|a, b| a.1.total_cmp(b.1))?;
+        Some(match self.stretches.len() {
+            1 => format!("{:.6} ({})", least.1, least.0),
+            _ => format!("{:.6} ({}) to {:.6} ({})", least.1, least.0, most.1, most.0),
+        })
+    }
+
+    /// `stable equilibrium`, and how it was found.
+    fn verdict(&self) -> String {
+        let mut text = match self.is_stable {
+            Some(true) => "stable equilibrium",
+            Some(false) => "unstable equilibrium",
+            None => "equilibrium; its stability is not known",
+        }
+        .to_owned();
+        if let (Some(false), Some(count @ 1..)) = (self.is_stable, self.unstable_directions) {
+            let cause = match self.softest_mode.as_ref().and_then(|mode| mode.softened_by) {
+                Some("voltages") => "pull-in",
+                Some("weight") => "collapse under weight",
+                _ => "buckling",
+            };
+            let directions = match count {
+                1 => "1 direction".to_owned(),
+                _ => format!("{count} directions"),
+            };
+            text.push_str(&format!(
+                ": the potential energy falls in {directions} ({cause}); no stable one was found on the path of growing \
+                 loads, on its continuation, or by descent of the potential energy from them"
+            ));
+        }
+        if let (Some(lost), false) = (&self.lost, self.route == "growing_loads") {
+            let place = match self.route {
+                "path_continued" => "on the continued path",
+                _ => "at a minimum of the potential energy",
+            };
+            let (what, kind) = match lost.load {
+                "weight" => ("weights", lost.kind),
+                _ => ("voltages", lost.kind),
+            };
+            let kind = kind.replace('_', " ").replace("pull in", "pull-in");
+            text.push_str(&match lost.fraction > 0.0 {
+                true => format!(
+                    " {place}: growing {what} lose theirs at {:.4} % ({kind})",
+                    100.0 * lost.fraction
+                ),
+                false => format!(" {place}: the reference has none"),
+            });
+        }
+        text
+    }
+}
+
+/// One line: the kind of loss, its loads, the parts that give way, and the last state.
+pub(super) fn lost(rest: &Rest, loss: StabilityLoss, folder: &Path) -> String {
+    let mut text = format!(
+        "no equilibrium was found, neither on the path of growing loads nor by descent of the potential energy from it: {} at {:.6} % of the {}",
+        kind(loss),
+        100.0 * loss.fraction,
+        load(loss.load).1
+    );
+    let on = rest.voltages.iter().filter(|(_, v)| **v != 0.0);
+    for (name, v) in on {
+        text.push_str(&format!(", {name} = {:.6} kV", v / 1e3));
+    }
+    if let Some(mode) = rest.softest_mode.as_ref().filter(|m| !m.moves.is_empty()) {
+        text.push_str(&format!("; softest motion: {}", mode.moves));
+    }
+    if let Some(field) = rest.largest_nominal_field.filter(|field| *field > 0.0) {
+        text.push_str(&format!("; largest nominal field {:.3} MV/m", field / 1e6));
+    }
+    text.push_str(&format!("; the state there is in {}", folder.display()));
+    text
+}
+
+/// Rows of the page.
+pub(super) fn rows(rest: &Rest, status: &str) -> Vec<(String, String)> {
+    let row = |name: &str, value: String| (name.to_owned(), value);
+    let mut rows = vec![row("status", status.replace('_', " "))];
+    rows.push(row(
+        "verdict",
+        match &rest.fraction {
+            None => rest.verdict(),
+            Some(_) => "the last equilibrium of the path of growing loads".to_owned(),
+        },
+    ));
+    let on = rest.voltages.iter().filter(|(_, v)| **v != 0.0);
+    let on: Vec<String> = on
+        .map(|(name, v)| format!("{name} {:.4} kV", v / 1e3))
+        .collect();
+    if !on.is_empty() {
+        rows.push(row("voltages", on.join(", ")));
+    }
+    rows.extend(rest.softest().map(|text| row("softest mode", text)));
+    rows.extend(rest.stretched().map(|text| row("muscle stretches", text)));
+    rows
+}
+
+/// The equilibrium as lines of a table.
+pub(super) fn text(model: &Model, rest: &Rest) -> String {
+    let mut rows = Vec::new();
+    for joint in model.system.joints.iter().filter(|j| j.has_coordinate()) {
+        // What rounds to zero has no sign.
+        let value = rest.joints[&joint.name];
+        let value = if value.abs() < 5e-10 { 0.0 } else { value };
+        let (value, unit) = match joint.kind {
+            JointKind::Prismatic { .. } => (format!("{:.6}", 1e3 * value), "mm".to_owned()),
+            _ => (
+                format!("{value:.9}"),
+                format!("rad ({:.4}°)", value.to_degrees()),
+            ),
+        };
+        rows.push(vec![joint.name.clone(), value, unit]);
+    }
+    for marker in &model.system.markers {
+        let [x, y, z] = rest.markers[&marker.name].map(|x| format!("{:.6}", 1e3 * x));
+        rows.push(vec![marker.name.clone(), x, y, z, "mm".to_owned()]);
+    }
+    let mut text = table::aligned(&rows);
+    if let Some(stretches) = rest.stretched() {
+        text.push_str(&format!("muscle stretches  {stretches}\n"));
+    }
+    if !rest.stiffness.is_empty() {
+        let (unit, factor) = rest.unit;
+        let values: Vec<_> = rest
+            .stiffness
+            .iter()
+            .map(|k| format!("{:.6}", factor * k))
+            .collect();
+        text.push_str(&format!("stiffness  {} {unit}\n", values.join("  ")));
+    }
+    if let Some(mode) = rest.softest() {
+        text.push_str(&format!("softest mode  {mode}\n"));
+    }
+    text.push_str(&rest.verdict());
+    text
+}
+
+/// Reduces observations to those of a state of rest: neither time nor rates nor what follows from them.
+pub(super) fn at_rest(mut observed: Observations) -> Observations {
+    let moves = |name: &str| {
+        let of_motion = ["linear_momentum", "angular_momentum", "kinetic_energy"];
+        let others = ["time", "dissipated_energy"];
+        others.contains(&name) || of_motion.iter().any(|word| name.starts_with(word))
+    };
+    observed.columns.retain(|column| !moves(&column.name));
+    observed
+}

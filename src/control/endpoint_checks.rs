@@ -1,0 +1,228 @@
+//! Limits at start and goal: values known before the solve keep them, or are refused by name.
+
+use std::collections::BTreeMap;
+
+use nalgebra::Vector3;
+
+use crate::control::boundary_conditions::BoundaryConditions;
+use crate::control::error::BoundaryError;
+use crate::control::goal::Place;
+use crate::control::limits::{BoundedQuantity, When};
+use crate::control::problem::{BoundaryState, Control, PathConstraint};
+use crate::control::transcription::Site;
+use crate::coordinates::Configuration;
+use crate::energy::{Energy, OutsideBox, SquaredDistance};
+use crate::functional::Sample;
+use crate::math::{Local, significant};
+use crate::model::{Coordinates, Model, Quantity, Region, Time};
+
+/// Refuses limits that contradict each other, and a start or goal of which it is known that it breaks a limit. `scalars` are voltages and potentials of states of
+/// rest at start and goal.
+pub(super) fn check(
+    model: &Model,
+    boundary: &BoundaryConditions,
+    control: &Control,
+    scalars: [Option<Vec<f64>>; 2],
+) -> Result<(), BoundaryError> {
+    if let Some(reason) = contradiction(model, boundary, control) {
+        let place = "limits";
+        return Err(BoundaryError::Limit { place, reason });
+    }
+    let start: Vec<_> = boundary.start.z.iter().copied().map(Some).collect();
+    let goal = &boundary.goal.coordinates;
+    let [at_start, at_goal] = scalars;
+    let first = model.action.map.unknowns();
+    let charts = [&boundary.start.z[first..], boundary.goal.charts(first)];
+    let ends = [
+        ("start", &start, charts[0], at_start, &control.start),
+        ("goal", goal, charts[1], at_goal, &control.goal),
+    ];
+    for (place, coordinates, charts, scalars, state) in ends {
+        let time = match place {
+            "start" => control.middle(0),
+            _ => control.middle(control.intervals - 1),
+        };
+        let mut end = End::new(model, (control, time), coordinates, charts, scalars);
+        match state {
+            BoundaryState::JointAngles { angles, .. } => end.angles = angles.clone(),
+            BoundaryState::Markers { places, .. } => end.places = places.clone(),
+            BoundaryState::RestAtVoltages(..) | BoundaryState::EndOf(_) | BoundaryState::Free => {}
+        }
+        let of_joints = control.limits.iter().find_map(|limit| end.joint(limit));
+        let bounded = || {
+            let list = boundary.limits.list.iter().zip(&model.measured);
+            let paths = list.filter(|(bounded, _)| bounded.when == When::Everywhere);
+            let mut values = paths.map(|(b, m)| (b, end.value(b, *m)));
+            values.find_map(|(b, value)| b.broken(value?, &model.system))
+        };
+        if let Some(reason) = of_joints.or_else(bounded) {
+            return Err(BoundaryError::Limit { place, reason });
+        }
+    }
+    Ok(())
+}
+
+/// Known values of a start or goal.
+struct End<'a> {
+    model: &'a Model,
+    instant: Configuration,
+    /// For each coordinate, true if it is known.
+    known: Vec<bool>,
+    /// Voltages and potentials, where they are known.
+    scalars: Vec<Option<f64>>,
+    /// Joint coordinates that it names.
+    angles: BTreeMap<usize, f64>,
+    /// Places of markers that it names.
+    places: BTreeMap<usize, Place>,
+}
+
+impl<'a> End<'a> {
+    fn new(
+        model: &'a Model,
+        (control, time): (&Control, f64),
+        coordinates: &[Option<f64>],
+        charts: &[f64],
+        scalars: Option<Vec<f64>>,
+    ) -> Self {
+        let count = model.coordinate_count();
+        let mut instant = model.action.map.instant();
+        let reference = model.coordinates_at(&vec![0.0; model.joint_readings.len()]);
+        let values = coordinates.iter().zip(reference);
+        for (z, (value, reference)) in instant.z[..count].iter_mut().zip(values) {
+            *z = value.unwrap_or(reference);
+        }
+        let first = model.action.map.unknowns();
+        instant.z[first..]
+            .iter_mut()
+            .zip(charts)
+            .for_each(|(value, chart)| *value = *chart);
+        model.action.map.vectors(&mut instant);
+        Self {
+            model,
+            instant,
+            known: coordinates[..count].iter().map(Option::is_some).collect(),
+            scalars: match scalars {
+                Some(scalars) => scalars.into_iter().map(Some).collect(),
+                None => {
+                    let variables = model.variables.of(Time::Interval).iter();
+                    variables
+                        .map(|variable| control.given(variable, time))
+                        .collect()
+                }
+            },
+            angles: BTreeMap::new(),
+            places: BTreeMap::new(),
+        }
+    }
+
+    /// Returns the message of a joint limit that it breaks.
+    fn joint(&self, limit: &PathConstraint) -> Option<String> {
+        let PathConstraint::JointAngle { joint, min, max } = *limit else {
+            return None;
+        };
+        let joints = &self.model.system.joints;
+        let of_gauge = || {
+            if !self.known.iter().all(|known| *known) {
+                let coordinate = self.model.joint_readings[joint].coordinate?;
+                let is_known =
+                    self.model.coordinates == Coordinates::Reduced && self.known[coordinate];
+                return is_known.then(|| self.instant.z[coordinate]);
+            }
+            let mut instant = self.instant.clone();
+            self.model.action.map.place(&mut instant);
+            let near = (0..joints.len()).map(|j| self.angles.get(&j).copied().unwrap_or(0.0));
+            Some(self.model.joints(&instant, &near.collect::<Vec<_>>())[joint])
+        };
+        let value = self.angles.get(&joint).copied().or_else(of_gauge)?;
+        of_joint(joint, min, max, self.model).broken(value, &self.model.system)
+    }
+
+    /// The value of a limited quantity.
+    fn value(&self, bounded: &BoundedQuantity, measure: Option<usize>) -> Option<f64> {
+        match bounded.quantity {
+            Quantity::Joint { .. } => return None,
+            Quantity::MarkerPlace { marker, axis } => {
+                let given = self.places.get(&marker).and_then(|place| place.0[axis]);
+                if given.is_some() {
+                    return given;
+                }
+            }
+            Quantity::MarkerRegion { marker, region } => {
+                if let Some(place) = self.places.get(&marker).and_then(Place::whole) {
+                    return Some(region_value(&region, &place));
+                }
+            }
+            _ => {}
+        }
+        let measure = Site::from_quantity(&bounded.quantity).measure(self.model, measure?);
+        let map = &self.model.action.map;
+        let mut reads = measure.vectors().into_iter().flat_map(|v| map.support(v));
+        let is_known = reads.all(|i| self.known[i])
+            && measure.scalars().iter().all(|&s| self.scalars[s].is_some());
+        let scalars: Vec<f64> = self.scalars.iter().map(|s| s.unwrap_or(0.0)).collect();
+        let x = &self.instant.x[..];
+        let sample = Sample::of_instant(x, &scalars);
+        is_known.then(|| measure.value(&sample))
+    }
+}
+
+/// A joint limit as a bounded quantity, whatever the coordinates.
+fn of_joint(joint: usize, lower: f64, upper: f64, model: &Model) -> BoundedQuantity {
+    BoundedQuantity {
+        quantity: Quantity::Joint { joint, near: 0.0 },
+        lower,
+        upper,
+        when: When::Everywhere,
+        name: format!("joint {}", model.system.joints[joint].name),
+    }
+}
+
+/// Two limits of one quantity that leave it no value.
+fn contradiction(
+    model: &Model,
+    boundary: &BoundaryConditions,
+    control: &Control,
+) -> Option<String> {
+    let joints = control.limits.iter().filter_map(|limit| match *limit {
+        PathConstraint::JointAngle { joint, min, max } => Some(of_joint(joint, min, max, model)),
+        _ => None,
+    });
+    let is_path = |b: &&BoundedQuantity| {
+        b.when == When::Everywhere && !matches!(b.quantity, Quantity::Joint { .. })
+    };
+    let others = boundary.limits.list.iter().filter(is_path).cloned();
+    let all: Vec<BoundedQuantity> = joints.chain(others).collect();
+    let below = all.iter().filter(|bounded| bounded.lower.is_finite());
+    let crossed = |low: &&BoundedQuantity, high: &&BoundedQuantity| {
+        low.quantity == high.quantity && low.lower > high.upper
+    };
+    let mut pairs = below.flat_map(|low| all.iter().map(move |high| (low, high)));
+    let (low, high) = pairs.find(|(low, high)| crossed(low, high))?;
+    let told = |bounded: &BoundedQuantity, bound: f64| {
+        let (value, unit) = bounded.quantity.plain(bound, &model.system);
+        format!("{} {unit}", significant(value, 5))
+            .trim_end()
+            .to_owned()
+    };
+    let (least, most) = (told(low, low.lower), told(high, high.upper));
+    let name = &low.name;
+    Some(format!(
+        "{name}: at least {least} in one limit contradicts at most {most} in another"
+    ))
+}
+
+fn region_value(region: &Region, place: &Vector3<f64>) -> f64 {
+    let still = Vector3::zeros();
+    match *region {
+        Region::Sphere { centre, radius } => {
+            let scale = radius;
+            let energy = SquaredDistance { centre, scale };
+            energy.at::<1>(place, &still).value()
+        }
+        Region::Box { min, max } => {
+            let (centre, half) = ((min + max) * 0.5, (max - min) * 0.5);
+            let energy = OutsideBox { centre, half };
+            energy.at::<1>(place, &still).value()
+        }
+    }
+}

@@ -1,0 +1,165 @@
+//! Analysis that a task requires of the model.
+//!
+//! A source is at zero voltage where neither the task nor the states at its ends name a voltage other than zero; a body or a block is
+//! initially moving where a start, a goal or a limit names it.
+
+use std::collections::BTreeSet;
+
+use crate::control::problem::{AtRest, BoundaryState, Control, PathConstraint, Simulation};
+use crate::model::system::{Attachment, System};
+use crate::model::{Analysis, InitiallyMoving};
+
+impl Simulation {
+    /// The analysis of a motion in steps of `step` ms.
+    pub fn analysis(&self, system: &System, step: f64) -> Analysis {
+        let is_driven = |s: usize| self.voltages.drive(s);
+        let mut named = Named::new(system);
+        named.of_start(&self.start);
+        Analysis {
+            coordinates: self.coordinates,
+            zero_voltage: zero_voltage(system, is_driven, [&self.start]),
+            initially_moving: Some(named.initially_moving),
+            ..Analysis::of_motion(step)
+        }
+    }
+}
+
+impl AtRest {
+    /// The analysis of a state of rest. Its stability is computed too, that of unloaded parts included: nothing is taken to
+    /// be still.
+    pub fn analysis(&self, system: &System) -> Analysis {
+        Analysis {
+            coordinates: self.coordinates,
+            zero_voltage: zero_voltage(system, |s| self.voltages[s] != 0.0, []),
+            ..Analysis::of_rest()
+        }
+    }
+}
+
+impl Control {
+    /// The analysis of a horizon of intervals of about `interval` ms, without the quantities that are measured.
+    pub fn analysis(&self, system: &System, interval: f64) -> Analysis {
+        let is_driven = |s: usize| match &self.course {
+            Some(course) => course.drive(s),
+            None => self.given.get(&s).is_none_or(|signal| !signal.is_zero()),
+        };
+        let mut named = Named::new(system);
+        named.of_start(&self.start);
+        named.of_goal(&self.goal);
+        self.limits.iter().for_each(|limit| named.of_limit(limit));
+        Analysis {
+            coordinates: self.coordinates,
+            zero_voltage: zero_voltage(system, is_driven, [&self.start, &self.goal]),
+            initially_moving: Some(named.initially_moving),
+            parameters: self.parameters.clone(),
+            ..Analysis::of_motion(interval)
+        }
+    }
+}
+
+/// Sources whose voltage is zero all the time, and at rest before and after.
+fn zero_voltage<const N: usize>(
+    system: &System,
+    is_driven: impl Fn(usize) -> bool,
+    ends: [&BoundaryState; N],
+) -> BTreeSet<usize> {
+    let is_held = |s: usize| {
+        ends.iter().any(|state| match state {
+            BoundaryState::EndOf(_) => false,
+            held => held.voltages().is_some_and(|v| v[s] != 0.0),
+        })
+    };
+    let sources = system.sources();
+    let takes = (0..sources.len()).filter(|&s| sources[s].takes_voltage);
+    takes.filter(|&s| !is_driven(s) && !is_held(s)).collect()
+}
+
+/// Bodies and blocks that are named.
+struct Named<'a> {
+    system: &'a System,
+    initially_moving: InitiallyMoving,
+}
+
+impl<'a> Named<'a> {
+    fn new(system: &'a System) -> Self {
+        Self {
+            system,
+            initially_moving: InitiallyMoving::default(),
+        }
+    }
+
+    /// A start away from the reference configuration, or in motion; where another motion ended anything may be. Sources that hold a
+    /// state of rest are not at zero voltage, and move what they move.
+    fn of_start(&mut self, state: &BoundaryState) {
+        match state {
+            BoundaryState::JointAngles {
+                angles,
+                rates,
+                velocities,
+            } => {
+                self.initially_moving.bodies.extend(velocities.keys());
+                let all = angles.iter().chain(rates);
+                let moved = all.filter(|(_, value)| **value != 0.0);
+                moved.for_each(|(&joint, _)| self.of_joint(joint));
+            }
+            BoundaryState::EndOf(_) => {
+                self.initially_moving
+                    .bodies
+                    .extend(0..self.system.bodies.len());
+                self.initially_moving
+                    .solids
+                    .extend(0..self.system.solids.len());
+            }
+            BoundaryState::RestAtVoltages(..)
+            | BoundaryState::Markers { .. }
+            | BoundaryState::Free => {}
+        }
+    }
+
+    fn of_goal(&mut self, state: &BoundaryState) {
+        match state {
+            BoundaryState::RestAtVoltages(..) | BoundaryState::EndOf(_) | BoundaryState::Free => {}
+            BoundaryState::JointAngles { angles, .. } => {
+                angles.keys().for_each(|&j| self.of_joint(j));
+            }
+            BoundaryState::Markers {
+                places,
+                orientations,
+                ..
+            } => {
+                places.keys().for_each(|&m| self.of_marker(m));
+                self.initially_moving.bodies.extend(orientations.keys());
+            }
+        }
+    }
+
+    fn of_limit(&mut self, limit: &PathConstraint) {
+        match *limit {
+            PathConstraint::JointAngle { joint, .. } => self.of_joint(joint),
+            PathConstraint::Stretch { muscle, .. } => {
+                let muscle = &self.system.muscles[muscle];
+                self.of_point(&muscle.from);
+                self.of_point(&muscle.to);
+            }
+            // A field without voltage is none.
+            PathConstraint::ElectricField { .. } | PathConstraint::BlockField { .. } => {}
+            PathConstraint::Marker { marker, .. } => self.of_marker(marker),
+        }
+    }
+
+    fn of_joint(&mut self, joint: usize) {
+        let joint = &self.system.joints[joint];
+        let bodies = joint.parent.into_iter().chain([joint.child]);
+        self.initially_moving.bodies.extend(bodies);
+    }
+
+    fn of_marker(&mut self, marker: usize) {
+        let marker = &self.system.markers[marker];
+        self.initially_moving.solids.extend(marker.solid);
+        self.of_point(&marker.point);
+    }
+
+    fn of_point(&mut self, point: &Attachment) {
+        self.initially_moving.bodies.extend(point.body);
+    }
+}

@@ -1,0 +1,279 @@
+//! One sweep over the horizon: forces, and second derivatives into the values.
+
+use crate::control::transcription::Transcription;
+use crate::control::transcription::kinematic_state::Placed;
+use crate::control::transcription::limit_rows::{LimitRow, Site};
+use crate::control::transcription::segment::{
+    Segment, SegmentWorkspace, Shared, instant_of, needed,
+};
+use crate::control::transcription::units::{KILOVOLT, MILLISECOND};
+use crate::coordinates::{Configuration, Reduced};
+use crate::functional::{BlockMask, Horizon, Measure, Order, Sample};
+use crate::ipopt::interrupt;
+use crate::math::{Vector, join_if};
+
+/// Second derivatives of a horizon from which on its stretches are evaluated at once: with fewer, a second core saves less than it
+/// costs to wake it and to read what it wrote.
+const MUCH: usize = 8_000;
+
+/// One pass over the horizon.
+struct Pass<'a> {
+    shared: Shared<'a>,
+    instants: &'a mut [Configuration],
+    boundary_instant: &'a mut Configuration,
+    stretches: &'a mut [SegmentWorkspace; 2],
+    values: &'a mut [f64],
+    rows: &'a mut [f64],
+}
+
+impl Pass<'_> {
+    /// All intervals at once. Returns ∂²/∂h² along the costates.
+    fn run(&mut self) -> f64 {
+        let (end, instants) = self
+            .instants
+            .split_last_mut()
+            .expect("a horizon has instants");
+        Segment {
+            shared: self.shared,
+            first: 0,
+            instants,
+            end,
+            workspace: &mut self.stretches[0],
+            values: self.values,
+            rows: self.rows,
+        }
+        .run()
+    }
+
+    /// The intervals before and after the middle, each by a thread, and the instant where they meet.
+    fn run_in_two(&mut self, middle: usize) {
+        let Shared { action, stride, .. } = self.shared;
+        let last = self.instants.len() - 1;
+        self.boundary_instant
+            .z
+            .copy_from_slice(&self.instants[middle].z);
+        self.boundary_instant
+            .l
+            .copy_from_slice(&self.instants[middle].l);
+        let [first, second] = &mut *self.stretches;
+        let (left, right) = self.instants.split_at_mut(middle);
+        let (end, right) = right.split_last_mut().expect("a stretch has an end");
+        let (values_left, values_right) = self.values.split_at_mut(action.layout().same_at(middle));
+        let (rows_left, rows_right) = self.rows.split_at_mut(middle * stride);
+        let left = Segment {
+            shared: self.shared,
+            first: 0,
+            instants: left,
+            end: self.boundary_instant,
+            workspace: first,
+            values: values_left,
+            rows: rows_left,
+        };
+        let right = Segment {
+            shared: self.shared,
+            first: middle,
+            instants: right,
+            end,
+            workspace: second,
+            values: values_right,
+            rows: rows_right,
+        };
+        let are_much = action.layout().values(last) >= MUCH;
+        join_if(are_much, || left.run(), || right.run());
+        let instant = &mut self.instants[middle];
+        let add = |sum: &mut [Vector], list: &[Vector]| {
+            sum.iter_mut().zip(list).for_each(|(s, v)| *s += v);
+        };
+        add(&mut instant.forces, &self.boundary_instant.forces);
+        add(&mut instant.contracted, &self.boundary_instant.contracted);
+        self.complete(middle, 0);
+    }
+
+    /// Adds the blocks that a stretch carries to its last instant, and evaluates that instant.
+    fn complete(&mut self, k: usize, stretch: usize) {
+        let Shared { action, order, .. } = self.shared;
+        let workspace = &mut self.stretches[stretch];
+        let instant = &mut self.instants[k];
+        action.pull_back_last(order, instant, k, &mut workspace.scratch, self.values);
+        instant_of(
+            self.shared,
+            instant,
+            [k, k],
+            workspace,
+            self.values,
+            self.rows,
+        );
+    }
+}
+
+/// Number of rows of a step: of an instant, then of the scalars of an interval.
+fn stride(action: &Reduced) -> usize {
+    action.map.unknowns() + action.intervals.scalars
+}
+
+impl<'m> Transcription<'m> {
+    /// Number of rows of a step: of an instant, then of the scalars of an interval.
+    pub(super) fn stride(&self) -> usize {
+        stride(&self.model.action)
+    }
+
+    /// Instant by instant and interval by interval, each while it is in the cache: forces, and second derivatives into
+    /// the values. Contracted derivatives are taken along the costates in the instants.
+    pub(super) fn sweep(&mut self, order: Order) {
+        let Self {
+            model,
+            layout,
+            objective,
+            workspace,
+            ..
+        } = self;
+        let (action, last) = (&model.action, layout.intervals);
+        let stride = stride(action);
+        let (rows, costates) = workspace.rows.split_at_mut((last + 1) * stride);
+        let limit = interrupt::limit();
+        let mut pass = Pass {
+            shared: Shared {
+                action,
+                limits: &layout.limits,
+                costs: &objective.quantities,
+                energies: &objective.energies,
+                sigma: workspace.sigma,
+                costates,
+                scalars: &workspace.scalars,
+                along: &workspace.scalars_along,
+                stride,
+                h: workspace.h,
+                horizon: layout.horizon,
+                placed: workspace.placed,
+                order,
+                limit: limit.as_ref(),
+            },
+            instants: &mut workspace.instants,
+            boundary_instant: &mut workspace.boundary_instant,
+            stretches: &mut workspace.stretches,
+            values: &mut workspace.values,
+            rows,
+        };
+        let square = match layout.middle() {
+            Some(middle) => {
+                pass.run_in_two(middle);
+                pass.complete(last, 1);
+                0.0
+            }
+            None => {
+                let square = pass.run();
+                pass.complete(last, 0);
+                square
+            }
+        };
+        if order == Order::Third && layout.horizon == Horizon::Free {
+            workspace.values[action.layout().horizon_square_at(last)] = square;
+        }
+        // A sweep that was stopped has placed some instants only.
+        workspace.placed = match interrupt::stop() {
+            Some(_) => Placed::Nothing,
+            None => workspace.placed.max(needed(order)),
+        };
+    }
+
+    /// The frame in which a measure is read at instant or interval k.
+    pub(super) fn sample(&self, site: Site, k: usize) -> Sample<'_> {
+        let scalar_count = self.model.action.layout().interval_scalars;
+        let next = k + site.sides() - 1;
+        let instants = [k, next].map(|k| &self.workspace.instants[k]);
+        Sample {
+            vectors: instants.map(|instant| &instant.x[..]),
+            along: instants.map(|instant| &instant.w[..]),
+            scalars: if site == Site::Intervals {
+                &self.workspace.scalars[k * scalar_count..(k + 1) * scalar_count]
+            } else {
+                &[]
+            },
+            scalars_along: &[],
+            h: self.workspace.h,
+            horizon: Horizon::Given,
+            sides: BlockMask::ALL,
+            outer: &[],
+        }
+    }
+
+    fn measure(&self, limit: &LimitRow) -> &'m dyn Measure {
+        limit.site.measure(self.model, limit.measure)
+    }
+
+    pub(super) fn limit_value(&self, limit: &LimitRow, k: usize) -> f64 {
+        self.measure(limit).value(&self.sample(limit.site, k))
+    }
+}
+
+impl Transcription<'_> {
+    /// Gradients of the limits, behind the periodic values.
+    pub(super) fn limit_gradients(&mut self) {
+        let map = &self.model.action.map;
+        let mut place = self.model.action.layout().values(self.layout.intervals);
+        self.workspace.rows[..map.unknowns()].fill(0.0);
+        for &(limit, k) in &self.layout.limit_rows {
+            let limit = &self.layout.limits[limit];
+            let measure = self.measure(limit);
+            let site = limit.site;
+            let mut part = std::mem::take(&mut self.workspace.measured);
+            measure.gradient(&self.sample(site, k), &mut part.forces, &mut part.rows);
+            // Rows of the coordinates of one side at a time, in the storage of one instant's rows.
+            let mut at = 0;
+            for side in (0..site.sides()).filter(|&side| measure.reads(side)) {
+                for &vector in &limit.vectors {
+                    map.pull_back_one(
+                        vector,
+                        &self.workspace.instants[k + side].columns,
+                        &part.forces[side][vector],
+                        &mut self.workspace.rows,
+                    );
+                }
+                while let Some(&(_, i)) = limit.entries.get(at).filter(|(s, _)| *s == side) {
+                    self.workspace.values[place] = std::mem::take(&mut self.workspace.rows[i]);
+                    (at, place) = (at + 1, place + 1);
+                }
+            }
+            for &(_, s) in &limit.entries[at..] {
+                self.workspace.values[place] = part.rows[s];
+                place += 1;
+            }
+            for &vector in &limit.vectors {
+                for side in &mut part.forces {
+                    side[vector] = Vector::zeros();
+                }
+            }
+            part.rows.fill(0.0);
+            self.workspace.measured = part;
+        }
+    }
+
+    /// Adds σ∇²f to the values.
+    pub(super) fn objective_curvature(&mut self, sigma: f64) {
+        let pattern = self.model.action.layout();
+        let tau = self.workspace.h * MILLISECOND;
+        for k in 0..self.layout.intervals {
+            let curvature = sigma * self.objective.cost.curvature(k, tau) / (KILOVOLT * KILOVOLT);
+            for &(_, slot) in &self.objective.voltages {
+                self.workspace.values[pattern.scalars_at(k) + slot] += curvature;
+            }
+        }
+        if self.layout.horizon == Horizon::Free {
+            let square = self.objective.cost.horizon(
+                &self.workspace.kilovolts,
+                tau,
+                &mut self.workspace.gradient,
+            );
+            let mut gradient = self.workspace.gradient.iter();
+            for k in 0..self.layout.intervals {
+                let at = pattern.horizon_scalars_at(k);
+                for (&(s, _), slope) in self.objective.voltages.iter().zip(&mut gradient) {
+                    self.workspace.values[at + s] += sigma * slope * MILLISECOND / KILOVOLT;
+                }
+            }
+            self.workspace.values[pattern.horizon_square_at(self.layout.intervals)] +=
+                sigma * square * MILLISECOND * MILLISECOND;
+            self.cost_border(sigma);
+        }
+    }
+}

@@ -1,0 +1,290 @@
+//! Equilibria along the path of a growing load by arc length, past limit points, where the load falls again.
+//!
+//! With the rows R(y, f) of a state y under the fraction f of a load, K = ∂R/∂y and b = ∂R/∂f, the tangent of the
+//! path is K ẏ = −ḟ b. A step follows it by Δs and comes back to the path in the plane normal to it. The path has a
+//! limit point (pull-in) where ḟ = 0; where a pivot of K changes its sign elsewhere, it meets another path (buckling).
+
+use crate::dynamics::equilibrium::instability::Instability;
+use crate::dynamics::equilibrium::ramp::Ramp;
+use crate::dynamics::equilibrium::statics::{NewtonOutcome, RestState, Statics, UpdateRange};
+use crate::dynamics::singular_configurations::shortest;
+use crate::ipopt::interrupt;
+
+/// Limit of corrections in one step.
+const CORRECTIONS: usize = 12;
+/// Convergence of a correction, relative to angles of one radian and the length of the system.
+const UPDATE: f64 = 1e-11;
+/// First step along the path, in units of the fraction and of strains.
+pub(super) const FIRST: f64 = 0.02;
+/// Largest step.
+pub(super) const LARGEST: f64 = 0.1;
+/// Steps below this end the path.
+pub(super) const SMALLEST: f64 = 1e-7;
+/// Limit of steps in the search of a limit point.
+const STEPS: usize = 200;
+/// Largest number of halvings of the step over a branching point.
+const HALVINGS: usize = 24;
+/// Slope ḟ that counts as zero; the fraction is then exact to its square.
+const FLAT: f64 = 1e-6;
+
+/// Least stretch of a muscle on a path: below it the path ends.
+const SHORTEST: f64 = 0.05;
+
+/// State at which an equilibrium is lost.
+#[derive(Clone, Debug, PartialEq)]
+pub(super) struct LimitPoint {
+    pub(super) fraction: f64,
+    pub(super) kind: Instability,
+    pub(super) state: RestState,
+}
+
+/// A point of the path.
+#[derive(Clone, Debug)]
+pub(super) struct PathPoint {
+    pub(super) state: RestState,
+    pub(super) fraction: f64,
+    /// Unit tangent: state, then fraction.
+    pub(super) tangent: (Vec<f64>, f64),
+    pub(super) unstable: Option<usize>,
+}
+
+/// The path from a state of equilibrium on.
+pub(super) struct Path<'s, 'm> {
+    pub(super) statics: &'s mut Statics<'m>,
+    ramp: Ramp<'s>,
+    weights: Vec<f64>,
+}
+
+impl Path<'_, '_> {
+    fn dot(&self, a: &[f64], b: &[f64]) -> f64 {
+        let products = a.iter().zip(b).zip(&self.weights);
+        products.map(|((a, b), w)| a * b * w).sum()
+    }
+
+    /// Evaluates and factorises at a state; returns −K⁻¹ b.
+    fn linearise(&mut self, state: &[f64], fraction: f64) -> Option<Vec<f64>> {
+        // A path that is to stop ends like one that cannot go on.
+        if interrupt::stop().is_some() {
+            return None;
+        }
+        let voltages = self.ramp.apply(self.statics, fraction);
+        self.statics.evaluate(state, &voltages);
+        if self.statics.residual.iter().any(|r| !r.is_finite()) {
+            return None;
+        }
+        self.statics.factor().ok()?;
+        let mut load = vec![0.0; state.len()];
+        self.ramp.add(self.statics, &mut load);
+        self.statics.solve(&mut load);
+        load.iter_mut().for_each(|v| *v = -*v);
+        Some(load)
+    }
+
+    /// The point at a state of equilibrium; its tangent goes on along `before`, or towards larger fractions.
+    pub(super) fn point(
+        &mut self,
+        state: RestState,
+        fraction: f64,
+        before: Option<&(Vec<f64>, f64)>,
+    ) -> Option<PathPoint> {
+        let slope = self.linearise(&state, fraction)?;
+        let norm = (1.0 + self.dot(&slope, &slope)).sqrt();
+        let along = before.map_or(1.0, |(y, f)| self.dot(&slope, y) + f);
+        let ahead = along.signum() / norm;
+        let unstable = self.statics.unstable();
+        Some(PathPoint {
+            tangent: (slope.iter().map(|v| v * ahead).collect(), ahead),
+            state,
+            fraction,
+            unstable,
+        })
+    }
+
+    /// The point at the arc length `step` from another; `None` where the corrections do not converge.
+    pub(super) fn advance(&mut self, from: &PathPoint, step: f64) -> Option<PathPoint> {
+        let (direction, ahead) = &from.tangent;
+        let predicted = from.state.iter().zip(direction);
+        let mut state: RestState = predicted.map(|(y, t)| y + step * t).collect();
+        let mut fraction = from.fraction + step * ahead;
+        for _ in 0..CORRECTIONS {
+            self.statics.iterations += 1;
+            let slope = self.linearise(&state, fraction)?;
+            let mut update = self.statics.residual.clone();
+            self.statics.solve(&mut update);
+            update.iter_mut().for_each(|v| *v = -*v);
+            let change = -self.dot(direction, &update) / (self.dot(direction, &slope) + ahead);
+            for (u, s) in update.iter_mut().zip(&slope) {
+                *u += change * s;
+            }
+            let size = self.statics.size(&update).max(change.abs());
+            if size.is_nan() || size > 1.0 {
+                return None;
+            }
+            for (y, u) in state.iter_mut().zip(&update) {
+                *y += u;
+            }
+            fraction += change;
+            if size < UPDATE {
+                return self.point(state, fraction, Some(&from.tangent));
+            }
+        }
+        None
+    }
+
+    /// The zero of ḟ between a point and the one a step later.
+    pub(super) fn turn(&mut self, before: &PathPoint, step: f64, after: &PathPoint) -> PathPoint {
+        let (mut low, mut high) = (0.0, step);
+        let (mut at_low, mut at_high) = (before.tangent.1, after.tangent.1);
+        let mut best = if at_low.abs() < at_high.abs() {
+            before.clone()
+        } else {
+            after.clone()
+        };
+        for k in 0..60 {
+            let secant = low + (high - low) * at_low / (at_low - at_high);
+            let middle = 0.5 * (low + high);
+            let trial = if k % 4 == 3 { middle } else { secant };
+            let Some(point) = self.advance(before, trial) else {
+                break;
+            };
+            let slope = point.tangent.1;
+            if slope > 0.0 {
+                (low, at_low) = (trial, slope);
+            } else {
+                (high, at_high) = (trial, slope);
+            }
+            if slope.abs() < best.tangent.1.abs() {
+                best = point;
+            }
+            if best.tangent.1.abs() < FLAT {
+                break;
+            }
+        }
+        best
+    }
+}
+
+impl Path<'_, '_> {
+    /// The last stable point between a stable point and the unstable one a step later.
+    pub(super) fn switch(&mut self, before: &PathPoint, step: f64) -> PathPoint {
+        let (mut low, mut high) = (0.0, step);
+        let mut best = before.clone();
+        for _ in 0..HALVINGS {
+            let middle = 0.5 * (low + high);
+            match self.advance(before, middle) {
+                Some(point) if point.unstable == Some(0) => {
+                    low = middle;
+                    best = point;
+                }
+                _ => high = middle,
+            }
+        }
+        best
+    }
+}
+
+pub(super) fn path<'s, 'm>(statics: &'s mut Statics<'m>, ramp: Ramp<'s>) -> Path<'s, 'm> {
+    let weights = statics.weights();
+    Path {
+        statics,
+        ramp,
+        weights,
+    }
+}
+
+/// The limit point that the path from a state of equilibrium runs into, if there is one near.
+pub(super) fn limit_point(
+    statics: &mut Statics<'_>,
+    state: &[f64],
+    ramp: Ramp<'_>,
+    fraction: f64,
+) -> Option<LimitPoint> {
+    let mut path = path(statics, ramp);
+    let mut here = path.point(state.to_vec(), fraction, None)?;
+    let mut step = FIRST;
+    for _ in 0..STEPS {
+        let Some(next) = path.advance(&here, step) else {
+            step *= 0.5;
+            if step < SMALLEST {
+                return None;
+            }
+            continue;
+        };
+        if next.tangent.1 <= 0.0 {
+            let found = path.turn(&here, step, &next);
+            return Some(LimitPoint {
+                fraction: found.fraction,
+                kind: Instability::of_turn(ramp.load),
+                state: found.state,
+            });
+        }
+        if let (Some(0), Some(1..)) = (here.unstable, next.unstable) {
+            let found = path.switch(&here, step);
+            return Some(LimitPoint {
+                fraction: found.fraction,
+                kind: Instability::Buckling,
+                state: found.state,
+            });
+        }
+        here = next;
+        step = (1.5 * step).min(LARGEST);
+    }
+    None
+}
+
+/// States in which all of a load acts, on the path that goes on from a state in a direction: +1 towards larger fractions, −1
+/// towards smaller ones. At most `steps` are taken; the path ends at the first stable one, where it leaves the loads between
+/// nothing and twice as much, or where a muscle has almost no length.
+pub(super) fn crossings(
+    statics: &mut Statics<'_>,
+    state: &[f64],
+    ramp: Ramp<'_>,
+    fraction: f64,
+    direction: f64,
+    steps: usize,
+) -> Vec<RestState> {
+    let mut found = Vec::new();
+    let mut path = path(statics, ramp);
+    let Some(mut here) = path.point(state.to_vec(), fraction, None) else {
+        return found;
+    };
+    here.tangent.0.iter_mut().for_each(|t| *t *= direction);
+    here.tangent.1 *= direction;
+    let mut step = FIRST;
+    for _ in 0..steps {
+        let Some(next) = path.advance(&here, step) else {
+            step *= 0.5;
+            if step < SMALLEST {
+                break;
+            }
+            continue;
+        };
+        if (here.fraction - 1.0) * (next.fraction - 1.0) < 0.0 {
+            // Newton from the point next to it: a crossing is no limit point.
+            let nearest = match (here.fraction - 1.0).abs() < (next.fraction - 1.0).abs() {
+                true => &here,
+                false => &next,
+            };
+            let mut state = nearest.state.clone();
+            let all = ramp.apply(path.statics, 1.0);
+            if let Ok(NewtonOutcome::Converged) =
+                path.statics.newton(&mut state, &all, UpdateRange::Near)
+            {
+                let is_stable = path.statics.unstable() == Some(0);
+                found.push(state);
+                if is_stable {
+                    break;
+                }
+            }
+        }
+        here = next;
+        let z = path.statics.configuration(&here.state);
+        let placed = path.statics.model.action.map.placed(&z);
+        let is_short = shortest(path.statics.model, &placed).is_some_and(|(_, s)| s < SHORTEST);
+        if is_short || !(-0.5..=2.0).contains(&here.fraction) {
+            break;
+        }
+        step = (1.5 * step).min(LARGEST);
+    }
+    found
+}

@@ -1,0 +1,174 @@
+//! Static equilibrium on the path of growing loads: the weights first, then the voltages in steps of V², cut when Newton
+//! fails.
+
+use crate::dynamics::equilibrium::arc_length::{LimitPoint, limit_point};
+use crate::dynamics::equilibrium::instability::Load;
+use crate::dynamics::equilibrium::ramp::Ramp;
+use crate::dynamics::equilibrium::result::{Equilibrium, Route, StabilityLoss};
+use crate::dynamics::equilibrium::statics::{NewtonOutcome, RestState, Statics, UpdateRange};
+use crate::dynamics::error::EquilibriumError;
+use crate::model::{Floating, Model};
+
+/// Part of a load that is tried first, in V² for voltages.
+const FIRST: f64 = 0.25;
+/// Load increments below this end the path.
+const SMALLEST: f64 = 1e-6;
+
+/// The static equilibrium under constant voltages (by scalar of an interval) on the path of growing loads from `start`,
+/// stable or not.
+///
+/// # Errors
+/// The path ends before all loads act, or nothing holds the system.
+pub fn equilibrium(
+    model: &Model,
+    start: &[f64],
+    voltages: &[f64],
+) -> Result<Equilibrium, EquilibriumError> {
+    let mut statics = begin(model)?;
+    let mut state = unloaded(&mut statics, start, voltages)?;
+    for load in [Load::Weight, Load::Voltages] {
+        let ramp = Ramp { load, voltages };
+        let grown = grow(&mut statics, state, ramp)?;
+        if grown.fraction < 1.0 {
+            return Err(at_limit(&mut statics, &grown.state, ramp, grown.fraction));
+        }
+        state = grown.state;
+    }
+    Ok(Equilibrium::new(
+        &mut statics,
+        &state,
+        voltages,
+        Route::Loads,
+    ))
+}
+
+/// Rows of rest of a model whose blocks are held.
+pub(super) fn begin(model: &Model) -> Result<Statics<'_>, EquilibriumError> {
+    match model.floating() {
+        Some(Floating { name, motion }) => Err(EquilibriumError::Floating { name, motion }),
+        None => Ok(Statics::new(model)),
+    }
+}
+
+/// The state of rest without voltages and, where that exists, without weights.
+///
+/// A robot that only its weight holds has no unique rest without it: then all of it acts at once.
+pub(super) fn unloaded(
+    statics: &mut Statics<'_>,
+    start: &[f64],
+    voltages: &[f64],
+) -> Result<RestState, EquilibriumError> {
+    let mut first = statics.state_without_field(start);
+    let none = vec![0.0; voltages.len()];
+    if statics.has_weight() {
+        statics.weight = 0.0;
+        let mut state = first.clone();
+        if let Ok(NewtonOutcome::Converged) = statics.newton(&mut state, &none, UpdateRange::Far) {
+            return Ok(state);
+        }
+    }
+    statics.weight = 1.0;
+    match statics.newton(&mut first, &none, UpdateRange::Far)? {
+        NewtonOutcome::Converged => Ok(first),
+        NewtonOutcome::Failed => Err(EquilibriumError::NoStart),
+    }
+}
+
+/// State up to which a load has grown.
+#[derive(Debug)]
+pub(super) struct Grown {
+    pub(super) state: RestState,
+    pub(super) fraction: f64,
+    /// The last state of the path that was stable, and its fraction, where a later one is not.
+    pub(super) last_stable: Option<(RestState, f64)>,
+}
+
+/// Lets a load grow from nothing, from a state of rest without it, as far as there are equilibria.
+///
+/// # Errors
+/// It was stopped.
+pub(super) fn grow(
+    statics: &mut Statics<'_>,
+    mut state: RestState,
+    ramp: Ramp<'_>,
+) -> Result<Grown, EquilibriumError> {
+    let m = statics.model.action.map.unknowns();
+    let is_there = match ramp.load {
+        // All of the weight acts already where nothing else holds the system.
+        Load::Weight => statics.has_weight() && statics.weight < 1.0,
+        Load::Voltages => ramp.voltages.iter().any(|&v| v != 0.0),
+    };
+    let (mut reached, mut increment) = (0.0, FIRST);
+    let mut stable = Some((state.clone(), 0.0));
+    let mut is_lost = false;
+    while is_there && reached < 1.0 && increment >= SMALLEST {
+        let target = f64::min(reached + increment, 1.0);
+        let mut trial = state.clone();
+        // Potentials grow with the voltages.
+        let growth = match (ramp.load, reached > 0.0) {
+            (Load::Voltages, true) => (target / reached).sqrt(),
+            _ => 1.0,
+        };
+        trial[m..].iter_mut().for_each(|p| *p *= growth);
+        let fraction = ramp.fraction(target);
+        let voltages = ramp.apply(statics, fraction);
+        match statics.newton(&mut trial, &voltages, UpdateRange::Near) {
+            Ok(NewtonOutcome::Converged) => {
+                (state, reached) = (trial, target);
+                increment *= 2.0;
+                match statics.unstable() {
+                    Some(1..) => is_lost = true,
+                    _ if !is_lost => stable = Some((state.clone(), fraction)),
+                    _ => {}
+                }
+            }
+            Err(stopped @ EquilibriumError::Stopped(_)) => return Err(stopped),
+            Ok(NewtonOutcome::Failed) | Err(_) => increment *= 0.5,
+        }
+    }
+    let fraction = if is_there {
+        ramp.fraction(reached)
+    } else {
+        1.0
+    };
+    Ok(Grown {
+        state,
+        fraction,
+        last_stable: stable.filter(|_| is_lost),
+    })
+}
+
+/// Returns the end of the path at a state: the limit point next to it, or the last equilibrium.
+pub(super) fn at_limit(
+    statics: &mut Statics<'_>,
+    state: &[f64],
+    ramp: Ramp<'_>,
+    fraction: f64,
+) -> EquilibriumError {
+    let found = limit_point(statics, state, ramp, fraction);
+    let (fraction, kind, last) = match found {
+        Some(LimitPoint {
+            fraction,
+            kind,
+            state,
+        }) => (fraction, Some(kind), state),
+        None => (fraction, None, state.to_vec()),
+    };
+    let loss = StabilityLoss {
+        load: ramp.load,
+        fraction,
+        kind,
+    };
+    let voltages = ramp.apply(statics, fraction);
+    EquilibriumError::LimitPoint {
+        fraction,
+        kind,
+        load: ramp.load,
+        last: Box::new(Equilibrium::new(
+            statics,
+            &last,
+            &voltages,
+            Route::Beyond(loss),
+        )),
+    }
+}

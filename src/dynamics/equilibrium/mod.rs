@@ -1,0 +1,28 @@
+//! Static equilibria: under growing loads, along paths, and their stability.
+//!
+//! - `statics`: Newton on the rows of rest; `settle`, `minimum`: states that Newton's method does not reach.
+//! - `instability`, `ramp`, `growth`: loads that grow; `arc_length`: the path of equilibria by arc length; `load_path`: its points.
+//! - `in_joints`: equilibria in redundant coordinates by way of joint coordinates.
+//! - `result`, `mode`, `softest_mode`, `stability`: a state of rest and its softest mode; `stable`: the stable one.
+
+mod arc_length;
+mod growth;
+mod in_joints;
+mod instability;
+mod load_path;
+mod minimum;
+mod mode;
+mod ramp;
+mod result;
+mod settle;
+mod softest_mode;
+mod stability;
+mod stable;
+mod statics;
+
+pub use growth::equilibrium;
+pub use instability::{Instability, Load};
+pub use load_path::{Continuation, continuation};
+pub use mode::{Mode, Softening};
+pub use result::{Equilibrium, Route, StabilityLoss};
+pub use stable::stable_equilibrium;

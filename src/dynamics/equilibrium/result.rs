@@ -1,0 +1,65 @@
+//! A state of rest: its stiffness, and the route to it.
+
+use crate::dynamics::equilibrium::instability::{Instability, Load};
+use crate::dynamics::equilibrium::mode::Mode;
+
+/// A state of rest.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Equilibrium {
+    /// Coordinates and multipliers.
+    pub z: Vec<f64>,
+    /// Voltages and potentials.
+    pub scalars: Vec<f64>,
+    /// Eigenvalues of the stiffness in joint coordinates, ascending, in N mm/rad or N/mm; empty in redundant coordinates
+    /// and for elastic blocks.
+    pub stiffness: Vec<f64>,
+    /// Number of directions in which the potential energy falls, by the inertia of the tangent; `None` where the
+    /// factorisation does not give it.
+    pub unstable: Option<usize>,
+    /// The softest mode; `None` at the points of a path, and where nothing moves.
+    pub softest: Option<Mode>,
+    /// Route on which it was found.
+    pub route: Route,
+    /// Newton iterations over all loads.
+    pub iterations: usize,
+}
+
+/// Route on which an equilibrium was found.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Route {
+    /// On the path of growing loads: the weights, then the voltages.
+    Loads,
+    /// On the path that goes on beyond the point where growing loads lose their equilibrium, and comes back to all loads.
+    Beyond(StabilityLoss),
+    /// At a minimum of the potential energy, by descent from a state where the path ends or is unstable.
+    Minimum(StabilityLoss),
+}
+
+/// State at which the path of growing loads loses its stable equilibrium.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct StabilityLoss {
+    /// The load that grew.
+    pub load: Load,
+    /// Its fraction.
+    pub fraction: f64,
+    /// Kind of instability, where that was found.
+    pub kind: Option<Instability>,
+}
+
+impl Equilibrium {
+    /// Returns true if the equilibrium is stable; `None` where that is not known.
+    pub fn is_stable(&self) -> Option<bool> {
+        match self.stiffness.first() {
+            Some(&smallest) => Some(smallest > 0.0),
+            None => self.unstable.map(|count| count == 0),
+        }
+    }
+
+    /// Returns the state at which growing loads lose the stable equilibrium, if it does not lie on their path.
+    pub fn loss(&self) -> Option<StabilityLoss> {
+        match self.route {
+            Route::Loads => None,
+            Route::Beyond(loss) | Route::Minimum(loss) => Some(loss),
+        }
+    }
+}

@@ -1,0 +1,218 @@
+//! The softest mode of a state of rest: the direction along which its potential energy rises least or falls, the parts that move,
+//! and the cause of its softness.
+
+use crate::dynamics::equilibrium::mode::{Mode, Softening};
+use crate::dynamics::equilibrium::statics::Statics;
+use crate::math::random::Random;
+use crate::model::system::Fidelity;
+use crate::model::{Coordinates, Freedom, Model, Screw};
+use nalgebra::{DMatrix, SymmetricEigen};
+
+/// Number of coordinates up to which the eigenvalues of the stiffness are computed.
+const EIGENVALUES: usize = 100;
+/// Steps of the inverse iteration for larger systems.
+const STEPS: usize = 30;
+/// Parts of the largest motion below this are not named.
+const NAMED: f64 = 0.5;
+/// Maximum number of parts named.
+const LISTED: usize = 3;
+/// Parts of the stiffness below this of the elastic one are rounding.
+const ROUNDING: f64 = 1e-9;
+
+/// Returns true if the stiffness in joint coordinates is small enough for a full eigenvalue decomposition.
+fn is_small(model: &Model) -> bool {
+    let map = &model.action.map;
+    let joints_alone = map.tree.is_some() && map.of_nodes.is_empty() && map.of_internal == 0;
+    map.multipliers == 0 && joints_alone && (1..=EIGENVALUES).contains(&map.unknowns())
+}
+
+/// Eigenvalues and vectors of the stiffness of a small system in joint coordinates, at the state evaluated and factorised last;
+/// ascending.
+fn eigenpairs(statics: &Statics<'_>) -> Option<(Vec<f64>, Vec<f64>)> {
+    let model = statics.model;
+    if !is_small(model) {
+        return None;
+    }
+    let n = model.action.map.coordinates;
+    let mut matrix = DMatrix::<f64>::zeros(n, n);
+    for ((row, col), value) in statics.entries() {
+        matrix[(row, col)] -= value / model.multiplier_time;
+    }
+    let pairs = SymmetricEigen::new(matrix);
+    let mut order: Vec<usize> = (0..n).collect();
+    order.sort_by(|&i, &j| pairs.eigenvalues[i].total_cmp(&pairs.eigenvalues[j]));
+    let lowest = pairs.eigenvectors.column(order[0]);
+    let values = order.iter().map(|&i| pairs.eigenvalues[i]).collect();
+    Some((values, lowest.iter().copied().collect()))
+}
+
+/// Eigenvalues of the stiffness in joint coordinates of the state evaluated and factorised last, ascending; empty for other
+/// coordinates.
+pub(super) fn stiffness(statics: &Statics<'_>) -> Vec<f64> {
+    eigenpairs(statics).map_or_else(Vec::new, |(values, _)| values)
+}
+
+/// The softest mode of the state evaluated and factorised last.
+pub(super) fn softest_mode(
+    statics: &mut Statics<'_>,
+    state: &[f64],
+    voltages: &[f64],
+) -> Option<Mode> {
+    let direction = match eigenpairs(statics) {
+        Some((_, lowest)) => lowest,
+        None => inverse_iteration(statics)?,
+    };
+    Some(named(statics, state, voltages, direction))
+}
+
+/// The direction of the lowest eigenvalue of K by B, of the state evaluated last.
+fn inverse_iteration(statics: &mut Statics<'_>) -> Option<Vec<f64>> {
+    let n = statics.scales().len();
+    let size = statics.residual.len();
+    let mut sigma = 0.0;
+    let mut count = 0;
+    while statics.factor_with(sigma).is_err() || statics.unstable() != Some(0) {
+        sigma = match count {
+            0 => 1e-4 * statics.largest_stiffness(),
+            _ => 4.0 * sigma,
+        };
+        count += 1;
+        if count > 40 {
+            return None;
+        }
+    }
+    let mut random = Random::new(1);
+    let mut vector: Vec<f64> = (0..n).map(|_| random.between(-1.0, 1.0)).collect();
+    for _ in 0..STEPS {
+        let mut rhs = vec![0.0; size];
+        for (i, (value, scale)) in vector.iter().zip(statics.scales()).enumerate() {
+            rhs[i] = -value / (scale * scale);
+        }
+        statics.solve(&mut rhs);
+        let largest = rhs[..n].iter().zip(statics.scales());
+        let largest = largest.fold(0.0, |m, (v, s)| f64::max(m, (v / s).abs()));
+        if !(largest.is_finite() && largest > 0.0) {
+            return None;
+        }
+        vector = rhs[..n].iter().map(|v| v / largest).collect();
+    }
+    Some(vector)
+}
+
+/// A direction of length 1 with the parts that it moves.
+fn named(statics: &mut Statics<'_>, state: &[f64], voltages: &[f64], direction: Vec<f64>) -> Mode {
+    let largest = direction.iter().zip(statics.scales());
+    let (v, s) = largest.fold((0.0_f64, 1.0), |(m, s), (v, scale)| {
+        if (v / scale).abs() > (m / s).abs() {
+            (*v, *scale)
+        } else {
+            (m, s)
+        }
+    });
+    let direction: Vec<f64> = direction.iter().map(|d| d * s / v).collect();
+    Mode {
+        moves: moves(statics.model, &statics.configuration(state), &direction),
+        softening: softening(statics, state, voltages, &direction),
+        direction,
+    }
+}
+
+/// The part of the stiffness along a direction that takes most from it; `None` where none does.
+fn softening(
+    statics: &mut Statics<'_>,
+    state: &[f64],
+    voltages: &[f64],
+    direction: &[f64],
+) -> Option<Softening> {
+    let m = statics.model.action.map.unknowns();
+    let mut bare = state.to_vec();
+    bare[m..].fill(0.0);
+    let none = vec![0.0; voltages.len()];
+    let weight = statics.weight;
+    let mut along = |weight: f64, state: &[f64], voltages: &[f64]| {
+        statics.weight = weight;
+        statics.evaluate(state, voltages);
+        statics.stiffness_along(direction)
+    };
+    let all = along(weight, state, voltages);
+    let mechanical = along(weight, &bare, &none);
+    let elastic = along(0.0, &bare, &none);
+    statics.weight = weight;
+    statics.evaluate(state, voltages);
+    let parts = [
+        (Softening::Voltages, all - mechanical),
+        (Softening::Weight, mechanical - elastic),
+        (Softening::Elastic, elastic),
+    ];
+    let least = parts.into_iter().min_by(|a, b| a.1.total_cmp(&b.1));
+    least
+        .filter(|(_, part)| *part < -ROUNDING * elastic.abs())
+        .map(|(softening, _)| softening)
+}
+
+/// Names the parts that move along a direction.
+fn moves(model: &Model, z: &[f64], direction: &[f64]) -> String {
+    let map = &model.action.map;
+    let mut instant = map.placed(z);
+    instant.l[..direction.len()].copy_from_slice(direction);
+    map.along(&mut instant);
+    let mut words = Vec::new();
+    let bodies = &direction[..map.of_bodies];
+    let mut list: Vec<(String, f64)> = match model.coordinates {
+        Coordinates::Reduced => {
+            let mut moved: Vec<(String, f64)> = Vec::new();
+            for (c, rate) in bodies.iter().enumerate() {
+                let Freedom { of, screw, .. } = model.freedom(c);
+                let size = match screw {
+                    Screw::Slide(_) => rate.abs() / model.length(),
+                    Screw::Turn(_) => rate.abs(),
+                };
+                match moved.last_mut().filter(|(name, _)| name == of) {
+                    Some((_, largest)) => *largest = largest.max(size),
+                    None => moved.push((of.to_owned(), size)),
+                }
+            }
+            moved
+        }
+        Coordinates::Redundant => {
+            let rates = bodies.chunks(12);
+            let moved = rates
+                .zip(&model.presolved.system.bodies)
+                .map(|(rates, body)| {
+                    let (centre, turn) = rates.split_at(3);
+                    let largest = |part: &[f64]| part.iter().fold(0.0, |m: f64, v| m.max(v.abs()));
+                    let moved = f64::max(largest(centre) / model.length(), largest(turn));
+                    (body.name.clone(), moved)
+                });
+            moved.collect()
+        }
+    };
+    list.sort_by(|a, b| b.1.total_cmp(&a.1));
+    if let Some(largest) = list.first().map(|l| l.1).filter(|&l| l > NAMED) {
+        let named = list.iter().filter(|(_, v)| *v >= NAMED * largest);
+        words.extend(named.take(LISTED).map(|(name, _)| name.clone()));
+    }
+    let nodes = map.of_nodes.iter().zip(&direction[map.of_bodies..]);
+    let furthest = nodes.max_by(|a, b| a.1.abs().total_cmp(&b.1.abs()));
+    if let Some((&(node, _), _)) = furthest.filter(|_| words.is_empty()) {
+        let (block, node) = model.node_names[node];
+        let solid = &model.solids[block].solid;
+        let at = solid.mesh.nodes[node];
+        words.push(format!(
+            "block {} around ({:.3}, {:.3}, {:.3}) mm of its reference",
+            solid.name, at.x, at.y, at.z
+        ));
+    }
+    let muscles = model.system.muscles.iter().enumerate();
+    let lumped = muscles.filter(|(_, muscle)| muscle.fidelity == Fidelity::Lumped);
+    let rate = lumped.map(|(m, muscle)| {
+        let (span, along) = (instant.x[model.spans[m]], instant.w[model.spans[m]]);
+        let rate = span.dot(&along) / (span.norm() * muscle.length());
+        (muscle, rate, span.norm() / muscle.length())
+    });
+    let most = rate.max_by(|a, b| a.1.abs().total_cmp(&b.1.abs()));
+    if let Some((muscle, _, stretch)) = most.filter(|m| m.1.abs() > 1e-9) {
+        words.push(format!("stretch of {} (at {stretch:.4})", muscle.name));
+    }
+    words.join(", ")
+}

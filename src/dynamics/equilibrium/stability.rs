@@ -1,0 +1,53 @@
+//! Stiffness, stability and softest mode of a state of rest.
+
+use crate::dynamics::equilibrium::result::{Equilibrium, Route};
+use crate::dynamics::equilibrium::softest_mode::{softest_mode, stiffness};
+use crate::dynamics::equilibrium::statics::Statics;
+use crate::model::Model;
+
+impl Equilibrium {
+    /// Stiffness, stability and softest mode of a model's state of rest: `z` of coordinates and multipliers, `scalars` of
+    /// voltages and potentials.
+    pub fn of_state(model: &Model, z: &[f64], scalars: &[f64]) -> Self {
+        let mut statics = Statics::new(model);
+        let [voltages, others] = model.variables.split(scalars);
+        let state = statics.state(z, others);
+        Self::new(&mut statics, &state, voltages, Route::Loads)
+    }
+
+    /// A state of rest of a model, from coordinates with multipliers and potentials.
+    pub(super) fn new(
+        statics: &mut Statics<'_>,
+        state: &[f64],
+        voltages: &[f64],
+        route: Route,
+    ) -> Self {
+        let state = &statics.recentred(state);
+        let point = Self::on_path(statics, state, voltages, route);
+        Self {
+            softest: softest_mode(statics, state, voltages),
+            ..point
+        }
+    }
+
+    /// The same without its softest mode.
+    pub(super) fn on_path(
+        statics: &mut Statics<'_>,
+        state: &[f64],
+        voltages: &[f64],
+        route: Route,
+    ) -> Self {
+        let m = statics.model.action.map.unknowns();
+        statics.evaluate(state, voltages);
+        let is_known = statics.factor().is_ok();
+        Self {
+            z: statics.configuration(state),
+            scalars: voltages.iter().chain(&state[m..]).copied().collect(),
+            stiffness: stiffness(statics),
+            unstable: is_known.then(|| statics.unstable()).flatten(),
+            softest: None,
+            route,
+            iterations: statics.iterations,
+        }
+    }
+}

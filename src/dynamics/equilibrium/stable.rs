@@ -1,0 +1,288 @@
+//! A stable equilibrium under all loads, found in a fixed order:
+//!
+//! 1. on the path of growing loads, the weights first, then the voltages;
+//! 2. where that path turns back or is unstable, on its continuation by arc length, where all loads act again;
+//! 3. at a minimum of the potential energy, by descent from the unstable states met, from where the path is lost, and from
+//!    where no load acts, to either side of their softest modes.
+//!
+//! The first stable one is the answer.
+
+use crate::dynamics::equilibrium::arc_length::{LimitPoint, crossings, limit_point};
+use crate::dynamics::equilibrium::growth::{Grown, at_limit, begin, grow, unloaded};
+use crate::dynamics::equilibrium::in_joints;
+use crate::dynamics::equilibrium::instability::Load;
+use crate::dynamics::equilibrium::minimum::minimise;
+use crate::dynamics::equilibrium::ramp::Ramp;
+use crate::dynamics::equilibrium::result::{Equilibrium, Route, StabilityLoss};
+use crate::dynamics::equilibrium::softest_mode::softest_mode;
+use crate::dynamics::equilibrium::statics::{NewtonOutcome, RestState, Statics, UpdateRange};
+use crate::dynamics::error::EquilibriumError;
+use crate::ipopt::interrupt;
+use crate::model::{Coordinates, Model};
+
+/// Steps along a path beyond its limit point, and those for models with nodes.
+const STEPS: [usize; 2] = [300, 40];
+/// Length of a push along the softest mode, in radians and lengths of the system.
+const PUSH: f64 = 0.05;
+/// Largest number of halvings of a push where it has no energy.
+const HALVINGS: usize = 8;
+/// Stiffness below this part of the largest is none.
+const ROUND_OFF: f64 = 1e-13;
+
+/// The stable equilibrium under constant voltages (by scalar of an interval); an unstable one where growing loads lead there
+/// and no stable one was found.
+///
+/// # Errors
+/// No equilibrium was found, or nothing holds the system.
+pub fn stable_equilibrium(
+    model: &Model,
+    start: &[f64],
+    voltages: &[f64],
+) -> Result<Equilibrium, EquilibriumError> {
+    let mut statics = begin(model)?;
+    if let Some(twin) = in_joints::twin(model) {
+        let start = in_joints::carried(model, start, &twin);
+        let found = stable_equilibrium(&twin, &start, voltages);
+        if let Err(error @ EquilibriumError::Stopped(_)) = found {
+            return Err(error);
+        }
+        let confirm = |found| in_joints::confirmed(&mut statics, &twin, &found, voltages);
+        if let Some(found) = found.ok().map(confirm).transpose()?.flatten() {
+            return Ok(found);
+        }
+    }
+    let none = vec![0.0; voltages.len()];
+    let weighed = under_weight(&mut statics, start, &none);
+    let is_driven = voltages.iter().any(|&v| v != 0.0);
+    match (weighed, is_driven) {
+        (Err(error @ EquilibriumError::LimitPoint { .. }), true) => {
+            // Under voltages there may be an equilibrium where there is none without.
+            let EquilibriumError::LimitPoint { last, load, .. } = &error else {
+                unreachable!("matched above");
+            };
+            let loss = StabilityLoss {
+                load: *load,
+                fraction: last.loss().map_or(0.0, |l| l.fraction),
+                kind: last.loss().and_then(|l| l.kind),
+            };
+            let state = statics.state_without_field(&last.z);
+            let found = descend(&mut statics, &[state], voltages)?;
+            let found = found.ok_or(error)?;
+            let route = Route::Minimum(loss);
+            Ok(Equilibrium::new(&mut statics, &found, voltages, route))
+        }
+        (weighed, false) => {
+            let (state, route) = weighed?;
+            statics.weight = 1.0;
+            Ok(Equilibrium::new(&mut statics, &state, &none, route))
+        }
+        (weighed, true) => {
+            let (rest, route) = weighed?;
+            let ramp = Ramp {
+                load: Load::Voltages,
+                voltages,
+            };
+            statics.weight = 1.0;
+            let (state, after) = under(&mut statics, rest, ramp)?;
+            let route = match after {
+                Route::Loads => route,
+                other => other,
+            };
+            statics.weight = 1.0;
+            Ok(Equilibrium::new(&mut statics, &state, voltages, route))
+        }
+    }
+}
+
+/// Rest without voltages.
+fn under_weight(
+    statics: &mut Statics<'_>,
+    start: &[f64],
+    none: &[f64],
+) -> Result<(RestState, Route), EquilibriumError> {
+    let ramp = Ramp {
+        load: Load::Weight,
+        voltages: none,
+    };
+    let begun = unloaded(statics, start, none);
+    let is_stable = begun.is_ok() && statics.unstable() == Some(0);
+    if is_stable || (begun.is_ok() && statics.weight < 1.0) {
+        return under(statics, begun?, ramp);
+    }
+    // Nothing but weights holds the system, or its reference is far from rest.
+    let first = statics.state_without_field(start);
+    let from = match &begun {
+        Ok(state) => vec![state.clone(), first],
+        Err(_) => vec![first],
+    };
+    statics.weight = 1.0;
+    let loss = StabilityLoss {
+        load: Load::Weight,
+        fraction: 0.0,
+        kind: None,
+    };
+    match descend(statics, &from, none)? {
+        Some(found) => Ok((found, Route::Minimum(loss))),
+        None => match begun {
+            Ok(state) => Ok((state, Route::Loads)),
+            Err(error) => Err(without_stiffness(statics, start, none).unwrap_or(error)),
+        },
+    }
+}
+
+/// Joints whose coordinates no force depends on, near a start and with all weights acting.
+fn without_stiffness(
+    statics: &mut Statics<'_>,
+    start: &[f64],
+    none: &[f64],
+) -> Option<EquilibriumError> {
+    let model = statics.model;
+    if model.coordinates == Coordinates::Redundant {
+        return None;
+    }
+    let mut aside = statics.state_without_field(start);
+    let turns = aside[..model.action.map.of_bodies].iter_mut();
+    turns.for_each(|value| *value += PUSH);
+    statics.weight = 1.0;
+    statics.evaluate(&aside, none);
+    statics.factor().ok();
+    let mut largest = vec![0.0_f64; model.coordinate_count()];
+    for ((row, col), value) in statics.entries() {
+        if row < largest.len() && col < largest.len() {
+            largest[row] = largest[row].max(value.abs());
+        }
+    }
+    let all = largest.iter().copied().fold(0.0, f64::max);
+    let slack = (0..model.action.map.of_bodies).filter(|&c| largest[c] <= ROUND_OFF * all);
+    let mut names: Vec<String> = slack.map(|c| model.freedom(c).of.to_owned()).collect();
+    names.dedup();
+    (!names.is_empty()).then_some(EquilibriumError::NoStiffness(names))
+}
+
+/// The equilibrium under all of a load, from one without it.
+fn under(
+    statics: &mut Statics<'_>,
+    rest: RestState,
+    ramp: Ramp<'_>,
+) -> Result<(RestState, Route), EquilibriumError> {
+    let Grown {
+        state,
+        fraction,
+        last_stable,
+    } = grow(statics, rest.clone(), ramp)?;
+    let is_reached = fraction >= 1.0;
+    let voltages = ramp.apply(statics, 1.0);
+    if is_reached && is_stable(statics, &state, &voltages) != Some(false) {
+        return Ok((state, Route::Loads));
+    }
+    // Where it was lost: the limit point from the last stable state on.
+    let (before, at) = last_stable.unwrap_or((state.clone(), fraction));
+    let limit = limit_point(statics, &before, ramp, at);
+    let loss = StabilityLoss {
+        load: ramp.load,
+        fraction: limit.as_ref().map_or(at, |l| l.fraction),
+        kind: limit.as_ref().map(|l| l.kind),
+    };
+    let steps = STEPS[usize::from(!statics.model.action.map.of_nodes.is_empty())];
+    let (from, directions): (_, &[f64]) = match (&limit, is_reached) {
+        (_, true) => ((state.clone(), 1.0), &[1.0, -1.0]),
+        (_, false) => ((state.clone(), fraction), &[1.0]),
+    };
+    let mut met: Vec<RestState> = Vec::new();
+    if is_reached {
+        met.push(state.clone());
+    }
+    for &direction in directions {
+        let crossed = crossings(statics, &from.0, ramp, from.1, direction, steps);
+        for found in crossed {
+            ramp.apply(statics, 1.0);
+            if is_stable(statics, &found, &voltages) == Some(true) {
+                return Ok((found, Route::Beyond(loss)));
+            }
+            met.push(found);
+        }
+    }
+    met.extend(limit.map(|LimitPoint { state, .. }| state));
+    // Blocks are large, and have no states of rest far from their path.
+    if statics.model.action.map.of_nodes.is_empty() {
+        met.extend([before, rest]);
+    }
+    ramp.apply(statics, 1.0);
+    if let Some(found) = descend(statics, &met, &voltages)? {
+        return Ok((found, Route::Minimum(loss)));
+    }
+    ramp.apply(statics, 1.0);
+    match is_reached {
+        true => Ok((state, Route::Loads)),
+        false => Err(at_limit(statics, &state, ramp, fraction)),
+    }
+}
+
+/// Returns true if a state of rest is stable; `None` where that is not known.
+fn is_stable(statics: &mut Statics<'_>, state: &[f64], voltages: &[f64]) -> Option<bool> {
+    statics.evaluate(state, voltages);
+    statics.factor().ok()?;
+    statics.unstable().map(|count| count == 0)
+}
+
+/// The first stable equilibrium found by descent from one of some states, pushed to either side along its softest mode.
+///
+/// # Errors
+/// It was stopped.
+fn descend(
+    statics: &mut Statics<'_>,
+    from: &[RestState],
+    voltages: &[f64],
+) -> Result<Option<RestState>, EquilibriumError> {
+    for state in from {
+        statics.evaluate(state, voltages);
+        // At a limit point the tangent is singular, and still the lowest eigenvalue has its direction.
+        statics.factor().ok();
+        let Some(mode) = softest_mode(statics, state, voltages) else {
+            continue;
+        };
+        for side in [PUSH, -PUSH] {
+            let Some(pushed) = pushed(statics, state, voltages, &mode.direction, side) else {
+                continue;
+            };
+            let found = minimise(statics, &pushed, voltages);
+            if let Some(status) = interrupt::stop() {
+                return Err(EquilibriumError::Stopped(status));
+            }
+            let Some(mut found) = found else {
+                continue;
+            };
+            statics.weight = 1.0;
+            let outcome = statics.newton(&mut found, voltages, UpdateRange::Near);
+            if outcome == Ok(NewtonOutcome::Converged)
+                && is_stable(statics, &found, voltages) == Some(true)
+            {
+                return Ok(Some(found));
+            }
+        }
+    }
+    Ok(None)
+}
+
+/// A state pushed along a direction, as far as it has energy there.
+fn pushed(
+    statics: &mut Statics<'_>,
+    state: &[f64],
+    voltages: &[f64],
+    direction: &[f64],
+    mut by: f64,
+) -> Option<RestState> {
+    for _ in 0..HALVINGS {
+        let mut moved = state.to_vec();
+        for (value, change) in moved.iter_mut().zip(direction) {
+            *value += by * change;
+        }
+        if statics.settle(&mut moved, voltages).is_some()
+            && statics.energy(&moved, voltages).is_finite()
+        {
+            return Some(moved);
+        }
+        by *= 0.5;
+    }
+    None
+}

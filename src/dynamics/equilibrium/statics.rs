@@ -1,0 +1,389 @@
+//! Rest: the potential energy and the constraints of the action on an interval whose two instants are one.
+//!
+//! With q_k = q_{k+1} = q the sum of both rows is −h Pᵀ∇V − h₀ Gᵀλ, and the tangent is the sum of the four blocks. Inertia and
+//! viscosity would vanish from both sums only up to the rounding of M/h and D: they are left out, so that a state of rest depends
+//! neither on masses nor on the step. Potentials keep the rows of Gauss's law.
+//!
+//! Weights are constant forces on the vectors, so that a part of them is a part of these forces. A stiffness σ on every
+//! coordinate may be added to the tangent, which makes any state's tangent that of a minimum.
+
+use crate::coordinates::{Configuration, Interval, Scratch};
+use crate::dynamics::error::EquilibriumError;
+use crate::dynamics::tangent::{EntryList, Tangent};
+use crate::functional::Order;
+use crate::ipopt::interrupt;
+use crate::math::Vector;
+use crate::model::Model;
+use crate::sparse::{Singular, Symmetry};
+
+/// Limit of Newton iterations for one load.
+pub(super) const ITERATIONS: usize = 30;
+/// Convergence of the Newton update, relative to angles of one radian and the length of the system.
+const UPDATE: f64 = 1e-11;
+
+/// An update longer than this leaves the region in which the tangent says anything.
+const LONG: f64 = 0.5;
+
+/// A state of rest: the unknowns of a step (see [`Variables`](crate::model::Variables)).
+pub(super) type RestState = Vec<f64>;
+
+/// Range of the updates of Newton's method.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) enum UpdateRange {
+    /// Start from anywhere: long updates are shortened.
+    Far,
+    /// Start at a neighbour on a path: a long update is a failure, for it may end on another path.
+    Near,
+}
+
+/// Outcome of Newton's method.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) enum NewtonOutcome {
+    Converged,
+    Failed,
+}
+
+/// Rows and tangent of rest.
+#[derive(Debug)]
+pub(super) struct Statics<'m> {
+    pub(super) model: &'m Model,
+    pub(super) a: Configuration,
+    b: Configuration,
+    pub(super) scratch: Scratch,
+    pub(super) values: Vec<f64>,
+    pub(super) scalars: Vec<f64>,
+    /// Weights on the vectors.
+    gravity: Vec<Vector>,
+    /// Part of the weights that acts.
+    pub(super) weight: f64,
+    /// First place of the added stiffness in the values: one a coordinate, one a scalar with an equation.
+    pub(super) added: usize,
+    pub(super) tangent: Tangent,
+    /// The own block of the scalars with an equation.
+    pub(super) electric: Option<Tangent>,
+    /// Rows, then the Newton update.
+    pub(super) residual: Vec<f64>,
+    pub(super) scales: Vec<f64>,
+    pub(super) iterations: usize,
+}
+
+impl<'m> Statics<'m> {
+    pub(super) fn new(model: &'m Model) -> Self {
+        let map = &model.action.map;
+        let layout = model.action.layout();
+        let (n, m) = (map.coordinates, map.unknowns());
+        let mut entries = EntryList::default();
+        for (slot, entry) in layout.same.entries().enumerate() {
+            entries.add(layout.same_at(0) + slot, entry);
+            entries.add_to(layout.same_at(1) + slot, slot);
+        }
+        for (slot, (row, col)) in layout.cross.entries().enumerate() {
+            let same = layout.same.find(row, col);
+            let same = same.expect("what couples neighbouring instants couples within one");
+            entries.add_to(layout.lower_at(0) + slot, same);
+            entries.add_to(layout.upper_at(0) + slot, same);
+        }
+        entries.add_scalars(model, &[[0, 0], [1, 1]]);
+        let (size, algebraic) = (model.variables.unknown_count(), model.variables.algebraic());
+        let added = layout.values(1);
+        for (place, i) in (0..n).chain(m..size).enumerate() {
+            entries.add(added + place, (i, i));
+        }
+        let electric = (!algebraic.is_empty()).then(|| {
+            let mut entries = EntryList::default();
+            entries.add_scalars(model, &[]);
+            entries.tangent_from(m, algebraic.len(), Symmetry::Symmetric, None)
+        });
+        Self {
+            model,
+            a: map.instant(),
+            b: map.instant(),
+            scratch: model.action.scratch(Order::Hessian),
+            values: vec![0.0; added + n + (size - m)],
+            scalars: vec![0.0; layout.interval_scalars],
+            gravity: weights(model),
+            weight: 1.0,
+            added,
+            tangent: entries.tangent(size, Symmetry::Symmetric, None),
+            electric,
+            residual: vec![0.0; size],
+            scales: model.sizes(),
+            iterations: 0,
+        }
+    }
+
+    /// The state at a configuration, potentials being zero.
+    pub(super) fn state_without_field(&mut self, z: &[f64]) -> RestState {
+        let scalars = vec![0.0; self.model.variables.algebraic().len()];
+        self.state(z, &scalars)
+    }
+
+    /// The state at a configuration with scalars that have an equation; all states are meant with the charts of the configuration
+    /// taken last.
+    pub(super) fn state(&mut self, z: &[f64], scalars: &[f64]) -> RestState {
+        let (unknowns, charts) = z.split_at(self.model.action.map.unknowns());
+        for instant in [&mut self.a, &mut self.b] {
+            instant.z[unknowns.len()..].copy_from_slice(charts);
+        }
+        [unknowns, scalars].concat()
+    }
+
+    /// Coordinates, multipliers and charts of a state.
+    pub(super) fn configuration(&self, state: &[f64]) -> Vec<f64> {
+        let m = self.model.action.map.unknowns();
+        [&state[..m], &self.a.z[m..]].concat()
+    }
+
+    /// The state with charts where its bodies are.
+    pub(super) fn recentred(&mut self, state: &[f64]) -> RestState {
+        let map = &self.model.action.map;
+        let (m, z) = (map.unknowns(), self.configuration(state));
+        let mut instant = map.placed(&z);
+        match map.recentre(&mut instant) {
+            true => self.state(&instant.z, &state[m..]),
+            false => state.to_vec(),
+        }
+    }
+
+    /// Rows and second derivatives at a state under voltages.
+    pub(super) fn evaluate(&mut self, state: &[f64], voltages: &[f64]) {
+        let action = &self.model.action;
+        let m = action.map.unknowns();
+        let variables = &self.model.variables;
+        let Self {
+            a,
+            b,
+            scratch,
+            values,
+            scalars,
+            residual,
+            gravity,
+            weight,
+            ..
+        } = self;
+        scalars[variables.inputs()].copy_from_slice(voltages);
+        scalars[variables.algebraic()].copy_from_slice(&state[m..]);
+        values.fill(0.0);
+        for instant in [&mut *a, &mut *b] {
+            instant.z[..m].copy_from_slice(&state[..m]);
+            action.map.place(instant);
+            instant.forces.fill(Vector::zeros());
+        }
+        let interval = Interval::given(scalars, self.model.multiplier_time);
+        action.evaluate_potential([a, b], &interval, scratch);
+        action.pull_back_interval(Order::Hessian, [a, b], &interval, 0, scratch, values);
+        for (force, other) in a.forces.iter_mut().zip(&b.forces) {
+            *force += other;
+        }
+        if *weight != 1.0 {
+            for (force, all) in a.forces.iter_mut().zip(gravity) {
+                *force += (*weight - 1.0) * *all;
+            }
+        }
+        action.evaluate_instant(Order::Hessian, a, &[], scratch);
+        action.pull_back_instant(Order::Hessian, a, 0, scratch, values);
+        residual.fill(0.0);
+        action.rows(a, scratch, &mut residual[..m]);
+        let rows = &scratch.interval.plain.rows[variables.algebraic()];
+        residual[m..].copy_from_slice(rows);
+    }
+
+    /// Factorises the tangent of the state evaluated last.
+    pub(super) fn factor(&mut self) -> Result<(), Singular> {
+        self.tangent.factor(&self.values)
+    }
+
+    /// Factorises the tangent of the state evaluated last with a stiffness σ in N mm for each rad, and each length of the
+    /// system.
+    pub(super) fn factor_with(&mut self, sigma: f64) -> Result<(), Singular> {
+        let n = self.model.action.map.coordinates;
+        let h = self.model.multiplier_time;
+        for (value, scale) in self.values[self.added..].iter_mut().zip(&self.scales[..n]) {
+            *value = -h * sigma / (scale * scale);
+        }
+        let outcome = self.tangent.factor(&self.values);
+        self.values[self.added..].fill(0.0);
+        outcome
+    }
+
+    /// Solves with the last factorisation, in place.
+    pub(super) fn solve(&mut self, rhs: &mut [f64]) {
+        self.tangent.solve(rhs);
+    }
+
+    /// Largest stiffness on the diagonal, in N mm for each rad or length of the system; 1 where there is none.
+    pub(super) fn largest_stiffness(&self) -> f64 {
+        let mut diagonal = vec![0.0; self.scales().len()];
+        for ((i, j), value) in self.stiffness() {
+            if i == j {
+                diagonal[i] += value;
+            }
+        }
+        let scaled = diagonal.iter().zip(self.scales());
+        let largest = scaled.fold(0.0, |m, (k, s)| f64::max(m, (k * s * s).abs()));
+        if largest > 0.0 { largest } else { 1.0 }
+    }
+
+    /// Stiffness of the state evaluated last along a direction of the coordinates, potentials being held.
+    pub(super) fn stiffness_along(&self, direction: &[f64]) -> f64 {
+        let products = self.stiffness();
+        products
+            .map(|((i, j), value)| value * direction[i] * direction[j])
+            .sum()
+    }
+
+    /// Summands of the stiffness of the state evaluated last, by coordinates: those of each block between both instants.
+    fn stiffness(&self) -> impl Iterator<Item = ((usize, usize), f64)> + '_ {
+        let layout = self.model.action.layout();
+        let (n, h) = (self.scales().len(), self.model.multiplier_time);
+        let same = layout.same.entries().enumerate();
+        let same = same.flat_map(|(slot, entry)| {
+            [layout.same_at(0), layout.same_at(1)].map(|first| (entry, first + slot))
+        });
+        let cross = layout.cross.entries().enumerate();
+        let cross = cross.flat_map(|(slot, entry)| {
+            [layout.lower_at(0), layout.upper_at(0)].map(|first| (entry, first + slot))
+        });
+        let is_stiffness = move |((i, j), _): &((usize, usize), usize)| *i < n && *j < n;
+        same.chain(cross)
+            .filter(is_stiffness)
+            .map(move |(entry, place)| (entry, -self.values[place] / h))
+    }
+
+    /// Returns true if anything has a weight.
+    pub(super) fn has_weight(&self) -> bool {
+        self.gravity.iter().any(|force| *force != Vector::zeros())
+    }
+
+    /// Adds the derivative of the rows by the part of the weights that acts, at the state evaluated last.
+    pub(super) fn add_weight(&self, rows: &mut [f64]) {
+        let map = &self.model.action.map;
+        let rows = &mut rows[..map.coordinates];
+        map.pull_back(&self.a.columns, &self.gravity, rows);
+    }
+
+    /// Adds the derivative of the rows along a change of the voltages, at the state evaluated last.
+    pub(super) fn add_load(&self, change: &[f64], rows: &mut [f64]) {
+        let layout = self.model.action.layout();
+        let variables = &self.model.variables;
+        let change = &variables.scalars(change);
+        for side in 0..2 {
+            for (slot, (i, s)) in layout.mixed.entries().enumerate() {
+                if variables.place(s).is_none() {
+                    rows[i] += self.values[layout.mixed_at(0, side) + slot] * change[s];
+                }
+            }
+        }
+        for (slot, (s, t)) in layout.scalars.entries().enumerate() {
+            if let (Some(row), None) = (variables.place(s), variables.place(t)) {
+                rows[row] += self.values[layout.scalars_at(0) + slot] * change[t];
+            }
+        }
+    }
+
+    /// Size of an update, relative to angles of one radian and the length of the system.
+    pub(super) fn size(&self, update: &[f64]) -> f64 {
+        let relative = |(u, s): (&f64, &f64)| (u / s).abs();
+        let worst = |a: f64, b: f64| if b.is_nan() { b } else { a.max(b) };
+        update
+            .iter()
+            .zip(&self.scales)
+            .map(relative)
+            .fold(0.0, worst)
+    }
+
+    /// Newton at one load.
+    pub(super) fn newton(
+        &mut self,
+        state: &mut RestState,
+        voltages: &[f64],
+        reach: UpdateRange,
+    ) -> Result<NewtonOutcome, EquilibriumError> {
+        let mut last = f64::INFINITY;
+        for _ in 0..ITERATIONS {
+            if let Some(status) = interrupt::stop() {
+                return Err(EquilibriumError::Stopped(status));
+            }
+            self.iterations += 1;
+            self.evaluate(state, voltages);
+            if self.residual.iter().any(|r| !r.is_finite()) {
+                return Ok(NewtonOutcome::Failed);
+            }
+            if let Err(singular) = self.factor() {
+                return Err(EquilibriumError::Singular {
+                    name: self.model.variables.unknown(singular.column).to_string(),
+                    redundant: self.model.redundant_constraints(&self.configuration(state)),
+                });
+            }
+            let mut update = std::mem::take(&mut self.residual);
+            self.solve(&mut update);
+            let size = self.size(&update);
+            if size.is_nan() || (size > LONG && reach == UpdateRange::Near) {
+                self.residual = update;
+                return Ok(NewtonOutcome::Failed);
+            }
+            let damping = if size > LONG { LONG / size } else { 1.0 };
+            for (value, update) in state.iter_mut().zip(&update) {
+                *value -= damping * update;
+            }
+            self.residual = update;
+            if size < UPDATE || (size < 1e-8 && size >= 0.5 * last) {
+                return Ok(NewtonOutcome::Converged);
+            }
+            last = size;
+        }
+        Ok(NewtonOutcome::Failed)
+    }
+
+    /// Number of directions in which the potential energy of the state evaluated and factorised last falls, potentials
+    /// following; `None` where the factorisation does not give them.
+    ///
+    /// The tangent is −h S with S the saddle of coordinates, multipliers and potentials: each multiplier has one negative
+    /// eigenvalue of S, potentials have those of their own block, what remains belongs to the coordinates.
+    pub(super) fn unstable(&mut self) -> Option<usize> {
+        let positive = self.tangent.negative_pivots()?;
+        let negative = self.residual.len() - positive;
+        let electric = match &mut self.electric {
+            Some(tangent) => {
+                tangent.factor(&self.values).ok()?;
+                let scalars = self.residual.len() - self.model.action.map.unknowns();
+                scalars - tangent.negative_pivots()?
+            }
+            None => 0,
+        };
+        negative.checked_sub(self.model.action.map.multipliers + electric)
+    }
+
+    /// Scales of coordinates: 1 rad, and the length of the system.
+    pub(super) fn scales(&self) -> &[f64] {
+        &self.scales[..self.model.action.map.coordinates]
+    }
+
+    /// Weights of the squares of a state's entries in the length of a path.
+    pub(super) fn weights(&self) -> Vec<f64> {
+        let count = self.scales.len() as f64;
+        let weight = |scale: &f64| 1.0 / (scale * scale * count);
+        self.scales.iter().map(weight).collect()
+    }
+
+    /// Entries of the tangent factorised last.
+    pub(super) fn entries(&self) -> impl Iterator<Item = ((usize, usize), f64)> + '_ {
+        self.tangent.entries()
+    }
+}
+
+/// Weights on the vectors over the time of the multipliers, as rows of rest read them.
+fn weights(model: &Model) -> Vec<Vector> {
+    let map = &model.action.map;
+    let instant = map.placed(&vec![0.0; map.unknowns()]);
+    let scalars = vec![0.0; model.action.layout().interval_scalars];
+    let interval = Interval::given(&scalars, model.multiplier_time);
+    let sample = interval.sample([&instant, &instant]);
+    let mut out = model.action.intervals.output(Order::Gradient);
+    let terms = model.action.intervals.terms();
+    for (load, slots) in terms.filter(|(term, _)| term.is_dead_load()) {
+        load.evaluate(Order::Gradient, &sample, slots, &mut out);
+    }
+    let [here, there] = &out.plain.forces;
+    here.iter().zip(there).map(|(a, b)| a + b).collect()
+}

@@ -1,0 +1,266 @@
+//! The equations of a step of every rule.
+
+use crate::coordinates::Configuration;
+use crate::dynamics::drive::Drive;
+use crate::dynamics::equations::Equations;
+use crate::dynamics::galerkin::lobatto::lagrange;
+use crate::dynamics::galerkin::rule::Rule;
+use crate::dynamics::galerkin::state::{GalerkinEquations, StagePoint, between};
+use crate::dynamics::momenta::vector_momenta;
+use crate::functional::{Order, TermKind};
+use crate::math::Vector;
+use crate::model::Model;
+use std::slice;
+
+impl Equations for GalerkinEquations<'_> {
+    fn begin(&mut self, step: [f64; 2], drive: &dyn Drive) {
+        let inputs = self.model.variables.inputs();
+        for sample in &mut self.samples {
+            let voltages = drive.at(step, sample.weights.part);
+            sample.scalars[inputs.clone()].copy_from_slice(&voltages);
+        }
+    }
+
+    /// The polynomial through the last points, carried on.
+    fn guess(&mut self, h: f64) {
+        let times: Vec<f64> = self.trail.iter().map(|(time, _)| *time).collect();
+        let points = self.rule.points();
+        let m = self.model.action.map.unknowns();
+        let (start, others) = self.points.split_at_mut(1);
+        for (point, at) in others.iter_mut().zip(points.into_iter().skip(1)) {
+            point.z[..m].fill(0.0);
+            point.z[m..].copy_from_slice(&start[0].z[m..]);
+            let weights = lagrange(&times, self.time + at * h);
+            for ((_, u), weight) in self.trail.iter().zip(weights) {
+                for (z, u) in point.z.iter_mut().zip(u) {
+                    *z += u * weight;
+                }
+            }
+        }
+        let algebraic = self.model.variables.algebraic();
+        self.saved.0.clone_from(&self.multipliers);
+        for (saved, sample) in self.saved.1.iter_mut().zip(&self.samples) {
+            saved.copy_from_slice(&sample.scalars[algebraic.clone()]);
+        }
+    }
+
+    fn evaluate(&mut self, order: Order, h: f64, residual: &mut [f64]) {
+        self.sample(order, h);
+        let model = self.model;
+        let action = &model.action;
+        let map = &action.map;
+        let (n, m) = (map.coordinates, map.unknowns());
+        residual.fill(0.0);
+        if order >= Order::Hessian {
+            self.values.fill(0.0);
+        }
+        let last = self.points.len() - 1;
+        for point in 0..=last {
+            self.forces(point);
+        }
+        self.add_carried(h);
+        for (i, multipliers) in self.multipliers.iter().enumerate() {
+            let at = self.rule.row(i + 1);
+            self.points[at].z[n..m].copy_from_slice(multipliers);
+        }
+        for at in 0..=last {
+            let instant = &mut self.points[at];
+            let values = &mut self.values[self.places.same(at)..];
+            action.evaluate_instant(order, instant, &[], &mut self.scratch);
+            action.pull_back_instant(order, instant, 0, &mut self.scratch, values);
+            if at > 0 {
+                let rows = &mut residual[(at - 1) * m + n..at * m];
+                rows.copy_from_slice(&self.scratch.instant.plain.rows);
+            }
+        }
+        for point in 1..=last {
+            let at = self.rule.row(point);
+            let rows = &mut residual[(point - 1) * m..(point - 1) * m + n];
+            if at == 0 {
+                rows.copy_from_slice(&self.momentum);
+            }
+            let instant = &self.points[at];
+            map.pull_back(&instant.columns, &instant.forces, rows);
+        }
+        let algebraic = model.variables.algebraic();
+        let of_samples = residual[last * m..].chunks_mut(algebraic.len().max(1));
+        for (rows, sample) in of_samples.zip(&self.samples) {
+            rows.copy_from_slice(&sample.out.plain.rows[algebraic.clone()]);
+        }
+        if order >= Order::Hessian {
+            self.tangent_of_points(h);
+            if !algebraic.is_empty() {
+                self.tangent_of_scalars();
+            }
+        }
+    }
+
+    fn values(&self) -> &[f64] {
+        &self.values
+    }
+
+    fn update(&mut self, update: &[f64]) {
+        let map = &self.model.action.map;
+        let (n, m) = (map.coordinates, map.unknowns());
+        let points = self.points[1..].iter_mut().zip(&mut self.multipliers);
+        for ((point, multipliers), update) in points.zip(update.chunks(m.max(1))) {
+            for (z, update) in point.z[..n].iter_mut().zip(update) {
+                *z -= update;
+            }
+            for (multiplier, update) in multipliers.iter_mut().zip(&update[n..]) {
+                *multiplier -= update;
+            }
+        }
+        let algebraic = self.model.variables.algebraic();
+        let updates = update[(self.points.len() - 1) * m..].chunks(algebraic.len().max(1));
+        for (sample, update) in self.samples.iter_mut().zip(updates) {
+            let scalars = &mut sample.scalars[algebraic.clone()];
+            for (scalar, update) in scalars.iter_mut().zip(update) {
+                *scalar -= update;
+            }
+        }
+    }
+
+    fn restore(&mut self) {
+        self.multipliers.clone_from(&self.saved.0);
+        let algebraic = self.model.variables.algebraic();
+        for (saved, sample) in self.saved.1.iter().zip(&mut self.samples) {
+            sample.scalars[algebraic.clone()].copy_from_slice(saved);
+        }
+    }
+
+    fn model(&self) -> &Model {
+        self.model
+    }
+
+    fn place_end(&mut self) {
+        if let Some(end) = self.points.last_mut() {
+            self.model.action.map.place(end);
+        }
+    }
+
+    fn ends(&self) -> [&Configuration; 2] {
+        [&self.points[0], &self.points[self.points.len() - 1]]
+    }
+
+    fn visit_state(&mut self, visit: &mut dyn FnMut(&'static str, &mut [f64])) {
+        visit("time", slice::from_mut(&mut self.time));
+        visit("z", &mut self.points[0].z);
+        visit("momentum", &mut self.momentum);
+        let mut count = [self.trail.len() as f64];
+        visit("points", &mut count);
+        self.resize_trail(count[0]);
+        for (time, u) in &mut self.trail {
+            visit("point time", slice::from_mut(time));
+            visit("point", u);
+        }
+        for multipliers in &mut self.multipliers {
+            visit("multipliers", multipliers);
+        }
+        for sample in &mut self.samples {
+            visit("scalars", &mut sample.scalars);
+        }
+        for carried in self.rule.carried() {
+            for vector in carried {
+                visit("carried", vector.as_mut_slice());
+            }
+        }
+    }
+
+    fn take_state(&mut self) {
+        self.model.action.map.place(&mut self.points[0]);
+    }
+
+    fn accept(&mut self, h: f64) -> bool {
+        self.sample(Order::Gradient, h);
+        let model = self.model;
+        let last = self.points.len() - 1;
+        let forces = self
+            .samples
+            .iter()
+            .flat_map(|s| &s.out.plain.forces)
+            .flatten();
+        if !forces.into_iter().all(|f| f.iter().all(|c| c.is_finite())) {
+            return false;
+        }
+        if self.dissipates {
+            let terms = model.action.intervals.terms.iter();
+            let forces: Vec<_> = terms
+                .filter(|e| e.kind() == TermKind::VirtualWork)
+                .collect();
+            let work = |point: &StagePoint| {
+                let [a, b] = &point.x;
+                let sample = between([a, b], &point.scalars, h);
+                let work: f64 = forces.iter().map(|e| e.energy(&sample)).sum();
+                work * point.weights.quadrature
+            };
+            self.work = Some(self.samples.iter().map(work).sum());
+        }
+        let momenta: Vec<Vector> = match &mut self.rule {
+            Rule::Galerkin(_) => {
+                self.forces(last);
+                self.points[last].forces.clone()
+            }
+            Rule::Euler(momenta) => {
+                let [a, b] = &self.samples[0].out.plain.forces;
+                for (momentum, (a, b)) in momenta.iter_mut().zip(a.iter().zip(b)) {
+                    *momentum = (b - a) * 0.5;
+                }
+                momenta.clone()
+            }
+            Rule::Alpha(alpha) => {
+                let [start, end] = [&self.points[0].x, &self.points[1].x];
+                alpha.accept(h, start, end);
+                vector_momenta(model, end, alpha.rates())
+            }
+        };
+        let map = &model.action.map;
+        self.remember(h);
+        if map.recentre(&mut self.points[last]) {
+            self.follow_charts();
+        }
+        self.momentum.fill(0.0);
+        map.pull_back(&self.points[last].columns, &momenta, &mut self.momentum);
+        if let Rule::Galerkin(_) = self.rule {
+            let (n, m) = (map.coordinates, map.unknowns());
+            let multipliers = &self.multipliers[last - 1];
+            self.points[last].z[n..m].copy_from_slice(multipliers);
+        }
+        self.points.swap(0, last);
+        self.time += h;
+        true
+    }
+
+    fn unknown_name(&self, unknown: usize) -> String {
+        let points = self.points.len() - 1;
+        let variables = &self.model.variables;
+        variables.unknown_of(points, unknown).to_string()
+    }
+
+    fn time(&self) -> f64 {
+        self.time
+    }
+
+    fn coordinates(&self) -> &[f64] {
+        &self.points[0].z
+    }
+
+    fn momentum(&self) -> &[f64] {
+        &self.momentum
+    }
+
+    fn scalars(&self) -> &[f64] {
+        &self.samples[self.samples.len() - 1].scalars
+    }
+
+    fn multipliers(&self) -> &[f64] {
+        match self.rule {
+            Rule::Galerkin(_) => &self.multipliers[0],
+            Rule::Euler(_) | Rule::Alpha(_) => &[],
+        }
+    }
+
+    fn work(&self) -> Option<f64> {
+        self.work
+    }
+}

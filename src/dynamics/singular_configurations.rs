@@ -1,0 +1,84 @@
+//! Singular configurations: lumped muscles of zero length, inverted elements. Steps must neither jump over such
+//! places nor end there.
+//!
+//! Forces are those at the middle of a step, which says nothing of its end: a span that turns by a right angle or more within
+//! a step may have passed through zero, and an element that is sound in the middle may be crushed.
+
+use crate::coordinates::{Configuration, Interval};
+use crate::dynamics::discrete_trajectory::DiscreteTrajectory;
+use crate::functional::TermKind;
+use crate::model::Model;
+use crate::model::system::Fidelity;
+
+/// Below this stretch a muscle is named where a step fails; pull-in of an ideal dielectric is at 0.63.
+const SHORT: f64 = 0.5;
+
+/// Stretch that counts as no length.
+pub(super) const NOTHING: f64 = 1e-9;
+
+/// The lumped muscles: index, and vector of the span.
+fn lumped(model: &Model) -> impl Iterator<Item = (usize, usize)> + '_ {
+    let muscles = model.system.muscles.iter().enumerate();
+    muscles
+        .filter(|(_, muscle)| muscle.fidelity == Fidelity::Lumped)
+        .map(|(m, _)| (m, model.spans[m]))
+}
+
+/// The first lumped muscle whose span turns by a right angle or more from one placed instant to another.
+pub(super) fn reversed(
+    model: &Model,
+    before: &Configuration,
+    after: &Configuration,
+) -> Option<usize> {
+    let turns = |span: usize| before.x[span].dot(&after.x[span]) <= 0.0;
+    lumped(model)
+        .find(|&(_, span)| turns(span))
+        .map(|(muscle, _)| muscle)
+}
+
+/// The shortest lumped muscle of a placed instant, if it is rather short: its index and its stretch.
+pub(super) fn shortest(model: &Model, at: &Configuration) -> Option<(usize, f64)> {
+    let stretch = |(m, span): (usize, usize)| {
+        let length = model.system.muscles[m].length();
+        (m, at.x[span].norm() / length)
+    };
+    let short = lumped(model).map(stretch).filter(|(_, s)| *s < SHORT);
+    short.min_by(|a, b| a.1.total_cmp(&b.1))
+}
+
+/// The first lumped muscle whose ends meet at coordinates.
+pub fn muscle_without_length(model: &Model, coordinates: &[f64]) -> Option<usize> {
+    let instant = model.action.map.placed(coordinates);
+    let (muscle, stretch) = shortest(model, &instant)?;
+    (stretch < NOTHING).then_some(muscle)
+}
+
+/// Returns true if an elastic block has no energy at a placed instant: an element is inverted.
+pub(super) fn is_inverted(model: &Model, at: &Configuration, scalars: &[f64]) -> bool {
+    if model.solids.is_empty() {
+        return false;
+    }
+    let interval = Interval::given(scalars, 1.0);
+    let sample = interval.sample([at, at]);
+    let mut terms = model.action.intervals.terms.iter();
+    terms.any(|e| e.kind() == TermKind::Potential && !e.energy(&sample).is_finite())
+}
+
+/// The first interval of a motion in which the span of a lumped muscle turns by a right angle or more, and the muscle.
+pub fn reversed_muscle(model: &Model, discrete: &DiscreteTrajectory) -> Option<(usize, usize)> {
+    let map = &model.action.map;
+    let mut pairs = discrete.z.windows(2).enumerate();
+    pairs.find_map(|(k, ends)| {
+        let muscle = reversed(model, &map.placed(&ends[0]), &map.placed(&ends[1]))?;
+        Some((k, muscle))
+    })
+}
+
+/// The greatest voltage in V, where forces without a value are laid to numbers and not to an inverted element: there is none, or the square of
+/// the voltage is not finite.
+pub(super) fn overflow(model: &Model, scalars: &[f64]) -> Option<f64> {
+    let voltages = scalars.get(model.variables.inputs()).unwrap_or_default();
+    let greatest = voltages.iter().fold(0.0_f64, |most, v| most.max(v.abs()));
+    let is_beyond = !greatest.powi(2).is_finite();
+    (model.solids.is_empty() || is_beyond).then_some(greatest)
+}

@@ -1,0 +1,153 @@
+//! Record of a solved variant in its folder: `variant.json`, written last, and the numbers of its results.
+
+use std::fs;
+use std::path::Path;
+
+use csv::ReaderBuilder;
+use serde::{Deserialize, Serialize};
+use serde_json::{Map, Value};
+
+use crate::app::{
+    CommandError, FileRecords, Found, OF_VARIANT, RunEnd, Said, is_unfinished, make_folder,
+};
+use crate::files::lay_out;
+use crate::report::atomic::{self, WriteError};
+use crate::sweep::read::Variant;
+
+/// Begins the headings of numbers at the end of a motion, or at rest.
+pub(super) const END: &str = "end: ";
+/// Record of a variant.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub(super) struct VariantRecord {
+    /// Overrides.
+    pub(super) set: Vec<String>,
+    pub(super) identity: String,
+    /// The word of its summary; `refused` where the input is wrong, `failed` where it broke off.
+    pub(super) status: String,
+    /// True if its question has an answer.
+    pub(super) is_solved: bool,
+    /// Message where it left no summary.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub(super) message: Option<String>,
+    /// Wall time in s.
+    pub(super) seconds: f64,
+    /// Numbers of its results, by the heading of their column.
+    pub(super) numbers: Map<String, Value>,
+    /// The files of its folder as they were written.
+    #[serde(default)]
+    files: FileRecords,
+}
+
+#[derive(Deserialize)]
+struct Summary {
+    status: String,
+    #[serde(default)]
+    objective: Option<f64>,
+    #[serde(default)]
+    iterations: Option<usize>,
+}
+
+impl VariantRecord {
+    /// Makes the record of a variant that ended with this; the files of its solve are in `folder`.
+    pub(super) fn from_end(variant: &Variant, end: &RunEnd, folder: &Path) -> Self {
+        let (word, message) = match &end.said {
+            Said::NotStarted => ("not_started", None),
+            Said::Solved => ("solved", None),
+            Said::Unsolved(message) => ("failed", Some(message)),
+            Said::Failed(message) => ("failed", Some(message)),
+            Said::Refused(message) => ("refused", Some(message)),
+        };
+        let mut kept = Self {
+            set: variant.set.clone(),
+            identity: variant.identity.as_str().to_owned(),
+            status: word.to_owned(),
+            is_solved: end.said == Said::Solved,
+            message: message.filter(|text| !text.is_empty()).cloned(),
+            seconds: end.seconds,
+            numbers: Map::new(),
+            files: FileRecords::default(),
+        };
+        if matches!(end.said, Said::Solved | Said::Unsolved(_)) {
+            kept.read_results(folder);
+        }
+        kept
+    }
+
+    /// A variant whose problem is refused.
+    pub(super) fn refused(variant: &Variant, message: &str) -> Self {
+        let said = Said::Refused(message.to_owned());
+        let end = RunEnd { said, seconds: 0.0 };
+        Self::from_end(variant, &end, Path::new(""))
+    }
+
+    /// Returns the record in the folder of a variant, if nothing is left to do for it.
+    pub(super) fn found(variant: &Variant, folder: &Path) -> Found<Self> {
+        let Ok(text) = fs::read_to_string(folder.join(OF_VARIANT)) else {
+            return Found::Nothing;
+        };
+        let Ok(kept) = serde_json::from_str::<Self>(&text) else {
+            return Found::Deviates(format!("{OF_VARIANT} is not as it was written"));
+        };
+        if kept.identity != variant.identity.as_str() || kept.is_unfinished() {
+            return Found::Nothing;
+        }
+        match kept.files.deviation(folder) {
+            Some(words) => Found::Deviates(words),
+            None => Found::Whole(kept),
+        }
+    }
+
+    /// Returns true if another attempt may end otherwise.
+    pub(super) fn is_unfinished(&self) -> bool {
+        is_unfinished(&self.status)
+    }
+
+    /// Writes it into the folder of the variant, with the hashes of the files there.
+    pub(super) fn write(&mut self, folder: &Path) -> Result<(), CommandError> {
+        make_folder(folder)?;
+        let path = folder.join(OF_VARIANT);
+        self.files = FileRecords::from_folder(folder).map_err(|cause| WriteError {
+            path: path.clone(),
+            cause,
+        })?;
+        let text = serde_json::to_string(self).expect("words and numbers are JSON");
+        Ok(atomic::write(&path, lay_out(&text).as_bytes())?)
+    }
+
+    fn read_results(&mut self, folder: &Path) {
+        let summary = fs::read_to_string(folder.join("summary.json")).ok();
+        let Some(summary) = summary.and_then(|text| serde_json::from_str::<Summary>(&text).ok())
+        else {
+            return;
+        };
+        self.status = summary.status;
+        self.message = None;
+        let objective = summary.objective.map(Value::from);
+        let iterations = summary.iterations.map(Value::from);
+        let own = [("objective", objective), ("iterations", iterations)];
+        let own = own.into_iter();
+        let own = own.filter_map(|(name, value)| Some((name.to_owned(), value?)));
+        self.numbers.extend(own);
+        for table in ["trajectory.csv", "equilibrium.csv"] {
+            self.numbers.extend(last_row(&folder.join(table)));
+        }
+    }
+}
+
+/// The numbers of the last row of a table, by their headings.
+fn last_row(table: &Path) -> Vec<(String, Value)> {
+    let reader = ReaderBuilder::new().comment(Some(b'#')).from_path(table);
+    let Ok(mut reader) = reader else {
+        return Vec::new();
+    };
+    let headers = reader.headers().cloned().unwrap_or_default();
+    let Some(Ok(last)) = reader.records().last() else {
+        return Vec::new();
+    };
+    let pairs = headers.iter().zip(last.iter());
+    let numbers = pairs.filter_map(|(name, cell)| {
+        let number: f64 = cell.parse().ok()?;
+        Some((format!("{END}{name}"), Value::from(number)))
+    });
+    numbers.collect()
+}
