@@ -146,6 +146,16 @@ class Layer(TypedDict):
     """Thickness, SI unit m."""
 
 
+class Maxwell(TypedDict):
+    """A Maxwell branch."""
+
+    relaxation_time: Quantity
+    """Relaxation time τ in which small stresses fall to 1/e, SI unit s."""
+
+    shear_modulus: Quantity
+    """Shear modulus μ₁ of its spring, SI unit Pa."""
+
+
 MuscleModel: TypeAlias = "Literal['lumped', 'finite_elements']"
 """Model of a muscle."""
 

@@ -29,6 +29,7 @@ class Material(Part):
     * `density`: Density, SI unit kg/m³; without it muscles are massless.
     * `dielectric`: Law by which `relative_permittivity` enters the energy; `first_order` where not written.
     * `lame_lambda`: First Lamé constant λ, SI unit Pa; or give `poisson_ratio`. Finite elements need one of them.
+    * `maxwell`: Maxwell branches, five at most: springs in series with dampers, in which stress relaxes. Lumped muscles read them.
     * `poisson_ratio`: Poisson's ratio, between −1 and 0.5; or give `lame_lambda`.
     * `relative_permittivity`: Relative permittivity, 1 or more; or give `c1` and `c2`; without either the material has no electric term.
     * `viscosity`: Viscosity η in σ = η d, SI unit Pa s; without it no viscous force.
@@ -46,6 +47,7 @@ class Material(Part):
         density: Quantity | None = None,
         dielectric: entries.Dielectric | None = None,
         lame_lambda: Quantity | None = None,
+        maxwell: Sequence[entries.Maxwell] | None = None,
         poisson_ratio: float | None = None,
         relative_permittivity: float | None = None,
         viscosity: Quantity | None = None,
@@ -59,6 +61,7 @@ class Material(Part):
                 "density": density,
                 "dielectric": dielectric,
                 "lame_lambda": lame_lambda,
+                "maxwell": maxwell,
                 "poisson_ratio": poisson_ratio,
                 "relative_permittivity": relative_permittivity,
                 "viscosity": viscosity,
@@ -118,8 +121,12 @@ class Joint(Part):
     * `locked`: True if the joint is locked as it stands in the reference configuration: it is then `fixed`, and the bodies that it connects are
       one body.
     * `prismatic`: Translation along an axis.
+    * `rest_angle`: Angle of a revolute joint at which its spring exerts no torque, SI unit rad; 0 where absent: the reference configuration. It
+      counts whole turns.
+    * `rest_displacement`: Displacement of a prismatic joint at which its spring exerts no force, SI unit m; 0 where absent.
     * `revolute`: Rotation about an axis.
     * `spherical`: Rotation about a point.
+    * `stiffness`: Stiffness of a spring of the joint coordinate, SI unit N m/rad (revolute) or N/m (prismatic).
     """
 
     kind, noun = "joints", "joint"
@@ -136,8 +143,11 @@ class Joint(Part):
         floating: entries.Nothing | None = None,
         locked: bool | None = None,
         prismatic: entries.Axis | None = None,
+        rest_angle: Quantity | None = None,
+        rest_displacement: Quantity | None = None,
         revolute: entries.Axis | None = None,
         spherical: entries.Nothing | None = None,
+        stiffness: Quantity | None = None,
     ) -> None:
         super().__init__(
             name,
@@ -150,8 +160,11 @@ class Joint(Part):
                 "floating": floating,
                 "locked": locked,
                 "prismatic": prismatic,
+                "rest_angle": rest_angle,
+                "rest_displacement": rest_displacement,
                 "revolute": revolute,
                 "spherical": spherical,
+                "stiffness": stiffness,
             },
         )
 
