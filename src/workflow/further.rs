@@ -9,7 +9,7 @@ use crate::ipopt::{SolverResult, Status, interrupt};
 use crate::model::System;
 use crate::workflow::attempt::attempt;
 use crate::workflow::iterate::Iterate;
-use crate::workflow::optimum::{Optimum, SolveLimits};
+use crate::workflow::optimum::{Optimum, SolveLimits, seconds_left};
 
 /// Iterations of the second start; an optimum is found from it soon or not at all.
 pub(crate) const ITERATIONS: usize = 100;
@@ -60,8 +60,7 @@ pub(crate) struct Further<'a> {
 impl Further<'_> {
     /// Seconds that are left, where they are limited.
     fn seconds(&self) -> Option<f64> {
-        let spent = self.began.elapsed().as_secs_f64();
-        self.allowed.seconds.map(|s| (s - spent).max(0.0))
+        seconds_left(self.allowed.seconds, self.began)
     }
 
     /// Returns true if nothing more may be begun.

@@ -14,7 +14,7 @@ use crate::workflow::integrate::{Simulated, grid, integrate};
 use crate::workflow::iterate::Iterate;
 use crate::workflow::motion;
 use crate::workflow::optimise::optimise;
-use crate::workflow::optimum::{Optimum, SolveLimits};
+use crate::workflow::optimum::{Optimum, SolveLimits, seconds_left};
 
 /// The solver's tolerance as a part of the accuracy asked for, where the problem names no smaller one.
 const SOLVER: f64 = 1e-2;
@@ -37,11 +37,7 @@ pub fn optimise_to(
     observer: &mut dyn FnMut(usize, &Iterate<'_>) -> ControlFlow<()>,
 ) -> Result<Refined<Optimum>, WorkflowError> {
     let began = Instant::now();
-    let left = || {
-        allowed
-            .seconds
-            .map(|s| (s - began.elapsed().as_secs_f64()).max(0.0))
-    };
+    let left = || seconds_left(allowed.seconds, began);
     refine(
         wanted,
         OF_CONTROL,

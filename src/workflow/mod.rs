@@ -3,7 +3,7 @@
 //! - `integrate`, `optimise`: a simulation, a control problem, with its result, the `optimum`; each `attempt` from one start, `prepare`d, by one of its `solves` or more; `error`: errors of tasks; `phase`: the present
 //!   phase of work; `remark`, `solve_remarks`: warnings and notes.
 //! - `grids`, `accuracy`, `estimate`: as finely as an accuracy needs.
-//! - `resimulate`: verification of an optimum, by the `distance` of motions; `refine_until_reproduced`: finer grids where it fails; `gap`: duality gap of its
+//! - `resimulate`: verification of an optimum, by the `distance` of motions; `refine_until_reproduced`, `verified`: finer grids where it fails, by `grid_solves`; `gap`: duality gap of its
 //!  objective; `held`, `hold_check`, `afterwards`: its end; `final_values`: deviations from final costs.
 //! - `recentre`: a motion with other charts.
 //! - `further`, `retry_displaced`, `shortest`, `combined`, `infeasible`, `active`, `violations`: attempts before a problem is called infeasible, and the explanation.
@@ -27,6 +27,7 @@ pub mod estimate;
 pub(crate) mod final_values;
 pub(crate) mod further;
 pub(crate) mod gap;
+mod grid_solves;
 pub(crate) mod grids;
 pub(crate) mod held;
 pub(crate) mod hold_check;

@@ -10,7 +10,7 @@ use crate::workflow::attempt::attempt;
 use crate::workflow::error::WorkflowError;
 use crate::workflow::further::is_unreached;
 use crate::workflow::iterate::Iterate;
-use crate::workflow::optimum::{Optimum, SolveLimits};
+use crate::workflow::optimum::{Optimum, SolveLimits, seconds_left};
 use crate::workflow::retry_displaced::second_starts;
 
 /// Solves a control problem, from an `earlier` solution where one is given; from its guess, and from others where that leads nowhere;
@@ -30,9 +30,8 @@ pub fn optimise(
     if !is_unreached(&first.solution) {
         return Ok(first);
     }
-    let spent = began.elapsed().as_secs_f64();
     let left = SolveLimits {
-        seconds: allowed.seconds.map(|limit| (limit - spent).max(0.0)),
+        seconds: seconds_left(allowed.seconds, began),
         ..allowed
     };
     Ok(second_starts(

@@ -9,6 +9,7 @@ use crate::workflow::afterwards::{Afterwards, afterwards};
 use crate::workflow::cause::Cause;
 use crate::workflow::resimulate::Resimulation;
 use crate::workflow::violations::Violation;
+use std::time::Instant;
 
 /// Limits of a solve, in place of those of its problem.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
@@ -17,6 +18,12 @@ pub struct SolveLimits {
     pub iterations: Option<usize>,
     /// Seconds, set-up included.
     pub seconds: Option<f64>,
+}
+
+/// Seconds that are left of those allowed since an instant, where they are limited.
+pub(crate) fn seconds_left(allowed: Option<f64>, began: Instant) -> Option<f64> {
+    let spent = began.elapsed().as_secs_f64();
+    allowed.map(|limit| (limit - spent).max(0.0))
 }
 
 /// A control problem and how its solve ended.

@@ -1,20 +1,16 @@
 //! Refinement of an optimum that its own voltages do not reproduce: it is solved again on finer grids until they do.
 
 use std::ops::ControlFlow;
-use std::time::Instant;
 
 use crate::control::problem::Control;
-use crate::ipopt::interrupt;
 use crate::model::System;
 use crate::workflow::error::WorkflowError;
+use crate::workflow::grid_solves::{GridSolves, VARIABLES};
 use crate::workflow::iterate::Iterate;
-use crate::workflow::optimise::optimise;
 use crate::workflow::optimum::{Optimum, SolveLimits};
 
 /// Multiples of the intervals of the problem that are tried.
 const TIMES: [usize; 3] = [2, 4, 8];
-/// No grid has more variables than this.
-const VARIABLES: usize = 2_000_000;
 
 /// An optimum and the way to it.
 #[derive(Debug)]
@@ -38,32 +34,12 @@ pub(crate) fn reproduced(
     allowed: SolveLimits,
     observer: &mut dyn FnMut(usize, &Iterate<'_>) -> ControlFlow<()>,
 ) -> Result<RefinedOptimum, WorkflowError> {
-    let began = Instant::now();
-    let left = || {
-        let spent = began.elapsed().as_secs_f64();
-        allowed.seconds.map(|s| (s - spent).max(0.0))
-    };
-    let mut solve = |intervals: usize, earlier: Option<&Optimum>| {
-        let control = Control {
-            intervals,
-            ..control.clone()
-        };
-        let limits = SolveLimits {
-            seconds: left(),
-            ..allowed
-        };
-        let earlier = earlier.map(|optimum| &optimum.motion);
-        let found = optimise(system, &control, earlier, limits, &mut |iterate| {
-            observer(intervals, iterate)
-        })?;
-        let iterations = found.solution.iterations.len().saturating_sub(1);
-        Ok::<_, WorkflowError>((found, iterations))
-    };
-    let (optimum, mut iterations) = solve(control.intervals, None)?;
+    let mut solves = GridSolves::new(system, control, allowed, observer);
+    let optimum = solves.solve(control.intervals, None)?;
     let Some(cause) = optimum.cause() else {
         return Ok(RefinedOptimum {
             optimum,
-            iterations,
+            iterations: solves.iterations,
             note: None,
         });
     };
@@ -73,21 +49,19 @@ pub(crate) fn reproduced(
     'grids: for times in TIMES {
         let intervals = control.intervals * times;
         for from_before in [true, false] {
-            let is_over = interrupt::requested() || left().is_some_and(|s| s <= 0.0);
-            if is_over || times * optimum.solution.x.len() > VARIABLES {
+            if solves.is_over() || times * optimum.solution.x.len() > VARIABLES {
                 break 'grids;
             }
             let earlier = from_before.then(|| before.as_ref().unwrap_or(&optimum));
-            let Ok((mut found, more)) = solve(intervals, earlier) else {
+            let Ok(mut found) = solves.solve(intervals, earlier) else {
                 break 'grids;
             };
             finest = Some(intervals);
-            iterations += more;
             if found.is_solved() {
                 found.carried = optimum.carried;
                 return Ok(RefinedOptimum {
                     optimum: found,
-                    iterations,
+                    iterations: solves.iterations,
                     note: Some(format!(
                         "{of_problem}; solved again on {intervals} intervals; this optimum is reproduced by its voltages"
                     )),
@@ -105,7 +79,7 @@ pub(crate) fn reproduced(
     });
     Ok(RefinedOptimum {
         optimum,
-        iterations,
+        iterations: solves.iterations,
         note,
     })
 }

@@ -14,6 +14,7 @@ use crate::workflow::error::WorkflowError;
 use crate::workflow::gap;
 use crate::workflow::iterate::Iterate;
 use crate::workflow::motion::solved;
+use crate::workflow::optimum::seconds_left;
 use crate::workflow::phase::phase;
 use crate::workflow::recentre::recentred;
 
@@ -130,7 +131,6 @@ impl Solves<'_, '_> {
 
     /// Seconds that are left.
     fn left(&self) -> Option<f64> {
-        let spent = self.began.elapsed().as_secs_f64();
-        self.seconds.map(|limit| (limit - spent).max(0.0))
+        seconds_left(self.seconds, self.began)
     }
 }

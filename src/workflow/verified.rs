@@ -4,14 +4,13 @@
 //! about N √(e/ε), and begins at the optimum before.
 
 use std::ops::ControlFlow;
-use std::time::Instant;
 
 use crate::control::problem::Control;
 use crate::ipopt::interrupt;
 use crate::model::System;
 use crate::workflow::error::WorkflowError;
+use crate::workflow::grid_solves::{GridSolves, VARIABLES};
 use crate::workflow::iterate::Iterate;
-use crate::workflow::optimise::optimise;
 use crate::workflow::optimum::{Optimum, SolveLimits};
 use crate::workflow::refine_until_reproduced::RefinedOptimum;
 
@@ -24,8 +23,6 @@ const FACTORS: [f64; 2] = [1.25, 4.0];
 const UNKNOWN: f64 = 2.0;
 /// Limit of grids.
 const GRIDS: usize = 7;
-/// No grid has more variables than this.
-const VARIABLES: f64 = 2e6;
 
 /// Solves a control problem on its first grid, then on finer ones, until the verification confirms that the motion under the optimal voltages
 /// deviates from the optimum by no more than a part `accuracy` of the path length.
@@ -39,29 +36,8 @@ pub fn verified(
     allowed: SolveLimits,
     observer: &mut dyn FnMut(usize, &Iterate<'_>) -> ControlFlow<()>,
 ) -> Result<RefinedOptimum, WorkflowError> {
-    let began = Instant::now();
-    let left = || {
-        let spent = began.elapsed().as_secs_f64();
-        allowed.seconds.map(|s| (s - spent).max(0.0))
-    };
-    let mut iterations = 0;
-    let mut solve = |intervals: usize, earlier: Option<&Optimum>| {
-        let control = Control {
-            intervals,
-            ..control.clone()
-        };
-        let limits = SolveLimits {
-            seconds: left(),
-            ..allowed
-        };
-        let earlier = earlier.map(|optimum| &optimum.motion);
-        let found = optimise(system, &control, earlier, limits, &mut |iterate| {
-            observer(intervals, iterate)
-        })?;
-        iterations += found.solution.iterations.len().saturating_sub(1);
-        Ok::<_, WorkflowError>(found)
-    };
-    let mut best = solve(control.intervals, None)?;
+    let mut solves = GridSolves::new(system, control, allowed, observer);
+    let mut best = solves.solve(control.intervals, None)?;
     let mut why = None;
     for _ in 1..GRIDS {
         if !best.meets_equations() || is_confirmed(&best, accuracy) {
@@ -70,8 +46,8 @@ pub fn verified(
         let n = best.motion.intervals();
         let next = (n as f64 * factor(&best, accuracy)).ceil();
         let variables = best.solution.x.len() as f64 * next / n as f64;
-        let is_over = interrupt::requested() || left().is_some_and(|s| s <= 0.0);
-        if is_over || variables > VARIABLES {
+        let is_over = solves.is_over();
+        if is_over || variables > VARIABLES as f64 {
             why = Some(if is_over {
                 "it was stopped"
             } else {
@@ -79,9 +55,9 @@ pub fn verified(
             });
             break;
         }
-        let mut found = solve(next as usize, Some(&best))?;
+        let mut found = solves.solve(next as usize, Some(&best))?;
         if !found.meets_equations() && interrupt::stop().is_none() {
-            found = solve(next as usize, None)?;
+            found = solves.solve(next as usize, None)?;
         }
         if !found.meets_equations() {
             why = Some("a finer grid was not solved");
@@ -101,7 +77,7 @@ pub fn verified(
     });
     Ok(RefinedOptimum {
         optimum: best,
-        iterations,
+        iterations: solves.iterations,
         note,
     })
 }
