@@ -4,7 +4,7 @@ use std::path::Path;
 use std::time::Instant;
 
 use crate::app::blocks::BlockSizes;
-use crate::app::equilibrium_model::{model_at_rest, reference};
+use crate::app::equilibrium_model::model_at_rest;
 use crate::app::equilibrium_summary::at_rest;
 use crate::app::equilibrium_summary::{Rest, describe, lost, rows, status, text};
 use crate::app::error::CommandError;
@@ -151,7 +151,11 @@ fn find(
     model: &Model,
     voltages: &[f64],
 ) -> Result<(Equilibrium, Option<StabilityLoss>), EquilibriumError> {
-    match stable_equilibrium(model, &reference(model), &model.scalars(voltages)) {
+    match stable_equilibrium(
+        model,
+        &model.reference_coordinates(),
+        &model.scalars(voltages),
+    ) {
         Ok(found) => Ok((found, None)),
         Err(EquilibriumError::LimitPoint {
             fraction,

@@ -1,4 +1,4 @@
-//! The model of an equilibrium, and the state from which loads grow.
+//! The model of an equilibrium.
 
 use crate::app::error::CommandError;
 use crate::app::request::CommandInput;
@@ -20,9 +20,4 @@ pub(super) fn model_at_rest(
         let error = WorkflowError::boundary("equilibrium", &error.into());
         CommandError::in_file(&request.input)(error)
     })
-}
-
-/// Coordinates of the reference configuration.
-pub(super) fn reference(model: &Model) -> Vec<f64> {
-    model.coordinates_at(&vec![0.0; model.joint_readings.len()])
 }

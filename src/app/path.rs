@@ -4,7 +4,7 @@ use std::ops::RangeInclusive;
 use std::path::Path;
 use std::time::Instant;
 
-use crate::app::equilibrium_model::{model_at_rest, reference};
+use crate::app::equilibrium_model::model_at_rest;
 use crate::app::equilibrium_summary::at_rest;
 use crate::app::error::CommandError;
 use crate::app::fields;
@@ -48,7 +48,7 @@ pub(super) fn follow(
     let setup = began.elapsed().as_secs_f64();
     phase("following the path");
     let scalars = model.scalars(&task.voltages);
-    let found = match continuation(&model, &reference(&model), &scalars, points) {
+    let found = match continuation(&model, &model.reference_coordinates(), &scalars, points) {
         Ok(found) => found,
         Err(error) => return refused(request, &error, "no equilibrium to start from"),
     };
@@ -303,7 +303,7 @@ impl<'a> EquilibriumPath<'a> {
             discrete,
         } = self;
         let marks = Trajectory::from_discrete(model, discrete).marks;
-        let reference = &reference(model);
+        let reference = &model.reference_coordinates();
         let distance = |m: usize, k: usize| (marks[k + 1][m] - marks[0][m]).norm();
         let mut series = Vec::new();
         let mut curve = |name: &str, m: usize, distance: &dyn Fn(usize) -> f64| {

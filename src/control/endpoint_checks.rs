@@ -86,7 +86,7 @@ impl<'a> End<'a> {
     ) -> Self {
         let count = model.coordinate_count();
         let mut instant = model.action.map.instant();
-        let reference = model.coordinates_at(&vec![0.0; model.joint_readings.len()]);
+        let reference = model.reference_coordinates();
         let values = coordinates.iter().zip(reference);
         for (z, (value, reference)) in instant.z[..count].iter_mut().zip(values) {
             *z = value.unwrap_or(reference);

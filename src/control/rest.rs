@@ -46,7 +46,7 @@ fn equilibrium(
     voltages: &[f64],
     place: &'static str,
 ) -> Result<Equilibrium, BoundaryError> {
-    let zero = model.coordinates_at(&vec![0.0; model.joint_readings.len()]);
+    let zero = model.reference_coordinates();
     let found = stable_equilibrium(model, &zero, &model.scalars(voltages));
     found.map_err(|source| BoundaryError::NoEquilibrium { place, source })
 }

@@ -258,7 +258,7 @@ impl<'m> Observer<'m> {
                 add(format!("{}_{quantity}", component.name()), unit);
             }
         }
-        for (name, _) in self.model.viscous_stretches() {
+        for name in self.model.viscous_stretches() {
             add(name, "");
         }
         columns
@@ -321,8 +321,8 @@ impl<'m> Observer<'m> {
                 row.extend(component.observe(&places.collect::<Vec<_>>()));
             }
         }
-        let viscous = model.viscous_stretches();
-        row.extend(viscous.map(|(_, coordinate)| self.here.z[coordinate].exp()));
+        let viscous = model.viscous_coordinates();
+        row.extend(viscous.map(|coordinate| self.here.z[coordinate].exp()));
         std::mem::swap(&mut self.before, &mut self.here);
         Row {
             values: row,

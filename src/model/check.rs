@@ -80,13 +80,7 @@ impl System {
             }
             for material in &solid.materials {
                 positive(&solid.name, "shear modulus", material.shear_modulus)?;
-                check_elastic(&solid.name, material)?;
-                require(
-                    material.lame_lambda.is_some_and(f64::is_finite),
-                    &solid.name,
-                    || "a material without Poisson ratio".to_owned(),
-                    "one, as finite elements are compressible",
-                )?;
+                check_of_elements(&solid.name, material)?;
             }
         }
         for marker in &self.markers {
@@ -217,13 +211,7 @@ impl System {
                 positive(name, "relaxation time", branch.relaxation_time)?;
             }
             if muscle.fidelity.elements() > 0 {
-                check_elastic(name, material)?;
-                require(
-                    material.lame_lambda.is_some_and(f64::is_finite),
-                    name,
-                    || "a material without Poisson ratio".to_owned(),
-                    "one, as finite elements are compressible",
-                )?;
+                check_of_elements(name, material)?;
             }
         }
         Ok(())
@@ -251,12 +239,18 @@ impl System {
     }
 }
 
-/// Finite elements have no Maxwell branches.
-fn check_elastic(name: &str, material: &Material) -> Result<(), SystemError> {
+/// Checks that finite elements can be made of a material: it is compressible and has no Maxwell branches.
+fn check_of_elements(name: &str, material: &Material) -> Result<(), SystemError> {
     require(
         material.maxwell.list().is_empty(),
         name,
         || "Maxwell branches of finite elements".to_owned(),
         "none: only lumped muscles have them",
+    )?;
+    require(
+        material.lame_lambda.is_some_and(f64::is_finite),
+        name,
+        || "a material without Poisson ratio".to_owned(),
+        "one, as finite elements are compressible",
     )
 }

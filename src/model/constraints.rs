@@ -159,14 +159,11 @@ impl Builder<'_> {
 
     /// Internal coordinates are those of their joints.
     fn joint_coordinates(&mut self, out: &mut Measured) {
-        for internal in &self.internals.list {
+        for (internal, value) in self.internals.vectors() {
             let InternalKind::Joint(index) = internal.kind else {
                 continue;
             };
             let joint = &self.system.joints[index];
-            let Some(value) = self.internals.joint(index) else {
-                continue;
-            };
             let value = here(self.vectors.index(value));
             let scalars = [out.names.len()];
             out.names.push(internal.name.clone());

@@ -111,7 +111,13 @@ impl Internals {
 
     /// The vector that has an internal coordinate in its first component.
     pub(super) fn vector(&self, kind: InternalKind) -> Option<MaterialVector> {
-        let index = self.list.iter().position(|own| own.kind == kind)?;
-        Some(MaterialVector::coordinate(self.first + index))
+        let mut own = self.vectors().filter(|(internal, _)| internal.kind == kind);
+        own.next().map(|(_, vector)| vector)
+    }
+
+    /// All of them, each with the vector that has it in its first component.
+    pub(super) fn vectors(&self) -> impl Iterator<Item = (&Internal, MaterialVector)> {
+        let coordinates = (self.first..).map(MaterialVector::coordinate);
+        self.list.iter().zip(coordinates)
     }
 }

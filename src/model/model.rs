@@ -98,6 +98,11 @@ impl Model {
         }
     }
 
+    /// Coordinates of an instant in the reference configuration.
+    pub fn reference_coordinates(&self) -> Vec<f64> {
+        self.coordinates_at(&vec![0.0; self.joint_readings.len()])
+    }
+
     /// Director coordinates of given poses, with joint coordinates (by joint of the scene) that count whole turns; multipliers zero.
     pub(super) fn coordinates_of(&self, poses: &[Pose], joints: &[f64]) -> Vec<f64> {
         let mut z = vec![0.0; self.action.map.unknowns()];
@@ -111,21 +116,36 @@ impl Model {
         z
     }
 
+    /// Internal coordinates of joints, each with its joint of the scene.
+    fn internal_joints(&self) -> impl Iterator<Item = (usize, usize)> + '_ {
+        let all = self.action.map.internal().zip(&self.internals);
+        all.filter_map(|(coordinate, own)| match own.kind {
+            InternalKind::Joint(joint) => Some((coordinate, self.presolved.joints[joint])),
+            InternalKind::Branch { .. } => None,
+        })
+    }
+
+    /// Internal coordinates of Maxwell branches, each with its muscle and its number there.
+    fn branches(&self) -> impl Iterator<Item = (usize, usize, usize)> + '_ {
+        let all = self.action.map.internal().zip(&self.internals);
+        all.filter_map(|(coordinate, own)| match own.kind {
+            InternalKind::Branch { muscle, branch } => Some((coordinate, muscle, branch)),
+            InternalKind::Joint(_) => None,
+        })
+    }
+
     /// Gives internal coordinates their values at joint coordinates (by joint of the scene); muscles have been held there for long.
     pub(super) fn place_internals(&self, z: &mut [f64], joints: &[f64]) {
-        let internal = self.action.map.internal();
-        let is_branch = |own: &Internal| matches!(own.kind, InternalKind::Branch { .. });
-        let placed = self.internals.iter().any(is_branch);
-        let placed = placed.then(|| self.action.map.placed(z));
-        for (value, own) in z[internal].iter_mut().zip(&self.internals) {
-            *value = match (own.kind, &placed) {
-                (InternalKind::Joint(joint), _) => joints[self.presolved.joints[joint]],
-                (InternalKind::Branch { muscle, .. }, Some(instant)) => {
-                    let length = self.system.muscles[muscle].length();
-                    (instant.x[self.spans[muscle]].norm() / length).ln()
-                }
-                (InternalKind::Branch { .. }, None) => 0.0,
-            };
+        for (coordinate, joint) in self.internal_joints() {
+            z[coordinate] = joints[joint];
+        }
+        if self.branches().next().is_none() {
+            return;
+        }
+        let instant = self.action.map.placed(z);
+        for (coordinate, muscle, _) in self.branches() {
+            let length = self.system.muscles[muscle].length();
+            z[coordinate] = (instant.x[self.spans[muscle]].norm() / length).ln();
         }
     }
 
@@ -137,19 +157,16 @@ impl Model {
         }
     }
 
-    /// Viscous stretches of the Maxwell branches: name, and coordinate that is the logarithm.
-    pub fn viscous_stretches(&self) -> impl Iterator<Item = (String, usize)> + '_ {
-        let all = self.action.map.internal().zip(&self.internals);
-        all.filter_map(|(coordinate, own)| match own.kind {
-            InternalKind::Branch { muscle, branch } => {
-                let muscle = &self.system.muscles[muscle].name;
-                Some((
-                    format!("{muscle}_viscous_stretch{}", branch + 1),
-                    coordinate,
-                ))
-            }
-            InternalKind::Joint(_) => None,
-        })
+    /// Names of the viscous stretches of the Maxwell branches.
+    pub fn viscous_stretches(&self) -> impl Iterator<Item = String> + '_ {
+        let name = |muscle: usize| &self.system.muscles[muscle].name;
+        let branches = self.branches();
+        branches.map(move |(_, m, branch)| format!("{}_viscous_stretch{}", name(m), branch + 1))
+    }
+
+    /// Their coordinates, of which each is the logarithm of one.
+    pub fn viscous_coordinates(&self) -> impl Iterator<Item = usize> + '_ {
+        self.branches().map(|(coordinate, ..)| coordinate)
     }
 
     /// Returns true if coordinate `i` is what a muscle remembers: it has no momentum, and nothing brings it to rest but time.
@@ -165,11 +182,8 @@ impl Model {
         let mut rates = self.node_rates().unwrap_or_else(zeros);
         let count = bodies.len().min(self.action.map.of_bodies);
         rates[..count].copy_from_slice(&bodies[..count]);
-        let internal = self.action.map.internal();
-        for (rate, own) in rates[internal].iter_mut().zip(&self.internals) {
-            if let InternalKind::Joint(joint) = own.kind {
-                *rate = joints[self.presolved.joints[joint]];
-            }
+        for (coordinate, joint) in self.internal_joints() {
+            rates[coordinate] = joints[joint];
         }
         rates
     }
@@ -232,11 +246,8 @@ impl Model {
                 .collect(),
             Coordinates::Redundant => {
                 let mut joints = self.read_joints(&self.poses(instant), near);
-                let internals = instant.z[self.action.map.internal()].iter();
-                for (value, internal) in internals.zip(&self.internals) {
-                    if let InternalKind::Joint(joint) = internal.kind {
-                        joints[self.presolved.joints[joint]] = *value;
-                    }
+                for (coordinate, joint) in self.internal_joints() {
+                    joints[joint] = instant.z[coordinate];
                 }
                 joints
             }

@@ -247,7 +247,7 @@ fn rest(
         Ok(model) => model,
         Err(error) => return (failed(REFUSED, error.to_string(), began), None),
     };
-    let zero = model.coordinates_at(&vec![0.0; model.joint_readings.len()]);
+    let zero = model.reference_coordinates();
     let found = stable_equilibrium(&model, &zero, &model.scalars(&task.voltages));
     let seconds = began.elapsed().as_secs_f64();
     let found = match found {
@@ -294,7 +294,7 @@ impl Observed {
     /// Instants and places of a motion.
     fn from_motion(model: &Model, motion: &Trajectory, names: &[String]) -> Self {
         let duration = motion.times[motion.intervals()];
-        let zero = model.coordinates_at(&vec![0.0; model.joint_readings.len()]);
+        let zero = model.reference_coordinates();
         let list = markers(model, names);
         let of = |row: &Vec<Vector3<f64>>| list.iter().map(|&m| row[m]).collect();
         Self {

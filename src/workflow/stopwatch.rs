@@ -16,7 +16,7 @@ const ROUNDS: u32 = 3;
 /// first; about `spent` seconds or one evaluation go into each.
 pub(crate) fn times(model: &Model, spent: f64) -> Vec<f64> {
     let action = &model.action;
-    let start = model.coordinates_at(&vec![0.0; model.joint_readings.len()]);
+    let start = model.reference_coordinates();
     let instant = action.map.placed(&start);
     let scalars = vec![0.0; action.intervals.scalars];
     let interval = Interval::given(&scalars, model.analysis.interval);

@@ -57,11 +57,12 @@ impl Layout {
                 is_held[j] = true;
             }
         }
-        let rests = |i: usize| match boundary.goal.rests {
-            Rests::Everything => !model.is_memory(i),
-            Rests::Bodies => !map.nodes().contains(&i) && !model.is_memory(i) || is_held[i],
+        let is_in_rest = |i: usize| match boundary.goal.rests {
+            Rests::Everything => true,
+            Rests::Bodies => !map.nodes().contains(&i) || is_held[i],
             Rests::Nothing => false,
         };
+        let rests = |i: usize| is_in_rest(i) && !model.is_memory(i);
         let is_balanced = |k: usize, i: usize| k < intervals || rests(i);
         let mut unknowns = Numbering::new(&model.variables, intervals, is_given, is_balanced);
         let limits = limit_rows(model, &boundary.limits.list, intervals, &unknowns);

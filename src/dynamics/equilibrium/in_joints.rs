@@ -11,15 +11,16 @@ use crate::model::{Analysis, Coordinates, Model};
 /// The same system in joint coordinates; `None` where the coordinates are these already, where joints close loops, and where nodes are
 /// unknowns, which are others in other coordinates.
 pub(super) fn twin(model: &Model) -> Option<Model> {
-    let is_other = model.coordinates == Coordinates::Redundant && model.solids.is_empty();
+    if model.coordinates == Coordinates::Reduced || !model.solids.is_empty() {
+        return None;
+    }
     let analysis = Analysis {
         coordinates: Some(Coordinates::Reduced),
         quantities: Vec::new(),
         curved: Default::default(),
         ..model.analysis.clone()
     };
-    let twin = || Model::for_analysis(model.system.clone(), analysis).ok();
-    is_other.then(twin).flatten()
+    Model::for_analysis(model.system.clone(), analysis).ok()
 }
 
 /// Coordinates of one model at a configuration of the other.

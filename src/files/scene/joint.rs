@@ -142,35 +142,26 @@ fn spring(
         of_coordinate(key, RotationalStiffness::kind(), Stiffness::kind()),
         &scope.key("stiffness"),
     )?;
-    let (angle, displacement) = (&spec.rest_angle, &spec.rest_displacement);
-    let rests = [
-        (
-            "rest_angle",
-            angle.as_ref().map(|rest| (rest.to_string(), rest.value())),
-            JointKey::Revolute,
-            "a revolute joint with a \"stiffness\"",
-        ),
-        (
-            "rest_displacement",
-            displacement
-                .as_ref()
-                .map(|rest| (rest.to_string(), rest.value())),
-            JointKey::Prismatic,
-            "a prismatic joint with a \"stiffness\"",
-        ),
-    ];
-    let mut at_rest = 0.0;
-    for (name, rest, of, expected) in rests {
-        let Some((written, value)) = rest else {
-            continue;
-        };
-        if key != of || spec.stiffness.is_none() {
-            return Err(scope.key(name).wrong(written, expected));
+    let rest = at_rest(spec, key, scope)?;
+    Ok(stiffness.map(|stiffness| JointSpring { stiffness, rest }))
+}
+
+/// The coordinate without force: zero where none is written.
+fn at_rest(spec: &JointSpec, key: JointKey, scope: &Scope<'_>) -> Result<f64, SceneError> {
+    let belongs = |to: JointKey| key == to && spec.stiffness.is_some();
+    let wrong = |name: &str, found: String, joint: &str| {
+        let expected = format!("a {joint} joint with a \"stiffness\"");
+        Err(scope.key(name).wrong(found, expected))
+    };
+    match (&spec.rest_angle, &spec.rest_displacement) {
+        (Some(angle), _) if !belongs(JointKey::Revolute) => {
+            wrong("rest_angle", angle.to_string(), "revolute")
         }
-        at_rest = value;
+        (_, Some(place)) if !belongs(JointKey::Prismatic) => {
+            wrong("rest_displacement", place.to_string(), "prismatic")
+        }
+        (Some(angle), _) => Ok(angle.value()),
+        (None, Some(place)) => Ok(place.value()),
+        (None, None) => Ok(0.0),
     }
-    Ok(stiffness.map(|stiffness| JointSpring {
-        stiffness,
-        rest: at_rest,
-    }))
 }
