@@ -27,7 +27,7 @@ pub struct RefinedOptimum {
 /// before, then from the guess of the problem.
 ///
 /// # Errors
-/// As of [`optimise`].
+/// As of [`optimise`](crate::workflow::optimise::optimise).
 pub(crate) fn reproduced(
     system: &System,
     control: &Control,

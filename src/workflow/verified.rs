@@ -28,7 +28,7 @@ const GRIDS: usize = 7;
 /// deviates from the optimum by no more than a part `accuracy` of the path length.
 ///
 /// # Errors
-/// As of [`optimise`].
+/// As of [`optimise`](crate::workflow::optimise::optimise).
 pub fn verified(
     system: &System,
     control: &Control,
