@@ -251,6 +251,7 @@ fn as_control(task: Task, system: &System) -> Control {
         start,
         goal: at_reference(),
         voltage_bounds: [f64::NEG_INFINITY, f64::INFINITY],
+        load_bounds: BTreeMap::new(),
         given: BTreeMap::new(),
         course: None,
         parameters: Vec::new(),
@@ -273,7 +274,7 @@ fn as_control(task: Task, system: &System) -> Control {
     match task {
         Task::Control(control) => *control,
         Task::Simulate(simulation) => {
-            let zero_voltage = simulation.analysis(system, simulation.step).zero_voltage;
+            let zero_inputs = simulation.analysis(system, simulation.step).zero_inputs;
             let Simulation {
                 step,
                 start,
@@ -283,7 +284,7 @@ fn as_control(task: Task, system: &System) -> Control {
             } = simulation;
             let row = voltages.at(0.0).to_vec();
             Control {
-                given: zero_voltage
+                given: zero_inputs
                     .into_iter()
                     .map(|source| (source, Signal::Constant(0.0)))
                     .collect(),

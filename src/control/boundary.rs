@@ -48,7 +48,7 @@ impl BoundaryConditions {
         let (model, mut boundary) = Self::of_goal(system, &eased, h0)?;
         boundary.notes.push(format!(
             "{} voltages cannot bring all {} coordinates of elastic blocks and bodies to rest: at the goal {} rest, as by \"rest\": \"bodies\"",
-            layout.unknowns.voltages.len(),
+            layout.unknowns.inputs.len(),
             model.coordinate_count(),
             if names_markers { "bodies and its markers" } else { "bodies" },
         ));

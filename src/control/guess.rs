@@ -142,7 +142,11 @@ fn interpolate(
     });
     let rest = boundary.rest[1].as_ref().or(boundary.rest[0].as_ref());
     let mut held: Vec<f64> = rest.map_or_else(|| vec![0.0; model.sources.len()], Clone::clone);
-    held.iter_mut().for_each(|voltage| *voltage += lift);
+    for (voltage, source) in held.iter_mut().zip(&model.sources) {
+        if !source.is_load() {
+            *voltage += lift;
+        }
+    }
     let scalars = model.scalars(&held);
     let discrete = DiscreteTrajectory {
         times: (0..=intervals).map(|k| k as f64 * h).collect(),

@@ -87,8 +87,8 @@ pub struct Numbering {
     pub columns: Vec<Column>,
     /// All rows, in order; limits follow where they are added.
     pub rows: Vec<Row>,
-    /// Columns of voltages, each with its place in a list of the voltages of all intervals, those that are given included.
-    pub voltages: Vec<(usize, usize)>,
+    /// Columns of voltages and loads, each with its place in a list of those of all intervals, given ones included.
+    pub inputs: Vec<(usize, usize)>,
     column_of_instant: Vec<Option<usize>>,
     column_of_interval: Vec<Option<usize>>,
     column_of_horizon: Option<usize>,
@@ -112,7 +112,7 @@ impl Numbering {
         let mut out = Self {
             columns: Vec::new(),
             rows: Vec::new(),
-            voltages: Vec::new(),
+            inputs: Vec::new(),
             column_of_instant: vec![None; (intervals + 1) * of_instant],
             column_of_interval: vec![None; intervals * of_interval],
             column_of_horizon: None,
@@ -120,7 +120,7 @@ impl Numbering {
             row_of_interval: vec![None; intervals * of_interval],
             counts,
         };
-        let voltages = variables.range(Role::Voltage);
+        let inputs = variables.sources_range();
         for k in 0..=intervals {
             let mut coordinates = variables.range(Role::Coordinate);
             let all_given = coordinates.all(|i| is_given(Column::Instant { k, i }));
@@ -144,9 +144,8 @@ impl Numbering {
                 let at = k * of_interval + s;
                 let column = Column::Interval { k, s };
                 let number = out.column(column, is_given(column));
-                if let (Some(number), Role::Voltage) = (number, variable.role) {
-                    let place = k * voltages.len() + s - voltages.start;
-                    out.voltages.push((number, place));
+                if let (Some(number), true) = (number, inputs.contains(&s)) {
+                    out.inputs.push((number, k * inputs.len() + s));
                 }
                 out.column_of_interval[at] = number;
                 let is_row = variable.role.has_equation();

@@ -1,6 +1,6 @@
 //! The part of the objective that is a polynomial in voltages and interval length: a weighted sum of effort, rate and duration.
 //!
-//! Voltages v in kV, interval length τ in s:
+//! Inputs v (voltages in kV, loads in N or N m), interval length τ in s:
 //!
 //! ```text
 //! f = a τ Σ_k |v_k|² + b/τ Σ_{k=0..N} |v_k − v_{k−1}|² + c N τ,     v_{−1}, v_N: rest voltages of start and goal.

@@ -8,7 +8,7 @@ use crate::control::{Earlier, Signal};
 use crate::dynamics::Solving;
 use crate::ipopt::{LinearSolver, OptionValue};
 use crate::model::system::{ElectricConstants, Muscle};
-use crate::model::{Coordinates, Parameter, Region, System, Variable};
+use crate::model::{Coordinates, Parameter, Region, Role, System, Variable};
 use std::borrow::Cow;
 use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
@@ -36,7 +36,7 @@ pub struct AtRest {
     pub path: Option<usize>,
 }
 
-/// Voltages over time (V, one per muscle).
+/// Voltages and loads over time (V, N, N mm; one per source).
 #[derive(Clone, Debug, PartialEq)]
 pub enum Voltages {
     /// The same in every interval.
@@ -49,6 +49,8 @@ pub enum Voltages {
         rows: Vec<Vec<f64>>,
         /// Role of the last row.
         afterwards: Afterwards,
+        /// Sources that follow functions of time instead: loads.
+        others: BTreeMap<usize, Signal>,
         /// The solution they were read from; none of a table in the problem.
         solution: Option<PathBuf>,
     },
@@ -79,18 +81,65 @@ impl Voltages {
         match self {
             Self::Constant(row) => Cow::Borrowed(row),
             Self::Signals(signals) => signals.iter().map(|signal| signal.at(time)).collect(),
-            Self::Sampled { ends, rows, .. } => {
+            Self::Sampled {
+                ends, rows, others, ..
+            } => {
                 let k = ends.iter().position(|&end| time < end);
-                Cow::Borrowed(&rows[k.unwrap_or(ends.len())])
+                let row = &rows[k.unwrap_or(ends.len())];
+                if others.is_empty() {
+                    return Cow::Borrowed(row);
+                }
+                let mut row = row.clone();
+                for (&source, signal) in others {
+                    row[source] = signal.at(time);
+                }
+                Cow::Owned(row)
             }
         }
+    }
+
+    /// The same with some sources that follow functions of time.
+    #[must_use]
+    pub fn with(self, others: BTreeMap<usize, Signal>) -> Self {
+        if others.is_empty() {
+            return self;
+        }
+        let signals = match self {
+            Self::Sampled {
+                ends,
+                rows,
+                afterwards,
+                solution,
+                others: mut known,
+            } => {
+                known.extend(others);
+                return Self::Sampled {
+                    ends,
+                    rows,
+                    afterwards,
+                    solution,
+                    others: known,
+                };
+            }
+            Self::Constant(row) => row.into_iter().map(Signal::Constant).collect(),
+            Self::Signals(signals) => signals,
+        };
+        let mut signals: Vec<Signal> = signals;
+        for (source, signal) in others {
+            signals[source] = signal;
+        }
+        let constants: Option<Vec<f64>> = signals.iter().map(Signal::constant).collect();
+        constants.map_or(Self::Signals(signals), Self::Constant)
     }
 
     /// Returns true if the voltage of a source is ever other than zero.
     pub fn drive(&self, source: usize) -> bool {
         match self {
             Self::Constant(row) => row[source] != 0.0,
-            Self::Sampled { rows, .. } => rows.iter().any(|row| row[source] != 0.0),
+            Self::Sampled { rows, others, .. } => match others.get(&source) {
+                Some(signal) => !signal.is_zero(),
+                None => rows.iter().any(|row| row[source] != 0.0),
+            },
             Self::Signals(signals) => !signals[source].is_zero(),
         }
     }
@@ -99,15 +148,22 @@ impl Voltages {
     pub fn switches(&self) -> Cow<'_, [f64]> {
         match self {
             Self::Constant(_) => Cow::Borrowed(&[]),
-            Self::Sampled { ends, .. } => Cow::Borrowed(ends),
-            Self::Signals(signals) => {
-                let mut times: Vec<f64> = signals.iter().flat_map(Signal::corners).collect();
-                times.sort_by(f64::total_cmp);
-                times.dedup();
-                Cow::Owned(times)
+            Self::Sampled { ends, others, .. } if others.is_empty() => Cow::Borrowed(ends),
+            Self::Sampled { ends, others, .. } => {
+                let others = others.values().flat_map(Signal::corners);
+                Cow::Owned(sorted(ends.iter().copied().chain(others)))
             }
+            Self::Signals(signals) => Cow::Owned(sorted(signals.iter().flat_map(Signal::corners))),
         }
     }
+}
+
+/// Times in order, each once.
+fn sorted(times: impl Iterator<Item = f64>) -> Vec<f64> {
+    let mut times: Vec<f64> = times.collect();
+    times.sort_by(f64::total_cmp);
+    times.dedup();
+    times
 }
 
 /// A forward simulation.
@@ -179,9 +235,11 @@ pub struct Control {
     pub goal: BoundaryState,
     /// Bounds of the voltages that are sought in V.
     pub voltage_bounds: [f64; 2],
-    /// Voltages that are given (V, by source): no unknowns.
+    /// Bounds of the loads that are sought (N or N mm, by source).
+    pub load_bounds: BTreeMap<usize, [f64; 2]>,
+    /// Voltages and loads that are given (by source): no unknowns.
     pub given: BTreeMap<usize, Signal>,
-    /// Voltages of all sources in intervals of time, where they are given: none is looked for.
+    /// Voltages in intervals of time, where they are given: none is looked for.
     pub course: Option<Voltages>,
     /// Constants of the system that are sought.
     pub parameters: Vec<Parameter>,
@@ -207,15 +265,39 @@ impl Control {
 
     /// The voltage of a source that is given at a time in ms.
     pub fn given_voltage(&self, source: usize, time: f64) -> Option<f64> {
-        match &self.course {
-            Some(course) => Some(course.at(time)[source]),
-            None => self.given.get(&source).map(|signal| signal.at(time)),
-        }
+        let of_course = || match &self.course {
+            Some(course) if self.is_given(source) => Some(course.at(time)[source]),
+            _ => None,
+        };
+        let given = self.given.get(&source).map(|signal| signal.at(time));
+        given.or_else(of_course)
     }
 
     /// Returns true if the voltage of a source is given.
     pub fn is_given(&self, source: usize) -> bool {
-        self.course.is_some() || self.given.contains_key(&source)
+        let is_of_course = self.course.is_some() && !self.load_bounds.contains_key(&source);
+        is_of_course || self.given.contains_key(&source)
+    }
+
+    /// Bounds of an input that is sought, in V, N or N mm.
+    pub fn bounds(&self, variable: &Variable) -> [f64; 2] {
+        let of_load = variable.source.and_then(|s| self.load_bounds.get(&s));
+        match variable.role {
+            Role::Load => *of_load.unwrap_or(&[f64::NEG_INFINITY, f64::INFINITY]),
+            _ => self.voltage_bounds,
+        }
+    }
+
+    /// Scale of an input in V, N or N mm.
+    pub fn scale(&self, variable: &Variable, system: &System) -> f64 {
+        match variable.role {
+            Role::Load => {
+                let sizes = self.bounds(variable).map(f64::abs).into_iter();
+                let finite = sizes.filter(|size| size.is_finite());
+                nearest_thousand(finite.fold(0.0, f64::max))
+            }
+            _ => self.voltage_unit(system),
+        }
     }
 
     /// The middle of interval `k` in ms, where the duration is given or at its guess.

@@ -1,6 +1,6 @@
 //! Analysis that a task requires of the model.
 //!
-//! A source is at zero voltage where neither the task nor the states at its ends name a voltage other than zero; a body or a block is
+//! A source has no input where neither the task nor the states at its ends name one other than zero; a body or a block is
 //! initially moving where a start, a goal or a limit names it.
 
 use std::collections::BTreeSet;
@@ -17,7 +17,7 @@ impl Simulation {
         named.of_start(&self.start);
         Analysis {
             coordinates: self.coordinates,
-            zero_voltage: zero_voltage(system, is_driven, [&self.start]),
+            zero_inputs: zero_inputs(system, is_driven, [&self.start]),
             initially_moving: Some(named.initially_moving),
             ..Analysis::of_motion(step)
         }
@@ -30,7 +30,7 @@ impl AtRest {
     pub fn analysis(&self, system: &System) -> Analysis {
         Analysis {
             coordinates: self.coordinates,
-            zero_voltage: zero_voltage(system, |s| self.voltages[s] != 0.0, []),
+            zero_inputs: zero_inputs(system, |s| self.voltages[s] != 0.0, []),
             ..Analysis::of_rest()
         }
     }
@@ -39,9 +39,10 @@ impl AtRest {
 impl Control {
     /// The analysis of a horizon of intervals of about `interval` ms, without the quantities that are measured.
     pub fn analysis(&self, system: &System, interval: f64) -> Analysis {
-        let is_driven = |s: usize| match &self.course {
-            Some(course) => course.drive(s),
-            None => self.given.get(&s).is_none_or(|signal| !signal.is_zero()),
+        let is_driven = |s: usize| match (self.given.get(&s), &self.course) {
+            (Some(signal), _) => !signal.is_zero(),
+            (None, Some(course)) => course.drive(s) || self.load_bounds.contains_key(&s),
+            (None, None) => true,
         };
         let mut named = Named::new(system);
         named.of_start(&self.start);
@@ -49,7 +50,7 @@ impl Control {
         self.limits.iter().for_each(|limit| named.of_limit(limit));
         Analysis {
             coordinates: self.coordinates,
-            zero_voltage: zero_voltage(system, is_driven, [&self.start, &self.goal]),
+            zero_inputs: zero_inputs(system, is_driven, [&self.start, &self.goal]),
             initially_moving: Some(named.initially_moving),
             parameters: self.parameters.clone(),
             ..Analysis::of_motion(interval)
@@ -58,7 +59,7 @@ impl Control {
 }
 
 /// Sources whose voltage is zero all the time, and at rest before and after.
-fn zero_voltage<const N: usize>(
+fn zero_inputs<const N: usize>(
     system: &System,
     is_driven: impl Fn(usize) -> bool,
     ends: [&BoundaryState; N],
@@ -70,7 +71,7 @@ fn zero_voltage<const N: usize>(
         })
     };
     let sources = system.sources();
-    let takes = (0..sources.len()).filter(|&s| sources[s].takes_voltage);
+    let takes = (0..sources.len()).filter(|&s| sources[s].acts());
     takes.filter(|&s| !is_driven(s) && !is_held(s)).collect()
 }
 

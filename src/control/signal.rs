@@ -49,6 +49,14 @@ impl Signal {
         }
     }
 
+    /// The value, where it is the same all the time.
+    pub fn constant(&self) -> Option<f64> {
+        match self {
+            Self::Constant(value) => Some(*value),
+            _ => None,
+        }
+    }
+
     /// The value at a time.
     pub fn at(&self, time: f64) -> f64 {
         match self {

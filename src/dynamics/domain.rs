@@ -53,7 +53,7 @@ pub fn out_of_domain(model: &Model, discrete: &DiscreteTrajectory) -> Vec<OutOfD
         .filter(|(_, muscle)| muscle.fidelity == Fidelity::Lumped)
         .filter_map(|(m, muscle)| {
             let limit = largest_stretch(muscle.material.electric.as_ref()?, 1.0)?;
-            let scalar = model.variables.voltage(m)?;
+            let scalar = model.variables.input(m)?;
             let of = Of::Muscle {
                 span: model.spans[m],
                 length: muscle.length(),

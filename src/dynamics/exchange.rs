@@ -53,6 +53,9 @@ impl EnergyExchange {
                 continue;
             }
             let muscle = system.muscles.get(source);
+            if named.is_load() {
+                continue;
+            }
             match muscle.and_then(capacitance) {
                 Some(of) => {
                     let lengths = lengths(system, motion, source);

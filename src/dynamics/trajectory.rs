@@ -18,7 +18,7 @@ pub struct Trajectory {
     pub poses: Vec<Vec<Pose>>,
     /// Places of the markers in mm, per instant and marker of the system.
     pub marks: Vec<Vec<Vector3<f64>>>,
-    /// Voltages in V, per interval and source.
+    /// Voltages in V and loads in N or N mm, per interval and source.
     pub voltages: Vec<Vec<f64>>,
 }
 
@@ -66,6 +66,12 @@ impl Trajectory {
     /// Path in mm of a marker of the system, instant by instant.
     pub fn path(&self, marker: usize) -> Vec<Vector3<f64>> {
         self.marks.iter().map(|places| places[marker]).collect()
+    }
+
+    /// Voltages in V, by source, of each interval: without loads.
+    pub fn voltages(&self, system: &System) -> impl Iterator<Item = &[f64]> {
+        let first = system.first_load();
+        self.voltages.iter().map(move |row| &row[..first])
     }
 
     /// Number N of intervals.

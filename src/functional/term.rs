@@ -97,7 +97,7 @@ pub trait Term: Debug + Send + Sync {
     /// Returns the role of the term in the energy balance.
     fn kind(&self) -> TermKind;
 
-    /// Returns true if it is the potential of constant forces, such as weights: of degree one in places, and of nothing else.
+    /// Returns true if it is the potential of forces that do not depend on places, such as weights: linear in places.
     fn is_dead_load(&self) -> bool {
         false
     }

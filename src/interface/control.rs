@@ -324,6 +324,7 @@ impl Control {
             start: self.start.resolve(system, sources.len())?,
             goal: self.goal.resolve(system, sources.len())?,
             voltage_bounds: self.voltage_bounds,
+            load_bounds: BTreeMap::new(),
             given,
             course: None,
             parameters: self.parameters.clone(),

@@ -45,8 +45,8 @@ pub struct Analysis {
     pub parameters: Vec<Parameter>,
     /// True for a motion; a state of rest has neither inertia nor viscosity.
     pub of_motion: bool,
-    /// Sources whose voltage is zero all the time.
-    pub zero_voltage: BTreeSet<usize>,
+    /// Sources whose voltage or load is zero all the time.
+    pub zero_inputs: BTreeSet<usize>,
     /// Bodies and blocks that may start to move; `None`: anything may be set in motion by hand.
     pub initially_moving: Option<InitiallyMoving>,
 }
@@ -71,7 +71,7 @@ impl Analysis {
             curved: BTreeSet::new(),
             parameters: Vec::new(),
             of_motion: true,
-            zero_voltage: BTreeSet::new(),
+            zero_inputs: BTreeSet::new(),
             initially_moving: None,
         }
     }

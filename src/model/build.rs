@@ -4,7 +4,8 @@ use crate::coordinates::{CoordinateMap, Reduced};
 use crate::functional::{Functional, Term};
 use crate::kinematics::{MaterialVector, Pose, Vectors};
 use crate::model::analysis::{Analysis, Coordinates};
-use crate::model::components::{body, muscle};
+use crate::model::components::Load;
+use crate::model::components::{body, load, muscle};
 use crate::model::error::ModelError;
 use crate::model::graph::Graph;
 use crate::model::internal::Internals;
@@ -61,8 +62,8 @@ impl Model {
         analysis: Analysis,
         mut presolved: Presolved,
     ) -> Result<Self, ModelError> {
-        let voltages = field_extent::voltages(&presolved.system);
-        let reached = reached(&system, &analysis, &voltages);
+        let inputs = acting(&presolved, &analysis);
+        let reached = reached(&system, &analysis, &inputs);
         let solids = blocks::blocks(&mut presolved);
         let rest = &presolved.system;
         let coordinates = Self::choose(rest, analysis.coordinates)?;
@@ -70,7 +71,7 @@ impl Model {
         let reference: Vec<Pose> = rest.bodies.iter().map(Body::pose).collect();
         let sources = system.sources();
         let mut vectors = Vectors::default();
-        let mut variables = interval_variables(&voltages, &sources, &analysis);
+        let mut variables = interval_variables(&inputs, &sources, &analysis);
         let blocks = Solids::new(
             solids,
             system.solids.len(),
@@ -164,19 +165,40 @@ impl Model {
     }
 }
 
-/// Sources that would drive something if none were at zero voltage all the time.
-fn reached(system: &System, analysis: &Analysis, voltages: &[usize]) -> Vec<usize> {
-    match analysis.zero_voltage.is_empty() {
-        true => voltages.to_vec(),
-        false => field_extent::voltages(system),
+/// Sources whose inputs do something.
+fn acting(presolved: &Presolved, analysis: &Analysis) -> Vec<usize> {
+    let system = &presolved.system;
+    let loads = (system.first_load()..).zip(&system.components.loads);
+    let acts = |(source, load): &(usize, &Load)| {
+        !analysis.zero_inputs.contains(source) && load.moves(presolved)
+    };
+    let loads = loads.filter(acts).map(|(source, _)| source);
+    field_extent::voltages(system)
+        .into_iter()
+        .chain(loads)
+        .collect()
+}
+
+/// Sources that would drive something if none were at zero all the time.
+fn reached(system: &System, analysis: &Analysis, inputs: &[usize]) -> Vec<usize> {
+    match analysis.zero_inputs.is_empty() {
+        true => inputs.to_vec(),
+        false => {
+            let loads = system.first_load()..system.sources().len();
+            field_extent::voltages(system)
+                .into_iter()
+                .chain(loads)
+                .collect()
+        }
     }
 }
 
-/// Voltages and parameters, the first scalars of an interval.
-fn interval_variables(voltages: &[usize], sources: &[Source], analysis: &Analysis) -> Variables {
+/// Voltages, loads and parameters, the first scalars of an interval.
+fn interval_variables(inputs: &[usize], sources: &[Source], analysis: &Analysis) -> Variables {
     let mut variables = Variables::default();
-    for &source in voltages {
-        variables.add(Variable::voltage(source, sources[source].name.clone()));
+    for &source in inputs {
+        let Source { name, kind, .. } = &sources[source];
+        variables.add(Variable::input(source, *kind, name.clone()));
     }
     for parameter in &analysis.parameters {
         variables.add(Variable::parameter(parameter.name.clone()));
@@ -237,6 +259,7 @@ impl Construction<'_> {
         terms.without(plan::GRAVITY, no_weight);
         dampers::build(self.presolved, self.reference, self.coordinates, &mut terms);
         joint_springs::build(&self.presolved.system, self.internals, &mut terms);
+        load::build(system, self.presolved, self.internals, &mut terms);
         system.components.build(&mut terms);
         terms.finish()
     }

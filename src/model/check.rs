@@ -1,6 +1,7 @@
 //! Validation of a system that is made by a program: the checks that a reader of files makes entry by entry.
 
-use crate::model::system::{Attachment, JointKind, Material, System};
+use crate::model::components::LoadPlace;
+use crate::model::system::{Attachment, Joint, JointKind, Material, System};
 use std::collections::BTreeSet;
 use thiserror::Error;
 
@@ -61,6 +62,7 @@ impl System {
                 self.check_point(component.name(), &point)?;
             }
         }
+        self.check_loads()?;
         for solid in &self.solids {
             let sound = solid.mesh.check();
             require(
@@ -91,6 +93,32 @@ impl System {
                 || "a solid that the system does not have".to_owned(),
                 "one of its solids",
             )?;
+        }
+        Ok(())
+    }
+
+    fn check_loads(&self) -> Result<(), SystemError> {
+        for load in &self.components.loads {
+            match load.on {
+                LoadPlace::Point { at, direction } => {
+                    self.check_point(&load.name, &at)?;
+                    require(
+                        (direction.norm() - 1.0).abs() < 1e-9,
+                        &load.name,
+                        || format!("the direction {direction:?}"),
+                        "a direction of length one",
+                    )?;
+                }
+                LoadPlace::Joint(joint) => {
+                    let has = |joint: &Joint| joint.has_coordinate();
+                    require(
+                        self.joints.get(joint).is_some_and(has),
+                        &load.name,
+                        || "a load on a joint that has no coordinate".to_owned(),
+                        "a revolute or prismatic joint of the system",
+                    )?;
+                }
+            }
         }
         Ok(())
     }

@@ -1,6 +1,6 @@
 //! Immobile parts of a system: bodies, blocks and muscles at rest on which no force acts.
 //!
-//! In the reference configuration muscles and blocks are free of stress, so that weight and electric fields are the only
+//! In the reference configuration muscles and blocks are free of stress, so that weight, electric fields and loads are the only
 //! forces. Joints, muscles and glue connect bodies. Two parts fixed to the ground are not thereby connected.
 
 use crate::math::DisjointSets;
@@ -112,6 +112,11 @@ impl Parts {
             // Springs come first.
             if component.is_prestressed() || is_sought(index, analysis) {
                 moved.extend(bodies_of(component));
+            }
+        }
+        for (source, load) in (system.first_load()..).zip(&system.components.loads) {
+            if !analysis.zero_inputs.contains(&source) {
+                moved.extend(load.bodies(system));
             }
         }
         let is_loaded = |joint: &&Joint| joint.spring.is_some_and(|spring| spring.rest != 0.0);

@@ -4,6 +4,7 @@
 
 use crate::kinematics::MaterialVector;
 use crate::model::analysis::{Analysis, Coordinates};
+use crate::model::components::LoadPlace;
 use crate::model::graph::Graph;
 use crate::model::presolved::Presolved;
 use crate::model::solids::Solids;
@@ -68,7 +69,7 @@ pub(super) struct Internals {
 
 impl Internals {
     /// Those of a scene and its presolved system with its graph: redundant coordinates lack those of joints with
-    /// springs. Muscles at rest remember nothing.
+    /// springs or loads. Muscles at rest remember nothing.
     pub(super) fn new(
         (scene, presolved): (&System, &Presolved),
         analysis: &Analysis,
@@ -81,8 +82,12 @@ impl Internals {
         let mut list = Vec::new();
         if coordinates == Coordinates::Redundant {
             let joints = system.joints.iter().enumerate();
-            let sprung = joints.filter(|(_, joint)| joint.spring.is_some());
-            list.extend(sprung.map(|(j, joint)| Internal::of_joint(j, joint)));
+            let is_loaded = |j: usize| {
+                let mut loads = scene.components.loads.iter();
+                loads.any(|load| load.on == LoadPlace::Joint(presolved.joints[j]))
+            };
+            let needed = joints.filter(|(j, joint)| joint.spring.is_some() || is_loaded(*j));
+            list.extend(needed.map(|(j, joint)| Internal::of_joint(j, joint)));
         }
         for (m, muscle) in scene.muscles.iter().enumerate() {
             let mut ends = [muscle.from, muscle.to].into_iter();

@@ -77,7 +77,7 @@ impl Known<'_> {
                 instant(shape, energy, [self.span(muscle, vectors)])
             }
             Quantity::Capacitance { muscle } => {
-                self.variables.voltage(muscle)?;
+                self.variables.input(muscle)?;
                 let energy = capacitance(&self.presolved.system.muscles[muscle])?;
                 instant(shape, energy, [self.span(muscle, vectors)])
             }
@@ -148,7 +148,7 @@ impl Known<'_> {
         shape: Shape,
         vectors: &mut Vectors,
     ) -> Option<Box<dyn Measure>> {
-        let scalar = self.variables.voltage(muscle)?;
+        let scalar = self.variables.input(muscle)?;
         let of = &self.presolved.system.muscles[muscle];
         let energy = SquaredField {
             length: of.length(),

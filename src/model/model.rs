@@ -13,7 +13,7 @@ use crate::model::joints::JointReading;
 use crate::model::plan::{LeftOut, Present};
 use crate::model::presolved::Presolved;
 use crate::model::solid_block::SolidBlock;
-use crate::model::system::{Source, System};
+use crate::model::system::{InputKind, Source, System};
 use crate::model::variables::{Size, Variable, Variables};
 use crate::sparse::Symmetry;
 
@@ -271,6 +271,12 @@ impl Model {
         let voltages = self.variables.sources().map(|s| voltages[s]);
         let parameters = self.analysis.parameters.iter();
         voltages.chain(parameters.map(|p| p.guess)).collect()
+    }
+
+    /// Physical kind of the input of a source; a voltage where the scene has no such source.
+    pub fn input_kind(&self, source: usize) -> InputKind {
+        let source = self.sources.get(source);
+        source.map_or(InputKind::Voltage, |source| source.kind)
     }
 
     /// The sought parameter that a variable is.

@@ -5,7 +5,7 @@
 pub(super) const GRAVITY: &str = "gravity";
 
 /// Names of the terms of the library, in the order of the sum; those of other crates follow.
-pub const TERMS: [&str; 23] = [
+pub const TERMS: [&str; 24] = [
     "body inertia",
     "muscle inertia",
     "block inertia",
@@ -19,6 +19,7 @@ pub const TERMS: [&str; 23] = [
     "joint elasticity",
     "spring elasticity",
     "tendon elasticity",
+    "loads",
     "block viscosity",
     "muscle viscosity",
     "maxwell viscosity",

@@ -166,7 +166,7 @@ impl Presolved {
 
 /// Without voltage a muscle is passive and a driven electrode is grounded.
 fn set_to_zero(system: &mut System, analysis: &Analysis) {
-    for &source in &analysis.zero_voltage {
+    for &source in &analysis.zero_inputs {
         if let Some(muscle) = system.muscles.get_mut(source) {
             let material = muscle.material;
             muscle.material = Material {
@@ -179,7 +179,7 @@ fn set_to_zero(system: &mut System, analysis: &Analysis) {
         let mut electrodes: Vec<Electrode> = Vec::new();
         for electrode in std::mem::take(&mut solid.electrodes) {
             let is_silent = matches!(electrode.potential, Potential::Driven { source, .. }
-                if analysis.zero_voltage.contains(&source));
+                if analysis.zero_inputs.contains(&source));
             if !is_silent {
                 electrodes.push(electrode);
                 continue;

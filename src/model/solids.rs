@@ -147,7 +147,7 @@ fn terminals(
             }),
             Potential::Driven { source, factor } => Connection::Terminal(ScalarArg {
                 constant: 0.0,
-                scalar: variables.voltage(source).map(|s| (s, factor)),
+                scalar: variables.input(source).map(|s| (s, factor)),
             }),
             Potential::Floating => Connection::Floating(e),
         };

@@ -3,7 +3,7 @@
 use crate::mesh::Mesh;
 pub use crate::model::attachment::Attachment;
 pub use crate::model::bodies::{Body, Shape, directors_along};
-use crate::model::components::Components;
+use crate::model::components::{Components, Load};
 pub use crate::model::maxwell::{MaxwellBranch, MaxwellBranches};
 use nalgebra::Vector3;
 
@@ -28,13 +28,67 @@ pub struct System {
     pub components: Components,
 }
 
-/// Part that a voltage drives, and the name of the voltage.
+/// Part that an input drives, and the name of the input.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Source {
     /// Name in files.
     pub name: String,
-    /// True if the voltage has an effect: a muscle without electric constants takes none.
+    /// Physical kind of the input.
+    pub kind: InputKind,
+    /// True if it is a voltage that has an effect: a muscle without electric constants takes none.
     pub takes_voltage: bool,
+}
+
+/// Physical kind of an input.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum InputKind {
+    /// Voltage of a muscle or a driven electrode, in V.
+    Voltage,
+    /// Force of a load, in N.
+    Force,
+    /// Torque of a load, in N mm.
+    Torque,
+}
+
+impl InputKind {
+    /// Unit inside.
+    pub const fn unit(self) -> &'static str {
+        match self {
+            Self::Voltage => "V",
+            Self::Force => "N",
+            Self::Torque => "N mm",
+        }
+    }
+
+    /// SI unit, and its size in the unit inside.
+    pub const fn si(self) -> (&'static str, f64) {
+        match self {
+            Self::Voltage => ("V", 1.0),
+            Self::Force => ("N", 1.0),
+            Self::Torque => ("N m", 1e3),
+        }
+    }
+
+    /// Unit in which objectives and charts count it, and its size in the unit inside.
+    pub const fn counted(self) -> (&'static str, f64) {
+        match self {
+            Self::Voltage => ("kV", 1e3),
+            Self::Force => ("N", 1.0),
+            Self::Torque => ("N m", 1e3),
+        }
+    }
+}
+
+impl Source {
+    /// Returns true if it is a load.
+    pub fn is_load(&self) -> bool {
+        self.kind != InputKind::Voltage
+    }
+
+    /// Returns true if its input has an effect.
+    pub fn acts(&self) -> bool {
+        self.takes_voltage || self.is_load()
+    }
 }
 
 impl System {
@@ -90,11 +144,12 @@ impl System {
         of_muscles.chain(of_blocks).sum()
     }
 
-    /// All that voltages are named for, one voltage each: the muscles, then the driven electrodes of blocks by
-    /// `block.electrode`, in the order of the scene. Electrodes of one name in a block share one voltage.
+    /// All that inputs are named for, one each: the muscles, then the driven electrodes of blocks by
+    /// `block.electrode`, then the loads, in the order of the scene. Electrodes of one name in a block share one voltage.
     pub fn sources(&self) -> Vec<Source> {
         let muscle = |m: &Muscle| Source {
             name: m.name.clone(),
+            kind: InputKind::Voltage,
             takes_voltage: m.material.electric.is_some(),
         };
         let mut sources: Vec<Source> = self.muscles.iter().map(muscle).collect();
@@ -105,12 +160,31 @@ impl System {
                 {
                     sources.push(Source {
                         name: format!("{}.{}", solid.name, electrode.name),
+                        kind: InputKind::Voltage,
                         takes_voltage: true,
                     });
                 }
             }
         }
+        let load = |load: &Load| Source {
+            name: load.name.clone(),
+            kind: load.kind(self),
+            takes_voltage: false,
+        };
+        sources.extend(self.components.loads.iter().map(load));
         sources
+    }
+
+    /// Index of the first load among the sources.
+    pub fn first_load(&self) -> usize {
+        self.sources().len() - self.components.loads.len()
+    }
+
+    /// Returns the load that a source is.
+    pub fn load(&self, source: usize) -> Option<&Load> {
+        self.components
+            .loads
+            .get(source.checked_sub(self.first_load())?)
     }
 }
 

@@ -193,7 +193,7 @@ impl<'a> Terms<'a> {
 
     /// Scalar of the voltage of a source; `None` where it is zero all the time, or does nothing.
     pub fn input(&self, source: usize) -> Option<usize> {
-        self.variables.voltage(source)
+        self.variables.input(source)
     }
 
     /// Adds a formula of vectors of the intervals: a potential energy, or where it has virtual displacements a virtual work.

@@ -3,6 +3,7 @@
 //! The role determines if a variable belongs to an instant or an interval, has an equation, or is prescribed from outside.
 //! Each role has one range of places in the list of its time, so that evaluations index and never search.
 
+use crate::model::system::InputKind;
 use std::fmt;
 use std::ops::Range;
 
@@ -26,6 +27,8 @@ pub enum Role {
     Multiplier,
     /// Voltage of a source, in V: an input.
     Voltage,
+    /// Size of a load, in N or N mm: an input.
+    Load,
     /// Constant of the system that is sought, in its unit: an input with one value for all intervals, in each of which terms read it.
     Parameter,
     /// Electric potential of a node or a floating electrode, with Gauss's law.
@@ -35,10 +38,11 @@ pub enum Role {
 }
 
 /// All roles, in order.
-const ROLES: [Role; 6] = [
+const ROLES: [Role; 7] = [
     Role::Coordinate,
     Role::Multiplier,
     Role::Voltage,
+    Role::Load,
     Role::Parameter,
     Role::Potential,
     Role::Duration,
@@ -57,7 +61,7 @@ impl Role {
     const fn list(self) -> Time {
         match self {
             Self::Coordinate | Self::Multiplier => Time::Instant,
-            Self::Voltage | Self::Parameter | Self::Potential => Time::Interval,
+            Self::Voltage | Self::Load | Self::Parameter | Self::Potential => Time::Interval,
             Self::Duration => Time::Horizon,
         }
     }
@@ -67,7 +71,7 @@ impl Role {
     pub const fn has_equation(self) -> bool {
         match self {
             Self::Coordinate | Self::Multiplier | Self::Potential => true,
-            Self::Voltage | Self::Parameter | Self::Duration => false,
+            Self::Voltage | Self::Load | Self::Parameter | Self::Duration => false,
         }
     }
 }
@@ -90,20 +94,24 @@ pub struct Variable {
     pub role: Role,
     /// Name of the part to which it belongs; of a coordinate and the duration the full name.
     pub name: String,
-    /// Size of one, in rad, mm, ms or V: potentials are counted in a unit of their own.
+    /// Size of one, in rad, mm, ms, V, N or N mm: potentials are counted in a unit of their own.
     pub unit: f64,
     /// Typical size of its value.
     pub size: Size,
-    /// Source of a voltage (see [`System::sources`](crate::model::System::sources)).
+    /// Source of a voltage or load (see [`System::sources`](crate::model::System::sources)).
     pub source: Option<usize>,
 }
 
 impl Variable {
-    /// The voltage of a source.
-    pub fn voltage(source: usize, name: String) -> Self {
+    /// The input of a source: a voltage or a load.
+    pub fn input(source: usize, kind: InputKind, name: String) -> Self {
+        let role = match kind {
+            InputKind::Voltage => Role::Voltage,
+            InputKind::Force | InputKind::Torque => Role::Load,
+        };
         Self {
             source: Some(source),
-            ..Self::with_role(Role::Voltage, name, Size::Unknown)
+            ..Self::with_role(role, name, Size::Unknown)
         }
     }
 
@@ -138,6 +146,7 @@ impl fmt::Display for Variable {
             Role::Coordinate | Role::Parameter | Role::Duration => "",
             Role::Multiplier => "multiplier of ",
             Role::Voltage => "voltage of ",
+            Role::Load => "load ",
             Role::Potential => "potential of ",
         };
         write!(f, "{of}{}", self.name)
@@ -226,6 +235,24 @@ impl Variables {
         self.ranges[role as usize].len()
     }
 
+    /// Places of the scalars of an interval that are voltages or loads.
+    pub fn sources_range(&self) -> Range<usize> {
+        0..self.count(Role::Voltage) + self.count(Role::Load)
+    }
+
+    /// Inputs with their roles.
+    pub fn with_roles<'s>(&'s self, inputs: &'s [f64]) -> impl Iterator<Item = (f64, Role)> + 's {
+        let inputs = inputs.iter().zip(&self.interval);
+        inputs.map(|(&value, variable)| (value, variable.role))
+    }
+
+    /// Inputs, zero where `keeps` does not hold for their role.
+    pub fn inputs_where(&self, inputs: &[f64], keeps: impl Fn(Role) -> bool) -> Vec<f64> {
+        let kept = self.with_roles(inputs);
+        kept.map(|(value, role)| if keeps(role) { value } else { 0.0 })
+            .collect()
+    }
+
     /// Places of the scalars of an interval that are prescribed from outside or sought by an optimisation.
     pub fn inputs(&self) -> Range<usize> {
         0..self.inputs
@@ -248,13 +275,13 @@ impl Variables {
         scalars
     }
 
-    /// Place of the voltage of a source among the scalars of an interval; `None` where it does nothing.
-    pub fn voltage(&self, source: usize) -> Option<usize> {
+    /// Place of the voltage or load of a source among the scalars of an interval; `None` where it does nothing.
+    pub fn input(&self, source: usize) -> Option<usize> {
         let is_of = |variable: &Variable| variable.source == Some(source);
         self.interval.iter().position(is_of)
     }
 
-    /// Source of each voltage.
+    /// Source of each voltage and load.
     pub fn sources(&self) -> impl Iterator<Item = usize> + '_ {
         self.interval.iter().filter_map(|variable| variable.source)
     }

@@ -8,6 +8,7 @@ mod drawing;
 pub mod file_set;
 mod frame;
 pub mod gltf;
+pub mod inputs;
 pub mod joints;
 pub mod legend;
 pub mod lines;
@@ -32,13 +33,13 @@ pub mod tip_path;
 pub mod tracking;
 pub mod view;
 pub mod viewpoint;
-pub mod voltages;
 
 pub use run::{Branch, Figures, PageContent, Run};
 
 use rayon::prelude::*;
 
 use crate::math::{has_pool, join};
+use crate::model::system::InputKind;
 use crate::report::atomic::WriteError;
 use crate::report::file_set::FileSet;
 
@@ -83,7 +84,7 @@ fn tables_and_figures(run: &Run<'_>) -> Vec<(&'static str, String)> {
     let mut motions: Vec<_> = run.comparison.into_iter().collect();
     motions.push((run.name, trajectory));
 
-    let makers: [Maker<'_>; 12] = [
+    let makers: [Maker<'_>; 14] = [
         &|| {
             let csv = table::trajectory_csv(run.tabulated, origin);
             Some(("trajectory.csv", csv))
@@ -105,10 +106,9 @@ fn tables_and_figures(run: &Run<'_>) -> Vec<(&'static str, String)> {
             let stills = snapshots::svg(system, trajectory, skins, view, origin)?;
             Some(("snapshots.svg", stills))
         },
-        &|| {
-            let is_driven = !system.sources().is_empty();
-            is_driven.then(|| ("voltages.svg", voltages::svg(system, trajectory, origin)))
-        },
+        &|| inputs::svg(system, trajectory, InputKind::Voltage, origin),
+        &|| inputs::svg(system, trajectory, InputKind::Force, origin),
+        &|| inputs::svg(system, trajectory, InputKind::Torque, origin),
         &|| {
             let is_marked = !system.markers.is_empty();
             let svg = || tip_path::svg(system, &motions, tracked, view, origin);

@@ -67,8 +67,8 @@ pub fn svg(
     );
     let highest = vec![skins.highest()];
     let scale = match shown.held {
-        Some(_) => style::voltage_scale([&voltages, &highest]),
-        None => style::voltage_scale(trajectory.voltages.iter().chain([&highest])),
+        Some(_) => style::voltage_scale([&voltages[..system.first_load()], &highest]),
+        None => style::voltage_scale(trajectory.voltages(system).chain([&highest[..]])),
     };
     let is_charged = is_charged(system, skins);
     let mut drawing = Drawing {

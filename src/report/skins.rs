@@ -99,7 +99,7 @@ impl Skins {
                 skin.observe(block, nodes, &instant.x, scalars);
                 let potentials = match skin.muscle {
                     Some(muscle) => {
-                        let s = model.variables.voltage(muscle);
+                        let s = model.variables.input(muscle);
                         vec![s.map_or(0.0, |s| scalars[s].abs()); nodes.len()]
                     }
                     None => {

@@ -47,7 +47,7 @@ pub(super) fn svg(
     let points = points(system, trajectory, skins);
     let (view, [width, height]) = view.fitted(&points, [0.0, 0.0], PANEL);
     let ground = ground_plate(system);
-    let scale = style::voltage_scale(trajectory.voltages.iter().chain([&vec![skins.highest()]]));
+    let scale = style::voltage_scale(trajectory.voltages(system).chain([&[skins.highest()][..]]));
     let step = [width.max(40.0) + GAP, height + LABEL + GAP];
     let rows = (instants.len() as f64 * step[0] / ROW).ceil() as usize;
     let columns = instants.len().div_ceil(rows);

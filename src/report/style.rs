@@ -114,7 +114,7 @@ pub fn voltage(fraction: f64) -> Colour {
 }
 
 /// Full scale of a voltage colour bar in V: the next round number above the highest voltage.
-pub fn voltage_scale<'a>(voltages: impl IntoIterator<Item = &'a Vec<f64>>) -> f64 {
+pub fn voltage_scale<'a>(voltages: impl IntoIterator<Item = &'a [f64]>) -> f64 {
     let highest = voltages
         .into_iter()
         .flatten()

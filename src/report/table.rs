@@ -61,12 +61,12 @@ pub fn trajectory_csv(observations: &Observations, origin: &Origin) -> String {
     )
 }
 
-/// The headings of `controls.csv`: start and end of an interval in ms and the voltage of each source in V.
+/// The headings of `controls.csv`: start and end of an interval in ms, the voltage of each source in V, and each load.
 pub fn control_headings(system: &System) -> Vec<String> {
     let ends = ["start [ms]", "end [ms]"].map(str::to_owned);
     let sources = system.sources().into_iter();
-    let voltages = sources.map(|source| format!("{} [V]", source.name));
-    ends.into_iter().chain(voltages).collect()
+    let inputs = sources.map(|source| format!("{} [{}]", source.name, source.kind.unit()));
+    ends.into_iter().chain(inputs).collect()
 }
 
 /// `controls.csv`: one row per interval.

@@ -38,9 +38,11 @@ pub fn active(
     for (i, &column) in program.unknowns().columns.iter().enumerate() {
         let side = reached(x[i], bounds.lower[i], bounds.upper[i]);
         match (column, column.of(&model.variables).role) {
-            (_, Role::Voltage) => {
-                let name = &column.of(&model.variables).name;
-                seen.add_voltage(name, control.voltage_bounds, side);
+            (_, Role::Voltage | Role::Load) => {
+                let variable = column.of(&model.variables);
+                let source = variable.source.expect("an input of a source");
+                let unit = model.input_kind(source).unit();
+                seen.add_input(&variable.name, control.bounds(variable), unit, side);
             }
             (Column::Instant { i, .. }, Role::Coordinate) => {
                 seen.add_coordinate(i, model, control, side);
@@ -87,12 +89,12 @@ fn reached(value: f64, low: f64, high: f64) -> [bool; 2] {
 struct ActiveLimits(BTreeMap<String, Active>);
 
 impl ActiveLimits {
-    /// The bounds in V of a voltage in an interval.
-    fn add_voltage(&mut self, name: &str, bounds: [f64; 2], side: [bool; 2]) {
-        for (volts, is_reached) in bounds.into_iter().zip(side) {
-            if volts.is_finite() && volts != 0.0 {
-                let what = format!("{name} at its bound of {} V", significant(volts, 4));
-                self.add(what, is_reached, "interval", true);
+    /// The bounds of a voltage or load in an interval.
+    fn add_input(&mut self, name: &str, bounds: [f64; 2], unit: &str, side: [bool; 2]) {
+        for (bound, is_reached) in bounds.into_iter().zip(side) {
+            if bound.is_finite() && bound != 0.0 {
+                let what = format!("{name} at its bound of {} {unit}", significant(bound, 4));
+                self.add(what, is_reached, "interval", unit == "V");
             }
         }
     }

@@ -39,8 +39,9 @@ pub(crate) fn displaced(control: &Control, first: &Optimum) -> Control {
             // Without bounds nothing is known of the size of voltages.
             let half = 0.5 * (low + high);
             let half = if half.is_finite() { half } else { 0.0 };
-            let sources = first.model.sources.len();
-            Guess::Simulate(Voltages::Constant(vec![half; sources]))
+            let sources = first.model.sources.iter();
+            let row = sources.map(|source| if source.is_load() { 0.0 } else { half });
+            Guess::Simulate(Voltages::Constant(row.collect()))
         }
     };
     Control {

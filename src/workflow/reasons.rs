@@ -3,7 +3,7 @@
 use serde::Serialize;
 
 use crate::control::problem::{Control, Duration, SourceEnergy};
-use crate::model::system::JointKind;
+use crate::model::system::{InputKind, JointKind, Source};
 use crate::model::{BodyLocation, Model};
 
 /// Something that a scene or a problem could call for and does not.
@@ -39,13 +39,22 @@ pub fn absent(model: &Model, control: Option<&Control>) -> Vec<Absent> {
         let names = sources.iter().map(|&s| model.sources[s].name.as_str());
         listed(&names.collect::<Vec<_>>())
     };
-    let (zero_voltage, cut): (Vec<usize>, Vec<usize>) = model
-        .reached
-        .iter()
-        .filter(|s| model.variables.voltage(**s).is_none())
-        .partition(|s| model.analysis.zero_voltage.contains(s));
-    if !zero_voltage.is_empty() {
-        let why = format!("0 V all the time at {}", names(&zero_voltage));
+    let absent = model.reached.iter().copied();
+    let absent = absent.filter(|s| model.variables.input(*s).is_none());
+    let (loads, voltages): (Vec<usize>, Vec<usize>) =
+        absent.partition(|&s| model.sources[s].is_load());
+    let (zero_inputs, cut): (Vec<usize>, Vec<usize>) = voltages
+        .into_iter()
+        .partition(|s| model.analysis.zero_inputs.contains(s));
+    if !loads.is_empty() {
+        let why = format!(
+            "{} is zero all the time, or acts on what does not move",
+            names(&loads)
+        );
+        add("load".to_owned(), why);
+    }
+    if !zero_inputs.is_empty() {
+        let why = format!("0 V all the time at {}", names(&zero_inputs));
         add("voltage".to_owned(), why);
     }
     if !cut.is_empty() {
@@ -90,9 +99,13 @@ pub fn absent(model: &Model, control: Option<&Control>) -> Vec<Absent> {
 }
 
 fn absent_of_control(model: &Model, control: &Control, add: &mut impl FnMut(String, String)) {
-    let is_absent = |&s: &usize| control.is_given(s) && model.variables.voltage(s).is_some();
+    let is_absent = |&s: &usize| control.is_given(s) && model.variables.input(s).is_some();
     for source in (0..model.sources.len()).filter(is_absent) {
-        let name = format!("unknown of the voltage of {}", model.sources[source].name);
+        let Source { name, kind, .. } = &model.sources[source];
+        let name = match kind {
+            InputKind::Voltage => format!("unknown of the voltage of {name}"),
+            InputKind::Force | InputKind::Torque => format!("unknown of the load {name}"),
+        };
         add(name, "the problem gives it".to_owned());
     }
     if let Duration::Given(_) = control.duration {

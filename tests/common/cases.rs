@@ -1,6 +1,8 @@
 //! A list of control problems that together call for every effect, joint, limit, goal and objective.
 
-use super::systems::{GRAVITY, ball, blocks, branched, remembering, satellite, sprung, tied};
+use super::systems::{
+    GRAVITY, ball, blocks, branched, loaded, remembering, satellite, sprung, tied,
+};
 use super::tracked::{energies, tracked};
 use super::trunk;
 use nalgebra::Vector3;
@@ -41,6 +43,7 @@ pub fn control(system: &System, intervals: usize) -> Control {
         start: BoundaryState::RestAtVoltages(vec![0.0; system.sources().len()], Rest::Everything),
         goal: joints(&[]),
         voltage_bounds: [0.0, 3000.0],
+        load_bounds: BTreeMap::new(),
         given: BTreeMap::new(),
         course: None,
         parameters: Vec::new(),
@@ -255,6 +258,11 @@ pub fn cases() -> Vec<Case> {
             ),
             &|c| c.goal = joints(&[(1, 0.2)]),
         ),
+        case("loads", loaded(trunk(2)), &|_| {}),
+        case("loads, free time", loaded(trunk(2)), &|c| {
+            c.duration = free;
+            c.objective.rate = 0.3;
+        }),
         case("springs and a tendon", tied(trunk(2)), &|_| {}),
         case("springs and a tendon, free time", tied(trunk(2)), &|c| {
             c.duration = free;

@@ -6,6 +6,7 @@ use proboscis::energy::Energy;
 use proboscis::functional::{Element, Formulas, Functional, Group, Stencil, Term, VectorArg};
 use proboscis::kinematics::MaterialVector;
 use proboscis::math::Jet;
+use proboscis::model::system::InputKind;
 use proboscis::model::{Model, Variable};
 
 /// Scalars of a program are in kV: one unit of force is a thousand units of the scalar.
@@ -53,7 +54,7 @@ pub fn with_control<E: Energy<4> + 'static>(
     terms.push(Box::new(control) as Box<dyn Term>);
     let intervals = Functional::new(terms, intervals.measures, intervals.vectors, 1);
     model.action = Reduced::new(map, intervals, instants);
-    let control = Variable::voltage(0, "control".to_owned());
+    let control = Variable::input(0, InputKind::Voltage, "control".to_owned());
     assert_eq!(model.variables.add(control), 0);
     model
 }

@@ -55,6 +55,7 @@ fn double_integrator(intervals: usize) -> Attempt<usize> {
         start: rest_at(0.0),
         goal: rest_at(GOAL),
         voltage_bounds: [f64::NEG_INFINITY, f64::INFINITY],
+        load_bounds: Default::default(),
         given: Default::default(),
         course: None,
         parameters: Vec::new(),

@@ -56,6 +56,7 @@ fn optimum(
         start: rest_at(0.0),
         goal: rest_at(goal),
         voltage_bounds: [f64::NEG_INFINITY, f64::INFINITY],
+        load_bounds: Default::default(),
         given: BTreeMap::new(),
         course: None,
         parameters: Vec::new(),

@@ -14,7 +14,7 @@ fn paid(optimum: &Optimum, after: &[f64]) -> [f64; 2] {
     let model = &optimum.model;
     let mut paid = [0.0; 2];
     for (m, &span) in model.spans.iter().enumerate() {
-        let scalar = model.variables.voltage(m).unwrap();
+        let scalar = model.variables.input(m).unwrap();
         let charge = |k: usize, v: f64| {
             let i = (placed(model, &optimum.discrete.z[k]).x[span].norm() / 40.0).powi(2);
             2.0 * 4000.0 * VACUUM_PERMITTIVITY * (2.0 - i + 0.5 / i) / (0.05 * 0.05) * v

@@ -16,6 +16,7 @@ mod held_ends;
 mod identified;
 mod interface;
 mod limits;
+mod loads;
 mod meshes;
 mod moved;
 mod optimality;

@@ -30,6 +30,7 @@ fn under(system: &System, control: &Control, ends: &[f64], rows: &[Vec<f64>]) ->
             rows: rows.iter().cloned().chain([last]).collect(),
             afterwards: Afterwards::OfLastInterval,
             solution: None,
+            others: Default::default(),
         }),
         ..control.clone()
     };

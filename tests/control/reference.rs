@@ -37,6 +37,7 @@ fn problem(name: &str, coordinates: Coordinates) -> Control {
         start: BoundaryState::RestAtVoltages(vec![0.0; hold.len()], Rest::Everything),
         goal: BoundaryState::RestAtVoltages(hold, Rest::Everything),
         voltage_bounds: [0.0, 3000.0],
+        load_bounds: Default::default(),
         given: BTreeMap::new(),
         course: None,
         parameters: Vec::new(),

@@ -57,6 +57,7 @@ fn voltages_are_found_again_from_the_motion_of_the_joints() {
         rows: (0..=20).map(voltages).collect(),
         afterwards: proboscis::control::problem::Afterwards::OfLastInterval,
         solution: None,
+        others: Default::default(),
     });
     let h = 10.0;
     let (model, boundary) =

@@ -79,7 +79,7 @@ fn the_sum_is_that_of_charges_and_stored_energies() {
             let mut expected = 0.0;
             for cost in &control.objective.energies {
                 let s = cost.source;
-                let scalar = model.variables.voltage(s).unwrap();
+                let scalar = model.variables.input(s).unwrap();
                 let muscle = &system.muscles[s];
                 let c = |k: usize| capacitance(&system, model, &motion.z[k], muscle);
                 let mut last = before[s];

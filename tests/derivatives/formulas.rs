@@ -10,7 +10,7 @@ use crate::naive_formulas::Formula;
 use nalgebra::{SMatrix, SVector};
 use num_dual::{Dual64, HyperDual};
 use proboscis::energy::{
-    Angle, AngularDamper, Capacitance, Coincidence, CoordinateDamper, CoordinateSpring,
+    Angle, AngularDamper, Capacitance, Coincidence, CoordinateDamper, CoordinateSpring, DeadLoad,
     DielectricCell, ElasticCell, Energy, Gravity, JointAngle, JointDisplacement, LinearDamper,
     LinearSpring, MaxwellCell, Orthogonality, OutsideBox, PositionComponent, Projection,
     SectionInertia, SpanDamper, SquaredDistance, SquaredField, ViscousCell,
@@ -257,6 +257,8 @@ fn energies_have_the_derivatives_of_naive_formulas() {
         stiffness: 0.7,
         rest: 0.4,
     };
+    let direction = Vector::new(0.3, -0.7, 0.9);
+    law("dead load", &DeadLoad { direction }, 0.2, 1.1);
     law("coordinate spring", &spring, 0.2, 1.1);
     let branch = MaxwellCell {
         length: 0.9,

@@ -2,7 +2,7 @@
 
 use num_dual::{Dual, DualNum};
 use proboscis::energy::{
-    Angle, AngularDamper, Capacitance, Coincidence, CoordinateDamper, CoordinateSpring,
+    Angle, AngularDamper, Capacitance, Coincidence, CoordinateDamper, CoordinateSpring, DeadLoad,
     DielectricCell, ElasticCell, Energy, Gravity, JointAngle, JointDisplacement, LinearDamper,
     LinearSpring, MaxwellCell, Orthogonality, OutsideBox, PositionComponent, Projection,
     SectionInertia, SpanDamper, SquaredDistance, SquaredField, ViscousCell,
@@ -139,6 +139,15 @@ impl Formula<27> for AngularDamper {
 impl Formula<6> for CoordinateDamper {
     fn naive<D: DualNum<f64> + Copy>(&self, p: &[D; 6]) -> D {
         -polarised(three(p, 3), three(p, 0)) * self.coefficient
+    }
+}
+
+impl Formula<4> for DeadLoad {
+    const VECTORS: usize = 1;
+
+    fn naive<D: DualNum<f64> + Copy>(&self, p: &[D; 4]) -> D {
+        let direction = three(self.direction.as_slice(), 0).map(D::from);
+        -polarised(direction, three(p, 0)) * p[3]
     }
 }
 

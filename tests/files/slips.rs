@@ -22,7 +22,7 @@ fn what_is_not_offered_is_answered_so() {
         ("contact", "there is no contact"),
         ("contacts", "there is no contact"),
         ("Friction", "there is no friction"),
-        ("motors", "there are no motors"),
+        ("motors", "is an entry of"),
         ("temperature", "there is no temperature"),
         ("obstacles", "kept out of a region by \"limits\""),
     ] {

@@ -70,6 +70,7 @@ fn simulation_and_solution_are_checked() {
             rows,
             afterwards: Afterwards::OfLastInterval,
             solution: Some(folder.path().join("solution.json")),
+            others: Default::default(),
         }
     );
     let BoundaryState::JointAngles { angles, rates, .. } = simulation.start else {
@@ -218,6 +219,7 @@ fn voltages_may_be_a_table() {
             rows,
             afterwards: Afterwards::Held,
             solution: None,
+            others: Default::default(),
         }
     );
     let at = |time| voltages.at(time)[0];

@@ -5,7 +5,7 @@ use std::fs;
 use crate::common::tracked::tracked;
 use nalgebra::Vector3;
 use proboscis::dynamics::trajectory::{Column, Observations, Trajectory};
-use proboscis::model::system::{JointKind, Shape, System};
+use proboscis::model::system::{InputKind, JointKind, Shape, System};
 use proboscis::report::axes::{Axis, Extent};
 use proboscis::report::file_set::FileSet;
 use proboscis::report::lines::{LinePlot, Mark, Series};
@@ -14,7 +14,7 @@ use proboscis::report::pose::Shown;
 use proboscis::report::skins::Skins;
 use proboscis::report::viewpoint::Viewpoint;
 use proboscis::report::{
-    PageContent, Run, markup, pose, style, table, tip_path, voltages, write_run,
+    PageContent, Run, inputs, markup, pose, style, table, tip_path, write_run,
 };
 
 fn origin() -> Origin {
@@ -164,12 +164,16 @@ fn agonists_are_solid_and_antagonists_dashed() {
     let solid_alone = |trajectory: &Trajectory| {
         let mut system = system.clone();
         system.muscles.truncate(1);
-        voltages::svg(&system, trajectory, &origin())
+        inputs::svg(&system, trajectory, InputKind::Voltage, &origin())
+            .unwrap()
+            .1
     };
     for (k, voltages) in trajectory.voltages.iter_mut().enumerate() {
         *voltages = (0..12).map(|i| 100.0 * (i + k) as f64).collect();
     }
-    let svg = voltages::svg(&system, &trajectory, &origin());
+    let svg = inputs::svg(&system, &trajectory, InputKind::Voltage, &origin())
+        .unwrap()
+        .1;
     assert_well_formed(&svg);
     let (colour, _) = style::muscle(0);
     assert_eq!(style::muscle(1).0, colour);
@@ -183,7 +187,9 @@ fn voltage_figures_hold_from_one_to_forty_muscles() {
     for segments in [1, 6, 20] {
         let system = crate::common::trunk::system(segments);
         let trajectory = crate::common::trunk::swing(&system, 5);
-        let svg = voltages::svg(&system, &trajectory, &origin());
+        let svg = inputs::svg(&system, &trajectory, InputKind::Voltage, &origin())
+            .unwrap()
+            .1;
         assert_well_formed(&svg);
         for muscle in &system.muscles {
             assert!(svg.contains(&format!(">\n{}\n<", muscle.name)));
@@ -207,7 +213,9 @@ fn what_is_not_finite_is_not_drawn() {
     let series = Series::curve("error", curve, style::INK).marked(Mark::Disc);
     let plot = LinePlot::new(Axis::log("work"), Axis::log("error"), vec![series]);
     for svg in [
-        voltages::svg(&system, &trajectory, &origin()),
+        inputs::svg(&system, &trajectory, InputKind::Voltage, &origin())
+            .unwrap()
+            .1,
         tip_path::svg(
             &system,
             &[("swing", &trajectory)],

@@ -27,20 +27,28 @@ fn check(system: &System, control: &Control) -> [usize; 2] {
         .map(|i| program.constraint_name(i))
         .collect();
 
-    // Every voltage of the system acts in these problems.
+    // Every voltage and load of the system acts in these problems.
     let sources: Vec<usize> = (0..model.sources.len())
-        .filter(|&s| model.sources[s].takes_voltage)
+        .filter(|&s| model.sources[s].acts())
         .collect();
     let voltage = |k: usize, s: usize| {
-        let name = &model.sources[s].name;
-        format!("voltage of {name} in interval {k}")
+        let source = &model.sources[s];
+        let role = if source.is_load() {
+            "load"
+        } else {
+            "voltage of"
+        };
+        format!("{role} {} in interval {k}", source.name)
     };
     let sought = (0..intervals).flat_map(|k| {
         let open = sources.iter().filter(|s| !control.given.contains_key(s));
         open.map(move |&s| voltage(k, s))
     });
-    assert_eq!(names(&columns, "voltage of "), sought.collect::<Vec<_>>());
-    for &(column, place) in &unknowns.voltages {
+    let inputs = [names(&columns, "voltage of "), names(&columns, "load ")].map(|list| list.len());
+    let sought: Vec<String> = sought.collect();
+    assert_eq!(inputs[0] + inputs[1], sought.len());
+    assert!(sought.iter().all(|name| columns.contains(name)));
+    for &(column, place) in &unknowns.inputs {
         let (k, s) = (place / sources.len(), place % sources.len());
         assert_eq!(columns[column], voltage(k, sources[s]));
     }
@@ -74,7 +82,7 @@ fn check(system: &System, control: &Control) -> [usize; 2] {
     assert_eq!(constraints, (intervals + 1 - decided) * m);
     let free = usize::from(matches!(control.duration, Duration::Free { .. }));
     assert_eq!(names(&columns, "interval length").len(), free);
-    let others = columns.len() - unknowns.voltages.len() - potentials.len() - multipliers - free;
+    let others = columns.len() - unknowns.inputs.len() - potentials.len() - multipliers - free;
     assert_eq!(others, (intervals - 1) * n + open);
     step(&model, n + m + count);
     [count, control.given.len()]
@@ -102,7 +110,7 @@ fn step(model: &Model, count: usize) {
         let name = variables.place(s).map(|i| &solved[i]);
         let expected = (variable.role != Role::Voltage).then(|| variable.to_string());
         assert_eq!(name, expected.as_ref());
-        let place = variable.source.map(|source| variables.voltage(source));
+        let place = variable.source.map(|source| variables.input(source));
         assert_eq!(place, (variable.role == Role::Voltage).then_some(Some(s)));
     }
 }

@@ -39,7 +39,7 @@ pub(in crate::control) fn overdetermined(
         rest: rows.iter().filter(is_rest).count(),
         given: coordinates.clone().filter(is_given).count(),
         goals: named.into_iter().collect(),
-        voltages: layout.unknowns.voltages.len(),
+        voltages: layout.unknowns.inputs.len(),
         intervals,
         has_elements: !model.solids.is_empty(),
     })

@@ -6,7 +6,6 @@ use crate::control::transcription::Transcription;
 use crate::control::transcription::energy_rows::{EnergyRow, Jump};
 use crate::control::transcription::kinematic_state::Placed;
 use crate::control::transcription::limit_rows::Site;
-use crate::control::transcription::units::KILOVOLT;
 use crate::math::Vector;
 
 impl Transcription<'_> {
@@ -123,7 +122,8 @@ impl Transcription<'_> {
         let row = &self.objective.energies[index];
         let count = self.model.action.layout().interval_scalars;
         let product = row.factor(jump.k, &self.workspace.scalars, count).product;
-        let volts = self.objective.kilovolt * KILOVOLT;
+        let input = &self.objective.inputs[jump.input];
+        let volts = input.scale * input.unit;
         sigma * product * self.capacitance(row, jump.k) * volts * volts
     }
 }

@@ -52,10 +52,12 @@ pub(super) struct Factor {
     pub(super) product: f64,
 }
 
-/// Neighbouring voltages that meet in the objective: those of interval k and of the one before.
+/// Neighbouring inputs that meet in the objective: those of interval k and of the one before.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Jump {
     pub(super) k: usize,
+    /// Its place among the inputs of an interval.
+    pub(super) input: usize,
     /// Index of the energies of the source, where they couple the two.
     pub(super) energy: Option<usize>,
 }
@@ -72,7 +74,7 @@ pub(super) fn energy_rows(
     let first = model.measured.len() - sources.len();
     let layout = model.action.layout();
     let row = |(&source, measure): (&usize, &Option<usize>)| {
-        let (measure, scalar) = (*measure, model.variables.voltage(source));
+        let (measure, scalar) = (*measure, model.variables.input(source));
         let (measure, scalar) = measure.zip(scalar)?;
         let vectors = model.action.instants.measures[measure].vectors();
         let weight = |energy: SourceEnergy| {

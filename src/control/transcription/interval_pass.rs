@@ -6,7 +6,7 @@ use crate::control::transcription::limit_rows::{LimitRow, Site};
 use crate::control::transcription::segment::{
     Segment, SegmentWorkspace, Shared, instant_of, needed,
 };
-use crate::control::transcription::units::{KILOVOLT, MILLISECOND};
+use crate::control::transcription::units::MILLISECOND;
 use crate::coordinates::{Configuration, Reduced};
 use crate::functional::{BlockMask, Horizon, Measure, Order, Sample};
 use crate::ipopt::interrupt;
@@ -253,22 +253,24 @@ impl Transcription<'_> {
         let pattern = self.model.action.layout();
         let tau = self.workspace.h * MILLISECOND;
         for k in 0..self.layout.intervals {
-            let curvature = sigma * self.objective.cost.curvature(k, tau) / (KILOVOLT * KILOVOLT);
-            for &(_, slot) in &self.objective.voltages {
-                self.workspace.values[pattern.scalars_at(k) + slot] += curvature;
+            let curvature = sigma * self.objective.cost.curvature(k, tau);
+            for input in &self.objective.inputs {
+                self.workspace.values[pattern.scalars_at(k) + input.slot] +=
+                    curvature / (input.unit * input.unit);
             }
         }
         if self.layout.horizon == Horizon::Free {
             let square = self.objective.cost.horizon(
-                &self.workspace.kilovolts,
+                &self.workspace.inputs,
                 tau,
                 &mut self.workspace.gradient,
             );
             let mut gradient = self.workspace.gradient.iter();
             for k in 0..self.layout.intervals {
                 let at = pattern.horizon_scalars_at(k);
-                for (&(s, _), slope) in self.objective.voltages.iter().zip(&mut gradient) {
-                    self.workspace.values[at + s] += sigma * slope * MILLISECOND / KILOVOLT;
+                for (input, slope) in self.objective.inputs.iter().zip(&mut gradient) {
+                    self.workspace.values[at + input.scalar] +=
+                        sigma * slope * MILLISECOND / input.unit;
                 }
             }
             self.workspace.values[pattern.horizon_square_at(self.layout.intervals)] +=

@@ -1,4 +1,4 @@
-//! The objective on a horizon: costs of voltages, of quantities and of energies, with its scale.
+//! The objective on a horizon: costs of inputs, of quantities and of energies, with its scale.
 
 use crate::control::boundary_conditions::BoundaryConditions;
 use crate::control::guess::InitialGuess;
@@ -7,7 +7,7 @@ use crate::control::problem::Control;
 use crate::control::transcription::cost_rows::{CostRow, cost_rows, costs_size};
 use crate::control::transcription::energy_rows::{EnergyRow, energies_size, energy_rows};
 use crate::control::transcription::units::{KILOVOLT, MILLISECOND};
-use crate::model::{Model, Role};
+use crate::model::{Model, Role, Time, Variable};
 
 /// The objective of a control problem on its grid.
 #[derive(Clone, Debug)]
@@ -17,12 +17,44 @@ pub(super) struct Objective {
     pub(super) quantities: Vec<CostRow>,
     /// Costs of energies.
     pub(super) energies: Vec<EnergyRow>,
-    /// Each voltage of an interval: its place among the scalars, and the slot of its second derivative with itself.
-    pub(super) voltages: Vec<(usize, usize)>,
+    /// Voltages and loads of an interval.
+    pub(super) inputs: Vec<CostInput>,
     /// Factor that brings the objective near 1.
     pub(super) scale: f64,
-    /// Unit of voltages in kV.
-    pub(super) kilovolt: f64,
+}
+
+/// A voltage or load in the objective.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct CostInput {
+    /// Its place among the scalars.
+    pub(super) scalar: usize,
+    /// Slot of its second derivative with itself.
+    pub(super) slot: usize,
+    /// Size of one kV, N or N m in the unit inside.
+    pub(super) unit: f64,
+    /// Scale of its variable in kV, N or N m.
+    pub(super) scale: f64,
+}
+
+impl CostInput {
+    /// The voltages and loads of an interval of a model.
+    fn of_model(model: &Model, control: &Control) -> Vec<Self> {
+        let slots = &model.action.layout().scalars;
+        let input = |(s, variable): (usize, &Variable)| {
+            let source = variable.source.expect("an input of a source");
+            let (_, unit) = model.input_kind(source).counted();
+            Self {
+                scalar: s,
+                slot: slots
+                    .find(s, s)
+                    .expect("an input has a curvature of its own"),
+                unit,
+                scale: control.scale(variable, &model.system) / unit,
+            }
+        };
+        let variables = &model.variables.of(Time::Interval)[model.variables.sources_range()];
+        variables.iter().enumerate().map(input).collect()
+    }
 }
 
 impl Objective {
@@ -35,28 +67,31 @@ impl Objective {
     ) -> Self {
         let (objective, intervals) = (&control.objective, control.intervals);
         let (paid, energies) = (&objective.quantities, &objective.energies);
-        let voltages = model.variables.range(Role::Voltage);
-        let kilovolts = |volts: &Vec<f64>| {
-            let scalars = model.scalars(volts);
-            scalars.iter().map(|v| v / KILOVOLT).collect::<Vec<_>>()
-        };
+        let inputs = CostInput::of_model(model, control);
         let ends = boundary.rest.each_ref();
-        let ends = ends.map(|volts| volts.as_ref().map(kilovolts));
+        let ends = ends.map(|row| row.as_ref().map(|row| counted(model, &inputs, row)));
         let duration = intervals as f64 * initial.h * MILLISECOND;
         let volts = control.voltage_unit(&model.system);
         let size = costs_size(model, paid, duration) + energies_size(model, energies, volts);
-        let scalars = &model.action.layout().scalars;
-        let slot = |s: usize| {
-            let slot = scalars.find(s, s);
-            (s, slot.expect("a voltage has a curvature of its own"))
+        let unknown = |input: &&CostInput| {
+            let variable = &model.variables.of(Time::Interval)[input.scalar];
+            variable.role == Role::Load && variable.source.is_some_and(|s| !control.is_given(s))
         };
+        let of_loads = inputs.iter().filter(unknown).map(|input| input.scale);
+        let largest = of_loads.fold(volts / KILOVOLT, f64::max);
         Self {
-            cost: Cost::new(objective, voltages.len(), intervals, ends),
+            cost: Cost::new(objective, inputs.len(), intervals, ends),
             quantities: cost_rows(model, paid, boundary.limits.list.len(), intervals),
             energies: energy_rows(model, energies, &boundary.rest, intervals),
-            voltages: voltages.map(slot).collect(),
-            scale: objective_scale(objective, volts / KILOVOLT, duration, size),
-            kilovolt: volts / KILOVOLT,
+            inputs,
+            scale: objective_scale(objective, largest, duration, size),
         }
     }
+}
+
+/// Inputs of an interval in kV, N and N m, from those of all sources.
+pub(super) fn counted(model: &Model, inputs: &[CostInput], row: &[f64]) -> Vec<f64> {
+    let values = model.variables.sources().map(|source| row[source]);
+    let values = values.zip(inputs);
+    values.map(|(value, input)| value / input.unit).collect()
 }

@@ -5,7 +5,6 @@ use crate::control::numbering::{Column, Row};
 use crate::control::solution::Costates;
 use crate::control::transcription::Transcription;
 use crate::control::transcription::kinematic_state::Placed;
-use crate::control::transcription::units::KILOVOLT;
 use crate::coordinates::Configuration;
 use crate::dynamics::DiscreteTrajectory;
 use crate::ipopt;
@@ -149,8 +148,10 @@ impl Transcription<'_> {
                 Column::Horizon => workspace.h = value,
             }
         }
-        for &(column, place) in &self.layout.unknowns.voltages {
-            workspace.kilovolts[place] = self.variable_scales[column] * x[column] / KILOVOLT;
+        let inputs = &self.objective.inputs;
+        for &(column, place) in &self.layout.unknowns.inputs {
+            let unit = inputs[place % inputs.len()].unit;
+            workspace.inputs[place] = self.variable_scales[column] * x[column] / unit;
         }
         workspace.placed = Placed::Nothing;
     }

@@ -4,7 +4,7 @@ use crate::control::limits::{BoundedQuantity, When};
 use crate::control::numbering::{Column, Row};
 use crate::control::transcription::Transcription;
 use crate::control::transcription::objective::Objective;
-use crate::control::transcription::units::{KILOVOLT, MILLISECOND};
+use crate::control::transcription::units::MILLISECOND;
 use crate::control::transcription::workspace::Workspace;
 use crate::functional::Order;
 use crate::model::Role;
@@ -29,9 +29,9 @@ impl Nlp for Transcription<'_> {
 
     fn objective(&mut self, x: &[f64]) -> f64 {
         self.load(x);
-        let Workspace { kilovolts, h, .. } = &self.workspace;
-        let of_voltages = self.objective.cost.value(kilovolts, h * MILLISECOND);
-        of_voltages + self.costs() + self.energies()
+        let Workspace { inputs, h, .. } = &self.workspace;
+        let of_inputs = self.objective.cost.value(inputs, h * MILLISECOND);
+        of_inputs + self.costs() + self.energies()
     }
 
     fn objective_scale(&self) -> f64 {
@@ -41,13 +41,13 @@ impl Nlp for Transcription<'_> {
     fn gradient(&mut self, x: &[f64], grad: &mut [f64]) {
         self.load(x);
         let Workspace {
-            kilovolts,
+            inputs,
             h,
             gradient,
             ..
         } = &mut self.workspace;
         let cost = &self.objective.cost;
-        let mut by_horizon = cost.gradient(kilovolts, *h * MILLISECOND, gradient);
+        let mut by_horizon = cost.gradient(inputs, *h * MILLISECOND, gradient);
         by_horizon *= MILLISECOND;
         grad.fill(0.0);
         if !self.objective.quantities.is_empty() || !self.objective.energies.is_empty() {
@@ -56,8 +56,10 @@ impl Nlp for Transcription<'_> {
             self.gather_cost_gradient(grad);
         }
         let scales = &self.variable_scales;
-        for &(column, place) in &self.layout.unknowns.voltages {
-            grad[column] += self.workspace.gradient[place] * scales[column] / KILOVOLT;
+        let inputs = &self.objective.inputs;
+        for &(column, place) in &self.layout.unknowns.inputs {
+            let unit = inputs[place % inputs.len()].unit;
+            grad[column] += self.workspace.gradient[place] * scales[column] / unit;
         }
         if let Some(column) = self.layout.unknowns.horizon() {
             grad[column] = by_horizon * scales[column];
@@ -109,10 +111,11 @@ impl Nlp for Transcription<'_> {
         for (value, kept) in own.iter_mut().zip(&self.structure.hessian.kept) {
             *value = kept.scale * self.workspace.values[kept.place];
         }
-        let Objective { cost, kilovolt, .. } = &self.objective;
-        let of_rate = sigma * cost.coupling(tau) * kilovolt * kilovolt;
+        let Objective { cost, inputs, .. } = &self.objective;
+        let of_rate = sigma * cost.coupling(tau);
         for (value, &jump) in coupling.iter_mut().zip(&self.structure.jumps) {
-            *value = of_rate + self.energy_coupling(jump, sigma);
+            let scale = inputs[jump.input].scale;
+            *value = of_rate * scale * scale + self.energy_coupling(jump, sigma);
         }
     }
 

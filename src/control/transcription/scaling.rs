@@ -17,13 +17,14 @@ impl Transcription<'_> {
         h: f64,
     ) -> Vec<f64> {
         let length = model.length();
-        let volts = control.voltage_unit(&model.system);
         let scale = |column: &Column| {
             let variable = column.of(&model.variables);
             match variable.role {
                 Role::Coordinate if variable.size == Size::Length => length,
                 Role::Coordinate | Role::Multiplier => 1.0,
-                Role::Voltage | Role::Potential => volts / variable.unit,
+                Role::Voltage | Role::Load | Role::Potential => {
+                    control.scale(variable, &model.system) / variable.unit
+                }
                 Role::Parameter => model.parameter(variable).size(),
                 Role::Duration => h,
             }
@@ -108,7 +109,7 @@ impl Transcription<'_> {
         let bound = |(&column, &scale): (&Column, &f64)| {
             let [low, high] = match (column, column.of(&self.model.variables).role) {
                 (Column::Instant { i, .. }, Role::Coordinate) => [lower[i], upper[i]],
-                (_, Role::Voltage) => control.voltage_bounds,
+                (_, Role::Voltage | Role::Load) => control.bounds(column.of(&self.model.variables)),
                 (Column::Parameter { .. }, _) => {
                     let parameter = self.model.parameter(column.of(&self.model.variables));
                     [parameter.lower, parameter.upper]

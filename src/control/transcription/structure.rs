@@ -5,7 +5,7 @@ use crate::control::numbering::Row;
 use crate::control::transcription::energy_rows::Jump;
 use crate::control::transcription::layout::Layout;
 use crate::control::transcription::limit_rows::SCALAR;
-use crate::control::transcription::objective::Objective;
+use crate::control::transcription::objective::{CostInput, Objective};
 use crate::ipopt::interrupt;
 use crate::model::{Model, Role};
 use crate::nlp::Entries;
@@ -214,23 +214,24 @@ fn hessian(model: &Model, layout: &Layout) -> Result<Matrix, BoundaryError> {
     Ok(matrix)
 }
 
-/// Voltages that meet those of the interval before, with the energies that couple them; adds their entries.
+/// Inputs that meet those of the interval before, with the energies that couple them; adds their entries.
 fn jumps(layout: &Layout, objective: &Objective, entries: &mut Entries) -> Vec<Jump> {
     let u = &layout.unknowns;
-    let coupling = objective.voltages.iter().filter_map(|&(s, _)| {
+    let inputs = objective.inputs.iter().enumerate();
+    let coupling = inputs.filter_map(|(input, &CostInput { scalar: s, .. })| {
         let mut rows = objective.energies.iter();
         let energy = rows.position(|row| row.scalar == s && row.couples_intervals());
         let is_any = objective.cost.couples_intervals() || energy.is_some();
-        is_any.then_some((s, energy))
+        is_any.then_some((input, s, energy))
     });
     let coupling: Vec<_> = coupling.collect();
     let mut jumps = Vec::new();
     for k in 1..layout.intervals {
-        for &(s, energy) in &coupling {
+        for &(input, s, energy) in &coupling {
             if let (Some(row), Some(col)) = (u.scalar(k, s), u.scalar(k - 1, s)) {
                 entries.rows.push(row as u32);
                 entries.cols.push(col as u32);
-                jumps.push(Jump { k, energy });
+                jumps.push(Jump { k, input, energy });
             }
         }
     }

@@ -6,7 +6,6 @@ use crate::control::limits::BoundedQuantity;
 use crate::control::transcription::Transcription;
 use crate::control::transcription::kinematic_state::Placed;
 use crate::control::transcription::limit_rows::LimitRow;
-use crate::control::transcription::units::KILOVOLT;
 use crate::model::Model;
 
 impl Transcription<'_> {
@@ -37,12 +36,13 @@ impl Transcription<'_> {
             (limit.bounded.lower, limit.bounded.upper) = (bounded.lower, bounded.upper);
         }
         self.set_row_bounds();
-        for (kept, voltages) in self.objective.cost.ends_mut().iter_mut().zip(rest) {
-            let sources = self.model.variables.sources();
-            let kilovolts = voltages
+        for (kept, row) in self.objective.cost.ends_mut().iter_mut().zip(rest) {
+            let units = &self.objective.inputs;
+            let sources = self.model.variables.sources().zip(units);
+            let new = row
                 .as_ref()
-                .map(|volts| sources.map(move |s| volts[s] / KILOVOLT));
-            match (kept, kilovolts) {
+                .map(|row| sources.map(move |(s, input)| row[s] / input.unit));
+            match (kept, new) {
                 (Some(kept), Some(new)) => kept.iter_mut().zip(new).for_each(|(v, new)| *v = new),
                 (kept, new) => *kept = new.map(Iterator::collect),
             }

@@ -6,10 +6,9 @@ use crate::control::problem::Control;
 use crate::control::transcription::kinematic_state::Placed;
 use crate::control::transcription::layout::Layout;
 use crate::control::transcription::segment::SegmentWorkspace;
-use crate::control::transcription::units::KILOVOLT;
 use crate::coordinates::Configuration;
 use crate::functional::SumDerivatives;
-use crate::model::{Model, Role, Time};
+use crate::model::{Model, Time};
 
 /// Storage of the evaluations.
 #[derive(Debug)]
@@ -23,7 +22,7 @@ pub(super) struct Workspace {
     /// Costates of their equations.
     pub(super) scalars_along: Vec<f64>,
     /// Voltages of all intervals in kV.
-    pub(super) kilovolts: Vec<f64>,
+    pub(super) inputs: Vec<f64>,
     /// Length of an interval in ms.
     pub(super) h: f64,
     /// Storage of each stretch of a horizon.
@@ -54,7 +53,7 @@ impl Workspace {
         let map = &action.map;
         let scalars = given_scalars(model, control, intervals);
         let scalar_count = model.variables.of(Time::Interval).len();
-        let kilovolts = kilovolts(model, &scalars, scalar_count, intervals);
+        let inputs = input_values(model, &scalars, scalar_count, intervals);
         let stride = map.unknowns() + scalar_count;
         let limits = layout.limit_rows.iter();
         let limit_entries: usize = limits.map(|&(l, _)| layout.limits[l].entries.len()).sum();
@@ -64,8 +63,8 @@ impl Workspace {
             placed: Placed::Nothing,
             scalars_along: vec![0.0; scalars.len()],
             scalars,
-            gradient: vec![0.0; kilovolts.len()],
-            kilovolts,
+            gradient: vec![0.0; inputs.len()],
+            inputs,
             h: initial.h,
             stretches: [SegmentWorkspace::new(action), SegmentWorkspace::new(action)],
             boundary_instant: map.instant(),
@@ -105,12 +104,13 @@ fn given_scalars(model: &Model, control: &Control, intervals: usize) -> Vec<f64>
     (0..intervals).flat_map(given).collect()
 }
 
-/// Voltages of all intervals in kV, from `count` scalars of each.
-fn kilovolts(model: &Model, scalars: &[f64], count: usize, intervals: usize) -> Vec<f64> {
-    let voltages = model.variables.range(Role::Voltage);
-    let kilovolts = (0..intervals).flat_map(|k| {
+/// Inputs of all intervals in kV, N and N m, from `count` scalars of each.
+fn input_values(model: &Model, scalars: &[f64], count: usize, intervals: usize) -> Vec<f64> {
+    let units = model.variables.sources();
+    let units: Vec<f64> = units.map(|s| model.input_kind(s).counted().1).collect();
+    let values = (0..intervals).flat_map(|k| {
         let row = &scalars[k * count..(k + 1) * count];
-        row[voltages.clone()].iter().map(|v| v / KILOVOLT)
+        row.iter().zip(&units).map(|(value, unit)| value / unit)
     });
-    kilovolts.collect()
+    values.collect()
 }

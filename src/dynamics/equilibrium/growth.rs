@@ -24,7 +24,7 @@ pub fn equilibrium(
     start: &[f64],
     voltages: &[f64],
 ) -> Result<Equilibrium, EquilibriumError> {
-    let mut statics = begin(model)?;
+    let mut statics = begin(model, voltages)?;
     let mut state = unloaded(&mut statics, start, voltages)?;
     for load in [Load::Weight, Load::Voltages] {
         let ramp = Ramp { load, voltages };
@@ -43,10 +43,10 @@ pub fn equilibrium(
 }
 
 /// Rows of rest of a model whose blocks are held.
-pub(super) fn begin(model: &Model) -> Result<Statics<'_>, EquilibriumError> {
+pub(super) fn begin<'m>(model: &'m Model, inputs: &[f64]) -> Result<Statics<'m>, EquilibriumError> {
     match model.floating() {
         Some(Floating { name, motion }) => Err(EquilibriumError::Floating { name, motion }),
-        None => Ok(Statics::new(model)),
+        None => Ok(Statics::new(model, inputs)),
     }
 }
 
@@ -59,7 +59,7 @@ pub(super) fn unloaded(
     voltages: &[f64],
 ) -> Result<RestState, EquilibriumError> {
     let mut first = statics.state_without_field(start);
-    let none = vec![0.0; voltages.len()];
+    let none = statics.without_voltages(voltages);
     if statics.has_weight() {
         statics.weight = 0.0;
         let mut state = first.clone();
@@ -96,7 +96,7 @@ pub(super) fn grow(
     let is_there = match ramp.load {
         // All of the weight acts already where nothing else holds the system.
         Load::Weight => statics.has_weight() && statics.weight < 1.0,
-        Load::Voltages => ramp.voltages.iter().any(|&v| v != 0.0),
+        Load::Voltages => statics.is_driven(ramp.voltages),
     };
     let (mut reached, mut increment) = (0.0, FIRST);
     let mut stable = Some((state.clone(), 0.0));

@@ -33,15 +33,15 @@ pub fn continuation(
     steps: usize,
 ) -> Result<Continuation, EquilibriumError> {
     // At zero voltage nothing depends on the fraction to first order: the path starts a little further.
-    let beginning: Vec<f64> = voltages.iter().map(|v| v * FIRST).collect();
-    let first = stable_equilibrium(model, start, &beginning)?;
-    let mut statics = Statics::new(model);
-    let [_, scalars] = model.variables.split(&first.scalars);
-    let state = statics.state(&first.z, scalars);
     let ramp = Ramp {
         load: Load::Voltages,
         voltages,
     };
+    let mut statics = Statics::new(model, voltages);
+    let beginning = ramp.apply(&mut statics, FIRST);
+    let first = stable_equilibrium(model, start, &beginning)?;
+    let [_, scalars] = model.variables.split(&first.scalars);
+    let state = statics.state(&first.z, scalars);
     let mut path = path(&mut statics, ramp);
     let mut out = Continuation {
         fractions: vec![FIRST],
@@ -70,7 +70,7 @@ pub fn continuation(
             None
         };
         let mut rest = |point: &PathPoint| {
-            let loaded: Vec<f64> = voltages.iter().map(|v| v * point.fraction).collect();
+            let loaded = ramp.apply(path.statics, point.fraction);
             Equilibrium::on_path(path.statics, &point.state, &loaded, Route::Loads)
         };
         if let Some((point, kind)) = limit {

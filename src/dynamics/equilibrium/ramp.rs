@@ -1,7 +1,8 @@
-//! Loads that grow along a path of equilibria: first the weights, then the voltages.
+//! Loads that grow along a path of equilibria: first the weights with the forces of the scene, then the voltages.
 
 use crate::dynamics::equilibrium::instability::Load;
 use crate::dynamics::equilibrium::statics::Statics;
+use crate::model::Role;
 
 /// A load that grows, and the voltages when all of it acts.
 #[derive(Clone, Copy, Debug)]
@@ -18,14 +19,26 @@ impl Ramp<'_> {
             Load::Voltages => (1.0, fraction),
         };
         statics.weight = weight;
-        self.voltages.iter().map(|v| v * part).collect()
+        let variables = &statics.model.variables;
+        let scaled = |(value, role)| {
+            if role == Role::Voltage {
+                value * part
+            } else {
+                value
+            }
+        };
+        variables.with_roles(self.voltages).map(scaled).collect()
     }
 
     /// Adds the derivative of the rows by the fraction, at the state evaluated last.
     pub(super) fn add(&self, statics: &Statics<'_>, rows: &mut [f64]) {
         match self.load {
             Load::Weight => statics.add_weight(rows),
-            Load::Voltages => statics.add_load(self.voltages, rows),
+            Load::Voltages => {
+                let variables = &statics.model.variables;
+                let change = variables.inputs_where(self.voltages, |role| role == Role::Voltage);
+                statics.add_load(&change, rows);
+            }
         }
     }
 

@@ -127,7 +127,7 @@ fn softening(
     let m = statics.model.action.map.unknowns();
     let mut bare = state.to_vec();
     bare[m..].fill(0.0);
-    let none = vec![0.0; voltages.len()];
+    let none = statics.without_voltages(voltages);
     let weight = statics.weight;
     let mut along = |weight: f64, state: &[f64], voltages: &[f64]| {
         statics.weight = weight;

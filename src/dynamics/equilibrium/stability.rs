@@ -9,8 +9,8 @@ impl Equilibrium {
     /// Stiffness, stability and softest mode of a model's state of rest: `z` of coordinates and multipliers, `scalars` of
     /// voltages and potentials.
     pub fn of_state(model: &Model, z: &[f64], scalars: &[f64]) -> Self {
-        let mut statics = Statics::new(model);
         let [voltages, others] = model.variables.split(scalars);
+        let mut statics = Statics::new(model, voltages);
         let state = statics.state(z, others);
         Self::new(&mut statics, &state, voltages, Route::Loads)
     }

@@ -39,7 +39,7 @@ pub fn stable_equilibrium(
     start: &[f64],
     voltages: &[f64],
 ) -> Result<Equilibrium, EquilibriumError> {
-    let mut statics = begin(model)?;
+    let mut statics = begin(model, voltages)?;
     if let Some(twin) = in_joints::twin(model) {
         let start = in_joints::carried(model, start, &twin);
         let found = stable_equilibrium(&twin, &start, voltages);
@@ -51,9 +51,9 @@ pub fn stable_equilibrium(
             return Ok(found);
         }
     }
-    let none = vec![0.0; voltages.len()];
+    let none = statics.without_voltages(voltages);
     let weighed = under_weight(&mut statics, start, &none);
-    let is_driven = voltages.iter().any(|&v| v != 0.0);
+    let is_driven = statics.is_driven(voltages);
     match (weighed, is_driven) {
         (Err(error @ EquilibriumError::LimitPoint { .. }), true) => {
             // Under voltages there may be an equilibrium where there is none without.

@@ -13,7 +13,7 @@ use crate::dynamics::tangent::{EntryList, Tangent};
 use crate::functional::Order;
 use crate::ipopt::interrupt;
 use crate::math::Vector;
-use crate::model::Model;
+use crate::model::{Model, Role};
 use crate::sparse::{Singular, Symmetry};
 
 /// Limit of Newton iterations for one load.
@@ -52,7 +52,7 @@ pub(super) struct Statics<'m> {
     pub(super) scratch: Scratch,
     pub(super) values: Vec<f64>,
     pub(super) scalars: Vec<f64>,
-    /// Weights on the vectors.
+    /// Weights and loads on the vectors.
     gravity: Vec<Vector>,
     /// Part of the weights that acts.
     pub(super) weight: f64,
@@ -68,7 +68,8 @@ pub(super) struct Statics<'m> {
 }
 
 impl<'m> Statics<'m> {
-    pub(super) fn new(model: &'m Model) -> Self {
+    /// Rest of a model under inputs whose loads act with the weights.
+    pub(super) fn new(model: &'m Model, inputs: &[f64]) -> Self {
         let map = &model.action.map;
         let layout = model.action.layout();
         let (n, m) = (map.coordinates, map.unknowns());
@@ -101,7 +102,7 @@ impl<'m> Statics<'m> {
             scratch: model.action.scratch(Order::Hessian),
             values: vec![0.0; added + n + (size - m)],
             scalars: vec![0.0; layout.interval_scalars],
-            gravity: weights(model),
+            gravity: weights(model, inputs),
             weight: 1.0,
             added,
             tangent: entries.tangent(size, Symmetry::Symmetric, None),
@@ -250,7 +251,19 @@ impl<'m> Statics<'m> {
             .map(move |(entry, place)| (entry, -self.values[place] / h))
     }
 
-    /// Returns true if anything has a weight.
+    /// Inputs with all voltages zero.
+    pub(super) fn without_voltages(&self, inputs: &[f64]) -> Vec<f64> {
+        let variables = &self.model.variables;
+        variables.inputs_where(inputs, |role| role != Role::Voltage)
+    }
+
+    /// Returns true if a voltage is other than zero.
+    pub(super) fn is_driven(&self, inputs: &[f64]) -> bool {
+        let mut inputs = self.model.variables.with_roles(inputs);
+        inputs.any(|(value, role)| role == Role::Voltage && value != 0.0)
+    }
+
+    /// Returns true if anything has a weight, or a load acts.
     pub(super) fn has_weight(&self) -> bool {
         self.gravity.iter().any(|force| *force != Vector::zeros())
     }
@@ -372,11 +385,11 @@ impl<'m> Statics<'m> {
     }
 }
 
-/// Weights on the vectors over the time of the multipliers, as rows of rest read them.
-fn weights(model: &Model) -> Vec<Vector> {
+/// Weights and loads on the vectors over the time of the multipliers, as rows of rest read them.
+fn weights(model: &Model, inputs: &[f64]) -> Vec<Vector> {
     let map = &model.action.map;
     let instant = map.placed(&vec![0.0; map.unknowns()]);
-    let scalars = vec![0.0; model.action.layout().interval_scalars];
+    let scalars = model.variables.scalars(inputs);
     let interval = Interval::given(&scalars, model.multiplier_time);
     let sample = interval.sample([&instant, &instant]);
     let mut out = model.action.intervals.output(Order::Gradient);

@@ -55,7 +55,7 @@ const TABLE: &[NotOffered] = &[
             "external_force",
             "wrench",
         ],
-        said: "there are no motors, and no forces but gravity and those of muscles, springs, tendons and springs of joints: voltages are the only control",
+        said: "a motor, a force or a torque is an entry of \"loads\" of a scene; there are no servos that prescribe a motion",
     },
     NotOffered {
         words: &[

@@ -6,10 +6,13 @@ use crate::files::json::scope::Scope;
 use crate::files::problem::control::control;
 use crate::files::problem::coordinates::{coordinates, count};
 use crate::files::problem::free::check_solution;
+use crate::files::problem::loads::loads;
 use crate::files::problem::simulation::simulation;
 use crate::files::problem::spec::ProblemSpec;
+use crate::files::problem::spec_signal::SignalSpec;
 use crate::files::problem::state::voltages;
 use crate::files::scene::spec::SceneSpec;
+use crate::files::units::quantity::{LoadSize, Quantity};
 use crate::model::system::System;
 
 /// Most equilibria of a path.
@@ -36,7 +39,14 @@ pub(crate) fn build_problem(
     let equilibrium = problem.equilibrium.as_ref().map(|spec| -> Build<'_> {
         Box::new(|| {
             let scope = scope.key("equilibrium");
-            let voltages = voltages(&spec.voltages, system, &scope.key("voltages"))?;
+            let mut voltages = voltages(&spec.voltages, system, &scope.key("voltages"))?;
+            let constant = |(name, size): (&String, &Quantity<LoadSize>)| {
+                (name.clone(), SignalSpec::Constant(size.clone()))
+            };
+            let map = spec.loads.iter().map(constant).collect();
+            for (source, load) in loads(&map, system, &scope.key("loads"))? {
+                voltages[source] = load.at(0.0);
+            }
             let coordinates = coordinates(spec.coordinates, system, &scope)?;
             if let Some(points) = spec.path {
                 count(points, "point", MOST_POINTS, &scope.key("path"))?;

@@ -12,6 +12,7 @@ use crate::files::problem::free::parameters;
 use crate::files::problem::goal::goal_state;
 use crate::files::problem::guess::{guess, unwritten};
 use crate::files::problem::limits::limit;
+use crate::files::problem::loads::{absent_loads, load, load_bounds, loads};
 use crate::files::problem::signal::signal;
 use crate::files::problem::spec_control::{
     ControlSolverSpec, ControlSpec, DurationSpec, IntervalsSpec, IntervalsWord, ObjectiveSpec,
@@ -49,15 +50,15 @@ pub(crate) fn control(
         }
         Some(IntervalsSpec::Word(IntervalsWord::Auto)) | None => None,
     };
-    if !system.sources().iter().any(|source| source.takes_voltage) {
+    let takes_voltage = system.sources().iter().any(|source| source.takes_voltage);
+    if !takes_voltage && spec.load_bounds.is_empty() {
         let found = "a scene without any muscle or electrode that takes a voltage";
         let expected = format!("a muscle of {ELECTRIC_KEYS}, or a driven electrode");
         return Err(scope.wrong(found, expected));
     }
-    let voltage_bounds = voltage_bounds(spec, &scope.key("voltage_bounds"))?;
-    let start = start_state(&spec.start, system, &scope.key("start"))?;
+    let mut start = start_state(&spec.start, system, &scope.key("start"))?;
     let objective = objective(&spec.objective, system, &scope.key("objective"))?;
-    let goal = match &spec.goal {
+    let mut goal = match &spec.goal {
         Some(goal) => goal_state(goal, system, &scope.key("goal"))?,
         None if objective.quantities.is_empty() => {
             let expected = "the key \"goal\", or an objective that names something to \"track\" or a \"final\" place";
@@ -66,11 +67,24 @@ pub(crate) fn control(
         None => BoundaryState::Free,
     };
     let parameters = parameters(&spec.free, written, system, &scope.key("free"))?;
-    let (given, course) = given_voltages(spec, system, &scope.key("voltages"))?;
+    let loads = loads(&spec.loads, system, &scope.key("loads"))?;
+    let load_bounds = load_bounds(&spec.load_bounds, &loads, system, &scope.key("load_bounds"))?;
+    check_times(&loads, spec, &scope.key("loads"))?;
+    load(&mut start, &loads, 0.0);
+    load(&mut goal, &loads, duration.first());
+    let (mut given, course) = given_voltages(spec, system, &scope.key("voltages"))?;
+    let sources = system.sources().into_iter().enumerate();
+    let mut sought = sources.filter(|(s, source)| source.takes_voltage && !given.contains_key(s));
+    let seeks_voltage = course.is_none() && sought.next().is_some();
+    let voltage_bounds = voltage_bounds(spec, seeks_voltage, scope)?;
     for (key, state) in [("start", &start), ("goal", &goal)] {
         let is_given = |s: usize| course.is_some() || given.contains_key(&s);
         check_rest_voltages(state, system, is_given, voltage_bounds, &scope.key(key))?;
     }
+    given.extend(absent_loads(system, |source| {
+        loads.contains_key(&source) || load_bounds.contains_key(&source)
+    }));
+    given.extend(loads);
     check_final_conditions(&goal, system, &scope.key("goal"))?;
     let mut limits = Vec::new();
     for (index, spec) in spec.limits.iter().enumerate() {
@@ -87,6 +101,7 @@ pub(crate) fn control(
         start,
         goal,
         voltage_bounds,
+        load_bounds,
         given,
         course,
         parameters,
@@ -118,11 +133,36 @@ pub(crate) fn duration(spec: &DurationSpec, scope: &Scope<'_>) -> Result<Duratio
     Ok(Duration::Free { min, max, guess })
 }
 
-pub(crate) fn voltage_bounds(
+/// Refuses loads over time where the duration is free.
+fn check_times(
+    loads: &BTreeMap<usize, Signal>,
     spec: &ControlSpec,
     scope: &Scope<'_>,
+) -> Result<(), SceneError> {
+    let changes = !loads.values().all(Signal::is_constant);
+    if changes && matches!(spec.duration, DurationSpec::Free(_)) {
+        let found = "loads over time where the duration is free";
+        return Err(scope.wrong(found, "constant loads, or a given duration"));
+    }
+    Ok(())
+}
+
+/// Bounds of voltages; needed where one is sought.
+pub(crate) fn voltage_bounds(
+    spec: &ControlSpec,
+    is_needed: bool,
+    scope: &Scope<'_>,
 ) -> Result<[f64; 2], SceneError> {
-    let [lower, upper] = &spec.voltage_bounds;
+    let Some([lower, upper]) = &spec.voltage_bounds else {
+        return match is_needed {
+            true => Err(scope.wrong(
+                "no key \"voltage_bounds\"",
+                "the bounds of the voltages that are sought",
+            )),
+            false => Ok([0.0; 2]),
+        };
+    };
+    let scope = scope.key("voltage_bounds");
     let bounds = [lower.value(), upper.value()];
     if bounds[0] < 0.0 {
         return Err(scope
@@ -163,7 +203,8 @@ pub(crate) fn given_voltages(
     }
     let is_sought =
         |s: usize| sources[s].takes_voltage && course.is_none() && !given.contains_key(&s);
-    if (0..sources.len()).any(is_sought) || !spec.free.is_empty() {
+    let seeks_load = !spec.load_bounds.is_empty();
+    if (0..sources.len()).any(is_sought) || seeks_load || !spec.free.is_empty() {
         return Ok((given, course));
     }
     let expected = "at least one voltage that is not given, to be sought, or a constant of the scene under \"free\"";

@@ -37,6 +37,8 @@ struct Ended {
     #[serde(default)]
     voltages: BTreeMap<String, Vec<f64>>,
     #[serde(default)]
+    loads: BTreeMap<String, Vec<f64>>,
+    #[serde(default)]
     hold: Option<BTreeMap<String, f64>>,
 }
 
@@ -82,7 +84,7 @@ pub(crate) fn end_of(
     let file = scope.solution_file(path, FOLDER)?;
     let notes = status(&file, scope)?;
     let document = solution_document(&file, |name| {
-        ["state/", "voltages/", "configuration/"]
+        ["state/", "voltages/", "loads/", "configuration/"]
             .iter()
             .any(|of| name.starts_with(of))
     })?;
@@ -112,11 +114,14 @@ pub(crate) fn end_of(
     let mut voltages = Vec::new();
     for source in system.sources() {
         let held = ended.hold.as_ref().and_then(|hold| hold.get(&source.name));
-        let last = ended
-            .voltages
-            .get(&source.name)
-            .and_then(|list| list.last());
-        voltages.push(held.or(last).copied().unwrap_or(0.0));
+        let all = if source.is_load() {
+            &ended.loads
+        } else {
+            &ended.voltages
+        };
+        let last = all.get(&source.name).and_then(|list| list.last());
+        let (_, unit) = source.kind.si();
+        voltages.push(held.or(last).copied().unwrap_or(0.0) * unit);
     }
     Ok(EndState {
         source: file.parent().unwrap_or(&file).to_owned(),

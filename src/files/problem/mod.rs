@@ -14,6 +14,7 @@ pub(crate) mod free;
 pub(crate) mod goal;
 pub(crate) mod guess;
 pub(crate) mod limits;
+mod loads;
 pub mod output;
 pub(crate) mod signal;
 pub(crate) mod simulation;

@@ -25,11 +25,7 @@ pub(crate) fn signals(
         let scope = scope.key(name);
         signals[driven(name, &sources, &scope)?] = signal(spec, &Voltage::kind(), &scope)?;
     }
-    let constant = |signal: &Signal| match signal {
-        Signal::Constant(value) => Some(*value),
-        _ => None,
-    };
-    let constants: Option<Vec<f64>> = signals.iter().map(constant).collect();
+    let constants: Option<Vec<f64>> = signals.iter().map(Signal::constant).collect();
     Ok(match constants {
         Some(row) => Voltages::Constant(row),
         None => Voltages::Signals(signals),

@@ -5,6 +5,7 @@ use crate::dynamics::{Integrator, Newton, Solving};
 use crate::files::json::error::SceneError;
 use crate::files::json::scope::Scope;
 use crate::files::problem::coordinates::coordinates;
+use crate::files::problem::loads::{load, with_loads};
 use crate::files::problem::spec_integrator::integrator;
 use crate::files::problem::spec_simulate::{SimulateSpec, StepSpec};
 use crate::files::problem::state::start_state;
@@ -26,7 +27,7 @@ pub(crate) fn simulation(
     let duration = scope.key("duration").positive(&spec.duration)?;
     let method = integrator(spec.integrator.as_ref(), system, &scope.key("integrator"))?;
     let (step, tolerance) = step(spec, duration, method, scope)?;
-    let start = match &spec.start {
+    let mut start = match &spec.start {
         Some(start) => start_state(start, system, &scope.key("start"))?,
         None => BoundaryState::JointAngles {
             angles: BTreeMap::new(),
@@ -36,6 +37,8 @@ pub(crate) fn simulation(
     };
     let place = scope.key("voltages");
     let voltages = over_time(&spec.voltages, system, &place)?;
+    let (voltages, loads) = with_loads(voltages, &spec.loads, system, &scope.key("loads"))?;
+    load(&mut start, &loads, 0.0);
     Ok(Simulation {
         duration,
         step,

@@ -121,5 +121,6 @@ fn sampled(
         rows,
         afterwards,
         solution,
+        others: BTreeMap::new(),
     }
 }

@@ -2,6 +2,7 @@
 
 use schemars::JsonSchema;
 use serde::{Deserialize, Deserializer};
+use std::collections::BTreeMap;
 use std::marker::PhantomData;
 
 use crate::files::json::either::{Either, ScalarOrObject, scalar_or_object};
@@ -11,6 +12,7 @@ use crate::files::problem::spec_output::OutputSpec;
 use crate::files::problem::spec_simulate::SimulateSpec;
 use crate::files::problem::spec_voltages::VoltageMap;
 use crate::files::scene::spec::SceneSpec;
+use crate::files::units::quantity::{LoadSize, Quantity};
 
 /// Task for a scene: exactly one of `simulate`, `equilibrium`, `control`.
 #[derive(Clone, Debug, Deserialize, JsonSchema)]
@@ -43,6 +45,9 @@ pub struct EquilibriumSpec {
     /// Voltages by the names of muscles and driven electrodes (`block.electrode`), SI unit V; 0 where not named.
     #[serde(default)]
     pub voltages: VoltageMap,
+    /// Loads by name, SI units N and N m; 0 where not named.
+    #[serde(default)]
+    pub loads: BTreeMap<String, Quantity<LoadSize>>,
     /// Coordinates.
     #[serde(default)]
     pub coordinates: Option<CoordinatesSpec>,

@@ -1,6 +1,7 @@
 //! A control problem as it is written.
 
 use crate::files::json::either::{Either, ScalarOrObject, scalar_or_object};
+use crate::files::problem::loads::{LoadBounds, LoadMap};
 use crate::files::problem::spec_coordinates::CoordinatesSpec;
 use crate::files::problem::spec_energies::EnergySpec;
 use crate::files::problem::spec_free::FreeMap;
@@ -31,8 +32,15 @@ pub struct ControlSpec {
     /// Final state; may be left out where the objective names something to `track` or where to end (`final`), and is free then.
     #[serde(default)]
     pub goal: Option<GoalSpec>,
-    /// Lower and upper bound of every voltage that is sought, SI unit V.
-    pub voltage_bounds: [Quantity<Voltage>; 2],
+    /// Lower and upper bound of every voltage that is sought, SI unit V; not needed where none is.
+    #[serde(default)]
+    pub voltage_bounds: Option<[Quantity<Voltage>; 2]>,
+    /// Lower and upper bound of each load that is sought, by name, SI units N and N m.
+    #[serde(default)]
+    pub load_bounds: LoadBounds,
+    /// Loads that are given, by name, constant or functions of time, SI units N and N m; 0 where neither given nor sought.
+    #[serde(default)]
+    pub loads: LoadMap,
     /// Voltages that are given, by the names of muscles and driven electrodes (`block.electrode`), SI unit V: they are no unknowns,
     /// and one of 0 for all the time leaves no electric term at all. Functions of time, a table and those of a solution give all
     /// voltages, as of a simulation; then a constant of the scene has to be sought.

@@ -1,4 +1,4 @@
-//! A voltage, length or joint coordinate as a function of time, as it is written.
+//! A voltage, load, length or joint coordinate as a function of time, as it is written.
 
 use schemars::{JsonSchema, Schema, SchemaGenerator};
 use serde::{Deserialize, Deserializer};
@@ -7,7 +7,7 @@ use std::marker::PhantomData;
 
 use crate::files::json::either::{Either, ScalarOrObject};
 use crate::files::units::quantity::{
-    Angle, JointCoordinate, Length, PhysicalQuantity, Quantity, Time, Voltage,
+    Angle, JointCoordinate, Length, LoadSize, PhysicalQuantity, Quantity, Time, Voltage,
 };
 
 /// A constant in its SI unit, or exactly one of `ramp`, `sine`, `table` and `csv`.
@@ -149,5 +149,6 @@ macro_rules! followed_in_time {
 followed_in_time! {
     Voltage: "a voltage such as \"1.7 kV\", or an object with \"ramp\", \"sine\", \"table\" or \"csv\"";
     Length: "a length such as \"50 mm\", or an object with \"ramp\", \"sine\", \"table\" or \"csv\"";
+    LoadSize: "a force such as \"2 N\" or a torque such as \"0.2 N m\", or an object with \"ramp\", \"sine\", \"table\" or \"csv\"";
     JointCoordinate: "an angle or a length, or an object with \"ramp\", \"sine\", \"table\" or \"csv\"";
 }

@@ -1,6 +1,7 @@
 //! A simulation as it is written.
 
 use crate::dynamics::Newton;
+use crate::files::problem::loads::LoadMap;
 use crate::files::problem::spec_coordinates::CoordinatesSpec;
 use crate::files::problem::spec_integrator::IntegratorSpec;
 use crate::files::problem::spec_states::StartSpec;
@@ -28,6 +29,9 @@ pub struct SimulateSpec {
     /// Constant voltages, those of a solution, or a table; 0 where not written.
     #[serde(default)]
     pub voltages: VoltagesSpec,
+    /// Loads by name, constant or functions of time, SI units N and N m; 0 where not named.
+    #[serde(default)]
+    pub loads: LoadMap,
     /// Start of the motion; the reference configuration at rest where not written.
     #[serde(default)]
     pub start: Option<StartSpec>,

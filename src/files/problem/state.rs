@@ -7,6 +7,7 @@ use crate::control::problem::{BoundaryState, Rest};
 use crate::files::json::error::SceneError;
 use crate::files::json::scope::Scope;
 use crate::files::problem::end_of::end_of;
+use crate::files::problem::loads::of_voltages;
 use crate::files::problem::spec_states::{BodyVelocitySpec, StartSpec};
 use crate::files::problem::spec_voltages::VoltageMap;
 use crate::files::scene::names::names;
@@ -44,6 +45,7 @@ pub(crate) fn driven(
     sources: &[Source],
     scope: &Scope<'_>,
 ) -> Result<usize, SceneError> {
+    let sources = of_voltages(sources);
     let index = scope.find(name, &names(sources, |source| &source.name), A_SOURCE)?;
     if sources[index].takes_voltage {
         return Ok(index);

@@ -5,7 +5,7 @@ use std::cell::Cell;
 use crate::files::json::error::SceneError;
 use crate::files::json::scope::Scope;
 use crate::files::scene::body::{body, unit_axis};
-use crate::files::scene::components::{spring, tendon};
+use crate::files::scene::components::{load, spring, tendon};
 use crate::files::scene::expand::expanded;
 use crate::files::scene::graph::check_connected;
 use crate::files::scene::joint::joint;
@@ -43,6 +43,9 @@ pub(crate) fn build_scene(scene: &SceneSpec, scope: &Scope<'_>) -> Result<System
     muscles.unique(&muscle_names, &["solution", "time", "voltages", "hold"])?;
     let springs = NamedEntries::new(scope, "springs", scene.springs.len());
     let tendons = NamedEntries::new(scope, "tendons", scene.tendons.len());
+    let loads = NamedEntries::new(scope, "loads", scene.loads.len());
+    let load_names = names(&scene.loads, |load| &load.name);
+    loads.unique(&load_names, &[])?;
     let spring_names = names(&scene.springs, |spring| &spring.name);
     let tendon_names = names(&scene.tendons, |tendon| &tendon.name);
     springs.unique(&spring_names, &[])?;
@@ -54,6 +57,8 @@ pub(crate) fn build_scene(scene: &SceneSpec, scope: &Scope<'_>) -> Result<System
     let all = [muscle_names, solid_names.clone()].concat();
     let place = |index: usize| scope.key("solids").index(index - scene.muscles.len());
     scope.unique(&all, &[], |index| place(index).key("name"))?;
+    let others: Vec<&str> = all.iter().map(String::as_str).collect();
+    loads.unique(&load_names, &others)?;
     markers.unique(&names(&scene.markers, |marker| &marker.name), &[])?;
 
     let elements = Elements::default();
@@ -68,9 +73,10 @@ pub(crate) fn build_scene(scene: &SceneSpec, scope: &Scope<'_>) -> Result<System
         Ok(solid)
     })?;
     number_sources(&mut blocks, muscles.len());
+    let built_joints =
+        joints.build(&scene.joints, |spec, scope| joint(spec, &body_names, scope))?;
     let system = System {
         bodies: bodies.build(&scene.bodies, body)?,
-        joints: joints.build(&scene.joints, |spec, scope| joint(spec, &body_names, scope))?,
         muscles,
         markers: markers.build(&scene.markers, |spec, scope| {
             marker(spec, &body_names, &blocks, scope)
@@ -82,6 +88,9 @@ pub(crate) fn build_scene(scene: &SceneSpec, scope: &Scope<'_>) -> Result<System
             .map(vector)
             .filter(|g| g.norm() > 0.0),
         components: Components {
+            loads: loads.build(&scene.loads, |spec, scope| {
+                load(spec, &body_names, &built_joints, scope)
+            })?,
             springs: springs.build(&scene.springs, |spec, scope| {
                 spring(spec, &body_names, scope)
             })?,
@@ -90,6 +99,7 @@ pub(crate) fn build_scene(scene: &SceneSpec, scope: &Scope<'_>) -> Result<System
             })?,
             others: Vec::new(),
         },
+        joints: built_joints,
         name: scene.name,
     };
     check_connected(&scene.bodies, &system.joints, |index| bodies.scope(index))?;

@@ -4,7 +4,7 @@ use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 use std::collections::BTreeMap;
 
-use crate::files::scene::components::{SpringSpec, TendonSpec};
+use crate::files::scene::components::{LoadSpec, SpringSpec, TendonSpec};
 use crate::files::scene::point::{Point, PointSpec};
 use crate::files::scene::spec_solids::{ElementSpec, SolidSpec};
 use crate::files::units::quantity::{
@@ -42,6 +42,9 @@ pub struct SceneSpec {
     /// Elastic cables through points.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub tendons: Vec<TendonSpec>,
+    /// Forces and torques whose sizes a problem gives or seeks.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub loads: Vec<LoadSpec>,
     /// Points whose motion is reported.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub markers: Vec<MarkerSpec>,

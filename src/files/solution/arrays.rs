@@ -13,7 +13,7 @@ use crate::files::solution::error::Reason;
 use crate::files::solution::record::{ArraysOf, File};
 
 /// Names of arrays that end with a name of the scene.
-const OF_NAMES: [&str; 2] = ["voltages/", "configuration/joints/"];
+const OF_NAMES: [&str; 3] = ["voltages/", "loads/", "configuration/joints/"];
 /// Begins the names of arrays of bodies.
 const OF_BODIES: &str = "configuration/bodies/";
 
@@ -26,6 +26,9 @@ pub(super) fn taken(file: &mut File, name: &str) -> io::Result<Vec<u8>> {
     arrays.list("time", &mem::take(&mut file.time));
     for (name, values) in file.voltages.take().into_iter().flatten() {
         arrays.list(&format!("voltages/{name}"), &values);
+    }
+    for (name, values) in file.loads.take().into_iter().flatten() {
+        arrays.list(&format!("loads/{name}"), &values);
     }
     if let Some(configuration) = file.configuration.take() {
         for (name, values) in configuration.joints {

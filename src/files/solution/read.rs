@@ -78,9 +78,11 @@ fn parse(path: &Path, model: &Model) -> Result<Solution, Reason> {
     let (system, instants) = (&model.system, file.time.len());
     let by_joint = joint_columns(&file, system)?;
     let by_source = voltage_columns(file.voltages.as_ref(), model)?;
+    let loads = load_columns(file.loads.as_ref(), model)?;
     let joints = joint_rows(by_joint, system, instants)?;
-    let voltages = voltage_rows(by_source, model, instants - 1)?;
-    let hold = file.hold.as_ref().map(|held| hold(held, model));
+    let voltages = input_rows([by_source, &loads], model, instants - 1)?;
+    let hold = file.hold.as_ref();
+    let hold = hold.map(|held| self::hold(held, voltages.last(), model));
     let hold = hold.transpose()?;
     let poses = poses(file.configuration.as_ref(), system, instants)?;
     let coordinates = coordinates(file.coordinates.as_deref(), model)?;
@@ -164,30 +166,52 @@ fn joint_rows(
     Ok(rows)
 }
 
-/// Voltages by interval and source.
-fn voltage_rows(
-    columns: &Columns,
+/// Loads by their names, one column for each that acts in the scene.
+fn load_columns(columns: Option<&Columns>, model: &Model) -> Result<Columns, Reason> {
+    let columns = columns.cloned().unwrap_or_default();
+    let loads = model.reached.iter().map(|&s| &model.sources[s]);
+    let loads = loads.filter(|source| source.is_load());
+    let loads = loads.map(|source| source.name.as_str());
+    same_names("load", columns.keys().map(String::as_str), loads)?;
+    Ok(columns)
+}
+
+/// Voltages and loads by interval and source.
+fn input_rows(
+    [voltages, loads]: [&Columns; 2],
     model: &Model,
     intervals: usize,
 ) -> Result<Vec<Vec<f64>>, Reason> {
     let sources = &model.sources;
     let mut rows = vec![vec![0.0; sources.len()]; intervals];
     for &s in &model.reached {
-        let name = &sources[s].name;
+        let Source { name, kind, .. } = &sources[s];
+        let columns = if sources[s].is_load() {
+            loads
+        } else {
+            voltages
+        };
         let column = &columns[name];
         same_length(name, column.len(), intervals, "intervals")?;
         for (row, &value) in rows.iter_mut().zip(column) {
-            row[s] = value;
+            row[s] = value * kind.si().1;
         }
     }
     Ok(rows)
 }
 
-/// Voltages by source that hold the goal.
-fn hold(held: &BTreeMap<String, f64>, model: &Model) -> Result<Vec<f64>, Reason> {
+/// Inputs by source that hold the goal: these voltages, and the loads of the last interval.
+fn hold(
+    held: &BTreeMap<String, f64>,
+    last: Option<&Vec<f64>>,
+    model: &Model,
+) -> Result<Vec<f64>, Reason> {
     same_sources(held.keys(), model)?;
-    let value = |source: &Source| held.get(&source.name).copied().unwrap_or(0.0);
-    Ok(model.sources.iter().map(value).collect())
+    let value = |(s, source): (usize, &Source)| match (source.is_load(), last) {
+        (true, Some(last)) => last[s],
+        _ => held.get(&source.name).copied().unwrap_or(0.0),
+    };
+    Ok(model.sources.iter().enumerate().map(value).collect())
 }
 
 /// Coordinates that a file names, or those of the model.
@@ -280,8 +304,9 @@ fn same_sources<'a>(
     names: impl Iterator<Item = &'a String>,
     model: &'a Model,
 ) -> Result<(), Reason> {
-    let driven = model.reached.iter();
-    let driven = driven.map(|&s| model.sources[s].name.as_str());
+    let driven = model.reached.iter().map(|&s| &model.sources[s]);
+    let driven = driven.filter(|source| !source.is_load());
+    let driven = driven.map(|source| source.name.as_str());
     same_names("muscle or electrode", names.map(String::as_str), driven)
 }
 

@@ -27,6 +27,9 @@ pub(super) struct File {
     pub(super) configuration: Option<ConfigurationRecord>,
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub(super) voltages: Option<BTreeMap<String, Vec<f64>>>,
+    /// Loads by interval, in N and N m.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub(super) loads: Option<BTreeMap<String, Vec<f64>>>,
     /// Voltages that hold the goal.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub(super) hold: Option<BTreeMap<String, f64>>,

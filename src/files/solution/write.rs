@@ -1,5 +1,6 @@
 //! Writer of solution files: from a solution to `solution.json` and its arrays.
 
+use std::collections::BTreeMap;
 use std::io;
 
 use crate::control::Solution;
@@ -69,10 +70,14 @@ fn record(model: &Model, solved: &Solution) -> File {
     };
     let bodies = system.bodies.iter().enumerate();
     let sources = system.sources();
-    let voltage = |&s: &usize| {
-        let discrete = solved.voltages.iter().map(|row| row[s]).collect();
+    let column = |&s: &usize| {
+        let (_, unit) = sources[s].kind.si();
+        let discrete = solved.voltages.iter().map(|row| row[s] / unit).collect();
         (sources[s].name.clone(), discrete)
     };
+    let is_load = |s: &&usize| sources[**s].is_load();
+    let driven = || model.reached.iter().filter(|s| !is_load(s));
+    let loads: BTreeMap<_, _> = model.reached.iter().filter(is_load).map(column).collect();
     File {
         arrays: None,
         scene: system.name.clone(),
@@ -82,10 +87,11 @@ fn record(model: &Model, solved: &Solution) -> File {
             bodies: bodies.map(|(b, it)| (it.name.clone(), body(b))).collect(),
             joints: joints.collect(),
         }),
-        voltages: Some(model.reached.iter().map(voltage).collect()),
+        voltages: Some(driven().map(column).collect()),
+        loads: (!loads.is_empty()).then_some(loads),
         hold: solved.hold.as_ref().map(|row| {
             let held = |&s: &usize| (sources[s].name.clone(), row[s]);
-            model.reached.iter().map(held).collect()
+            driven().map(held).collect()
         }),
         potentials: solved.potentials.clone(),
         parameters: solved

@@ -112,12 +112,14 @@ measures! {
     Stiffness: si::surface_tension::Dimension, [0], "a stiffness", "\"200 N/m\"";
     /// Ratio: a plain number.
     Ratio: si::ratio::Dimension, [0], "a plain number", "3.2";
-    /// Force, for messages.
+    /// Force: N.
     Force: si::force::Dimension, [0], "a force", "\"1 N\"";
     /// Area, for messages.
     Area: si::area::Dimension, [0], "an area", "\"1 mm^2\"";
     /// Energy, for messages.
     Energy: si::energy::Dimension, [0], "an energy", "\"1 mJ\"";
+    /// Torque: N m, N mm inside.
+    Torque: si::energy::Dimension, [0], "a torque", "\"0.2 N m\"";
 }
 
 /// Declares measures of joints: an angular and a linear kind.
@@ -146,6 +148,8 @@ joint_measures! {
     JointRate: AngularVelocity | Velocity;
     /// Damping of a joint coordinate: rotational, or linear of a prismatic joint.
     JointDamping: RotationalDamping | Damping;
+    /// Size of a load: a torque, or a force.
+    LoadSize: Torque | Force;
     /// Stiffness of a joint coordinate: rotational, or linear of a prismatic joint.
     JointStiffness: RotationalStiffness | Stiffness;
 }

@@ -1,11 +1,13 @@
 //! Components of a scene: terms, connections and observations of each kind of part.
 
 pub(super) mod body;
+pub(super) mod load;
 pub(super) mod muscle;
 mod sought_muscle;
 mod spring;
 mod tendon;
 
+pub use load::{Load, LoadPlace};
 pub use muscle::capacitance;
 pub use spring::Spring;
 pub use tendon::Tendon;
@@ -21,6 +23,8 @@ pub struct Components {
     pub springs: Vec<Spring>,
     /// Tendons.
     pub tendons: Vec<Tendon>,
+    /// Loads: forces and torques.
+    pub loads: Vec<Load>,
     /// Those that a user of the library defines.
     pub others: Vec<Other>,
 }
@@ -38,7 +42,7 @@ impl Components {
         terms.without(tendon::ELASTICITY, "no tendon");
     }
 
-    /// All of them, kind by kind.
+    /// All of them but loads, kind by kind.
     pub fn iter(&self) -> impl Iterator<Item = &dyn Component> {
         let springs = self.springs.iter().map(|spring| spring as &dyn Component);
         let tendons = self.tendons.iter().map(|tendon| tendon as &dyn Component);

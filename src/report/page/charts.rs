@@ -3,12 +3,12 @@
 use serde_json::{Value, json};
 
 use crate::dynamics::trajectory::Column;
-use crate::model::system::System;
+use crate::model::system::{InputKind, System};
 use crate::report::axes::Scale;
 use crate::report::lines::{Aspect, LinePlot, Mark, Series};
 use crate::report::page::numbers::numbers;
 use crate::report::style::{self, Dash};
-use crate::report::{PageContent, Run, joints, sources, tip_path, tracking, voltages};
+use crate::report::{PageContent, Run, inputs, joints, sources, tip_path, tracking};
 
 /// Panels beyond which voltages are shown as colours.
 const PANELS: usize = 12;
@@ -19,7 +19,9 @@ const POINTS: usize = 2000;
 pub(super) fn charts(run: &Run<'_>, content: &PageContent) -> Vec<Value> {
     let mut charts = Vec::new();
     if run.trajectory.times.len() > 1 && run.branch.is_none() {
-        charts.extend(of_voltages(run));
+        for kind in [InputKind::Voltage, InputKind::Force, InputKind::Torque] {
+            charts.extend(of_inputs(run, kind));
+        }
         charts.extend(paths(run));
         charts.extend(over_time(run));
     }
@@ -38,12 +40,12 @@ pub(super) fn plots(content: &PageContent) -> Vec<Value> {
     plots.map(chart).collect()
 }
 
-/// Voltages: the sources between the same two bodies share a panel; many panels become rows of colours.
-fn of_voltages(run: &Run<'_>) -> Option<Value> {
-    let curves = voltages::curves(run.system, run.trajectory);
+/// Inputs of a kind: the sources between the same two bodies share a panel; many panels become rows of colours.
+fn of_inputs(run: &Run<'_>, kind: InputKind) -> Option<Value> {
+    let curves = inputs::curves(run.system, run.trajectory, kind);
     let (mut names, mut groups): (Vec<String>, Vec<Vec<&Series>>) = (Vec::new(), Vec::new());
-    for (i, curve) in curves.iter().enumerate() {
-        let name = pair(run.system, i);
+    for (i, curve) in &curves {
+        let name = pair(run.system, *i);
         match names.iter().position(|other| *other == name) {
             Some(group) => groups[group].push(curve),
             None => {
@@ -52,7 +54,7 @@ fn of_voltages(run: &Run<'_>) -> Option<Value> {
             }
         }
     }
-    let kind = if groups.len() > PANELS {
+    let shown = if groups.len() > PANELS {
         "rows"
     } else {
         "panels"
@@ -62,13 +64,18 @@ fn of_voltages(run: &Run<'_>) -> Option<Value> {
         json!({
             "title": if alone { "" } else { name },
             "x": axis("time [s]", Scale::Linear),
-            "y": axis("voltage [kV]", Scale::Linear),
+            "y": axis(inputs::label(kind), Scale::Linear),
             "series": group.iter().map(|one| series(one)).collect::<Vec<_>>(),
         })
     });
     let panels: Vec<Value> = panels.collect();
+    let title = match kind {
+        InputKind::Voltage => "Voltages",
+        InputKind::Force => "Forces",
+        InputKind::Torque => "Torques",
+    };
     (!panels.is_empty())
-        .then(|| json!({ "title": "Voltages", "kind": kind, "time": true, "panels": panels }))
+        .then(|| json!({ "title": title, "kind": shown, "time": true, "panels": panels }))
 }
 
 /// Returns the parts on which a source acts: the joint between the bodies of a muscle, or these; the block of an electrode.

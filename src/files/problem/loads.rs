@@ -1,0 +1,118 @@
+//! Loads of a problem: sizes over time, bounds of those that are sought, and loads at rest.
+
+use crate::control::Signal;
+use crate::control::problem::{BoundaryState, Voltages};
+use crate::files::json::error::SceneError;
+use crate::files::json::scope::Scope;
+use crate::files::problem::signal::signal;
+use crate::files::problem::spec_signal::SignalSpec;
+use crate::files::units::quantity::{Force, Kind, LoadSize, Quantity, Torque};
+use crate::model::system::{InputKind, Source, System};
+use std::collections::BTreeMap;
+
+/// Loads by name, constant or functions of time.
+pub(crate) type LoadMap = BTreeMap<String, SignalSpec<LoadSize>>;
+
+/// Bounds of loads by name.
+pub(crate) type LoadBounds = BTreeMap<String, [Quantity<LoadSize>; 2]>;
+
+/// Index and unit of a load.
+fn find(name: &str, system: &System, scope: &Scope<'_>) -> Result<(usize, Kind), SceneError> {
+    let first = system.first_load();
+    let sources = system.sources();
+    let names = sources[first..].iter().map(|source| source.name.clone());
+    let index = scope.find(name, &names.collect::<Vec<_>>(), "the name of a load")?;
+    let kind = match sources[first + index].kind {
+        InputKind::Torque => Torque::kind(),
+        InputKind::Force | InputKind::Voltage => Force::kind(),
+    };
+    Ok((first + index, kind))
+}
+
+/// Loads over time, by source.
+pub(crate) fn loads(
+    map: &LoadMap,
+    system: &System,
+    scope: &Scope<'_>,
+) -> Result<BTreeMap<usize, Signal>, SceneError> {
+    let read = |(name, spec): (&String, &SignalSpec<LoadSize>)| {
+        let scope = scope.key(name);
+        let (source, kind) = find(name, system, &scope)?;
+        Ok((source, signal(spec, &kind, &scope)?))
+    };
+    map.iter().map(read).collect()
+}
+
+/// Bounds of the loads that are sought, by source; none of them is `given`.
+pub(crate) fn load_bounds(
+    map: &LoadBounds,
+    given: &BTreeMap<usize, Signal>,
+    system: &System,
+    scope: &Scope<'_>,
+) -> Result<BTreeMap<usize, [f64; 2]>, SceneError> {
+    let read = |(name, written): (&String, &[Quantity<LoadSize>; 2])| {
+        let scope = scope.key(name);
+        let (source, kind) = find(name, system, &scope)?;
+        if given.contains_key(&source) {
+            let found = format!("{name:?}, which \"loads\" gives");
+            return Err(scope.wrong(found, "a load that is sought"));
+        }
+        let value = |index: usize| {
+            let read = written[index].value_as(&kind);
+            read.map_err(|found| scope.index(index).wrong(found, kind.expected()))
+        };
+        let bounds = [value(0)?, value(1)?];
+        if bounds[0] > bounds[1] {
+            let expected = format!(
+                "an upper bound that is no less than the lower bound {}",
+                written[0]
+            );
+            return Err(scope.index(1).wrong(written[1].to_string(), expected));
+        }
+        Ok((source, bounds))
+    };
+    map.iter().map(read).collect()
+}
+
+/// Loads that are neither given nor sought: zero all the time.
+pub(crate) fn absent_loads(
+    system: &System,
+    is_named: impl Fn(usize) -> bool,
+) -> impl Iterator<Item = (usize, Signal)> {
+    let all = system.first_load()..system.sources().len();
+    let absent: Vec<usize> = all.filter(|&source| !is_named(source)).collect();
+    absent
+        .into_iter()
+        .map(|source| (source, Signal::Constant(0.0)))
+}
+
+/// Voltages of a simulation together with its loads.
+pub(crate) fn with_loads(
+    voltages: Voltages,
+    map: &LoadMap,
+    system: &System,
+    scope: &Scope<'_>,
+) -> Result<(Voltages, BTreeMap<usize, Signal>), SceneError> {
+    let loads = loads(map, system, scope)?;
+    Ok((voltages.with(loads.clone()), loads))
+}
+
+/// Puts the loads of a time in ms on a state of rest.
+pub(crate) fn load(state: &mut BoundaryState, loads: &BTreeMap<usize, Signal>, time: f64) {
+    let row = match state {
+        BoundaryState::RestAtVoltages(row, _) => row,
+        BoundaryState::Markers {
+            hold: Some(row), ..
+        } => row,
+        _ => return,
+    };
+    for (&source, signal) in loads {
+        row[source] = signal.at(time);
+    }
+}
+
+/// Sources of voltages: those that stand before the loads.
+pub(crate) fn of_voltages(sources: &[Source]) -> &[Source] {
+    let loads = sources.iter().filter(|source| source.is_load()).count();
+    &sources[..sources.len() - loads]
+}

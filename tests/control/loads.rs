@@ -1,0 +1,126 @@
+//! Loads that are sought: a closed form, bounds, and what messages say of wrong ones.
+
+use proboscis::control::problem::{Control, Task};
+use proboscis::files::read_problem;
+use proboscis::ipopt::Status;
+use proboscis::model::System;
+use proboscis::workflow::{Optimum, SolveLimits, optimise};
+use std::ops::ControlFlow;
+use std::path::Path;
+
+fn loaded(changes: &[String]) -> (System, Control) {
+    let path = Path::new(env!("CARGO_MANIFEST_DIR")).join("problems/swing_up.json");
+    let loaded = read_problem(&path, changes).unwrap();
+    let Task::Control(control) = loaded.task else {
+        panic!("a problem of control");
+    };
+    (loaded.system, *control)
+}
+
+fn solved(system: &System, control: &Control) -> Optimum {
+    let limits = SolveLimits::default();
+    optimise(system, control, None, limits, &mut |_| {
+        ControlFlow::Continue(())
+    })
+    .unwrap()
+}
+
+/// 1 kg on a slide along x that a motor of unlimited force moves by 1 m in 1 s, from rest to rest.
+fn slide(intervals: usize, coordinates: &str) -> (System, Control) {
+    let body = r#"{"name": "arm", "mass": "1 kg", "sphere": {"radius": "1 mm"}}"#;
+    let joint = r#"{"name": "shoulder", "prismatic": {"axis": [1, 0, 0]}, "parent": "ground",
+                    "child": "arm", "at": [0, 0, 0]}"#;
+    let changes = [
+        format!("scene.bodies=[{body}]"),
+        format!("scene.joints=[{joint}]"),
+        "scene.gravity=[0, 0, 0]".to_owned(),
+        "control.duration=1 s".to_owned(),
+        format!("control.intervals={intervals}"),
+        "control.loads={}".to_owned(),
+        r#"control.load_bounds={"motor": ["-90 N", "90 N"]}"#.to_owned(),
+        r#"control.goal={"joint_angles": {"shoulder": "1 m"}}"#.to_owned(),
+        format!("control.coordinates={coordinates:?}"),
+    ];
+    loaded(&changes)
+}
+
+#[test]
+fn least_effort_moves_a_mass_as_its_closed_form_with_order_two() {
+    // F = 6 − 12 t, ∫F² = 12 N² s.
+    for coordinates in ["reduced", "redundant"] {
+        let errors = [20, 40].map(|intervals| {
+            let (system, control) = slide(intervals, coordinates);
+            let optimum = solved(&system, &control);
+            assert_eq!(optimum.solution.status, Status::Solved);
+            optimum.solution.objective - 12.0
+        });
+        assert!(
+            errors[0].abs() < 0.1 && errors[1].abs() > 1e-6,
+            "{errors:?}"
+        );
+        let ratio = errors[0] / errors[1];
+        assert!((ratio - 4.0).abs() < 0.1, "{coordinates}: {errors:?}");
+    }
+}
+
+#[test]
+fn a_pendulum_swings_up_against_a_wind_within_the_bounds_of_its_motor() {
+    let (system, control) = loaded(&[]);
+    let optimum = solved(&system, &control);
+    assert_eq!(optimum.solution.status, Status::Solved);
+    let motor = optimum.motion.voltages.iter().map(|row| row[0]);
+    let largest = motor.fold(0.0, |m: f64, torque| m.max(torque.abs()));
+    assert!((100.0..=150.0 + 1e-4).contains(&largest), "{largest} N mm");
+    let wind = optimum.motion.voltages.iter().map(|row| row[1]);
+    for (k, force) in wind.enumerate() {
+        let time = 20.0 * (k as f64 + 0.5);
+        let exact = 0.05 * (std::f64::consts::TAU * time / 400.0).sin();
+        assert!((force - exact).abs() < 1e-12, "{force} {exact}");
+    }
+}
+
+#[test]
+fn a_wrong_load_has_one_message_with_its_place() {
+    let path = Path::new(env!("CARGO_MANIFEST_DIR")).join("problems/swing_up.json");
+    for (change, place, words) in [
+        (
+            r#"control.load_bounds={"moter": ["0 N m", "1 N m"]}"#,
+            "control.load_bounds.moter",
+            "the name of a load",
+        ),
+        (
+            r#"control.load_bounds={"motor": ["0 N", "1 N m"]}"#,
+            "control.load_bounds.motor[0]",
+            "a torque",
+        ),
+        (
+            r#"control.load_bounds={"motor": ["2 N m", "1 N m"]}"#,
+            "control.load_bounds.motor[1]",
+            "an upper bound",
+        ),
+        (
+            r#"control.load_bounds={"wind": ["0 N", "1 N"]}"#,
+            "control.load_bounds.wind",
+            "a load that is sought",
+        ),
+        (
+            r#"control.duration={"min": "1 s", "max": "2 s", "guess": "1.2 s"}"#,
+            "control.loads",
+            "constant loads, or a given duration",
+        ),
+        (
+            r#"scene.loads=[{"name": "motor", "joint": "elbow"}]"#,
+            "scene.loads[0].joint",
+            "the name of a joint",
+        ),
+        (
+            r#"scene.loads=[{"name": "motor", "joint": "shoulder", "direction": [1, 0, 0]}]"#,
+            "scene.loads[0].direction",
+            "no such key",
+        ),
+    ] {
+        let error = read_problem(&path, &[change.to_owned()]).unwrap_err();
+        let said = error.to_string();
+        assert!(said.contains(place) && said.contains(words), "{said}");
+    }
+}
