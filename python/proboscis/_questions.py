@@ -54,7 +54,6 @@ class Questions:
         duration: entries.Duration,
         objective: entries.Objective,
         start: entries.Start,
-        voltage_bounds: Sequence[Quantity] | Numbers,
         coordinates: entries.Coordinates | None = None,
         free: Mapping[Any, entries.Free] | None = None,
         goal: entries.Goal | None = None,
@@ -62,7 +61,10 @@ class Questions:
         hold: entries.Hold | None = None,
         intervals: entries.Intervals | None = None,
         limits: Sequence[entries.Limit] | None = None,
+        load_bounds: Mapping[Any, Sequence[Quantity] | Numbers] | None = None,
+        loads: Mapping[Any, entries.Signal] | None = None,
         solver: entries.Solver | None = None,
+        voltage_bounds: Sequence[Quantity] | Numbers | None = None,
         voltages: entries.Voltages | None = None,
     ) -> Problem:
         """Returns the optimal control problem with these entries of `control` in a problem file.
@@ -70,7 +72,6 @@ class Questions:
         * `duration`: Final time, SI unit s, or its bounds and a guess.
         * `objective`: Objective that is minimised.
         * `start`: Initial state.
-        * `voltage_bounds`: Lower and upper bound of every voltage that is sought, SI unit V.
         * `coordinates`: Coordinates.
         * `free`: Constants of the scene that are sought, by their paths, such as `materials.silicone.shear_modulus`.
         * `goal`: Final state; may be left out where the objective names something to `track` or where to end (`final`), and is free then.
@@ -81,7 +82,10 @@ class Questions:
         * `intervals`: Number of intervals, 1 or more, or `"auto"`, as where it is not written: as many as the verification of the optimum
           needs to confirm an error of 1 % of the path length, or of the part that `--accuracy` gives.
         * `limits`: Path limits.
+        * `load_bounds`: Lower and upper bound of each load that is sought, by name, SI units N and N m.
+        * `loads`: Loads that are given, by name, constant or functions of time, SI units N and N m; 0 where neither given nor sought.
         * `solver`: Options of the solver.
+        * `voltage_bounds`: Lower and upper bound of every voltage that is sought, SI unit V; not needed where none is.
         * `voltages`: Voltages that are given, by the names of muscles and driven electrodes (`block.electrode`), SI unit V: they are no
           unknowns, and one of 0 for all the time leaves no electric term at all. Functions of time, a table and those of a solution give all
           voltages, as of a simulation; then a constant of the scene has to be sought.
@@ -92,7 +96,6 @@ class Questions:
                 "duration": duration,
                 "objective": objective,
                 "start": start,
-                "voltage_bounds": voltage_bounds,
                 "coordinates": coordinates,
                 "free": free,
                 "goal": goal,
@@ -100,7 +103,10 @@ class Questions:
                 "hold": hold,
                 "intervals": intervals,
                 "limits": limits,
+                "load_bounds": load_bounds,
+                "loads": loads,
                 "solver": solver,
+                "voltage_bounds": voltage_bounds,
                 "voltages": voltages,
             },
         )
@@ -113,6 +119,7 @@ class Questions:
         coordinates: entries.Coordinates | None = None,
         integrator: entries.Integrator | None = None,
         linear_solver: entries.LinearSolver | None = None,
+        loads: Mapping[Any, entries.Signal] | None = None,
         newton: entries.Newton | None = None,
         start: entries.Start | None = None,
         step: entries.Step | None = None,
@@ -128,6 +135,7 @@ class Questions:
         * `coordinates`: Coordinates.
         * `integrator`: The method; the midpoint variational integrator where not written.
         * `linear_solver`: Method of its factorisation; the one that is fastest as a rule where not written.
+        * `loads`: Loads by name, constant or functions of time, SI units N and N m; 0 where not named.
         * `newton`: Occasions at which the tangent of a step is factorised; where not written `modified` with finite elements, otherwise
           `full`.
         * `start`: Start of the motion; the reference configuration at rest where not written.
@@ -143,6 +151,7 @@ class Questions:
                 "coordinates": coordinates,
                 "integrator": integrator,
                 "linear_solver": linear_solver,
+                "loads": loads,
                 "newton": newton,
                 "start": start,
                 "step": step,
@@ -156,6 +165,7 @@ class Questions:
         self,
         *,
         coordinates: entries.Coordinates | None = None,
+        loads: Mapping[Any, Quantity] | None = None,
         path: int | None = None,
         voltages: Mapping[Any, Quantity] | None = None,
         output: str | PathLike[str] | None = None,
@@ -164,6 +174,7 @@ class Questions:
         """Finds the state of rest with these entries of `equilibrium` in a problem file; the others are those of `Problem.equilibrium`.
 
         * `coordinates`: Coordinates.
+        * `loads`: Loads by name, SI units N and N m; 0 where not named.
         * `path`: Number of points of the path of equilibria from zero voltage that are followed by arc length, past limit points such as
           pull-in.
         * `voltages`: Voltages by the names of muscles and driven electrodes (`block.electrode`), SI unit V; 0 where not named.
@@ -172,6 +183,7 @@ class Questions:
             "equilibrium",
             {
                 "coordinates": coordinates,
+                "loads": loads,
                 "path": path,
                 "voltages": voltages,
             },

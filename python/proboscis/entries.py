@@ -861,6 +861,12 @@ class Control(TypedDict):
     limits: NotRequired[Sequence[Limit]]
     """Path limits."""
 
+    load_bounds: NotRequired[Mapping[Any, Sequence[Quantity] | Numbers]]
+    """Lower and upper bound of each load that is sought, by name, SI units N and N m."""
+
+    loads: NotRequired[Mapping[Any, Signal]]
+    """Loads that are given, by name, constant or functions of time, SI units N and N m; 0 where neither given nor sought."""
+
     objective: Objective
     """Objective that is minimised."""
 
@@ -870,8 +876,8 @@ class Control(TypedDict):
     start: Start
     """Initial state."""
 
-    voltage_bounds: Sequence[Quantity] | Numbers
-    """Lower and upper bound of every voltage that is sought, SI unit V."""
+    voltage_bounds: NotRequired[Sequence[Quantity] | Numbers]
+    """Lower and upper bound of every voltage that is sought, SI unit V; not needed where none is."""
 
     voltages: NotRequired[Voltages]
     """Voltages that are given, by the names of muscles and driven electrodes (`block.electrode`), SI unit V: they are no unknowns, and one of 0
@@ -894,6 +900,9 @@ class Simulate(TypedDict):
 
     linear_solver: NotRequired[LinearSolver]
     """Method of its factorisation; the one that is fastest as a rule where not written."""
+
+    loads: NotRequired[Mapping[Any, Signal]]
+    """Loads by name, constant or functions of time, SI units N and N m; 0 where not named."""
 
     newton: NotRequired[Newton]
     """Occasions at which the tangent of a step is factorised; where not written `modified` with finite elements, otherwise `full`."""
@@ -918,6 +927,9 @@ class Equilibrium(TypedDict):
 
     coordinates: NotRequired[Coordinates]
     """Coordinates."""
+
+    loads: NotRequired[Mapping[Any, Quantity]]
+    """Loads by name, SI units N and N m; 0 where not named."""
 
     path: NotRequired[int]
     """Number of points of the path of equilibria from zero voltage that are followed by arc length, past limit points such as pull-in."""

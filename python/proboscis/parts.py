@@ -17,7 +17,7 @@ if TYPE_CHECKING:
     from proboscis import entries
     from proboscis.entries import Numbers, Quantity, Text
 
-__all__ = ["GROUND", "Part", "Material", "Body", "Joint", "Muscle", "Solid", "Spring", "Tendon", "Marker"]
+__all__ = ["GROUND", "Part", "Material", "Body", "Joint", "Muscle", "Solid", "Spring", "Tendon", "Load", "Marker"]
 
 
 class Material(Part):
@@ -334,6 +334,35 @@ class Tendon(Part):
                 "through": through,
                 "rest_length": rest_length,
                 "smoothing": smoothing,
+            },
+        )
+
+
+class Load(Part):
+    """A force at a point along a direction that does not turn, or a torque or force of a joint, such as that of a motor. A problem says how large
+    it is.
+
+    * `direction`: Direction of the force in the ground frame; its length is ignored.
+    * `joint`: Name of a revolute joint, about whose axis a torque acts on the child, or of a prismatic one, along whose axis a force acts.
+    * `point`: Point of a body at which a force acts, with `direction`; or give `joint`.
+    """
+
+    kind, noun = "loads", "load"
+
+    def __init__(
+        self,
+        name: str | None = None,
+        *,
+        direction: Sequence[float] | Numbers | None = None,
+        joint: Text | None = None,
+        point: entries.Point | None = None,
+    ) -> None:
+        super().__init__(
+            name,
+            {
+                "direction": direction,
+                "joint": joint,
+                "point": point,
             },
         )
 

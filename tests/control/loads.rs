@@ -27,7 +27,8 @@ fn solved(system: &System, control: &Control) -> Optimum {
 
 /// 1 kg on a slide along x that a motor of unlimited force moves by 1 m in 1 s, from rest to rest.
 fn slide(intervals: usize, coordinates: &str) -> (System, Control) {
-    let body = r#"{"name": "arm", "mass": "1 kg", "sphere": {"radius": "1 mm"}}"#;
+    let body =
+        r#"{"name": "arm", "mass": "1 kg", "sphere": {"radius": "1 mm"}, "position": [0, 0, 0]}"#;
     let joint = r#"{"name": "shoulder", "prismatic": {"axis": [1, 0, 0]}, "parent": "ground",
                     "child": "arm", "at": [0, 0, 0]}"#;
     let changes = [
@@ -37,6 +38,8 @@ fn slide(intervals: usize, coordinates: &str) -> (System, Control) {
         "control.duration=1 s".to_owned(),
         format!("control.intervals={intervals}"),
         "control.loads={}".to_owned(),
+        r#"scene.loads=[{"name": "motor", "joint": "shoulder"}]"#.to_owned(),
+        "scene.markers=[]".to_owned(),
         r#"control.load_bounds={"motor": ["-90 N", "90 N"]}"#.to_owned(),
         r#"control.goal={"joint_angles": {"shoulder": "1 m"}}"#.to_owned(),
         format!("control.coordinates={coordinates:?}"),
@@ -110,12 +113,12 @@ fn a_wrong_load_has_one_message_with_its_place() {
         ),
         (
             r#"scene.loads=[{"name": "motor", "joint": "elbow"}]"#,
-            "scene.loads[0].joint",
+            "loads[0].joint",
             "the name of a joint",
         ),
         (
             r#"scene.loads=[{"name": "motor", "joint": "shoulder", "direction": [1, 0, 0]}]"#,
-            "scene.loads[0].direction",
+            "loads[0].direction",
             "no such key",
         ),
     ] {
