@@ -11,6 +11,7 @@ mod error;
 mod goal;
 mod goal_rows;
 mod guess;
+mod inputs;
 mod limits;
 mod mesh_match;
 mod numbering;

@@ -80,6 +80,17 @@ impl Row {
     }
 }
 
+/// Column of a voltage or load.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct InputColumn {
+    /// Column.
+    pub column: usize,
+    /// Place in a list of the inputs of all intervals, given ones included.
+    pub place: usize,
+    /// Input of an interval.
+    pub input: usize,
+}
+
 /// Columns and rows of a horizon.
 #[derive(Clone, Debug)]
 pub struct Numbering {
@@ -87,8 +98,8 @@ pub struct Numbering {
     pub columns: Vec<Column>,
     /// All rows, in order; limits follow where they are added.
     pub rows: Vec<Row>,
-    /// Columns of voltages and loads, each with its place in a list of those of all intervals, given ones included.
-    pub inputs: Vec<(usize, usize)>,
+    /// Columns of voltages and loads.
+    pub inputs: Vec<InputColumn>,
     column_of_instant: Vec<Option<usize>>,
     column_of_interval: Vec<Option<usize>>,
     column_of_horizon: Option<usize>,
@@ -145,7 +156,11 @@ impl Numbering {
                 let column = Column::Interval { k, s };
                 let number = out.column(column, is_given(column));
                 if let (Some(number), true) = (number, inputs.contains(&s)) {
-                    out.inputs.push((number, k * inputs.len() + s));
+                    out.inputs.push(InputColumn {
+                        column: number,
+                        place: k * inputs.len() + s,
+                        input: s,
+                    });
                 }
                 out.column_of_interval[at] = number;
                 let is_row = variable.role.has_equation();

@@ -5,7 +5,7 @@ use crate::functional::{Functional, Term};
 use crate::kinematics::{MaterialVector, Pose, Vectors};
 use crate::model::analysis::{Analysis, Coordinates};
 use crate::model::components::Load;
-use crate::model::components::{body, load, muscle};
+use crate::model::components::{body, muscle};
 use crate::model::error::ModelError;
 use crate::model::graph::Graph;
 use crate::model::internal::Internals;
@@ -20,7 +20,7 @@ use crate::model::solids::Solids;
 use crate::model::system::{Attachment, Body, Marker, Muscle, Source, System};
 use crate::model::terms::{Carriers, Terms};
 use crate::model::variables::{Role, Size, Time, Variable, Variables};
-use crate::model::{blocks, constraints, dampers, field_extent, joint_springs, plan};
+use crate::model::{blocks, constraints, dampers, field_extent, joint_springs, loads, plan};
 
 impl Model {
     /// Builds the model of a system for intervals of about `h0` ms, in which `quantities` can be measured, any voltage may act
@@ -170,7 +170,7 @@ fn acting(presolved: &Presolved, analysis: &Analysis) -> Vec<usize> {
     let system = &presolved.system;
     let loads = (system.first_load()..).zip(&system.components.loads);
     let acts = |(source, load): &(usize, &Load)| {
-        !analysis.zero_inputs.contains(source) && load.moves(presolved)
+        !analysis.zero_inputs.contains(source) && loads::moves(load, presolved)
     };
     let loads = loads.filter(acts).map(|(source, _)| source);
     field_extent::voltages(system)
@@ -259,7 +259,7 @@ impl Construction<'_> {
         terms.without(plan::GRAVITY, no_weight);
         dampers::build(self.presolved, self.reference, self.coordinates, &mut terms);
         joint_springs::build(&self.presolved.system, self.internals, &mut terms);
-        load::build(system, self.presolved, self.internals, &mut terms);
+        loads::build(system, self.presolved, self.internals, &mut terms);
         system.components.build(&mut terms);
         terms.finish()
     }

@@ -116,7 +116,7 @@ impl Parts {
         }
         for (source, load) in (system.first_load()..).zip(&system.components.loads) {
             if !analysis.zero_inputs.contains(&source) {
-                moved.extend(load.bodies(system));
+                moved.extend(system.loaded_bodies(load));
             }
         }
         let is_loaded = |joint: &&Joint| joint.spring.is_some_and(|spring| spring.rest != 0.0);

@@ -20,6 +20,8 @@ mod immobile;
 mod internal;
 mod joint_springs;
 mod joints;
+mod loads;
+mod material;
 mod maxwell;
 mod measures;
 #[expect(clippy::module_inception, reason = "the file of the type of that name")]
@@ -33,6 +35,7 @@ mod redundancy;
 mod solid_block;
 mod solids;
 mod sought;
+mod source;
 mod states;
 pub mod system;
 mod terms;

@@ -3,8 +3,10 @@
 use crate::mesh::Mesh;
 pub use crate::model::attachment::Attachment;
 pub use crate::model::bodies::{Body, Shape, directors_along};
-use crate::model::components::{Components, Load};
+use crate::model::components::{Components, Load, LoadPlace};
+pub use crate::model::material::{ElectricConstants, Material, VACUUM_PERMITTIVITY};
 pub use crate::model::maxwell::{MaxwellBranch, MaxwellBranches};
+pub use crate::model::source::{InputKind, Source, voltage_sources};
 use nalgebra::Vector3;
 
 /// A mechanical system; `None` for a body index is the ground.
@@ -26,69 +28,6 @@ pub struct System {
     pub gravity: Option<Vector3<f64>>,
     /// Parts that answer for themselves: springs, tendons.
     pub components: Components,
-}
-
-/// Part that an input drives, and the name of the input.
-#[derive(Clone, Debug, PartialEq)]
-pub struct Source {
-    /// Name in files.
-    pub name: String,
-    /// Physical kind of the input.
-    pub kind: InputKind,
-    /// True if it is a voltage that has an effect: a muscle without electric constants takes none.
-    pub takes_voltage: bool,
-}
-
-/// Physical kind of an input.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum InputKind {
-    /// Voltage of a muscle or a driven electrode, in V.
-    Voltage,
-    /// Force of a load, in N.
-    Force,
-    /// Torque of a load, in N mm.
-    Torque,
-}
-
-impl InputKind {
-    /// Unit inside.
-    pub const fn unit(self) -> &'static str {
-        match self {
-            Self::Voltage => "V",
-            Self::Force => "N",
-            Self::Torque => "N mm",
-        }
-    }
-
-    /// SI unit, and its size in the unit inside.
-    pub const fn si(self) -> (&'static str, f64) {
-        match self {
-            Self::Voltage => ("V", 1.0),
-            Self::Force => ("N", 1.0),
-            Self::Torque => ("N m", 1e3),
-        }
-    }
-
-    /// Unit in which objectives and charts count it, and its size in the unit inside.
-    pub const fn counted(self) -> (&'static str, f64) {
-        match self {
-            Self::Voltage => ("kV", 1e3),
-            Self::Force => ("N", 1.0),
-            Self::Torque => ("N m", 1e3),
-        }
-    }
-}
-
-impl Source {
-    /// Returns true if it is a load.
-    pub fn is_load(&self) -> bool {
-        self.kind != InputKind::Voltage
-    }
-
-    /// Returns true if its input has an effect.
-    pub fn acts(&self) -> bool {
-        self.takes_voltage || self.is_load()
-    }
 }
 
 impl System {
@@ -168,7 +107,7 @@ impl System {
         }
         let load = |load: &Load| Source {
             name: load.name.clone(),
-            kind: load.kind(self),
+            kind: self.load_kind(load),
             takes_voltage: false,
         };
         sources.extend(self.components.loads.iter().map(load));
@@ -178,6 +117,29 @@ impl System {
     /// Index of the first load among the sources.
     pub fn first_load(&self) -> usize {
         self.sources().len() - self.components.loads.len()
+    }
+
+    /// Physical kind of the size of a load.
+    fn load_kind(&self, load: &Load) -> InputKind {
+        let is_linear = |joint: usize| {
+            let kind = &self.joints[joint].kind;
+            matches!(kind, JointKind::Prismatic { .. })
+        };
+        match load.on {
+            LoadPlace::Joint(joint) if !is_linear(joint) => InputKind::Torque,
+            _ => InputKind::Force,
+        }
+    }
+
+    /// Bodies on which a load acts.
+    pub fn loaded_bodies(&self, load: &Load) -> Vec<usize> {
+        match load.on {
+            LoadPlace::Point { at, .. } => at.body.into_iter().collect(),
+            LoadPlace::Joint(joint) => {
+                let joint = &self.joints[joint];
+                joint.parent.into_iter().chain([joint.child]).collect()
+            }
+        }
     }
 
     /// Returns the load that a source is.
@@ -367,34 +329,6 @@ pub struct Glue {
     pub body: Option<usize>,
 }
 
-/// A dielectric elastomer. What is `None` leaves no trace.
-#[derive(Clone, Copy, Debug, Default, PartialEq)]
-pub struct Material {
-    /// Density in g/mm³.
-    pub density: Option<f64>,
-    /// Shear modulus μ in MPa.
-    pub shear_modulus: f64,
-    /// First Lamé constant λ in MPa; finite elements need it, lumped muscles keep their volume and do not read it.
-    pub lame_lambda: Option<f64>,
-    /// Electric constants.
-    pub electric: Option<ElectricConstants>,
-    /// Viscosity η in MPa ms, σ_vis = η d.
-    pub viscosity: Option<f64>,
-    /// Maxwell branches, which lumped muscles read.
-    pub maxwell: MaxwellBranches,
-}
-
-/// Constants of the electric energy c₁ E·E + c₂ C:(E⊗E) − ½ ε J C⁻¹:(E⊗E), in N/V².
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct ElectricConstants {
-    /// c₁.
-    pub c1: f64,
-    /// c₂.
-    pub c2: f64,
-    /// Permittivity ε of the last term: vacuum's, or the whole of an ideal dielectric.
-    pub permittivity: f64,
-}
-
 /// A named material point whose path is reported.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Marker {
@@ -404,36 +338,6 @@ pub struct Marker {
     pub point: Attachment,
     /// The block whose node nearest to the point is meant, where it is on a block rather than on a body.
     pub solid: Option<usize>,
-}
-
-/// Permittivity of vacuum in N/V² (F/m), CODATA value in the decimals of the reference solutions.
-pub const VACUUM_PERMITTIVITY: f64 = 8.854_187_817e-12;
-
-impl Material {
-    /// λ = 2 μ ν/(1 − 2 ν) of a shear modulus and a Poisson ratio.
-    pub fn first_lame_constant(shear_modulus: f64, poisson_ratio: f64) -> f64 {
-        2.0 * shear_modulus * poisson_ratio / (1.0 - 2.0 * poisson_ratio)
-    }
-}
-
-impl ElectricConstants {
-    /// A dielectric of this relative permittivity whose polarisation is linear in the reference field.
-    pub fn first_order(ratio: f64) -> Self {
-        Self {
-            c1: -(ratio - 1.0) * VACUUM_PERMITTIVITY,
-            c2: (ratio - 1.0) * VACUUM_PERMITTIVITY / 2.0,
-            permittivity: VACUUM_PERMITTIVITY,
-        }
-    }
-
-    /// An ideal dielectric of this relative permittivity.
-    pub fn ideal(ratio: f64) -> Self {
-        Self {
-            c1: 0.0,
-            c2: 0.0,
-            permittivity: ratio * VACUUM_PERMITTIVITY,
-        }
-    }
 }
 
 impl Joint {

@@ -3,7 +3,7 @@
 //! The role determines if a variable belongs to an instant or an interval, has an equation, or is prescribed from outside.
 //! Each role has one range of places in the list of its time, so that evaluations index and never search.
 
-use crate::model::system::InputKind;
+use crate::model::source::InputKind;
 use std::fmt;
 use std::ops::Range;
 

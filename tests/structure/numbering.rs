@@ -48,9 +48,10 @@ fn check(system: &System, control: &Control) -> [usize; 2] {
     let sought: Vec<String> = sought.collect();
     assert_eq!(inputs[0] + inputs[1], sought.len());
     assert!(sought.iter().all(|name| columns.contains(name)));
-    for &(column, place) in &unknowns.inputs {
-        let (k, s) = (place / sources.len(), place % sources.len());
-        assert_eq!(columns[column], voltage(k, sources[s]));
+    for entry in &unknowns.inputs {
+        let (k, s) = (entry.place / sources.len(), entry.input);
+        assert_eq!(s, entry.place % sources.len());
+        assert_eq!(columns[entry.column], voltage(k, sources[s]));
     }
 
     let potentials = names(&columns, "potential of ");
@@ -95,7 +96,7 @@ fn step(model: &Model, count: usize) {
     let solved: Vec<String> = all
         .into_iter()
         .flatten()
-        .filter(|variable| variable.role != Role::Voltage)
+        .filter(|variable| variable.source.is_none())
         .map(ToString::to_string)
         .collect();
     let unknowns: Vec<String> = variables.unknowns().map(ToString::to_string).collect();
@@ -108,10 +109,13 @@ fn step(model: &Model, count: usize) {
     }
     for (s, variable) in variables.of(Time::Interval).iter().enumerate() {
         let name = variables.place(s).map(|i| &solved[i]);
-        let expected = (variable.role != Role::Voltage).then(|| variable.to_string());
+        let expected = variable.source.is_none().then(|| variable.to_string());
         assert_eq!(name, expected.as_ref());
         let place = variable.source.map(|source| variables.input(source));
-        assert_eq!(place, (variable.role == Role::Voltage).then_some(Some(s)));
+        assert_eq!(
+            place,
+            matches!(variable.role, Role::Voltage | Role::Load).then_some(Some(s))
+        );
     }
 }
 

@@ -149,9 +149,9 @@ impl Transcription<'_> {
             }
         }
         let inputs = &self.objective.inputs;
-        for &(column, place) in &self.layout.unknowns.inputs {
-            let unit = inputs[place % inputs.len()].unit;
-            workspace.inputs[place] = self.variable_scales[column] * x[column] / unit;
+        for entry in &self.layout.unknowns.inputs {
+            let value = self.variable_scales[entry.column] * x[entry.column];
+            workspace.inputs[entry.place] = value / inputs[entry.input].unit;
         }
         workspace.placed = Placed::Nothing;
     }

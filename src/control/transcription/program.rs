@@ -57,9 +57,9 @@ impl Nlp for Transcription<'_> {
         }
         let scales = &self.variable_scales;
         let inputs = &self.objective.inputs;
-        for &(column, place) in &self.layout.unknowns.inputs {
-            let unit = inputs[place % inputs.len()].unit;
-            grad[column] += self.workspace.gradient[place] * scales[column] / unit;
+        for entry in &self.layout.unknowns.inputs {
+            let (scale, unit) = (scales[entry.column], inputs[entry.input].unit);
+            grad[entry.column] += self.workspace.gradient[entry.place] * scale / unit;
         }
         if let Some(column) = self.layout.unknowns.horizon() {
             grad[column] = by_horizon * scales[column];

@@ -2,10 +2,9 @@
 //!
 //! With q_k = q_{k+1} = q the sum of both rows is −h Pᵀ∇V − h₀ Gᵀλ, and the tangent is the sum of the four blocks. Inertia and
 //! viscosity would vanish from both sums only up to the rounding of M/h and D: they are left out, so that a state of rest depends
-//! neither on masses nor on the step. Potentials keep the rows of Gauss's law.
-//!
-//! Weights are constant forces on the vectors, so that a part of them is a part of these forces. A stiffness σ on every
-//! coordinate may be added to the tangent, which makes any state's tangent that of a minimum.
+//! neither on masses nor on the step. Potentials keep the rows of Gauss's law. Weights are constant forces on the vectors, so that a
+//! part of them is a part of these forces. A stiffness σ on every coordinate may be added to the tangent, which makes any state's
+//! tangent that of a minimum.
 
 use crate::coordinates::{Configuration, Interval, Scratch};
 use crate::dynamics::error::EquilibriumError;
@@ -16,11 +15,10 @@ use crate::math::Vector;
 use crate::model::{Model, Role};
 use crate::sparse::{Singular, Symmetry};
 
-/// Limit of Newton iterations for one load.
+/// Limit of Newton iterations.
 pub(super) const ITERATIONS: usize = 30;
 /// Convergence of the Newton update, relative to angles of one radian and the length of the system.
 const UPDATE: f64 = 1e-11;
-
 /// An update longer than this leaves the region in which the tangent says anything.
 const LONG: f64 = 0.5;
 

@@ -8,9 +8,9 @@ use crate::files::json::scope::Scope;
 use crate::files::problem::spec_states::{GoalSpec, OrientationSpec, RestGoalSpec};
 use crate::files::problem::spec_voltages::VoltageMap;
 use crate::files::problem::state::{by_joint, moving_marker, voltages};
-use crate::files::scene::body::unit_axis;
 use crate::files::scene::names::names;
 use crate::files::scene::point::PartialPoint;
+use crate::files::scene::point::unit_axis;
 use crate::files::units::quantity::{Angle, Length, Quantity};
 use crate::model::system::System;
 

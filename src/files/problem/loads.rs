@@ -7,7 +7,7 @@ use crate::files::json::scope::Scope;
 use crate::files::problem::signal::signal;
 use crate::files::problem::spec_signal::SignalSpec;
 use crate::files::units::quantity::{Force, Kind, LoadSize, Quantity, Torque};
-use crate::model::system::{InputKind, Source, System};
+use crate::model::system::{InputKind, System};
 use std::collections::BTreeMap;
 
 /// Loads by name, constant or functions of time.
@@ -109,10 +109,4 @@ pub(crate) fn load(state: &mut BoundaryState, loads: &BTreeMap<usize, Signal>, t
     for (&source, signal) in loads {
         row[source] = signal.at(time);
     }
-}
-
-/// Sources of voltages: those that stand before the loads.
-pub(crate) fn of_voltages(sources: &[Source]) -> &[Source] {
-    let loads = sources.iter().filter(|source| source.is_load()).count();
-    &sources[..sources.len() - loads]
 }

@@ -7,7 +7,6 @@ use crate::control::problem::{BoundaryState, Rest};
 use crate::files::json::error::SceneError;
 use crate::files::json::scope::Scope;
 use crate::files::problem::end_of::end_of;
-use crate::files::problem::loads::of_voltages;
 use crate::files::problem::spec_states::{BodyVelocitySpec, StartSpec};
 use crate::files::problem::spec_voltages::VoltageMap;
 use crate::files::scene::names::names;
@@ -16,7 +15,7 @@ use crate::files::units::quantity::{
     Angle, AngularVelocity, Kind, Length, PhysicalQuantity, Quantity, Velocity,
 };
 use crate::model::Graph;
-use crate::model::system::{JointKind, Source, System};
+use crate::model::system::{JointKind, Source, System, voltage_sources};
 
 /// Expected name of a voltage, for messages.
 pub(crate) const A_SOURCE: &str = "the name of a muscle or of a driven electrode (block.electrode)";
@@ -45,7 +44,7 @@ pub(crate) fn driven(
     sources: &[Source],
     scope: &Scope<'_>,
 ) -> Result<usize, SceneError> {
-    let sources = of_voltages(sources);
+    let sources = voltage_sources(sources);
     let index = scope.find(name, &names(sources, |source| &source.name), A_SOURCE)?;
     if sources[index].takes_voltage {
         return Ok(index);

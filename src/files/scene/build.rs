@@ -4,7 +4,7 @@ use std::cell::Cell;
 
 use crate::files::json::error::SceneError;
 use crate::files::json::scope::Scope;
-use crate::files::scene::body::{body, unit_axis};
+use crate::files::scene::body::body;
 use crate::files::scene::components::{load, spring, tendon};
 use crate::files::scene::expand::expanded;
 use crate::files::scene::graph::check_connected;
@@ -13,6 +13,7 @@ use crate::files::scene::marker::marker;
 use crate::files::scene::material::materials;
 use crate::files::scene::muscle::{MOST_ELEMENTS, fidelity, layer, muscle, positive_sides};
 use crate::files::scene::names::{find_material, names};
+use crate::files::scene::point::unit_axis;
 use crate::files::scene::point::vector;
 use crate::files::scene::solid::solid;
 use crate::files::scene::spec::{ChainSpec, SceneSpec};
@@ -28,57 +29,30 @@ pub(crate) fn build_scene(scene: &SceneSpec, scope: &Scope<'_>) -> Result<System
     if let Some(chain) = &scene.chain {
         check_chain(chain, &materials, &scope.key("chain"))?;
     }
-    let bodies = NamedEntries::new(scope, "bodies", scene.bodies.len());
-    let joints = NamedEntries::new(scope, "joints", scene.joints.len());
-    let muscles = NamedEntries::new(scope, "muscles", scene.muscles.len());
-    let solids = NamedEntries::new(scope, "solids", scene.solids.len());
-    let markers = NamedEntries::new(scope, "markers", scene.markers.len());
-
+    let lists = Lists::new(&scene, scope);
     let scene = expanded(scene.clone());
+    lists.check_names(&scene, scope)?;
     let body_names = names(&scene.bodies, |body| &body.name);
-    let muscle_names = names(&scene.muscles, |muscle| &muscle.name);
-    let solid_names = names(&scene.solids, |solid| &solid.name);
-    bodies.unique(&body_names, &["ground"])?;
-    joints.unique(&names(&scene.joints, |joint| &joint.name), &[])?;
-    muscles.unique(&muscle_names, &["solution", "time", "voltages", "hold"])?;
-    let springs = NamedEntries::new(scope, "springs", scene.springs.len());
-    let tendons = NamedEntries::new(scope, "tendons", scene.tendons.len());
-    let loads = NamedEntries::new(scope, "loads", scene.loads.len());
-    let load_names = names(&scene.loads, |load| &load.name);
-    loads.unique(&load_names, &[])?;
-    let spring_names = names(&scene.springs, |spring| &spring.name);
-    let tendon_names = names(&scene.tendons, |tendon| &tendon.name);
-    springs.unique(&spring_names, &[])?;
-    tendons.unique(
-        &tendon_names,
-        &spring_names.iter().map(String::as_str).collect::<Vec<_>>(),
-    )?;
-    // Blocks and muscles share files and names of voltages.
-    let all = [muscle_names, solid_names.clone()].concat();
-    let place = |index: usize| scope.key("solids").index(index - scene.muscles.len());
-    scope.unique(&all, &[], |index| place(index).key("name"))?;
-    let others: Vec<&str> = all.iter().map(String::as_str).collect();
-    loads.unique(&load_names, &others)?;
-    markers.unique(&names(&scene.markers, |marker| &marker.name), &[])?;
 
     let elements = Elements::default();
-    let muscles = muscles.build(&scene.muscles, |spec, scope| {
+    let muscles = lists.muscles.build(&scene.muscles, |spec, scope| {
         let muscle = muscle(spec, &body_names, &materials, scope)?;
         elements.add(muscle.fidelity.elements(), scope)?;
         Ok(muscle)
     })?;
-    let mut blocks = solids.build(&scene.solids, |spec, scope| {
+    let mut blocks = lists.solids.build(&scene.solids, |spec, scope| {
         let solid = solid(spec, &body_names, &materials, scope)?;
         elements.add(solid.mesh.hexahedra.len(), scope)?;
         Ok(solid)
     })?;
     number_sources(&mut blocks, muscles.len());
-    let built_joints =
-        joints.build(&scene.joints, |spec, scope| joint(spec, &body_names, scope))?;
+    let built_joints = lists
+        .joints
+        .build(&scene.joints, |spec, scope| joint(spec, &body_names, scope))?;
     let system = System {
-        bodies: bodies.build(&scene.bodies, body)?,
+        bodies: lists.bodies.build(&scene.bodies, body)?,
         muscles,
-        markers: markers.build(&scene.markers, |spec, scope| {
+        markers: lists.markers.build(&scene.markers, |spec, scope| {
             marker(spec, &body_names, &blocks, scope)
         })?,
         solids: blocks,
@@ -88,13 +62,13 @@ pub(crate) fn build_scene(scene: &SceneSpec, scope: &Scope<'_>) -> Result<System
             .map(vector)
             .filter(|g| g.norm() > 0.0),
         components: Components {
-            loads: loads.build(&scene.loads, |spec, scope| {
+            loads: lists.loads.build(&scene.loads, |spec, scope| {
                 load(spec, &body_names, &built_joints, scope)
             })?,
-            springs: springs.build(&scene.springs, |spec, scope| {
+            springs: lists.springs.build(&scene.springs, |spec, scope| {
                 spring(spec, &body_names, scope)
             })?,
-            tendons: tendons.build(&scene.tendons, |spec, scope| {
+            tendons: lists.tendons.build(&scene.tendons, |spec, scope| {
                 tendon(spec, &body_names, scope)
             })?,
             others: Vec::new(),
@@ -102,7 +76,9 @@ pub(crate) fn build_scene(scene: &SceneSpec, scope: &Scope<'_>) -> Result<System
         joints: built_joints,
         name: scene.name,
     };
-    check_connected(&scene.bodies, &system.joints, |index| bodies.scope(index))?;
+    check_connected(&scene.bodies, &system.joints, |index| {
+        lists.bodies.scope(index)
+    })?;
     let sources = names(&system.sources(), |source| &source.name);
     scope.unique(&sources, &[], |_| scope.key("solids"))?;
     Ok(system)
@@ -126,6 +102,64 @@ impl Elements {
             format!("no more than {MOST_ELEMENTS} elements in all"),
         ))
     }
+}
+
+/// The named lists of a scene.
+struct Lists<'a> {
+    bodies: NamedEntries<'a>,
+    joints: NamedEntries<'a>,
+    muscles: NamedEntries<'a>,
+    solids: NamedEntries<'a>,
+    markers: NamedEntries<'a>,
+    springs: NamedEntries<'a>,
+    tendons: NamedEntries<'a>,
+    loads: NamedEntries<'a>,
+}
+
+impl<'a> Lists<'a> {
+    /// The lists of a scene as it is written.
+    fn new(scene: &SceneSpec, scope: &Scope<'a>) -> Self {
+        let list = |name: &str, written: usize| NamedEntries::new(scope, name, written);
+        Self {
+            bodies: list("bodies", scene.bodies.len()),
+            joints: list("joints", scene.joints.len()),
+            muscles: list("muscles", scene.muscles.len()),
+            solids: list("solids", scene.solids.len()),
+            markers: list("markers", scene.markers.len()),
+            springs: list("springs", scene.springs.len()),
+            tendons: list("tendons", scene.tendons.len()),
+            loads: list("loads", scene.loads.len()),
+        }
+    }
+
+    /// Checks that the names of the expanded scene are unique where they must be.
+    fn check_names(&self, scene: &SceneSpec, scope: &Scope<'_>) -> Result<(), SceneError> {
+        let bodies = names(&scene.bodies, |body| &body.name);
+        let joints = names(&scene.joints, |joint| &joint.name);
+        let muscles = names(&scene.muscles, |muscle| &muscle.name);
+        let solids = names(&scene.solids, |solid| &solid.name);
+        let markers = names(&scene.markers, |marker| &marker.name);
+        let springs = names(&scene.springs, |spring| &spring.name);
+        let tendons = names(&scene.tendons, |tendon| &tendon.name);
+        let loads = names(&scene.loads, |load| &load.name);
+
+        self.bodies.unique(&bodies, &["ground"])?;
+        self.joints.unique(&joints, &[])?;
+        let reserved = ["solution", "time", "voltages", "hold"];
+        self.muscles.unique(&muscles, &reserved)?;
+        self.springs.unique(&springs, &[])?;
+        self.tendons.unique(&tendons, &borrowed(&springs))?;
+        // Blocks and muscles share files and names of voltages.
+        let driven = [muscles, solids].concat();
+        let place = |index: usize| scope.key("solids").index(index - scene.muscles.len());
+        scope.unique(&driven, &[], |index| place(index).key("name"))?;
+        self.loads.unique(&loads, &borrowed(&driven))?;
+        self.markers.unique(&markers, &[])
+    }
+}
+
+fn borrowed(names: &[String]) -> Vec<&str> {
+    names.iter().map(String::as_str).collect()
 }
 
 /// One list of the scene; entries beyond the written ones come from the chain.

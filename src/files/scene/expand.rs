@@ -2,7 +2,7 @@
 
 use nalgebra::Vector3;
 
-use crate::files::scene::body::direction;
+use crate::files::scene::point::direction;
 use crate::files::scene::point::{Point, PointSpec};
 use crate::files::scene::spec::{
     AxisSpec, BodySpec, ChainSpec, CylinderSpec, JointSpec, MarkerSpec, MuscleSpec, SceneSpec,

@@ -2,8 +2,8 @@
 
 use crate::files::json::error::SceneError;
 use crate::files::json::scope::Scope;
-use crate::files::scene::body::unit_axis;
 use crate::files::scene::names::find_body;
+use crate::files::scene::point::unit_axis;
 use crate::files::scene::point::vector;
 use crate::files::scene::spec::{AxisSpec, JointSpec};
 use crate::files::units::quantity::{

@@ -4,6 +4,8 @@ use nalgebra::Vector3;
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
+use crate::files::json::error::SceneError;
+use crate::files::json::scope::Scope;
 use crate::files::units::quantity::{Length, PhysicalQuantity, Quantity};
 
 /// A point or a vector of lengths.
@@ -35,4 +37,22 @@ pub struct CornersSpec {
     pub min: Point,
     /// Upper corner, SI unit m.
     pub max: Point,
+}
+
+/// A direction of length one.
+pub(crate) fn unit_axis(axis: &[f64; 3], scope: &Scope<'_>) -> Result<Vector3<f64>, SceneError> {
+    direction(axis).ok_or_else(|| {
+        let found = format!("{axis:?}");
+        scope.wrong(found, "a direction, such as [0, 0, 1]")
+    })
+}
+
+/// The unit vector along an axis; `None` for an axis without a direction.
+pub(crate) fn direction(axis: &[f64; 3]) -> Option<Vector3<f64>> {
+    // Scaling by the largest entry keeps the norm of very long and very short axes in range.
+    let largest = Vector3::from(*axis).amax();
+    let scaled = Vector3::from(*axis) / largest;
+    // Adding zero turns −0 into 0.
+    let unit = scaled.normalize().map(|entry| entry + 0.0);
+    unit.iter().all(|entry| entry.is_finite()).then_some(unit)
 }

@@ -2,9 +2,9 @@
 
 use crate::files::json::error::SceneError;
 use crate::files::json::scope::Scope;
-use crate::files::scene::body::unit_axis;
 use crate::files::scene::names::{attachment, names};
 use crate::files::scene::point::PointSpec;
+use crate::files::scene::point::unit_axis;
 use crate::model::components::{Load, LoadPlace};
 use crate::model::system::Joint;
 use schemars::JsonSchema;

@@ -1,0 +1,136 @@
+//! Voltages and loads as functions of time: constants, rows of a table or a solution, or one function for each source.
+
+use crate::control::Signal;
+use std::borrow::Cow;
+use std::collections::BTreeMap;
+use std::path::{Path, PathBuf};
+
+/// Voltages and loads over time (V, N, N mm; one per source).
+#[derive(Clone, Debug, PartialEq)]
+pub enum Voltages {
+    /// The same in every interval.
+    Constant(Vec<f64>),
+    /// One row per interval of the given grid, and one for the time afterwards.
+    Sampled {
+        /// End of each interval in ms, increasing.
+        ends: Vec<f64>,
+        /// Rows of voltages, one more than ends.
+        rows: Vec<Vec<f64>>,
+        /// Role of the last row.
+        afterwards: Afterwards,
+        /// Sources that follow functions of time instead: loads.
+        others: BTreeMap<usize, Signal>,
+        /// The solution they were read from; none of a table in the problem.
+        solution: Option<PathBuf>,
+    },
+    /// A function of time for each source.
+    Signals(Vec<Signal>),
+}
+
+/// Voltages after the end of a solution or table.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Afterwards {
+    /// Those that it says are held: of a solution those of its goal.
+    Held,
+    /// Those of its last interval: it names no others.
+    OfLastInterval,
+}
+
+impl Voltages {
+    /// The solution that they are from.
+    pub fn solution(&self) -> Option<&Path> {
+        match self {
+            Self::Constant(_) | Self::Signals(_) => None,
+            Self::Sampled { solution, .. } => solution.as_deref(),
+        }
+    }
+
+    /// Voltages of the sources at a time in ms.
+    pub fn at(&self, time: f64) -> Cow<'_, [f64]> {
+        match self {
+            Self::Constant(row) => Cow::Borrowed(row),
+            Self::Signals(signals) => signals.iter().map(|signal| signal.at(time)).collect(),
+            Self::Sampled {
+                ends, rows, others, ..
+            } => {
+                let k = ends.iter().position(|&end| time < end);
+                let row = &rows[k.unwrap_or(ends.len())];
+                if others.is_empty() {
+                    return Cow::Borrowed(row);
+                }
+                let mut row = row.clone();
+                for (&source, signal) in others {
+                    row[source] = signal.at(time);
+                }
+                Cow::Owned(row)
+            }
+        }
+    }
+
+    /// The same with some sources that follow functions of time.
+    #[must_use]
+    pub fn with(self, others: BTreeMap<usize, Signal>) -> Self {
+        if others.is_empty() {
+            return self;
+        }
+        let signals = match self {
+            Self::Sampled {
+                ends,
+                rows,
+                afterwards,
+                solution,
+                others: mut known,
+            } => {
+                known.extend(others);
+                return Self::Sampled {
+                    ends,
+                    rows,
+                    afterwards,
+                    solution,
+                    others: known,
+                };
+            }
+            Self::Constant(row) => row.into_iter().map(Signal::Constant).collect(),
+            Self::Signals(signals) => signals,
+        };
+        let mut signals: Vec<Signal> = signals;
+        for (source, signal) in others {
+            signals[source] = signal;
+        }
+        let constants: Option<Vec<f64>> = signals.iter().map(Signal::constant).collect();
+        constants.map_or(Self::Signals(signals), Self::Constant)
+    }
+
+    /// Returns true if the voltage of a source is ever other than zero.
+    pub fn drive(&self, source: usize) -> bool {
+        match self {
+            Self::Constant(row) => row[source] != 0.0,
+            Self::Sampled { rows, others, .. } => match others.get(&source) {
+                Some(signal) => !signal.is_zero(),
+                None => rows.iter().any(|row| row[source] != 0.0),
+            },
+            Self::Signals(signals) => !signals[source].is_zero(),
+        }
+    }
+
+    /// Times in ms at which they may switch, or have a corner.
+    pub fn switches(&self) -> Cow<'_, [f64]> {
+        match self {
+            Self::Constant(_) => Cow::Borrowed(&[]),
+            Self::Sampled { ends, others, .. } if others.is_empty() => Cow::Borrowed(ends),
+            Self::Sampled { ends, others, .. } => {
+                let others = others.values().flat_map(Signal::corners);
+                Cow::Owned(sorted(ends.iter().copied().chain(others)))
+            }
+            Self::Signals(signals) => Cow::Owned(sorted(signals.iter().flat_map(Signal::corners))),
+        }
+    }
+}
+
+/// Times in order, each once.
+fn sorted(times: impl Iterator<Item = f64>) -> Vec<f64> {
+    let mut times: Vec<f64> = times.collect();
+    times.sort_by(f64::total_cmp);
+    times.dedup();
+    times
+}
