@@ -107,7 +107,7 @@ pub use kinematics::Pose;
 pub use math::Jet;
 pub use mesh::Mesh;
 pub use mesh::grid::Grid;
-pub use model::components::{Spring, Tendon};
+pub use model::components::{Load, Spring, Tendon};
 pub use model::system::{
     Attachment, Body, Electrode, Glue, Joint, JointKind, Marker, Material, Muscle, Potential,
     Shape, Solid, Support,
@@ -123,7 +123,7 @@ pub mod prelude {
     pub use crate::units::*;
     pub use crate::{
         Attachment, Body, Carrier, Component, Control, Error, GROUND, Grid, Handle, Input,
-        Integrator, Joint, JointKind, Marker, Material, Motion, Muscle, Optimum, Orientation,
+        Integrator, Joint, JointKind, Load, Marker, Material, Motion, Muscle, Optimum, Orientation,
         Parameter, Part, Potential, Result, Signal, Simulation, Solid, Spring, State, System,
         Tendon, X, Y, Z,
     };

@@ -104,10 +104,14 @@ fn of_model(model: &Model, control: Option<&Control>) -> Inspected {
         ("multipliers of an instant", count(Role::Multiplier)),
         ("voltages of an interval", count(Role::Voltage)),
     ];
+    if count(Role::Load) > 0 {
+        sizes.push(("loads of an interval", count(Role::Load)));
+    }
     let components = &system.components;
     let kinds = [
         ("springs", components.springs.len()),
         ("tendons", components.tendons.len()),
+        ("loads", components.loads.len()),
         ("other components", components.others.len()),
     ];
     let kinds = kinds.into_iter().filter(|(_, count)| *count > 0);

@@ -1,19 +1,20 @@
 //! Optimal control problems.
 
 use crate::control::problem::{
-    self, CostFunction, Duration, EnergyCost, Guess, Hold, Objective, PathConstraint, QuantityCost,
-    Solver,
+    self, Duration, Guess, Hold, Objective, PathConstraint, QuantityCost, Solver,
 };
 use crate::control::{Earlier, EarlierSolution, Signal};
 use crate::dynamics::{EnergyExchange, out_of_domain};
+use crate::interface::cost_checks::{check_costs, check_energies};
 use crate::interface::error::{Result, require, source};
 use crate::interface::handle::Handle;
 use crate::interface::input::Input;
 use crate::interface::motion::Motion;
 use crate::interface::optimum::Optimum;
 use crate::interface::state::State;
-use crate::model::system::{Joint, Muscle};
-use crate::model::{Parameter, Quantity, System};
+use crate::model::components::Load;
+use crate::model::system::{Joint, Muscle, Source};
+use crate::model::{Parameter, System};
 use crate::nlp::Nlp;
 use crate::workflow::cause::Cause;
 use crate::workflow::domain;
@@ -32,7 +33,7 @@ use std::collections::BTreeMap;
 use std::ops::ControlFlow;
 use std::ops::RangeInclusive;
 
-/// An optimal control problem: voltages that steer a system from rest to rest, or along a path.
+/// An optimal control problem: voltages and loads that steer a system from rest to rest, or along a path.
 #[derive(Clone, Debug)]
 pub struct Control {
     duration: Duration,
@@ -40,6 +41,7 @@ pub struct Control {
     start: State,
     goal: State,
     voltage_bounds: [f64; 2],
+    load_bounds: Vec<(Handle<Load>, [f64; 2])>,
     pub(super) objective: Objective,
     limits: Vec<PathConstraint>,
     voltages: Vec<(Input, Signal)>,
@@ -57,6 +59,7 @@ impl Control {
             start: State::rest(),
             goal: State::Reference,
             voltage_bounds: [0.0, f64::INFINITY],
+            load_bounds: Vec::new(),
             objective: Objective::default(),
             limits: Vec::new(),
             voltages: Vec::new(),
@@ -95,13 +98,20 @@ impl Control {
         }
     }
 
-    /// Minimises Σ h |V|², V in kV and h in s, with a weight.
+    /// Seeks a load within bounds in N, or N mm of a torque; loads that are neither sought nor given are zero.
+    pub fn load_within(mut self, load: Handle<Load>, range: RangeInclusive<f64>) -> Self {
+        let bounds = [*range.start(), *range.end()];
+        self.load_bounds.push((load, bounds));
+        self
+    }
+
+    /// Minimises Σ h |V|² of the inputs V in kV, N or N m, h in s, with a weight.
     pub fn effort(mut self, weight: f64) -> Self {
         self.objective.effort = weight;
         self
     }
 
-    /// Minimises Σ |ΔV|²/h of the changes of the voltages, with a weight.
+    /// Minimises Σ |ΔV|²/h of the changes of the inputs, with a weight.
     pub fn rate(mut self, weight: f64) -> Self {
         self.objective.rate = weight;
         self
@@ -153,6 +163,12 @@ impl Control {
     pub fn voltage(mut self, input: impl Into<Input>, signal: impl Into<Signal>) -> Self {
         self.voltages.push((input.into(), signal.into()));
         self
+    }
+
+    /// A load that is given: a constant in N, or N mm of a torque, or a [`Signal`] whose value in the middle of each interval acts during
+    /// the interval.
+    pub fn load(self, load: Handle<Load>, size: impl Into<Signal>) -> Self {
+        self.voltage(load, size)
     }
 
     /// Seeks constants of the system within bounds; see [`Optimum::parameters`].
@@ -273,19 +289,17 @@ impl Control {
         let found = || format!("voltages within {:?} V", self.voltage_bounds);
         require(lower < upper, "control", found, "bounds that grow")?;
         let sources = system.sources();
-        let found = || "a system without a muscle that takes a voltage".to_owned();
-        let takes = sources.iter().any(|source| source.takes_voltage);
-        require(takes, "control", found, "a muscle with a permittivity")?;
-        let given = self.given(system)?;
-        let all = || "all voltages".to_owned();
-        let is_open = |s: usize| sources[s].takes_voltage && !given.contains_key(&s);
+        let found = || "a system without a muscle that takes a voltage, or a load".to_owned();
+        let takes = sources.iter().any(Source::acts);
+        let expected = "a muscle with a permittivity, or a load";
+        require(takes, "control", found, expected)?;
+        let load_bounds = self.load_bounds(system)?;
+        let given = self.given(system, &load_bounds)?;
+        let all = || "all voltages and loads".to_owned();
+        let is_open = |s: usize| sources[s].acts() && !given.contains_key(&s);
         let open = !self.parameters.is_empty() || (0..sources.len()).any(is_open);
-        require(
-            open,
-            "control",
-            all,
-            "a voltage to look for, or a sought parameter",
-        )?;
+        let expected = "a voltage or load to look for, or a sought parameter";
+        require(open, "control", all, expected)?;
         let weights = &self.objective;
         let weights = [weights.effort, weights.rate, weights.duration];
         let costs = &self.objective.quantities;
@@ -324,7 +338,7 @@ impl Control {
             start: self.start.resolve(system, sources.len())?,
             goal: self.goal.resolve(system, sources.len())?,
             voltage_bounds: self.voltage_bounds,
-            load_bounds: BTreeMap::new(),
+            load_bounds,
             given,
             course: None,
             parameters: self.parameters.clone(),
@@ -337,8 +351,22 @@ impl Control {
         })
     }
 
-    /// The voltages that are given, by source.
-    fn given(&self, system: &System) -> Result<BTreeMap<usize, Signal>> {
+    /// Bounds of the loads that are sought, by source.
+    fn load_bounds(&self, system: &System) -> Result<BTreeMap<usize, [f64; 2]>> {
+        let bounds = |&(load, bounds): &(Handle<Load>, [f64; 2])| {
+            let found = || format!("loads within {bounds:?}");
+            require(bounds[0] < bounds[1], "control", found, "bounds that grow")?;
+            Ok((source(&load.into(), system)?, bounds))
+        };
+        self.load_bounds.iter().map(bounds).collect()
+    }
+
+    /// The voltages and loads that are given, by source: loads that nothing names are zero.
+    fn given(
+        &self,
+        system: &System,
+        sought: &BTreeMap<usize, [f64; 2]>,
+    ) -> Result<BTreeMap<usize, Signal>> {
         let holds = matches!(self.duration, Duration::Given(_))
             || self.voltages.iter().all(|(_, signal)| signal.is_constant());
         let found = || "voltages over time where the duration is free".to_owned();
@@ -350,38 +378,15 @@ impl Control {
         )?;
         let place =
             |(input, signal): &(Input, Signal)| Ok((source(input, system)?, signal.clone()));
-        self.voltages.iter().map(place).collect()
+        let mut given: BTreeMap<usize, Signal> =
+            self.voltages.iter().map(place).collect::<Result<_>>()?;
+        let both = given.keys().any(|source| sought.contains_key(source));
+        let found = || "a load that is given and sought".to_owned();
+        require(!both, "control", found, "one of both")?;
+        let loads = system.first_load()..system.sources().len();
+        for load in loads.filter(|load| !sought.contains_key(load)) {
+            given.entry(load).or_insert(Signal::Constant(0.0));
+        }
+        Ok(given)
     }
-}
-
-/// Refuses costs of parts that the system does not have, and weights and functions of time that are not finite.
-fn check_costs(costs: &[QuantityCost], system: &System) -> Result<()> {
-    for cost in costs {
-        let exists = match cost.quantity {
-            Quantity::Joint { joint, .. } => {
-                let joint = system.joints.get(joint);
-                joint.is_some_and(Joint::has_coordinate)
-            }
-            Quantity::MarkerPlace { marker, axis } => marker < system.markers.len() && axis < 3,
-            _ => true,
-        };
-        let CostFunction::Square { reference } = &cost.function;
-        let is_sound = cost.weight > 0.0 && cost.weight.is_finite() && reference.is_sound();
-        let found = || format!("{cost:?}");
-        let expected =
-            "a positive weight of a marker, or of a joint with one coordinate, along finite values";
-        require(exists && is_sound, "cost", found, expected)?;
-    }
-    Ok(())
-}
-
-/// Refuses energies of parts that are no lumped muscles, and weights that are not positive.
-fn check_energies(costs: &[EnergyCost], system: &System) -> Result<()> {
-    for cost in costs {
-        let is_sound = cost.weight > 0.0 && cost.weight.is_finite();
-        let found = || format!("{cost:?}");
-        let expected = "a positive weight of a lumped muscle with a permittivity";
-        require(cost.exists(system) && is_sound, "cost", found, expected)?;
-    }
-    Ok(())
 }

@@ -1,10 +1,12 @@
 //! The library as a program uses it: systems built part by part, simulated and steered in memory.
 //!
-//! - `handle`, `parts`, `material`: systems and their parts, with defaults; checked when they are used.
-//! - `input`, `state`, `sought`, `simulation`, `control`: the tasks of a system.
+//! - `handle`, `parts`, `components`, `material`: systems and their parts, with defaults; checked when they are used.
+//! - `input`, `state`, `sought`, `simulation`, `control`, `costs`, `cost_checks`: the tasks of a system.
 //! - `motion`, `optimum`, `error`: what comes back.
 
+mod components;
 mod control;
+mod cost_checks;
 mod costs;
 mod error;
 mod handle;

@@ -49,7 +49,7 @@ impl Motion {
         rows.map(|row| row[body.index()]).collect()
     }
 
-    /// Start in ms and voltage in V of each interval; nothing for parts that take no voltage.
+    /// Start in ms and input in V, N or N mm of each interval; nothing for parts without an input.
     pub fn voltage(&self, input: impl Into<Input>) -> Vec<(f64, f64)> {
         let Some(source) = input.into().source(&self.system) else {
             return Vec::new();

@@ -1,18 +1,16 @@
-//! Bodies, joints, muscles, markers, springs and tendons, built with defaults.
+//! Bodies, joints, muscles, markers and solids, built with defaults.
 
 use crate::interface::handle::{Carrier, Handle, Part, named};
 use crate::mesh::Mesh;
-use crate::model::Component;
 use crate::model::System;
-use crate::model::components::{Other, Spring, Tendon};
 use crate::model::system::{
     Attachment, Body, Discretisation, Electrode, ElementKind, Fidelity, Joint, JointKind,
     JointSpring, Marker, Material, Muscle, Potential, Shape, Solid, Support, directors_along,
 };
 use nalgebra::{Matrix3, Vector3};
-use std::sync::Arc;
 
-fn attachment(carrier: impl Into<Carrier>, at: Vector3<f64>) -> Attachment {
+/// A point of a body or the ground in mm.
+pub(super) fn attachment(carrier: impl Into<Carrier>, at: Vector3<f64>) -> Attachment {
     Attachment {
         body: carrier.into().0,
         at,
@@ -248,69 +246,6 @@ impl Part for Marker {
         self.name = named(self.name, "marker", system.markers.len());
         system.markers.push(self);
         system.markers.len() - 1
-    }
-}
-
-impl Spring {
-    /// A spring between two points in mm, without force in the reference configuration, without stiffness or damping so far.
-    pub fn between(
-        from: (impl Into<Carrier>, Vector3<f64>),
-        to: (impl Into<Carrier>, Vector3<f64>),
-    ) -> Self {
-        Self {
-            name: String::new(),
-            rest_length: (to.1 - from.1).norm(),
-            from: attachment(from.0, from.1),
-            to: attachment(to.0, to.1),
-            stiffness: None,
-            damping: None,
-        }
-    }
-
-    /// Stiffness in N/mm.
-    pub fn stiffness(self, stiffness: f64) -> Self {
-        let stiffness = Some(stiffness);
-        Self { stiffness, ..self }
-    }
-
-    /// Damping in N ms/mm.
-    pub fn damping(self, damping: f64) -> Self {
-        let damping = Some(damping);
-        Self { damping, ..self }
-    }
-
-    /// Length without force in mm.
-    pub fn rest_length(self, rest_length: f64) -> Self {
-        Self {
-            rest_length,
-            ..self
-        }
-    }
-}
-
-impl Part for Spring {
-    fn join(mut self, system: &mut System) -> usize {
-        let springs = &mut system.components.springs;
-        self.name = named(self.name, "spring", springs.len());
-        springs.push(self);
-        springs.len() - 1
-    }
-}
-
-impl Part for Tendon {
-    fn join(mut self, system: &mut System) -> usize {
-        let tendons = &mut system.components.tendons;
-        self.name = named(self.name, "tendon", tendons.len());
-        tendons.push(self);
-        tendons.len() - 1
-    }
-}
-
-impl Part for Arc<dyn Component> {
-    fn join(self, system: &mut System) -> usize {
-        let others = &mut system.components.others;
-        others.push(Other(self));
-        others.len() - 1
     }
 }
 

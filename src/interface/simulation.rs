@@ -5,11 +5,13 @@ use crate::control::problem::{self, Voltages};
 use crate::dynamics::trajectory::Trajectory;
 use crate::dynamics::{EnergyExchange, Integrator, Newton, Solving, local_error_of, out_of_domain};
 use crate::interface::error::{Error, Result, require, source};
+use crate::interface::handle::Handle;
 use crate::interface::input::Input;
 use crate::interface::motion::Motion;
 use crate::interface::state::State;
 use crate::ipopt::interrupt;
 use crate::model::System;
+use crate::model::components::Load;
 use crate::workflow::integrate::{Simulated, integrate};
 use crate::workflow::remark::Remarks;
 use crate::workflow::{domain, memory, steps};
@@ -54,6 +56,12 @@ impl Simulation {
     pub fn voltage(mut self, input: impl Into<Input>, signal: impl Into<Signal>) -> Self {
         self.voltages.push((input.into(), signal.into()));
         self
+    }
+
+    /// The size of a load in N, or N mm of a torque: a constant or a [`Signal`], whose value in the middle of each step acts during the
+    /// step.
+    pub fn load(self, load: Handle<Load>, size: impl Into<Signal>) -> Self {
+        self.voltage(load, size)
     }
 
     /// Another method; it needs a step of given length.

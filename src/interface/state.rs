@@ -14,7 +14,7 @@ use std::collections::BTreeMap;
 pub enum State {
     /// The reference configuration at rest.
     Reference,
-    /// The stable static equilibrium under voltages in V, zero where not named.
+    /// The stable static equilibrium under voltages in V and loads in N or N mm, zero where not named.
     RestAt(Vec<(Input, f64)>),
     /// Joint coordinates in rad or mm, at rest; at a start zero where not named, at a goal free.
     Joints(Vec<(Handle<Joint>, f64)>),
@@ -32,7 +32,7 @@ pub enum State {
 }
 
 impl State {
-    /// The stable static equilibrium under voltages in V, zero where not named.
+    /// The stable static equilibrium under voltages in V and loads in N or N mm, zero where not named.
     pub fn rest_at<I: Into<Input>>(voltages: impl IntoIterator<Item = (I, f64)>) -> Self {
         let voltages = voltages.into_iter();
         Self::RestAt(voltages.map(|(input, v)| (input.into(), v)).collect())
@@ -49,8 +49,8 @@ impl State {
             Self::RestAt(voltages) => {
                 let mut row = vec![0.0; sources];
                 for (input, voltage) in voltages {
-                    let found = || format!("{voltage} V of {input:?}");
-                    require(voltage.is_finite(), "state", found, "a finite voltage")?;
+                    let found = || format!("{voltage} of {input:?}");
+                    require(voltage.is_finite(), "state", found, "a finite input")?;
                     row[source(input, system)?] = *voltage;
                 }
                 BoundaryState::RestAtVoltages(row, Rest::Everything)

@@ -6,6 +6,7 @@ use crate::dynamics::trajectory::Trajectory;
 use crate::model::system::{Attachment, Fidelity, Joint, System};
 use crate::report::body::{Tint, draw_back, draw_front};
 use crate::report::canvas::{Canvas, CanvasPoint, Stroke};
+use crate::report::load_arrows::LoadArrows;
 use crate::report::skin::{self, Paint};
 use crate::report::skins::{Skin, Skins};
 use crate::report::solids::{Prism, slice};
@@ -105,6 +106,7 @@ impl Drawing<'_> {
         for (body, pose) in &bodies {
             draw_front(canvas, view, &body.shape, pose, tint);
         }
+        self.loads(canvas, k, tint);
     }
 
     /// Colour of a muscle by its voltage.
@@ -201,6 +203,19 @@ impl Drawing<'_> {
         };
         for line in ties::lines(self.system, self.trajectory, k) {
             canvas.line(&self.view.places(&line), Stroke::solid(ink, 1.0));
+        }
+    }
+
+    /// Arrows of the loads.
+    fn loads(&self, canvas: &Canvas<'_>, k: usize, tint: Tint) {
+        let arrows = LoadArrows::new(self.system, self.trajectory);
+        for (source, load) in arrows.loads() {
+            let ink = match tint {
+                Tint::Reference => style::REFERENCE,
+                Tint::Coloured => style::muscle(source).0,
+            };
+            let arrow = arrows.arrow(source, load, k);
+            canvas.line(&self.view.places(&arrow), Stroke::solid(ink, 1.4));
         }
     }
 

@@ -8,6 +8,7 @@ use crate::dynamics::trajectory::Trajectory;
 use crate::model::system::System;
 use crate::report::body::extent_points;
 use crate::report::drawing::lumped;
+use crate::report::load_arrows::LoadArrows;
 use crate::report::skins::{Skins, shown};
 use crate::report::solids::{Prism, circle};
 use crate::report::ties;
@@ -15,6 +16,7 @@ use crate::report::ties;
 /// Points in mm whose outline is that of all that is seen over a motion.
 pub(super) fn points(system: &System, trajectory: &Trajectory, skins: &Skins) -> Vec<Vector3<f64>> {
     let mut points = ground_plate(system);
+    let arrows = LoadArrows::new(system, trajectory);
     for k in shown(&trajectory.times, 1) {
         for (body, pose) in system.bodies.iter().zip(&trajectory.poses[k]) {
             points.extend(extent_points(&body.shape, pose));
@@ -23,6 +25,8 @@ pub(super) fn points(system: &System, trajectory: &Trajectory, skins: &Skins) ->
             points.extend(Prism::muscle(system, trajectory, k, i).corners());
         }
         points.extend(ties::lines(system, trajectory, k).into_iter().flatten());
+        let arrow = |(source, load)| arrows.arrow(source, load, k);
+        points.extend(arrows.loads().flat_map(arrow));
     }
     points.extend(
         skins

@@ -12,6 +12,7 @@ pub mod inputs;
 pub mod joints;
 pub mod legend;
 pub mod lines;
+mod load_arrows;
 pub mod markup;
 pub mod origin;
 pub mod page;

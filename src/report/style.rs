@@ -33,6 +33,8 @@ pub const BODY: Colour = Colour(0x6f, 0x8f, 0xb0);
 pub const PASSIVE: Colour = Colour(0xd9, 0xcf, 0xbc);
 /// Springs and tendons.
 pub const TIE: Colour = Colour(0x8a, 0x5a, 0x2b);
+/// Springs and tendons on a page, light or dark.
+pub const TIE_ON_PAGE: Colour = Colour(0xa0, 0x6a, 0x35);
 /// The initial configuration.
 pub const REFERENCE: Colour = Colour(0xc4, 0xc8, 0xcd);
 

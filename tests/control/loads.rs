@@ -1,9 +1,10 @@
 //! Loads that are sought: a closed form, bounds, and what messages say of wrong ones.
 
+use proboscis::System;
 use proboscis::control::problem::{Control, Task};
 use proboscis::files::read_problem;
 use proboscis::ipopt::Status;
-use proboscis::model::System;
+use proboscis::prelude::{Body, GROUND, Joint, Load, Simulation, State, X};
 use proboscis::workflow::{Optimum, SolveLimits, optimise};
 use std::ops::ControlFlow;
 use std::path::Path;
@@ -126,4 +127,41 @@ fn a_wrong_load_has_one_message_with_its_place() {
         let said = error.to_string();
         assert!(said.contains(place) && said.contains(words), "{said}");
     }
+}
+
+#[test]
+fn the_library_moves_the_same_mass_with_a_motor() {
+    let mut system = System::new("slide");
+    let mass = system.add(Body::sphere(1.0).mass(1000.0));
+    let joint = system.add(Joint::prismatic(X).between(GROUND, mass));
+    let motor = system.add(Load::motor(joint));
+    let idle = system.add(Load::force(mass, 0.0 * X, X));
+    let control = proboscis::Control::over(1000.0, 20)
+        .start(State::Reference)
+        .goal(State::Joints(vec![(joint, 1000.0)]))
+        .effort(1.0);
+    let steered = control
+        .clone()
+        .load_within(motor, -90.0..=90.0)
+        .solve(&system)
+        .unwrap();
+    let (system_of_file, control_of_file) = slide(20, "reduced");
+    let expected = solved(&system_of_file, &control_of_file);
+    let expected = expected.solution.objective;
+    assert!(steered.is_solved() && expected > 11.0);
+    assert!((steered.objective - expected).abs() < 1e-8 * expected);
+
+    // A constant force of the other load does the same as that of the motor.
+    let given = |load| {
+        let run = Simulation::over(1000.0).step(10.0).load(load, 2.0);
+        run.run(&system).unwrap().joint(joint)
+    };
+    let [by_motor, by_force] = [motor, idle].map(given);
+    let last = by_motor.len() - 1;
+    assert!((by_motor[last] - 1000.0).abs() < 1e-6, "{}", by_motor[last]);
+    assert!((by_motor[last] - by_force[last]).abs() < 1e-9);
+
+    let both = control.load_within(motor, -1.0..=1.0).load(motor, 1.0);
+    let said = both.solve(&system).unwrap_err().to_string();
+    assert!(said.contains("given and sought"), "{said}");
 }

@@ -16,6 +16,7 @@ use crate::model::system::{Marker, Shape, System};
 use crate::report::drawing::{lumped, marker_colour};
 use crate::report::gltf::document::{Document, Mode, Moving, Placed};
 use crate::report::gltf::shapes::{METRE, body, cube, sphere, triangles};
+use crate::report::load_arrows::LoadArrows;
 use crate::report::origin::Origin;
 use crate::report::skins::{Skins, shown};
 use crate::report::solids::Prism;
@@ -54,6 +55,7 @@ pub fn text(
     motion.add_markers(&mut document);
     motion.add_surfaces(&mut document);
     motion.add_ties(&mut document);
+    motion.add_loads(&mut document);
     Some(document.text(&system.name, origin))
 }
 
@@ -135,6 +137,16 @@ impl Motion<'_> {
                 places = places.iter().map(|p| vec![p[0], p[p.len() - 1]]).collect();
             }
             document.deforming(component.name(), &places, Mode::Line, material);
+        }
+    }
+
+    /// Arrows of the loads.
+    fn add_loads(&self, document: &mut Document) {
+        let arrows = LoadArrows::new(self.system, self.trajectory);
+        for (source, load) in arrows.loads() {
+            let material = document.material(&load.name, style::muscle(source).0, 1.0);
+            let places = self.each(|k| metres(&arrows.arrow(source, load, k)));
+            document.deforming(&load.name, &places, Mode::Line, material);
         }
     }
 }

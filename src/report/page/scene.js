@@ -128,7 +128,7 @@ class Scene {
     for (const tie of this.data.ties) {
       const all = numbers(tie.places);
       const now = new Float32Array(3 * tie.count);
-      const lines = this.moving(tie.count - 1, "#a06a35", (at, into) => {
+      const lines = this.moving(tie.count - 1, tie.colour, (at, into) => {
         between(all, now.length, at, now);
         for (let i = 0; i + 1 < tie.count; i++) into.set(now.subarray(3 * i, 3 * i + 6), 6 * i);
       });

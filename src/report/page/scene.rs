@@ -8,6 +8,7 @@ use crate::model::system::{Attachment, Joint, JointKind, Marker};
 use crate::report::Run;
 use crate::report::drawing::lumped;
 use crate::report::frame::{ground_plate, held_faces};
+use crate::report::load_arrows::LoadArrows;
 use crate::report::page::numbers::{indices, numbers, places};
 use crate::report::skins::{Skin, shown};
 use crate::report::solids::{Prism, SurfaceMesh};
@@ -181,9 +182,22 @@ impl Stage<'_> {
             let points = lines.iter().flat_map(|line| {
                 (0..most).filter_map(|i| line.get(i.min(line.len().saturating_sub(1))))
             });
-            json!({ "count": most, "places": places(points) })
+            json!({ "count": most, "places": places(points), "colour": style::TIE_ON_PAGE.hex() })
         };
-        all.iter().map(line).collect()
+        all.iter().map(line).chain(self.loads()).collect()
+    }
+
+    /// Arrows of the loads.
+    fn loads(&self) -> Vec<Value> {
+        let arrows = LoadArrows::new(self.run.system, self.run.trajectory);
+        let line = |(source, load)| {
+            let instants = self.instants.iter();
+            let lines: Vec<_> = instants.map(|&k| arrows.arrow(source, load, k)).collect();
+            let count = lines.first().map_or(0, Vec::len);
+            let colour = style::muscle(source).0.hex();
+            json!({ "count": count, "places": places(lines.iter().flatten()), "colour": colour })
+        };
+        arrows.loads().map(line).collect()
     }
 
     /// Place of each joint, and of a point along its axis.

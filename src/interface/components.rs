@@ -1,0 +1,109 @@
+//! Springs, tendons, loads and components of other crates, built with defaults.
+
+use crate::interface::handle::{Carrier, Handle, Part, named};
+use crate::interface::parts::attachment;
+use crate::model::Component;
+use crate::model::System;
+use crate::model::components::{Load, LoadPlace, Other, Spring, Tendon};
+use crate::model::system::{Body, Joint};
+use nalgebra::Vector3;
+use std::sync::Arc;
+
+impl Spring {
+    /// A spring between two points in mm, without force in the reference configuration, without stiffness or damping so far.
+    pub fn between(
+        from: (impl Into<Carrier>, Vector3<f64>),
+        to: (impl Into<Carrier>, Vector3<f64>),
+    ) -> Self {
+        Self {
+            name: String::new(),
+            rest_length: (to.1 - from.1).norm(),
+            from: attachment(from.0, from.1),
+            to: attachment(to.0, to.1),
+            stiffness: None,
+            damping: None,
+        }
+    }
+
+    /// Stiffness in N/mm.
+    pub fn stiffness(self, stiffness: f64) -> Self {
+        let stiffness = Some(stiffness);
+        Self { stiffness, ..self }
+    }
+
+    /// Damping in N ms/mm.
+    pub fn damping(self, damping: f64) -> Self {
+        let damping = Some(damping);
+        Self { damping, ..self }
+    }
+
+    /// Length without force in mm.
+    pub fn rest_length(self, rest_length: f64) -> Self {
+        Self {
+            rest_length,
+            ..self
+        }
+    }
+}
+
+impl Part for Spring {
+    fn join(mut self, system: &mut System) -> usize {
+        let springs = &mut system.components.springs;
+        self.name = named(self.name, "spring", springs.len());
+        springs.push(self);
+        springs.len() - 1
+    }
+}
+
+impl Part for Tendon {
+    fn join(mut self, system: &mut System) -> usize {
+        let tendons = &mut system.components.tendons;
+        self.name = named(self.name, "tendon", tendons.len());
+        tendons.push(self);
+        tendons.len() - 1
+    }
+}
+
+impl Load {
+    /// A force at a point of a body in mm, along a direction that does not turn.
+    pub fn force(body: Handle<Body>, at: Vector3<f64>, direction: Vector3<f64>) -> Self {
+        Self {
+            name: String::new(),
+            on: LoadPlace::Point {
+                at: attachment(body, at),
+                direction: direction.normalize(),
+            },
+        }
+    }
+
+    /// A motor: a torque about the axis of a revolute joint, or a force along that of a prismatic one, from the parent on the child.
+    pub fn motor(joint: Handle<Joint>) -> Self {
+        Self {
+            name: String::new(),
+            on: LoadPlace::Joint(joint.index()),
+        }
+    }
+
+    /// A name of its own.
+    pub fn named(self, name: impl Into<String>) -> Self {
+        let name = name.into();
+        Self { name, ..self }
+    }
+}
+
+impl Part for Load {
+    fn join(mut self, system: &mut System) -> usize {
+        let loads = &mut system.components.loads;
+        self.name = named(self.name, "load", loads.len());
+        loads.push(self);
+        loads.len() - 1
+    }
+}
+
+impl Part for Arc<dyn Component> {
+    fn join(self, system: &mut System) -> usize {
+        let others = &mut system.components.others;
+        others.push(Other(self));
+        others.len() - 1
+    }
+}
