@@ -16,7 +16,7 @@ from proboscis._error import Error
 from proboscis._table import Table
 from proboscis.commands import Starts, Study, Sweep, check, inspect, starts, study, sweep
 from proboscis.nlp import Nlp
-from proboscis.parts import GROUND, Body, Joint, Marker, Material, Muscle, Part, Solid, Spring, Tendon
+from proboscis.parts import GROUND, Body, Joint, Load, Marker, Material, Muscle, Part, Solid, Spring, Tendon
 from proboscis.problem import Iteration, Problem, Step
 from proboscis.result import Figure, Result
 from proboscis.system import System
@@ -31,6 +31,7 @@ __all__ = [
     "Interrupted",
     "Iteration",
     "Joint",
+    "Load",
     "Marker",
     "Material",
     "Muscle",

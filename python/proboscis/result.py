@@ -132,7 +132,7 @@ class Result:
         return self.table[f"{plain(source)}_charge".replace(".", "_")]
 
     def voltage(self, source: Any, /) -> Array:
-        """Voltage of a muscle or electrode in V in each interval."""
+        """Voltage of a muscle or electrode in V, or size of a load in N or N m, in each interval."""
         return self.controls[plain(source)]
 
     def to_pandas(self) -> pandas.DataFrame:

@@ -86,7 +86,10 @@ pub(super) fn program(
     let seconds = &solution.seconds;
     Program {
         objective: solution.objective,
-        objective_units: control.objective.units(system),
+        objective_units: {
+            let kinds = control.input_kinds(system);
+            control.objective.units(system, &kinds)
+        },
         iterations,
         intervals,
         duration: kept.times[intervals] / 1e3,

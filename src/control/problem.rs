@@ -8,7 +8,7 @@ pub use crate::control::quantity_cost::{CostFunction, During, Objective, Quantit
 use crate::control::{Earlier, Signal};
 use crate::dynamics::Solving;
 use crate::ipopt::{LinearSolver, OptionValue};
-use crate::model::system::{ElectricConstants, Muscle};
+use crate::model::system::{ElectricConstants, InputKind, Muscle};
 use crate::model::{Coordinates, Parameter, Region, Role, System, Variable};
 use std::collections::BTreeMap;
 
@@ -146,6 +146,18 @@ impl Control {
     pub fn is_given(&self, source: usize) -> bool {
         let is_of_course = self.course.is_some() && !self.load_bounds.contains_key(&source);
         is_of_course || self.given.contains_key(&source)
+    }
+
+    /// Kinds of the inputs that are not always zero, each once: the objective counts them all.
+    pub fn input_kinds(&self, system: &System) -> Vec<InputKind> {
+        let mut kinds = Vec::new();
+        for (source, named) in system.sources().into_iter().enumerate() {
+            let is_zero = self.given.get(&source).is_some_and(Signal::is_zero);
+            if named.acts() && !is_zero && !kinds.contains(&named.kind) {
+                kinds.push(named.kind);
+            }
+        }
+        kinds
     }
 
     /// Bounds of an input that is sought, in V, N or N mm.

@@ -2,6 +2,7 @@
 
 use crate::control::energy_cost::EnergyCost;
 use crate::control::signal::Signal;
+use crate::model::system::InputKind;
 use crate::model::{Quantity, System};
 
 /// Objective: a sum of costs with the voltages V in kV, the interval length h in s and N intervals (docs/theory.md, 10.2). The default
@@ -54,18 +55,27 @@ pub enum During {
 }
 
 impl Objective {
-    /// Units of its terms in their order, each once; a single one is that of the sum. Weights are plain numbers.
-    pub fn units(&self, system: &System) -> Vec<String> {
-        let weighted = [
-            (self.effort, "kV² s"),
-            (self.rate, "kV²/s"),
-            (self.duration, "s"),
-        ];
-        let weighted = weighted.iter().filter(|(weight, _)| *weight != 0.0);
-        let mut units: Vec<String> = weighted.map(|(_, unit)| (*unit).to_owned()).collect();
+    /// Units of its terms in their order, each once; a single one is that of the sum. Inputs of these kinds act. Weights are
+    /// plain numbers.
+    pub fn units(&self, system: &System, inputs: &[InputKind]) -> Vec<String> {
+        let squares = inputs.iter().map(|kind| match kind.counted().0 {
+            unit if unit.contains(' ') => format!("({unit})²"),
+            unit => format!("{unit}²"),
+        });
+        let effort = squares.clone().map(|square| format!("{square} s"));
+        let rate = squares.map(|square| format!("{square}/s"));
+        let effort = effort.filter(|_| self.effort != 0.0);
+        let rate = rate.filter(|_| self.rate != 0.0);
+        let duration = (self.duration != 0.0).then(|| "s".to_owned());
         let quantities = self.quantities.iter().map(|cost| cost.unit(system));
         let energies = self.energies.iter().map(|_| "J".to_owned());
-        for unit in quantities.chain(energies) {
+        let mut units: Vec<String> = Vec::new();
+        for unit in effort
+            .chain(rate)
+            .chain(duration)
+            .chain(quantities)
+            .chain(energies)
+        {
             if !units.contains(&unit) {
                 units.push(unit);
             }

@@ -157,7 +157,7 @@ impl Afterwards {
                 .map(|failure| format!("the motion ends early: {failure}")),
         );
         Some(format!(
-            "nothing holds the goal: with the last voltages held on for {} s, {}; for an end that stays take \"rest_at_voltages\", or \
+            "nothing holds the goal: with the last inputs held on for {} s, {}; for an end that stays take \"rest_at_voltages\", or \
              \"markers\" with \"hold\"",
             significant(self.seconds, 3),
             far.join(", ")

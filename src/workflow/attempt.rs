@@ -219,7 +219,7 @@ impl Verification {
                 ..Self::default()
             };
         }
-        phase("simulating under the optimal voltages");
+        phase("simulating under the optimal inputs");
         let began = Instant::now();
         let tolerance = control.solver.tolerance;
         let resimulation = resimulate(model, &boundary.start, motion, tolerance);

@@ -55,19 +55,19 @@ impl Cause {
                     format!(", where joint \"{joint}\" turns by {angle:.2} rad")
                 });
                 format!(
-                    "forward simulation under the optimal voltages gives another motion: in interval {interval} (from \
+                    "forward simulation under the optimal inputs gives another motion: in interval {interval} (from \
                      {time:.4} s){turn}, the equations have several roots, and the optimum has another one than a forward step \
                      ({distance} apart after it); the intervals are too long for the motion"
                 )
             }
             Self::Ends { steps: 1, failure } => {
-                format!("forward simulation under the optimal voltages ends early: {failure}")
+                format!("forward simulation under the optimal inputs ends early: {failure}")
             }
             Self::Ends { steps, failure } => format!(
-                "forward simulation under the optimal voltages with {steps} steps per interval ends early: {failure}"
+                "forward simulation under the optimal inputs with {steps} steps per interval ends early: {failure}"
             ),
             Self::Unstable { rate, distance } => format!(
-                "forward simulation under the optimal voltages leaves the optimum ({distance}): the motion is unstable, round-off grows at a rate of {rate:.3} 1/s"
+                "forward simulation under the optimal inputs leaves the optimum ({distance}): the motion is unstable, round-off grows at a rate of {rate:.3} 1/s"
             ),
             Self::Coarse {
                 error,
@@ -81,7 +81,7 @@ impl Cause {
                     }
                 };
                 format!(
-                    "the intervals do not resolve the motion: under the same voltages the motion with finer steps deviates \
+                    "the intervals do not resolve the motion: under the same inputs the motion with finer steps deviates \
                      from it by up to {:.0} % of the path length ({distance}){further}",
                     100.0 * error
                 )

@@ -56,8 +56,8 @@ pub(crate) fn warning(
         && !tested.is_held(model)
     {
         reasons.push(match &tested.failure {
-            Some(failure) => format!("under the held voltages the motion ends early: {failure}"),
-            None => format!("under the held voltages it moves by {drift} in {held} s"),
+            Some(failure) => format!("under the held inputs the motion ends early: {failure}"),
+            None => format!("under the held inputs it moves by {drift} in {held} s"),
         });
     }
     (!reasons.is_empty()).then(|| format!("the goal cannot be kept: {}", reasons.join("; ")))

@@ -107,7 +107,7 @@ fn miss(control: &Control, optimum: &Optimum) -> Option<String> {
             significant(fastest, 2)
         ),
     };
-    Some(format!("simulated under the voltages found, {what}{moves}"))
+    Some(format!("simulated under the inputs found, {what}{moves}"))
 }
 
 /// Returns the missed parts of the goal, in words and relative to the size of the system.

@@ -63,7 +63,7 @@ pub(crate) fn reproduced(
                     optimum: found,
                     iterations: solves.iterations,
                     note: Some(format!(
-                        "{of_problem}; solved again on {intervals} intervals; this optimum is reproduced by its voltages"
+                        "{of_problem}; solved again on {intervals} intervals; this optimum is reproduced by its inputs"
                     )),
                 });
             }
@@ -74,7 +74,7 @@ pub(crate) fn reproduced(
     }
     let note = finest.map(|n| {
         format!(
-            "on finer grids of up to {n} intervals no optimum was reproduced by its voltages either"
+            "on finer grids of up to {n} intervals no optimum was reproduced by its inputs either"
         )
     });
     Ok(RefinedOptimum {

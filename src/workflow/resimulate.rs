@@ -210,14 +210,14 @@ impl Resimulation {
     pub(crate) fn warning(&self) -> Option<String> {
         if let (None, None, Some(failure)) = (&self.cause, self.error, &self.failure) {
             return Some(format!(
-                "the motion under the optimal voltages could not be simulated: {failure}"
+                "the motion under the optimal inputs could not be simulated: {failure}"
             ));
         }
         let error = self.error.filter(|_| self.cause.is_none())?;
         let Finer { deviation, .. } = self.finer.last()?;
         if !self.is_confirmed {
             return Some(format!(
-                "how far the motion under the optimal voltages deviates from the optimum is not known: finer steps lead elsewhere each \
+                "how far the motion under the optimal inputs deviates from the optimum is not known: finer steps lead elsewhere each \
                  time, by up to {:.0} % of the path length so far ({deviation}); use more intervals, or --accuracy",
                 100.0 * error
             ));
@@ -226,7 +226,7 @@ impl Resimulation {
             return None;
         }
         Some(format!(
-            "the intervals are long for this motion: under the same voltages the motion with finer steps deviates from it by up to \
+            "the intervals are long for this motion: under the same inputs the motion with finer steps deviates from it by up to \
              {:.0} % of the path length ({deviation}); use more intervals, or --accuracy",
             100.0 * error
         ))

@@ -165,3 +165,16 @@ fn the_library_moves_the_same_mass_with_a_motor() {
     let said = both.solve(&system).unwrap_err().to_string();
     assert!(said.contains("given and sought"), "{said}");
 }
+
+#[test]
+fn an_objective_counts_loads_in_their_units() {
+    for (loads, expected) in [
+        ("{}", vec!["(N m)² s"]),
+        (r#"{"wind": "0.1 N"}"#, vec!["(N m)² s", "N² s"]),
+        (r#"{"wind": "0 N"}"#, vec!["(N m)² s"]),
+    ] {
+        let (system, control) = loaded(&[format!("control.loads={loads}")]);
+        let kinds = control.input_kinds(&system);
+        assert_eq!(control.objective.units(&system, &kinds), expected);
+    }
+}

@@ -339,7 +339,8 @@ fn an_objective_has_the_units_of_its_terms() {
         let Task::Control(control) = loaded.task else {
             panic!("a control problem");
         };
-        let found = control.objective.units(&loaded.system);
+        let kinds = control.input_kinds(&loaded.system);
+        let found = control.objective.units(&loaded.system, &kinds);
         assert_eq!(found, expected, "{objective}");
         drop(folder);
     }

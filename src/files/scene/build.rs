@@ -29,7 +29,7 @@ pub(crate) fn build_scene(scene: &SceneSpec, scope: &Scope<'_>) -> Result<System
     if let Some(chain) = &scene.chain {
         check_chain(chain, &materials, &scope.key("chain"))?;
     }
-    let lists = Lists::new(&scene, scope);
+    let lists = Lists::new(scene, scope);
     let scene = expanded(scene.clone());
     lists.check_names(&scene, scope)?;
     let body_names = names(&scene.bodies, |body| &body.name);

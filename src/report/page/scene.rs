@@ -36,7 +36,7 @@ pub(super) fn scene(run: &Run<'_>) -> Value {
     parts.extend(run.skins.list.iter().map(|skin| stage.block(skin)));
     let view = run.figures.view.view(run.system, run.trajectory, run.skins);
     let goal = run.goal;
-    let highest = vec![run.skins.highest()];
+    let highest = [run.skins.highest()];
     let scale = style::voltage_scale(run.trajectory.voltages(run.system).chain([&highest[..]]));
     json!({
         "span": run.branch.is_none().then(|| [times[0] / 1e3, times[times.len() - 1] / 1e3]),
