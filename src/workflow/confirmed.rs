@@ -36,11 +36,11 @@ impl EstimatedError {
         }
     }
 
-    /// Of the middle one of three motions.
-    pub(crate) fn of_middle(before: f64, last: f64) -> Self {
+    /// Of the first of three motions.
+    pub(crate) fn of_first(before: f64, last: f64) -> Self {
         let finest = Self::of_finest(before, last);
         Self {
-            error: finest.error + last,
+            error: finest.error + last + before,
             ..finest
         }
     }

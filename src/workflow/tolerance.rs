@@ -2,7 +2,7 @@
 //! that are allowed shrink until it is below the tolerance.
 //!
 //! Local errors add up to the error of a motion only where they neither grow nor decay. The motion is therefore repeated in pairs of its
-//! steps, and in pairs of these pairs; where that does not show the order of the method, in halves of its steps.
+//! steps, and in pairs of these pairs; where that does not show the order of the method, in halves of its steps and in halves of these.
 
 use std::ops::ControlFlow;
 
@@ -20,6 +20,9 @@ const LEAVES: f64 = 0.6;
 /// Largest factors by which it is tightened, and where nothing is confirmed.
 const MOST: f64 = 0.01;
 const UNCONFIRMED: f64 = 0.1;
+/// Fewest steps in which a motion is repeated in longer ones, and the largest part of the time that may have steps without a partner.
+const FEWEST: usize = 4;
+const MOST_ALONE: f64 = 0.05;
 
 /// Parts of a motion by a tolerance.
 pub(crate) struct ByTolerance<'a> {
@@ -89,40 +92,50 @@ impl ByTolerance<'_> {
         if end < self.control.duration * (1.0 - 1e-12) {
             return None;
         }
+        let coarse = self.error_by_pairs(discrete);
+        coarse.or_else(|| self.error_by_halves(discrete))
+    }
+
+    /// The error from the motion in pairs of its steps and in pairs of these; none where that does not confirm it, or where too much of the
+    /// time has steps without a partner.
+    fn error_by_pairs(&self, discrete: &DiscreteTrajectory) -> Option<EstimatedError> {
+        let times = |places: &[usize]| -> Vec<f64> {
+            places.iter().map(|&place| discrete.times[place]).collect()
+        };
         let all: Vec<usize> = (0..discrete.times.len()).collect();
         let pairs = self.pairs(discrete, &all);
         let fours = self.pairs(discrete, &pairs);
-        let kept = |places: &[usize]| {
-            places
-                .iter()
-                .map(|&k| discrete.times[k])
-                .collect::<Vec<_>>()
-        };
-        let in_pairs = self.repeated(discrete, &kept(&pairs));
-        let in_fours = self.repeated(discrete, &kept(&fours));
-        let by_pairs = in_pairs.as_ref().map(|m| self.apart(discrete, &pairs, m));
-        if let (Some(by_pairs), Some(in_pairs), Some(in_fours)) = (by_pairs, &in_pairs, &in_fours) {
-            let among: Vec<usize> = fours
-                .iter()
-                .filter_map(|k| pairs.binary_search(k).ok())
-                .collect();
-            let before = self.apart(in_pairs, &among, in_fours);
-            let error = EstimatedError::of_finest(before, by_pairs);
-            if error.is_confirmed {
-                return Some(error);
-            }
+        let [each, in_two, in_four] = [&all, &pairs, &fours].map(|places| times(places));
+        if !are_doubled(&each, &in_two) || !are_doubled(&in_two, &in_four) {
+            return None;
         }
-        let halves: Vec<f64> = halved(&discrete.times);
+        let in_pairs = self.repeated(discrete, &in_two)?;
+        let in_fours = self.repeated(discrete, &in_four)?;
+        let among: Vec<usize> = fours
+            .iter()
+            .filter_map(|k| pairs.binary_search(k).ok())
+            .collect();
+        let before = self.apart(&in_pairs, &among, &in_fours);
+        let last = self.apart(discrete, &pairs, &in_pairs);
+        let error = EstimatedError::of_finest(before, last);
+        error.is_confirmed.then_some(error)
+    }
+
+    /// The error from the motion in halves of its steps and in halves of these.
+    fn error_by_halves(&self, discrete: &DiscreteTrajectory) -> Option<EstimatedError> {
+        let halves = halved(&discrete.times);
         let in_halves = self.repeated(discrete, &halves)?;
-        let every_other: Vec<usize> = (0..halves.len()).step_by(2).collect();
-        let last = self.apart(&in_halves, &every_other, discrete);
-        Some(match by_pairs {
-            Some(before) => EstimatedError::of_middle(before, last),
-            None => EstimatedError {
-                error: 4.0 / 3.0 * last,
+        let every_other = |count: usize| (0..count).step_by(2).collect::<Vec<_>>();
+        let before = self.apart(&in_halves, &every_other(halves.len()), discrete);
+        let quarters = halved(&halves);
+        let Some(in_quarters) = self.repeated(discrete, &quarters) else {
+            return Some(EstimatedError {
+                error: 4.0 / 3.0 * before,
                 is_confirmed: false,
-            },
-        })
+            });
+        };
+        let last = self.apart(&in_quarters, &every_other(quarters.len()), &in_halves);
+        Some(EstimatedError::of_first(before, last))
     }
 
     /// Every other of some instants of a motion, those at which voltages may switch included.
@@ -192,6 +205,18 @@ fn at_start(discrete: &DiscreteTrajectory) -> DiscreteTrajectory {
     };
     start.end.of.clone_from(&discrete.end.of);
     start
+}
+
+/// Returns true if almost all of the time has steps of two of the finer ones, and enough of them that their order shows.
+fn are_doubled(finer: &[f64], coarser: &[f64]) -> bool {
+    let is_single = |ends: &&[f64]| {
+        let first = finer.partition_point(|&time| time < ends[0]);
+        finer.get(first + 1).is_some_and(|&next| next >= ends[1])
+    };
+    let singles = coarser.windows(2).filter(is_single);
+    let alone: f64 = singles.map(|ends| ends[1] - ends[0]).sum();
+    let whole = coarser[coarser.len() - 1] - coarser[0];
+    coarser.len() > FEWEST && alone <= MOST_ALONE * whole
 }
 
 /// Times with one in the middle of each two.

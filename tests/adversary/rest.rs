@@ -14,7 +14,7 @@ type Places = Result<BTreeMap<String, Vector3<f64>>, String>;
 /// Rest of a robot as the start of a motion with steps of `h` ms.
 fn rest(robot: &Robot, h: f64, coordinates: Option<Coordinates>) -> Places {
     let system = system(&robot.scene);
-    let voltages = robot.voltages_of(&system);
+    let voltages = robot.inputs_of(&system);
     let model = Model::new(system, coordinates, h, &[]).unwrap();
     let start = model.coordinates_at(&vec![0.0; model.joint_readings.len()]);
     let found = stable_equilibrium(&model, &start, &model.scalars(&voltages));

@@ -1,4 +1,4 @@
-//! Random robots: trees of bodies with hinges, slides and ball joints, driven by lumped muscles, with springs, tendons and weight.
+//! Random robots: trees of bodies with hinges and ball joints, driven by lumped muscles and loads, with springs, tendons and weight.
 
 use crate::common::random::Random;
 use proboscis::files::read_system;
@@ -6,11 +6,13 @@ use proboscis::model::system::System;
 use serde_json::{Value, json};
 use std::collections::BTreeMap;
 
-/// A scene as it is written, and voltages of its muscles by name.
+/// A scene as it is written, with voltages of its muscles and sizes of its loads by name.
 #[derive(Clone, Debug)]
 pub(crate) struct Robot {
     pub(crate) scene: Value,
     pub(crate) voltages: BTreeMap<String, f64>,
+    /// In N or N mm.
+    pub(crate) loads: BTreeMap<String, f64>,
 }
 
 /// Parts that robots may have.
@@ -33,10 +35,11 @@ pub(crate) fn system(scene: &Value) -> System {
 }
 
 impl Robot {
-    /// Voltages by source of the system that is made of the scene.
-    pub(crate) fn voltages_of(&self, system: &System) -> Vec<f64> {
+    /// Voltages and loads by source of the system that is made of the scene.
+    pub(crate) fn inputs_of(&self, system: &System) -> Vec<f64> {
         let sources = system.sources();
-        let of = |name: &String| self.voltages.get(name).copied().unwrap_or_default();
+        let both = |name: &String| self.voltages.get(name).or_else(|| self.loads.get(name));
+        let of = |name: &String| both(name).copied().unwrap_or_default();
         sources.iter().map(|source| of(&source.name)).collect()
     }
 }
@@ -178,7 +181,12 @@ pub(crate) fn robot(seed: u64, parts: Parts) -> Robot {
         .collect();
     scene["muscles"] = json!(muscles);
     add_springs_and_branches(&mut scene, seed, parts);
-    Robot { scene, voltages }
+    let loads = add_loads(&mut scene, seed);
+    Robot {
+        scene,
+        voltages,
+        loads,
+    }
 }
 
 /// Springs of hinges and Maxwell branches of the material, by numbers of their own: the rest of a robot is what it is without them.
@@ -199,4 +207,29 @@ fn add_springs_and_branches(scene: &mut Value, seed: u64, parts: Parts) {
         };
         scene["materials"]["m"]["maxwell"] = json!([branch(0.01, 0.05), branch(0.1, 1.0)]);
     }
+}
+
+/// A force on the last body and a motor on a hinge of some robots, by numbers of their own.
+fn add_loads(scene: &mut Value, seed: u64) -> BTreeMap<String, f64> {
+    let random = &mut Random(seed.wrapping_mul(0xd6e8_feb8_6659_fd93));
+    let mut sizes = BTreeMap::new();
+    let mut loads = Vec::new();
+    if happens(random, 0.3) {
+        let body = scene["bodies"].as_array().unwrap().last().unwrap();
+        loads.push(json!({
+            "name": "push", "point": { "body": body["name"], "at": body["position"] },
+            "direction": vector(random, 1.0),
+        }));
+        sizes.insert("push".to_owned(), random.between(-0.2, 0.2));
+    }
+    let joints = scene["joints"].as_array().unwrap();
+    let hinge = joints.iter().find(|joint| joint.get("revolute").is_some());
+    if let Some(hinge) = hinge.filter(|_| happens(random, 0.3)) {
+        loads.push(json!({ "name": "motor", "joint": hinge["name"] }));
+        sizes.insert("motor".to_owned(), random.between(-5.0, 5.0));
+    }
+    if !loads.is_empty() {
+        scene["loads"] = json!(loads);
+    }
+    sizes
 }

@@ -32,7 +32,7 @@ fn written(vector: Vector3<f64>) -> Value {
 /// The robot with its lists in reverse order.
 pub(crate) fn reversed(robot: &Robot) -> Robot {
     let mut twin = robot.clone();
-    for list in ["bodies", "joints", "muscles", "springs"] {
+    for list in ["bodies", "joints", "muscles", "springs", "loads"] {
         if let Some(Value::Array(list)) = twin.scene.get_mut(list) {
             list.reverse();
         }
@@ -88,6 +88,12 @@ fn mapped(robot: &Robot, map: Matrix3<f64>) -> Robot {
         if joint.get("revolute").is_some() {
             let axis = axial * read(&joint["revolute"]["axis"]);
             joint["revolute"]["axis"] = written(axis);
+        }
+    }
+    if let Some(loads) = twin.scene.get_mut("loads") {
+        let loads = loads.as_array_mut().unwrap().iter_mut();
+        for direction in loads.filter_map(|load| load.get_mut("direction")) {
+            *direction = written(map * read(direction));
         }
     }
     if let Some(gravity) = twin.scene.get_mut("gravity") {

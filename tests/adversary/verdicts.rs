@@ -33,12 +33,17 @@ fn the_error_of_an_optimum_is_at_least_half_of_the_true_one() {
             .into_iter()
             .map(|(n, v)| (n.clone(), json!(v)))
             .collect();
+        let loads = robot.loads.iter().map(|(name, size)| {
+            let unit = if name == "motor" { "N mm" } else { "N" };
+            (name.clone(), json!(format!("{size:?} {unit}")))
+        });
+        let loads: serde_json::Map<_, _> = loads.collect();
         let problem = json!({
             "scene": robot.scene,
             "control": {
                 "duration": random.between(0.1, 0.4), "intervals": random.between(8.0, 30.0) as usize,
                 "start": { "rest_at_voltages": {} }, "goal": { "rest_at_voltages": goal },
-                "voltage_bounds": [0, 3000], "objective": { "effort": 1.0 },
+                "voltage_bounds": [0, 3000], "loads": loads, "objective": { "effort": 1.0 },
                 "solver": { "max_iterations": 150 },
             },
         });
