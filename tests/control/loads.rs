@@ -178,3 +178,67 @@ fn an_objective_counts_loads_in_their_units() {
         assert_eq!(control.objective.units(&system, &kinds), expected);
     }
 }
+
+/// The same mass with light oscillators of these frequencies in Hz on it, all at rest at both ends.
+fn with_oscillators(intervals: usize, frequencies: &[f64]) -> (System, Control) {
+    // So light that the force is the acceleration of the cart to 1e-7.
+    let light = 1e-8;
+    let mut bodies = vec![serde_json::json!({
+        "name": "cart", "mass": 1.0, "sphere": { "radius": 0.01 }, "position": [0, 0, 0],
+    })];
+    let mut joints = vec![serde_json::json!({
+        "name": "shoulder", "prismatic": { "axis": [1, 0, 0] }, "parent": "ground", "child": "cart",
+        "at": [0, 0, 0],
+    })];
+    let mut goal = serde_json::json!({ "shoulder": 1.0 });
+    for (k, frequency) in frequencies.iter().enumerate() {
+        let stiffness = light * (std::f64::consts::TAU * frequency).powi(2);
+        bodies.push(serde_json::json!({
+            "name": format!("mass{k}"), "mass": light, "sphere": { "radius": 0.01 },
+            "position": [0, 0.1, 0],
+        }));
+        joints.push(serde_json::json!({
+            "name": format!("swing{k}"), "prismatic": { "axis": [1, 0, 0] }, "parent": "cart",
+            "child": format!("mass{k}"), "at": [0, 0.1, 0], "stiffness": stiffness,
+        }));
+        goal[format!("swing{k}")] = serde_json::json!(0.0);
+    }
+    loaded(&[
+        format!("scene.bodies={}", serde_json::json!(bodies)),
+        format!("scene.joints={}", serde_json::json!(joints)),
+        "scene.gravity=[0, 0, 0]".to_owned(),
+        "control.duration=1 s".to_owned(),
+        format!("control.intervals={intervals}"),
+        "control.loads={}".to_owned(),
+        r#"scene.loads=[{"name": "motor", "joint": "shoulder"}]"#.to_owned(),
+        "scene.markers=[]".to_owned(),
+        r#"control.load_bounds={"motor": ["-900 N", "900 N"]}"#.to_owned(),
+        format!(
+            "control.goal={}",
+            serde_json::json!({ "joint_angles": goal })
+        ),
+    ])
+}
+
+#[test]
+fn least_effort_leaves_oscillators_at_rest_as_the_gramian_says() {
+    for (frequencies, exact) in [
+        (&[2.0][..], 14.150_639_28),
+        (&[1.6, 2.4], 12.708_192_71),
+        (&[1.6, 2.0, 2.4], 46.891_754_45),
+    ] {
+        let errors = [160, 320].map(|intervals| {
+            let (system, control) = with_oscillators(intervals, frequencies);
+            let optimum = solved(&system, &control);
+            assert_eq!(optimum.solution.status, Status::Solved);
+            optimum.solution.objective - exact
+        });
+        println!("{frequencies:?}: {errors:?}");
+        assert!(errors[0].abs() > 1e-4, "{errors:?}");
+        let ratio = errors[0] / errors[1];
+        assert!((ratio - 4.0).abs() < 0.2, "{frequencies:?}: {errors:?}");
+        // Richardson's extrapolation.
+        let limit = (4.0 * errors[1] - errors[0]) / 3.0;
+        assert!(limit.abs() < 1e-4 * exact, "{frequencies:?}: {limit:e}");
+    }
+}
