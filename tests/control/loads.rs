@@ -242,3 +242,56 @@ fn least_effort_leaves_oscillators_at_rest_as_the_gramian_says() {
         assert!(limit.abs() < 1e-4 * exact, "{frequencies:?}: {limit:e}");
     }
 }
+
+/// One or two rods that a motor of this bound in N m swings up.
+fn swing_up(rods: usize, bound: f64) -> (System, Control) {
+    let (mut bodies, mut joints, mut goal) = (Vec::new(), Vec::new(), serde_json::Map::new());
+    for k in 0..rods {
+        let top = -0.3 * k as f64;
+        let parent = k
+            .checked_sub(1)
+            .map_or("ground".to_owned(), |k| format!("rod{k}"));
+        bodies.push(serde_json::json!({
+            "name": format!("rod{k}"), "mass": 0.2, "position": [0, top - 0.15, 0],
+            "cylinder": { "radius": 0.005, "length": 0.3, "axis": [0, 1, 0] },
+        }));
+        joints.push(serde_json::json!({
+            "name": format!("hinge{k}"), "revolute": { "axis": [0, 0, 1] }, "parent": parent,
+            "child": format!("rod{k}"), "at": [0, top, 0],
+        }));
+        let angle = if k == 0 { "180 deg" } else { "0 deg" };
+        goal.insert(format!("hinge{k}"), serde_json::json!(angle));
+    }
+    loaded(&[
+        format!("scene.bodies={}", serde_json::json!(bodies)),
+        format!("scene.joints={}", serde_json::json!(joints)),
+        r#"scene.loads=[{"name": "motor", "joint": "hinge0"}]"#.to_owned(),
+        "scene.markers=[]".to_owned(),
+        "control.loads={}".to_owned(),
+        r#"control.start={"joint_angles": {"hinge0": 0}}"#.to_owned(),
+        format!(
+            "control.goal={}",
+            serde_json::json!({ "joint_angles": goal })
+        ),
+        format!(r#"control.load_bounds={{"motor": [-{bound}, {bound}]}}"#),
+        r#"control.solver={"tolerance": 1e-12, "ipopt": {"bound_relax_factor": 0}}"#.to_owned(),
+    ])
+}
+
+#[test]
+fn a_motor_swings_up_one_and_two_rods_with_the_effort_of_an_independent_program() {
+    let text = include_str!("../reference/motor.json");
+    let reference: serde_json::Value = serde_json::from_str(text).unwrap();
+    for (rods, name) in [(1, "one"), (2, "two")] {
+        let [bound, exact] = ["bound", "objective"].map(|key| reference[name][key].as_f64());
+        let exact = exact.unwrap();
+        let (system, control) = swing_up(rods, bound.unwrap());
+        let optimum = solved(&system, &control);
+        assert_eq!(optimum.solution.status, Status::Solved);
+        let found = optimum.solution.objective;
+        assert!((found - exact).abs() < 1e-8 * exact, "{found:e} {exact:e}");
+        let torques = optimum.motion.voltages.iter().map(|row| row[0].abs());
+        let at_bound = torques.filter(|torque| *torque > 999.0 * bound.unwrap());
+        assert!(at_bound.count() > 5, "the bound is active");
+    }
+}
