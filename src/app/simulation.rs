@@ -42,6 +42,7 @@ use crate::workflow::integrate::{grid, integrate_on};
 use crate::workflow::motion::{solved, solved_of};
 use crate::workflow::phase::phase;
 use crate::workflow::steps;
+use crate::workflow::stops;
 
 /// Simulates and writes the folder; a motion that ends early is kept as far as it went.
 pub(super) fn simulation(
@@ -295,6 +296,7 @@ fn summarise(run: &Run<'_>, ended: &Ended, observed: &Observed, summary: &mut Su
     remarks.note("voltages_end", afterwards(task));
     remarks.note("step_divided", steps::divided(task));
     remarks.warn("outside_domain", domain::note(&summary.domain, true));
+    remarks.note("stops", stops::notes(&run.loaded.system, &observed.motion));
     let coarse = steps::warning(observed.neglected, discrete, task);
     remarks.warn("coarse_steps", coarse);
     remarks.warn("tolerance_exceeded", steps::beyond(ended.error, task));

@@ -40,6 +40,7 @@ use crate::workflow::motion::{discrete_trajectory, solved, trajectory};
 use crate::workflow::optimum::{Optimum, SolveLimits};
 use crate::workflow::refine_until_reproduced::{RefinedOptimum, reproduced};
 use crate::workflow::resimulate::under_constant_voltages;
+use crate::workflow::stops;
 use crate::workflow::tracking::followed;
 use crate::workflow::verified::{ACCURACY, verified};
 
@@ -238,6 +239,7 @@ fn add_observed(
     summary.final_values = final_values(&model.system, control, motion);
     let notes = &mut summary.notes;
     notes.warn("outside_domain", domain::note(&summary.domain, true));
+    notes.note("stops", stops::notes(&model.system, motion));
     notes.note("tracking", tracking_messages::notes(&summary.tracking));
     notes.note("final_value", ends(&summary.final_values));
     exchange

@@ -28,6 +28,7 @@ use crate::workflow::refine_until_reproduced::{RefinedOptimum, reproduced};
 use crate::workflow::remark::Remarks;
 use crate::workflow::resolve::resolve;
 use crate::workflow::solve_remarks::add_remarks;
+use crate::workflow::stops;
 use crate::workflow::tracking::followed;
 use std::collections::BTreeMap;
 use std::ops::ControlFlow;
@@ -232,6 +233,7 @@ impl Control {
         add_remarks(&mut remarks, &control, &found, note, not_kept);
         remarks.warn("outside_domain", domain::note(&outside, true));
         let trajectory = trajectory(model, &found.motion);
+        remarks.note("stops", stops::notes(&model.system, &trajectory));
         let ends = found.boundary.rest.each_ref().map(Option::as_deref);
         let tracking = followed(&found, &control, &trajectory);
         let final_values = final_values(&model.system, &control, &trajectory);

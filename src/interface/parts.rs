@@ -5,9 +5,11 @@ use crate::mesh::Mesh;
 use crate::model::System;
 use crate::model::system::{
     Attachment, Body, Discretisation, Electrode, ElementKind, Fidelity, Joint, JointKind,
-    JointSpring, Marker, Material, Muscle, Potential, Shape, Solid, Support, directors_along,
+    JointSpring, JointStops, Marker, Material, Muscle, Potential, Shape, Solid, Support,
+    directors_along,
 };
 use nalgebra::{Matrix3, Vector3};
+use std::ops::RangeInclusive;
 
 /// A point of a body or the ground in mm.
 pub(super) fn attachment(carrier: impl Into<Carrier>, at: Vector3<f64>) -> Attachment {
@@ -113,6 +115,17 @@ impl Joint {
     pub fn spring(self, stiffness: f64, rest: f64) -> Self {
         let spring = Some(JointSpring { stiffness, rest });
         Self { spring, ..self }
+    }
+
+    /// Elastic stops of its coordinate at both ends of a range in rad or mm, infinite where there is none; stiffness in N mm/rad or N/mm.
+    /// It grows over a width around each, or jumps where that is zero.
+    pub fn stops(self, range: RangeInclusive<f64>, stiffness: f64, smoothing: f64) -> Self {
+        let stops = Some(JointStops {
+            at: [*range.start(), *range.end()],
+            stiffness,
+            smoothing,
+        });
+        Self { stops, ..self }
     }
 
     /// A name of its own.

@@ -14,7 +14,7 @@ use crate::model::System;
 use crate::model::components::Load;
 use crate::workflow::integrate::{Simulated, integrate};
 use crate::workflow::remark::Remarks;
-use crate::workflow::{domain, memory, steps};
+use crate::workflow::{domain, memory, steps, stops};
 use std::ops::ControlFlow;
 
 /// A simulation under given voltages.
@@ -159,6 +159,7 @@ fn motion(run: &Simulated, task: &problem::Simulation) -> Motion {
     let mut remarks = Remarks::default();
     remarks.warn("coarse_steps", steps::warning(error, &run.discrete, task));
     remarks.warn("energy_balance", steps::unbalanced(&run.discrete));
+    remarks.note("stops", stops::notes(&run.model.system, &trajectory));
     remarks.warn("outside_domain", domain::note(&outside, true));
     let system = run.model.system.clone();
     Motion {

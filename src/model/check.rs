@@ -199,6 +199,17 @@ impl System {
             if let Some(damping) = joint.damping {
                 positive(&joint.name, "damping", damping)?;
             }
+            if let Some(stops) = joint.stops {
+                positive(&joint.name, "stiffness", stops.stiffness)?;
+                let [low, high] = stops.at;
+                let width = stops.smoothing;
+                require(
+                    joint.has_coordinate() && low < high && width >= 0.0 && width.is_finite(),
+                    &joint.name,
+                    || format!("stops at {low} and {high} with a width of {width}"),
+                    "stops of a revolute or prismatic joint that grow, with a width from 0 on",
+                )?;
+            }
             if let Some(spring) = joint.spring {
                 positive(&joint.name, "stiffness", spring.stiffness)?;
                 require(

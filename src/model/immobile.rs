@@ -8,7 +8,7 @@ use crate::model::analysis::{Analysis, InitiallyMoving};
 use crate::model::component::Component;
 use crate::model::constant::Constant;
 use crate::model::field_extent;
-use crate::model::system::{Joint, System};
+use crate::model::system::System;
 
 /// Parts of a scene that rest all the time.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
@@ -119,8 +119,7 @@ impl Parts {
                 moved.extend(system.loaded_bodies(load));
             }
         }
-        let is_loaded = |joint: &&Joint| joint.spring.is_some_and(|spring| spring.rest != 0.0);
-        let loaded = system.joints.iter().filter(is_loaded);
+        let loaded = system.joints.iter().filter(|joint| joint.is_prestressed());
         moved.extend(loaded.flat_map(|joint| joint.parent.into_iter().chain([joint.child])));
         moved.extend((0..self.bodies).filter(|b| weighs || initially_moving.bodies.contains(b)));
         for (s, solid) in system.solids.iter().enumerate() {

@@ -86,7 +86,8 @@ impl Internals {
                 let mut loads = scene.components.loads.iter();
                 loads.any(|load| load.on == LoadPlace::Joint(presolved.joints[j]))
             };
-            let needed = joints.filter(|(j, joint)| joint.spring.is_some() || is_loaded(*j));
+            let is_elastic = |joint: &Joint| joint.spring.is_some() || joint.stops.is_some();
+            let needed = joints.filter(|(j, joint)| is_elastic(joint) || is_loaded(*j));
             list.extend(needed.map(|(j, joint)| Internal::of_joint(j, joint)));
         }
         for (m, muscle) in scene.muscles.iter().enumerate() {

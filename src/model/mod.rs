@@ -18,6 +18,7 @@ mod floating;
 mod graph;
 mod immobile;
 mod internal;
+mod joint_elasticity;
 mod joint_springs;
 mod joints;
 mod loads;

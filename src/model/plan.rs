@@ -5,7 +5,7 @@
 pub(super) const GRAVITY: &str = "gravity";
 
 /// Names of the terms of the library, in the order of the sum; those of other crates follow.
-pub const TERMS: [&str; 24] = [
+pub const TERMS: [&str; 25] = [
     "body inertia",
     "muscle inertia",
     "block inertia",
@@ -17,6 +17,7 @@ pub const TERMS: [&str; 24] = [
     "muscle electroelasticity",
     "maxwell elasticity",
     "joint elasticity",
+    "joint stops",
     "spring elasticity",
     "tendon elasticity",
     "loads",

@@ -4,6 +4,7 @@ use crate::mesh::Mesh;
 pub use crate::model::attachment::Attachment;
 pub use crate::model::bodies::{Body, Shape, directors_along};
 use crate::model::components::{Components, Load, LoadPlace};
+pub use crate::model::joint_elasticity::{JointSpring, JointStops};
 pub use crate::model::material::{ElectricConstants, Material, VACUUM_PERMITTIVITY};
 pub use crate::model::maxwell::{MaxwellBranch, MaxwellBranches};
 pub use crate::model::source::{InputKind, Source, voltage_sources};
@@ -167,15 +168,8 @@ pub struct Joint {
     pub damping: Option<f64>,
     /// Spring of the joint coordinate; `None` leaves no trace.
     pub spring: Option<JointSpring>,
-}
-
-/// A linear spring of a joint coordinate.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct JointSpring {
-    /// Stiffness: N mm/rad for an angle, N/mm for a displacement.
-    pub stiffness: f64,
-    /// Coordinate without force in rad or mm; zero is the reference configuration.
-    pub rest: f64,
+    /// Stops of the joint coordinate; `None` leaves no trace.
+    pub stops: Option<JointStops>,
 }
 
 /// Motion that a joint permits.
@@ -344,6 +338,12 @@ impl Joint {
     /// Returns true if it has one coordinate: revolute and prismatic joints do.
     pub fn has_coordinate(&self) -> bool {
         self.kind.freedoms() == 1
+    }
+
+    /// Returns true if a spring or stops exert a force on its coordinate in the reference configuration.
+    pub fn is_prestressed(&self) -> bool {
+        let presses = |stops: JointStops| stops.beyond(0.0) > -0.5 * stops.smoothing;
+        self.spring.is_some_and(|spring| spring.rest != 0.0) || self.stops.is_some_and(presses)
     }
 }
 

@@ -9,6 +9,7 @@ use crate::dynamics::simulate;
 use crate::kinematics::Pose;
 use crate::math::significant;
 use crate::model::components::Tendon;
+use crate::model::system::JointKind;
 use crate::model::{Component, Model, joint_unit};
 use crate::workflow::optimum::Optimum;
 use crate::workflow::optimum::Shortest;
@@ -65,7 +66,29 @@ fn kinks(optimum: &Optimum) -> Vec<String> {
             )
         })
     };
-    jumping.filter_map(told).collect()
+    let of_tendons = jumping.filter_map(told);
+    of_tendons.chain(at_stops(optimum)).collect()
+}
+
+/// Joints that reach a stop along the last iterate whose stiffness jumps.
+fn at_stops(optimum: &Optimum) -> impl Iterator<Item = String> + '_ {
+    let joints = optimum.model.system.joints.iter();
+    joints.enumerate().filter_map(|(j, joint)| {
+        let stops = joint.stops.filter(|stops| stops.smoothing == 0.0)?;
+        let reached = optimum.motion.joints.iter().map(|row| stops.beyond(row[j]));
+        let far = reached.fold(f64::NEG_INFINITY, f64::max);
+        let (width, unit) = match joint.kind {
+            JointKind::Revolute { .. } => (1.0, "deg"),
+            _ => (0.01 * optimum.model.length(), "mm"),
+        };
+        (far > 0.0).then(|| {
+            format!(
+                "change: \"smoothing\": \"{} {unit}\" of the stops of {}; it reaches a stop, and the stiffness jumps there",
+                significant(width, 2),
+                joint.name
+            )
+        })
+    })
 }
 
 /// Returns the distance of the end of the motion under the voltages of the last iterate from the goal.

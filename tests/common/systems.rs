@@ -6,8 +6,8 @@ use proboscis::mesh::grid::Grid;
 use proboscis::model::components::{Load, LoadPlace, Spring, Tendon};
 use proboscis::model::system::{
     Attachment, Body, Discretisation, ElectricConstants, Electrode, ElementKind, Fidelity, Glue,
-    Joint, JointKind, JointSpring, Marker, Material, MaxwellBranch, MaxwellBranches, Muscle,
-    Potential, Shape, Solid, Support, System, VACUUM_PERMITTIVITY,
+    Joint, JointKind, JointSpring, JointStops, Marker, Material, MaxwellBranch, MaxwellBranches,
+    Muscle, Potential, Shape, Solid, Support, System, VACUUM_PERMITTIVITY,
 };
 
 /// Gravity along −y in mm/ms².
@@ -88,12 +88,17 @@ pub fn remembering() -> System {
     system
 }
 
-/// The branched tree with springs of its first hinge, beyond a half turn, and of its slider.
+/// The branched tree with springs of its first hinge, beyond a half turn, and of its slider, which has stops.
 pub fn sprung() -> System {
     let mut system = branched();
     for (joint, stiffness, rest) in [(0, 90.0, 4.0), (1, 0.3, -2.0)] {
         system.joints[joint].spring = Some(JointSpring { stiffness, rest });
     }
+    system.joints[1].stops = Some(JointStops {
+        at: [-0.5, 0.4],
+        stiffness: 2.0,
+        smoothing: 1.5,
+    });
     system
 }
 

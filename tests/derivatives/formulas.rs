@@ -10,10 +10,11 @@ use crate::naive_formulas::Formula;
 use nalgebra::{SMatrix, SVector};
 use num_dual::{Dual64, HyperDual};
 use proboscis::energy::{
-    Angle, AngularDamper, Capacitance, Coincidence, CoordinateDamper, CoordinateSpring, DeadLoad,
-    DielectricCell, ElasticCell, Energy, Gravity, JointAngle, JointDisplacement, LinearDamper,
-    LinearSpring, MaxwellCell, Orthogonality, OutsideBox, PositionComponent, Projection,
-    SectionInertia, SpanDamper, SquaredDistance, SquaredField, ViscousCell,
+    Angle, AngularDamper, Capacitance, Coincidence, CoordinateDamper, CoordinateSpring,
+    CoordinateStops, DeadLoad, DielectricCell, ElasticCell, Energy, Gravity, JointAngle,
+    JointDisplacement, LinearDamper, LinearSpring, MaxwellCell, Orthogonality, OutsideBox,
+    PositionComponent, Projection, SectionInertia, SpanDamper, SquaredDistance, SquaredField,
+    ViscousCell,
 };
 use proboscis::math::{Jet, Vector};
 
@@ -260,6 +261,12 @@ fn energies_have_the_derivatives_of_naive_formulas() {
     let direction = Vector::new(0.3, -0.7, 0.9);
     law("dead load", &DeadLoad { direction }, 0.2, 1.1);
     law("coordinate spring", &spring, 0.2, 1.1);
+    let stops = CoordinateStops {
+        stiffness: 0.7,
+        at: [-0.4, 0.3],
+        smoothing: 0.9,
+    };
+    law("coordinate stops", &stops, 0.1, 0.65);
     let branch = MaxwellCell {
         length: 0.9,
         volume: 1.3,

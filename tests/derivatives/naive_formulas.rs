@@ -2,10 +2,11 @@
 
 use num_dual::{Dual, DualNum};
 use proboscis::energy::{
-    Angle, AngularDamper, Capacitance, Coincidence, CoordinateDamper, CoordinateSpring, DeadLoad,
-    DielectricCell, ElasticCell, Energy, Gravity, JointAngle, JointDisplacement, LinearDamper,
-    LinearSpring, MaxwellCell, Orthogonality, OutsideBox, PositionComponent, Projection,
-    SectionInertia, SpanDamper, SquaredDistance, SquaredField, ViscousCell,
+    Angle, AngularDamper, Capacitance, Coincidence, CoordinateDamper, CoordinateSpring,
+    CoordinateStops, DeadLoad, DielectricCell, ElasticCell, Energy, Gravity, JointAngle,
+    JointDisplacement, LinearDamper, LinearSpring, MaxwellCell, Orthogonality, OutsideBox,
+    PositionComponent, Projection, SectionInertia, SpanDamper, SquaredDistance, SquaredField,
+    ViscousCell,
 };
 
 /// The naive formula of an energy.
@@ -155,6 +156,24 @@ impl Formula<3> for CoordinateSpring {
     fn naive<D: DualNum<f64> + Copy>(&self, p: &[D; 3]) -> D {
         let twice = p[0] * (p[0] - 2.0 * self.rest) + self.rest.powi(2);
         twice * self.stiffness / 2.0
+    }
+}
+
+impl Formula<3> for CoordinateStops {
+    fn naive<D: DualNum<f64> + Copy>(&self, p: &[D; 3]) -> D {
+        // The force is the integral of a stiffness that grows over the width, the energy that of the force.
+        let side = |beyond: D| {
+            let (k, w) = (self.stiffness, self.smoothing);
+            match beyond.re() {
+                x if x <= -0.5 * w => D::from(0.0),
+                x if x < 0.5 * w => {
+                    let t = beyond / w + 0.5;
+                    (t.powi(4) / 4.0 - t.powi(5) / 10.0) * (k * w * w)
+                }
+                _ => beyond * beyond * (0.5 * k) + (0.25 - 0.1 - 0.125) * k * w * w,
+            }
+        };
+        side(p[0] - self.at[1]) + side(-p[0] + self.at[0])
     }
 }
 

@@ -12,6 +12,7 @@ mod exchange;
 mod free_robots;
 mod integrators;
 mod joint_springs;
+mod joint_stops;
 mod loads;
 mod maxwell;
 mod observe;

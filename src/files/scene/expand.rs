@@ -100,6 +100,7 @@ impl Link {
             stiffness: None,
             rest_angle: None,
             rest_displacement: None,
+            stops: None,
         }
     }
 

@@ -1,4 +1,4 @@
-//! Conversion of a joint of a scene file: its kind, axis, damper and spring.
+//! Conversion of a joint of a scene file: its kind, axis, damper, spring and stops.
 
 use crate::files::json::error::SceneError;
 use crate::files::json::scope::Scope;
@@ -7,9 +7,10 @@ use crate::files::scene::point::unit_axis;
 use crate::files::scene::point::vector;
 use crate::files::scene::spec::{AxisSpec, JointSpec};
 use crate::files::units::quantity::{
-    Damping, Kind, PhysicalQuantity, Quantity, RotationalDamping, RotationalStiffness, Stiffness,
+    Angle, Damping, JointCoordinate, Kind, Length, PhysicalQuantity, Quantity, RotationalDamping,
+    RotationalStiffness, Stiffness,
 };
-use crate::model::system::{Joint, JointKind, JointSpring};
+use crate::model::system::{Joint, JointKind, JointSpring, JointStops};
 
 /// Kinds of a joint, with the one key that names each.
 #[derive(Clone, Copy, PartialEq)]
@@ -49,12 +50,14 @@ pub(super) fn joint(
         at: vector(&spec.at),
         damping,
         spring,
+        stops: stops(spec, key, scope)?,
     };
     Ok(match spec.locked {
         true => Joint {
             kind: JointKind::Fixed,
             damping: None,
             spring: None,
+            stops: None,
             ..joint
         },
         false => joint,
@@ -144,6 +147,61 @@ fn spring(
     )?;
     let rest = at_rest(spec, key, scope)?;
     Ok(stiffness.map(|stiffness| JointSpring { stiffness, rest }))
+}
+
+fn stops(
+    spec: &JointSpec,
+    key: JointKey,
+    scope: &Scope<'_>,
+) -> Result<Option<JointStops>, SceneError> {
+    let Some(spec) = &spec.stops else {
+        return Ok(None);
+    };
+    let scope = scope.key("stops");
+    let stiffness = constant(
+        Some(&spec.stiffness),
+        of_coordinate(key, RotationalStiffness::kind(), Stiffness::kind()),
+        &scope.key("stiffness"),
+    )?;
+    let Some(kind) = of_coordinate(key, Angle::kind(), Length::kind()) else {
+        let expected = "no stops, as the joint is neither revolute nor prismatic";
+        return Err(scope.wrong("stops", expected));
+    };
+    let read = |written: &Option<Quantity<JointCoordinate>>, name: &str, absent: f64| {
+        let value = written.as_ref().map(|w| w.value_as(&kind)).transpose();
+        let value = value.map_err(|found| scope.key(name).wrong(found, kind.expected()));
+        value.map(|value| value.unwrap_or(absent))
+    };
+    let at = [
+        read(&spec.min, "min", f64::NEG_INFINITY)?,
+        read(&spec.max, "max", f64::INFINITY)?,
+    ];
+    if at == [f64::NEG_INFINITY, f64::INFINITY] {
+        return Err(scope.wrong("neither \"min\" nor \"max\"", "one of them, or both"));
+    }
+    if at[0] >= at[1] {
+        let found = spec
+            .max
+            .as_ref()
+            .map_or_else(String::new, Quantity::to_string);
+        let expected = "more than \"min\"";
+        return Err(scope.key("max").wrong(found, expected));
+    }
+    let smoothing = read(&spec.smoothing, "smoothing", 0.0)?;
+    if smoothing < 0.0 {
+        let found = spec
+            .smoothing
+            .as_ref()
+            .map_or_else(String::new, Quantity::to_string);
+        return Err(scope
+            .key("smoothing")
+            .wrong(found, "zero or a positive width"));
+    }
+    Ok(stiffness.map(|stiffness| JointStops {
+        at,
+        stiffness,
+        smoothing,
+    }))
 }
 
 /// The coordinate without force: zero where none is written.

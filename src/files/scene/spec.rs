@@ -8,8 +8,8 @@ use crate::files::scene::components::{LoadSpec, SpringSpec, TendonSpec};
 use crate::files::scene::point::{Point, PointSpec};
 use crate::files::scene::spec_solids::{ElementSpec, SolidSpec};
 use crate::files::units::quantity::{
-    Acceleration, Angle, Density, JointDamping, JointStiffness, Length, Mass, MomentOfInertia,
-    Permittivity, Quantity, Stress, Time, Viscosity,
+    Acceleration, Angle, Density, JointCoordinate, JointDamping, JointStiffness, Length, Mass,
+    MomentOfInertia, Permittivity, Quantity, Stress, Time, Viscosity,
 };
 
 /// Scene. Positions and axes are given in the reference configuration, in the ground frame; parts that are not written do not exist.
@@ -211,6 +211,26 @@ pub struct JointSpec {
     /// Displacement of a prismatic joint at which its spring exerts no force, SI unit m; 0 where absent.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub rest_displacement: Option<Quantity<Length>>,
+    /// Elastic stops of the joint coordinate.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub stops: Option<StopsSpec>,
+}
+
+/// Elastic stops of a joint coordinate: `min`, `max` or both.
+#[derive(Clone, Debug, Serialize, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct StopsSpec {
+    /// Lowest coordinate without force, SI unit rad or m.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub min: Option<Quantity<JointCoordinate>>,
+    /// Highest coordinate without force, SI unit rad or m.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub max: Option<Quantity<JointCoordinate>>,
+    /// Stiffness beyond, SI unit N m/rad (revolute) or N/m (prismatic).
+    pub stiffness: Quantity<JointStiffness>,
+    /// Width around a stop over which the stiffness grows from zero, SI unit rad or m, for optimal control; it jumps where not written.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub smoothing: Option<Quantity<JointCoordinate>>,
 }
 
 /// An axis.
