@@ -1,15 +1,23 @@
-//! One core for the process while its libraries are loaded.
+//! Needs of the libraries while they are loaded: one core, and room for their first block of memory.
 //!
 //! OpenBLAS, which Ipopt and MUMPS call, starts a thread for each further core as soon as it is loaded, before `main`. These threads are of
 //! no use: two are slower on these systems. They keep a core busy for a tenth of a second, and where memory is limited they ask for it for ever, so
 //! that the process never ends; where no thread can be had OpenBLAS ends the process. It starts none where the process has one core.
+//!
+//! The OpenBLAS beside a MUMPS with MPI (0.3.29 in Debian 13) also takes a block of 128 MiB then, and asks for it for ever where the address
+//! space is limited to less: the process ends with a message instead.
 
 use std::sync::OnceLock;
 
+use rustix::mm::{MapFlags, ProtFlags, mmap_anonymous, munmap};
+use rustix::process::{Resource, getrlimit};
 use rustix::thread::{CpuSet, sched_getaffinity, sched_setaffinity};
 
 /// The cores that the process was given.
 static CORES: OnceLock<CpuSet> = OnceLock::new();
+
+/// The first block that OpenBLAS takes, with its ends.
+const BLOCK: usize = 129 << 20;
 
 /// Called by the loader before it initialises the libraries.
 #[used]
@@ -19,6 +27,11 @@ static CORES: OnceLock<CpuSet> = OnceLock::new();
 static BEGIN: extern "C" fn() = begin;
 
 extern "C" fn begin() {
+    if cfg!(mpi) && getrlimit(Resource::As).current.is_some() && !has_room(BLOCK) {
+        let message = b"error: too little address space: the libraries take a block of 128 MiB as soon as they are loaded\n";
+        let _written = rustix::io::write(rustix::stdio::stderr(), message);
+        std::process::abort();
+    }
     let Ok(cores) = sched_getaffinity(None) else {
         return;
     };
@@ -29,6 +42,17 @@ extern "C" fn begin() {
     one.set(first);
     if cores.count() > 1 && sched_setaffinity(None, &one).is_ok() {
         CORES.set(cores).ok();
+    }
+}
+
+/// Returns true if a block of memory of this length can be had.
+#[expect(unsafe_code, reason = "memory of the process by its address")]
+fn has_room(length: usize) -> bool {
+    let (protection, flags) = (ProtFlags::empty(), MapFlags::PRIVATE);
+    // SAFETY: the kernel chooses the place of the block, which nothing reads or writes before it is given back.
+    unsafe {
+        let block = mmap_anonymous(std::ptr::null_mut(), length, protection, flags);
+        block.is_ok_and(|block| munmap(block, length).is_ok())
     }
 }
 

@@ -62,8 +62,8 @@ pub(super) fn restart_random_numbers() {
 /// Returns true unless OpenBLAS is loaded and lacks the memory that it takes at its first call. It would then ask again and
 /// again and never returns.
 pub(crate) fn has_room() -> bool {
-    /// Memory that OpenBLAS takes, and a little more.
-    const ROOM: usize = 136 << 20;
+    /// Memory that OpenBLAS takes, and a little more; with MPI also that which MPI takes before.
+    const ROOM: usize = if cfg!(mpi) { 280 << 20 } else { 136 << 20 };
     static HAS_ROOM: LazyLock<bool> = LazyLock::new(|| {
         let is_needed = loaded(c"openblas_set_num_threads").is_some();
         let mut room = Vec::<u8>::new();
