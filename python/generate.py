@@ -295,6 +295,8 @@ def questions(types: Types, schema: Schema) -> str:
         "class Questions:",
         '    """What a system is made with, and what it is asked."""',
         "",
+        "    __slots__ = ()",
+        "",
         "    def _begin(self, name: str, folder: str | PathLike[str], scene: dict[str, Any]) -> None:",
         "        raise NotImplementedError",
         "",

@@ -19,6 +19,8 @@ if TYPE_CHECKING:
 class Questions:
     """What a system is made with, and what it is asked."""
 
+    __slots__ = ()
+
     def _begin(self, name: str, folder: str | PathLike[str], scene: dict[str, Any]) -> None:
         raise NotImplementedError
 

@@ -242,6 +242,22 @@ class Stack(TypedDict):
     """Name of the driven electrodes, whose voltage is `block.name`."""
 
 
+class Stops(TypedDict):
+    """Elastic stops of a joint coordinate: `min`, `max` or both."""
+
+    max: NotRequired[Quantity]
+    """Highest coordinate without force, SI unit rad or m."""
+
+    min: NotRequired[Quantity]
+    """Lowest coordinate without force, SI unit rad or m."""
+
+    smoothing: NotRequired[Quantity]
+    """Width around a stop over which the stiffness grows from zero, SI unit rad or m, for optimal control; it jumps where not written."""
+
+    stiffness: Quantity
+    """Stiffness beyond, SI unit N m/rad (revolute) or N/m (prismatic)."""
+
+
 class Velocity(TypedDict):
     """A velocity v = v₀ + ω × (X − c) + diag(rate) (X − c) at the start."""
 

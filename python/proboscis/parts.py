@@ -127,6 +127,7 @@ class Joint(Part):
     * `revolute`: Rotation about an axis.
     * `spherical`: Rotation about a point.
     * `stiffness`: Stiffness of a spring of the joint coordinate, SI unit N m/rad (revolute) or N/m (prismatic).
+    * `stops`: Elastic stops of the joint coordinate.
     """
 
     kind, noun = "joints", "joint"
@@ -148,6 +149,7 @@ class Joint(Part):
         revolute: entries.Axis | None = None,
         spherical: entries.Nothing | None = None,
         stiffness: Quantity | None = None,
+        stops: entries.Stops | None = None,
     ) -> None:
         super().__init__(
             name,
@@ -165,6 +167,7 @@ class Joint(Part):
                 "revolute": revolute,
                 "spherical": spherical,
                 "stiffness": stiffness,
+                "stops": stops,
             },
         )
 

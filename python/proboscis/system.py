@@ -24,6 +24,8 @@ class System(Questions):
     `System("arm", gravity=[0, -9.81, 0])` is a scene with a name and other entries of its schema, to which parts are added.
     """
 
+    __slots__ = ("folder", "scene")
+
     scene: dict[str, Any]
     """The scene; parts stand in it as they were added."""
     folder: Path

@@ -1,5 +1,6 @@
 """Problems in, arrays out, mistakes with their place, interruptions in good order."""
 
+import copy
 import json
 import os
 import signal
@@ -180,6 +181,14 @@ def test_mistakes_have_a_place(tmp_path: Path) -> None:
         pb.Problem.from_dict({**written, "scene": {"bodies": [pb.Body(mass=1, position=[0, 0, 0])]}})
     with pytest.raises(pb.Error, match="does not ask"):
         pb.Problem.from_file(PROBLEMS / "pair.json").simulate()
+
+
+def test_an_entry_set_beside_the_scene_is_no_attribute() -> None:
+    system = pb.System("arm")
+    with pytest.raises(AttributeError):
+        system.gravity = [0, -9.81, 0]  # type: ignore[attr-defined]
+    system.scene["gravity"] = [0, -9.81, 0]
+    assert copy.deepcopy(system).scene == system.scene
 
 
 def test_what_does_not_apply_is_refused(pair: pb.Problem, optimum: pb.Result) -> None:
