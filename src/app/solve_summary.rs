@@ -86,10 +86,7 @@ pub(super) fn program(
     let seconds = &solution.seconds;
     Program {
         objective: solution.objective,
-        objective_units: {
-            let kinds = control.input_kinds(system);
-            control.objective.units(system, &kinds)
-        },
+        objective_units: control.objective_units(system),
         iterations,
         intervals,
         duration: kept.times[intervals] / 1e3,

@@ -1,6 +1,7 @@
 //! Voltages and loads as functions of time: constants, rows of a table or a solution, or one function for each source.
 
 use crate::control::Signal;
+use crate::model::System;
 use std::borrow::Cow;
 use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
@@ -67,38 +68,30 @@ impl Voltages {
         }
     }
 
+    /// A function of time for each source; constants where all of them are.
+    pub fn of_signals(signals: Vec<Signal>) -> Self {
+        let constants: Option<Vec<f64>> = signals.iter().map(Signal::constant).collect();
+        constants.map_or(Self::Signals(signals), Self::Constant)
+    }
+
     /// The same with some sources that follow functions of time.
     #[must_use]
-    pub fn with(self, others: BTreeMap<usize, Signal>) -> Self {
+    pub fn with(mut self, others: BTreeMap<usize, Signal>) -> Self {
         if others.is_empty() {
             return self;
         }
-        let signals = match self {
-            Self::Sampled {
-                ends,
-                rows,
-                afterwards,
-                solution,
-                others: mut known,
-            } => {
+        let mut signals: Vec<Signal> = match &mut self {
+            Self::Sampled { others: known, .. } => {
                 known.extend(others);
-                return Self::Sampled {
-                    ends,
-                    rows,
-                    afterwards,
-                    solution,
-                    others: known,
-                };
+                return self;
             }
-            Self::Constant(row) => row.into_iter().map(Signal::Constant).collect(),
-            Self::Signals(signals) => signals,
+            Self::Constant(row) => row.iter().copied().map(Signal::Constant).collect(),
+            Self::Signals(signals) => std::mem::take(signals),
         };
-        let mut signals: Vec<Signal> = signals;
         for (source, signal) in others {
             signals[source] = signal;
         }
-        let constants: Option<Vec<f64>> = signals.iter().map(Signal::constant).collect();
-        constants.map_or(Self::Signals(signals), Self::Constant)
+        Self::of_signals(signals)
     }
 
     /// Returns true if the voltage of a source is ever other than zero.
@@ -133,4 +126,14 @@ fn sorted(times: impl Iterator<Item = f64>) -> Vec<f64> {
     times.sort_by(f64::total_cmp);
     times.dedup();
     times
+}
+
+/// Loads that are neither given nor sought: zero all the time, by source.
+pub fn absent_loads(
+    system: &System,
+    is_named: impl Fn(usize) -> bool,
+) -> impl Iterator<Item = (usize, Signal)> {
+    let loads = system.first_load()..system.sources().len();
+    let absent = loads.filter(move |&source| !is_named(source));
+    absent.map(|source| (source, Signal::Constant(0.0)))
 }

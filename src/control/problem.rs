@@ -3,7 +3,7 @@
 pub use crate::control::boundary_state::{BoundaryState, Hold, Rest};
 pub use crate::control::energy_cost::{EnergyCost, SourceEnergy};
 pub use crate::control::goal::{Orientation, Place};
-pub use crate::control::inputs::{Afterwards, Voltages};
+pub use crate::control::inputs::{Afterwards, Voltages, absent_loads};
 pub use crate::control::quantity_cost::{CostFunction, During, Objective, QuantityCost};
 use crate::control::{Earlier, Signal};
 use crate::dynamics::Solving;
@@ -148,8 +148,13 @@ impl Control {
         is_of_course || self.given.contains_key(&source)
     }
 
+    /// Units of the terms of the objective (see [`Objective::units`]).
+    pub fn objective_units(&self, system: &System) -> Vec<String> {
+        self.objective.units(system, &self.input_kinds(system))
+    }
+
     /// Kinds of the inputs that are not always zero, each once: the objective counts them all.
-    pub fn input_kinds(&self, system: &System) -> Vec<InputKind> {
+    fn input_kinds(&self, system: &System) -> Vec<InputKind> {
         let mut kinds = Vec::new();
         for (source, named) in system.sources().into_iter().enumerate() {
             let is_zero = self.given.get(&source).is_some_and(Signal::is_zero);

@@ -385,10 +385,9 @@ impl Control {
         let both = given.keys().any(|source| sought.contains_key(source));
         let found = || "a load that is given and sought".to_owned();
         require(!both, "control", found, "one of both")?;
-        let loads = system.first_load()..system.sources().len();
-        for load in loads.filter(|load| !sought.contains_key(load)) {
-            given.entry(load).or_insert(Signal::Constant(0.0));
-        }
+        let is_named = |s: usize| sought.contains_key(&s) || given.contains_key(&s);
+        let absent: Vec<_> = problem::absent_loads(system, is_named).collect();
+        given.extend(absent);
         Ok(given)
     }
 }

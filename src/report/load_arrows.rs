@@ -22,6 +22,8 @@ const SEGMENTS: usize = 24;
 pub(super) struct LoadArrows<'a> {
     system: &'a System,
     trajectory: &'a Trajectory,
+    /// Source of the first load.
+    first: usize,
     /// Largest size of each load in the motion.
     largest: Vec<f64>,
     /// Length of the longest arrow in mm.
@@ -40,6 +42,7 @@ impl<'a> LoadArrows<'a> {
         Self {
             system,
             trajectory,
+            first,
             largest: match trajectory.voltages.is_empty() {
                 true => Vec::new(),
                 false => (0..count).map(largest).collect(),
@@ -50,7 +53,7 @@ impl<'a> LoadArrows<'a> {
 
     /// Each load that ever acts with its source.
     pub(super) fn loads(&self) -> impl Iterator<Item = (usize, &'a Load)> + '_ {
-        let first = self.system.first_load();
+        let first = self.first;
         let loads = self.largest.iter().zip(&self.system.components.loads);
         let loads = loads
             .enumerate()
@@ -62,7 +65,7 @@ impl<'a> LoadArrows<'a> {
     pub(super) fn arrow(&self, source: usize, load: &Load, k: usize) -> Vec<Vector3<f64>> {
         let rows = &self.trajectory.voltages;
         let size = rows[k.min(rows.len() - 1)][source];
-        let part = size / self.largest[source - self.system.first_load()];
+        let part = size / self.largest[source - self.first];
         let place = |point: Attachment| self.trajectory.point(k, &point, self.system);
         let (at, axis, is_turn) = match load.on {
             LoadPlace::Point { at, direction } => (place(at), direction, false),

@@ -117,53 +117,18 @@ fn true_error(model: &Model, signals: &[Signal], motion: &DiscreteTrajectory) ->
 /// A function of time for each source; loads are small numbers of N and N mm.
 fn signals(system: &System, random: &mut Random) -> Vec<Signal> {
     let sources = system.sources();
-    let of = |source: &Source| {
-        let signal = signal(random);
-        match source.kind {
-            InputKind::Voltage => signal,
-            InputKind::Force => scaled(signal, 1e-4),
-            InputKind::Torque => scaled(signal, 2e-3),
-        }
+    let largest = |source: &Source| match source.kind {
+        InputKind::Voltage => 1500.0,
+        InputKind::Force => 0.15,
+        InputKind::Torque => 3.0,
     };
+    let of = |source: &Source| signal(random, largest(source));
     sources.iter().map(of).collect()
 }
 
-fn scaled(signal: Signal, factor: f64) -> Signal {
-    match signal {
-        Signal::Constant(value) => Signal::Constant(factor * value),
-        Signal::Ramp {
-            from,
-            to,
-            start,
-            duration,
-        } => Signal::Ramp {
-            from: factor * from,
-            to: factor * to,
-            start,
-            duration,
-        },
-        Signal::Table { times, values } => Signal::Table {
-            times,
-            values: values.iter().map(|value| factor * value).collect(),
-        },
-        Signal::Sine {
-            mean,
-            amplitude,
-            frequency,
-            phase,
-        } => Signal::Sine {
-            mean: factor * mean,
-            amplitude: factor * amplitude,
-            frequency,
-            phase,
-        },
-    }
-}
-
-/// Constants, ramps, sines, switches and tables, with corners on whole milliseconds.
-fn signal(random: &mut Random) -> Signal {
-    let mut volts = || random.between(0.0, 1500.0);
-    let [a, b, c] = [volts(), volts(), volts()];
+/// Constants, ramps, sines, switches and tables up to a size, with corners on whole milliseconds.
+fn signal(random: &mut Random, largest: f64) -> Signal {
+    let [a, b, c] = [0; 3].map(|_| random.between(0.0, largest));
     let start = random.between(5.0, 30.0).floor();
     match random.between(0.0, 5.0) as usize {
         0 => Signal::Constant(a),

@@ -339,8 +339,7 @@ fn an_objective_has_the_units_of_its_terms() {
         let Task::Control(control) = loaded.task else {
             panic!("a control problem");
         };
-        let kinds = control.input_kinds(&loaded.system);
-        let found = control.objective.units(&loaded.system, &kinds);
+        let found = control.objective_units(&loaded.system);
         assert_eq!(found, expected, "{objective}");
         drop(folder);
     }

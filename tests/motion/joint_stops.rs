@@ -100,13 +100,17 @@ fn a_joint_without_stops_has_no_term_of_them() {
     let with = slide([-1.0, 1.0], 0.1);
     let mut without = with.clone();
     without.joints[0].stops = None;
-    let names = |system: &System| {
+    let of = |system: &System| {
         let mut system = system.clone();
         system.gravity = Some(Vector3::y() + Vector3::x());
-        let model = Model::new(system, None, 1.0, &[]).unwrap();
-        model.present.iter().any(|p| p.term == "joint stops")
+        Model::new(system, None, 1.0, &[]).unwrap()
     };
+    let (with, without) = (of(&with), of(&without));
+    let names = |model: &Model| model.present.iter().any(|p| p.term == "joint stops");
     assert!(names(&with) && !names(&without));
+    // Nothing reads the coordinate as a vector either.
+    let vectors = |model: &Model| model.action.map.vectors.len();
+    assert_eq!(vectors(&with), vectors(&without) + 1);
 }
 
 const SCENE: &str = r#"{

@@ -2,7 +2,7 @@
 
 use crate::control::Signal;
 use crate::control::problem::{
-    BoundaryState, Control, Duration, Objective, Solver, SourceEnergy, Voltages,
+    BoundaryState, Control, Duration, Objective, Solver, SourceEnergy, Voltages, absent_loads,
 };
 use crate::files::json::error::SceneError;
 use crate::files::json::scope::Scope;
@@ -12,7 +12,7 @@ use crate::files::problem::free::parameters;
 use crate::files::problem::goal::goal_state;
 use crate::files::problem::guess::{guess, unwritten};
 use crate::files::problem::limits::limit;
-use crate::files::problem::loads::{absent_loads, load, load_bounds, loads};
+use crate::files::problem::loads::{load, load_bounds, loads};
 use crate::files::problem::signal::signal;
 use crate::files::problem::spec_control::{
     ControlSolverSpec, ControlSpec, DurationSpec, IntervalsSpec, IntervalsWord, ObjectiveSpec,

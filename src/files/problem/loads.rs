@@ -74,18 +74,6 @@ pub(crate) fn load_bounds(
     map.iter().map(read).collect()
 }
 
-/// Loads that are neither given nor sought: zero all the time.
-pub(crate) fn absent_loads(
-    system: &System,
-    is_named: impl Fn(usize) -> bool,
-) -> impl Iterator<Item = (usize, Signal)> {
-    let all = system.first_load()..system.sources().len();
-    let absent: Vec<usize> = all.filter(|&source| !is_named(source)).collect();
-    absent
-        .into_iter()
-        .map(|source| (source, Signal::Constant(0.0)))
-}
-
 /// Voltages of a simulation together with its loads.
 pub(crate) fn with_loads(
     voltages: Voltages,

@@ -25,11 +25,7 @@ pub(crate) fn signals(
         let scope = scope.key(name);
         signals[driven(name, &sources, &scope)?] = signal(spec, &Voltage::kind(), &scope)?;
     }
-    let constants: Option<Vec<f64>> = signals.iter().map(Signal::constant).collect();
-    Ok(match constants {
-        Some(row) => Voltages::Constant(row),
-        None => Voltages::Signals(signals),
-    })
+    Ok(Voltages::of_signals(signals))
 }
 
 /// A function of time whose values are of a kind.
