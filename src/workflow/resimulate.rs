@@ -123,12 +123,13 @@ pub(crate) fn resimulate(
 }
 
 impl Resimulation {
-    /// Estimates the error with finer and finer steps until their distances fall; returns true if no simulation ended early.
+    /// Estimates the error with finer and finer steps until their distances fall, of a large error twice in a row: a vibration that
+    /// no step resolves may lie near by chance once. Returns true if no simulation ended early.
     fn refine(&mut self, model: &Model, start: &Start, optimal: &Solution, least: f64) -> bool {
         let with = |steps: usize| Repeat::from_solution(model, start, optimal, steps);
         let mut before: Option<(Repeat, f64)> = None;
         let mut greatest = Distance::default();
-        let (mut error, mut is_confirmed) = (0.0, false);
+        let (mut error, mut is_confirmed, mut fallen) = (0.0, false, 0);
         for steps in FINER {
             let repeat = with(steps);
             let deviation = repeat.greatest();
@@ -154,8 +155,10 @@ impl Resimulation {
             let left = apart / 3.0;
             error = deviation.over(self.path_length, model) + left;
             if let Some((_, last)) = &before {
-                let falls = apart <= FALLS * last;
-                is_confirmed = error.max(apart) < ROUNDING || (falls && left <= LEFT * error);
+                let falls = apart <= FALLS * last && left <= LEFT * error;
+                fallen = if falls { fallen + 1 } else { 0 };
+                let needed = if error > COARSE { 2 } else { 1 };
+                is_confirmed = error.max(apart) < ROUNDING || fallen >= needed;
                 if is_confirmed || error > LOST {
                     break;
                 }

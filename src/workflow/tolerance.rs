@@ -20,9 +20,11 @@ const LEAVES: f64 = 0.6;
 /// Largest factors by which it is tightened, and where nothing is confirmed.
 const MOST: f64 = 0.01;
 const UNCONFIRMED: f64 = 0.1;
-/// Fewest steps in which a motion is repeated in longer ones, and the largest part of the time that may have steps without a partner.
+/// Fewest steps in which a motion is repeated in longer ones, and the largest part of the time that may have steps without a partner: one
+/// that is a larger part than this of both together has none.
 const FEWEST: usize = 4;
 const MOST_ALONE: f64 = 0.05;
+const LARGEST_PART: f64 = 0.7;
 
 /// Parts of a motion by a tolerance.
 pub(crate) struct ByTolerance<'a> {
@@ -209,12 +211,16 @@ fn at_start(discrete: &DiscreteTrajectory) -> DiscreteTrajectory {
 
 /// Returns true if almost all of the time has steps of two of the finer ones, and enough of them that their order shows.
 fn are_doubled(finer: &[f64], coarser: &[f64]) -> bool {
-    let is_single = |ends: &&[f64]| {
+    let is_alone = |ends: &&[f64]| {
         let first = finer.partition_point(|&time| time < ends[0]);
-        finer.get(first + 1).is_some_and(|&next| next >= ends[1])
+        let parts = finer[first..]
+            .windows(2)
+            .take_while(|part| part[0] < ends[1]);
+        let longest = parts.map(|part| part[1] - part[0]).fold(0.0, f64::max);
+        longest > LARGEST_PART * (ends[1] - ends[0])
     };
-    let singles = coarser.windows(2).filter(is_single);
-    let alone: f64 = singles.map(|ends| ends[1] - ends[0]).sum();
+    let alone = coarser.windows(2).filter(is_alone);
+    let alone: f64 = alone.map(|ends| ends[1] - ends[0]).sum();
     let whole = coarser[coarser.len() - 1] - coarser[0];
     coarser.len() > FEWEST && alone <= MOST_ALONE * whole
 }
