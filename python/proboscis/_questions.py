@@ -84,8 +84,9 @@ class Questions:
         * `intervals`: Number of intervals, 1 or more, or `"auto"`, as where it is not written: as many as the verification of the optimum
           needs to confirm an error of 1 % of the path length, or of the part that `--accuracy` gives.
         * `limits`: Path limits.
-        * `load_bounds`: Lower and upper bound of each load that is sought, by name, SI units N and N m.
-        * `loads`: Loads that are given, by name, constant or functions of time, SI units N and N m; 0 where neither given nor sought.
+        * `load_bounds`: Lower and upper bound of each load that is sought, by name, SI units N, N m, Pa, N/m³ and C/m².
+        * `loads`: Loads that are given, by name, constant or functions of time, SI units N, N m, Pa, N/m³ and C/m²; 0 where neither given nor
+          sought.
         * `solver`: Options of the solver.
         * `voltage_bounds`: Lower and upper bound of every voltage that is sought, SI unit V; not needed where none is.
         * `voltages`: Voltages that are given, by the names of muscles and driven electrodes (`block.electrode`), SI unit V: they are no
@@ -137,7 +138,7 @@ class Questions:
         * `coordinates`: Coordinates.
         * `integrator`: The method; the midpoint variational integrator where not written.
         * `linear_solver`: Method of its factorisation; the one that is fastest as a rule where not written.
-        * `loads`: Loads by name, constant or functions of time, SI units N and N m; 0 where not named.
+        * `loads`: Loads by name, constant or functions of time, SI units N, N m, Pa, N/m³ and C/m²; 0 where not named.
         * `newton`: Occasions at which the tangent of a step is factorised; where not written `modified` with finite elements, otherwise
           `full`.
         * `start`: Start of the motion; the reference configuration at rest where not written.
@@ -176,7 +177,7 @@ class Questions:
         """Finds the state of rest with these entries of `equilibrium` in a problem file; the others are those of `Problem.equilibrium`.
 
         * `coordinates`: Coordinates.
-        * `loads`: Loads by name, SI units N and N m; 0 where not named.
+        * `loads`: Loads by name, SI units N, N m, Pa, N/m³ and C/m²; 0 where not named.
         * `path`: Number of points of the path of equilibria from zero voltage that are followed by arc length, past limit points such as
           pull-in.
         * `voltages`: Voltages by the names of muscles and driven electrodes (`block.electrode`), SI unit V; 0 where not named.

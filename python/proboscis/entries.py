@@ -36,6 +36,10 @@ class Axis(TypedDict):
     """Direction, of any length."""
 
 
+BlockLoadKind: TypeAlias = "Literal['traction', 'pressure', 'surface_charge', 'body_force']"
+"""Kind of a load of an elastic block. Areas and volumes are those of the reference configuration but for a pressure that follows."""
+
+
 class Box(TypedDict):
     """A box."""
 
@@ -878,10 +882,10 @@ class Control(TypedDict):
     """Path limits."""
 
     load_bounds: NotRequired[Mapping[Any, Sequence[Quantity] | Numbers]]
-    """Lower and upper bound of each load that is sought, by name, SI units N and N m."""
+    """Lower and upper bound of each load that is sought, by name, SI units N, N m, Pa, N/m³ and C/m²."""
 
     loads: NotRequired[Mapping[Any, Signal]]
-    """Loads that are given, by name, constant or functions of time, SI units N and N m; 0 where neither given nor sought."""
+    """Loads that are given, by name, constant or functions of time, SI units N, N m, Pa, N/m³ and C/m²; 0 where neither given nor sought."""
 
     objective: Objective
     """Objective that is minimised."""
@@ -918,7 +922,7 @@ class Simulate(TypedDict):
     """Method of its factorisation; the one that is fastest as a rule where not written."""
 
     loads: NotRequired[Mapping[Any, Signal]]
-    """Loads by name, constant or functions of time, SI units N and N m; 0 where not named."""
+    """Loads by name, constant or functions of time, SI units N, N m, Pa, N/m³ and C/m²; 0 where not named."""
 
     newton: NotRequired[Newton]
     """Occasions at which the tangent of a step is factorised; where not written `modified` with finite elements, otherwise `full`."""
@@ -945,7 +949,7 @@ class Equilibrium(TypedDict):
     """Coordinates."""
 
     loads: NotRequired[Mapping[Any, Quantity]]
-    """Loads by name, SI units N and N m; 0 where not named."""
+    """Loads by name, SI units N, N m, Pa, N/m³ and C/m²; 0 where not named."""
 
     path: NotRequired[int]
     """Number of points of the path of equilibria from zero voltage that are followed by arc length, past limit points such as pull-in."""

@@ -342,12 +342,20 @@ class Tendon(Part):
 
 
 class Load(Part):
-    """A force at a point along a direction that does not turn, or a torque or force of a joint, such as that of a motor. A problem says how large
-    it is.
+    """A load, whose size a problem gives or seeks: a force at a `point`, a torque or force of a `joint`, such as that of a motor, or a load of a
+    `solid`.
 
-    * `direction`: Direction of the force in the ground frame; its length is ignored.
+    * `box`: Faces of the surface in a box on which it acts.
+    * `direction`: Direction of the force or traction in the ground frame, in the reference configuration where it `follows`; its length is
+      ignored.
+    * `face`: Face on which it acts.
+    * `follows`: True if a force turns with its body, or a pressure acts on the deformed faces along their normals; where not written, a pressure
+      does and a force does not.
     * `joint`: Name of a revolute joint, about whose axis a torque acts on the child, or of a prismatic one, along whose axis a force acts.
-    * `point`: Point of a body at which a force acts, with `direction`; or give `joint`.
+    * `kind`: Kind of a load of a `solid`.
+    * `plane`: Faces of the surface in a plane on which it acts.
+    * `point`: Point of a body at which a force acts, with `direction`; or give `joint` or `solid`.
+    * `solid`: Name of an elastic block, with `kind`.
     """
 
     kind, noun = "loads", "load"
@@ -356,16 +364,28 @@ class Load(Part):
         self,
         name: str | None = None,
         *,
+        box: entries.Corners | None = None,
         direction: Sequence[float] | Numbers | None = None,
+        face: Text | None = None,
+        follows: bool | None = None,
         joint: Text | None = None,
+        kind: entries.BlockLoadKind | None = None,
+        plane: entries.Plane | None = None,
         point: entries.Point | None = None,
+        solid: Text | None = None,
     ) -> None:
         super().__init__(
             name,
             {
+                "box": box,
                 "direction": direction,
+                "face": face,
+                "follows": follows,
                 "joint": joint,
+                "kind": kind,
+                "plane": plane,
                 "point": point,
+                "solid": solid,
             },
         )
 

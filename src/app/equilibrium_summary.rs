@@ -322,7 +322,7 @@ pub(super) fn text(model: &Model, rest: &Rest) -> String {
 pub(super) fn at_rest(mut observed: Observations) -> Observations {
     let moves = |name: &str| {
         let of_motion = ["linear_momentum", "angular_momentum", "kinetic_energy"];
-        let others = ["time", "dissipated_energy"];
+        let others = ["time", "dissipated_energy", "following_load_work"];
         others.contains(&name) || of_motion.iter().any(|word| name.starts_with(word))
     };
     observed.columns.retain(|column| !moves(&column.name));

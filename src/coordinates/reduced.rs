@@ -94,8 +94,8 @@ impl Reduced {
         }
     }
 
-    /// Evaluates the potential energy alone between two instants, up to second derivatives, and adds its forces to theirs.
-    pub fn evaluate_potential(
+    /// Evaluates what acts at rest between two instants, up to second derivatives, and adds its forces to theirs.
+    pub fn evaluate_at_rest(
         &self,
         [a, b]: [&mut Configuration; 2],
         interval: &Interval<'_>,
@@ -103,7 +103,7 @@ impl Reduced {
     ) {
         let sample = interval.sample([&*a, &*b]);
         let out = &mut scratch.interval;
-        self.intervals.evaluate_potential(&sample, out);
+        self.intervals.evaluate_at_rest(&sample, out);
         add(&mut a.forces, &out.plain.forces[0]);
         add(&mut b.forces, &out.plain.forces[1]);
     }

@@ -1,5 +1,6 @@
 //! The record of a motion: coordinates, momenta and voltages on a time grid.
 
+use crate::dynamics::interval_energies::Work;
 use crate::dynamics::step_report::StepperReport;
 use crate::dynamics::step_state::StepState;
 
@@ -18,8 +19,8 @@ pub struct DiscreteTrajectory {
     pub scalars: Vec<Vec<f64>>,
     /// Times at which energies and momenta are read.
     pub reading: Reading,
-    /// Work in mJ of forces without a potential in each interval, where instants alone do not determine it.
-    pub works: Vec<f64>,
+    /// Work of forces without a potential in each interval, where instants alone do not determine it.
+    pub works: Vec<Work>,
     /// The method that factorised the tangents of the steps.
     pub solver: String,
     /// Report of the steps.

@@ -2,6 +2,7 @@
 
 use crate::coordinates::Configuration;
 use crate::dynamics::drive::Drive;
+use crate::dynamics::interval_energies::Work;
 use crate::dynamics::resolution::Balance;
 use crate::functional::Order;
 use crate::model::Model;
@@ -74,7 +75,7 @@ pub trait Equations {
     fn multipliers(&self) -> &[f64];
 
     /// Work in mJ that forces without a potential did over the last step, where its ends alone do not determine it.
-    fn work(&self) -> Option<f64> {
+    fn work(&self) -> Option<Work> {
         None
     }
 }

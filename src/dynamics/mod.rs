@@ -6,9 +6,9 @@
 //! - `step_state`, `resume`: the state from which a motion is resumed.
 //! - `domain`: where the first-order dielectric ends.
 //! - `resolution`, `singular_configurations`: which steps are refused; `local_error`: what those neglect that are not.
-//! - `simulate`, `discrete_trajectory`, `observe`, `at_instant`, `interval_energies`, `kinetic`: step after step, recorded and observed.
+//! - `simulate`, `discrete_trajectory`, `observe`, `to_instants`, `at_instant`, `interval_energies`, `kinetic`: step after step, recorded and observed.
 //! - `exchange`: electrical energy from the sources and mechanical work of their muscles.
-//! - `statics`: the rows of rest; `ramp`, `growth`, `load_path`: paths of rest under growing loads; `minimum`: minima
+//! - `statics`, `weights`: the rows of rest; `growing`: these by loads; `ramp`, `growth`, `load_path`: paths of rest under growing loads; `minimum`: minima
 //!   of the potential energy; `stable`: a stable equilibrium by all of these; `softest_mode`: its softest mode.
 
 mod anderson;
@@ -38,6 +38,7 @@ mod step_report;
 mod step_state;
 mod stepper;
 mod tangent;
+mod to_instants;
 pub mod trajectory;
 mod updates;
 
@@ -52,7 +53,7 @@ pub use equilibrium::{
 pub use error::{EquilibriumError, StepError};
 pub use exchange::{EnergyExchange, SourceEnergies};
 pub use galerkin::GalerkinEquations;
-pub use interval_energies::{Energies, energies};
+pub use interval_energies::{Energies, Work, energies};
 pub use local_error::{LocalError, local_error, local_error_of};
 pub use midpoint::{Midpoint, Stepper};
 pub use momenta::last_momentum;

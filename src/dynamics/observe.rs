@@ -14,6 +14,7 @@ use crate::dynamics::at_instant::AtInstant;
 use crate::dynamics::discrete_trajectory::{DiscreteTrajectory, Reading};
 use crate::dynamics::interval_energies::energies;
 use crate::dynamics::momenta::{Places, momentum_maps, moving, vector_momenta};
+use crate::dynamics::to_instants::{Last, Momenta, means, to_instants};
 use crate::dynamics::trajectory::{Column, Observations, Trajectory};
 use crate::functional::{Order, TermKind};
 use crate::math::{Vector, has_pool};
@@ -66,11 +67,18 @@ pub fn observed(model: &Model, discrete: &DiscreteTrajectory) -> Vec<Column> {
         }
     }
     let [of_intervals, of_momenta] = [observer.of_intervals(), observer.of_momenta()];
-    if observer.has(TermKind::VirtualWork) {
-        let mut dissipated = 0.0;
-        for work in &mut columns[of_intervals.end].values {
-            dissipated -= *work;
-            *work = dissipated;
+    for (column, (kind, _)) in columns[of_intervals.end..].iter_mut().zip(observer.works()) {
+        let (mut sum, sign) = (
+            0.0,
+            if kind == TermKind::Dissipation {
+                -1.0
+            } else {
+                1.0
+            },
+        );
+        for work in &mut column.values {
+            sum += sign * *work;
+            *work = sum;
         }
     }
     if discrete.reading == Reading::Intervals && discrete.times.len() > 1 {
@@ -82,58 +90,12 @@ pub fn observed(model: &Model, discrete: &DiscreteTrajectory) -> Vec<Column> {
     columns
 }
 
-/// Turns charges, kinetic, potential and total energy in the middle of the intervals that end at the rows into those at the
-/// rows; `last` holds those of the last one.
-fn to_instants(times: &[f64], columns: &mut [Column], last: &Last) {
-    let end = times.len() - 1;
-    let length = |k: usize| times[k] - times[k - 1];
-    let total = last.kinetic + last.potential.iter().sum::<f64>();
-    for column in &mut *columns {
-        for k in 1..end {
-            let (before, after) = (length(k), length(k + 1));
-            let sum = column.values[k] * after + column.values[k + 1] * before;
-            column.values[k] = sum / (before + after);
-        }
-    }
-    let ends = last.charges.iter().copied().chain([last.kinetic]);
-    let ends = ends.chain(last.potential.iter().copied()).chain([total]);
-    for (column, value) in columns.iter_mut().zip(ends) {
-        column.values[end] = value;
-    }
-}
-
-/// Turns momenta as the interval before each row sees them into means of both intervals next to it, each weighted by the length of
-/// the other, so that a constant reaction cancels; `before` holds what the interval that ends at a row sees at the row before.
-fn means(times: &[f64], columns: &mut [Column], before: &[Momenta], last: &Last) {
-    let end = times.len() - 1;
-    for (i, column) in columns.iter_mut().enumerate() {
-        for k in 1..end {
-            let [earlier, later] = [times[k] - times[k - 1], times[k + 1] - times[k]];
-            let sum = column.values[k] * later + before[k + 1][i] * earlier;
-            column.values[k] = sum / (earlier + later);
-        }
-        column.values[end] = last.momenta[i];
-    }
-}
-
-/// Linear and angular momentum by axis.
-type Momenta = [f64; 6];
-
 /// Observations at one instant.
 struct Row {
-    /// By column; what belongs to intervals as the one that ends here sees it, of the dissipated energy its work.
+    /// By column; what belongs to intervals as the one that ends here sees it, of work the part of that interval.
     values: Vec<f64>,
     /// Momenta at the instant before, as that interval sees them.
     before: Momenta,
-}
-
-/// Charges, energies and momenta at the last instant.
-#[derive(Debug)]
-struct Last {
-    charges: Vec<f64>,
-    kinetic: f64,
-    potential: Vec<f64>,
-    momenta: Momenta,
 }
 
 /// The storage to observe one instant after the other.
@@ -204,9 +166,15 @@ impl<'m> Observer<'m> {
         }
     }
 
-    fn has(&self, kind: TermKind) -> bool {
-        let mut terms = self.model.action.intervals.terms.iter();
-        terms.any(|term| term.kind() == kind)
+    /// Kinds of work that are done, each with the name of its sum.
+    fn works(&self) -> impl Iterator<Item = (TermKind, &'static str)> {
+        let terms = &self.model.action.intervals.terms;
+        let has = |kind| terms.iter().any(|term| term.kind() == kind);
+        let all = [
+            (TermKind::Dissipation, "dissipated_energy"),
+            (TermKind::AppliedWork, "following_load_work"),
+        ];
+        all.into_iter().filter(move |(kind, _)| has(*kind))
     }
 
     /// Names and units, in the order of [`Self::row`].
@@ -244,8 +212,8 @@ impl<'m> Observer<'m> {
             }
         }
         add("total_energy".to_owned(), "N mm");
-        if self.has(TermKind::VirtualWork) {
-            add("dissipated_energy".to_owned(), "N mm");
+        for (_, name) in self.works() {
+            add(name.to_owned(), "N mm");
         }
         for (name, unit) in [("linear_momentum", "N ms"), ("angular_momentum", "N mm ms")] {
             for axis in ["x", "y", "z"] {
@@ -307,9 +275,10 @@ impl<'m> Observer<'m> {
         row.push(energies.kinetic);
         row.extend(&energies.potential);
         row.push(energies.total());
-        if self.has(TermKind::VirtualWork) {
-            row.push(energies.work);
-        }
+        row.extend(self.works().map(|(kind, _)| match kind {
+            TermKind::AppliedWork => energies.work.applied,
+            _ => energies.work.dissipation,
+        }));
         row.extend(momenta);
         row.push(self.violation());
         if model.system.components.iter().next().is_some() {

@@ -9,6 +9,7 @@
 
 use crate::coordinates::{Configuration, Interval};
 use crate::dynamics::error::StepError;
+use crate::dynamics::interval_energies::Work;
 use crate::functional::TermKind;
 use crate::math::Vector;
 use crate::model::Model;
@@ -42,11 +43,13 @@ impl Balance {
     ) -> Self {
         let [start, end] = ends;
         let sample = interval.sample(ends);
-        let (mut kinetic, mut viscous, mut change, mut size) = (0.0, 0.0, 0.0, 0.0_f64);
+        let (mut kinetic, mut change, mut size) = (0.0, 0.0, 0.0_f64);
+        let mut work = Work::default();
         for term in &model.action.intervals.terms {
+            work.add(1.0, term.as_ref(), &sample);
             match term.kind() {
                 TermKind::Kinetic => kinetic += term.energy(&sample),
-                TermKind::VirtualWork => viscous += term.energy(&sample),
+                TermKind::AppliedWork | TermKind::Dissipation => {}
                 TermKind::Potential => {
                     let energy = |at| term.energy(&interval.sample([at, at]));
                     let (before, after) = (energy(start), energy(end));
@@ -58,15 +61,15 @@ impl Balance {
         }
         let [a, b] = forces;
         let ways = start.x.iter().zip(&end.x).map(|(x, y)| y - x);
-        let work: f64 = ways
+        let of_forces: f64 = ways
             .zip(a.iter().zip(b))
             .map(|(displacement, (a, b))| displacement.dot(&(a + b)))
             .sum();
-        // The forces of an interval carry its length, viscous ones included.
-        let work = work / interval.h - viscous;
+        // The forces of an interval carry its length, those without a potential included.
+        let lost = of_forces / interval.h - (work.applied + work.dissipation);
         Self {
-            made: change + work,
-            exchanged: kinetic + change.abs() + viscous.abs(),
+            made: change + lost,
+            exchanged: kinetic + change.abs() + work.applied.abs() + work.dissipation.abs(),
             size: typical + size + kinetic,
         }
     }

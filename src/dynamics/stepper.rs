@@ -4,6 +4,7 @@ use crate::dynamics::contraction::{Contraction, Verdict};
 use crate::dynamics::drive::Drive;
 use crate::dynamics::equations::Equations;
 use crate::dynamics::error::StepError;
+use crate::dynamics::interval_energies::Work;
 use crate::dynamics::resolution::{Balance, turned};
 use crate::dynamics::singular_configurations;
 use crate::dynamics::solving::Newton;
@@ -93,7 +94,7 @@ impl<E: Equations> Steps<E> {
     }
 
     /// Work in mJ that forces without a potential did over the last step, where its ends alone do not determine it.
-    pub(super) fn work(&self) -> Option<f64> {
+    pub(super) fn work(&self) -> Option<Work> {
         self.equations.work()
     }
 

@@ -28,8 +28,14 @@ fn uncounted((i, j): (u32, u32)) -> (usize, usize) {
     (i as usize, j as usize)
 }
 
+/// The entry of the lower triangle that is this one or its transpose.
+fn lower(entry: (u32, u32)) -> (usize, usize) {
+    let (i, j) = uncounted(entry);
+    (i.max(j), i.min(j))
+}
+
 /// Lists entries before the factorisation is prepared.
-#[derive(Debug, Default)]
+#[derive(Clone, Debug, Default)]
 pub(super) struct EntryList {
     entries: Vec<(u32, u32)>,
     gather: Vec<(u32, u32)>,
@@ -93,9 +99,9 @@ impl EntryList {
     pub(super) fn corrected_tangent(self, model: &Model, symmetry: Symmetry) -> Tangent {
         let is_approximate = symmetry == Symmetry::Unsymmetric;
         let places = model.unknown_places();
-        let kept = |entry| match (is_approximate, uncounted(entry)) {
-            (true, (i, j)) => (i.max(j), i.min(j)),
-            (false, entry) => entry,
+        let kept = |entry| match is_approximate {
+            true => lower(entry),
+            false => uncounted(entry),
         };
         let entries = self.entries.iter().copied().map(kept);
         let solver = Direct::for_iteration(places.len(), entries, &places);
@@ -112,6 +118,13 @@ impl EntryList {
             entries: self.entries,
             is_approximate,
         }
+    }
+
+    /// Prepares the factorisation of the symmetric part.
+    pub(super) fn symmetric_part(self, size: usize) -> Tangent {
+        let entries = self.entries.iter().copied().map(lower);
+        let solver = Direct::with_entries(size, entries, Symmetry::Symmetric, None);
+        self.tangent_by(solver, true)
     }
 
     /// Prepares the factorisation.

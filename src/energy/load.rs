@@ -1,15 +1,15 @@
-//! Loads: forces whose size is an input.
+//! Loads: forces and charges whose size is an input.
 
 use crate::energy::Energy;
 use crate::math::{Jet, Vector};
 use nalgebra::SVector;
 
-/// Potential energy `−F e·x` of a force F along a direction e that does not turn, arguments: place x, force F.
+/// Potential energy `−F w·x` of a load F that exerts the force F w, which does not turn, arguments: place x, load F.
 ///
-/// With e = (1, 0, 0) it is that of a generalised force F on a coordinate, which stands in the first component of a vector.
+/// With w = (1, 0, 0) it is that of a generalised force F on a coordinate, which stands in the first component of a vector.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct DeadLoad {
-    /// Direction e, of length one.
+    /// Force w of a load of one.
     pub direction: Vector,
 }
 
@@ -25,5 +25,43 @@ impl Energy<4> for DeadLoad {
     fn at<const ORDER: usize>(&self, p: &SVector<f64, 4>, w: &SVector<f64, 4>) -> Jet<4, ORDER> {
         let component = |i: usize| Jet::argument(i, p, w) * -self.direction[i];
         (component(0) + component(1) + component(2)) * Jet::argument(3, p, w)
+    }
+}
+
+/// Virtual work `F δx·d` of a force F along a direction d that turns with the body, arguments: δx, δd, x, d, force F.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct FollowingForce;
+
+impl Energy<13> for FollowingForce {
+    type Local<const ORDER: usize> = Jet<13, ORDER>;
+
+    const DEGREE: usize = 3;
+    const VIRTUAL: usize = 2;
+    const READINGS: usize = 2;
+    const APPLIED: bool = true;
+
+    fn couples(i: usize, j: usize) -> bool {
+        matches!((i, j), (0, 3) | (3, 0))
+    }
+
+    fn at<const ORDER: usize>(&self, p: &SVector<f64, 13>, w: &SVector<f64, 13>) -> Jet<13, ORDER> {
+        Jet::dot(0, 9, p, w) * Jet::argument(12, p, w)
+    }
+}
+
+/// Potential energy `Q φ A` of a charge Q for an area on an area A of potential φ, arguments: φ in its unit, Q.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct SurfaceCharge {
+    /// Area A in mm², times the unit of the potential in V.
+    pub weight: f64,
+}
+
+impl Energy<2> for SurfaceCharge {
+    type Local<const ORDER: usize> = Jet<2, ORDER>;
+
+    const DEGREE: usize = 2;
+
+    fn at<const ORDER: usize>(&self, p: &SVector<f64, 2>, w: &SVector<f64, 2>) -> Jet<2, ORDER> {
+        Jet::argument(0, p, w) * Jet::argument(1, p, w) * self.weight
     }
 }

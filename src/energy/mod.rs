@@ -30,7 +30,7 @@ pub use gravity::Gravity;
 pub use joint_spring::{CoordinateSpring, JointAngle, JointDisplacement};
 pub use joint_stops::CoordinateStops;
 pub use limit::{Angle, OutsideBox, PositionComponent, Projection, SquaredDistance, SquaredField};
-pub use load::DeadLoad;
+pub use load::{DeadLoad, FollowingForce, SurfaceCharge};
 pub use maxwell::MaxwellCell;
 pub use muscle::{DielectricCell, ElasticCell, SectionInertia};
 pub use of_square::OfSquare;
@@ -52,6 +52,9 @@ pub trait Energy<const M: usize>: Send + Sync {
     /// Number of leading vectors that are virtual displacements: 0 for a potential; otherwise the scalar is a virtual work
     /// δx·f, linear in them, whose scalar arguments are sought parameters.
     const VIRTUAL: usize = 0;
+
+    /// True if a virtual work is that of loads, which supply energy; otherwise its forces dissipate.
+    const APPLIED: bool = false;
 
     /// Number of arguments that read each of its n vectors: argument i reads vector i mod n.
     const READINGS: usize = 1;

@@ -6,7 +6,7 @@
 use std::io;
 use std::path::Path;
 
-use crate::dynamics::{DiscreteTrajectory, StepState, StepperReport, TangentState};
+use crate::dynamics::{DiscreteTrajectory, StepState, StepperReport, TangentState, Work};
 use crate::files::npz::{self, Array, Npz, NpzError, NpzWriter};
 use crate::sparse::MethodState;
 
@@ -50,7 +50,9 @@ pub fn bytes(discrete: &DiscreteTrajectory, problem: &str) -> io::Result<Vec<u8>
     arrays.rows("z", &discrete.z);
     arrays.rows("momenta", &discrete.momenta);
     arrays.rows("scalars", &discrete.scalars);
-    arrays.list("works", &discrete.works);
+    let works = |part: fn(&Work) -> f64| discrete.works.iter().map(part).collect::<Vec<_>>();
+    arrays.list("works", &works(|work| work.dissipation));
+    arrays.list("applied_works", &works(|work| work.applied));
     if let Some(rates) = &discrete.rates {
         arrays.list("rates", rates);
     }
@@ -107,12 +109,19 @@ pub fn read(path: &Path) -> Result<Continuation, ContinuationError> {
     let problem = file.texts.remove(PROBLEM);
     let problem = problem.ok_or(ContinuationError::Missing(PROBLEM))?;
     let end = state(&mut file)?;
+    let works = list(&mut file, "works")?.into_iter();
+    let works = works.zip(list(&mut file, "applied_works")?);
     let discrete = DiscreteTrajectory {
         times: list(&mut file, "times")?,
         z: rows(&mut file, "z")?,
         momenta: rows(&mut file, "momenta")?,
         scalars: rows(&mut file, "scalars")?,
-        works: list(&mut file, "works")?,
+        works: works
+            .map(|(dissipation, applied)| Work {
+                applied,
+                dissipation,
+            })
+            .collect(),
         rates: file.arrays.remove("rates").map(|rates| rates.values),
         report: end.report,
         end,

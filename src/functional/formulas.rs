@@ -94,6 +94,7 @@ where
 
     const DEGREE: usize = E::DEGREE;
     const VIRTUAL: usize = E::VIRTUAL;
+    const APPLIED: bool = E::APPLIED;
     const READINGS: usize = E::READINGS;
     const ISOTROPIC: bool = E::ISOTROPIC;
     const OF_SQUARES: bool = E::OF_SQUARES;

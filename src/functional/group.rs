@@ -55,13 +55,6 @@ impl<K: Kernel> Group<K> {
         }
     }
 
-    /// Returns true if no two vectors have mixed second derivatives.
-    fn couples_no_vectors(&self) -> bool {
-        let vectors = |element| K::vectors(element) * K::READINGS;
-        let count = self.elements.iter().map(vectors).max().unwrap_or(0);
-        (0..count).all(|i| (0..count).all(|j| !K::couples(i, j)))
-    }
-
     /// Registers the couplings of the elements, and lists their slots.
     pub(super) fn register(&self, couplings: &mut Couplings, slots: &mut Vec<u32>) {
         // Multipliers do not meet in second derivatives.
@@ -211,9 +204,8 @@ impl<K: Kernel> Term for Group<K> {
         self.register(couplings, slots);
     }
 
-    fn is_dead_load(&self) -> bool {
-        let is_linear = K::DEGREE == 1 || K::DEGREE == 2 && self.couples_no_vectors();
-        self.kind() == TermKind::Potential && is_linear
+    fn is_weight(&self) -> bool {
+        self.kind() == TermKind::Potential && K::DEGREE == 1
     }
 
     fn not_by_squares(&self) -> Vec<usize> {
@@ -225,7 +217,8 @@ impl<K: Kernel> Term for Group<K> {
             (Site::Instants, _) => TermKind::Constraint,
             (Site::Intervals, 0) if self.scale > 0.0 => TermKind::Kinetic,
             (Site::Intervals, 0) => TermKind::Potential,
-            (Site::Intervals, _) => TermKind::VirtualWork,
+            (Site::Intervals, _) if K::APPLIED => TermKind::AppliedWork,
+            (Site::Intervals, _) => TermKind::Dissipation,
         }
     }
 

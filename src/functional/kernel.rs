@@ -33,6 +33,9 @@ pub trait Kernel: Debug + Send + Sync + 'static {
     /// have no equations: they are parameters.
     const VIRTUAL: usize = 0;
 
+    /// True if a virtual work is that of loads, which supply energy; otherwise its forces dissipate.
+    const APPLIED: bool = false;
+
     /// Number of arguments for each vector of an element.
     const READINGS: usize = 1;
 

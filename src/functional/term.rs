@@ -77,10 +77,24 @@ pub enum TermKind {
     Kinetic,
     /// Potential energy.
     Potential,
-    /// Virtual work of forces without a potential.
-    VirtualWork,
+    /// Virtual work of loads without a potential: of forces that follow what they act on.
+    AppliedWork,
+    /// Virtual work of forces that dissipate energy.
+    Dissipation,
     /// Constraints times multipliers.
     Constraint,
+}
+
+impl TermKind {
+    /// Returns true if its forces have no potential.
+    pub const fn is_virtual_work(self) -> bool {
+        matches!(self, Self::AppliedWork | Self::Dissipation)
+    }
+
+    /// Returns true if its forces act at rest.
+    pub const fn acts_at_rest(self) -> bool {
+        matches!(self, Self::Potential | Self::AppliedWork)
+    }
 }
 
 /// A term of a sum: all elements of one kind at one site.
@@ -97,8 +111,8 @@ pub trait Term: Debug + Send + Sync {
     /// Returns the role of the term in the energy balance.
     fn kind(&self) -> TermKind;
 
-    /// Returns true if it is the potential of forces that do not depend on places, such as weights: linear in places.
-    fn is_dead_load(&self) -> bool {
+    /// Returns true if it is the potential of weights: linear in places.
+    fn is_weight(&self) -> bool {
         false
     }
 
@@ -230,11 +244,11 @@ impl Functional {
         }
     }
 
-    /// The derivatives of the potential energy alone up to the second, on one interval, in place of the contents of `out`.
-    pub fn evaluate_potential(&self, sample: &Sample<'_>, out: &mut Output) {
+    /// The derivatives of what acts at rest up to the second, on one interval, in place of the contents of `out`.
+    pub fn evaluate_at_rest(&self, sample: &Sample<'_>, out: &mut Output) {
         out.plain.clear(true);
-        let potential = |(term, _): &(&dyn Term, &[u32])| term.kind() == TermKind::Potential;
-        for (term, slots) in self.terms().filter(potential) {
+        let at_rest = |(term, _): &(&dyn Term, &[u32])| term.kind().acts_at_rest();
+        for (term, slots) in self.terms().filter(at_rest) {
             term.evaluate(Order::Hessian, sample, slots, out);
         }
     }

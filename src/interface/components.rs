@@ -4,8 +4,8 @@ use crate::interface::handle::{Carrier, Handle, Part, named};
 use crate::interface::parts::attachment;
 use crate::model::Component;
 use crate::model::System;
-use crate::model::components::{Load, LoadPlace, Other, Spring, Tendon};
-use crate::model::system::{Body, Joint};
+use crate::model::components::{BlockLoad, Faces, Load, LoadPlace, Other, Spring, Tendon};
+use crate::model::system::{Body, Joint, Solid};
 use nalgebra::Vector3;
 use std::sync::Arc;
 
@@ -72,8 +72,53 @@ impl Load {
             on: LoadPlace::Point {
                 at: attachment(body, at),
                 direction: direction.normalize(),
+                follows: false,
             },
         }
+    }
+
+    /// A traction on faces of a solid (see [`Mesh::faces_of`](crate::mesh::Mesh::faces_of)), along a direction that does not turn.
+    pub fn traction(solid: Handle<Solid>, faces: Faces, direction: Vector3<f64>) -> Self {
+        Self::on_block(solid, BlockLoad::Traction(faces, direction.normalize()))
+    }
+
+    /// A pressure on faces of a solid, which follows them as they deform.
+    pub fn pressure(solid: Handle<Solid>, faces: Faces) -> Self {
+        let follows = true;
+        Self::on_block(solid, BlockLoad::Pressure { faces, follows })
+    }
+
+    /// A surface charge on faces of a solid.
+    pub fn charge(solid: Handle<Solid>, faces: Faces) -> Self {
+        Self::on_block(solid, BlockLoad::Charge(faces))
+    }
+
+    /// A body force of a solid, along a direction that does not turn.
+    pub fn body_force(solid: Handle<Solid>, direction: Vector3<f64>) -> Self {
+        Self::on_block(solid, BlockLoad::BodyForce(direction.normalize()))
+    }
+
+    fn on_block(solid: Handle<Solid>, load: BlockLoad) -> Self {
+        let block = solid.index();
+        Self {
+            name: String::new(),
+            on: LoadPlace::Block { block, load },
+        }
+    }
+
+    /// The same, which turns with its body, or follows its faces; others cannot.
+    #[must_use]
+    pub fn following(self, does: bool) -> Self {
+        let mut load = self;
+        match &mut load.on {
+            LoadPlace::Point { follows, .. }
+            | LoadPlace::Block {
+                load: BlockLoad::Pressure { follows, .. },
+                ..
+            } => *follows = does,
+            LoadPlace::Joint(_) | LoadPlace::Block { .. } => {}
+        }
+        load
     }
 
     /// A motor: a torque about the axis of a revolute joint, or a force along that of a prismatic one, from the parent on the child.

@@ -7,6 +7,7 @@ mod geometry;
 pub mod gmsh;
 pub mod grid;
 pub mod quality;
+mod surface;
 pub mod topology;
 
 use nalgebra::Vector3;

@@ -21,6 +21,7 @@ use crate::model::system::{Attachment, Body, Marker, Muscle, Source, System};
 use crate::model::terms::{Carriers, Terms};
 use crate::model::variables::{Role, Size, Time, Variable, Variables};
 use crate::model::{blocks, constraints, dampers, field_extent, joint_springs, loads, plan};
+use std::collections::BTreeSet;
 
 impl Model {
     /// Builds the model of a system for intervals of about `h0` ms, in which `quantities` can be measured, any voltage may act
@@ -62,7 +63,7 @@ impl Model {
         analysis: Analysis,
         mut presolved: Presolved,
     ) -> Result<Self, ModelError> {
-        let inputs = acting(&presolved, &analysis);
+        let inputs = acting(&system, &presolved, &analysis);
         let reached = reached(&system, &analysis, &inputs);
         let solids = blocks::blocks(&mut presolved);
         let rest = &presolved.system;
@@ -76,6 +77,7 @@ impl Model {
             solids,
             system.solids.len(),
             &reference,
+            |block| field_extent::charged(&system, block, &analysis.zero_inputs),
             coordinates == Coordinates::Redundant,
             &mut variables,
             &mut vectors,
@@ -166,14 +168,13 @@ impl Model {
 }
 
 /// Sources whose inputs do something.
-fn acting(presolved: &Presolved, analysis: &Analysis) -> Vec<usize> {
-    let system = &presolved.system;
-    let loads = (system.first_load()..).zip(&system.components.loads);
+fn acting(scene: &System, presolved: &Presolved, analysis: &Analysis) -> Vec<usize> {
+    let charged = |block| field_extent::charged(scene, block, &analysis.zero_inputs);
     let acts = |(source, load): &(usize, &Load)| {
         !analysis.zero_inputs.contains(source) && loads::moves(load, presolved)
     };
-    let loads = loads.filter(acts).map(|(source, _)| source);
-    field_extent::voltages(system)
+    let loads = scene.loads().filter(acts).map(|(source, _)| source);
+    field_extent::voltages(&presolved.system, charged)
         .into_iter()
         .chain(loads)
         .collect()
@@ -184,8 +185,9 @@ fn reached(system: &System, analysis: &Analysis, inputs: &[usize]) -> Vec<usize>
     match analysis.zero_inputs.is_empty() {
         true => inputs.to_vec(),
         false => {
-            let loads = system.first_load()..system.sources().len();
-            field_extent::voltages(system)
+            let charged = |block| field_extent::charged(system, block, &BTreeSet::new());
+            let loads = system.loads().map(|(source, _)| source);
+            field_extent::voltages(system, charged)
                 .into_iter()
                 .chain(loads)
                 .collect()
@@ -259,7 +261,11 @@ impl Construction<'_> {
         terms.without(plan::GRAVITY, no_weight);
         dampers::build(self.presolved, self.reference, self.coordinates, &mut terms);
         joint_springs::build(&self.presolved.system, self.internals, &mut terms);
-        loads::build(system, self.presolved, self.internals, &mut terms);
+        loads::build(
+            system,
+            (self.presolved, self.internals, self.blocks),
+            &mut terms,
+        );
         system.components.build(&mut terms);
         terms.finish()
     }

@@ -1,6 +1,7 @@
 //! Validation of a system that is made by a program: the checks that a reader of files makes entry by entry.
 
-use crate::model::components::LoadPlace;
+use crate::math::Vector;
+use crate::model::components::{BlockLoad, LoadPlace};
 use crate::model::system::{Attachment, Joint, JointKind, Material, System};
 use std::collections::BTreeSet;
 use thiserror::Error;
@@ -99,20 +100,39 @@ impl System {
 
     fn check_loads(&self) -> Result<(), SystemError> {
         for load in &self.components.loads {
-            match load.on {
-                LoadPlace::Point { at, direction } => {
-                    self.check_point(&load.name, &at)?;
+            match &load.on {
+                LoadPlace::Point { at, direction, .. } => {
+                    self.check_point(&load.name, at)?;
+                    check_direction(&load.name, direction)?;
+                }
+                LoadPlace::Block { block, load: on } => {
+                    let solid = self.solids.get(*block);
+                    let count = solid.map_or(0, |solid| solid.mesh.nodes.len());
+                    let mut nodes = on.faces().iter().flatten();
+                    let is_body_force = matches!(on, BlockLoad::BodyForce(_));
                     require(
-                        (direction.norm() - 1.0).abs() < 1e-9,
+                        nodes.all(|node| *node < count) && on.faces().is_empty() == is_body_force,
                         &load.name,
-                        || format!("the direction {direction:?}"),
-                        "a direction of length one",
+                        || "a load without faces of its solid".to_owned(),
+                        "faces of a solid of the system",
                     )?;
+                    match on {
+                        BlockLoad::Traction(_, along) | BlockLoad::BodyForce(along) => {
+                            check_direction(&load.name, along)?;
+                        }
+                        BlockLoad::Charge(faces) => require(
+                            solid.is_some_and(|solid| solid.takes_charge(faces)),
+                            &load.name,
+                            || NO_CHARGE[0].to_owned(),
+                            NO_CHARGE[1],
+                        )?,
+                        BlockLoad::Pressure { .. } => {}
+                    }
                 }
                 LoadPlace::Joint(joint) => {
                     let has = |joint: &Joint| joint.has_coordinate();
                     require(
-                        self.joints.get(joint).is_some_and(has),
+                        self.joints.get(*joint).is_some_and(has),
                         &load.name,
                         || "a load on a joint that has no coordinate".to_owned(),
                         "a revolute or prismatic joint of the system",
@@ -276,6 +296,21 @@ impl System {
             "a finite place",
         )
     }
+}
+
+/// Charge that acts on nothing, and what is expected, for messages.
+pub const NO_CHARGE: [&str; 2] = [
+    "a charge that no potential feels",
+    "faces of a dielectric that touches an electrode at a voltage, other than those of this electrode",
+];
+
+fn check_direction(name: &str, direction: &Vector) -> Result<(), SystemError> {
+    require(
+        (direction.norm() - 1.0).abs() < 1e-9,
+        name,
+        || format!("the direction {direction:?}"),
+        "a direction of length one",
+    )
 }
 
 /// Checks that finite elements can be made of a material: it is compressible and has no Maxwell branches.

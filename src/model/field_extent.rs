@@ -1,20 +1,56 @@
 //! Extent of electric fields: elements that have one, and voltages that have an effect.
 
 use crate::math::DisjointSets;
-use crate::model::system::{Potential, Solid, System};
+use crate::model::components::{BlockLoad, Load, LoadPlace};
+use crate::model::system::{Electrode, Potential, Solid, System};
 use std::collections::{BTreeSet, HashMap};
 
 impl Solid {
-    /// For each element, true if a field reaches it, provided that no voltage is zero all the time.
-    pub fn elements_with_field(&self) -> Vec<bool> {
-        dielectric(self)
+    /// Returns true if a charge on faces acts on potentials: on a dielectric that touches an electrode at a voltage, beside that electrode.
+    pub fn takes_charge(&self, faces: &[[usize; 4]]) -> bool {
+        let charged: BTreeSet<usize> = faces.concat().into_iter().collect();
+        let held = |e: &&Electrode| e.potential != Potential::Floating;
+        let held: BTreeSet<usize> = self
+            .electrodes
+            .iter()
+            .filter(held)
+            .flat_map(|e| e.nodes.clone())
+            .collect();
+        let elements = self.mesh.hexahedra.iter().zip(dielectric(self, &charged));
+        let mut reached = elements
+            .filter(|(_, has_field)| *has_field)
+            .flat_map(|(nodes, _)| nodes);
+        reached.any(|node| charged.contains(node) && !held.contains(node))
     }
 }
 
+impl System {
+    /// For each element of a block, true if a field reaches it, provided that no input is zero all the time.
+    pub fn elements_with_field(&self, block: usize) -> Vec<bool> {
+        dielectric(&self.solids[block], &charged(self, block, &BTreeSet::new()))
+    }
+}
+
+/// Nodes of a block of a scene that carry a surface charge, unless its input is zero all the time.
+pub(super) fn charged(
+    scene: &System,
+    block: usize,
+    zero_inputs: &BTreeSet<usize>,
+) -> BTreeSet<usize> {
+    let nodes = |(source, load): (usize, &Load)| match &load.on {
+        LoadPlace::Block {
+            block: of,
+            load: BlockLoad::Charge(faces),
+        } if *of == block && !zero_inputs.contains(&source) => faces.concat(),
+        _ => Vec::new(),
+    };
+    scene.loads().flat_map(nodes).collect()
+}
+
 /// For each element, true if a field reaches it: its material has electric constants, and the dielectric part of the block that it
-/// belongs to touches electrodes of different voltages. Electrodes that are held at a voltage part a block; a floating one
-/// joins what it touches.
-pub(super) fn dielectric(solid: &Solid) -> Vec<bool> {
+/// belongs to touches electrodes of different voltages, or one and a `charged` node. Electrodes that are held at a voltage part a
+/// block; a floating one joins what it touches.
+pub(super) fn dielectric(solid: &Solid, charged: &BTreeSet<usize>) -> Vec<bool> {
     let mesh = &solid.mesh;
     let is: Vec<bool> = mesh
         .regions
@@ -54,20 +90,24 @@ pub(super) fn dielectric(solid: &Solid) -> Vec<bool> {
             }
         }
     }
+    let charged = charged.iter().filter(|node| !held.contains_key(node));
+    let charged: BTreeSet<usize> = charged.map(|&node| parts.smallest(node)).collect();
     let mut reached = |e: usize| {
-        let seen = potentials.get(&parts.smallest(count + e));
-        is[e] && seen.is_some_and(|seen| seen.len() > 1)
+        let part = parts.smallest(count + e);
+        let least = if charged.contains(&part) { 1 } else { 2 };
+        let seen = potentials.get(&part);
+        is[e] && seen.is_some_and(|seen| seen.len() >= least)
     };
     (0..mesh.hexahedra.len()).map(&mut reached).collect()
 }
 
-/// Sources whose voltages do something: of dielectric muscles, and of driven electrodes that a dielectric element touches.
-pub(super) fn voltages(system: &System) -> Vec<usize> {
+/// Sources whose voltages do something in a system with these charged nodes of each block: of dielectric muscles, and of driven electrodes that a dielectric element touches.
+pub(super) fn voltages(system: &System, charged: impl Fn(usize) -> BTreeSet<usize>) -> Vec<usize> {
     let muscles = system.muscles.iter().enumerate();
     let muscles = muscles.filter(|(_, m)| m.material.electric.is_some());
     let mut voltages: Vec<usize> = muscles.map(|(m, _)| m).collect();
-    for solid in &system.solids {
-        let is = dielectric(solid);
+    for (block, solid) in system.solids.iter().enumerate() {
+        let is = dielectric(solid, &charged(block));
         let elements = solid.mesh.hexahedra.iter().zip(&is);
         let reached: BTreeSet<usize> = elements
             .filter(|(_, is)| **is)

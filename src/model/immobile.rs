@@ -6,6 +6,7 @@
 use crate::math::DisjointSets;
 use crate::model::analysis::{Analysis, InitiallyMoving};
 use crate::model::component::Component;
+use crate::model::components::LoadPlace;
 use crate::model::constant::Constant;
 use crate::model::field_extent;
 use crate::model::system::System;
@@ -21,8 +22,8 @@ pub struct Immobile {
     pub muscles: Vec<bool>,
 }
 
-/// Returns the immobile parts of a system whose sources at zero voltage drive nothing any more.
-pub(super) fn immobile(system: &System, analysis: &Analysis) -> Immobile {
+/// Returns the immobile parts of a scene, in whose `system` sources at zero voltage drive nothing any more.
+pub(super) fn immobile(scene: &System, system: &System, analysis: &Analysis) -> Immobile {
     let parts = Parts {
         bodies: system.bodies.len(),
         solids: system.solids.len(),
@@ -33,7 +34,7 @@ pub(super) fn immobile(system: &System, analysis: &Analysis) -> Immobile {
     };
     let set_of = parts.connected(system).all();
     let mut is_moved = vec![false; parts.count()];
-    for part in parts.moved(system, initially_moving, analysis) {
+    for part in parts.moved([scene, system], initially_moving, analysis) {
         is_moved[set_of[part]] = true;
     }
     parts.resting(|part| !is_moved[set_of[part]])
@@ -102,11 +103,12 @@ impl Parts {
     /// Parts that move by themselves: a force acts on them, or they are set in motion.
     fn moved(
         self,
-        system: &System,
+        [scene, system]: [&System; 2],
         initially_moving: &InitiallyMoving,
         analysis: &Analysis,
     ) -> Vec<usize> {
         let weighs = system.gravity.is_some();
+        let charged = |block| field_extent::charged(scene, block, &analysis.zero_inputs);
         let mut moved: Vec<usize> = Vec::new();
         for (index, component) in system.components.iter().enumerate() {
             // Springs come first.
@@ -114,9 +116,12 @@ impl Parts {
                 moved.extend(bodies_of(component));
             }
         }
-        for (source, load) in (system.first_load()..).zip(&system.components.loads) {
+        for (source, load) in scene.loads() {
             if !analysis.zero_inputs.contains(&source) {
                 moved.extend(system.loaded_bodies(load));
+                if let LoadPlace::Block { block, .. } = load.on {
+                    moved.push(self.solid(block));
+                }
             }
         }
         let loaded = system.joints.iter().filter(|joint| joint.is_prestressed());
@@ -128,7 +133,7 @@ impl Parts {
             if is_heavy
                 || starts
                 || initially_moving.solids.contains(&s)
-                || field_extent::dielectric(solid).contains(&true)
+                || field_extent::dielectric(solid, &charged(s)).contains(&true)
             {
                 moved.push(self.solid(s));
             }

@@ -1,55 +1,182 @@
-//! Terms of loads: −F e·x on the point of a force, or on the coordinate of a joint.
+//! Terms of loads: forces on points of bodies, on coordinates of joints and on nodes of blocks, charges on nodes.
 
-use crate::energy::DeadLoad;
-use crate::functional::Element;
+use crate::energy::{DeadLoad, FollowingForce, SurfaceCharge};
+use crate::functional::{Element, PressureFace};
 use crate::math::Vector;
-use crate::model::components::{Load, LoadPlace};
+use crate::model::components::{BlockLoad, Load, LoadPlace};
 use crate::model::internal::Internals;
 use crate::model::presolved::Presolved;
+use crate::model::solid_block::SolidBlock;
+use crate::model::solids::Solids;
 use crate::model::system::System;
 use crate::model::terms::{Terms, mid};
 
 const LOADS: &str = "loads";
+const FOLLOWING: &str = "following loads";
+const CHARGES: &str = "surface charges";
 
-/// Returns true if a load acts on something that moves.
+/// Returns true if a load acts on something that moves, or on potentials.
 pub(super) fn moves(load: &Load, presolved: &Presolved) -> bool {
     match load.on {
         LoadPlace::Point { at, .. } => presolved.carrier(at.body).is_some(),
         LoadPlace::Joint(joint) => presolved.joint(joint).is_some(),
+        LoadPlace::Block { block, .. } => !presolved.immobile.solids[block],
     }
 }
 
 /// Terms of the loads of a scene; their inputs are the last ones of `sources`.
 pub(super) fn build(
     system: &System,
-    presolved: &Presolved,
-    internals: &Internals,
+    (presolved, internals, blocks): (&Presolved, &Internals, &Solids),
     terms: &mut Terms<'_>,
 ) {
-    let first = system.first_load();
-    for (index, load) in system.components.loads.iter().enumerate() {
-        let Some(size) = terms.input(first + index) else {
+    for (source, load) in system.loads() {
+        let Some(size) = terms.input(source) else {
             terms.without(LOADS, "no load is ever other than 0 on what moves");
             continue;
         };
-        let (vector, direction) = match load.on {
-            LoadPlace::Point { at, direction } => (terms.point(&at), direction),
-            LoadPlace::Joint(joint) => {
-                let coordinate = presolved
-                    .joint(joint)
-                    .and_then(|kept| internals.joint(kept));
-                (
-                    coordinate.expect("a loaded joint has its coordinate"),
-                    Vector::x(),
-                )
-            }
+        let mut on = Loaded {
+            name: &load.name,
+            size,
+            terms,
         };
+        match &load.on {
+            LoadPlace::Point {
+                at,
+                direction,
+                follows,
+            } => {
+                let point = on.terms.point(at);
+                let point = on.terms.vector(point);
+                match follows {
+                    false => on.pull(point, *direction),
+                    true => {
+                        let along = on.terms.direction(at, direction);
+                        let along = on.terms.vector(along);
+                        on.follow([point, along]);
+                    }
+                }
+            }
+            LoadPlace::Joint(joint) => {
+                let kept = presolved.joint(*joint);
+                let coordinate = kept.and_then(|kept| internals.joint(kept));
+                let coordinate = coordinate.expect("a loaded joint has its coordinate");
+                let coordinate = on.terms.vector(coordinate);
+                on.pull(coordinate, Vector::x());
+            }
+            LoadPlace::Block { block, load } => on.block(&blocks.list[*block], load),
+        }
+    }
+    for term in [LOADS, FOLLOWING, CHARGES] {
+        terms.without(term, "no load of its kind");
+    }
+}
+
+/// A load whose terms are added.
+struct Loaded<'l, 't> {
+    name: &'l str,
+    /// Scalar of its size.
+    size: usize,
+    terms: &'l mut Terms<'t>,
+}
+
+impl Loaded<'_, '_> {
+    /// A force w on a vector for a load of one.
+    fn pull(&mut self, vector: usize, direction: Vector) {
         let element = Element {
             energy: DeadLoad { direction },
-            vectors: [mid(terms.vector(vector))],
-            scalars: [size],
+            vectors: [mid(vector)],
+            scalars: [self.size],
         };
-        terms.add::<_, 4, 1, 1>(LOADS, "the force of", &load.name, element);
+        self.terms
+            .add::<_, 4, 1, 1>(LOADS, "the force of", self.name, element);
     }
-    terms.without(LOADS, "no load");
+
+    /// A force on a point along a direction of its body.
+    fn follow(&mut self, [point, direction]: [usize; 2]) {
+        let vectors = [mid(point), mid(direction)];
+        let element = Element {
+            energy: FollowingForce,
+            vectors: [vectors, vectors].as_flattened().try_into().expect("four"),
+            scalars: [self.size],
+        };
+        self.terms
+            .add::<_, 13, 4, 1>(FOLLOWING, "the force of", self.name, element);
+    }
+
+    /// A load of a block.
+    fn block(&mut self, block: &SolidBlock, load: &BlockLoad) {
+        let mesh = &block.solid.mesh;
+        match load {
+            BlockLoad::Traction(faces, direction) => {
+                let areas = mesh.areas_of(faces);
+                self.nodes(
+                    block,
+                    areas.into_iter().map(|(n, area)| (n, direction * area)),
+                );
+            }
+            BlockLoad::Pressure {
+                faces,
+                follows: false,
+            } => {
+                let normals = mesh.normals_of(faces);
+                self.nodes(block, normals.into_iter().map(|(n, normal)| (n, -normal)));
+            }
+            BlockLoad::Pressure {
+                faces,
+                follows: true,
+            } => {
+                for face in faces {
+                    let element = PressureFace {
+                        nodes: face.map(|node| block.vectors[node]),
+                        pressure: self.size,
+                    };
+                    self.terms
+                        .collect(FOLLOWING, "the pressure of", self.name, element);
+                }
+            }
+            BlockLoad::Charge(faces) => {
+                for (node, area) in mesh.areas_of(faces) {
+                    self.charge(block, node, area);
+                }
+            }
+            BlockLoad::BodyForce(direction) => {
+                let volumes = block.volumes();
+                self.nodes(
+                    block,
+                    volumes.into_iter().map(|(n, part)| (n, direction * part)),
+                );
+            }
+        }
+    }
+
+    /// Forces on nodes for a load of one.
+    fn nodes(&mut self, block: &SolidBlock, forces: impl Iterator<Item = (usize, Vector)>) {
+        for (node, force) in forces {
+            let vector = block.vectors[node];
+            if self.terms.moves(vector) {
+                self.pull(vector, force);
+            }
+        }
+    }
+
+    /// The charge on the area of a node; a source supplies that of a node at its voltage.
+    fn charge(&mut self, block: &SolidBlock, node: usize, area: f64) {
+        let Some((potential, unit)) = block.terminals[node].and_then(|terminal| terminal.scalar)
+        else {
+            return;
+        };
+        if !self.terms.is_unknown(potential) {
+            return;
+        }
+        let element = Element {
+            energy: SurfaceCharge {
+                weight: area * unit,
+            },
+            vectors: [],
+            scalars: [potential, self.size],
+        };
+        self.terms
+            .add::<_, 2, 0, 2>(CHARGES, "the charge of", self.name, element);
+    }
 }

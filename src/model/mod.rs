@@ -44,7 +44,7 @@ mod unknown_positions;
 mod variables;
 
 pub use analysis::{Analysis, Coordinates, InitiallyMoving};
-pub use check::SystemError;
+pub use check::{NO_CHARGE, SystemError};
 pub use component::Component;
 pub use constant::{
     Constant, DielectricLaw, Follower, FoundParameter, MOST_MOVES, Parameter, SiUnit,

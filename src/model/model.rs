@@ -1,7 +1,6 @@
 //! The model of a system, and what is read off its instants.
 
 use crate::coordinates::{Configuration, NodePlace, Reduced};
-use crate::functional::TermKind;
 use crate::kinematics::{MaterialVector, Pose};
 use crate::math::Vector;
 use crate::model::analysis::{Analysis, Coordinates};
@@ -215,7 +214,7 @@ impl Model {
     pub fn step_symmetry(&self) -> Symmetry {
         let map = &self.action.map;
         let terms = &self.action.intervals.terms;
-        let has_potential = terms.iter().all(|e| e.kind() != TermKind::VirtualWork);
+        let has_potential = terms.iter().all(|e| !e.kind().is_virtual_work());
         match map.of_bodies == 0 && map.multipliers == 0 && has_potential {
             true => Symmetry::Symmetric,
             false => Symmetry::Unsymmetric,

@@ -5,7 +5,7 @@
 pub(super) const GRAVITY: &str = "gravity";
 
 /// Names of the terms of the library, in the order of the sum; those of other crates follow.
-pub const TERMS: [&str; 25] = [
+pub const TERMS: [&str; 27] = [
     "body inertia",
     "muscle inertia",
     "block inertia",
@@ -21,6 +21,8 @@ pub const TERMS: [&str; 25] = [
     "spring elasticity",
     "tendon elasticity",
     "loads",
+    "surface charges",
+    "following loads",
     "block viscosity",
     "muscle viscosity",
     "maxwell viscosity",

@@ -48,7 +48,7 @@ impl Presolved {
     pub fn new(system: &System, analysis: &Analysis) -> Self {
         let mut rest = system.clone();
         set_to_zero(&mut rest, analysis);
-        let immobile = immobile::immobile(&rest, analysis);
+        let immobile = immobile::immobile(system, &rest, analysis);
         for (solid, &is_immobile) in rest.solids.iter_mut().zip(&immobile.solids) {
             if is_immobile {
                 clamp(solid);

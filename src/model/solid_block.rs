@@ -4,6 +4,7 @@ use crate::element::{Dielectric, Elastomer, ElementGeometry, Fields, Local, Pass
 use crate::functional::ScalarArg;
 use crate::math::Vector;
 use crate::model::system::{ElectricConstants, Electrode, ElementKind, Material, Potential, Solid};
+use std::collections::BTreeMap;
 
 /// A block as the model sees it.
 #[derive(Clone, Debug)]
@@ -33,6 +34,17 @@ impl SolidBlock {
     /// Vectors of the nodes of an element.
     pub fn nodes(&self, element: usize) -> [usize; 8] {
         self.solid.mesh.hexahedra[element].map(|node| self.vectors[node])
+    }
+
+    /// The integral of the shape function of each node in mm³.
+    pub(super) fn volumes(&self) -> BTreeMap<usize, f64> {
+        let mut sums = BTreeMap::new();
+        for (nodes, shape) in self.solid.mesh.hexahedra.iter().zip(&self.shapes) {
+            for (&node, part) in nodes.iter().zip(shape.loads()) {
+                *sums.entry(node).or_default() += part;
+            }
+        }
+        sums
     }
 
     /// Gradients of the shape functions at the centre of an element; `None` where it is inverted there.

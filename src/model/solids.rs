@@ -12,7 +12,7 @@ use crate::model::field_extent;
 use crate::model::solid_block::SolidBlock;
 use crate::model::system::{Glue, Material, Potential, Solid};
 use crate::model::variables::{Variable, Variables};
-use std::collections::HashMap;
+use std::collections::{BTreeSet, HashMap};
 
 /// Blocks before they become terms: nodes and ties of all of them.
 #[derive(Debug, Default)]
@@ -37,7 +37,7 @@ enum Connection {
 
 impl Solids {
     /// Lays out blocks, of which the first `scene` are those of the scene. Their potentials are added to `variables`, which have all
-    /// voltages; glued nodes keep coordinates of their own where `ties` says so.
+    /// voltages; `charged` nodes of a block carry a charge; glued nodes keep coordinates of their own where `ties` says so.
     ///
     /// # Errors
     /// An element of a mesh is inverted.
@@ -45,6 +45,7 @@ impl Solids {
         solids: Vec<Solid>,
         scene: usize,
         reference: &[Pose],
+        charged: impl Fn(usize) -> BTreeSet<usize>,
         ties: bool,
         variables: &mut Variables,
         vectors: &mut Vectors,
@@ -53,7 +54,7 @@ impl Solids {
         for (index, solid) in solids.into_iter().enumerate() {
             let shapes = shapes(&solid)?;
             let places = out.places(index, &solid, reference, ties, vectors);
-            let is_dielectric = field_extent::dielectric(&solid);
+            let is_dielectric = field_extent::dielectric(&solid, &charged(index));
             let terminals = terminals(&solid, &is_dielectric, unit, variables);
             let on_ground = |&v: &usize| {
                 let mut terms = vectors.list()[v].terms.iter();

@@ -14,40 +14,71 @@ pub struct Source {
 /// Physical kind of an input.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum InputKind {
-    /// Voltage of a muscle or a driven electrode, in V.
+    /// Voltage of a muscle or a driven electrode.
     Voltage,
-    /// Force of a load, in N.
+    /// Force.
     Force,
-    /// Torque of a load, in N mm.
+    /// Torque.
     Torque,
+    /// Traction or pressure: a force for an area.
+    Traction,
+    /// Body force: a force for a volume.
+    BodyForce,
+    /// Surface charge: a charge for an area.
+    SurfaceCharge,
 }
 
+/// A unit, and its size in the unit inside.
+type CountedUnit = (&'static str, f64);
+
 impl InputKind {
+    /// All kinds.
+    pub const ALL: [Self; 6] = [
+        Self::Voltage,
+        Self::Force,
+        Self::Torque,
+        Self::Traction,
+        Self::BodyForce,
+        Self::SurfaceCharge,
+    ];
+
+    /// Name.
+    pub const fn name(self) -> &'static str {
+        match self {
+            Self::Voltage => "voltage",
+            Self::Force => "force",
+            Self::Torque => "torque",
+            Self::Traction => "traction",
+            Self::BodyForce => "body force",
+            Self::SurfaceCharge => "surface charge",
+        }
+    }
+
+    /// Unit inside, SI unit, and the unit in which objectives and charts count it.
+    const fn units(self) -> (&'static str, [CountedUnit; 2]) {
+        match self {
+            Self::Voltage => ("V", [("V", 1.0), ("kV", 1e3)]),
+            Self::Force => ("N", [("N", 1.0), ("N", 1.0)]),
+            Self::Torque => ("N mm", [("N m", 1e3), ("N m", 1e3)]),
+            Self::Traction => ("MPa", [("Pa", 1e-6), ("kPa", 1e-3)]),
+            Self::BodyForce => ("N/mm^3", [("N/m^3", 1e-9), ("kN/m^3", 1e-6)]),
+            Self::SurfaceCharge => ("mC/mm^2", [("C/m^2", 1e-3), ("mC/m^2", 1e-6)]),
+        }
+    }
+
     /// Unit inside.
     pub const fn unit(self) -> &'static str {
-        match self {
-            Self::Voltage => "V",
-            Self::Force => "N",
-            Self::Torque => "N mm",
-        }
+        self.units().0
     }
 
     /// SI unit, and its size in the unit inside.
-    pub const fn si(self) -> (&'static str, f64) {
-        match self {
-            Self::Voltage => ("V", 1.0),
-            Self::Force => ("N", 1.0),
-            Self::Torque => ("N m", 1e3),
-        }
+    pub const fn si(self) -> CountedUnit {
+        self.units().1[0]
     }
 
     /// Unit in which objectives and charts count it, and its size in the unit inside.
-    pub const fn counted(self) -> (&'static str, f64) {
-        match self {
-            Self::Voltage => ("kV", 1e3),
-            Self::Force => ("N", 1.0),
-            Self::Torque => ("N m", 1e3),
-        }
+    pub const fn counted(self) -> CountedUnit {
+        self.units().1[1]
     }
 }
 

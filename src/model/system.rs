@@ -3,7 +3,7 @@
 use crate::mesh::Mesh;
 pub use crate::model::attachment::Attachment;
 pub use crate::model::bodies::{Body, Shape, directors_along};
-use crate::model::components::{Components, Load, LoadPlace};
+use crate::model::components::{BlockLoad, Components, Load, LoadPlace};
 pub use crate::model::joint_elasticity::{JointSpring, JointStops};
 pub use crate::model::material::{ElectricConstants, Material, VACUUM_PERMITTIVITY};
 pub use crate::model::maxwell::{MaxwellBranch, MaxwellBranches};
@@ -115,6 +115,11 @@ impl System {
         sources
     }
 
+    /// Loads with their sources; of a whole scene, for without driven electrodes the numbers are others.
+    pub fn loads(&self) -> impl Iterator<Item = (usize, &Load)> {
+        (self.first_load()..).zip(&self.components.loads)
+    }
+
     /// Index of the first load among the sources.
     pub fn first_load(&self) -> usize {
         self.sources().len() - self.components.loads.len()
@@ -122,13 +127,17 @@ impl System {
 
     /// Physical kind of the size of a load.
     fn load_kind(&self, load: &Load) -> InputKind {
-        let is_linear = |joint: usize| {
-            let kind = &self.joints[joint].kind;
-            matches!(kind, JointKind::Prismatic { .. })
-        };
-        match load.on {
-            LoadPlace::Joint(joint) if !is_linear(joint) => InputKind::Torque,
-            _ => InputKind::Force,
+        match &load.on {
+            LoadPlace::Joint(joint) => match self.joints[*joint].kind {
+                JointKind::Prismatic { .. } => InputKind::Force,
+                _ => InputKind::Torque,
+            },
+            LoadPlace::Point { .. } => InputKind::Force,
+            LoadPlace::Block { load, .. } => match load {
+                BlockLoad::Traction(..) | BlockLoad::Pressure { .. } => InputKind::Traction,
+                BlockLoad::Charge(_) => InputKind::SurfaceCharge,
+                BlockLoad::BodyForce(_) => InputKind::BodyForce,
+            },
         }
     }
 
@@ -140,6 +149,7 @@ impl System {
                 let joint = &self.joints[joint];
                 joint.parent.into_iter().chain([joint.child]).collect()
             }
+            LoadPlace::Block { .. } => Vec::new(),
         }
     }
 

@@ -4,10 +4,10 @@
 use crate::energy::{Energy, Gravity, SoughtEnergy};
 use crate::functional::{
     Electrical, Element, FiniteElement, FiniteElements, Formulas, Group, Inertia, Mass, Path,
-    Paths, SoughtElement, SoughtFormulas, Stencil, Term, VectorArg, ViscousElement,
-    ViscousElements,
+    Paths, PressureFace, PressureFaces, SoughtElement, SoughtFormulas, Stencil, Term, VectorArg,
+    ViscousElement, ViscousElements,
 };
-use crate::kinematics::{MaterialVector, Pose, Vectors};
+use crate::kinematics::{Carrier, MaterialVector, Pose, Vectors};
 use crate::math::Vector;
 use crate::model::attachment::Attachment;
 use crate::model::constant::Parameter;
@@ -83,6 +83,12 @@ impl<F: Electrical> Member for FiniteElement<F> {
 impl Member for ViscousElement {
     fn term(name: &str, list: Vec<Self>) -> Box<dyn Term> {
         Box::new(Group::<ViscousElements>::intervals(name, 1.0, list))
+    }
+}
+
+impl Member for PressureFace {
+    fn term(name: &str, list: Vec<Self>) -> Box<dyn Term> {
+        Box::new(Group::<PressureFaces>::intervals(name, 1.0, list))
     }
 }
 
@@ -189,6 +195,17 @@ impl<'a> Terms<'a> {
             let span = MaterialVector::span(&self.point(from), &self.point(to));
             self.vectors.index(span)
         })
+    }
+
+    /// Returns true if a vector of the list moves with a body, a node or a coordinate.
+    pub fn moves(&self, vector: usize) -> bool {
+        let mut parts = self.vectors.list()[vector].terms.iter();
+        parts.any(|part| part.carrier != Carrier::Ground)
+    }
+
+    /// Returns true if a scalar of the intervals has an equation of its own.
+    pub fn is_unknown(&self, scalar: usize) -> bool {
+        self.variables.place(scalar).is_some()
     }
 
     /// Scalar of the voltage of a source; `None` where it is zero all the time, or does nothing.

@@ -107,7 +107,7 @@ impl Variable {
     pub fn input(source: usize, kind: InputKind, name: String) -> Self {
         let role = match kind {
             InputKind::Voltage => Role::Voltage,
-            InputKind::Force | InputKind::Torque => Role::Load,
+            _ => Role::Load,
         };
         Self {
             source: Some(source),

@@ -208,7 +208,7 @@ impl Drawing<'_> {
 
     /// Arrows of the loads.
     fn loads(&self, canvas: &Canvas<'_>, k: usize, tint: Tint) {
-        let arrows = LoadArrows::new(self.system, self.trajectory);
+        let arrows = LoadArrows::new(self.system, self.trajectory, self.skins);
         for (source, load) in arrows.loads() {
             let ink = match tint {
                 Tint::Reference => style::REFERENCE,

@@ -16,7 +16,7 @@ use crate::report::ties;
 /// Points in mm whose outline is that of all that is seen over a motion.
 pub(super) fn points(system: &System, trajectory: &Trajectory, skins: &Skins) -> Vec<Vector3<f64>> {
     let mut points = ground_plate(system);
-    let arrows = LoadArrows::new(system, trajectory);
+    let arrows = LoadArrows::new(system, trajectory, skins);
     for k in shown(&trajectory.times, 1) {
         for (body, pose) in system.bodies.iter().zip(&trajectory.poses[k]) {
             points.extend(extent_points(&body.shape, pose));

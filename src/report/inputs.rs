@@ -30,15 +30,11 @@ pub fn curves(system: &System, trajectory: &Trajectory, kind: InputKind) -> Vec<
 }
 
 /// Label of the axis of a kind.
-pub fn label(kind: InputKind) -> &'static str {
-    match kind {
-        InputKind::Voltage => "voltage [kV]",
-        InputKind::Force => "force [N]",
-        InputKind::Torque => "torque [N m]",
-    }
+pub fn label(kind: InputKind) -> String {
+    format!("{} [{}]", kind.name(), kind.counted().0)
 }
 
-/// `voltages.svg`, `forces.svg`, `torques.svg`: the inputs of a kind over time in s, where there are any.
+/// `voltages.svg`, `forces.svg`, `body_forces.svg` …: the inputs of a kind over time in s, where there are any.
 pub fn svg(
     system: &System,
     trajectory: &Trajectory,
@@ -50,6 +46,9 @@ pub fn svg(
         InputKind::Voltage => ("voltages.svg", Extent::FromZero),
         InputKind::Force => ("forces.svg", Extent::Padded),
         InputKind::Torque => ("torques.svg", Extent::Padded),
+        InputKind::Traction => ("tractions.svg", Extent::Padded),
+        InputKind::BodyForce => ("body_forces.svg", Extent::Padded),
+        InputKind::SurfaceCharge => ("surface_charges.svg", Extent::Padded),
     };
     let plot = LinePlot::new(
         Axis::linear("time [s]", Extent::Tight),

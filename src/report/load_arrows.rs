@@ -1,11 +1,13 @@
-//! Loads as arrows: along the force from the point on which it acts, or about the axis of the joint as an arc, as long as the load is
-//! large relative to its largest size in the motion.
+//! Loads as arrows: along the force from the point on which it acts, against a face under a pressure, or about the axis of the joint as an
+//! arc, as long as the load is large relative to its largest size in the motion. Surface charges have none.
 
 use crate::dynamics::trajectory::Trajectory;
-use crate::model::components::{Load, LoadPlace};
+use crate::model::components::{BlockLoad, Load, LoadPlace};
 use crate::model::system::{Attachment, JointKind, System};
 use crate::report::body::extent_points;
+use crate::report::skins::{Skins, normal};
 use nalgebra::{Rotation3, Unit, Vector3};
+use std::collections::HashSet;
 
 /// Length of the longest arrow, as a part of the size of the system.
 const LENGTH: f64 = 0.25;
@@ -22,6 +24,9 @@ const SEGMENTS: usize = 24;
 pub(super) struct LoadArrows<'a> {
     system: &'a System,
     trajectory: &'a Trajectory,
+    skins: &'a Skins,
+    /// For each load, the faces of the surface of its block at which its arrow is.
+    faces: Vec<Vec<usize>>,
     /// Source of the first load.
     first: usize,
     /// Largest size of each load in the motion.
@@ -32,7 +37,7 @@ pub(super) struct LoadArrows<'a> {
 
 impl<'a> LoadArrows<'a> {
     /// Of a motion; of one without inputs none.
-    pub(super) fn new(system: &'a System, trajectory: &'a Trajectory) -> Self {
+    pub(super) fn new(system: &'a System, trajectory: &'a Trajectory, skins: &'a Skins) -> Self {
         let first = system.first_load();
         let count = system.components.loads.len();
         let largest = |load: usize| {
@@ -42,6 +47,13 @@ impl<'a> LoadArrows<'a> {
         Self {
             system,
             trajectory,
+            skins,
+            faces: system
+                .components
+                .loads
+                .iter()
+                .map(|load| faces(system, load))
+                .collect(),
             first,
             largest: match trajectory.voltages.is_empty() {
                 true => Vec::new(),
@@ -51,13 +63,19 @@ impl<'a> LoadArrows<'a> {
         }
     }
 
-    /// Each load that ever acts with its source.
+    /// Each load that ever acts and has an arrow, with its source.
     pub(super) fn loads(&self) -> impl Iterator<Item = (usize, &'a Load)> + '_ {
         let first = self.first;
         let loads = self.largest.iter().zip(&self.system.components.loads);
+        let has_arrow = |load: &Load| match &load.on {
+            LoadPlace::Block { block, load } => {
+                !matches!(load, BlockLoad::Charge(_)) && *block < self.skins.list.len()
+            }
+            LoadPlace::Point { .. } | LoadPlace::Joint(_) => true,
+        };
         let loads = loads
             .enumerate()
-            .filter(|(_, (largest, _))| **largest > 0.0);
+            .filter(move |(_, (largest, load))| **largest > 0.0 && has_arrow(load));
         loads.map(move |(index, (_, load))| (first + index, load))
     }
 
@@ -67,19 +85,44 @@ impl<'a> LoadArrows<'a> {
         let size = rows[k.min(rows.len() - 1)][source];
         let part = size / self.largest[source - self.first];
         let place = |point: Attachment| self.trajectory.point(k, &point, self.system);
-        let (at, axis, is_turn) = match load.on {
-            LoadPlace::Point { at, direction } => (place(at), direction, false),
+        let along = |point: Attachment, axis: &Vector3<f64>| {
+            let tip = Attachment {
+                at: point.at + axis,
+                ..point
+            };
+            place(tip) - place(point)
+        };
+        let (at, axis, is_turn) = match &load.on {
+            LoadPlace::Point {
+                at,
+                direction,
+                follows,
+            } => match follows {
+                true => (place(*at), along(*at, direction), false),
+                false => (place(*at), *direction, false),
+            },
+            LoadPlace::Block { block, load } => {
+                let (middle, inward) = self.middle(*block, &self.faces[source - self.first], k);
+                match load {
+                    BlockLoad::Pressure { .. } => {
+                        (middle - inward * (self.length * part), inward, false)
+                    }
+                    BlockLoad::Traction(_, axis) | BlockLoad::BodyForce(axis) => {
+                        (middle, *axis, false)
+                    }
+                    BlockLoad::Charge(_) => return Vec::new(),
+                }
+            }
             LoadPlace::Joint(joint) => {
-                let joint = &self.system.joints[joint];
+                let joint = &self.system.joints[*joint];
                 let on = |at| Attachment {
                     body: Some(joint.child),
                     at,
                 };
                 let at = place(on(joint.at));
-                let along = |axis: &Vector3<f64>| place(on(joint.at + axis)) - at;
                 match &joint.kind {
-                    JointKind::Revolute { axis } => (at, along(axis), true),
-                    JointKind::Prismatic { axis } => (at, along(axis), false),
+                    JointKind::Revolute { axis } => (at, along(on(joint.at), axis), true),
+                    JointKind::Prismatic { axis } => (at, along(on(joint.at), axis), false),
                     _ => (at, Vector3::zeros(), false),
                 }
             }
@@ -95,6 +138,48 @@ impl<'a> LoadArrows<'a> {
         let side = if is_turn { axis } else { across };
         with_head(shaft, &side, self.length * part.abs())
     }
+
+    /// The middle of some faces of a block at an instant, and the unit vector against their mean normal.
+    fn middle(&self, block: usize, faces: &[usize], k: usize) -> (Vector3<f64>, Vector3<f64>) {
+        let skin = &self.skins.list[block];
+        let places = &skin.places[self.skins.position(k)];
+        let corners = faces
+            .iter()
+            .map(|&face| skin.quads[face].map(|corner| places[corner]));
+        let (mut middle, mut inward) = (Vector3::zeros(), Vector3::zeros());
+        for corners in corners {
+            middle += corners.iter().sum::<Vector3<f64>>() / (4 * faces.len()) as f64;
+            inward -= normal(&corners);
+        }
+        (middle, inward.try_normalize(0.0).unwrap_or_else(Vector3::x))
+    }
+}
+
+/// Numbers among the faces of the surface of its block of those at which the arrow of a load is: the one nearest to the middle of those on
+/// which it acts; of a body force all.
+fn faces(system: &System, load: &Load) -> Vec<usize> {
+    let LoadPlace::Block { block, load } = &load.on else {
+        return Vec::new();
+    };
+    let mesh = &system.solids[*block].mesh;
+    let surface = mesh.boundary_quads();
+    let centre = |face: &[usize; 4]| {
+        face.map(|node| mesh.nodes[node])
+            .iter()
+            .sum::<Vector3<f64>>()
+            / 4.0
+    };
+    let of_load: HashSet<&[usize; 4]> = load.faces().iter().collect();
+    let acts = |(_, face): &(usize, &[usize; 4])| of_load.contains(face);
+    let middle = of_load
+        .iter()
+        .map(|face| centre(face))
+        .sum::<Vector3<f64>>()
+        / of_load.len() as f64;
+    let away = |face: &[usize; 4]| (centre(face) - middle).norm();
+    let acting = surface.iter().enumerate().filter(acts);
+    let nearest = acting.min_by(|(_, a), (_, b)| away(a).total_cmp(&away(b)));
+    nearest.map_or((0..surface.len()).collect(), |(number, _)| vec![number])
 }
 
 /// Points of a shaft from s = 0 to 1, then of the four barbs of its head, two of them along a side.
@@ -117,7 +202,7 @@ fn with_head(
     points
 }
 
-/// Diagonal in mm of the box around the bodies, joints and loads in the reference configuration; 1 where it is a point.
+/// Diagonal in mm of the box around the bodies, blocks, joints and loads in the reference configuration; 1 where it is a point.
 fn size(system: &System) -> f64 {
     let bodies = system.bodies.iter();
     let bodies = bodies.flat_map(|body| extent_points(&body.shape, &body.pose()));
@@ -125,9 +210,13 @@ fn size(system: &System) -> f64 {
     let loads = system.components.loads.iter();
     let loads = loads.filter_map(|load| match load.on {
         LoadPlace::Point { at, .. } => Some(at.at),
-        LoadPlace::Joint(_) => None,
+        LoadPlace::Joint(_) | LoadPlace::Block { .. } => None,
     });
-    let points: Vec<_> = bodies.chain(joints).chain(loads).collect();
+    let nodes = system
+        .solids
+        .iter()
+        .flat_map(|solid| solid.mesh.nodes.iter().copied());
+    let points: Vec<_> = bodies.chain(joints).chain(loads).chain(nodes).collect();
     let corner = |pick: fn(&Vector3<f64>, &Vector3<f64>) -> Vector3<f64>| {
         points.iter().copied().reduce(|a, b| pick(&a, &b))
     };

@@ -85,7 +85,7 @@ fn tables_and_figures(run: &Run<'_>) -> Vec<(&'static str, String)> {
     let mut motions: Vec<_> = run.comparison.into_iter().collect();
     motions.push((run.name, trajectory));
 
-    let makers: [Maker<'_>; 14] = [
+    let makers: [Maker<'_>; 17] = [
         &|| {
             let csv = table::trajectory_csv(run.tabulated, origin);
             Some(("trajectory.csv", csv))
@@ -110,6 +110,9 @@ fn tables_and_figures(run: &Run<'_>) -> Vec<(&'static str, String)> {
         &|| inputs::svg(system, trajectory, InputKind::Voltage, origin),
         &|| inputs::svg(system, trajectory, InputKind::Force, origin),
         &|| inputs::svg(system, trajectory, InputKind::Torque, origin),
+        &|| inputs::svg(system, trajectory, InputKind::Traction, origin),
+        &|| inputs::svg(system, trajectory, InputKind::BodyForce, origin),
+        &|| inputs::svg(system, trajectory, InputKind::SurfaceCharge, origin),
         &|| {
             let is_marked = !system.markers.is_empty();
             let svg = || tip_path::svg(system, &motions, tracked, view, origin);

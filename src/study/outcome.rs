@@ -218,8 +218,10 @@ fn column<'a>(observed: &'a Observations, name: &str) -> Option<&'a [f64]> {
 fn energy(observed: &Observations) -> Option<[f64; 2]> {
     let total = column(observed, "total_energy")?;
     let kinetic = column(observed, "kinetic_energy")?;
-    let dissipated = column(observed, "dissipated_energy");
-    let sum = |k: usize| total[k] + dissipated.map_or(0.0, |d| d[k]);
+    let [dissipated, supplied] =
+        ["dissipated_energy", "following_load_work"].map(|name| column(observed, name));
+    let at = |values: Option<&[f64]>, k: usize| values.map_or(0.0, |values| values[k]);
+    let sum = |k: usize| total[k] + at(dissipated, k) - at(supplied, k);
     let sums: Vec<f64> = (0..total.len()).map(sum).collect();
     let scale = kinetic.iter().fold(0.0_f64, |m, e| m.max(*e));
     let quarter = (sums.len() / 4).max(1);

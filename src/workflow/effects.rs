@@ -192,7 +192,7 @@ impl<'a> Coupled<'a> {
         let kind = match self.effect.kind() {
             TermKind::Kinetic => "kinetic",
             TermKind::Potential => "potential",
-            TermKind::VirtualWork => "virtual work",
+            TermKind::AppliedWork | TermKind::Dissipation => "virtual work",
             TermKind::Constraint => "constraint",
         };
         let scalars = unknowns.iter();

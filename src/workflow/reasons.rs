@@ -48,7 +48,7 @@ pub fn absent(model: &Model, control: Option<&Control>) -> Vec<Absent> {
         .partition(|s| model.analysis.zero_inputs.contains(s));
     if !loads.is_empty() {
         let why = format!(
-            "{} is zero all the time, or acts on what does not move",
+            "zero all the time, or on what does not move: {}",
             names(&loads)
         );
         add("load".to_owned(), why);
@@ -104,7 +104,7 @@ fn absent_of_control(model: &Model, control: &Control, add: &mut impl FnMut(Stri
         let Source { name, kind, .. } = &model.sources[source];
         let name = match kind {
             InputKind::Voltage => format!("unknown of the voltage of {name}"),
-            InputKind::Force | InputKind::Torque => format!("unknown of the load {name}"),
+            _ => format!("unknown of the load {name}"),
         };
         add(name, "the problem gives it".to_owned());
     }

@@ -121,6 +121,7 @@ fn signals(system: &System, random: &mut Random) -> Vec<Signal> {
         InputKind::Voltage => 1500.0,
         InputKind::Force => 0.15,
         InputKind::Torque => 3.0,
+        other => panic!("no robot has a {}", other.name()),
     };
     let of = |source: &Source| signal(random, largest(source));
     sources.iter().map(of).collect()

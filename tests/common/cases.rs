@@ -1,7 +1,7 @@
 //! A list of control problems that together call for every effect, joint, limit, goal and objective.
 
 use super::systems::{
-    GRAVITY, ball, blocks, branched, loaded, remembering, satellite, sprung, tied,
+    GRAVITY, ball, blocks, branched, loaded, pressed, remembering, satellite, sprung, tied,
 };
 use super::tracked::{energies, tracked};
 use super::trunk;
@@ -298,6 +298,10 @@ pub fn cases() -> Vec<Case> {
             },
         ),
         case("blocks", blocks(), &|c| c.goal = corner_goal()),
+        case("blocks with loads", pressed(), &|c| c.goal = corner_goal()),
+        case("blocks with loads, free time", pressed(), &|c| {
+            (c.duration, c.goal) = (free, corner_goal());
+        }),
         case("blocks, marker at rest, free time", blocks(), &|c| {
             c.duration = free;
             c.objective = every_objective();

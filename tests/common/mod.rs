@@ -5,6 +5,7 @@
 pub mod cases;
 pub mod counting;
 pub mod force;
+pub mod loaded;
 pub mod programs;
 pub mod random;
 pub mod random_goals;

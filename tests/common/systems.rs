@@ -1,9 +1,10 @@
 //! Systems that together call for every effect and joint.
 
+pub use super::loaded::{loaded, pressed};
 use super::trunk;
 use nalgebra::{Matrix3, Rotation3, Vector3};
 use proboscis::mesh::grid::Grid;
-use proboscis::model::components::{Load, LoadPlace, Spring, Tendon};
+use proboscis::model::components::{Spring, Tendon};
 use proboscis::model::system::{
     Attachment, Body, Discretisation, ElectricConstants, Electrode, ElementKind, Fidelity, Glue,
     Joint, JointKind, JointSpring, JointStops, Marker, Material, MaxwellBranch, MaxwellBranches,
@@ -54,24 +55,6 @@ pub fn tied(mut system: System) -> System {
         rest_length: 80.0,
         smoothing: 0.0,
     }];
-    system
-}
-
-/// A force on the last segment of a trunk of two segments and a motor at its first joint.
-pub fn loaded(mut system: System) -> System {
-    let at = Attachment {
-        body: Some(1),
-        at: Vector3::new(4.0, 85.0, 3.0),
-    };
-    let direction = Vector3::new(2.0, -1.0, 3.0).normalize();
-    let load = |name: &str, on| Load {
-        name: name.into(),
-        on,
-    };
-    system.components.loads = vec![
-        load("push", LoadPlace::Point { at, direction }),
-        load("motor", LoadPlace::Joint(0)),
-    ];
     system
 }
 

@@ -151,6 +151,85 @@ fn a_wrong_load_has_one_message_with_its_place() {
 }
 
 #[test]
+fn a_wrong_load_of_a_block_has_one_message_with_its_place() {
+    let path = Path::new(env!("CARGO_MANIFEST_DIR")).join("problems/pressed_beam.json");
+    for (load, place, words) in [
+        (r#""kind": "pressure""#, "loads[0]", "exactly one of"),
+        (r#""face": "z_min""#, "loads[0]", "\"surface_charge\""),
+        (
+            r#""kind": "pressure", "face": "z_min", "direction": [0, 0, 1]"#,
+            "loads[0].direction",
+            "acts along the normal",
+        ),
+        (
+            r#""kind": "traction", "face": "z_min""#,
+            "loads[0]",
+            "the direction of the force",
+        ),
+        (
+            r#""kind": "traction", "face": "x_min", "direction": [0, 0, 1]"#,
+            "loads[0]",
+            "a part of the surface that moves",
+        ),
+        (
+            r#""kind": "traction", "face": "z_max", "direction": [0, 0, 1], "follows": true"#,
+            "loads[0].follows",
+            "a force at a point and a pressure follow",
+        ),
+        (
+            r#""kind": "pressure", "plane": { "z": "1 mm" }"#,
+            "loads[0]",
+            "a part of the surface of the block",
+        ),
+        (
+            r#""kind": "surface_charge", "face": "z_min""#,
+            "loads[0]",
+            "other than those of this electrode",
+        ),
+        (
+            r#""kind": "body_force", "face": "z_min", "direction": [0, 0, 1]"#,
+            "loads[0].face",
+            "in the whole block",
+        ),
+    ] {
+        let change = format!(r#"scene.loads=[{{"name": "air", "solid": "beam", {load}}}]"#);
+        let error = read_problem(&path, &[change]).unwrap_err();
+        let said = error.to_string();
+        assert!(said.contains(place) && said.contains(words), "{said}");
+    }
+    let change = r#"simulate.loads={"air": "1 N"}"#.to_owned();
+    let said = read_problem(&path, &[change]).unwrap_err().to_string();
+    assert!(
+        said.contains("simulate.loads.air") && said.contains("a stress"),
+        "{said}"
+    );
+}
+
+/// A pressure that is sought brings the tip of a beam to a place at rest.
+#[test]
+fn a_sought_pressure_bends_a_beam() {
+    let path = Path::new(env!("CARGO_MANIFEST_DIR")).join("problems/pressed_beam_control.json");
+    let loaded = read_problem(&path, &[]).unwrap();
+    let Task::Control(control) = loaded.task else {
+        panic!("a problem of control");
+    };
+    let found = solved(&loaded.system, &control);
+    let n = found.motion.times.len() - 1;
+    let instant = found.model.action.map.placed(&found.motion.z[n]);
+    let tip = instant.x[found.model.markers[0]];
+    assert!((tip.z - 9.0).abs() < 1e-6, "{tip}");
+    let air = loaded.system.first_load();
+    let most = found
+        .motion
+        .voltages
+        .iter()
+        .map(|row| row[air].abs())
+        .fold(0.0, f64::max);
+    // MPa.
+    assert!(most > 5e-6 && most < 1e-3, "{most}");
+}
+
+#[test]
 fn the_library_moves_the_same_mass_with_a_motor() {
     let mut system = System::new("slide");
     let mass = system.add(Body::sphere(1.0).mass(1000.0));

@@ -5,6 +5,7 @@ mod common;
 
 mod accuracy;
 mod closed_form;
+mod creep;
 mod endings;
 mod energies;
 mod feasible;

@@ -11,10 +11,9 @@ use nalgebra::{SMatrix, SVector};
 use num_dual::{Dual64, HyperDual};
 use proboscis::energy::{
     Angle, AngularDamper, Capacitance, Coincidence, CoordinateDamper, CoordinateSpring,
-    CoordinateStops, DeadLoad, DielectricCell, ElasticCell, Energy, Gravity, JointAngle,
-    JointDisplacement, LinearDamper, LinearSpring, MaxwellCell, Orthogonality, OutsideBox,
-    PositionComponent, Projection, SectionInertia, SpanDamper, SquaredDistance, SquaredField,
-    ViscousCell,
+    CoordinateStops, DielectricCell, ElasticCell, Energy, Gravity, JointAngle, JointDisplacement,
+    LinearDamper, LinearSpring, MaxwellCell, Orthogonality, OutsideBox, PositionComponent,
+    Projection, SectionInertia, SpanDamper, SquaredDistance, SquaredField, ViscousCell,
 };
 use proboscis::math::{Jet, Vector};
 
@@ -258,8 +257,6 @@ fn energies_have_the_derivatives_of_naive_formulas() {
         stiffness: 0.7,
         rest: 0.4,
     };
-    let direction = Vector::new(0.3, -0.7, 0.9);
-    law("dead load", &DeadLoad { direction }, 0.2, 1.1);
     law("coordinate spring", &spring, 0.2, 1.1);
     let stops = CoordinateStops {
         stiffness: 0.7,

@@ -49,6 +49,7 @@ pub(crate) fn jet_of<E: Formula<M>, const M: usize, const ORDER: usize>(
     }
     let local = energy.at::<ORDER>(p, w);
     let [plain, along] = match E::VECTORS {
+        0 => both::<E, M, 0>(&local),
         1 => both::<E, M, 1>(&local),
         2 => both::<E, M, 2>(&local),
         3 => both::<E, M, 3>(&local),

@@ -157,7 +157,7 @@ impl Interval {
         let [a, b] = &self.vectors;
         let frame = self.frame([a, b], h, Horizon::Free);
         for (effect, slots) in action.intervals.terms() {
-            if effect.kind() != TermKind::VirtualWork {
+            if !effect.kind().is_virtual_work() {
                 effect.evaluate(Order::Hessian, &frame, slots, &mut out);
             }
         }

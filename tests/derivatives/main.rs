@@ -9,6 +9,7 @@ mod costs;
 mod differences;
 mod energies;
 mod formulas;
+mod formulas_of_loads;
 mod gathered;
 mod hexahedron;
 mod hexahedron_states;

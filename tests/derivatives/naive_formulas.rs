@@ -3,10 +3,10 @@
 use num_dual::{Dual, DualNum};
 use proboscis::energy::{
     Angle, AngularDamper, Capacitance, Coincidence, CoordinateDamper, CoordinateSpring,
-    CoordinateStops, DeadLoad, DielectricCell, ElasticCell, Energy, Gravity, JointAngle,
-    JointDisplacement, LinearDamper, LinearSpring, MaxwellCell, Orthogonality, OutsideBox,
-    PositionComponent, Projection, SectionInertia, SpanDamper, SquaredDistance, SquaredField,
-    ViscousCell,
+    CoordinateStops, DeadLoad, DielectricCell, ElasticCell, Energy, FollowingForce, Gravity,
+    JointAngle, JointDisplacement, LinearDamper, LinearSpring, MaxwellCell, Orthogonality,
+    OutsideBox, PositionComponent, Projection, SectionInertia, SpanDamper, SquaredDistance,
+    SquaredField, SurfaceCharge, ViscousCell,
 };
 
 /// The naive formula of an energy.
@@ -149,6 +149,20 @@ impl Formula<4> for DeadLoad {
     fn naive<D: DualNum<f64> + Copy>(&self, p: &[D; 4]) -> D {
         let direction = three(self.direction.as_slice(), 0).map(D::from);
         -polarised(direction, three(p, 0)) * p[3]
+    }
+}
+
+impl Formula<13> for FollowingForce {
+    fn naive<D: DualNum<f64> + Copy>(&self, p: &[D; 13]) -> D {
+        polarised(three(p, 0), three(p, 9)) * p[12]
+    }
+}
+
+impl Formula<2> for SurfaceCharge {
+    const VECTORS: usize = 0;
+
+    fn naive<D: DualNum<f64> + Copy>(&self, p: &[D; 2]) -> D {
+        ((p[0] + p[1]).powi(2) - (p[0] - p[1]).powi(2)) * self.weight / 4.0
     }
 }
 

@@ -15,6 +15,7 @@ mod joint_springs;
 mod joint_stops;
 mod loads;
 mod maxwell;
+mod maxwell_limits;
 mod observe;
 mod order;
 mod reductions;

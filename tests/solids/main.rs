@@ -6,6 +6,7 @@ mod common;
 mod dynamics;
 mod gmsh;
 mod invariants;
+mod loads;
 mod mesh;
 mod physics;
 mod refusals;

@@ -253,7 +253,7 @@ fn what_a_material_lacks_is_no_effect() {
     for kind in [
         TermKind::Kinetic,
         TermKind::Potential,
-        TermKind::VirtualWork,
+        TermKind::Dissipation,
     ] {
         assert_eq!(count(&all, kind), 1);
     }
@@ -264,7 +264,7 @@ fn what_a_material_lacks_is_no_effect() {
     };
     assert_eq!(count(&with(&|m| m.density = None), TermKind::Kinetic), 0);
     assert_eq!(
-        count(&with(&|m| m.viscosity = None), TermKind::VirtualWork),
+        count(&with(&|m| m.viscosity = None), TermKind::Dissipation),
         0
     );
     let bare = with(&|m| (m.density, m.viscosity) = (None, None));

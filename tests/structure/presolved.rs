@@ -150,7 +150,7 @@ fn at_rest_there_is_neither_inertia_nor_friction() {
                 let effects = model.action.intervals.terms.iter();
                 effects.map(|e| e.kind()).collect()
             };
-            for kind in [TermKind::Kinetic, TermKind::VirtualWork] {
+            for kind in [TermKind::Kinetic, TermKind::Dissipation] {
                 assert!(kinds(&moving).contains(&kind) && !kinds(&still).contains(&kind));
             }
             // Weight needs masses, not inertia.

@@ -6,6 +6,7 @@
 //! - `result`, `mode`, `softest_mode`, `stability`: a state of rest and its softest mode; `stable`: the stable one.
 
 mod arc_length;
+mod growing;
 mod growth;
 mod in_joints;
 mod instability;
@@ -19,6 +20,7 @@ mod softest_mode;
 mod stability;
 mod stable;
 mod statics;
+mod weights;
 
 pub use growth::equilibrium;
 pub use instability::{Instability, Load};

@@ -3,13 +3,17 @@
 //! With q_k = q_{k+1} = q the sum of both rows is −h Pᵀ∇V − h₀ Gᵀλ, and the tangent is the sum of the four blocks. Inertia and
 //! viscosity would vanish from both sums only up to the rounding of M/h and D: they are left out, so that a state of rest depends
 //! neither on masses nor on the step. Potentials keep the rows of Gauss's law. Weights are constant forces on the vectors, so that a
-//! part of them is a part of these forces. A stiffness σ on every coordinate may be added to the tangent, which makes any state's
-//! tangent that of a minimum.
+//! part of them is a part of these forces; loads are inputs, of which the same part acts. A stiffness σ on every coordinate may be
+//! added to the tangent, which makes any state's tangent that of a minimum.
+//!
+//! Loads that follow what they act on have no potential, and the tangent no symmetry: then its symmetric part decides whether a
+//! state is stable. Where that part is positive no displacement gains energy from springs and loads.
 
 use crate::coordinates::{Configuration, Interval, Scratch};
+use crate::dynamics::equilibrium::weights::weights;
 use crate::dynamics::error::EquilibriumError;
 use crate::dynamics::tangent::{EntryList, Tangent};
-use crate::functional::Order;
+use crate::functional::{Order, TermKind};
 use crate::ipopt::interrupt;
 use crate::math::Vector;
 use crate::model::{Model, Role};
@@ -50,13 +54,17 @@ pub(super) struct Statics<'m> {
     pub(super) scratch: Scratch,
     pub(super) values: Vec<f64>,
     pub(super) scalars: Vec<f64>,
-    /// Weights and loads on the vectors.
-    gravity: Vec<Vector>,
-    /// Part of the weights that acts.
+    /// Weights on the vectors.
+    pub(super) gravity: Vec<Vector>,
+    /// Inputs with all voltages zero.
+    pub(super) loads: Vec<f64>,
+    /// Part of the weights and loads that acts.
     pub(super) weight: f64,
     /// First place of the added stiffness in the values: one a coordinate, one a scalar with an equation.
     pub(super) added: usize,
     pub(super) tangent: Tangent,
+    /// The symmetric part of the tangent where it has no symmetry.
+    symmetric_part: Option<Tangent>,
     /// The own block of the scalars with an equation.
     pub(super) electric: Option<Tangent>,
     /// Rows, then the Newton update.
@@ -88,6 +96,13 @@ impl<'m> Statics<'m> {
         for (place, i) in (0..n).chain(m..size).enumerate() {
             entries.add(added + place, (i, i));
         }
+        let mut terms = model.action.intervals.terms.iter();
+        let follows = terms.any(|term| term.kind() == TermKind::AppliedWork);
+        let symmetric_part = follows.then(|| entries.clone().symmetric_part(size));
+        let symmetry = match follows {
+            true => Symmetry::Unsymmetric,
+            false => Symmetry::Symmetric,
+        };
         let electric = (!algebraic.is_empty()).then(|| {
             let mut entries = EntryList::default();
             entries.add_scalars(model, &[]);
@@ -100,10 +115,14 @@ impl<'m> Statics<'m> {
             scratch: model.action.scratch(Order::Hessian),
             values: vec![0.0; added + n + (size - m)],
             scalars: vec![0.0; layout.interval_scalars],
-            gravity: weights(model, inputs),
+            gravity: weights(model),
+            loads: model
+                .variables
+                .inputs_where(inputs, |role| role == Role::Load),
             weight: 1.0,
             added,
-            tangent: entries.tangent(size, Symmetry::Symmetric, None),
+            tangent: entries.tangent(size, symmetry, None),
+            symmetric_part,
             electric,
             residual: vec![0.0; size],
             scales: model.sizes(),
@@ -161,6 +180,9 @@ impl<'m> Statics<'m> {
             ..
         } = self;
         scalars[variables.inputs()].copy_from_slice(voltages);
+        scalars[variables.range(Role::Load)]
+            .iter_mut()
+            .for_each(|load| *load *= *weight);
         scalars[variables.algebraic()].copy_from_slice(&state[m..]);
         values.fill(0.0);
         for instant in [&mut *a, &mut *b] {
@@ -169,7 +191,7 @@ impl<'m> Statics<'m> {
             instant.forces.fill(Vector::zeros());
         }
         let interval = Interval::given(scalars, self.model.multiplier_time);
-        action.evaluate_potential([a, b], &interval, scratch);
+        action.evaluate_at_rest([a, b], &interval, scratch);
         action.pull_back_interval(Order::Hessian, [a, b], &interval, 0, scratch, values);
         for (force, other) in a.forces.iter_mut().zip(&b.forces) {
             *force += other;
@@ -189,6 +211,10 @@ impl<'m> Statics<'m> {
 
     /// Factorises the tangent of the state evaluated last.
     pub(super) fn factor(&mut self) -> Result<(), Singular> {
+        if let Some(part) = &mut self.symmetric_part {
+            // Where it is singular, it gives no number of negative pivots.
+            let _ = part.factor(&self.values);
+        }
         self.tangent.factor(&self.values)
     }
 
@@ -200,7 +226,7 @@ impl<'m> Statics<'m> {
         for (value, scale) in self.values[self.added..].iter_mut().zip(&self.scales[..n]) {
             *value = -h * sigma / (scale * scale);
         }
-        let outcome = self.tangent.factor(&self.values);
+        let outcome = self.factor();
         self.values[self.added..].fill(0.0);
         outcome
     }
@@ -247,49 +273,6 @@ impl<'m> Statics<'m> {
         same.chain(cross)
             .filter(is_stiffness)
             .map(move |(entry, place)| (entry, -self.values[place] / h))
-    }
-
-    /// Inputs with all voltages zero.
-    pub(super) fn without_voltages(&self, inputs: &[f64]) -> Vec<f64> {
-        let variables = &self.model.variables;
-        variables.inputs_where(inputs, |role| role != Role::Voltage)
-    }
-
-    /// Returns true if a voltage is other than zero.
-    pub(super) fn is_driven(&self, inputs: &[f64]) -> bool {
-        let mut inputs = self.model.variables.with_roles(inputs);
-        inputs.any(|(value, role)| role == Role::Voltage && value != 0.0)
-    }
-
-    /// Returns true if anything has a weight, or a load acts.
-    pub(super) fn has_weight(&self) -> bool {
-        self.gravity.iter().any(|force| *force != Vector::zeros())
-    }
-
-    /// Adds the derivative of the rows by the part of the weights that acts, at the state evaluated last.
-    pub(super) fn add_weight(&self, rows: &mut [f64]) {
-        let map = &self.model.action.map;
-        let rows = &mut rows[..map.coordinates];
-        map.pull_back(&self.a.columns, &self.gravity, rows);
-    }
-
-    /// Adds the derivative of the rows along a change of the voltages, at the state evaluated last.
-    pub(super) fn add_load(&self, change: &[f64], rows: &mut [f64]) {
-        let layout = self.model.action.layout();
-        let variables = &self.model.variables;
-        let change = &variables.scalars(change);
-        for side in 0..2 {
-            for (slot, (i, s)) in layout.mixed.entries().enumerate() {
-                if variables.place(s).is_none() {
-                    rows[i] += self.values[layout.mixed_at(0, side) + slot] * change[s];
-                }
-            }
-        }
-        for (slot, (s, t)) in layout.scalars.entries().enumerate() {
-            if let (Some(row), None) = (variables.place(s), variables.place(t)) {
-                rows[row] += self.values[layout.scalars_at(0) + slot] * change[t];
-            }
-        }
     }
 
     /// Size of an update, relative to angles of one radian and the length of the system.
@@ -352,7 +335,8 @@ impl<'m> Statics<'m> {
     /// The tangent is −h S with S the saddle of coordinates, multipliers and potentials: each multiplier has one negative
     /// eigenvalue of S, potentials have those of their own block, what remains belongs to the coordinates.
     pub(super) fn unstable(&mut self) -> Option<usize> {
-        let positive = self.tangent.negative_pivots()?;
+        let tangent = self.symmetric_part.as_ref().unwrap_or(&self.tangent);
+        let positive = tangent.negative_pivots()?;
         let negative = self.residual.len() - positive;
         let electric = match &mut self.electric {
             Some(tangent) => {
@@ -381,20 +365,4 @@ impl<'m> Statics<'m> {
     pub(super) fn entries(&self) -> impl Iterator<Item = ((usize, usize), f64)> + '_ {
         self.tangent.entries()
     }
-}
-
-/// Weights and loads on the vectors over the time of the multipliers, as rows of rest read them.
-fn weights(model: &Model, inputs: &[f64]) -> Vec<Vector> {
-    let map = &model.action.map;
-    let instant = map.placed(&vec![0.0; map.unknowns()]);
-    let scalars = model.variables.scalars(inputs);
-    let interval = Interval::given(&scalars, model.multiplier_time);
-    let sample = interval.sample([&instant, &instant]);
-    let mut out = model.action.intervals.output(Order::Gradient);
-    let terms = model.action.intervals.terms();
-    for (load, slots) in terms.filter(|(term, _)| term.is_dead_load()) {
-        load.evaluate(Order::Gradient, &sample, slots, &mut out);
-    }
-    let [here, there] = &out.plain.forces;
-    here.iter().zip(there).map(|(a, b)| a + b).collect()
 }

@@ -5,9 +5,10 @@ use crate::dynamics::drive::Drive;
 use crate::dynamics::equations::Equations;
 use crate::dynamics::galerkin::lobatto::lagrange;
 use crate::dynamics::galerkin::rule::Rule;
-use crate::dynamics::galerkin::state::{GalerkinEquations, StagePoint, between};
+use crate::dynamics::galerkin::state::{GalerkinEquations, between};
+use crate::dynamics::interval_energies::Work;
 use crate::dynamics::momenta::vector_momenta;
-use crate::functional::{Order, TermKind};
+use crate::functional::Order;
 use crate::math::Vector;
 use crate::model::Model;
 use std::slice;
@@ -184,17 +185,15 @@ impl Equations for GalerkinEquations<'_> {
             return false;
         }
         if self.dissipates {
-            let terms = model.action.intervals.terms.iter();
-            let forces: Vec<_> = terms
-                .filter(|e| e.kind() == TermKind::VirtualWork)
-                .collect();
-            let work = |point: &StagePoint| {
+            let mut work = Work::default();
+            for point in &self.samples {
                 let [a, b] = &point.x;
                 let sample = between([a, b], &point.scalars, h);
-                let work: f64 = forces.iter().map(|e| e.energy(&sample)).sum();
-                work * point.weights.quadrature
-            };
-            self.work = Some(self.samples.iter().map(work).sum());
+                for term in &model.action.intervals.terms {
+                    work.add(point.weights.quadrature, term.as_ref(), &sample);
+                }
+            }
+            self.work = Some(work);
         }
         let momenta: Vec<Vector> = match &mut self.rule {
             Rule::Galerkin(_) => {
@@ -221,6 +220,9 @@ impl Equations for GalerkinEquations<'_> {
         }
         self.momentum.fill(0.0);
         map.pull_back(&self.points[last].columns, &momenta, &mut self.momentum);
+        for &coordinate in &self.massless.coordinates {
+            self.momentum[coordinate] = 0.0;
+        }
         if let Rule::Galerkin(_) = self.rule {
             let (n, m) = (map.coordinates, map.unknowns());
             let multipliers = &self.multipliers[last - 1];
@@ -260,7 +262,7 @@ impl Equations for GalerkinEquations<'_> {
         }
     }
 
-    fn work(&self) -> Option<f64> {
+    fn work(&self) -> Option<Work> {
         self.work
     }
 }

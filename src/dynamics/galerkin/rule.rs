@@ -15,7 +15,7 @@
 //! the points; the midpoint rule is the same with s = 1 and one sample at c = ½. The generalised-α method is that of
 //! M. Arnold and O. Brüls, Multibody System Dynamics 18, 185–202 (2007), whose constraints hold at the end of the step.
 
-use crate::dynamics::galerkin::lobatto::Lobatto;
+use crate::dynamics::galerkin::lobatto::{Lobatto, lagrange};
 use crate::math::Vector;
 use std::slice;
 
@@ -65,6 +65,18 @@ impl Rule {
         match self {
             Self::Galerkin(_) => point - 1,
             Self::Euler(_) | Self::Alpha(_) => point,
+        }
+    }
+
+    /// Values at the end of a step of the polynomials through its other points, in the order of these; none of methods of one point, whose
+    /// equations hold there.
+    pub(super) fn shares(&self) -> Vec<f64> {
+        match self {
+            Self::Galerkin(lobatto) => {
+                let others = &lobatto.points[..lobatto.points.len() - 1];
+                lagrange(others, 1.0)
+            }
+            Self::Euler(_) | Self::Alpha(_) => Vec::new(),
         }
     }
 

@@ -5,15 +5,15 @@ use crate::dynamics::drive::Drive;
 use crate::dynamics::error::StepError;
 use crate::dynamics::galerkin::jacobian_positions::Places;
 use crate::dynamics::galerkin::lobatto::Lobatto;
+use crate::dynamics::galerkin::massless::Massless;
 use crate::dynamics::galerkin::rule::{Alpha, Rule, Weights};
+use crate::dynamics::interval_energies::Work;
 use crate::dynamics::kinetic::masses;
 use crate::dynamics::momenta::{rates, vector_momenta};
 use crate::dynamics::simulate::Start;
 use crate::dynamics::solving::{Integrator, Solving};
 use crate::dynamics::stepper::Steps;
-use crate::functional::{
-    BlockMask, Blocks, Horizon, Order, Output, Sample, SumDerivatives, TermKind,
-};
+use crate::functional::{BlockMask, Blocks, Horizon, Order, Output, Sample, SumDerivatives};
 use crate::math::Vector;
 use crate::model::Model;
 use crate::sparse::Symmetry;
@@ -57,7 +57,8 @@ pub struct GalerkinEquations<'m> {
     /// Multipliers, and scalars with an equation, before an attempt.
     pub(super) saved: (Vec<Vec<f64>>, Vec<Vec<f64>>),
     pub(super) dissipates: bool,
-    pub(super) work: Option<f64>,
+    pub(super) massless: Massless,
+    pub(super) work: Option<Work>,
 }
 
 impl<'m> Steps<GalerkinEquations<'m>> {
@@ -125,7 +126,8 @@ impl<'m> Steps<GalerkinEquations<'m>> {
                 vec![vec![0.0; algebraic.len()]; samples.len()],
             ),
             multipliers,
-            dissipates: terms.any(|e| e.kind() == TermKind::VirtualWork),
+            massless: Massless::new(model, &rule),
+            dissipates: terms.any(|e| e.kind().is_virtual_work()),
             work: None,
             rule,
             points,
@@ -215,6 +217,8 @@ impl GalerkinEquations<'_> {
                     }
                 }
             }
+            self.massless
+                .add_forces((weights, point), &out.plain, forces);
         }
     }
 

@@ -28,6 +28,8 @@ impl GalerkinEquations<'_> {
                     sum[block] += term[side] * weight;
                 }
             }
+            let to = (&mut *combined, block);
+            self.massless.add_blocks((weights, row, point), blocks, to);
         }
         if let Rule::Alpha(alpha) = &self.rule {
             let factor = alpha.inertia() / h;

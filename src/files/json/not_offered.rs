@@ -54,13 +54,16 @@ const TABLE: &[NotOffered] = &[
             "load",
             "external_force",
             "wrench",
+            "pressure",
+            "pneumatic",
+            "traction",
+            "body_force",
+            "surface_charge",
         ],
-        said: "a motor, a force or a torque is an entry of \"loads\" of a scene; there are no servos that prescribe a motion",
+        said: "a motor, force, torque, pressure, traction or surface charge is an entry of \"loads\" of a scene; there are no servos that prescribe a motion",
     },
     NotOffered {
         words: &[
-            "pressure",
-            "pneumatic",
             "fluid",
             "drag",
             "air_resistance",
@@ -68,7 +71,7 @@ const TABLE: &[NotOffered] = &[
             "buoyancy",
             "hydraulic",
         ],
-        said: "there is no fluid and no pressure",
+        said: "there is no fluid; a pressure on a solid is an entry of \"loads\" of a scene",
     },
     NotOffered {
         words: &[

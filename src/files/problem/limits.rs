@@ -158,7 +158,11 @@ fn electric_field(
     };
     let has_field = |&block: &usize| {
         let solid = &system.solids[block];
-        let mut elements = solid.mesh.regions.iter().zip(solid.elements_with_field());
+        let mut elements = solid
+            .mesh
+            .regions
+            .iter()
+            .zip(system.elements_with_field(block));
         elements.any(|(of, has_field)| has_field && region.is_none_or(|region| *of == region))
     };
     let blocks: Vec<usize> = blocks.into_iter().filter(has_field).collect();

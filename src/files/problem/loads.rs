@@ -6,7 +6,9 @@ use crate::files::json::error::SceneError;
 use crate::files::json::scope::Scope;
 use crate::files::problem::signal::signal;
 use crate::files::problem::spec_signal::SignalSpec;
-use crate::files::units::quantity::{Force, Kind, LoadSize, Quantity, Torque};
+use crate::files::units::quantity::{
+    ChargeDensity, Force, ForceDensity, Kind, LoadSize, Quantity, Stress, Torque, Voltage,
+};
 use crate::model::system::{InputKind, System};
 use std::collections::BTreeMap;
 
@@ -23,8 +25,12 @@ fn find(name: &str, system: &System, scope: &Scope<'_>) -> Result<(usize, Kind),
     let names = sources[first..].iter().map(|source| source.name.clone());
     let index = scope.find(name, &names.collect::<Vec<_>>(), "the name of a load")?;
     let kind = match sources[first + index].kind {
+        InputKind::Voltage => Voltage::kind(),
+        InputKind::Force => Force::kind(),
         InputKind::Torque => Torque::kind(),
-        InputKind::Force | InputKind::Voltage => Force::kind(),
+        InputKind::Traction => Stress::kind(),
+        InputKind::BodyForce => ForceDensity::kind(),
+        InputKind::SurfaceCharge => ChargeDensity::kind(),
     };
     Ok((first + index, kind))
 }

@@ -45,7 +45,7 @@ pub struct EquilibriumSpec {
     /// Voltages by the names of muscles and driven electrodes (`block.electrode`), SI unit V; 0 where not named.
     #[serde(default)]
     pub voltages: VoltageMap,
-    /// Loads by name, SI units N and N m; 0 where not named.
+    /// Loads by name, SI units N, N m, Pa, N/m³ and C/m²; 0 where not named.
     #[serde(default)]
     pub loads: BTreeMap<String, Quantity<LoadSize>>,
     /// Coordinates.

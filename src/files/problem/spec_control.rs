@@ -35,10 +35,10 @@ pub struct ControlSpec {
     /// Lower and upper bound of every voltage that is sought, SI unit V; not needed where none is.
     #[serde(default)]
     pub voltage_bounds: Option<[Quantity<Voltage>; 2]>,
-    /// Lower and upper bound of each load that is sought, by name, SI units N and N m.
+    /// Lower and upper bound of each load that is sought, by name, SI units N, N m, Pa, N/m³ and C/m².
     #[serde(default)]
     pub load_bounds: LoadBounds,
-    /// Loads that are given, by name, constant or functions of time, SI units N and N m; 0 where neither given nor sought.
+    /// Loads that are given, by name, constant or functions of time, SI units N, N m, Pa, N/m³ and C/m²; 0 where neither given nor sought.
     #[serde(default)]
     pub loads: LoadMap,
     /// Voltages that are given, by the names of muscles and driven electrodes (`block.electrode`), SI unit V: they are no unknowns,

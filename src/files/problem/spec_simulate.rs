@@ -29,7 +29,7 @@ pub struct SimulateSpec {
     /// Constant voltages, those of a solution, or a table; 0 where not written.
     #[serde(default)]
     pub voltages: VoltagesSpec,
-    /// Loads by name, constant or functions of time, SI units N and N m; 0 where not named.
+    /// Loads by name, constant or functions of time, SI units N, N m, Pa, N/m³ and C/m²; 0 where not named.
     #[serde(default)]
     pub loads: LoadMap,
     /// Start of the motion; the reference configuration at rest where not written.

@@ -49,6 +49,9 @@ pub(crate) fn build_scene(scene: &SceneSpec, scope: &Scope<'_>) -> Result<System
     let built_joints = lists
         .joints
         .build(&scene.joints, |spec, scope| joint(spec, &body_names, scope))?;
+    let loads = lists.loads.build(&scene.loads, |spec, scope| {
+        load(spec, (&body_names, &built_joints, &blocks), scope)
+    })?;
     let system = System {
         bodies: lists.bodies.build(&scene.bodies, body)?,
         muscles,
@@ -62,9 +65,7 @@ pub(crate) fn build_scene(scene: &SceneSpec, scope: &Scope<'_>) -> Result<System
             .map(vector)
             .filter(|g| g.norm() > 0.0),
         components: Components {
-            loads: lists.loads.build(&scene.loads, |spec, scope| {
-                load(spec, &body_names, &built_joints, scope)
-            })?,
+            loads,
             springs: lists.springs.build(&scene.springs, |spec, scope| {
                 spring(spec, &body_names, scope)
             })?,

@@ -71,6 +71,17 @@ macro_rules! measures {
     };
 }
 
+/// Dimension of a force for a volume, which has no name.
+type WeightDimension = si::ISQ<
+    uom::typenum::N2,
+    uom::typenum::P1,
+    uom::typenum::N2,
+    uom::typenum::Z0,
+    uom::typenum::Z0,
+    uom::typenum::Z0,
+    uom::typenum::Z0,
+>;
+
 measures! {
     /// Length: m, mm inside.
     Length: si::length::Dimension, [0], "a length", "\"50 mm\"";
@@ -120,6 +131,10 @@ measures! {
     Energy: si::energy::Dimension, [0], "an energy", "\"1 mJ\"";
     /// Torque: N m, N mm inside.
     Torque: si::energy::Dimension, [0], "a torque", "\"0.2 N m\"";
+    /// Force for a volume: N/m³, N/mm³ inside.
+    ForceDensity: WeightDimension, [0], "a force for a volume", "\"10 kN/m^3\"";
+    /// Charge for an area: C/m², mC/mm² inside.
+    ChargeDensity: si::electric_charge_areal_density::Dimension, [0], "a charge for an area", "\"0.2 mC/m^2\"";
 }
 
 /// Declares measures of joints: an angular and a linear kind.
@@ -148,10 +163,26 @@ joint_measures! {
     JointRate: AngularVelocity | Velocity;
     /// Damping of a joint coordinate: rotational, or linear of a prismatic joint.
     JointDamping: RotationalDamping | Damping;
-    /// Size of a load: a torque, or a force.
-    LoadSize: Torque | Force;
     /// Stiffness of a joint coordinate: rotational, or linear of a prismatic joint.
     JointStiffness: RotationalStiffness | Stiffness;
+}
+
+/// Size of a load, whose kind the scene says.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct LoadSize;
+
+impl PhysicalQuantity for LoadSize {
+    const NAME: &'static str = "LoadSize";
+
+    fn kinds() -> Vec<Kind> {
+        vec![
+            Torque::kind(),
+            Force::kind(),
+            Stress::kind(),
+            ForceDensity::kind(),
+            ChargeDensity::kind(),
+        ]
+    }
 }
 
 /// A constant that an optimisation seeks, of the kind of its place in the scene.

@@ -7,7 +7,7 @@ mod sought_muscle;
 mod spring;
 mod tendon;
 
-pub use load::{Load, LoadPlace};
+pub use load::{BlockLoad, Faces, Load, LoadPlace};
 pub use muscle::capacitance;
 pub use spring::Spring;
 pub use tendon::Tendon;

@@ -142,7 +142,7 @@ impl Motion<'_> {
 
     /// Arrows of the loads.
     fn add_loads(&self, document: &mut Document) {
-        let arrows = LoadArrows::new(self.system, self.trajectory);
+        let arrows = LoadArrows::new(self.system, self.trajectory, self.skins);
         for (source, load) in arrows.loads() {
             let material = document.material(&load.name, style::muscle(source).0, 1.0);
             let places = self.each(|k| metres(&arrows.arrow(source, load, k)));

@@ -19,7 +19,7 @@ const POINTS: usize = 2000;
 pub(super) fn charts(run: &Run<'_>, content: &PageContent) -> Vec<Value> {
     let mut charts = Vec::new();
     if run.trajectory.times.len() > 1 && run.branch.is_none() {
-        for kind in [InputKind::Voltage, InputKind::Force, InputKind::Torque] {
+        for kind in InputKind::ALL {
             charts.extend(of_inputs(run, kind));
         }
         charts.extend(paths(run));
@@ -64,7 +64,7 @@ fn of_inputs(run: &Run<'_>, kind: InputKind) -> Option<Value> {
         json!({
             "title": if alone { "" } else { name },
             "x": axis("time [s]", Scale::Linear),
-            "y": axis(inputs::label(kind), Scale::Linear),
+            "y": axis(&inputs::label(kind), Scale::Linear),
             "series": group.iter().map(|one| series(one)).collect::<Vec<_>>(),
         })
     });
@@ -73,6 +73,9 @@ fn of_inputs(run: &Run<'_>, kind: InputKind) -> Option<Value> {
         InputKind::Voltage => "Voltages",
         InputKind::Force => "Forces",
         InputKind::Torque => "Torques",
+        InputKind::Traction => "Tractions and pressures",
+        InputKind::BodyForce => "Body forces",
+        InputKind::SurfaceCharge => "Surface charges",
     };
     (!panels.is_empty())
         .then(|| json!({ "title": title, "kind": shown, "time": true, "panels": panels }))

@@ -189,7 +189,7 @@ impl Stage<'_> {
 
     /// Arrows of the loads.
     fn loads(&self) -> Vec<Value> {
-        let arrows = LoadArrows::new(self.run.system, self.run.trajectory);
+        let arrows = LoadArrows::new(self.run.system, self.run.trajectory, self.run.skins);
         let line = |(source, load)| {
             let instants = self.instants.iter();
             let lines: Vec<_> = instants.map(|&k| arrows.arrow(source, load, k)).collect();

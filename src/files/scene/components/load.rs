@@ -3,46 +3,86 @@
 use crate::files::json::error::SceneError;
 use crate::files::json::scope::Scope;
 use crate::files::scene::names::{attachment, names};
-use crate::files::scene::point::PointSpec;
-use crate::files::scene::point::unit_axis;
-use crate::model::components::{Load, LoadPlace};
-use crate::model::system::Joint;
+use crate::files::scene::nodes::nodes;
+use crate::files::scene::point::{CornersSpec, PointSpec, unit_axis};
+use crate::files::scene::spec_solids::PlaneSpec;
+use crate::math::Vector;
+use crate::model::NO_CHARGE;
+use crate::model::components::{BlockLoad, Faces, Load, LoadPlace};
+use crate::model::system::{Joint, Solid, Support};
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
-/// A force at a point along a direction that does not turn, or a torque or force of a joint, such as that of a motor. A problem says how
-/// large it is.
+/// A load, whose size a problem gives or seeks: a force at a `point`, a torque or force of a `joint`, such as that of a motor, or a load
+/// of a `solid`.
 #[derive(Clone, Debug, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct LoadSpec {
     /// Name, unique among loads, muscles and blocks.
     pub name: String,
-    /// Point of a body at which a force acts, with `direction`; or give `joint`.
+    /// Point of a body at which a force acts, with `direction`; or give `joint` or `solid`.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub point: Option<PointSpec>,
-    /// Direction of the force in the ground frame; its length is ignored.
+    /// Direction of the force or traction in the ground frame, in the reference configuration where it `follows`; its length is ignored.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub direction: Option<[f64; 3]>,
     /// Name of a revolute joint, about whose axis a torque acts on the child, or of a prismatic one, along whose axis a force acts.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub joint: Option<String>,
+    /// Name of an elastic block, with `kind`.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub solid: Option<String>,
+    /// Kind of a load of a `solid`.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub kind: Option<BlockLoadKind>,
+    /// Face on which it acts.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub face: Option<String>,
+    /// Faces of the surface in a plane on which it acts.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub plane: Option<PlaneSpec>,
+    /// Faces of the surface in a box on which it acts.
+    #[serde(rename = "box", default, skip_serializing_if = "Option::is_none")]
+    pub cuboid: Option<CornersSpec>,
+    /// True if a force turns with its body, or a pressure acts on the deformed faces along their normals; where not written, a pressure does
+    /// and a force does not.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub follows: Option<bool>,
+}
+
+/// Kind of a load of an elastic block. Areas and volumes are those of the reference configuration but for a pressure that follows.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
+#[serde(rename_all = "snake_case")]
+pub enum BlockLoadKind {
+    /// Force for an area along `direction`.
+    Traction,
+    /// Force for an area against the outward normal.
+    Pressure,
+    /// Charge for an area.
+    SurfaceCharge,
+    /// Force for a volume along `direction`; it acts in the whole block.
+    BodyForce,
 }
 
 /// The load that is written.
 pub(crate) fn load(
     spec: &LoadSpec,
-    bodies: &[String],
-    joints: &[Joint],
+    (bodies, joints, solids): (&[String], &[Joint], &[Solid]),
     scope: &Scope<'_>,
 ) -> Result<Load, SceneError> {
     enum Written<'a> {
         Point(&'a PointSpec),
         Joint(&'a String),
+        Solid(&'a String),
     }
-    let on = match scope.exactly_one([
+    let written = scope.exactly_one([
         ("point", spec.point.as_ref().map(Written::Point)),
         ("joint", spec.joint.as_ref().map(Written::Joint)),
-    ])? {
+        ("solid", spec.solid.as_ref().map(Written::Solid)),
+    ])?;
+    let is_of_solid = matches!(written, Written::Solid(_));
+    spec.check_keys(is_of_solid, matches!(written, Written::Joint(_)), scope)?;
+    let on = match written {
         Written::Point(point) => {
             let place = scope.key("point");
             let at = attachment(&point.body, &point.at, bodies, &place)?;
@@ -50,18 +90,14 @@ pub(crate) fn load(
                 let found = "\"ground\", which no force moves";
                 return Err(place.key("body").wrong(found, "the name of a body"));
             }
-            let Some(direction) = &spec.direction else {
-                return Err(scope.wrong("no key \"direction\"", "the direction of the force"));
-            };
-            let direction = unit_axis(direction, &scope.key("direction"))?;
-            LoadPlace::Point { at, direction }
+            LoadPlace::Point {
+                at,
+                direction: spec.direction(scope)?,
+                follows: spec.follows.unwrap_or(false),
+            }
         }
         Written::Joint(name) => {
             let place = scope.key("joint");
-            if spec.direction.is_some() {
-                let expected = "no such key, as the axis of the joint is the direction";
-                return Err(scope.key("direction").wrong("\"direction\"", expected));
-            }
             let all = names(joints, |joint| &joint.name);
             let index = place.find(name, &all, "the name of a joint")?;
             if !joints[index].has_coordinate() {
@@ -70,9 +106,112 @@ pub(crate) fn load(
             }
             LoadPlace::Joint(index)
         }
+        Written::Solid(name) => {
+            let all = names(solids, |solid| &solid.name);
+            let place = scope.key("solid");
+            let block = place.find(name, &all, "the name of an elastic block")?;
+            let load = spec.of_solid(&solids[block], scope)?;
+            LoadPlace::Block { block, load }
+        }
     };
     Ok(Load {
         name: spec.name.clone(),
         on,
     })
+}
+
+impl LoadSpec {
+    /// Refuses keys that mean nothing where they stand.
+    fn check_keys(
+        &self,
+        is_of_solid: bool,
+        is_of_joint: bool,
+        scope: &Scope<'_>,
+    ) -> Result<(), SceneError> {
+        use BlockLoadKind::{BodyForce, Pressure, SurfaceCharge};
+        let no_direction = match self.kind {
+            _ if is_of_joint => Some("as the axis of the joint is the direction"),
+            Some(Pressure) => Some("as a pressure acts along the normal"),
+            Some(SurfaceCharge) => Some("as a charge has no direction"),
+            _ => None,
+        };
+        let no_kind = (!is_of_solid).then_some("as only a load of a \"solid\" has it");
+        let no_face = match self.kind {
+            Some(BodyForce) => Some("as a body force acts in the whole block"),
+            _ => no_kind,
+        };
+        let turns = !is_of_joint && matches!(self.kind, None | Some(Pressure));
+        let not_following = (!turns).then_some("as only a force at a point and a pressure follow");
+        let all = [
+            ("direction", self.direction.is_some(), no_direction),
+            ("kind", self.kind.is_some(), no_kind),
+            ("face", self.face.is_some(), no_face),
+            ("plane", self.plane.is_some(), no_face),
+            ("box", self.cuboid.is_some(), no_face),
+            ("follows", self.follows.is_some(), not_following),
+        ];
+        for (key, is_written, why) in all {
+            if let (true, Some(why)) = (is_written, why) {
+                let expected = format!("no such key, {why}");
+                return Err(scope.key(key).wrong(format!("{key:?}"), expected));
+            }
+        }
+        Ok(())
+    }
+
+    fn direction(&self, scope: &Scope<'_>) -> Result<Vector, SceneError> {
+        let missing = || scope.wrong("no key \"direction\"", "the direction of the force");
+        let direction = self.direction.as_ref().ok_or_else(missing)?;
+        unit_axis(direction, &scope.key("direction"))
+    }
+
+    /// The load of a block.
+    fn of_solid(&self, solid: &Solid, scope: &Scope<'_>) -> Result<BlockLoad, SceneError> {
+        let expected = "\"traction\", \"pressure\", \"surface_charge\" or \"body_force\"";
+        let missing = || scope.wrong("no key \"kind\"", expected);
+        Ok(match self.kind.ok_or_else(missing)? {
+            BlockLoadKind::Traction => {
+                BlockLoad::Traction(self.faces(solid, scope)?, self.direction(scope)?)
+            }
+            BlockLoadKind::Pressure => BlockLoad::Pressure {
+                faces: self.faces(solid, scope)?,
+                follows: self.follows.unwrap_or(true),
+            },
+            BlockLoadKind::SurfaceCharge => {
+                let faces = self.faces(solid, scope)?;
+                if !solid.takes_charge(&faces) {
+                    return Err(scope.wrong(NO_CHARGE[0], NO_CHARGE[1]));
+                }
+                BlockLoad::Charge(faces)
+            }
+            BlockLoadKind::BodyForce => BlockLoad::BodyForce(self.direction(scope)?),
+        })
+    }
+
+    /// Faces of the surface all of whose nodes lie in the place that is written; a force on them moves a node.
+    fn faces(&self, solid: &Solid, scope: &Scope<'_>) -> Result<Faces, SceneError> {
+        let place = (
+            self.face.as_ref(),
+            self.plane.as_ref(),
+            self.cuboid.as_ref(),
+        );
+        let owner = format!("load {:?}", self.name);
+        let faces = solid
+            .mesh
+            .faces_of(&nodes(&owner, place, &solid.mesh, scope)?);
+        if faces.is_empty() {
+            let found = format!("{owner} where no face of an element lies on the surface");
+            return Err(scope.wrong(found, "a part of the surface of the block"));
+        }
+        let is_held = |support: &Support, node: &usize| {
+            support.held == [true; 3] && support.nodes.binary_search(node).is_ok()
+        };
+        let is_held = |node: &usize| solid.supports.iter().any(|s| is_held(s, node));
+        let is_force = self.kind != Some(BlockLoadKind::SurfaceCharge);
+        if is_force && faces.iter().flatten().all(is_held) {
+            let found = format!("{owner} on nodes that are all held");
+            return Err(scope.wrong(found, "a part of the surface that moves"));
+        }
+        Ok(faces)
+    }
 }
