@@ -10,7 +10,7 @@ use nalgebra::SVector;
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct DeadLoad {
     /// Force w of a load of one.
-    pub direction: Vector,
+    pub force: Vector,
 }
 
 impl Energy<4> for DeadLoad {
@@ -23,7 +23,7 @@ impl Energy<4> for DeadLoad {
     }
 
     fn at<const ORDER: usize>(&self, p: &SVector<f64, 4>, w: &SVector<f64, 4>) -> Jet<4, ORDER> {
-        let component = |i: usize| Jet::argument(i, p, w) * -self.direction[i];
+        let component = |i: usize| Jet::argument(i, p, w) * -self.force[i];
         (component(0) + component(1) + component(2)) * Jet::argument(3, p, w)
     }
 }

@@ -50,7 +50,7 @@ pub trait Energy<const M: usize>: Send + Sync {
     const DEGREE: usize = usize::MAX;
 
     /// Number of leading vectors that are virtual displacements: 0 for a potential; otherwise the scalar is a virtual work
-    /// δx·f, linear in them, whose scalar arguments are sought parameters.
+    /// δx·f, linear in them, whose scalar arguments are inputs or sought parameters.
     const VIRTUAL: usize = 0;
 
     /// True if a virtual work is that of loads, which supply energy; otherwise its forces dissipate.

@@ -30,7 +30,7 @@ pub trait Kernel: Debug + Send + Sync + 'static {
     const DEGREE: usize = usize::MAX;
 
     /// Number of leading arguments that are virtual displacements: 0 for an energy; otherwise E is linear in them, and its scalars
-    /// have no equations: they are parameters.
+    /// have no equations: they are inputs or parameters.
     const VIRTUAL: usize = 0;
 
     /// True if a virtual work is that of loads, which supply energy; otherwise its forces dissipate.

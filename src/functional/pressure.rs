@@ -10,6 +10,7 @@
 use crate::functional::finite_elements::middle;
 use crate::functional::{Kernel, Order, Sample, Scatter, Stencil, VectorArg};
 use crate::math::{Derivatives, Matrix, Vector};
+use crate::mesh::CORNERS;
 
 /// One face under a pressure.
 #[derive(Clone, Debug)]
@@ -24,9 +25,6 @@ pub struct PressureFace {
 #[derive(Debug)]
 pub enum PressureFaces {}
 
-/// Corners of the square.
-const CORNERS: [[f64; 2]; 4] = [[-1.0, -1.0], [1.0, -1.0], [1.0, 1.0], [-1.0, 1.0]];
-
 /// The table A.
 const TABLE: [[[f64; 4]; 4]; 4] = {
     let mut table = [[[0.0; 4]; 4]; 4];
@@ -39,7 +37,7 @@ const TABLE: [[[f64; 4]; 4]; 4] = {
     table
 };
 
-/// ∫ N_a N_b,ξ N_c,η dξ dη.
+/// ∫ N_a N_b,ξ N_c,η dξ dη; the corners of the square are the first ones of the cube.
 const fn product(a: usize, b: usize, c: usize) -> f64 {
     let [along, across] = [
         CORNERS[a][0] * CORNERS[c][0] / 3.0,

@@ -67,14 +67,25 @@ impl Part for Tendon {
 impl Load {
     /// A force at a point of a body in mm, along a direction that does not turn.
     pub fn force(body: Handle<Body>, at: Vector3<f64>, direction: Vector3<f64>) -> Self {
-        Self {
-            name: String::new(),
-            on: LoadPlace::Point {
-                at: attachment(body, at),
-                direction: direction.normalize(),
-                follows: false,
-            },
-        }
+        Self::at_point(body, at, direction, false)
+    }
+
+    /// A force at a point of a body in mm, along a direction that turns with the body.
+    pub fn following_force(body: Handle<Body>, at: Vector3<f64>, direction: Vector3<f64>) -> Self {
+        Self::at_point(body, at, direction, true)
+    }
+
+    fn at_point(
+        body: Handle<Body>,
+        at: Vector3<f64>,
+        direction: Vector3<f64>,
+        follows: bool,
+    ) -> Self {
+        Self::on(LoadPlace::Point {
+            at: attachment(body, at),
+            direction: direction.normalize(),
+            follows,
+        })
     }
 
     /// A traction on faces of a solid (see [`Mesh::faces_of`](crate::mesh::Mesh::faces_of)), along a direction that does not turn.
@@ -85,6 +96,12 @@ impl Load {
     /// A pressure on faces of a solid, which follows them as they deform.
     pub fn pressure(solid: Handle<Solid>, faces: Faces) -> Self {
         let follows = true;
+        Self::on_block(solid, BlockLoad::Pressure { faces, follows })
+    }
+
+    /// A pressure on faces of a solid as they are in the reference configuration.
+    pub fn dead_pressure(solid: Handle<Solid>, faces: Faces) -> Self {
+        let follows = false;
         Self::on_block(solid, BlockLoad::Pressure { faces, follows })
     }
 
@@ -100,33 +117,17 @@ impl Load {
 
     fn on_block(solid: Handle<Solid>, load: BlockLoad) -> Self {
         let block = solid.index();
-        Self {
-            name: String::new(),
-            on: LoadPlace::Block { block, load },
-        }
+        Self::on(LoadPlace::Block { block, load })
     }
 
-    /// The same, which turns with its body, or follows its faces; others cannot.
-    #[must_use]
-    pub fn following(self, does: bool) -> Self {
-        let mut load = self;
-        match &mut load.on {
-            LoadPlace::Point { follows, .. }
-            | LoadPlace::Block {
-                load: BlockLoad::Pressure { follows, .. },
-                ..
-            } => *follows = does,
-            LoadPlace::Joint(_) | LoadPlace::Block { .. } => {}
-        }
-        load
+    fn on(on: LoadPlace) -> Self {
+        let name = String::new();
+        Self { name, on }
     }
 
     /// A motor: a torque about the axis of a revolute joint, or a force along that of a prismatic one, from the parent on the child.
     pub fn motor(joint: Handle<Joint>) -> Self {
-        Self {
-            name: String::new(),
-            on: LoadPlace::Joint(joint.index()),
-        }
+        Self::on(LoadPlace::Joint(joint.index()))
     }
 
     /// A name of its own.

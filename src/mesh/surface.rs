@@ -1,11 +1,8 @@
 //! Surface of a mesh: faces of the boundary whose nodes belong to a set, and the integrals of shape functions over them.
 
-use super::Mesh;
+use super::{CORNERS, Mesh};
 use nalgebra::Vector3;
 use std::collections::{BTreeMap, HashSet};
-
-/// Corners of the square that a face is mapped from.
-const CORNERS: [[f64; 2]; 4] = [[-1.0, -1.0], [1.0, -1.0], [1.0, 1.0], [-1.0, 1.0]];
 
 impl Mesh {
     /// Faces of the boundary all of whose nodes are among these, counter-clockwise seen from outside.
@@ -37,10 +34,12 @@ impl Mesh {
     /// Hands over node, shape function and x_,ξ × x_,η of each of 2 × 2 Gauss points, which weigh one.
     fn integrate(&self, faces: &[[usize; 4]], mut add: impl FnMut(usize, f64, Vector3<f64>)) {
         for face in faces {
-            for point in CORNERS.map(|corner| corner.map(|c| c / 3.0_f64.sqrt())) {
-                let factors = CORNERS.map(|[a, b]| [1.0 + a * point[0], 1.0 + b * point[1]]);
+            // The corners of the square are the first ones of the cube.
+            let corners: [[f64; 2]; 4] = std::array::from_fn(|a| [CORNERS[a][0], CORNERS[a][1]]);
+            for point in corners.map(|corner| corner.map(|c| c / 3.0_f64.sqrt())) {
+                let factors = corners.map(|[a, b]| [1.0 + a * point[0], 1.0 + b * point[1]]);
                 let along = |axis: usize| -> Vector3<f64> {
-                    let corners = CORNERS.iter().zip(&factors).zip(face);
+                    let corners = corners.iter().zip(&factors).zip(face);
                     corners
                         .map(|((corner, f), &n)| {
                             self.nodes[n] * (0.25 * corner[axis] * f[1 - axis])

@@ -141,15 +141,13 @@ impl Solids {
 
     /// Mass at each vector, as gravity sees it.
     fn loads(&self) -> Vec<(usize, f64)> {
-        let mut sums: BTreeMap<usize, f64> = BTreeMap::new();
-        for (c, e) in self.elements() {
-            let Some(density) = c.material(e).density else {
-                continue;
-            };
-            for (node, part) in c.nodes(e).into_iter().zip(c.shapes[e].loads()) {
-                *sums.entry(node).or_default() += density * part;
-            }
-        }
-        sums.into_iter().collect()
+        let moving = self.list.iter().filter(|block| !block.is_immobile);
+        let masses = |block: &SolidBlock| {
+            let masses = block.integrals(|material| material.density).into_iter();
+            masses
+                .map(|(node, mass)| (block.vectors[node], mass))
+                .collect::<Vec<_>>()
+        };
+        moving.flat_map(masses).collect()
     }
 }

@@ -10,6 +10,7 @@ use crate::model::components::LoadPlace;
 use crate::model::constant::Constant;
 use crate::model::field_extent;
 use crate::model::system::System;
+use std::collections::BTreeSet;
 
 /// Parts of a scene that rest all the time.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
@@ -108,7 +109,6 @@ impl Parts {
         analysis: &Analysis,
     ) -> Vec<usize> {
         let weighs = system.gravity.is_some();
-        let charged = |block| field_extent::charged(scene, block, &analysis.zero_inputs);
         let mut moved: Vec<usize> = Vec::new();
         for (index, component) in system.components.iter().enumerate() {
             // Springs come first.
@@ -133,7 +133,7 @@ impl Parts {
             if is_heavy
                 || starts
                 || initially_moving.solids.contains(&s)
-                || field_extent::dielectric(solid, &charged(s)).contains(&true)
+                || field_extent::dielectric(solid, &BTreeSet::new()).contains(&true)
             {
                 moved.push(self.solid(s));
             }

@@ -82,9 +82,9 @@ struct Loaded<'l, 't> {
 
 impl Loaded<'_, '_> {
     /// A force w on a vector for a load of one.
-    fn pull(&mut self, vector: usize, direction: Vector) {
+    fn pull(&mut self, vector: usize, force: Vector) {
         let element = Element {
-            energy: DeadLoad { direction },
+            energy: DeadLoad { force },
             vectors: [mid(vector)],
             scalars: [self.size],
         };
@@ -141,7 +141,7 @@ impl Loaded<'_, '_> {
                 }
             }
             BlockLoad::BodyForce(direction) => {
-                let volumes = block.volumes();
+                let volumes = block.integrals(|_| Some(1.0));
                 self.nodes(
                     block,
                     volumes.into_iter().map(|(n, part)| (n, direction * part)),

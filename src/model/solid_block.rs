@@ -36,12 +36,18 @@ impl SolidBlock {
         self.solid.mesh.hexahedra[element].map(|node| self.vectors[node])
     }
 
-    /// The integral of the shape function of each node in mm³.
-    pub(super) fn volumes(&self) -> BTreeMap<usize, f64> {
+    /// The integral of the shape function of each node in mm³ times a density of the material, over elements that have one.
+    pub(super) fn integrals(
+        &self,
+        density: impl Fn(&Material) -> Option<f64>,
+    ) -> BTreeMap<usize, f64> {
         let mut sums = BTreeMap::new();
-        for (nodes, shape) in self.solid.mesh.hexahedra.iter().zip(&self.shapes) {
-            for (&node, part) in nodes.iter().zip(shape.loads()) {
-                *sums.entry(node).or_default() += part;
+        for (e, nodes) in self.solid.mesh.hexahedra.iter().enumerate() {
+            let Some(density) = density(self.material(e)) else {
+                continue;
+            };
+            for (&node, part) in nodes.iter().zip(self.shapes[e].loads()) {
+                *sums.entry(node).or_default() += density * part;
             }
         }
         sums

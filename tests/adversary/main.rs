@@ -13,11 +13,13 @@ mod verdicts;
 
 use std::time::{Duration, Instant};
 
-/// Calls a function with `count` seeds from `first` on; with fresh ones for as long as the environment asks for.
-fn seeds(first: u64, count: u64, mut each: impl FnMut(u64)) {
+/// Calls a function with `count` seeds from `first` on and with those that found an error before; with fresh ones for as long as the
+/// environment asks for.
+fn seeds(first: u64, count: u64, found: &[u64], mut each: impl FnMut(u64)) {
     let asked = |name: &str| std::env::var(name).ok()?.parse::<u64>().ok();
     let Some(fresh) = asked("PROBOSCIS_SEED") else {
-        (first..first + count).for_each(each);
+        let all = (first..first + count).chain(found.iter().copied());
+        all.for_each(each);
         return;
     };
     let end = Instant::now() + Duration::from_secs(asked("PROBOSCIS_SECONDS").unwrap_or(60));

@@ -51,7 +51,7 @@ fn a_state_of_rest_is_the_same_in_every_form_of_a_robot() {
     let identity = Matrix3::identity();
     let (mut found, mut none, mut moved) = (0, 0, 0);
     let mut wrong: BTreeMap<&str, Vec<String>> = BTreeMap::new();
-    seeds(1, 60, |seed| {
+    seeds(1, 60, &[], |seed| {
         let parts = Parts {
             weight: seed % 3 != 0,
             ball_joints: seed % 2 == 0,

@@ -14,7 +14,7 @@ use std::ops::ControlFlow;
 fn the_error_of_an_optimum_is_at_least_half_of_the_true_one() {
     let (mut told, mut refused, mut unsolved) = (0, 0, 0);
     let mut lowest = f64::INFINITY;
-    seeds(5000, 24, |seed| {
+    seeds(5000, 24, &[1_795_621_320], |seed| {
         let parts = Parts {
             weight: seed % 2 == 0,
             ball_joints: false,

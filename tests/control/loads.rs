@@ -104,9 +104,17 @@ fn a_pendulum_swings_up_against_a_wind_within_the_bounds_of_its_motor() {
     }
 }
 
+/// One message says where a changed problem is wrong, and what is expected.
+fn assert_refused(name: &str, change: &str, place: &str, words: &str) {
+    let path = Path::new(env!("CARGO_MANIFEST_DIR")).join(format!("problems/{name}.json"));
+    let said = read_problem(&path, &[change.to_owned()])
+        .unwrap_err()
+        .to_string();
+    assert!(said.contains(place) && said.contains(words), "{said}");
+}
+
 #[test]
 fn a_wrong_load_has_one_message_with_its_place() {
-    let path = Path::new(env!("CARGO_MANIFEST_DIR")).join("problems/swing_up.json");
     for (change, place, words) in [
         (
             r#"control.load_bounds={"moter": ["0 N m", "1 N m"]}"#,
@@ -144,15 +152,12 @@ fn a_wrong_load_has_one_message_with_its_place() {
             "no such key",
         ),
     ] {
-        let error = read_problem(&path, &[change.to_owned()]).unwrap_err();
-        let said = error.to_string();
-        assert!(said.contains(place) && said.contains(words), "{said}");
+        assert_refused("swing_up", change, place, words);
     }
 }
 
 #[test]
 fn a_wrong_load_of_a_block_has_one_message_with_its_place() {
-    let path = Path::new(env!("CARGO_MANIFEST_DIR")).join("problems/pressed_beam.json");
     for (load, place, words) in [
         (r#""kind": "pressure""#, "loads[0]", "exactly one of"),
         (r#""face": "z_min""#, "loads[0]", "\"surface_charge\""),
@@ -193,16 +198,10 @@ fn a_wrong_load_of_a_block_has_one_message_with_its_place() {
         ),
     ] {
         let change = format!(r#"scene.loads=[{{"name": "air", "solid": "beam", {load}}}]"#);
-        let error = read_problem(&path, &[change]).unwrap_err();
-        let said = error.to_string();
-        assert!(said.contains(place) && said.contains(words), "{said}");
+        assert_refused("pressed_beam", &change, place, words);
     }
-    let change = r#"simulate.loads={"air": "1 N"}"#.to_owned();
-    let said = read_problem(&path, &[change]).unwrap_err().to_string();
-    assert!(
-        said.contains("simulate.loads.air") && said.contains("a stress"),
-        "{said}"
-    );
+    let change = r#"simulate.loads={"air": "1 N"}"#;
+    assert_refused("pressed_beam", change, "simulate.loads.air", "a stress");
 }
 
 /// A pressure that is sought brings the tip of a beam to a place at rest.

@@ -6,8 +6,8 @@ use proboscis::math::Vector;
 
 #[test]
 fn loads_have_the_derivatives_of_naive_formulas() {
-    let direction = Vector::new(0.3, -0.7, 0.9);
-    law("dead load", &DeadLoad { direction }, 0.2, 1.1);
+    let force = Vector::new(0.3, -0.7, 0.9);
+    law("dead load", &DeadLoad { force }, 0.2, 1.1);
     law("following force", &FollowingForce, 0.2, 1.1);
     law("surface charge", &SurfaceCharge { weight: 0.7 }, 0.2, 1.1);
 }

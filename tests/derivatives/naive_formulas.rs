@@ -147,8 +147,8 @@ impl Formula<4> for DeadLoad {
     const VECTORS: usize = 1;
 
     fn naive<D: DualNum<f64> + Copy>(&self, p: &[D; 4]) -> D {
-        let direction = three(self.direction.as_slice(), 0).map(D::from);
-        -polarised(direction, three(p, 0)) * p[3]
+        let force = three(self.force.as_slice(), 0).map(D::from);
+        -polarised(force, three(p, 0)) * p[3]
     }
 }
 

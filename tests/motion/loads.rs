@@ -56,6 +56,20 @@ fn at_centre(direction: Vector3<f64>) -> LoadPlace {
     }
 }
 
+/// A force across the hinge at the centre of mass that turns with it.
+fn jet() -> System {
+    let LoadPlace::Point { at, direction, .. } = at_centre(Vector3::y()) else {
+        unreachable!("a point")
+    };
+    let follows = true;
+    let load = LoadPlace::Point {
+        at,
+        direction,
+        follows,
+    };
+    on(hinge(), None, load)
+}
+
 /// A motion from rest under a load.
 fn task(load: &Signal, step: f64, coordinates: Coordinates) -> Simulation {
     Simulation {
@@ -178,19 +192,7 @@ fn a_force_that_follows_turns_a_hinge_like_a_torque() {
     let (force, arm, moment) = (0.05, 20.0, 10.0 * 400.0 + 600.0);
     let exact = 0.5 * force * arm / moment * DURATION * DURATION;
     assert!(exact > 4.0);
-    let at = Attachment {
-        body: Some(0),
-        at: Vector3::new(arm, 0.0, 0.0),
-    };
-    let system = on(
-        hinge(),
-        None,
-        LoadPlace::Point {
-            at,
-            direction: Vector3::y(),
-            follows: true,
-        },
-    );
+    let system = jet();
     for coordinates in BOTH {
         let run = |h: f64| moved(&system, &Signal::Constant(force), h, coordinates);
         let errors = [2.0, 1.0].map(|h| (run(h).0 - exact).abs());
@@ -214,19 +216,7 @@ fn a_force_that_follows_turns_a_hinge_like_a_torque() {
 
 #[test]
 fn every_method_turns_a_hinge_by_a_force_that_follows() {
-    let at = Attachment {
-        body: Some(0),
-        at: Vector3::new(20.0, 0.0, 0.0),
-    };
-    let system = on(
-        hinge(),
-        None,
-        LoadPlace::Point {
-            at,
-            direction: Vector3::y(),
-            follows: true,
-        },
-    );
+    let system = jet();
     let exact = 0.5 * 0.05 * 20.0 / 4600.0 * DURATION * DURATION;
     for integrator in [
         Integrator::Galerkin { degree: 2 },
