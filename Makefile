@@ -53,7 +53,7 @@ build: install-deps
 	@$(CARGO) build --release --locked
 
 test: install-deps
-	@$(CARGO) test --locked
+	@$(CARGO) test --locked $(PACKAGES)
 
 test-python: install-deps
 	@python/test
