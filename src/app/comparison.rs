@@ -55,6 +55,7 @@ pub(super) fn earlier(model: &Model, path: &Path) -> Option<Trajectory> {
         times: solved.times,
         poses: solved.poses,
         voltages: solved.voltages,
+        ..Trajectory::default()
     })
 }
 

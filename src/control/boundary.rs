@@ -74,7 +74,7 @@ impl BoundaryConditions {
         let mut model = Model::of_presolved(system.clone(), analysis, presolved)?;
         let (start, of_start) = start_of(&model, &control.start)?;
         goal_rows::leave_out_constant(&mut model, &limits, &start.z)?;
-        let (given, of_goal) = coordinates_at_goal(&model, &control.goal)?;
+        let (given, of_goal) = coordinates_at_goal(&model, control)?;
         if let Some(z) = given.iter().copied().collect::<Option<Vec<f64>>>() {
             check_muscles(&model, &z, "goal")?;
         }
@@ -158,10 +158,11 @@ fn start_of(
 /// Coordinates that a goal gives, and its equilibrium, where it is one.
 fn coordinates_at_goal(
     model: &Model,
-    goal: &BoundaryState,
+    control: &Control,
 ) -> Result<(Vec<Option<f64>>, Option<Equilibrium>), BoundaryError> {
     let n = model.coordinate_count();
     let redundant = model.coordinates == Coordinates::Redundant;
+    let goal = &control.goal;
     let mut given = vec![None; n];
     match goal {
         BoundaryState::RestAtVoltages(voltages, of) => {
@@ -173,7 +174,15 @@ fn coordinates_at_goal(
             for (given, value) in given.iter_mut().zip(&rest.z[..reached]) {
                 *given = Some(*value);
             }
-            forget(model, &mut given);
+            // A voltage that is sought charges its muscle in finite time, unless it rests at a bound; nothing sets at once what others
+            // remember.
+            let [low, high] = control.voltage_bounds;
+            let is_between = |m: usize| low < voltages[m] && voltages[m] < high;
+            let is_set = |i: usize| {
+                let muscle = model.charge(i);
+                muscle.is_some_and(|m| !control.is_given(m) && is_between(m))
+            };
+            forget(model, &mut given, is_set);
             return Ok((given, Some(rest)));
         }
         BoundaryState::JointAngles { angles, .. } if !redundant => {
@@ -189,17 +198,17 @@ fn coordinates_at_goal(
                 .collect();
             let z = model.coordinates_at(&joints);
             given = z[..n].iter().copied().map(Some).collect();
-            forget(model, &mut given);
+            forget(model, &mut given, |_| false);
         }
         _ => {}
     }
     Ok((given, None))
 }
 
-/// Prescribes nothing of what muscles remember: no voltage sets that at once.
-fn forget(model: &Model, given: &mut [Option<f64>]) {
+/// Prescribes nothing of what muscles remember, unless it is set.
+fn forget(model: &Model, given: &mut [Option<f64>], is_set: impl Fn(usize) -> bool) {
     for (i, given) in given.iter_mut().enumerate() {
-        if model.is_memory(i) {
+        if model.is_memory(i) && !is_set(i) {
             *given = None;
         }
     }

@@ -7,13 +7,19 @@
 //! electrical energy  V_k (C_{k+1} V_k − C_k V_{k−1}),     mechanical work  ½ V_k² (C_{k+1} − C_k).
 //! ```
 //!
+//! Behind a circuit the charge Q is known at the instants. The source supplies its energy, of which the resistor takes a part:
+//!
+//! ```text
+//! electrical energy  V_k (Q_{k+1} − Q_k),     mechanical work  −½ (½ (Q_k + Q_{k+1}))² (1/C_{k+1} − 1/C_k).
+//! ```
+//!
 //! The last row of a motion whose voltages afterwards are known includes the switch to them. Both belong to the instants at the ends of an interval. The potentials within finite elements are known in the middle of intervals
 //! only, so sources that drive finite elements are not listed.
 
 use crate::dynamics::trajectory::{Column, Trajectory};
-use crate::energy::Capacitance;
 use crate::model::System;
 use crate::model::components::capacitance;
+use crate::model::system::InputKind;
 
 /// Energies that all sources exchange with a motion.
 #[derive(Clone, Debug, Default, PartialEq)]
@@ -54,13 +60,18 @@ impl EnergyExchange {
             }
             let muscle = system.muscles.get(source);
             if named.is_load() {
+                out.is_complete &= named.kind != InputKind::Charge;
                 continue;
             }
             match muscle.and_then(capacitance) {
                 Some(of) => {
                     let lengths = lengths(system, motion, source);
-                    let [electrical_energy, mechanical_work] =
-                        sums(&of, &lengths, (motion, source), [before, after]);
+                    let capacitances: Vec<f64> = lengths.iter().map(|&l| of.at_length(l)).collect();
+                    let voltages = motion.voltages.iter().map(|row| row[source]);
+                    let [electrical_energy, mechanical_work] = match motion.charges.get(&source) {
+                        Some(charges) => through_circuit(&capacitances, charges, voltages),
+                        None => sums(&capacitances, voltages, [before, after]),
+                    };
                     out.sources.push(SourceEnergies {
                         source,
                         name: named.name,
@@ -123,17 +134,14 @@ fn lengths(system: &System, motion: &Trajectory, muscle: usize) -> Vec<f64> {
 
 /// Electrical energy and mechanical work from the start to each instant.
 fn sums(
-    capacitance: &Capacitance,
-    lengths: &[f64],
-    (motion, source): (&Trajectory, usize),
+    capacitances: &[f64],
+    voltages: impl Iterator<Item = f64>,
     [before, after]: [Option<f64>; 2],
 ) -> [Vec<f64>; 2] {
     let mut sums = [vec![0.0], vec![0.0]];
     let [mut electrical, mut mechanical] = [0.0; 2];
     let mut last = before.unwrap_or(0.0);
-    let capacitances: Vec<f64> = lengths.iter().map(|&l| capacitance.at_length(l)).collect();
-    for (c, voltages) in capacitances.windows(2).zip(&motion.voltages) {
-        let voltage = voltages[source];
+    for (c, voltage) in capacitances.windows(2).zip(voltages) {
         electrical += voltage * (c[1] * voltage - c[0] * last);
         mechanical += 0.5 * voltage * voltage * (c[1] - c[0]);
         last = voltage;
@@ -142,6 +150,25 @@ fn sums(
     }
     if let (Some(energy), Some(c), Some(after)) = (sums[0].last_mut(), capacitances.last(), after) {
         *energy += c * after * (after - last);
+    }
+    sums
+}
+
+/// The same of a muscle behind a circuit with these charges at the instants.
+fn through_circuit(
+    capacitances: &[f64],
+    charges: &[f64],
+    voltages: impl Iterator<Item = f64>,
+) -> [Vec<f64>; 2] {
+    let mut sums = [vec![0.0], vec![0.0]];
+    let [mut electrical, mut mechanical] = [0.0; 2];
+    let ends = capacitances.windows(2).zip(charges.windows(2));
+    for ((c, q), voltage) in ends.zip(voltages) {
+        let middle = 0.5 * (q[0] + q[1]);
+        electrical += voltage * (q[1] - q[0]);
+        mechanical -= 0.5 * middle * middle * (1.0 / c[1] - 1.0 / c[0]);
+        sums[0].push(electrical);
+        sums[1].push(mechanical);
     }
     sums
 }

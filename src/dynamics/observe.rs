@@ -229,6 +229,9 @@ impl<'m> Observer<'m> {
         for name in self.model.viscous_stretches() {
             add(name, "");
         }
+        for name in self.model.electrodes() {
+            add(name, "V");
+        }
         columns
     }
 
@@ -292,6 +295,7 @@ impl<'m> Observer<'m> {
         }
         let viscous = model.viscous_coordinates();
         row.extend(viscous.map(|coordinate| self.here.z[coordinate].exp()));
+        row.extend(model.electrode_voltages(&self.here, scalars));
         std::mem::swap(&mut self.before, &mut self.here);
         Row {
             values: row,

@@ -1,6 +1,7 @@
 //! Trajectory of a motion: instants, joint coordinates, poses, places of markers, voltages and observed columns.
 
 use nalgebra::Vector3;
+use std::collections::BTreeMap;
 
 use crate::dynamics::discrete_trajectory::DiscreteTrajectory;
 use crate::kinematics::Pose;
@@ -20,6 +21,8 @@ pub struct Trajectory {
     pub marks: Vec<Vec<Vector3<f64>>>,
     /// Voltages in V and loads in N or N mm, per interval and source.
     pub voltages: Vec<Vec<f64>>,
+    /// Charge in mC of each muscle behind a circuit, per instant.
+    pub charges: BTreeMap<usize, Vec<f64>>,
 }
 
 impl Trajectory {
@@ -29,6 +32,7 @@ impl Trajectory {
         let mut near = vec![0.0; model.joint_readings.len()];
         let mut trajectory = Self {
             times: discrete.times.clone(),
+            charges: model.circuit_charges(&discrete.z),
             ..Self::default()
         };
         for z in &discrete.z {

@@ -20,7 +20,7 @@ impl Capacitance {
     }
 
     /// C as a function of I: value and three derivatives.
-    fn of_squared_stretch(&self, i: f64) -> [f64; 4] {
+    pub(super) fn of_squared_stretch(&self, i: f64) -> [f64; 4] {
         self.cell.electric_of_squared_stretch(i).map(|e| -2.0 * e)
     }
 }

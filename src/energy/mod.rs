@@ -3,6 +3,7 @@
 mod affine;
 mod along_span;
 mod capacitance;
+mod charge;
 mod constraint;
 mod damper;
 mod gravity;
@@ -24,6 +25,7 @@ mod viscosity;
 pub use affine::Affine;
 pub use along_span::AlongSpan;
 pub use capacitance::Capacitance;
+pub use charge::{FlowingCharge, GivenCharge};
 pub use constraint::{Coincidence, Orthogonality};
 pub use damper::{AngularDamper, CoordinateDamper, LinearDamper};
 pub use gravity::Gravity;

@@ -20,7 +20,7 @@ pub struct ElasticCell {
 impl ElasticCell {
     /// μ/2 V₀ (2/√I + I − 3) as a function of I: value and three derivatives.
     #[inline(always)]
-    fn of_squared_stretch(&self, i: f64) -> [f64; 4] {
+    pub(super) fn of_squared_stretch(&self, i: f64) -> [f64; 4] {
         let c = 0.5 * self.shear_modulus * self.volume;
         let r = 1.0 / i;
         let s = r.sqrt();

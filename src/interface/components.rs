@@ -5,7 +5,7 @@ use crate::interface::parts::attachment;
 use crate::model::Component;
 use crate::model::System;
 use crate::model::components::{BlockLoad, Faces, Load, LoadPlace, Other, Spring, Tendon};
-use crate::model::system::{Body, Joint, Solid};
+use crate::model::system::{Body, Joint, Muscle, Solid};
 use nalgebra::Vector3;
 use std::sync::Arc;
 
@@ -128,6 +128,11 @@ impl Load {
     /// A motor: a torque about the axis of a revolute joint, or a force along that of a prismatic one, from the parent on the child.
     pub fn motor(joint: Handle<Joint>) -> Self {
         Self::on(LoadPlace::Joint(joint.index()))
+    }
+
+    /// The charge of a lumped muscle, in place of a voltage.
+    pub fn charge_of(muscle: Handle<Muscle>) -> Self {
+        Self::on(LoadPlace::Muscle(muscle.index()))
     }
 
     /// A name of its own.

@@ -4,7 +4,7 @@ use crate::interface::handle::{Carrier, Handle, Part, named};
 use crate::mesh::Mesh;
 use crate::model::System;
 use crate::model::system::{
-    Attachment, Body, Discretisation, Electrode, ElementKind, Fidelity, Joint, JointKind,
+    Attachment, Body, Circuit, Discretisation, Electrode, ElementKind, Fidelity, Joint, JointKind,
     JointSpring, JointStops, Marker, Material, Muscle, Potential, Shape, Solid, Support,
     directors_along,
 };
@@ -167,6 +167,7 @@ impl Muscle {
             layer_thickness: 0.0,
             material: *material,
             section_inertia: false,
+            circuit: None,
             fidelity: Fidelity::Lumped,
         }
     }
@@ -190,6 +191,12 @@ impl Muscle {
             cross_section,
             ..self
         }
+    }
+
+    /// A resistance in Ω between its source and its electrodes.
+    pub fn resistance(self, resistance: f64) -> Self {
+        let circuit = Some(Circuit { resistance });
+        Self { circuit, ..self }
     }
 
     /// Thickness of one layer at rest in mm.

@@ -264,6 +264,7 @@ impl Construction<'_> {
         loads::build(
             system,
             (self.presolved, self.internals, self.blocks),
+            spans,
             &mut terms,
         );
         system.components.build(&mut terms);

@@ -1,8 +1,8 @@
 //! Validation of a system that is made by a program: the checks that a reader of files makes entry by entry.
 
 use crate::math::Vector;
-use crate::model::components::{BlockLoad, LoadPlace};
-use crate::model::system::{Attachment, Joint, JointKind, Material, System};
+use crate::model::components::{BlockLoad, LoadPlace, capacitance};
+use crate::model::system::{Attachment, Joint, JointKind, Material, Muscle, System};
 use std::collections::BTreeSet;
 use thiserror::Error;
 
@@ -128,6 +128,18 @@ impl System {
                         )?,
                         BlockLoad::Pressure { .. } => {}
                     }
+                }
+                LoadPlace::Muscle(muscle) => {
+                    let named = self.muscles.get(*muscle);
+                    let all = self.components.loads.iter();
+                    let same = all.filter(|other| other.on == load.on).count();
+                    let is_sound = |m: &Muscle| capacitance(m).is_some() && m.circuit.is_none();
+                    require(
+                        named.is_some_and(is_sound) && same == 1,
+                        &load.name,
+                        || NO_MUSCLE_CHARGE[0].to_owned(),
+                        NO_MUSCLE_CHARGE[1],
+                    )?;
                 }
                 LoadPlace::Joint(joint) => {
                     let has = |joint: &Joint| joint.has_coordinate();
@@ -269,6 +281,15 @@ impl System {
                 positive(name, modulus, branch.shear_modulus)?;
                 positive(name, "relaxation time", branch.relaxation_time)?;
             }
+            if let Some(circuit) = muscle.circuit {
+                positive(name, "resistance", circuit.resistance)?;
+                require(
+                    capacitance(muscle).is_some_and(|c| c.at_length(muscle.length()) > 0.0),
+                    name,
+                    || NO_CIRCUIT[0].to_owned(),
+                    NO_CIRCUIT[1],
+                )?;
+            }
             if muscle.fidelity.elements() > 0 {
                 check_of_elements(name, material)?;
             }
@@ -302,6 +323,18 @@ impl System {
 pub const NO_CHARGE: [&str; 2] = [
     "a charge that no potential feels",
     "faces of a dielectric that touches an electrode at a voltage, other than those of this electrode",
+];
+
+/// Charge that no muscle takes, and what is expected, for messages.
+pub const NO_MUSCLE_CHARGE: [&str; 2] = [
+    "a charge that its muscle does not take",
+    "a lumped muscle with a permittivity and without a circuit, and one charge for each",
+];
+
+/// Circuit that drives no charge, and what is expected, for messages.
+pub const NO_CIRCUIT: [&str; 2] = [
+    "a circuit of a muscle that it does not charge",
+    "a lumped muscle with a permittivity; others have the voltages of their sources",
 ];
 
 fn check_direction(name: &str, direction: &Vector) -> Result<(), SystemError> {

@@ -104,7 +104,7 @@ pub(super) fn dielectric(solid: &Solid, charged: &BTreeSet<usize>) -> Vec<bool> 
 /// Sources whose voltages do something in a system with these charged nodes of each block: of dielectric muscles, and of driven electrodes that a dielectric element touches.
 pub(super) fn voltages(system: &System, charged: impl Fn(usize) -> BTreeSet<usize>) -> Vec<usize> {
     let muscles = system.muscles.iter().enumerate();
-    let muscles = muscles.filter(|(_, m)| m.material.electric.is_some());
+    let muscles = muscles.filter(|(i, m)| m.material.electric.is_some() && !system.is_charged(*i));
     let mut voltages: Vec<usize> = muscles.map(|(m, _)| m).collect();
     for (block, solid) in system.solids.iter().enumerate() {
         let is = dielectric(solid, &charged(block));

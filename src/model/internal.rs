@@ -34,6 +34,15 @@ pub(super) enum InternalKind {
         /// Its branch.
         branch: usize,
     },
+    /// The charge of a muscle behind a circuit, in the unit of its muscle: a current brings and takes it.
+    Charge(usize),
+}
+
+impl InternalKind {
+    /// Returns true if it is what a muscle remembers: it has no momentum, and nothing brings it to rest but time.
+    pub(super) fn is_memory(self) -> bool {
+        !matches!(self, Self::Joint(_))
+    }
 }
 
 impl Internal {
@@ -55,6 +64,14 @@ impl Internal {
             kind: InternalKind::Branch { muscle, branch },
         }
     }
+
+    fn of_charge(name: &str, muscle: usize) -> Self {
+        Self {
+            name: format!("charge of {name}"),
+            size: Size::One,
+            kind: InternalKind::Charge(muscle),
+        }
+    }
 }
 
 /// The internal coordinates of a model, behind all others.
@@ -69,7 +86,7 @@ pub(super) struct Internals {
 
 impl Internals {
     /// Those of a scene and its presolved system with its graph: redundant coordinates lack those of joints with
-    /// springs or loads. Muscles at rest remember nothing.
+    /// springs or loads. Muscles at rest remember nothing, and have the voltages of their sources.
     pub(super) fn new(
         (scene, presolved): (&System, &Presolved),
         analysis: &Analysis,
@@ -96,6 +113,9 @@ impl Internals {
             if analysis.of_motion && moves && muscle.fidelity == Fidelity::Lumped {
                 let branches = 0..muscle.material.maxwell.list().len();
                 list.extend(branches.map(|b| Internal::of_branch(&muscle.name, m, b)));
+            }
+            if analysis.of_motion && muscle.circuit.is_some() {
+                list.push(Internal::of_charge(&muscle.name, m));
             }
         }
         let (of_tree, of_bodies) = match coordinates {

@@ -1,9 +1,10 @@
 //! Terms of loads: forces on points of bodies, on coordinates of joints and on nodes of blocks, charges on nodes.
 
-use crate::energy::{DeadLoad, FollowingForce, SurfaceCharge};
+use crate::energy::{Capacitance, DeadLoad, FollowingForce, GivenCharge, SurfaceCharge};
 use crate::functional::{Element, PressureFace};
 use crate::math::Vector;
-use crate::model::components::{BlockLoad, Load, LoadPlace};
+use crate::model::components::muscle::CHARGES as MUSCLE_CHARGES;
+use crate::model::components::{BlockLoad, Load, LoadPlace, capacitance};
 use crate::model::internal::Internals;
 use crate::model::presolved::Presolved;
 use crate::model::solid_block::SolidBlock;
@@ -20,6 +21,10 @@ pub(super) fn moves(load: &Load, presolved: &Presolved) -> bool {
     match load.on {
         LoadPlace::Point { at, .. } => presolved.carrier(at.body).is_some(),
         LoadPlace::Joint(joint) => presolved.joint(joint).is_some(),
+        LoadPlace::Muscle(muscle) => {
+            let muscle = &presolved.system.muscles[muscle];
+            muscle.from.body.or(muscle.to.body).is_some()
+        }
         LoadPlace::Block { block, .. } => !presolved.immobile.solids[block],
     }
 }
@@ -28,6 +33,7 @@ pub(super) fn moves(load: &Load, presolved: &Presolved) -> bool {
 pub(super) fn build(
     system: &System,
     (presolved, internals, blocks): (&Presolved, &Internals, &Solids),
+    spans: &[usize],
     terms: &mut Terms<'_>,
 ) {
     for (source, load) in system.loads() {
@@ -64,12 +70,20 @@ pub(super) fn build(
                 let coordinate = on.terms.vector(coordinate);
                 on.pull(coordinate, Vector::x());
             }
+            LoadPlace::Muscle(muscle) => {
+                let capacitance = capacitance(&system.muscles[*muscle]);
+                on.charge_muscle(capacitance.expect("a charged muscle"), spans[*muscle]);
+            }
             LoadPlace::Block { block, load } => on.block(&blocks.list[*block], load),
         }
     }
     for term in [LOADS, FOLLOWING, CHARGES] {
         terms.without(term, "no load of its kind");
     }
+    terms.without(
+        MUSCLE_CHARGES,
+        "no charge of a lumped muscle is given, or flows through a circuit",
+    );
 }
 
 /// A load whose terms are added.
@@ -102,6 +116,17 @@ impl Loaded<'_, '_> {
         };
         self.terms
             .add::<_, 13, 4, 1>(FOLLOWING, "the force of", self.name, element);
+    }
+
+    /// A charge on the electrodes of a muscle.
+    fn charge_muscle(&mut self, capacitance: Capacitance, span: usize) {
+        let element = Element {
+            energy: GivenCharge { capacitance },
+            vectors: [mid(span)],
+            scalars: [self.size],
+        };
+        self.terms
+            .add::<_, 4, 1, 1>(MUSCLE_CHARGES, "the charge of", self.name, element);
     }
 
     /// A load of a block.

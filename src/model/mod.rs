@@ -6,7 +6,9 @@ mod block_terms;
 mod blocks;
 mod bodies;
 mod build;
+mod charged;
 mod check;
+mod circuit;
 mod component;
 pub mod components;
 mod constant;
@@ -44,7 +46,7 @@ mod unknown_positions;
 mod variables;
 
 pub use analysis::{Analysis, Coordinates, InitiallyMoving};
-pub use check::{NO_CHARGE, SystemError};
+pub use check::{NO_CHARGE, NO_CIRCUIT, NO_MUSCLE_CHARGE, SystemError};
 pub use component::Component;
 pub use constant::{
     Constant, DielectricLaw, Follower, FoundParameter, MOST_MOVES, Parameter, SiUnit,

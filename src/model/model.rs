@@ -120,7 +120,7 @@ impl Model {
         let all = self.action.map.internal().zip(&self.internals);
         all.filter_map(|(coordinate, own)| match own.kind {
             InternalKind::Joint(joint) => Some((coordinate, self.presolved.joints[joint])),
-            InternalKind::Branch { .. } => None,
+            InternalKind::Branch { .. } | InternalKind::Charge(_) => None,
         })
     }
 
@@ -129,7 +129,7 @@ impl Model {
         let all = self.action.map.internal().zip(&self.internals);
         all.filter_map(|(coordinate, own)| match own.kind {
             InternalKind::Branch { muscle, branch } => Some((coordinate, muscle, branch)),
-            InternalKind::Joint(_) => None,
+            InternalKind::Joint(_) | InternalKind::Charge(_) => None,
         })
     }
 
@@ -168,11 +168,17 @@ impl Model {
         self.branches().map(|(coordinate, ..)| coordinate)
     }
 
-    /// Returns true if coordinate `i` is what a muscle remembers: it has no momentum, and nothing brings it to rest but time.
+    /// Coordinates that muscles remember: they have no momentum, and nothing brings them to rest but time.
+    pub fn memory(&self) -> impl Iterator<Item = usize> + '_ {
+        let all = self.action.map.internal().zip(&self.internals);
+        all.filter_map(|(coordinate, own)| own.kind.is_memory().then_some(coordinate))
+    }
+
+    /// Returns true if coordinate `i` is one of [`memory`](Self::memory).
     pub fn is_memory(&self, i: usize) -> bool {
         let internal = i.checked_sub(self.action.map.internal().start);
         let own = internal.and_then(|index| self.internals.get(index));
-        own.is_some_and(|own| matches!(own.kind, InternalKind::Branch { .. }))
+        own.is_some_and(|own| own.kind.is_memory())
     }
 
     /// Rates of all coordinates from those of the bodies and of the joints (by joint of the scene); nodes have those of a start.

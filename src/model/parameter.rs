@@ -96,6 +96,13 @@ impl Constant {
                     "the Maxwell branches of muscle \"{name}\" depend on it; sought shapes of muscles with branches are not offered"
                 ));
             }
+            let is_electric = matches!(self, Self::Permittivity(..) | Self::Layer(_));
+            let is_charged = self.muscle().is_some_and(|m| !system.has_source_voltage(m));
+            if (self.is_shape() || is_electric) && is_charged {
+                return Some(format!(
+                    "the charge of muscle \"{name}\" depends on it; sought capacitances of muscles with a circuit or a given charge are not offered"
+                ));
+            }
             if self.is_shape() && muscle.mass().is_some() {
                 return Some(format!(
                     "the mass of muscle \"{name}\" depends on it, as its material has a density; sought masses are not offered"

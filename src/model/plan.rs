@@ -5,7 +5,7 @@
 pub(super) const GRAVITY: &str = "gravity";
 
 /// Names of the terms of the library, in the order of the sum; those of other crates follow.
-pub const TERMS: [&str; 27] = [
+pub const TERMS: [&str; 30] = [
     "body inertia",
     "muscle inertia",
     "block inertia",
@@ -15,6 +15,7 @@ pub const TERMS: [&str; 27] = [
     "block electroelasticity",
     "muscle elasticity",
     "muscle electroelasticity",
+    "muscle charges",
     "maxwell elasticity",
     "joint elasticity",
     "joint stops",
@@ -22,10 +23,12 @@ pub const TERMS: [&str; 27] = [
     "tendon elasticity",
     "loads",
     "surface charges",
+    "circuit sources",
     "following loads",
     "block viscosity",
     "muscle viscosity",
     "maxwell viscosity",
+    "circuit resistance",
     "joint damping",
     "spring damping",
     "rigid bodies",

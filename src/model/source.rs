@@ -26,6 +26,8 @@ pub enum InputKind {
     BodyForce,
     /// Surface charge: a charge for an area.
     SurfaceCharge,
+    /// Charge of a muscle.
+    Charge,
 }
 
 /// A unit, and its size in the unit inside.
@@ -33,13 +35,14 @@ type CountedUnit = (&'static str, f64);
 
 impl InputKind {
     /// All kinds.
-    pub const ALL: [Self; 6] = [
+    pub const ALL: [Self; 7] = [
         Self::Voltage,
         Self::Force,
         Self::Torque,
         Self::Traction,
         Self::BodyForce,
         Self::SurfaceCharge,
+        Self::Charge,
     ];
 
     /// Name.
@@ -51,6 +54,7 @@ impl InputKind {
             Self::Traction => "traction",
             Self::BodyForce => "body force",
             Self::SurfaceCharge => "surface charge",
+            Self::Charge => "charge",
         }
     }
 
@@ -63,6 +67,7 @@ impl InputKind {
             Self::Traction => ("MPa", [("Pa", 1e-6), ("kPa", 1e-3)]),
             Self::BodyForce => ("N/mm^3", [("N/m^3", 1e-9), ("kN/m^3", 1e-6)]),
             Self::SurfaceCharge => ("mC/mm^2", [("C/m^2", 1e-3), ("mC/m^2", 1e-6)]),
+            Self::Charge => ("mC", [("C", 1e3), ("uC", 1e-3)]),
         }
     }
 

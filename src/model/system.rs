@@ -3,6 +3,7 @@
 use crate::mesh::Mesh;
 pub use crate::model::attachment::Attachment;
 pub use crate::model::bodies::{Body, Shape, directors_along};
+pub use crate::model::circuit::Circuit;
 use crate::model::components::{BlockLoad, Components, Load, LoadPlace};
 pub use crate::model::joint_elasticity::{JointSpring, JointStops};
 pub use crate::model::material::{ElectricConstants, Material, VACUUM_PERMITTIVITY};
@@ -87,12 +88,12 @@ impl System {
     /// All that inputs are named for, one each: the muscles, then the driven electrodes of blocks by
     /// `block.electrode`, then the loads, in the order of the scene. Electrodes of one name in a block share one voltage.
     pub fn sources(&self) -> Vec<Source> {
-        let muscle = |m: &Muscle| Source {
+        let muscle = |(index, m): (usize, &Muscle)| Source {
             name: m.name.clone(),
             kind: InputKind::Voltage,
-            takes_voltage: m.material.electric.is_some(),
+            takes_voltage: m.material.electric.is_some() && !self.is_charged(index),
         };
-        let mut sources: Vec<Source> = self.muscles.iter().map(muscle).collect();
+        let mut sources: Vec<Source> = self.muscles.iter().enumerate().map(muscle).collect();
         for solid in &self.solids {
             for electrode in &solid.electrodes {
                 if let Potential::Driven { source, .. } = electrode.potential
@@ -133,6 +134,7 @@ impl System {
                 _ => InputKind::Torque,
             },
             LoadPlace::Point { .. } => InputKind::Force,
+            LoadPlace::Muscle(_) => InputKind::Charge,
             LoadPlace::Block { load, .. } => match load {
                 BlockLoad::Traction(..) | BlockLoad::Pressure { .. } => InputKind::Traction,
                 BlockLoad::Charge(_) => InputKind::SurfaceCharge,
@@ -148,6 +150,11 @@ impl System {
             LoadPlace::Joint(joint) => {
                 let joint = &self.joints[joint];
                 joint.parent.into_iter().chain([joint.child]).collect()
+            }
+            LoadPlace::Muscle(muscle) => {
+                let muscle = &self.muscles[muscle];
+                let ends = [muscle.from, muscle.to].into_iter();
+                ends.filter_map(|end| end.body).collect()
             }
             LoadPlace::Block { .. } => Vec::new(),
         }
@@ -221,6 +228,8 @@ pub struct Muscle {
     pub material: Material,
     /// True if the inertia of the changing cross-section is asked for.
     pub section_inertia: bool,
+    /// Circuit between its source and its electrodes; `None` where they have the voltage of the source.
+    pub circuit: Option<Circuit>,
     /// Model of the muscle.
     pub fidelity: Fidelity,
 }

@@ -49,6 +49,7 @@ pub fn svg(
         InputKind::Traction => ("tractions.svg", Extent::Padded),
         InputKind::BodyForce => ("body_forces.svg", Extent::Padded),
         InputKind::SurfaceCharge => ("surface_charges.svg", Extent::Padded),
+        InputKind::Charge => ("charges.svg", Extent::Padded),
     };
     let plot = LinePlot::new(
         Axis::linear("time [s]", Extent::Tight),

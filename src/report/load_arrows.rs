@@ -72,6 +72,7 @@ impl<'a> LoadArrows<'a> {
                 !matches!(load, BlockLoad::Charge(_)) && *block < self.skins.list.len()
             }
             LoadPlace::Point { .. } | LoadPlace::Joint(_) => true,
+            LoadPlace::Muscle(_) => false,
         };
         let loads = loads
             .enumerate()
@@ -113,6 +114,7 @@ impl<'a> LoadArrows<'a> {
                     BlockLoad::Charge(_) => return Vec::new(),
                 }
             }
+            LoadPlace::Muscle(_) => return Vec::new(),
             LoadPlace::Joint(joint) => {
                 let joint = &self.system.joints[*joint];
                 let on = |at| Attachment {
@@ -210,7 +212,7 @@ fn size(system: &System) -> f64 {
     let loads = system.components.loads.iter();
     let loads = loads.filter_map(|load| match load.on {
         LoadPlace::Point { at, .. } => Some(at.at),
-        LoadPlace::Joint(_) | LoadPlace::Block { .. } => None,
+        LoadPlace::Joint(_) | LoadPlace::Muscle(_) | LoadPlace::Block { .. } => None,
     });
     let nodes = system
         .solids

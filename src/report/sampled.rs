@@ -55,6 +55,11 @@ impl Sampled {
             poses: self.pick(&full.poses),
             marks: self.pick(&full.marks),
             voltages: self.instants.windows(2).map(mean).collect(),
+            charges: full
+                .charges
+                .iter()
+                .map(|(&muscle, charges)| (muscle, self.pick(charges)))
+                .collect(),
         }
     }
 

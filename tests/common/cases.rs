@@ -1,18 +1,20 @@
 //! A list of control problems that together call for every effect, joint, limit, goal and objective.
 
+pub use super::limited::all_limits;
 use super::systems::{
-    GRAVITY, ball, blocks, branched, loaded, pressed, remembering, satellite, sprung, tied,
+    GRAVITY, ball, blocks, branched, charged, loaded, pressed, remembering, satellite, sprung, tied,
 };
 use super::tracked::{energies, tracked};
 use super::trunk;
 use nalgebra::Vector3;
+use proboscis::control::Signal;
 use proboscis::control::problem::{
     BoundaryState, Control, Duration, Guess, Objective, Orientation, PathConstraint, Place, Rest,
-    Side, Solver,
+    Solver,
 };
 use proboscis::ipopt::LinearSolver;
+use proboscis::model::Coordinates;
 use proboscis::model::system::{ElectricConstants, Material, System, VACUUM_PERMITTIVITY};
-use proboscis::model::{Coordinates, Region};
 use std::collections::BTreeMap;
 
 /// A system and what is asked of it.
@@ -83,57 +85,6 @@ pub fn rest_to_rest(segments: usize, intervals: usize, duration: f64) -> Control
         goal: BoundaryState::RestAtVoltages(hold(segments), Rest::Everything),
         ..control(&trunk(segments), intervals)
     }
-}
-
-/// Every kind of limit on the branched tree.
-pub fn all_limits() -> Vec<PathConstraint> {
-    let near = |centre: [f64; 3], half: f64| Region::Box {
-        min: Vector3::from(centre).add_scalar(-half),
-        max: Vector3::from(centre).add_scalar(half),
-    };
-    let ball = |centre: [f64; 3], radius: f64| Region::Sphere {
-        centre: Vector3::from(centre),
-        radius,
-    };
-    let marker = |marker: usize, region: Region, side: Side| PathConstraint::Marker {
-        marker,
-        region,
-        side,
-    };
-    vec![
-        PathConstraint::JointAngle {
-            joint: 0,
-            min: -0.6,
-            max: 0.7,
-        },
-        PathConstraint::JointAngle {
-            joint: 1,
-            min: f64::NEG_INFINITY,
-            max: 9.0,
-        },
-        PathConstraint::Stretch {
-            muscle: 0,
-            min: 0.7,
-            max: 1.2,
-        },
-        PathConstraint::Stretch {
-            muscle: 3,
-            min: 0.0,
-            max: 1.5,
-        },
-        PathConstraint::ElectricField {
-            muscle: 1,
-            max: 5e4,
-        },
-        PathConstraint::ElectricField {
-            muscle: 3,
-            max: 5e4,
-        },
-        marker(0, near([20.0, 120.0, 5.0], 60.0), Side::Inside),
-        marker(0, ball([20.0, 120.0, 5.0], 70.0), Side::Inside),
-        marker(1, near([-60.0, 100.0, 20.0], 15.0), Side::Outside),
-        marker(1, ball([-60.0, 100.0, 20.0], 20.0), Side::Outside),
-    ]
 }
 
 /// The marker of the block at a place, at rest, while the rest of the block may still move.
@@ -279,6 +230,14 @@ pub fn cases() -> Vec<Case> {
         case("branched tree", branched(), &|_| {}),
         case("branched tree with joint springs", sprung(), &|_| {}),
         case("branched tree that remembers", remembering(), &|_| {}),
+        case("charges", charged(), &|c| {
+            c.load_bounds.insert(4, [1e-5, 3e-4]);
+        }),
+        case("charges, free time", charged(), &|c| {
+            c.duration = free;
+            c.objective.rate = 0.3;
+            c.given.insert(4, Signal::Constant(1e-4));
+        }),
         case(
             "branched tree that remembers, free time",
             remembering(),

@@ -5,6 +5,7 @@
 pub mod cases;
 pub mod counting;
 pub mod force;
+pub mod limited;
 pub mod loaded;
 pub mod programs;
 pub mod random;
@@ -117,6 +118,7 @@ pub(crate) fn trunk(segments: usize) -> System {
                 layer_thickness: 0.05,
                 material: silicone,
                 section_inertia: false,
+                circuit: None,
                 fidelity: Default::default(),
             });
         }

@@ -4,11 +4,11 @@ pub use super::loaded::{loaded, pressed};
 use super::trunk;
 use nalgebra::{Matrix3, Rotation3, Vector3};
 use proboscis::mesh::grid::Grid;
-use proboscis::model::components::{Spring, Tendon};
+use proboscis::model::components::{Load, LoadPlace, Spring, Tendon};
 use proboscis::model::system::{
-    Attachment, Body, Discretisation, ElectricConstants, Electrode, ElementKind, Fidelity, Glue,
-    Joint, JointKind, JointSpring, JointStops, Marker, Material, MaxwellBranch, MaxwellBranches,
-    Muscle, Potential, Shape, Solid, Support, System, VACUUM_PERMITTIVITY,
+    Attachment, Body, Circuit, Discretisation, ElectricConstants, Electrode, ElementKind, Fidelity,
+    Glue, Joint, JointKind, JointSpring, JointStops, Marker, Material, MaxwellBranch,
+    MaxwellBranches, Muscle, Potential, Shape, Solid, Support, System, VACUUM_PERMITTIVITY,
 };
 
 /// Gravity along −y in mm/ms².
@@ -68,6 +68,17 @@ pub fn remembering() -> System {
     let [one, two] = [branch(0.04, 30.0), branch(0.02, 400.0)];
     system.muscles[0].material.maxwell = MaxwellBranches::new(&[one]).unwrap();
     system.muscles[2].material.maxwell = MaxwellBranches::new(&[one, two]).unwrap();
+    system
+}
+
+/// The branched tree with a muscle behind a resistor, and one whose charge is given.
+pub fn charged() -> System {
+    let mut system = branched();
+    system.muscles[0].circuit = Some(Circuit { resistance: 3e7 });
+    system.components.loads.push(Load {
+        name: "charge".into(),
+        on: LoadPlace::Muscle(1),
+    });
     system
 }
 
@@ -154,6 +165,7 @@ pub fn branched() -> System {
         layer_thickness: 0.05,
         material,
         section_inertia,
+        circuit: None,
         fidelity: Default::default(),
     };
     System {

@@ -46,6 +46,7 @@ pub(crate) fn system(count: usize) -> System {
             layer_thickness: 0.05,
             material,
             section_inertia: false,
+            circuit: None,
             fidelity: Default::default(),
         }
     };

@@ -3,10 +3,10 @@
 use num_dual::{Dual, DualNum};
 use proboscis::energy::{
     Angle, AngularDamper, Capacitance, Coincidence, CoordinateDamper, CoordinateSpring,
-    CoordinateStops, DeadLoad, DielectricCell, ElasticCell, Energy, FollowingForce, Gravity,
-    JointAngle, JointDisplacement, LinearDamper, LinearSpring, MaxwellCell, Orthogonality,
-    OutsideBox, PositionComponent, Projection, SectionInertia, SpanDamper, SquaredDistance,
-    SquaredField, SurfaceCharge, ViscousCell,
+    CoordinateStops, DeadLoad, DielectricCell, ElasticCell, Energy, FlowingCharge, FollowingForce,
+    GivenCharge, Gravity, JointAngle, JointDisplacement, LinearDamper, LinearSpring, MaxwellCell,
+    Orthogonality, OutsideBox, PositionComponent, Projection, SectionInertia, SpanDamper,
+    SquaredDistance, SquaredField, SurfaceCharge, ViscousCell,
 };
 
 /// The naive formula of an energy.
@@ -73,6 +73,23 @@ impl Formula<3> for Capacitance {
         let permittivity = -s.powi(2) * (2.0 * self.cell.c2) - 2.0 * self.cell.c1
             + s.powi(-2) * self.cell.permittivity;
         permittivity * (self.cell.elastic.volume / self.cell.layer.powi(2))
+    }
+}
+
+/// Q²/(2C).
+fn charged<D: DualNum<f64> + Copy>(capacitance: &Capacitance, r: [D; 3], charge: D) -> D {
+    (capacitance.naive(&r) * 2.0).recip() * charge.powi(2)
+}
+
+impl Formula<4> for GivenCharge {
+    fn naive<D: DualNum<f64> + Copy>(&self, p: &[D; 4]) -> D {
+        charged(&self.capacitance, three(p, 0), p[3])
+    }
+}
+
+impl Formula<6> for FlowingCharge {
+    fn naive<D: DualNum<f64> + Copy>(&self, p: &[D; 6]) -> D {
+        charged(&self.capacitance, three(p, 0), p[3] * self.unit)
     }
 }
 

@@ -3,6 +3,7 @@
 #[path = "../common/mod.rs"]
 mod common;
 
+mod charge;
 mod closed_loop;
 mod component_files;
 mod components;

@@ -56,6 +56,7 @@ pub(crate) fn slider(mass: f64, maxwell: MaxwellBranches) -> System {
             ..Material::default()
         },
         section_inertia: false,
+        circuit: None,
         fidelity: Default::default(),
     });
     system

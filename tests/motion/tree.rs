@@ -106,6 +106,7 @@ pub(crate) fn tree() -> System {
         layer_thickness: 0.05,
         material,
         section_inertia: true,
+        circuit: None,
         fidelity: Default::default(),
     };
     let mut muscles = vec![

@@ -35,6 +35,7 @@ fn motion(times: &[f64]) -> Trajectory {
         poses: vec![Vec::new(); times.len()],
         marks: vec![Vec::new(); times.len()],
         voltages: (1..times.len()).map(|k| vec![(k * k) as f64]).collect(),
+        ..Trajectory::default()
     }
 }
 

@@ -53,6 +53,7 @@ fn single(shear_modulus: f64, electric: ElectricConstants) -> System {
                 ..Material::default()
             },
             section_inertia: false,
+            circuit: None,
             fidelity: Default::default(),
         }],
         solids: Vec::new(),

@@ -41,6 +41,7 @@ fn sledge(slenderness: usize, fidelity: Fidelity) -> System {
             layer_thickness: 0.05,
             material: silicone(100.0),
             section_inertia: false,
+            circuit: None,
             fidelity,
         }],
         ..system(Vec::new())

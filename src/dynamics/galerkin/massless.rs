@@ -1,4 +1,4 @@
-//! Vectors without mass, those of Maxwell branches, in a Galerkin step.
+//! Vectors without mass, those of Maxwell branches and of charges, in a Galerkin step.
 //!
 //! They carry no momentum, so that the residual g of their equation need not vanish at the end of a step. With the rows of other vectors it
 //! would return in the next step with the opposite sign, and grow. Their rows are `Σ_i b_i q_r(c_i) g(c_i)` with the polynomials q_r of degree
@@ -27,7 +27,7 @@ pub(super) struct Massless {
 
 impl Massless {
     pub(super) fn new(model: &Model, rule: &Rule) -> Self {
-        let coordinates: Vec<usize> = model.viscous_coordinates().collect();
+        let coordinates: Vec<usize> = model.memory().collect();
         let vector = |&coordinate: &usize| {
             let own = MaterialVector::coordinate(coordinate);
             model.vectors.iter().position(|vector| *vector == own)

@@ -25,7 +25,12 @@ pub(crate) fn energies(
             energy,
             weight,
         };
-        let found = || format!("{:?}, which drives finite elements", sources[source].name);
+        let muscle = system.muscles.get(source);
+        let what = match muscle.is_some_and(|m| m.circuit.is_some()) {
+            true => "charges its muscle through a circuit",
+            false => "drives finite elements",
+        };
+        let found = || format!("{:?}, which {what}", sources[source].name);
         match cost.exists(system) {
             true => Ok(cost),
             false => Err(place.wrong(found(), LUMPED)),

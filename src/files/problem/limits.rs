@@ -97,6 +97,9 @@ fn check_bounds(min: f64, max: f64, there: bool, scope: &Scope<'_>) -> Result<()
     Ok(())
 }
 
+/// Choice of a limit of fields that means no part, for messages.
+const NOTHING: &str = "nothing that a field reaches";
+
 fn electric_field(
     spec: &ElectricFieldLimitSpec,
     system: &System,
@@ -119,30 +122,9 @@ fn electric_field(
         let found = "a region without \"solid\"";
         return Err(scope.key("region").wrong(found, "a region of one block"));
     }
-    let nothing = |expected: String| place.wrong("nothing that a field reaches", expected);
+    let nothing = |expected: String| place.wrong(NOTHING, expected);
     if key.starts_with("muscle") {
-        let muscles = match &name {
-            Some(name) => vec![muscle_with_field(name, system, &place)?],
-            None => (0..system.muscles.len())
-                .filter(|&muscle| system.muscles[muscle].material.electric.is_some())
-                .collect(),
-        };
-        if muscles.is_empty() {
-            let beside = match system.solids.is_empty() {
-                true => "",
-                false => "; the field of elastic blocks is limited by \"solid\" or \"solids\"",
-            };
-            return Err(nothing(format!("a muscle of {ELECTRIC_KEYS}{beside}")));
-        }
-        let limit = |muscle| match system.meshed_muscles().position(|m| m == muscle) {
-            None => PathConstraint::ElectricField { muscle, max },
-            Some(index) => PathConstraint::BlockField {
-                block: system.solids.len() + index,
-                region: None,
-                max,
-            },
-        };
-        return Ok(muscles.into_iter().map(limit).collect());
+        return muscle_fields(name.as_ref(), max, system, &place);
     }
     let (blocks, region) = match &name {
         None => ((0..system.solids.len()).collect(), None),
@@ -172,6 +154,44 @@ fn electric_field(
     }
     let limit = |block| PathConstraint::BlockField { block, region, max };
     Ok(blocks.into_iter().map(limit).collect())
+}
+
+/// Limits of the fields of one muscle, or of all.
+fn muscle_fields(
+    name: Option<&String>,
+    max: f64,
+    system: &System,
+    place: &Scope<'_>,
+) -> Result<Vec<PathConstraint>, SceneError> {
+    let muscles = match name {
+        Some(name) => vec![muscle_with_field(name, system, place)?],
+        None => (0..system.muscles.len())
+            .filter(|&muscle| system.muscles[muscle].material.electric.is_some())
+            .collect(),
+    };
+    if muscles.is_empty() {
+        let beside = match system.solids.is_empty() {
+            true => "",
+            false => "; the field of elastic blocks is limited by \"solid\" or \"solids\"",
+        };
+        let expected = format!("a muscle of {ELECTRIC_KEYS}{beside}");
+        return Err(place.wrong(NOTHING, expected));
+    }
+    if let Some(muscle) = muscles.iter().find(|&&m| !system.has_source_voltage(m)) {
+        let name = &system.muscles[*muscle].name;
+        let found = format!("{name:?}, whose electrodes do not have the voltage of a source");
+        let expected = "muscles without a circuit and without a given charge: fields of others are not limited";
+        return Err(place.wrong(found, expected));
+    }
+    let limit = |muscle| match system.meshed_muscles().position(|m| m == muscle) {
+        None => PathConstraint::ElectricField { muscle, max },
+        Some(index) => PathConstraint::BlockField {
+            block: system.solids.len() + index,
+            region: None,
+            max,
+        },
+    };
+    Ok(muscles.into_iter().map(limit).collect())
 }
 
 /// Index of a muscle with an electric term.

@@ -7,7 +7,7 @@ use crate::files::json::scope::Scope;
 use crate::files::problem::signal::signal;
 use crate::files::problem::spec_signal::SignalSpec;
 use crate::files::units::quantity::{
-    ChargeDensity, Force, ForceDensity, Kind, LoadSize, Quantity, Stress, Torque, Voltage,
+    Charge, ChargeDensity, Force, ForceDensity, Kind, LoadSize, Quantity, Stress, Torque, Voltage,
 };
 use crate::model::system::{InputKind, System};
 use std::collections::BTreeMap;
@@ -31,6 +31,7 @@ fn find(name: &str, system: &System, scope: &Scope<'_>) -> Result<(usize, Kind),
         InputKind::Traction => Stress::kind(),
         InputKind::BodyForce => ForceDensity::kind(),
         InputKind::SurfaceCharge => ChargeDensity::kind(),
+        InputKind::Charge => Charge::kind(),
     };
     Ok((first + index, kind))
 }

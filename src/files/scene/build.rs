@@ -17,7 +17,7 @@ use crate::files::scene::point::unit_axis;
 use crate::files::scene::point::vector;
 use crate::files::scene::solid::solid;
 use crate::files::scene::spec::{ChainSpec, SceneSpec};
-use crate::model::components::Components;
+use crate::model::components::{Components, Load, LoadPlace};
 use crate::model::system::{Material, System, number_sources};
 
 /// Longest chain that the shorthand writes out.
@@ -50,8 +50,9 @@ pub(crate) fn build_scene(scene: &SceneSpec, scope: &Scope<'_>) -> Result<System
         .joints
         .build(&scene.joints, |spec, scope| joint(spec, &body_names, scope))?;
     let loads = lists.loads.build(&scene.loads, |spec, scope| {
-        load(spec, (&body_names, &built_joints, &blocks), scope)
+        load(spec, (&body_names, &built_joints, &muscles, &blocks), scope)
     })?;
+    check_charges(&loads, &lists)?;
     let system = System {
         bodies: lists.bodies.build(&scene.bodies, body)?,
         muscles,
@@ -83,6 +84,18 @@ pub(crate) fn build_scene(scene: &SceneSpec, scope: &Scope<'_>) -> Result<System
     let sources = names(&system.sources(), |source| &source.name);
     scope.unique(&sources, &[], |_| scope.key("solids"))?;
     Ok(system)
+}
+
+/// Checks that no muscle is charged twice.
+fn check_charges(loads: &[Load], lists: &Lists<'_>) -> Result<(), SceneError> {
+    for (index, load) in loads.iter().enumerate() {
+        let is_charge = matches!(load.on, LoadPlace::Muscle(_));
+        if is_charge && loads[..index].iter().any(|other| other.on == load.on) {
+            let place = lists.loads.scope(index).key("muscle");
+            return Err(place.wrong("a second charge of one muscle", "one charge for each"));
+        }
+    }
+    Ok(())
 }
 
 /// Elements counted while a scene is built.

@@ -120,6 +120,7 @@ impl Link {
                 material: pair.material.clone(),
                 cross_section: pair.cross_section.clone(),
                 layer_thickness: pair.layer_thickness.clone(),
+                circuit: pair.circuit.clone(),
                 from: PointSpec {
                     body: self.parent(),
                     at: point(&(middle - half)),

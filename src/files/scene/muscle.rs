@@ -1,14 +1,17 @@
 //! Conversion of a muscle of a scene file to its span, section and model.
 
+use crate::energy::Capacitance;
 use crate::files::json::error::SceneError;
 use crate::files::json::scope::Scope;
 use crate::files::scene::names::{attachment, find_compressible, find_material};
 use crate::files::scene::point::PointSpec;
-use crate::files::scene::spec::{ModelSpec, MuscleModel, MuscleSpec};
+use crate::files::scene::spec::{CircuitSpec, ModelSpec, MuscleModel, MuscleSpec};
 use crate::files::scene::spec_solids::ElementSpec;
 use crate::files::units::quantity::{Length, Quantity};
 use crate::math::shortest;
-use crate::model::system::{Discretisation, ElementKind, Fidelity, Material, Muscle};
+use crate::model::NO_CIRCUIT;
+use crate::model::components::capacitance;
+use crate::model::system::{Circuit, Discretisation, ElementKind, Fidelity, Material, Muscle};
 
 /// Spans shorter than this in mm have no direction.
 const SHORTEST_SPAN: f64 = 1e-9;
@@ -51,7 +54,7 @@ pub(crate) fn muscle(
             .key("body")
             .wrong(found, "another body than \"from\""));
     }
-    Ok(Muscle {
+    let muscle = Muscle {
         name: spec.name.clone(),
         from,
         to,
@@ -59,8 +62,30 @@ pub(crate) fn muscle(
         layer_thickness: layer(&spec.layer_thickness, length, scope)?,
         material,
         section_inertia: spec.section_inertia,
+        circuit: None,
         fidelity,
+    };
+    Ok(Muscle {
+        circuit: circuit(spec.circuit.as_ref(), &muscle, scope)?,
+        ..muscle
     })
+}
+
+/// The circuit of a muscle.
+fn circuit(
+    spec: Option<&CircuitSpec>,
+    muscle: &Muscle,
+    scope: &Scope<'_>,
+) -> Result<Option<Circuit>, SceneError> {
+    let (Some(spec), place) = (spec, scope.key("circuit")) else {
+        return Ok(None);
+    };
+    let resistance = place.key("resistance").positive(&spec.resistance)?;
+    let is_charged = |c: Capacitance| c.at_length(muscle.length()) > 0.0;
+    match capacitance(muscle).is_some_and(is_charged) {
+        true => Ok(Some(Circuit { resistance })),
+        false => Err(place.wrong(NO_CIRCUIT[0], NO_CIRCUIT[1])),
+    }
 }
 
 /// Returns the model of a muscle; the keys stand in `scope`.

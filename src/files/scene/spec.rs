@@ -9,7 +9,7 @@ use crate::files::scene::point::{Point, PointSpec};
 use crate::files::scene::spec_solids::{ElementSpec, SolidSpec};
 use crate::files::units::quantity::{
     Acceleration, Angle, Density, JointCoordinate, JointDamping, JointStiffness, Length, Mass,
-    MomentOfInertia, Permittivity, Quantity, Stress, Time, Viscosity,
+    MomentOfInertia, Permittivity, Quantity, Resistance, Stress, Time, Viscosity,
 };
 
 /// Scene. Positions and axes are given in the reference configuration, in the ground frame; parts that are not written do not exist.
@@ -246,6 +246,14 @@ pub struct AxisSpec {
 #[serde(deny_unknown_fields)]
 pub struct Nothing {}
 
+/// Circuit between a source and the electrodes of a muscle.
+#[derive(Clone, Debug, Serialize, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct CircuitSpec {
+    /// Resistance in series, SI unit Ohm.
+    pub resistance: Quantity<Resistance>,
+}
+
 /// Declares the keys of stacked muscles: those that all have, and those of their places.
 macro_rules! stacked {
     ($(#[$about:meta])* $name:ident { $($first:tt)* } { $($last:tt)* }) => {
@@ -272,6 +280,9 @@ macro_rules! stacked {
             pub cross_section: [Quantity<Length>; 2],
             /// Thickness of one layer at rest, SI unit m.
             pub layer_thickness: Quantity<Length>,
+            /// Circuit between the source and the electrodes, of a lumped muscle; without it they have the voltage of the source.
+            #[serde(default, skip_serializing_if = "Option::is_none")]
+            pub circuit: Option<CircuitSpec>,
             $($last)*
         }
 

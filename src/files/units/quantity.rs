@@ -135,6 +135,10 @@ measures! {
     ForceDensity: WeightDimension, [0], "a force for a volume", "\"10 kN/m^3\"";
     /// Charge for an area: C/m², mC/mm² inside.
     ChargeDensity: si::electric_charge_areal_density::Dimension, [0], "a charge for an area", "\"0.2 mC/m^2\"";
+    /// Charge: C, mC inside.
+    Charge: si::electric_charge::Dimension, [0], "a charge", "\"0.5 uC\"";
+    /// Electrical resistance: Ω.
+    Resistance: si::electrical_resistance::Dimension, [0], "a resistance", "\"10 MOhm\"";
 }
 
 /// Declares measures of joints: an angular and a linear kind.
@@ -181,6 +185,7 @@ impl PhysicalQuantity for LoadSize {
             Stress::kind(),
             ForceDensity::kind(),
             ChargeDensity::kind(),
+            Charge::kind(),
         ]
     }
 }

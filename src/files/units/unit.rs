@@ -199,6 +199,9 @@ fn named(symbol: &str) -> Option<Unit> {
         "W" => Unit::of::<si::power::Dimension, si::power::watt>(),
         "C" => Unit::of::<si::electric_charge::Dimension, si::electric_charge::coulomb>(),
         "V" => Unit::of::<si::electric_potential::Dimension, si::electric_potential::volt>(),
+        "Ohm" | "Ω" => {
+            Unit::of::<si::electrical_resistance::Dimension, si::electrical_resistance::ohm>()
+        }
         "F" => Unit::of::<si::capacitance::Dimension, si::capacitance::farad>(),
         "rad" => radian(Unit::of::<si::angle::Dimension, si::angle::radian>()),
         "deg" | "°" => radian(Unit::of::<si::angle::Dimension, si::angle::degree>()),

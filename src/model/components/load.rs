@@ -28,6 +28,8 @@ pub enum LoadPlace {
     /// A torque in N mm about the axis of a revolute joint, or a force in N along that of a prismatic one, from the parent on the child:
     /// a motor.
     Joint(usize),
+    /// A charge in mC on the electrodes of a lumped muscle, in place of a voltage.
+    Muscle(usize),
     /// A load of an elastic block.
     Block {
         /// Index of the block.

@@ -76,6 +76,7 @@ fn of_inputs(run: &Run<'_>, kind: InputKind) -> Option<Value> {
         InputKind::Traction => "Tractions and pressures",
         InputKind::BodyForce => "Body forces",
         InputKind::SurfaceCharge => "Surface charges",
+        InputKind::Charge => "Charges",
     };
     (!panels.is_empty())
         .then(|| json!({ "title": title, "kind": shown, "time": true, "panels": panels }))

@@ -7,14 +7,14 @@ use crate::files::scene::nodes::nodes;
 use crate::files::scene::point::{CornersSpec, PointSpec, unit_axis};
 use crate::files::scene::spec_solids::PlaneSpec;
 use crate::math::Vector;
-use crate::model::NO_CHARGE;
-use crate::model::components::{BlockLoad, Faces, Load, LoadPlace};
-use crate::model::system::{Joint, Solid, Support};
+use crate::model::components::{BlockLoad, Faces, Load, LoadPlace, capacitance};
+use crate::model::system::{Joint, Muscle, Solid, Support};
+use crate::model::{NO_CHARGE, NO_MUSCLE_CHARGE};
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
-/// A load, whose size a problem gives or seeks: a force at a `point`, a torque or force of a `joint`, such as that of a motor, or a load
-/// of a `solid`.
+/// A load, whose size a problem gives or seeks: a force at a `point`, a torque or force of a `joint`, such as that of a motor, the charge
+/// of a `muscle`, or a load of a `solid`.
 #[derive(Clone, Debug, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct LoadSpec {
@@ -29,6 +29,9 @@ pub struct LoadSpec {
     /// Name of a revolute joint, about whose axis a torque acts on the child, or of a prismatic one, along whose axis a force acts.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub joint: Option<String>,
+    /// Name of a lumped muscle whose electrodes have a given charge instead of a voltage.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub muscle: Option<String>,
     /// Name of an elastic block, with `kind`.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub solid: Option<String>,
@@ -67,21 +70,28 @@ pub enum BlockLoadKind {
 /// The load that is written.
 pub(crate) fn load(
     spec: &LoadSpec,
-    (bodies, joints, solids): (&[String], &[Joint], &[Solid]),
+    (bodies, joints, muscles, solids): (&[String], &[Joint], &[Muscle], &[Solid]),
     scope: &Scope<'_>,
 ) -> Result<Load, SceneError> {
     enum Written<'a> {
         Point(&'a PointSpec),
         Joint(&'a String),
+        Muscle(&'a String),
         Solid(&'a String),
     }
     let written = scope.exactly_one([
         ("point", spec.point.as_ref().map(Written::Point)),
         ("joint", spec.joint.as_ref().map(Written::Joint)),
+        ("muscle", spec.muscle.as_ref().map(Written::Muscle)),
         ("solid", spec.solid.as_ref().map(Written::Solid)),
     ])?;
     let is_of_solid = matches!(written, Written::Solid(_));
-    spec.check_keys(is_of_solid, matches!(written, Written::Joint(_)), scope)?;
+    let no_direction = match written {
+        Written::Joint(_) => Some("as the axis of the joint is the direction"),
+        Written::Muscle(_) => Some("as a charge has no direction"),
+        Written::Point(_) | Written::Solid(_) => None,
+    };
+    spec.check_keys(is_of_solid, no_direction, scope)?;
     let on = match written {
         Written::Point(point) => {
             let place = scope.key("point");
@@ -106,6 +116,15 @@ pub(crate) fn load(
             }
             LoadPlace::Joint(index)
         }
+        Written::Muscle(name) => {
+            let place = scope.key("muscle");
+            let all = names(muscles, |muscle| &muscle.name);
+            let index = place.find(name, &all, "the name of a muscle")?;
+            if capacitance(&muscles[index]).is_none() || muscles[index].circuit.is_some() {
+                return Err(place.wrong(NO_MUSCLE_CHARGE[0], NO_MUSCLE_CHARGE[1]));
+            }
+            LoadPlace::Muscle(index)
+        }
         Written::Solid(name) => {
             let all = names(solids, |solid| &solid.name);
             let place = scope.key("solid");
@@ -125,22 +144,21 @@ impl LoadSpec {
     fn check_keys(
         &self,
         is_of_solid: bool,
-        is_of_joint: bool,
+        no_direction: Option<&'static str>,
         scope: &Scope<'_>,
     ) -> Result<(), SceneError> {
         use BlockLoadKind::{BodyForce, Pressure, SurfaceCharge};
-        let no_direction = match self.kind {
-            _ if is_of_joint => Some("as the axis of the joint is the direction"),
+        let turns = no_direction.is_none() && matches!(self.kind, None | Some(Pressure));
+        let no_direction = no_direction.or(match self.kind {
             Some(Pressure) => Some("as a pressure acts along the normal"),
             Some(SurfaceCharge) => Some("as a charge has no direction"),
             _ => None,
-        };
+        });
         let no_kind = (!is_of_solid).then_some("as only a load of a \"solid\" has it");
         let no_face = match self.kind {
             Some(BodyForce) => Some("as a body force acts in the whole block"),
             _ => no_kind,
         };
-        let turns = !is_of_joint && matches!(self.kind, None | Some(Pressure));
         let not_following = (!turns).then_some("as only a force at a point and a pressure follow");
         let all = [
             ("direction", self.direction.is_some(), no_direction),

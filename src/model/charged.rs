@@ -1,0 +1,109 @@
+//! Lumped muscles whose electrodes have a charge instead of the voltage of a source, and the voltages that follow.
+
+use crate::coordinates::Configuration;
+use crate::energy::Capacitance;
+use crate::model::components::{LoadPlace, capacitance};
+use crate::model::internal::InternalKind;
+use crate::model::model::Model;
+use crate::model::system::System;
+use std::collections::BTreeMap;
+
+impl System {
+    /// Returns true if a load gives a muscle its charge, so that its voltage follows.
+    pub fn is_charged(&self, muscle: usize) -> bool {
+        let mut loads = self.components.loads.iter();
+        loads.any(|load| load.on == LoadPlace::Muscle(muscle))
+    }
+
+    /// Returns true if the electrodes of a muscle have the voltage of a source.
+    pub fn has_source_voltage(&self, muscle: usize) -> bool {
+        self.muscles[muscle].circuit.is_none() && !self.is_charged(muscle)
+    }
+}
+
+/// A lumped muscle whose electrodes have a charge instead of the voltage of a source.
+#[derive(Clone, Copy, Debug)]
+struct Charged {
+    muscle: usize,
+    capacitance: Capacitance,
+    place: ChargePlace,
+}
+
+/// Place of a charge.
+#[derive(Clone, Copy, Debug)]
+enum ChargePlace {
+    /// A coordinate, with its unit in mC.
+    Coordinate(usize, f64),
+    /// A scalar of the intervals: an input.
+    Input(usize),
+}
+
+impl Model {
+    /// Muscles behind circuits, then those whose charge is given.
+    fn charged(&self) -> impl Iterator<Item = Charged> + '_ {
+        let all = self.action.map.internal().zip(&self.internals);
+        let behind = all.filter_map(|(coordinate, own)| {
+            let InternalKind::Charge(muscle) = own.kind else {
+                return None;
+            };
+            let unit = capacitance(&self.system.muscles[muscle])?.unit_of_charge();
+            Some((muscle, ChargePlace::Coordinate(coordinate, unit)))
+        });
+        let given = self.system.loads().filter_map(|(source, load)| {
+            let LoadPlace::Muscle(muscle) = load.on else {
+                return None;
+            };
+            Some((muscle, ChargePlace::Input(self.variables.input(source)?)))
+        });
+        behind.chain(given).filter_map(|(muscle, place)| {
+            let capacitance = capacitance(&self.system.muscles[muscle])?;
+            Some(Charged {
+                muscle,
+                capacitance,
+                place,
+            })
+        })
+    }
+
+    /// The muscle whose charge coordinate `i` is.
+    pub fn charge(&self, i: usize) -> Option<usize> {
+        let internal = i.checked_sub(self.action.map.internal().start)?;
+        match self.internals.get(internal)?.kind {
+            InternalKind::Charge(muscle) => Some(muscle),
+            InternalKind::Joint(_) | InternalKind::Branch { .. } => None,
+        }
+    }
+
+    /// Charge in mC of each muscle behind a circuit at instants with coordinates z.
+    pub fn circuit_charges(&self, z: &[Vec<f64>]) -> BTreeMap<usize, Vec<f64>> {
+        let of_circuit = |charged: Charged| match charged.place {
+            ChargePlace::Coordinate(coordinate, unit) => {
+                let charges = z.iter().map(|z| z[coordinate] * unit);
+                Some((charged.muscle, charges.collect()))
+            }
+            ChargePlace::Input(_) => None,
+        };
+        self.charged().filter_map(of_circuit).collect()
+    }
+
+    /// Names of the columns of [`electrode_voltages`](Self::electrode_voltages).
+    pub fn electrodes(&self) -> impl Iterator<Item = String> + '_ {
+        let name =
+            |charged: Charged| format!("{}_voltage", self.system.muscles[charged.muscle].name);
+        self.charged().map(name)
+    }
+
+    /// Voltage Q/C in V of each muscle with a charge Q instead of the voltage of a source, at an instant and under the scalars of an
+    /// interval beside it.
+    pub fn electrode_voltages(&self, instant: &Configuration, scalars: &[f64]) -> Vec<f64> {
+        let voltage = |charged: Charged| {
+            let charge = match charged.place {
+                ChargePlace::Coordinate(coordinate, unit) => instant.z[coordinate] * unit,
+                ChargePlace::Input(scalar) => scalars[scalar],
+            };
+            let length = instant.x[self.spans[charged.muscle]].norm();
+            charge / charged.capacitance.at_length(length)
+        };
+        self.charged().map(voltage).collect()
+    }
+}

@@ -1,0 +1,56 @@
+//! Limits of every kind.
+
+use nalgebra::Vector3;
+use proboscis::control::problem::{PathConstraint, Side};
+use proboscis::model::Region;
+
+/// Every kind of limit on the branched tree.
+pub fn all_limits() -> Vec<PathConstraint> {
+    let near = |centre: [f64; 3], half: f64| Region::Box {
+        min: Vector3::from(centre).add_scalar(-half),
+        max: Vector3::from(centre).add_scalar(half),
+    };
+    let ball = |centre: [f64; 3], radius: f64| Region::Sphere {
+        centre: Vector3::from(centre),
+        radius,
+    };
+    let marker = |marker: usize, region: Region, side: Side| PathConstraint::Marker {
+        marker,
+        region,
+        side,
+    };
+    vec![
+        PathConstraint::JointAngle {
+            joint: 0,
+            min: -0.6,
+            max: 0.7,
+        },
+        PathConstraint::JointAngle {
+            joint: 1,
+            min: f64::NEG_INFINITY,
+            max: 9.0,
+        },
+        PathConstraint::Stretch {
+            muscle: 0,
+            min: 0.7,
+            max: 1.2,
+        },
+        PathConstraint::Stretch {
+            muscle: 3,
+            min: 0.0,
+            max: 1.5,
+        },
+        PathConstraint::ElectricField {
+            muscle: 1,
+            max: 5e4,
+        },
+        PathConstraint::ElectricField {
+            muscle: 3,
+            max: 5e4,
+        },
+        marker(0, near([20.0, 120.0, 5.0], 60.0), Side::Inside),
+        marker(0, ball([20.0, 120.0, 5.0], 70.0), Side::Inside),
+        marker(1, near([-60.0, 100.0, 20.0], 15.0), Side::Outside),
+        marker(1, ball([-60.0, 100.0, 20.0], 20.0), Side::Outside),
+    ]
+}
