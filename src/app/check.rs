@@ -262,6 +262,7 @@ fn as_control(task: Task, system: &System) -> Control {
             ..Objective::default()
         },
         limits: Vec::new(),
+        waypoints: Vec::new(),
         coordinates,
         guess: Guess::Simulate(Voltages::Constant(voltages)),
         solver: Solver {

@@ -5,15 +5,19 @@ use crate::control::endpoint_checks;
 use crate::control::energy_cost::sources;
 use crate::control::error::BoundaryError;
 use crate::control::goal_rows;
-use crate::control::limits::Limits;
-use crate::control::problem::{BoundaryState, Control, Rest};
+use crate::control::limits::{Limits, When};
+use crate::control::problem::{BoundaryState, Control, Rest, Waypoint};
 use crate::control::rest::rest_at;
 use crate::control::sought;
 use crate::control::transcription::count::overdetermined;
 use crate::control::transcription::layout::Layout;
 use crate::dynamics::{Equilibrium, Start, muscle_without_length};
 use crate::functional::Order;
+use crate::math::shortest;
 use crate::model::{Analysis, Coordinates, Graph, Model, Presolved, Quantity, Role, System};
+
+/// Parts of an interval by which a waypoint may miss an instant.
+const OFF: f64 = 1e-6;
 
 impl BoundaryConditions {
     /// Builds the model of a control problem and resolves its start and goal.
@@ -89,7 +93,7 @@ impl BoundaryConditions {
             },
             rest: rest.map(|voltages| voltages.map(<[f64]>::to_vec)),
             limits,
-            notes: Vec::new(),
+            notes: off_grid(control),
         };
         let rest = boundary.goal.rest.as_ref();
         let ends = [Some(&boundary.start.z[..]), rest.map(|rest| &rest.z[..])];
@@ -99,7 +103,24 @@ impl BoundaryConditions {
     }
 }
 
-/// The path limits of a problem, and the parts of its goal that are equations of measures.
+/// Notes about waypoints that lie between two instants.
+fn off_grid(control: &Control) -> Vec<String> {
+    let note = |waypoint: &Waypoint| {
+        let wanted = waypoint.part * control.intervals as f64;
+        let k = wanted.round();
+        let time = k / control.intervals as f64 * control.duration.first() / 1e3;
+        ((wanted - k).abs() > OFF).then(|| {
+            format!(
+                "{} lies between two instants: it is reached at {} s",
+                waypoint.name,
+                shortest(time, 4)
+            )
+        })
+    };
+    control.waypoints.iter().filter_map(note).collect()
+}
+
+/// The path limits of a problem, and the parts of its goal and its waypoints that are equations of measures.
 fn limits_with_goal(system: &System, control: &Control, redundant: bool) -> Limits {
     let mut limits = Limits::new(&control.limits, system, redundant);
     match &control.goal {
@@ -109,18 +130,32 @@ fn limits_with_goal(system: &System, control: &Control, redundant: bool) -> Limi
             rest,
             ..
         } => {
-            goal_rows::add_places(&mut limits, system, places, *rest == Rest::Bodies);
-            goal_rows::add_orientations(&mut limits, system, orientations);
+            let goal = (When::Goal, "goal");
+            goal_rows::add_places(&mut limits, system, places, goal);
+            if *rest == Rest::Bodies {
+                goal_rows::add_rest(&mut limits, system, places.keys());
+            }
+            goal_rows::add_orientations(&mut limits, system, orientations, goal);
         }
         goal @ BoundaryState::JointAngles { angles, .. }
             if redundant && !all_joints_given(system, goal) =>
         {
             for (&joint, &near) in angles {
                 let name = format!("goal of {}", system.joints[joint].name);
-                limits.add_goal(Quantity::Joint { joint, near }, near, name);
+                let quantity = Quantity::Joint { joint, near };
+                limits.add_equality(When::Goal, quantity, near, name);
             }
         }
         _ => {}
+    }
+    for waypoint in &control.waypoints {
+        let at = (When::At(waypoint.part), waypoint.name.as_str());
+        goal_rows::add_places(&mut limits, system, &waypoint.places, at);
+        goal_rows::add_orientations(&mut limits, system, &waypoint.orientations, at);
+        for (&joint, &near) in &waypoint.angles {
+            let name = format!("{} coordinate of {}", at.1, system.joints[joint].name);
+            limits.add_equality(at.0, Quantity::Joint { joint, near }, near, name);
+        }
     }
     limits
 }

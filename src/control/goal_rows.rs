@@ -1,4 +1,4 @@
-//! Places and orientations of a goal as equations of the last instant, without those that nothing can change.
+//! Places and orientations of a goal or a waypoint as equations of one instant, without those that nothing can change.
 
 use crate::control::error::BoundaryError;
 use crate::control::goal::{Orientation, Place, Product};
@@ -18,38 +18,49 @@ const NEAR: f64 = 0.3;
 /// A gradient of this size is rounding.
 const ROUNDING: f64 = 1e-12;
 
-/// Adds the equations of places of markers; where only markers rest, also those of their rest.
+/// Adds the equations of places of markers at a single instant, called `at` in messages.
 pub(super) fn add_places(
     limits: &mut Limits,
     system: &System,
     places: &BTreeMap<usize, Place>,
-    only_markers_rest: bool,
+    (when, at): (When, &str),
 ) {
     for (&marker, place) in places {
         let name = &system.markers[marker].name;
-        let is_free = |axis: &usize| !system.holds_marker(marker, *axis);
-        for axis in (0..3).filter(is_free) {
-            let axis_name = AXES[axis];
-            if let Some(value) = place.0[axis] {
-                let name = format!("goal {axis_name} of marker {name}");
-                limits.add_goal(Quantity::MarkerPlace { marker, axis }, value, name);
-            }
-            if only_markers_rest {
-                let name = format!("rest at the goal, {axis_name} of marker {name}");
-                limits.add_goal(Quantity::MarkerStep { marker, axis }, 0.0, name);
-            }
+        let is_free = |axis: usize| !system.holds_marker(marker, axis);
+        for (axis, value) in place.given().filter(|(axis, _)| is_free(*axis)) {
+            let name = format!("{at} {} of marker {name}", AXES[axis]);
+            let quantity = Quantity::MarkerPlace { marker, axis };
+            limits.add_equality(when, quantity, value, name);
         }
     }
 }
 
-/// Adds the conditions of orientations of bodies.
+/// Adds the equations of the rest of markers at the goal.
+pub(super) fn add_rest<'p>(
+    limits: &mut Limits,
+    system: &System,
+    markers: impl Iterator<Item = &'p usize>,
+) {
+    for &marker in markers {
+        let name = &system.markers[marker].name;
+        for axis in (0..3).filter(|&axis| !system.holds_marker(marker, axis)) {
+            let name = format!("rest at the goal, {} of marker {name}", AXES[axis]);
+            let quantity = Quantity::MarkerStep { marker, axis };
+            limits.add_equality(When::Goal, quantity, 0.0, name);
+        }
+    }
+}
+
+/// Adds the conditions of orientations of bodies at a single instant, called `at` in messages.
 pub(super) fn add_orientations(
     limits: &mut Limits,
     system: &System,
     orientations: &BTreeMap<usize, Orientation>,
+    (when, at): (When, &str),
 ) {
     for (&body, orientation) in orientations {
-        let name = format!("goal orientation of body {}", system.bodies[body].name);
+        let name = format!("{at} orientation of body {}", system.bodies[body].name);
         for Product {
             axis,
             along,
@@ -58,8 +69,8 @@ pub(super) fn add_orientations(
         {
             let quantity = Quantity::Direction { body, axis, along };
             match is_acute {
-                true => limits.add_goal_above(quantity, 0.0, name.clone()),
-                false => limits.add_goal(quantity, 0.0, name.clone()),
+                true => limits.add_lower(when, quantity, 0.0, name.clone()),
+                false => limits.add_equality(when, quantity, 0.0, name.clone()),
             }
         }
     }
@@ -83,7 +94,7 @@ pub(super) fn leave_out_constant(
         let Some(measure) = model.measured[index] else {
             continue;
         };
-        if bounded.when != When::Goal || !is_direction || changes(model, measure, start) {
+        if !bounded.when.is_single() || !is_direction || changes(model, measure, start) {
             continue;
         }
         let instant = model.action.map.placed(start);

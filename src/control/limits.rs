@@ -14,19 +14,28 @@ pub struct BoundedQuantity {
     pub lower: f64,
     /// Upper bound.
     pub upper: f64,
-    /// At the final instant only (a goal), or everywhere (a limit).
+    /// At the final instant only (a goal), at one instant (a waypoint), or everywhere (a limit).
     pub when: When,
     /// Words for messages.
     pub name: String,
 }
 
 /// Instants or intervals at which a quantity is bounded.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, PartialEq)]
 pub enum When {
     /// At every instant, or in every interval.
     Everywhere,
     /// At the last instant.
     Goal,
+    /// At the instant nearest to a part of the duration: a waypoint.
+    At(f64),
+}
+
+impl When {
+    /// Returns true unless it is a limit of the whole path.
+    pub fn is_single(self) -> bool {
+        self != Self::Everywhere
+    }
 }
 
 /// All bounded quantities of a problem.
@@ -151,24 +160,24 @@ impl Limits {
         }
     }
 
-    /// Adds an equality at the final instant.
-    pub fn add_goal(&mut self, quantity: Quantity, value: f64, name: String) {
+    /// Adds an equality at a single instant.
+    pub fn add_equality(&mut self, when: When, quantity: Quantity, value: f64, name: String) {
         self.list.push(BoundedQuantity {
             quantity,
             lower: value,
             upper: value,
-            when: When::Goal,
+            when,
             name,
         });
     }
 
-    /// Adds a lower bound at the final instant.
-    pub fn add_goal_above(&mut self, quantity: Quantity, lower: f64, name: String) {
+    /// Adds a lower bound at a single instant.
+    pub fn add_lower(&mut self, when: When, quantity: Quantity, lower: f64, name: String) {
         self.list.push(BoundedQuantity {
             quantity,
             lower,
             upper: f64::INFINITY,
-            when: When::Goal,
+            when,
             name,
         });
     }

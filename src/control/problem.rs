@@ -118,6 +118,8 @@ pub struct Control {
     pub objective: Objective,
     /// Path limits.
     pub limits: Vec<PathConstraint>,
+    /// What the motion passes on its way.
+    pub waypoints: Vec<Waypoint>,
     /// `None`: reduced where the joints form a tree.
     pub coordinates: Option<Coordinates>,
     /// Initial guess of the solver.
@@ -216,6 +218,21 @@ pub fn nearest_thousand(size: f64) -> f64 {
         return 1.0;
     }
     1e3_f64.powf((size.log10() / 3.0).round())
+}
+
+/// Places, orientations and joint coordinates at one instant on the way.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct Waypoint {
+    /// Part of the duration at which they are reached, above 0 and at most 1: at the instant nearest to it.
+    pub part: f64,
+    /// Name in messages.
+    pub name: String,
+    /// Places of markers.
+    pub places: BTreeMap<usize, Place>,
+    /// Orientations of bodies.
+    pub orientations: BTreeMap<usize, Orientation>,
+    /// Coordinates of joints in rad or mm.
+    pub angles: BTreeMap<usize, f64>,
 }
 
 /// An inequality that holds at every instant or in every interval.

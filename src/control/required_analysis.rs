@@ -3,9 +3,11 @@
 //! A source has no input where neither the task nor the states at its ends name one other than zero; a body or a block is
 //! initially moving where a start, a goal or a limit names it.
 
-use std::collections::BTreeSet;
+use std::collections::{BTreeMap, BTreeSet};
 
-use crate::control::problem::{AtRest, BoundaryState, Control, PathConstraint, Simulation};
+use crate::control::problem::{
+    AtRest, BoundaryState, Control, Orientation, PathConstraint, Place, Simulation,
+};
 use crate::model::system::{Attachment, System};
 use crate::model::{Analysis, InitiallyMoving};
 
@@ -48,6 +50,10 @@ impl Control {
         named.of_start(&self.start);
         named.of_goal(&self.goal);
         self.limits.iter().for_each(|limit| named.of_limit(limit));
+        for waypoint in &self.waypoints {
+            named.of_places(&waypoint.places, &waypoint.orientations);
+            waypoint.angles.keys().for_each(|&j| named.of_joint(j));
+        }
         Analysis {
             coordinates: self.coordinates,
             zero_inputs: zero_inputs(system, is_driven, [&self.start, &self.goal]),
@@ -127,11 +133,17 @@ impl<'a> Named<'a> {
                 places,
                 orientations,
                 ..
-            } => {
-                places.keys().for_each(|&m| self.of_marker(m));
-                self.initially_moving.bodies.extend(orientations.keys());
-            }
+            } => self.of_places(places, orientations),
         }
+    }
+
+    fn of_places(
+        &mut self,
+        places: &BTreeMap<usize, Place>,
+        orientations: &BTreeMap<usize, Orientation>,
+    ) {
+        places.keys().for_each(|&m| self.of_marker(m));
+        self.initially_moving.bodies.extend(orientations.keys());
     }
 
     fn of_limit(&mut self, limit: &PathConstraint) {

@@ -200,7 +200,7 @@ impl Layout {
             true => grids.interval(k),
             false => grids.nearest(k),
         };
-        let factor = match (of.is_goal, of.is_of_intervals) {
+        let factor = match (of.is_single, of.is_of_intervals) {
             // A marker rests at the goal when its last step is nothing; the shorter that step, the dearer its length.
             (true, true) => 1.0 / grids.ratio(),
             (true, false) => 1.0,

@@ -5,7 +5,7 @@ use crate::control::problem::{
 };
 use crate::control::{Earlier, EarlierSolution, Signal};
 use crate::dynamics::{EnergyExchange, out_of_domain};
-use crate::interface::cost_checks::{check_costs, check_energies};
+use crate::interface::cost_checks::{check_costs, check_energies, check_waypoints};
 use crate::interface::error::{Result, require, source};
 use crate::interface::handle::Handle;
 use crate::interface::input::Input;
@@ -45,6 +45,7 @@ pub struct Control {
     load_bounds: Vec<(Handle<Load>, [f64; 2])>,
     pub(super) objective: Objective,
     limits: Vec<PathConstraint>,
+    pub(super) waypoints: Vec<problem::Waypoint>,
     voltages: Vec<(Input, Signal)>,
     parameters: Vec<Parameter>,
     guess: Guess,
@@ -63,6 +64,7 @@ impl Control {
             load_bounds: Vec::new(),
             objective: Objective::default(),
             limits: Vec::new(),
+            waypoints: Vec::new(),
             voltages: Vec::new(),
             parameters: Vec::new(),
             guess: Guess::Interpolate,
@@ -312,10 +314,11 @@ impl Control {
         require(holds, "control", found, "weights of which one is positive")?;
         check_costs(costs, system)?;
         check_energies(energies, system)?;
+        check_waypoints(&self.waypoints, system)?;
         for limit in &self.limits {
             let holds = match *limit {
                 PathConstraint::ElectricField { muscle, max } => {
-                    muscle < system.muscles.len() && max > 0.0
+                    muscle < system.muscles.len() && max > 0.0 && system.has_source_voltage(muscle)
                 }
                 PathConstraint::Stretch { muscle, min, max } => {
                     muscle < system.muscles.len() && min < max
@@ -347,6 +350,7 @@ impl Control {
             hold: Hold::Reported,
             objective: self.objective.clone(),
             limits: self.limits.clone(),
+            waypoints: self.waypoints.clone(),
             coordinates: None,
             guess: self.guess.clone(),
             solver: Solver::default(),

@@ -1,6 +1,6 @@
-//! Checks of the costs of a control problem against its system.
+//! Checks of the costs and waypoints of a control problem against its system.
 
-use crate::control::problem::{CostFunction, EnergyCost, QuantityCost};
+use crate::control::problem::{CostFunction, EnergyCost, QuantityCost, Waypoint};
 use crate::interface::error::{Result, require};
 use crate::model::system::Joint;
 use crate::model::{Quantity, System};
@@ -33,6 +33,27 @@ pub(super) fn check_energies(costs: &[EnergyCost], system: &System) -> Result<()
         let found = || format!("{cost:?}");
         let expected = "a positive weight of a lumped muscle with a permittivity";
         require(cost.exists(system) && is_sound, "cost", found, expected)?;
+    }
+    Ok(())
+}
+
+/// Refuses waypoints of parts that the system does not have, and those that are not on the way.
+pub(super) fn check_waypoints(waypoints: &[Waypoint], system: &System) -> Result<()> {
+    for waypoint in waypoints {
+        let of_joint = |(joint, value): (&usize, &f64)| {
+            let joint = system.joints.get(*joint);
+            joint.is_some_and(Joint::has_coordinate) && value.is_finite()
+        };
+        let mut given = waypoint.places.values().flat_map(|place| place.given());
+        let holds = waypoint.part > 0.0
+            && waypoint.part < 1.0
+            && waypoint.places.keys().all(|&m| m < system.markers.len())
+            && given.all(|(_, value)| value.is_finite())
+            && waypoint.angles.iter().all(of_joint);
+        let found = || format!("{waypoint:?}");
+        let expected =
+            "a finite place of a marker or joint at a part of the duration above 0 and below 1";
+        require(holds, "waypoint", found, expected)?;
     }
     Ok(())
 }

@@ -1,12 +1,15 @@
-//! Costs of a control problem in addition to its voltages: energies of sources, squared deviations of markers and joints.
+//! Costs of a control problem in addition to its voltages: energies of sources, squared deviations of markers and joints; and waypoints.
 
 use crate::control::Signal;
-use crate::control::problem::{CostFunction, During, EnergyCost, QuantityCost, SourceEnergy};
+use crate::control::problem::{
+    CostFunction, During, EnergyCost, Place, QuantityCost, SourceEnergy, Waypoint,
+};
 use crate::interface::control::Control;
 use crate::interface::handle::Handle;
 use crate::model::Quantity;
 use crate::model::system::{Joint, Marker, Muscle};
 use nalgebra::Vector3;
+use std::collections::BTreeMap;
 
 impl Control {
     /// Minimises the electrical energy from the sources of lumped muscles, with a weight per J; energy that flows back is negative, and
@@ -50,6 +53,33 @@ impl Control {
     pub fn track_joint(self, joint: Handle<Joint>, along: impl Into<Signal>, weight: f64) -> Self {
         let quantity = of_joint(joint);
         self.square(quantity, Some(along.into()), During::Motion, weight)
+    }
+
+    /// A marker is at a place in mm, in the directions that have a value, at the instant nearest to a part of the duration.
+    pub fn marker_passes(
+        mut self,
+        marker: Handle<Marker>,
+        place: [Option<f64>; 3],
+        part: f64,
+    ) -> Self {
+        self.waypoints.push(Waypoint {
+            part,
+            name: format!("waypoint at {part} of the duration"),
+            places: BTreeMap::from([(marker.index(), Place(place))]),
+            ..Waypoint::default()
+        });
+        self
+    }
+
+    /// A joint has a coordinate in rad or mm at the instant nearest to a part of the duration.
+    pub fn joint_passes(mut self, joint: Handle<Joint>, coordinate: f64, part: f64) -> Self {
+        self.waypoints.push(Waypoint {
+            part,
+            name: format!("waypoint at {part} of the duration"),
+            angles: BTreeMap::from([(joint.index(), coordinate)]),
+            ..Waypoint::default()
+        });
+        self
     }
 
     /// A marker ends near a place in mm: minimises |x − r|² at the end in mm², with a weight.

@@ -55,6 +55,7 @@ pub fn control(system: &System, intervals: usize) -> Control {
             ..Objective::default()
         },
         limits: Vec::new(),
+        waypoints: Vec::new(),
         coordinates: Some(Coordinates::Reduced),
         guess: Guess::Interpolate,
         solver: Solver {

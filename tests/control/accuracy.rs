@@ -66,6 +66,7 @@ fn double_integrator(intervals: usize) -> Attempt<usize> {
             ..Objective::default()
         },
         limits: Vec::new(),
+        waypoints: Vec::new(),
         coordinates: None,
         guess: Guess::Interpolate,
         solver: Solver {

@@ -67,6 +67,7 @@ fn optimum(
             ..Objective::default()
         },
         limits: Vec::new(),
+        waypoints: Vec::new(),
         coordinates: Some(coordinates),
         guess: Guess::Interpolate,
         solver: Solver {

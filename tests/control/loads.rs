@@ -9,7 +9,7 @@ use proboscis::workflow::{Optimum, SolveLimits, optimise};
 use std::ops::ControlFlow;
 use std::path::Path;
 
-fn loaded(changes: &[String]) -> (System, Control) {
+pub(crate) fn loaded(changes: &[String]) -> (System, Control) {
     let path = Path::new(env!("CARGO_MANIFEST_DIR")).join("problems/swing_up.json");
     let loaded = read_problem(&path, changes).unwrap();
     let Task::Control(control) = loaded.task else {
@@ -18,7 +18,7 @@ fn loaded(changes: &[String]) -> (System, Control) {
     (loaded.system, *control)
 }
 
-fn solved(system: &System, control: &Control) -> Optimum {
+pub(crate) fn solved(system: &System, control: &Control) -> Optimum {
     let limits = SolveLimits::default();
     optimise(system, control, None, limits, &mut |_| {
         ControlFlow::Continue(())
@@ -28,7 +28,7 @@ fn solved(system: &System, control: &Control) -> Optimum {
 
 /// 1 kg on a slide along x that a motor moves by 1 m in 1 s, from rest to rest; with light oscillators of these frequencies in Hz on it,
 /// which end at rest.
-fn cart(intervals: usize, frequencies: &[f64], coordinates: &str) -> (System, Control) {
+pub(crate) fn cart(intervals: usize, frequencies: &[f64], coordinates: &str) -> (System, Control) {
     // So light that the force is the acceleration of the cart to 1e-7.
     let light = 1e-8;
     let mut bodies = vec![serde_json::json!({
@@ -105,7 +105,7 @@ fn a_pendulum_swings_up_against_a_wind_within_the_bounds_of_its_motor() {
 }
 
 /// One message says where a changed problem is wrong, and what is expected.
-fn assert_refused(name: &str, change: &str, place: &str, words: &str) {
+pub(crate) fn assert_refused(name: &str, change: &str, place: &str, words: &str) {
     let path = Path::new(env!("CARGO_MANIFEST_DIR")).join(format!("problems/{name}.json"));
     let said = read_problem(&path, &[change.to_owned()])
         .unwrap_err()

@@ -27,3 +27,4 @@ mod sought;
 mod squares;
 mod tracking;
 mod verdicts;
+mod waypoints;

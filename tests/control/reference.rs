@@ -44,6 +44,7 @@ fn problem(name: &str, coordinates: Coordinates) -> Control {
         hold: Default::default(),
         objective,
         limits: Vec::new(),
+        waypoints: Vec::new(),
         coordinates: Some(coordinates),
         guess: Guess::Interpolate,
         solver: Solver {

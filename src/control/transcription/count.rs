@@ -3,7 +3,6 @@
 use std::collections::BTreeMap;
 
 use crate::control::error::BoundaryError;
-use crate::control::limits::When;
 use crate::control::numbering::Row;
 use crate::control::transcription::layout::Layout;
 use crate::control::transcription::limit_rows::LimitRow;
@@ -16,8 +15,7 @@ pub(in crate::control) fn overdetermined(
     intervals: usize,
 ) -> Option<BoundaryError> {
     let rows = &layout.unknowns.rows;
-    let is_goal =
-        |l: &&LimitRow| l.bounded.when == When::Goal && l.bounded.lower == l.bounded.upper;
+    let is_goal = |l: &&LimitRow| l.bounded.when.is_single() && l.bounded.lower == l.bounded.upper;
     let goals = layout.limits.iter().filter(is_goal);
     let mut named = BTreeMap::new();
     goals.for_each(|goal| *named.entry(goal.bounded.name.clone()).or_insert(0) += 1);

@@ -3,7 +3,6 @@
 use std::ops::Range;
 
 use crate::control::boundary_conditions::{BoundaryConditions, Rests};
-use crate::control::limits::When;
 use crate::control::numbering::{Column, Numbering, Row};
 use crate::control::problem::{Control, Duration};
 use crate::control::transcription::limit_rows::{LimitRow, Site, limit_rows};
@@ -95,7 +94,7 @@ impl Layout {
     pub(in crate::control) fn limit(&self, index: usize) -> LimitSite {
         let limit = &self.limits[index];
         LimitSite {
-            is_goal: limit.bounded.when == When::Goal,
+            is_single: limit.bounded.when.is_single(),
             is_of_intervals: limit.site == Site::Intervals,
             at: limit.at.clone(),
             first: self.unknowns.rows.len() - self.limit_rows.len() + limit.first,
@@ -106,8 +105,8 @@ impl Layout {
 /// Site of the rows of a limit or goal.
 #[derive(Clone, Debug)]
 pub(in crate::control) struct LimitSite {
-    /// True if it holds at the end only.
-    pub(in crate::control) is_goal: bool,
+    /// True if it holds at one instant only.
+    pub(in crate::control) is_single: bool,
     /// True if it is read in intervals, rather than at instants.
     pub(in crate::control) is_of_intervals: bool,
     /// Instants or intervals at which it is a row.

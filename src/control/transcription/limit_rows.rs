@@ -66,6 +66,11 @@ pub(super) fn limit_rows(
         let at = match (bounded.when, site) {
             (When::Goal, Site::Instants) => intervals..intervals + 1,
             (When::Goal, Site::Intervals) => intervals - 1..intervals,
+            (When::At(part), _) => {
+                let k = ((part * intervals as f64).round() as usize).clamp(1, intervals);
+                let k = k + 1 - site.sides();
+                k..k + 1
+            }
             (When::Everywhere, _) => {
                 let mut all = 0..intervals + 2 - site.sides();
                 let is_open = |k: usize| {

@@ -163,7 +163,7 @@ impl Nlp for Transcription<'_> {
                     ..
                 } = self.limit(limit);
                 match when {
-                    When::Goal => name.clone(),
+                    When::Goal | When::At(_) => name.clone(),
                     When::Everywhere => format!("{name} {} {k}", quantity.when()),
                 }
             }

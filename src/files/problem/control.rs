@@ -22,6 +22,7 @@ use crate::files::problem::spec_voltages::VoltagesSpec;
 use crate::files::problem::state::{ELECTRIC_KEYS, driven, start_state};
 use crate::files::problem::track::{at_the_end, track};
 use crate::files::problem::voltages::over_time;
+use crate::files::problem::waypoints::waypoints;
 use crate::files::scene::graph::tree_freedoms;
 use crate::files::scene::spec::SceneSpec;
 use crate::files::units::quantity::Voltage;
@@ -108,6 +109,7 @@ pub(crate) fn control(
         hold: spec.hold.into(),
         objective,
         limits,
+        waypoints: waypoints(&spec.waypoints, duration, system, &scope.key("waypoints"))?,
         coordinates: coordinates(spec.coordinates, system, scope)?,
         guess,
         solver: solver(&spec.solver, &scope.key("solver"))?,

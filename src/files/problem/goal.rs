@@ -129,7 +129,8 @@ fn coordinates(
     })
 }
 
-fn of_markers(
+/// Places by marker.
+pub(crate) fn of_markers(
     markers: &BTreeMap<String, PartialPoint>,
     system: &System,
     scope: &Scope<'_>,
@@ -150,7 +151,8 @@ fn of_markers(
     }
 }
 
-fn of_bodies(
+/// Orientations by body.
+pub(crate) fn of_bodies(
     bodies: &BTreeMap<String, OrientationSpec>,
     system: &System,
     scope: &Scope<'_>,

@@ -37,3 +37,4 @@ pub mod spec_voltages;
 pub(crate) mod state;
 pub(crate) mod track;
 pub(crate) mod voltages;
+pub(crate) mod waypoints;

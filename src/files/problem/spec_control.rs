@@ -9,6 +9,7 @@ use crate::files::problem::spec_limits::LimitSpec;
 use crate::files::problem::spec_states::{GoalSpec, HoldSpec, StartSpec};
 use crate::files::problem::spec_track::{FinalSpec, TrackSpec};
 use crate::files::problem::spec_voltages::VoltagesSpec;
+use crate::files::problem::waypoints::WaypointSpec;
 use crate::files::units::quantity::{Quantity, Time, Voltage};
 use schemars::JsonSchema;
 use serde::de::{Error, IntoDeserializer, Unexpected, Visitor};
@@ -58,6 +59,9 @@ pub struct ControlSpec {
     /// Path limits.
     #[serde(default)]
     pub limits: Vec<LimitSpec>,
+    /// Places, orientations and joint coordinates that the motion reaches on its way.
+    #[serde(default)]
+    pub waypoints: Vec<WaypointSpec>,
     /// Coordinates.
     #[serde(default)]
     pub coordinates: Option<CoordinatesSpec>,
