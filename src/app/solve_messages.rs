@@ -41,6 +41,18 @@ pub(super) fn meaning(status: Status) -> &'static str {
     }
 }
 
+/// Describes a first start without an answer, whose further starts were stopped.
+pub(super) fn stopped_after(first: Status, stopped: Status) -> String {
+    let reason = match stopped {
+        Status::Interrupted => "interrupted",
+        _ => "the time allowed was used up",
+    };
+    format!(
+        "{reason} while other starts were tried; the first start ended {}; the files hold its last iterate",
+        first.word()
+    )
+}
+
 /// Describes the changes of an earlier solution that serves as a guess.
 pub(super) fn carried(carried: &Carried) -> Vec<String> {
     let stretched = carried.stretched.map(|[from, to]| {

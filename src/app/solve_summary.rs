@@ -7,11 +7,12 @@ use crate::app::linear_systems::LinearSystems;
 use crate::app::messages::counted;
 use crate::app::moved_markers::moved_markers;
 use crate::app::request::CommandOutput;
-use crate::app::solve_messages::{carried, meaning, redundancy, restarted, unresolved};
+use crate::app::solve_messages::{
+    carried, meaning, redundancy, restarted, stopped_after, unresolved,
+};
 use crate::app::solve_page::describe;
 use crate::app::summary::{Evaluations, PerInterval, Program, Seconds, SoughtValue, Summary};
 use crate::control::problem::{Control, Hold};
-use crate::ipopt::{Status, interrupt};
 use crate::model::System;
 use crate::workflow::cause::Cause;
 use crate::workflow::hold_check;
@@ -42,9 +43,6 @@ impl Verdict {
         let not_kept = hold_check::warning(control, model, boundary, tested);
         let mut is_solved = optimum.is_solved();
         let mut word = optimum.word();
-        if interrupt::requested() && word == "not_reproduced" {
-            word = Status::Interrupted.word();
-        }
         let has_to_hold = is_solved && control.hold == Hold::Required;
         let not_held = not_kept.clone().filter(|_| has_to_hold);
         if not_held.is_some() {
@@ -52,7 +50,11 @@ impl Verdict {
         }
         let mut message = refuted.or(not_held);
         if message.is_none() && !is_solved {
-            message = Some(meaning(optimum.solution.status).to_owned());
+            let status = optimum.solution.status;
+            message = Some(match optimum.stopped {
+                Some(stopped) => stopped_after(status, stopped),
+                None => meaning(status).to_owned(),
+            });
         }
         if let (Some(message), false) = (&mut message, optimum.meets_equations()) {
             message.push_str(&redundancy(&model.redundant_constraints(&boundary.start.z)));

@@ -105,6 +105,8 @@ pub(crate) fn attempt(
         tested,
         restarted: None,
         shortest: Shortest::Unknown,
+        half_period: None,
+        stopped: None,
         active: point.active,
         gap: point.gap,
         wide: point.wide,

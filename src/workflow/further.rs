@@ -28,6 +28,15 @@ pub(crate) fn is_unreached(solution: &SolverResult) -> bool {
     is_infeasible(solution.status) || (solution.status == Status::IterationLimit && is_long)
 }
 
+/// Returns the reason why no further solve may be begun with these seconds left, if there is one.
+pub(crate) fn stopped(left: Option<f64>) -> Option<Status> {
+    if interrupt::requested() {
+        return Some(Status::Interrupted);
+    }
+    let is_late = left.is_some_and(|seconds| seconds <= 0.0);
+    interrupt::stop().or(is_late.then_some(Status::TimeLimit))
+}
+
 /// The problem with another guess: the motion under the voltages of the goal, or half of the largest ones; interpolated where it
 /// was simulated.
 pub(crate) fn displaced(control: &Control, first: &Optimum) -> Control {
@@ -64,11 +73,20 @@ impl Further<'_> {
         seconds_left(self.allowed.seconds, self.began)
     }
 
+    /// Returns the reason why nothing more may be begun, if there is one.
+    pub(crate) fn stopped(&self) -> Option<Status> {
+        stopped(self.seconds())
+    }
+
     /// Returns true if nothing more may be begun.
     pub(crate) fn is_over(&self) -> bool {
-        interrupt::requested()
-            || interrupt::stop().is_some()
-            || self.seconds().is_some_and(|s| s <= 0.0)
+        self.stopped().is_some()
+    }
+
+    /// Does a piece of work that asks whether it is to stop.
+    pub(crate) fn within<T>(&self, work: impl FnOnce() -> T) -> T {
+        let _watch = interrupt::watch(self.seconds());
+        work()
     }
 
     /// Solves a problem of the same system, within a number of iterations; none where it cannot be stated.

@@ -1,9 +1,10 @@
 //! Solves of one control problem on several grids, within the limits of the whole.
 
 use crate::control::problem::Control;
-use crate::ipopt::interrupt;
+use crate::ipopt::Status;
 use crate::model::System;
 use crate::workflow::error::WorkflowError;
+use crate::workflow::further::stopped;
 use crate::workflow::iterate::Iterate;
 use crate::workflow::optimise::optimise;
 use crate::workflow::optimum::{Optimum, SolveLimits, seconds_left};
@@ -49,9 +50,14 @@ impl<'a> GridSolves<'a> {
         seconds_left(self.allowed.seconds, self.began)
     }
 
-    /// Returns true if an interrupt was requested or no time is left.
+    /// Returns the reason why no further grid may be begun, if there is one.
+    pub(super) fn stopped(&self) -> Option<Status> {
+        stopped(self.left())
+    }
+
+    /// Returns true if no further grid may be begun.
     pub(super) fn is_over(&self) -> bool {
-        interrupt::requested() || self.left().is_some_and(|s| s <= 0.0)
+        self.stopped().is_some()
     }
 
     /// Solves on a number of intervals, from an earlier optimum or from the guess of the problem.

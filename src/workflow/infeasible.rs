@@ -2,10 +2,11 @@
 
 use std::ops::ControlFlow;
 
-use crate::control::problem::{BoundaryState, Control};
+use crate::control::problem::{BoundaryState, Control, Duration};
 use crate::control::{BoundaryConditions, Place, Rests};
 use crate::coordinates::Configuration;
 use crate::dynamics::simulate;
+use crate::ipopt::Status;
 use crate::kinematics::Pose;
 use crate::math::significant;
 use crate::model::components::Tendon;
@@ -191,6 +192,34 @@ fn distances(
 /// Returns the changes that may help.
 fn changes(control: &Control, optimum: &Optimum) -> Vec<String> {
     let model = &optimum.model;
+    let mut lines = durations(control, optimum);
+    if optimum.active.iter().any(|active| active.is_voltage) {
+        lines.push("change: wider voltage_bounds, if the muscles withstand them".to_owned());
+    }
+    let has_nodes = !model.action.map.of_nodes.is_empty();
+    if has_nodes && optimum.boundary.goal.rests == Rests::Everything {
+        let few = "a few voltages cannot bring every node of an elastic block to rest";
+        lines.push(format!("change: \"rest\": \"bodies\" in the goal; {few}"));
+    }
+    if has_nodes && control.objective.rate == 0.0 {
+        let jumps =
+            "without a cost voltages jump from interval to interval and excite the elements";
+        lines.push(format!("change: \"rate\": 0.002 in the objective; {jumps}"));
+    }
+    if lines.is_empty() && optimum.solution.status == Status::IterationLimit {
+        let rate = match control.objective.rate == 0.0 {
+            true => ", a cost of rate in the objective",
+            false => "",
+        };
+        lines.push(format!(
+            "change: more iterations, more intervals, another guess{rate}"
+        ));
+    }
+    lines
+}
+
+/// Says which durations are possible, by solves with a free one and by the slowest mode.
+fn durations(control: &Control, optimum: &Optimum) -> Vec<String> {
     let mut lines = Vec::new();
     match optimum.shortest {
         Shortest::Longer(ms) => lines.push(format!(
@@ -207,18 +236,20 @@ fn changes(control: &Control, optimum: &Optimum) -> Vec<String> {
         ),
         Shortest::Unknown => {}
     }
-    if optimum.active.iter().any(|active| active.is_voltage) {
-        lines.push("change: wider voltage_bounds, if the muscles withstand them".to_owned());
-    }
-    let has_nodes = !model.action.map.of_nodes.is_empty();
-    if has_nodes && optimum.boundary.goal.rests == Rests::Everything {
-        let few = "a few voltages cannot bring every node of an elastic block to rest";
-        lines.push(format!("change: \"rest\": \"bodies\" in the goal; {few}"));
-    }
-    if has_nodes && control.objective.rate == 0.0 {
-        let jumps =
-            "without a cost voltages jump from interval to interval and excite the elements";
-        lines.push(format!("change: \"rate\": 0.002 in the objective; {jumps}"));
+    let longest = match (optimum.shortest, control.duration) {
+        (Shortest::AsGiven, _) => f64::INFINITY,
+        (Shortest::NotUpTo(ms), _) => ms,
+        (_, Duration::Given(ms) | Duration::Free { max: ms, .. }) => ms,
+    };
+    if let Some(ms) = optimum.half_period.filter(|ms| *ms > longest) {
+        let asks = match optimum.shortest {
+            Shortest::Longer(_) => "",
+            _ => "change: a longer duration; ",
+        };
+        lines.push(format!(
+            "{asks}half a period of the slowest mode takes {} s, and a shorter motion excites faster ones",
+            no_shorter(ms / 1e3)
+        ));
     }
     lines
 }

@@ -64,6 +64,10 @@ pub struct Optimum {
     pub restarted: Option<Restarted>,
     /// The shortest motion, where none was found in the given time.
     pub shortest: Shortest,
+    /// Half a period of the slowest vibration about rest in ms, where no motion was found and that is known.
+    pub half_period: Option<f64>,
+    /// Reason why other starts or finer grids were not tried to the end, where none before led to an answer.
+    pub stopped: Option<Status>,
     /// Bounds and limits that the motion reaches, the most frequent first; none of a solution.
     pub active: Vec<Active>,
     /// Duality gap: the objective lies no farther above its least value, in its unit.
@@ -112,6 +116,9 @@ impl Optimum {
 
     /// Its status, in a word.
     pub fn word(&self) -> &'static str {
+        if let Some(status) = self.stopped {
+            return status.word();
+        }
         match self.cause() {
             _ if self.reversed.is_some() => "unresolved",
             Some(_) => "not_reproduced",

@@ -35,7 +35,7 @@ pub(crate) fn reproduced(
     observer: &mut dyn FnMut(usize, &Iterate<'_>) -> ControlFlow<()>,
 ) -> Result<RefinedOptimum, WorkflowError> {
     let mut solves = GridSolves::new(system, control, allowed, observer);
-    let optimum = solves.solve(control.intervals, None)?;
+    let mut optimum = solves.solve(control.intervals, None)?;
     let Some(cause) = optimum.cause() else {
         return Ok(RefinedOptimum {
             optimum,
@@ -72,6 +72,7 @@ pub(crate) fn reproduced(
             }
         }
     }
+    optimum.stopped = solves.stopped();
     let note = finest.map(|n| {
         format!(
             "on finer grids of up to {n} intervals no optimum was reproduced by its inputs either"

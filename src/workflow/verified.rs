@@ -6,7 +6,6 @@
 use std::ops::ControlFlow;
 
 use crate::control::problem::Control;
-use crate::ipopt::interrupt;
 use crate::model::System;
 use crate::workflow::error::WorkflowError;
 use crate::workflow::grid_solves::{GridSolves, VARIABLES};
@@ -55,16 +54,24 @@ pub fn verified(
             });
             break;
         }
-        let mut found = solves.solve(next as usize, Some(&best))?;
-        if !found.meets_equations() && interrupt::stop().is_none() {
-            found = solves.solve(next as usize, None)?;
+        let mut found = solves.solve(next as usize, Some(&best)).ok();
+        let is_found =
+            |found: &Option<Optimum>| found.as_ref().is_some_and(Optimum::meets_equations);
+        if !is_found(&found) && !solves.is_over() {
+            found = solves.solve(next as usize, None).ok();
         }
-        if !found.meets_equations() {
-            why = Some("a finer grid was not solved");
+        let Some(mut found) = found.filter(Optimum::meets_equations) else {
+            why = Some(match solves.is_over() {
+                true => "it was stopped",
+                false => "a finer grid was not solved",
+            });
             break;
-        }
+        };
         found.carried = best.carried;
         best = found;
+    }
+    if !best.is_solved() && best.meets_equations() {
+        best.stopped = solves.stopped();
     }
     let is_short = best.meets_equations() && !is_confirmed(&best, accuracy);
     let note = is_short.then(|| {

@@ -26,5 +26,6 @@ mod resample;
 mod sought;
 mod squares;
 mod tracking;
+mod unreached;
 mod verdicts;
 mod waypoints;

@@ -1,6 +1,6 @@
 //! Springs of joints: against closed forms, in both kinds of coordinates, beyond half turns, and as files say them.
 
-use crate::common::{bare, motion};
+use crate::common::{at_reference, bare, motion};
 use crate::component_files::read;
 use crate::components::{body, column};
 use nalgebra::Vector3;
@@ -100,6 +100,34 @@ fn weight_and_a_spring_of_a_hinge_balance_in_both_coordinates() {
             (angle - low).abs() < 1e-9,
             "{coordinates:?}: {angle}, not {low}"
         );
+    }
+}
+
+/// Masses in a row on equal sliders: of one ω² = k/m, of two (3 − √5)/2 k/m.
+#[test]
+fn the_slowest_vibration_has_the_period_of_its_closed_form() {
+    let slide = JointKind::Prismatic { axis: Vector3::x() };
+    let one = on(slide, 0.0, Some(0.01));
+    let mut two = one.clone();
+    two.bodies.push(body("second", 40.0));
+    two.joints.push(Joint {
+        name: "second".into(),
+        parent: Some(0),
+        child: 1,
+        ..one.joints[0].clone()
+    });
+    for (system, part) in [(one, 1.0), (two, 0.5 * (3.0 - 5.0_f64.sqrt()))] {
+        let exact = TAU / (part * STIFFNESS / 10.0).sqrt();
+        for coordinates in BOTH {
+            let model = Model::new(system.clone(), Some(coordinates), 1.0, &[]).unwrap();
+            let rest = stable_equilibrium(&model, &at_reference(&model), &[]).unwrap();
+            let period = rest.slowest_period(&model).unwrap();
+            // The iteration ends where ω² changes by 1e-6.
+            assert!(
+                (period - exact).abs() < 1e-5 * exact,
+                "{coordinates:?}: {period} ms, not {exact}"
+            );
+        }
     }
 }
 

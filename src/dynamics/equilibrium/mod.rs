@@ -3,7 +3,8 @@
 //! - `statics`: Newton on the rows of rest; `settle`, `minimum`: states that Newton's method does not reach.
 //! - `instability`, `ramp`, `growth`: loads that grow; `arc_length`: the path of equilibria by arc length; `load_path`: its points.
 //! - `in_joints`: equilibria in redundant coordinates by way of joint coordinates.
-//! - `result`, `mode`, `softest_mode`, `stability`: a state of rest and its softest mode; `stable`: the stable one.
+//! - `result`, `mode`, `softest_mode`, `stability`: a state of rest and its softest mode; `slowest_mode`: its slowest vibration; `stable`: the
+//!   stable one.
 
 mod arc_length;
 mod growing;
@@ -16,6 +17,7 @@ mod mode;
 mod ramp;
 mod result;
 mod settle;
+mod slowest_mode;
 mod softest_mode;
 mod stability;
 mod stable;

@@ -1,0 +1,87 @@
+//! Problems that no start solves: what is said of their duration, and stops on the way.
+
+use crate::verdicts::{control, kept, output_of, read};
+use proboscis::ipopt::Status;
+use proboscis::ipopt::interrupt::{self, Questions};
+use proboscis::workflow::{Optimum, Shortest, SolveLimits, listen_to_phases, optimise};
+use std::cell::Cell;
+use std::ops::ControlFlow;
+use std::rc::Rc;
+use tempfile::tempdir;
+
+const TRUNK: &str = "elephant_trunk_effort";
+/// A sixth of the duration of the trunk, in too few iterations.
+const SHORT: [&str; 2] = ["control.duration=0.1 s", "control.solver.max_iterations=55"];
+
+#[test]
+fn a_limit_of_iterations_is_explained_by_a_duration_that_can_be_solved() {
+    let folder = tempdir().unwrap();
+    let out = folder.path().join("short");
+    let ended = output_of(&kept(TRUNK), &SHORT, &out);
+    assert!(!ended.is_solved);
+    assert_eq!(read(&out.join("summary.json"))["status"], "iteration_limit");
+    let seconds = |before: &str| -> f64 {
+        let said = ended.notes.iter().find_map(|note| {
+            let (_, after) = note.split_once(before)?;
+            after.split(' ').next()
+        });
+        said.unwrap_or_else(|| panic!("{:?}", ended.notes))
+            .parse()
+            .unwrap()
+    };
+    let found = seconds("with the duration free the shortest motion found takes ");
+    let slowest = seconds("half a period of the slowest mode takes ");
+    // Of the trunk as a clamped beam 0.38 s: (L/1.875)² √(m/EI) π with L = 300 mm.
+    assert!(found > 0.1 && (0.3..0.5).contains(&slowest), "{slowest} s");
+    for duration in [found, slowest] {
+        let change = format!("control.duration={duration} s");
+        let ended = output_of(&kept(TRUNK), &[&change], &folder.path().join("longer"));
+        assert!(ended.is_solved, "{duration} s: {ended:?}");
+    }
+}
+
+/// Phases of the starts after the first one.
+const LATER: [&str; 4] = [
+    "looking for the shortest motion",
+    "a second, displaced initial guess",
+    "looking for the slowest mode",
+    "looking for a slow motion",
+];
+
+/// Solves until some questions after the beginning of a phase; returns the result and the questions after the end of the time.
+fn stopped_in(phase: &'static str, after: u64) -> (Optimum, u64) {
+    let (system, control) = control(TRUNK, &SHORT.map(str::to_owned));
+    let questions = Questions::allowed(u64::MAX);
+    let over = Rc::new(Cell::new(0));
+    let (asked, end) = (questions.clone(), over.clone());
+    listen_to_phases(move |begun| {
+        if begun == phase {
+            asked.end_after(after);
+            end.set(asked.asked() + after);
+        }
+    });
+    let watch = interrupt::watch_questions(&questions);
+    let found = optimise(&system, &control, None, SolveLimits::default(), &mut |_| {
+        ControlFlow::Continue(())
+    });
+    drop(watch);
+    listen_to_phases(|_| ());
+    assert!(over.get() > 0, "{phase} was not begun");
+    (found.unwrap(), questions.asked() - over.get())
+}
+
+#[test]
+fn other_starts_stop_at_the_next_question_and_leave_the_first_one() {
+    for phase in LATER {
+        for after in [0, 20] {
+            let (found, late) = stopped_in(phase, after);
+            println!("{phase}, {after}: {late} questions after the end");
+            assert_eq!(found.word(), "time_limit", "{phase}");
+            assert_eq!(found.solution.status, Status::IterationLimit);
+            assert!(found.motion.intervals() == 40 && !found.violated.is_empty());
+            assert!(!matches!(found.shortest, Shortest::NotUpTo(_)));
+            // One for each piece of work that is not begun any more.
+            assert!(late < 30, "{phase}: {late} questions after the end");
+        }
+    }
+}
