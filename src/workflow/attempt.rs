@@ -79,11 +79,7 @@ pub(crate) fn attempt(
     let point = FinalPoint::new(&mut program, &solution, &model, control);
     drop(program);
     let (model, boundary, sought) = of_motion(system, control, (model, boundary), &motion)?;
-    let Verification {
-        reversed,
-        resimulation,
-        tested,
-    } = match solution.status.is_solved() {
+    let verified = match solution.status.is_solved() {
         true => Verification::new(&model, &boundary, control, (&discrete, &motion)),
         false => Verification::default(),
     };
@@ -93,7 +89,7 @@ pub(crate) fn attempt(
         boundary,
         motion,
         solution,
-        reversed,
+        reversed: verified.reversed,
         violated: point.violated,
         infeasibility: point.infeasibility,
         constraints: point.constraints,
@@ -101,8 +97,8 @@ pub(crate) fn attempt(
         hessian_nonzeros: point.hessian_nonzeros,
         setup,
         carried,
-        resimulation,
-        tested,
+        resimulation: verified.resimulation,
+        tested: verified.tested,
         restarted: None,
         shortest: Shortest::Unknown,
         half_period: None,

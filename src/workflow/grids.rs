@@ -10,6 +10,7 @@ use crate::model::{Model, System};
 use crate::workflow::accuracy::{AccuracyTarget, Attempt, Refined, refine};
 use crate::workflow::error::WorkflowError;
 use crate::workflow::estimate::ErrorSample;
+use crate::workflow::further::stopped;
 use crate::workflow::integrate::{Simulated, grid, integrate};
 use crate::workflow::iterate::Iterate;
 use crate::workflow::motion;
@@ -38,7 +39,7 @@ pub fn optimise_to(
 ) -> Result<Refined<Optimum>, WorkflowError> {
     let began = Instant::now();
     let left = || seconds_left(allowed.seconds, began);
-    refine(
+    let mut refined = refine(
         wanted,
         OF_CONTROL,
         || stop(left()),
@@ -72,7 +73,11 @@ pub fn optimise_to(
                 run,
             })
         },
-    )
+    )?;
+    if refined.run.meets_equations() && !refined.run.is_solved() {
+        refined.run.stopped = stopped(left());
+    }
+    Ok(refined)
 }
 
 /// Simulates with the step of the task, then with half of it and so on, until every error is estimated below what is wanted;

@@ -10,8 +10,11 @@ use std::rc::Rc;
 use tempfile::tempdir;
 
 const TRUNK: &str = "elephant_trunk_effort";
-/// A sixth of the duration of the trunk, in too few iterations.
-const SHORT: [&str; 2] = ["control.duration=0.1 s", "control.solver.max_iterations=55"];
+/// A fifth of the duration of the trunk, in too few iterations.
+const SHORT: [&str; 2] = [
+    "control.duration=0.12 s",
+    "control.solver.max_iterations=55",
+];
 
 #[test]
 fn a_limit_of_iterations_is_explained_by_a_duration_that_can_be_solved() {
@@ -31,8 +34,9 @@ fn a_limit_of_iterations_is_explained_by_a_duration_that_can_be_solved() {
     };
     let found = seconds("with the duration free the shortest motion found takes ");
     let slowest = seconds("half a period of the slowest mode takes ");
-    // Of the trunk as a clamped beam 0.38 s: (L/1.875)² √(m/EI) π with L = 300 mm.
-    assert!(found > 0.1 && (0.3..0.5).contains(&slowest), "{slowest} s");
+    // As a clamped beam of 300 mm 0.35 s, π (L/1.875)² √(m/EI); the voltages of the goal soften it.
+    assert!((0.35..0.7).contains(&slowest), "{slowest} s");
+    assert!((0.12..0.7).contains(&found), "{found} s");
     for duration in [found, slowest] {
         let change = format!("control.duration={duration} s");
         let ended = output_of(&kept(TRUNK), &[&change], &folder.path().join("longer"));
