@@ -86,7 +86,7 @@ const TABLE: &[NotOffered] = &[
             "conductivity",
             "power_supply",
         ],
-        said: "voltage is the control; the electronics are not modelled",
+        said: "the electronics are a resistor, \"circuit\": { \"resistance\": … } of a lumped muscle; there is no leakage and no limit of current or power",
     },
     NotOffered {
         words: &[

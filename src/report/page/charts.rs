@@ -151,6 +151,10 @@ fn over_time(run: &Run<'_>) -> Vec<Value> {
         ("Deviations", tracking::by_unit(times, run.tracked)),
         ("Stretches", alone("stretch", of_sources("_stretch"))),
         ("Charges", vec![joints::scaled_charges(charges)]),
+        (
+            "Voltages of electrodes",
+            alone("voltage [V]", of_sources("_voltage")),
+        ),
         ("Energies", alone("energy [mJ]", observed(&energy))),
         (
             "Energy from each source",
