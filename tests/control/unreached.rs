@@ -3,7 +3,7 @@
 use crate::verdicts::{control, kept, output_of, read};
 use proboscis::ipopt::Status;
 use proboscis::ipopt::interrupt::{self, Questions};
-use proboscis::workflow::{Optimum, Shortest, SolveLimits, listen_to_phases, optimise};
+use proboscis::workflow::{Optimum, Shortest, SolveLimits, listen_to_phases, optimise, verified};
 use std::cell::Cell;
 use std::ops::ControlFlow;
 use std::rc::Rc;
@@ -88,4 +88,31 @@ fn other_starts_stop_at_the_next_question_and_leave_the_first_one() {
             assert!(late < 30, "{phase}: {late} questions after the end");
         }
     }
+}
+
+/// A stop while a finer grid is built keeps the optimum of the grid before.
+#[test]
+fn a_stop_between_grids_keeps_the_result_so_far() {
+    let (system, control) = control(TRUNK, &["control.intervals=auto".to_owned()]);
+    let questions = Questions::allowed(u64::MAX);
+    let (asked, built) = (questions.clone(), Cell::new(0));
+    listen_to_phases(move |begun| {
+        built.set(built.get() + i32::from(begun.starts_with("building the model")));
+        if built.get() == 2 {
+            asked.end_after(0);
+        }
+    });
+    let watch = interrupt::watch_questions(&questions);
+    let limits = SolveLimits::default();
+    // No grid is fine enough for this.
+    let found = verified(&system, &control, 1e-9, limits, &mut |_, _| {
+        ControlFlow::Continue(())
+    });
+    drop(watch);
+    listen_to_phases(|_| ());
+    let found = found.expect("the result of the first grid");
+    assert!(found.optimum.solution.status.is_solved());
+    assert_eq!(found.optimum.motion.intervals(), control.intervals);
+    let note = found.note.expect("the accuracy is not reached");
+    assert!(note.ends_with("it was stopped"), "{note}");
 }
