@@ -4,6 +4,7 @@ use crate::output::arrays;
 use crate::runs::{problem, read, run};
 use std::collections::BTreeMap;
 use std::fs;
+use std::io::{BufRead, BufReader};
 use std::mem;
 use std::path::{Path, PathBuf};
 use std::process::{Command, Stdio};
@@ -86,15 +87,25 @@ fn an_iterate_that_cannot_be_kept_is_told_during_the_run() {
     let out = folder.path().join("results");
     fs::create_dir_all(out.join("unfinished.json")).unwrap();
     let fine = ["--set", "control.intervals=4000"];
-    let limit = ["--max-seconds", "5", "--no-report"];
     let problem = problem("elephant_trunk_effort");
-    let words = [
-        &["solve", &problem, "-o", out.to_str().unwrap()][..],
-        &fine,
-        &limit,
-    ]
-    .concat();
-    let (_, _, errors) = run(folder.path(), &words);
+    let words = ["solve", &problem, "-o", out.to_str().unwrap()];
+    let mut child = Command::new(env!("CARGO_BIN_EXE_proboscis"))
+        .args([&words[..], &fine].concat())
+        .current_dir(folder.path())
+        .stdout(Stdio::null())
+        .stderr(Stdio::piped())
+        .spawn()
+        .unwrap();
+    // Until it is told, however long that takes.
+    let mut errors = String::new();
+    for line in BufReader::new(child.stderr.take().unwrap()).lines() {
+        errors += &format!("{}\n", line.unwrap());
+        if errors.contains("unfinished.json") {
+            break;
+        }
+    }
+    child.kill().unwrap();
+    child.wait().unwrap();
     let told = errors.lines().find(|line| line.contains("unfinished.json"));
     let told = told.unwrap_or_else(|| panic!("{errors}"));
     assert!(told.trim_start().starts_with("WARN"), "{told:?}");
