@@ -68,6 +68,7 @@ class Questions:
         solver: entries.Solver | None = None,
         voltage_bounds: Sequence[Quantity] | Numbers | None = None,
         voltages: entries.Voltages | None = None,
+        waypoints: Sequence[entries.Waypoint] | None = None,
     ) -> Problem:
         """Returns the optimal control problem with these entries of `control` in a problem file.
 
@@ -92,6 +93,7 @@ class Questions:
         * `voltages`: Voltages that are given, by the names of muscles and driven electrodes (`block.electrode`), SI unit V: they are no
           unknowns, and one of 0 for all the time leaves no electric term at all. Functions of time, a table and those of a solution give all
           voltages, as of a simulation; then a constant of the scene has to be sought.
+        * `waypoints`: Places, orientations and joint coordinates that the motion reaches on its way.
         """
         problem = self._problem(
             "control",
@@ -111,6 +113,7 @@ class Questions:
                 "solver": solver,
                 "voltage_bounds": voltage_bounds,
                 "voltages": voltages,
+                "waypoints": waypoints,
             },
         )
         return problem

@@ -47,6 +47,13 @@ class Box(TypedDict):
     """Edge lengths along x, y, z, SI unit m."""
 
 
+class Circuit(TypedDict):
+    """Circuit between a source and the electrodes of a muscle."""
+
+    resistance: Quantity
+    """Resistance in series, SI unit Ohm."""
+
+
 class Corners(TypedDict):
     """Two corners of a box."""
 
@@ -173,6 +180,9 @@ class Pair(TypedDict):
 
     arm: Quantity
     """Distance from the long axis, SI unit m."""
+
+    circuit: NotRequired[Circuit]
+    """Circuit between the source and the electrodes, of a lumped muscle; without it they have the voltage of the source."""
 
     cross_section: Sequence[Quantity] | Numbers
     """Sides of the rectangular cross-section at rest, SI unit m."""
@@ -848,6 +858,25 @@ Voltages: TypeAlias = "Solution | Table | Mapping[Any, Signal]"
 """
 
 
+class Waypoint(TypedDict):
+    """What the motion reaches at a time on its way, at the instant nearest to it: `markers`, `orientations`, `joint_angles`, or several of them."""
+
+    joint_angles: NotRequired[Mapping[Any, Quantity]]
+    """Joint coordinates by joint, SI unit rad or m."""
+
+    markers: NotRequired[Mapping[Any, Sequence[Quantity | None] | Numbers]]
+    """Positions by marker, SI unit m; directions that are `null` are free."""
+
+    orientations: NotRequired[Mapping[Any, Orientation]]
+    """Orientations by body."""
+
+    part: NotRequired[float]
+    """Part of the duration, above 0 and below 1, which may be free."""
+
+    time: NotRequired[Quantity]
+    """Time, SI unit s; or give `part`."""
+
+
 class Control(TypedDict):
     """An optimal control problem."""
 
@@ -904,6 +933,9 @@ class Control(TypedDict):
     for all the time leaves no electric term at all. Functions of time, a table and those of a solution give all voltages, as of a simulation;
     then a constant of the scene has to be sought.
     """
+
+    waypoints: NotRequired[Sequence[Waypoint]]
+    """Places, orientations and joint coordinates that the motion reaches on its way."""
 
 
 class Simulate(TypedDict):

@@ -180,6 +180,7 @@ class Muscle(Part):
     * `layer_thickness`: Thickness of one layer at rest, SI unit m.
     * `material`: Name of the material.
     * `to`: End.
+    * `circuit`: Circuit between the source and the electrodes, of a lumped muscle; without it they have the voltage of the source.
     * `element`: Kind of hexahedron; `hex8` where not written. Of `finite_elements` only.
     * `elements`: Elements along both sides of the cross-section and along the span; of `finite_elements` only.
     * `layers`: Layers of the model along the span, a divisor of the elements there, which is its default; of `finite_elements` only.
@@ -198,6 +199,7 @@ class Muscle(Part):
         layer_thickness: Quantity,
         material: Text,
         to: entries.Point,
+        circuit: entries.Circuit | None = None,
         element: entries.Element | None = None,
         elements: Sequence[int] | Numbers | None = None,
         layers: int | None = None,
@@ -212,6 +214,7 @@ class Muscle(Part):
                 "layer_thickness": layer_thickness,
                 "material": material,
                 "to": to,
+                "circuit": circuit,
                 "element": element,
                 "elements": elements,
                 "layers": layers,
@@ -342,8 +345,8 @@ class Tendon(Part):
 
 
 class Load(Part):
-    """A load, whose size a problem gives or seeks: a force at a `point`, a torque or force of a `joint`, such as that of a motor, or a load of a
-    `solid`.
+    """A load, whose size a problem gives or seeks: a force at a `point`, a torque or force of a `joint`, such as that of a motor, the charge of a
+    `muscle`, or a load of a `solid`.
 
     * `box`: Faces of the surface in a box on which it acts.
     * `direction`: Direction of the force or traction in the ground frame, in the reference configuration where it `follows`; its length is
@@ -353,6 +356,7 @@ class Load(Part):
       does and a force does not.
     * `joint`: Name of a revolute joint, about whose axis a torque acts on the child, or of a prismatic one, along whose axis a force acts.
     * `kind`: Kind of a load of a `solid`.
+    * `muscle`: Name of a lumped muscle whose electrodes have a given charge instead of a voltage.
     * `plane`: Faces of the surface in a plane on which it acts.
     * `point`: Point of a body at which a force acts, with `direction`; or give `joint` or `solid`.
     * `solid`: Name of an elastic block, with `kind`.
@@ -370,6 +374,7 @@ class Load(Part):
         follows: bool | None = None,
         joint: Text | None = None,
         kind: entries.BlockLoadKind | None = None,
+        muscle: Text | None = None,
         plane: entries.Plane | None = None,
         point: entries.Point | None = None,
         solid: Text | None = None,
@@ -383,6 +388,7 @@ class Load(Part):
                 "follows": follows,
                 "joint": joint,
                 "kind": kind,
+                "muscle": muscle,
                 "plane": plane,
                 "point": point,
                 "solid": solid,
