@@ -859,7 +859,9 @@ Voltages: TypeAlias = "Solution | Table | Mapping[Any, Signal]"
 
 
 class Waypoint(TypedDict):
-    """What the motion reaches at a time on its way, at the instant nearest to it: `markers`, `orientations`, `joint_angles`, or several of them."""
+    """Places that the motion reaches at a time on its way, at the instant nearest to it: `markers`, `orientations`, `joint_angles`, or several of
+    them.
+    """
 
     joint_angles: NotRequired[Mapping[Any, Quantity]]
     """Joint coordinates by joint, SI unit rad or m."""

@@ -118,7 +118,7 @@ pub struct Control {
     pub objective: Objective,
     /// Path limits.
     pub limits: Vec<PathConstraint>,
-    /// What the motion passes on its way.
+    /// Places, orientations and coordinates on the way of the motion.
     pub waypoints: Vec<Waypoint>,
     /// `None`: reduced where the joints form a tree.
     pub coordinates: Option<Coordinates>,

@@ -274,3 +274,32 @@ fn a_solve_starts_where_a_simulation_ended() {
     let deviation = &summary(folder, "on")["resimulation"];
     assert!(deviation.is_object(), "{deviation}");
 }
+
+#[test]
+fn a_payload_that_is_picked_up_keeps_the_momentum() {
+    let folder = workshop();
+    let folder = folder.path();
+    let problem = |mass: &str, start: Value| {
+        json!({
+            "scene": {
+                "name": "cart",
+                "bodies": [{ "name": "cart", "mass": mass, "sphere": { "radius": "10 mm" }, "position": [0, 0, 0] }],
+                "joints": [{ "name": "slide", "prismatic": { "axis": [1, 0, 0] }, "parent": "ground", "child": "cart", "at": [0, 0, 0] }],
+            },
+            "simulate": { "duration": "1 s", "step": "10 ms", "start": start, "voltages": {} },
+        })
+        .to_string()
+    };
+    let moving = json!({ "joint_angles": {}, "joint_rates": { "slide": "1 m/s" } });
+    std::fs::write(folder.join("empty.json"), problem("1 kg", moving)).unwrap();
+    let after = json!({ "end_of": "empty" });
+    std::fs::write(folder.join("loaded.json"), problem("4 kg", after)).unwrap();
+    good(folder, &["simulate", "empty.json", "-o", "empty"]);
+    good(folder, &["simulate", "loaded.json", "-o", "loaded"]);
+    // 1 m/s of 1 kg are 0.25 m/s of 4 kg.
+    let [z, _] = motion(&folder.join("empty"));
+    assert!((z[100][0] - 1000.0).abs() < 1e-9, "{:?}", z[100]);
+    let [z, momenta] = motion(&folder.join("loaded"));
+    assert!((z[100][0] - 1250.0).abs() < 1e-9, "{:?}", z[100]);
+    assert!((momenta[100][0] - momenta[0][0]).abs() < 1e-9);
+}
