@@ -20,7 +20,8 @@ fn steps(trajectory: &Trajectory, source: usize, kind: InputKind) -> Vec<[f64; 2
 /// The curves of all sources of a kind, each with its number.
 pub fn curves(system: &System, trajectory: &Trajectory, kind: InputKind) -> Vec<(usize, Series)> {
     let sources = system.sources().into_iter().enumerate();
-    let curve = sources.filter(|(_, source)| source.kind == kind);
+    // A muscle whose charge is given takes no voltage.
+    let curve = sources.filter(|(i, source)| source.kind == kind && !system.is_charged(*i));
     let curve = curve.map(|(i, source)| {
         let (colour, dash) = style::muscle(i);
         let steps = steps(trajectory, i, kind);

@@ -5,6 +5,7 @@ pub mod body;
 pub mod canvas;
 pub mod colour_bar;
 mod drawing;
+mod electrodes;
 pub mod file_set;
 mod frame;
 pub mod gltf;
@@ -82,10 +83,11 @@ fn tables_and_figures(run: &Run<'_>) -> Vec<(&'static str, String)> {
         ..
     } = *run;
     let view = run.figures.view;
+    let coloured = &*electrodes::coloured(system, trajectory, observations);
     let mut motions: Vec<_> = run.comparison.into_iter().collect();
     motions.push((run.name, trajectory));
 
-    let makers: [Maker<'_>; 17] = [
+    let makers: [Maker<'_>; 18] = [
         &|| {
             let csv = table::trajectory_csv(run.tabulated, origin);
             Some(("trajectory.csv", csv))
@@ -95,16 +97,16 @@ fn tables_and_figures(run: &Run<'_>) -> Vec<(&'static str, String)> {
             Some(("controls.csv", csv))
         },
         &|| {
-            let svg = pose::svg(system, trajectory, skins, &run.shown(), origin);
+            let svg = pose::svg(system, coloured, skins, &run.shown(), origin);
             Some(("configuration.svg", svg))
         },
         &|| {
             let is_wanted = run.figures.gltf;
-            let animated = is_wanted.then(|| gltf::text(system, trajectory, skins, origin))?;
+            let animated = is_wanted.then(|| gltf::text(system, coloured, skins, origin))?;
             Some(("motion.gltf", animated?))
         },
         &|| {
-            let stills = snapshots::svg(system, trajectory, skins, view, origin)?;
+            let stills = snapshots::svg(system, coloured, skins, view, origin)?;
             Some(("snapshots.svg", stills))
         },
         &|| inputs::svg(system, trajectory, InputKind::Voltage, origin),
@@ -113,6 +115,7 @@ fn tables_and_figures(run: &Run<'_>) -> Vec<(&'static str, String)> {
         &|| inputs::svg(system, trajectory, InputKind::Traction, origin),
         &|| inputs::svg(system, trajectory, InputKind::BodyForce, origin),
         &|| inputs::svg(system, trajectory, InputKind::SurfaceCharge, origin),
+        &|| inputs::svg(system, trajectory, InputKind::Charge, origin),
         &|| {
             let is_marked = !system.markers.is_empty();
             let svg = || tip_path::svg(system, &motions, tracked, view, origin);

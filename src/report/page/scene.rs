@@ -7,6 +7,7 @@ use crate::kinematics::Pose;
 use crate::model::system::{Attachment, Joint, JointKind, Marker};
 use crate::report::Run;
 use crate::report::drawing::lumped;
+use crate::report::electrodes;
 use crate::report::frame::{ground_plate, held_faces};
 use crate::report::load_arrows::LoadArrows;
 use crate::report::page::numbers::{indices, numbers, places};
@@ -22,6 +23,11 @@ const POINTS: usize = 2000;
 
 /// The scene of a run at the instants shown.
 pub(super) fn scene(run: &Run<'_>) -> Value {
+    let coloured = electrodes::coloured(run.system, run.trajectory, run.observations);
+    let run = &Run {
+        trajectory: &coloured,
+        ..*run
+    };
     let times = &run.trajectory.times;
     let instants = match run.skins.list.is_empty() {
         true => shown(times, 0),
