@@ -53,7 +53,7 @@ build: install-deps
 	@$(CARGO) build --release --locked
 
 test: install-deps
-	@$(CARGO) test --locked $(PACKAGES)
+	@$(CARGO) test --locked $(TEST_PACKAGES)
 
 test-python: install-deps
 	@python/test
@@ -63,7 +63,7 @@ test-python: install-deps
 test-other-ipopt: install-deps
 	@PKG_CONFIG_PATH=$$(.ci/other-ipopt) && export PKG_CONFIG_PATH && target=$${CARGO_TARGET_DIR:-target} && \
 	  CARGO_BUILD_BUILD_DIR=$$target CARGO_TARGET_DIR=$$target/other-ipopt/build \
-	  $(CARGO) test --locked $(PACKAGES) --config 'profile.dev.package.proboscis.debug=false' --test solver
+	  $(CARGO) test --locked $(TEST_PACKAGES) --config 'profile.dev.package.proboscis.debug=false' --test solver
 
 test-browser:
 	@.ci/install --browser

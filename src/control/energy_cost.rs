@@ -27,8 +27,7 @@ impl EnergyCost {
     /// Returns true if the source is that of a lumped muscle with electric constants, whose electrodes have its voltage.
     pub fn exists(&self, system: &System) -> bool {
         let muscle = system.muscles.get(self.source);
-        let direct = muscle.filter(|muscle| muscle.circuit.is_none());
-        direct.and_then(capacitance).is_some() && !system.is_charged(self.source)
+        muscle.and_then(capacitance).is_some() && system.has_source_voltage(self.source)
     }
 }
 

@@ -63,10 +63,8 @@ impl Control {
         part: f64,
     ) -> Self {
         self.waypoints.push(Waypoint {
-            part,
-            name: format!("waypoint at {part} of the duration"),
             places: BTreeMap::from([(marker.index(), Place(place))]),
-            ..Waypoint::default()
+            ..waypoint(part)
         });
         self
     }
@@ -74,10 +72,8 @@ impl Control {
     /// A joint has a coordinate in rad or mm at the instant nearest to a part of the duration.
     pub fn joint_passes(mut self, joint: Handle<Joint>, coordinate: f64, part: f64) -> Self {
         self.waypoints.push(Waypoint {
-            part,
-            name: format!("waypoint at {part} of the duration"),
             angles: BTreeMap::from([(joint.index(), coordinate)]),
-            ..Waypoint::default()
+            ..waypoint(part)
         });
         self
     }
@@ -120,4 +116,13 @@ impl Control {
 fn of_joint(joint: Handle<Joint>) -> Quantity {
     let joint = joint.index();
     Quantity::Joint { joint, near: 0.0 }
+}
+
+/// A waypoint without places so far.
+fn waypoint(part: f64) -> Waypoint {
+    Waypoint {
+        part,
+        name: format!("waypoint at {part} of the duration"),
+        ..Waypoint::default()
+    }
 }

@@ -5,7 +5,7 @@ use crate::energy::Capacitance;
 use crate::model::components::{LoadPlace, capacitance};
 use crate::model::internal::InternalKind;
 use crate::model::model::Model;
-use crate::model::system::System;
+use crate::model::system::{Muscle, System};
 use std::collections::BTreeMap;
 
 impl System {
@@ -21,6 +21,18 @@ impl System {
     }
 }
 
+impl Muscle {
+    /// Returns true if a circuit can charge it.
+    pub fn takes_circuit(&self) -> bool {
+        capacitance(self).is_some_and(|c| c.at_length(self.length()) > 0.0)
+    }
+
+    /// Returns true if its charge can be given.
+    pub fn takes_charge(&self) -> bool {
+        capacitance(self).is_some() && self.circuit.is_none()
+    }
+}
+
 /// A lumped muscle whose electrodes have a charge instead of the voltage of a source.
 #[derive(Clone, Copy, Debug)]
 struct Charged {
@@ -32,8 +44,8 @@ struct Charged {
 /// Place of a charge.
 #[derive(Clone, Copy, Debug)]
 enum ChargePlace {
-    /// A coordinate, with its unit in mC.
-    Coordinate(usize, f64),
+    /// A coordinate, in the unit of the muscle.
+    Coordinate(usize),
     /// A scalar of the intervals: an input.
     Input(usize),
 }
@@ -41,15 +53,15 @@ enum ChargePlace {
 impl Model {
     /// Muscles behind circuits, then those whose charge is given.
     fn charged(&self) -> impl Iterator<Item = Charged> + '_ {
-        let all = self.action.map.internal().zip(&self.internals);
-        let behind = all.filter_map(|(coordinate, own)| {
-            let InternalKind::Charge(muscle) = own.kind else {
+        let behind = self.internal_kinds().filter_map(|(coordinate, kind)| {
+            let InternalKind::Charge(muscle) = kind else {
                 return None;
             };
-            let unit = capacitance(&self.system.muscles[muscle])?.unit_of_charge();
-            Some((muscle, ChargePlace::Coordinate(coordinate, unit)))
+            Some((muscle, ChargePlace::Coordinate(coordinate)))
         });
-        let given = self.system.loads().filter_map(|(source, load)| {
+        let loads = &self.system.components.loads;
+        let given = (self.sources.len() - loads.len()..).zip(loads);
+        let given = given.filter_map(|(source, load)| {
             let LoadPlace::Muscle(muscle) = load.on else {
                 return None;
             };
@@ -67,8 +79,7 @@ impl Model {
 
     /// The muscle whose charge coordinate `i` is.
     pub fn charge(&self, i: usize) -> Option<usize> {
-        let internal = i.checked_sub(self.action.map.internal().start)?;
-        match self.internals.get(internal)?.kind {
+        match self.internal_kind(i)? {
             InternalKind::Charge(muscle) => Some(muscle),
             InternalKind::Joint(_) | InternalKind::Branch { .. } => None,
         }
@@ -77,7 +88,8 @@ impl Model {
     /// Charge in mC of each muscle behind a circuit at instants with coordinates z.
     pub fn circuit_charges(&self, z: &[Vec<f64>]) -> BTreeMap<usize, Vec<f64>> {
         let of_circuit = |charged: Charged| match charged.place {
-            ChargePlace::Coordinate(coordinate, unit) => {
+            ChargePlace::Coordinate(coordinate) => {
+                let unit = charged.capacitance.unit_of_charge();
                 let charges = z.iter().map(|z| z[coordinate] * unit);
                 Some((charged.muscle, charges.collect()))
             }
@@ -98,7 +110,9 @@ impl Model {
     pub fn electrode_voltages(&self, instant: &Configuration, scalars: &[f64]) -> Vec<f64> {
         let voltage = |charged: Charged| {
             let charge = match charged.place {
-                ChargePlace::Coordinate(coordinate, unit) => instant.z[coordinate] * unit,
+                ChargePlace::Coordinate(coordinate) => {
+                    instant.z[coordinate] * charged.capacitance.unit_of_charge()
+                }
                 ChargePlace::Input(scalar) => scalars[scalar],
             };
             let length = instant.x[self.spans[charged.muscle]].norm();

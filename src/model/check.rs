@@ -1,7 +1,7 @@
 //! Validation of a system that is made by a program: the checks that a reader of files makes entry by entry.
 
 use crate::math::Vector;
-use crate::model::components::{BlockLoad, LoadPlace, capacitance};
+use crate::model::components::{BlockLoad, LoadPlace};
 use crate::model::system::{Attachment, Joint, JointKind, Material, Muscle, System};
 use std::collections::BTreeSet;
 use thiserror::Error;
@@ -133,9 +133,8 @@ impl System {
                     let named = self.muscles.get(*muscle);
                     let all = self.components.loads.iter();
                     let same = all.filter(|other| other.on == load.on).count();
-                    let is_sound = |m: &Muscle| capacitance(m).is_some() && m.circuit.is_none();
                     require(
-                        named.is_some_and(is_sound) && same == 1,
+                        named.is_some_and(Muscle::takes_charge) && same == 1,
                         &load.name,
                         || NO_MUSCLE_CHARGE[0].to_owned(),
                         NO_MUSCLE_CHARGE[1],
@@ -284,7 +283,7 @@ impl System {
             if let Some(circuit) = muscle.circuit {
                 positive(name, "resistance", circuit.resistance)?;
                 require(
-                    capacitance(muscle).is_some_and(|c| c.at_length(muscle.length()) > 0.0),
+                    muscle.takes_circuit(),
                     name,
                     || NO_CIRCUIT[0].to_owned(),
                     NO_CIRCUIT[1],

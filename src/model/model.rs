@@ -115,22 +115,34 @@ impl Model {
         z
     }
 
+    /// Internal coordinates with their meaning.
+    pub(super) fn internal_kinds(&self) -> impl Iterator<Item = (usize, InternalKind)> + '_ {
+        let kinds = self.internals.iter().map(|own| own.kind);
+        self.action.map.internal().zip(kinds)
+    }
+
+    /// Meaning of coordinate `i`, where it is an internal one.
+    pub(super) fn internal_kind(&self, i: usize) -> Option<InternalKind> {
+        let index = i.checked_sub(self.action.map.internal().start)?;
+        Some(self.internals.get(index)?.kind)
+    }
+
     /// Internal coordinates of joints, each with its joint of the scene.
     fn internal_joints(&self) -> impl Iterator<Item = (usize, usize)> + '_ {
-        let all = self.action.map.internal().zip(&self.internals);
-        all.filter_map(|(coordinate, own)| match own.kind {
-            InternalKind::Joint(joint) => Some((coordinate, self.presolved.joints[joint])),
-            InternalKind::Branch { .. } | InternalKind::Charge(_) => None,
-        })
+        self.internal_kinds()
+            .filter_map(|(coordinate, kind)| match kind {
+                InternalKind::Joint(joint) => Some((coordinate, self.presolved.joints[joint])),
+                InternalKind::Branch { .. } | InternalKind::Charge(_) => None,
+            })
     }
 
     /// Internal coordinates of Maxwell branches, each with its muscle and its number there.
     fn branches(&self) -> impl Iterator<Item = (usize, usize, usize)> + '_ {
-        let all = self.action.map.internal().zip(&self.internals);
-        all.filter_map(|(coordinate, own)| match own.kind {
-            InternalKind::Branch { muscle, branch } => Some((coordinate, muscle, branch)),
-            InternalKind::Joint(_) | InternalKind::Charge(_) => None,
-        })
+        self.internal_kinds()
+            .filter_map(|(coordinate, kind)| match kind {
+                InternalKind::Branch { muscle, branch } => Some((coordinate, muscle, branch)),
+                InternalKind::Joint(_) | InternalKind::Charge(_) => None,
+            })
     }
 
     /// Gives internal coordinates their values at joint coordinates (by joint of the scene); muscles have been held there for long.
@@ -170,15 +182,13 @@ impl Model {
 
     /// Coordinates that muscles remember: they have no momentum, and nothing brings them to rest but time.
     pub fn memory(&self) -> impl Iterator<Item = usize> + '_ {
-        let all = self.action.map.internal().zip(&self.internals);
-        all.filter_map(|(coordinate, own)| own.kind.is_memory().then_some(coordinate))
+        let own = self.internal_kinds().filter(|(_, kind)| kind.is_memory());
+        own.map(|(coordinate, _)| coordinate)
     }
 
     /// Returns true if coordinate `i` is one of [`memory`](Self::memory).
     pub fn is_memory(&self, i: usize) -> bool {
-        let internal = i.checked_sub(self.action.map.internal().start);
-        let own = internal.and_then(|index| self.internals.get(index));
-        own.is_some_and(|own| own.kind.is_memory())
+        self.internal_kind(i).is_some_and(InternalKind::is_memory)
     }
 
     /// Rates of all coordinates from those of the bodies and of the joints (by joint of the scene); nodes have those of a start.

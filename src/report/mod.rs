@@ -87,7 +87,7 @@ fn tables_and_figures(run: &Run<'_>) -> Vec<(&'static str, String)> {
     let mut motions: Vec<_> = run.comparison.into_iter().collect();
     motions.push((run.name, trajectory));
 
-    let makers: [Maker<'_>; 18] = [
+    let before: [Maker<'_>; 5] = [
         &|| {
             let csv = table::trajectory_csv(run.tabulated, origin);
             Some(("trajectory.csv", csv))
@@ -109,13 +109,9 @@ fn tables_and_figures(run: &Run<'_>) -> Vec<(&'static str, String)> {
             let stills = snapshots::svg(system, coloured, skins, view, origin)?;
             Some(("snapshots.svg", stills))
         },
-        &|| inputs::svg(system, trajectory, InputKind::Voltage, origin),
-        &|| inputs::svg(system, trajectory, InputKind::Force, origin),
-        &|| inputs::svg(system, trajectory, InputKind::Torque, origin),
-        &|| inputs::svg(system, trajectory, InputKind::Traction, origin),
-        &|| inputs::svg(system, trajectory, InputKind::BodyForce, origin),
-        &|| inputs::svg(system, trajectory, InputKind::SurfaceCharge, origin),
-        &|| inputs::svg(system, trajectory, InputKind::Charge, origin),
+    ];
+    let inputs = InputKind::ALL.map(|kind| move || inputs::svg(system, trajectory, kind, origin));
+    let behind: [Maker<'_>; 6] = [
         &|| {
             let is_marked = !system.markers.is_empty();
             let svg = || tip_path::svg(system, &motions, tracked, view, origin);
@@ -144,6 +140,8 @@ fn tables_and_figures(run: &Run<'_>) -> Vec<(&'static str, String)> {
             (!tracked.is_empty()).then(|| ("tracking.svg", svg()))
         },
     ];
+    let inputs = inputs.iter().map(|make| make as Maker<'_>);
+    let makers: Vec<_> = before.into_iter().chain(inputs).chain(behind).collect();
     match has_pool() {
         true => {
             let each = makers.par_iter().with_max_len(1);

@@ -1,9 +1,10 @@
 //! Muscles that have a charge instead of the voltage of a source: given, or through the resistor of a circuit.
 
-use crate::common::{motion, placed};
+use crate::common::{motion, placed, runge_kutta};
 use crate::component_files::read;
 use crate::components::column;
 use crate::maxwell::{BOTH, LENGTH, MODULUS, SECTION, internal, model, slider};
+use nalgebra::Vector3;
 use proboscis::dynamics::trajectory::Trajectory;
 use proboscis::dynamics::{
     DiscreteTrajectory, EnergyExchange, Integrator, Solving, Start, simulate_by, stable_equilibrium,
@@ -129,31 +130,21 @@ fn a_cell_without_mass_charges_as_its_closed_form() {
 }
 
 /// Displacement, velocity and charge of the slider under a constant voltage by Runge and Kutta.
-fn runge_kutta(mass: f64, resistance: f64, voltage: f64, time: f64) -> [f64; 3] {
-    let rate = |[x, v, q]: [f64; 3]| {
+fn swing(mass: f64, resistance: f64, voltage: f64, time: f64) -> Vector3<f64> {
+    let rate = |y: &Vector3<f64>| {
+        let [x, v, q] = [y.x, y.y, y.z];
         let stretch = 1.0 + x / LENGTH;
         // Q²/(2C) with C = C₀/Λ² grows with Λ².
         let energy_rate = q * q / CAPACITANCE * stretch / LENGTH;
         let elastic = SECTION * MODULUS * (stretch - stretch.powi(-2));
         let across = q * stretch * stretch / CAPACITANCE;
-        [
-            v,
-            -(elastic + energy_rate) / mass,
-            (voltage - across) / resistance,
-        ]
+        let force = -(elastic + energy_rate);
+        Vector3::new(v, force / mass, (voltage - across) / resistance)
     };
     let steps = 20_000;
-    let h = time / steps as f64;
-    let mut y = [0.0; 3];
-    for _ in 0..steps {
-        let along = |k: [f64; 3], f: f64| std::array::from_fn(|i| y[i] + f * h * k[i]);
-        let a = rate(y);
-        let b = rate(along(a, 0.5));
-        let c = rate(along(b, 0.5));
-        let d = rate(along(c, 1.0));
-        y = std::array::from_fn(|i| y[i] + h / 6.0 * (a[i] + 2.0 * b[i] + 2.0 * c[i] + d[i]));
-    }
-    y
+    (0..steps).fold(Vector3::zeros(), |y, _| {
+        runge_kutta(&rate, &y, time / f64::from(steps))
+    })
 }
 
 #[test]
@@ -162,7 +153,8 @@ fn a_swing_behind_a_resistor_is_that_of_another_method() {
     let resistance = system.muscles[0].circuit.unwrap().resistance;
     let [volt, charge] = units();
     let voltage = 0.55 * volt;
-    let [x, _, q] = runge_kutta(20.0, resistance, voltage, 30.0);
+    let exact = swing(20.0, resistance, voltage, 30.0);
+    let [x, q] = [exact.x, exact.z];
     assert!(x < -1.0 && q > 0.3 * charge, "{x} {q}");
     let methods = [
         (Integrator::Midpoint, [0.2, 0.1], 3.8..4.2, 0.02),

@@ -1,9 +1,9 @@
 //! Maxwell branches of lumped muscles: published relaxation, a motion by another method, memory, and files.
 
-use crate::common::{bare, motion, placed};
+use crate::common::{bare, motion, placed, runge_kutta};
 use crate::component_files::read;
 use crate::components::{body, column};
-use nalgebra::Vector3;
+use nalgebra::{Vector3, Vector4};
 use proboscis::dynamics::{
     DiscreteTrajectory, Integrator, Solving, Start, simulate_by, stable_equilibrium,
 };
@@ -121,11 +121,11 @@ fn stress_relaxes_as_the_published_law_says() {
 }
 
 /// Displacement, velocity and logarithms of the viscous stretches of the slider by Runge and Kutta.
-pub(crate) fn runge_kutta(mass: f64, list: &[[f64; 2]; 2], from: [f64; 4], time: f64) -> [f64; 4] {
-    let rate = |y: [f64; 4]| {
+pub(crate) fn swing(mass: f64, list: &[[f64; 2]; 2], from: [f64; 4], time: f64) -> [f64; 4] {
+    let rate = |y: &Vector4<f64>| {
         let stretch = 1.0 + y[0] / LENGTH;
         let mut force = SECTION * MODULUS * (stretch - stretch.powi(-2));
-        let mut out = [y[1], 0.0, 0.0, 0.0];
+        let mut out = Vector4::new(y[1], 0.0, 0.0, 0.0);
         for (b, [modulus, tau]) in list.iter().enumerate() {
             let elastic = stretch * (-y[2 + b]).exp();
             force += SECTION * modulus * (elastic.powi(2) - 1.0 / elastic) / stretch;
@@ -135,17 +135,10 @@ pub(crate) fn runge_kutta(mass: f64, list: &[[f64; 2]; 2], from: [f64; 4], time:
         out
     };
     let steps = 40_000;
-    let h = time / steps as f64;
-    let mut y = from;
-    for _ in 0..steps {
-        let along = |k: [f64; 4], f: f64| std::array::from_fn(|i| y[i] + f * h * k[i]);
-        let a = rate(y);
-        let b = rate(along(a, 0.5));
-        let c = rate(along(b, 0.5));
-        let d = rate(along(c, 1.0));
-        y = std::array::from_fn(|i| y[i] + h / 6.0 * (a[i] + 2.0 * b[i] + 2.0 * c[i] + d[i]));
-    }
-    y
+    let end = (0..steps).fold(Vector4::from(from), |y, _| {
+        runge_kutta(&rate, &y, time / f64::from(steps))
+    });
+    end.into()
 }
 
 pub(crate) fn end(model: &Model, discrete: &DiscreteTrajectory) -> Vec<f64> {
@@ -162,7 +155,7 @@ pub(crate) fn end(model: &Model, discrete: &DiscreteTrajectory) -> Vec<f64> {
 fn a_swing_with_two_branches_is_that_of_another_method() {
     let list = [[0.05, 8.0], [0.03, 60.0]];
     let system = slider(20.0, branches(&list));
-    let exact = runge_kutta(20.0, &list, [6.0, 0.0, 0.0, 0.0], 40.0);
+    let exact = swing(20.0, &list, [6.0, 0.0, 0.0, 0.0], 40.0);
     assert!(exact[2].abs() > 1e-3 && exact[3].abs() > 1e-4, "{exact:?}");
     let exact = [exact[0], exact[2], exact[3]];
     for coordinates in BOTH {
@@ -283,7 +276,7 @@ fn files_list_branches() {
 fn galerkin_methods_have_their_order() {
     let list = [[0.05, 8.0], [0.03, 60.0]];
     let system = slider(20.0, branches(&list));
-    let exact = runge_kutta(20.0, &list, [6.0, 0.0, 0.0, 0.0], 40.0);
+    let exact = swing(20.0, &list, [6.0, 0.0, 0.0, 0.0], 40.0);
     let exact = [exact[0], exact[2], exact[3]];
     for degree in [2, 3] {
         let errors = [2.0, 1.0].map(|h| {

@@ -98,14 +98,12 @@ fn positions(
     system: &System,
     scope: &Scope<'_>,
 ) -> Result<BoundaryState, SceneError> {
-    let places = spec.markers.as_ref();
-    let places = places.map(|map| of_markers(map, system, &scope.key("markers")));
-    let turned = spec.orientations.as_ref();
-    let turned = turned.map(|map| of_bodies(map, system, &scope.key("orientations")));
+    let written = (spec.markers.as_ref(), spec.orientations.as_ref());
+    let (places, orientations) = places(written, system, scope)?;
     let held = |map| voltages(map, system, &scope.key("hold"));
     Ok(BoundaryState::Markers {
-        places: places.transpose()?.unwrap_or_default(),
-        orientations: turned.transpose()?.unwrap_or_default(),
+        places,
+        orientations,
         rest: reached(spec),
         hold: spec.hold.as_ref().map(held).transpose()?,
     })
@@ -129,8 +127,30 @@ fn coordinates(
     })
 }
 
-/// Places by marker.
-pub(crate) fn of_markers(
+/// Markers and orientations as they are written, each map only where there is one.
+type WrittenPlaces<'a> = (
+    Option<&'a BTreeMap<String, PartialPoint>>,
+    Option<&'a BTreeMap<String, OrientationSpec>>,
+);
+
+/// Places by marker, and orientations by body.
+type Places = (BTreeMap<usize, Place>, BTreeMap<usize, Orientation>);
+
+/// Places of markers and orientations of bodies that are written under `markers` and `orientations`.
+pub(crate) fn places(
+    (markers, orientations): WrittenPlaces<'_>,
+    system: &System,
+    scope: &Scope<'_>,
+) -> Result<Places, SceneError> {
+    let places = markers.map(|map| of_markers(map, system, &scope.key("markers")));
+    let turned = orientations.map(|map| of_bodies(map, system, &scope.key("orientations")));
+    Ok((
+        places.transpose()?.unwrap_or_default(),
+        turned.transpose()?.unwrap_or_default(),
+    ))
+}
+
+fn of_markers(
     markers: &BTreeMap<String, PartialPoint>,
     system: &System,
     scope: &Scope<'_>,
@@ -151,8 +171,7 @@ pub(crate) fn of_markers(
     }
 }
 
-/// Orientations by body.
-pub(crate) fn of_bodies(
+fn of_bodies(
     bodies: &BTreeMap<String, OrientationSpec>,
     system: &System,
     scope: &Scope<'_>,

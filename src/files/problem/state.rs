@@ -49,7 +49,9 @@ pub(crate) fn driven(
     if sources[index].takes_voltage {
         return Ok(index);
     }
-    let found = format!("{name:?}, whose material has no electric term");
+    let found = format!(
+        "{name:?}, which takes no voltage: its material has no electric term, or a load gives its charge"
+    );
     Err(scope.wrong(found, format!("a muscle of {ELECTRIC_KEYS}")))
 }
 

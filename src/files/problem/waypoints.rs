@@ -3,7 +3,7 @@
 use crate::control::problem::{Duration, Waypoint};
 use crate::files::json::error::SceneError;
 use crate::files::json::scope::Scope;
-use crate::files::problem::goal::{of_bodies, of_markers};
+use crate::files::problem::goal::places;
 use crate::files::problem::spec_states::OrientationSpec;
 use crate::files::problem::state::by_joint;
 use crate::files::scene::point::PartialPoint;
@@ -56,16 +56,14 @@ impl WaypointSpec {
         scope: &Scope<'_>,
     ) -> Result<Waypoint, SceneError> {
         let (part, name) = self.part_of(duration, scope)?;
-        let places = self.markers.as_ref();
-        let places = places.map(|map| of_markers(map, system, &scope.key("markers")));
-        let turned = self.orientations.as_ref();
-        let turned = turned.map(|map| of_bodies(map, system, &scope.key("orientations")));
+        let written = (self.markers.as_ref(), self.orientations.as_ref());
+        let (places, orientations) = places(written, system, scope)?;
         let kinds = [Angle::kind(), Length::kind()];
         let waypoint = Waypoint {
             part,
             name,
-            places: places.transpose()?.unwrap_or_default(),
-            orientations: turned.transpose()?.unwrap_or_default(),
+            places,
+            orientations,
             angles: by_joint(
                 &self.joint_angles,
                 &kinds,
@@ -91,28 +89,26 @@ impl WaypointSpec {
             ("time", self.time.as_ref().map(|_| "time")),
             ("part", self.part.map(|_| "part")),
         ])?;
-        let place = scope.key(key);
-        let within = |part: f64| part > 0.0 && part < 1.0;
-        let (Some(time), Duration::Given(duration)) = (&self.time, duration) else {
-            let Some(part) = self.part else {
-                let expected = "\"part\", a part of the duration, as the duration is free";
-                return Err(place.wrong("a time", expected));
-            };
-            return match within(part) {
-                true => Ok((
-                    part,
-                    format!("waypoint at {} of the duration", shortest(part, 6)),
-                )),
-                false => Err(place.wrong(part.to_string(), "a number above 0 and below 1")),
-            };
-        };
-        let part = time.value() / duration;
-        match within(part) {
-            true => Ok((part, format!("waypoint at {time}"))),
-            false => Err(place.wrong(
+        let (part, name, found, expected) = match (&self.time, duration) {
+            (Some(time), Duration::Given(duration)) => (
+                time.value() / duration,
+                format!("waypoint at {time}"),
                 time.to_string(),
                 "a time after the start and before the end; what is reached at the end is the \"goal\"",
-            )),
+            ),
+            (Some(_), Duration::Free { .. }) => {
+                let expected = "\"part\", a part of the duration, as the duration is free";
+                return Err(scope.key(key).wrong("a time", expected));
+            }
+            (None, _) => {
+                let part = self.part.unwrap_or_default();
+                let name = format!("waypoint at {} of the duration", shortest(part, 6));
+                (part, name, part.to_string(), "a number above 0 and below 1")
+            }
+        };
+        match part > 0.0 && part < 1.0 {
+            true => Ok((part, name)),
+            false => Err(scope.key(key).wrong(found, expected)),
         }
     }
 }

@@ -1,6 +1,5 @@
 //! Conversion of a muscle of a scene file to its span, section and model.
 
-use crate::energy::Capacitance;
 use crate::files::json::error::SceneError;
 use crate::files::json::scope::Scope;
 use crate::files::scene::names::{attachment, find_compressible, find_material};
@@ -10,7 +9,6 @@ use crate::files::scene::spec_solids::ElementSpec;
 use crate::files::units::quantity::{Length, Quantity};
 use crate::math::shortest;
 use crate::model::NO_CIRCUIT;
-use crate::model::components::capacitance;
 use crate::model::system::{Circuit, Discretisation, ElementKind, Fidelity, Material, Muscle};
 
 /// Spans shorter than this in mm have no direction.
@@ -81,8 +79,7 @@ fn circuit(
         return Ok(None);
     };
     let resistance = place.key("resistance").positive(&spec.resistance)?;
-    let is_charged = |c: Capacitance| c.at_length(muscle.length()) > 0.0;
-    match capacitance(muscle).is_some_and(is_charged) {
+    match muscle.takes_circuit() {
         true => Ok(Some(Circuit { resistance })),
         false => Err(place.wrong(NO_CIRCUIT[0], NO_CIRCUIT[1])),
     }

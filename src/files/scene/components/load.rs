@@ -7,7 +7,7 @@ use crate::files::scene::nodes::nodes;
 use crate::files::scene::point::{CornersSpec, PointSpec, unit_axis};
 use crate::files::scene::spec_solids::PlaneSpec;
 use crate::math::Vector;
-use crate::model::components::{BlockLoad, Faces, Load, LoadPlace, capacitance};
+use crate::model::components::{BlockLoad, Faces, Load, LoadPlace};
 use crate::model::system::{Joint, Muscle, Solid, Support};
 use crate::model::{NO_CHARGE, NO_MUSCLE_CHARGE};
 use schemars::JsonSchema;
@@ -120,7 +120,7 @@ pub(crate) fn load(
             let place = scope.key("muscle");
             let all = names(muscles, |muscle| &muscle.name);
             let index = place.find(name, &all, "the name of a muscle")?;
-            if capacitance(&muscles[index]).is_none() || muscles[index].circuit.is_some() {
+            if !muscles[index].takes_charge() {
                 return Err(place.wrong(NO_MUSCLE_CHARGE[0], NO_MUSCLE_CHARGE[1]));
             }
             LoadPlace::Muscle(index)
