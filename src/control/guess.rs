@@ -7,9 +7,7 @@ use crate::control::resample::{self, Grids};
 use crate::control::solution::{Costates, Solution};
 use crate::control::uniform_grid::on_uniform_grid;
 use crate::dynamics::{DiscreteTrajectory, simulate};
-use crate::kinematics::Pose;
 use crate::model::{Coordinates, Graph, Model, Role};
-use nalgebra::{Rotation3, UnitQuaternion};
 use std::ops::ControlFlow;
 
 /// Added to the rest voltages, in their unit: at zero the motion does not depend on a voltage to first order.
@@ -172,22 +170,6 @@ fn joints_of(model: &Model, z: &[f64]) -> Option<Vec<f64>> {
     Some(model.joints(&instant, &vec![0.0; model.joint_readings.len()]))
 }
 
-/// Poses on the way from one list to another, at a part of it.
-fn between(from: &[Pose], to: &[Pose], part: f64) -> Vec<Pose> {
-    let pose = |(a, b): (&Pose, &Pose)| {
-        let [p, q] = [a, b].map(|pose| Rotation3::from_matrix_unchecked(pose.directors));
-        // By a quaternion: the trace of a matrix that hardly turns may tell a cosine above one.
-        let turn = UnitQuaternion::from_rotation_matrix(&(p.inverse() * q));
-        let turn = UnitQuaternion::new_normalize(turn.into_inner()).scaled_axis();
-        let turn = Rotation3::from_scaled_axis(turn * part);
-        Pose {
-            centre: a.centre + (b.centre - a.centre) * part,
-            directors: (p * turn).into_inner(),
-        }
-    };
-    from.iter().zip(to).map(pose).collect()
-}
-
 /// An earlier solution: as it is on the same grid, carried over from another one, stretched in time where its duration is
 /// not allowed; from other coordinates the joints and further data of the poses. Where it lacks the places of the nodes, the
 /// motion under its voltages.
@@ -254,7 +236,10 @@ fn along_joints(model: &Model, solved: &Solution, intervals: usize) -> Vec<Vec<f
         let (a, b) = (&solved.joints[i], &solved.joints[i + 1]);
         let joints: Vec<f64> = a.iter().zip(b).map(|(a, b)| a + f * (b - a)).collect();
         match solved.poses.get(i..=i + 1) {
-            Some([from, to]) => model.coordinates_of_poses(&between(from, to, f), &joints),
+            Some([from, to]) => {
+                let poses = from.iter().zip(to).map(|(from, to)| from.towards(to, f));
+                model.coordinates_of_poses(&poses.collect::<Vec<_>>(), &joints)
+            }
             _ => model.coordinates_at(&joints),
         }
     };
@@ -285,32 +270,4 @@ fn scalars(model: &Model, solved: &Solution, grids: Grids, intervals: usize) -> 
         scalars
     };
     (0..intervals).map(at).collect()
-}
-
-#[cfg(test)]
-mod tests {
-    use super::between;
-    use crate::kinematics::Pose;
-    use crate::math::Vector;
-    use nalgebra::Rotation3;
-
-    #[test]
-    fn a_pose_between_two_that_hardly_differ_is_theirs() {
-        let pose = |turn: Vector| Pose {
-            centre: Vector::zeros(),
-            directors: Rotation3::from_scaled_axis(turn).into_inner(),
-        };
-        for i in 0..2000 {
-            let [a, b, c] = [1.0, 2.0, 3.0].map(|factor| (f64::from(i) * factor).sin());
-            let turn = Vector::new(a, b, c);
-            let ends = [turn, turn * (1.0 + 1e-12)].map(|turn| [pose(turn)]);
-            for part in [0.0, 0.3, 1.0] {
-                let [found] = between(&ends[0], &ends[1], part)[..] else {
-                    panic!("one pose")
-                };
-                let error = (found.directors - ends[0][0].directors).norm();
-                assert!(error < 1e-11, "{error} at {turn:?}");
-            }
-        }
-    }
 }

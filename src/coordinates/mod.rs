@@ -31,4 +31,4 @@ pub use pattern::{BlockPattern, StepPattern};
 pub use pull_back::Destination;
 pub use reduced::Reduced;
 pub use scratch::Scratch;
-pub use tree::{CHART, Link, LinkKind, Tree};
+pub use tree::{CHART, LANES, Link, LinkKind, Tree};

@@ -5,6 +5,7 @@
 //! block, and a coordinate that is no place in its first component. Energies are functions of such vectors.
 
 use crate::math::{Matrix, Vector};
+use nalgebra::{Rotation3, UnitQuaternion};
 
 /// Pose of a rigid body at an instant.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -30,6 +31,19 @@ impl Pose {
     /// φ + ρᵢ dᵢ.
     pub fn point(&self, local: &Vector) -> Vector {
         self.centre + self.directors * local
+    }
+
+    /// The pose at a part of the way to another one, by a turn about one axis.
+    pub fn towards(&self, other: &Self, part: f64) -> Self {
+        let [p, q] = [self, other].map(|pose| Rotation3::from_matrix_unchecked(pose.directors));
+        // By a quaternion: the trace of a matrix that hardly turns may tell a cosine above one.
+        let turn = UnitQuaternion::from_rotation_matrix(&(p.inverse() * q));
+        let turn = UnitQuaternion::new_normalize(turn.into_inner()).scaled_axis();
+        let turn = Rotation3::from_scaled_axis(turn * part);
+        Self {
+            centre: self.centre + (other.centre - self.centre) * part,
+            directors: (p * turn).into_inner(),
+        }
     }
 }
 

@@ -27,3 +27,35 @@ pub fn shortest(value: f64, digits: usize) -> String {
         _ => text,
     }
 }
+
+/// The same for a positive number, rounded up.
+pub fn no_smaller(value: f64, digits: usize) -> String {
+    let text = significant(value, digits);
+    match text.parse::<f64>() {
+        Ok(rounded) if rounded < value => {
+            let last = 10_f64.powf(value.log10().floor() + 1.0 - digits as f64);
+            significant(value + last, digits)
+        }
+        _ => text,
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use crate::math::digits::no_smaller;
+
+    #[test]
+    fn a_number_rounded_up_is_no_smaller() {
+        for (value, expected) in [
+            (0.1841, "0.185"),
+            (0.2, "0.200"),
+            (24.44, "24.5"),
+            (9.996, "10.00"),
+            (0.001_234, "0.00124"),
+        ] {
+            let found: f64 = no_smaller(value, 3).parse().unwrap();
+            assert!(found >= value, "{found} for {value}");
+            assert_eq!(found, expected.parse::<f64>().unwrap());
+        }
+    }
+}

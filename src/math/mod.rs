@@ -14,7 +14,7 @@ mod stopped;
 
 pub(crate) use compact_index::compact_index;
 pub use derivatives::{Derivatives, Local};
-pub use digits::{shortest, significant};
+pub use digits::{no_smaller, shortest, significant};
 pub use jet::Jet;
 pub use join::cores;
 pub(crate) use join::join_if;

@@ -5,7 +5,7 @@ pub mod body;
 pub mod canvas;
 pub mod colour_bar;
 mod drawing;
-mod electrodes;
+pub mod electrodes;
 pub mod file_set;
 mod frame;
 pub mod gltf;

@@ -8,7 +8,7 @@ use crate::coordinates::Configuration;
 use crate::dynamics::simulate;
 use crate::ipopt::Status;
 use crate::kinematics::Pose;
-use crate::math::significant;
+use crate::math::{no_smaller, significant};
 use crate::model::components::Tendon;
 use crate::model::system::JointKind;
 use crate::model::{Component, Model, joint_unit};
@@ -224,7 +224,7 @@ fn durations(control: &Control, optimum: &Optimum) -> Vec<String> {
     match optimum.shortest {
         Shortest::Longer(ms) => lines.push(format!(
             "change: a longer duration; with the duration free the shortest motion found takes {} s",
-            no_shorter(ms / 1e3)
+            no_smaller(ms / 1e3, 3)
         )),
         Shortest::NotUpTo(ms) => lines.push(format!(
             "a longer duration does not help: with the duration free none was found up to {} s",
@@ -248,40 +248,8 @@ fn durations(control: &Control, optimum: &Optimum) -> Vec<String> {
         };
         lines.push(format!(
             "{asks}half a period of the slowest mode takes {} s, and a shorter motion excites faster ones",
-            no_shorter(ms / 1e3)
+            no_smaller(ms / 1e3, 3)
         ));
     }
     lines
-}
-
-/// A duration in three digits that is no shorter.
-fn no_shorter(seconds: f64) -> String {
-    let told = significant(seconds, 3);
-    match told.parse::<f64>() {
-        Ok(value) if value < seconds => {
-            let last = 10_f64.powf(seconds.log10().floor() - 2.0);
-            significant(value + last, 3)
-        }
-        _ => told,
-    }
-}
-
-#[cfg(test)]
-mod tests {
-    use super::no_shorter;
-
-    #[test]
-    fn a_duration_that_is_told_is_no_shorter() {
-        for (seconds, told) in [
-            (0.1841, "0.185"),
-            (0.2, "0.200"),
-            (24.44, "24.5"),
-            (9.996, "10.00"),
-            (0.001_234, "0.00124"),
-        ] {
-            let found: f64 = no_shorter(seconds).parse().unwrap();
-            assert!(found >= seconds, "{found} for {seconds}");
-            assert_eq!(found, told.parse::<f64>().unwrap());
-        }
-    }
 }

@@ -15,5 +15,6 @@ mod presolved;
 mod roles;
 mod sources;
 mod trace;
+mod unit_tests;
 mod welded;
 mod words;

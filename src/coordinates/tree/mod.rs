@@ -113,7 +113,7 @@ impl TangentColumns {
 }
 
 /// Rows of columns are padded to a multiple of this.
-pub(super) const LANES: usize = 4;
+pub const LANES: usize = 4;
 
 /// A kinematic tree and the vectors on it.
 #[derive(Clone, Debug)]
