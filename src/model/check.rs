@@ -275,6 +275,10 @@ impl System {
             for value in material.density.into_iter().chain(material.viscosity) {
                 positive(name, "density or viscosity", value)?;
             }
+            if let Some(fault) = material.law.and_then(|law| law.fault()) {
+                let found = || format!("{} {}", fault.constant, fault.found);
+                require(false, name, found, fault.expected)?;
+            }
             for branch in material.maxwell.list() {
                 let modulus = "shear modulus of a Maxwell branch";
                 positive(name, modulus, branch.shear_modulus)?;
@@ -345,13 +349,19 @@ fn check_direction(name: &str, direction: &Vector) -> Result<(), SystemError> {
     )
 }
 
-/// Checks that finite elements can be made of a material: it is compressible and has no Maxwell branches.
+/// Checks that finite elements can be made of a material: it is compressible and neo-Hookean, and has no Maxwell branches.
 fn check_of_elements(name: &str, material: &Material) -> Result<(), SystemError> {
     require(
         material.maxwell.list().is_empty(),
         name,
         || "Maxwell branches of finite elements".to_owned(),
         "none: only lumped muscles have them",
+    )?;
+    require(
+        material.law.is_none(),
+        name,
+        || "a law of elasticity of finite elements".to_owned(),
+        "none: only lumped muscles have laws other than the neo-Hookean one",
     )?;
     require(
         material.lame_lambda.is_some_and(f64::is_finite),

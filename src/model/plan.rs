@@ -5,7 +5,7 @@
 pub(super) const GRAVITY: &str = "gravity";
 
 /// Names of the terms of the library, in the order of the sum; those of other crates follow.
-pub const TERMS: [&str; 30] = [
+pub const TERMS: [&str; 32] = [
     "body inertia",
     "muscle inertia",
     "block inertia",
@@ -15,6 +15,8 @@ pub const TERMS: [&str; 30] = [
     "block electroelasticity",
     "muscle elasticity",
     "muscle electroelasticity",
+    "general muscle elasticity",
+    "general muscle electroelasticity",
     "muscle charges",
     "maxwell elasticity",
     "joint elasticity",

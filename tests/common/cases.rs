@@ -2,7 +2,8 @@
 
 pub use super::limited::all_limits;
 use super::systems::{
-    GRAVITY, ball, blocks, branched, charged, loaded, pressed, remembering, satellite, sprung, tied,
+    GRAVITY, ball, blocks, branched, charged, loaded, pressed, remembering, satellite, sprung,
+    stiffening, tied,
 };
 use super::tracked::{energies, tracked};
 use super::trunk;
@@ -231,6 +232,7 @@ pub fn cases() -> Vec<Case> {
         case("branched tree", branched(), &|_| {}),
         case("branched tree with joint springs", sprung(), &|_| {}),
         case("branched tree that remembers", remembering(), &|_| {}),
+        case("branched tree that stiffens", stiffening(), &|_| {}),
         case("charges", charged(), &|c| {
             c.load_bounds.insert(4, [1e-5, 3e-4]);
         }),

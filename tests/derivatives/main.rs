@@ -7,6 +7,7 @@ mod action;
 mod arithmetic;
 mod costs;
 mod differences;
+mod elastic_laws;
 mod energies;
 mod formulas;
 mod formulas_of_loads;

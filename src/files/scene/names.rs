@@ -33,6 +33,11 @@ pub(crate) fn find_compressible(
         let expected = "a material without them: only lumped muscles have Maxwell branches";
         return Err(scope.wrong(found, expected));
     }
+    if material.law.is_some() {
+        let found = format!("{name:?}, which has a \"law\"");
+        let expected = "a neo-Hookean material: only lumped muscles have other laws of elasticity";
+        return Err(scope.wrong(found, expected));
+    }
     if material.lame_lambda.is_some() {
         return Ok(material);
     }
