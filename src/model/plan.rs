@@ -5,7 +5,7 @@
 pub(super) const GRAVITY: &str = "gravity";
 
 /// Names of the terms of the library, in the order of the sum; those of other crates follow.
-pub const TERMS: [&str; 32] = [
+pub const TERMS: [&str; 34] = [
     "body inertia",
     "muscle inertia",
     "block inertia",
@@ -13,6 +13,8 @@ pub const TERMS: [&str; 32] = [
     GRAVITY,
     "block elasticity",
     "block electroelasticity",
+    "general block elasticity",
+    "general block electroelasticity",
     "muscle elasticity",
     "muscle electroelasticity",
     "general muscle elasticity",

@@ -3,7 +3,7 @@
 pub use super::limited::all_limits;
 use super::systems::{
     GRAVITY, ball, blocks, branched, charged, loaded, pressed, remembering, satellite, sprung,
-    stiffening, tied,
+    stiffening, stiffening_blocks, tied,
 };
 use super::tracked::{energies, tracked};
 use super::trunk;
@@ -259,6 +259,9 @@ pub fn cases() -> Vec<Case> {
                 c.goal = joints(&[(1, 2.0)]);
             },
         ),
+        case("blocks that stiffen", stiffening_blocks(), &|c| {
+            c.goal = corner_goal();
+        }),
         case("blocks", blocks(), &|c| c.goal = corner_goal()),
         case("blocks with loads", pressed(), &|c| c.goal = corner_goal()),
         case("blocks with loads, free time", pressed(), &|c| {

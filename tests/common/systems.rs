@@ -384,3 +384,16 @@ pub fn blocks() -> System {
     });
     system
 }
+
+/// The same by other laws of elasticity.
+pub fn stiffening_blocks() -> System {
+    let mut system = blocks();
+    system.muscles[0].material.law = Some(ElasticLaw::Yeoh {
+        c2: -0.01,
+        c3: 0.02,
+    });
+    for material in &mut system.solids[0].materials {
+        material.law = Some(ElasticLaw::MooneyRivlin { share: 0.3 });
+    }
+    system
+}

@@ -13,6 +13,7 @@ mod formulas;
 mod formulas_of_loads;
 mod gathered;
 mod hexahedron;
+mod hexahedron_laws;
 mod hexahedron_states;
 mod hexahedron_viscosity;
 mod horizon;

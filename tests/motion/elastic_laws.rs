@@ -270,12 +270,21 @@ fn files_say_laws() {
             "{written}: {message}"
         );
     }
-    let elements = SCENE.replace(
-        "\"cross_section\"",
-        "\"model\": \"finite_elements\", \"cross_section\"",
+    // Finite elements follow laws of invariants.
+    let elements = |law: &str| {
+        let scene = SCENE.replace(
+            "\"cross_section\"",
+            "\"model\": \"finite_elements\", \"elements\": [1, 1, 2], \"cross_section\"",
+        );
+        let scene = scene.replace(GENT, &format!("{law}, \"poisson_ratio\": 0.45"));
+        read(&scene)
+    };
+    assert!(elements(GENT).unwrap().muscles[0].material.law.is_some());
+    let message = elements(r#"{ "ogden": { "exponents": [2, 3], "share": 0.5 } }"#).unwrap_err();
+    assert!(
+        message.contains("Ogden's law") && message.contains("\"rubber\""),
+        "{message}"
     );
-    let message = read(&elements).unwrap_err();
-    assert!(message.contains("law"), "{message}");
 }
 
 /// The message of a problem with this task, or nothing.

@@ -20,7 +20,7 @@ pub struct LawSpec {
     /// Yeoh's law, μ/2 (I₁ − 3) + c₂ (I₁ − 3)² + c₃ (I₁ − 3)³.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub yeoh: Option<YeohSpec>,
-    /// Ogden's law with two terms, 2μ [(1 − s)/α₁² Σ(λ^α₁ − 1) + s/α₂² Σ(λ^α₂ − 1)].
+    /// Ogden's law with two terms, of lumped muscles only, 2μ [(1 − s)/α₁² Σ(λ^α₁ − 1) + s/α₂² Σ(λ^α₂ − 1)].
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub ogden: Option<OgdenSpec>,
 }
