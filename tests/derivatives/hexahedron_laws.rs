@@ -161,6 +161,41 @@ fn stress_of_a_stretched_bar_is_that_of_its_energy() {
     }
 }
 
+/// Cauchy stress in MPa by tests/reference/fe/laws.py.
+const FELUPE: [(IsochoricLaw, [[f64; 3]; 3]); 2] = [
+    (
+        IsochoricLaw::MooneyRivlin { share: 0.3 },
+        [
+            [0.798053753338834, 0.376840330649942, -0.416094651599566],
+            [0.376840330649942, -0.480438513331945, 0.590597872683916],
+            [-0.416094651599566, 0.590597872683916, 0.246231710986117],
+        ],
+    ),
+    (
+        IsochoricLaw::Yeoh { c2: -0.3, c3: 0.2 },
+        [
+            [0.646579621953746, 0.241710741801175, -0.325379844732352],
+            [0.241710741801176, -0.283077077281545, 0.362566112701764],
+            [-0.325379844732352, 0.362566112701764, 0.200344406320806],
+        ],
+    ),
+];
+
+#[test]
+fn stress_is_that_of_felupe() {
+    let shape = ElementGeometry::new(&cube()).unwrap();
+    let map = Matrix::from([[1.3, 0.1, -0.2], [0.2, 0.8, 0.1], [-0.1, 0.3, 1.1]]);
+    for (isochoric, expected) in FELUPE {
+        let law = law(Volume::Pointwise, Passive).by(isochoric);
+        let found = law.fields(&shape, &cube().map(|x| map * x), &()).stress;
+        close(
+            &format!("{isochoric:?}"),
+            found.as_slice(),
+            expected.as_flattened(),
+        );
+    }
+}
+
 #[test]
 fn gents_limit_leaves_an_element_no_energy() {
     let shape = ElementGeometry::new(&cube()).unwrap();
