@@ -6,6 +6,7 @@
 use nalgebra::Vector3;
 use proboscis::dynamics::{Newton, Solving, Start, Stepper};
 use proboscis::element::{Dielectric, Elastomer, ElementGeometry, Local, Passive, Volume};
+use proboscis::energy::NeoHooke;
 use proboscis::mesh::grid::Grid;
 use proboscis::model::Model;
 use proboscis::model::system::{
@@ -164,6 +165,7 @@ fn element() -> String {
             lame_lambda: 0.4,
             volume,
             field: Passive,
+            law: NeoHooke,
         };
         let times = [
             least(|| law.gradient(black_box(&shape), black_box(&x), &(), &mut passive)),
@@ -190,6 +192,7 @@ fn element() -> String {
                 c2: VACUUM_PERMITTIVITY,
                 permittivity: VACUUM_PERMITTIVITY,
             },
+            law: NeoHooke,
         };
         let p = &potentials;
         let times = [

@@ -442,6 +442,7 @@ fn by_hand(system: &System, volts: &[f64]) -> Variant {
                     length: muscle.length(),
                     volume: muscle.volume(),
                     shear_modulus: muscle.material.shear_modulus,
+                    law: proboscis::energy::NeoHooke,
                 },
                 c1: electric.c1,
                 c2: electric.c2,

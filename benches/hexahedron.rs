@@ -5,6 +5,7 @@ use proboscis::element::{
     Dielectric, Elastomer, ElementGeometry, Field, Local, Passive, Viscosity, ViscousContraction,
     ViscousLocal, Volume,
 };
+use proboscis::energy::NeoHooke;
 use proboscis::math::Vector;
 use std::hint::black_box;
 use std::time::Duration;
@@ -96,12 +97,14 @@ fn hexahedron(criterion: &mut Criterion) {
             lame_lambda: 1.0,
             volume,
             field: Passive,
+            law: NeoHooke,
         };
         let dielectric = Elastomer {
             shear_modulus: 0.1,
             lame_lambda: 1.0,
             volume,
             field,
+            law: NeoHooke,
         };
         variations(criterion, &format!("passive {suffix}"), &passive, &());
         variations(

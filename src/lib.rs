@@ -109,8 +109,8 @@ pub use mesh::Mesh;
 pub use mesh::grid::Grid;
 pub use model::components::{Load, Spring, Tendon};
 pub use model::system::{
-    Attachment, Body, Electrode, Glue, Joint, JointKind, Marker, Material, Muscle, Potential,
-    Shape, Solid, Support,
+    Attachment, Body, ElasticLaw, Electrode, Glue, Joint, JointKind, Marker, Material, Muscle,
+    Potential, Shape, Solid, Support,
 };
 pub use model::{
     Component, Constant, DielectricLaw, FoundParameter, Parameter, System, SystemError, Terms, mid,
@@ -122,10 +122,10 @@ pub use workflow::{Remark, Severity, Tracked, TrackingError};
 pub mod prelude {
     pub use crate::units::*;
     pub use crate::{
-        Attachment, Body, Carrier, Component, Control, Error, GROUND, Grid, Handle, Input,
-        Integrator, Joint, JointKind, Load, Marker, Material, Motion, Muscle, Optimum, Orientation,
-        Parameter, Part, Potential, Result, Signal, Simulation, Solid, Spring, State, System,
-        Tendon, X, Y, Z,
+        Attachment, Body, Carrier, Component, Control, ElasticLaw, Error, GROUND, Grid, Handle,
+        Input, Integrator, Joint, JointKind, Load, Marker, Material, Motion, Muscle, Optimum,
+        Orientation, Parameter, Part, Potential, Result, Signal, Simulation, Solid, Spring, State,
+        System, Tendon, X, Y, Z,
     };
 }
 

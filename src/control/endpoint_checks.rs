@@ -11,6 +11,7 @@ use crate::control::limits::{BoundedQuantity, When};
 use crate::control::problem::{BoundaryState, Control, PathConstraint};
 use crate::control::transcription::Site;
 use crate::coordinates::Configuration;
+use crate::dynamics::BeyondLaw;
 use crate::energy::{Energy, OutsideBox, SquaredDistance};
 use crate::functional::Sample;
 use crate::math::{Local, significant};
@@ -25,6 +26,14 @@ pub(super) fn check(
     scalars: [Option<Vec<f64>>; 2],
 ) -> Result<(), BoundaryError> {
     if let Some(reason) = contradiction(model, boundary, control) {
+        let place = "limits";
+        return Err(BoundaryError::Limit { place, reason });
+    }
+    if let Some(reason) = control
+        .limits
+        .iter()
+        .find_map(|limit| beyond_law(model, limit))
+    {
         let place = "limits";
         return Err(BoundaryError::Limit { place, reason });
     }
@@ -175,6 +184,30 @@ fn of_joint(joint: usize, lower: f64, upper: f64, model: &Model) -> BoundedQuant
         when: When::Everywhere,
         name: format!("joint {}", model.system.joints[joint].name),
     }
+}
+
+/// The message of a limit of a stretch at which the law of the muscle has no energy.
+fn beyond_law(model: &Model, limit: &PathConstraint) -> Option<String> {
+    let PathConstraint::Stretch { muscle, min, max } = *limit else {
+        return None;
+    };
+    let muscle = &model.system.muscles[muscle];
+    let [low, high] = muscle.material.law?.stretches()?;
+    let given = [min, max]
+        .into_iter()
+        .filter(|bound| *bound > 0.0 && bound.is_finite());
+    let stretch = given
+        .into_iter()
+        .find(|bound| *bound <= low || high <= *bound)?;
+    let (muscle, range) = (muscle.name.clone(), [low, high]);
+    Some(format!(
+        "at a bound {}",
+        BeyondLaw {
+            muscle,
+            stretch,
+            range
+        }
+    ))
 }
 
 /// Two limits of one quantity that leave it no value.

@@ -1,6 +1,6 @@
 //! Errors of control problems that are not well posed.
 
-use crate::dynamics::EquilibriumError;
+use crate::dynamics::{BeyondLaw, EquilibriumError};
 use crate::ipopt::Status;
 use crate::model::ModelError;
 use thiserror::Error;
@@ -54,6 +54,14 @@ pub enum BoundaryError {
         place: &'static str,
         /// The muscle.
         muscle: String,
+    },
+    /// A muscle is beyond the limit of its law in a given configuration.
+    #[error("{place}: {muscle}")]
+    BeyondLaw {
+        /// `start` or `goal`.
+        place: &'static str,
+        /// The muscle.
+        muscle: BeyondLaw,
     },
     /// A parameter cannot be sought.
     #[error("sought parameter \"{name}\": {reason}")]

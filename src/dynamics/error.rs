@@ -1,7 +1,7 @@
 //! Errors of steps and of equilibria.
 
 use crate::dynamics::equilibrium::{Equilibrium, Instability, Load};
-use crate::dynamics::singular_configurations::NOTHING;
+use crate::dynamics::singular_configurations::{BeyondLaw, NOTHING};
 use crate::ipopt::Status;
 use thiserror::Error;
 
@@ -11,7 +11,7 @@ pub enum StepError {
     /// Newton's method did not converge, although the step was halved.
     #[error(
         "no convergence of the step from t = {time} ms, even with a step of {step} ms; last residuals relative to the first: {}{}",
-        short(residuals), hint(residuals, muscle.as_ref(), overflow.as_ref())
+        short(residuals), hint(residuals, limit.as_deref(), muscle.as_ref(), overflow.as_ref())
     )]
     NoConvergence {
         /// Start of the step in ms.
@@ -22,6 +22,8 @@ pub enum StepError {
         residuals: Vec<f64>,
         /// Shortest lumped muscle at the start of the step and its stretch, if it is rather short.
         muscle: Option<(String, f64)>,
+        /// Lumped muscle near the limit of its law at the start of the step, or beyond it at the end that was tried.
+        limit: Option<Box<BeyondLaw>>,
         /// Forces beyond the range of numbers, and the greatest voltage, where an inverted element is not what they are laid to.
         overflow: Option<f64>,
     },
@@ -36,6 +38,16 @@ pub enum StepError {
         step: f64,
         /// The muscle.
         muscle: String,
+    },
+    /// A lumped muscle is stretched beyond the limit of its law at the end of the step, although it was halved.
+    #[error("the step from t = {time} ms ends where {muscle}, even with a step of {step} ms")]
+    BeyondLaw {
+        /// Start of the step in ms.
+        time: f64,
+        /// Smallest step that was tried in ms.
+        step: f64,
+        /// The muscle.
+        muscle: BeyondLaw,
     },
     /// An element of a block is inverted at the end of the step, although it was halved.
     #[error(
@@ -200,8 +212,16 @@ fn short(residuals: &[f64]) -> String {
     list.join(", ")
 }
 
-/// Explains a short muscle or residuals that are not finite.
-fn hint(residuals: &[f64], muscle: Option<&(String, f64)>, overflow: Option<&f64>) -> String {
+/// Explains a muscle near a limit, a short one, or residuals that are not finite.
+fn hint(
+    residuals: &[f64],
+    limit: Option<&BeyondLaw>,
+    muscle: Option<&(String, f64)>,
+    overflow: Option<&f64>,
+) -> String {
+    if let Some(limit) = limit {
+        return format!("; {limit}");
+    }
     let is_finite = residuals.iter().all(|r| r.is_finite());
     if let (Some(voltage), false) = (overflow, is_finite) {
         return format!(

@@ -62,7 +62,9 @@ pub use resolution::Balance;
 pub use simulate::{
     Lengths, Start, StepControl, TimeGrid, go_on, simulate, simulate_by, simulate_within,
 };
-pub use singular_configurations::{muscle_without_length, reversed_muscle};
+pub use singular_configurations::{
+    BeyondLaw, muscle_beyond_law, muscle_without_length, reversed_muscle,
+};
 pub use solving::{Integrator, Newton, Solving};
 pub use step_report::StepperReport;
 pub use step_state::{StepState, TangentState};

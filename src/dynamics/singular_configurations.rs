@@ -1,4 +1,4 @@
-//! Singular configurations: lumped muscles of zero length, inverted elements. Steps must neither jump over such
+//! Singular configurations: lumped muscles of zero length or beyond the limit of their law, inverted elements. Steps must neither jump over such
 //! places nor end there.
 //!
 //! Forces are those at the middle of a step, which says nothing of its end: a span that turns by a right angle or more within
@@ -9,9 +9,13 @@ use crate::dynamics::discrete_trajectory::DiscreteTrajectory;
 use crate::functional::TermKind;
 use crate::model::Model;
 use crate::model::system::Fidelity;
+use std::fmt;
 
 /// Below this stretch a muscle is named where a step fails; pull-in of an ideal dielectric is at 0.63.
 const SHORT: f64 = 0.5;
+
+/// Part of the range of a law near whose ends a muscle is named where a step fails.
+const NEAR: f64 = 0.3;
 
 /// Stretch that counts as no length.
 pub(super) const NOTHING: f64 = 1e-9;
@@ -51,6 +55,58 @@ pub fn muscle_without_length(model: &Model, coordinates: &[f64]) -> Option<usize
     let instant = model.action.map.placed(coordinates);
     let (muscle, stretch) = shortest(model, &instant)?;
     (stretch < NOTHING).then_some(muscle)
+}
+
+/// A lumped muscle whose law has no energy at its stretch.
+#[derive(Clone, Debug, PartialEq)]
+pub struct BeyondLaw {
+    /// Name of the muscle.
+    pub muscle: String,
+    /// Its stretch.
+    pub stretch: f64,
+    /// Stretches between which there is an energy.
+    pub range: [f64; 2],
+}
+
+impl fmt::Display for BeyondLaw {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let [low, high] = self.range;
+        write!(
+            f,
+            "muscle \"{}\" has the stretch {:.4}; Gent's limit leaves its law an energy between {low:.4} and {high:.4} only",
+            self.muscle, self.stretch
+        )
+    }
+}
+
+/// The first lumped muscle of a placed instant that is within a part of the range of its law, from 0 at its ends to 1 at rest, or beyond.
+fn at_limit(model: &Model, at: &Configuration, part: f64) -> Option<BeyondLaw> {
+    lumped(model).find_map(|(m, span)| {
+        let muscle = &model.system.muscles[m];
+        let [low, high] = muscle.material.law?.stretches()?;
+        let stretch = at.x[span].norm() / muscle.length();
+        let is_inside = low + part * (1.0 - low) < stretch && stretch < high - part * (high - 1.0);
+        (!is_inside).then(|| BeyondLaw {
+            muscle: muscle.name.clone(),
+            stretch,
+            range: [low, high],
+        })
+    })
+}
+
+/// The first lumped muscle of a placed instant that has no energy by its law.
+pub(super) fn beyond_law(model: &Model, at: &Configuration) -> Option<BeyondLaw> {
+    at_limit(model, at, 0.0)
+}
+
+/// The first lumped muscle of a placed instant to which a step that fails there is laid, as the limit of its law is near.
+pub(super) fn near_limit(model: &Model, at: &Configuration) -> Option<BeyondLaw> {
+    at_limit(model, at, NEAR)
+}
+
+/// The first lumped muscle that has no energy by its law at coordinates.
+pub fn muscle_beyond_law(model: &Model, coordinates: &[f64]) -> Option<BeyondLaw> {
+    beyond_law(model, &model.action.map.placed(coordinates))
 }
 
 /// Returns true if an elastic block has no energy at a placed instant: an element is inverted.

@@ -6,7 +6,7 @@ use crate::dynamics::equations::Equations;
 use crate::dynamics::error::StepError;
 use crate::dynamics::interval_energies::Work;
 use crate::dynamics::resolution::{Balance, turned};
-use crate::dynamics::singular_configurations;
+use crate::dynamics::singular_configurations::{self, BeyondLaw};
 use crate::dynamics::solving::Newton;
 use crate::dynamics::step_report::StepperReport;
 use crate::dynamics::tangent::Tangent;
@@ -216,6 +216,7 @@ impl<E: Equations> Steps<E> {
                 break;
             }
         }
+        let limit = self.muscle_near_limit(residuals.last().is_some_and(|r| r.is_finite()));
         self.equations.restore();
         let first = residuals.first().copied().unwrap_or(f64::NAN);
         let last = &residuals[residuals.len().saturating_sub(4)..];
@@ -223,6 +224,7 @@ impl<E: Equations> Steps<E> {
             time: self.equations.time(),
             step: h,
             residuals: last.iter().map(|r| r / first).collect(),
+            limit: limit.map(Box::new),
             muscle: self.short_muscle(),
             overflow: singular_configurations::overflow(
                 self.equations.model(),
@@ -264,7 +266,7 @@ impl<E: Equations> Steps<E> {
         Ok(accepted)
     }
 
-    /// Returns the reason why a solution is not accepted: a muscle passed through zero length, a joint turned too far, an element is crushed, the
+    /// Returns the reason why a solution is not accepted: a muscle passed through zero length or the limit of its law, a joint turned too far, an element is crushed, the
     /// energy balance does not close.
     fn refusal(&mut self, step: f64) -> Option<StepError> {
         let time = self.equations.time();
@@ -273,6 +275,9 @@ impl<E: Equations> Steps<E> {
         if let Some(muscle) = singular_configurations::reversed(model, start, end) {
             let muscle = self.muscle_name(muscle);
             return Some(StepError::Reversed { time, step, muscle });
+        }
+        if let Some(muscle) = singular_configurations::beyond_law(model, end) {
+            return Some(StepError::BeyondLaw { time, step, muscle });
         }
         if let Some((what, angle)) = turned(model, start, end) {
             return Some(StepError::Turned {
@@ -311,6 +316,20 @@ impl<E: Equations> Steps<E> {
         let [start, _] = self.equations.ends();
         let (muscle, stretch) = singular_configurations::shortest(self.equations.model(), start)?;
         Some((self.muscle_name(muscle), stretch))
+    }
+
+    /// The muscle that a failure is laid to, as its law is near its limit at this instant, or has no energy at the end of the step that was tried
+    /// where forces do not exist.
+    fn muscle_near_limit(&mut self, is_finite: bool) -> Option<BeyondLaw> {
+        if !is_finite {
+            self.equations.place_end();
+        }
+        let (model, [start, end]) = (self.equations.model(), self.equations.ends());
+        let beyond = match is_finite {
+            true => None,
+            false => singular_configurations::beyond_law(model, end),
+        };
+        beyond.or_else(|| singular_configurations::near_limit(model, start))
     }
 
     fn muscle_name(&self, muscle: usize) -> String {

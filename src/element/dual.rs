@@ -107,6 +107,15 @@ impl<T: Real> Real for Dual<T> {
     }
 
     #[inline(always)]
+    fn exp(self) -> Self {
+        let value = self.value.exp();
+        Self {
+            value,
+            rate: self.rate * value,
+        }
+    }
+
+    #[inline(always)]
     fn ln(self) -> Self {
         Self {
             value: self.value.ln(),

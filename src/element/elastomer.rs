@@ -3,11 +3,13 @@
 use super::dispatch::{Task, dispatch};
 use super::dual::Dual;
 use super::geometry::ElementGeometry;
+use super::isochoric::{ElementLaw, IsochoricLaw};
 use super::lanes::Lanes;
 use super::law::{Field, Passive, Volume};
 use super::local::{Local, Output, Pair};
 use super::state::ElementState;
 use super::variations::Variations;
+use crate::energy::NeoHooke;
 use crate::math::Vector;
 use pulp::Simd;
 
@@ -19,9 +21,11 @@ use pulp::Simd;
 /// Ω = μ/2 (F:F − 3) − μ ln J + λ/2 ln²J  +  c₁ |E|² + c₂ |F E|² − ½ ε |cof(F) E|²/J.
 /// ```
 ///
+/// With an [`IsochoricLaw`] ψ the first three terms are ψ(Ī₁, Ī₂) + ½ (λ + ⅔ μ) ln²J, which has the same moduli μ and λ at F = 1.
+///
 /// NaN where J ≤ 0 at a Gauss point; solvers step back.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Elastomer<F> {
+pub struct Elastomer<F, L = NeoHooke> {
     /// Shear modulus μ in MPa.
     pub shear_modulus: f64,
     /// First Lamé constant λ in MPa.
@@ -30,16 +34,42 @@ pub struct Elastomer<F> {
     pub volume: Volume,
     /// The electric part: [`Passive`] or [`Dielectric`](crate::element::Dielectric).
     pub field: F,
+    /// Law of elasticity: [`NeoHooke`], or an [`IsochoricLaw`](crate::element::IsochoricLaw).
+    pub law: L,
 }
 
-impl<F: Field> Elastomer<F> {
+impl<F: Field, L: ElementLaw> Elastomer<F, L> {
+    /// The same constants with another law of elasticity.
+    pub fn by<M>(self, law: M) -> Elastomer<F, M> {
+        Elastomer {
+            shear_modulus: self.shear_modulus,
+            lame_lambda: self.lame_lambda,
+            volume: self.volume,
+            field: self.field,
+            law,
+        }
+    }
+
+    /// Factors of F:F/2 − ln J and of ½ ln²J in MPa.
+    #[inline(always)]
+    pub(super) fn moduli(&self) -> [f64; 2] {
+        self.law.moduli(self.shear_modulus, self.lame_lambda)
+    }
+
+    /// The isochoric law with its shear modulus, where it is one.
+    #[inline(always)]
+    pub(super) fn isochoric(&self) -> Option<(IsochoricLaw, f64)> {
+        self.law.isochoric().map(|law| (law, self.shear_modulus))
+    }
+
     /// The law without the field.
-    pub fn passive(&self) -> Elastomer<Passive> {
+    pub fn passive(&self) -> Elastomer<Passive, L> {
         Elastomer {
             shear_modulus: self.shear_modulus,
             lame_lambda: self.lame_lambda,
             volume: self.volume,
             field: Passive,
+            law: self.law,
         }
     }
 
@@ -51,7 +81,7 @@ impl<F: Field> Elastomer<F> {
         potentials: &F::Potentials<NODES>,
     ) -> f64 {
         let mut energy = 0.0;
-        dispatch(DerivativesTask::<_, _, 0, NODES> {
+        dispatch(DerivativesTask::<_, _, _, 0, NODES> {
             law: self,
             shape,
             x,
@@ -69,7 +99,7 @@ impl<F: Field> Elastomer<F> {
         potentials: &F::Potentials<NODES>,
         local: &mut Local<F, NODES>,
     ) {
-        dispatch(DerivativesTask::<_, _, 1, NODES> {
+        dispatch(DerivativesTask::<_, _, _, 1, NODES> {
             law: self,
             shape,
             x,
@@ -86,7 +116,7 @@ impl<F: Field> Elastomer<F> {
         potentials: &F::Potentials<NODES>,
         local: &mut Local<F, NODES>,
     ) {
-        dispatch(DerivativesTask::<_, _, 2, NODES> {
+        dispatch(DerivativesTask::<_, _, _, 2, NODES> {
             law: self,
             shape,
             x,
@@ -124,16 +154,16 @@ impl<F: Field> Elastomer<F> {
 }
 
 /// Derivatives to the order `ORDER` at a state.
-struct DerivativesTask<'a, F: Field, O, const ORDER: usize, const NODES: usize> {
-    law: &'a Elastomer<F>,
+struct DerivativesTask<'a, F: Field, L, O, const ORDER: usize, const NODES: usize> {
+    law: &'a Elastomer<F, L>,
     shape: &'a ElementGeometry<NODES>,
     x: &'a [Vector; NODES],
     potentials: &'a F::Potentials<NODES>,
     out: &'a mut O,
 }
 
-impl<F: Field, O: Output<f64>, const ORDER: usize, const NODES: usize> Task
-    for DerivativesTask<'_, F, O, ORDER, NODES>
+impl<F: Field, L: ElementLaw, O: Output<f64>, const ORDER: usize, const NODES: usize> Task
+    for DerivativesTask<'_, F, L, O, ORDER, NODES>
 {
     type Output = ();
 
@@ -144,10 +174,12 @@ impl<F: Field, O: Output<f64>, const ORDER: usize, const NODES: usize> Task
             x[i] = [self.x[i].x, self.x[i].y, self.x[i].z];
         }
         let electric = self.law.field.constants(self.potentials);
+        let [shear_modulus, lame_lambda] = self.law.moduli();
         let state = ElementState {
             token: unit,
-            shear_modulus: self.law.shear_modulus,
-            lame_lambda: self.law.lame_lambda,
+            shear_modulus,
+            lame_lambda,
+            isochoric: self.law.isochoric(),
             volume: self.law.volume,
             shape: self.shape,
             x: &x,
@@ -158,8 +190,8 @@ impl<F: Field, O: Output<f64>, const ORDER: usize, const NODES: usize> Task
 }
 
 /// Second derivatives at a state, and their rates along a direction.
-struct RatesTask<'a, F: Field, const NODES: usize> {
-    law: &'a Elastomer<F>,
+struct RatesTask<'a, F: Field, L, const NODES: usize> {
+    law: &'a Elastomer<F, L>,
     shape: &'a ElementGeometry<NODES>,
     x: &'a [Vector; NODES],
     potentials: &'a F::Potentials<NODES>,
@@ -168,7 +200,7 @@ struct RatesTask<'a, F: Field, const NODES: usize> {
     out: Pair<'a, F, NODES>,
 }
 
-impl<F: Field, const NODES: usize> Task for RatesTask<'_, F, NODES> {
+impl<F: Field, L: ElementLaw, const NODES: usize> Task for RatesTask<'_, F, L, NODES> {
     type Output = ();
 
     #[inline(always)]
@@ -188,10 +220,12 @@ impl<F: Field, const NODES: usize> Task for RatesTask<'_, F, NODES> {
                 phi[i] = dual(value[i], rate[i]);
             }
         }
+        let [shear_modulus, lame_lambda] = self.law.moduli();
         let state = ElementState {
             token: unit,
-            shear_modulus: self.law.shear_modulus,
-            lame_lambda: self.law.lame_lambda,
+            shear_modulus,
+            lame_lambda,
+            isochoric: self.law.isochoric(),
             volume: self.law.volume,
             shape: self.shape,
             x: &x,

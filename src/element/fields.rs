@@ -2,6 +2,7 @@
 
 use super::elastomer::Elastomer;
 use super::geometry::ElementGeometry;
+use super::isochoric::{ElementLaw, IsochoricLaw};
 use super::law::{Field, Volume};
 use super::viscosity::Viscosity;
 use crate::math::{Matrix, Vector};
@@ -32,7 +33,7 @@ impl Fields {
 }
 
 #[expect(non_snake_case, reason = "notation of the law")]
-impl<F: Field> Elastomer<F> {
+impl<F: Field, L: ElementLaw> Elastomer<F, L> {
     /// Fields of the hexahedron `shape` with nodes at `x` in mm and their potentials in V; add
     /// [`Viscosity::stress`] to the stress of a moving one.
     pub fn fields<const NODES: usize>(
@@ -42,7 +43,7 @@ impl<F: Field> Elastomer<F> {
         potentials: &F::Potentials<NODES>,
     ) -> Fields {
         let one = Matrix::identity();
-        let (mu, lambda) = (self.shear_modulus, self.lame_lambda);
+        let [mu, lambda] = self.moduli();
         let electric = self.field.constants(potentials);
         let volume = shape.volume();
         let gradients: [Matrix; 8] = std::array::from_fn(|g| shape.gradient_of(x, g));
@@ -64,6 +65,9 @@ impl<F: Field> Elastomer<F> {
                 Volume::Mean => lambda * mean.ln() / mean,
             };
             let mut stress = (F * F.transpose() - one) * (mu / J) + one * pressure;
+            if let Some(law) = self.isochoric() {
+                stress += isochoric_stress(law, F);
+            }
             if let Some((k, phi)) = &electric {
                 let E: Vector = (0..NODES).map(|i| shape.gradient(i, g) * -phi[i]).sum();
                 let e = spatial(F, &E);
@@ -80,6 +84,18 @@ impl<F: Field> Elastomer<F> {
         }
         fields
     }
+}
+
+/// Cauchy stress of an isochoric law.
+#[expect(non_snake_case, reason = "notation of the law")]
+fn isochoric_stress((law, mu): (IsochoricLaw, f64), F: &Matrix) -> Matrix {
+    let (J, b) = (F.determinant(), F * F.transpose());
+    let (s, I1) = (J.powf(-2.0 / 3.0), b.trace());
+    let deviator = |m: Matrix| m - Matrix::identity() * (m.trace() / 3.0);
+    let [_, first, _] = law.of_strain(mu, s * I1 - 3.0);
+    let c = law.of_second_invariant(mu).unwrap_or(0.0);
+    let of_second = deviator(b * I1 - b * b) * (2.0 * c * s * s / J);
+    deviator(b) * (2.0 * first * s / J) + of_second
 }
 
 impl Viscosity {

@@ -105,6 +105,14 @@ impl<S: Simd, const K: usize> Real for Lanes<S, K> {
     }
 
     #[inline(always)]
+    fn exp(mut self) -> Self {
+        for lane in pulp::bytemuck::cast_slice_mut::<S::f64s, f64>(&mut self.registers) {
+            *lane = Real::exp(*lane);
+        }
+        self
+    }
+
+    #[inline(always)]
     fn ln(mut self) -> Self {
         for lane in pulp::bytemuck::cast_slice_mut::<S::f64s, f64>(&mut self.registers) {
             *lane = Real::ln(*lane);

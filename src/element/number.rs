@@ -22,6 +22,8 @@ pub(super) trait Real:
     fn recip(self) -> Self;
     /// ln self; NaN for self ≤ 0.
     fn ln(self) -> Self;
+    /// e to the power self.
+    fn exp(self) -> Self;
 }
 
 /// A number at each of the eight Gauss points.
@@ -75,6 +77,11 @@ impl Real for f64 {
     #[inline(always)]
     fn recip(self) -> Self {
         1.0 / self
+    }
+
+    #[inline(always)]
+    fn exp(self) -> Self {
+        Self::exp(self)
     }
 
     #[inline(always)]

@@ -2,6 +2,7 @@
 
 use super::algebra::Three;
 use super::geometry::ElementGeometry;
+use super::isochoric::IsochoricLaw;
 use super::law::{Dielectric, Volume};
 use super::number::Points;
 
@@ -10,6 +11,8 @@ pub(super) struct ElementState<'a, N: Points, const NODES: usize> {
     pub(super) token: N::Token,
     pub(super) shear_modulus: f64,
     pub(super) lame_lambda: f64,
+    /// Absent at compile time for a neo-Hookean law.
+    pub(super) isochoric: Option<(IsochoricLaw, f64)>,
     pub(super) volume: Volume,
     pub(super) shape: &'a ElementGeometry<NODES>,
     pub(super) x: &'a [[N::Uniform; 3]; NODES],

@@ -22,6 +22,7 @@
 
 use super::algebra::{Nine, apply, apply_plain, cross, dot, dot_plain, scale, sums, transpose};
 use super::charged::Charged;
+use super::isochoric::Isochoric;
 use super::kinematics::{Kinematics, load, minus_gradient_of};
 use super::law::Volume;
 use super::local::Output;
@@ -43,6 +44,7 @@ pub(super) struct Variations<N: Points> {
     beta: N,
     electric: Option<ElectricField<N>>,
     mean: Option<Mean<N::Uniform>>,
+    isochoric: Option<Isochoric<N>>,
 }
 
 /// The mean dilatation.
@@ -109,6 +111,10 @@ impl<N: Points> Variations<N> {
                 })
             }
         };
+        let isochoric = match state.isochoric {
+            None => None,
+            Some(law) => Some(Isochoric::new(law, &F, ln_J)),
+        };
         Self {
             w,
             F,
@@ -119,6 +125,7 @@ impl<N: Points> Variations<N> {
             beta,
             electric,
             mean,
+            isochoric,
         }
     }
 
@@ -135,6 +142,9 @@ impl<N: Points> Variations<N> {
             let (E, y) = (field.reference, field.pushed);
             density = density + dot(E, E).scaled(constants.c1) + dot(y, y).scaled(constants.c2)
                 - field.pressure;
+        }
+        if let Some(isochoric) = &self.isochoric {
+            density = density + isochoric.energy;
         }
         let energy = density.times(self.w).sum();
         match self.mean {
@@ -182,6 +192,9 @@ impl<N: Points> Variations<N> {
                     - pulled[m];
                 D[m] = D[m].times(self.w);
             }
+        }
+        if let Some(isochoric) = &self.isochoric {
+            isochoric.add_stress(&self.F, &self.T, &mut P);
         }
         for row in &mut P {
             for entry in row {
@@ -242,6 +255,18 @@ impl<N: Points> Variations<N> {
                     slopes[i] = sums(scale(g[i], w_J));
                 }
                 Some((mean.factor, slopes))
+            }
+        };
+
+        let isochoric = match &self.isochoric {
+            None => None,
+            Some(isochoric) => {
+                let mut nodes = [isochoric.node([zero; 3], [zero; 3]); NODES];
+                for i in 0..NODES {
+                    let G = load::<N>(token, &gradients[i]);
+                    nodes[i] = isochoric.node(apply_plain(&self.F, G), g[i]);
+                }
+                Some((isochoric, nodes))
             }
         };
 
@@ -312,6 +337,15 @@ impl<N: Points> Variations<N> {
                         for b in 0..3 {
                             block[a][b] =
                                 block[a][b].plus_product(slopes[i][a] * *factor, slopes[j][b]);
+                        }
+                    }
+                }
+                if let Some((isochoric, nodes)) = &isochoric {
+                    let plain = zero.plus_plain(plain);
+                    let more = isochoric.block([&nodes[i], &nodes[j]], [g[i], g[j]], plain);
+                    for a in 0..3 {
+                        for b in 0..3 {
+                            block[a][b] = block[a][b] + more[a][b].times(w).sum();
                         }
                     }
                 }

@@ -2,38 +2,33 @@
 //!
 //! All through the polynomial invariant I = Λ² = |r|²/L₀² of the span r (docs/theory.md, 3.1 to 3.3).
 
-use crate::energy::{Energy, OfSquare};
+use crate::energy::{Elasticity, Energy, NeoHooke, OfSquare};
 use crate::math::Jet;
 use nalgebra::SVector;
 
-/// Elastic energy `V₀ μ/2 (2/√I + I − 3)` of a muscle, arguments: span r. Not finite for r = 0.
+/// Elastic energy of a muscle, of the neo-Hookean law `V₀ μ/2 (2/√I + I − 3)`, arguments: span r. Not finite for r = 0.
 #[derive(Clone, Copy, Debug)]
-pub struct ElasticCell {
+pub struct ElasticCell<L = NeoHooke> {
     /// Rest length L₀ in mm.
     pub length: f64,
     /// Rest volume V₀ in mm³.
     pub volume: f64,
-    /// Shear modulus μ in MPa.
+    /// Shear modulus μ of small strains in MPa.
     pub shear_modulus: f64,
+    /// Law of elasticity.
+    pub law: L,
 }
 
-impl ElasticCell {
-    /// μ/2 V₀ (2/√I + I − 3) as a function of I: value and three derivatives.
+impl<L: Elasticity> ElasticCell<L> {
+    /// The energy as a function of I: value and three derivatives.
     #[inline(always)]
-    pub(super) fn of_squared_stretch(&self, i: f64) -> [f64; 4] {
-        let c = 0.5 * self.shear_modulus * self.volume;
-        let r = 1.0 / i;
-        let s = r.sqrt();
-        [
-            c * (2.0 * s + i - 3.0),
-            c * (1.0 - s * r),
-            c * 1.5 * s * r * r,
-            c * -3.75 * s * r * r * r,
-        ]
+    fn of_squared_stretch(&self, i: f64) -> [f64; 4] {
+        let law = &self.law;
+        law.of_squared_stretch(self.shear_modulus, self.volume, i)
     }
 }
 
-impl Energy<3> for ElasticCell {
+impl<L: Elasticity> Energy<3> for ElasticCell<L> {
     type Local<const ORDER: usize> = OfSquare;
 
     #[inline(always)]
@@ -45,11 +40,12 @@ impl Energy<3> for ElasticCell {
 
 /// Electro-elastic energy of a muscle, arguments: span r and voltage V. Not finite for r = 0.
 ///
-/// `W = V₀ { μ/2 (2/√I + I − 3) + [c₁ + c₂ I − ε/(2I)] (V/t)² }`; the charge on the electrodes is −∂W/∂V.
+/// `W = V₀ { μ/2 (2/√I + I − 3) + [c₁ + c₂ I − ε/(2I)] (V/t)² }`, or the energy of another law of elasticity; the charge on the electrodes
+/// is −∂W/∂V.
 #[derive(Clone, Copy, Debug)]
-pub struct DielectricCell {
+pub struct DielectricCell<L = NeoHooke> {
     /// The elastic part.
-    pub elastic: ElasticCell,
+    pub elastic: ElasticCell<L>,
     /// c₁ in N/V².
     pub c1: f64,
     /// c₂ in N/V².
@@ -60,7 +56,7 @@ pub struct DielectricCell {
     pub layer: f64,
 }
 
-impl DielectricCell {
+impl<L> DielectricCell<L> {
     /// Factor of (V/t)² V₀ as a function of I: value and three derivatives.
     #[inline(always)]
     pub(super) fn electric_of_squared_stretch(&self, i: f64) -> [f64; 4] {
@@ -76,7 +72,7 @@ impl DielectricCell {
     }
 }
 
-impl Energy<4> for DielectricCell {
+impl<L: Elasticity> Energy<4> for DielectricCell<L> {
     type Local<const ORDER: usize> = OfSquare;
 
     const OF_SQUARES: bool = true;

@@ -2,7 +2,8 @@
 //!
 //! Nodes are read at the midpoint of an interval, potentials are scalars of the interval.
 
-use crate::element::{Dielectric, Elastomer, ElementGeometry, Field, Local, Passive};
+use crate::element::{Dielectric, Elastomer, ElementGeometry, ElementLaw, Field, Local, Passive};
+use crate::energy::NeoHooke;
 use crate::functional::{Kernel, Order, Sample, ScalarArg, Scatter, Stencil, VectorArg};
 use crate::math::{Derivatives, Matrix, Vector};
 use std::fmt;
@@ -10,11 +11,11 @@ use std::marker::PhantomData;
 
 /// One finite element: its geometry, its law, and its arguments.
 #[derive(Clone, Debug)]
-pub struct FiniteElement<F: Electrical, const NODES: usize = 8> {
+pub struct FiniteElement<F: Electrical, L = NeoHooke, const NODES: usize = 8> {
     /// Gradients of the shape functions.
     pub shape: ElementGeometry<NODES>,
     /// The law.
-    pub law: Elastomer<F>,
+    pub law: Elastomer<F, L>,
     /// Vectors of the nodes.
     pub nodes: [usize; NODES],
     /// Sources of the potentials of the nodes; nothing for a passive element.
@@ -66,7 +67,7 @@ impl Electrical for Dielectric {
 
 /// The kind of elements that are finite elements of `NODES` nodes.
 #[derive(Debug)]
-pub struct FiniteElements<F, const NODES: usize = 8>(PhantomData<F>);
+pub struct FiniteElements<F, L = NeoHooke, const NODES: usize = 8>(PhantomData<(F, L)>);
 
 /// Derivatives of the energy of an element, and their rates along the direction.
 #[derive(Debug)]
@@ -93,7 +94,7 @@ pub(super) fn middle<const NODES: usize>(
     nodes.map(|v| (vectors[0][v] + vectors[1][v]) * 0.5)
 }
 
-impl<F: Electrical, const NODES: usize> FiniteElement<F, NODES> {
+impl<F: Electrical, L, const NODES: usize> FiniteElement<F, L, NODES> {
     fn potentials(&self, scalars: &[f64]) -> F::Potentials<NODES> {
         let terminals = F::terminals::<NODES>(&self.terminals);
         F::potentials::<NODES>(|i| terminals[i].read(scalars))
@@ -129,24 +130,24 @@ impl<F: Field, const NODES: usize> Derivatives for Local<F, NODES> {
     }
 }
 
-impl<F: Electrical, const NODES: usize> Kernel for FiniteElements<F, NODES> {
-    type Element = FiniteElement<F, NODES>;
+impl<F: Electrical, L: ElementLaw, const NODES: usize> Kernel for FiniteElements<F, L, NODES> {
+    type Element = FiniteElement<F, L, NODES>;
     type Storage = Variations<F, NODES>;
 
     const PARTS: Option<[&'static str; 2]> = F::PARTS;
 
     #[inline(always)]
-    fn vectors(_: &FiniteElement<F, NODES>) -> usize {
+    fn vectors(_: &FiniteElement<F, L, NODES>) -> usize {
         NODES
     }
 
     #[inline(always)]
-    fn scalars(element: &FiniteElement<F, NODES>) -> usize {
+    fn scalars(element: &FiniteElement<F, L, NODES>) -> usize {
         F::terminals::<NODES>(&element.terminals).len()
     }
 
     #[inline(always)]
-    fn vector(element: &FiniteElement<F, NODES>, i: usize) -> VectorArg {
+    fn vector(element: &FiniteElement<F, L, NODES>, i: usize) -> VectorArg {
         VectorArg {
             vector: element.nodes[i],
             stencil: Stencil::Mid,
@@ -154,25 +155,25 @@ impl<F: Electrical, const NODES: usize> Kernel for FiniteElements<F, NODES> {
     }
 
     #[inline(always)]
-    fn scalar(element: &FiniteElement<F, NODES>, s: usize) -> Option<(usize, f64)> {
+    fn scalar(element: &FiniteElement<F, L, NODES>, s: usize) -> Option<(usize, f64)> {
         F::terminals::<NODES>(&element.terminals)[s].scalar
     }
 
-    fn energy(element: &FiniteElement<F, NODES>, sample: &Sample<'_>) -> f64 {
+    fn energy(element: &FiniteElement<F, L, NODES>, sample: &Sample<'_>) -> f64 {
         let x = middle(sample.vectors, &element.nodes);
         let potentials = element.potentials(sample.scalars);
         element.law.energy(&element.shape, &x, &potentials)
     }
 
     /// The energy without the field.
-    fn first_part(element: &FiniteElement<F, NODES>, sample: &Sample<'_>) -> f64 {
+    fn first_part(element: &FiniteElement<F, L, NODES>, sample: &Sample<'_>) -> f64 {
         let x = middle(sample.vectors, &element.nodes);
         let law = element.law.passive();
         law.energy(&element.shape, &x, &())
     }
 
     fn prepare(
-        element: &FiniteElement<F, NODES>,
+        element: &FiniteElement<F, L, NODES>,
         order: Order,
         sample: &Sample<'_>,
         Variations { plain, along }: &mut Variations<F, NODES>,
@@ -194,7 +195,7 @@ impl<F: Electrical, const NODES: usize> Kernel for FiniteElements<F, NODES> {
 
     #[inline(always)]
     fn derivatives<S: Scatter>(
-        _: &FiniteElement<F, NODES>,
+        _: &FiniteElement<F, L, NODES>,
         order: Order,
         _: &Sample<'_>,
         Variations { plain, along }: &Variations<F, NODES>,

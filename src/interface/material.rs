@@ -1,6 +1,8 @@
 //! Elastomers, built with defaults.
 
-use crate::model::system::{ElectricConstants, Material, MaxwellBranch, MaxwellBranches};
+use crate::model::system::{
+    ElasticLaw, ElectricConstants, Material, MaxwellBranch, MaxwellBranches,
+};
 
 impl Material {
     /// A neo-Hookean elastomer with a shear modulus in MPa, without density, permittivity or viscosity so far.
@@ -8,11 +10,18 @@ impl Material {
         Self {
             density: None,
             shear_modulus,
+            law: None,
             lame_lambda: None,
             electric: None,
             viscosity: None,
             maxwell: MaxwellBranches::default(),
         }
+    }
+
+    /// Law of elasticity in place of the neo-Hookean one, with the same shear modulus at small strains.
+    pub fn law(self, law: ElasticLaw) -> Self {
+        let law = Some(law);
+        Self { law, ..self }
     }
 
     /// Density in g/mm³.

@@ -1,6 +1,7 @@
 //! Terms of elastic blocks: elements by kind, masses, weights.
 
-use crate::element::Viscosity;
+use crate::element::{ElementLaw, Viscosity};
+use crate::energy::NeoHooke;
 use crate::functional::{FiniteElement, Mass, ViscousElement};
 use crate::model::solid_block::SolidBlock;
 use crate::model::solids::Solids;
@@ -10,6 +11,11 @@ use std::collections::BTreeMap;
 const INERTIA: &str = "block inertia";
 const ELASTICITY: &str = "block elasticity";
 const ELECTROELASTICITY: &str = "block electroelasticity";
+/// Elasticity and electroelasticity by a law other than the neo-Hookean one.
+const GENERAL: [&str; 2] = [
+    "general block elasticity",
+    "general block electroelasticity",
+];
 const VISCOSITY: &str = "block viscosity";
 
 impl Solids {
@@ -67,36 +73,21 @@ impl Solids {
     /// Elastic and dielectric elements.
     fn add_elements(&self, terms: &mut Terms<'_>) {
         for (c, e) in self.elements() {
-            let (shape, nodes) = (c.shapes[e].clone(), c.nodes(e));
-            let name = &c.solid.name;
-            match c.is_dielectric[e] {
-                false => {
-                    let element = FiniteElement {
-                        shape,
-                        law: c.passive(e),
-                        nodes,
-                        terminals: (),
-                    };
-                    terms.collect(ELASTICITY, "elements without a field of", name, element);
-                    let why = match c.material(e).electric {
-                        None => "no elastic block that moves names electric constants there",
-                        Some(_) => {
-                            "no field between electrodes of different voltages reaches an element"
-                        }
-                    };
-                    terms.without(ELECTROELASTICITY, why);
-                }
-                true => {
-                    let element = FiniteElement {
-                        shape,
-                        law: c.dielectric(e),
-                        nodes,
-                        terminals: c.terminals(e),
-                    };
-                    terms.collect(ELECTROELASTICITY, "elements in a field of", name, element);
-                    terms.without(ELASTICITY, "a field reaches every element");
+            match c.isochoric(e) {
+                None => add_element(c, e, (NeoHooke, [ELASTICITY, ELECTROELASTICITY]), terms),
+                Some(law) => {
+                    add_element(c, e, (law, GENERAL), terms);
+                    for term in [ELASTICITY, ELECTROELASTICITY] {
+                        terms.without(term, "every elastic block names a law of elasticity");
+                    }
                 }
             }
+        }
+        for term in GENERAL {
+            terms.without(
+                term,
+                "no elastic block that moves names a law of elasticity",
+            );
         }
     }
 
@@ -149,5 +140,42 @@ impl Solids {
                 .collect::<Vec<_>>()
         };
         moving.flat_map(masses).collect()
+    }
+}
+
+/// One elastic or dielectric element, in one of two terms.
+fn add_element<L: ElementLaw>(
+    c: &SolidBlock,
+    e: usize,
+    (law, [elasticity, electroelasticity]): (L, [&'static str; 2]),
+    terms: &mut Terms<'_>,
+) {
+    let (shape, nodes) = (c.shapes[e].clone(), c.nodes(e));
+    let name = &c.solid.name;
+    match c.is_dielectric[e] {
+        false => {
+            let element = FiniteElement {
+                shape,
+                law: c.passive(e).by(law),
+                nodes,
+                terminals: (),
+            };
+            terms.collect(elasticity, "elements without a field of", name, element);
+            let why = match c.material(e).electric {
+                None => "no elastic block that moves names electric constants there",
+                Some(_) => "no field between electrodes of different voltages reaches an element",
+            };
+            terms.without(electroelasticity, why);
+        }
+        true => {
+            let element = FiniteElement {
+                shape,
+                law: c.dielectric(e).by(law),
+                nodes,
+                terminals: c.terminals(e),
+            };
+            terms.collect(electroelasticity, "elements in a field of", name, element);
+            terms.without(elasticity, "a field reaches every element");
+        }
     }
 }

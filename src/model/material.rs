@@ -1,5 +1,6 @@
 //! Materials of dielectric elastomers and their electric constants.
 
+use crate::energy::ElasticLaw;
 use crate::model::maxwell::MaxwellBranches;
 
 /// A dielectric elastomer. What is `None` leaves no trace.
@@ -7,8 +8,10 @@ use crate::model::maxwell::MaxwellBranches;
 pub struct Material {
     /// Density in g/mm³.
     pub density: Option<f64>,
-    /// Shear modulus μ in MPa.
+    /// Shear modulus μ of small strains in MPa.
     pub shear_modulus: f64,
+    /// Law of elasticity other than the neo-Hookean one.
+    pub law: Option<ElasticLaw>,
     /// First Lamé constant λ in MPa; finite elements need it, lumped muscles keep their volume and do not read it.
     pub lame_lambda: Option<f64>,
     /// Electric constants.

@@ -91,6 +91,11 @@ impl Constant {
                     "muscle \"{name}\" of finite elements reads it; of muscles, lumped ones alone can have sought constants"
                 ));
             }
+            if muscle.material.law.is_some() && !matches!(self, Self::Viscosity(_)) {
+                return Some(format!(
+                    "muscle \"{name}\" has a law of elasticity other than the neo-Hookean one; of its constants, the viscosity alone can be sought"
+                ));
+            }
             if self.is_shape() && !muscle.material.maxwell.list().is_empty() {
                 return Some(format!(
                     "the Maxwell branches of muscle \"{name}\" depend on it; sought shapes of muscles with branches are not offered"

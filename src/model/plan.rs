@@ -5,7 +5,7 @@
 pub(super) const GRAVITY: &str = "gravity";
 
 /// Names of the terms of the library, in the order of the sum; those of other crates follow.
-pub const TERMS: [&str; 30] = [
+pub const TERMS: [&str; 34] = [
     "body inertia",
     "muscle inertia",
     "block inertia",
@@ -13,8 +13,12 @@ pub const TERMS: [&str; 30] = [
     GRAVITY,
     "block elasticity",
     "block electroelasticity",
+    "general block elasticity",
+    "general block electroelasticity",
     "muscle elasticity",
     "muscle electroelasticity",
+    "general muscle elasticity",
+    "general muscle electroelasticity",
     "muscle charges",
     "maxwell elasticity",
     "joint elasticity",

@@ -1,6 +1,9 @@
 //! An elastic block in the model: vectors and potentials of its nodes, laws of its elements, charges of its electrodes.
 
-use crate::element::{Dielectric, Elastomer, ElementGeometry, Fields, Local, Passive, Volume};
+use crate::element::{
+    Dielectric, Elastomer, ElementGeometry, Fields, IsochoricLaw, Local, Passive, Volume,
+};
+use crate::energy::NeoHooke;
 use crate::functional::ScalarArg;
 use crate::math::Vector;
 use crate::model::system::{ElectricConstants, Electrode, ElementKind, Material, Potential, Solid};
@@ -65,7 +68,12 @@ impl SolidBlock {
             .map(|node| self.terminals[node].expect("a dielectric element has potentials"))
     }
 
-    /// The law of a passive element.
+    /// The law of elasticity of an element other than the neo-Hookean one.
+    pub fn isochoric(&self, element: usize) -> Option<IsochoricLaw> {
+        IsochoricLaw::new(self.material(element).law?)
+    }
+
+    /// The neo-Hookean law of a passive element.
     pub fn passive(&self, element: usize) -> Elastomer<Passive> {
         let material = self.material(element);
         Elastomer {
@@ -76,10 +84,11 @@ impl SolidBlock {
                 ElementKind::Hex8Q1P0 => Volume::Mean,
             },
             field: Passive,
+            law: NeoHooke,
         }
     }
 
-    /// The law of a dielectric element.
+    /// The neo-Hookean law of a dielectric element.
     pub fn dielectric(&self, element: usize) -> Elastomer<Dielectric> {
         let ElectricConstants {
             c1,
@@ -99,6 +108,7 @@ impl SolidBlock {
                 c2,
                 permittivity,
             },
+            law: NeoHooke,
         }
     }
 
@@ -119,9 +129,17 @@ impl SolidBlock {
         let (shape, x) = (&self.shapes[element], nodes.map(|n| places[n]));
         if self.is_dielectric[element] {
             let phi = nodes.map(|n| potentials[n]);
-            self.dielectric(element).fields(shape, &x, &phi)
+            let law = self.dielectric(element);
+            match self.isochoric(element) {
+                None => law.fields(shape, &x, &phi),
+                Some(isochoric) => law.by(isochoric).fields(shape, &x, &phi),
+            }
         } else {
-            self.passive(element).fields(shape, &x, &())
+            let law = self.passive(element);
+            match self.isochoric(element) {
+                None => law.fields(shape, &x, &()),
+                Some(isochoric) => law.by(isochoric).fields(shape, &x, &()),
+            }
         }
     }
 

@@ -1,5 +1,6 @@
 //! The system of a scene: bodies, joints, muscles and markers in g, mm, ms, N, V, names resolved.
 
+pub use crate::energy::ElasticLaw;
 use crate::mesh::Mesh;
 pub use crate::model::attachment::Attachment;
 pub use crate::model::bodies::{Body, Shape, directors_along};

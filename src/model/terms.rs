@@ -1,6 +1,7 @@
 //! Collection of the terms of components: elements of one kind make one term, those that read nothing that moves are left out, and the
 //! reasons are recorded.
 
+use crate::element::ElementLaw;
 use crate::energy::{Energy, Gravity, SoughtEnergy};
 use crate::functional::{
     Electrical, Element, FiniteElement, FiniteElements, Formulas, Group, Inertia, Mass, Path,
@@ -74,9 +75,9 @@ impl Member for Mass {
     }
 }
 
-impl<F: Electrical> Member for FiniteElement<F> {
+impl<F: Electrical, L: ElementLaw> Member for FiniteElement<F, L> {
     fn term(name: &str, list: Vec<Self>) -> Box<dyn Term> {
-        Box::new(Group::<FiniteElements<F>>::intervals(name, -1.0, list))
+        Box::new(Group::<FiniteElements<F, L>>::intervals(name, -1.0, list))
     }
 }
 

@@ -2,7 +2,8 @@
 
 pub use super::limited::all_limits;
 use super::systems::{
-    GRAVITY, ball, blocks, branched, charged, loaded, pressed, remembering, satellite, sprung, tied,
+    GRAVITY, ball, blocks, branched, charged, loaded, pressed, remembering, satellite, sprung,
+    stiffening, stiffening_blocks, tied,
 };
 use super::tracked::{energies, tracked};
 use super::trunk;
@@ -231,6 +232,7 @@ pub fn cases() -> Vec<Case> {
         case("branched tree", branched(), &|_| {}),
         case("branched tree with joint springs", sprung(), &|_| {}),
         case("branched tree that remembers", remembering(), &|_| {}),
+        case("branched tree that stiffens", stiffening(), &|_| {}),
         case("charges", charged(), &|c| {
             c.load_bounds.insert(4, [1e-5, 3e-4]);
         }),
@@ -257,6 +259,9 @@ pub fn cases() -> Vec<Case> {
                 c.goal = joints(&[(1, 2.0)]);
             },
         ),
+        case("blocks that stiffen", stiffening_blocks(), &|c| {
+            c.goal = corner_goal();
+        }),
         case("blocks", blocks(), &|c| c.goal = corner_goal()),
         case("blocks with loads", pressed(), &|c| c.goal = corner_goal()),
         case("blocks with loads, free time", pressed(), &|c| {

@@ -6,9 +6,10 @@ use nalgebra::{Matrix3, Rotation3, Vector3};
 use proboscis::mesh::grid::Grid;
 use proboscis::model::components::{Load, LoadPlace, Spring, Tendon};
 use proboscis::model::system::{
-    Attachment, Body, Circuit, Discretisation, ElectricConstants, Electrode, ElementKind, Fidelity,
-    Glue, Joint, JointKind, JointSpring, JointStops, Marker, Material, MaxwellBranch,
-    MaxwellBranches, Muscle, Potential, Shape, Solid, Support, System, VACUUM_PERMITTIVITY,
+    Attachment, Body, Circuit, Discretisation, ElasticLaw, ElectricConstants, Electrode,
+    ElementKind, Fidelity, Glue, Joint, JointKind, JointSpring, JointStops, Marker, Material,
+    MaxwellBranch, MaxwellBranches, Muscle, Potential, Shape, Solid, Support, System,
+    VACUUM_PERMITTIVITY,
 };
 
 /// Gravity along −y in mm/ms².
@@ -68,6 +69,26 @@ pub fn remembering() -> System {
     let [one, two] = [branch(0.04, 30.0), branch(0.02, 400.0)];
     system.muscles[0].material.maxwell = MaxwellBranches::new(&[one]).unwrap();
     system.muscles[2].material.maxwell = MaxwellBranches::new(&[one, two]).unwrap();
+    system
+}
+
+/// The branched tree with muscles of other laws of elasticity, the passive one among them.
+pub fn stiffening() -> System {
+    let mut system = branched();
+    let laws = [
+        (0, ElasticLaw::Gent { limit: 8.0 }),
+        (1, ElasticLaw::MooneyRivlin { share: 0.3 }),
+        (
+            3,
+            ElasticLaw::Ogden {
+                exponents: [1.3, 5.0],
+                share: 0.2,
+            },
+        ),
+    ];
+    for (muscle, law) in laws {
+        system.muscles[muscle].material.law = Some(law);
+    }
     system
 }
 
@@ -361,5 +382,18 @@ pub fn blocks() -> System {
         },
         solid: Some(0),
     });
+    system
+}
+
+/// The same by other laws of elasticity.
+pub fn stiffening_blocks() -> System {
+    let mut system = blocks();
+    system.muscles[0].material.law = Some(ElasticLaw::Yeoh {
+        c2: -0.01,
+        c3: 0.02,
+    });
+    for material in &mut system.solids[0].materials {
+        material.law = Some(ElasticLaw::MooneyRivlin { share: 0.3 });
+    }
     system
 }

@@ -11,6 +11,7 @@ use num_dual::{Dual, Dual64, HyperDual};
 use proboscis::element::{
     Dielectric, Elastomer, ElementGeometry, Field, Local, Passive, Viscosity, Volume,
 };
+use proboscis::energy::NeoHooke;
 use proboscis::math::{Matrix, Vector};
 
 /// Rounding of some thousands of operations at values of order one.
@@ -25,7 +26,7 @@ pub(crate) struct Flat {
     pub(crate) hessian: Vec<Vec<f64>>,
 }
 
-fn flat<F: Field>(local: &Local<F>) -> Flat {
+pub(crate) fn flat<F: Field>(local: &Local<F>) -> Flat {
     let mut electric = local.electric.clone();
     let electric = F::electric(&mut electric);
     let n = if electric.is_some() { 32 } else { 24 };
@@ -110,7 +111,7 @@ pub(crate) fn close(name: &str, a: &[f64], b: &[f64]) {
     }
 }
 
-fn close_flat(name: &str, a: &Flat, b: &Flat) {
+pub(crate) fn close_flat(name: &str, a: &Flat, b: &Flat) {
     close(&format!("{name} energy"), &[a.value], &[b.value]);
     close(&format!("{name} gradient"), &a.gradient, &b.gradient);
     close(
@@ -132,6 +133,7 @@ pub(crate) fn law<F>(volume: Volume, field: F) -> Elastomer<F> {
         lame_lambda: 2.9,
         volume,
         field,
+        law: NeoHooke,
     }
 }
 

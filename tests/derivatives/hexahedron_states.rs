@@ -5,6 +5,7 @@ use crate::hexahedron::{DIELECTRIC, close, forces, largest, law, list};
 use crate::naive_hexahedron::{Naive, cube, gauss};
 use num_dual::Dual64;
 use proboscis::element::{Dielectric, Elastomer, ElementGeometry, Local, Viscosity, Volume};
+use proboscis::energy::NeoHooke;
 use proboscis::math::{Matrix, Vector};
 
 #[test]
@@ -157,6 +158,7 @@ fn a_free_block_contracts_in_its_field() {
                 c2: 1e-9,
                 permittivity: 8.854e-12,
             },
+            law: NeoHooke,
         };
         for [field, lateral, along, j] in FREE_BLOCK {
             let phi = nodes.map(|x| field * x.z);

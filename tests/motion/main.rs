@@ -9,6 +9,7 @@ mod component_files;
 mod components;
 mod conserve;
 mod dissipation;
+mod elastic_laws;
 mod exchange;
 mod free_robots;
 mod integrators;

@@ -233,6 +233,7 @@ fn far_beyond_pull_in_a_motion_ends_without_nan() {
                 StepError::NoConvergence { time, step, .. }
                 | StepError::Inverted { time, step }
                 | StepError::Reversed { time, step, .. }
+                | StepError::BeyondLaw { time, step, .. }
                 | StepError::Turned { time, step, .. }
                 | StepError::Unbalanced { time, step, .. }
                 | StepError::Inaccurate { time, step, .. }

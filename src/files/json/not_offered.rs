@@ -112,10 +112,6 @@ const TABLE: &[NotOffered] = &[
     },
     NotOffered {
         words: &[
-            "mooney_rivlin",
-            "ogden",
-            "gent",
-            "yeoh",
             "arruda_boyce",
             "hyperelastic",
             "constitutive_law",
@@ -127,7 +123,7 @@ const TABLE: &[NotOffered] = &[
             "young_modulus",
             "elastic_modulus",
         ],
-        said: "materials are neo-Hookean, given by \"shear_modulus\" with \"lame_lambda\" or \"poisson_ratio\", \"viscosity\" is of Kelvin–Voigt kind, and \"maxwell\" lists Maxwell branches of lumped muscles",
+        said: "materials are neo-Hookean, given by \"shear_modulus\" with \"lame_lambda\" or \"poisson_ratio\", or follow a \"law\": \"gent\", \"mooney_rivlin\", \"yeoh\" or \"ogden\"; \"viscosity\" is of Kelvin–Voigt kind, and \"maxwell\" lists Maxwell branches of lumped muscles",
     },
     NotOffered {
         words: &[

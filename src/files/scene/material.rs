@@ -4,6 +4,7 @@ use std::collections::BTreeMap;
 
 use crate::files::json::error::SceneError;
 use crate::files::json::scope::Scope;
+use crate::files::scene::law::law;
 use crate::files::scene::spec::{Dielectric, MaterialSpec, MaxwellSpec};
 use crate::files::units::quantity::Quantity;
 use crate::model::MOST_BRANCHES;
@@ -28,6 +29,10 @@ fn material(spec: &MaterialSpec, scope: &Scope<'_>) -> Result<Material, SceneErr
     Ok(Material {
         density: density(spec, scope)?,
         shear_modulus,
+        law: match &spec.law {
+            None => None,
+            Some(written) => Some(law(written, &scope.key("law"))?),
+        },
         lame_lambda: lame_lambda(spec, shear_modulus, scope)?,
         electric: electric(spec, scope)?,
         viscosity: scope

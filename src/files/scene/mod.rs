@@ -2,6 +2,7 @@
 //!
 //! - `build`: the scene; `body`, `material`, `muscle`, `marker`: its parts; `components`: kinds of which each has one file for both.
 //! - `solid`, `mesh`, `electrodes`, `nodes`: elastic solids; `graph`: connections by joints; `names`: resolution of names.
+//! - `law`: laws of elasticity of materials.
 //! - `constants`: constants by their paths, as an optimisation may seek them.
 //! - `expand`: the shorthand of chains; `trunk`: a scene to begin with.
 
@@ -13,6 +14,7 @@ pub(crate) mod electrodes;
 pub(crate) mod expand;
 pub(crate) mod graph;
 mod joint;
+pub mod law;
 pub(crate) mod marker;
 pub(crate) mod material;
 pub(crate) mod mesh;

@@ -1,5 +1,6 @@
 //! Resolution of names in a scene: bodies, points of bodies, materials.
 
+use crate::energy::ElasticLaw;
 use crate::files::json::error::SceneError;
 use crate::files::json::scope::Scope;
 use crate::files::scene::point::{Point, vector};
@@ -31,6 +32,11 @@ pub(crate) fn find_compressible(
     if !material.maxwell.list().is_empty() {
         let found = format!("{name:?}, which has \"maxwell\" branches");
         let expected = "a material without them: only lumped muscles have Maxwell branches";
+        return Err(scope.wrong(found, expected));
+    }
+    if let Some(ElasticLaw::Ogden { .. }) = material.law {
+        let found = format!("{name:?}, which follows Ogden's law");
+        let expected = "a law of the invariants of the strain, as \"yeoh\": only lumped muscles follow Ogden's";
         return Err(scope.wrong(found, expected));
     }
     if material.lame_lambda.is_some() {

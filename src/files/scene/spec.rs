@@ -5,6 +5,7 @@ use serde::{Deserialize, Serialize};
 use std::collections::BTreeMap;
 
 use crate::files::scene::components::{LoadSpec, SpringSpec, TendonSpec};
+use crate::files::scene::law::LawSpec;
 use crate::files::scene::point::{Point, PointSpec};
 use crate::files::scene::spec_solids::{ElementSpec, SolidSpec};
 use crate::files::units::quantity::{
@@ -63,8 +64,11 @@ pub struct MaterialSpec {
     /// Density, SI unit kg/m³; without it muscles are massless.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub density: Option<Quantity<Density>>,
-    /// Shear modulus μ, SI unit Pa.
+    /// Shear modulus μ of small strains, SI unit Pa.
     pub shear_modulus: Quantity<Stress>,
+    /// Law of elasticity; the neo-Hookean one where not written.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub law: Option<LawSpec>,
     /// First Lamé constant λ, SI unit Pa; or give `poisson_ratio`. Finite elements need one of them.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub lame_lambda: Option<Quantity<Stress>>,

@@ -1,8 +1,8 @@
 //! Terms of lumped muscles.
 
 use crate::energy::{
-    Capacitance, CoordinateDamper, DeadLoad, DielectricCell, ElasticCell, FlowingCharge,
-    MaxwellCell, SectionInertia, ViscousCell,
+    Capacitance, CoordinateDamper, DeadLoad, DielectricCell, ElasticCell, ElasticLaw, Elasticity,
+    FlowingCharge, MaxwellCell, NeoHooke, SectionInertia, ViscousCell,
 };
 use crate::functional::{Element, Mass};
 use crate::kinematics::MaterialVector;
@@ -16,6 +16,11 @@ const INERTIA: &str = "muscle inertia";
 const SECTION: &str = "section inertia";
 const ELASTICITY: &str = "muscle elasticity";
 const ELECTROELASTICITY: &str = "muscle electroelasticity";
+/// Elasticity and electroelasticity by a law other than the neo-Hookean one.
+const GENERAL: [&str; 2] = [
+    "general muscle elasticity",
+    "general muscle electroelasticity",
+];
 const VISCOSITY: &str = "muscle viscosity";
 const MAXWELL_ELASTICITY: &str = "maxwell elasticity";
 const MAXWELL_VISCOSITY: &str = "maxwell viscosity";
@@ -52,6 +57,9 @@ pub(in crate::model) fn build(
     for term in [SOURCES, RESISTANCE] {
         terms.without(term, none);
     }
+    for term in GENERAL {
+        terms.without(term, "no lumped muscle names a law of elasticity");
+    }
     // What no muscle has said.
     for term in [INERTIA, SECTION, ELASTICITY, ELECTROELASTICITY, VISCOSITY] {
         terms.without(term, "no lumped muscle");
@@ -71,7 +79,32 @@ fn lumped(muscle: &Muscle, source: usize, span: usize, terms: &mut Terms<'_>) {
     }
     inertia(muscle, span, terms);
     let sought = SoughtMuscle::new(muscle, source, span, terms);
-    elasticity(muscle, sought.as_ref(), input, span, terms);
+    match muscle.material.law {
+        None => {
+            let named = [ELASTICITY, ELECTROELASTICITY];
+            elasticity(
+                muscle,
+                (NeoHooke, named),
+                sought.as_ref(),
+                (input, span),
+                terms,
+            );
+        }
+        Some(law) => {
+            let is_driven = input.is_some() && muscle.material.electric.is_some();
+            terms.note(GENERAL[usize::from(is_driven)], named(law), &muscle.name);
+            elasticity(
+                muscle,
+                (law, GENERAL),
+                sought.as_ref(),
+                (input, span),
+                terms,
+            );
+            for term in [ELASTICITY, ELECTROELASTICITY] {
+                terms.without(term, "every lumped muscle names a law of elasticity");
+            }
+        }
+    }
     viscosity(muscle, sought.as_ref(), span, terms);
 }
 
@@ -110,17 +143,28 @@ fn inertia(muscle: &Muscle, span: usize, terms: &mut Terms<'_>) {
     terms.add_kinetic(SECTION, "density and section_inertia of", name, element);
 }
 
-fn elastic(muscle: &Muscle) -> ElasticCell {
+/// A law as the reason for a term.
+fn named(law: ElasticLaw) -> &'static str {
+    match law {
+        ElasticLaw::Gent { .. } => "Gent's law of",
+        ElasticLaw::MooneyRivlin { .. } => "Mooney and Rivlin's law of",
+        ElasticLaw::Yeoh { .. } => "Yeoh's law of",
+        ElasticLaw::Ogden { .. } => "Ogden's law of",
+    }
+}
+
+fn elastic<L>(muscle: &Muscle, law: L) -> ElasticCell<L> {
     ElasticCell {
         length: muscle.length(),
         volume: muscle.volume(),
         shear_modulus: muscle.material.shear_modulus,
+        law,
     }
 }
 
-fn dielectric(muscle: &Muscle, electric: ElectricConstants) -> DielectricCell {
+fn dielectric<L>(muscle: &Muscle, electric: ElectricConstants, law: L) -> DielectricCell<L> {
     DielectricCell {
-        elastic: elastic(muscle),
+        elastic: elastic(muscle, law),
         c1: electric.c1,
         c2: electric.c2,
         permittivity: electric.permittivity,
@@ -131,31 +175,31 @@ fn dielectric(muscle: &Muscle, electric: ElectricConstants) -> DielectricCell {
 /// Capacitance of a lumped muscle; none of a muscle of finite elements, or without electric constants.
 pub fn capacitance(muscle: &Muscle) -> Option<Capacitance> {
     let electric = muscle.material.electric?;
-    let cell = dielectric(muscle, electric);
+    let cell = dielectric(muscle, electric, NeoHooke);
     (muscle.fidelity == Fidelity::Lumped).then_some(Capacitance { cell })
 }
 
-fn elasticity(
+fn elasticity<L: Elasticity>(
     muscle: &Muscle,
+    (law, [elasticity, electroelasticity]): (L, [&'static str; 2]),
     sought: Option<&SoughtMuscle<'_>>,
-    input: Option<usize>,
-    span: usize,
+    (input, span): (Option<usize>, usize),
     terms: &mut Terms<'_>,
 ) {
     let (vectors, name) = ([mid(span)], &muscle.name);
     match (muscle.material.electric, input) {
         (Some(electric), Some(voltage)) => {
             let element = Element {
-                energy: dielectric(muscle, electric),
+                energy: dielectric(muscle, electric, law),
                 vectors,
                 scalars: [voltage],
             };
             let why = "electric constants and a voltage of";
-            let named = (ELECTROELASTICITY, why);
+            let named = (electroelasticity, why);
             if !sought.is_some_and(|sought| sought.energy(input, named, terms)) {
-                terms.add(ELECTROELASTICITY, why, name, element);
+                terms.add(electroelasticity, why, name, element);
             }
-            terms.without(ELASTICITY, "every lumped muscle takes a voltage");
+            terms.without(elasticity, "every lumped muscle takes a voltage");
         }
         (electric, _) => {
             let why = match electric {
@@ -164,15 +208,15 @@ fn elasticity(
                 None => "no electric constants of",
             };
             let element = Element {
-                energy: elastic(muscle),
+                energy: elastic(muscle, law),
                 vectors,
                 scalars: [],
             };
-            if !sought.is_some_and(|sought| sought.energy(None, (ELASTICITY, why), terms)) {
-                terms.add(ELASTICITY, why, name, element);
+            if !sought.is_some_and(|sought| sought.energy(None, (elasticity, why), terms)) {
+                terms.add(elasticity, why, name, element);
             }
             terms.without(
-                ELECTROELASTICITY,
+                electroelasticity,
                 "no lumped muscle takes a voltage other than 0",
             );
         }

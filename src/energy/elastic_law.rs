@@ -1,0 +1,189 @@
+//! Laws of elasticity of a muscle: its energy as a function of its squared stretch.
+//!
+//! An incompressible muscle of the stretch Λ has the principal stretches Λ, Λ^(−1/2), Λ^(−1/2), so that with I = Λ²
+//!
+//! ```text
+//! I₁ = I + 2/√I,    I₂ = 2√I + 1/I,    Σ λᵃ = I^(a/2) + 2 I^(−a/4).
+//! ```
+
+use crate::math::Jet;
+use nalgebra::{SVector, Vector1};
+use std::f64::consts::PI;
+use std::fmt::Debug;
+
+/// A law of elasticity, the neo-Hookean one or another.
+pub trait Elasticity: Copy + Debug + Send + Sync + 'static {
+    /// Energy in mJ of the volume V₀ in mm³ with the shear modulus μ in MPa as a function of I: value and three derivatives.
+    fn of_squared_stretch(&self, shear_modulus: f64, volume: f64, i: f64) -> [f64; 4];
+}
+
+/// The neo-Hookean law `μ/2 (I₁ − 3)`.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct NeoHooke;
+
+impl Elasticity for NeoHooke {
+    #[inline(always)]
+    fn of_squared_stretch(&self, shear_modulus: f64, volume: f64, i: f64) -> [f64; 4] {
+        let c = 0.5 * shear_modulus * volume;
+        let r = 1.0 / i;
+        let s = r.sqrt();
+        [
+            c * (2.0 * s + i - 3.0),
+            c * (1.0 - s * r),
+            c * 1.5 * s * r * r,
+            c * -3.75 * s * r * r * r,
+        ]
+    }
+}
+
+/// A law beside the neo-Hookean one. The shear modulus μ of small strains is a constant of the material, for every law the same.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum ElasticLaw {
+    /// Gent: `−μ/2 Jₘ ln(1 − (I₁ − 3)/Jₘ)`, which stiffens without bound as I₁ − 3 approaches Jₘ. NaN beyond.
+    Gent {
+        /// Jₘ.
+        limit: f64,
+    },
+    /// Mooney and Rivlin: `μ/2 [(1 − s)(I₁ − 3) + s (I₂ − 3)]`.
+    MooneyRivlin {
+        /// s, the part of the shear modulus that belongs to I₂.
+        share: f64,
+    },
+    /// Yeoh: `μ/2 (I₁ − 3) + c₂ (I₁ − 3)² + c₃ (I₁ − 3)³`.
+    Yeoh {
+        /// c₂ in MPa.
+        c2: f64,
+        /// c₃ in MPa.
+        c3: f64,
+    },
+    /// Ogden with two terms: `2μ [(1 − s)/α₁² Σ(λ^α₁ − 1) + s/α₂² Σ(λ^α₂ − 1)]`.
+    Ogden {
+        /// α₁ and α₂.
+        exponents: [f64; 2],
+        /// s, the part of the shear modulus that belongs to the second term.
+        share: f64,
+    },
+}
+
+/// A constant of a law without a meaning.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Fault {
+    /// Name of the constant, that of files.
+    pub constant: &'static str,
+    /// Value that was found.
+    pub found: String,
+    /// Value that was expected.
+    pub expected: &'static str,
+}
+
+impl ElasticLaw {
+    /// The first constant without a meaning, if there is one.
+    pub fn fault(&self) -> Option<Fault> {
+        let fault = |holds: bool, constant, found: String, expected| {
+            (!holds).then_some(Fault {
+                constant,
+                found,
+                expected,
+            })
+        };
+        let part = |share: f64| {
+            let expected = "a part of the shear modulus from 0 to 1";
+            fault(
+                (0.0..=1.0).contains(&share),
+                "share",
+                share.to_string(),
+                expected,
+            )
+        };
+        match *self {
+            Self::Gent { limit } => {
+                let holds = limit > 0.0 && limit.is_finite();
+                fault(
+                    holds,
+                    "limit",
+                    limit.to_string(),
+                    "a positive number, Jm of Gent's law",
+                )
+            }
+            Self::MooneyRivlin { share } => part(share),
+            Self::Yeoh { c2, c3 } => {
+                let expected = "a finite stress, and an energy that grows without bound: c3 > 0, or c3 = 0 and c2 >= 0";
+                let grows = c3 > 0.0 || (c3 == 0.0 && c2 >= 0.0);
+                let found = format!("{c3} MPa with c2 = {c2} MPa");
+                fault(
+                    grows && c2.is_finite() && c3.is_finite(),
+                    "c3",
+                    found,
+                    expected,
+                )
+            }
+            Self::Ogden { exponents, share } => {
+                let holds = exponents.iter().all(|a| *a != 0.0 && a.is_finite());
+                let expected = "two numbers that are not zero";
+                fault(holds, "exponents", format!("{exponents:?}"), expected)
+                    .or_else(|| part(share))
+            }
+        }
+    }
+
+    /// The stretches between which a muscle has an energy, where not all have one: the positive zeros of Λ³ − (3 + Jₘ) Λ + 2.
+    pub fn stretches(&self) -> Option<[f64; 2]> {
+        let Self::Gent { limit } = *self else {
+            return None;
+        };
+        let third = (3.0 + limit) / 3.0;
+        let angle = (-third.powf(-1.5)).acos() / 3.0;
+        let root = |angle: f64| 2.0 * third.sqrt() * angle.cos();
+        Some([root(angle - 2.0 * PI / 3.0), root(angle)])
+    }
+
+    /// The energy for μ = 1 of Σ(λᵃ − 1) for two exponents, of which the second has the share s.
+    fn of_powers(i: &OfI, exponents: [f64; 2], share: f64) -> OfI {
+        let of = |exponent: f64, share: f64| {
+            let sum = power(i, 0.5 * exponent) + power(i, -0.25 * exponent) * 2.0 + -3.0;
+            sum * (2.0 * share / (exponent * exponent))
+        };
+        of(exponents[0], 1.0 - share) + of(exponents[1], share)
+    }
+}
+
+/// A function of I.
+type OfI = Jet<1, 3>;
+
+/// `Iⁿ`.
+fn power(i: &OfI, n: f64) -> OfI {
+    let (r, p) = (1.0 / i.value, i.value.powf(n));
+    let (first, second) = (n * p * r, n * (n - 1.0) * p * r * r);
+    i.map([p, first, second, (n - 2.0) * second * r])
+}
+
+impl Elasticity for ElasticLaw {
+    fn of_squared_stretch(&self, shear_modulus: f64, volume: f64, i: f64) -> [f64; 4] {
+        let i = OfI::argument(0, &Vector1::new(i), &SVector::repeat(1.0));
+        let strain = || i + i.sqrt().recip() * 2.0 + -3.0;
+        let half = 0.5 * shear_modulus;
+        let density = match *self {
+            Self::Gent { limit } => {
+                let left = strain() * (-1.0 / limit) + 1.0;
+                // The derivatives exist beyond the limit, where there is no energy.
+                let left = if left.value > 0.0 {
+                    left
+                } else {
+                    left * f64::NAN
+                };
+                left.ln() * (-half * limit)
+            }
+            Self::MooneyRivlin { share } => Self::of_powers(&i, [2.0, -2.0], share) * shear_modulus,
+            Self::Yeoh { c2, c3 } => {
+                let strain = strain();
+                let more = strain.squared() * c2 + strain.powi(3) * c3;
+                strain * half + more
+            }
+            Self::Ogden { exponents, share } => {
+                Self::of_powers(&i, exponents, share) * shear_modulus
+            }
+        };
+        let jet = density * volume;
+        [jet.value, jet.gradient.x, jet.hessian.x, jet.hessian_w.x]
+    }
+}
