@@ -33,6 +33,7 @@ use crate::workflow::tracking::followed;
 use std::collections::BTreeMap;
 use std::ops::ControlFlow;
 use std::ops::RangeInclusive;
+use std::sync::Arc;
 
 /// An optimal control problem: voltages and loads that steer a system from rest to rest, or along a path.
 #[derive(Clone, Debug)]
@@ -217,10 +218,8 @@ impl Control {
         })?;
         found.hold(&control);
         let model = &found.model;
-        let outside = domain::records(&out_of_domain(
-            model,
-            &discrete_trajectory(model, &found.motion),
-        ));
+        let discrete = discrete_trajectory(model, &found.motion);
+        let outside = domain::records(&out_of_domain(model, &discrete));
         let message = match found.is_solved() {
             true => None,
             false => Some(
@@ -244,13 +243,14 @@ impl Control {
             objective: found.solution.objective,
             iterations,
             message,
+            is_solved: found.is_solved(),
             motion: Motion {
-                system: model.system.clone(),
                 exchange: EnergyExchange::new(&model.system, &trajectory, ends),
+                model: Arc::new(found.model),
+                discrete: Arc::new(discrete),
                 trajectory,
                 remarks: remarks.0,
             },
-            is_solved: found.is_solved(),
             parameters: found.motion.parameters.clone(),
             tracking,
             final_values,

@@ -103,7 +103,7 @@ pub enum Quantity {
 }
 
 /// V/mm in a V/µm.
-const MEGAVOLT_PER_METRE: f64 = 1e3;
+pub(super) const MEGAVOLT_PER_METRE: f64 = 1e3;
 
 impl Quantity {
     /// Returns true if it is measured in the intervals rather than at the instants.

@@ -19,6 +19,7 @@ mod maxwell;
 mod maxwell_limits;
 mod observe;
 mod order;
+mod parts;
 mod reductions;
 mod reference;
 mod resolution;
