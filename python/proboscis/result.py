@@ -122,6 +122,16 @@ class Result:
         """Rate of the coordinate of a joint at each instant: rad/s (revolute), m/s (prismatic)."""
         return self.table[f"{plain(joint)}_rate"]
 
+    def force(self, joint: Any, /) -> Array:
+        """Force in N that the parent of a joint exerts on its child through it, an array of one row of three numbers per instant."""
+        name = plain(joint)
+        return np.column_stack([self.table[f"{name}_force_{axis}"] for axis in "xyz"])
+
+    def torque(self, joint: Any, /) -> Array:
+        """Torque in N m that the parent of a joint exerts on its child, about the point of the joint, one row per instant."""
+        name = plain(joint)
+        return np.column_stack([self.table[f"{name}_torque_{axis}"] for axis in "xyz"])
+
     def position(self, marker: Any, /) -> Array:
         """Position of a marker in m, an array of one row of three numbers per instant."""
         name = plain(marker)

@@ -15,6 +15,7 @@ use crate::dynamics::discrete_trajectory::{DiscreteTrajectory, Reading};
 use crate::dynamics::interval_energies::energies;
 use crate::dynamics::momenta::{Places, momentum_maps, moving, vector_momenta};
 use crate::dynamics::part_columns::PartColumns;
+use crate::dynamics::reactions::reactions;
 use crate::dynamics::to_instants::{Last, Momenta, means, to_instants};
 use crate::dynamics::trajectory::{Column, Observations, Trajectory};
 use crate::functional::{Order, TermKind};
@@ -35,6 +36,13 @@ pub fn observations(model: &Model, discrete: &DiscreteTrajectory) -> Observation
 
 /// Returns the observations in addition to time, joint coordinates and markers; pieces of a long motion in parallel.
 pub fn observed(model: &Model, discrete: &DiscreteTrajectory) -> Vec<Column> {
+    let mut columns = by_rows(model, discrete);
+    columns.extend(reactions(model, discrete));
+    columns
+}
+
+/// Columns whose rows are made one by one.
+fn by_rows(model: &Model, discrete: &DiscreteTrajectory) -> Vec<Column> {
     let count = discrete.z.len();
     let piece = match discrete.reading {
         Reading::Intervals => PIECE,
@@ -70,14 +78,8 @@ pub fn observed(model: &Model, discrete: &DiscreteTrajectory) -> Vec<Column> {
     let [of_intervals, of_momenta] = [observer.of_intervals(), observer.of_momenta()];
     let of_parts = columns.len() - observer.parts.columns(model).len()..columns.len();
     for (column, (kind, _)) in columns[of_intervals.end..].iter_mut().zip(observer.works()) {
-        let (mut sum, sign) = (
-            0.0,
-            if kind == TermKind::Dissipation {
-                -1.0
-            } else {
-                1.0
-            },
-        );
+        let is_lost = kind == TermKind::Dissipation;
+        let (mut sum, sign) = (0.0, if is_lost { -1.0 } else { 1.0 });
         for work in &mut column.values {
             sum += sign * *work;
             *work = sum;

@@ -22,6 +22,7 @@ mod immobile;
 mod internal;
 mod joint_elasticity;
 mod joint_rates;
+mod joint_sections;
 mod joint_springs;
 mod joints;
 mod load_power;
@@ -54,10 +55,12 @@ pub use component::Component;
 pub use constant::{
     Constant, DielectricLaw, Follower, FoundParameter, MOST_MOVES, Parameter, SiUnit,
 };
+pub use dampers::DAMPING as JOINT_DAMPING;
 pub use error::ModelError;
 pub use floating::Floating;
 pub use graph::Graph;
 pub use immobile::Immobile;
+pub use joint_sections::JointSection;
 pub use joints::{JointReading, Screw};
 pub use maxwell::{MOST_BRANCHES, MaxwellBranch, MaxwellBranches};
 pub use model::Model;

@@ -20,6 +20,7 @@ mod maxwell_limits;
 mod observe;
 mod order;
 mod parts;
+mod reactions;
 mod reductions;
 mod reference;
 mod resolution;

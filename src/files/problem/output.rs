@@ -16,9 +16,10 @@ pub struct Output {
 }
 
 /// Words for columns of one kind.
-const KINDS: [&str; 12] = [
+const KINDS: [&str; 13] = [
     "joints",
     "rates",
+    "reactions",
     "markers",
     "stretches",
     "tensions",
@@ -79,6 +80,7 @@ impl Output {
                     .any(|m| Some(m.name.as_str()) == marker)
             }
             "rates" => column.ends_with("_rate"),
+            "reactions" => column.contains("_force_") || column.contains("_torque_"),
             "stretches" => column.ends_with("_stretch"),
             "tensions" => column.ends_with("_tension"),
             "fields" => column.ends_with("_field"),
