@@ -73,6 +73,19 @@ impl Limits {
                     let name = format!("electric field of {}", system.muscles[muscle].name);
                     out.add_field(FieldPlace::Muscle(muscle), max, &name);
                 }
+                PathConstraint::PeakVoltage {
+                    source,
+                    parameter,
+                    unit,
+                } => {
+                    let name = format!("peak voltage of {}", system.sources()[source].name);
+                    let quantity = Quantity::PeakExcess {
+                        source,
+                        parameter,
+                        unit,
+                    };
+                    out.add(quantity, [f64::NEG_INFINITY, 0.0], name);
+                }
                 PathConstraint::BlockField { block, region, max } => {
                     out.add_block_field(block, region, max, system);
                 }

@@ -273,6 +273,15 @@ pub enum PathConstraint {
         /// Breakdown value in V/mm.
         max: f64,
     },
+    /// Voltage of a source no larger than a sought parameter in the intervals.
+    PeakVoltage {
+        /// Source index.
+        source: usize,
+        /// Index of the parameter.
+        parameter: usize,
+        /// Unit of voltages in V.
+        unit: f64,
+    },
     /// A marker relative to a region at the instants.
     Marker {
         /// Marker index.

@@ -155,7 +155,9 @@ impl<'a> Named<'a> {
                 self.of_point(&muscle.to);
             }
             // A field without voltage is none.
-            PathConstraint::ElectricField { .. } | PathConstraint::BlockField { .. } => {}
+            PathConstraint::ElectricField { .. }
+            | PathConstraint::BlockField { .. }
+            | PathConstraint::PeakVoltage { .. } => {}
             PathConstraint::Marker { marker, .. } => self.of_marker(marker),
         }
     }

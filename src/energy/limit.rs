@@ -94,6 +94,42 @@ impl Energy<4> for SquaredField {
     }
 }
 
+/// `s/u`, arguments: s. A parameter in another unit.
+#[derive(Clone, Copy, Debug)]
+pub struct Multiple {
+    /// u.
+    pub unit: f64,
+}
+
+impl Energy<1> for Multiple {
+    type Local<const ORDER: usize> = Jet<1, ORDER>;
+
+    const DEGREE: usize = 1;
+
+    fn at<const ORDER: usize>(&self, p: &SVector<f64, 1>, w: &SVector<f64, 1>) -> Jet<1, ORDER> {
+        Jet::argument(0, p, w) * (1.0 / self.unit)
+    }
+}
+
+/// `(V² − s²)/u²`, arguments: V and s. Not positive where s is no less than |V|.
+#[derive(Clone, Copy, Debug)]
+pub struct PeakExcess {
+    /// u in V.
+    pub unit: f64,
+}
+
+impl Energy<2> for PeakExcess {
+    type Local<const ORDER: usize> = Jet<2, ORDER>;
+
+    const DEGREE: usize = 2;
+    const OF_SQUARES: bool = true;
+
+    fn at<const ORDER: usize>(&self, p: &SVector<f64, 2>, w: &SVector<f64, 2>) -> Jet<2, ORDER> {
+        let square = |i: usize| (Jet::argument(i, p, w) * (1.0 / self.unit)).squared();
+        square(0) - square(1)
+    }
+}
+
 /// Angle `atan2(b·c, a·c)` of the vector c in the plane of two perpendicular unit vectors a, b; arguments a, b, c.
 ///
 /// The branch is the one nearest to `near`.

@@ -31,7 +31,10 @@ pub use damper::{AngularDamper, CoordinateDamper, LinearDamper};
 pub use gravity::Gravity;
 pub use joint_spring::{CoordinateSpring, JointAngle, JointDisplacement};
 pub use joint_stops::CoordinateStops;
-pub use limit::{Angle, OutsideBox, PositionComponent, Projection, SquaredDistance, SquaredField};
+pub use limit::{
+    Angle, Multiple, OutsideBox, PeakExcess, PositionComponent, Projection, SquaredDistance,
+    SquaredField,
+};
 pub use load::{DeadLoad, FollowingForce, SurfaceCharge};
 pub use maxwell::MaxwellCell;
 pub use muscle::{DielectricCell, ElasticCell, SectionInertia};

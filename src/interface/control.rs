@@ -5,7 +5,7 @@ use crate::control::problem::{
 };
 use crate::control::{Earlier, EarlierSolution, Signal};
 use crate::dynamics::{EnergyExchange, out_of_domain};
-use crate::interface::cost_checks::{check_costs, check_energies, check_waypoints};
+use crate::interface::cost_checks::{check_costs, check_energies, check_limits, check_waypoints};
 use crate::interface::error::{Result, require, source};
 use crate::interface::handle::Handle;
 use crate::interface::input::Input;
@@ -49,6 +49,7 @@ pub struct Control {
     pub(super) waypoints: Vec<problem::Waypoint>,
     voltages: Vec<(Input, Signal)>,
     parameters: Vec<Parameter>,
+    pub(super) peak_voltage: f64,
     guess: Guess,
     max_seconds: Option<f64>,
 }
@@ -68,6 +69,7 @@ impl Control {
             waypoints: Vec::new(),
             voltages: Vec::new(),
             parameters: Vec::new(),
+            peak_voltage: 0.0,
             guess: Guess::Interpolate,
             max_seconds: None,
         }
@@ -305,38 +307,23 @@ impl Control {
         let expected = "a voltage or load to look for, or a sought parameter";
         require(open, "control", all, expected)?;
         let weights = &self.objective;
-        let weights = [weights.effort, weights.rate, weights.duration];
+        let weights = [
+            weights.effort,
+            weights.rate,
+            weights.duration,
+            self.peak_voltage,
+        ];
         let costs = &self.objective.quantities;
         let energies = &self.objective.energies;
-        let is_any = !costs.is_empty() || !energies.is_empty() || weights != [0.0; 3];
+        let is_any = !costs.is_empty() || !energies.is_empty() || weights != [0.0; 4];
         let holds = weights.iter().all(|w| *w >= 0.0 && w.is_finite()) && is_any;
-        let found = || format!("weights {weights:?} of effort, rate and time");
+        let found = || format!("weights {weights:?} of effort, rate, time and peak");
         require(holds, "control", found, "weights of which one is positive")?;
         check_costs(costs, system)?;
         check_energies(energies, system)?;
         check_waypoints(&self.waypoints, system)?;
-        for limit in &self.limits {
-            let holds = match *limit {
-                PathConstraint::ElectricField { muscle, max } => {
-                    muscle < system.muscles.len() && max > 0.0 && system.has_source_voltage(muscle)
-                }
-                PathConstraint::Stretch { muscle, min, max } => {
-                    muscle < system.muscles.len() && min < max
-                }
-                PathConstraint::JointAngle { joint, min, max } => {
-                    let joint = system.joints.get(joint);
-                    joint.is_some_and(Joint::has_coordinate) && min < max
-                }
-                PathConstraint::BlockField { .. } | PathConstraint::Marker { .. } => true,
-            };
-            require(
-                holds,
-                "limit",
-                || format!("{limit:?}"),
-                "a range of a part of the system",
-            )?;
-        }
-        Ok(problem::Control {
+        check_limits(&self.limits, system)?;
+        let control = problem::Control {
             duration: self.duration,
             intervals: self.intervals,
             is_refined: false,
@@ -354,7 +341,8 @@ impl Control {
             coordinates: None,
             guess: self.guess.clone(),
             solver: Solver::default(),
-        })
+        };
+        self.with_peak(control, system)
     }
 
     /// Bounds of the loads that are sought, by source.

@@ -2,7 +2,8 @@
 
 use crate::element::FieldPoint;
 use crate::energy::{
-    Angle, Energy, OutsideBox, PositionComponent, Projection, SquaredDistance, SquaredField,
+    Angle, Energy, Multiple, OutsideBox, PeakExcess, PositionComponent, Projection,
+    SquaredDistance, SquaredField,
 };
 use crate::functional::{
     Curved, Element, ElementField, ElementFields, Formulas, Group, Kernel, Measure, Stencil,
@@ -16,7 +17,10 @@ use crate::model::joints::{JointCoordinate, JointReading};
 use crate::model::presolved::Presolved;
 use crate::model::quantity::{FieldPlace, Quantity, Region};
 use crate::model::solid_block::SolidBlock;
-use crate::model::variables::Variables;
+use crate::model::variables::{Role, Variables};
+
+/// V in a kV.
+const KILOVOLT: f64 = 1e3;
 
 /// Measures by site, in the order of the quantities.
 #[derive(Debug, Default)]
@@ -104,6 +108,18 @@ impl Known<'_> {
                 let marker = (self.markers[marker], Stencil::Difference);
                 interval::<_, 3, 1, 0>(shape, PositionComponent { origin, normal }, [marker], [])
             }
+            Quantity::PeakVoltage { parameter } => {
+                let multiple = Multiple { unit: KILOVOLT };
+                interval::<_, 1, 0, 1>(shape, multiple, [], [self.parameter(parameter)?])
+            }
+            Quantity::PeakExcess {
+                source,
+                parameter,
+                unit,
+            } => {
+                let scalars = [self.variables.input(source)?, self.parameter(parameter)?];
+                interval::<_, 2, 0, 2>(shape, PeakExcess { unit }, [], scalars)
+            }
             Quantity::SquaredField { place, limit, at } => match place {
                 FieldPlace::Muscle(muscle) => {
                     return self.muscle_field(muscle, (limit, at), shape, vectors);
@@ -115,6 +131,11 @@ impl Known<'_> {
                 } => return self.element_field(block, (element, point), (limit, at), shape),
             },
         })
+    }
+
+    /// Scalar of a sought parameter; none where parameters are put in.
+    fn parameter(&self, parameter: usize) -> Option<usize> {
+        self.variables.range(Role::Parameter).nth(parameter)
     }
 
     /// Angle or displacement of a joint.

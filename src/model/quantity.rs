@@ -93,6 +93,20 @@ pub enum Quantity {
         /// b, a unit vector of the ground frame.
         along: Vector,
     },
+    /// A sought parameter that bounds voltages, in kV, in the intervals.
+    PeakVoltage {
+        /// Index of the parameter.
+        parameter: usize,
+    },
+    /// (V² − s²)/u² of the voltage V of a source and a sought parameter s, in the intervals.
+    PeakExcess {
+        /// Source index.
+        source: usize,
+        /// Index of the parameter.
+        parameter: usize,
+        /// u in V.
+        unit: f64,
+    },
     /// (|x − c|/r)² of a marker for a ball, Σ ((x − c)_i/a_i)¹⁶ for a box, at the instants.
     MarkerRegion {
         /// Marker index.
@@ -108,7 +122,13 @@ pub(super) const MEGAVOLT_PER_METRE: f64 = 1e3;
 impl Quantity {
     /// Returns true if it is measured in the intervals rather than at the instants.
     pub fn is_of_intervals(&self) -> bool {
-        matches!(self, Self::SquaredField { .. } | Self::MarkerStep { .. })
+        matches!(
+            self,
+            Self::SquaredField { .. }
+                | Self::MarkerStep { .. }
+                | Self::PeakVoltage { .. }
+                | Self::PeakExcess { .. }
+        )
     }
 
     /// Returns the noun of its time, in front of the number of the instant or interval.
@@ -119,7 +139,9 @@ impl Quantity {
                 Stencil::Next => "at the end of interval",
                 _ => "in the middle of interval",
             },
-            Self::MarkerStep { .. } => "in interval",
+            Self::MarkerStep { .. } | Self::PeakVoltage { .. } | Self::PeakExcess { .. } => {
+                "in interval"
+            }
             _ => "at instant",
         }
     }
@@ -130,8 +152,10 @@ impl Quantity {
             Self::Joint { joint, .. } => joint_unit(system, joint),
             Self::Capacitance { .. } => "mF",
             Self::MarkerPlace { .. } | Self::MarkerStep { .. } => "mm",
+            Self::PeakVoltage { .. } => "kV",
             Self::SquaredStretch { .. }
             | Self::SquaredField { .. }
+            | Self::PeakExcess { .. }
             | Self::Direction { .. }
             | Self::MarkerRegion { .. } => "",
         }
@@ -149,6 +173,8 @@ impl Quantity {
             Self::Joint { .. }
             | Self::Capacitance { .. }
             | Self::Direction { .. }
+            | Self::PeakVoltage { .. }
+            | Self::PeakExcess { .. }
             | Self::MarkerPlace { .. }
             | Self::MarkerStep { .. } => (value, self.unit(system)),
         }

@@ -21,6 +21,7 @@ mod loads;
 mod meshes;
 mod moved;
 mod optimality;
+mod peak_voltage;
 mod reference;
 mod resample;
 mod sought;

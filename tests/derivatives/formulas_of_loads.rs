@@ -1,8 +1,9 @@
-//! Energies and virtual works of loads: their derivatives are those of naive formulas.
+//! Energies and virtual works of loads, and bounds of inputs: their derivatives are those of naive formulas.
 
 use crate::formulas::{DIELECTRIC, law};
 use proboscis::energy::{
-    Capacitance, DeadLoad, FlowingCharge, FollowingForce, GivenCharge, SurfaceCharge,
+    Capacitance, DeadLoad, FlowingCharge, FollowingForce, GivenCharge, Multiple, PeakExcess,
+    SurfaceCharge,
 };
 use proboscis::math::Vector;
 
@@ -12,6 +13,12 @@ fn loads_have_the_derivatives_of_naive_formulas() {
     law("dead load", &DeadLoad { force }, 0.2, 1.1);
     law("following force", &FollowingForce, 0.2, 1.1);
     law("surface charge", &SurfaceCharge { weight: 0.7 }, 0.2, 1.1);
+}
+
+#[test]
+fn peaks_have_the_derivatives_of_naive_formulas() {
+    law("peak", &Multiple { unit: 0.7 }, 0.2, 1.1);
+    law("peak excess", &PeakExcess { unit: 0.7 }, 0.2, 1.1);
 }
 
 #[test]

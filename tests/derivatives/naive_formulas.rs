@@ -5,8 +5,8 @@ use proboscis::energy::{
     Angle, AngularDamper, Capacitance, Coincidence, CoordinateDamper, CoordinateSpring,
     CoordinateStops, DeadLoad, DielectricCell, ElasticCell, Energy, FlowingCharge, FollowingForce,
     GivenCharge, Gravity, JointAngle, JointDisplacement, LinearDamper, LinearSpring, MaxwellCell,
-    Orthogonality, OutsideBox, PositionComponent, Projection, SectionInertia, SpanDamper,
-    SquaredDistance, SquaredField, SurfaceCharge, ViscousCell,
+    Multiple, Orthogonality, OutsideBox, PeakExcess, PositionComponent, Projection, SectionInertia,
+    SpanDamper, SquaredDistance, SquaredField, SurfaceCharge, ViscousCell,
 };
 
 /// The naive formula of an energy.
@@ -300,5 +300,21 @@ impl Formula<3> for OutsideBox {
 impl Formula<4> for SquaredField {
     fn naive<D: DualNum<f64> + Copy>(&self, p: &[D; 4]) -> D {
         (p[3] / (stretch(three(p, 0), self.length) * self.voltage)).powi(2)
+    }
+}
+
+impl Formula<1> for Multiple {
+    const VECTORS: usize = 0;
+
+    fn naive<D: DualNum<f64> + Copy>(&self, p: &[D; 1]) -> D {
+        p[0] / self.unit
+    }
+}
+
+impl Formula<2> for PeakExcess {
+    const VECTORS: usize = 0;
+
+    fn naive<D: DualNum<f64> + Copy>(&self, p: &[D; 2]) -> D {
+        (p[0] - p[1]) * (p[0] + p[1]) / (self.unit * self.unit)
     }
 }

@@ -14,8 +14,21 @@ use crate::files::units::quantity::{Angle, Length};
 use crate::model::Region;
 use crate::model::system::System;
 
+/// The limits of a list of entries.
+pub(crate) fn limits(
+    list: &[LimitSpec],
+    system: &System,
+    scope: &Scope<'_>,
+) -> Result<Vec<PathConstraint>, SceneError> {
+    let mut limits = Vec::new();
+    for (index, spec) in list.iter().enumerate() {
+        limits.extend(limit(spec, system, &scope.index(index))?);
+    }
+    Ok(limits)
+}
+
 /// The limits that one entry stands for.
-pub(crate) fn limit(
+fn limit(
     spec: &LimitSpec,
     system: &System,
     scope: &Scope<'_>,
