@@ -53,9 +53,9 @@ const OUTSIDE_BOX: f64 = 3.0;
 const TIMES: [Stencil; 3] = [Stencil::Here, Stencil::Mid, Stencil::Next];
 
 impl Limits {
-    /// The path limits of a problem. Joint limits become measures only where `measure_joints`; in joint coordinates
-    /// they are bounds of variables.
-    pub fn new(limits: &[PathConstraint], system: &System, measure_joints: bool) -> Self {
+    /// The path limits of a problem with intervals of h ms. Joint limits become measures only where `measure_joints`; in joint
+    /// coordinates they are bounds of variables.
+    pub fn new(limits: &[PathConstraint], system: &System, measure_joints: bool, h: f64) -> Self {
         let mut out = Self::default();
         for limit in limits {
             match *limit {
@@ -63,6 +63,10 @@ impl Limits {
                     if measure_joints {
                         out.add_joint(joint, [min, max], system);
                     }
+                }
+                PathConstraint::JointRate { joint, min, max } => {
+                    let name = format!("rate of {}", system.joints[joint].name);
+                    out.add(Quantity::JointStep { joint, h }, [min * h, max * h], name);
                 }
                 PathConstraint::Stretch { muscle, min, max } => {
                     let name = format!("stretch of {}", system.muscles[muscle].name);

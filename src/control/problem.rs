@@ -247,6 +247,15 @@ pub enum PathConstraint {
         /// Upper bound or ∞.
         max: f64,
     },
+    /// Mean rate of a joint coordinate in each interval, where the duration is given (rad/ms or mm/ms).
+    JointRate {
+        /// Joint index.
+        joint: usize,
+        /// Lower bound or −∞.
+        min: f64,
+        /// Upper bound or ∞.
+        max: f64,
+    },
     /// Stretch Λ of a muscle at the instants.
     Stretch {
         /// Muscle index.

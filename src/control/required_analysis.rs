@@ -148,7 +148,9 @@ impl<'a> Named<'a> {
 
     fn of_limit(&mut self, limit: &PathConstraint) {
         match *limit {
-            PathConstraint::JointAngle { joint, .. } => self.of_joint(joint),
+            PathConstraint::JointAngle { joint, .. } | PathConstraint::JointRate { joint, .. } => {
+                self.of_joint(joint);
+            }
             PathConstraint::Stretch { muscle, .. } => {
                 let muscle = &self.system.muscles[muscle];
                 self.of_point(&muscle.from);

@@ -53,6 +53,7 @@ fn reads(quantity: &Quantity, parameter: &Parameter) -> bool {
         // They read the parameter itself, which no constant follows.
         Quantity::PeakVoltage { .. } | Quantity::PeakExcess { .. } => false,
         Quantity::Joint { .. }
+        | Quantity::JointStep { .. }
         | Quantity::MarkerPlace { .. }
         | Quantity::MarkerStep { .. }
         | Quantity::MarkerRegion { .. }

@@ -32,8 +32,8 @@ pub use gravity::Gravity;
 pub use joint_spring::{CoordinateSpring, JointAngle, JointDisplacement};
 pub use joint_stops::CoordinateStops;
 pub use limit::{
-    Angle, Multiple, OutsideBox, PeakExcess, PositionComponent, Projection, SquaredDistance,
-    SquaredField,
+    Angle, AngleStep, Multiple, OutsideBox, PeakExcess, PositionComponent, Projection,
+    ProjectionStep, SquaredDistance, SquaredField,
 };
 pub use load::{DeadLoad, FollowingForce, SurfaceCharge};
 pub use maxwell::MaxwellCell;

@@ -165,6 +165,16 @@ impl Control {
         self
     }
 
+    /// Range of the mean rate of the coordinate of a joint in each interval in rad/ms or mm/ms; the duration has to be given.
+    pub fn joint_rate_within(mut self, joint: Handle<Joint>, range: RangeInclusive<f64>) -> Self {
+        self.limits.push(PathConstraint::JointRate {
+            joint: joint.index(),
+            min: *range.start(),
+            max: *range.end(),
+        });
+        self
+    }
+
     /// A voltage that is given: a constant in V, or a [`Signal`] whose value in the middle of each interval acts during the interval.
     pub fn voltage(mut self, input: impl Into<Input>, signal: impl Into<Signal>) -> Self {
         self.voltages.push((input.into(), signal.into()));
@@ -323,6 +333,10 @@ impl Control {
         check_energies(energies, system)?;
         check_waypoints(&self.waypoints, system)?;
         check_limits(&self.limits, system)?;
+        let is_rate = |limit: &PathConstraint| matches!(limit, PathConstraint::JointRate { .. });
+        let holds = matches!(self.duration, Duration::Given(_)) || !self.limits.iter().any(is_rate);
+        let found = || "a limit of a joint rate where the duration is free".to_owned();
+        require(holds, "limit", found, "a given duration")?;
         let control = problem::Control {
             duration: self.duration,
             intervals: self.intervals,

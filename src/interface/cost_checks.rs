@@ -47,7 +47,8 @@ pub(super) fn check_limits(limits: &[PathConstraint], system: &System) -> Result
             PathConstraint::Stretch { muscle, min, max } => {
                 muscle < system.muscles.len() && min < max
             }
-            PathConstraint::JointAngle { joint, min, max } => {
+            PathConstraint::JointAngle { joint, min, max }
+            | PathConstraint::JointRate { joint, min, max } => {
                 let joint = system.joints.get(joint);
                 joint.is_some_and(Joint::has_coordinate) && min < max
             }

@@ -2,8 +2,8 @@
 
 use crate::element::FieldPoint;
 use crate::energy::{
-    Angle, Energy, Multiple, OutsideBox, PeakExcess, PositionComponent, Projection,
-    SquaredDistance, SquaredField,
+    Angle, AngleStep, Energy, Multiple, OutsideBox, PeakExcess, PositionComponent, Projection,
+    ProjectionStep, SquaredDistance, SquaredField,
 };
 use crate::functional::{
     Curved, Element, ElementField, ElementFields, Formulas, Group, Kernel, Measure, Stencil,
@@ -73,6 +73,7 @@ impl Known<'_> {
         let origin = Vector::zeros();
         Some(match *quantity {
             Quantity::Joint { joint, near } => return self.joint(joint, near, shape, vectors),
+            Quantity::JointStep { joint, .. } => return self.joint_step(joint, shape, vectors),
             Quantity::SquaredStretch { muscle } => {
                 let energy = SquaredDistance {
                     centre: origin,
@@ -156,6 +157,38 @@ impl Known<'_> {
             JointCoordinate::Displacement { axis, span } => {
                 let read = [axis, span].map(|x| vectors.index(x));
                 Some(instant(shape, Projection, read))
+            }
+            JointCoordinate::None => None,
+        }
+    }
+
+    /// Step of the coordinate of a joint in an interval.
+    fn joint_step(
+        &self,
+        joint: usize,
+        shape: Shape,
+        vectors: &mut Vectors,
+    ) -> Option<Box<dyn Measure>> {
+        let joint = self.presolved.joint(joint)?;
+        let joint = &self.presolved.system.joints[joint];
+        let (here, next) = (Stencil::Here, Stencil::Next);
+        match JointReading::new(joint, None, self.reference).measure {
+            JointCoordinate::Angle { vectors: v } => {
+                let [a, b, c] = v.map(|x| vectors.index(x));
+                let read = [
+                    (a, here),
+                    (b, here),
+                    (c, here),
+                    (a, next),
+                    (b, next),
+                    (c, next),
+                ];
+                Some(interval::<_, 18, 6, 0>(shape, AngleStep, read, []))
+            }
+            JointCoordinate::Displacement { axis, span } => {
+                let [n, r] = [axis, span].map(|x| vectors.index(x));
+                let read = [(n, here), (r, here), (n, next), (r, next)];
+                Some(interval::<_, 12, 4, 0>(shape, ProjectionStep, read, []))
             }
             JointCoordinate::None => None,
         }

@@ -51,6 +51,13 @@ pub enum Quantity {
         /// Branch of an angle.
         near: f64,
     },
+    /// Step of the coordinate of a revolute joint (rad, at most half a turn) or prismatic joint (mm) in an interval.
+    JointStep {
+        /// Joint index.
+        joint: usize,
+        /// Length of the interval in ms, for messages.
+        h: f64,
+    },
     /// Squared stretch Λ² of a muscle at the instants.
     SquaredStretch {
         /// Muscle index.
@@ -126,6 +133,7 @@ impl Quantity {
             self,
             Self::SquaredField { .. }
                 | Self::MarkerStep { .. }
+                | Self::JointStep { .. }
                 | Self::PeakVoltage { .. }
                 | Self::PeakExcess { .. }
         )
@@ -139,9 +147,10 @@ impl Quantity {
                 Stencil::Next => "at the end of interval",
                 _ => "in the middle of interval",
             },
-            Self::MarkerStep { .. } | Self::PeakVoltage { .. } | Self::PeakExcess { .. } => {
-                "in interval"
-            }
+            Self::MarkerStep { .. }
+            | Self::JointStep { .. }
+            | Self::PeakVoltage { .. }
+            | Self::PeakExcess { .. } => "in interval",
             _ => "at instant",
         }
     }
@@ -149,7 +158,7 @@ impl Quantity {
     /// Unit of its values; none of a ratio.
     pub fn unit(&self, system: &System) -> &'static str {
         match *self {
-            Self::Joint { joint, .. } => joint_unit(system, joint),
+            Self::Joint { joint, .. } | Self::JointStep { joint, .. } => joint_unit(system, joint),
             Self::Capacitance { .. } => "mF",
             Self::MarkerPlace { .. } | Self::MarkerStep { .. } => "mm",
             Self::PeakVoltage { .. } => "kV",
@@ -165,6 +174,10 @@ impl Quantity {
     pub fn plain(&self, value: f64, system: &System) -> (f64, &'static str) {
         match *self {
             Self::SquaredStretch { .. } => (value.sqrt(), ""),
+            Self::JointStep { joint, h } => match joint_unit(system, joint) {
+                "mm" => (value / h, "m/s"),
+                _ => (1e3 * value / h, "rad/s"),
+            },
             Self::SquaredField { limit, .. } => (value.sqrt() * limit / MEGAVOLT_PER_METRE, "V/um"),
             Self::MarkerRegion { region, .. } => match region {
                 Region::Sphere { radius, .. } => (value.sqrt() * radius, "mm from its centre"),

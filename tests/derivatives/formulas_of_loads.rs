@@ -1,9 +1,9 @@
-//! Energies and virtual works of loads, and bounds of inputs: their derivatives are those of naive formulas.
+//! Energies and virtual works of loads, bounds of inputs and rates of joints: their derivatives are those of naive formulas.
 
 use crate::formulas::{DIELECTRIC, law};
 use proboscis::energy::{
-    Capacitance, DeadLoad, FlowingCharge, FollowingForce, GivenCharge, Multiple, PeakExcess,
-    SurfaceCharge,
+    AngleStep, Capacitance, DeadLoad, FlowingCharge, FollowingForce, GivenCharge, Multiple,
+    PeakExcess, ProjectionStep, SurfaceCharge,
 };
 use proboscis::math::Vector;
 
@@ -16,8 +16,10 @@ fn loads_have_the_derivatives_of_naive_formulas() {
 }
 
 #[test]
-fn peaks_have_the_derivatives_of_naive_formulas() {
+fn peaks_and_rates_have_the_derivatives_of_naive_formulas() {
     law("peak", &Multiple { unit: 0.7 }, 0.2, 1.1);
+    law("angle step", &AngleStep, 0.3, 1.0);
+    law("projection step", &ProjectionStep, 0.3, 1.0);
     law("peak excess", &PeakExcess { unit: 0.7 }, 0.2, 1.1);
 }
 

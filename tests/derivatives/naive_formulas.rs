@@ -2,11 +2,11 @@
 
 use num_dual::{Dual, DualNum};
 use proboscis::energy::{
-    Angle, AngularDamper, Capacitance, Coincidence, CoordinateDamper, CoordinateSpring,
+    Angle, AngleStep, AngularDamper, Capacitance, Coincidence, CoordinateDamper, CoordinateSpring,
     CoordinateStops, DeadLoad, DielectricCell, ElasticCell, Energy, FlowingCharge, FollowingForce,
     GivenCharge, Gravity, JointAngle, JointDisplacement, LinearDamper, LinearSpring, MaxwellCell,
-    Multiple, Orthogonality, OutsideBox, PeakExcess, PositionComponent, Projection, SectionInertia,
-    SpanDamper, SquaredDistance, SquaredField, SurfaceCharge, ViscousCell,
+    Multiple, Orthogonality, OutsideBox, PeakExcess, PositionComponent, Projection, ProjectionStep,
+    SectionInertia, SpanDamper, SquaredDistance, SquaredField, SurfaceCharge, ViscousCell,
 };
 
 /// The naive formula of an energy.
@@ -316,5 +316,20 @@ impl Formula<2> for PeakExcess {
 
     fn naive<D: DualNum<f64> + Copy>(&self, p: &[D; 2]) -> D {
         (p[0] - p[1]) * (p[0] + p[1]) / (self.unit * self.unit)
+    }
+}
+
+impl Formula<18> for AngleStep {
+    fn naive<D: DualNum<f64> + Copy>(&self, p: &[D; 18]) -> D {
+        let part = |at: usize| -> [D; 9] { std::array::from_fn(|i| p[at + i]) };
+        let step = half_angle(part(9)) - half_angle(part(0));
+        let turns = (step.re() / std::f64::consts::TAU).round();
+        step - turns * std::f64::consts::TAU
+    }
+}
+
+impl Formula<12> for ProjectionStep {
+    fn naive<D: DualNum<f64> + Copy>(&self, p: &[D; 12]) -> D {
+        polarised(three(p, 6), three(p, 9)) - polarised(three(p, 0), three(p, 3))
     }
 }
