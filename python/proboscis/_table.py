@@ -21,7 +21,7 @@ class NoColumn(Error, KeyError):
     """A column that is not there: what `in` and `get` of a mapping go by."""
 
 
-_SCALES = {"mm": (1e3, "m"), "ms": (1e3, "s"), "nC": (1e9, "C")}
+_SCALES = {"mm": (1e3, "m"), "ms": (1e3, "s"), "nC": (1e9, "C"), "V/um": (1e-6, "V/m")}
 _NAMES = {"N m": "J"}
 
 

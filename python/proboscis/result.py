@@ -118,6 +118,20 @@ class Result:
         """Coordinate of a joint at each instant: rad (revolute), m (prismatic); of others see `table`."""
         return self.table[plain(joint)]
 
+    def rate(self, joint: Any, /) -> Array:
+        """Rate of the coordinate of a joint at each instant: rad/s (revolute), m/s (prismatic)."""
+        return self.table[f"{plain(joint)}_rate"]
+
+    def force(self, joint: Any, /) -> Array:
+        """Force in N that the parent of a joint exerts on its child through it, an array of one row of three numbers per instant."""
+        name = plain(joint)
+        return np.column_stack([self.table[f"{name}_force_{axis}"] for axis in "xyz"])
+
+    def torque(self, joint: Any, /) -> Array:
+        """Torque in N m that the parent of a joint exerts on its child, about the point of the joint, one row per instant."""
+        name = plain(joint)
+        return np.column_stack([self.table[f"{name}_torque_{axis}"] for axis in "xyz"])
+
     def position(self, marker: Any, /) -> Array:
         """Position of a marker in m, an array of one row of three numbers per instant."""
         name = plain(marker)
@@ -126,6 +140,22 @@ class Result:
     def stretch(self, muscle: Any, /) -> Array:
         """Stretch of a muscle at each instant."""
         return self.table[f"{plain(muscle)}_stretch"]
+
+    def tension(self, muscle: Any, /) -> Array:
+        """Force in N with which a lumped muscle pulls its ends together, at each instant."""
+        return self.table[f"{plain(muscle)}_tension"]
+
+    def field(self, muscle: Any, /) -> Array:
+        """True electric field of a lumped muscle in V/m at each instant."""
+        return self.table[f"{plain(muscle)}_field"]
+
+    def current(self, muscle: Any, /) -> Array:
+        """Current in A from the source of a lumped muscle at each instant."""
+        return self.table[f"{plain(muscle)}_current"]
+
+    def power(self, source: Any, /) -> Array:
+        """Power in W of the source of a lumped muscle, or of a load, at each instant."""
+        return self.table[f"{plain(source)}_power"]
 
     def charge(self, source: Any, /) -> Array:
         """Charge of a muscle or electrode in C at each instant."""

@@ -5,7 +5,7 @@ use std::path::Path;
 
 use serde::Serialize;
 
-use crate::dynamics::trajectory::{Observations, Trajectory};
+use crate::dynamics::trajectory::{Column, Observations, Trajectory};
 use crate::dynamics::{
     DiscreteTrajectory, Equilibrium, Instability, Load, Route, Softening, StabilityLoss,
 };
@@ -325,6 +325,8 @@ pub(super) fn at_rest(mut observed: Observations) -> Observations {
         let others = ["time", "dissipated_energy", "following_load_work"];
         others.contains(&name) || of_motion.iter().any(|word| name.starts_with(word))
     };
-    observed.columns.retain(|column| !moves(&column.name));
+    let is_rate = |unit: &str| ["rad/ms", "mm/ms", "A", "W"].contains(&unit);
+    let is_of_motion = |column: &Column| moves(&column.name) || is_rate(column.unit);
+    observed.columns.retain(|column| !is_of_motion(column));
     observed
 }

@@ -122,7 +122,8 @@ fn off_grid(control: &Control) -> Vec<String> {
 
 /// The path limits of a problem, and the parts of its goal and its waypoints that are equations of measures.
 fn limits_with_goal(system: &System, control: &Control, redundant: bool) -> Limits {
-    let mut limits = Limits::new(&control.limits, system, redundant);
+    let h = control.duration.first() / control.intervals as f64;
+    let mut limits = Limits::new(&control.limits, system, redundant, h);
     match &control.goal {
         BoundaryState::Markers {
             places,

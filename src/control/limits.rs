@@ -53,9 +53,9 @@ const OUTSIDE_BOX: f64 = 3.0;
 const TIMES: [Stencil; 3] = [Stencil::Here, Stencil::Mid, Stencil::Next];
 
 impl Limits {
-    /// The path limits of a problem. Joint limits become measures only where `measure_joints`; in joint coordinates
-    /// they are bounds of variables.
-    pub fn new(limits: &[PathConstraint], system: &System, measure_joints: bool) -> Self {
+    /// The path limits of a problem with intervals of h ms. Joint limits become measures only where `measure_joints`; in joint
+    /// coordinates they are bounds of variables.
+    pub fn new(limits: &[PathConstraint], system: &System, measure_joints: bool, h: f64) -> Self {
         let mut out = Self::default();
         for limit in limits {
             match *limit {
@@ -63,6 +63,10 @@ impl Limits {
                     if measure_joints {
                         out.add_joint(joint, [min, max], system);
                     }
+                }
+                PathConstraint::JointRate { joint, min, max } => {
+                    let name = format!("rate of {}", system.joints[joint].name);
+                    out.add(Quantity::JointStep { joint, h }, [min * h, max * h], name);
                 }
                 PathConstraint::Stretch { muscle, min, max } => {
                     let name = format!("stretch of {}", system.muscles[muscle].name);
@@ -72,6 +76,19 @@ impl Limits {
                 PathConstraint::ElectricField { muscle, max } => {
                     let name = format!("electric field of {}", system.muscles[muscle].name);
                     out.add_field(FieldPlace::Muscle(muscle), max, &name);
+                }
+                PathConstraint::PeakVoltage {
+                    source,
+                    parameter,
+                    unit,
+                } => {
+                    let name = format!("peak voltage of {}", system.sources()[source].name);
+                    let quantity = Quantity::PeakExcess {
+                        source,
+                        parameter,
+                        unit,
+                    };
+                    out.add(quantity, [f64::NEG_INFINITY, 0.0], name);
                 }
                 PathConstraint::BlockField { block, region, max } => {
                     out.add_block_field(block, region, max, system);

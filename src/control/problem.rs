@@ -247,6 +247,15 @@ pub enum PathConstraint {
         /// Upper bound or ∞.
         max: f64,
     },
+    /// Mean rate of a joint coordinate in each interval, where the duration is given (rad/ms or mm/ms).
+    JointRate {
+        /// Joint index.
+        joint: usize,
+        /// Lower bound or −∞.
+        min: f64,
+        /// Upper bound or ∞.
+        max: f64,
+    },
     /// Stretch Λ of a muscle at the instants.
     Stretch {
         /// Muscle index.
@@ -272,6 +281,15 @@ pub enum PathConstraint {
         region: Option<usize>,
         /// Breakdown value in V/mm.
         max: f64,
+    },
+    /// Voltage of a source no larger than a sought parameter in the intervals.
+    PeakVoltage {
+        /// Source index.
+        source: usize,
+        /// Index of the parameter.
+        parameter: usize,
+        /// Unit of voltages in V.
+        unit: f64,
     },
     /// A marker relative to a region at the instants.
     Marker {

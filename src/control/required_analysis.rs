@@ -148,14 +148,18 @@ impl<'a> Named<'a> {
 
     fn of_limit(&mut self, limit: &PathConstraint) {
         match *limit {
-            PathConstraint::JointAngle { joint, .. } => self.of_joint(joint),
+            PathConstraint::JointAngle { joint, .. } | PathConstraint::JointRate { joint, .. } => {
+                self.of_joint(joint);
+            }
             PathConstraint::Stretch { muscle, .. } => {
                 let muscle = &self.system.muscles[muscle];
                 self.of_point(&muscle.from);
                 self.of_point(&muscle.to);
             }
             // A field without voltage is none.
-            PathConstraint::ElectricField { .. } | PathConstraint::BlockField { .. } => {}
+            PathConstraint::ElectricField { .. }
+            | PathConstraint::BlockField { .. }
+            | PathConstraint::PeakVoltage { .. } => {}
             PathConstraint::Marker { marker, .. } => self.of_marker(marker),
         }
     }

@@ -50,7 +50,10 @@ fn reads(quantity: &Quantity, parameter: &Parameter) -> bool {
         }
         // Constants of finite elements are not sought.
         Quantity::SquaredField { .. } => false,
+        // They read the parameter itself, which no constant follows.
+        Quantity::PeakVoltage { .. } | Quantity::PeakExcess { .. } => false,
         Quantity::Joint { .. }
+        | Quantity::JointStep { .. }
         | Quantity::MarkerPlace { .. }
         | Quantity::MarkerStep { .. }
         | Quantity::MarkerRegion { .. }
@@ -67,7 +70,9 @@ pub(super) fn check(
     let layout = model.action.layout();
     let scalars = model.variables.range(Role::Parameter);
     for (s, parameter) in scalars.zip(&control.parameters) {
-        if !layout.mixed.entries().any(|(_, read)| read == s) {
+        let mut measures = model.action.intervals.measures.iter();
+        let is_measured = measures.any(|measure| measure.scalars().contains(&s));
+        if !is_measured && !layout.mixed.entries().any(|(_, read)| read == s) {
             return Err(BoundaryError::Parameter {
                 name: parameter.name.clone(),
                 reason: "nothing that moves reads it".to_owned(),

@@ -6,7 +6,8 @@
 //! - `step_state`, `resume`: the state from which a motion is resumed.
 //! - `domain`: where the first-order dielectric ends.
 //! - `resolution`, `singular_configurations`: which steps are refused; `local_error`: what those neglect that are not.
-//! - `simulate`, `discrete_trajectory`, `observe`, `to_instants`, `at_instant`, `interval_energies`, `kinetic`: step after step, recorded and observed.
+//! - `simulate`, `discrete_trajectory`, `observe`, `part_columns`, `reactions`, `to_instants`, `at_instant`, `interval_energies`, `kinetic`: step after step,
+//!   recorded and observed.
 //! - `exchange`: electrical energy from the sources and mechanical work of their muscles.
 //! - `statics`, `weights`: the rows of rest; `growing`: these by loads; `ramp`, `growth`, `load_path`: paths of rest under growing loads; `minimum`: minima
 //!   of the potential energy; `stable`: a stable equilibrium by all of these; `softest_mode`: its softest mode.
@@ -29,6 +30,8 @@ mod local_error;
 mod midpoint;
 mod momenta;
 mod observe;
+mod part_columns;
+mod reactions;
 mod resolution;
 mod resume;
 mod simulate;

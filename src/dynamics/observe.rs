@@ -1,6 +1,6 @@
-//! Observations along a motion: stretches, charges, energies, momenta and constraints, one row per instant.
+//! Observations along a motion: stretches, charges, energies, momenta, constraints and states of parts, one row per instant.
 //!
-//! Every row holds what is so at its instant. The midpoint rule sees charges and energies in the middle of intervals: between
+//! Every row holds what is so at its instant. The midpoint rule sees charges, energies and rates in the middle of intervals: between
 //! two of them they are interpolated linearly (where voltages switch, that is the mean of both sides). Row 0 is read at q₀ with
 //! the rates of its momenta, the last row at q_N under the last voltages with the rates of p_N; all of it is of second order.
 //! For a method whose energies are those at instants ([`Reading::Instants`]), every row is read like row 0.
@@ -14,6 +14,8 @@ use crate::dynamics::at_instant::AtInstant;
 use crate::dynamics::discrete_trajectory::{DiscreteTrajectory, Reading};
 use crate::dynamics::interval_energies::energies;
 use crate::dynamics::momenta::{Places, momentum_maps, moving, vector_momenta};
+use crate::dynamics::part_columns::PartColumns;
+use crate::dynamics::reactions::reactions;
 use crate::dynamics::to_instants::{Last, Momenta, means, to_instants};
 use crate::dynamics::trajectory::{Column, Observations, Trajectory};
 use crate::functional::{Order, TermKind};
@@ -34,6 +36,13 @@ pub fn observations(model: &Model, discrete: &DiscreteTrajectory) -> Observation
 
 /// Returns the observations in addition to time, joint coordinates and markers; pieces of a long motion in parallel.
 pub fn observed(model: &Model, discrete: &DiscreteTrajectory) -> Vec<Column> {
+    let mut columns = by_rows(model, discrete);
+    columns.extend(reactions(model, discrete));
+    columns
+}
+
+/// Columns whose rows are made one by one.
+fn by_rows(model: &Model, discrete: &DiscreteTrajectory) -> Vec<Column> {
     let count = discrete.z.len();
     let piece = match discrete.reading {
         Reading::Intervals => PIECE,
@@ -67,15 +76,10 @@ pub fn observed(model: &Model, discrete: &DiscreteTrajectory) -> Vec<Column> {
         }
     }
     let [of_intervals, of_momenta] = [observer.of_intervals(), observer.of_momenta()];
+    let of_parts = columns.len() - observer.parts.columns(model).len()..columns.len();
     for (column, (kind, _)) in columns[of_intervals.end..].iter_mut().zip(observer.works()) {
-        let (mut sum, sign) = (
-            0.0,
-            if kind == TermKind::Dissipation {
-                -1.0
-            } else {
-                1.0
-            },
-        );
+        let is_lost = kind == TermKind::Dissipation;
+        let (mut sum, sign) = (0.0, if is_lost { -1.0 } else { 1.0 });
         for work in &mut column.values {
             sum += sign * *work;
             *work = sum;
@@ -83,9 +87,16 @@ pub fn observed(model: &Model, discrete: &DiscreteTrajectory) -> Vec<Column> {
     }
     if discrete.reading == Reading::Intervals && discrete.times.len() > 1 {
         let last = observer.last(discrete);
-        to_instants(&discrete.times, &mut columns[of_intervals], &last);
+        let [ends, parts] = [&last.of_intervals(), &last.parts];
+        to_instants(&discrete.times, &mut columns[of_intervals], ends);
+        to_instants(&discrete.times, &mut columns[of_parts.clone()], parts);
         let before: Vec<_> = rows.iter().flatten().map(|row| row.before).collect();
         means(&discrete.times, &mut columns[of_momenta], &before, &last);
+    }
+    for (k, row) in rows.iter().flatten().enumerate() {
+        for (column, added) in columns[of_parts.clone()].iter_mut().zip(&row.switched) {
+            column.values[k] += added;
+        }
     }
     columns
 }
@@ -96,6 +107,8 @@ struct Row {
     values: Vec<f64>,
     /// Momenta at the instant before, as that interval sees them.
     before: Momenta,
+    /// Additions to the last columns by charges that flow at the instant.
+    switched: Vec<f64>,
 }
 
 /// The storage to observe one instant after the other.
@@ -105,6 +118,7 @@ struct Observer<'m> {
     here: Configuration,
     scratch: Scratch,
     at_instant: AtInstant<'m>,
+    parts: PartColumns,
     /// Effects of forces on joint coordinates on the whole system.
     pulls: Vec<[Vector; 2]>,
 }
@@ -117,6 +131,7 @@ impl<'m> Observer<'m> {
             here: model.action.map.instant(),
             scratch: model.action.scratch(Order::Gradient),
             at_instant: AtInstant::new(model),
+            parts: PartColumns::new(model),
             pulls: model.pulls(),
         }
     }
@@ -162,6 +177,7 @@ impl<'m> Observer<'m> {
             charges,
             kinetic,
             potential,
+            parts: self.parts.values(model, &self.here, scalars),
             momenta: self.maps(&self.here, &momenta, &vec![Vector::zeros(); momenta.len()]),
         }
     }
@@ -232,6 +248,7 @@ impl<'m> Observer<'m> {
         for name in self.model.electrodes() {
             add(name, "V");
         }
+        columns.extend(self.parts.columns(self.model));
         columns
     }
 
@@ -256,14 +273,19 @@ impl<'m> Observer<'m> {
             energies.work = works.copied().unwrap_or_default();
         }
         let charges = self.interval(scalars, h);
-        let [before, momenta] = match is_at_instant {
+        let ([before, momenta], parts) = match is_at_instant {
             true => {
                 let momenta;
                 (energies.kinetic, momenta) = self.moves(discrete, k);
                 let none = vec![Vector::zeros(); momenta.len()];
-                [[0.0; 6], self.maps(&self.here, &momenta, &none)]
+                let maps = [[0.0; 6], self.maps(&self.here, &momenta, &none)];
+                (maps, self.parts.values(model, &self.here, scalars))
             }
-            false => self.of_interval(h),
+            false => {
+                let ends = [&self.before, &self.here];
+                let parts = self.parts.of_interval(model, ends, (scalars, h));
+                (self.of_interval(h), parts)
+            }
         };
 
         let mut row = Vec::new();
@@ -296,10 +318,13 @@ impl<'m> Observer<'m> {
         let viscous = model.viscous_coordinates();
         row.extend(viscous.map(|coordinate| self.here.z[coordinate].exp()));
         row.extend(model.electrode_voltages(&self.here, scalars));
+        row.extend(parts);
+        let switched = self.parts.switched(model, &self.here, (discrete, k));
         std::mem::swap(&mut self.before, &mut self.here);
         Row {
             values: row,
             before,
+            switched,
         }
     }
 

@@ -5,32 +5,38 @@ use crate::dynamics::trajectory::Column;
 /// Linear and angular momentum by axis.
 pub(super) type Momenta = [f64; 6];
 
-/// Charges, energies and momenta at the last instant.
+/// Values at the last instant.
 #[derive(Debug)]
 pub(super) struct Last {
     pub(super) charges: Vec<f64>,
     pub(super) kinetic: f64,
     pub(super) potential: Vec<f64>,
     pub(super) momenta: Momenta,
+    /// Values of the [parts](crate::dynamics::part_columns::PartColumns).
+    pub(super) parts: Vec<f64>,
 }
 
-/// Turns charges, kinetic, potential and total energy in the middle of the intervals that end at the rows into those at the
-/// rows; `last` holds those of the last one.
-pub(super) fn to_instants(times: &[f64], columns: &mut [Column], last: &Last) {
+impl Last {
+    /// Charges, kinetic, potential and total energy, in the order of their columns.
+    pub(super) fn of_intervals(&self) -> Vec<f64> {
+        let total = self.kinetic + self.potential.iter().sum::<f64>();
+        let values = self.charges.iter().copied().chain([self.kinetic]);
+        let values = values.chain(self.potential.iter().copied());
+        values.chain([total]).collect()
+    }
+}
+
+/// Turns values in the middle of the intervals that end at the rows into values at the rows; `last` holds those of the last one.
+pub(super) fn to_instants(times: &[f64], columns: &mut [Column], last: &[f64]) {
     let end = times.len() - 1;
     let length = |k: usize| times[k] - times[k - 1];
-    let total = last.kinetic + last.potential.iter().sum::<f64>();
-    for column in &mut *columns {
+    for (column, value) in columns.iter_mut().zip(last) {
         for k in 1..end {
             let (before, after) = (length(k), length(k + 1));
             let sum = column.values[k] * after + column.values[k + 1] * before;
             column.values[k] = sum / (before + after);
         }
-    }
-    let ends = last.charges.iter().copied().chain([last.kinetic]);
-    let ends = ends.chain(last.potential.iter().copied()).chain([total]);
-    for (column, value) in columns.iter_mut().zip(ends) {
-        column.values[end] = value;
+        column.values[end] = *value;
     }
 }
 

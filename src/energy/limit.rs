@@ -94,6 +94,42 @@ impl Energy<4> for SquaredField {
     }
 }
 
+/// `s/u`, arguments: s. A parameter in another unit.
+#[derive(Clone, Copy, Debug)]
+pub struct Multiple {
+    /// u.
+    pub unit: f64,
+}
+
+impl Energy<1> for Multiple {
+    type Local<const ORDER: usize> = Jet<1, ORDER>;
+
+    const DEGREE: usize = 1;
+
+    fn at<const ORDER: usize>(&self, p: &SVector<f64, 1>, w: &SVector<f64, 1>) -> Jet<1, ORDER> {
+        Jet::argument(0, p, w) * (1.0 / self.unit)
+    }
+}
+
+/// `(V² − s²)/u²`, arguments: V and s. Not positive where s is no less than |V|.
+#[derive(Clone, Copy, Debug)]
+pub struct PeakExcess {
+    /// u in V.
+    pub unit: f64,
+}
+
+impl Energy<2> for PeakExcess {
+    type Local<const ORDER: usize> = Jet<2, ORDER>;
+
+    const DEGREE: usize = 2;
+    const OF_SQUARES: bool = true;
+
+    fn at<const ORDER: usize>(&self, p: &SVector<f64, 2>, w: &SVector<f64, 2>) -> Jet<2, ORDER> {
+        let square = |i: usize| (Jet::argument(i, p, w) * (1.0 / self.unit)).squared();
+        square(0) - square(1)
+    }
+}
+
 /// Angle `atan2(b·c, a·c)` of the vector c in the plane of two perpendicular unit vectors a, b; arguments a, b, c.
 ///
 /// The branch is the one nearest to `near`.
@@ -117,6 +153,48 @@ impl Energy<9> for Angle {
         let ratio = y * x.recip();
         let turns = ((self.near - reference) / std::f64::consts::TAU).round();
         ratio.map([0.0, 1.0, 0.0, -2.0]) + (reference + turns * std::f64::consts::TAU)
+    }
+}
+
+/// Difference of the angles `atan2(b·c, a·c)` of two instants in (−π, π]; arguments a, b, c of the first and of the second.
+#[derive(Clone, Copy, Debug)]
+pub struct AngleStep;
+
+impl Energy<18> for AngleStep {
+    type Local<const ORDER: usize> = Jet<18, ORDER>;
+
+    fn at<const ORDER: usize>(&self, p: &SVector<f64, 18>, w: &SVector<f64, 18>) -> Jet<18, ORDER> {
+        let dot = |i: usize, j: usize| Jet::dot(3 * i, 3 * j, p, w);
+        let [c, s] = [dot(0, 2), dot(1, 2)];
+        let [c_next, s_next] = [dot(3, 5), dot(4, 5)];
+        let sine = s_next * c - c_next * s;
+        let cosine = c_next * c + s_next * s;
+        // As for the angle itself, with the step as reference.
+        let reference = sine.value.atan2(cosine.value);
+        let (sin, cos) = reference.sin_cos();
+        let y = sine * cos - cosine * sin;
+        let x = cosine * cos + sine * sin;
+        let ratio = y * x.recip();
+        ratio.map([0.0, 1.0, 0.0, -2.0]) + reference
+    }
+}
+
+/// Difference of `n·r` of two instants, arguments: n and r of the first and of the second.
+#[derive(Clone, Copy, Debug)]
+pub struct ProjectionStep;
+
+impl Energy<12> for ProjectionStep {
+    type Local<const ORDER: usize> = Jet<12, ORDER>;
+
+    const DEGREE: usize = 2;
+    const ISOTROPIC: bool = true;
+
+    fn couples(i: usize, j: usize) -> bool {
+        i != j && i / 2 == j / 2
+    }
+
+    fn at<const ORDER: usize>(&self, p: &SVector<f64, 12>, w: &SVector<f64, 12>) -> Jet<12, ORDER> {
+        Jet::dot(6, 9, p, w) - Jet::dot(0, 3, p, w)
     }
 }
 

@@ -33,7 +33,10 @@ pub use elastic_law::{ElasticLaw, Elasticity, Fault, NeoHooke};
 pub use gravity::Gravity;
 pub use joint_spring::{CoordinateSpring, JointAngle, JointDisplacement};
 pub use joint_stops::CoordinateStops;
-pub use limit::{Angle, OutsideBox, PositionComponent, Projection, SquaredDistance, SquaredField};
+pub use limit::{
+    Angle, AngleStep, Multiple, OutsideBox, PeakExcess, PositionComponent, Projection,
+    ProjectionStep, SquaredDistance, SquaredField,
+};
 pub use load::{DeadLoad, FollowingForce, SurfaceCharge};
 pub use maxwell::MaxwellCell;
 pub use muscle::{DielectricCell, ElasticCell, SectionInertia};

@@ -5,7 +5,7 @@ use crate::control::problem::{
 };
 use crate::control::{Earlier, EarlierSolution, Signal};
 use crate::dynamics::{EnergyExchange, out_of_domain};
-use crate::interface::cost_checks::{check_costs, check_energies, check_waypoints};
+use crate::interface::cost_checks::{check_costs, check_energies, check_limits, check_waypoints};
 use crate::interface::error::{Result, require, source};
 use crate::interface::handle::Handle;
 use crate::interface::input::Input;
@@ -33,6 +33,7 @@ use crate::workflow::tracking::followed;
 use std::collections::BTreeMap;
 use std::ops::ControlFlow;
 use std::ops::RangeInclusive;
+use std::sync::Arc;
 
 /// An optimal control problem: voltages and loads that steer a system from rest to rest, or along a path.
 #[derive(Clone, Debug)]
@@ -48,6 +49,7 @@ pub struct Control {
     pub(super) waypoints: Vec<problem::Waypoint>,
     voltages: Vec<(Input, Signal)>,
     parameters: Vec<Parameter>,
+    pub(super) peak_voltage: f64,
     guess: Guess,
     max_seconds: Option<f64>,
 }
@@ -67,6 +69,7 @@ impl Control {
             waypoints: Vec::new(),
             voltages: Vec::new(),
             parameters: Vec::new(),
+            peak_voltage: 0.0,
             guess: Guess::Interpolate,
             max_seconds: None,
         }
@@ -162,6 +165,16 @@ impl Control {
         self
     }
 
+    /// Range of the mean rate of the coordinate of a joint in each interval in rad/ms or mm/ms; the duration has to be given.
+    pub fn joint_rate_within(mut self, joint: Handle<Joint>, range: RangeInclusive<f64>) -> Self {
+        self.limits.push(PathConstraint::JointRate {
+            joint: joint.index(),
+            min: *range.start(),
+            max: *range.end(),
+        });
+        self
+    }
+
     /// A voltage that is given: a constant in V, or a [`Signal`] whose value in the middle of each interval acts during the interval.
     pub fn voltage(mut self, input: impl Into<Input>, signal: impl Into<Signal>) -> Self {
         self.voltages.push((input.into(), signal.into()));
@@ -217,10 +230,8 @@ impl Control {
         })?;
         found.hold(&control);
         let model = &found.model;
-        let outside = domain::records(&out_of_domain(
-            model,
-            &discrete_trajectory(model, &found.motion),
-        ));
+        let discrete = discrete_trajectory(model, &found.motion);
+        let outside = domain::records(&out_of_domain(model, &discrete));
         let message = match found.is_solved() {
             true => None,
             false => Some(
@@ -244,13 +255,14 @@ impl Control {
             objective: found.solution.objective,
             iterations,
             message,
+            is_solved: found.is_solved(),
             motion: Motion {
-                system: model.system.clone(),
                 exchange: EnergyExchange::new(&model.system, &trajectory, ends),
+                model: Arc::new(found.model),
+                discrete: Arc::new(discrete),
                 trajectory,
                 remarks: remarks.0,
             },
-            is_solved: found.is_solved(),
             parameters: found.motion.parameters.clone(),
             tracking,
             final_values,
@@ -305,38 +317,27 @@ impl Control {
         let expected = "a voltage or load to look for, or a sought parameter";
         require(open, "control", all, expected)?;
         let weights = &self.objective;
-        let weights = [weights.effort, weights.rate, weights.duration];
+        let weights = [
+            weights.effort,
+            weights.rate,
+            weights.duration,
+            self.peak_voltage,
+        ];
         let costs = &self.objective.quantities;
         let energies = &self.objective.energies;
-        let is_any = !costs.is_empty() || !energies.is_empty() || weights != [0.0; 3];
+        let is_any = !costs.is_empty() || !energies.is_empty() || weights != [0.0; 4];
         let holds = weights.iter().all(|w| *w >= 0.0 && w.is_finite()) && is_any;
-        let found = || format!("weights {weights:?} of effort, rate and time");
+        let found = || format!("weights {weights:?} of effort, rate, time and peak");
         require(holds, "control", found, "weights of which one is positive")?;
         check_costs(costs, system)?;
         check_energies(energies, system)?;
         check_waypoints(&self.waypoints, system)?;
-        for limit in &self.limits {
-            let holds = match *limit {
-                PathConstraint::ElectricField { muscle, max } => {
-                    muscle < system.muscles.len() && max > 0.0 && system.has_source_voltage(muscle)
-                }
-                PathConstraint::Stretch { muscle, min, max } => {
-                    muscle < system.muscles.len() && min < max
-                }
-                PathConstraint::JointAngle { joint, min, max } => {
-                    let joint = system.joints.get(joint);
-                    joint.is_some_and(Joint::has_coordinate) && min < max
-                }
-                PathConstraint::BlockField { .. } | PathConstraint::Marker { .. } => true,
-            };
-            require(
-                holds,
-                "limit",
-                || format!("{limit:?}"),
-                "a range of a part of the system",
-            )?;
-        }
-        Ok(problem::Control {
+        check_limits(&self.limits, system)?;
+        let is_rate = |limit: &PathConstraint| matches!(limit, PathConstraint::JointRate { .. });
+        let holds = matches!(self.duration, Duration::Given(_)) || !self.limits.iter().any(is_rate);
+        let found = || "a limit of a joint rate where the duration is free".to_owned();
+        require(holds, "limit", found, "a given duration")?;
+        let control = problem::Control {
             duration: self.duration,
             intervals: self.intervals,
             is_refined: false,
@@ -354,7 +355,8 @@ impl Control {
             coordinates: None,
             guess: self.guess.clone(),
             solver: Solver::default(),
-        })
+        };
+        self.with_peak(control, system)
     }
 
     /// Bounds of the loads that are sought, by source.

@@ -1,6 +1,6 @@
-//! Checks of the costs and waypoints of a control problem against its system.
+//! Checks of the costs, limits and waypoints of a control problem against its system.
 
-use crate::control::problem::{CostFunction, EnergyCost, QuantityCost, Waypoint};
+use crate::control::problem::{CostFunction, EnergyCost, PathConstraint, QuantityCost, Waypoint};
 use crate::interface::error::{Result, require};
 use crate::model::system::Joint;
 use crate::model::{Quantity, System};
@@ -33,6 +33,31 @@ pub(super) fn check_energies(costs: &[EnergyCost], system: &System) -> Result<()
         let found = || format!("{cost:?}");
         let expected = "a positive weight of a lumped muscle with a permittivity";
         require(cost.exists(system) && is_sound, "cost", found, expected)?;
+    }
+    Ok(())
+}
+
+/// Refuses limits of parts that the system does not have, and those that leave nothing.
+pub(super) fn check_limits(limits: &[PathConstraint], system: &System) -> Result<()> {
+    for limit in limits {
+        let holds = match *limit {
+            PathConstraint::ElectricField { muscle, max } => {
+                muscle < system.muscles.len() && max > 0.0 && system.has_source_voltage(muscle)
+            }
+            PathConstraint::Stretch { muscle, min, max } => {
+                muscle < system.muscles.len() && min < max
+            }
+            PathConstraint::JointAngle { joint, min, max }
+            | PathConstraint::JointRate { joint, min, max } => {
+                let joint = system.joints.get(joint);
+                joint.is_some_and(Joint::has_coordinate) && min < max
+            }
+            PathConstraint::BlockField { .. }
+            | PathConstraint::PeakVoltage { .. }
+            | PathConstraint::Marker { .. } => true,
+        };
+        let found = || format!("{limit:?}");
+        require(holds, "limit", found, "a range of a part of the system")?;
     }
     Ok(())
 }

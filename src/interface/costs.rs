@@ -2,12 +2,13 @@
 
 use crate::control::Signal;
 use crate::control::problem::{
-    CostFunction, During, EnergyCost, Place, QuantityCost, SourceEnergy, Waypoint,
+    self, CostFunction, During, EnergyCost, Place, QuantityCost, SourceEnergy, Waypoint,
 };
 use crate::interface::control::Control;
+use crate::interface::error::{Result, require};
 use crate::interface::handle::Handle;
-use crate::model::Quantity;
 use crate::model::system::{Joint, Marker, Muscle};
+use crate::model::{Quantity, System};
 use nalgebra::Vector3;
 use std::collections::BTreeMap;
 
@@ -21,6 +22,25 @@ impl Control {
     /// Minimises the mechanical work of the electrical forces of lumped muscles, with a weight per J.
     pub fn mechanical_work(self, muscles: &[Handle<Muscle>], weight: f64) -> Self {
         self.energy(SourceEnergy::Mechanical, muscles, weight)
+    }
+
+    /// Minimises the square of the peak voltage in kV, the largest of all voltages that are sought, with a weight.
+    pub fn peak_voltage(mut self, weight: f64) -> Self {
+        self.peak_voltage = weight;
+        self
+    }
+
+    /// The problem with the cost of the peak voltage, where it has one.
+    pub(super) fn with_peak(
+        &self,
+        mut control: problem::Control,
+        system: &System,
+    ) -> Result<problem::Control> {
+        let weight = self.peak_voltage;
+        let is_sought = weight == 0.0 || control.minimise_peak_voltage(weight, system);
+        let found = || "a cost of the peak voltage where all voltages are given".to_owned();
+        require(is_sought, "control", found, "a voltage that is sought")?;
+        Ok(control)
     }
 
     fn energy(mut self, energy: SourceEnergy, muscles: &[Handle<Muscle>], weight: f64) -> Self {

@@ -1,19 +1,21 @@
 //! Motions: times, positions, poses, voltages and energies.
 
-use crate::dynamics::trajectory::Trajectory;
-use crate::dynamics::{EnergyExchange, SourceEnergies};
+use crate::dynamics::trajectory::{Observations, Trajectory};
+use crate::dynamics::{DiscreteTrajectory, EnergyExchange, SourceEnergies, observations};
 use crate::interface::handle::Handle;
 use crate::interface::input::Input;
 use crate::kinematics::Pose;
-use crate::model::System;
+use crate::model::Model;
 use crate::model::system::{Body, Joint, Marker, Muscle};
 use crate::workflow::Remark;
 use nalgebra::Vector3;
+use std::sync::Arc;
 
 /// A motion: N + 1 instants and the N intervals between them.
 #[derive(Clone, Debug)]
 pub struct Motion {
-    pub(super) system: System,
+    pub(super) model: Arc<Model>,
+    pub(super) discrete: Arc<DiscreteTrajectory>,
     pub(super) trajectory: Trajectory,
     pub(super) exchange: EnergyExchange,
     /// Warnings and notes: steps that do not resolve it, muscles outside the domain of their material.
@@ -33,7 +35,7 @@ impl Motion {
 
     /// Coordinate of a revolute or prismatic joint in rad or mm, by instant; nothing of another joint.
     pub fn joint(&self, joint: Handle<Joint>) -> Vec<f64> {
-        let joints = &self.system.joints;
+        let joints = &self.model.system.joints;
         if !joints[joint.index()].has_coordinate() {
             return Vec::new();
         }
@@ -51,7 +53,7 @@ impl Motion {
 
     /// Start in ms and input in V, N or N mm of each interval; nothing for parts without an input.
     pub fn voltage(&self, input: impl Into<Input>) -> Vec<(f64, f64)> {
-        let Some(source) = input.into().source(&self.system) else {
+        let Some(source) = input.into().source(&self.model.system) else {
             return Vec::new();
         };
         let rows = self.trajectory.voltages.iter();
@@ -81,6 +83,12 @@ impl Motion {
     /// Returns the warnings and notes: steps that do not resolve it, muscles outside the domain of their material.
     pub fn remarks(&self) -> &[Remark] {
         &self.remarks
+    }
+
+    /// All columns of `trajectory.csv` but the energies from sources, computed when they are asked for: rates of joints, tensions, fields,
+    /// currents and powers, charges, energies, momenta, by their names and units.
+    pub fn observations(&self) -> Observations {
+        observations(&self.model, &self.discrete)
     }
 
     /// All of it, as tables and figures read it.

@@ -16,6 +16,7 @@ use crate::workflow::integrate::{Simulated, integrate};
 use crate::workflow::remark::Remarks;
 use crate::workflow::{domain, memory, steps, stops};
 use std::ops::ControlFlow;
+use std::sync::Arc;
 
 /// A simulation under given voltages.
 #[derive(Clone, Debug)]
@@ -87,8 +88,9 @@ impl Simulation {
             .times
             .last()
             .is_some_and(|&end| end >= self.duration * (1.0 - 1e-12));
-        let motion = motion(&run, &task);
-        match run.failure {
+        let failure = run.failure.clone();
+        let motion = motion(run, &task);
+        match failure {
             Some(source) => Err(Error::Step {
                 source,
                 motion: Box::new(motion),
@@ -151,7 +153,7 @@ impl Simulation {
 }
 
 /// Returns the motion of a run.
-fn motion(run: &Simulated, task: &problem::Simulation) -> Motion {
+fn motion(run: Simulated, task: &problem::Simulation) -> Motion {
     let trajectory = Trajectory::from_discrete(&run.model, &run.discrete);
     let order = task.solving.integrator.order();
     let error = local_error_of(&run.model, (&run.discrete, &trajectory), order);
@@ -161,10 +163,11 @@ fn motion(run: &Simulated, task: &problem::Simulation) -> Motion {
     remarks.warn("energy_balance", steps::unbalanced(&run.discrete));
     remarks.note("stops", stops::notes(&run.model.system, &trajectory));
     remarks.warn("outside_domain", domain::note(&outside, true));
-    let system = run.model.system.clone();
+    let ends = [task.start.voltages(), None];
     Motion {
-        exchange: EnergyExchange::new(&system, &trajectory, [task.start.voltages(), None]),
-        system,
+        exchange: EnergyExchange::new(&run.model.system, &trajectory, ends),
+        model: Arc::new(run.model),
+        discrete: Arc::new(run.discrete),
         trajectory,
         remarks: remarks.0,
     }

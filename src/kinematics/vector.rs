@@ -185,6 +185,15 @@ impl MaterialVector {
         };
         self.terms.iter().map(part).sum()
     }
+
+    /// Its rate at given rates of the poses of the bodies, all else at rest.
+    pub fn rate(&self, poses: &[Pose]) -> Vector {
+        let part = |t: &VectorTerm| match t.carrier {
+            Carrier::Body(body) => t.at(&poses[body]),
+            Carrier::Ground | Carrier::Node(_) | Carrier::Coordinate(_) => Vector::zeros(),
+        };
+        self.terms.iter().map(part).sum()
+    }
 }
 
 /// The list of vectors that terms read, each once.

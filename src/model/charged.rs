@@ -35,24 +35,38 @@ impl Muscle {
 
 /// A lumped muscle whose electrodes have a charge instead of the voltage of a source.
 #[derive(Clone, Copy, Debug)]
-struct Charged {
-    muscle: usize,
+pub(super) struct Charged {
+    pub(super) muscle: usize,
     capacitance: Capacitance,
-    place: ChargePlace,
+    pub(super) place: ChargePlace,
 }
 
 /// Place of a charge.
 #[derive(Clone, Copy, Debug)]
-enum ChargePlace {
+pub(super) enum ChargePlace {
     /// A coordinate, in the unit of the muscle.
     Coordinate(usize),
     /// A scalar of the intervals: an input.
     Input(usize),
 }
 
+impl Charged {
+    /// Voltage Q/C in V at an instant and under the scalars of an interval beside it.
+    pub(super) fn voltage(&self, model: &Model, instant: &Configuration, scalars: &[f64]) -> f64 {
+        let charge = match self.place {
+            ChargePlace::Coordinate(coordinate) => {
+                instant.z[coordinate] * self.capacitance.unit_of_charge()
+            }
+            ChargePlace::Input(scalar) => scalars[scalar],
+        };
+        let length = instant.x[model.spans[self.muscle]].norm();
+        charge / self.capacitance.at_length(length)
+    }
+}
+
 impl Model {
     /// Muscles behind circuits, then those whose charge is given.
-    fn charged(&self) -> impl Iterator<Item = Charged> + '_ {
+    pub(super) fn charged(&self) -> impl Iterator<Item = Charged> + '_ {
         let behind = self.internal_kinds().filter_map(|(coordinate, kind)| {
             let InternalKind::Charge(muscle) = kind else {
                 return None;
@@ -108,16 +122,7 @@ impl Model {
     /// Voltage Q/C in V of each muscle with a charge Q instead of the voltage of a source, at an instant and under the scalars of an
     /// interval beside it.
     pub fn electrode_voltages(&self, instant: &Configuration, scalars: &[f64]) -> Vec<f64> {
-        let voltage = |charged: Charged| {
-            let charge = match charged.place {
-                ChargePlace::Coordinate(coordinate) => {
-                    instant.z[coordinate] * charged.capacitance.unit_of_charge()
-                }
-                ChargePlace::Input(scalar) => scalars[scalar],
-            };
-            let length = instant.x[self.spans[charged.muscle]].norm();
-            charge / charged.capacitance.at_length(length)
-        };
+        let voltage = |charged: Charged| charged.voltage(self, instant, scalars);
         self.charged().map(voltage).collect()
     }
 }

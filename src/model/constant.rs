@@ -32,6 +32,8 @@ pub enum Constant {
     SpringLength(usize),
     /// Damping of a joint in N mm ms or N ms/mm.
     JointDamping(usize),
+    /// No constant of a component: the largest voltage in V of sources that are sought, which quantities read.
+    PeakVoltage,
 }
 
 /// A unit of the International System: its symbol, and the factor from the unit of a constant.
@@ -104,7 +106,7 @@ impl Constant {
 
     /// Returns true if it must be positive to have a meaning.
     pub fn is_positive(self) -> bool {
-        !matches!(self, Self::End(..))
+        !matches!(self, Self::End(..) | Self::PeakVoltage)
     }
 }
 

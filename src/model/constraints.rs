@@ -15,7 +15,8 @@ const RIGID: &str = "rigid bodies";
 const DIRECTIONS: &str = "joint directions";
 const POINTS: &str = "joint points";
 const COORDINATES: &str = "joint coordinates";
-const GLUE: &str = "glue";
+/// Term of the nodes that constraints glue to bodies.
+pub(super) const GLUE: &str = "glue";
 
 fn here(vector: usize) -> VectorArg {
     VectorArg {

@@ -10,7 +10,8 @@ use crate::model::presolved::Presolved;
 use crate::model::system::Joint;
 use crate::model::terms::{Terms, mid, rate};
 
-const DAMPING: &str = "joint damping";
+/// Term of the dampers of joints.
+pub const DAMPING: &str = "joint damping";
 
 /// Dampers of the joints that are solved for.
 pub(super) fn build(

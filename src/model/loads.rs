@@ -12,7 +12,8 @@ use crate::model::solids::Solids;
 use crate::model::system::System;
 use crate::model::terms::{Terms, mid};
 
-const LOADS: &str = "loads";
+/// Term of the loads whose forces have a potential.
+pub(super) const LOADS: &str = "loads";
 const FOLLOWING: &str = "following loads";
 const CHARGES: &str = "surface charges";
 

@@ -2,7 +2,8 @@
 
 use crate::element::FieldPoint;
 use crate::energy::{
-    Angle, Energy, OutsideBox, PositionComponent, Projection, SquaredDistance, SquaredField,
+    Angle, AngleStep, Energy, Multiple, OutsideBox, PeakExcess, PositionComponent, Projection,
+    ProjectionStep, SquaredDistance, SquaredField,
 };
 use crate::functional::{
     Curved, Element, ElementField, ElementFields, Formulas, Group, Kernel, Measure, Stencil,
@@ -16,7 +17,10 @@ use crate::model::joints::{JointCoordinate, JointReading};
 use crate::model::presolved::Presolved;
 use crate::model::quantity::{FieldPlace, Quantity, Region};
 use crate::model::solid_block::SolidBlock;
-use crate::model::variables::Variables;
+use crate::model::variables::{Role, Variables};
+
+/// V in a kV.
+const KILOVOLT: f64 = 1e3;
 
 /// Measures by site, in the order of the quantities.
 #[derive(Debug, Default)]
@@ -69,6 +73,7 @@ impl Known<'_> {
         let origin = Vector::zeros();
         Some(match *quantity {
             Quantity::Joint { joint, near } => return self.joint(joint, near, shape, vectors),
+            Quantity::JointStep { joint, .. } => return self.joint_step(joint, shape, vectors),
             Quantity::SquaredStretch { muscle } => {
                 let energy = SquaredDistance {
                     centre: origin,
@@ -104,6 +109,18 @@ impl Known<'_> {
                 let marker = (self.markers[marker], Stencil::Difference);
                 interval::<_, 3, 1, 0>(shape, PositionComponent { origin, normal }, [marker], [])
             }
+            Quantity::PeakVoltage { parameter } => {
+                let multiple = Multiple { unit: KILOVOLT };
+                interval::<_, 1, 0, 1>(shape, multiple, [], [self.parameter(parameter)?])
+            }
+            Quantity::PeakExcess {
+                source,
+                parameter,
+                unit,
+            } => {
+                let scalars = [self.variables.input(source)?, self.parameter(parameter)?];
+                interval::<_, 2, 0, 2>(shape, PeakExcess { unit }, [], scalars)
+            }
             Quantity::SquaredField { place, limit, at } => match place {
                 FieldPlace::Muscle(muscle) => {
                     return self.muscle_field(muscle, (limit, at), shape, vectors);
@@ -115,6 +132,11 @@ impl Known<'_> {
                 } => return self.element_field(block, (element, point), (limit, at), shape),
             },
         })
+    }
+
+    /// Scalar of a sought parameter; none where parameters are put in.
+    fn parameter(&self, parameter: usize) -> Option<usize> {
+        self.variables.range(Role::Parameter).nth(parameter)
     }
 
     /// Angle or displacement of a joint.
@@ -135,6 +157,38 @@ impl Known<'_> {
             JointCoordinate::Displacement { axis, span } => {
                 let read = [axis, span].map(|x| vectors.index(x));
                 Some(instant(shape, Projection, read))
+            }
+            JointCoordinate::None => None,
+        }
+    }
+
+    /// Step of the coordinate of a joint in an interval.
+    fn joint_step(
+        &self,
+        joint: usize,
+        shape: Shape,
+        vectors: &mut Vectors,
+    ) -> Option<Box<dyn Measure>> {
+        let joint = self.presolved.joint(joint)?;
+        let joint = &self.presolved.system.joints[joint];
+        let (here, next) = (Stencil::Here, Stencil::Next);
+        match JointReading::new(joint, None, self.reference).measure {
+            JointCoordinate::Angle { vectors: v } => {
+                let [a, b, c] = v.map(|x| vectors.index(x));
+                let read = [
+                    (a, here),
+                    (b, here),
+                    (c, here),
+                    (a, next),
+                    (b, next),
+                    (c, next),
+                ];
+                Some(interval::<_, 18, 6, 0>(shape, AngleStep, read, []))
+            }
+            JointCoordinate::Displacement { axis, span } => {
+                let [n, r] = [axis, span].map(|x| vectors.index(x));
+                let read = [(n, here), (r, here), (n, next), (r, next)];
+                Some(interval::<_, 12, 4, 0>(shape, ProjectionStep, read, []))
             }
             JointCoordinate::None => None,
         }

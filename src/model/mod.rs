@@ -21,14 +21,18 @@ mod graph;
 mod immobile;
 mod internal;
 mod joint_elasticity;
+mod joint_rates;
+mod joint_sections;
 mod joint_springs;
 mod joints;
+mod load_power;
 mod loads;
 mod material;
 mod maxwell;
 mod measures;
 #[expect(clippy::module_inception, reason = "the file of the type of that name")]
 mod model;
+mod muscle_state;
 mod named;
 mod parameter;
 pub mod plan;
@@ -51,13 +55,16 @@ pub use component::Component;
 pub use constant::{
     Constant, DielectricLaw, Follower, FoundParameter, MOST_MOVES, Parameter, SiUnit,
 };
+pub use dampers::DAMPING as JOINT_DAMPING;
 pub use error::ModelError;
 pub use floating::Floating;
 pub use graph::Graph;
 pub use immobile::Immobile;
+pub use joint_sections::JointSection;
 pub use joints::{JointReading, Screw};
 pub use maxwell::{MOST_BRANCHES, MaxwellBranch, MaxwellBranches};
 pub use model::Model;
+pub use muscle_state::{MuscleReading, SourceFlow};
 pub use named::Freedom;
 pub use parameter::{NotSought, check as check_parameters, with_parameters};
 pub use plan::{LeftOut, Present};

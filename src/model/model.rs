@@ -145,6 +145,12 @@ impl Model {
             })
     }
 
+    /// Coordinates of the Maxwell branches of a muscle, in their order.
+    pub(super) fn branches_of(&self, muscle: usize) -> Vec<usize> {
+        let own = self.branches().filter(|(_, of, _)| *of == muscle);
+        own.map(|(coordinate, ..)| coordinate).collect()
+    }
+
     /// Gives internal coordinates their values at joint coordinates (by joint of the scene); muscles have been held there for long.
     pub(super) fn place_internals(&self, z: &mut [f64], joints: &[f64]) {
         for (coordinate, joint) in self.internal_joints() {

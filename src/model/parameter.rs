@@ -39,6 +39,7 @@ impl Constant {
             Self::SpringDamping(s) => springs[s].damping = Some(value),
             Self::SpringLength(s) => springs[s].rest_length = value,
             Self::JointDamping(j) => system.joints[j].damping = Some(value),
+            Self::PeakVoltage => {}
         }
     }
 
@@ -49,6 +50,7 @@ impl Constant {
             Self::Permittivity(..) => ("", 1.0),
             Self::Viscosity(_) => ("Pa s", 1e3),
             Self::Side(..) | Self::Layer(_) | Self::End(..) | Self::SpringLength(_) => ("m", 1e-3),
+            Self::PeakVoltage => ("V", 1.0),
             Self::SpringStiffness(_) => ("N/m", 1e3),
             Self::SpringDamping(_) => ("N s/m", 1.0),
             Self::JointDamping(j) => match system.joints[j].kind {
@@ -74,6 +76,7 @@ impl Constant {
                 ("spring", s, springs)
             }
             Self::JointDamping(j) => ("joint", j, joints),
+            Self::PeakVoltage => return None,
             other => ("muscle", other.muscle().unwrap_or(0), muscles),
         };
         (index >= count).then(|| format!("there is no {what} {index}, only {count}"))

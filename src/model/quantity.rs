@@ -51,6 +51,13 @@ pub enum Quantity {
         /// Branch of an angle.
         near: f64,
     },
+    /// Step of the coordinate of a revolute joint (rad, at most half a turn) or prismatic joint (mm) in an interval.
+    JointStep {
+        /// Joint index.
+        joint: usize,
+        /// Length of the interval in ms, for messages.
+        h: f64,
+    },
     /// Squared stretch Λ² of a muscle at the instants.
     SquaredStretch {
         /// Muscle index.
@@ -93,6 +100,20 @@ pub enum Quantity {
         /// b, a unit vector of the ground frame.
         along: Vector,
     },
+    /// A sought parameter that bounds voltages, in kV, in the intervals.
+    PeakVoltage {
+        /// Index of the parameter.
+        parameter: usize,
+    },
+    /// (V² − s²)/u² of the voltage V of a source and a sought parameter s, in the intervals.
+    PeakExcess {
+        /// Source index.
+        source: usize,
+        /// Index of the parameter.
+        parameter: usize,
+        /// u in V.
+        unit: f64,
+    },
     /// (|x − c|/r)² of a marker for a ball, Σ ((x − c)_i/a_i)¹⁶ for a box, at the instants.
     MarkerRegion {
         /// Marker index.
@@ -103,12 +124,19 @@ pub enum Quantity {
 }
 
 /// V/mm in a V/µm.
-const MEGAVOLT_PER_METRE: f64 = 1e3;
+pub(super) const MEGAVOLT_PER_METRE: f64 = 1e3;
 
 impl Quantity {
     /// Returns true if it is measured in the intervals rather than at the instants.
     pub fn is_of_intervals(&self) -> bool {
-        matches!(self, Self::SquaredField { .. } | Self::MarkerStep { .. })
+        matches!(
+            self,
+            Self::SquaredField { .. }
+                | Self::MarkerStep { .. }
+                | Self::JointStep { .. }
+                | Self::PeakVoltage { .. }
+                | Self::PeakExcess { .. }
+        )
     }
 
     /// Returns the noun of its time, in front of the number of the instant or interval.
@@ -119,7 +147,10 @@ impl Quantity {
                 Stencil::Next => "at the end of interval",
                 _ => "in the middle of interval",
             },
-            Self::MarkerStep { .. } => "in interval",
+            Self::MarkerStep { .. }
+            | Self::JointStep { .. }
+            | Self::PeakVoltage { .. }
+            | Self::PeakExcess { .. } => "in interval",
             _ => "at instant",
         }
     }
@@ -127,11 +158,13 @@ impl Quantity {
     /// Unit of its values; none of a ratio.
     pub fn unit(&self, system: &System) -> &'static str {
         match *self {
-            Self::Joint { joint, .. } => joint_unit(system, joint),
+            Self::Joint { joint, .. } | Self::JointStep { joint, .. } => joint_unit(system, joint),
             Self::Capacitance { .. } => "mF",
             Self::MarkerPlace { .. } | Self::MarkerStep { .. } => "mm",
+            Self::PeakVoltage { .. } => "kV",
             Self::SquaredStretch { .. }
             | Self::SquaredField { .. }
+            | Self::PeakExcess { .. }
             | Self::Direction { .. }
             | Self::MarkerRegion { .. } => "",
         }
@@ -141,6 +174,10 @@ impl Quantity {
     pub fn plain(&self, value: f64, system: &System) -> (f64, &'static str) {
         match *self {
             Self::SquaredStretch { .. } => (value.sqrt(), ""),
+            Self::JointStep { joint, h } => match joint_unit(system, joint) {
+                "mm" => (value / h, "m/s"),
+                _ => (1e3 * value / h, "rad/s"),
+            },
             Self::SquaredField { limit, .. } => (value.sqrt() * limit / MEGAVOLT_PER_METRE, "V/um"),
             Self::MarkerRegion { region, .. } => match region {
                 Region::Sphere { radius, .. } => (value.sqrt() * radius, "mm from its centre"),
@@ -149,6 +186,8 @@ impl Quantity {
             Self::Joint { .. }
             | Self::Capacitance { .. }
             | Self::Direction { .. }
+            | Self::PeakVoltage { .. }
+            | Self::PeakExcess { .. }
             | Self::MarkerPlace { .. }
             | Self::MarkerStep { .. } => (value, self.unit(system)),
         }

@@ -24,7 +24,7 @@ impl TableColumn<'_> {
     }
 }
 
-/// The columns of `trajectory.csv`. Charges, which are observed in mC, are written in nC.
+/// The columns of `trajectory.csv`. Charges, which are observed in mC, are written in nC, rates in rad/s and m/s.
 pub fn columns(observations: &Observations) -> Vec<TableColumn<'_>> {
     observations.columns.iter().map(headed).collect()
 }
@@ -32,6 +32,8 @@ pub fn columns(observations: &Observations) -> Vec<TableColumn<'_>> {
 fn headed(Column { name, unit, values }: &Column) -> TableColumn<'_> {
     let (unit, factor) = match *unit {
         "mC" => ("nC", 1e6),
+        "rad/ms" => ("rad/s", 1e3),
+        "mm/ms" => ("m/s", 1.0),
         unit => (unit, 1.0),
     };
     let heading = match unit {

@@ -30,6 +30,16 @@ pub fn all_limits() -> Vec<PathConstraint> {
             min: f64::NEG_INFINITY,
             max: 9.0,
         },
+        PathConstraint::JointRate {
+            joint: 0,
+            min: f64::NEG_INFINITY,
+            max: 0.02,
+        },
+        PathConstraint::JointRate {
+            joint: 1,
+            min: -0.4,
+            max: 0.5,
+        },
         PathConstraint::Stretch {
             muscle: 0,
             min: 0.7,

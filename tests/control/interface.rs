@@ -105,6 +105,16 @@ fn a_trunk_made_by_a_program_is_steered_as_that_of_a_file() {
         assert_eq!((energy.len(), work.len(), energy[0]), (41, 41, 0.0));
         assert!(energy[40] > work[40].abs(), "{} {}", energy[40], work[40]);
     }
+    // It moves from rest to rest.
+    let seen = found.motion.observations().columns;
+    let rates = seen.iter().filter(|column| column.unit == "rad/ms");
+    let rates: Vec<&[f64]> = rates.map(|column| column.values.as_slice()).collect();
+    assert_eq!(rates.len(), 6);
+    for rate in rates {
+        let largest = rate.iter().fold(0.0_f64, |max, rate| max.max(rate.abs()));
+        let ends = rate[0].abs().max(rate[40].abs());
+        assert!(largest > 1e-4 && ends < 1e-8, "{largest} {ends}");
+    }
     // Its solution is a start from which nothing is left to do.
     let again = problem.starting_from(found.solution).solve(&trunk).unwrap();
     assert!(

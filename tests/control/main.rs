@@ -21,6 +21,8 @@ mod loads;
 mod meshes;
 mod moved;
 mod optimality;
+mod peak_voltage;
+mod rate_limits;
 mod reference;
 mod resample;
 mod sought;

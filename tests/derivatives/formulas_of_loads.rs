@@ -1,8 +1,9 @@
-//! Energies and virtual works of loads: their derivatives are those of naive formulas.
+//! Energies and virtual works of loads, bounds of inputs and rates of joints: their derivatives are those of naive formulas.
 
 use crate::formulas::{DIELECTRIC, law};
 use proboscis::energy::{
-    Capacitance, DeadLoad, FlowingCharge, FollowingForce, GivenCharge, SurfaceCharge,
+    AngleStep, Capacitance, DeadLoad, FlowingCharge, FollowingForce, GivenCharge, Multiple,
+    PeakExcess, ProjectionStep, SurfaceCharge,
 };
 use proboscis::math::Vector;
 
@@ -12,6 +13,14 @@ fn loads_have_the_derivatives_of_naive_formulas() {
     law("dead load", &DeadLoad { force }, 0.2, 1.1);
     law("following force", &FollowingForce, 0.2, 1.1);
     law("surface charge", &SurfaceCharge { weight: 0.7 }, 0.2, 1.1);
+}
+
+#[test]
+fn peaks_and_rates_have_the_derivatives_of_naive_formulas() {
+    law("peak", &Multiple { unit: 0.7 }, 0.2, 1.1);
+    law("angle step", &AngleStep, 0.3, 1.0);
+    law("projection step", &ProjectionStep, 0.3, 1.0);
+    law("peak excess", &PeakExcess { unit: 0.7 }, 0.2, 1.1);
 }
 
 #[test]

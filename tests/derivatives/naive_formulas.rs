@@ -2,11 +2,11 @@
 
 use num_dual::{Dual, DualNum};
 use proboscis::energy::{
-    Angle, AngularDamper, Capacitance, Coincidence, CoordinateDamper, CoordinateSpring,
+    Angle, AngleStep, AngularDamper, Capacitance, Coincidence, CoordinateDamper, CoordinateSpring,
     CoordinateStops, DeadLoad, DielectricCell, ElasticCell, Energy, FlowingCharge, FollowingForce,
     GivenCharge, Gravity, JointAngle, JointDisplacement, LinearDamper, LinearSpring, MaxwellCell,
-    Orthogonality, OutsideBox, PositionComponent, Projection, SectionInertia, SpanDamper,
-    SquaredDistance, SquaredField, SurfaceCharge, ViscousCell,
+    Multiple, Orthogonality, OutsideBox, PeakExcess, PositionComponent, Projection, ProjectionStep,
+    SectionInertia, SpanDamper, SquaredDistance, SquaredField, SurfaceCharge, ViscousCell,
 };
 
 /// The naive formula of an energy.
@@ -300,5 +300,36 @@ impl Formula<3> for OutsideBox {
 impl Formula<4> for SquaredField {
     fn naive<D: DualNum<f64> + Copy>(&self, p: &[D; 4]) -> D {
         (p[3] / (stretch(three(p, 0), self.length) * self.voltage)).powi(2)
+    }
+}
+
+impl Formula<1> for Multiple {
+    const VECTORS: usize = 0;
+
+    fn naive<D: DualNum<f64> + Copy>(&self, p: &[D; 1]) -> D {
+        p[0] / self.unit
+    }
+}
+
+impl Formula<2> for PeakExcess {
+    const VECTORS: usize = 0;
+
+    fn naive<D: DualNum<f64> + Copy>(&self, p: &[D; 2]) -> D {
+        (p[0] - p[1]) * (p[0] + p[1]) / (self.unit * self.unit)
+    }
+}
+
+impl Formula<18> for AngleStep {
+    fn naive<D: DualNum<f64> + Copy>(&self, p: &[D; 18]) -> D {
+        let part = |at: usize| -> [D; 9] { std::array::from_fn(|i| p[at + i]) };
+        let step = half_angle(part(9)) - half_angle(part(0));
+        let turns = (step.re() / std::f64::consts::TAU).round();
+        step - turns * std::f64::consts::TAU
+    }
+}
+
+impl Formula<12> for ProjectionStep {
+    fn naive<D: DualNum<f64> + Copy>(&self, p: &[D; 12]) -> D {
+        polarised(three(p, 6), three(p, 9)) - polarised(three(p, 0), three(p, 3))
     }
 }

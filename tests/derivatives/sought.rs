@@ -57,6 +57,37 @@ fn derivatives_are_differences() {
     });
 }
 
+/// The peak is a parameter that limits and a cost read, beside one that muscles read.
+#[test]
+fn derivatives_of_a_least_peak_are_differences() {
+    let system = robot();
+    for mut control in variants() {
+        control.parameters.truncate(1);
+        control.objective.rate = 0.01;
+        assert!(control.minimise_peak_voltage(0.7, &system));
+        let (model, boundary) = BoundaryConditions::resolve(&system, &control, H).unwrap();
+        let initial = guess(&model, &boundary, &control, H, None);
+        let mut program = Transcription::new(&model, &boundary, &control, &initial).unwrap();
+        let mut x = noisy(&program, program.start(&initial).x);
+        let mut columns = program.unknowns().columns.iter();
+        let peak = columns.rposition(|column| matches!(column, Column::Parameter { .. }));
+        let peak = peak.expect("the peak is a parameter");
+        let objective = program.objective(&x);
+        x[peak] *= 0.9;
+        assert!(
+            (program.objective(&x) - objective).abs() > 0.1,
+            "it is paid"
+        );
+        let report = differences::check(&mut program, &x, 5);
+        assert!(
+            report.is_consistent(),
+            "{:?}: {report}",
+            control.coordinates
+        );
+        not_trivial("peak", &mut program, &x);
+    }
+}
+
 /// Rows, and entries of Jacobian and Hessian without parameters, unscaled, by names.
 type Numbers = (HashMap<String, f64>, [HashMap<(String, String), f64>; 2]);
 

@@ -17,26 +17,26 @@ use proboscis::model::{Coordinates, Model, Role};
 use std::ops::ControlFlow;
 
 /// Layers in mm, and the permittivity in N/V² (F/m are 1e0 N/V²).
-const LAYER: f64 = 0.05;
+pub(crate) const LAYER: f64 = 0.05;
 const PERMITTIVITY: f64 = 3.0 * VACUUM_PERMITTIVITY;
 const VOLUME: f64 = SECTION * LENGTH;
 /// Capacitance at rest in mC/V.
-const CAPACITANCE: f64 = PERMITTIVITY * VOLUME / (LAYER * LAYER);
+pub(crate) const CAPACITANCE: f64 = PERMITTIVITY * VOLUME / (LAYER * LAYER);
 
 /// Voltage `t √(μ/ε)` in V, and charge in mC, in which the closed forms count.
-fn units() -> [f64; 2] {
+pub(crate) fn units() -> [f64; 2] {
     let voltage = LAYER * (MODULUS / PERMITTIVITY).sqrt();
     [voltage, CAPACITANCE * voltage]
 }
 
-fn plain(mass: f64) -> System {
+pub(crate) fn plain(mass: f64) -> System {
     let mut system = slider(mass, MaxwellBranches::default());
     system.muscles[0].material.electric = Some(ElectricConstants::ideal(3.0));
     system
 }
 
 /// The slider behind a resistor with the time constant R C₀ in ms.
-fn resisted(mass: f64, time: f64) -> System {
+pub(crate) fn resisted(mass: f64, time: f64) -> System {
     let mut system = plain(mass);
     let resistance = time / CAPACITANCE;
     system.muscles[0].circuit = Some(Circuit { resistance });
@@ -44,7 +44,7 @@ fn resisted(mass: f64, time: f64) -> System {
 }
 
 /// The slider whose charge is given.
-fn charged(mass: f64) -> System {
+pub(crate) fn charged(mass: f64) -> System {
     let mut system = plain(mass);
     system.components.loads.push(Load {
         name: "charge".into(),
@@ -58,7 +58,7 @@ fn at_rest(model: &Model) -> Start {
 }
 
 /// Inputs of each step, in turn.
-fn driven(model: &Model, start: &Start, h: f64, rows: &[f64]) -> DiscreteTrajectory {
+pub(crate) fn driven(model: &Model, start: &Start, h: f64, rows: &[f64]) -> DiscreteTrajectory {
     let (discrete, failure) = simulate_by(
         Solving::default(),
         model,

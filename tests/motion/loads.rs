@@ -19,7 +19,7 @@ const BOTH: [Coordinates; 2] = [Coordinates::Reduced, Coordinates::Redundant];
 const DURATION: f64 = 200.0;
 
 /// 10 g on a joint.
-fn on(kind: JointKind, spring: Option<JointSpring>, load: LoadPlace) -> System {
+pub(crate) fn on(kind: JointKind, spring: Option<JointSpring>, load: LoadPlace) -> System {
     let joint = Joint {
         name: "joint".into(),
         kind,
@@ -35,11 +35,11 @@ fn on(kind: JointKind, spring: Option<JointSpring>, load: LoadPlace) -> System {
     system
 }
 
-fn slide() -> JointKind {
+pub(crate) fn slide() -> JointKind {
     JointKind::Prismatic { axis: Vector3::x() }
 }
 
-fn hinge() -> JointKind {
+pub(crate) fn hinge() -> JointKind {
     JointKind::Revolute { axis: Vector3::z() }
 }
 
@@ -57,7 +57,7 @@ fn at_centre(direction: Vector3<f64>) -> LoadPlace {
 }
 
 /// A force across the hinge at the centre of mass that turns with it.
-fn jet() -> System {
+pub(crate) fn jet() -> System {
     let LoadPlace::Point { at, direction, .. } = at_centre(Vector3::y()) else {
         unreachable!("a point")
     };

@@ -20,6 +20,8 @@ mod maxwell;
 mod maxwell_limits;
 mod observe;
 mod order;
+mod parts;
+mod reactions;
 mod reductions;
 mod reference;
 mod resolution;

@@ -71,14 +71,17 @@ impl Transcription<'_> {
     /// Adds the gradients in the rows to those by the variables.
     pub(super) fn gather_cost_gradient(&self, grad: &mut [f64]) {
         let (stride, coordinates) = (self.stride(), self.model.action.map.unknowns());
+        let of_interval = |k: usize, s: usize| self.workspace.rows[k * stride + coordinates + s];
         let columns = self.layout.unknowns.columns.iter();
         let columns = columns.zip(&self.variable_scales);
         for (sum, (column, scale)) in grad.iter_mut().zip(columns) {
             let row = match *column {
                 Column::Instant { k, i } => self.workspace.rows[k * stride + i],
-                Column::Interval { k, s } => self.workspace.rows[k * stride + coordinates + s],
-                // No cost reads a parameter: limits and goals of what follows one are refused.
-                Column::Parameter { .. } | Column::Horizon => continue,
+                Column::Interval { k, s } => of_interval(k, s),
+                Column::Parameter { s } => {
+                    (0..self.layout.intervals).map(|k| of_interval(k, s)).sum()
+                }
+                Column::Horizon => continue,
             };
             *sum += row * scale;
         }

@@ -88,10 +88,12 @@ pub(super) fn limit_rows(
                 all
             }
         };
-        let scale = match bounded.quantity {
-            Quantity::MarkerPlace { .. } | Quantity::MarkerStep { .. } => 1.0 / model.length(),
-            _ => 1.0,
-        };
+        let mut vectors: Vec<usize> = Vec::new();
+        for vector in reads.vectors() {
+            if !vectors.contains(&vector) {
+                vectors.push(vector);
+            }
+        }
         let limit = LimitRow {
             bounded: bounded.clone(),
             measure,
@@ -99,13 +101,26 @@ pub(super) fn limit_rows(
             first,
             at,
             entries,
-            vectors: reads.vectors(),
-            scale,
+            vectors,
+            scale: scale(bounded, model),
         };
         first += limit.at.len();
         Some(limit)
     };
     list.iter().zip(&model.measured).filter_map(row).collect()
+}
+
+/// Factor that brings the values of a quantity near 1.
+fn scale(bounded: &BoundedQuantity, model: &Model) -> f64 {
+    match bounded.quantity {
+        Quantity::JointStep { .. } => {
+            let bounds = [bounded.lower, bounded.upper].map(f64::abs).into_iter();
+            let finite = bounds.filter(|bound| *bound > 0.0 && bound.is_finite());
+            1.0 / finite.reduce(f64::max).unwrap_or(1.0)
+        }
+        Quantity::MarkerPlace { .. } | Quantity::MarkerStep { .. } => 1.0 / model.length(),
+        _ => 1.0,
+    }
 }
 
 impl Site {

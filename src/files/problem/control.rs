@@ -11,7 +11,7 @@ use crate::files::problem::energies::energies;
 use crate::files::problem::free::parameters;
 use crate::files::problem::goal::goal_state;
 use crate::files::problem::guess::{guess, unwritten};
-use crate::files::problem::limits::limit;
+use crate::files::problem::limits::limits;
 use crate::files::problem::loads::{load, load_bounds, loads};
 use crate::files::problem::signal::signal;
 use crate::files::problem::spec_control::{
@@ -87,15 +87,12 @@ pub(crate) fn control(
     }));
     given.extend(loads);
     check_final_conditions(&goal, system, &scope.key("goal"))?;
-    let mut limits = Vec::new();
-    for (index, spec) in spec.limits.iter().enumerate() {
-        limits.extend(limit(spec, system, &scope.key("limits").index(index))?);
-    }
+    let limits = limits((&spec.limits, duration), system, &scope.key("limits"))?;
     let guess = match &spec.guess {
         Some(guess_spec) => guess(guess_spec, system, voltage_bounds, &scope.key("guess"))?,
         None => unwritten(&goal, system),
     };
-    Ok(Control {
+    let control = Control {
         duration,
         intervals: intervals.unwrap_or(FIRST_INTERVALS),
         is_refined: intervals.is_none(),
@@ -113,7 +110,23 @@ pub(crate) fn control(
         coordinates: coordinates(spec.coordinates, system, scope)?,
         guess,
         solver: solver(&spec.solver, &scope.key("solver"))?,
-    })
+    };
+    let place = scope.key("objective").key("peak_voltage");
+    with_peak(control, spec.objective.peak_voltage, system, &place)
+}
+
+/// The problem with the cost of the peak voltage, where that has a weight.
+fn with_peak(
+    mut control: Control,
+    weight: f64,
+    system: &System,
+    scope: &Scope<'_>,
+) -> Result<Control, SceneError> {
+    if weight > 0.0 && !control.minimise_peak_voltage(weight, system) {
+        let found = "a weight where all voltages are given";
+        return Err(scope.wrong(found, "a voltage that is sought"));
+    }
+    Ok(control)
 }
 
 pub(crate) fn duration(spec: &DurationSpec, scope: &Scope<'_>) -> Result<Duration, SceneError> {
@@ -275,6 +288,7 @@ pub(crate) fn objective(
         ("effort", spec.effort),
         ("rate", spec.rate),
         ("duration", spec.duration),
+        ("peak_voltage", spec.peak_voltage),
     ];
     for (key, weight) in weights {
         scope.key(key).weight(weight)?;
@@ -303,7 +317,7 @@ pub(crate) fn objective(
     }
     let is_any = !quantities.is_empty() || !of_sources.is_empty();
     if !is_any && weights.iter().all(|(_, weight)| *weight == 0.0) {
-        let expected = "a positive weight of \"effort\", \"rate\", \"duration\", \"electrical_energy\" or \"mechanical_work\", or something to \"track\" or a \"final\" place";
+        let expected = "a positive weight of \"effort\", \"rate\", \"duration\", \"peak_voltage\", \"electrical_energy\" or \"mechanical_work\", or something to \"track\" or a \"final\" place";
         return Err(scope.wrong("no weight", expected));
     }
     Ok(Objective {

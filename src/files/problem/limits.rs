@@ -1,21 +1,39 @@
 //! Conversion of path limits of a problem file to indices, bounds and regions.
 
-use crate::control::problem::{PathConstraint, Side};
+use crate::control::problem::{Duration, PathConstraint, Side};
 use crate::files::json::error::SceneError;
 use crate::files::json::scope::Scope;
 use crate::files::problem::spec_limits::{
-    All, ElectricFieldLimitSpec, JointAngleLimitSpec, LimitSpec, MarkerLimitSpec, RegionSpec,
-    StretchLimitSpec,
+    All, ElectricFieldLimitSpec, JointAngleLimitSpec, JointRateLimitSpec, LimitSpec,
+    MarkerLimitSpec, RegionSpec, StretchLimitSpec,
 };
 use crate::files::problem::state::{ELECTRIC_KEYS, joint_value, joint_with_coordinate};
 use crate::files::scene::names::names;
 use crate::files::scene::point::vector;
-use crate::files::units::quantity::{Angle, Length};
+use crate::files::units::quantity::{Angle, AngularVelocity, Length, Velocity};
 use crate::model::Region;
 use crate::model::system::System;
 
+/// The limits of a list of entries.
+pub(crate) fn limits(
+    (list, duration): (&[LimitSpec], Duration),
+    system: &System,
+    scope: &Scope<'_>,
+) -> Result<Vec<PathConstraint>, SceneError> {
+    let mut limits = Vec::new();
+    for (index, spec) in list.iter().enumerate() {
+        if spec.joint_rate.is_some() && matches!(duration, Duration::Free { .. }) {
+            let place = scope.index(index).key("joint_rate");
+            let found = "a limit of a rate where the duration is free";
+            return Err(place.wrong(found, "a given duration"));
+        }
+        limits.extend(limit(spec, system, &scope.index(index))?);
+    }
+    Ok(limits)
+}
+
 /// The limits that one entry stands for.
-pub(crate) fn limit(
+fn limit(
     spec: &LimitSpec,
     system: &System,
     scope: &Scope<'_>,
@@ -25,6 +43,7 @@ pub(crate) fn limit(
             "joint_angle",
             spec.joint_angle.as_ref().map(|_| "joint_angle"),
         ),
+        ("joint_rate", spec.joint_rate.as_ref().map(|_| "joint_rate")),
         ("stretch", spec.stretch.as_ref().map(|_| "stretch")),
         (
             "electric_field",
@@ -36,6 +55,9 @@ pub(crate) fn limit(
     let mut limits = Vec::new();
     if let Some(spec) = &spec.joint_angle {
         limits.push(joint_angle(spec, system, &scope)?);
+    }
+    if let Some(spec) = &spec.joint_rate {
+        limits.push(joint_rate(spec, system, &scope)?);
     }
     if let Some(spec) = &spec.stretch {
         limits.push(stretch(spec, system, &scope)?);
@@ -64,6 +86,23 @@ fn joint_angle(
     let max = bound("max", spec.max.as_ref(), f64::INFINITY)?;
     check_bounds(min, max, spec.min.is_some() || spec.max.is_some(), scope)?;
     Ok(PathConstraint::JointAngle { joint, min, max })
+}
+
+fn joint_rate(
+    spec: &JointRateLimitSpec,
+    system: &System,
+    scope: &Scope<'_>,
+) -> Result<PathConstraint, SceneError> {
+    let joint = joint_with_coordinate(&spec.joint, system, &scope.key("joint"))?;
+    let kinds = [AngularVelocity::kind(), Velocity::kind()];
+    let bound = |key: &str, quantity: Option<&_>, absent: f64| match quantity {
+        Some(quantity) => joint_value(quantity, &kinds, joint, system, &scope.key(key)),
+        None => Ok(absent),
+    };
+    let min = bound("min", spec.min.as_ref(), f64::NEG_INFINITY)?;
+    let max = bound("max", spec.max.as_ref(), f64::INFINITY)?;
+    check_bounds(min, max, spec.min.is_some() || spec.max.is_some(), scope)?;
+    Ok(PathConstraint::JointRate { joint, min, max })
 }
 
 fn stretch(

@@ -16,11 +16,17 @@ pub struct Output {
 }
 
 /// Words for columns of one kind.
-const KINDS: [&str; 7] = [
+const KINDS: [&str; 13] = [
     "joints",
+    "rates",
+    "reactions",
     "markers",
     "stretches",
+    "tensions",
+    "fields",
     "charges",
+    "currents",
+    "powers",
     "energies",
     "momenta",
     "constraint_violation",
@@ -43,9 +49,10 @@ pub(crate) fn output(
     known.extend(names(&system.muscles, |muscle| &muscle.name));
     known.extend(names(&system.solids, |solid| &solid.name));
     known.extend(system.components.iter().map(|one| one.name().to_owned()));
+    known.extend(names(&system.components.loads, |load| &load.name));
     for (index, name) in spec.quantities.iter().flatten().enumerate() {
         let expected = format!(
-            "{}, or the name of a joint, marker, muscle, block, spring or tendon",
+            "{}, or the name of a joint, marker, muscle, block, spring, tendon or load",
             KINDS.join(", ")
         );
         place.index(index).find(name, &known, &expected)?;
@@ -72,8 +79,14 @@ impl Output {
                     .iter()
                     .any(|m| Some(m.name.as_str()) == marker)
             }
+            "rates" => column.ends_with("_rate"),
+            "reactions" => column.contains("_force_") || column.contains("_torque_"),
             "stretches" => column.ends_with("_stretch"),
+            "tensions" => column.ends_with("_tension"),
+            "fields" => column.ends_with("_field"),
             "charges" => column.ends_with("_charge"),
+            "currents" => column.ends_with("_current"),
+            "powers" => column.ends_with("_power"),
             "energies" => column.contains("energy") || column.ends_with("mechanical_work"),
             "momenta" => column.contains("_momentum_"),
             "constraint_violation" => column == kind,

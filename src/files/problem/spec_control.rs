@@ -152,6 +152,9 @@ pub struct ObjectiveSpec {
     /// Weight of the final time in s.
     #[serde(default)]
     pub duration: f64,
+    /// Weight of the square of the peak voltage in kV: of the largest voltage of all sources that are sought, in all intervals.
+    #[serde(default)]
+    pub peak_voltage: f64,
     /// Weight per J of the electrical energy from the sources of lumped muscles, of all sources or of named ones; what flows back is negative.
     #[serde(default)]
     pub electrical_energy: EnergySpec,

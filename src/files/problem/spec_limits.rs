@@ -4,15 +4,18 @@ use schemars::JsonSchema;
 use serde::Deserialize;
 
 use crate::files::scene::point::{CornersSpec, Point};
-use crate::files::units::quantity::{ElectricField, JointCoordinate, Length, Quantity};
+use crate::files::units::quantity::{ElectricField, JointCoordinate, JointRate, Length, Quantity};
 
-/// A path limit: exactly one of the four.
+/// A path limit: exactly one of the five.
 #[derive(Clone, Debug, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct LimitSpec {
     /// Limits of a joint coordinate.
     #[serde(default)]
     pub joint_angle: Option<JointAngleLimitSpec>,
+    /// Limits of the rate of a joint coordinate.
+    #[serde(default)]
+    pub joint_rate: Option<JointRateLimitSpec>,
     /// Limits of the stretch of a muscle.
     #[serde(default)]
     pub stretch: Option<StretchLimitSpec>,
@@ -36,6 +39,20 @@ pub struct JointAngleLimitSpec {
     /// Upper bound, SI unit rad or m.
     #[serde(default)]
     pub max: Option<Quantity<JointCoordinate>>,
+}
+
+/// Limits of the mean rate of a joint coordinate in each interval: `min`, `max` or both. The duration has to be given.
+#[derive(Clone, Debug, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct JointRateLimitSpec {
+    /// Name of the joint.
+    pub joint: String,
+    /// Lower bound, SI unit rad/s or m/s.
+    #[serde(default)]
+    pub min: Option<Quantity<JointRate>>,
+    /// Upper bound, SI unit rad/s or m/s.
+    #[serde(default)]
+    pub max: Option<Quantity<JointRate>>,
 }
 
 /// Limits of the stretch of a muscle: `min`, `max` or both.

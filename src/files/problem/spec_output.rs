@@ -12,8 +12,9 @@ pub struct OutputSpec {
     /// nothing is lost to the eye.
     #[serde(default)]
     pub every: Option<Quantity<Time>>,
-    /// Columns of `trajectory.csv`: `joints`, `markers`, `stretches`, `charges`, `energies`, `momenta`, `constraint_violation`, or all of a
-    /// joint, marker, muscle, block, spring or tendon by its name. All where not written.
+    /// Columns of `trajectory.csv`: `joints`, `rates`, `reactions`, `markers`, `stretches`, `tensions`, `fields`, `charges`, `currents`,
+    /// `powers`, `energies`, `momenta`, `constraint_violation`, or all of a joint, marker, muscle, block, spring, tendon or load by its name. All where
+    /// not written.
     #[serde(default)]
     pub quantities: Option<Vec<String>>,
 }

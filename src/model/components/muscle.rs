@@ -2,15 +2,17 @@
 
 use crate::energy::{
     Capacitance, CoordinateDamper, DeadLoad, DielectricCell, ElasticCell, ElasticLaw, Elasticity,
-    FlowingCharge, MaxwellCell, NeoHooke, SectionInertia, ViscousCell,
+    Energy, FlowingCharge, MaxwellCell, NeoHooke, SectionInertia, ViscousCell,
 };
 use crate::functional::{Element, Mass};
 use crate::kinematics::MaterialVector;
-use crate::math::Vector;
+use crate::math::{Derivatives, Local, Vector};
 use crate::model::components::sought_muscle::SoughtMuscle;
 use crate::model::internal::{InternalKind, Internals};
+use crate::model::maxwell::MaxwellBranch;
 use crate::model::system::{ElectricConstants, Fidelity, Muscle};
 use crate::model::terms::{Terms, mid, rate};
+use nalgebra::SVector;
 
 const INERTIA: &str = "muscle inertia";
 const SECTION: &str = "section inertia";
@@ -179,6 +181,65 @@ pub fn capacitance(muscle: &Muscle) -> Option<Capacitance> {
     (muscle.fidelity == Fidelity::Lumped).then_some(Capacitance { cell })
 }
 
+/// Force in N with which a lumped muscle pulls its ends together, at a span r with its rate, a voltage between the electrodes, and the
+/// logarithms of the viscous stretches of its branches: `∂W/∂r·r/|r|` with the viscous force.
+pub(in crate::model) fn tension(
+    muscle: &Muscle,
+    [r, rate]: [&Vector; 2],
+    voltage: Option<f64>,
+    viscous: impl Iterator<Item = f64>,
+) -> f64 {
+    let mut force = match muscle.material.law {
+        None => potential_force((muscle, NeoHooke), r, voltage),
+        Some(law) => potential_force((muscle, law), r, voltage),
+    };
+    for (constants, z) in muscle.material.maxwell.list().iter().zip(viscous) {
+        let energy = branch_cell(muscle, constants);
+        force += first_force(&energy, [r.x, r.y, r.z, z, 0.0, 0.0]);
+    }
+    if let Some(viscosity) = muscle.material.viscosity {
+        // A virtual work: its force is that on the muscle.
+        let v = rate;
+        let arguments = [0.0, 0.0, 0.0, r.x, r.y, r.z, v.x, v.y, v.z];
+        force -= first_force(&viscous_cell(muscle, viscosity), arguments);
+    }
+    force.dot(r) / r.norm()
+}
+
+/// Elastic force and that of a voltage, by a law of elasticity.
+fn potential_force<L: Elasticity>(
+    (muscle, law): (&Muscle, L),
+    r: &Vector,
+    voltage: Option<f64>,
+) -> Vector {
+    match (muscle.material.electric, voltage) {
+        (Some(electric), Some(v)) => {
+            first_force(&dielectric(muscle, electric, law), [r.x, r.y, r.z, v])
+        }
+        _ => first_force(&elastic(muscle, law), [r.x, r.y, r.z]),
+    }
+}
+
+/// Derivative of an energy by its first vector.
+fn first_force<E: Energy<M>, const M: usize>(energy: &E, arguments: [f64; M]) -> Vector {
+    let local = energy.at::<1>(&SVector::from(arguments), &SVector::zeros());
+    local.plain::<1>().force(0)
+}
+
+fn viscous_cell(muscle: &Muscle, viscosity: f64) -> ViscousCell {
+    ViscousCell {
+        coefficient: 1.5 * viscosity * muscle.volume(),
+    }
+}
+
+fn branch_cell(muscle: &Muscle, constants: &MaxwellBranch) -> MaxwellCell {
+    MaxwellCell {
+        length: muscle.length(),
+        volume: muscle.volume(),
+        shear_modulus: constants.shear_modulus,
+    }
+}
+
 fn elasticity<L: Elasticity>(
     muscle: &Muscle,
     (law, [elasticity, electroelasticity]): (L, [&'static str; 2]),
@@ -235,11 +296,8 @@ fn viscosity(
         }
         None => terms.without(VISCOSITY, "no lumped muscle names a viscosity"),
         Some(viscosity) => {
-            let energy = ViscousCell {
-                coefficient: 1.5 * viscosity * muscle.volume(),
-            };
             let element = Element {
-                energy,
+                energy: viscous_cell(muscle, viscosity),
                 vectors: [mid(span), mid(span), rate(span)],
                 scalars: [],
             };
@@ -268,14 +326,9 @@ fn relaxation(
             continue;
         };
         let viscous = terms.vector(viscous);
-        let energy = MaxwellCell {
-            length: muscle.length(),
-            volume: muscle.volume(),
-            shear_modulus: constants.shear_modulus,
-        };
         let why = "Maxwell branches of";
         let element = Element {
-            energy,
+            energy: branch_cell(muscle, constants),
             vectors: [mid(span), mid(viscous)],
             scalars: [],
         };

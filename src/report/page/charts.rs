@@ -145,25 +145,23 @@ fn over_time(run: &Run<'_>) -> Vec<Value> {
         .for_each(|series| series.name.insert_str(0, "about "));
     let charges = joints::charges(system, motion, run.observations);
     let alone = |label: &'static str, curves: Vec<Series>| vec![(label, curves)];
+    let of_each = |title: &'static str, label, end: &str| (title, alone(label, of_sources(end)));
     let all = [
         ("Joints", joints::by_unit(system, motion)),
         ("Markers", alone("place [mm]", observed(&marker))),
         ("Deviations", tracking::by_unit(times, run.tracked)),
-        ("Stretches", alone("stretch", of_sources("_stretch"))),
+        of_each("Stretches", "stretch", "_stretch"),
+        of_each("Tensions", "tension [N]", "_tension"),
         ("Charges", vec![joints::scaled_charges(charges)]),
-        (
-            "Voltages of electrodes",
-            alone("voltage [V]", of_sources("_voltage")),
-        ),
+        of_each("Voltages of electrodes", "voltage [V]", "_voltage"),
+        of_each("Electric fields", "field [V/µm]", "_field"),
         ("Energies", alone("energy [mJ]", observed(&energy))),
-        (
+        of_each(
             "Energy from each source",
-            alone("energy [mJ]", of_sources("_electrical_energy")),
+            "energy [mJ]",
+            "_electrical_energy",
         ),
-        (
-            "Work of each source",
-            alone("work [mJ]", of_sources("_mechanical_work")),
-        ),
+        of_each("Work of each source", "work [mJ]", "_mechanical_work"),
         (
             "Linear momentum, conserved without ground and weight",
             alone("momentum [N ms]", observed(&begins("linear_momentum_"))),

@@ -1,0 +1,93 @@
+//! Sections at joints: the bodies on one side of each, whose balance of momentum gives the force and torque that the joint transmits.
+
+use crate::kinematics::{Carrier, MaterialVector, Pose};
+use crate::math::{DisjointSets, Vector};
+use crate::model::constraints::GLUE;
+use crate::model::model::Model;
+use crate::model::system::JointKind;
+
+/// A joint that alone connects the bodies on one side of it to the ground or to the others.
+#[derive(Clone, Debug)]
+pub struct JointSection {
+    /// Joint of the scene.
+    pub joint: usize,
+    /// Bodies of the presolved system on one side.
+    bodies: Vec<usize>,
+    /// 1 if the child of the scene is among them, −1 otherwise.
+    sign: f64,
+    /// Point of the joint, fixed in its child, or in its parent where the child is fixed.
+    at: MaterialVector,
+    /// False of spherical joints, which transmit no torque.
+    pub has_torque: bool,
+}
+
+impl Model {
+    /// The joints of the scene that can move and are in no loop; none where blocks are glued to bodies by constraints.
+    pub fn joint_sections(&self) -> Vec<JointSection> {
+        if self.present.iter().any(|present| present.term == GLUE) {
+            return Vec::new();
+        }
+        let joints = 0..self.presolved.system.joints.len();
+        joints.filter_map(|kept| self.section(kept)).collect()
+    }
+
+    fn section(&self, kept: usize) -> Option<JointSection> {
+        let system = &self.presolved.system;
+        let ground = system.bodies.len();
+        let joint = &system.joints[kept];
+        let mut sets = DisjointSets::new(ground + 1);
+        for (other, joint) in system.joints.iter().enumerate() {
+            if other != kept {
+                sets.join(joint.parent.unwrap_or(ground), joint.child);
+            }
+        }
+        let [child, parent, fixed] =
+            [joint.child, joint.parent.unwrap_or(ground), ground].map(|body| sets.smallest(body));
+        if joint.kind == JointKind::Floating || child == parent {
+            return None;
+        }
+        let (side, own) = match child == fixed {
+            true => (parent, -1.0),
+            false => (child, 1.0),
+        };
+        let index = self.presolved.joints[kept];
+        let of_scene = Some(self.system.joints[index].child);
+        let turned = match self.presolved.carrier(of_scene) == Some(joint.child) {
+            true => 1.0,
+            false => -1.0,
+        };
+        let bodies = 0..ground;
+        Some(JointSection {
+            joint: index,
+            bodies: bodies.filter(|&b| sets.smallest(b) == side).collect(),
+            sign: own * turned,
+            at: MaterialVector::point(Some(joint.child), &joint.at, &self.reference),
+            has_torque: joint.kind != JointKind::Spherical,
+        })
+    }
+
+    /// Force and torque about the origin on each body of the presolved system, of forces on all vectors at poses.
+    pub fn wrenches(&self, poses: &[Pose], forces: &[Vector]) -> Vec<[Vector; 2]> {
+        let mut wrenches = vec![[Vector::zeros(); 2]; poses.len()];
+        for (vector, force) in self.vectors.iter().zip(forces) {
+            for term in &vector.terms {
+                if let Carrier::Body(body) = term.carrier {
+                    let [sum, torque] = &mut wrenches[body];
+                    *sum += force * term.centre;
+                    *torque += term.at(&poses[body]).cross(force);
+                }
+            }
+        }
+        wrenches
+    }
+}
+
+impl JointSection {
+    /// Force and torque about the point of the joint that balance wrenches of the bodies at poses: from the parent on the child.
+    pub fn reaction(&self, wrenches: &[[Vector; 2]], poses: &[Pose]) -> [Vector; 2] {
+        let sum = |part: usize| -> Vector { self.bodies.iter().map(|&b| wrenches[b][part]).sum() };
+        let (force, torque) = (-sum(0) * self.sign, -sum(1) * self.sign);
+        let point = self.at.at(poses, &[]);
+        [force, torque - point.cross(&force)]
+    }
+}

@@ -1,0 +1,76 @@
+//! Limits of rates of joints: kept in every interval, active, the same in both coordinates, and refused where they make no sense.
+
+use crate::limits::{Ran, run};
+use serde_json::{Value, json};
+use std::path::Path;
+
+/// The pair in 0.2 s with the rate of its joint below a number of rad/s.
+fn problem(limit: Value, coordinates: &str) -> Value {
+    let root = Path::new(env!("CARGO_MANIFEST_DIR"));
+    let text = std::fs::read_to_string(root.join("problems/pair.json")).unwrap();
+    let mut problem: Value = serde_json::from_str(&text).unwrap();
+    problem["scene"] = json!(root.join("problems/scenes/pair.json"));
+    problem["control"]["coordinates"] = json!(coordinates);
+    problem["control"]["limits"] = json!([{ "joint_rate": limit }]);
+    problem
+}
+
+/// Largest mean rate in an interval in rad/s, from the table.
+fn largest(ran: &Ran) -> f64 {
+    let table = std::fs::read_to_string(ran.folder.path().join("p/trajectory.csv")).unwrap();
+    let mut lines = table.lines().filter(|line| !line.starts_with('#'));
+    let head: Vec<&str> = lines.next().unwrap().split(',').collect();
+    let place = |name: &str| head.iter().position(|h| h.starts_with(name)).unwrap();
+    let [time, joint] = [place("time"), place("joint1 ")];
+    let rows: Vec<Vec<f64>> = lines
+        .map(|line| {
+            line.split(',')
+                .map(|cell| cell.parse().unwrap_or(f64::NAN))
+                .collect()
+        })
+        .collect();
+    let rate = |pair: &[Vec<f64>]| {
+        1e3 * (pair[1][joint] - pair[0][joint]) / (pair[1][time] - pair[0][time])
+    };
+    rows.windows(2).map(rate).fold(0.0, f64::max)
+}
+
+#[test]
+fn a_joint_turns_no_faster_than_its_limit() {
+    let solved = |max: f64, coordinates: &str| {
+        let limit = json!({ "joint": "joint1", "max": format!("{max} rad/s") });
+        let ran = run("solve", &problem(limit, coordinates), &[]);
+        assert!(ran.out.contains("objective"), "{}{}", ran.out, ran.err);
+        let objective = ran.read("summary.json")["objective"].as_f64().unwrap();
+        (largest(&ran), objective)
+    };
+    let (free, cheap) = solved(1e3, "reduced");
+    assert!(free > 6.0, "{free}");
+    let both = ["reduced", "redundant"].map(|coordinates| solved(4.0, coordinates));
+    for (rate, objective) in both {
+        assert!((rate - 4.0).abs() < 1e-6, "{rate}");
+        assert!(objective > 1.01 * cheap, "{objective} {cheap}");
+    }
+    assert!((both[0].1 / both[1].1 - 1.0).abs() < 1e-6, "{both:?}");
+}
+
+#[test]
+fn limits_of_rates_that_make_no_sense_are_refused() {
+    let refused = |limit: Value, words: &[&str]| {
+        run("solve", &problem(limit, "reduced"), &[]).is_refused(words);
+    };
+    let place = "limits[0].joint_rate";
+    refused(json!({ "joint": "joint1" }), &[place, "no bound"]);
+    refused(
+        json!({ "joint": "joint1", "max": "3 m/s" }),
+        &[place, "3 m/s"],
+    );
+    refused(
+        json!({ "joint": "joint1", "min": 2, "max": 1 }),
+        &[place, "crossed"],
+    );
+    refused(json!({ "joint": "joint7", "max": 1 }), &[place, "joint7"]);
+    let mut free = problem(json!({ "joint": "joint1", "max": 1 }), "reduced");
+    free["control"]["duration"] = json!({ "min": 0.1, "max": 0.3, "guess": 0.2 });
+    run("solve", &free, &[]).is_refused(&[place, "a given duration"]);
+}
