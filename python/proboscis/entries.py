@@ -115,6 +115,13 @@ Fixed: TypeAlias = "Text | Held"
 """A face that is clamped, or a place that is held in some directions."""
 
 
+class Gent(TypedDict):
+    """Gent's law."""
+
+    limit: float
+    """Limit Jm of I₁ − 3, a positive ratio."""
+
+
 class Grid(TypedDict):
     """A box cut into hexahedra."""
 
@@ -144,6 +151,22 @@ class Held(TypedDict):
     """All nodes of a plane."""
 
 
+class Law(TypedDict):
+    """Law of elasticity: exactly one of the four. The `shear_modulus` of the material is that of small strains in each of them."""
+
+    gent: NotRequired[Gent]
+    """Gent's law, −μ/2 Jm ln(1 − (I₁ − 3)/Jm): it stiffens without bound towards a greatest stretch."""
+
+    mooney_rivlin: NotRequired[MooneyRivlin]
+    """Mooney and Rivlin's law, μ/2 [(1 − s)(I₁ − 3) + s (I₂ − 3)]."""
+
+    ogden: NotRequired[Ogden]
+    """Ogden's law with two terms, of lumped muscles only, 2μ [(1 − s)/α₁² Σ(λ^α₁ − 1) + s/α₂² Σ(λ^α₂ − 1)]."""
+
+    yeoh: NotRequired[Yeoh]
+    """Yeoh's law, μ/2 (I₁ − 3) + c₂ (I₁ − 3)² + c₃ (I₁ − 3)³."""
+
+
 class Layer(TypedDict):
     """A layer of a box."""
 
@@ -167,12 +190,29 @@ class Maxwell(TypedDict):
     """Shear modulus μ₁ of its spring, SI unit Pa."""
 
 
+class MooneyRivlin(TypedDict):
+    """Mooney and Rivlin's law."""
+
+    share: float
+    """Part s of the shear modulus that belongs to I₂, from 0 to 1: C₀₁ = s μ/2, C₁₀ = (1 − s) μ/2."""
+
+
 MuscleModel: TypeAlias = "Literal['lumped', 'finite_elements']"
 """Model of a muscle."""
 
 
 class Nothing(TypedDict):
     """An object without entries."""
+
+
+class Ogden(TypedDict):
+    """Ogden's law with two terms."""
+
+    exponents: Sequence[float] | Numbers
+    """Exponents α₁ and α₂, not zero."""
+
+    share: float
+    """Part s of the shear modulus that belongs to the second term, from 0 to 1: μ₂ α₂ = 2 s μ, μ₁ α₁ = 2 (1 − s) μ."""
 
 
 class Pair(TypedDict):
@@ -286,6 +326,16 @@ class Velocity(TypedDict):
 
     stretch_rate: NotRequired[Sequence[Quantity] | Numbers]
     """Rate of stretch along x, y, z, SI unit 1/s."""
+
+
+class Yeoh(TypedDict):
+    """Yeoh's law."""
+
+    c2: Quantity
+    """Constant c₂ = C₂₀, SI unit Pa."""
+
+    c3: Quantity
+    """Constant c₃ = C₃₀, SI unit Pa."""
 
 
 All: TypeAlias = "Literal['all']"
@@ -514,14 +564,30 @@ class JointAngleLimit(TypedDict):
     """Lower bound, SI unit rad or m."""
 
 
+class JointRateLimit(TypedDict):
+    """Limits of the mean rate of a joint coordinate in each interval: `min`, `max` or both. The duration has to be given."""
+
+    joint: Text
+    """Name of the joint."""
+
+    max: NotRequired[Quantity]
+    """Upper bound, SI unit rad/s or m/s."""
+
+    min: NotRequired[Quantity]
+    """Lower bound, SI unit rad/s or m/s."""
+
+
 class Limit(TypedDict):
-    """A path limit: exactly one of the four."""
+    """A path limit: exactly one of the five."""
 
     electric_field: NotRequired[ElectricFieldLimit]
     """Breakdown field of muscles or elastic blocks."""
 
     joint_angle: NotRequired[JointAngleLimit]
     """Limits of a joint coordinate."""
+
+    joint_rate: NotRequired[JointRateLimit]
+    """Limits of the rate of a joint coordinate."""
 
     marker: NotRequired[MarkerLimit]
     """Region of a marker."""
@@ -568,6 +634,9 @@ class Objective(TypedDict):
 
     mechanical_work: NotRequired[Energy]
     """Weight per J of the mechanical work of the electrical forces of lumped muscles, of all sources or of named ones."""
+
+    peak_voltage: NotRequired[float]
+    """Weight of the square of the peak voltage in kV: of the largest voltage of all sources that are sought, in all intervals."""
 
     rate: NotRequired[float]
     """Weight of Σ |V_k − V_{k−1}|²/h, V in kV, h in s, with the rest voltages of start and goal at the ends."""
@@ -1033,6 +1102,7 @@ class Output(TypedDict):
     """
 
     quantities: NotRequired[Sequence[Text]]
-    """Columns of `trajectory.csv`: `joints`, `markers`, `stretches`, `charges`, `energies`, `momenta`, `constraint_violation`, or all of a joint,
-    marker, muscle, block, spring or tendon by its name. All where not written.
+    """Columns of `trajectory.csv`: `joints`, `rates`, `reactions`, `markers`, `stretches`, `tensions`, `fields`, `charges`, `currents`, `powers`,
+    `energies`, `momenta`, `constraint_violation`, or all of a joint, marker, muscle, block, spring, tendon or load by its name. All where not
+    written.
     """

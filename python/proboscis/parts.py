@@ -23,12 +23,13 @@ __all__ = ["GROUND", "Part", "Material", "Body", "Joint", "Muscle", "Solid", "Sp
 class Material(Part):
     """A dielectric elastomer.
 
-    * `shear_modulus`: Shear modulus μ, SI unit Pa.
+    * `shear_modulus`: Shear modulus μ of small strains, SI unit Pa.
     * `c1`: Constant of the term c₁ E·E, SI unit F/m = N/V².
     * `c2`: Constant of the term c₂ C:(E⊗E), SI unit F/m = N/V².
     * `density`: Density, SI unit kg/m³; without it muscles are massless.
     * `dielectric`: Law by which `relative_permittivity` enters the energy; `first_order` where not written.
     * `lame_lambda`: First Lamé constant λ, SI unit Pa; or give `poisson_ratio`. Finite elements need one of them.
+    * `law`: Law of elasticity; the neo-Hookean one where not written.
     * `maxwell`: Maxwell branches, five at most: springs in series with dampers, in which stress relaxes. Lumped muscles read them.
     * `poisson_ratio`: Poisson's ratio, between −1 and 0.5; or give `lame_lambda`.
     * `relative_permittivity`: Relative permittivity, 1 or more; or give `c1` and `c2`; without either the material has no electric term.
@@ -47,6 +48,7 @@ class Material(Part):
         density: Quantity | None = None,
         dielectric: entries.Dielectric | None = None,
         lame_lambda: Quantity | None = None,
+        law: entries.Law | None = None,
         maxwell: Sequence[entries.Maxwell] | None = None,
         poisson_ratio: float | None = None,
         relative_permittivity: float | None = None,
@@ -61,6 +63,7 @@ class Material(Part):
                 "density": density,
                 "dielectric": dielectric,
                 "lame_lambda": lame_lambda,
+                "law": law,
                 "maxwell": maxwell,
                 "poisson_ratio": poisson_ratio,
                 "relative_permittivity": relative_permittivity,
