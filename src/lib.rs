@@ -95,7 +95,7 @@ pub mod units;
 #[cfg_attr(not(internals), doc(hidden))]
 pub mod workflow;
 
-pub use control::{EarlierSolution, Orientation, Signal, Solution};
+pub use control::{EarlierSolution, Orientation, Solution};
 pub use dynamics::Integrator;
 pub use energy::Energy;
 pub use functional::Element;
@@ -104,7 +104,7 @@ pub use interface::{
     State,
 };
 pub use kinematics::Pose;
-pub use math::Jet;
+pub use math::{Jet, Signal};
 pub use mesh::Mesh;
 pub use mesh::grid::Grid;
 pub use model::components::{Load, Spring, Tendon};

@@ -10,9 +10,10 @@ use crate::app::task::read;
 use crate::control::problem::{
     BoundaryState, Control, Duration, Guess, Objective, Simulation, Solver, Task, Voltages,
 };
-use crate::control::{Column, Row, Signal, Transcription};
+use crate::control::{Column, Row, Transcription};
 use crate::ipopt::LinearSolver;
 use crate::ipopt::interrupt::{self, TimeLimit};
+use crate::math::Signal;
 use crate::mesh::Mesh;
 use crate::model::{Coordinates, Model, System};
 use crate::nlp::Nlp;

@@ -113,6 +113,7 @@ fn of_model(model: &Model, control: Option<&Control>) -> Inspected {
         ("tendons", components.tendons.len()),
         ("loads", components.loads.len()),
         ("other components", components.others.len()),
+        ("prescribed coordinates", model.prescribed.len()),
     ];
     let kinds = kinds.into_iter().filter(|(_, count)| *count > 0);
     sizes.splice(3..3, kinds);

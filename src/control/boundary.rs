@@ -6,6 +6,7 @@ use crate::control::energy_cost::sources;
 use crate::control::error::BoundaryError;
 use crate::control::goal_rows;
 use crate::control::limits::{Limits, When};
+use crate::control::prescribed::{self, at_rest};
 use crate::control::problem::{BoundaryState, Control, Rest, Waypoint};
 use crate::control::rest::rest_at;
 use crate::control::sought;
@@ -14,7 +15,9 @@ use crate::control::transcription::layout::Layout;
 use crate::dynamics::{Equilibrium, Start, muscle_beyond_law, muscle_without_length};
 use crate::functional::Order;
 use crate::math::shortest;
-use crate::model::{Analysis, Coordinates, Graph, Model, Presolved, Quantity, Role, System};
+use crate::model::{
+    Analysis, Coordinates, Graph, Model, Prescribed, Presolved, Quantity, Role, System,
+};
 
 /// Parts of an interval by which a waypoint may miss an instant.
 const OFF: f64 = 1e-6;
@@ -78,7 +81,10 @@ impl BoundaryConditions {
         let mut model = Model::of_presolved(system.clone(), analysis, presolved)?;
         let (start, of_start) = start_of(&model, &control.start)?;
         goal_rows::leave_out_constant(&mut model, &limits, &start.z)?;
-        let (given, of_goal) = coordinates_at_goal(&model, control)?;
+        let (mut given, of_goal) = coordinates_at_goal(&model, control)?;
+        let rests = rests_at(&control.goal);
+        let moving = (&mut given[..], rests != Rests::Nothing);
+        prescribed::at_goal(&model, control, moving)?;
         if let Some(z) = given.iter().copied().collect::<Option<Vec<f64>>>() {
             check_muscles(&model, &z, "goal")?;
         }
@@ -88,7 +94,7 @@ impl BoundaryConditions {
             start,
             goal: TerminalState {
                 coordinates: given,
-                rests: rests_at(&control.goal),
+                rests,
                 rest: of_goal,
             },
             rest: rest.map(|voltages| voltages.map(<[f64]>::to_vec)),
@@ -184,7 +190,7 @@ fn start_of(
 ) -> Result<(Start, Option<Vec<f64>>), BoundaryError> {
     match start {
         BoundaryState::RestAtVoltages(voltages, _) => {
-            let rest = rest_at(model, voltages, "start")?;
+            let rest = rest_at(model, voltages, ("start", 0.0))?;
             Ok((at_rest(model, rest.z), Some(rest.scalars)))
         }
         state => Ok((resolve_start(model, state, "start")?, None)),
@@ -202,7 +208,7 @@ fn coordinates_at_goal(
     let mut given = vec![None; n];
     match goal {
         BoundaryState::RestAtVoltages(voltages, of) => {
-            let rest = rest_at(model, voltages, "goal")?;
+            let rest = rest_at(model, voltages, ("goal", control.duration.first()))?;
             let reached = match of {
                 Rest::Everything | Rest::Attainable => n,
                 Rest::Bodies => model.action.map.of_bodies.min(n),
@@ -273,14 +279,6 @@ fn all_joints_given(system: &System, goal: &BoundaryState) -> bool {
         && coordinates.iter().enumerate().all(named)
 }
 
-/// A start at coordinates of rest; nodes may have velocities of their own.
-fn at_rest(model: &Model, z: Vec<f64>) -> Start {
-    match model.node_rates() {
-        Some(rates) => Start::with_rates(model, z, &rates),
-        None => Start::at_rest(model, z),
-    }
-}
-
 /// Coordinates and momenta of a start.
 ///
 /// # Errors
@@ -292,26 +290,21 @@ pub fn resolve_start(
 ) -> Result<Start, BoundaryError> {
     match state {
         BoundaryState::RestAtVoltages(voltages, _) => {
-            Ok(at_rest(model, rest_at(model, voltages, place)?.z))
+            Ok(at_rest(model, rest_at(model, voltages, (place, 0.0))?.z))
         }
         BoundaryState::JointAngles {
             angles,
             rates,
             velocities,
         } => {
-            let value = |map: &std::collections::BTreeMap<usize, f64>, j: usize| {
-                map.get(&j).copied().unwrap_or(0.0)
-            };
-            let joints = |map| {
-                (0..model.joint_readings.len())
-                    .map(|j| value(map, j))
-                    .collect::<Vec<f64>>()
-            };
-            let z = model.coordinates_at(&joints(angles));
+            let value = |one: &Prescribed| one.motion.at(0.0);
+            let joints = prescribed::by_joint(model, angles, value, (place, "coordinate"))?;
+            let z = model.coordinates_at(&joints);
             check_constraints(model, &z, place)?;
             check_muscles(model, &z, place)?;
-            let of_joints = joints(rates);
-            let rates = model.rates_at(&joints(angles), &of_joints, velocities);
+            let rate = |one: &Prescribed| one.motion.derivatives(0.0)[1];
+            let of_joints = prescribed::by_joint(model, rates, rate, (place, "rate"))?;
+            let rates = model.rates_at(&joints, &of_joints, velocities);
             let rates = rates.map_err(|body| BoundaryError::Follows {
                 place,
                 body: model.system.bodies[body].name.clone(),
@@ -324,6 +317,7 @@ pub fn resolve_start(
                 .start(model)
                 .map_err(|reason| BoundaryError::OtherEnd { place, reason })?;
             check_muscles(model, &start.z, place)?;
+            prescribed::check_end(model, &start.z, place)?;
             Ok(start)
         }
         BoundaryState::Markers { .. } | BoundaryState::Free => unreachable!("it is a goal only"),

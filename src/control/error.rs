@@ -39,6 +39,14 @@ pub enum BoundaryError {
         /// The body.
         body: String,
     },
+    /// A start or goal contradicts a prescribed motion.
+    #[error("{place}: {reason}")]
+    Prescribed {
+        /// `start` or `goal`.
+        place: &'static str,
+        /// The joint, what is prescribed and what was found.
+        reason: String,
+    },
     /// Another motion did not end in a state of this model.
     #[error("{place}.end_of: {reason}")]
     OtherEnd {

@@ -1,6 +1,6 @@
 //! Voltages and loads as functions of time: constants, rows of a table or a solution, or one function for each source.
 
-use crate::control::Signal;
+use crate::math::Signal;
 use crate::model::System;
 use std::borrow::Cow;
 use std::collections::BTreeMap;

@@ -8,7 +8,7 @@
 
 use crate::control::problem::{Control, PathConstraint};
 use crate::control::quantity_cost::{CostFunction, During, QuantityCost};
-use crate::control::signal::Signal;
+use crate::math::Signal;
 use crate::model::{Constant, Parameter, Quantity, System};
 
 /// Name of the parameter that is the peak.

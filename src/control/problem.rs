@@ -1,13 +1,14 @@
 //! Tasks of a problem: simulation, equilibrium, control. Units g, mm, ms, N, V.
 
+use crate::control::Earlier;
 pub use crate::control::boundary_state::{BoundaryState, Hold, Rest};
 pub use crate::control::energy_cost::{EnergyCost, SourceEnergy};
 pub use crate::control::goal::{Orientation, Place};
 pub use crate::control::inputs::{Afterwards, Voltages, absent_loads};
 pub use crate::control::quantity_cost::{CostFunction, During, Objective, QuantityCost};
-use crate::control::{Earlier, Signal};
 use crate::dynamics::Solving;
 use crate::ipopt::{LinearSolver, OptionValue};
+use crate::math::Signal;
 use crate::model::system::{ElectricConstants, InputKind, Muscle};
 use crate::model::{Coordinates, Parameter, Region, Role, System, Variable};
 use std::collections::BTreeMap;

@@ -1,7 +1,7 @@
 //! The objective: voltage effort plus costs of markers, joints and energies.
 
 use crate::control::energy_cost::EnergyCost;
-use crate::control::signal::Signal;
+use crate::math::Signal;
 use crate::model::system::InputKind;
 use crate::model::{Quantity, System};
 

@@ -4,18 +4,18 @@ use crate::control::error::BoundaryError;
 use crate::dynamics::{Equilibrium, stable_equilibrium};
 use crate::model::{Analysis, Model, Presolved, Role, with_parameters};
 
-/// The equilibrium under voltages (V, one per muscle), with sought parameters at their guesses.
+/// The equilibrium under voltages (V, one per muscle), with sought parameters at their guesses and prescribed coordinates at a time in ms.
 pub(super) fn rest_at(
     model: &Model,
     voltages: &[f64],
-    place: &'static str,
+    (place, time): (&'static str, f64),
 ) -> Result<Equilibrium, BoundaryError> {
     let parameters = &model.analysis.parameters;
     if parameters.is_empty() {
-        return equilibrium(model, voltages, place);
+        return equilibrium(model, voltages, (place, time));
     }
     let guesses: Vec<f64> = parameters.iter().map(|p| p.guess).collect();
-    let mut found = rest_with(model, voltages, &guesses, place)?;
+    let mut found = rest_with(model, voltages, &guesses, (place, time))?;
     let at = model.variables.range(Role::Parameter).start;
     found.scalars.splice(at..at, guesses);
     Ok(found)
@@ -26,7 +26,7 @@ pub(super) fn rest_with(
     model: &Model,
     voltages: &[f64],
     values: &[f64],
-    place: &'static str,
+    at: (&'static str, f64),
 ) -> Result<Equilibrium, BoundaryError> {
     let sought = &model.analysis;
     let system = with_parameters(&model.system, &sought.parameters, values);
@@ -38,15 +38,15 @@ pub(super) fn rest_with(
         ..sought.clone()
     };
     let model = Model::of_presolved(system, given, presolved)?;
-    equilibrium(&model, voltages, place)
+    equilibrium(&model, voltages, at)
 }
 
 fn equilibrium(
     model: &Model,
     voltages: &[f64],
-    place: &'static str,
+    (place, time): (&'static str, f64),
 ) -> Result<Equilibrium, BoundaryError> {
-    let zero = model.reference_coordinates();
+    let zero = model.reference_coordinates_at(time);
     let found = stable_equilibrium(model, &zero, &model.scalars(voltages));
     found.map_err(|source| BoundaryError::NoEquilibrium { place, source })
 }

@@ -88,11 +88,14 @@ pub(super) fn check(
             });
         }
     }
-    let ends = [("start", &control.start), ("goal", &control.goal)];
-    for ((place, state), z) in ends.into_iter().zip(rest) {
+    let ends = [
+        (("start", 0.0), &control.start),
+        (("goal", control.duration.first()), &control.goal),
+    ];
+    for ((at, state), z) in ends.into_iter().zip(rest) {
         if let (BoundaryState::RestAtVoltages(voltages, _), Some(z)) = (state, z) {
             for index in 0..control.parameters.len() {
-                check_rest(model, (place, voltages, z), index)?;
+                check_rest(model, (at, voltages, z), index)?;
             }
         }
     }
@@ -102,7 +105,7 @@ pub(super) fn check(
 /// Refuses a state of rest that is another one where a parameter takes other values.
 fn check_rest(
     model: &Model,
-    (place, voltages, z): (&'static str, &[f64], &[f64]),
+    (at, voltages, z): ((&'static str, f64), &[f64], &[f64]),
     index: usize,
 ) -> Result<(), BoundaryError> {
     let parameters = &model.analysis.parameters;
@@ -116,7 +119,8 @@ fn check_rest(
     let refused = |why: &str| BoundaryError::Parameter {
         name: name.clone(),
         reason: format!(
-            "the state of rest at the {place} {why}; give its joint coordinates (\"joint_angles\")"
+            "the state of rest at the {} {why}; give its joint coordinates (\"joint_angles\")",
+            at.0
         ),
     };
     for (bound, probe) in [lower, upper].into_iter().zip(PROBES) {
@@ -127,7 +131,7 @@ fn check_rest(
         };
         let mut values: Vec<f64> = parameters.iter().map(|p| p.guess).collect();
         values[index] = value;
-        let found = rest_with(model, voltages, &values, place)
+        let found = rest_with(model, voltages, &values, at)
             .map_err(|_| refused("does not exist for all values of it"))?;
         let size = model.length();
         let sizes = model.sizes();

@@ -75,13 +75,14 @@ impl<'m> AtInstant<'m> {
         if let (0, Some(known)) = (k, &discrete.rates) {
             return known.clone();
         }
+        let time = discrete.begun + discrete.times[k];
         let is_constrained = model.action.map.multipliers > 0;
         if discrete.reading == Reading::Instants || is_constrained {
             let kinetic = self.kinetic.get_or_insert_with(|| Kinetic::new(model));
-            if let Some(rates) = kinetic.rates(here, momentum) {
+            if let Some(rates) = kinetic.rates(here, time, momentum) {
                 return rates;
             }
         }
-        rates(model, here, momentum)
+        rates(model, here, time, momentum)
     }
 }

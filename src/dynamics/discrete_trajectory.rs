@@ -15,6 +15,8 @@ pub struct DiscreteTrajectory {
     pub momenta: Vec<Vec<f64>>,
     /// Rates of the coordinates at the start, where they are known.
     pub rates: Option<Vec<f64>>,
+    /// Time in ms to which prescribed motions have come at the start.
+    pub begun: f64,
     /// Voltages of each interval in V and potentials in their unit, by scalar of the interval.
     pub scalars: Vec<Vec<f64>>,
     /// Times at which energies and momenta are read.

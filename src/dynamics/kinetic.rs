@@ -16,7 +16,7 @@ use crate::functional::{BlockMask, Blocks, Order, Sample, SumDerivatives, TermKi
 use crate::math::Vector;
 use crate::model::Model;
 use crate::sparse::Symmetry;
-use nalgebra::{DMatrix, SymmetricEigen};
+use nalgebra::{DMatrix, DVector, SymmetricEigen};
 
 /// Parts of the largest square of a constraint gradient that count as none.
 const DEPENDENT: f64 = 1e-14;
@@ -42,6 +42,8 @@ impl<'m> Kinetic<'m> {
                 entries.add(slot, (i, j));
             }
         }
+        let held: Vec<usize> = model.prescribed.iter().map(|one| one.coordinate).collect();
+        entries.hold(&held, 1.0);
         let size = action.map.unknowns();
         Self {
             scratch: action.scratch(Order::Hessian),
@@ -52,11 +54,12 @@ impl<'m> Kinetic<'m> {
         }
     }
 
-    /// Rates of the coordinates of a placed instant; nothing where masses are missing or constraints are redundant, and coordinates too
+    /// Rates of the coordinates of a placed instant at a time in ms; nothing where masses are missing or constraints are redundant, and coordinates too
     /// many for a null space.
     pub(super) fn rates(
         &mut self,
         instant: &mut Configuration,
+        time: f64,
         momentum: &[f64],
     ) -> Option<Vec<f64>> {
         let action = &self.model.action;
@@ -99,22 +102,44 @@ impl<'m> Kinetic<'m> {
             &mut self.scratch,
             &mut self.values,
         );
-        self.solved(momentum).or_else(|| self.within(momentum))
+        let mut prescribed = vec![0.0; action.map.unknowns()];
+        self.model.prescribe_rates(time, &mut prescribed);
+        let right = self.without(momentum, &prescribed);
+        let found = self.solved(&right);
+        let mut rates = found.or_else(|| self.within(&right, momentum.len()))?;
+        for (rate, prescribed) in rates.iter_mut().zip(prescribed) {
+            *rate += prescribed;
+        }
+        Some(rates)
     }
 
-    fn solved(&mut self, momentum: &[f64]) -> Option<Vec<f64>> {
+    /// Right-hand sides of what is not prescribed: momenta and constraints, less those of the prescribed rates.
+    fn without(&self, momentum: &[f64], prescribed: &[f64]) -> Vec<f64> {
+        let mut right = momentum.to_vec();
+        right.resize(prescribed.len(), 0.0);
+        if !self.model.prescribed.is_empty() {
+            let (same, n) = (&self.model.action.layout().same, momentum.len());
+            for ((i, j), value) in same.entries().zip(&self.values) {
+                if i < n || j < n {
+                    right[i] -= value * prescribed[j];
+                }
+            }
+            self.model.hold(&mut right);
+        }
+        right
+    }
+
+    fn solved(&mut self, right: &[f64]) -> Option<Vec<f64>> {
         self.tangent.factor(&self.values).ok()?;
-        let mut rates = momentum.to_vec();
-        rates.resize(self.model.action.map.unknowns(), 0.0);
+        let mut rates = right.to_vec();
         self.tangent.solve(&mut rates);
-        rates.truncate(momentum.len());
+        rates.truncate(self.model.action.map.coordinates);
         rates.iter().all(|rate| rate.is_finite()).then_some(rates)
     }
 
-    /// The same in the null space of the constraints.
-    fn within(&self, momentum: &[f64]) -> Option<Vec<f64>> {
-        let n = momentum.len();
-        if n > DECOMPOSED || momentum.iter().any(|p| !p.is_finite()) {
+    /// The same in the null space of the constraints, from the shortest rates that meet them.
+    fn within(&self, right: &[f64], n: usize) -> Option<Vec<f64>> {
+        if n > DECOMPOSED || right.iter().any(|p| !p.is_finite()) {
             return None;
         }
         let mut mass = DMatrix::<f64>::zeros(n, n);
@@ -123,19 +148,35 @@ impl<'m> Kinetic<'m> {
         for ((i, j), &value) in entries.zip(&self.values) {
             match (i < n, j < n) {
                 (true, true) => mass[(i, j)] += value,
-                (true, false) => gradients[(i, j - n)] += value,
+                (true, false) if !self.model.is_prescribed(i) => gradients[(i, j - n)] += value,
                 _ => {}
             }
         }
-        let square = SymmetricEigen::new(&gradients * gradients.transpose());
+        let mut square = &gradients * gradients.transpose();
+        let largest = square.amax();
+        for one in &self.model.prescribed {
+            square[(one.coordinate, one.coordinate)] = largest;
+        }
+        let square = SymmetricEigen::new(square);
         let least = DEPENDENT * square.eigenvalues.amax();
-        let free = (0..n).filter(|&i| square.eigenvalues[i] <= least);
-        let free: Vec<usize> = free.collect();
-        Some(rates_within(
-            &mass,
-            &square.eigenvectors.select_columns(&free),
-            momentum,
-        ))
+        let (free, held): (Vec<usize>, Vec<usize>) =
+            (0..n).partition(|&i| square.eigenvalues[i] <= least);
+        let of_constraints = &gradients * DVector::from_column_slice(&right[n..]);
+        let mut met = DVector::<f64>::zeros(n);
+        for i in held {
+            let vector = square.eigenvectors.column(i);
+            met += vector * (vector.dot(&of_constraints) / square.eigenvalues[i]);
+        }
+        let left = DVector::from_column_slice(&right[..n]) - &mass * &met;
+        let basis = square.eigenvectors.select_columns(&free);
+        let rates = rates_within(&mass, &basis, left.as_slice());
+        Some(
+            rates
+                .iter()
+                .zip(&met)
+                .map(|(free, met)| free + met)
+                .collect(),
+        )
     }
 }
 

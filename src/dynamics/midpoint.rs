@@ -69,6 +69,8 @@ impl<'m> Stepper<'m> {
             }
         }
         entries.add_scalars(model, &[[0, 1]]);
+        let held: Vec<usize> = model.prescribed.iter().map(|one| one.coordinate).collect();
+        entries.hold(&held, 1.0);
         let (sizes, algebraic) = (model.sizes(), model.variables.algebraic());
         let (mut here, next) = (map.instant(), map.instant());
         here.z.copy_from_slice(z);
@@ -96,7 +98,12 @@ impl<'m> Stepper<'m> {
             true => entries.corrected_tangent(model, symmetry),
             false => entries.tangent(sizes.len(), symmetry, solving.backend),
         };
-        Self::by(equations, tangent, sizes, solving.newton)
+        Self::by(equations, (tangent, held), sizes, solving.newton)
+    }
+
+    /// Prescribed motions have come to this time in ms.
+    pub(super) fn begun_at(&mut self, time: f64) {
+        self.equations_mut().time = time;
     }
 
     /// Takes the rates of the coordinates before the first step, for its guess and its error.
@@ -126,6 +133,7 @@ impl Equations for Midpoint<'_> {
         for i in 0..n {
             self.next.z[i] = self.here.z[i] + h * (self.rates[i] + ratio * self.changes[i]);
         }
+        self.model.prescribe(self.time + h, &mut self.next.z);
         let m = self.model.action.map.unknowns();
         let [multipliers, scalars] = &mut self.saved;
         multipliers.copy_from_slice(&self.here.z[n..m]);

@@ -37,6 +37,7 @@ mod resume;
 mod simulate;
 mod singular_configurations;
 mod solving;
+mod start;
 mod step_report;
 mod step_state;
 mod stepper;
@@ -62,13 +63,12 @@ pub use midpoint::{Midpoint, Stepper};
 pub use momenta::last_momentum;
 pub use observe::{observations, observed};
 pub use resolution::Balance;
-pub use simulate::{
-    Lengths, Start, StepControl, TimeGrid, go_on, simulate, simulate_by, simulate_within,
-};
+pub use simulate::{Lengths, StepControl, TimeGrid, go_on, simulate, simulate_by, simulate_within};
 pub use singular_configurations::{
     BeyondLaw, muscle_beyond_law, muscle_without_length, reversed_muscle,
 };
 pub use solving::{Integrator, Newton, Solving};
+pub use start::Start;
 pub use step_report::StepperReport;
 pub use step_state::{StepState, TangentState};
 pub use stepper::Steps;

@@ -15,8 +15,30 @@ pub(super) const DECOMPOSED: usize = 500;
 /// The residual of rates that are iterated for, relative to the momenta.
 const LEFT: f64 = 1e-13;
 
-/// Rates of the coordinates with given momenta at a placed instant; coordinates without inertia rest.
-pub(super) fn rates(model: &Model, instant: &mut Configuration, momentum: &[f64]) -> Vec<f64> {
+/// Rates of the coordinates with given momenta at a placed instant, those of prescribed ones at a time in ms; coordinates without
+/// inertia rest.
+pub(super) fn rates(
+    model: &Model,
+    instant: &mut Configuration,
+    time: f64,
+    momentum: &[f64],
+) -> Vec<f64> {
+    if model.prescribed.is_empty() {
+        return free_rates(model, instant, momentum);
+    }
+    let mut rates = vec![0.0; momentum.len()];
+    model.prescribe_rates(time, &mut rates);
+    let carried = model.action.momentum(instant, &rates);
+    let mut left: Vec<f64> = momentum.iter().zip(carried).map(|(p, c)| p - c).collect();
+    model.hold(&mut left);
+    for (rate, free) in rates.iter_mut().zip(free_rates(model, instant, &left)) {
+        *rate += free;
+    }
+    rates
+}
+
+/// The same where what is prescribed rests and has no momentum.
+fn free_rates(model: &Model, instant: &mut Configuration, momentum: &[f64]) -> Vec<f64> {
     let n = momentum.len();
     if momentum.iter().all(|&p| p == 0.0) {
         return vec![0.0; n];
@@ -32,7 +54,9 @@ pub(super) fn rates(model: &Model, instant: &mut Configuration, momentum: &[f64]
         mass.column_mut(i).copy_from_slice(&column);
         unit[i] = 0.0;
     }
-    rates_within(&mass, &DMatrix::identity(n, n), momentum)
+    let free: Vec<usize> = (0..n).filter(|&i| !model.is_prescribed(i)).collect();
+    let basis = DMatrix::identity(n, n).select_columns(&free);
+    rates_within(&mass, &basis, momentum)
 }
 
 /// Rates with given momenta of a mass matrix, within the span of a basis with orthonormal columns.
@@ -63,7 +87,8 @@ fn iterated(model: &Model, instant: &mut Configuration, momentum: &[f64]) -> Vec
     let sizes = DVector::from_vec(model.sizes()[..n].to_vec());
     let mut of = |direction: &DVector<f64>| {
         let rates = direction.component_mul(&sizes);
-        let momentum = model.action.momentum(instant, rates.as_slice());
+        let mut momentum = model.action.momentum(instant, rates.as_slice());
+        model.hold(&mut momentum);
         DVector::from_vec(momentum).component_mul(&sizes)
     };
     let mut residual = DVector::from_column_slice(momentum).component_mul(&sizes);

@@ -3,90 +3,15 @@
 use crate::dynamics::discrete_trajectory::{DiscreteTrajectory, Reading};
 use crate::dynamics::drive::Drive;
 use crate::dynamics::equations::Equations;
-use crate::dynamics::momenta::{rates, vector_momenta};
 use crate::dynamics::solving::{Integrator, Solving};
+use crate::dynamics::start::Start;
 use crate::dynamics::stepper::Steps;
 use crate::dynamics::{StepError, Stepper};
-use crate::kinematics::{Carrier, MaterialVector};
-use crate::math::Vector;
 use crate::model::Model;
 use std::ops::ControlFlow;
 
 /// The shortest step that a tolerance may ask for, as a part of the duration.
 const LEAST: f64 = 1e-9;
-
-/// Start of a motion: coordinates z and the momentum of each coordinate.
-#[derive(Clone, Debug, PartialEq)]
-pub struct Start {
-    /// Coordinates and multipliers.
-    pub z: Vec<f64>,
-    /// Momenta.
-    pub momentum: Vec<f64>,
-    /// Rates of the coordinates, where the momenta were made of them.
-    pub rates: Option<Vec<f64>>,
-}
-
-impl Start {
-    /// At rest.
-    pub fn at_rest(model: &Model, z: Vec<f64>) -> Self {
-        Self {
-            z,
-            momentum: vec![0.0; model.coordinate_count()],
-            rates: None,
-        }
-    }
-
-    /// With given rates of the coordinates.
-    pub fn with_rates(model: &Model, z: Vec<f64>, rates: &[f64]) -> Self {
-        let mut instant = model.action.map.instant();
-        instant.z.copy_from_slice(&z);
-        model.action.map.place(&mut instant);
-        let momentum = model.action.momentum(&mut instant, rates);
-        Self {
-            z,
-            momentum,
-            rates: Some(rates.to_vec()),
-        }
-    }
-
-    /// With the momentum of each coordinate.
-    pub fn moving(model: &Model, z: Vec<f64>, momentum: Vec<f64>) -> Self {
-        let mut instant = model.action.map.placed(&z);
-        let rates = rates(model, &mut instant, &momentum);
-        Self {
-            z,
-            momentum,
-            rates: Some(rates),
-        }
-    }
-
-    /// With a velocity of the centre of mass (mm/ms) and an angular velocity (rad/ms), both in the ground frame, of each body that is solved for;
-    /// nodes rest. What the coordinates do not let move counts as an impulse on its supports.
-    pub fn with_velocities(model: &Model, z: Vec<f64>, velocities: &[[Vector; 2]]) -> Self {
-        let map = &model.action.map;
-        let instant = map.placed(&z);
-        let poses = model.condensed_poses(&instant);
-        let rate = |vector: &MaterialVector| {
-            let terms = vector.terms.iter().map(|term| match term.carrier {
-                Carrier::Body(b) => {
-                    let [velocity, spin] = velocities[b];
-                    velocity * term.centre + spin.cross(&(poses[b].directors * term.directors))
-                }
-                _ => Vector::zeros(),
-            });
-            terms.sum()
-        };
-        let rates: Vec<Vector> = model.vectors.iter().map(rate).collect();
-        let momenta = vector_momenta(model, &instant.x, &rates);
-        let mut momentum = vec![0.0; model.coordinate_count()];
-        map.pull_back(&instant.columns, &momenta, &mut momentum);
-        Self {
-            z,
-            momentum,
-            rates: None,
-        }
-    }
-}
 
 /// Integrates `steps` steps of `h` ms under the voltages of a drive.
 ///
@@ -182,6 +107,7 @@ pub fn go_on(
         z: discrete.z[0].clone(),
         momentum: discrete.momenta[0].clone(),
         rates: discrete.rates.clone(),
+        time: discrete.begun,
     };
     let is_midpoint = solving.integrator == Integrator::Midpoint;
     discrete.reading = match is_midpoint {
@@ -195,6 +121,7 @@ pub fn go_on(
         },
         _ => {
             let mut stepper = Stepper::new(model, &start.z, &start.momentum, solving);
+            stepper.begun_at(start.time);
             match lengths {
                 Lengths::Equal(_) | Lengths::Between(_) => {
                     record(&mut stepper, lengths, &drive, observer, &mut discrete)
@@ -289,6 +216,7 @@ impl DiscreteTrajectory {
             z: vec![start.z.clone()],
             momenta: vec![start.momentum.clone()],
             rates: start.rates.clone(),
+            begun: start.time,
             ..Self::default()
         }
     }

@@ -33,6 +33,8 @@ pub struct Steps<E> {
     /// True if the last attempt began with the tangent of a step before.
     pub(super) stale: bool,
     residual: Vec<f64>,
+    /// Unknowns whose values are prescribed.
+    held: Vec<usize>,
     /// Local error that is allowed per ms; none of steps of given length.
     pub(super) allowed: Option<f64>,
     /// Local error of the last attempt as a part of the allowed one.
@@ -43,10 +45,16 @@ pub struct Steps<E> {
 }
 
 impl<E: Equations> Steps<E> {
-    /// Steps by these equations, with a tangent and a scale for each unknown.
-    pub(super) fn by(equations: E, tangent: Tangent, scales: Vec<f64>, newton: Newton) -> Self {
+    /// Steps by these equations, with a tangent and a scale for each unknown; `held` are those with prescribed values.
+    pub(super) fn by(
+        equations: E,
+        (tangent, held): (Tangent, Vec<usize>),
+        scales: Vec<f64>,
+        newton: Newton,
+    ) -> Self {
         Self {
             equations,
+            held,
             factored: None,
             stale: false,
             residual: vec![0.0; scales.len()],
@@ -186,7 +194,7 @@ impl<E: Equations> Steps<E> {
                 Order::Hessian
             };
             let began = Instant::now();
-            self.equations.evaluate(order, h, &mut self.residual);
+            self.evaluate(order, h);
             self.report.assembly += began.elapsed().as_secs_f64();
             let norm = self.residual.iter().map(|r| r * r).sum::<f64>().sqrt();
             residuals.push(norm);
@@ -231,6 +239,14 @@ impl<E: Equations> Steps<E> {
                 self.equations.scalars(),
             ),
         })
+    }
+
+    /// Evaluates the equations; those of prescribed unknowns hold.
+    fn evaluate(&mut self, order: Order, h: f64) {
+        self.equations.evaluate(order, h, &mut self.residual);
+        for &unknown in &self.held {
+            self.residual[unknown] = 0.0;
+        }
     }
 
     /// Returns an error if it is time to stop.
@@ -368,8 +384,7 @@ impl<E: Equations> Steps<E> {
         if !(is_fresh && self.updates.leave_out_much(&self.residual, size)) {
             return Ok(size);
         }
-        self.equations
-            .evaluate(Order::Hessian, h, &mut self.residual);
+        self.evaluate(Order::Hessian, h);
         self.updates.make_exact();
         self.factor(h)?;
         Ok(self.solve_once())

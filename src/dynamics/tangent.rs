@@ -14,6 +14,8 @@ pub(super) struct Tangent {
     /// (place in the values, entry of the matrix).
     gather: Vec<(u32, u32)>,
     entries: Vec<(u32, u32)>,
+    /// (entry of the matrix, its constant value).
+    constants: Vec<(u32, f64)>,
     matrix: Vec<f64>,
     solver: Direct,
     /// True if the symmetric part ½(A + Aᵀ) is factorised in place of the matrix A.
@@ -39,6 +41,7 @@ fn lower(entry: (u32, u32)) -> (usize, usize) {
 pub(super) struct EntryList {
     entries: Vec<(u32, u32)>,
     gather: Vec<(u32, u32)>,
+    constants: Vec<(u32, f64)>,
 }
 
 impl EntryList {
@@ -74,6 +77,24 @@ impl EntryList {
                     self.add(layout.scalars_at(0) + slot, (t, s));
                 }
             }
+        }
+    }
+
+    /// Holds unknowns at their values: of their rows and columns only the diagonal remains, with this pivot.
+    pub(super) fn hold(&mut self, unknowns: &[usize], pivot: f64) {
+        if unknowns.is_empty() {
+            return;
+        }
+        let entries = &self.entries;
+        let is_held = |i: u32| unknowns.contains(&(i as usize));
+        self.gather.retain(|(_, entry)| {
+            let (row, col) = entries[*entry as usize];
+            !is_held(row) && !is_held(col)
+        });
+        for &unknown in unknowns {
+            self.constants
+                .push((compact_index(self.entries.len()), pivot));
+            self.entries.push(pair((unknown, unknown)));
         }
     }
 
@@ -116,6 +137,7 @@ impl EntryList {
             solver,
             gather: self.gather,
             entries: self.entries,
+            constants: self.constants,
             is_approximate,
         }
     }
@@ -163,6 +185,9 @@ impl Tangent {
         self.matrix.fill(0.0);
         for &(place, entry) in &self.gather {
             self.matrix[entry as usize] += values[place as usize];
+        }
+        for &(entry, value) in &self.constants {
+            self.matrix[entry as usize] = value;
         }
         if self.is_approximate {
             for (value, (row, col)) in self.matrix.iter_mut().zip(&self.entries) {

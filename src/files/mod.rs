@@ -2,6 +2,7 @@
 //!
 //! - [`units`]: numbers with units; [`json`]: text, places in it, mistakes, overrides.
 //! - [`scene`], [`problem`]: types of the two files, and their conversion to [`System`] and [`Task`].
+//! - `signal`: functions of time.
 //! - [`study`], [`sweep`]: types of a study of variants of a problem, or a sweep of them; `changes`: their overrides.
 //! - [`solution`]: motions that later runs start from; [`npz`]: arrays of long ones; [`continuation`]: motions that go on.
 //! - `columns`: columns of CSV files; `typed`: scenes and voltages named on the command line.
@@ -13,6 +14,7 @@ pub mod json;
 pub mod npz;
 pub mod problem;
 pub mod scene;
+mod signal;
 pub mod solution;
 pub mod study;
 pub mod sweep;

@@ -3,7 +3,7 @@
 use crate::control::problem::{
     self, Duration, Guess, Hold, Objective, PathConstraint, QuantityCost, Solver,
 };
-use crate::control::{Earlier, EarlierSolution, Signal};
+use crate::control::{Earlier, EarlierSolution};
 use crate::dynamics::{EnergyExchange, out_of_domain};
 use crate::interface::cost_checks::{check_costs, check_energies, check_limits, check_waypoints};
 use crate::interface::error::{Result, require, source};
@@ -12,6 +12,7 @@ use crate::interface::input::Input;
 use crate::interface::motion::Motion;
 use crate::interface::optimum::Optimum;
 use crate::interface::state::State;
+use crate::math::Signal;
 use crate::model::components::Load;
 use crate::model::system::{Joint, Muscle, Source};
 use crate::model::{Parameter, System};

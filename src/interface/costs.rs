@@ -1,12 +1,12 @@
 //! Costs of a control problem in addition to its voltages: energies of sources, squared deviations of markers and joints; and waypoints.
 
-use crate::control::Signal;
 use crate::control::problem::{
     self, CostFunction, During, EnergyCost, Place, QuantityCost, SourceEnergy, Waypoint,
 };
 use crate::interface::control::Control;
 use crate::interface::error::{Result, require};
 use crate::interface::handle::Handle;
+use crate::math::Signal;
 use crate::model::system::{Joint, Marker, Muscle};
 use crate::model::{Quantity, System};
 use nalgebra::Vector3;

@@ -1,6 +1,7 @@
 //! Bodies, joints, muscles, markers and solids, built with defaults.
 
 use crate::interface::handle::{Carrier, Handle, Part, named};
+use crate::math::Signal;
 use crate::mesh::Mesh;
 use crate::model::System;
 use crate::model::system::{
@@ -115,6 +116,12 @@ impl Joint {
     pub fn spring(self, stiffness: f64, rest: f64) -> Self {
         let spring = Some(JointSpring { stiffness, rest });
         Self { spring, ..self }
+    }
+
+    /// Prescribes its coordinate in rad or mm as a function of time.
+    pub fn motion(self, motion: impl Into<Signal>) -> Self {
+        let motion = Some(motion.into());
+        Self { motion, ..self }
     }
 
     /// Elastic stops of its coordinate at both ends of a range in rad or mm, infinite where there is none; stiffness in N mm/rad or N/mm.

@@ -1,6 +1,5 @@
 //! Simulations.
 
-use crate::control::Signal;
 use crate::control::problem::{self, Voltages};
 use crate::dynamics::trajectory::Trajectory;
 use crate::dynamics::{EnergyExchange, Integrator, Newton, Solving, local_error_of, out_of_domain};
@@ -10,6 +9,7 @@ use crate::interface::input::Input;
 use crate::interface::motion::Motion;
 use crate::interface::state::State;
 use crate::ipopt::interrupt;
+use crate::math::Signal;
 use crate::model::System;
 use crate::model::components::Load;
 use crate::workflow::integrate::{Simulated, integrate};

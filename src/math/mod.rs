@@ -10,6 +10,7 @@ pub(crate) mod memory;
 mod pool;
 pub mod random;
 mod sets;
+mod signal;
 mod stopped;
 
 pub(crate) use compact_index::compact_index;
@@ -22,6 +23,7 @@ pub(crate) use pool::has_pool;
 #[cfg(feature = "report")]
 pub(crate) use pool::join;
 pub use sets::DisjointSets;
+pub use signal::Signal;
 pub use stopped::{IsOver, Stopped};
 
 /// A vector of space.

@@ -20,7 +20,9 @@ use crate::model::solids::Solids;
 use crate::model::system::{Attachment, Body, Marker, Muscle, Source, System};
 use crate::model::terms::{Carriers, Terms};
 use crate::model::variables::{Role, Size, Time, Variable, Variables};
-use crate::model::{blocks, constraints, dampers, field_extent, joint_springs, loads, plan};
+use crate::model::{
+    blocks, constraints, dampers, field_extent, joint_springs, loads, plan, prescribed,
+};
 use std::collections::BTreeSet;
 
 impl Model {
@@ -68,8 +70,7 @@ impl Model {
         let solids = blocks::blocks(&mut presolved);
         let rest = &presolved.system;
         let coordinates = Self::choose(rest, analysis.coordinates)?;
-        let graph = Graph::new(rest);
-        let reference: Vec<Pose> = rest.bodies.iter().map(Body::pose).collect();
+        let (graph, reference) = (Graph::new(rest), poses(rest));
         let sources = system.sources();
         let mut vectors = Vectors::default();
         let mut variables = interval_variables(&inputs, &sources, &analysis);
@@ -123,6 +124,7 @@ impl Model {
             solids: blocks.list,
             nodes: blocks.nodes,
             node_names: blocks.names,
+            prescribed: prescribed::prescribed((&system, &presolved), &internals),
             internals: internals.list,
             spans,
             markers,
@@ -141,7 +143,7 @@ impl Model {
 
     /// Returns the readings of the joint coordinates of the scene from the poses of its bodies.
     fn joint_readings(system: &System, presolved: &Presolved) -> Vec<JointReading> {
-        let reference: Vec<Pose> = system.bodies.iter().map(Body::pose).collect();
+        let reference = poses(system);
         let coordinates = presolved.system.joint_coordinates();
         let reading = |(j, joint)| {
             let coordinate = presolved.joint(j).and_then(|kept| coordinates[kept]);
@@ -165,6 +167,11 @@ impl Model {
             (None, None) => Ok(Coordinates::Reduced),
         }
     }
+}
+
+/// Poses of the bodies in the reference configuration.
+fn poses(system: &System) -> Vec<Pose> {
+    system.bodies.iter().map(Body::pose).collect()
 }
 
 /// Sources whose inputs do something.

@@ -242,6 +242,14 @@ impl System {
                     "stops of a revolute or prismatic joint that grow, with a width from 0 on",
                 )?;
             }
+            if let Some(motion) = &joint.motion {
+                require(
+                    joint.has_coordinate() && motion.is_sound(),
+                    &joint.name,
+                    || format!("the prescribed motion {motion:?}"),
+                    "a motion of a revolute or prismatic joint, of finite numbers and increasing times",
+                )?;
+            }
             if let Some(spring) = joint.spring {
                 positive(&joint.name, "stiffness", spring.stiffness)?;
                 require(

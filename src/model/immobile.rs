@@ -124,7 +124,7 @@ impl Parts {
                 }
             }
         }
-        let loaded = system.joints.iter().filter(|joint| joint.is_prestressed());
+        let loaded = system.joints.iter().filter(|joint| joint.moves_by_itself());
         moved.extend(loaded.flat_map(|joint| joint.parent.into_iter().chain([joint.child])));
         moved.extend((0..self.bodies).filter(|b| weighs || initially_moving.bodies.contains(b)));
         for (s, solid) in system.solids.iter().enumerate() {

@@ -86,7 +86,7 @@ pub(super) struct Internals {
 
 impl Internals {
     /// Those of a scene and its presolved system with its graph: redundant coordinates lack those of joints with
-    /// springs or loads. Muscles at rest remember nothing, and have the voltages of their sources.
+    /// springs, loads or a prescribed motion. Muscles at rest remember nothing, and have the voltages of their sources.
     pub(super) fn new(
         (scene, presolved): (&System, &Presolved),
         analysis: &Analysis,
@@ -103,8 +103,10 @@ impl Internals {
                 let mut loads = scene.components.loads.iter();
                 loads.any(|load| load.on == LoadPlace::Joint(presolved.joints[j]))
             };
-            let is_elastic = |joint: &Joint| joint.spring.is_some() || joint.stops.is_some();
-            let needed = joints.filter(|(j, joint)| is_elastic(joint) || is_loaded(*j));
+            let is_read = |joint: &Joint| {
+                joint.spring.is_some() || joint.stops.is_some() || joint.motion.is_some()
+            };
+            let needed = joints.filter(|(j, joint)| is_read(joint) || is_loaded(*j));
             list.extend(needed.map(|(j, joint)| Internal::of_joint(j, joint)));
         }
         for (m, muscle) in scene.muscles.iter().enumerate() {
@@ -131,8 +133,14 @@ impl Internals {
 
     /// The vector that has the coordinate of a joint in its first component; `None` where nothing calls for it.
     pub(super) fn joint(&self, joint: usize) -> Option<MaterialVector> {
-        let coordinate = self.of_tree[joint].map(MaterialVector::coordinate);
-        coordinate.or_else(|| self.vector(InternalKind::Joint(joint)))
+        self.joint_coordinate(joint).map(MaterialVector::coordinate)
+    }
+
+    /// The coordinate of a joint; `None` where nothing calls for it.
+    pub(super) fn joint_coordinate(&self, joint: usize) -> Option<usize> {
+        let kind = InternalKind::Joint(joint);
+        let internal = || self.list.iter().position(|own| own.kind == kind);
+        self.of_tree[joint].or_else(|| internal().map(|place| self.first + place))
     }
 
     /// The vector that has an internal coordinate in its first component.

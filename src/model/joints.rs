@@ -1,8 +1,8 @@
 //! Motions that joints permit, and joint coordinates read from poses.
 
 use crate::kinematics::{MaterialVector, Pose};
-use crate::math::Vector;
-use crate::model::system::{Joint, JointKind, System};
+use crate::math::{Signal, Vector};
+use crate::model::system::{Joint, JointKind, JointStops, System};
 
 /// Two unit vectors that complete a unit vector n to a right-handed triad (a, b, n).
 pub(super) fn triad(n: &Vector) -> [Vector; 2] {
@@ -15,6 +15,17 @@ pub(super) fn triad(n: &Vector) -> [Vector; 2] {
     };
     let a = helper.cross(n).normalize();
     [a, n.cross(&a)]
+}
+
+/// A joint coordinate whose value is prescribed.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Prescribed {
+    /// The coordinate.
+    pub coordinate: usize,
+    /// Its joint of the scene.
+    pub joint: usize,
+    /// Its value in rad or mm.
+    pub motion: Signal,
 }
 
 /// Reading of the coordinate of a joint from the poses of its bodies.
@@ -73,6 +84,22 @@ impl JointKind {
     /// Number of its coordinates.
     pub fn freedoms(&self) -> usize {
         self.screws().0.len()
+    }
+}
+
+impl Joint {
+    /// Returns true if it has one coordinate: revolute and prismatic joints do.
+    pub fn has_coordinate(&self) -> bool {
+        self.kind.freedoms() == 1
+    }
+
+    /// Returns true if a spring, stops or its prescribed motion take it out of the reference configuration.
+    pub fn moves_by_itself(&self) -> bool {
+        let presses = |stops: JointStops| stops.beyond(0.0) > -0.5 * stops.smoothing;
+        let moves = |motion: &Signal| !motion.is_zero();
+        self.spring.is_some_and(|spring| spring.rest != 0.0)
+            || self.stops.is_some_and(presses)
+            || self.motion.as_ref().is_some_and(moves)
     }
 }
 

@@ -8,7 +8,7 @@ use crate::model::constant::Parameter;
 use crate::model::floating::{self, Floating};
 use crate::model::graph::Graph;
 use crate::model::internal::{Internal, InternalKind};
-use crate::model::joints::JointReading;
+use crate::model::joints::{JointReading, Prescribed};
 use crate::model::plan::{LeftOut, Present};
 use crate::model::presolved::Presolved;
 use crate::model::solid_block::SolidBlock;
@@ -45,6 +45,8 @@ pub struct Model {
     pub markers: Vec<usize>,
     /// Index of each quantity of the analysis among the measures of its site; `None` where nothing of the model can change it.
     pub measured: Vec<Option<usize>>,
+    /// Coordinates whose values are prescribed.
+    pub prescribed: Vec<Prescribed>,
     /// Readings of the coordinates of each joint from poses.
     pub joint_readings: Vec<JointReading>,
     /// Time that scales multipliers: the action holds −h₀ λ·g, in ms.
@@ -97,9 +99,9 @@ impl Model {
         }
     }
 
-    /// Coordinates of an instant in the reference configuration.
+    /// Coordinates of an instant in the reference configuration, but for those that are prescribed at time zero.
     pub fn reference_coordinates(&self) -> Vec<f64> {
-        self.coordinates_at(&vec![0.0; self.joint_readings.len()])
+        self.reference_coordinates_at(0.0)
     }
 
     /// Director coordinates of given poses, with joint coordinates (by joint of the scene) that count whole turns; multipliers zero.

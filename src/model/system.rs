@@ -1,6 +1,7 @@
 //! The system of a scene: bodies, joints, muscles and markers in g, mm, ms, N, V, names resolved.
 
 pub use crate::energy::ElasticLaw;
+use crate::math::Signal;
 use crate::mesh::Mesh;
 pub use crate::model::attachment::Attachment;
 pub use crate::model::bodies::{Body, Shape, directors_along};
@@ -188,6 +189,8 @@ pub struct Joint {
     pub spring: Option<JointSpring>,
     /// Stops of the joint coordinate; `None` leaves no trace.
     pub stops: Option<JointStops>,
+    /// Prescribed coordinate in rad or mm as a function of time; `None` where forces move the joint.
+    pub motion: Option<Signal>,
 }
 
 /// Motion that a joint permits.
@@ -352,19 +355,6 @@ pub struct Marker {
     pub point: Attachment,
     /// The block whose node nearest to the point is meant, where it is on a block rather than on a body.
     pub solid: Option<usize>,
-}
-
-impl Joint {
-    /// Returns true if it has one coordinate: revolute and prismatic joints do.
-    pub fn has_coordinate(&self) -> bool {
-        self.kind.freedoms() == 1
-    }
-
-    /// Returns true if a spring or stops exert a force on its coordinate in the reference configuration.
-    pub fn is_prestressed(&self) -> bool {
-        let presses = |stops: JointStops| stops.beyond(0.0) > -0.5 * stops.smoothing;
-        self.spring.is_some_and(|spring| spring.rest != 0.0) || self.stops.is_some_and(presses)
-    }
 }
 
 impl Muscle {

@@ -60,6 +60,7 @@ pub(crate) fn afterwards(
         z: optimal.z.get(n)?.clone(),
         momentum: optimal.momentum.clone(),
         rates: None,
+        time: *optimal.times.get(n)?,
     };
     let last = optimal.voltages.last()?;
     if !is_named || end.momentum.len() != model.coordinate_count() {

@@ -49,7 +49,8 @@ impl WorkflowError {
                 ..
             }
             | BoundaryError::Stopped(status) => return Self::Stopped(*status),
-            BoundaryError::Limit { place, reason } => (*place, reason.clone()),
+            BoundaryError::Limit { place, reason }
+            | BoundaryError::Prescribed { place, reason } => (*place, reason.clone()),
             BoundaryError::NoEquilibrium { place, source } => {
                 let reason = source.to_string();
                 // What nothing holds is wrong input; loads without an equilibrium are not.

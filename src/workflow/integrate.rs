@@ -103,7 +103,7 @@ pub fn integrate_on(
         model: &model,
         voltages: &task.voltages,
     };
-    let switches = task.voltages.switches();
+    let switches = switches(&task.voltages, &model);
     let (discrete, failure, error) = match task.tolerance {
         Some(tolerance) => ByTolerance {
             model: &model,
@@ -132,6 +132,20 @@ pub fn integrate_on(
         setup,
         seconds,
     })
+}
+
+/// Times in ms, in order, at which inputs or prescribed motions are not smooth.
+fn switches(inputs: &Voltages, model: &Model) -> Vec<f64> {
+    let of_motions = model.prescribed.iter().flat_map(|one| one.motion.corners());
+    let mut times: Vec<f64> = inputs
+        .switches()
+        .iter()
+        .copied()
+        .chain(of_motions)
+        .collect();
+    times.sort_by(f64::total_cmp);
+    times.dedup();
+    times
 }
 
 /// The voltages of a task as the steps of its model ask for them.

@@ -118,6 +118,7 @@ pub(crate) fn resimulate(
         z: own.discrete.z[last].clone(),
         momentum: own.discrete.momenta[last].clone(),
         rates: None,
+        time: own.discrete.times[last],
     });
     out
 }

@@ -2,9 +2,9 @@
 
 use serde::Serialize;
 
-use crate::control::Signal;
 use crate::control::problem::{Control, CostFunction, During, QuantityCost};
 use crate::dynamics::trajectory::Trajectory;
+use crate::math::Signal;
 use crate::model::system::{Joint, System};
 use crate::model::{Quantity, joint_unit};
 use crate::workflow::optimum::Optimum;

@@ -8,12 +8,12 @@ use super::systems::{
 use super::tracked::{energies, tracked};
 use super::trunk;
 use nalgebra::Vector3;
-use proboscis::control::Signal;
 use proboscis::control::problem::{
     BoundaryState, Control, Duration, Guess, Objective, Orientation, PathConstraint, Place, Rest,
     Solver,
 };
 use proboscis::ipopt::LinearSolver;
+use proboscis::math::Signal;
 use proboscis::model::Coordinates;
 use proboscis::model::system::{ElectricConstants, Material, System, VACUUM_PERMITTIVITY};
 use std::collections::BTreeMap;

@@ -1,9 +1,9 @@
 //! Costs that call for every signal, on markers and joints, and of energies of sources.
 
-use proboscis::control::Signal;
 use proboscis::control::problem::{
     CostFunction, During, EnergyCost, Objective, QuantityCost, SourceEnergy,
 };
+use proboscis::math::Signal;
 use proboscis::model::Quantity;
 
 /// Signals of each kind about a mean, changing within some ms.

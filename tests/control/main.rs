@@ -22,6 +22,7 @@ mod meshes;
 mod moved;
 mod optimality;
 mod peak_voltage;
+mod prescribed;
 mod rate_limits;
 mod reference;
 mod resample;

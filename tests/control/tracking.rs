@@ -4,12 +4,12 @@ use crate::common::cases::{control, partly};
 use crate::common::tracked::square;
 use crate::common::trunk;
 use nalgebra::{Rotation3, Vector3};
-use proboscis::control::Signal;
 use proboscis::control::problem::{
     BoundaryState, Control, CostFunction, Duration, During, Guess, Objective, Orientation, Task,
     Voltages,
 };
 use proboscis::files::read_problem;
+use proboscis::math::Signal;
 use proboscis::model::system::{JointKind, System};
 use proboscis::model::{Coordinates, Quantity};
 use proboscis::workflow::{Iterate, Optimum, SolveLimits, optimise, tracked, trajectory};

@@ -1,12 +1,12 @@
 //! Objectives of problem files, and their errors.
 
 use crate::scene::{Case, PROBLEM, SCENE, check, elastic_scene, folder, mistake};
-use proboscis::control::Signal;
 use proboscis::control::problem::{
     BoundaryState, Control, CostFunction, During, EnergyCost, Orientation, Place, QuantityCost,
     Rest, SourceEnergy, Task,
 };
 use proboscis::files::read_problem;
+use proboscis::math::Signal;
 use proboscis::model::Quantity;
 use std::fs;
 

@@ -211,8 +211,8 @@ fn every_key_is_told_in_its_document() {
     let scenes = read("scenes");
     for (name, _, schema) in schemas() {
         let documents = match name {
-            "SceneSpec" => scenes.clone(),
-            "ProblemSpec" => read("problems") + &scenes,
+            // Functions of time are those of problems.
+            "SceneSpec" | "ProblemSpec" => read("problems") + &scenes,
             "StudySpec" => read("accuracy"),
             _ => read("sweeps"),
         };

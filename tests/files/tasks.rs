@@ -1,10 +1,10 @@
 //! Tasks of problem files: methods, tables, solutions, given voltages.
 
 use crate::scene::{Case, PROBLEM, SCENE, check, folder, mistake};
-use proboscis::control::Signal;
 use proboscis::control::problem::{Afterwards, BoundaryState, Task, Voltages};
 use proboscis::dynamics::Integrator;
 use proboscis::files::read_problem;
+use proboscis::math::Signal;
 use std::fs;
 use std::path::Path;
 

@@ -3,10 +3,10 @@
 use crate::common::{bare, numbers, reference, trunk};
 use crate::components::body;
 use nalgebra::Vector3;
-use proboscis::control::Signal;
 use proboscis::control::problem::{BoundaryState, Simulation, Voltages};
 use proboscis::dynamics::trajectory::Trajectory;
 use proboscis::dynamics::{Integrator, Solving, observations, stable_equilibrium};
+use proboscis::math::Signal;
 use proboscis::model::components::{Load, LoadPlace};
 use proboscis::model::system::{Attachment, Joint, JointKind, JointSpring, System};
 use proboscis::model::{Coordinates, Model};

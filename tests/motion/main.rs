@@ -21,6 +21,7 @@ mod maxwell_limits;
 mod observe;
 mod order;
 mod parts;
+mod prescribed;
 mod reactions;
 mod reductions;
 mod reference;

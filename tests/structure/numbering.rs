@@ -2,7 +2,8 @@
 
 use crate::common::cases::{Case, cases};
 use proboscis::control::problem::{BoundaryState, Control, Duration};
-use proboscis::control::{BoundaryConditions, Signal, Transcription, guess};
+use proboscis::control::{BoundaryConditions, Transcription, guess};
+use proboscis::math::Signal;
 use proboscis::model::{Coordinates, Model, Role, System, Time};
 use proboscis::nlp::Nlp;
 use std::collections::BTreeSet;

@@ -38,7 +38,7 @@ impl Layout {
             let variable = column.of(&model.variables);
             match (column, variable.role) {
                 (Column::Instant { k, i }, Role::Coordinate) => {
-                    k == 0 || (k == intervals && goal[i].is_some())
+                    k == 0 || (k == intervals && goal[i].is_some()) || model.is_prescribed(i)
                 }
                 // No balance at the end, so nothing that a constraint force would balance.
                 (Column::Instant { k, .. }, _) => k == intervals && ends_anyhow,
@@ -62,7 +62,8 @@ impl Layout {
             Rests::Nothing => false,
         };
         let rests = |i: usize| is_in_rest(i) && !model.is_memory(i);
-        let is_balanced = |k: usize, i: usize| k < intervals || rests(i);
+        let is_balanced =
+            |k: usize, i: usize| (k < intervals || rests(i)) && !model.is_prescribed(i);
         let mut unknowns = Numbering::new(&model.variables, intervals, is_given, is_balanced);
         let limits = limit_rows(model, &boundary.limits.list, intervals, &unknowns);
         let mut limit_rows = Vec::new();

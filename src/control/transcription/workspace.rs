@@ -89,6 +89,9 @@ fn given_instants(
     for (instant, z) in instants.iter_mut().zip(&initial.discrete.z) {
         instant.z[unknowns..].copy_from_slice(&z[unknowns..]);
     }
+    for (k, instant) in instants.iter_mut().enumerate() {
+        model.prescribe(k as f64 * initial.h, &mut instant.z);
+    }
     instants[0].z.copy_from_slice(&boundary.start.z);
     boundary.goal.give(&mut instants[intervals].z, unknowns);
     instants

@@ -75,7 +75,7 @@ impl Statics<'_> {
             self.values[self.added..].fill(0.0);
             outcome.ok()?;
             let mut update = std::mem::take(&mut self.residual);
-            self.tangent.solve(&mut update);
+            self.solve(&mut update);
             let size = self.size(&update);
             for (value, update) in state[..n].iter_mut().zip(&update) {
                 *value -= update;

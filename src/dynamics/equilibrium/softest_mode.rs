@@ -38,12 +38,19 @@ fn eigenpairs(statics: &Statics<'_>) -> Option<(Vec<f64>, Vec<f64>)> {
     for ((row, col), value) in statics.entries() {
         matrix[(row, col)] -= value / model.multiplier_time;
     }
-    let pairs = SymmetricEigen::new(matrix);
-    let mut order: Vec<usize> = (0..n).collect();
+    let free: Vec<usize> = (0..n).filter(|&i| !model.is_prescribed(i)).collect();
+    if free.is_empty() {
+        return None;
+    }
+    let pairs = SymmetricEigen::new(matrix.select_rows(&free).select_columns(&free));
+    let mut order: Vec<usize> = (0..free.len()).collect();
     order.sort_by(|&i, &j| pairs.eigenvalues[i].total_cmp(&pairs.eigenvalues[j]));
-    let lowest = pairs.eigenvectors.column(order[0]);
+    let mut lowest = vec![0.0; n];
+    for (&i, value) in free.iter().zip(pairs.eigenvectors.column(order[0]).iter()) {
+        lowest[i] = *value;
+    }
     let values = order.iter().map(|&i| pairs.eigenvalues[i]).collect();
-    Some((values, lowest.iter().copied().collect()))
+    Some((values, lowest))
 }
 
 /// Eigenvalues of the stiffness in joint coordinates of the state evaluated and factorised last, ascending; empty for other

@@ -153,7 +153,8 @@ fn without_stiffness(
         }
     }
     let all = largest.iter().copied().fold(0.0, f64::max);
-    let slack = (0..model.action.map.of_bodies).filter(|&c| largest[c] <= ROUND_OFF * all);
+    let slack = (0..model.action.map.of_bodies)
+        .filter(|&c| largest[c] <= ROUND_OFF * all && !model.is_prescribed(c));
     let mut names: Vec<String> = slack.map(|c| model.freedom(c).of.to_owned()).collect();
     names.dedup();
     (!names.is_empty()).then_some(EquilibriumError::NoStiffness(names))

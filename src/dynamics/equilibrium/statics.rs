@@ -96,6 +96,9 @@ impl<'m> Statics<'m> {
         for (place, i) in (0..n).chain(m..size).enumerate() {
             entries.add(added + place, (i, i));
         }
+        // The tangent is negative where a state is stable.
+        let held: Vec<usize> = model.prescribed.iter().map(|one| one.coordinate).collect();
+        entries.hold(&held, -1.0);
         let mut terms = model.action.intervals.terms.iter();
         let follows = terms.any(|term| term.kind() == TermKind::AppliedWork);
         let symmetric_part = follows.then(|| entries.clone().symmetric_part(size));
@@ -231,8 +234,9 @@ impl<'m> Statics<'m> {
         outcome
     }
 
-    /// Solves with the last factorisation, in place.
+    /// Solves with the last factorisation, in place; what is prescribed does not move.
     pub(super) fn solve(&mut self, rhs: &mut [f64]) {
+        self.model.hold(rhs);
         self.tangent.solve(rhs);
     }
 

@@ -37,6 +37,7 @@ impl Equations for GalerkinEquations<'_> {
                     *z += u * weight;
                 }
             }
+            self.model.prescribe(self.time + at * h, &mut point.z);
         }
         let algebraic = self.model.variables.algebraic();
         self.saved.0.clone_from(&self.multipliers);

@@ -10,8 +10,8 @@ use crate::dynamics::galerkin::rule::{Alpha, Rule, Weights};
 use crate::dynamics::interval_energies::Work;
 use crate::dynamics::kinetic::masses;
 use crate::dynamics::momenta::{rates, vector_momenta};
-use crate::dynamics::simulate::Start;
 use crate::dynamics::solving::{Integrator, Solving};
+use crate::dynamics::start::Start;
 use crate::dynamics::stepper::Steps;
 use crate::functional::{BlockMask, Blocks, Horizon, Order, Output, Sample, SumDerivatives};
 use crate::math::Vector;
@@ -106,7 +106,12 @@ impl<'m> Steps<GalerkinEquations<'m>> {
         };
         let samples: Vec<StagePoint> = rule.samples().into_iter().map(sample).collect();
         let rows: Vec<usize> = (1..=degree).map(|point| rule.row(point)).collect();
-        let (places, entries) = Places::new(model, &rows, samples.len());
+        let (places, mut entries) = Places::new(model, &rows, samples.len());
+        let points_of =
+            |coordinate: usize| (0..degree).map(move |p| p * map.unknowns() + coordinate);
+        let held = model.prescribed.iter();
+        let held: Vec<usize> = held.flat_map(|one| points_of(one.coordinate)).collect();
+        entries.hold(&held, 1.0);
         let combined = action.intervals.output(Order::Hessian).plain;
         let n = map.coordinates;
         let multipliers = vec![start.z[n..map.unknowns()].to_vec(); degree];
@@ -114,9 +119,9 @@ impl<'m> Steps<GalerkinEquations<'m>> {
         let mut terms = action.intervals.terms.iter();
         let equations = GalerkinEquations {
             model,
-            trail: vec![(0.0, start.z[..n].to_vec())],
+            trail: vec![(start.time, start.z[..n].to_vec())],
             momentum: start.momentum.clone(),
-            time: 0.0,
+            time: start.time,
             scratch: action.scratch(Order::Hessian),
             values: vec![0.0; places.values],
             masses: masses(model, &points[0].x),
@@ -140,7 +145,7 @@ impl<'m> Steps<GalerkinEquations<'m>> {
         let mut scales = of_points.repeat(degree);
         scales.extend(of_samples.repeat(equations.samples.len()));
         let tangent = entries.tangent(scales.len(), Symmetry::Unsymmetric, solving.backend);
-        Self::by(equations, tangent, scales, solving.newton)
+        Self::by(equations, (tangent, held), scales, solving.newton)
     }
 }
 
@@ -149,7 +154,7 @@ fn moving(model: &Model, start: &Start) -> (Vec<Vector>, Vec<Vector>) {
     let map = &model.action.map;
     let mut instant = map.placed(&start.z);
     let known = start.rates.clone();
-    let rates = known.unwrap_or_else(|| rates(model, &mut instant, &start.momentum));
+    let rates = known.unwrap_or_else(|| rates(model, &mut instant, start.time, &start.momentum));
     instant.l.fill(0.0);
     instant.l[..rates.len()].copy_from_slice(&rates);
     map.along(&mut instant);

@@ -9,9 +9,9 @@ use crate::files::problem::free::check_solution;
 use crate::files::problem::loads::loads;
 use crate::files::problem::simulation::simulation;
 use crate::files::problem::spec::ProblemSpec;
-use crate::files::problem::spec_signal::SignalSpec;
 use crate::files::problem::state::voltages;
 use crate::files::scene::spec::SceneSpec;
+use crate::files::signal::spec::SignalSpec;
 use crate::files::units::quantity::{LoadSize, Quantity};
 use crate::model::system::System;
 

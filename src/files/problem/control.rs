@@ -1,6 +1,5 @@
 //! Conversion of the control entry of a problem file to its task.
 
-use crate::control::Signal;
 use crate::control::problem::{
     BoundaryState, Control, Duration, Objective, Solver, SourceEnergy, Voltages, absent_loads,
 };
@@ -13,7 +12,6 @@ use crate::files::problem::goal::goal_state;
 use crate::files::problem::guess::{guess, unwritten};
 use crate::files::problem::limits::limits;
 use crate::files::problem::loads::{load, load_bounds, loads};
-use crate::files::problem::signal::signal;
 use crate::files::problem::spec_control::{
     ControlSolverSpec, ControlSpec, DurationSpec, IntervalsSpec, IntervalsWord, ObjectiveSpec,
     OptionSpec, SolverSpec,
@@ -25,8 +23,10 @@ use crate::files::problem::voltages::over_time;
 use crate::files::problem::waypoints::waypoints;
 use crate::files::scene::graph::tree_freedoms;
 use crate::files::scene::spec::SceneSpec;
+use crate::files::signal::signal;
 use crate::files::units::quantity::Voltage;
 use crate::ipopt::{LinearSolver, OptionValue};
+use crate::math::Signal;
 use crate::math::shortest;
 use crate::model::system::{Fidelity, Muscle, System};
 use std::collections::BTreeMap;

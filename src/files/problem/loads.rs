@@ -1,14 +1,14 @@
 //! Loads of a problem: sizes over time, bounds of those that are sought, and loads at rest.
 
-use crate::control::Signal;
 use crate::control::problem::{BoundaryState, Voltages};
 use crate::files::json::error::SceneError;
 use crate::files::json::scope::Scope;
-use crate::files::problem::signal::signal;
-use crate::files::problem::spec_signal::SignalSpec;
+use crate::files::signal::signal;
+use crate::files::signal::spec::SignalSpec;
 use crate::files::units::quantity::{
     Charge, ChargeDensity, Force, ForceDensity, Kind, LoadSize, Quantity, Stress, Torque, Voltage,
 };
+use crate::math::Signal;
 use crate::model::system::{InputKind, System};
 use std::collections::BTreeMap;
 

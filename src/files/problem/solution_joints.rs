@@ -4,11 +4,11 @@ use serde::Deserialize;
 use std::collections::BTreeMap;
 use std::path::Path;
 
-use crate::control::Signal;
 use crate::files::json::error::SceneError;
 use crate::files::json::scope::Scope;
 use crate::files::problem::solution_document::solution_document;
 use crate::files::problem::state::joint_with_coordinate;
+use crate::math::Signal;
 use crate::model::joint_unit;
 use crate::model::system::System;
 

@@ -3,8 +3,8 @@
 use schemars::JsonSchema;
 use serde::Deserialize;
 
-use crate::files::problem::spec_signal::SignalSpec;
 use crate::files::scene::point::PartialPoint;
+use crate::files::signal::spec::SignalSpec;
 use crate::files::units::quantity::{JointCoordinate, Length, Quantity};
 
 /// Marker or joints that follow a reference: exactly one of the three.

@@ -1,6 +1,6 @@
 //! Voltages as they are written: constant, of a solution, or a table.
 
-use crate::files::problem::spec_signal::SignalSpec;
+use crate::files::signal::spec::SignalSpec;
 use crate::files::units::quantity::{Quantity, Time, Voltage};
 use schemars::JsonSchema;
 use serde::de::{Error, MapAccess, Unexpected, Visitor};

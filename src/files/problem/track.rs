@@ -1,10 +1,8 @@
 //! Conversion of the `track` and `final` entries of a problem file to costs of quantities.
 
-use crate::control::Signal;
 use crate::control::problem::{CostFunction, During, QuantityCost};
 use crate::files::json::error::SceneError;
 use crate::files::json::scope::Scope;
-use crate::files::problem::signal::signal;
 use crate::files::problem::solution_joints;
 use crate::files::problem::spec_track::{
     FinalJointSpec, FinalMarkerSpec, FinalSpec, TrackJointSpec, TrackJointsSpec, TrackMarkerSpec,
@@ -12,7 +10,9 @@ use crate::files::problem::spec_track::{
 };
 use crate::files::problem::state::{joint_value, joint_with_coordinate, moving_marker};
 use crate::files::problem::voltages::SOLUTION_PATH;
+use crate::files::signal::signal;
 use crate::files::units::quantity::{Angle, Length};
+use crate::math::Signal;
 use crate::model::system::System;
 use crate::model::{Quantity, joint_unit};
 

@@ -101,6 +101,7 @@ impl Link {
             rest_angle: None,
             rest_displacement: None,
             stops: None,
+            motion: None,
         }
     }
 

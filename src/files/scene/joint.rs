@@ -1,4 +1,4 @@
-//! Conversion of a joint of a scene file: its kind, axis, damper, spring and stops.
+//! Conversion of a joint of a scene file: its kind, axis, damper, spring, stops and prescribed motion.
 
 use crate::files::json::error::SceneError;
 use crate::files::json::scope::Scope;
@@ -6,10 +6,12 @@ use crate::files::scene::names::find_body;
 use crate::files::scene::point::unit_axis;
 use crate::files::scene::point::vector;
 use crate::files::scene::spec::{AxisSpec, JointSpec};
+use crate::files::signal::signal;
 use crate::files::units::quantity::{
     Angle, Damping, JointCoordinate, Kind, Length, PhysicalQuantity, Quantity, RotationalDamping,
     RotationalStiffness, Stiffness,
 };
+use crate::math::Signal;
 use crate::model::system::{Joint, JointKind, JointSpring, JointStops};
 
 /// Kinds of a joint, with the one key that names each.
@@ -51,6 +53,7 @@ pub(super) fn joint(
         damping,
         spring,
         stops: stops(spec, key, scope)?,
+        motion: motion(spec, key, scope)?,
     };
     Ok(match spec.locked {
         true => Joint {
@@ -58,6 +61,7 @@ pub(super) fn joint(
             damping: None,
             spring: None,
             stops: None,
+            motion: None,
             ..joint
         },
         false => joint,
@@ -147,6 +151,23 @@ fn spring(
     )?;
     let rest = at_rest(spec, key, scope)?;
     Ok(stiffness.map(|stiffness| JointSpring { stiffness, rest }))
+}
+
+/// The prescribed coordinate, of the kind of the joint.
+fn motion(
+    spec: &JointSpec,
+    key: JointKey,
+    scope: &Scope<'_>,
+) -> Result<Option<Signal>, SceneError> {
+    let Some(written) = &spec.motion else {
+        return Ok(None);
+    };
+    let scope = scope.key("motion");
+    let Some(kind) = of_coordinate(key, Angle::kind(), Length::kind()) else {
+        let expected = "no motion, as the joint is neither revolute nor prismatic";
+        return Err(scope.wrong("motion", expected));
+    };
+    signal(written, &kind, &scope).map(Some)
 }
 
 fn stops(

@@ -8,6 +8,7 @@ use crate::files::scene::components::{LoadSpec, SpringSpec, TendonSpec};
 use crate::files::scene::law::LawSpec;
 use crate::files::scene::point::{Point, PointSpec};
 use crate::files::scene::spec_solids::{ElementSpec, SolidSpec};
+use crate::files::signal::spec::SignalSpec;
 use crate::files::units::quantity::{
     Acceleration, Angle, Density, JointCoordinate, JointDamping, JointStiffness, Length, Mass,
     MomentOfInertia, Permittivity, Quantity, Resistance, Stress, Time, Viscosity,
@@ -218,6 +219,9 @@ pub struct JointSpec {
     /// Elastic stops of the joint coordinate.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub stops: Option<StopsSpec>,
+    /// Prescribed coordinate as a function of time, SI unit rad or m: a constant, or an object with `ramp`, `sine`, `table` or `csv`.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub motion: Option<SignalSpec<JointCoordinate>>,
 }
 
 /// Elastic stops of a joint coordinate: `min`, `max` or both.

@@ -1,7 +1,7 @@
 //! A voltage, load, length or joint coordinate as a function of time, as it is written.
 
 use schemars::{JsonSchema, Schema, SchemaGenerator};
-use serde::{Deserialize, Deserializer};
+use serde::{Deserialize, Deserializer, Serialize};
 use std::borrow::Cow;
 use std::marker::PhantomData;
 
@@ -11,8 +11,8 @@ use crate::files::units::quantity::{
 };
 
 /// A constant in its SI unit, or exactly one of `ramp`, `sine`, `table` and `csv`.
-#[derive(Clone, Debug, JsonSchema)]
-#[serde(untagged)]
+#[derive(Clone, Debug, Serialize, JsonSchema)]
+#[serde(untagged, bound(serialize = "M: FollowedInTime"))]
 pub enum SignalSpec<M: FollowedInTime> {
     /// Constant.
     Constant(Quantity<M>),
@@ -21,57 +21,57 @@ pub enum SignalSpec<M: FollowedInTime> {
 }
 
 /// A function of time: exactly one of the four.
-#[derive(Clone, Debug, Deserialize, JsonSchema)]
+#[derive(Clone, Debug, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields, bound = "M: FollowedInTime")]
 pub struct FunctionSpec<M: FollowedInTime> {
     /// Linear between two values, constant before and after.
-    #[serde(default)]
+    #[serde(default, skip_serializing_if = "Option::is_none")]
     pub ramp: Option<RampSpec<M>>,
     /// A sine.
-    #[serde(default)]
+    #[serde(default, skip_serializing_if = "Option::is_none")]
     pub sine: Option<SineSpec<M>>,
     /// Linear between values at times, constant before and after.
-    #[serde(default)]
+    #[serde(default, skip_serializing_if = "Option::is_none")]
     pub table: Option<SignalTableSpec<M>>,
     /// The same, with times and values from columns of a CSV file.
-    #[serde(default)]
+    #[serde(default, skip_serializing_if = "Option::is_none")]
     pub csv: Option<SignalCsvSpec>,
 }
 
 /// Linear between two values, constant before and after.
-#[derive(Clone, Debug, Deserialize, JsonSchema)]
+#[derive(Clone, Debug, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields, bound = "M: FollowedInTime")]
 pub struct RampSpec<M: FollowedInTime> {
     /// Value up to the start; 0 where not written.
-    #[serde(default)]
+    #[serde(default, skip_serializing_if = "Option::is_none")]
     pub from: Option<Quantity<M>>,
     /// Value from the end on.
     pub to: Quantity<M>,
     /// Time at which it begins, SI unit s; 0 where not written.
-    #[serde(default)]
+    #[serde(default, skip_serializing_if = "Option::is_none")]
     pub start: Option<Quantity<Time>>,
     /// Time that it takes, SI unit s.
     pub duration: Quantity<Time>,
 }
 
 /// `mean + amplitude sin(2π t/period + phase)`.
-#[derive(Clone, Debug, Deserialize, JsonSchema)]
+#[derive(Clone, Debug, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields, bound = "M: FollowedInTime")]
 pub struct SineSpec<M: FollowedInTime> {
     /// Mean; 0 where not written.
-    #[serde(default)]
+    #[serde(default, skip_serializing_if = "Option::is_none")]
     pub mean: Option<Quantity<M>>,
     /// Amplitude.
     pub amplitude: Quantity<M>,
     /// Period, SI unit s.
     pub period: Quantity<Time>,
     /// Phase, SI unit rad; 0 where not written.
-    #[serde(default)]
+    #[serde(default, skip_serializing_if = "Option::is_none")]
     pub phase: Option<Quantity<Angle>>,
 }
 
 /// Values at times.
-#[derive(Clone, Debug, Deserialize, JsonSchema)]
+#[derive(Clone, Debug, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields, bound = "M: FollowedInTime")]
 pub struct SignalTableSpec<M: FollowedInTime> {
     /// Times, growing, SI unit s.
@@ -82,7 +82,7 @@ pub struct SignalTableSpec<M: FollowedInTime> {
 
 /// Values at times, from a CSV file: one line of headers such as `muscle1 [kV]`, SI units where a header has none; lines that
 /// begin with `#` are comments.
-#[derive(Clone, Debug, Deserialize, JsonSchema)]
+#[derive(Clone, Debug, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct SignalCsvSpec {
     /// Path of the file, relative to the problem or to the current folder.

@@ -1,32 +1,15 @@
-//! Conversion of functions of time in a problem file to signals.
+//! Functions of time in a file: `spec` as they are written, and their conversion to signals.
 
-use crate::control::Signal;
-use crate::control::problem::Voltages;
+pub(crate) mod spec;
+
 use crate::files::columns::Columns;
 use crate::files::json::error::SceneError;
 use crate::files::json::scope::Scope;
-use crate::files::problem::spec_signal::{
+use crate::files::signal::spec::{
     FollowedInTime, FunctionSpec, RampSpec, SignalCsvSpec, SignalSpec, SignalTableSpec, SineSpec,
 };
-use crate::files::problem::state::driven;
-use crate::files::units::quantity::{Kind, Quantity, Time, Voltage};
-use crate::model::system::System;
-use std::collections::BTreeMap;
-
-/// Voltages by the names of sources; constant ones where all of them are.
-pub(crate) fn signals(
-    map: &BTreeMap<String, SignalSpec<Voltage>>,
-    system: &System,
-    scope: &Scope<'_>,
-) -> Result<Voltages, SceneError> {
-    let sources = system.sources();
-    let mut signals = vec![Signal::Constant(0.0); sources.len()];
-    for (name, spec) in map {
-        let scope = scope.key(name);
-        signals[driven(name, &sources, &scope)?] = signal(spec, &Voltage::kind(), &scope)?;
-    }
-    Ok(Voltages::of_signals(signals))
-}
+use crate::files::units::quantity::{Kind, Quantity, Time};
+use crate::math::Signal;
 
 /// A function of time whose values are of a kind.
 pub(crate) fn signal<M: FollowedInTime>(

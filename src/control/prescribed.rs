@@ -1,0 +1,114 @@
+//! Prescribed joint coordinates at start and goal: their values and rates there, and what contradicts them.
+
+use crate::control::error::BoundaryError;
+use crate::control::problem::{Control, Duration};
+use crate::dynamics::Start;
+use crate::math::significant;
+use crate::model::{Model, Prescribed, joint_unit};
+use std::collections::BTreeMap;
+
+/// Parts of a radian or of the length of the system by which a state may miss a prescribed value.
+const SAME: f64 = 1e-9;
+/// Rates below this, in rad/ms or mm/ms, are rest.
+const REST: f64 = 1e-12;
+
+/// Values by joint of the scene, those that are named and those that are prescribed by `of`; others are zero.
+///
+/// # Errors
+/// A prescribed joint is named with another value.
+pub(super) fn by_joint(
+    model: &Model,
+    named: &BTreeMap<usize, f64>,
+    of: impl Fn(&Prescribed) -> f64,
+    (place, what): (&'static str, &str),
+) -> Result<Vec<f64>, BoundaryError> {
+    let joints = 0..model.joint_readings.len();
+    let mut values: Vec<f64> = joints
+        .map(|j| named.get(&j).copied().unwrap_or(0.0))
+        .collect();
+    for one in &model.prescribed {
+        let value = of(one);
+        if let Some(&found) = named.get(&one.joint) {
+            check(model, one, [found, value], (place, what))?;
+        }
+        values[one.joint] = value;
+    }
+    Ok(values)
+}
+
+/// Checks that a value of a prescribed coordinate is what is prescribed.
+fn check(
+    model: &Model,
+    one: &Prescribed,
+    [found, value]: [f64; 2],
+    (place, what): (&'static str, &str),
+) -> Result<(), BoundaryError> {
+    let unit = joint_unit(&model.system, one.joint);
+    let size = if unit == "mm" { model.length() } else { 1.0 };
+    if (found - value).abs() <= SAME * size {
+        return Ok(());
+    }
+    let [found, value] = [found, value].map(|number| significant(number, 4));
+    Err(BoundaryError::Prescribed {
+        place,
+        reason: format!(
+            "the {what} of joint \"{}\" is prescribed, {value} {unit} there; found {found} {unit}",
+            model.system.joints[one.joint].name
+        ),
+    })
+}
+
+/// A start at coordinates of rest; nodes and prescribed joints may have velocities of their own.
+pub(super) fn at_rest(model: &Model, z: Vec<f64>) -> Start {
+    let rates = model.rates_at_rest(0.0, &model.action.map.placed(&z));
+    match rates {
+        Some(rates) => Start::with_rates(model, z, &rates),
+        None => Start::at_rest(model, z),
+    }
+}
+
+/// Checks that the end of another motion has the prescribed values of a start.
+pub(super) fn check_end(
+    model: &Model,
+    z: &[f64],
+    place: &'static str,
+) -> Result<(), BoundaryError> {
+    let checked = |one: &Prescribed| {
+        let values = [z[one.coordinate], one.motion.at(0.0)];
+        check(model, one, values, (place, "coordinate"))
+    };
+    model.prescribed.iter().try_for_each(checked)
+}
+
+/// Gives the prescribed coordinates at the end of a motion.
+///
+/// # Errors
+/// The goal names another value, or is at rest while a joint moves on, or the duration is free.
+pub(super) fn at_goal(
+    model: &Model,
+    control: &Control,
+    (given, rests): (&mut [Option<f64>], bool),
+) -> Result<(), BoundaryError> {
+    let refused = |one: &Prescribed, reason: &str| {
+        let name = &model.system.joints[one.joint].name;
+        Err(BoundaryError::Prescribed {
+            place: "goal",
+            reason: format!("joint \"{name}\" has a prescribed motion, {reason}"),
+        })
+    };
+    for one in &model.prescribed {
+        let Duration::Given(end) = control.duration else {
+            return refused(one, "which needs a duration that is given");
+        };
+        let value = one.motion.at(end);
+        if let Some(found) = given[one.coordinate] {
+            check(model, one, [found, value], ("goal", "coordinate"))?;
+        }
+        let [_, rate, _] = one.motion.derivatives(end);
+        if rests && rate.abs() > REST {
+            return refused(one, "which goes on where the goal is at rest");
+        }
+        given[one.coordinate] = Some(value);
+    }
+    Ok(())
+}
