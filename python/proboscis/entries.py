@@ -115,6 +115,22 @@ Fixed: TypeAlias = "Text | Held"
 """A face that is clamped, or a place that is held in some directions."""
 
 
+class Function(TypedDict):
+    """A function of time: exactly one of the four."""
+
+    csv: NotRequired[SignalCsv]
+    """The same, with times and values from columns of a CSV file."""
+
+    ramp: NotRequired[Ramp]
+    """Linear between two values, constant before and after."""
+
+    sine: NotRequired[Sine]
+    """A sine."""
+
+    table: NotRequired[SignalTable]
+    """Linear between values at times, constant before and after."""
+
+
 class Gent(TypedDict):
     """Gent's law."""
 
@@ -274,6 +290,63 @@ class Point(TypedDict):
 
 Potential: TypeAlias = "Literal['grounded', 'floating', 'driven'] | Mapping[str, Any]"
 """The potential of an electrode."""
+
+
+Ramp = TypedDict(
+    "Ramp",
+    {
+        "duration": "Quantity",
+        "from": "NotRequired[Quantity]",
+        "start": "NotRequired[Quantity]",
+        "to": "Quantity",
+    },
+)
+"""Linear between two values, constant before and after."""
+
+
+class SignalCsv(TypedDict):
+    """Values at times, from a CSV file: one line of headers such as `muscle1 [kV]`, SI units where a header has none; lines that begin with `#`
+    are comments.
+    """
+
+    file: Text
+    """Path of the file, relative to the problem or to the current folder."""
+
+    time: NotRequired[Text]
+    """Header of the times, with or without its unit."""
+
+    values: Text
+    """Header of the values, with or without its unit."""
+
+
+Signal: TypeAlias = "Quantity | Function"
+"""A constant in its SI unit, or exactly one of `ramp`, `sine`, `table` and `csv`."""
+
+
+class SignalTable(TypedDict):
+    """Values at times."""
+
+    time: Sequence[Quantity] | Numbers
+    """Times, growing, SI unit s."""
+
+    values: Sequence[Quantity] | Numbers
+    """A value at each."""
+
+
+class Sine(TypedDict):
+    """`mean + amplitude sin(2π t/period + phase)`."""
+
+    amplitude: Quantity
+    """Amplitude."""
+
+    mean: NotRequired[Quantity]
+    """Mean; 0 where not written."""
+
+    period: Quantity
+    """Period, SI unit s."""
+
+    phase: NotRequired[Quantity]
+    """Phase, SI unit rad; 0 where not written."""
 
 
 class Sphere(TypedDict):
@@ -469,22 +542,6 @@ class Free(TypedDict):
     """Lower bound, in the unit of the constant."""
 
 
-class Function(TypedDict):
-    """A function of time: exactly one of the four."""
-
-    csv: NotRequired[SignalCsv]
-    """The same, with times and values from columns of a CSV file."""
-
-    ramp: NotRequired[Ramp]
-    """Linear between two values, constant before and after."""
-
-    sine: NotRequired[Sine]
-    """A sine."""
-
-    table: NotRequired[SignalTable]
-    """Linear between values at times, constant before and after."""
-
-
 Goal: TypeAlias = "GoalWord | RestGoal"
 """`"free"`, or a state at the end, at rest."""
 
@@ -677,18 +734,6 @@ class Path(TypedDict):
     """Along z."""
 
 
-Ramp = TypedDict(
-    "Ramp",
-    {
-        "duration": "Quantity",
-        "from": "NotRequired[Quantity]",
-        "start": "NotRequired[Quantity]",
-        "to": "Quantity",
-    },
-)
-"""Linear between two values, constant before and after."""
-
-
 class RandomGuess(TypedDict):
     """A random guess."""
 
@@ -735,51 +780,6 @@ class RestGoal(TypedDict):
 
 Rest: TypeAlias = "Literal['everything', 'bodies', 'markers']"
 """Part that comes to rest at a goal."""
-
-
-class SignalCsv(TypedDict):
-    """Values at times, from a CSV file: one line of headers such as `muscle1 [kV]`, SI units where a header has none; lines that begin with `#`
-    are comments.
-    """
-
-    file: Text
-    """Path of the file, relative to the problem or to the current folder."""
-
-    time: NotRequired[Text]
-    """Header of the times, with or without its unit."""
-
-    values: Text
-    """Header of the values, with or without its unit."""
-
-
-Signal: TypeAlias = "Quantity | Function"
-"""A constant in its SI unit, or exactly one of `ramp`, `sine`, `table` and `csv`."""
-
-
-class SignalTable(TypedDict):
-    """Values at times."""
-
-    time: Sequence[Quantity] | Numbers
-    """Times, growing, SI unit s."""
-
-    values: Sequence[Quantity] | Numbers
-    """A value at each."""
-
-
-class Sine(TypedDict):
-    """`mean + amplitude sin(2π t/period + phase)`."""
-
-    amplitude: Quantity
-    """Amplitude."""
-
-    mean: NotRequired[Quantity]
-    """Mean; 0 where not written."""
-
-    period: Quantity
-    """Period, SI unit s."""
-
-    phase: NotRequired[Quantity]
-    """Phase, SI unit rad; 0 where not written."""
 
 
 class Solution(TypedDict):

@@ -123,6 +123,7 @@ class Joint(Part):
     * `floating`: Any motion: the child is as free as without the joint, and results give its orientation in the first body.
     * `locked`: True if the joint is locked as it stands in the reference configuration: it is then `fixed`, and the bodies that it connects are
       one body.
+    * `motion`: Prescribed coordinate as a function of time, SI unit rad or m: a constant, or an object with `ramp`, `sine`, `table` or `csv`.
     * `prismatic`: Translation along an axis.
     * `rest_angle`: Angle of a revolute joint at which its spring exerts no torque, SI unit rad; 0 where absent: the reference configuration. It
       counts whole turns.
@@ -146,6 +147,7 @@ class Joint(Part):
         fixed: entries.Nothing | None = None,
         floating: entries.Nothing | None = None,
         locked: bool | None = None,
+        motion: entries.Signal | None = None,
         prismatic: entries.Axis | None = None,
         rest_angle: Quantity | None = None,
         rest_displacement: Quantity | None = None,
@@ -164,6 +166,7 @@ class Joint(Part):
                 "fixed": fixed,
                 "floating": floating,
                 "locked": locked,
+                "motion": motion,
                 "prismatic": prismatic,
                 "rest_angle": rest_angle,
                 "rest_displacement": rest_displacement,
