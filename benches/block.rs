@@ -73,6 +73,7 @@ fn block(n: usize, viscosity: Option<f64>) -> System {
         }],
         glued: Vec::new(),
         velocities: Vec::new(),
+        prestretch: None,
         mesh,
     };
     System {

@@ -369,6 +369,7 @@ fn block(driven: bool, change: impl Fn(&mut Material)) -> System {
             }],
             glued: Vec::new(),
             velocities: Vec::new(),
+            prestretch: None,
             mesh,
         }],
         gravity: Some(Vector3::new(2e-3, -9.61e-3, 0.0)),

@@ -250,7 +250,11 @@ fn as_control(task: Task, system: &System) -> Control {
         intervals: INTERVALS,
         is_refined: false,
         start,
-        goal: at_reference(),
+        // A joint that goes on does not rest.
+        goal: match system.joints.iter().any(|joint| joint.motion.is_some()) {
+            true => BoundaryState::Free,
+            false => at_reference(),
+        },
         voltage_bounds: [f64::NEG_INFINITY, f64::INFINITY],
         load_bounds: BTreeMap::new(),
         given: BTreeMap::new(),

@@ -18,8 +18,8 @@ use crate::app::summary::{MEASURED, Seconds, Summary};
 use crate::control::problem::AtRest;
 use crate::dynamics::trajectory::{Column, Observations, Trajectory};
 use crate::dynamics::{
-    Continuation, DiscreteTrajectory, Equilibrium, Instability, continuation, observations,
-    out_of_domain,
+    Continuation, DiscreteTrajectory, Equilibrium, Instability, Reading, continuation,
+    observations, out_of_domain,
 };
 use crate::ipopt::{Status, interrupt};
 use crate::model::{Model, Role, System};
@@ -157,6 +157,7 @@ fn up_to(discrete: &DiscreteTrajectory, k: usize) -> DiscreteTrajectory {
         z: discrete.z[..=k].to_vec(),
         momenta: discrete.momenta[..=k].to_vec(),
         scalars: discrete.scalars[..k].to_vec(),
+        reading: Reading::Instants,
         ..DiscreteTrajectory::default()
     }
 }
@@ -194,6 +195,7 @@ impl<'a> EquilibriumPath<'a> {
                 .collect(),
             momenta: vec![vec![0.0; model.coordinate_count()]; stops.len() + 1],
             scalars: stops.iter().map(|stop| stop.rest.scalars.clone()).collect(),
+            reading: Reading::Instants,
             ..DiscreteTrajectory::default()
         };
         Self {

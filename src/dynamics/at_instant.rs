@@ -75,6 +75,9 @@ impl<'m> AtInstant<'m> {
         if let (0, Some(known)) = (k, &discrete.rates) {
             return known.clone();
         }
+        if model.prescribed.is_empty() && momentum.iter().all(|p| *p == 0.0) {
+            return vec![0.0; momentum.len()];
+        }
         let time = discrete.begun + discrete.times[k];
         let is_constrained = model.action.map.multipliers > 0;
         if discrete.reading == Reading::Instants || is_constrained {

@@ -296,12 +296,19 @@ impl Solid {
             supports: Vec::new(),
             glued: Vec::new(),
             velocities: Vec::new(),
+            prestretch: None,
         }
     }
 
     /// Nodes of a set of the mesh, such as `z_min`; none where there is no such set, which a check of the system reports.
     fn nodes(&self, set: &str) -> Vec<usize> {
         self.mesh.sets.get(set).cloned().unwrap_or_default()
+    }
+
+    /// Stretches along x, y, z before it was glued and held, by which the mesh differs from the solid without stress.
+    pub fn prestretch(self, stretches: [f64; 3]) -> Self {
+        let prestretch = Some(stretches);
+        Self { prestretch, ..self }
     }
 
     /// Holds the nodes of a set of the mesh, such as `z_min`.

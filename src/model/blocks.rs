@@ -74,6 +74,7 @@ fn block(source: usize, muscle: &Muscle, discretisation: &Discretisation) -> Sol
             glue("z_max", muscle.to.body),
         ],
         velocities: Vec::new(),
+        prestretch: None,
         mesh: mesh.transformed(|x| muscle.from.at + frame * x),
     }
 }

@@ -22,7 +22,7 @@ pub struct SystemError {
 const ROUNDING: f64 = 1e-12;
 
 /// Collects nothing: the first error is returned.
-fn require(
+pub(super) fn require(
     holds: bool,
     part: &str,
     found: impl FnOnce() -> String,
@@ -81,6 +81,7 @@ impl System {
                     "the name of a set of the mesh",
                 )?;
             }
+            solid.check_prestretch()?;
             for material in &solid.materials {
                 positive(&solid.name, "shear modulus", material.shear_modulus)?;
                 check_law(&solid.name, material)?;

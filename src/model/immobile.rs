@@ -132,6 +132,7 @@ impl Parts {
             let starts = solid.velocities.iter().any(|v| v.norm() > 0.0);
             if is_heavy
                 || starts
+                || solid.prestretch.is_some()
                 || initially_moving.solids.contains(&s)
                 || field_extent::dielectric(solid, &BTreeSet::new()).contains(&true)
             {

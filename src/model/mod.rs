@@ -38,6 +38,7 @@ mod parameter;
 pub mod plan;
 mod prescribed;
 mod presolved;
+mod prestretch;
 mod quantity;
 mod redundancy;
 mod solid_block;

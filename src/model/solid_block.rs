@@ -58,8 +58,8 @@ impl SolidBlock {
 
     /// Gradients of the shape functions at the centre of an element; `None` where it is inverted there.
     pub(super) fn central_gradients(&self, element: usize) -> Option<[Vector; 8]> {
-        let mesh = &self.solid.mesh;
-        ElementGeometry::central_gradients(&mesh.hexahedra[element].map(|node| mesh.nodes[node]))
+        let nodes = self.solid.mesh.hexahedra[element];
+        ElementGeometry::central_gradients(&nodes.map(|node| self.solid.unstretched(node)))
     }
 
     /// Terminals of the nodes of a dielectric element.

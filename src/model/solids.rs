@@ -193,7 +193,7 @@ fn unit(solids: &[Solid]) -> f64 {
 
 fn shapes(solid: &Solid) -> Result<Vec<ElementGeometry>, ModelError> {
     let shape = |(element, nodes): (usize, &[usize; 8])| {
-        ElementGeometry::new(&nodes.map(|n| solid.mesh.nodes[n])).map_err(|Inverted { .. }| {
+        ElementGeometry::new(&nodes.map(|n| solid.unstretched(n))).map_err(|Inverted { .. }| {
             ModelError::Inverted {
                 solid: solid.name.clone(),
                 element,

@@ -289,6 +289,8 @@ pub struct Solid {
     pub glued: Vec<Glue>,
     /// Velocity of each node at the start in mm/ms; empty at rest.
     pub velocities: Vec<Vector3<f64>>,
+    /// Stretches along x, y, z by which the reference configuration differs from that without stress; `None` where it has none.
+    pub prestretch: Option<[f64; 3]>,
 }
 
 /// Kind of hexahedron: its treatment of volume.

@@ -66,6 +66,7 @@ pub(crate) fn block(mesh: Mesh, material: Material) -> Solid {
         supports: Vec::new(),
         glued: Vec::new(),
         velocities: Vec::new(),
+        prestretch: None,
         mesh,
     }
 }

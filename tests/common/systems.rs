@@ -372,6 +372,7 @@ pub fn blocks() -> System {
             },
         ],
         velocities: Vec::new(),
+        prestretch: None,
         mesh,
     });
     system.markers.push(Marker {

@@ -21,6 +21,7 @@ mod output;
 mod page;
 mod paraview;
 mod parts;
+mod path_rows;
 mod process;
 mod refusals;
 mod report;

@@ -9,6 +9,7 @@ mod invariants;
 mod loads;
 mod mesh;
 mod physics;
+mod prestretch;
 mod refusals;
 mod slender;
 mod statics;

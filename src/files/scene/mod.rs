@@ -22,6 +22,7 @@ pub(crate) mod muscle;
 pub(crate) mod names;
 pub(crate) mod nodes;
 pub mod point;
+mod prestretch;
 pub(crate) mod solid;
 pub mod spec;
 pub mod spec_solids;

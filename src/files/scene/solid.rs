@@ -1,4 +1,4 @@
-//! Conversion of an elastic block of a scene file to nodes, materials, electrodes, supports and velocities.
+//! Conversion of an elastic block of a scene file to nodes, materials, electrodes, supports, velocities and prestretch.
 
 use nalgebra::Vector3;
 use std::collections::BTreeMap;
@@ -12,6 +12,7 @@ use crate::files::scene::muscle::element_kind;
 use crate::files::scene::names::{find_body, find_compressible};
 use crate::files::scene::nodes::{extent, face, nodes, place};
 use crate::files::scene::point::vector;
+use crate::files::scene::prestretch::prestretch;
 use crate::files::scene::spec_solids::{AxisName, FixedSpec, SolidSpec, VelocitySpec};
 use crate::mesh::Mesh;
 use crate::model::system::{Glue, Material, Solid, Support};
@@ -63,6 +64,7 @@ pub(crate) fn solid(
         supports,
         glued,
         velocities,
+        prestretch: prestretch(spec.prestretch.as_ref(), &scope.key("prestretch"))?,
     })
 }
 

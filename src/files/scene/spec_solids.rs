@@ -54,6 +54,9 @@ pub struct SolidSpec {
     /// Velocity at the start; at rest where not written.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub velocity: Option<VelocitySpec>,
+    /// Stretch before it was glued and held, by which the mesh differs from the block without stress; none where not written.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub prestretch: Option<PrestretchSpec>,
 }
 
 impl SolidSpec {
@@ -62,6 +65,21 @@ impl SolidSpec {
         let of_regions = self.materials.iter().flat_map(BTreeMap::values);
         self.material.iter().chain(of_regions)
     }
+}
+
+/// Stretches along the axes of the ground frame; those that are not written keep the volume.
+#[derive(Clone, Debug, Serialize, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct PrestretchSpec {
+    /// Stretch along x.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub x: Option<f64>,
+    /// Stretch along y.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub y: Option<f64>,
+    /// Stretch along z.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub z: Option<f64>,
 }
 
 /// Kind of hexahedron: its treatment of volume.
