@@ -280,3 +280,31 @@ fn files_prescribe_motions_in_the_units_of_their_joint() {
         assert!(error.contains("motion") && error.contains(words), "{error}");
     }
 }
+
+#[test]
+fn kinetic_energy_at_instants_counts_the_prescribed_rate() {
+    let steps = 200;
+    let h = 1.0;
+    for coordinates in BOTH {
+        for integrator in [Integrator::Midpoint, Integrator::Galerkin { degree: 2 }] {
+            let model = model(&oscillator(), coordinates, h);
+            let discrete = moved(&model, &[], integrator, (h, steps));
+            let seen = observations(&model, &discrete);
+            let [cart, kinetic] = ["cart", "kinetic_energy"].map(|name| column(&seen, name));
+            for k in [0, steps] {
+                // One-sided differences of second order; the start is at rest on the base.
+                let (a, b) = (cart[k.saturating_sub(1)], cart[k.saturating_sub(2)]);
+                let along = if k == 0 {
+                    0.0
+                } else {
+                    (1.5 * cart[k] - 2.0 * a + 0.5 * b) / h
+                };
+                let [_, base, _] = shaking().derivatives(k as f64 * h);
+                let exact = 0.5 * MASS * (base * base + (base + along) * (base + along));
+                assert!(exact > 0.1, "{exact}");
+                let error = (kinetic[k] / exact - 1.0).abs();
+                assert!(error < 5e-3, "{integrator:?} {coordinates:?} {k}: {error}");
+            }
+        }
+    }
+}
