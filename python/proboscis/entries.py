@@ -292,6 +292,19 @@ Potential: TypeAlias = "Literal['grounded', 'floating', 'driven'] | Mapping[str,
 """The potential of an electrode."""
 
 
+class Prestretch(TypedDict):
+    """Stretches along the axes of the ground frame; those that are not written keep the volume."""
+
+    x: NotRequired[float]
+    """Stretch along x."""
+
+    y: NotRequired[float]
+    """Stretch along y."""
+
+    z: NotRequired[float]
+    """Stretch along z."""
+
+
 Ramp = TypedDict(
     "Ramp",
     {

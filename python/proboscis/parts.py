@@ -243,6 +243,7 @@ class Solid(Part):
     * `material`: Name of the material.
     * `materials`: Names of the materials by region.
     * `mesh`: Path of a Gmsh file, relative to this file.
+    * `prestretch`: Stretch before it was glued and held, by which the mesh differs from the block without stress; none where not written.
     * `stack`: Electrodes between the layers of a stack and at its ends, alternately grounded and driven.
     * `unit`: Length of a unit of the Gmsh file, SI unit m; 1 m where not written.
     * `velocity`: Velocity at the start; at rest where not written.
@@ -262,6 +263,7 @@ class Solid(Part):
         material: Text | None = None,
         materials: Mapping[Any, Text] | None = None,
         mesh: Text | None = None,
+        prestretch: entries.Prestretch | None = None,
         stack: entries.Stack | None = None,
         unit: Quantity | None = None,
         velocity: entries.Velocity | None = None,
@@ -277,6 +279,7 @@ class Solid(Part):
                 "material": material,
                 "materials": materials,
                 "mesh": mesh,
+                "prestretch": prestretch,
                 "stack": stack,
                 "unit": unit,
                 "velocity": velocity,
