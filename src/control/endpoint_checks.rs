@@ -25,15 +25,9 @@ pub(super) fn check(
     control: &Control,
     scalars: [Option<Vec<f64>>; 2],
 ) -> Result<(), BoundaryError> {
-    if let Some(reason) = contradiction(model, boundary, control) {
-        let place = "limits";
-        return Err(BoundaryError::Limit { place, reason });
-    }
-    if let Some(reason) = control
-        .limits
-        .iter()
-        .find_map(|limit| beyond_law(model, limit))
-    {
+    let mut limits = control.limits.iter();
+    let beyond = || limits.find_map(|limit| beyond_law(model, limit));
+    if let Some(reason) = contradiction(model, boundary, control).or_else(beyond) {
         let place = "limits";
         return Err(BoundaryError::Limit { place, reason });
     }
@@ -192,22 +186,12 @@ fn beyond_law(model: &Model, limit: &PathConstraint) -> Option<String> {
         return None;
     };
     let muscle = &model.system.muscles[muscle];
-    let [low, high] = muscle.material.law?.stretches()?;
-    let given = [min, max]
-        .into_iter()
-        .filter(|bound| *bound > 0.0 && bound.is_finite());
-    let stretch = given
-        .into_iter()
-        .find(|bound| *bound <= low || high <= *bound)?;
-    let (muscle, range) = (muscle.name.clone(), [low, high]);
-    Some(format!(
-        "at a bound {}",
-        BeyondLaw {
-            muscle,
-            stretch,
-            range
-        }
-    ))
+    let mut bounds = [min, max].into_iter();
+    let beyond = bounds.find_map(|bound| match bound > 0.0 && bound.is_finite() {
+        true => BeyondLaw::at(muscle, bound),
+        false => None,
+    });
+    beyond.map(|beyond| format!("at a bound {beyond}"))
 }
 
 /// Two limits of one quantity that leave it no value.

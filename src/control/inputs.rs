@@ -1,6 +1,6 @@
 //! Voltages and loads as functions of time: constants, rows of a table or a solution, or one function for each source.
 
-use crate::math::Signal;
+use crate::math::{Signal, in_order};
 use crate::model::System;
 use std::borrow::Cow;
 use std::collections::BTreeMap;
@@ -113,19 +113,13 @@ impl Voltages {
             Self::Sampled { ends, others, .. } if others.is_empty() => Cow::Borrowed(ends),
             Self::Sampled { ends, others, .. } => {
                 let others = others.values().flat_map(Signal::corners);
-                Cow::Owned(sorted(ends.iter().copied().chain(others)))
+                Cow::Owned(in_order(ends.iter().copied().chain(others)))
             }
-            Self::Signals(signals) => Cow::Owned(sorted(signals.iter().flat_map(Signal::corners))),
+            Self::Signals(signals) => {
+                Cow::Owned(in_order(signals.iter().flat_map(Signal::corners)))
+            }
         }
     }
-}
-
-/// Times in order, each once.
-fn sorted(times: impl Iterator<Item = f64>) -> Vec<f64> {
-    let mut times: Vec<f64> = times.collect();
-    times.sort_by(f64::total_cmp);
-    times.dedup();
-    times
 }
 
 /// Loads that are neither given nor sought: zero all the time, by source.

@@ -22,16 +22,12 @@ pub(super) fn by_joint(
     of: impl Fn(&Prescribed) -> f64,
     (place, what): (&'static str, &str),
 ) -> Result<Vec<f64>, BoundaryError> {
-    let joints = 0..model.joint_readings.len();
-    let mut values: Vec<f64> = joints
-        .map(|j| named.get(&j).copied().unwrap_or(0.0))
-        .collect();
-    for one in &model.prescribed {
-        let value = of(one);
-        if let Some(&found) = named.get(&one.joint) {
-            check(model, one, [found, value], (place, what))?;
+    let mut values = model.of_prescribed_joints(of);
+    for (&joint, &found) in named {
+        match model.prescribed.iter().find(|one| one.joint == joint) {
+            Some(one) => check(model, one, [found, values[joint]], (place, what))?,
+            None => values[joint] = found,
         }
-        values[one.joint] = value;
     }
     Ok(values)
 }

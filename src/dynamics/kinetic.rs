@@ -42,7 +42,7 @@ impl<'m> Kinetic<'m> {
                 entries.add(slot, (i, j));
             }
         }
-        let held: Vec<usize> = model.prescribed.iter().map(|one| one.coordinate).collect();
+        let held = model.prescribed_coordinates();
         entries.hold(&held, 1.0);
         let size = action.map.unknowns();
         Self {

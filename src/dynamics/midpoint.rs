@@ -69,7 +69,7 @@ impl<'m> Stepper<'m> {
             }
         }
         entries.add_scalars(model, &[[0, 1]]);
-        let held: Vec<usize> = model.prescribed.iter().map(|one| one.coordinate).collect();
+        let held = model.prescribed_coordinates();
         entries.hold(&held, 1.0);
         let (sizes, algebraic) = (model.sizes(), model.variables.algebraic());
         let (mut here, next) = (map.instant(), map.instant());

@@ -8,7 +8,7 @@ use crate::coordinates::{Configuration, Interval};
 use crate::dynamics::discrete_trajectory::DiscreteTrajectory;
 use crate::functional::TermKind;
 use crate::model::Model;
-use crate::model::system::Fidelity;
+use crate::model::system::{Fidelity, Muscle};
 use std::fmt;
 
 /// Below this stretch a muscle is named where a step fails; pull-in of an ideal dielectric is at 0.63.
@@ -68,6 +68,24 @@ pub struct BeyondLaw {
     pub range: [f64; 2],
 }
 
+impl BeyondLaw {
+    /// Of a muscle at a stretch within a part of the range of its law, from 0 at its ends to 1 at rest, or beyond; `None` elsewhere.
+    fn within(muscle: &Muscle, stretch: f64, part: f64) -> Option<Self> {
+        let [low, high] = muscle.material.law?.stretches()?;
+        let is_inside = low + part * (1.0 - low) < stretch && stretch < high - part * (high - 1.0);
+        (!is_inside).then(|| Self {
+            muscle: muscle.name.clone(),
+            stretch,
+            range: [low, high],
+        })
+    }
+
+    /// Of a muscle that has no energy at a stretch.
+    pub fn at(muscle: &Muscle, stretch: f64) -> Option<Self> {
+        Self::within(muscle, stretch, 0.0)
+    }
+}
+
 impl fmt::Display for BeyondLaw {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         let [low, high] = self.range;
@@ -83,14 +101,7 @@ impl fmt::Display for BeyondLaw {
 fn at_limit(model: &Model, at: &Configuration, part: f64) -> Option<BeyondLaw> {
     lumped(model).find_map(|(m, span)| {
         let muscle = &model.system.muscles[m];
-        let [low, high] = muscle.material.law?.stretches()?;
-        let stretch = at.x[span].norm() / muscle.length();
-        let is_inside = low + part * (1.0 - low) < stretch && stretch < high - part * (high - 1.0);
-        (!is_inside).then(|| BeyondLaw {
-            muscle: muscle.name.clone(),
-            stretch,
-            range: [low, high],
-        })
+        BeyondLaw::within(muscle, at.x[span].norm() / muscle.length(), part)
     })
 }
 

@@ -282,8 +282,8 @@ impl<E: Equations> Steps<E> {
         Ok(accepted)
     }
 
-    /// Returns the reason why a solution is not accepted: a muscle passed through zero length or the limit of its law, a joint turned too far, an element is crushed, the
-    /// energy balance does not close.
+    /// Returns the reason why a solution is not accepted: a muscle passed through zero length or the limit of its law, a joint turned too
+    /// far, an element is crushed, the energy balance does not close.
     fn refusal(&mut self, step: f64) -> Option<StepError> {
         let time = self.equations.time();
         let model = self.equations.model();

@@ -23,7 +23,7 @@ pub(crate) use pool::has_pool;
 #[cfg(feature = "report")]
 pub(crate) use pool::join;
 pub use sets::DisjointSets;
-pub use signal::Signal;
+pub use signal::{Signal, in_order};
 pub use stopped::{IsOver, Stopped};
 
 /// A vector of space.

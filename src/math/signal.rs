@@ -187,6 +187,14 @@ impl Signal {
     }
 }
 
+/// Times in order, each once.
+pub fn in_order(times: impl Iterator<Item = f64>) -> Vec<f64> {
+    let mut times: Vec<f64> = times.collect();
+    times.sort_by(f64::total_cmp);
+    times.dedup();
+    times
+}
+
 impl From<f64> for Signal {
     fn from(value: f64) -> Self {
         Self::Constant(value)

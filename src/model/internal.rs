@@ -110,8 +110,7 @@ impl Internals {
             list.extend(needed.map(|(j, joint)| Internal::of_joint(j, joint)));
         }
         for (m, muscle) in scene.muscles.iter().enumerate() {
-            let mut ends = [muscle.from, muscle.to].into_iter();
-            let moves = ends.any(|end| presolved.carrier(end.body).is_some());
+            let moves = presolved.moves(muscle);
             if analysis.of_motion && moves && muscle.fidelity == Fidelity::Lumped {
                 let branches = 0..muscle.material.maxwell.list().len();
                 list.extend(branches.map(|b| Internal::of_branch(&muscle.name, m, b)));

@@ -47,9 +47,7 @@ impl Model {
         let lumped = lumped.filter(|(_, muscle)| muscle.fidelity == Fidelity::Lumped);
         let readings = lumped.filter_map(|(m, muscle)| {
             let drive = self.drive(m);
-            let mut ends = [muscle.from, muscle.to].into_iter();
-            let moves = ends.any(|end| self.presolved.carrier(end.body).is_some());
-            (moves || drive.is_some()).then(|| MuscleReading {
+            (self.presolved.moves(muscle) || drive.is_some()).then(|| MuscleReading {
                 muscle: m,
                 branches: self.branches_of(m),
                 drive,

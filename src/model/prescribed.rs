@@ -1,7 +1,7 @@
 //! Prescribed joint coordinates: functions of time in the place of their equations of motion.
 //!
-//! Where the coordinate u of a joint is c(t), it is no unknown: steps and programs have u_k = c(t_k), and the momentum balance of u gives
-//! the force or torque that moves the joint.
+//! A coordinate u = c(t) of a joint is no unknown: steps and programs have u_k = c(t_k), and the momentum balance of u gives the force or
+//! torque that moves the joint.
 
 use crate::coordinates::Configuration;
 use crate::model::internal::Internals;
@@ -29,6 +29,20 @@ pub(super) fn prescribed(
 }
 
 impl Model {
+    /// The coordinates that are prescribed.
+    pub fn prescribed_coordinates(&self) -> Vec<usize> {
+        self.prescribed.iter().map(|one| one.coordinate).collect()
+    }
+
+    /// A number for each joint of the scene: `of` of those that are prescribed, zero of others.
+    pub fn of_prescribed_joints(&self, of: impl Fn(&Prescribed) -> f64) -> Vec<f64> {
+        let mut joints = vec![0.0; self.joint_readings.len()];
+        for one in &self.prescribed {
+            joints[one.joint] = of(one);
+        }
+        joints
+    }
+
     /// Returns true if coordinate `i` is prescribed.
     pub fn is_prescribed(&self, i: usize) -> bool {
         self.prescribed.iter().any(|one| one.coordinate == i)
@@ -59,10 +73,7 @@ impl Model {
     /// Rates of the coordinates at a time in ms, where nothing but what is prescribed moves in the joints of a placed instant; `None`
     /// where all of it rests.
     pub fn rates_at_rest(&self, time: f64, instant: &Configuration) -> Option<Vec<f64>> {
-        let mut of_joints = vec![0.0; self.joint_readings.len()];
-        for one in &self.prescribed {
-            of_joints[one.joint] = one.motion.derivatives(time)[1];
-        }
+        let of_joints = self.of_prescribed_joints(|one| one.motion.derivatives(time)[1]);
         if of_joints.iter().all(|rate| *rate == 0.0) {
             return self.node_rates();
         }
@@ -74,10 +85,6 @@ impl Model {
 
     /// Coordinates of an instant in the reference configuration, but for those that are prescribed at a time in ms.
     pub fn reference_coordinates_at(&self, time: f64) -> Vec<f64> {
-        let mut joints = vec![0.0; self.joint_readings.len()];
-        for one in &self.prescribed {
-            joints[one.joint] = one.motion.at(time);
-        }
-        self.coordinates_at(&joints)
+        self.coordinates_at(&self.of_prescribed_joints(|one| one.motion.at(time)))
     }
 }

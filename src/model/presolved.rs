@@ -8,7 +8,7 @@ use crate::math::{DisjointSets, Matrix, Vector};
 use crate::model::analysis::Analysis;
 use crate::model::immobile::{self, Immobile};
 use crate::model::system::{
-    Body, Electrode, Joint, JointKind, Material, Potential, Shape, Solid, Support, System,
+    Body, Electrode, Joint, JointKind, Material, Muscle, Potential, Shape, Solid, Support, System,
 };
 use nalgebra::SymmetricEigen;
 
@@ -128,6 +128,12 @@ impl Presolved {
             BodyLocation::Ground => None,
             BodyLocation::Body(to) | BodyLocation::Welded { to, .. } => Some(to),
         }
+    }
+
+    /// Returns true if an end of a muscle is on a body that moves.
+    pub fn moves(&self, muscle: &Muscle) -> bool {
+        let mut ends = [muscle.from, muscle.to].into_iter();
+        ends.any(|end| self.carrier(end.body).is_some())
     }
 
     /// Poses of the presolved bodies from those of the bodies of the scene; `reference` where none is known.

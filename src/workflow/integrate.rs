@@ -9,6 +9,7 @@ use crate::dynamics::{
     DiscreteTrajectory, Drive, Lengths, StepControl, StepError, StepState, TimeGrid, go_on,
 };
 use crate::ipopt::interrupt;
+use crate::math::in_order;
 use crate::model::{Model, System};
 use crate::workflow::confirmed::EstimatedError;
 use crate::workflow::error::WorkflowError;
@@ -137,15 +138,7 @@ pub fn integrate_on(
 /// Times in ms, in order, at which inputs or prescribed motions are not smooth.
 fn switches(inputs: &Voltages, model: &Model) -> Vec<f64> {
     let of_motions = model.prescribed.iter().flat_map(|one| one.motion.corners());
-    let mut times: Vec<f64> = inputs
-        .switches()
-        .iter()
-        .copied()
-        .chain(of_motions)
-        .collect();
-    times.sort_by(f64::total_cmp);
-    times.dedup();
-    times
+    in_order(inputs.switches().iter().copied().chain(of_motions))
 }
 
 /// The voltages of a task as the steps of its model ask for them.

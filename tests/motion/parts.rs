@@ -23,7 +23,7 @@ fn names(observed: &Observations) -> Vec<&str> {
     columns.map(|column| column.name.as_str()).collect()
 }
 
-fn moved(
+pub(crate) fn moved(
     integrator: Integrator,
     model: &Model,
     start: &Start,

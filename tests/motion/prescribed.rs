@@ -3,18 +3,16 @@
 use crate::common::{bare, body, column, joint, runge_kutta};
 use crate::component_files::read;
 use crate::maxwell::{BOTH, model};
+use crate::parts;
 use nalgebra::{Matrix3, Vector2, Vector3};
 use proboscis::control::problem::BoundaryState;
 use proboscis::control::resolve_start;
-use proboscis::dynamics::{
-    DiscreteTrajectory, Integrator, Solving, observations, simulate_by, stable_equilibrium,
-};
+use proboscis::dynamics::{DiscreteTrajectory, Integrator, observations, stable_equilibrium};
 use proboscis::math::Signal;
 use proboscis::model::Model;
 use proboscis::model::system::{Joint, JointKind, JointSpring, System};
 use std::collections::BTreeMap;
 use std::f64::consts::TAU;
-use std::ops::ControlFlow;
 
 /// g, N/mm, mm, mm, 1/ms and mm/ms².
 const MASS: f64 = 20.0;
@@ -87,15 +85,7 @@ fn moved(
         velocities: BTreeMap::new(),
     };
     let start = resolve_start(model, &start, "start").unwrap();
-    let solving = Solving {
-        integrator,
-        ..Solving::default()
-    };
-    let none = |_: f64, _: f64| Vec::new();
-    let go_on = |_: &_| ControlFlow::Continue(());
-    let (discrete, failure) = simulate_by(solving, model, &start, h, steps, none, go_on);
-    assert_eq!(failure, None);
-    discrete
+    parts::moved(integrator, model, &start, h, steps, &[])
 }
 
 const METHODS: [(Integrator, f64, f64); 4] = [

@@ -97,7 +97,7 @@ impl<'m> Statics<'m> {
             entries.add(added + place, (i, i));
         }
         // The tangent is negative where a state is stable.
-        let held: Vec<usize> = model.prescribed.iter().map(|one| one.coordinate).collect();
+        let held = model.prescribed_coordinates();
         entries.hold(&held, -1.0);
         let mut terms = model.action.intervals.terms.iter();
         let follows = terms.any(|term| term.kind() == TermKind::AppliedWork);

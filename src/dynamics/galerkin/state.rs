@@ -109,8 +109,8 @@ impl<'m> Steps<GalerkinEquations<'m>> {
         let (places, mut entries) = Places::new(model, &rows, samples.len());
         let points_of =
             |coordinate: usize| (0..degree).map(move |p| p * map.unknowns() + coordinate);
-        let held = model.prescribed.iter();
-        let held: Vec<usize> = held.flat_map(|one| points_of(one.coordinate)).collect();
+        let held = model.prescribed_coordinates().into_iter();
+        let held: Vec<usize> = held.flat_map(points_of).collect();
         entries.hold(&held, 1.0);
         let combined = action.intervals.output(Order::Hessian).plain;
         let n = map.coordinates;

@@ -4,13 +4,14 @@ use crate::control::problem::{Duration, PathConstraint, Side};
 use crate::files::json::error::SceneError;
 use crate::files::json::scope::Scope;
 use crate::files::problem::spec_limits::{
-    All, ElectricFieldLimitSpec, JointAngleLimitSpec, JointRateLimitSpec, LimitSpec,
-    MarkerLimitSpec, RegionSpec, StretchLimitSpec,
+    All, ElectricFieldLimitSpec, LimitSpec, MarkerLimitSpec, RegionSpec, StretchLimitSpec,
 };
 use crate::files::problem::state::{ELECTRIC_KEYS, joint_value, joint_with_coordinate};
 use crate::files::scene::names::names;
 use crate::files::scene::point::vector;
-use crate::files::units::quantity::{Angle, AngularVelocity, Length, Velocity};
+use crate::files::units::quantity::{
+    Angle, AngularVelocity, Kind, Length, PhysicalQuantity, Quantity, Velocity,
+};
 use crate::model::Region;
 use crate::model::system::System;
 
@@ -54,10 +55,16 @@ fn limit(
     let scope = scope.key(key);
     let mut limits = Vec::new();
     if let Some(spec) = &spec.joint_angle {
-        limits.push(joint_angle(spec, system, &scope)?);
+        let kinds = [Angle::kind(), Length::kind()];
+        let bounds = [spec.min.as_ref(), spec.max.as_ref()];
+        let (joint, [min, max]) = of_joint(&spec.joint, bounds, kinds, (system, &scope))?;
+        limits.push(PathConstraint::JointAngle { joint, min, max });
     }
     if let Some(spec) = &spec.joint_rate {
-        limits.push(joint_rate(spec, system, &scope)?);
+        let kinds = [AngularVelocity::kind(), Velocity::kind()];
+        let bounds = [spec.min.as_ref(), spec.max.as_ref()];
+        let (joint, [min, max]) = of_joint(&spec.joint, bounds, kinds, (system, &scope))?;
+        limits.push(PathConstraint::JointRate { joint, min, max });
     }
     if let Some(spec) = &spec.stretch {
         limits.push(stretch(spec, system, &scope)?);
@@ -71,38 +78,25 @@ fn limit(
     Ok(limits)
 }
 
-fn joint_angle(
-    spec: &JointAngleLimitSpec,
-    system: &System,
-    scope: &Scope<'_>,
-) -> Result<PathConstraint, SceneError> {
-    let joint = joint_with_coordinate(&spec.joint, system, &scope.key("joint"))?;
-    let kinds = [Angle::kind(), Length::kind()];
-    let bound = |key: &str, quantity: Option<&_>, absent: f64| match quantity {
+/// A joint, and the bounds of its coordinate or rate, of which one at least is written.
+fn of_joint<M: PhysicalQuantity>(
+    joint: &str,
+    [min, max]: [Option<&Quantity<M>>; 2],
+    kinds: [Kind; 2],
+    (system, scope): (&System, &Scope<'_>),
+) -> Result<(usize, [f64; 2]), SceneError> {
+    let joint = joint_with_coordinate(joint, system, &scope.key("joint"))?;
+    let bound = |key: &str, quantity: Option<&Quantity<M>>, absent: f64| match quantity {
         Some(quantity) => joint_value(quantity, &kinds, joint, system, &scope.key(key)),
         None => Ok(absent),
     };
-    let min = bound("min", spec.min.as_ref(), f64::NEG_INFINITY)?;
-    let max = bound("max", spec.max.as_ref(), f64::INFINITY)?;
-    check_bounds(min, max, spec.min.is_some() || spec.max.is_some(), scope)?;
-    Ok(PathConstraint::JointAngle { joint, min, max })
-}
-
-fn joint_rate(
-    spec: &JointRateLimitSpec,
-    system: &System,
-    scope: &Scope<'_>,
-) -> Result<PathConstraint, SceneError> {
-    let joint = joint_with_coordinate(&spec.joint, system, &scope.key("joint"))?;
-    let kinds = [AngularVelocity::kind(), Velocity::kind()];
-    let bound = |key: &str, quantity: Option<&_>, absent: f64| match quantity {
-        Some(quantity) => joint_value(quantity, &kinds, joint, system, &scope.key(key)),
-        None => Ok(absent),
-    };
-    let min = bound("min", spec.min.as_ref(), f64::NEG_INFINITY)?;
-    let max = bound("max", spec.max.as_ref(), f64::INFINITY)?;
-    check_bounds(min, max, spec.min.is_some() || spec.max.is_some(), scope)?;
-    Ok(PathConstraint::JointRate { joint, min, max })
+    let bounds = [
+        bound("min", min, f64::NEG_INFINITY)?,
+        bound("max", max, f64::INFINITY)?,
+    ];
+    let is_written = min.is_some() || max.is_some();
+    check_bounds(bounds[0], bounds[1], is_written, scope)?;
+    Ok((joint, bounds))
 }
 
 fn stretch(
