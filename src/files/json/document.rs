@@ -6,8 +6,8 @@ use std::ops::Range;
 use std::path::{Path, PathBuf};
 
 use crate::files::json::error::{Excerpt, Mistake, SceneError, is_printable, nearest};
-use crate::files::json::locate::{JsonPath, Step, around, find, repeated, wrong_string};
-use crate::files::json::reader::Reader;
+use crate::files::json::locate::{JsonPath, around, find, repeated, wrong_string};
+use crate::files::json::reader::parse;
 use crate::files::json::scan::Scanner;
 use crate::files::json::source::{
     NoBytes, check_json, is_standard_input, of_file, of_standard_input,
@@ -25,8 +25,8 @@ pub(crate) struct Document {
     text: String,
     /// The same with overrides.
     changed: Option<String>,
-    /// Values in place of the text, where parts of them are from another file.
-    completed: Option<Value>,
+    /// Text of values in place of these, where parts of them are from another file.
+    completed: Option<String>,
 }
 
 /// A place that was set.
@@ -106,8 +106,8 @@ impl Document {
     }
 
     /// Takes values for those of the text.
-    pub(crate) fn complete(&mut self, completed: Value) {
-        self.completed = Some(completed);
+    pub(crate) fn complete(&mut self, completed: &Value) {
+        self.completed = Some(completed.to_string());
     }
 
     /// A path that is relative to this file.
@@ -121,20 +121,9 @@ impl Document {
     /// The values as a type, or the first error.
     pub(crate) fn parse<T: DeserializeOwned>(&self) -> Result<T, SceneError> {
         self.refuse_unprintable()?;
-        let parsed = match &self.completed {
-            Some(values) => serde_path_to_error::deserialize(values),
-            None => serde_path_to_error::deserialize(&mut Reader::of(self.text())),
-        };
-        parsed.map_err(|error| {
-            let steps = error.path().iter().filter_map(|segment| match segment {
-                serde_path_to_error::Segment::Seq { index } => Some(Step::Index(*index)),
-                serde_path_to_error::Segment::Map { key } => Some(Step::Key(key.clone())),
-                // A word that stands as the key of its value, such as {"given": "5 kV"}.
-                serde_path_to_error::Segment::Enum { variant } => Some(Step::Key(variant.clone())),
-                _ => None,
-            });
-            let place = JsonPath(steps.collect());
-            let wording = wording(place.last_key(), &error.inner().to_string());
+        let text = self.completed.as_deref().unwrap_or(self.text());
+        parse(text).map_err(|(place, error)| {
+            let wording = wording(place.last_key(), &error.to_string());
             let at_key = wording.at_key;
             self.describe(
                 &place,

@@ -1,25 +1,74 @@
-//! Values of serde from the text of a JSON file, as serde_json reads them from its values, without values in between.
+//! Values of serde from the text of a JSON file, and the path of the first mistake.
 //!
 //! The text is JSON. Messages are those of [`serde_json::Value`] as a deserializer: they have no line, since a path identifies the place.
+//! The reader keeps the path itself: a deserializer around it would compile every type of a file once more.
 
 use serde::Deserialize;
 use serde::de::{
-    DeserializeSeed, Deserializer, EnumAccess, Error as _, MapAccess, SeqAccess, Unexpected,
-    VariantAccess, Visitor,
+    DeserializeOwned, DeserializeSeed, Deserializer, EnumAccess, Error as _, MapAccess, SeqAccess,
+    Unexpected, VariantAccess, Visitor,
 };
 use serde_json::{Error, Number};
 use std::borrow::Cow;
+use std::ops::Range;
 
+use crate::files::json::locate::{JsonPath, Step};
 use crate::files::json::scan::{Scanner, string};
+
+/// Reads the value of a JSON text.
+///
+/// # Errors
+/// The path of the innermost value or key that does not fit, and the reason.
+pub(crate) fn parse<T: DeserializeOwned>(text: &str) -> Result<T, (JsonPath, Error)> {
+    let mut reader = Reader {
+        scanner: Scanner::of(text),
+        path: Vec::new(),
+    };
+    T::deserialize(&mut reader).map_err(|error| (reader.path(), error))
+}
+
+/// A step to a value: an index, or the bytes of a key with its quotes.
+#[derive(Debug)]
+enum Segment {
+    Index(usize),
+    Key(Range<usize>),
+}
 
 /// The next value of a text.
 #[derive(Debug)]
-pub(crate) struct Reader<'a>(Scanner<'a>);
+struct Reader<'a> {
+    scanner: Scanner<'a>,
+    /// Path of the value that is being read. After an error it leads to the mistake, since only values that were read leave it.
+    path: Vec<Segment>,
+}
 
 impl<'a> Reader<'a> {
-    /// Of a JSON text.
-    pub(crate) fn of(text: &'a str) -> Self {
-        Self(Scanner::of(text))
+    fn path(&self) -> JsonPath {
+        let step = |segment: &Segment| match segment {
+            Segment::Index(index) => Some(Step::Index(*index)),
+            Segment::Key(bytes) => {
+                let key = string(self.scanner.text, bytes.clone())?;
+                Some(Step::Key(key.into_owned()))
+            }
+        };
+        JsonPath(self.path.iter().filter_map(step).collect())
+    }
+
+    /// Enters a value: goes one step further along the path.
+    fn enter(&mut self, segment: Segment) {
+        self.path.push(segment);
+    }
+
+    /// The key that begins here.
+    fn key(&self) -> Result<Segment, Error> {
+        let mut ahead = self.scanner;
+        let key = ahead.scalar().ok_or_else(Self::broken)?;
+        Ok(Segment::Key(key))
+    }
+
+    /// Leaves the value that was entered last.
+    fn leave(&mut self) {
+        self.path.pop();
     }
 
     /// A text that is no JSON after all.
@@ -28,20 +77,20 @@ impl<'a> Reader<'a> {
     }
 
     fn expect(&mut self, byte: u8) -> Result<(), Error> {
-        self.0.expect(byte).ok_or_else(Self::broken)
+        self.scanner.expect(byte).ok_or_else(Self::broken)
     }
 
     /// Moves past what begins here.
     fn scalar(&mut self) -> Result<&'a str, Error> {
-        let bytes = self.0.scalar().ok_or_else(Self::broken)?;
-        self.0.blanks();
-        Ok(&self.0.text[bytes])
+        let bytes = self.scanner.scalar().ok_or_else(Self::broken)?;
+        self.scanner.blanks();
+        Ok(&self.scanner.text[bytes])
     }
 
     fn string(&mut self) -> Result<Cow<'a, str>, Error> {
-        let bytes = self.0.scalar().ok_or_else(Self::broken)?;
-        self.0.blanks();
-        string(self.0.text, bytes).ok_or_else(Self::broken)
+        let bytes = self.scanner.scalar().ok_or_else(Self::broken)?;
+        self.scanner.blanks();
+        string(self.scanner.text, bytes).ok_or_else(Self::broken)
     }
 
     /// Moves past the object or list that begins here, of which `visit` takes all entries.
@@ -51,14 +100,35 @@ impl<'a> Reader<'a> {
         expected: &'static str,
         visit: impl FnOnce(Entries<'_, 'a>) -> Result<T, Error>,
     ) -> Result<T, Error> {
-        let whole = self.0;
+        let whole = self.scanner;
         self.expect(open)?;
         let value = visit(Entries::of(self))?;
-        if self.0.peek() != Some(close) {
+        if self.scanner.peek() != Some(close) {
             let length = whole.entries().count();
             return Err(Error::invalid_length(length, &expected));
         }
         self.expect(close)?;
+        Ok(value)
+    }
+
+    /// Visits a variant by its word, which begins here, alone or as the key of its content.
+    fn variant<V: Visitor<'a>>(
+        &mut self,
+        visitor: V,
+        has_content: bool,
+    ) -> Result<V::Value, Error> {
+        let key = self.key()?;
+        let word = self.string()?;
+        if has_content {
+            self.expect(b':')?;
+        }
+        let value = visitor.visit_enum(Word {
+            word,
+            key,
+            has_content,
+            reader: &mut *self,
+        })?;
+        self.leave();
         Ok(value)
     }
 }
@@ -75,7 +145,7 @@ impl<'a> Deserializer<'a> for &mut Reader<'a> {
     type Error = Error;
 
     fn deserialize_any<V: Visitor<'a>>(self, visitor: V) -> Result<V::Value, Error> {
-        match self.0.peek().ok_or_else(Reader::broken)? {
+        match self.scanner.peek().ok_or_else(Reader::broken)? {
             b'{' => self.inside(*b"{}", "fewer elements in map", |entries| {
                 visitor.visit_map(entries)
             }),
@@ -93,7 +163,7 @@ impl<'a> Deserializer<'a> for &mut Reader<'a> {
     }
 
     fn deserialize_option<V: Visitor<'a>>(self, visitor: V) -> Result<V::Value, Error> {
-        match self.0.peek() {
+        match self.scanner.peek() {
             // No other word begins so.
             Some(b'n') => {
                 self.scalar()?;
@@ -118,24 +188,15 @@ impl<'a> Deserializer<'a> for &mut Reader<'a> {
         visitor: V,
     ) -> Result<V::Value, Error> {
         let wrong = |found| Err(Error::invalid_type(found, &"string or map"));
-        match self.0.peek().ok_or_else(Reader::broken)? {
-            b'"' => {
-                let word = self.string()?;
-                visitor.visit_enum(Word {
-                    word,
-                    content: None,
-                })
-            }
+        match self.scanner.peek().ok_or_else(Reader::broken)? {
+            b'"' => self.variant(visitor, false),
             b'{' => {
-                if self.0.entries().count() != 1 {
+                if self.scanner.entries().count() != 1 {
                     let expected = "map with a single key";
                     return Err(Error::invalid_value(Unexpected::Map, &expected));
                 }
                 self.expect(b'{')?;
-                let word = self.string()?;
-                self.expect(b':')?;
-                let content = Some(&mut *self);
-                let value = visitor.visit_enum(Word { word, content })?;
+                let value = self.variant(visitor, true)?;
                 self.expect(b'}')?;
                 Ok(value)
             }
@@ -157,8 +218,8 @@ impl<'a> Deserializer<'a> for &mut Reader<'a> {
     }
 
     fn deserialize_ignored_any<V: Visitor<'a>>(self, visitor: V) -> Result<V::Value, Error> {
-        self.0.value().ok_or_else(Reader::broken)?;
-        self.0.blanks();
+        self.scanner.value().ok_or_else(Reader::broken)?;
+        self.scanner.blanks();
         visitor.visit_unit()
     }
 
@@ -172,26 +233,24 @@ impl<'a> Deserializer<'a> for &mut Reader<'a> {
 /// The entries of an object or list that are still to come.
 struct Entries<'r, 'a> {
     reader: &'r mut Reader<'a>,
-    is_first: bool,
+    /// Number of entries before the next one.
+    before: usize,
 }
 
 impl<'r, 'a> Entries<'r, 'a> {
     fn of(reader: &'r mut Reader<'a>) -> Self {
-        Self {
-            reader,
-            is_first: true,
-        }
+        Self { reader, before: 0 }
     }
 
     /// Moves to the next one.
     fn next(&mut self) -> Result<bool, Error> {
-        if matches!(self.reader.0.peek(), Some(b'}' | b']')) {
+        if matches!(self.reader.scanner.peek(), Some(b'}' | b']')) {
             return Ok(false);
         }
-        if !self.is_first {
+        if self.before > 0 {
             self.reader.expect(b',')?;
         }
-        self.is_first = false;
+        self.before += 1;
         Ok(true)
     }
 }
@@ -203,10 +262,13 @@ impl<'a> SeqAccess<'a> for Entries<'_, 'a> {
         &mut self,
         seed: T,
     ) -> Result<Option<T::Value>, Error> {
-        match self.next()? {
-            true => seed.deserialize(&mut *self.reader).map(Some),
-            false => Ok(None),
+        if !self.next()? {
+            return Ok(None);
         }
+        self.reader.enter(Segment::Index(self.before - 1));
+        let value = seed.deserialize(&mut *self.reader)?;
+        self.reader.leave();
+        Ok(Some(value))
     }
 }
 
@@ -217,22 +279,28 @@ impl<'a> MapAccess<'a> for Entries<'_, 'a> {
         &mut self,
         seed: K,
     ) -> Result<Option<K::Value>, Error> {
-        match self.next()? {
-            true => seed.deserialize(&mut *self.reader).map(Some),
-            false => Ok(None),
+        if !self.next()? {
+            return Ok(None);
         }
+        let key = self.reader.key()?;
+        self.reader.enter(key);
+        seed.deserialize(&mut *self.reader).map(Some)
     }
 
     fn next_value_seed<T: DeserializeSeed<'a>>(&mut self, seed: T) -> Result<T::Value, Error> {
         self.reader.expect(b':')?;
-        seed.deserialize(&mut *self.reader)
+        let value = seed.deserialize(&mut *self.reader)?;
+        self.reader.leave();
+        Ok(value)
     }
 }
 
 /// A variant by its word, alone or as the key of its content.
 struct Word<'r, 'a> {
     word: Cow<'a, str>,
-    content: Option<&'r mut Reader<'a>>,
+    key: Segment,
+    has_content: bool,
+    reader: &'r mut Reader<'a>,
 }
 
 impl<'r, 'a> EnumAccess<'a> for Word<'r, 'a> {
@@ -244,7 +312,9 @@ impl<'r, 'a> EnumAccess<'a> for Word<'r, 'a> {
         seed: T,
     ) -> Result<(T::Value, Self::Variant), Error> {
         let variant = seed.deserialize(Key(self.word))?;
-        Ok((variant, Content(self.content)))
+        // What is wrong from here on is a mistake in the content of a known word.
+        self.reader.enter(self.key);
+        Ok((variant, Content(self.has_content.then_some(self.reader))))
     }
 }
 

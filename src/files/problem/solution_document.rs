@@ -19,7 +19,7 @@ pub(crate) fn solution_document(
     let mut values = document.parse()?;
     match complete(path, &mut values, is_wanted) {
         Ok(()) => {
-            document.complete(values);
+            document.complete(&values);
             Ok(document)
         }
         Err(reason) => Err(Scope::of(&document)

@@ -7,7 +7,7 @@ use std::io;
 use std::path::{Path, PathBuf};
 
 use crate::control::{Costates, EarlierSolution, Solution};
-use crate::files::json::reader::Reader;
+use crate::files::json::reader;
 use crate::files::json::scan::Scanner;
 use crate::files::json::source::{NoBytes, check_json, of_file};
 use crate::files::solution::arrays::complete;
@@ -57,17 +57,17 @@ fn read_file(path: &Path) -> Result<File, Reason> {
     let utf8 = |error| io::Error::new(io::ErrorKind::InvalidData, error);
     let text = String::from_utf8(bytes).map_err(|error| Reason::Unreadable(utf8(error)))?;
     check_json(&text).map_err(Reason::NoJson)?;
-    let read = match Scanner::of(&text).entry("arrays") {
-        None => serde_path_to_error::deserialize(&mut Reader::of(&text)),
+    let text = match Scanner::of(&text).entry("arrays") {
+        None => text,
         Some(_) => {
             let mut values = serde_json::from_str(&text).map_err(Reason::NoJson)?;
             complete(path, &mut values, |_| true)?;
-            serde_path_to_error::deserialize(&values)
+            values.to_string()
         }
     };
-    read.map_err(|error| Reason::NoSolution {
-        place: error.path().to_string(),
-        found: error.inner().to_string(),
+    reader::parse(&text).map_err(|(place, error)| Reason::NoSolution {
+        place: place.to_string(),
+        found: error.to_string(),
     })
 }
 
