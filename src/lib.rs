@@ -91,6 +91,8 @@ pub mod study;
 #[cfg(feature = "cli")]
 #[cfg_attr(not(internals), doc(hidden))]
 pub mod sweep;
+#[cfg_attr(not(internals), doc(hidden))]
+pub mod tasks;
 pub mod units;
 #[cfg_attr(not(internals), doc(hidden))]
 pub mod workflow;
@@ -100,8 +102,8 @@ pub use dynamics::Integrator;
 pub use energy::Energy;
 pub use functional::Element;
 pub use interface::{
-    Carrier, Control, Error, GROUND, Handle, Input, Motion, Optimum, Part, Result, Simulation,
-    State,
+    Carrier, Control, Equilibrium, Error, GROUND, Handle, Input, Motion, Optimum, Part, Result,
+    Simulation, State,
 };
 pub use kinematics::Pose;
 pub use math::{Jet, Signal};
@@ -122,10 +124,10 @@ pub use workflow::{Remark, Severity, Tracked, TrackingError};
 pub mod prelude {
     pub use crate::units::*;
     pub use crate::{
-        Attachment, Body, Carrier, Component, Control, ElasticLaw, Error, GROUND, Grid, Handle,
-        Input, Integrator, Joint, JointKind, Load, Marker, Material, Motion, Muscle, Optimum,
-        Orientation, Parameter, Part, Potential, Result, Signal, Simulation, Solid, Spring, State,
-        System, Tendon, X, Y, Z,
+        Attachment, Body, Carrier, Component, Control, ElasticLaw, Equilibrium, Error, GROUND,
+        Grid, Handle, Input, Integrator, Joint, JointKind, Load, Marker, Material, Motion, Muscle,
+        Optimum, Orientation, Parameter, Part, Potential, Result, Signal, Simulation, Solid,
+        Spring, State, System, Tendon, X, Y, Z,
     };
 }
 

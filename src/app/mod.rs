@@ -8,9 +8,9 @@
 //! - `once`, `record`: a result that is made once, and the hashes of its files.
 //! - `displayed_motion`: part of a motion that tables, figures and page show.
 //! - `side_by_side`: several results on one page.
-//! - `accuracy_table`, `blocks`, `comparison`, `energy_summary`, `length_unit_check`, `moved_markers`: texts about a result.
+//! - `accuracy_table`, `blocks`, `comparison`, `energy_summary`, `length_unit_check`: texts about a result.
 //! - `other_task`: messages where a problem asks for another command; `no_equilibrium`: the summary where there is no state of rest.
-//! - `page`, `simulation_page`, `solve_page`: texts of the page; `solve_summary`, `equilibrium_model`, `equilibrium_summary`, `solve_messages`, `tracking_messages`, `messages`, `folder`, `foreign`, `progress`, `ticker`, `request`, `error`: common parts of commands.
+//! - `page`, `simulation_page`, `solve_page`: texts of the page; `solve_summary`, `equilibrium_summary`, `messages`, `folder`, `foreign`, `progress`, `ticker`, `request`, `error`: common parts of commands.
 
 mod accuracy_table;
 mod batch;
@@ -21,7 +21,6 @@ mod content_hash;
 mod displayed_motion;
 mod energy_summary;
 mod equilibrium;
-mod equilibrium_model;
 mod equilibrium_summary;
 mod error;
 mod fields;
@@ -32,7 +31,6 @@ mod inspect;
 mod length_unit_check;
 mod linear_systems;
 mod messages;
-mod moved_markers;
 mod multistart;
 mod no_equilibrium;
 mod once;
@@ -50,7 +48,6 @@ mod simulation;
 mod simulation_page;
 mod solution_file;
 mod solve;
-mod solve_messages;
 mod solve_page;
 mod solve_summary;
 mod sparsity;
@@ -58,7 +55,6 @@ mod summary;
 mod task;
 mod templates;
 mod ticker;
-mod tracking_messages;
 mod unfinished;
 
 pub(crate) use batch::{Batch, RunEnd, Said, check_run_in, run_all, task_runs_at_once};

@@ -4,7 +4,6 @@ use std::ops::RangeInclusive;
 use std::path::Path;
 use std::time::Instant;
 
-use crate::app::equilibrium_model::model_at_rest;
 use crate::app::equilibrium_summary::at_rest;
 use crate::app::error::CommandError;
 use crate::app::fields;
@@ -31,6 +30,7 @@ use crate::report::origin::Origin;
 use crate::report::skins::Skins;
 use crate::report::style::Dash;
 use crate::report::{Branch, PageContent, Run, style, write_still};
+use crate::tasks::equilibrium::model_at_rest;
 use crate::workflow::domain;
 use crate::workflow::effects::Plan;
 use crate::workflow::phase::phase;
@@ -44,7 +44,7 @@ pub(super) fn follow(
     points: usize,
     began: Instant,
 ) -> Result<CommandOutput, CommandError> {
-    let model = model_at_rest(request, system, task)?;
+    let model = model_at_rest(system, task).map_err(CommandError::in_file(&request.input))?;
     let setup = began.elapsed().as_secs_f64();
     phase("following the path");
     let scalars = model.scalars(&task.voltages);

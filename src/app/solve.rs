@@ -1,6 +1,5 @@
 //! A control problem from file to folder: solved, re-simulated, and reported.
 
-use std::ops::ControlFlow;
 use std::path::{Path, PathBuf};
 use std::time::Instant;
 
@@ -14,15 +13,12 @@ use crate::app::progress::{Progress, Reached};
 use crate::app::request::{CommandInput, CommandOutput};
 use crate::app::resume_file;
 use crate::app::solution_file;
-use crate::app::solve_messages::ends;
 use crate::app::solve_page::{convergence, goal, rows, targets};
-use crate::app::solve_summary::{Verdict, add_notes, command_output, program, seconds};
+use crate::app::solve_summary::{command_output, program, seconds};
 use crate::app::summary::{MEASURED, Summary};
-use crate::app::tracking_messages;
 use crate::app::unfinished::{self, Unfinished};
 use crate::control::problem::Control;
-use crate::dynamics::trajectory::Trajectory;
-use crate::dynamics::{DiscreteTrajectory, EnergyExchange, observations, out_of_domain};
+use crate::dynamics::observations;
 use crate::files::Loaded;
 use crate::files::problem::output::Output;
 use crate::model::System;
@@ -30,19 +26,12 @@ use crate::report::atomic::WriteError;
 use crate::report::file_set::FileSet;
 use crate::report::origin::Origin;
 use crate::report::{Run, write_run};
+use crate::tasks::{self, SolveRequest, SolveResult};
 use crate::workflow::Iterate;
-use crate::workflow::accuracy::{Accuracy, AccuracyTarget, Refined};
-use crate::workflow::domain;
 use crate::workflow::effects::Plan;
-use crate::workflow::final_values::final_values;
-use crate::workflow::grids::optimise_to;
-use crate::workflow::motion::{discrete_trajectory, solved, trajectory};
+use crate::workflow::motion::{solved, trajectory};
 use crate::workflow::optimum::{Optimum, SolveLimits};
-use crate::workflow::refine_until_reproduced::{RefinedOptimum, reproduced};
 use crate::workflow::resimulate::under_constant_voltages;
-use crate::workflow::stops;
-use crate::workflow::tracking::followed;
-use crate::workflow::verified::{ACCURACY, verified};
 
 /// Length of the motion under constant voltages that is drawn next to the optimal one, in durations.
 const COMPARED: usize = 3;
@@ -59,28 +48,22 @@ pub(super) fn control(
 ) -> Result<CommandOutput, CommandError> {
     let read = began.elapsed().as_secs_f64();
     let system = &loaded.system;
-    let (found, folder) = solve(request, system, control, read, observer)?;
-    let Found {
-        mut optimum,
-        iterations,
-        accuracy,
-        note,
-    } = found;
-    optimum.hold(control);
-    let verdict = Verdict::from_optimum(control, &optimum);
+    let (result, folder) = solve(request, system, control, read, observer)?;
+    let SolveResult {
+        optimum, verdict, ..
+    } = &result;
     let mut summary = Summary::new(request, verdict.word, optimum.model.coordinates.name());
     summary.message.clone_from(&verdict.message);
-    let program = program(system, control, &optimum, iterations, verdict.is_solved);
-    summary.program = Some(program);
-    add_notes(&mut summary, system, control, &optimum, note, &verdict);
-    summary.accuracy = accuracy;
+    summary.program = Some(program(system, control, &result));
+    summary.accuracy.clone_from(&result.accuracy);
     let model = optimum.sought.as_ref().unwrap_or(&optimum.model);
     summary.plan = Plan::from_model(model, Some(control), MEASURED);
-    summary.seconds = seconds(&optimum, read, began);
+    summary.seconds = seconds(optimum, read, began);
+    add_observed(&mut summary, &result);
     write_files(
         (request, asked),
         &folder,
-        (control, &optimum, &loaded.output),
+        (control, &result, &loaded.output),
         &mut summary,
         began,
     )?;
@@ -101,9 +84,9 @@ fn solve(
     control: &Control,
     read: f64,
     observer: &mut dyn FnMut(Reached<'_>),
-) -> Result<(Found, PathBuf), CommandError> {
+) -> Result<(SolveResult, PathBuf), CommandError> {
     let mut unfinished = Unfinished::in_folder(request.folder(), solution_file::UNFINISHED);
-    let allowed = SolveLimits {
+    let limits = SolveLimits {
         iterations: request.max_iterations,
         seconds: request.max_seconds.map(|s| (s - read).max(0.0)),
     };
@@ -121,89 +104,50 @@ fn solve(
         });
         unfinished.flow()
     };
-    let found = find(request, system, control, allowed, &mut observe)?;
+    let wanted = request.wanted;
+    let asked = SolveRequest { wanted, limits };
+    let found = tasks::solve(system, control, asked, &mut observe)
+        .map_err(CommandError::in_file(&request.input))?;
     drop(progress);
     Ok((found, unfinished.made()?))
 }
 
-/// The optimum that is written, and the way to it.
-struct Found {
-    optimum: Optimum,
-    /// Iterations on the grids up to its own.
-    iterations: usize,
-    accuracy: Option<Accuracy>,
-    /// Note on the reason for another grid than that of the problem.
-    note: Option<String>,
+/// Adds to the summary what was observed of an optimal motion.
+fn add_observed(summary: &mut Summary, result: &SolveResult) {
+    summary.domain.clone_from(&result.outside);
+    summary.energies = EnergySummary::new(&result.exchange);
+    summary.tracking.clone_from(&result.tracking);
+    summary.final_values.clone_from(&result.final_values);
+    summary.notes.clone_from(&result.remarks);
 }
 
-/// Solves on the grid of the problem, or on finer ones where an accuracy is asked for.
-fn find(
-    request: &CommandInput,
-    system: &System,
-    control: &Control,
-    allowed: SolveLimits,
-    observer: &mut dyn FnMut(usize, &Iterate<'_>) -> ControlFlow<()>,
-) -> Result<Found, CommandError> {
-    let wanted = request.wanted.filter(|_| !control.is_refined);
-    let Some(wanted) = wanted else {
-        let RefinedOptimum {
-            optimum,
-            iterations,
-            note,
-        } = match (control.is_refined, request.wanted) {
-            (true, Some(AccuracyTarget::Below(part))) => {
-                verified(system, control, part, allowed, observer)
-            }
-            (true, _) => verified(system, control, ACCURACY, allowed, observer),
-            (false, _) => reproduced(system, control, allowed, observer),
-        }
-        .map_err(CommandError::in_file(&request.input))?;
-        return Ok(Found {
-            optimum,
-            iterations,
-            accuracy: None,
-            note,
-        });
-    };
-    let Refined {
-        run: optimum,
-        iterations,
-        accuracy,
-        ..
-    } = optimise_to(system, control, wanted, allowed, observer)
-        .map_err(CommandError::in_file(&request.input))?;
-    Ok(Found {
-        optimum,
-        iterations,
-        accuracy: Some(accuracy),
-        note: None,
-    })
-}
-
-/// Writes the motion with its fields, tables, figures and page, and adds what is observed of it to the summary.
+/// Writes the motion with its fields, tables, figures and page, and adds what they hold to the summary.
 fn write_files(
     (request, asked): (&CommandInput, &[(String, String)]),
     folder: &Path,
-    (control, optimum, output): (&Control, &Optimum, &Output),
+    (control, result, output): (&Control, &SolveResult, &Output),
     summary: &mut Summary,
     began: Instant,
 ) -> Result<(), WriteError> {
     let writing = Instant::now();
-    let (model, kept) = (&optimum.model, &optimum.motion);
+    let SolveResult {
+        optimum,
+        discrete,
+        trajectory,
+        ..
+    } = result;
+    let model = &optimum.model;
     let mut files = FileSet::in_folder(folder);
-    solution_file::add(&mut files, model, kept)?;
-    let discrete = discrete_trajectory(model, kept);
-    let mut observed = observations(model, &discrete);
+    solution_file::add(&mut files, model, &optimum.motion)?;
+    let mut observed = observations(model, discrete);
     let origin = request.origin(true);
-    let written = fields::write(&mut files, model, &discrete, &origin)?;
+    let written = fields::write(&mut files, model, discrete, &origin)?;
     summary.blocks = BlockSizes::from_model(model).map(|b| b.after(model, &observed, written));
-    let motion = trajectory(model, kept);
-    let exchange = add_observed(summary, control, optimum, (&discrete, &motion));
-    observed.columns.extend(exchange.columns());
+    observed.columns.extend(result.exchange.columns());
     let motion = Motion {
         model,
-        discrete: &discrete,
-        trajectory: &motion,
+        discrete,
+        trajectory,
         observations: &observed,
     };
     let shown = DisplayedMotion::from_motion(motion, output, false, &mut files)?;
@@ -219,30 +163,6 @@ fn write_files(
     )?;
     summary.seconds.wrote(began, writing);
     summary.write(files)
-}
-
-/// Adds to the summary what is observed of an optimal motion. Returns its energies.
-fn add_observed(
-    summary: &mut Summary,
-    control: &Control,
-    optimum: &Optimum,
-    (discrete, motion): (&DiscreteTrajectory, &Trajectory),
-) -> EnergyExchange {
-    let Optimum {
-        model, boundary, ..
-    } = optimum;
-    summary.domain = domain::records(&out_of_domain(model, discrete));
-    let held = boundary.rest.each_ref().map(Option::as_deref);
-    let exchange = EnergyExchange::new(&model.system, motion, held);
-    summary.energies = EnergySummary::new(&exchange);
-    summary.tracking = followed(optimum, control, motion);
-    summary.final_values = final_values(&model.system, control, motion);
-    let notes = &mut summary.notes;
-    notes.warn("outside_domain", domain::note(&summary.domain, true));
-    notes.note("stops", stops::notes(&model.system, motion));
-    notes.note("tracking", tracking_messages::notes(&summary.tracking));
-    notes.note("final_value", ends(&summary.final_values));
-    exchange
 }
 
 /// Writes tables, figures and page, next to the motion under the voltages of the goal alone.

@@ -2,7 +2,6 @@
 
 use crate::app::energy_summary::EnergySummary;
 use crate::app::summary::{Program, Summary};
-use crate::app::tracking_messages;
 use crate::control::BoundaryConditions;
 use crate::control::problem::{BoundaryState, Control, CostFunction, During, Place};
 use crate::dynamics::trajectory::Trajectory;
@@ -13,6 +12,7 @@ use crate::model::{Model, Quantity};
 use crate::report::axes::{Axis, Extent};
 use crate::report::lines::{LinePlot, Series};
 use crate::report::style;
+use crate::tasks::tracking_messages;
 use crate::workflow::violations::Violation;
 use nalgebra::Vector3;
 use std::collections::BTreeMap;

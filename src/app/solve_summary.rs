@@ -1,86 +1,28 @@
-//! A control problem in `summary.json` and in the answer of its command: verdict, program, notes, times.
+//! A control problem in `summary.json` and in the answer of its command: program, notes, times.
 
 use std::path::Path;
 use std::time::Instant;
 
 use crate::app::linear_systems::LinearSystems;
 use crate::app::messages::counted;
-use crate::app::moved_markers::moved_markers;
 use crate::app::request::CommandOutput;
-use crate::app::solve_messages::{
-    carried, meaning, redundancy, restarted, stopped_after, unresolved,
-};
 use crate::app::solve_page::describe;
 use crate::app::summary::{Evaluations, PerInterval, Program, Seconds, SoughtValue, Summary};
-use crate::control::problem::{Control, Hold};
+use crate::control::problem::Control;
 use crate::model::System;
-use crate::workflow::cause::Cause;
-use crate::workflow::hold_check;
+use crate::tasks::SolveResult;
 use crate::workflow::optimum::Optimum;
-use crate::workflow::solve_remarks::add_remarks;
 use crate::workflow::violations::Violation;
 
-/// The verdict on an optimum.
-pub(super) struct Verdict {
-    /// Its status.
-    pub(super) word: &'static str,
-    pub(super) is_solved: bool,
-    /// Reason why it is none, in words.
-    pub(super) message: Option<String>,
-    /// Reason why its end is not kept.
-    not_kept: Option<String>,
-}
-
-impl Verdict {
-    /// The verdict by verification, by the end where it has to be held, and by the solver.
-    pub(super) fn from_optimum(control: &Control, optimum: &Optimum) -> Self {
-        let Optimum {
-            model, boundary, ..
-        } = optimum;
-        let refuted = optimum.reversed.map(|(k, m)| unresolved(model, k, m));
-        let refuted = refuted.or_else(|| optimum.cause().map(Cause::message));
-        let tested = optimum.resimulation.as_ref();
-        let not_kept = hold_check::warning(control, model, boundary, tested);
-        let mut is_solved = optimum.is_solved();
-        let mut word = optimum.word();
-        let has_to_hold = is_solved && control.hold == Hold::Required;
-        let not_held = not_kept.clone().filter(|_| has_to_hold);
-        if not_held.is_some() {
-            (is_solved, word) = (false, "not_held");
-        }
-        let mut message = refuted.or(not_held);
-        if message.is_none() && !is_solved {
-            let status = optimum.solution.status;
-            message = Some(match optimum.stopped {
-                Some(stopped) => stopped_after(status, stopped),
-                None => meaning(status).to_owned(),
-            });
-        }
-        if let (Some(message), false) = (&mut message, optimum.meets_equations()) {
-            message.push_str(&redundancy(&model.redundant_constraints(&boundary.start.z)));
-        }
-        Self {
-            word,
-            is_solved,
-            message,
-            not_kept,
-        }
-    }
-}
-
 /// The program of an optimum in numbers.
-pub(super) fn program(
-    system: &System,
-    control: &Control,
-    optimum: &Optimum,
-    iterations: usize,
-    is_solved: bool,
-) -> Program {
+pub(super) fn program(system: &System, control: &Control, result: &SolveResult) -> Program {
+    let optimum = &result.optimum;
     let Optimum {
         solution,
         motion: kept,
         ..
     } = optimum;
+    let is_solved = result.verdict.is_solved;
     let intervals = kept.intervals();
     let per_interval = |seconds: f64, evaluations: usize| {
         (evaluations > 0).then(|| 1e6 * seconds / (evaluations * intervals) as f64)
@@ -89,7 +31,7 @@ pub(super) fn program(
     Program {
         objective: solution.objective,
         objective_units: control.objective_units(system),
-        iterations,
+        iterations: result.iterations,
         intervals,
         duration: kept.times[intervals] / 1e3,
         variables: solution.x.len(),
@@ -109,25 +51,6 @@ pub(super) fn program(
         gap: Some(optimum.gap).filter(|gap| is_solved && gap.is_finite()),
         afterwards: optimum.afterwards.clone(),
     }
-}
-
-/// Adds the notes on an optimum and on the way to it; `refined` tells why another grid was taken.
-pub(super) fn add_notes(
-    summary: &mut Summary,
-    system: &System,
-    control: &Control,
-    optimum: &Optimum,
-    refined: Option<String>,
-    verdict: &Verdict,
-) {
-    let notes = &mut summary.notes;
-    notes.note("start", control.start.notes().iter().cloned());
-    notes.note("goal", optimum.boundary.notes.iter().cloned());
-    notes.note("moved_marker", moved_markers(system));
-    let not_kept = verdict.not_kept.clone().filter(|_| verdict.is_solved);
-    add_remarks(notes, control, optimum, refined, not_kept);
-    notes.note("earlier_solution", carried(&optimum.carried));
-    notes.note("second_start", optimum.restarted.map(restarted));
 }
 
 /// Times of a solve whose files were read in `read` seconds.

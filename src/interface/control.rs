@@ -4,12 +4,10 @@ use crate::control::problem::{
     self, Duration, Guess, Hold, Objective, PathConstraint, QuantityCost, Solver,
 };
 use crate::control::{Earlier, EarlierSolution};
-use crate::dynamics::{EnergyExchange, out_of_domain};
 use crate::interface::cost_checks::{check_costs, check_energies, check_limits, check_waypoints};
 use crate::interface::error::{Result, require, source};
 use crate::interface::handle::Handle;
 use crate::interface::input::Input;
-use crate::interface::motion::Motion;
 use crate::interface::optimum::Optimum;
 use crate::interface::state::State;
 use crate::math::Signal;
@@ -17,24 +15,15 @@ use crate::model::components::Load;
 use crate::model::system::{Joint, Muscle, Source};
 use crate::model::{Parameter, System};
 use crate::nlp::Nlp;
-use crate::workflow::cause::Cause;
-use crate::workflow::domain;
-use crate::workflow::final_values::final_values;
-use crate::workflow::hold_check;
+use crate::tasks::{self, SolveRequest};
+use crate::workflow::Iterate;
 use crate::workflow::memory;
-use crate::workflow::motion::{discrete_trajectory, trajectory};
 use crate::workflow::optimum::SolveLimits;
 use crate::workflow::prepare::{Counted, Prepared, prepare};
-use crate::workflow::refine_until_reproduced::{RefinedOptimum, reproduced};
-use crate::workflow::remark::Remarks;
 use crate::workflow::resolve::resolve;
-use crate::workflow::solve_remarks::add_remarks;
-use crate::workflow::stops;
-use crate::workflow::tracking::followed;
 use std::collections::BTreeMap;
 use std::ops::ControlFlow;
 use std::ops::RangeInclusive;
-use std::sync::Arc;
 
 /// An optimal control problem: voltages and loads that steer a system from rest to rest, or along a path.
 #[derive(Clone, Debug)]
@@ -216,60 +205,19 @@ impl Control {
     /// [`Optimum::is_solved`].
     pub fn solve(&self, system: &System) -> Result<Optimum> {
         let system = &system.checked()?;
-        memory::of_elements(system)?;
         let control = self.resolve(system)?;
-        let allowed = SolveLimits {
+        let limits = SolveLimits {
             iterations: None,
             seconds: self.max_seconds,
         };
-        let RefinedOptimum {
-            optimum: mut found,
-            iterations,
-            note,
-        } = reproduced(system, &control, allowed, &mut |_, _| {
-            ControlFlow::Continue(())
-        })?;
-        found.hold(&control);
-        let model = &found.model;
-        let discrete = discrete_trajectory(model, &found.motion);
-        let outside = domain::records(&out_of_domain(model, &discrete));
-        let message = match found.is_solved() {
-            true => None,
-            false => Some(
-                found
-                    .cause()
-                    .map_or_else(|| found.word().replace('_', " "), Cause::message),
-            ),
+        let request = SolveRequest {
+            wanted: None,
+            limits,
         };
-        let mut remarks = Remarks::default();
-        let tested = found.resimulation.as_ref();
-        let not_kept = hold_check::warning(&control, model, &found.boundary, tested);
-        add_remarks(&mut remarks, &control, &found, note, not_kept);
-        remarks.warn("outside_domain", domain::note(&outside, true));
-        let trajectory = trajectory(model, &found.motion);
-        remarks.note("stops", stops::notes(&model.system, &trajectory));
-        let ends = found.boundary.rest.each_ref().map(Option::as_deref);
-        let tracking = followed(&found, &control, &trajectory);
-        let final_values = final_values(&model.system, &control, &trajectory);
-        Ok(Optimum {
-            status: found.word(),
-            objective: found.solution.objective,
-            iterations,
-            message,
-            is_solved: found.is_solved(),
-            motion: Motion {
-                exchange: EnergyExchange::new(&model.system, &trajectory, ends),
-                model: Arc::new(found.model),
-                discrete: Arc::new(discrete),
-                trajectory,
-                remarks: remarks.0,
-            },
-            parameters: found.motion.parameters.clone(),
-            tracking,
-            final_values,
-            afterwards: found.afterwards,
-            solution: found.motion,
-        })
+        let go_on = &mut |_: usize, _: &Iterate<'_>| ControlFlow::Continue(());
+        Ok(Optimum::from_result(tasks::solve(
+            system, &control, request, go_on,
+        )?))
     }
 
     /// Hands the transcription to `read` as a nonlinear program, with the point where the solver would start.

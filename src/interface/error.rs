@@ -1,6 +1,6 @@
 //! Errors of the interface for Rust.
 
-use crate::dynamics::StepError;
+use crate::dynamics::{EquilibriumError, StepError};
 use crate::interface::input::Input;
 use crate::interface::motion::Motion;
 use crate::model::{System, SystemError};
@@ -26,6 +26,17 @@ pub enum Error {
     /// The problem asks for something that does not exist, or the run was interrupted before there was a result.
     #[error(transparent)]
     Workflow(#[from] WorkflowError),
+    /// There is no equilibrium.
+    #[error(transparent)]
+    NoEquilibrium(EquilibriumError),
+    /// Growing loads lose the stable equilibrium, and no other one was found; the last one before is kept.
+    #[error("no equilibrium was found: stability is lost at {:.6} % of the loads", 100.0 * fraction)]
+    StabilityLost {
+        /// Fraction of the voltages and loads.
+        fraction: f64,
+        /// The last equilibrium, a motion of one instant.
+        motion: Box<Motion>,
+    },
     /// A step of a simulation failed; the motion so far is kept.
     #[error("{source}")]
     Step {

@@ -1,13 +1,14 @@
 //! The library as a program uses it: systems built part by part, simulated and steered in memory.
 //!
 //! - `handle`, `parts`, `components`, `material`: systems and their parts, with defaults; checked when they are used.
-//! - `input`, `state`, `sought`, `simulation`, `control`, `costs`, `cost_checks`: the tasks of a system.
+//! - `input`, `state`, `sought`, `equilibrium`, `simulation`, `control`, `costs`, `cost_checks`: the tasks of a system.
 //! - `motion`, `optimum`, `error`: what comes back.
 
 mod components;
 mod control;
 mod cost_checks;
 mod costs;
+mod equilibrium;
 mod error;
 mod handle;
 mod input;
@@ -20,6 +21,7 @@ mod sought;
 mod state;
 
 pub use control::Control;
+pub use equilibrium::Equilibrium;
 pub use error::{Error, Result};
 pub use handle::{Carrier, GROUND, Handle, Part};
 pub use input::Input;

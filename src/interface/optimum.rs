@@ -3,7 +3,9 @@
 use crate::control::Solution;
 use crate::interface::motion::Motion;
 use crate::model::FoundParameter;
+use crate::tasks::SolveResult;
 use crate::workflow::{Afterwards, FinalValue, Tracked};
+use std::sync::Arc;
 
 /// Result of the solver: an optimal motion, or its last iterate.
 #[derive(Clone, Debug)]
@@ -33,6 +35,31 @@ pub struct Optimum {
 }
 
 impl Optimum {
+    pub(super) fn from_result(result: SolveResult) -> Self {
+        let SolveResult {
+            optimum, verdict, ..
+        } = result;
+        Self {
+            status: verdict.word,
+            objective: optimum.solution.objective,
+            iterations: result.iterations,
+            message: verdict.message,
+            is_solved: verdict.is_solved,
+            motion: Motion {
+                exchange: result.exchange,
+                model: Arc::new(optimum.model),
+                discrete: Arc::new(result.discrete),
+                trajectory: result.trajectory,
+                remarks: result.remarks.0,
+            },
+            parameters: optimum.motion.parameters.clone(),
+            tracking: result.tracking,
+            final_values: result.final_values,
+            afterwards: optimum.afterwards,
+            solution: optimum.motion,
+        }
+    }
+
     /// Returns true if it meets the optimality conditions and a simulation under its voltages reproduces it.
     pub fn is_solved(&self) -> bool {
         self.is_solved

@@ -1,8 +1,7 @@
 //! Simulations.
 
 use crate::control::problem::{self, Voltages};
-use crate::dynamics::trajectory::Trajectory;
-use crate::dynamics::{EnergyExchange, Integrator, Newton, Solving, local_error_of, out_of_domain};
+use crate::dynamics::{DiscreteTrajectory, Integrator, Newton, Solving};
 use crate::interface::error::{Error, Result, require, source};
 use crate::interface::handle::Handle;
 use crate::interface::input::Input;
@@ -10,11 +9,9 @@ use crate::interface::motion::Motion;
 use crate::interface::state::State;
 use crate::ipopt::interrupt;
 use crate::math::Signal;
-use crate::model::System;
 use crate::model::components::Load;
-use crate::workflow::integrate::{Simulated, integrate};
-use crate::workflow::remark::Remarks;
-use crate::workflow::{domain, memory, steps, stops};
+use crate::model::{Model, System};
+use crate::tasks::{self, SimulationRequest};
 use std::ops::ControlFlow;
 use std::sync::Arc;
 
@@ -77,28 +74,26 @@ impl Simulation {
     /// [`interrupt`](crate::ipopt::interrupt) listens.
     pub fn run(&self, system: &System) -> Result<Motion> {
         let system = &system.checked()?;
-        memory::of_elements(system)?;
         let task = self.resolve(system)?;
-        let run = integrate(system, &task, |_, _| match interrupt::requested() {
+        let request = SimulationRequest::default();
+        let go_on = &mut |_: usize, _: &Model, _: &DiscreteTrajectory| match interrupt::requested()
+        {
             true => ControlFlow::Break(()),
             false => ControlFlow::Continue(()),
-        })?;
-        let is_whole = run
-            .discrete
-            .times
-            .last()
-            .is_some_and(|&end| end >= self.duration * (1.0 - 1e-12));
-        let failure = run.failure.clone();
-        let motion = motion(run, &task);
+        };
+        let result = tasks::simulate(system, &task, request, go_on)?;
+        let (failure, stopped) = (result.failure.clone(), result.stopped);
+        let motion = Box::new(Motion {
+            exchange: result.exchange,
+            model: Arc::new(result.model),
+            discrete: Arc::new(result.discrete),
+            trajectory: result.trajectory,
+            remarks: result.remarks.0,
+        });
         match failure {
-            Some(source) => Err(Error::Step {
-                source,
-                motion: Box::new(motion),
-            }),
-            None if !is_whole => Err(Error::Interrupted {
-                motion: Box::new(motion),
-            }),
-            None => Ok(motion),
+            Some(source) => Err(Error::Step { source, motion }),
+            None if stopped.is_some() => Err(Error::Interrupted { motion }),
+            None => Ok(*motion),
         }
     }
 
@@ -149,26 +144,5 @@ impl Simulation {
                 backend: None,
             },
         })
-    }
-}
-
-/// Returns the motion of a run.
-fn motion(run: Simulated, task: &problem::Simulation) -> Motion {
-    let trajectory = Trajectory::from_discrete(&run.model, &run.discrete);
-    let order = task.solving.integrator.order();
-    let error = local_error_of(&run.model, (&run.discrete, &trajectory), order);
-    let outside = domain::records(&out_of_domain(&run.model, &run.discrete));
-    let mut remarks = Remarks::default();
-    remarks.warn("coarse_steps", steps::warning(error, &run.discrete, task));
-    remarks.warn("energy_balance", steps::unbalanced(&run.discrete));
-    remarks.note("stops", stops::notes(&run.model.system, &trajectory));
-    remarks.warn("outside_domain", domain::note(&outside, true));
-    let ends = [task.start.voltages(), None];
-    Motion {
-        exchange: EnergyExchange::new(&run.model.system, &trajectory, ends),
-        model: Arc::new(run.model),
-        discrete: Arc::new(run.discrete),
-        trajectory,
-        remarks: remarks.0,
     }
 }

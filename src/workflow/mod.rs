@@ -1,7 +1,7 @@
 //! Tasks in memory: simulate, optimise, refine, verify.
 //!
 //! - `integrate`, `optimise`: a simulation, a control problem, with its result, the `optimum`; each `attempt` from one start, `prepare`d, by one of its `solves` or more; `error`: errors of tasks; `phase`: the present
-//!   phase of work; `remark`, `solve_remarks`: warnings and notes.
+//!   phase of work; `remark`: warnings and notes.
 //! - `grids`, `accuracy`, `estimate`: as finely as an accuracy needs.
 //! - `resimulate`: verification of an optimum, by the `distance` of motions; `refine_until_reproduced`, `verified`: finer grids where it fails, by `grid_solves`; `gap`: duality gap of its
 //!  objective; `held`, `hold_check`, `afterwards`: its end; `final_values`: deviations from final costs.
@@ -51,7 +51,6 @@ pub(crate) mod resimulate;
 pub(crate) mod resolve;
 pub(crate) mod retry_displaced;
 pub(crate) mod shortest;
-pub(crate) mod solve_remarks;
 mod solves;
 pub(crate) mod steps;
 pub(crate) mod stops;

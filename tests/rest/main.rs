@@ -4,5 +4,6 @@
 mod common;
 
 mod domain;
+mod front_door;
 mod stable;
 mod trunk;

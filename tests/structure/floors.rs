@@ -3,7 +3,7 @@
 use crate::sources::sources;
 
 /// Floors from the ground up; folders of one line do not know each other.
-const FLOORS: [&[&str]; 13] = [
+const FLOORS: [&[&str]; 14] = [
     &["math"],
     &["mesh", "sparse", "kkt", "nlp"],
     &["energy", "ipopt"],
@@ -14,6 +14,7 @@ const FLOORS: [&[&str]; 13] = [
     &["dynamics"],
     &["control"],
     &["workflow", "files"],
+    &["tasks"],
     &["report", "interface"],
     &["app"],
     &["study", "sweep"],

@@ -11,7 +11,7 @@ use crate::workflow::optimum::Restarted;
 const TOLD: usize = 6;
 
 /// A further reason why a solve failed, where there is one.
-pub(super) fn redundancy(redundant: &[String]) -> String {
+pub(crate) fn redundancy(redundant: &[String]) -> String {
     match redundant {
         [] => String::new(),
         names => format!(
@@ -23,7 +23,7 @@ pub(super) fn redundancy(redundant: &[String]) -> String {
 }
 
 /// Returns the meaning of a status for the problem.
-pub(super) fn meaning(status: Status) -> &'static str {
+pub(crate) fn meaning(status: Status) -> &'static str {
     match status {
         Status::Infeasible | Status::RestorationFailed => {
             "no motion that satisfies the goal and the limits was found from this guess; the files hold the iterate that violates them least"
@@ -42,7 +42,7 @@ pub(super) fn meaning(status: Status) -> &'static str {
 }
 
 /// Describes a first start without an answer, whose further starts were stopped.
-pub(super) fn stopped_after(first: Status, stopped: Status) -> String {
+pub(crate) fn stopped_after(first: Status, stopped: Status) -> String {
     let reason = match stopped {
         Status::Interrupted => "interrupted",
         _ => "the time allowed was used up",
@@ -54,7 +54,7 @@ pub(super) fn stopped_after(first: Status, stopped: Status) -> String {
 }
 
 /// Describes the changes of an earlier solution that serves as a guess.
-pub(super) fn carried(carried: &Carried) -> Vec<String> {
+pub(crate) fn carried(carried: &Carried) -> Vec<String> {
     let stretched = carried.stretched.map(|[from, to]| {
         format!(
             "the guess lasts {} s; it was stretched in time to {} s",
@@ -70,7 +70,7 @@ pub(super) fn carried(carried: &Carried) -> Vec<String> {
 }
 
 /// Explains why the discrete optimum is not a solution of the continuous problem.
-pub(super) fn unresolved(model: &Model, interval: usize, muscle: usize) -> String {
+pub(crate) fn unresolved(model: &Model, interval: usize, muscle: usize) -> String {
     format!(
         "muscle \"{}\" turns by a right angle or more in interval {interval}: its ends meet on the way, or the intervals are \
          too long for the motion; take more intervals or another guess",
@@ -79,13 +79,13 @@ pub(super) fn unresolved(model: &Model, interval: usize, muscle: usize) -> Strin
 }
 
 /// Describes an optimum that the first start did not find.
-pub(super) fn restarted(restarted: Restarted) -> String {
+pub(crate) fn restarted(restarted: Restarted) -> String {
     let Restarted { first, from } = restarted;
     format!("found from {from}; the first start ended {first}")
 }
 
 /// Lists the final values of a motion for which final costs ask; of many the farthest in their own unit.
-pub(super) fn ends(values: &[FinalValue]) -> Vec<String> {
+pub(crate) fn ends(values: &[FinalValue]) -> Vec<String> {
     let mut order: Vec<&FinalValue> = values.iter().collect();
     if order.len() > TOLD {
         order.sort_by(|a, b| b.deviation.total_cmp(&a.deviation));

@@ -7,7 +7,7 @@ use crate::model::System;
 const AT: f64 = 1e-6;
 
 /// A line for each marker of a block that is not written at a node: it is the nearest one.
-pub(super) fn moved_markers(system: &System) -> Vec<String> {
+pub(crate) fn moved_markers(system: &System) -> Vec<String> {
     let of_blocks = system.markers.iter().filter_map(|marker| {
         let mesh = &system.solids[marker.solid?].mesh;
         let node = mesh.nodes[mesh.nearest_node(&marker.point.at)?];

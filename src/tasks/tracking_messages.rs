@@ -17,14 +17,14 @@ fn words(of: &Tracked) -> String {
 }
 
 /// A row of a table: what follows, and its deviations.
-pub(super) fn row(of: &Tracked) -> (String, String) {
+pub(crate) fn row(of: &Tracked) -> (String, String) {
     let Tracked { kind, name, .. } = of;
     let key = format!("deviation of {kind} {name} from its path");
     (key, words(of))
 }
 
 /// Lines about the tracking errors of a motion; of many joints the worst.
-pub(super) fn notes(tracked: &[Tracked]) -> Vec<String> {
+pub(crate) fn notes(tracked: &[Tracked]) -> Vec<String> {
     let joints = tracked.iter().filter(|one| one.kind == "joint");
     let count = joints.clone().count();
     let worst = joints.max_by(|a, b| a.error.maximum.total_cmp(&b.error.maximum));

@@ -1,0 +1,75 @@
+//! Static equilibria.
+
+use crate::control::problem::AtRest;
+use crate::dynamics::EnergyExchange;
+use crate::interface::error::{Error, Result, require, source};
+use crate::interface::handle::Handle;
+use crate::interface::input::Input;
+use crate::interface::motion::Motion;
+use crate::model::System;
+use crate::model::components::Load;
+use crate::tasks::{self, EquilibriumError};
+use std::sync::Arc;
+
+/// A stable static equilibrium under constant voltages and loads; zero where nothing is said.
+#[derive(Clone, Debug, Default)]
+pub struct Equilibrium {
+    inputs: Vec<(Input, f64)>,
+}
+
+impl Equilibrium {
+    /// Under weights alone.
+    pub fn new() -> Self {
+        Self::default()
+    }
+
+    /// The voltage of a muscle or electrode in V.
+    pub fn voltage(mut self, input: impl Into<Input>, volts: f64) -> Self {
+        self.inputs.push((input.into(), volts));
+        self
+    }
+
+    /// The size of a load in N, or N mm of a torque.
+    pub fn load(self, load: Handle<Load>, size: f64) -> Self {
+        self.voltage(load, size)
+    }
+
+    /// Finds it, as a motion of one instant.
+    ///
+    /// # Errors
+    /// The system makes no sense, an input is not one of it, growing loads lose stability ([`Error::StabilityLost`] has the last equilibrium
+    /// before), or there is no equilibrium at all.
+    pub fn find(&self, system: &System) -> Result<Motion> {
+        let system = &system.checked()?;
+        let mut voltages = vec![0.0; system.sources().len()];
+        for (input, value) in &self.inputs {
+            let found = || format!("{value} of {input:?}");
+            require(value.is_finite(), "equilibrium", found, "a finite number")?;
+            voltages[source(input, system)?] = *value;
+        }
+        let task = AtRest {
+            voltages,
+            coordinates: None,
+            path: None,
+        };
+        let result = tasks::equilibrium(system, &task).map_err(|error| match error {
+            EquilibriumError::Workflow(error) => Error::Workflow(error),
+            EquilibriumError::NotFound(error) => Error::NoEquilibrium(error),
+        })?;
+        let model = &result.model;
+        let motion = Motion {
+            exchange: EnergyExchange::new(&model.system, &result.trajectory, [None, None]),
+            model: Arc::new(result.model),
+            discrete: Arc::new(result.discrete),
+            trajectory: result.trajectory,
+            remarks: result.remarks.0,
+        };
+        match result.loss {
+            None => Ok(motion),
+            Some(loss) => Err(Error::StabilityLost {
+                fraction: loss.fraction,
+                motion: Box::new(motion),
+            }),
+        }
+    }
+}

@@ -1,0 +1,118 @@
+//! A static equilibrium, with its stability.
+
+use thiserror::Error;
+
+use crate::control::problem::AtRest;
+use crate::dynamics::trajectory::Trajectory;
+use crate::dynamics::{
+    self, DiscreteTrajectory, Equilibrium, StabilityLoss, out_of_domain, stable_equilibrium,
+};
+use crate::model::{Model, System};
+use crate::tasks::moved_markers::moved_markers;
+use crate::workflow::WorkflowError;
+use crate::workflow::domain::{self, Outside};
+use crate::workflow::memory;
+use crate::workflow::phase::phase;
+use crate::workflow::remark::Remarks;
+use std::time::Instant;
+
+/// Reason why there is no equilibrium.
+#[derive(Debug, Error)]
+pub enum EquilibriumError {
+    /// The model does not exist, or the machine has no room for it.
+    #[error(transparent)]
+    Workflow(#[from] WorkflowError),
+    /// No equilibrium was found.
+    #[error(transparent)]
+    NotFound(#[from] dynamics::EquilibriumError),
+}
+
+/// A stable equilibrium; where growing loads lose it, the last one before.
+#[derive(Debug)]
+pub struct EquilibriumResult {
+    /// The model that rests.
+    pub model: Model,
+    /// The equilibrium.
+    pub found: Equilibrium,
+    /// The loss of stability on the way to it, after which there is no other one.
+    pub loss: Option<StabilityLoss>,
+    /// The equilibrium as a motion of one instant.
+    pub discrete: DiscreteTrajectory,
+    /// The same as positions and voltages.
+    pub trajectory: Trajectory,
+    /// Muscles and blocks outside the domain of their material.
+    pub(crate) outside: Vec<Outside>,
+    /// Warnings and notes.
+    pub remarks: Remarks,
+    /// Seconds before the first iteration.
+    pub setup: f64,
+}
+
+/// The model of an equilibrium.
+///
+/// # Errors
+/// It does not exist in the coordinates that the task names, or the machine has no room for it.
+pub(crate) fn model_at_rest(system: &System, task: &AtRest) -> Result<Model, WorkflowError> {
+    memory::of_elements(system)?;
+    phase("building");
+    let model = Model::for_analysis(system.clone(), task.analysis(system));
+    model.map_err(|error| WorkflowError::boundary("equilibrium", &error.into()))
+}
+
+/// Finds the stable equilibrium under the voltages and loads of a task.
+///
+/// # Errors
+/// The model does not exist, or no equilibrium was found at all. One that is lost under growing loads is no error: see the loss.
+pub fn equilibrium(system: &System, task: &AtRest) -> Result<EquilibriumResult, EquilibriumError> {
+    let began = Instant::now();
+    let model = model_at_rest(system, task)?;
+    let setup = began.elapsed().as_secs_f64();
+    phase("equilibrium");
+    let (found, loss) = find(&model, &task.voltages)?;
+    let discrete = DiscreteTrajectory {
+        times: vec![0.0],
+        z: vec![found.z.clone()],
+        momenta: vec![vec![0.0; model.coordinate_count()]],
+        scalars: vec![found.scalars.clone()],
+        ..DiscreteTrajectory::default()
+    };
+    let outside = domain::records(&out_of_domain(&model, &discrete));
+    let mut remarks = Remarks::default();
+    remarks.note("moved_marker", moved_markers(system));
+    remarks.warn("outside_domain", domain::note(&outside, false));
+    Ok(EquilibriumResult {
+        trajectory: Trajectory::from_discrete(&model, &discrete),
+        model,
+        found,
+        loss,
+        discrete,
+        outside,
+        remarks,
+        setup,
+    })
+}
+
+/// The equilibrium under voltages; where growing loads lose it, the last one with the way in which it is lost.
+fn find(
+    model: &Model,
+    voltages: &[f64],
+) -> Result<(Equilibrium, Option<StabilityLoss>), dynamics::EquilibriumError> {
+    let start = model.reference_coordinates();
+    match stable_equilibrium(model, &start, &model.scalars(voltages)) {
+        Ok(found) => Ok((found, None)),
+        Err(dynamics::EquilibriumError::LimitPoint {
+            fraction,
+            kind,
+            load,
+            last,
+        }) => {
+            let loss = StabilityLoss {
+                load,
+                fraction,
+                kind,
+            };
+            Ok((*last, Some(loss)))
+        }
+        Err(error) => Err(error),
+    }
+}

@@ -1,0 +1,18 @@
+//! One function for each task: it validates once, computes, verifies, and returns numbers, verdict and remarks.
+//!
+//! - `solve`, `simulate`, `equilibrium`: the three tasks. The commands, Python and the interface for Rust call them; nothing here knows files.
+//! - `verdict`: the verdict on an optimum. `solve_messages`, `tracking_messages`, `simulation_messages`, `moved_markers`: their texts.
+
+pub mod equilibrium;
+pub(crate) mod moved_markers;
+pub mod simulate;
+mod simulation_messages;
+pub mod solve;
+mod solve_messages;
+pub(crate) mod tracking_messages;
+mod verdict;
+
+pub use equilibrium::{EquilibriumError, EquilibriumResult, equilibrium};
+pub use simulate::{SimulationRequest, SimulationResult, simulate};
+pub use solve::{SolveRequest, SolveResult, solve};
+pub use verdict::Verdict;

@@ -1,0 +1,186 @@
+//! A simulation: its motion, the error of its steps, and what is to be known of it.
+
+use std::ops::ControlFlow;
+
+use crate::control::problem::Simulation;
+use crate::dynamics::trajectory::Trajectory;
+use crate::dynamics::{
+    DiscreteTrajectory, EnergyExchange, LocalError, StepError, local_error_of, out_of_domain,
+};
+use crate::ipopt::{Status, interrupt};
+use crate::math::join;
+use crate::model::{Model, System};
+use crate::tasks::moved_markers::moved_markers;
+use crate::tasks::simulation_messages::afterwards;
+use crate::workflow::WorkflowError;
+use crate::workflow::accuracy::{Accuracy, AccuracyTarget};
+use crate::workflow::confirmed::EstimatedError;
+use crate::workflow::domain::{self, Outside};
+use crate::workflow::grids::integrate_to;
+use crate::workflow::integrate::{Simulated, grid, integrate_on};
+use crate::workflow::memory;
+use crate::workflow::remark::Remarks;
+use crate::workflow::steps;
+use crate::workflow::stops;
+
+/// Options of a simulation in addition to its problem.
+#[derive(Debug, Default)]
+pub struct SimulationRequest {
+    /// Accuracy of the steps; nothing takes those of the problem.
+    pub wanted: Option<AccuracyTarget>,
+    /// A motion that has begun and is to go on.
+    pub begun: Option<DiscreteTrajectory>,
+    /// Seconds after which it is to end.
+    pub seconds: Option<f64>,
+}
+
+/// A simulation that has ended, before its time where it failed or was stopped.
+#[derive(Debug)]
+pub struct SimulationResult {
+    /// The model that moved.
+    pub model: Model,
+    /// The motion as unknowns of the model.
+    pub discrete: DiscreteTrajectory,
+    /// The motion as positions and voltages.
+    pub trajectory: Trajectory,
+    /// Energies from the sources.
+    pub exchange: EnergyExchange,
+    /// The step that failed.
+    pub failure: Option<StepError>,
+    /// Status of a run that was stopped before its end.
+    pub stopped: Option<Status>,
+    /// Error of steps by a tolerance.
+    pub error: Option<EstimatedError>,
+    /// Estimated errors, where an accuracy was wanted.
+    pub accuracy: Option<Accuracy>,
+    /// The sum of the local errors of the steps.
+    pub neglected: Option<LocalError>,
+    /// Muscles and blocks outside the domain of their material.
+    pub(crate) outside: Vec<Outside>,
+    /// Warnings and notes.
+    pub remarks: Remarks,
+    /// Seconds before the first step.
+    pub setup: f64,
+    /// Seconds in the steps.
+    pub seconds: f64,
+}
+
+impl SimulationResult {
+    /// Its status.
+    pub fn word(&self) -> &'static str {
+        match (&self.failure, self.stopped) {
+            (Some(_), _) => "step_failed",
+            (None, Some(stopped)) => stopped.word(),
+            (None, None) => "simulated",
+        }
+    }
+
+    /// Length of its motion in ms.
+    pub fn reached(&self) -> f64 {
+        self.discrete.times[self.discrete.intervals()]
+    }
+}
+
+/// Simulates, in the steps of the task or in finer ones. After every step `observer` sees their number on the present grid and the motion so
+/// far.
+///
+/// # Errors
+/// The model or the start does not exist, or the machine has no room. A step that fails is no error: see the failure.
+pub fn simulate(
+    system: &System,
+    task: &Simulation,
+    request: SimulationRequest,
+    observer: &mut dyn FnMut(usize, &Model, &DiscreteTrajectory) -> ControlFlow<()>,
+) -> Result<SimulationResult, WorkflowError> {
+    memory::of_elements(system)?;
+    let SimulationRequest {
+        wanted,
+        begun,
+        seconds,
+    } = request;
+    let watch = interrupt::watch(seconds);
+    let (simulated, accuracy) = match wanted {
+        None => {
+            let (steps, _) = grid(task);
+            let observer =
+                |model: &Model, discrete: &DiscreteTrajectory| observer(steps, model, discrete);
+            (integrate_on(system, task, begun, observer)?, None)
+        }
+        Some(wanted) => {
+            let refined = integrate_to(system, task, wanted, seconds, observer)?;
+            (refined.run, Some(refined.accuracy))
+        }
+    };
+    // A finer grid that was stopped leaves the motion on the one before as it is.
+    let reached = simulated.discrete.times[simulated.discrete.intervals()];
+    let is_early = reached < task.duration * (1.0 - 1e-12);
+    let stopped = interrupt::stop().filter(|_| is_early);
+    drop(watch);
+    Ok(result(system, task, simulated, (accuracy, stopped)))
+}
+
+/// Observes a motion that has ended.
+fn result(
+    system: &System,
+    task: &Simulation,
+    simulated: Simulated,
+    (accuracy, stopped): (Option<Accuracy>, Option<Status>),
+) -> SimulationResult {
+    let Simulated {
+        model,
+        discrete,
+        failure,
+        error,
+        setup,
+        seconds,
+    } = simulated;
+    let trajectory = Trajectory::from_discrete(&model, &discrete);
+    let order = task.solving.integrator.order();
+    let ends = [task.start.voltages(), None];
+    let (neglected, (outside, exchange)) = join(
+        || local_error_of(&model, (&discrete, &trajectory), order),
+        || {
+            let outside = domain::records(&out_of_domain(&model, &discrete));
+            let exchange = EnergyExchange::new(&model.system, &trajectory, ends);
+            (outside, exchange)
+        },
+    );
+    let mut result = SimulationResult {
+        model,
+        discrete,
+        trajectory,
+        exchange,
+        failure,
+        stopped,
+        error,
+        accuracy,
+        neglected,
+        outside,
+        remarks: Remarks::default(),
+        setup,
+        seconds,
+    };
+    result.remarks = remarks(system, task, &result);
+    result
+}
+
+/// All that is to be known of a result.
+fn remarks(system: &System, task: &Simulation, result: &SimulationResult) -> Remarks {
+    let SimulationResult {
+        discrete,
+        neglected,
+        error,
+        ..
+    } = result;
+    let mut remarks = Remarks::default();
+    remarks.note("start", task.start.notes().iter().cloned());
+    remarks.note("moved_marker", moved_markers(system));
+    remarks.note("voltages_end", afterwards(task));
+    remarks.note("step_divided", steps::divided(task));
+    remarks.warn("outside_domain", domain::note(&result.outside, true));
+    remarks.note("stops", stops::notes(system, &result.trajectory));
+    remarks.warn("coarse_steps", steps::warning(*neglected, discrete, task));
+    remarks.warn("tolerance_exceeded", steps::beyond(*error, task));
+    remarks.warn("energy_balance", steps::unbalanced(discrete));
+    remarks
+}

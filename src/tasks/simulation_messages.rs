@@ -1,0 +1,34 @@
+//! Messages about a simulation.
+
+use crate::control::problem::{Afterwards, Simulation, Voltages};
+
+/// Notes the voltages after the end of the solution from which a simulation takes them, where it goes on for longer.
+pub(super) fn afterwards(task: &Simulation) -> Option<String> {
+    let Voltages::Sampled {
+        ends,
+        afterwards,
+        solution,
+        ..
+    } = &task.voltages
+    else {
+        return None;
+    };
+    let end = ends[ends.len() - 1];
+    let named = solution.as_ref().map(|path| path.display().to_string());
+    let of_solution = named.is_some();
+    let source = named.unwrap_or_else(|| "the table".to_owned());
+    (task.duration > end * (1.0 + 1e-9)).then(|| match afterwards {
+        Afterwards::Held if of_solution => {
+            format!("after {} s the voltages that hold the goal of {source} are held", end / 1e3)
+        }
+        Afterwards::Held => format!("after {} s the voltages of \"hold\" are held", end / 1e3),
+        Afterwards::OfLastInterval if of_solution => format!(
+            "after {} s the voltages of the last interval are held: {source} has no \"hold\", voltages that hold its goal",
+            end / 1e3
+        ),
+        Afterwards::OfLastInterval => format!(
+            "after {} s the voltages of the last interval are held: {source} has no \"hold\"",
+            end / 1e3
+        ),
+    })
+}

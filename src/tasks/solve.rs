@@ -1,0 +1,198 @@
+//! A control problem: solved, verified by a simulation, and held after its end.
+
+use std::ops::ControlFlow;
+
+use crate::control::problem::Control;
+use crate::dynamics::trajectory::Trajectory;
+use crate::dynamics::{DiscreteTrajectory, EnergyExchange, out_of_domain};
+use crate::model::System;
+use crate::tasks::moved_markers::moved_markers;
+use crate::tasks::solve_messages::{carried, ends, restarted};
+use crate::tasks::tracking_messages;
+use crate::tasks::verdict::Verdict;
+use crate::workflow::Iterate;
+use crate::workflow::WorkflowError;
+use crate::workflow::accuracy::{Accuracy, AccuracyTarget, Refined};
+use crate::workflow::afterwards::Afterwards;
+use crate::workflow::domain::{self, Outside};
+use crate::workflow::final_values::{FinalValue, final_values};
+use crate::workflow::further::is_unreached;
+use crate::workflow::grids::optimise_to;
+use crate::workflow::hold_check::{self, free_end};
+use crate::workflow::infeasible::explain;
+use crate::workflow::memory;
+use crate::workflow::motion::{discrete_trajectory, trajectory};
+use crate::workflow::optimum::{Optimum, SolveLimits};
+use crate::workflow::refine_until_reproduced::{RefinedOptimum, reproduced};
+use crate::workflow::remark::Remarks;
+use crate::workflow::resimulate::Resimulation;
+use crate::workflow::stops;
+use crate::workflow::tracking::{Tracked, followed};
+use crate::workflow::verified::{ACCURACY, verified};
+
+/// Options of a solve in addition to its problem.
+#[derive(Clone, Copy, Debug, Default)]
+pub struct SolveRequest {
+    /// Accuracy of the grid; nothing takes that of the problem.
+    pub wanted: Option<AccuracyTarget>,
+    /// Limits of the solver.
+    pub limits: SolveLimits,
+}
+
+/// An optimal motion, or the last iterate of a solve that found none.
+#[derive(Debug)]
+pub struct SolveResult {
+    /// The optimum, with its model.
+    pub optimum: Optimum,
+    /// Iterations on all grids.
+    pub iterations: usize,
+    /// Estimated errors, where an accuracy was wanted of a problem that names its intervals.
+    pub accuracy: Option<Accuracy>,
+    /// The verdict.
+    pub verdict: Verdict,
+    /// The motion as unknowns of its model.
+    pub discrete: DiscreteTrajectory,
+    /// The motion as positions and voltages.
+    pub trajectory: Trajectory,
+    /// Energies from the sources.
+    pub exchange: EnergyExchange,
+    /// Deviations from the references of the objective.
+    pub tracking: Vec<Tracked>,
+    /// Values at the end for which final costs ask.
+    pub final_values: Vec<FinalValue>,
+    /// Muscles and blocks outside the domain of their material.
+    pub(crate) outside: Vec<Outside>,
+    /// Warnings and notes.
+    pub remarks: Remarks,
+}
+
+/// Solves a control problem; an optimum that a simulation under its voltages does not reproduce is solved again on finer grids. `observer`
+/// sees the number of intervals and every iterate.
+///
+/// # Errors
+/// Start, goal, guess or an option of the solver is wrong, or the machine has no room. A problem without a solution is no error: see the
+/// verdict.
+pub fn solve(
+    system: &System,
+    control: &Control,
+    request: SolveRequest,
+    observer: &mut dyn FnMut(usize, &Iterate<'_>) -> ControlFlow<()>,
+) -> Result<SolveResult, WorkflowError> {
+    memory::of_elements(system)?;
+    let found = find(system, control, request, observer)?;
+    let Found {
+        mut optimum,
+        iterations,
+        accuracy,
+        note,
+    } = found;
+    optimum.hold(control);
+    let (model, boundary) = (&optimum.model, &optimum.boundary);
+    let tested = optimum.resimulation.as_ref();
+    let not_kept = hold_check::warning(control, model, boundary, tested);
+    let verdict = Verdict::from_optimum(control, &optimum, not_kept.as_deref());
+    let discrete = discrete_trajectory(model, &optimum.motion);
+    let trajectory = trajectory(model, &optimum.motion);
+    let held = boundary.rest.each_ref().map(Option::as_deref);
+    let mut result = SolveResult {
+        exchange: EnergyExchange::new(&model.system, &trajectory, held),
+        tracking: followed(&optimum, control, &trajectory),
+        final_values: final_values(&model.system, control, &trajectory),
+        outside: domain::records(&out_of_domain(model, &discrete)),
+        remarks: Remarks::default(),
+        optimum,
+        iterations,
+        accuracy,
+        verdict,
+        discrete,
+        trajectory,
+    };
+    let not_kept = not_kept.filter(|_| result.verdict.is_solved);
+    result.remarks = remarks(system, control, &result, (note, not_kept));
+    Ok(result)
+}
+
+/// The optimum, and the way to it.
+struct Found {
+    optimum: Optimum,
+    iterations: usize,
+    accuracy: Option<Accuracy>,
+    /// Reason for another grid than that of the problem.
+    note: Option<String>,
+}
+
+/// Solves on the grid of the problem, or on finer ones where an accuracy is wanted.
+fn find(
+    system: &System,
+    control: &Control,
+    SolveRequest { wanted, limits }: SolveRequest,
+    observer: &mut dyn FnMut(usize, &Iterate<'_>) -> ControlFlow<()>,
+) -> Result<Found, WorkflowError> {
+    if let (false, Some(wanted)) = (control.is_refined, wanted) {
+        let Refined {
+            run: optimum,
+            iterations,
+            accuracy,
+            ..
+        } = optimise_to(system, control, wanted, limits, observer)?;
+        return Ok(Found {
+            optimum,
+            iterations,
+            accuracy: Some(accuracy),
+            note: None,
+        });
+    }
+    let RefinedOptimum {
+        optimum,
+        iterations,
+        note,
+    } = match (control.is_refined, wanted) {
+        (true, Some(AccuracyTarget::Below(part))) => {
+            verified(system, control, part, limits, observer)
+        }
+        (true, _) => verified(system, control, ACCURACY, limits, observer),
+        (false, _) => reproduced(system, control, limits, observer),
+    }?;
+    Ok(Found {
+        optimum,
+        iterations,
+        accuracy: None,
+        note,
+    })
+}
+
+/// All that is to be known of a result: `refined` is the reason for another grid than that of the problem, `not_kept` the reason why the end
+/// is not kept.
+fn remarks(
+    system: &System,
+    control: &Control,
+    result: &SolveResult,
+    (refined, not_kept): (Option<String>, Option<String>),
+) -> Remarks {
+    let optimum = &result.optimum;
+    let tested = optimum.resimulation.as_ref();
+    let left_goal = optimum.afterwards.as_ref().and_then(Afterwards::warning);
+    let mut remarks = Remarks::default();
+    remarks.note("start", control.start.notes().iter().cloned());
+    remarks.note("goal", optimum.boundary.notes.iter().cloned());
+    remarks.note("moved_marker", moved_markers(system));
+    remarks.note("refined_grid", refined);
+    remarks.warn("coarse_intervals", tested.and_then(Resimulation::warning));
+    remarks.warn("goal_not_held", not_kept.into_iter().chain(left_goal));
+    remarks.warn("optimality_gap", optimum.wide.clone());
+    remarks.note("free_end", free_end(control));
+    remarks.note("linear_solver", optimum.solution.linear.note());
+    if is_unreached(&optimum.solution) {
+        remarks.note("infeasible", explain(control, optimum));
+    }
+    remarks.note("earlier_solution", carried(&optimum.carried));
+    remarks.note("second_start", optimum.restarted.map(restarted));
+    remarks.warn("outside_domain", domain::note(&result.outside, true));
+    remarks.note(
+        "stops",
+        stops::notes(&optimum.model.system, &result.trajectory),
+    );
+    remarks.note("tracking", tracking_messages::notes(&result.tracking));
+    remarks.note("final_value", ends(&result.final_values));
+    remarks
+}

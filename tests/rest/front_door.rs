@@ -1,0 +1,61 @@
+//! Equilibria as a program in Rust asks for them.
+
+use nalgebra::Vector3;
+use proboscis::prelude::*;
+
+/// A cart of 50 g on a slide along x, between the ground and a spring of 200 N/m.
+fn cart() -> (System, Handle<Joint>, Handle<Load>) {
+    let mut system = System::new("cart");
+    let cart = system.add(Body::cuboid([mm(20.0); 3]).mass(g(50.0)));
+    let slide = system.add(Joint::prismatic(X).between(GROUND, cart));
+    let spring = Spring::between((GROUND, -X * mm(60.0)), (cart, -X * mm(10.0)));
+    system.add(spring.stiffness(n_per_m(200.0)));
+    let push = system.add(Load::force(cart, Vector3::zeros(), X));
+    (system, slide, push)
+}
+
+#[test]
+fn a_spring_yields_to_a_force() {
+    let (system, slide, push) = cart();
+    let still = Equilibrium::new().load(push, 0.4).find(&system).unwrap();
+    assert_eq!(still.times(), [0.0]);
+    let [x] = still.joint(slide)[..] else {
+        panic!("more than one instant")
+    };
+    let exact = 0.4 / n_per_m(200.0);
+    assert!((x - exact).abs() < 1e-9 * exact, "{x} for {exact}");
+}
+
+#[test]
+fn a_lost_equilibrium_keeps_the_last_one() {
+    let rubber = Material::elastomer(kpa(100.0))
+        .density(kg_per_m3(1000.0))
+        .relative_permittivity(3.0);
+    let mut system = System::new("stack");
+    let mass = system.add(Body::cuboid([mm(10.0); 3]).mass(g(10.0)).at(Y * mm(45.0)));
+    let slide = system.add(Joint::prismatic(Y).between(GROUND, mass));
+    let muscle = Muscle::of(&rubber)
+        .from(GROUND, Vector3::zeros())
+        .to(mass, Y * mm(40.0));
+    let muscle = system.add(muscle.section(mm(10.0), mm(10.0)).layer(mm(0.1)));
+    let at = |volts: f64| Equilibrium::new().voltage(muscle, volts).find(&system);
+    let lost = at(kv(20.0)).unwrap_err();
+    let Error::StabilityLost { fraction, motion } = lost else {
+        panic!("{lost}")
+    };
+    assert!(fraction > 0.05 && fraction < 0.95, "{fraction}");
+    let critical = kv(20.0) * fraction;
+    let short = motion.joint(slide)[0];
+    let before = at(0.999 * critical).unwrap().joint(slide)[0];
+    assert!(short < before && before < -1.0, "{short} after {before}");
+    let beyond = at(1.001 * critical).unwrap_err();
+    assert!(matches!(beyond, Error::StabilityLost { .. }), "{beyond}");
+}
+
+#[test]
+fn what_is_no_number_is_refused() {
+    let (system, _, push) = cart();
+    let wrong = Equilibrium::new().load(push, f64::NAN).find(&system);
+    let text = wrong.unwrap_err().to_string();
+    assert!(text.contains("expected a finite number"), "{text}");
+}
