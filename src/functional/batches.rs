@@ -31,16 +31,25 @@ impl<L: Default + Send> Batches<L> {
         compute: impl Fn(&E, &mut L) + Sync,
         mut add: impl FnMut(&E, &L),
     ) {
-        let is_large = size_of::<L>() > 0 && elements.len() >= PARALLEL && has_pool();
-        let kept = is_large.then(|| self.0.try_lock());
-        let Some(Ok(mut locals)) = kept else {
-            let mut local = L::default();
-            for element in elements {
-                compute(element, &mut local);
-                add(element, &local);
+        // A constant, so that loops over threads are compiled only for what is kept.
+        if const { size_of::<L>() > 0 } && elements.len() >= PARALLEL && has_pool() {
+            if let Ok(mut locals) = self.0.try_lock() {
+                return Self::each_on_all_cores(&mut locals, elements, compute, add);
             }
-            return;
-        };
+        }
+        let mut local = L::default();
+        for element in elements {
+            compute(element, &mut local);
+            add(element, &local);
+        }
+    }
+
+    fn each_on_all_cores<E: Sync>(
+        locals: &mut Vec<L>,
+        elements: &[E],
+        compute: impl Fn(&E, &mut L) + Sync,
+        mut add: impl FnMut(&E, &L),
+    ) {
         locals.resize_with(STRETCH.min(elements.len()), L::default);
         for stretch in elements.chunks(STRETCH) {
             let pairs = stretch.par_iter().with_min_len(LEAST);

@@ -28,14 +28,22 @@ pub(crate) fn parse<T: DeserializeOwned>(text: &str) -> Result<T, (JsonPath, Err
 }
 
 /// A step to a value: an index, or the bytes of a key with its quotes.
-#[derive(Debug)]
 enum Segment {
     Index(usize),
     Key(Range<usize>),
 }
 
+/// A value, or that entries follow.
+enum Token<'a> {
+    Object,
+    List,
+    Text(Cow<'a, str>),
+    Null,
+    Bool(bool),
+    Number(Number),
+}
+
 /// The next value of a text.
-#[derive(Debug)]
 struct Reader<'a> {
     scanner: Scanner<'a>,
     /// Path of the value that is being read. After an error it leads to the mistake, since only values that were read leave it.
@@ -54,21 +62,11 @@ impl<'a> Reader<'a> {
         JsonPath(self.path.iter().filter_map(step).collect())
     }
 
-    /// Enters a value: goes one step further along the path.
-    fn enter(&mut self, segment: Segment) {
-        self.path.push(segment);
-    }
-
     /// The key that begins here.
     fn key(&self) -> Result<Segment, Error> {
         let mut ahead = self.scanner;
         let key = ahead.scalar().ok_or_else(Self::broken)?;
         Ok(Segment::Key(key))
-    }
-
-    /// Leaves the value that was entered last.
-    fn leave(&mut self) {
-        self.path.pop();
     }
 
     /// A text that is no JSON after all.
@@ -93,22 +91,67 @@ impl<'a> Reader<'a> {
         string(self.scanner.text, bytes).ok_or_else(Self::broken)
     }
 
-    /// Moves past the object or list that begins here, of which `visit` takes all entries.
-    fn inside<T>(
-        &mut self,
-        [open, close]: [u8; 2],
-        expected: &'static str,
-        visit: impl FnOnce(Entries<'_, 'a>) -> Result<T, Error>,
-    ) -> Result<T, Error> {
+    /// Moves into the object or list that begins here.
+    fn open(&mut self) -> Result<Scanner<'a>, Error> {
         let whole = self.scanner;
-        self.expect(open)?;
-        let value = visit(Entries::of(self))?;
-        if self.scanner.peek() != Some(close) {
+        let bracket = whole.peek().ok_or_else(Self::broken)?;
+        self.expect(bracket)?;
+        Ok(whole)
+    }
+
+    /// Moves past the end of the object or list that began at `whole`, of which all entries have to be taken.
+    fn close(&mut self, whole: Scanner<'a>) -> Result<(), Error> {
+        let (bracket, expected) = match whole.peek() {
+            Some(b'{') => (b'}', "fewer elements in map"),
+            _ => (b']', "fewer elements in array"),
+        };
+        if self.scanner.peek() != Some(bracket) {
             let length = whole.entries().count();
             return Err(Error::invalid_length(length, &expected));
         }
-        self.expect(close)?;
-        Ok(value)
+        self.expect(bracket)
+    }
+
+    /// The value that begins here, where it is none with entries; moves past it.
+    fn token(&mut self) -> Result<Token<'a>, Error> {
+        Ok(match self.scanner.peek().ok_or_else(Self::broken)? {
+            b'{' => Token::Object,
+            b'[' => Token::List,
+            b'"' => Token::Text(self.string()?),
+            _ => match self.scalar()? {
+                "null" => Token::Null,
+                "true" => Token::Bool(true),
+                "false" => Token::Bool(false),
+                number => Token::Number(serde_json::from_str(number)?),
+            },
+        })
+    }
+
+    /// Moves into the object of one entry that begins here.
+    fn open_variant(&mut self) -> Result<Scanner<'a>, Error> {
+        if self.scanner.entries().count() != 1 {
+            let expected = "map with a single key";
+            return Err(Error::invalid_value(Unexpected::Map, &expected));
+        }
+        self.open()
+    }
+
+    /// The error of a value that is no variant.
+    fn no_variant(&mut self) -> Error {
+        let wrong = |found| Error::invalid_type(found, &"string or map");
+        match self.token() {
+            Ok(Token::Null) => wrong(Unexpected::Unit),
+            Ok(Token::Bool(value)) => wrong(Unexpected::Bool(value)),
+            Ok(Token::Number(number)) => wrong(match (number.as_u64(), number.as_i64()) {
+                (Some(number), _) => Unexpected::Unsigned(number),
+                (None, Some(number)) => Unexpected::Signed(number),
+                (None, None) => Unexpected::Float(number.as_f64().unwrap_or_default()),
+            }),
+            Ok(Token::List) => wrong(Unexpected::Seq),
+            Ok(Token::Object) => wrong(Unexpected::Map),
+            Ok(Token::Text(text)) => wrong(Unexpected::Str(&text)),
+            Err(broken) => broken,
+        }
     }
 
     /// Visits a variant by its word, which begins here, alone or as the key of its content.
@@ -128,7 +171,7 @@ impl<'a> Reader<'a> {
             has_content,
             reader: &mut *self,
         })?;
-        self.leave();
+        self.path.pop();
         Ok(value)
     }
 }
@@ -145,20 +188,20 @@ impl<'a> Deserializer<'a> for &mut Reader<'a> {
     type Error = Error;
 
     fn deserialize_any<V: Visitor<'a>>(self, visitor: V) -> Result<V::Value, Error> {
-        match self.scanner.peek().ok_or_else(Reader::broken)? {
-            b'{' => self.inside(*b"{}", "fewer elements in map", |entries| {
-                visitor.visit_map(entries)
-            }),
-            b'[' => self.inside(*b"[]", "fewer elements in array", |entries| {
-                visitor.visit_seq(entries)
-            }),
-            b'"' => visit(self.string()?, visitor),
-            _ => match self.scalar()? {
-                "null" => visitor.visit_unit(),
-                "true" => visitor.visit_bool(true),
-                "false" => visitor.visit_bool(false),
-                number => serde_json::from_str::<Number>(number)?.deserialize_any(visitor),
-            },
+        match self.token()? {
+            kind @ (Token::Object | Token::List) => {
+                let whole = self.open()?;
+                let value = match kind {
+                    Token::Object => visitor.visit_map(Entries::of(self)),
+                    _ => visitor.visit_seq(Entries::of(self)),
+                }?;
+                self.close(whole)?;
+                Ok(value)
+            }
+            Token::Text(text) => visit(text, visitor),
+            Token::Null => visitor.visit_unit(),
+            Token::Bool(value) => visitor.visit_bool(value),
+            Token::Number(number) => number.deserialize_any(visitor),
         }
     }
 
@@ -187,33 +230,15 @@ impl<'a> Deserializer<'a> for &mut Reader<'a> {
         _: &'static [&'static str],
         visitor: V,
     ) -> Result<V::Value, Error> {
-        let wrong = |found| Err(Error::invalid_type(found, &"string or map"));
-        match self.scanner.peek().ok_or_else(Reader::broken)? {
-            b'"' => self.variant(visitor, false),
-            b'{' => {
-                if self.scanner.entries().count() != 1 {
-                    let expected = "map with a single key";
-                    return Err(Error::invalid_value(Unexpected::Map, &expected));
-                }
-                self.expect(b'{')?;
+        match self.scanner.peek() {
+            Some(b'"') => self.variant(visitor, false),
+            Some(b'{') => {
+                let whole = self.open_variant()?;
                 let value = self.variant(visitor, true)?;
-                self.expect(b'}')?;
+                self.close(whole)?;
                 Ok(value)
             }
-            b'[' => wrong(Unexpected::Seq),
-            _ => match self.scalar()? {
-                "null" => wrong(Unexpected::Unit),
-                "true" => wrong(Unexpected::Bool(true)),
-                "false" => wrong(Unexpected::Bool(false)),
-                number => {
-                    let number = serde_json::from_str::<Number>(number)?;
-                    wrong(match (number.as_u64(), number.as_i64()) {
-                        (Some(number), _) => Unexpected::Unsigned(number),
-                        (None, Some(number)) => Unexpected::Signed(number),
-                        (None, None) => Unexpected::Float(number.as_f64().unwrap_or_default()),
-                    })
-                }
-            },
+            _ => Err(self.no_variant()),
         }
     }
 
@@ -265,9 +290,9 @@ impl<'a> SeqAccess<'a> for Entries<'_, 'a> {
         if !self.next()? {
             return Ok(None);
         }
-        self.reader.enter(Segment::Index(self.before - 1));
+        self.reader.path.push(Segment::Index(self.before - 1));
         let value = seed.deserialize(&mut *self.reader)?;
-        self.reader.leave();
+        self.reader.path.pop();
         Ok(Some(value))
     }
 }
@@ -283,14 +308,14 @@ impl<'a> MapAccess<'a> for Entries<'_, 'a> {
             return Ok(None);
         }
         let key = self.reader.key()?;
-        self.reader.enter(key);
+        self.reader.path.push(key);
         seed.deserialize(&mut *self.reader).map(Some)
     }
 
     fn next_value_seed<T: DeserializeSeed<'a>>(&mut self, seed: T) -> Result<T::Value, Error> {
         self.reader.expect(b':')?;
         let value = seed.deserialize(&mut *self.reader)?;
-        self.reader.leave();
+        self.reader.path.pop();
         Ok(value)
     }
 }
@@ -313,7 +338,7 @@ impl<'r, 'a> EnumAccess<'a> for Word<'r, 'a> {
     ) -> Result<(T::Value, Self::Variant), Error> {
         let variant = seed.deserialize(Key(self.word))?;
         // What is wrong from here on is a mistake in the content of a known word.
-        self.reader.enter(self.key);
+        self.reader.path.push(self.key);
         Ok((variant, Content(self.has_content.then_some(self.reader))))
     }
 }
