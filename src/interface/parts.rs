@@ -173,6 +173,7 @@ impl Muscle {
             cross_section: [0.0; 2],
             layer_thickness: 0.0,
             material: *material,
+            prestretch: None,
             section_inertia: false,
             circuit: None,
             fidelity: Fidelity::Lumped,
@@ -189,6 +190,12 @@ impl Muscle {
     pub fn to(self, carrier: impl Into<Carrier>, at: Vector3<f64>) -> Self {
         let to = attachment(carrier, at);
         Self { to, ..self }
+    }
+
+    /// Stretch before it is glued between its ends: its rest length is their distance divided by it.
+    pub fn prestretch(self, stretch: f64) -> Self {
+        let prestretch = Some(stretch);
+        Self { prestretch, ..self }
     }
 
     /// Sides of its rectangular cross-section at rest in mm.

@@ -2,7 +2,7 @@
 
 use crate::math::Vector;
 use crate::model::components::{BlockLoad, LoadPlace};
-use crate::model::system::{Attachment, ElasticLaw, Joint, JointKind, Material, Muscle, System};
+use crate::model::system::{Attachment, Fidelity, Joint, JointKind, Muscle, System};
 use std::collections::BTreeSet;
 use thiserror::Error;
 
@@ -84,8 +84,8 @@ impl System {
             solid.check_prestretch()?;
             for material in &solid.materials {
                 positive(&solid.name, "shear modulus", material.shear_modulus)?;
-                check_law(&solid.name, material)?;
-                check_of_elements(&solid.name, material)?;
+                material.check_law(&solid.name)?;
+                material.check_of_elements(&solid.name)?;
             }
         }
         for marker in &self.markers {
@@ -269,6 +269,15 @@ impl System {
             let name = &muscle.name;
             self.check_point(name, &muscle.from)?;
             self.check_point(name, &muscle.to)?;
+            if let Some(stretch) = muscle.prestretch {
+                positive(name, "prestretch", stretch)?;
+                require(
+                    muscle.fidelity == Fidelity::Lumped,
+                    name,
+                    || "a prestretch of a muscle of finite elements".to_owned(),
+                    "a lumped muscle, or an elastic block with a prestretch",
+                )?;
+            }
             positive(name, "length", muscle.length())?;
             require(
                 muscle.from.body != muscle.to.body,
@@ -285,7 +294,7 @@ impl System {
             for value in material.density.into_iter().chain(material.viscosity) {
                 positive(name, "density or viscosity", value)?;
             }
-            check_law(name, material)?;
+            material.check_law(name)?;
             for branch in material.maxwell.list() {
                 let modulus = "shear modulus of a Maxwell branch";
                 positive(name, modulus, branch.shear_modulus)?;
@@ -301,7 +310,7 @@ impl System {
                 )?;
             }
             if muscle.fidelity.elements() > 0 {
-                check_of_elements(name, material)?;
+                material.check_of_elements(name)?;
             }
         }
         Ok(())
@@ -353,39 +362,5 @@ fn check_direction(name: &str, direction: &Vector) -> Result<(), SystemError> {
         name,
         || format!("the direction {direction:?}"),
         "a direction of length one",
-    )
-}
-
-/// Checks the constants of a law of elasticity.
-fn check_law(name: &str, material: &Material) -> Result<(), SystemError> {
-    match material.law.and_then(|law| law.fault()) {
-        None => Ok(()),
-        Some(fault) => {
-            let found = || format!("{} {}", fault.constant, fault.found);
-            require(false, name, found, fault.expected)
-        }
-    }
-}
-
-/// Checks that finite elements can be made of a material: it is compressible, follows no law of principal stretches, and has no Maxwell
-/// branches.
-fn check_of_elements(name: &str, material: &Material) -> Result<(), SystemError> {
-    require(
-        material.maxwell.list().is_empty(),
-        name,
-        || "Maxwell branches of finite elements".to_owned(),
-        "none: only lumped muscles have them",
-    )?;
-    require(
-        !matches!(material.law, Some(ElasticLaw::Ogden { .. })),
-        name,
-        || "Ogden's law of finite elements".to_owned(),
-        "a law of the invariants of the strain: only lumped muscles follow Ogden's",
-    )?;
-    require(
-        material.lame_lambda.is_some_and(f64::is_finite),
-        name,
-        || "a material without Poisson ratio".to_owned(),
-        "one, as finite elements are compressible",
     )
 }

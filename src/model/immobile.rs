@@ -141,7 +141,7 @@ impl Parts {
         }
         for (m, muscle) in system.muscles.iter().enumerate() {
             let is_heavy = weighs && muscle.material.density.is_some();
-            if muscle.material.electric.is_some() || is_heavy {
+            if muscle.material.electric.is_some() || muscle.prestretch.is_some() || is_heavy {
                 moved.push(self.muscle(m));
             }
         }

@@ -28,6 +28,7 @@ mod joints;
 mod load_power;
 mod loads;
 mod material;
+mod material_check;
 mod maxwell;
 mod measures;
 #[expect(clippy::module_inception, reason = "the file of the type of that name")]

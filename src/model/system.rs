@@ -230,6 +230,8 @@ pub struct Muscle {
     pub layer_thickness: f64,
     /// Elastomer.
     pub material: Material,
+    /// Stretch before it was glued between its ends, of a lumped muscle; `None` where it is as long as at rest.
+    pub prestretch: Option<f64>,
     /// True if the inertia of the changing cross-section is asked for.
     pub section_inertia: bool,
     /// Circuit between its source and its electrodes; `None` where they have the voltage of the source.
@@ -360,9 +362,11 @@ pub struct Marker {
 }
 
 impl Muscle {
-    /// Rest length in mm.
+    /// Rest length L₀ in mm: the distance of its ends by its prestretch.
     pub fn length(&self) -> f64 {
-        (self.to.at - self.from.at).norm()
+        let distance = (self.to.at - self.from.at).norm();
+        self.prestretch
+            .map_or(distance, |stretch| distance / stretch)
     }
 
     /// Rest volume in mm³.

@@ -117,6 +117,7 @@ pub(crate) fn trunk(segments: usize) -> System {
                 cross_section: [10.0, 10.0],
                 layer_thickness: 0.05,
                 material: silicone,
+                prestretch: None,
                 section_inertia: false,
                 circuit: None,
                 fidelity: Default::default(),

@@ -185,6 +185,7 @@ pub fn branched() -> System {
         cross_section: [10.0, 8.0],
         layer_thickness: 0.05,
         material,
+        prestretch: None,
         section_inertia,
         circuit: None,
         fidelity: Default::default(),

@@ -45,6 +45,7 @@ pub(crate) fn system(count: usize) -> System {
             cross_section: [10.0, 10.0],
             layer_thickness: 0.05,
             material,
+            prestretch: None,
             section_inertia: false,
             circuit: None,
             fidelity: Default::default(),

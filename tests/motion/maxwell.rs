@@ -55,6 +55,7 @@ pub(crate) fn slider(mass: f64, maxwell: MaxwellBranches) -> System {
             maxwell,
             ..Material::default()
         },
+        prestretch: None,
         section_inertia: false,
         circuit: None,
         fidelity: Default::default(),

@@ -105,6 +105,7 @@ pub(crate) fn tree() -> System {
         cross_section: [10.0, 12.0],
         layer_thickness: 0.05,
         material,
+        prestretch: None,
         section_inertia: true,
         circuit: None,
         fidelity: Default::default(),

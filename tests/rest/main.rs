@@ -5,5 +5,6 @@ mod common;
 
 mod domain;
 mod front_door;
+mod prestretch;
 mod stable;
 mod trunk;

@@ -52,6 +52,7 @@ fn single(shear_modulus: f64, electric: ElectricConstants) -> System {
                 viscosity: Some(1.0),
                 ..Material::default()
             },
+            prestretch: None,
             section_inertia: false,
             circuit: None,
             fidelity: Default::default(),

@@ -40,6 +40,7 @@ fn sledge(slenderness: usize, fidelity: Fidelity) -> System {
             cross_section: [10.0; 2],
             layer_thickness: 0.05,
             material: silicone(100.0),
+            prestretch: None,
             section_inertia: false,
             circuit: None,
             fidelity,

@@ -20,6 +20,7 @@ fn only_muscles_with_a_charge_have_another_voltage_than_their_source() {
         cross_section: [1.0; 2],
         layer_thickness: 0.1,
         material: Material::default(),
+        prestretch: None,
         section_inertia: false,
         circuit,
         fidelity: Fidelity::Lumped,

@@ -109,7 +109,8 @@ impl Link {
         let Some(pair) = &chain.muscles else {
             return Vec::new();
         };
-        let half = self.axis * (0.5 * pair.rest_length.value());
+        let stretch = pair.prestretch.unwrap_or(1.0);
+        let half = self.axis * (0.5 * stretch * pair.rest_length.value());
         let muscle = |(place, side): (usize, f64)| {
             let middle = self.at + self.arm_axis * (side * pair.arm.value());
             MuscleSpec {
@@ -121,6 +122,7 @@ impl Link {
                 material: pair.material.clone(),
                 cross_section: pair.cross_section.clone(),
                 layer_thickness: pair.layer_thickness.clone(),
+                prestretch: pair.prestretch,
                 circuit: pair.circuit.clone(),
                 from: PointSpec {
                     body: self.parent(),

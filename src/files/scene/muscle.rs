@@ -52,13 +52,16 @@ pub(crate) fn muscle(
             .key("body")
             .wrong(found, "another body than \"from\""));
     }
+    let prestretch = prestretch(spec.prestretch, fidelity, scope)?;
+    let rest = length / prestretch.unwrap_or(1.0);
     let muscle = Muscle {
         name: spec.name.clone(),
         from,
         to,
-        cross_section: positive_sides(&spec.cross_section, length, scope)?,
-        layer_thickness: layer(&spec.layer_thickness, length, scope)?,
+        cross_section: positive_sides(&spec.cross_section, rest, scope)?,
+        layer_thickness: layer(&spec.layer_thickness, rest, scope)?,
         material,
+        prestretch,
         section_inertia: spec.section_inertia,
         circuit: None,
         fidelity,
@@ -67,6 +70,25 @@ pub(crate) fn muscle(
         circuit: circuit(spec.circuit.as_ref(), &muscle, scope)?,
         ..muscle
     })
+}
+
+/// The prestretch of a muscle.
+fn prestretch(
+    stretch: Option<f64>,
+    fidelity: Fidelity,
+    scope: &Scope<'_>,
+) -> Result<Option<f64>, SceneError> {
+    let (Some(stretch), place) = (stretch, scope.key("prestretch")) else {
+        return Ok(None);
+    };
+    if !(stretch > 0.0 && stretch.is_finite()) {
+        return Err(place.wrong(stretch.to_string(), "a positive stretch"));
+    }
+    if fidelity != Fidelity::Lumped {
+        let expected = "a lumped muscle, or one of \"solids\" with \"prestretch\"";
+        return Err(place.wrong("a prestretch of a muscle of finite elements", expected));
+    }
+    Ok(Some(stretch))
 }
 
 /// The circuit of a muscle.

@@ -1,0 +1,40 @@
+//! Validation of a material: the constants of its law, and what finite elements need of it.
+
+use crate::model::check::{SystemError, require};
+use crate::model::system::{ElasticLaw, Material};
+
+impl Material {
+    /// Checks the constants of a law of elasticity.
+    pub(super) fn check_law(&self, name: &str) -> Result<(), SystemError> {
+        match self.law.and_then(|law| law.fault()) {
+            None => Ok(()),
+            Some(fault) => {
+                let found = || format!("{} {}", fault.constant, fault.found);
+                require(false, name, found, fault.expected)
+            }
+        }
+    }
+
+    /// Checks that finite elements can be made of a material: it is compressible, follows no law of principal stretches, and has no Maxwell
+    /// branches.
+    pub(super) fn check_of_elements(&self, name: &str) -> Result<(), SystemError> {
+        require(
+            self.maxwell.list().is_empty(),
+            name,
+            || "Maxwell branches of finite elements".to_owned(),
+            "none: only lumped muscles have them",
+        )?;
+        require(
+            !matches!(self.law, Some(ElasticLaw::Ogden { .. })),
+            name,
+            || "Ogden's law of finite elements".to_owned(),
+            "a law of the invariants of the strain: only lumped muscles follow Ogden's",
+        )?;
+        require(
+            self.lame_lambda.is_some_and(f64::is_finite),
+            name,
+            || "a material without Poisson ratio".to_owned(),
+            "one, as finite elements are compressible",
+        )
+    }
+}
