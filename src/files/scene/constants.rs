@@ -1,7 +1,8 @@
 //! Constants of a scene by their paths, as an optimisation may seek them: the constants of components that follow each.
 
 use crate::files::json::locate::{JsonPath, Step};
-use crate::files::scene::spec::{Dielectric, SceneSpec};
+use crate::files::scene::spec::SceneSpec;
+use crate::files::scene::spec_material::Dielectric;
 use crate::files::units::quantity::{
     Damping, Kind, Length, Ratio, RotationalDamping, Stiffness, Stress, Viscosity,
 };

@@ -5,7 +5,7 @@ use std::collections::BTreeMap;
 use crate::files::json::error::SceneError;
 use crate::files::json::scope::Scope;
 use crate::files::scene::law::law;
-use crate::files::scene::spec::{Dielectric, MaterialSpec, MaxwellSpec};
+use crate::files::scene::spec_material::{Dielectric, MaterialSpec, MaxwellSpec};
 use crate::files::units::quantity::Quantity;
 use crate::model::MOST_BRANCHES;
 use crate::model::system::{
