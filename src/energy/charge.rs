@@ -53,7 +53,7 @@ impl Energy<4> for GivenCharge {
     }
 }
 
-/// Energy `Q²/(2C)` of a charge that flows through a circuit, arguments: span r, and the charge in its unit in the first component of
+/// Energy `Q²/(2C)` of a charge that flows through a resistor, arguments: span r, and the charge in its unit in the first component of
 /// a vector. Not finite for r = 0 and C = 0.
 #[derive(Clone, Copy, Debug)]
 pub struct FlowingCharge {
