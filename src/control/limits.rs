@@ -75,7 +75,25 @@ impl Limits {
                 }
                 PathConstraint::ElectricField { muscle, max } => {
                     let name = format!("electric field of {}", system.muscles[muscle].name);
-                    out.add_field(FieldPlace::Muscle(muscle), max, &name);
+                    match system.muscles[muscle].is_behind_resistor() {
+                        true => {
+                            let quantity = Quantity::ChargedField { muscle, limit: max };
+                            out.add(quantity, [f64::NEG_INFINITY, 1.0], name);
+                        }
+                        false => out.add_field(FieldPlace::Muscle(muscle), max, &name),
+                    }
+                }
+                PathConstraint::Current { muscle, min, max } => {
+                    let name = format!("current of {}", system.muscles[muscle].name);
+                    let unit = largest([min, max]).unwrap_or(system.short_circuit(muscle)[0]);
+                    let quantity = Quantity::SourceCurrent { muscle, unit };
+                    out.add(quantity, [min / unit, max / unit], name);
+                }
+                PathConstraint::Power { muscle, min, max } => {
+                    let name = format!("power of {}", system.muscles[muscle].name);
+                    let unit = largest([min, max]).unwrap_or(system.short_circuit(muscle)[1]);
+                    let quantity = Quantity::SourcePower { muscle, unit };
+                    out.add(quantity, [min / unit, max / unit], name);
                 }
                 PathConstraint::PeakVoltage {
                     source,
@@ -203,6 +221,13 @@ impl Limits {
     pub fn quantities(&self) -> Vec<Quantity> {
         self.list.iter().map(|b| b.quantity).collect()
     }
+}
+
+/// The largest finite bound by its size; none where there is none but zero.
+fn largest(bounds: [f64; 2]) -> Option<f64> {
+    let sizes = bounds.map(f64::abs).into_iter();
+    let finite = sizes.filter(|size| *size > 0.0 && size.is_finite());
+    finite.reduce(f64::max)
 }
 
 impl BoundedQuantity {

@@ -9,7 +9,7 @@ use nalgebra::SVector;
 impl Capacitance {
     /// `1/(2C)` as a function of I: value and three derivatives.
     #[inline(always)]
-    fn half_inverse(&self, i: f64) -> [f64; 4] {
+    pub(super) fn half_inverse(&self, i: f64) -> [f64; 4] {
         let [c, c1, c2, c3] = self.of_squared_stretch(i);
         let f = 1.0 / c;
         [
@@ -28,7 +28,7 @@ impl Capacitance {
     }
 
     /// Factor of |r|² in I.
-    fn scale(&self) -> f64 {
+    pub(super) fn scale(&self) -> f64 {
         let length = self.cell.elastic.length;
         1.0 / (length * length)
     }

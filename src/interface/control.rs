@@ -14,7 +14,7 @@ use crate::interface::optimum::Optimum;
 use crate::interface::state::State;
 use crate::math::Signal;
 use crate::model::components::Load;
-use crate::model::system::{Joint, Muscle, Source};
+use crate::model::system::Source;
 use crate::model::{Parameter, System};
 use crate::nlp::Nlp;
 use crate::workflow::cause::Cause;
@@ -46,7 +46,7 @@ pub struct Control {
     voltage_bounds: [f64; 2],
     load_bounds: Vec<(Handle<Load>, [f64; 2])>,
     pub(super) objective: Objective,
-    limits: Vec<PathConstraint>,
+    pub(super) limits: Vec<PathConstraint>,
     pub(super) waypoints: Vec<problem::Waypoint>,
     voltages: Vec<(Input, Signal)>,
     parameters: Vec<Parameter>,
@@ -133,46 +133,6 @@ impl Control {
     /// Minimises a function of a quantity; [`Control::track`] and its neighbours make the usual ones.
     pub fn minimise(mut self, cost: QuantityCost) -> Self {
         self.objective.quantities.push(cost);
-        self
-    }
-
-    /// Greatest true electric field of muscles in V/mm.
-    pub fn field_below(mut self, muscles: &[Handle<Muscle>], max: f64) -> Self {
-        let limit = |muscle: &Handle<Muscle>| PathConstraint::ElectricField {
-            muscle: muscle.index(),
-            max,
-        };
-        self.limits.extend(muscles.iter().map(limit));
-        self
-    }
-
-    /// Range of the stretch of a muscle.
-    pub fn stretch_within(mut self, muscle: Handle<Muscle>, range: RangeInclusive<f64>) -> Self {
-        self.limits.push(PathConstraint::Stretch {
-            muscle: muscle.index(),
-            min: *range.start(),
-            max: *range.end(),
-        });
-        self
-    }
-
-    /// Range of the coordinate of a joint in rad or mm.
-    pub fn joint_within(mut self, joint: Handle<Joint>, range: RangeInclusive<f64>) -> Self {
-        self.limits.push(PathConstraint::JointAngle {
-            joint: joint.index(),
-            min: *range.start(),
-            max: *range.end(),
-        });
-        self
-    }
-
-    /// Range of the mean rate of the coordinate of a joint in each interval in rad/ms or mm/ms; the duration has to be given.
-    pub fn joint_rate_within(mut self, joint: Handle<Joint>, range: RangeInclusive<f64>) -> Self {
-        self.limits.push(PathConstraint::JointRate {
-            joint: joint.index(),
-            min: *range.start(),
-            max: *range.end(),
-        });
         self
     }
 

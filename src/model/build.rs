@@ -315,7 +315,9 @@ impl Construction<'_> {
         vectors: &mut Vectors,
     ) -> Measures {
         let known = measures::Known {
+            system: self.system,
             presolved: self.presolved,
+            internals: self.internals,
             reference: self.reference,
             variables,
             markers,

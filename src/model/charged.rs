@@ -18,6 +18,26 @@ impl System {
         loads.any(|load| load.on == LoadPlace::Muscle(muscle))
     }
 
+    /// Current in A and power in W of the source of a muscle behind a resistor without charge, under a voltage whose field balances the
+    /// elasticity of the muscle; one without a resistor.
+    pub fn short_circuit(&self, muscle: usize) -> [f64; 2] {
+        let muscle = &self.muscles[muscle];
+        let resistance = muscle.circuit.and_then(|circuit| circuit.resistance);
+        let sizes = resistance.zip(capacitance(muscle)).map(|(r, capacitance)| {
+            let at_rest = capacitance.at_length(muscle.length());
+            let voltage = capacitance.unit_of_charge() / at_rest;
+            [voltage / r, voltage * voltage / r]
+        });
+        sizes.unwrap_or([1.0; 2])
+    }
+
+    /// The source of the charge of a muscle, where a load gives it.
+    pub fn charge_of(&self, muscle: usize) -> Option<usize> {
+        let mut loads = self.loads();
+        let own = loads.find(|(_, load)| load.on == LoadPlace::Muscle(muscle));
+        own.map(|(source, _)| source)
+    }
+
     /// Returns true if the electrodes of a muscle have the voltage of a source.
     pub fn has_source_voltage(&self, muscle: usize) -> bool {
         !self.muscles[muscle].is_behind_resistor() && !self.is_charged(muscle)

@@ -6,6 +6,7 @@ mod block_terms;
 mod blocks;
 mod bodies;
 mod build;
+mod charge_measures;
 mod charged;
 mod check;
 mod circuit;
