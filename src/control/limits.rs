@@ -29,12 +29,14 @@ pub enum When {
     Goal,
     /// At the instant nearest to a part of the duration: a waypoint.
     At(f64),
+    /// In the steps between neighbouring intervals: a limit of what changes from one to the next.
+    Steps,
 }
 
 impl When {
     /// Returns true unless it is a limit of the whole path.
     pub fn is_single(self) -> bool {
-        self != Self::Everywhere
+        matches!(self, Self::Goal | Self::At(_))
     }
 }
 
@@ -95,6 +97,13 @@ impl Limits {
                     let quantity = Quantity::SourcePower { muscle, unit };
                     out.add(quantity, [min / unit, max / unit], name);
                 }
+                PathConstraint::VoltageRate { source, min, max } => {
+                    let name = format!("rate of the voltage of {}", system.sources()[source].name);
+                    let unit = h * largest([min, max]).unwrap_or(1.0);
+                    let quantity = Quantity::VoltageStep { source, unit, h };
+                    let bounds = [min * h / unit, max * h / unit];
+                    out.add_when(When::Steps, quantity, bounds, name);
+                }
                 PathConstraint::PeakVoltage {
                     source,
                     parameter,
@@ -122,12 +131,16 @@ impl Limits {
     }
 
     /// Adds a limit.
-    fn add(&mut self, quantity: Quantity, [lower, upper]: [f64; 2], name: String) {
+    fn add(&mut self, quantity: Quantity, bounds: [f64; 2], name: String) {
+        self.add_when(When::Everywhere, quantity, bounds, name);
+    }
+
+    fn add_when(&mut self, when: When, quantity: Quantity, [lower, upper]: [f64; 2], name: String) {
         self.list.push(BoundedQuantity {
             quantity,
             lower,
             upper,
-            when: When::Everywhere,
+            when,
             name,
         });
     }

@@ -302,6 +302,15 @@ pub enum PathConstraint {
         /// Upper bound or ∞.
         max: f64,
     },
+    /// Rate of the voltage of a source in V/ms between the middles of neighbouring intervals, where the duration is given.
+    VoltageRate {
+        /// Source index.
+        source: usize,
+        /// Lower bound or −∞.
+        min: f64,
+        /// Upper bound or ∞.
+        max: f64,
+    },
     /// Voltage of a source no larger than a sought parameter in the intervals.
     PeakVoltage {
         /// Source index.
@@ -323,6 +332,11 @@ pub enum PathConstraint {
 }
 
 impl PathConstraint {
+    /// Returns true if its bounds are of changes in time, which a free duration has not.
+    pub fn is_rate(&self) -> bool {
+        matches!(self, Self::JointRate { .. } | Self::VoltageRate { .. })
+    }
+
     /// The source of whose current or power it is a limit.
     pub(super) fn source(&self) -> Option<usize> {
         match *self {

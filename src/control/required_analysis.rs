@@ -163,6 +163,7 @@ impl<'a> Named<'a> {
             PathConstraint::ElectricField { .. }
             | PathConstraint::BlockField { .. }
             | PathConstraint::PeakVoltage { .. }
+            | PathConstraint::VoltageRate { .. }
             | PathConstraint::Current { .. }
             | PathConstraint::Power { .. } => {}
             PathConstraint::Marker { marker, .. } => self.of_marker(marker),

@@ -55,6 +55,7 @@ fn reads(quantity: &Quantity, parameter: &Parameter) -> bool {
         Quantity::SquaredField { .. } => false,
         // They read the parameter itself, which no constant follows.
         Quantity::PeakVoltage { .. } | Quantity::PeakExcess { .. } => false,
+        Quantity::VoltageStep { .. } => false,
         Quantity::Joint { .. }
         | Quantity::JointStep { .. }
         | Quantity::MarkerPlace { .. }

@@ -44,6 +44,10 @@ pub(super) fn check_limits(limits: &[PathConstraint], system: &System) -> Result
             PathConstraint::ElectricField { muscle, max } => {
                 muscle < system.muscles.len() && max > 0.0
             }
+            PathConstraint::VoltageRate { source, min, max } => {
+                let sources = system.sources();
+                sources.get(source).is_some_and(|s| s.takes_voltage) && min < max
+            }
             PathConstraint::Current { muscle, min, max }
             | PathConstraint::Power { muscle, min, max } => {
                 let muscle = system.muscles.get(muscle);

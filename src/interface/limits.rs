@@ -57,6 +57,20 @@ impl Control {
         self
     }
 
+    /// Range of the rate of the voltage of a muscle in V/ms between the middles of neighbouring intervals; the duration has to be given.
+    pub fn voltage_rate_within(
+        mut self,
+        muscle: Handle<Muscle>,
+        range: RangeInclusive<f64>,
+    ) -> Self {
+        self.limits.push(PathConstraint::VoltageRate {
+            source: muscle.index(),
+            min: *range.start(),
+            max: *range.end(),
+        });
+        self
+    }
+
     /// Range of the mean power in each interval in W of the source of a lumped muscle behind a resistor.
     pub fn power_within(mut self, muscle: Handle<Muscle>, range: RangeInclusive<f64>) -> Self {
         self.limits.push(PathConstraint::Power {

@@ -117,6 +117,10 @@ impl Known<'_> {
                 let multiple = Multiple { unit: KILOVOLT };
                 interval::<_, 1, 0, 1>(shape, multiple, [], [self.parameter(parameter)?])
             }
+            Quantity::VoltageStep { source, unit, .. } => {
+                let voltage = [self.variables.input(source)?];
+                interval::<_, 1, 0, 1>(shape, Multiple { unit }, [], voltage)
+            }
             Quantity::PeakExcess {
                 source,
                 parameter,

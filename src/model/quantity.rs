@@ -98,6 +98,15 @@ pub enum Quantity {
         /// Unit in W.
         unit: f64,
     },
+    /// Voltage of a source in the intervals, of which the steps between them are limited.
+    VoltageStep {
+        /// Source index.
+        source: usize,
+        /// Unit in V.
+        unit: f64,
+        /// Length of the interval in ms, for messages.
+        h: f64,
+    },
     /// A component of the place of a marker in mm at the instants.
     MarkerPlace {
         /// Marker index.
@@ -159,6 +168,7 @@ impl Quantity {
                 | Self::PeakExcess { .. }
                 | Self::SourceCurrent { .. }
                 | Self::SourcePower { .. }
+                | Self::VoltageStep { .. }
         )
     }
 
@@ -176,6 +186,7 @@ impl Quantity {
             | Self::PeakExcess { .. }
             | Self::SourceCurrent { .. }
             | Self::SourcePower { .. } => "in interval",
+            Self::VoltageStep { .. } => "before interval",
             _ => "at instant",
         }
     }
@@ -192,6 +203,7 @@ impl Quantity {
             | Self::ChargedField { .. }
             | Self::SourceCurrent { .. }
             | Self::SourcePower { .. }
+            | Self::VoltageStep { .. }
             | Self::PeakExcess { .. }
             | Self::Direction { .. }
             | Self::MarkerRegion { .. } => "",
@@ -211,6 +223,7 @@ impl Quantity {
             }
             Self::SourceCurrent { unit, .. } => (1e3 * value * unit, "mA"),
             Self::SourcePower { unit, .. } => (value * unit, "W"),
+            Self::VoltageStep { unit, h, .. } => (value * unit / h, "kV/s"),
             Self::MarkerRegion { region, .. } => match region {
                 Region::Sphere { radius, .. } => (value.sqrt() * radius, "mm from its centre"),
                 Region::Box { .. } => (value.powf(1.0 / 16.0), "half edges from its centre"),

@@ -64,6 +64,11 @@ pub fn all_limits() -> Vec<PathConstraint> {
             min: -0.4,
             max: 0.5,
         },
+        PathConstraint::VoltageRate {
+            source: 2,
+            min: -80.0,
+            max: 60.0,
+        },
         PathConstraint::Stretch {
             muscle: 0,
             min: 0.7,

@@ -207,6 +207,42 @@ fn limits_of_a_source_hold_where_the_duration_is_free() {
 }
 
 #[test]
+fn a_voltage_changes_no_faster_than_its_limit() {
+    // Steps of the voltages in V between the middles of intervals of 10 ms, and of half an interval from and to rest.
+    let steps = |limits: Value, coordinates: &str| {
+        let ran = run("solve", &pair(&Value::Null, limits, coordinates), &[]);
+        ran.is_solved();
+        let controls = Table::read(&ran, "controls.csv");
+        let of = |muscle: &str, goal: f64| {
+            let volts = controls.column(muscle);
+            let last = volts.len() - 1;
+            let ends = [2.0 * volts[0], 2.0 * (goal - volts[last])];
+            let inner = volts.windows(2).map(|v| v[1] - v[0]);
+            inner.chain(ends).collect::<Vec<f64>>()
+        };
+        let all = [of("muscle1", 0.0), of("muscle2", 1700.0)].concat();
+        let objective = ran.read("summary.json")["objective"].as_f64().unwrap();
+        let least = all.iter().copied().fold(f64::INFINITY, f64::min);
+        ([least, greatest(&all)], objective)
+    };
+    let (free, cheap) = steps(json!([]), "reduced");
+    assert!(free[1] > 300.0, "{free:?}");
+    let limit =
+        json!([{ "voltage_rate": { "sources": "all", "min": "-15 kV/s", "max": "20 kV/s" } }]);
+    let both = ["reduced", "redundant"].map(|coordinates| steps(limit.clone(), coordinates));
+    for ([least, most], objective) in &both {
+        assert!((most / 200.0 - 1.0).abs() < 1e-6, "{most}");
+        assert!(*least > -150.0 - 1e-3, "{least}");
+        assert!(*objective > 1.001 * cheap, "{objective} {cheap}");
+    }
+    let [one, other] = both.map(|(_, objective)| objective);
+    assert!((one / other - 1.0).abs() < 1e-6, "{one} {other}");
+    let mut open = pair(&Value::Null, limit, "reduced");
+    open["control"]["duration"] = json!({ "min": 0.1, "max": 0.3, "guess": 0.2 });
+    run("solve", &open, &[]).is_refused(&["limits[0].voltage_rate", "a given duration"]);
+}
+
+#[test]
 fn limits_of_sources_that_make_no_sense_are_refused() {
     let refused = |circuit: &Value, limit: Value, words: &[&str]| {
         run("solve", &pair(circuit, json!([limit]), "reduced"), &[]).is_refused(words);

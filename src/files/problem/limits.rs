@@ -26,8 +26,13 @@ pub(crate) fn limits(
 ) -> Result<Vec<PathConstraint>, SceneError> {
     let mut limits = Vec::new();
     for (index, spec) in list.iter().enumerate() {
-        if spec.joint_rate.is_some() && matches!(duration, Duration::Free { .. }) {
-            let place = scope.index(index).key("joint_rate");
+        let rate = match (&spec.joint_rate, &spec.voltage_rate) {
+            (Some(_), _) => Some("joint_rate"),
+            (_, Some(_)) => Some("voltage_rate"),
+            (None, None) => None,
+        };
+        if let (Some(key), Duration::Free { .. }) = (rate, duration) {
+            let place = scope.index(index).key(key);
             let found = "a limit of a rate where the duration is free";
             return Err(place.wrong(found, "a given duration"));
         }
@@ -56,6 +61,10 @@ fn limit(
         ("marker", spec.marker.as_ref().map(|_| "marker")),
         ("current", spec.current.as_ref().map(|_| "current")),
         ("power", spec.power.as_ref().map(|_| "power")),
+        (
+            "voltage_rate",
+            spec.voltage_rate.as_ref().map(|_| "voltage_rate"),
+        ),
     ])?;
     let scope = scope.key(key);
     let mut limits = source_limits(spec, system, &scope)?;

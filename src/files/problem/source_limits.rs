@@ -1,4 +1,4 @@
-//! Conversion of limits of currents and powers of sources to path constraints.
+//! Conversion of limits of currents, powers and voltage rates of sources to path constraints.
 
 use crate::control::problem::PathConstraint;
 use crate::files::json::error::SceneError;
@@ -31,6 +31,15 @@ pub(super) fn source_limits(
         let limit = |muscle| PathConstraint::Power { muscle, min, max };
         let muscles = resisted((&spec.source, spec.sources), system, scope)?;
         limits.extend(muscles.into_iter().map(limit));
+    }
+    if let Some(spec) = &spec.voltage_rate {
+        let [min, max] = bounds([&spec.min, &spec.max], scope)?;
+        let limit = |source| PathConstraint::VoltageRate { source, min, max };
+        let (sources, place) = chosen((&spec.source, spec.sources), &system.sources(), scope)?;
+        if sources.is_empty() {
+            return Err(place.wrong("no source", "a source of a voltage"));
+        }
+        limits.extend(sources.into_iter().map(limit));
     }
     Ok(limits)
 }

@@ -3,11 +3,13 @@
 use schemars::JsonSchema;
 use serde::Deserialize;
 
-use crate::files::problem::spec_source_limits::{All, CurrentLimitSpec, PowerLimitSpec};
+use crate::files::problem::spec_source_limits::{
+    All, CurrentLimitSpec, PowerLimitSpec, VoltageRateLimitSpec,
+};
 use crate::files::scene::point::{CornersSpec, Point};
 use crate::files::units::quantity::{ElectricField, JointCoordinate, JointRate, Length, Quantity};
 
-/// A path limit: exactly one of the seven.
+/// A path limit: exactly one of the eight.
 #[derive(Clone, Debug, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct LimitSpec {
@@ -32,6 +34,9 @@ pub struct LimitSpec {
     /// Limits of the power of sources.
     #[serde(default)]
     pub power: Option<PowerLimitSpec>,
+    /// Limits of the rate of the voltage of sources.
+    #[serde(default)]
+    pub voltage_rate: Option<VoltageRateLimitSpec>,
 }
 
 /// Limits of a joint coordinate: `min`, `max` or both.

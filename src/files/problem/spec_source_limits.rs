@@ -3,7 +3,7 @@
 use schemars::JsonSchema;
 use serde::Deserialize;
 
-use crate::files::units::quantity::{Current, Power, Quantity};
+use crate::files::units::quantity::{Current, Power, Quantity, VoltageRate};
 
 /// All of them.
 #[derive(Clone, Copy, Debug, Deserialize, JsonSchema)]
@@ -21,7 +21,7 @@ macro_rules! source_limits {
             #[derive(Clone, Debug, Deserialize, JsonSchema)]
             #[serde(deny_unknown_fields)]
             pub struct $name {
-                /// Name of the source: that of its muscle.
+                /// Name of the source: that of its muscle or electrode.
                 #[serde(default)]
                 pub source: Option<String>,
                 /// All sources.
@@ -45,4 +45,7 @@ source_limits! {
     /// Limits of the mean power in each interval of one source (`"source": name`) or each (`"sources": "all"`) of lumped muscles behind
     /// resistors: `min`, `max` or both.
     PowerLimitSpec: Power, "W";
+    /// Limits of the rate of the voltage of one source (`"source": name`) or each (`"sources": "all"`) from interval to interval: `min`,
+    /// `max` or both. The duration has to be given.
+    VoltageRateLimitSpec: VoltageRate, "V/s";
 }
