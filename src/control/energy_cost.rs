@@ -24,10 +24,12 @@ pub enum SourceEnergy {
 }
 
 impl EnergyCost {
-    /// Returns true if the source is that of a lumped muscle with electric constants, whose electrodes have its voltage.
+    /// Returns true if the source is that of a lumped muscle with electric constants, without a circuit, whose electrodes have its voltage.
     pub fn exists(&self, system: &System) -> bool {
         let muscle = system.muscles.get(self.source);
-        muscle.and_then(capacitance).is_some() && system.has_source_voltage(self.source)
+        let is_direct = muscle.is_some_and(|muscle| muscle.circuit.is_none());
+        let has_capacitance = muscle.and_then(capacitance).is_some();
+        has_capacitance && is_direct && !system.is_charged(self.source)
     }
 }
 

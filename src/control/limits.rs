@@ -29,12 +29,14 @@ pub enum When {
     Goal,
     /// At the instant nearest to a part of the duration: a waypoint.
     At(f64),
+    /// In the steps between neighbouring intervals: a limit of what changes from one to the next.
+    Steps,
 }
 
 impl When {
     /// Returns true unless it is a limit of the whole path.
     pub fn is_single(self) -> bool {
-        self != Self::Everywhere
+        matches!(self, Self::Goal | Self::At(_))
     }
 }
 
@@ -75,7 +77,32 @@ impl Limits {
                 }
                 PathConstraint::ElectricField { muscle, max } => {
                     let name = format!("electric field of {}", system.muscles[muscle].name);
-                    out.add_field(FieldPlace::Muscle(muscle), max, &name);
+                    match system.muscles[muscle].is_behind_resistor() {
+                        true => {
+                            let quantity = Quantity::ChargedField { muscle, limit: max };
+                            out.add(quantity, [f64::NEG_INFINITY, 1.0], name);
+                        }
+                        false => out.add_field(FieldPlace::Muscle(muscle), max, &name),
+                    }
+                }
+                PathConstraint::Current { muscle, min, max } => {
+                    let name = format!("current of {}", system.muscles[muscle].name);
+                    let unit = largest([min, max]).unwrap_or(system.short_circuit(muscle)[0]);
+                    let quantity = Quantity::SourceCurrent { muscle, unit };
+                    out.add(quantity, [min / unit, max / unit], name);
+                }
+                PathConstraint::Power { muscle, min, max } => {
+                    let name = format!("power of {}", system.muscles[muscle].name);
+                    let unit = largest([min, max]).unwrap_or(system.short_circuit(muscle)[1]);
+                    let quantity = Quantity::SourcePower { muscle, unit };
+                    out.add(quantity, [min / unit, max / unit], name);
+                }
+                PathConstraint::VoltageRate { source, min, max } => {
+                    let name = format!("rate of the voltage of {}", system.sources()[source].name);
+                    let unit = h * largest([min, max]).unwrap_or(1.0);
+                    let quantity = Quantity::VoltageStep { source, unit, h };
+                    let bounds = [min * h / unit, max * h / unit];
+                    out.add_when(When::Steps, quantity, bounds, name);
                 }
                 PathConstraint::PeakVoltage {
                     source,
@@ -104,12 +131,16 @@ impl Limits {
     }
 
     /// Adds a limit.
-    fn add(&mut self, quantity: Quantity, [lower, upper]: [f64; 2], name: String) {
+    fn add(&mut self, quantity: Quantity, bounds: [f64; 2], name: String) {
+        self.add_when(When::Everywhere, quantity, bounds, name);
+    }
+
+    fn add_when(&mut self, when: When, quantity: Quantity, [lower, upper]: [f64; 2], name: String) {
         self.list.push(BoundedQuantity {
             quantity,
             lower,
             upper,
-            when: When::Everywhere,
+            when,
             name,
         });
     }
@@ -203,6 +234,13 @@ impl Limits {
     pub fn quantities(&self) -> Vec<Quantity> {
         self.list.iter().map(|b| b.quantity).collect()
     }
+}
+
+/// The largest finite bound by its size; none where there is none but zero.
+fn largest(bounds: [f64; 2]) -> Option<f64> {
+    let sizes = bounds.map(f64::abs).into_iter();
+    let finite = sizes.filter(|size| *size > 0.0 && size.is_finite());
+    finite.reduce(f64::max)
 }
 
 impl BoundedQuantity {

@@ -195,9 +195,9 @@ impl Numbering {
         self.column_of_instant[k * self.counts[0] + i]
     }
 
-    /// Column of scalar s of interval k.
+    /// Column of scalar s of interval k; none behind the last interval.
     pub fn scalar(&self, k: usize, s: usize) -> Option<usize> {
-        self.column_of_interval[k * self.counts[1] + s]
+        *self.column_of_interval.get(k * self.counts[1] + s)?
     }
 
     /// Column of the interval length.

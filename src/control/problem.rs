@@ -266,7 +266,8 @@ pub enum PathConstraint {
         /// Upper bound or ∞.
         max: f64,
     },
-    /// True electric field |V|/(t Λ) of a lumped muscle, in the intervals and at the instants.
+    /// True electric field |V|/(t Λ) of a lumped muscle, in the intervals and at the instants; behind a resistor, where V follows from
+    /// the charge, at the instants.
     ElectricField {
         /// Muscle index.
         muscle: usize,
@@ -281,6 +282,33 @@ pub enum PathConstraint {
         /// Region of its mesh; all elements where there is none.
         region: Option<usize>,
         /// Breakdown value in V/mm.
+        max: f64,
+    },
+    /// Current of the source of a lumped muscle behind a resistor in A: its mean in each interval.
+    Current {
+        /// Muscle index.
+        muscle: usize,
+        /// Lower bound or −∞.
+        min: f64,
+        /// Upper bound or ∞.
+        max: f64,
+    },
+    /// Power of the source of a lumped muscle behind a resistor in W: its mean in each interval.
+    Power {
+        /// Muscle index.
+        muscle: usize,
+        /// Lower bound or −∞.
+        min: f64,
+        /// Upper bound or ∞.
+        max: f64,
+    },
+    /// Rate of the voltage of a source in V/ms between the middles of neighbouring intervals, where the duration is given.
+    VoltageRate {
+        /// Source index.
+        source: usize,
+        /// Lower bound or −∞.
+        min: f64,
+        /// Upper bound or ∞.
         max: f64,
     },
     /// Voltage of a source no larger than a sought parameter in the intervals.
@@ -301,6 +329,21 @@ pub enum PathConstraint {
         /// Inside or outside.
         side: Side,
     },
+}
+
+impl PathConstraint {
+    /// Returns true if its bounds are of changes in time, which a free duration has not.
+    pub fn is_rate(&self) -> bool {
+        matches!(self, Self::JointRate { .. } | Self::VoltageRate { .. })
+    }
+
+    /// The source of whose current or power it is a limit.
+    pub(super) fn source(&self) -> Option<usize> {
+        match *self {
+            Self::Current { muscle, .. } | Self::Power { muscle, .. } => Some(muscle),
+            _ => None,
+        }
+    }
 }
 
 /// Side of a region.

@@ -41,7 +41,10 @@ impl AtRest {
 impl Control {
     /// The analysis of a horizon of intervals of about `interval` ms, without the quantities that are measured.
     pub fn analysis(&self, system: &System, interval: f64) -> Analysis {
+        // A source at zero volts takes current from a charged muscle.
+        let is_limited = |s: usize| self.limits.iter().any(|limit| limit.source() == Some(s));
         let is_driven = |s: usize| match (self.given.get(&s), &self.course) {
+            _ if is_limited(s) => true,
             (Some(signal), _) => !signal.is_zero(),
             (None, Some(course)) => course.drive(s) || self.load_bounds.contains_key(&s),
             (None, None) => true,
@@ -159,7 +162,10 @@ impl<'a> Named<'a> {
             // A field without voltage is none.
             PathConstraint::ElectricField { .. }
             | PathConstraint::BlockField { .. }
-            | PathConstraint::PeakVoltage { .. } => {}
+            | PathConstraint::PeakVoltage { .. }
+            | PathConstraint::VoltageRate { .. }
+            | PathConstraint::Current { .. }
+            | PathConstraint::Power { .. } => {}
             PathConstraint::Marker { marker, .. } => self.of_marker(marker),
         }
     }

@@ -32,7 +32,10 @@ pub(super) fn at_guess(system: &System, control: &Control) -> Result<System, Bou
 /// Returns true if a quantity is a function of a parameter.
 fn reads(quantity: &Quantity, parameter: &Parameter) -> bool {
     match *quantity {
-        Quantity::SquaredStretch { muscle } => parameter.moves(muscle),
+        Quantity::SquaredStretch { muscle }
+        | Quantity::ChargedField { muscle, .. }
+        | Quantity::SourceCurrent { muscle, .. }
+        | Quantity::SourcePower { muscle, .. } => parameter.moves(muscle),
         Quantity::SquaredField {
             place: FieldPlace::Muscle(muscle),
             ..
@@ -52,6 +55,7 @@ fn reads(quantity: &Quantity, parameter: &Parameter) -> bool {
         Quantity::SquaredField { .. } => false,
         // They read the parameter itself, which no constant follows.
         Quantity::PeakVoltage { .. } | Quantity::PeakExcess { .. } => false,
+        Quantity::VoltageStep { .. } => false,
         Quantity::Joint { .. }
         | Quantity::JointStep { .. }
         | Quantity::MarkerPlace { .. }

@@ -7,11 +7,13 @@
 //! electrical energy  V_k (C_{k+1} V_k − C_k V_{k−1}),     mechanical work  ½ V_k² (C_{k+1} − C_k).
 //! ```
 //!
-//! Behind a circuit the charge Q is known at the instants. The source supplies its energy, of which the resistor takes a part:
+//! Behind a resistor the charge Q is known at the instants. The source supplies its energy, of which the resistor takes a part:
 //!
 //! ```text
 //! electrical energy  V_k (Q_{k+1} − Q_k),     mechanical work  −½ (½ (Q_k + Q_{k+1}))² (1/C_{k+1} − 1/C_k).
 //! ```
+//!
+//! A leak takes charge from the source too ([`Circuit::exchange`]).
 //!
 //! The last row of a motion whose voltages afterwards are known includes the switch to them. Both belong to the instants at the ends of an interval. The potentials within finite elements are known in the middle of intervals
 //! only, so sources that drive finite elements are not listed.
@@ -19,7 +21,7 @@
 use crate::dynamics::trajectory::{Column, Trajectory};
 use crate::model::System;
 use crate::model::components::capacitance;
-use crate::model::system::InputKind;
+use crate::model::system::{Circuit, InputKind};
 
 /// Energies that all sources exchange with a motion.
 #[derive(Clone, Debug, Default, PartialEq)]
@@ -41,6 +43,8 @@ pub struct SourceEnergies {
     pub electrical_energy: Vec<f64>,
     /// Work of the electrical forces in mJ.
     pub mechanical_work: Vec<f64>,
+    /// Heat of its resistor, if it has one, and of its leak in mJ; none without a leak.
+    pub heats: Vec<(&'static str, Vec<f64>)>,
 }
 
 impl EnergyExchange {
@@ -68,16 +72,23 @@ impl EnergyExchange {
                     let lengths = lengths(system, motion, source);
                     let capacitances: Vec<f64> = lengths.iter().map(|&l| of.at_length(l)).collect();
                     let voltages = motion.voltages.iter().map(|row| row[source]);
-                    let [electrical_energy, mechanical_work] = match motion.charges.get(&source) {
-                        Some(charges) => through_circuit(&capacitances, charges, voltages),
+                    let charges = motion.charges.get(&source);
+                    let [electrical_energy, mechanical_work] = match charges {
+                        Some(charges) => through_resistor(&capacitances, charges, voltages),
                         None => sums(&capacitances, voltages, [before, after]),
                     };
-                    out.sources.push(SourceEnergies {
+                    let mut energies = SourceEnergies {
                         source,
                         name: named.name,
                         electrical_energy,
                         mechanical_work,
-                    });
+                        heats: Vec::new(),
+                    };
+                    let circuit = muscle.and_then(|muscle| muscle.circuit);
+                    if let Some(circuit) = circuit.filter(|circuit| circuit.leakage.is_some()) {
+                        energies.leak(&circuit, charges, motion);
+                    }
+                    out.sources.push(energies);
                 }
                 None => out.is_complete = false,
             }
@@ -119,7 +130,39 @@ impl EnergyExchange {
             let both = [&source.electrical_energy, &source.mechanical_work].map(Clone::clone);
             add(&format!("{}_", source.name), both);
         }
+        for source in &self.sources {
+            let heats = source.heats.iter().map(|(part, values)| Column {
+                name: format!("{}_{part}_heat", source.name),
+                unit: "N mm",
+                values: values.clone(),
+            });
+            columns.extend(heats);
+        }
         columns
+    }
+}
+
+impl SourceEnergies {
+    /// Adds what the source supplies to a leak, and the heat of the circuit; `charges` are those of a muscle behind a resistor.
+    fn leak(&mut self, circuit: &Circuit, charges: Option<&Vec<f64>>, motion: &Trajectory) {
+        let (mut sum, mut heats) = (0.0, [0.0; 2]);
+        let mut columns = [vec![0.0], vec![0.0]];
+        for (k, row) in motion.voltages.iter().enumerate() {
+            let time = motion.times[k + 1] - motion.times[k];
+            let charge = charges.map_or(0.0, |charges| charges[k + 1] - charges[k]);
+            let under = (row[self.source], time);
+            let (supplied, heat) = circuit.exchange(charge, under);
+            sum += row[self.source] * (supplied - charge);
+            self.electrical_energy[k + 1] += sum;
+            for ((sum, heat), column) in heats.iter_mut().zip(heat).zip(&mut columns) {
+                *sum += heat;
+                column.push(*sum);
+            }
+        }
+        let [of_resistor, of_leak] = columns;
+        let resistor = circuit.resistance.map(|_| ("resistor", of_resistor));
+        self.heats = resistor.into_iter().collect();
+        self.heats.push(("leakage", of_leak));
     }
 }
 
@@ -154,8 +197,8 @@ fn sums(
     sums
 }
 
-/// The same of a muscle behind a circuit with these charges at the instants.
-fn through_circuit(
+/// The same of a muscle behind a resistor with these charges at the instants.
+fn through_resistor(
     capacitances: &[f64],
     charges: &[f64],
     voltages: impl Iterator<Item = f64>,

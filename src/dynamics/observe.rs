@@ -381,9 +381,7 @@ impl<'m> Observer<'m> {
             &Interval::given(scalars, h),
             scratch,
         );
-        let rows = &scratch.interval.plain.rows[self.model.variables.range(Role::Voltage)];
-        let charges = rows.iter().map(|row| row / h);
-        charges.collect()
+        self.model.charges(&scratch.interval.plain.rows, h)
     }
 
     /// max |g| over the constraints that the coordinates leave open.

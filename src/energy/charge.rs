@@ -9,7 +9,7 @@ use nalgebra::SVector;
 impl Capacitance {
     /// `1/(2C)` as a function of I: value and three derivatives.
     #[inline(always)]
-    fn half_inverse(&self, i: f64) -> [f64; 4] {
+    pub(super) fn half_inverse(&self, i: f64) -> [f64; 4] {
         let [c, c1, c2, c3] = self.of_squared_stretch(i);
         let f = 1.0 / c;
         [
@@ -28,7 +28,7 @@ impl Capacitance {
     }
 
     /// Factor of |r|² in I.
-    fn scale(&self) -> f64 {
+    pub(super) fn scale(&self) -> f64 {
         let length = self.cell.elastic.length;
         1.0 / (length * length)
     }
@@ -53,7 +53,7 @@ impl Energy<4> for GivenCharge {
     }
 }
 
-/// Energy `Q²/(2C)` of a charge that flows through a circuit, arguments: span r, and the charge in its unit in the first component of
+/// Energy `Q²/(2C)` of a charge that flows through a resistor, arguments: span r, and the charge in its unit in the first component of
 /// a vector. Not finite for r = 0 and C = 0.
 #[derive(Clone, Copy, Debug)]
 pub struct FlowingCharge {

@@ -12,7 +12,7 @@ use crate::interface::optimum::Optimum;
 use crate::interface::state::State;
 use crate::math::Signal;
 use crate::model::components::Load;
-use crate::model::system::{Joint, Muscle, Source};
+use crate::model::system::Source;
 use crate::model::{Parameter, System};
 use crate::nlp::Nlp;
 use crate::tasks::{self, SolveRequest};
@@ -35,7 +35,7 @@ pub struct Control {
     voltage_bounds: [f64; 2],
     load_bounds: Vec<(Handle<Load>, [f64; 2])>,
     pub(super) objective: Objective,
-    limits: Vec<PathConstraint>,
+    pub(super) limits: Vec<PathConstraint>,
     pub(super) waypoints: Vec<problem::Waypoint>,
     voltages: Vec<(Input, Signal)>,
     parameters: Vec<Parameter>,
@@ -122,46 +122,6 @@ impl Control {
     /// Minimises a function of a quantity; [`Control::track`] and its neighbours make the usual ones.
     pub fn minimise(mut self, cost: QuantityCost) -> Self {
         self.objective.quantities.push(cost);
-        self
-    }
-
-    /// Greatest true electric field of muscles in V/mm.
-    pub fn field_below(mut self, muscles: &[Handle<Muscle>], max: f64) -> Self {
-        let limit = |muscle: &Handle<Muscle>| PathConstraint::ElectricField {
-            muscle: muscle.index(),
-            max,
-        };
-        self.limits.extend(muscles.iter().map(limit));
-        self
-    }
-
-    /// Range of the stretch of a muscle.
-    pub fn stretch_within(mut self, muscle: Handle<Muscle>, range: RangeInclusive<f64>) -> Self {
-        self.limits.push(PathConstraint::Stretch {
-            muscle: muscle.index(),
-            min: *range.start(),
-            max: *range.end(),
-        });
-        self
-    }
-
-    /// Range of the coordinate of a joint in rad or mm.
-    pub fn joint_within(mut self, joint: Handle<Joint>, range: RangeInclusive<f64>) -> Self {
-        self.limits.push(PathConstraint::JointAngle {
-            joint: joint.index(),
-            min: *range.start(),
-            max: *range.end(),
-        });
-        self
-    }
-
-    /// Range of the mean rate of the coordinate of a joint in each interval in rad/ms or mm/ms; the duration has to be given.
-    pub fn joint_rate_within(mut self, joint: Handle<Joint>, range: RangeInclusive<f64>) -> Self {
-        self.limits.push(PathConstraint::JointRate {
-            joint: joint.index(),
-            min: *range.start(),
-            max: *range.end(),
-        });
         self
     }
 
@@ -282,9 +242,9 @@ impl Control {
         check_energies(energies, system)?;
         check_waypoints(&self.waypoints, system)?;
         check_limits(&self.limits, system)?;
-        let is_rate = |limit: &PathConstraint| matches!(limit, PathConstraint::JointRate { .. });
+        let is_rate = |limit: &PathConstraint| limit.is_rate();
         let holds = matches!(self.duration, Duration::Given(_)) || !self.limits.iter().any(is_rate);
-        let found = || "a limit of a joint rate where the duration is free".to_owned();
+        let found = || "a limit of a rate where the duration is free".to_owned();
         require(holds, "limit", found, "a given duration")?;
         let control = problem::Control {
             duration: self.duration,

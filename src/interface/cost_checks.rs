@@ -2,7 +2,7 @@
 
 use crate::control::problem::{CostFunction, EnergyCost, PathConstraint, QuantityCost, Waypoint};
 use crate::interface::error::{Result, require};
-use crate::model::system::Joint;
+use crate::model::system::{Joint, Muscle};
 use crate::model::{Quantity, System};
 
 /// Refuses costs of parts that the system does not have, and weights and functions of time that are not finite.
@@ -42,7 +42,16 @@ pub(super) fn check_limits(limits: &[PathConstraint], system: &System) -> Result
     for limit in limits {
         let holds = match *limit {
             PathConstraint::ElectricField { muscle, max } => {
-                muscle < system.muscles.len() && max > 0.0 && system.has_source_voltage(muscle)
+                muscle < system.muscles.len() && max > 0.0
+            }
+            PathConstraint::VoltageRate { source, min, max } => {
+                let sources = system.sources();
+                sources.get(source).is_some_and(|s| s.takes_voltage) && min < max
+            }
+            PathConstraint::Current { muscle, min, max }
+            | PathConstraint::Power { muscle, min, max } => {
+                let muscle = system.muscles.get(muscle);
+                muscle.is_some_and(Muscle::is_behind_resistor) && min < max
             }
             PathConstraint::Stretch { muscle, min, max } => {
                 muscle < system.muscles.len() && min < max

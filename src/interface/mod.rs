@@ -1,7 +1,7 @@
 //! The library as a program uses it: systems built part by part, simulated and steered in memory.
 //!
 //! - `handle`, `parts`, `components`, `material`: systems and their parts, with defaults; checked when they are used.
-//! - `input`, `state`, `sought`, `equilibrium`, `simulation`, `control`, `costs`, `cost_checks`: the tasks of a system.
+//! - `input`, `state`, `sought`, `equilibrium`, `simulation`, `control`, `limits`, `costs`, `cost_checks`: the tasks of a system.
 //! - `motion`, `optimum`, `error`: what comes back.
 
 mod components;
@@ -12,6 +12,7 @@ mod equilibrium;
 mod error;
 mod handle;
 mod input;
+mod limits;
 mod material;
 mod motion;
 mod optimum;

@@ -209,7 +209,24 @@ impl Muscle {
 
     /// A resistance in Ω between its source and its electrodes.
     pub fn resistance(self, resistance: f64) -> Self {
-        let circuit = Some(Circuit { resistance });
+        let circuit = self.circuit.unwrap_or_default();
+        self.behind(Circuit {
+            resistance: Some(resistance),
+            ..circuit
+        })
+    }
+
+    /// A leak of a resistance in Ω parallel to its electrodes.
+    pub fn leakage(self, leakage: f64) -> Self {
+        let circuit = self.circuit.unwrap_or_default();
+        self.behind(Circuit {
+            leakage: Some(leakage),
+            ..circuit
+        })
+    }
+
+    fn behind(self, circuit: Circuit) -> Self {
+        let circuit = Some(circuit);
         Self { circuit, ..self }
     }
 

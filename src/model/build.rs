@@ -5,7 +5,7 @@ use crate::functional::{Functional, Term};
 use crate::kinematics::{MaterialVector, Pose, Vectors};
 use crate::model::analysis::{Analysis, Coordinates};
 use crate::model::components::Load;
-use crate::model::components::{body, muscle};
+use crate::model::components::{body, circuit, muscle};
 use crate::model::error::ModelError;
 use crate::model::graph::Graph;
 use crate::model::internal::Internals;
@@ -260,6 +260,7 @@ impl Construction<'_> {
         let mut terms = Terms::new(self.carriers(), system.gravity, called, variables, vectors);
         body::build(&self.presolved.system.bodies, self.reference, &mut terms);
         muscle::build(&system.muscles, spans, self.internals, &mut terms);
+        circuit::build(&system.muscles, spans, self.internals, &mut terms);
         self.blocks.build(&mut terms);
         let no_weight = match system.gravity {
             None => "the scene names no gravity",
@@ -314,7 +315,9 @@ impl Construction<'_> {
         vectors: &mut Vectors,
     ) -> Measures {
         let known = measures::Known {
+            system: self.system,
             presolved: self.presolved,
+            internals: self.internals,
             reference: self.reference,
             variables,
             markers,

@@ -2,10 +2,13 @@
 
 use crate::coordinates::Configuration;
 use crate::energy::Capacitance;
+use crate::model::circuit::Circuit;
 use crate::model::components::{LoadPlace, capacitance};
 use crate::model::internal::InternalKind;
 use crate::model::model::Model;
 use crate::model::system::{Muscle, System};
+use crate::model::variables::{Role, Variable};
+use std::borrow::Cow;
 use std::collections::BTreeMap;
 
 impl System {
@@ -15,13 +18,62 @@ impl System {
         loads.any(|load| load.on == LoadPlace::Muscle(muscle))
     }
 
+    /// Current in A and power in W of the source of a muscle behind a resistor without charge, under a voltage whose field balances the
+    /// elasticity of the muscle; one without a resistor.
+    pub fn short_circuit(&self, muscle: usize) -> [f64; 2] {
+        let muscle = &self.muscles[muscle];
+        let resistance = muscle.circuit.and_then(|circuit| circuit.resistance);
+        let sizes = resistance.zip(capacitance(muscle)).map(|(r, capacitance)| {
+            let at_rest = capacitance.at_length(muscle.length());
+            let voltage = capacitance.unit_of_charge() / at_rest;
+            [voltage / r, voltage * voltage / r]
+        });
+        sizes.unwrap_or([1.0; 2])
+    }
+
+    /// The source of the charge of a muscle, where a load gives it.
+    pub fn charge_of(&self, muscle: usize) -> Option<usize> {
+        let mut loads = self.loads();
+        let own = loads.find(|(_, load)| load.on == LoadPlace::Muscle(muscle));
+        own.map(|(source, _)| source)
+    }
+
     /// Returns true if the electrodes of a muscle have the voltage of a source.
     pub fn has_source_voltage(&self, muscle: usize) -> bool {
-        self.muscles[muscle].circuit.is_none() && !self.is_charged(muscle)
+        !self.muscles[muscle].is_behind_resistor() && !self.is_charged(muscle)
     }
 }
 
 impl Muscle {
+    /// Returns true if a resistor lies between its source and its electrodes, so that its charge is an unknown.
+    pub fn is_behind_resistor(&self) -> bool {
+        self.inner_resistance().is_some()
+    }
+
+    /// Resistance in Ω of the source that stands for its circuit; none without a resistor.
+    pub fn inner_resistance(&self) -> Option<f64> {
+        self.circuit.as_ref().and_then(Circuit::inner_resistance)
+    }
+
+    /// Voltage of its electrodes at rest under a voltage of its source.
+    pub fn voltage_at_rest(&self, voltage: f64) -> f64 {
+        let division = self.circuit.as_ref().and_then(Circuit::division);
+        division.map_or(voltage, |part| part * voltage)
+    }
+
+    /// The muscle whose field under the voltage of its source is the one that its circuit leaves at rest: its layers are thicker behind a
+    /// resistor with a leak.
+    pub(super) fn at_rest(&self) -> Cow<'_, Self> {
+        let part = self.voltage_at_rest(1.0);
+        match part < 1.0 {
+            true => Cow::Owned(Self {
+                layer_thickness: self.layer_thickness / part,
+                ..self.clone()
+            }),
+            false => Cow::Borrowed(self),
+        }
+    }
+
     /// Returns true if a circuit can charge it.
     pub fn takes_circuit(&self) -> bool {
         capacitance(self).is_some_and(|c| c.at_length(self.length()) > 0.0)
@@ -65,7 +117,7 @@ impl Charged {
 }
 
 impl Model {
-    /// Muscles behind circuits, then those whose charge is given.
+    /// Muscles behind resistors, then those whose charge is given.
     pub(super) fn charged(&self) -> impl Iterator<Item = Charged> + '_ {
         let behind = self.internal_kinds().filter_map(|(coordinate, kind)| {
             let InternalKind::Charge(muscle) = kind else {
@@ -99,7 +151,7 @@ impl Model {
         }
     }
 
-    /// Charge in mC of each muscle behind a circuit at instants with coordinates z.
+    /// Charge in mC of each muscle behind a resistor at instants with coordinates z.
     pub fn circuit_charges(&self, z: &[Vec<f64>]) -> BTreeMap<usize, Vec<f64>> {
         let of_circuit = |charged: Charged| match charged.place {
             ChargePlace::Coordinate(coordinate) => {
@@ -110,6 +162,18 @@ impl Model {
             ChargePlace::Input(_) => None,
         };
         self.charged().filter_map(of_circuit).collect()
+    }
+
+    /// Charges in mC of what voltages drive, from the derivatives by the scalars of an interval of h ms: `−∂W/∂V`, in which a leak
+    /// behind a resistor divides the voltage.
+    pub fn charges(&self, by_scalars: &[f64], h: f64) -> Vec<f64> {
+        let rows = &by_scalars[self.variables.range(Role::Voltage)];
+        let voltages = self.variables.with(Role::Voltage).iter();
+        let charge = |(row, voltage): (&f64, &Variable)| {
+            let muscle = voltage.source.and_then(|s| self.system.muscles.get(s));
+            row / h / muscle.map_or(1.0, |muscle| muscle.voltage_at_rest(1.0))
+        };
+        rows.iter().zip(voltages).map(charge).collect()
     }
 
     /// Names of the columns of [`electrode_voltages`](Self::electrode_voltages).

@@ -1,6 +1,7 @@
 //! Validation of a system that is made by a program: the checks that a reader of files makes entry by entry.
 
 use crate::math::Vector;
+use crate::model::circuit::{EMPTY_CIRCUIT, NO_CIRCUIT};
 use crate::model::components::{BlockLoad, LoadPlace};
 use crate::model::system::{Attachment, Fidelity, Joint, JointKind, Muscle, System};
 use std::collections::BTreeSet;
@@ -300,15 +301,7 @@ impl System {
                 positive(name, modulus, branch.shear_modulus)?;
                 positive(name, "relaxation time", branch.relaxation_time)?;
             }
-            if let Some(circuit) = muscle.circuit {
-                positive(name, "resistance", circuit.resistance)?;
-                require(
-                    muscle.takes_circuit(),
-                    name,
-                    || NO_CIRCUIT[0].to_owned(),
-                    NO_CIRCUIT[1],
-                )?;
-            }
+            check_circuit(name, muscle)?;
             if muscle.fidelity.elements() > 0 {
                 material.check_of_elements(name)?;
             }
@@ -350,12 +343,6 @@ pub const NO_MUSCLE_CHARGE: [&str; 2] = [
     "a lumped muscle with a permittivity and without a circuit, and one charge for each",
 ];
 
-/// Circuit that drives no charge, and what is expected, for messages.
-pub const NO_CIRCUIT: [&str; 2] = [
-    "a circuit of a muscle that it does not charge",
-    "a lumped muscle with a permittivity; others have the voltages of their sources",
-];
-
 fn check_direction(name: &str, direction: &Vector) -> Result<(), SystemError> {
     require(
         (direction.norm() - 1.0).abs() < 1e-9,
@@ -363,4 +350,22 @@ fn check_direction(name: &str, direction: &Vector) -> Result<(), SystemError> {
         || format!("the direction {direction:?}"),
         "a direction of length one",
     )
+}
+
+/// Checks the resistances of the circuit of a muscle, and that it can have one.
+fn check_circuit(name: &str, muscle: &Muscle) -> Result<(), SystemError> {
+    let Some(circuit) = muscle.circuit else {
+        return Ok(());
+    };
+    for resistance in circuit.parts() {
+        positive(name, "resistance", resistance)?;
+    }
+    let rules = [
+        (circuit.parts().next().is_some(), EMPTY_CIRCUIT),
+        (muscle.takes_circuit(), NO_CIRCUIT),
+    ];
+    for (holds, [found, expected]) in rules {
+        require(holds, name, || found.to_owned(), expected)?;
+    }
+    Ok(())
 }

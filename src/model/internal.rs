@@ -34,7 +34,7 @@ pub(super) enum InternalKind {
         /// Its branch.
         branch: usize,
     },
-    /// The charge of a muscle behind a circuit, in the unit of its muscle: a current brings and takes it.
+    /// The charge of a muscle behind a resistor, in the unit of its muscle: a current brings and takes it.
     Charge(usize),
 }
 
@@ -115,7 +115,7 @@ impl Internals {
                 let branches = 0..muscle.material.maxwell.list().len();
                 list.extend(branches.map(|b| Internal::of_branch(&muscle.name, m, b)));
             }
-            if analysis.of_motion && muscle.circuit.is_some() {
+            if analysis.of_motion && muscle.is_behind_resistor() {
                 list.push(Internal::of_charge(&muscle.name, m));
             }
         }

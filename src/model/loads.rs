@@ -83,7 +83,7 @@ pub(super) fn build(
     }
     terms.without(
         MUSCLE_CHARGES,
-        "no charge of a lumped muscle is given, or flows through a circuit",
+        "no charge of a lumped muscle is given, or flows through a resistor",
     );
 }
 

@@ -2,8 +2,8 @@
 
 use crate::element::FieldPoint;
 use crate::energy::{
-    Angle, AngleStep, Energy, Multiple, OutsideBox, PeakExcess, PositionComponent, Projection,
-    ProjectionStep, SquaredDistance, SquaredField,
+    Angle, AngleStep, Energy, GivenChargeField, Multiple, OutsideBox, PeakExcess,
+    PositionComponent, Projection, ProjectionStep, SquaredDistance, SquaredField,
 };
 use crate::functional::{
     Curved, Element, ElementField, ElementFields, Formulas, Group, Kernel, Measure, Stencil,
@@ -13,10 +13,12 @@ use crate::kinematics::{MaterialVector, Pose, Vectors};
 use crate::math::Vector;
 use crate::model::analysis::Analysis;
 use crate::model::components::capacitance;
+use crate::model::internal::Internals;
 use crate::model::joints::{JointCoordinate, JointReading};
 use crate::model::presolved::Presolved;
 use crate::model::quantity::{FieldPlace, Quantity, Region};
 use crate::model::solid_block::SolidBlock;
+use crate::model::system::System;
 use crate::model::variables::{Role, Variables};
 
 /// V in a kV.
@@ -34,7 +36,9 @@ pub(super) struct Measures {
 /// Data on which quantities are measured.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Known<'a> {
+    pub(super) system: &'a System,
     pub(super) presolved: &'a Presolved,
+    pub(super) internals: &'a Internals,
     pub(super) reference: &'a [Pose],
     pub(super) variables: &'a Variables,
     /// Vector of each marker.
@@ -113,6 +117,10 @@ impl Known<'_> {
                 let multiple = Multiple { unit: KILOVOLT };
                 interval::<_, 1, 0, 1>(shape, multiple, [], [self.parameter(parameter)?])
             }
+            Quantity::VoltageStep { source, unit, .. } => {
+                let voltage = [self.variables.input(source)?];
+                interval::<_, 1, 0, 1>(shape, Multiple { unit }, [], voltage)
+            }
             Quantity::PeakExcess {
                 source,
                 parameter,
@@ -121,6 +129,9 @@ impl Known<'_> {
                 let scalars = [self.variables.input(source)?, self.parameter(parameter)?];
                 interval::<_, 2, 0, 2>(shape, PeakExcess { unit }, [], scalars)
             }
+            Quantity::ChargedField { .. }
+            | Quantity::SourceCurrent { .. }
+            | Quantity::SourcePower { .. } => return self.of_charge(quantity, shape, vectors),
             Quantity::SquaredField { place, limit, at } => match place {
                 FieldPlace::Muscle(muscle) => {
                     return self.muscle_field(muscle, (limit, at), shape, vectors);
@@ -202,14 +213,24 @@ impl Known<'_> {
         shape: Shape,
         vectors: &mut Vectors,
     ) -> Option<Box<dyn Measure>> {
-        let scalar = self.variables.input(muscle)?;
         let of = &self.presolved.system.muscles[muscle];
+        let voltage = of.layer_thickness * limit;
+        let span = [(self.span(muscle, vectors), at)];
+        if let Some(source) = self.system.charge_of(muscle) {
+            let charge = [self.variables.input(source)?];
+            let capacitance = capacitance(of)?;
+            let energy = GivenChargeField {
+                capacitance,
+                voltage,
+            };
+            return Some(interval::<_, 4, 1, 1>(shape, energy, span, charge));
+        }
+        let scalar = self.variables.input(muscle)?;
         let energy = SquaredField {
             length: of.length(),
-            voltage: of.layer_thickness * limit,
+            voltage,
         };
-        let span = (self.span(muscle, vectors), at);
-        Some(interval::<_, 4, 1, 1>(shape, energy, [span], [scalar]))
+        Some(interval::<_, 4, 1, 1>(shape, energy, span, [scalar]))
     }
 
     /// Squared field of an element of a block, at its centre or at a Gauss point, over the one of its `limit`.
@@ -237,7 +258,7 @@ impl Known<'_> {
     }
 
     /// Vector of the span of a muscle.
-    fn span(&self, muscle: usize, vectors: &mut Vectors) -> usize {
+    pub(super) fn span(&self, muscle: usize, vectors: &mut Vectors) -> usize {
         let muscle = &self.presolved.system.muscles[muscle];
         let [from, to] = [&muscle.from, &muscle.to]
             .map(|a| MaterialVector::point(a.body, &a.at, self.reference));
@@ -261,7 +282,7 @@ fn region_measure(region: Region, marker: usize, shape: Shape) -> Box<dyn Measur
 
 /// Shape of a function of a quantity: linear, or curved, so that all that the quantity reads couples.
 #[derive(Clone, Copy, Debug)]
-enum Shape {
+pub(super) enum Shape {
     Linear,
     Curved,
 }
@@ -284,7 +305,8 @@ impl Shape {
     }
 }
 
-fn instant<E: Energy<M> + 'static, const M: usize, const NV: usize>(
+/// Measure of a formula of vectors of an instant.
+pub(super) fn instant<E: Energy<M> + 'static, const M: usize, const NV: usize>(
     shape: Shape,
     energy: E,
     vectors: [usize; NV],
@@ -299,7 +321,8 @@ fn instant<E: Energy<M> + 'static, const M: usize, const NV: usize>(
     })
 }
 
-fn interval<E: Energy<M> + 'static, const M: usize, const NV: usize, const NS: usize>(
+/// Measure of a formula of vectors and scalars of an interval.
+pub(super) fn interval<E: Energy<M> + 'static, const M: usize, const NV: usize, const NS: usize>(
     shape: Shape,
     energy: E,
     vectors: [(usize, Stencil); NV],

@@ -6,6 +6,7 @@ mod block_terms;
 mod blocks;
 mod bodies;
 mod build;
+mod charge_measures;
 mod charged;
 mod check;
 mod circuit;
@@ -53,7 +54,8 @@ mod unknown_positions;
 mod variables;
 
 pub use analysis::{Analysis, Coordinates, InitiallyMoving};
-pub use check::{NO_CHARGE, NO_CIRCUIT, NO_MUSCLE_CHARGE, SystemError};
+pub use check::{NO_CHARGE, NO_MUSCLE_CHARGE, SystemError};
+pub use circuit::{EMPTY_CIRCUIT, NO_CIRCUIT};
 pub use component::Component;
 pub use constant::{
     Constant, DielectricLaw, Follower, FoundParameter, MOST_MOVES, Parameter, SiUnit,

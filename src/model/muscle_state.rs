@@ -4,6 +4,7 @@ use crate::coordinates::Configuration;
 use crate::energy::Energy;
 use crate::math::{Derivatives, Local, Vector};
 use crate::model::charged::{ChargePlace, Charged};
+use crate::model::circuit::Circuit;
 use crate::model::components::{capacitance, muscle};
 use crate::model::model::Model;
 use crate::model::quantity::MEGAVOLT_PER_METRE;
@@ -81,8 +82,9 @@ impl MuscleReading {
     }
 
     fn voltage(&self, model: &Model, at: &Configuration, scalars: &[f64]) -> Option<f64> {
+        let of = &model.system.muscles[self.muscle];
         Some(match self.drive? {
-            Drive::Source(scalar) => scalars[scalar],
+            Drive::Source(scalar) => of.voltage_at_rest(scalars[scalar]),
             Drive::Circuit(charged, _) | Drive::Charge(charged) => {
                 charged.voltage(model, at, scalars)
             }
@@ -105,22 +107,22 @@ impl MuscleReading {
         voltage.abs() / (of.layer_thickness * stretch) / MEGAVOLT_PER_METRE
     }
 
-    /// Current and power of its source while the voltage of the source is constant: `V ∂C/∂r·ṙ`, or `(V − Q/C)/R` through a resistor.
+    /// Current and power of its source while the voltage of the source is constant: `V ∂C/∂r·ṙ` with that through a leak, or
+    /// `(V − Q/C)/R` through a resistor.
     pub fn flow(&self, model: &Model, at: &Configuration, scalars: &[f64]) -> Option<SourceFlow> {
         let of = &model.system.muscles[self.muscle];
         let span = model.spans[self.muscle];
         let (voltage, current) = match self.drive? {
             Drive::Source(scalar) => {
                 let voltage = scalars[scalar];
-                (
-                    voltage,
-                    voltage * capacitance_rate(of, [&at.x[span], &at.w[span]])?,
-                )
+                let charging = voltage * capacitance_rate(of, [&at.x[span], &at.w[span]])?;
+                let leak = of.circuit.as_ref().and_then(Circuit::leak_conductance);
+                (voltage, leak.map_or(charging, |g| charging + g * voltage))
             }
             Drive::Circuit(charged, scalar) => {
                 let voltage = scalar.map_or(0.0, |scalar| scalars[scalar]);
                 let across = charged.voltage(model, at, scalars);
-                (voltage, (voltage - across) / of.circuit?.resistance)
+                (voltage, (voltage - across) / of.circuit?.resistance?)
             }
             Drive::Charge(_) => return None,
         };

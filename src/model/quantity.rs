@@ -77,6 +77,36 @@ pub enum Quantity {
         /// At the start, in the middle or at the end of the interval: `Here`, `Mid` or `Next`.
         at: Stencil,
     },
+    /// (|e|/E)² of the true field e of a muscle behind a resistor, at the instants.
+    ChargedField {
+        /// Muscle index.
+        muscle: usize,
+        /// E in V/mm.
+        limit: f64,
+    },
+    /// Current of the source of a muscle behind a resistor in the middle of the intervals.
+    SourceCurrent {
+        /// Muscle index.
+        muscle: usize,
+        /// Unit in A.
+        unit: f64,
+    },
+    /// Power of the source of a muscle behind a resistor in the middle of the intervals.
+    SourcePower {
+        /// Muscle index.
+        muscle: usize,
+        /// Unit in W.
+        unit: f64,
+    },
+    /// Voltage of a source in the intervals, of which the steps between them are limited.
+    VoltageStep {
+        /// Source index.
+        source: usize,
+        /// Unit in V.
+        unit: f64,
+        /// Length of the interval in ms, for messages.
+        h: f64,
+    },
     /// A component of the place of a marker in mm at the instants.
     MarkerPlace {
         /// Marker index.
@@ -136,6 +166,9 @@ impl Quantity {
                 | Self::JointStep { .. }
                 | Self::PeakVoltage { .. }
                 | Self::PeakExcess { .. }
+                | Self::SourceCurrent { .. }
+                | Self::SourcePower { .. }
+                | Self::VoltageStep { .. }
         )
     }
 
@@ -150,7 +183,10 @@ impl Quantity {
             Self::MarkerStep { .. }
             | Self::JointStep { .. }
             | Self::PeakVoltage { .. }
-            | Self::PeakExcess { .. } => "in interval",
+            | Self::PeakExcess { .. }
+            | Self::SourceCurrent { .. }
+            | Self::SourcePower { .. } => "in interval",
+            Self::VoltageStep { .. } => "before interval",
             _ => "at instant",
         }
     }
@@ -164,6 +200,10 @@ impl Quantity {
             Self::PeakVoltage { .. } => "kV",
             Self::SquaredStretch { .. }
             | Self::SquaredField { .. }
+            | Self::ChargedField { .. }
+            | Self::SourceCurrent { .. }
+            | Self::SourcePower { .. }
+            | Self::VoltageStep { .. }
             | Self::PeakExcess { .. }
             | Self::Direction { .. }
             | Self::MarkerRegion { .. } => "",
@@ -178,7 +218,12 @@ impl Quantity {
                 "mm" => (value / h, "m/s"),
                 _ => (1e3 * value / h, "rad/s"),
             },
-            Self::SquaredField { limit, .. } => (value.sqrt() * limit / MEGAVOLT_PER_METRE, "V/um"),
+            Self::SquaredField { limit, .. } | Self::ChargedField { limit, .. } => {
+                (value.sqrt() * limit / MEGAVOLT_PER_METRE, "V/um")
+            }
+            Self::SourceCurrent { unit, .. } => (1e3 * value * unit, "mA"),
+            Self::SourcePower { unit, .. } => (value * unit, "W"),
+            Self::VoltageStep { unit, h, .. } => (value * unit / h, "kV/s"),
             Self::MarkerRegion { region, .. } => match region {
                 Region::Sphere { radius, .. } => (value.sqrt() * radius, "mm from its centre"),
                 Region::Box { .. } => (value.powf(1.0 / 16.0), "half edges from its centre"),

@@ -3,7 +3,7 @@
 use std::collections::BTreeMap;
 
 use crate::control::problem::{Control, Duration, PathConstraint};
-use crate::control::{BoundedQuantity, Column, Row, Transcription, When};
+use crate::control::{BoundedQuantity, Column, Row, Transcription};
 use crate::math::significant;
 use crate::model::{JointReading, Model, Parameter, Role, System, joint_unit};
 use crate::nlp::Nlp;
@@ -63,7 +63,7 @@ pub fn active(
             continue;
         };
         let bounded = program.limit(limit);
-        if bounded.when == When::Everywhere {
+        if !bounded.when.is_single() {
             let side = reached(values[r], bounds.lower[r], bounds.upper[r]);
             seen.add_limit(bounded, &model.system, side);
         }

@@ -1,6 +1,6 @@
 //! A list of control problems that together call for every effect, joint, limit, goal and objective.
 
-pub use super::limited::all_limits;
+pub use super::limited::{all_limits, charge_limits};
 use super::systems::{
     GRAVITY, ball, blocks, branched, charged, loaded, pressed, remembering, satellite, sprung,
     stiffening, stiffening_blocks, tied,
@@ -239,6 +239,16 @@ pub fn cases() -> Vec<Case> {
         case("charges, free time", charged(), &|c| {
             c.duration = free;
             c.objective.rate = 0.3;
+            c.given.insert(4, Signal::Constant(1e-4));
+        }),
+        case("charges, all limits", charged(), &|c| {
+            c.load_bounds.insert(4, [1e-5, 3e-4]);
+            c.limits = charge_limits();
+        }),
+        case("charges, all limits, free time", charged(), &|c| {
+            c.duration = free;
+            c.limits = charge_limits();
+            c.given.insert(0, Signal::Constant(500.0));
             c.given.insert(4, Signal::Constant(1e-4));
         }),
         case(

@@ -4,6 +4,30 @@ use nalgebra::Vector3;
 use proboscis::control::problem::{PathConstraint, Side};
 use proboscis::model::Region;
 
+/// Every limit of charged muscles, of which one is behind a resistor and the charge of another is given.
+pub fn charge_limits() -> Vec<PathConstraint> {
+    vec![
+        PathConstraint::ElectricField {
+            muscle: 0,
+            max: 4e4,
+        },
+        PathConstraint::ElectricField {
+            muscle: 1,
+            max: 5e4,
+        },
+        PathConstraint::Current {
+            muscle: 0,
+            min: -2e-5,
+            max: 3e-5,
+        },
+        PathConstraint::Power {
+            muscle: 0,
+            min: f64::NEG_INFINITY,
+            max: 0.04,
+        },
+    ]
+}
+
 /// Every kind of limit on the branched tree.
 pub fn all_limits() -> Vec<PathConstraint> {
     let near = |centre: [f64; 3], half: f64| Region::Box {
@@ -39,6 +63,11 @@ pub fn all_limits() -> Vec<PathConstraint> {
             joint: 1,
             min: -0.4,
             max: 0.5,
+        },
+        PathConstraint::VoltageRate {
+            source: 2,
+            min: -80.0,
+            max: 60.0,
         },
         PathConstraint::Stretch {
             muscle: 0,

@@ -6,10 +6,9 @@ use nalgebra::{Matrix3, Rotation3, Vector3};
 use proboscis::mesh::grid::Grid;
 use proboscis::model::components::{Load, LoadPlace, Spring, Tendon};
 use proboscis::model::system::{
-    Attachment, Body, Circuit, Discretisation, ElasticLaw, ElectricConstants, Electrode,
-    ElementKind, Fidelity, Glue, Joint, JointKind, JointSpring, JointStops, Marker, Material,
-    MaxwellBranch, MaxwellBranches, Muscle, Potential, Shape, Solid, Support, System,
-    VACUUM_PERMITTIVITY,
+    Attachment, Body, Discretisation, ElasticLaw, ElectricConstants, Electrode, ElementKind,
+    Fidelity, Glue, Joint, JointKind, JointSpring, JointStops, Marker, Material, MaxwellBranch,
+    MaxwellBranches, Muscle, Potential, Shape, Solid, Support, System, VACUUM_PERMITTIVITY,
 };
 
 /// Gravity along −y in mm/ms².
@@ -92,10 +91,10 @@ pub fn stiffening() -> System {
     system
 }
 
-/// The branched tree with a muscle behind a resistor, and one whose charge is given.
+/// The branched tree with a leaking muscle behind a resistor, and one whose charge is given.
 pub fn charged() -> System {
     let mut system = branched();
-    system.muscles[0].circuit = Some(Circuit { resistance: 3e7 });
+    system.muscles[0] = system.muscles[0].clone().resistance(3e7).leakage(9e7);
     system.components.loads.push(Load {
         name: "charge".into(),
         on: LoadPlace::Muscle(1),

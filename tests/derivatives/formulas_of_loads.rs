@@ -2,8 +2,9 @@
 
 use crate::formulas::{DIELECTRIC, law};
 use proboscis::energy::{
-    AngleStep, Capacitance, DeadLoad, FlowingCharge, FollowingForce, GivenCharge, Multiple,
-    PeakExcess, ProjectionStep, SurfaceCharge,
+    AngleStep, Capacitance, DeadLoad, DielectricCell, FlowingCharge, FlowingChargeField,
+    FollowingForce, GivenCharge, GivenChargeField, Multiple, PeakExcess, ProjectionStep,
+    SourceCurrent, SourcePower, SurfaceCharge,
 };
 use proboscis::math::Vector;
 
@@ -35,4 +36,35 @@ fn charges_of_muscles_have_the_derivatives_of_naive_formulas() {
         0.3,
         1.3,
     );
+}
+
+#[test]
+fn limits_of_charged_muscles_have_the_derivatives_of_naive_formulas() {
+    // Positive at every stretch.
+    let cell = DielectricCell {
+        c1: -0.3,
+        c2: -0.2,
+        ..DIELECTRIC
+    };
+    let capacitance = Capacitance { cell };
+    let field = GivenChargeField {
+        capacitance,
+        voltage: 0.6,
+    };
+    law("field of a given charge", &field, 0.3, 1.3);
+    let unit = 0.8;
+    law(
+        "field of a flowing charge",
+        &FlowingChargeField { field, unit },
+        0.3,
+        1.3,
+    );
+    let current = SourceCurrent {
+        capacitance,
+        unit_of_charge: unit,
+        resistance: 0.7,
+        unit: 1.2,
+    };
+    law("current of a source", &current, 0.3, 1.3);
+    law("power of a source", &SourcePower(current), 0.3, 1.3);
 }

@@ -3,10 +3,12 @@
 use num_dual::{Dual, DualNum};
 use proboscis::energy::{
     Angle, AngleStep, AngularDamper, Capacitance, Coincidence, CoordinateDamper, CoordinateSpring,
-    CoordinateStops, DeadLoad, DielectricCell, ElasticCell, Energy, FlowingCharge, FollowingForce,
-    GivenCharge, Gravity, JointAngle, JointDisplacement, LinearDamper, LinearSpring, MaxwellCell,
-    Multiple, Orthogonality, OutsideBox, PeakExcess, PositionComponent, Projection, ProjectionStep,
-    SectionInertia, SpanDamper, SquaredDistance, SquaredField, SurfaceCharge, ViscousCell,
+    CoordinateStops, DeadLoad, DielectricCell, ElasticCell, Energy, FlowingCharge,
+    FlowingChargeField, FollowingForce, GivenCharge, GivenChargeField, Gravity, JointAngle,
+    JointDisplacement, LinearDamper, LinearSpring, MaxwellCell, Multiple, Orthogonality,
+    OutsideBox, PeakExcess, PositionComponent, Projection, ProjectionStep, SectionInertia,
+    SourceCurrent, SourcePower, SpanDamper, SquaredDistance, SquaredField, SurfaceCharge,
+    ViscousCell,
 };
 
 /// The naive formula of an energy.
@@ -90,6 +92,38 @@ impl Formula<4> for GivenCharge {
 impl Formula<6> for FlowingCharge {
     fn naive<D: DualNum<f64> + Copy>(&self, p: &[D; 6]) -> D {
         charged(&self.capacitance, three(p, 0), p[3] * self.unit)
+    }
+}
+
+/// (U/(Λ E))² of the voltage U with ½ Q U stored.
+fn field_of_charge<D: DualNum<f64> + Copy>(of: &GivenChargeField, r: [D; 3], charge: D) -> D {
+    let voltage = charged(&of.capacitance, r, charge) * 2.0 / charge;
+    (voltage / (stretch(r, of.capacitance.cell.elastic.length) * of.voltage)).powi(2)
+}
+
+impl Formula<4> for GivenChargeField {
+    fn naive<D: DualNum<f64> + Copy>(&self, p: &[D; 4]) -> D {
+        field_of_charge(self, three(p, 0), p[3])
+    }
+}
+
+impl Formula<6> for FlowingChargeField {
+    fn naive<D: DualNum<f64> + Copy>(&self, p: &[D; 6]) -> D {
+        field_of_charge(&self.field, three(p, 0), p[3] * self.unit)
+    }
+}
+
+impl Formula<7> for SourceCurrent {
+    fn naive<D: DualNum<f64> + Copy>(&self, p: &[D; 7]) -> D {
+        let charge = p[3] * self.unit_of_charge;
+        let across = charge / self.capacitance.naive(&three(p, 0));
+        (p[6] - across) / self.resistance / self.unit
+    }
+}
+
+impl Formula<7> for SourcePower {
+    fn naive<D: DualNum<f64> + Copy>(&self, p: &[D; 7]) -> D {
+        p[6] * self.0.naive(p)
     }
 }
 

@@ -39,7 +39,10 @@ pub(crate) fn plain(mass: f64) -> System {
 pub(crate) fn resisted(mass: f64, time: f64) -> System {
     let mut system = plain(mass);
     let resistance = time / CAPACITANCE;
-    system.muscles[0].circuit = Some(Circuit { resistance });
+    system.muscles[0].circuit = Some(Circuit {
+        resistance: Some(resistance),
+        leakage: None,
+    });
     system
 }
 
@@ -150,7 +153,7 @@ fn swing(mass: f64, resistance: f64, voltage: f64, time: f64) -> Vector3<f64> {
 #[test]
 fn a_swing_behind_a_resistor_is_that_of_another_method() {
     let system = resisted(20.0, 6.0);
-    let resistance = system.muscles[0].circuit.unwrap().resistance;
+    let resistance = system.muscles[0].circuit.unwrap().resistance.unwrap();
     let [volt, charge] = units();
     let voltage = 0.55 * volt;
     let exact = swing(20.0, resistance, voltage, 30.0);
@@ -317,7 +320,7 @@ fn files_name_circuits_and_charges() {
     let resistor = r#", "circuit": { "resistance": "2 MOhm" }"#;
     let load = r#", "loads": [{ "name": "q", "muscle": "m" }]"#;
     let system = read(&scene(resistor, "")).unwrap();
-    assert_eq!(system.muscles[0].circuit.unwrap().resistance, 2e6);
+    assert_eq!(system.muscles[0].circuit.unwrap().resistance, Some(2e6));
     let system = read(&scene("", load)).unwrap();
     assert!(system.is_charged(0) && !system.sources()[0].takes_voltage);
     let twice = r#", "loads": [{ "name": "q", "muscle": "m" }, { "name": "p", "muscle": "m" }]"#;

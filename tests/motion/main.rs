@@ -15,6 +15,7 @@ mod free_robots;
 mod integrators;
 mod joint_springs;
 mod joint_stops;
+mod leakage;
 mod loads;
 mod maxwell;
 mod maxwell_limits;

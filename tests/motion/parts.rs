@@ -275,7 +275,7 @@ fn currents_bring_the_charge_and_powers_the_energy() {
 fn a_resistor_passes_what_the_charge_takes() {
     let voltage = 0.55 * units()[0];
     let system = resisted(20.0, 6.0);
-    let resistance = system.muscles[0].circuit.unwrap().resistance;
+    let resistance = system.muscles[0].circuit.unwrap().resistance.unwrap();
     for coordinates in BOTH {
         let errors = [0.4, 0.2].map(|h| {
             let model = model(&system, coordinates, h);

@@ -43,7 +43,10 @@ fn only_muscles_with_a_charge_have_another_voltage_than_their_source() {
     };
     let same = coloured(&system, &motion, &observed);
     assert!(matches!(same, Cow::Borrowed(_)));
-    system.muscles[1].circuit = Some(Circuit { resistance: 1e6 });
+    system.muscles[1].circuit = Some(Circuit {
+        resistance: Some(1e6),
+        leakage: None,
+    });
     let found = coloured(&system, &motion, &observed);
     assert_eq!(found.voltages, [[100.0, 150.0], [100.0, 190.0]]);
 }

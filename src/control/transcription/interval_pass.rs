@@ -202,6 +202,10 @@ impl<'m> Transcription<'m> {
     }
 
     pub(super) fn limit_value(&self, limit: &LimitRow, k: usize) -> f64 {
+        if let Some(step) = &limit.step {
+            let count = self.model.action.layout().interval_scalars;
+            return step.value(k, &self.workspace.scalars, count);
+        }
         self.measure(limit).value(&self.sample(limit.site, k))
     }
 }
@@ -214,6 +218,12 @@ impl Transcription<'_> {
         self.workspace.rows[..map.unknowns()].fill(0.0);
         for &(limit, k) in &self.layout.limit_rows {
             let limit = &self.layout.limits[limit];
+            if let Some(step) = &limit.step {
+                // By the input of the interval, then by that of the one before.
+                self.workspace.values[place..place + 2].copy_from_slice(&[step.slope, -step.slope]);
+                place += 2;
+                continue;
+            }
             let measure = self.measure(limit);
             let site = limit.site;
             let mut part = std::mem::take(&mut self.workspace.measured);

@@ -65,7 +65,12 @@ impl Layout {
         let is_balanced =
             |k: usize, i: usize| (k < intervals || rests(i)) && !model.is_prescribed(i);
         let mut unknowns = Numbering::new(&model.variables, intervals, is_given, is_balanced);
-        let limits = limit_rows(model, &boundary.limits.list, intervals, &unknowns);
+        let limits = limit_rows(
+            model,
+            (&boundary.limits.list, &boundary.rest),
+            intervals,
+            &unknowns,
+        );
         let mut limit_rows = Vec::new();
         for (index, limit) in limits.iter().enumerate() {
             for k in limit.at.clone() {

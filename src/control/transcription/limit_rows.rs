@@ -9,6 +9,8 @@ use std::ops::Range;
 
 /// Mark of a scalar among the entries of a gradient.
 pub(super) const SCALAR: usize = 2;
+/// Mark of a scalar of the interval before.
+pub(super) const BEFORE: usize = 3;
 
 /// Site in time at which a quantity is measured.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -33,13 +35,93 @@ pub(super) struct LimitRow {
     /// Vectors it reads.
     pub(super) vectors: Vec<usize>,
     pub(super) scale: f64,
+    /// The input whose steps between intervals are limited.
+    pub(super) step: Option<InputStep>,
+}
+
+/// An input whose steps between neighbouring intervals are limited, and those from its value at rest and to it, where that is known.
+///
+/// An input of an interval is its value in the middle, half an interval from the start or the end of the motion: there half the bounds
+/// hold.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct InputStep {
+    /// Scalar of the input.
+    scalar: usize,
+    /// One over its unit.
+    pub(super) slope: f64,
+    /// Values at rest before the start and after the end.
+    ends: [Option<f64>; 2],
+    intervals: usize,
+}
+
+impl InputStep {
+    fn new(
+        quantity: &Quantity,
+        model: &Model,
+        rest: &[Option<Vec<f64>>; 2],
+        intervals: usize,
+    ) -> Option<Self> {
+        let Quantity::VoltageStep { source, unit, .. } = *quantity else {
+            return None;
+        };
+        Some(Self {
+            scalar: model.variables.input(source)?,
+            slope: 1.0 / unit,
+            ends: ends(rest, source),
+            intervals,
+        })
+    }
+
+    /// Takes other values at rest before and after.
+    pub(super) fn move_ends(&mut self, quantity: &Quantity, rest: &[Option<Vec<f64>>; 2]) {
+        if let Quantity::VoltageStep { source, .. } = *quantity {
+            self.ends = ends(rest, source);
+        }
+    }
+
+    /// Returns true if values at rest are known where these are.
+    pub(super) fn has_ends(&self, rest: &[Option<Vec<f64>>; 2]) -> bool {
+        self.ends.map(|end| end.is_some()) == rest.each_ref().map(|row| row.is_some())
+    }
+
+    /// Intervals before which a step is limited, the end counted as one.
+    fn at(&self) -> Range<usize> {
+        let [first, last] = self.ends.map(|end| usize::from(end.is_some()));
+        1 - first..self.intervals + last
+    }
+
+    /// The step before interval k, of the scalars of all intervals, `count` of each.
+    pub(super) fn value(&self, k: usize, scalars: &[f64], count: usize) -> f64 {
+        let of = |k: usize| scalars[k * count + self.scalar];
+        let before = k.checked_sub(1).map_or(self.ends[0], |k| Some(of(k)));
+        let after = match k == self.intervals {
+            true => self.ends[1],
+            false => Some(of(k)),
+        };
+        let known = "a step from or to a value at rest that is known";
+        self.slope * (after.expect(known) - before.expect(known))
+    }
+
+    /// Part of the bounds that holds before interval k.
+    pub(super) fn part(&self, k: usize) -> f64 {
+        match k == 0 || k == self.intervals {
+            true => 0.5,
+            false => 1.0,
+        }
+    }
+}
+
+/// Values of a source at rest before and after.
+fn ends(rest: &[Option<Vec<f64>>; 2], source: usize) -> [Option<f64>; 2] {
+    rest.each_ref()
+        .map(|row| row.as_ref().map(|row| row[source]))
 }
 
 /// Rows of the bounded quantities over a horizon, with the entries their gradients have. A path limit has no row where start
 /// or goal give all that it reads: there it is checked before.
 pub(super) fn limit_rows(
     model: &Model,
-    list: &[BoundedQuantity],
+    (list, rest): (&[BoundedQuantity], &[Option<Vec<f64>>; 2]),
     intervals: usize,
     unknowns: &Numbering,
 ) -> Vec<LimitRow> {
@@ -63,6 +145,8 @@ pub(super) fn limit_rows(
         if site == Site::Intervals {
             entries.extend(reads.scalars().into_iter().map(|s| (SCALAR, s)));
         }
+        let step = InputStep::new(&bounded.quantity, model, rest, intervals);
+        entries.extend(step.map(|step| (BEFORE, step.scalar)));
         let at = match (bounded.when, site) {
             (When::Goal, Site::Instants) => intervals..intervals + 1,
             (When::Goal, Site::Intervals) => intervals - 1..intervals,
@@ -71,13 +155,12 @@ pub(super) fn limit_rows(
                 let k = k + 1 - site.sides();
                 k..k + 1
             }
-            (When::Everywhere, _) => {
-                let mut all = 0..intervals + 2 - site.sides();
+            (When::Everywhere | When::Steps, _) => {
+                let everywhere = 0..intervals + 2 - site.sides();
+                let mut all = step.map_or(everywhere, |step| step.at());
                 let is_open = |k: usize| {
-                    entries.iter().any(|&(side, i)| match side {
-                        SCALAR => unknowns.scalar(k, i).is_some(),
-                        _ => unknowns.unknown(k + side, i).is_some(),
-                    })
+                    let mut entries = entries.iter();
+                    entries.any(|&entry| unknowns.column_of_entry(k, entry).is_some())
                 };
                 while !all.is_empty() && !is_open(all.start) {
                     all.start += 1;
@@ -103,6 +186,7 @@ pub(super) fn limit_rows(
             entries,
             vectors,
             scale: scale(bounded, model),
+            step,
         };
         first += limit.at.len();
         Some(limit)
@@ -120,6 +204,17 @@ fn scale(bounded: &BoundedQuantity, model: &Model) -> f64 {
         }
         Quantity::MarkerPlace { .. } | Quantity::MarkerStep { .. } => 1.0 / model.length(),
         _ => 1.0,
+    }
+}
+
+impl Numbering {
+    /// Column of an entry of the gradient of a limit at instant or interval k of a horizon.
+    pub(super) fn column_of_entry(&self, k: usize, (side, i): (usize, usize)) -> Option<usize> {
+        match side {
+            SCALAR => self.scalar(k, i),
+            BEFORE => self.scalar(k.checked_sub(1)?, i),
+            _ => self.unknown(k + side, i),
+        }
     }
 }
 
@@ -165,7 +260,7 @@ pub(super) fn fill_limits(
     outer.fill(Outer::default());
     for limit in limits
         .iter()
-        .filter(|l| l.site == site && l.at.contains(&k))
+        .filter(|l| l.site == site && l.at.contains(&k) && l.step.is_none())
     {
         outer[limit.measure] = Outer::linear(costates[limit.first + k - limit.at.start]);
     }

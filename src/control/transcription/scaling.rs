@@ -142,10 +142,11 @@ impl Transcription<'_> {
         lower.resize(count, 0.0);
         upper.resize(count, 0.0);
         for (i, row) in self.layout.unknowns.rows.iter().enumerate() {
-            if let Row::Limit { limit, .. } = *row {
+            if let Row::Limit { limit, k } = *row {
                 let limit = &self.layout.limits[limit];
-                lower[i] = limit.bounded.lower * limit.scale;
-                upper[i] = limit.bounded.upper * limit.scale;
+                let part = limit.step.map_or(1.0, |step| step.part(k));
+                lower[i] = limit.bounded.lower * limit.scale * part;
+                upper[i] = limit.bounded.upper * limit.scale * part;
             }
         }
     }

@@ -4,7 +4,6 @@ use crate::control::BoundaryError;
 use crate::control::numbering::Row;
 use crate::control::transcription::energy_rows::Jump;
 use crate::control::transcription::layout::Layout;
-use crate::control::transcription::limit_rows::SCALAR;
 use crate::control::transcription::objective::{CostInput, Objective};
 use crate::ipopt::interrupt;
 use crate::model::{Model, Role};
@@ -128,12 +127,8 @@ fn jacobian_candidates(model: &Model, layout: &Layout) -> Result<Vec<Candidate>,
     let first = u.rows.len() - layout.limit_rows.len();
     let mut place = pattern.values(layout.intervals);
     for (r, &(limit, k)) in layout.limit_rows.iter().enumerate() {
-        for &(side, i) in &layout.limits[limit].entries {
-            let col = match side {
-                SCALAR => u.scalar(k, i),
-                _ => u.unknown(k + side, i),
-            };
-            list.push((Some(first + r), col, place));
+        for &entry in &layout.limits[limit].entries {
+            list.push((Some(first + r), u.column_of_entry(k, entry), place));
             place += 1;
         }
     }

@@ -5,7 +5,7 @@ use crate::control::boundary_conditions::BoundaryConditions;
 use crate::control::limits::BoundedQuantity;
 use crate::control::transcription::Transcription;
 use crate::control::transcription::kinematic_state::Placed;
-use crate::control::transcription::limit_rows::LimitRow;
+use crate::control::transcription::limit_rows::{InputStep, LimitRow};
 use crate::model::Model;
 
 impl Transcription<'_> {
@@ -34,6 +34,9 @@ impl Transcription<'_> {
             .zip(measured(self.model, boundary))
         {
             (limit.bounded.lower, limit.bounded.upper) = (bounded.lower, bounded.upper);
+            if let Some(step) = &mut limit.step {
+                step.move_ends(&bounded.quantity, rest);
+            }
         }
         self.set_row_bounds();
         for (kept, row) in self.objective.cost.ends_mut().iter_mut().zip(rest) {
@@ -79,6 +82,17 @@ impl Transcription<'_> {
         }
         if boundary.limits.list.len() != self.bounded {
             return other("there are more or fewer goals and limits".to_owned());
+        }
+        let is_known = |step: &InputStep| step.has_ends(&boundary.rest);
+        let mut steps = self
+            .layout
+            .limits
+            .iter()
+            .filter_map(|limit| limit.step.as_ref());
+        if !steps.all(is_known) {
+            return other(
+                "voltages at rest are known that were not, or are not any more".to_owned(),
+            );
         }
         let is_equation = |one: &BoundedQuantity| one.lower == one.upper;
         let mut others = measured(self.model, boundary);

@@ -86,7 +86,7 @@ const TABLE: &[NotOffered] = &[
             "conductivity",
             "power_supply",
         ],
-        said: "the electronics are a resistor, \"circuit\": { \"resistance\": … } of a lumped muscle; there is no leakage and no limit of current or power",
+        said: "the electronics are a resistor and a leak, \"circuit\": { \"resistance\": …, \"leakage\": … } of a lumped muscle; limits of \"current\" and \"power\" are \"limits\" of a \"control\"",
     },
     NotOffered {
         words: &[

@@ -27,7 +27,7 @@ pub(crate) fn energies(
         };
         let muscle = system.muscles.get(source);
         let what = match muscle.is_some_and(|m| m.circuit.is_some()) {
-            true => "charges its muscle through a circuit",
+            true => "has a circuit",
             false => "drives finite elements",
         };
         let found = || format!("{:?}, which {what}", sources[source].name);

@@ -3,9 +3,12 @@
 use crate::control::problem::{Duration, PathConstraint, Side};
 use crate::files::json::error::SceneError;
 use crate::files::json::scope::Scope;
+use crate::files::problem::bounds::check_bounds;
+use crate::files::problem::source_limits::source_limits;
 use crate::files::problem::spec_limits::{
-    All, ElectricFieldLimitSpec, LimitSpec, MarkerLimitSpec, RegionSpec, StretchLimitSpec,
+    ElectricFieldLimitSpec, LimitSpec, MarkerLimitSpec, RegionSpec, StretchLimitSpec,
 };
+use crate::files::problem::spec_source_limits::All;
 use crate::files::problem::state::{ELECTRIC_KEYS, joint_value, joint_with_coordinate};
 use crate::files::scene::names::names;
 use crate::files::scene::point::vector;
@@ -23,8 +26,13 @@ pub(crate) fn limits(
 ) -> Result<Vec<PathConstraint>, SceneError> {
     let mut limits = Vec::new();
     for (index, spec) in list.iter().enumerate() {
-        if spec.joint_rate.is_some() && matches!(duration, Duration::Free { .. }) {
-            let place = scope.index(index).key("joint_rate");
+        let rate = match (&spec.joint_rate, &spec.voltage_rate) {
+            (Some(_), _) => Some("joint_rate"),
+            (_, Some(_)) => Some("voltage_rate"),
+            (None, None) => None,
+        };
+        if let (Some(key), Duration::Free { .. }) = (rate, duration) {
+            let place = scope.index(index).key(key);
             let found = "a limit of a rate where the duration is free";
             return Err(place.wrong(found, "a given duration"));
         }
@@ -51,9 +59,15 @@ fn limit(
             spec.electric_field.as_ref().map(|_| "electric_field"),
         ),
         ("marker", spec.marker.as_ref().map(|_| "marker")),
+        ("current", spec.current.as_ref().map(|_| "current")),
+        ("power", spec.power.as_ref().map(|_| "power")),
+        (
+            "voltage_rate",
+            spec.voltage_rate.as_ref().map(|_| "voltage_rate"),
+        ),
     ])?;
     let scope = scope.key(key);
-    let mut limits = Vec::new();
+    let mut limits = source_limits(spec, system, &scope)?;
     if let Some(spec) = &spec.joint_angle {
         let kinds = [Angle::kind(), Length::kind()];
         let bounds = [spec.min.as_ref(), spec.max.as_ref()];
@@ -117,17 +131,6 @@ fn stretch(
     let (min, max) = (spec.min.unwrap_or(0.0), spec.max.unwrap_or(f64::INFINITY));
     check_bounds(min, max, spec.min.is_some() || spec.max.is_some(), scope)?;
     Ok(PathConstraint::Stretch { muscle, min, max })
-}
-
-fn check_bounds(min: f64, max: f64, there: bool, scope: &Scope<'_>) -> Result<(), SceneError> {
-    if !there {
-        return Err(scope.wrong("no bound", "\"min\", \"max\" or both"));
-    }
-    if min > max {
-        let found = "\"max\" below \"min\"";
-        return Err(scope.key("max").wrong(found, "bounds that are not crossed"));
-    }
-    Ok(())
 }
 
 /// Choice of a limit of fields that means no part, for messages.
@@ -209,12 +212,6 @@ fn muscle_fields(
         };
         let expected = format!("a muscle of {ELECTRIC_KEYS}{beside}");
         return Err(place.wrong(NOTHING, expected));
-    }
-    if let Some(muscle) = muscles.iter().find(|&&m| !system.has_source_voltage(m)) {
-        let name = &system.muscles[*muscle].name;
-        let found = format!("{name:?}, whose electrodes do not have the voltage of a source");
-        let expected = "muscles without a circuit and without a given charge: fields of others are not limited";
-        return Err(place.wrong(found, expected));
     }
     let limit = |muscle| match system.meshed_muscles().position(|m| m == muscle) {
         None => PathConstraint::ElectricField { muscle, max },

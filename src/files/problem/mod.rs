@@ -1,10 +1,11 @@
 //! The problem file: its types as written (`spec`, `spec_*`) and their conversion to a [`Task`](crate::control::problem::Task).
 //!
 //! - `build`: the problem; `control`, `simulation`: its two longer tasks.
-//! - `state`, `end_of`, `goal`, `limits`, `free`, `guess`, `voltages`, `track`, `energies`, `coordinates`: their parts; `output`: what is written of a motion; `solution_voltages`,
+//! - `state`, `end_of`, `goal`, `limits`, `source_limits`, `free`, `guess`, `voltages`, `track`, `energies`, `coordinates`: their parts; `output`: what is written of a motion; `solution_voltages`,
 //!   `solution_joints`, `solution_document`:
 //!   what is read of an earlier solution.
 
+mod bounds;
 pub(crate) mod build;
 pub(crate) mod control;
 pub(crate) mod coordinates;
@@ -20,6 +21,7 @@ pub(crate) mod simulation;
 pub(crate) mod solution_document;
 pub(crate) mod solution_joints;
 pub(crate) mod solution_voltages;
+mod source_limits;
 pub mod spec;
 pub mod spec_control;
 pub mod spec_coordinates;
@@ -29,6 +31,7 @@ pub mod spec_integrator;
 pub mod spec_limits;
 pub mod spec_output;
 pub mod spec_simulate;
+pub mod spec_source_limits;
 pub mod spec_states;
 pub mod spec_track;
 pub mod spec_voltages;

@@ -87,7 +87,11 @@ impl Output {
             "charges" => column.ends_with("_charge"),
             "currents" => column.ends_with("_current"),
             "powers" => column.ends_with("_power"),
-            "energies" => column.contains("energy") || column.ends_with("mechanical_work"),
+            "energies" => {
+                column.contains("energy")
+                    || column.ends_with("mechanical_work")
+                    || column.ends_with("_heat")
+            }
             "momenta" => column.contains("_momentum_"),
             "constraint_violation" => column == kind,
             _ => false,

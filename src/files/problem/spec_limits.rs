@@ -3,10 +3,13 @@
 use schemars::JsonSchema;
 use serde::Deserialize;
 
+use crate::files::problem::spec_source_limits::{
+    All, CurrentLimitSpec, PowerLimitSpec, VoltageRateLimitSpec,
+};
 use crate::files::scene::point::{CornersSpec, Point};
 use crate::files::units::quantity::{ElectricField, JointCoordinate, JointRate, Length, Quantity};
 
-/// A path limit: exactly one of the five.
+/// A path limit: exactly one of the eight.
 #[derive(Clone, Debug, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct LimitSpec {
@@ -25,6 +28,15 @@ pub struct LimitSpec {
     /// Region of a marker.
     #[serde(default)]
     pub marker: Option<MarkerLimitSpec>,
+    /// Limits of the current of sources.
+    #[serde(default)]
+    pub current: Option<CurrentLimitSpec>,
+    /// Limits of the power of sources.
+    #[serde(default)]
+    pub power: Option<PowerLimitSpec>,
+    /// Limits of the rate of the voltage of sources.
+    #[serde(default)]
+    pub voltage_rate: Option<VoltageRateLimitSpec>,
 }
 
 /// Limits of a joint coordinate: `min`, `max` or both.
@@ -94,14 +106,6 @@ pub struct ElectricFieldLimitSpec {
     pub region: Option<String>,
     /// Largest true field, SI unit V/m.
     pub max: Quantity<ElectricField>,
-}
-
-/// All of them.
-#[derive(Clone, Copy, Debug, Deserialize, JsonSchema)]
-#[serde(rename_all = "snake_case")]
-pub enum All {
-    /// All of them.
-    All,
 }
 
 /// Region of a marker: exactly one of `inside` and `outside`.

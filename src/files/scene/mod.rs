@@ -2,12 +2,13 @@
 //!
 //! - `build`: the scene; `body`, `material`, `muscle`, `marker`: its parts; `components`: kinds of which each has one file for both.
 //! - `solid`, `mesh`, `electrodes`, `nodes`: elastic solids; `graph`: connections by joints; `names`: resolution of names.
-//! - `law`: laws of elasticity of materials.
+//! - `law`: laws of elasticity of materials; `circuit`: circuits of muscles.
 //! - `constants`: constants by their paths, as an optimisation may seek them.
 //! - `expand`: the shorthand of chains; `trunk`: a scene to begin with.
 
 pub(crate) mod body;
 pub(crate) mod build;
+mod circuit;
 pub mod components;
 pub(crate) mod constants;
 pub(crate) mod electrodes;

@@ -2,14 +2,14 @@
 
 use crate::files::json::error::SceneError;
 use crate::files::json::scope::Scope;
+use crate::files::scene::circuit::circuit;
 use crate::files::scene::names::{attachment, find_compressible, find_material};
 use crate::files::scene::point::PointSpec;
-use crate::files::scene::spec::{CircuitSpec, ModelSpec, MuscleModel, MuscleSpec};
+use crate::files::scene::spec::{ModelSpec, MuscleModel, MuscleSpec};
 use crate::files::scene::spec_solids::ElementSpec;
 use crate::files::units::quantity::{Length, Quantity};
 use crate::math::shortest;
-use crate::model::NO_CIRCUIT;
-use crate::model::system::{Circuit, Discretisation, ElementKind, Fidelity, Material, Muscle};
+use crate::model::system::{Discretisation, ElementKind, Fidelity, Material, Muscle};
 
 /// Spans shorter than this in mm have no direction.
 const SHORTEST_SPAN: f64 = 1e-9;
@@ -89,22 +89,6 @@ fn prestretch(
         return Err(place.wrong("a prestretch of a muscle of finite elements", expected));
     }
     Ok(Some(stretch))
-}
-
-/// The circuit of a muscle.
-fn circuit(
-    spec: Option<&CircuitSpec>,
-    muscle: &Muscle,
-    scope: &Scope<'_>,
-) -> Result<Option<Circuit>, SceneError> {
-    let (Some(spec), place) = (spec, scope.key("circuit")) else {
-        return Ok(None);
-    };
-    let resistance = place.key("resistance").positive(&spec.resistance)?;
-    match muscle.takes_circuit() {
-        true => Ok(Some(Circuit { resistance })),
-        false => Err(place.wrong(NO_CIRCUIT[0], NO_CIRCUIT[1])),
-    }
 }
 
 /// Returns the model of a muscle; the keys stand in `scope`.

@@ -4,6 +4,7 @@ use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 use std::collections::BTreeMap;
 
+use crate::files::scene::circuit::CircuitSpec;
 use crate::files::scene::components::{LoadSpec, SpringSpec, TendonSpec};
 use crate::files::scene::point::{Point, PointSpec};
 use crate::files::scene::spec_material::MaterialSpec;
@@ -11,7 +12,7 @@ use crate::files::scene::spec_solids::{ElementSpec, SolidSpec};
 use crate::files::signal::spec::SignalSpec;
 use crate::files::units::quantity::{
     Acceleration, Angle, JointCoordinate, JointDamping, JointStiffness, Length, Mass,
-    MomentOfInertia, Quantity, Resistance,
+    MomentOfInertia, Quantity,
 };
 
 /// Scene. Positions and axes are given in the reference configuration, in the ground frame; parts that are not written do not exist.
@@ -194,14 +195,6 @@ pub struct AxisSpec {
 #[derive(Clone, Debug, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct Nothing {}
-
-/// Circuit between a source and the electrodes of a muscle.
-#[derive(Clone, Debug, Serialize, Deserialize, JsonSchema)]
-#[serde(deny_unknown_fields)]
-pub struct CircuitSpec {
-    /// Resistance in series, SI unit Ohm.
-    pub resistance: Quantity<Resistance>,
-}
 
 /// Declares the keys of stacked muscles: those that all have, and those of their places.
 macro_rules! stacked {

@@ -1,5 +1,6 @@
 //! Numbers with units, converted once to g, mm, ms, N, MPa, V.
 
+mod dimension;
 pub mod quantity;
 pub(crate) mod unit;
 mod written;

@@ -8,6 +8,7 @@ use std::fmt;
 use std::marker::PhantomData;
 use uom::si;
 
+use crate::files::units::dimension;
 use crate::files::units::unit::{Dimension, Unit, scale};
 use crate::files::units::written::{Written, parts};
 
@@ -71,17 +72,6 @@ macro_rules! measures {
     };
 }
 
-/// Dimension of a force for a volume, which has no name.
-type WeightDimension = si::ISQ<
-    uom::typenum::N2,
-    uom::typenum::P1,
-    uom::typenum::N2,
-    uom::typenum::Z0,
-    uom::typenum::Z0,
-    uom::typenum::Z0,
-    uom::typenum::Z0,
->;
-
 measures! {
     /// Length: m, mm inside.
     Length: si::length::Dimension, [0], "a length", "\"50 mm\"";
@@ -132,11 +122,17 @@ measures! {
     /// Torque: N m, N mm inside.
     Torque: si::energy::Dimension, [0], "a torque", "\"0.2 N m\"";
     /// Force for a volume: N/m³, N/mm³ inside.
-    ForceDensity: WeightDimension, [0], "a force for a volume", "\"10 kN/m^3\"";
+    ForceDensity: dimension::Weight, [0], "a force for a volume", "\"10 kN/m^3\"";
     /// Charge for an area: C/m², mC/mm² inside.
     ChargeDensity: si::electric_charge_areal_density::Dimension, [0], "a charge for an area", "\"0.2 mC/m^2\"";
     /// Charge: C, mC inside.
     Charge: si::electric_charge::Dimension, [0], "a charge", "\"0.5 uC\"";
+    /// Electric current: A.
+    Current: si::electric_current::Dimension, [0], "a current", "\"1 mA\"";
+    /// Power: W.
+    Power: si::power::Dimension, [0], "a power", "\"0.5 W\"";
+    /// Rate of a voltage: V/s, V/ms inside.
+    VoltageRate: dimension::VoltageRate, [0], "a rate of a voltage", "\"10 kV/s\"";
     /// Electrical resistance: Ω.
     Resistance: si::electrical_resistance::Dimension, [0], "a resistance", "\"10 MOhm\"";
 }

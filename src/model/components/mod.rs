@@ -1,6 +1,7 @@
 //! Components of a scene: terms, connections and observations of each kind of part.
 
 pub(super) mod body;
+pub(super) mod circuit;
 pub(super) mod load;
 pub(super) mod muscle;
 mod sought_muscle;

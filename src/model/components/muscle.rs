@@ -1,8 +1,8 @@
 //! Terms of lumped muscles.
 
 use crate::energy::{
-    Capacitance, CoordinateDamper, DeadLoad, DielectricCell, ElasticCell, ElasticLaw, Elasticity,
-    Energy, FlowingCharge, MaxwellCell, NeoHooke, SectionInertia, ViscousCell,
+    Capacitance, CoordinateDamper, DielectricCell, ElasticCell, ElasticLaw, Elasticity, Energy,
+    MaxwellCell, NeoHooke, SectionInertia, ViscousCell,
 };
 use crate::functional::{Element, Mass};
 use crate::kinematics::MaterialVector;
@@ -28,8 +28,6 @@ const MAXWELL_ELASTICITY: &str = "maxwell elasticity";
 const MAXWELL_VISCOSITY: &str = "maxwell viscosity";
 /// Electric energy of muscles whose charge is given, or flows through a circuit.
 pub(in crate::model) const CHARGES: &str = "muscle charges";
-const SOURCES: &str = "circuit sources";
-const RESISTANCE: &str = "circuit resistance";
 
 /// Terms of the muscles of a scene, of which those of finite elements are blocks; `spans` are the vectors of their spans.
 pub(in crate::model) fn build(
@@ -40,9 +38,11 @@ pub(in crate::model) fn build(
 ) {
     for (m, (muscle, &span)) in muscles.iter().zip(spans).enumerate() {
         if muscle.fidelity == Fidelity::Lumped {
-            lumped(muscle, m, span, terms);
+            match terms.is_of_motion() {
+                true => lumped(muscle, m, span, terms),
+                false => lumped(&muscle.at_rest(), m, span, terms),
+            }
             relaxation(muscle, m, span, internals, terms);
-            circuit(muscle, m, span, internals, terms);
         }
     }
     let none = match terms.is_of_motion() {
@@ -50,13 +50,6 @@ pub(in crate::model) fn build(
         false => "at rest Maxwell branches are relaxed",
     };
     for term in [MAXWELL_ELASTICITY, MAXWELL_VISCOSITY] {
-        terms.without(term, none);
-    }
-    let none = match terms.is_of_motion() {
-        true => "no lumped muscle names a circuit",
-        false => "at rest no current flows",
-    };
-    for term in [SOURCES, RESISTANCE] {
         terms.without(term, none);
     }
     for term in GENERAL {
@@ -70,8 +63,8 @@ pub(in crate::model) fn build(
 
 /// Between two points that do not move nothing is left of a muscle without voltage.
 fn lumped(muscle: &Muscle, source: usize, span: usize, terms: &mut Terms<'_>) {
-    // Behind a circuit a source drives a charge.
-    let is_direct = muscle.circuit.is_none() || !terms.is_of_motion();
+    // Behind a resistor a source drives a charge.
+    let is_direct = !muscle.is_behind_resistor() || !terms.is_of_motion();
     let input = terms.input(source).filter(|_| is_direct);
     if input.is_none() && terms.is_immobile(&[muscle.from, muscle.to]) {
         for term in [INERTIA, SECTION, ELASTICITY, ELECTROELASTICITY, VISCOSITY] {
@@ -264,7 +257,7 @@ fn elasticity<L: Elasticity>(
         }
         (electric, _) => {
             let why = match electric {
-                Some(_) if muscle.circuit.is_some() && terms.is_of_motion() => "a circuit of",
+                Some(_) if muscle.is_behind_resistor() && terms.is_of_motion() => "a circuit of",
                 Some(_) => "0 V all the time at",
                 None => "no electric constants of",
             };
@@ -346,46 +339,4 @@ fn relaxation(
         };
         terms.add::<_, 6, 2, 0>(MAXWELL_VISCOSITY, why, &muscle.name, element);
     }
-}
-
-/// A circuit: the electric energy of a charge, which is an internal coordinate, the source, and the resistor as its damper.
-fn circuit(
-    muscle: &Muscle,
-    index: usize,
-    span: usize,
-    internals: &Internals,
-    terms: &mut Terms<'_>,
-) {
-    let (Some(circuit), Some(capacitance)) = (muscle.circuit, capacitance(muscle)) else {
-        return;
-    };
-    let Some(charge) = internals.vector(InternalKind::Charge(index)) else {
-        return;
-    };
-    let (charge, unit) = (terms.vector(charge), capacitance.unit_of_charge());
-    let why = "circuit of";
-    let element = Element {
-        energy: FlowingCharge { capacitance, unit },
-        vectors: [mid(span), mid(charge)],
-        scalars: [],
-    };
-    terms.add::<_, 6, 2, 0>(CHARGES, why, &muscle.name, element);
-    if let Some(voltage) = terms.input(index) {
-        let element = Element {
-            energy: DeadLoad {
-                force: Vector::x() * unit,
-            },
-            vectors: [mid(charge)],
-            scalars: [voltage],
-        };
-        terms.add::<_, 4, 1, 1>(SOURCES, why, &muscle.name, element);
-    }
-    let element = Element {
-        energy: CoordinateDamper {
-            coefficient: circuit.resistance * unit * unit,
-        },
-        vectors: [mid(charge), rate(charge)],
-        scalars: [],
-    };
-    terms.add::<_, 6, 2, 0>(RESISTANCE, why, &muscle.name, element);
 }

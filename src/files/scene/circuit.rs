@@ -1,0 +1,46 @@
+//! The circuit of a muscle as it is written, and its conversion.
+
+use crate::files::json::error::SceneError;
+use crate::files::json::scope::Scope;
+use crate::files::units::quantity::{Quantity, Resistance};
+use crate::model::system::{Circuit, Muscle};
+use crate::model::{EMPTY_CIRCUIT, NO_CIRCUIT};
+use schemars::JsonSchema;
+use serde::{Deserialize, Serialize};
+
+/// Circuit between a source and the electrodes of a muscle: a resistor, a leak or both.
+#[derive(Clone, Debug, Serialize, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct CircuitSpec {
+    /// Resistance in series, SI unit Ohm; without it the electrodes have the voltage of the source.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub resistance: Option<Quantity<Resistance>>,
+    /// Resistance of a leak parallel to the electrodes, SI unit Ohm.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub leakage: Option<Quantity<Resistance>>,
+}
+
+/// The circuit of a muscle.
+pub(super) fn circuit(
+    spec: Option<&CircuitSpec>,
+    muscle: &Muscle,
+    scope: &Scope<'_>,
+) -> Result<Option<Circuit>, SceneError> {
+    let (Some(spec), place) = (spec, scope.key("circuit")) else {
+        return Ok(None);
+    };
+    let part = |key: &str, written: &Option<Quantity<Resistance>>| {
+        let part = written.as_ref().map(|part| place.key(key).positive(part));
+        part.transpose()
+    };
+    let circuit = Circuit {
+        resistance: part("resistance", &spec.resistance)?,
+        leakage: part("leakage", &spec.leakage)?,
+    };
+    let [found, expected] = match (circuit == Circuit::default(), muscle.takes_circuit()) {
+        (true, _) => EMPTY_CIRCUIT,
+        (false, false) => NO_CIRCUIT,
+        (false, true) => return Ok(Some(circuit)),
+    };
+    Err(place.wrong(found, expected))
+}

@@ -1,0 +1,83 @@
+//! Limits of optimal control problems.
+
+use crate::control::problem::PathConstraint;
+use crate::interface::control::Control;
+use crate::interface::handle::Handle;
+use crate::model::system::{Joint, Muscle};
+use std::ops::RangeInclusive;
+
+impl Control {
+    /// Greatest true electric field of muscles in V/mm.
+    pub fn field_below(mut self, muscles: &[Handle<Muscle>], max: f64) -> Self {
+        let limit = |muscle: &Handle<Muscle>| PathConstraint::ElectricField {
+            muscle: muscle.index(),
+            max,
+        };
+        self.limits.extend(muscles.iter().map(limit));
+        self
+    }
+
+    /// Range of the stretch of a muscle.
+    pub fn stretch_within(mut self, muscle: Handle<Muscle>, range: RangeInclusive<f64>) -> Self {
+        self.limits.push(PathConstraint::Stretch {
+            muscle: muscle.index(),
+            min: *range.start(),
+            max: *range.end(),
+        });
+        self
+    }
+
+    /// Range of the coordinate of a joint in rad or mm.
+    pub fn joint_within(mut self, joint: Handle<Joint>, range: RangeInclusive<f64>) -> Self {
+        self.limits.push(PathConstraint::JointAngle {
+            joint: joint.index(),
+            min: *range.start(),
+            max: *range.end(),
+        });
+        self
+    }
+
+    /// Range of the mean rate of the coordinate of a joint in each interval in rad/ms or mm/ms; the duration has to be given.
+    pub fn joint_rate_within(mut self, joint: Handle<Joint>, range: RangeInclusive<f64>) -> Self {
+        self.limits.push(PathConstraint::JointRate {
+            joint: joint.index(),
+            min: *range.start(),
+            max: *range.end(),
+        });
+        self
+    }
+
+    /// Range of the mean current in each interval in A of the source of a lumped muscle behind a resistor.
+    pub fn current_within(mut self, muscle: Handle<Muscle>, range: RangeInclusive<f64>) -> Self {
+        self.limits.push(PathConstraint::Current {
+            muscle: muscle.index(),
+            min: *range.start(),
+            max: *range.end(),
+        });
+        self
+    }
+
+    /// Range of the rate of the voltage of a muscle in V/ms between the middles of neighbouring intervals; the duration has to be given.
+    pub fn voltage_rate_within(
+        mut self,
+        muscle: Handle<Muscle>,
+        range: RangeInclusive<f64>,
+    ) -> Self {
+        self.limits.push(PathConstraint::VoltageRate {
+            source: muscle.index(),
+            min: *range.start(),
+            max: *range.end(),
+        });
+        self
+    }
+
+    /// Range of the mean power in each interval in W of the source of a lumped muscle behind a resistor.
+    pub fn power_within(mut self, muscle: Handle<Muscle>, range: RangeInclusive<f64>) -> Self {
+        self.limits.push(PathConstraint::Power {
+            muscle: muscle.index(),
+            min: *range.start(),
+            max: *range.end(),
+        });
+        self
+    }
+}
