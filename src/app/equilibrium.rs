@@ -116,6 +116,7 @@ pub(super) fn at(
     };
     let notes = &mut summary.notes;
     notes.note("moved_marker", moved_markers(system));
+    notes.warn("singular_loops", model.loops.warning.clone());
     notes.warn("outside_domain", domain::note(&summary.domain, false));
     let output = command_output(&summary, &model, &still.rest, &folder);
     let rows = rows(&still.rest, status);

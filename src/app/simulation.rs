@@ -293,6 +293,7 @@ fn summarise(run: &Run<'_>, ended: &Ended, observed: &Observed, summary: &mut Su
     let remarks = &mut summary.notes;
     remarks.note("start", task.start.notes().iter().cloned());
     remarks.note("moved_marker", moved_markers(&run.loaded.system));
+    remarks.warn("singular_loops", ended.model.loops.warning.clone());
     remarks.note("voltages_end", afterwards(task));
     remarks.note("step_divided", steps::divided(task));
     remarks.warn("outside_domain", domain::note(&summary.domain, true));

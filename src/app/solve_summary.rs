@@ -124,6 +124,7 @@ pub(super) fn add_notes(
     notes.note("start", control.start.notes().iter().cloned());
     notes.note("goal", optimum.boundary.notes.iter().cloned());
     notes.note("moved_marker", moved_markers(system));
+    notes.warn("singular_loops", optimum.model.loops.warning.clone());
     let not_kept = verdict.not_kept.clone().filter(|_| verdict.is_solved);
     add_remarks(notes, control, optimum, refined, not_kept);
     notes.note("earlier_solution", carried(&optimum.carried));

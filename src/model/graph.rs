@@ -106,6 +106,25 @@ impl Graph {
         (floating, turning)
     }
 
+    /// Joints that close loops.
+    pub(super) fn loops(&self) -> &[usize] {
+        &self.loops
+    }
+
+    /// Typical sizes of the coordinates of the tree: one radian, or a length in mm.
+    pub(super) fn sizes(&self, system: &System, length: f64) -> Vec<f64> {
+        let joints = system.joints.iter().enumerate();
+        let joints = joints.filter(|(j, _)| !self.loops.contains(j));
+        let kinds = joints.map(|(_, joint)| joint.kind);
+        let free = self.free.iter().map(|_| JointKind::Floating);
+        let size = |screw: &Screw| match screw {
+            Screw::Turn(_) => 1.0,
+            Screw::Slide(_) => length,
+        };
+        let sizes = |kind: JointKind| kind.screws().0.iter().map(size).collect::<Vec<_>>();
+        kinds.chain(free).flat_map(sizes).collect()
+    }
+
     /// First bodies of parts that no joint connects to the ground: their coordinates follow those of the joints.
     pub(super) fn free(&self) -> &[usize] {
         &self.free
