@@ -255,7 +255,12 @@ impl Links<'_> {
         let child = child.expect("the ground is reached first");
         let p = parent.map_or(Pose::GROUND, |b| self.reference[b]);
         let c = self.reference[child];
-        let (screws, chart) = kind.screws();
+        let (mut screws, chart) = kind.screws();
+        // Seen from the other side the last screw comes first; three turns behind a chart are any rotation in either order.
+        let is_reversed = sign < 0.0 && chart.is_none();
+        if is_reversed {
+            screws.reverse();
+        }
         let last = screws.len().max(1) - 1;
         let mut before = parent;
         for i in 0..=last {
@@ -286,7 +291,10 @@ impl Links<'_> {
                 },
                 directors,
                 centre,
-                coordinate: (!screws.is_empty()).then_some(first + i),
+                coordinate: (!screws.is_empty()).then_some(match is_reversed {
+                    true => first + last - i,
+                    false => first + i,
+                }),
             });
             self.charts += usize::from(chart == Some(i));
             self.frames += usize::from(i != last);

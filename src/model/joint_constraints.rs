@@ -61,6 +61,18 @@ impl<'a> JointConstraints<'a> {
                 made.axis(&axis);
                 made.point = Some(made.span());
             }
+            JointKind::Universal { axes: [a, b] } => {
+                made.add("axes", made.parent(&a), made.child(&b));
+                made.point = Some(made.span());
+            }
+            JointKind::Cylindrical { axis } => {
+                made.axis(&axis);
+                made.offsets(&triad(&axis));
+            }
+            JointKind::Planar { normal } => {
+                made.axis(&normal);
+                made.offsets(&[normal]);
+            }
             JointKind::Prismatic { axis } => {
                 made.all_directions();
                 made.offsets(&triad(&axis));
@@ -73,7 +85,7 @@ impl<'a> JointConstraints<'a> {
     pub(super) fn into_products(mut self) -> Vec<Product> {
         if self.point.is_some() {
             let directions = match self.joint.kind {
-                JointKind::Revolute { axis } => {
+                JointKind::Revolute { axis } | JointKind::Universal { axes: [axis, _] } => {
                     let [a, b] = triad(&axis);
                     [a, b, axis]
                 }

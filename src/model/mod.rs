@@ -22,6 +22,7 @@ mod immobile;
 mod internal;
 mod joint_constraints;
 mod joint_elasticity;
+mod joint_kind;
 mod joint_rates;
 mod joint_sections;
 mod joint_springs;

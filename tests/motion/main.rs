@@ -20,6 +20,7 @@ mod maxwell;
 mod maxwell_limits;
 mod observe;
 mod order;
+mod pairs;
 mod parts;
 mod prescribed;
 mod reactions;
