@@ -13,7 +13,7 @@ use crate::app::request::{CommandInput, CommandOutput};
 use crate::app::sparsity;
 use crate::app::task::read;
 use crate::control::problem::{Control, Task};
-use crate::model::{Model, Role, System};
+use crate::model::{Loops, Model, Role, System};
 use crate::nlp::Nlp;
 use crate::report::atomic;
 use crate::report::table;
@@ -53,6 +53,9 @@ pub struct Inspected {
     pub plan: Plan,
     /// Numbers of parts, of unknowns, and of entries of the program of a control problem, by what they count.
     pub sizes: BTreeMap<&'static str, usize>,
+    /// Closing constraints of loops that are left out, as they follow from the others.
+    #[serde(skip_serializing_if = "Vec::is_empty")]
+    pub left_out: Vec<String>,
     /// All of it in words.
     #[serde(skip)]
     words: String,
@@ -108,6 +111,9 @@ fn of_model(model: &Model, control: Option<&Control>) -> Inspected {
         sizes.push(("loads of an interval", count(Role::Load)));
     }
     let components = &system.components;
+    if let Some(mobility) = model.loops.mobility {
+        sizes.push(("degrees of freedom with loops closed", mobility));
+    }
     let kinds = [
         ("springs", components.springs.len()),
         ("tendons", components.tendons.len()),
@@ -132,12 +138,13 @@ fn of_model(model: &Model, control: Option<&Control>) -> Inspected {
         _ => "",
     };
     let words = format!(
-        "{}, {} coordinates\n\n{}\n{}\n{}\n{}{tangent}{}",
+        "{}, {} coordinates\n\n{}\n{}\n{}\n{}{}{tangent}{}",
         system.name,
         model.coordinates.name(),
         active(&plan),
         reasons(&plan),
         missing(&plan),
+        left_out(&model.loops),
         numbers(&sizes),
         length_unit_check::lines(system)
     );
@@ -146,9 +153,28 @@ fn of_model(model: &Model, control: Option<&Control>) -> Inspected {
         coordinates: model.coordinates.name(),
         plan,
         sizes: sizes.into_iter().collect(),
+        left_out: model.loops.left_out().map(str::to_owned).collect(),
         words,
         notes: Vec::new(),
     }
+}
+
+/// Names the closing constraints that are left out, and warns of a singular reference.
+fn left_out(loops: &Loops) -> String {
+    let mut text = String::new();
+    if !loops.is_empty() {
+        text.push_str(
+            "left out of loops, as they follow from the other constraints along the motion\n",
+        );
+        loops
+            .left_out()
+            .for_each(|name| text.push_str(&format!("  {name}\n")));
+        text.push('\n');
+    }
+    if let Some(warning) = &loops.warning {
+        text.push_str(&format!("warning: {warning}\n\n"));
+    }
+    text
 }
 
 /// Names the factorisation of the tangent of a step.

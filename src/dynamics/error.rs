@@ -117,6 +117,18 @@ pub enum StepError {
         /// Local error that the tolerance allows.
         allowed: f64,
     },
+    /// A closing constraint that was left out, as it follows from the others along the motion, does not hold.
+    #[error(
+        "the step to t = {time} ms opens a loop: {constraint} was left out, as it follows from the others near the reference, and is violated by {gap:.1e} (rad, or of the length of the system): the mechanism has passed to another branch or through a singular configuration; take shorter steps"
+    )]
+    OpenLoop {
+        /// End of the step in ms.
+        time: f64,
+        /// The constraint.
+        constraint: String,
+        /// Its violation, in rad or relative to the length of the system.
+        gap: f64,
+    },
     /// The tangent is singular.
     #[error(
         "singular tangent at t = {time} ms with a step of {step} ms: {name} is not determined{}",
@@ -169,6 +181,16 @@ pub enum EquilibriumError {
         .0.join(", ")
     )]
     NoStiffness(Vec<String>),
+    /// A closing constraint that was left out, as it follows from the others along the motion, does not hold.
+    #[error(
+        "no equilibrium of the mechanism: the one found opens a loop, as {constraint}, which was left out as it follows from the others near the reference, is violated by {gap:.1e} (rad, or of the length of the system)"
+    )]
+    OpenLoop {
+        /// The constraint.
+        constraint: String,
+        /// Its violation, in rad or relative to the length of the system.
+        gap: f64,
+    },
     /// A part of a block can move freely.
     #[error("{name} is not held: {motion} is a zero-energy mode; fix or glue one of its faces")]
     Floating {

@@ -384,13 +384,14 @@ impl<'m> Observer<'m> {
         self.model.charges(&scratch.interval.plain.rows, h)
     }
 
-    /// max |g| over the constraints that the coordinates leave open.
+    /// max |g| over the constraints that the coordinates leave open, those that loops leave out among them.
     fn violation(&mut self) -> f64 {
         let model = self.model;
         model
             .action
             .evaluate_instant(Order::Gradient, &mut self.here, &[], &mut self.scratch);
         let rows = &self.scratch.instant.plain.rows;
-        rows.iter().fold(0.0_f64, |m, row| m.max(row.abs())) / model.multiplier_time
+        let kept = rows.iter().fold(0.0_f64, |m, row| m.max(row.abs())) / model.multiplier_time;
+        kept.max(model.loop_violation(&self.here))
     }
 }

@@ -7,7 +7,7 @@ use crate::dynamics::solving::{Integrator, Solving};
 use crate::dynamics::start::Start;
 use crate::dynamics::stepper::Steps;
 use crate::dynamics::{StepError, Stepper};
-use crate::model::Model;
+use crate::model::{Model, OPEN};
 use std::ops::ControlFlow;
 
 /// The shortest step that a tolerance may ask for, as a part of the duration.
@@ -199,7 +199,8 @@ fn controlled(
         discrete.end.wanted = Some(wanted);
         discrete.end.tolerance = Some(tolerance);
         k += 1;
-        if observer(discrete).is_break() {
+        failure = open_loop(stepper, discrete);
+        if failure.is_some() || observer(discrete).is_break() {
             break;
         }
     }
@@ -310,11 +311,23 @@ fn record<E: Equations>(
                 break;
             }
         }
-        if observer(discrete).is_break() {
+        failure = open_loop(stepper, discrete);
+        if failure.is_some() || observer(discrete).is_break() {
             break;
         }
     }
     discrete.report = stepper.report();
     discrete.solver = stepper.solver();
     failure
+}
+
+/// The failure of a motion whose last instant violates a closing constraint that was left out.
+fn open_loop<E: Equations>(stepper: &Steps<E>, discrete: &DiscreteTrajectory) -> Option<StepError> {
+    let model = stepper.equations().model();
+    let (constraint, gap) = model.open_loop(discrete.z.last()?, OPEN)?;
+    Some(StepError::OpenLoop {
+        time: discrete.times.last().copied()?,
+        constraint,
+        gap,
+    })
 }

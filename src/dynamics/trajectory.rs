@@ -89,7 +89,7 @@ impl Trajectory {
             let unit = match joint.kind {
                 JointKind::Revolute { .. } => "rad",
                 JointKind::Prismatic { .. } => "mm",
-                JointKind::Spherical | JointKind::Floating | JointKind::Fixed => return None,
+                _ => return None,
             };
             Some(Coordinate {
                 name: joint.name.clone(),

@@ -101,6 +101,33 @@ impl Joint {
         JointKind::Prismatic { axis }
     }
 
+    /// A Cardan joint about an axis of the parent and one of the child, made perpendicular to it.
+    ///
+    /// # Panics
+    /// The axes are parallel.
+    pub fn universal([first, second]: [Vector3<f64>; 2]) -> JointKind {
+        let first = first.normalize();
+        let across = second - first * first.dot(&second);
+        assert!(
+            across.norm() > 0.0,
+            "the axes of a universal joint are not parallel"
+        );
+        let axes = [first, across.normalize()];
+        JointKind::Universal { axes }
+    }
+
+    /// A slide along an axis that also turns about it.
+    pub fn cylindrical(axis: Vector3<f64>) -> JointKind {
+        let axis = axis.normalize();
+        JointKind::Cylindrical { axis }
+    }
+
+    /// A slide in a plane across a normal that also turns about it.
+    pub fn planar(normal: Vector3<f64>) -> JointKind {
+        let normal = normal.normalize();
+        JointKind::Planar { normal }
+    }
+
     /// Place in mm, in the reference configuration.
     pub fn at(self, at: Vector3<f64>) -> Self {
         Self { at, ..self }

@@ -10,8 +10,9 @@ use crate::model::error::ModelError;
 use crate::model::graph::Graph;
 use crate::model::internal::Internals;
 use crate::model::joints::JointReading;
+use crate::model::loops::Loops;
 use crate::model::measures::{self, Measures};
-use crate::model::model::Model;
+use crate::model::model::{Model, length};
 use crate::model::named::Named;
 use crate::model::plan::{LeftOut, Present};
 use crate::model::presolved::Presolved;
@@ -89,6 +90,8 @@ impl Model {
             (coordinates, &graph),
             &blocks,
         );
+        let size = length(rest, &blocks.nodes);
+        let loops = Loops::new(coordinates, (rest, &graph), &reference, size)?;
         let construction = Construction {
             system: &system,
             presolved: &presolved,
@@ -97,14 +100,10 @@ impl Model {
             reference: &reference,
             blocks: &blocks,
             internals: &internals,
+            loops: &loops,
         };
         let spans = construction.spans(&mut vectors);
-        let (intervals, mut present, mut left_out) =
-            construction.terms(&spans, &variables, &mut vectors);
-        let made = construction.constraints(&mut vectors);
-        present.extend(made.present);
-        left_out.extend(made.left_out);
-        plan::settle(&present, &mut left_out);
+        let (intervals, made) = construction.sums(&spans, &variables, &mut vectors);
         let markers = construction.markers(&mut vectors);
         let measures = construction.measures(&variables, &markers, &mut vectors);
         let list = vectors.list();
@@ -133,8 +132,9 @@ impl Model {
             multiplier_time: analysis.interval,
             graph,
             reference,
-            present,
-            left_out,
+            loops,
+            present: made.present,
+            left_out: made.left_out,
             system,
             analysis,
             presolved,
@@ -225,6 +225,7 @@ struct Construction<'a> {
     reference: &'a [Pose],
     blocks: &'a Solids,
     internals: &'a Internals,
+    loops: &'a Loops,
 }
 
 impl Construction<'_> {
@@ -246,6 +247,26 @@ impl Construction<'_> {
             vectors.index(MaterialVector::span(&from, &to))
         };
         self.system.muscles.iter().map(span).collect()
+    }
+
+    /// Terms of an interval in the order of the plan, and of an instant with the reasons for all.
+    fn sums(
+        &self,
+        spans: &[usize],
+        variables: &Variables,
+        vectors: &mut Vectors,
+    ) -> (Vec<Box<dyn Term>>, constraints::Made) {
+        let (terms, mut present, mut left_out) = self.terms(spans, variables, vectors);
+        let made = self.constraints(vectors);
+        present.extend(made.present);
+        left_out.extend(made.left_out);
+        plan::settle(&present, &mut left_out);
+        let made = constraints::Made {
+            present,
+            left_out,
+            ..made
+        };
+        (terms, made)
     }
 
     /// Terms of an interval in the order of the plan, and the reasons for those that are present and for those that are not.
@@ -289,6 +310,7 @@ impl Construction<'_> {
                 vectors,
                 blocks: self.blocks,
                 internals: self.internals,
+                loops: self.loops,
             }
             .constraints(self.analysis.interval),
         }

@@ -222,12 +222,20 @@ impl System {
                 || "one body on both sides".to_owned(),
                 "two bodies, or a body and the ground",
             )?;
-            if let JointKind::Revolute { axis } | JointKind::Prismatic { axis } = joint.kind {
+            for axis in joint.kind.axes() {
                 require(
                     (axis.norm() - 1.0).abs() < ROUNDING,
                     &joint.name,
                     || format!("the axis {:?}", axis.as_slice()),
                     "a direction",
+                )?;
+            }
+            if let JointKind::Universal { axes: [a, b] } = joint.kind {
+                require(
+                    a.dot(&b).abs() < ROUNDING,
+                    &joint.name,
+                    || format!("axes with a cosine of {}", a.dot(&b)),
+                    "axes that are perpendicular to each other",
                 )?;
             }
             if let Some(damping) = joint.damping {

@@ -3,12 +3,13 @@
 use crate::energy::{Coincidence, Energy, JointAngle, JointDisplacement, Orthogonality};
 use crate::functional::{Element, Formulas, Group, Stencil, Term, VectorArg};
 use crate::kinematics::{MaterialVector, Pose, Vectors};
-use crate::math::Vector;
 use crate::model::internal::{InternalKind, Internals};
-use crate::model::joints::{JointCoordinate, JointReading, triad};
+use crate::model::joint_constraints::{JointConstraints, Product};
+use crate::model::joints::{JointCoordinate, JointReading};
+use crate::model::loops::Loops;
 use crate::model::plan::{self, LeftOut, Present};
 use crate::model::solids::Solids;
-use crate::model::system::{Glue, Joint, JointKind, System};
+use crate::model::system::{Glue, System};
 
 /// Terms of constraints.
 const RIGID: &str = "rigid bodies";
@@ -34,6 +35,8 @@ pub(super) struct Builder<'a> {
     pub(super) blocks: &'a Solids,
     /// Internal coordinates, those of joints among them.
     pub(super) internals: &'a Internals,
+    /// Closing constraints that loops leave out.
+    pub(super) loops: &'a Loops,
 }
 
 /// Constraints collected for the action, with the names of their multipliers.
@@ -102,9 +105,7 @@ impl Builder<'_> {
             names: rigid.names,
             ..Constraints::default()
         };
-        for joint in &self.system.joints {
-            self.joint(joint, &mut joints);
-        }
+        self.joints(&mut joints);
         let mut ties = Constraints {
             names: joints.names,
             ..Constraints::default()
@@ -158,6 +159,21 @@ impl Builder<'_> {
         made
     }
 
+    /// Constraints of the joints, those that close loops without what is left out.
+    fn joints(&mut self, out: &mut Constraints) {
+        for (j, joint) in self.system.joints.iter().enumerate() {
+            if let Some(products) = self.loops.kept(j) {
+                out.products(self.vectors, products.to_vec());
+                continue;
+            }
+            let made = JointConstraints::new(joint, self.reference);
+            out.products(self.vectors, made.products);
+            if let Some(span) = made.point {
+                out.point(self.vectors, &joint.name, span);
+            }
+        }
+    }
+
     /// Internal coordinates are those of their joints.
     fn joint_coordinates(&mut self, out: &mut Measured) {
         for (internal, value) in self.internals.vectors() {
@@ -185,68 +201,6 @@ impl Builder<'_> {
                     scalars,
                 }),
                 JointCoordinate::None => unreachable!("its joint has a coordinate"),
-            }
-        }
-    }
-
-    fn joint(&mut self, joint: &Joint, out: &mut Constraints) {
-        let parent =
-            |direction: &Vector| MaterialVector::direction(joint.parent, direction, self.reference);
-        let child = |direction: &Vector| {
-            MaterialVector::direction(Some(joint.child), direction, self.reference)
-        };
-        let span = MaterialVector::span(
-            &MaterialVector::point(joint.parent, &joint.at, self.reference),
-            &MaterialVector::point(Some(joint.child), &joint.at, self.reference),
-        );
-        let name = |what: &str| format!("{} {what}", joint.name);
-        let mut parallel = |vectors: &mut Vectors| {
-            let axes = [Vector::x(), Vector::y(), Vector::z()];
-            for i in 0..3 {
-                let (p, c) = (parent(&axes[i]), child(&axes[(i + 1) % 3]));
-                out.dot(
-                    vectors,
-                    name(&format!("direction {}", i + 1)),
-                    &p,
-                    &c,
-                    0.0,
-                    1.0,
-                );
-            }
-        };
-        match joint.kind {
-            JointKind::Floating => {}
-            JointKind::Spherical => out.point(self.vectors, &joint.name, span),
-            JointKind::Fixed => {
-                parallel(self.vectors);
-                out.point(self.vectors, &joint.name, span);
-            }
-            JointKind::Revolute { axis } => {
-                for (i, direction) in triad(&axis).iter().enumerate() {
-                    let (p, c) = (parent(&axis), child(direction));
-                    out.dot(
-                        self.vectors,
-                        name(&format!("axis {}", i + 1)),
-                        &p,
-                        &c,
-                        0.0,
-                        1.0,
-                    );
-                }
-                out.point(self.vectors, &joint.name, span);
-            }
-            JointKind::Prismatic { axis } => {
-                parallel(self.vectors);
-                for (i, direction) in triad(&axis).iter().enumerate() {
-                    out.dot(
-                        self.vectors,
-                        name(&format!("offset {}", i + 1)),
-                        &parent(direction),
-                        &span,
-                        0.0,
-                        1.0,
-                    );
-                }
             }
         }
     }
@@ -290,6 +244,16 @@ impl Constraints {
             vectors: args,
             scalars: [scalar],
         });
+    }
+
+    fn products(&mut self, vectors: &mut Vectors, products: Vec<Product>) {
+        for Product {
+            name,
+            vectors: [a, b],
+        } in products
+        {
+            self.dot(vectors, name, &a, &b, 0.0, 1.0);
+        }
     }
 
     fn point(&mut self, vectors: &mut Vectors, joint: &str, span: MaterialVector) {

@@ -13,6 +13,16 @@ pub enum ModelError {
         /// The joint that closes a loop.
         joint: String,
     },
+    /// A loop is closed in the reference configuration only.
+    #[error(
+        "the joints that close loops ({joints}) contradict each other along the motion: places and axes leave a gap of {gap:.1e} (rad, or of the length of the system), expected none; write them with more digits, as all axes of a plane linkage along one direction, or use spherical joints"
+    )]
+    OpenLoop {
+        /// The joints.
+        joints: String,
+        /// The gap that stays.
+        gap: f64,
+    },
     /// An element has no volume, or is inverted.
     #[error("element {element} of block \"{solid}\" is inverted or degenerate")]
     Inverted {

@@ -106,6 +106,25 @@ impl Graph {
         (floating, turning)
     }
 
+    /// Joints that close loops.
+    pub(super) fn loops(&self) -> &[usize] {
+        &self.loops
+    }
+
+    /// Typical sizes of the coordinates of the tree: one radian, or a length in mm.
+    pub(super) fn sizes(&self, system: &System, length: f64) -> Vec<f64> {
+        let joints = system.joints.iter().enumerate();
+        let joints = joints.filter(|(j, _)| !self.loops.contains(j));
+        let kinds = joints.map(|(_, joint)| joint.kind);
+        let free = self.free.iter().map(|_| JointKind::Floating);
+        let size = |screw: &Screw| match screw {
+            Screw::Turn(_) => 1.0,
+            Screw::Slide(_) => length,
+        };
+        let sizes = |kind: JointKind| kind.screws().0.iter().map(size).collect::<Vec<_>>();
+        kinds.chain(free).flat_map(sizes).collect()
+    }
+
     /// First bodies of parts that no joint connects to the ground: their coordinates follow those of the joints.
     pub(super) fn free(&self) -> &[usize] {
         &self.free
@@ -236,7 +255,12 @@ impl Links<'_> {
         let child = child.expect("the ground is reached first");
         let p = parent.map_or(Pose::GROUND, |b| self.reference[b]);
         let c = self.reference[child];
-        let (screws, chart) = kind.screws();
+        let (mut screws, chart) = kind.screws();
+        // Seen from the other side the last screw comes first; three turns behind a chart are any rotation in either order.
+        let is_reversed = sign < 0.0 && chart.is_none();
+        if is_reversed {
+            screws.reverse();
+        }
         let last = screws.len().max(1) - 1;
         let mut before = parent;
         for i in 0..=last {
@@ -267,7 +291,10 @@ impl Links<'_> {
                 },
                 directors,
                 centre,
-                coordinate: (!screws.is_empty()).then_some(first + i),
+                coordinate: (!screws.is_empty()).then_some(match is_reversed {
+                    true => first + last - i,
+                    false => first + i,
+                }),
             });
             self.charts += usize::from(chart == Some(i));
             self.frames += usize::from(i != last);

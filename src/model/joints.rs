@@ -73,11 +73,29 @@ impl JointKind {
             Self::Fixed => (Vec::new(), None),
             Self::Revolute { axis } => (vec![Screw::Turn(axis)], None),
             Self::Prismatic { axis } => (vec![Screw::Slide(axis)], None),
+            Self::Universal { axes } => (axes.map(Screw::Turn).to_vec(), None),
+            Self::Cylindrical { axis } => (vec![Screw::Slide(axis), Screw::Turn(axis)], None),
+            Self::Planar { normal } => {
+                let slides = triad(&normal).map(Screw::Slide).into_iter();
+                (slides.chain([Screw::Turn(normal)]).collect(), None)
+            }
             Self::Spherical => (axes.map(Screw::Turn).to_vec(), Some(0)),
             Self::Floating => {
                 let slides = axes.map(Screw::Slide).into_iter();
                 (slides.chain(axes.map(Screw::Turn)).collect(), Some(3))
             }
+        }
+    }
+
+    /// The axes with which it is written.
+    pub(super) fn axes(&self) -> Vec<Vector> {
+        match *self {
+            Self::Revolute { axis } | Self::Prismatic { axis } | Self::Cylindrical { axis } => {
+                vec![axis]
+            }
+            Self::Universal { axes } => axes.to_vec(),
+            Self::Planar { normal } => vec![normal],
+            Self::Spherical | Self::Floating | Self::Fixed => Vec::new(),
         }
     }
 
@@ -91,6 +109,39 @@ impl Joint {
     /// Returns true if it has one coordinate: revolute and prismatic joints do.
     pub fn has_coordinate(&self) -> bool {
         self.kind.freedoms() == 1
+    }
+
+    /// Coordinates at poses of the bodies, for a kind of several coordinates without a chart: angles without whole turns.
+    pub(super) fn several(&self, poses: &[Pose], reference: &[Pose]) -> Option<Vec<f64>> {
+        let pose = |poses: &[Pose], body: Option<usize>| body.map_or(Pose::GROUND, |b| poses[b]);
+        // Rotations and places of both bodies relative to the reference configuration.
+        let [p, c] = [self.parent, Some(self.child)].map(|body| {
+            let (here, there) = (pose(poses, body), pose(reference, body));
+            let turn = here.directors * there.directors.transpose();
+            (turn, here.point(&there.local(&self.at)))
+        });
+        let turn = p.0.tr_mul(&c.0);
+        let moved = p.0.tr_mul(&(c.1 - p.1));
+        // Angle about an axis from one direction across it to another.
+        let angle = |axis: &Vector, from: &Vector, to: Vector| {
+            axis.cross(from).dot(&to).atan2(from.dot(&to))
+        };
+        let about = |axis: &Vector| {
+            let [a, _] = triad(axis);
+            angle(axis, &a, turn * a)
+        };
+        match self.kind {
+            JointKind::Universal { axes: [a, b] } => Some(vec![
+                angle(&a, &b, turn * b),
+                -angle(&b, &a, turn.tr_mul(&a)),
+            ]),
+            JointKind::Cylindrical { axis } => Some(vec![axis.dot(&moved), about(&axis)]),
+            JointKind::Planar { normal } => {
+                let [a, b] = triad(&normal);
+                Some(vec![a.dot(&moved), b.dot(&moved), about(&normal)])
+            }
+            _ => None,
+        }
     }
 
     /// Returns true if a spring, stops or its prescribed motion take it out of the reference configuration.
@@ -150,7 +201,7 @@ impl JointReading {
                     &MaterialVector::point(Some(joint.child), &joint.at, reference),
                 ),
             },
-            JointKind::Spherical | JointKind::Floating | JointKind::Fixed => JointCoordinate::None,
+            _ => JointCoordinate::None,
         };
         Self {
             coordinate,

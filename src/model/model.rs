@@ -9,6 +9,7 @@ use crate::model::floating::{self, Floating};
 use crate::model::graph::Graph;
 use crate::model::internal::{Internal, InternalKind};
 use crate::model::joints::{JointReading, Prescribed};
+use crate::model::loops::Loops;
 use crate::model::plan::{LeftOut, Present};
 use crate::model::presolved::Presolved;
 use crate::model::solid_block::SolidBlock;
@@ -53,6 +54,8 @@ pub struct Model {
     pub multiplier_time: f64,
     pub(super) graph: Graph,
     pub(super) reference: Vec<Pose>,
+    /// Closing constraints that are left out.
+    pub loops: Loops,
     /// Terms of components, and what calls for them.
     pub present: Vec<Present>,
     /// Terms that components could have and have not.
@@ -325,12 +328,16 @@ impl Model {
 
     /// A length in mm that is typical of the system.
     pub fn length(&self) -> f64 {
-        let far = |length: f64, x: &Vector| length.max(x.amax());
-        let nodes = self.nodes.iter().map(|n| &n.reference);
-        let places = self.reference.iter().map(|p| &p.centre).chain(nodes);
-        let length = places
-            .chain(self.presolved.system.joints.iter().map(|j| &j.at))
-            .fold(0.0, far);
-        if length > 0.0 { length } else { 1.0 }
+        length(&self.presolved.system, &self.nodes)
     }
+}
+
+/// A length in mm that is typical of a system with nodes.
+pub(super) fn length(system: &System, nodes: &[NodePlace]) -> f64 {
+    let far = |length: f64, x: &Vector| length.max(x.amax());
+    let nodes = nodes.iter().map(|n| &n.reference);
+    let bodies = system.bodies.iter().map(|body| &body.centre);
+    let joints = system.joints.iter().map(|joint| &joint.at);
+    let length = bodies.chain(nodes).chain(joints).fold(0.0, far);
+    if length > 0.0 { length } else { 1.0 }
 }

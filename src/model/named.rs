@@ -11,6 +11,9 @@ use crate::model::solid_block::SolidBlock;
 use crate::model::system::{JointKind, System};
 use crate::model::variables::{Role, Size, Variable};
 
+/// Part of a unit vector along an axis of the ground frame from which on it is called by its letter.
+const ALIGNED: f64 = 1.0 - 1e-9;
+
 /// Data from which coordinates get their names.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Named<'a> {
@@ -48,15 +51,21 @@ impl Named<'_> {
     fn of_body(&self, i: usize) -> (String, Size) {
         match self.coordinates {
             Coordinates::Reduced => {
-                let Freedom { of, screw, is_only } = freedom(self.system, self.graph, i);
+                let Freedom {
+                    of,
+                    screw,
+                    number,
+                    is_only,
+                } = freedom(self.system, self.graph, i);
                 let (name, size) = match screw {
-                    Screw::Turn(axis) => {
-                        (format!("rotation about {}", axis_name(&axis)), Size::One)
-                    }
-                    Screw::Slide(axis) => {
-                        let name = format!("displacement along {}", axis_name(&axis));
-                        (name, Size::Length)
-                    }
+                    Screw::Turn(axis) => (
+                        format!("rotation about {}", axis_name(&axis, number)),
+                        Size::One,
+                    ),
+                    Screw::Slide(axis) => (
+                        format!("displacement along {}", axis_name(&axis, number)),
+                        Size::Length,
+                    ),
                 };
                 match is_only {
                     true => (format!("coordinate of {of}"), size),
@@ -93,6 +102,8 @@ pub struct Freedom<'m> {
     pub of: &'m str,
     /// Motion that it permits.
     pub screw: Screw,
+    /// Its number in the joint, from 0.
+    pub number: usize,
     /// True if it is the only coordinate of its joint.
     pub is_only: bool,
 }
@@ -106,6 +117,7 @@ fn freedom<'m>(system: &'m System, graph: &Graph, i: usize) -> Freedom<'m> {
             return Freedom {
                 of: &joint.name,
                 screw,
+                number: at,
                 is_only: screws.len() == 1,
             };
         }
@@ -115,11 +127,15 @@ fn freedom<'m>(system: &'m System, graph: &Graph, i: usize) -> Freedom<'m> {
     Freedom {
         of: &system.bodies[graph.free()[at / screws.len()]].name,
         screw: screws[at % screws.len()],
+        number: at % screws.len(),
         is_only: false,
     }
 }
 
-/// x, y or z of an axis of the ground frame.
-fn axis_name(axis: &Vector) -> &'static str {
-    ["x", "y", "z"][axis.iamax()]
+/// x, y or z of an axis of the ground frame; others have the number of their screw.
+fn axis_name(axis: &Vector, number: usize) -> String {
+    match axis.amax() > ALIGNED {
+        true => ["x", "y", "z"][axis.iamax()].to_owned(),
+        false => format!("axis {}", number + 1),
+    }
 }

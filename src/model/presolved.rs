@@ -265,7 +265,10 @@ fn between(joint: &Joint, parent: Option<usize>, child: Option<usize>) -> Option
     let kind = match joint.kind {
         JointKind::Revolute { axis } => JointKind::Revolute { axis: -axis },
         JointKind::Prismatic { axis } => JointKind::Prismatic { axis: -axis },
-        other => other,
+        JointKind::Universal { axes: [a, b] } => JointKind::Universal { axes: [-b, -a] },
+        JointKind::Cylindrical { axis } => JointKind::Cylindrical { axis: -axis },
+        JointKind::Planar { normal } => JointKind::Planar { normal: -normal },
+        other @ (JointKind::Spherical | JointKind::Floating | JointKind::Fixed) => other,
     };
     Some(Joint {
         parent: None,

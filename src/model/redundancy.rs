@@ -1,5 +1,6 @@
 //! Constraints that follow from others: closed loops with more joints than they need, joints written twice.
 
+use crate::coordinates::Configuration;
 use crate::functional::Order;
 use crate::model::model::Model;
 use crate::model::variables::Role;
@@ -11,6 +12,25 @@ const DEPENDENT: f64 = 1e-9;
 const MANY: usize = 2000;
 
 impl Model {
+    /// The closing constraint that was left out and is violated most at coordinates, by more than a gap that is allowed: its name and gap, in
+    /// rad or relative to the length of the system.
+    pub fn open_loop(&self, z: &[f64], allowed: f64) -> Option<(String, f64)> {
+        if self.loops.is_empty() {
+            return None;
+        }
+        let poses = self.condensed_poses(&self.action.map.placed(z));
+        let (gap, name) = self.loops.gap(&poses)?;
+        (gap > allowed || gap.is_nan()).then(|| (name.to_owned(), gap))
+    }
+
+    /// max |g| over the closing constraints that were left out at an instant, without units or in mm.
+    pub fn loop_violation(&self, instant: &Configuration) -> f64 {
+        match self.loops.is_empty() {
+            true => 0.0,
+            false => self.loops.violation(&self.condensed_poses(instant)),
+        }
+    }
+
     /// Names of constraints whose gradients follow from those before them where z is, in redundant coordinates; the others
     /// are independent.
     pub fn redundant_constraints(&self, z: &[f64]) -> Vec<String> {

@@ -39,6 +39,18 @@ impl Model {
         !self.graph.free().is_empty() || joints.any(|joint| joint.kind.freedoms() > 1)
     }
 
+    /// First coordinate and coordinates at poses of the joints of several coordinates without a chart.
+    fn several(&self, poses: &[Pose]) -> Vec<(usize, Vec<f64>)> {
+        let mut next = 0;
+        let mut list = Vec::new();
+        for joint in &self.presolved.system.joints {
+            let values = joint.several(poses, &self.reference);
+            list.extend(values.map(|values| (next, values)));
+            next += joint.kind.freedoms();
+        }
+        list
+    }
+
     /// The tree in motion, with the vectors φ, d₁, d₂, d₃ of all bodies.
     fn moving(
         &self,
@@ -87,6 +99,10 @@ impl Model {
             Some(_) => {
                 let mut instant = map.placed(&z);
                 map.follow(&poses, &mut instant);
+                for (first, values) in self.several(&poses) {
+                    instant.z[first..first + values.len()].copy_from_slice(&values);
+                }
+                map.place(&mut instant);
                 self.place_internals(&mut instant.z, joints);
                 instant.z
             }

@@ -8,6 +8,7 @@ pub use crate::model::bodies::{Body, Shape, directors_along};
 pub use crate::model::circuit::Circuit;
 use crate::model::components::{BlockLoad, Components, Load, LoadPlace};
 pub use crate::model::joint_elasticity::{JointSpring, JointStops};
+pub use crate::model::joint_kind::JointKind;
 pub use crate::model::material::{ElectricConstants, Material, VACUUM_PERMITTIVITY};
 pub use crate::model::maxwell::{MaxwellBranch, MaxwellBranches};
 pub use crate::model::source::{InputKind, Source, voltage_sources};
@@ -191,28 +192,6 @@ pub struct Joint {
     pub stops: Option<JointStops>,
     /// Prescribed coordinate in rad or mm as a function of time; `None` where forces move the joint.
     pub motion: Option<Signal>,
-}
-
-/// Motion that a joint permits.
-#[derive(Clone, Copy, Debug, Default, PartialEq)]
-pub enum JointKind {
-    /// Rotation about a unit axis.
-    Revolute {
-        /// Unit axis in the ground frame.
-        axis: Vector3<f64>,
-    },
-    /// Translation along a unit axis.
-    Prismatic {
-        /// Unit axis in the ground frame.
-        axis: Vector3<f64>,
-    },
-    /// Rotation about a point.
-    Spherical,
-    /// Anything: the child is as free as without the joint.
-    Floating,
-    /// Nothing.
-    #[default]
-    Fixed,
 }
 
 /// A stacked dielectric elastomer between two material points.

@@ -79,6 +79,7 @@ pub fn equilibrium(system: &System, task: &AtRest) -> Result<EquilibriumResult, 
     let outside = domain::records(&out_of_domain(&model, &discrete));
     let mut remarks = Remarks::default();
     remarks.note("moved_marker", moved_markers(system));
+    remarks.warn("singular_loops", model.loops.warning.clone());
     remarks.warn("outside_domain", domain::note(&outside, false));
     Ok(EquilibriumResult {
         trajectory: Trajectory::from_discrete(&model, &discrete),

@@ -175,6 +175,7 @@ fn remarks(system: &System, task: &Simulation, result: &SimulationResult) -> Rem
     let mut remarks = Remarks::default();
     remarks.note("start", task.start.notes().iter().cloned());
     remarks.note("moved_marker", moved_markers(system));
+    remarks.warn("singular_loops", result.model.loops.warning.clone());
     remarks.note("voltages_end", afterwards(task));
     remarks.note("step_divided", steps::divided(task));
     remarks.warn("outside_domain", domain::note(&result.outside, true));

@@ -176,6 +176,7 @@ fn remarks(
     remarks.note("start", control.start.notes().iter().cloned());
     remarks.note("goal", optimum.boundary.notes.iter().cloned());
     remarks.note("moved_marker", moved_markers(system));
+    remarks.warn("singular_loops", optimum.model.loops.warning.clone());
     remarks.note("refined_grid", refined);
     remarks.warn("coarse_intervals", tested.and_then(Resimulation::warning));
     remarks.warn("goal_not_held", not_kept.into_iter().chain(left_goal));

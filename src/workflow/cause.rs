@@ -16,6 +16,13 @@ pub enum Cause {
         /// Distance of the simulation from the optimum after it.
         distance: Distance,
     },
+    /// It violates a closing constraint that was left out.
+    Open {
+        /// The constraint.
+        constraint: String,
+        /// Its violation, in rad or relative to the length of the system.
+        gap: f64,
+    },
     /// A simulation with this number of steps for an interval ends early.
     Ends {
         /// Steps for an interval.
@@ -60,6 +67,10 @@ impl Cause {
                      ({distance} apart after it); the intervals are too long for the motion"
                 )
             }
+            Self::Open { constraint, gap } => format!(
+                "the optimum opens a loop: {constraint} was left out, as it follows from the others near the reference, and is violated by \
+                 {gap:.1e} (rad, or of the length of the system)"
+            ),
             Self::Ends { steps: 1, failure } => {
                 format!("forward simulation under the optimal inputs ends early: {failure}")
             }

@@ -7,6 +7,7 @@ use thiserror::Error;
 use crate::control::BoundaryError;
 use crate::dynamics::EquilibriumError;
 use crate::ipopt::{IpoptError, Status};
+use crate::model::ModelError;
 
 /// Hint at the start of a robot that nothing holds.
 const FLOATS: &str =
@@ -43,6 +44,12 @@ impl WorkflowError {
     /// Start or goal of a problem that does not exist; `task` is its key in the file.
     pub(crate) fn boundary(task: &str, error: &BoundaryError) -> Self {
         let (key, reason) = match error {
+            BoundaryError::Model(source @ ModelError::OpenLoop { .. }) => {
+                return Self::Problem {
+                    place: "scene.joints".to_owned(),
+                    reason: source.to_string(),
+                };
+            }
             BoundaryError::Model(source) => ("coordinates", source.to_string()),
             BoundaryError::NoEquilibrium {
                 source: EquilibriumError::Stopped(status),
@@ -56,7 +63,9 @@ impl WorkflowError {
                 // What nothing holds is wrong input; loads without an equilibrium are not.
                 let is_borne = !matches!(
                     source,
-                    EquilibriumError::LimitPoint { .. } | EquilibriumError::NoStart
+                    EquilibriumError::LimitPoint { .. }
+                        | EquilibriumError::NoStart
+                        | EquilibriumError::OpenLoop { .. }
                 );
                 if !is_borne {
                     return Self::NoEquilibrium {

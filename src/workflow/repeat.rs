@@ -3,7 +3,7 @@
 use std::ops::ControlFlow;
 
 use crate::control::Solution;
-use crate::dynamics::{DiscreteTrajectory, Start, StepError, simulate};
+use crate::dynamics::{DiscreteTrajectory, Start, simulate};
 use crate::ipopt::interrupt;
 use crate::model::Model;
 use crate::model::system::JointKind;
@@ -23,8 +23,6 @@ pub(crate) struct Repeat {
     pub(crate) failure: Option<String>,
     /// True if some of its steps had to be halved.
     pub(crate) is_halved: bool,
-    /// True if redundant constraints keep a step forward from being taken at all.
-    is_untestable: bool,
 }
 
 impl Repeat {
@@ -46,10 +44,7 @@ impl Repeat {
         let instants = 0..=discrete.intervals() / steps;
         let of = |k: usize| Distance::between(model, &motion, steps * k, optimal, k);
         let ended = (discrete.intervals() < steps * n).then(|| "interrupted".to_owned());
-        let is_untestable = discrete.intervals() == 0
-            && matches!(&failure, Some(StepError::Singular { redundant, .. }) if !redundant.is_empty());
         Self {
-            is_untestable,
             is_halved: discrete.report.halved > 0,
             distances: instants.map(of).collect(),
             failure: failure.map(|error| error.to_string()).or(ended),
@@ -78,7 +73,7 @@ impl Repeat {
         }
         let sizes: Vec<f64> = self.distances.iter().map(|d| d.size(model)).collect();
         let Some(k) = sizes.iter().position(|&size| size > same || size.is_nan()) else {
-            let failure = self.failure.clone().filter(|_| !self.is_untestable)?;
+            let failure = self.failure.clone()?;
             return Some(Cause::Ends { steps: 1, failure });
         };
         let k = k.max(1);

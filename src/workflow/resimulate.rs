@@ -11,7 +11,7 @@ use serde::Serialize;
 
 use crate::control::{BoundaryConditions, Solution};
 use crate::dynamics::{DiscreteTrajectory, Start, StepError};
-use crate::model::Model;
+use crate::model::{Model, OPEN};
 use crate::workflow::cause::Cause;
 use crate::workflow::distance::Distance;
 use crate::workflow::held::{self, DURATIONS, Held, constant, held};
@@ -81,6 +81,14 @@ pub struct Finer {
     pub failure: Option<String>,
 }
 
+/// The first instant of an optimum that opens a loop, beyond what the solver of a `tolerance` leaves of its equations.
+fn open(model: &Model, optimal: &Solution, tolerance: f64) -> Option<Cause> {
+    let allowed = OPEN.max(SAME.1 * tolerance);
+    let mut instants = optimal.z.iter();
+    let open = instants.find_map(|z| model.open_loop(z, allowed));
+    open.map(|(constraint, gap)| Cause::Open { constraint, gap })
+}
+
 /// Simulates optimal voltages; what the solver of a `tolerance` leaves of its equations is no deviation.
 pub(crate) fn resimulate(
     model: &Model,
@@ -99,7 +107,8 @@ pub(crate) fn resimulate(
         held: None,
         drift: None,
         failure: own.failure.clone(),
-        cause: own.cause(model, optimal, SAME.0.max(SAME.1 * tolerance)),
+        cause: open(model, optimal, tolerance)
+            .or_else(|| own.cause(model, optimal, SAME.0.max(SAME.1 * tolerance))),
         half: None,
         end: None,
     };

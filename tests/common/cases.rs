@@ -1,6 +1,7 @@
 //! A list of control problems that together call for every effect, joint, limit, goal and objective.
 
 pub use super::limited::{all_limits, charge_limits};
+use super::pairs::pairs;
 use super::systems::{
     GRAVITY, ball, blocks, branched, charged, loaded, pressed, remembering, satellite, sprung,
     stiffening, stiffening_blocks, tied,
@@ -357,6 +358,11 @@ pub fn cases() -> Vec<Case> {
         case("ball in a socket", ball(), &|c| {
             c.start = joints(&[(1, 0.2)]);
             c.goal = joints(&[(1, 0.3), (2, -0.2)]);
+        }),
+        case("universal, cylindrical, planar", pairs(), &|c| {
+            c.start = joints(&[]);
+            c.goal = partly(&[(0, [None, Some(70.0), None])], &[]);
+            c.duration = free;
         }),
         case("satellite, free time", satellite(), &|c| {
             c.start = joints(&[(0, 0.1)]);

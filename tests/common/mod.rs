@@ -7,6 +7,7 @@ pub mod counting;
 pub mod force;
 pub mod limited;
 pub mod loaded;
+pub mod pairs;
 pub mod programs;
 pub mod random;
 pub mod random_goals;

@@ -41,11 +41,15 @@ fn what_is_not_offered_is_answered_so() {
                 .contains("expected one of")
         );
     }
-    let scene = SCENE.replacen("\"revolute\"", "\"universal\"", 1);
+    let scene = SCENE.replacen("\"revolute\"", "\"helical\"", 1);
     assert_words(
         &scene,
         PROBLEM,
-        &["\"universal\"", "not offered", "two revolute ones"],
+        &[
+            "\"helical\"",
+            "not offered",
+            "\"universal\" (a Cardan or Hooke joint)",
+        ],
         &["did you mean"],
     );
     // A slip of the pen is none of these.

@@ -4,9 +4,9 @@ use crate::common::{
     at_reference, bare, body, column, distance, joint, motion, placed, richardson, runge_kutta,
     spin,
 };
-use nalgebra::{Matrix3, Rotation3, SVector, Vector2, Vector3};
+use nalgebra::{Matrix3, SVector, Vector2, Vector3};
 use proboscis::dynamics::trajectory::Trajectory;
-use proboscis::dynamics::{Start, StepError, Stepper, energies, observations};
+use proboscis::dynamics::{Start, energies, observations};
 use proboscis::model::system::{Body, JointKind, System};
 use proboscis::model::{Coordinates, Model};
 
@@ -24,7 +24,7 @@ pub(crate) fn frame(d3: &Vector3<f64>) -> Matrix3<f64> {
 }
 
 /// A round bar from `a` to `b`.
-fn bar(name: &str, mass: f64, axial: f64, a: Vector3<f64>, b: Vector3<f64>) -> Body {
+pub(crate) fn bar(name: &str, mass: f64, axial: f64, a: Vector3<f64>, b: Vector3<f64>) -> Body {
     let transverse = mass * (b - a).norm_squared() / 12.0;
     body(
         name,
@@ -44,7 +44,7 @@ struct Loop {
     gravity: Vector3<f64>,
 }
 
-const AXIAL: f64 = 0.01;
+pub(crate) const AXIAL: f64 = 0.01;
 
 impl Loop {
     fn scene(&self) -> System {
@@ -245,54 +245,6 @@ fn a_spatial_four_bar_moves_like_its_one_degree_of_freedom() {
     println!("energy of the loop: {errors:?}");
     for pair in errors.windows(2) {
         assert!(((pair[0] / pair[1]).log2() - 2.0).abs() < 0.2);
-    }
-}
-
-/// Four parallel hinges: a plane four-bar, overconstrained by three equations, in a plane turned by `turn`.
-fn plane_four_bar(turn: &Rotation3<f64>) -> System {
-    let at = |x: f64, y: f64| turn * Vector3::new(x, y, 0.0);
-    let [o, a, b, c] = [at(0.0, 0.0), at(0.3, -0.8), at(1.1, -1.0), at(1.0, 0.0)];
-    let bodies = vec![
-        bar("crank", 1.0, AXIAL, o, a),
-        bar("coupler", 1.0, AXIAL, a, b),
-        bar("rocker", 1.0, AXIAL, c, b),
-    ];
-    let axis = turn * Vector3::z();
-    let hinge = JointKind::Revolute { axis };
-    let joints = vec![
-        joint("hinge1", hinge, None, 0, o),
-        joint("hinge2", hinge, Some(0), 1, a),
-        joint("hinge3", hinge, Some(1), 2, b),
-        joint("hinge4", hinge, None, 2, c),
-    ];
-    bare(bodies, joints, Some(at(0.0, -9.81)))
-}
-
-#[test]
-fn redundant_constraints_are_refused_by_name() {
-    let h = 0.01;
-    for turn in [
-        Rotation3::identity(),
-        Rotation3::from_euler_angles(0.4, -0.9, 1.3),
-        Rotation3::from_euler_angles(-1.1, 0.2, 0.7),
-    ] {
-        let model = Model::new(plane_four_bar(&turn), None, h, &[]).unwrap();
-        assert_eq!(model.coordinates, Coordinates::Redundant);
-        let start = Start::at_rest(&model, at_reference(&model));
-        let mut stepper = Stepper::new(&model, &start.z, &start.momentum, Default::default());
-        let failure = (0..50).find_map(|_| stepper.step(h, &[]).err());
-        println!(
-            "{failure:?} after {} ms, {:?}",
-            stepper.time(),
-            stepper.report()
-        );
-        assert!(
-            matches!(failure, Some(StepError::Singular { .. })),
-            "{failure:?}"
-        );
-        let message = failure.expect("it failed").to_string();
-        assert!(message.contains("redundant"), "{message}");
-        assert_eq!(stepper.time(), 0.0);
     }
 }
 

@@ -14,6 +14,7 @@ mod first_hour;
 mod gltf;
 mod kept;
 mod killed;
+mod loops;
 mod messages;
 mod names;
 mod observed;

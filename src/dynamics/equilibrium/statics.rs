@@ -16,7 +16,7 @@ use crate::dynamics::tangent::{EntryList, Tangent};
 use crate::functional::{Order, TermKind};
 use crate::ipopt::interrupt;
 use crate::math::Vector;
-use crate::model::{Model, Role};
+use crate::model::{Model, OPEN, Role};
 use crate::sparse::{Singular, Symmetry};
 
 /// Limit of Newton iterations.
@@ -326,6 +326,11 @@ impl<'m> Statics<'m> {
             }
             self.residual = update;
             if size < UPDATE || (size < 1e-8 && size >= 0.5 * last) {
+                if let Some((constraint, gap)) =
+                    self.model.open_loop(&self.configuration(state), OPEN)
+                {
+                    return Err(EquilibriumError::OpenLoop { constraint, gap });
+                }
                 return Ok(NewtonOutcome::Converged);
             }
             last = size;

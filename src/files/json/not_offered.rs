@@ -127,19 +127,10 @@ const TABLE: &[NotOffered] = &[
     },
     NotOffered {
         words: &[
-            "universal",
-            "cylindrical",
-            "planar",
-            "screw",
-            "helical",
-            "hinge",
-            "ball",
-            "pin",
-            "slider",
-            "weld",
+            "cardan", "hooke", "screw", "helical", "hinge", "ball", "pin", "slider", "weld",
             "rigid",
         ],
-        said: "joints are \"revolute\" (a hinge), \"prismatic\" (a slider), \"spherical\" (a ball joint), \"floating\" and \"fixed\" (a weld); a universal joint is two revolute ones with a small body between them",
+        said: "joints are \"revolute\" (a hinge), \"prismatic\" (a slider), \"universal\" (a Cardan or Hooke joint), \"cylindrical\", \"planar\", \"spherical\" (a ball joint), \"floating\" and \"fixed\" (a weld)",
     },
     NotOffered {
         words: &[

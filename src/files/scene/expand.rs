@@ -5,8 +5,9 @@ use nalgebra::Vector3;
 use crate::files::scene::point::direction;
 use crate::files::scene::point::{Point, PointSpec};
 use crate::files::scene::spec::{
-    AxisSpec, BodySpec, ChainSpec, CylinderSpec, JointSpec, MarkerSpec, MuscleSpec, SceneSpec,
+    BodySpec, ChainSpec, CylinderSpec, MarkerSpec, MuscleSpec, SceneSpec,
 };
+use crate::files::scene::spec_joints::{AxisSpec, JointSpec};
 use crate::files::units::quantity::Quantity;
 
 /// The same scene without shorthand; the parts of the chain come after those that are written.
@@ -89,6 +90,9 @@ impl Link {
             name: format!("joint{}", self.number),
             revolute: Some(AxisSpec { axis }),
             prismatic: None,
+            universal: None,
+            cylindrical: None,
+            planar: None,
             spherical: None,
             floating: None,
             fixed: None,

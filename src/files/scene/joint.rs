@@ -5,20 +5,26 @@ use crate::files::json::scope::Scope;
 use crate::files::scene::names::find_body;
 use crate::files::scene::point::unit_axis;
 use crate::files::scene::point::vector;
-use crate::files::scene::spec::{AxisSpec, JointSpec};
+use crate::files::scene::spec_joints::{AxesSpec, AxisSpec, JointSpec};
 use crate::files::signal::signal;
 use crate::files::units::quantity::{
     Angle, Damping, JointCoordinate, Kind, Length, PhysicalQuantity, Quantity, RotationalDamping,
     RotationalStiffness, Stiffness,
 };
-use crate::math::Signal;
+use crate::math::{Signal, Vector, shortest};
 use crate::model::system::{Joint, JointKind, JointSpring, JointStops};
+
+/// Cosine up to which axes count as perpendicular.
+const PERPENDICULAR: f64 = 1e-3;
 
 /// Kinds of a joint, with the one key that names each.
 #[derive(Clone, Copy, PartialEq)]
 enum JointKey {
     Revolute,
     Prismatic,
+    Universal,
+    Cylindrical,
+    Planar,
     Spherical,
     Floating,
     Fixed,
@@ -79,6 +85,15 @@ fn key(spec: &JointSpec, scope: &Scope<'_>) -> Result<JointKey, SceneError> {
             spec.prismatic.as_ref().map(|_| JointKey::Prismatic),
         ),
         (
+            "universal",
+            spec.universal.as_ref().map(|_| JointKey::Universal),
+        ),
+        (
+            "cylindrical",
+            spec.cylindrical.as_ref().map(|_| JointKey::Cylindrical),
+        ),
+        ("planar", spec.planar.as_ref().map(|_| JointKey::Planar)),
+        (
             "spherical",
             spec.spherical.as_ref().map(|_| JointKey::Spherical),
         ),
@@ -102,10 +117,34 @@ fn kind(spec: &JointSpec, key: JointKey, scope: &Scope<'_>) -> Result<JointKind,
         JointKey::Prismatic => JointKind::Prismatic {
             axis: axis("prismatic", &spec.prismatic)?,
         },
+        JointKey::Universal => JointKind::Universal {
+            axes: perpendicular(&spec.universal, &scope.key("universal").key("axes"))?,
+        },
+        JointKey::Cylindrical => JointKind::Cylindrical {
+            axis: axis("cylindrical", &spec.cylindrical)?,
+        },
+        JointKey::Planar => {
+            let normal = spec.planar.as_ref().map_or([0.0; 3], |spec| spec.normal);
+            let normal = unit_axis(&normal, &scope.key("planar").key("normal"))?;
+            JointKind::Planar { normal }
+        }
         JointKey::Spherical => JointKind::Spherical,
         JointKey::Floating => JointKind::Floating,
         JointKey::Fixed => JointKind::Fixed,
     })
+}
+
+/// The axes of a universal joint, which are perpendicular to each other up to the digits that are written.
+fn perpendicular(spec: &Option<AxesSpec>, scope: &Scope<'_>) -> Result<[Vector; 2], SceneError> {
+    let written = spec.as_ref().map_or([[0.0; 3]; 2], |spec| spec.axes);
+    let first = unit_axis(&written[0], &scope.index(0))?;
+    let second = unit_axis(&written[1], &scope.index(1))?;
+    let cosine = first.dot(&second);
+    if cosine.abs() > PERPENDICULAR {
+        let found = format!("axes at {} deg", shortest(cosine.acos().to_degrees(), 5));
+        return Err(scope.wrong(found, "axes at 90 deg to each other"));
+    }
+    Ok([first, (second - first * cosine).normalize()])
 }
 
 /// The kind of a constant of the joint coordinate; `None` where a joint has not exactly one.
@@ -113,7 +152,7 @@ fn of_coordinate(key: JointKey, angular: Kind, linear: Kind) -> Option<Kind> {
     match key {
         JointKey::Revolute => Some(angular),
         JointKey::Prismatic => Some(linear),
-        JointKey::Spherical | JointKey::Floating | JointKey::Fixed => None,
+        _ => None,
     }
 }
 

@@ -1,4 +1,4 @@
-//! The scene file: its types as written (`spec`, `spec_material`, `spec_solids`, `point`) and their conversion to a [`System`](crate::model::System).
+//! The scene file: its types as written (`spec`, `spec_joints`, `spec_material`, `spec_solids`, `point`) and their conversion to a [`System`](crate::model::System).
 //!
 //! - `build`: the scene; `body`, `material`, `muscle`, `marker`: its parts; `components`: kinds of which each has one file for both.
 //! - `solid`, `mesh`, `electrodes`, `nodes`: elastic solids; `graph`: connections by joints; `names`: resolution of names.
@@ -26,6 +26,7 @@ pub mod point;
 mod prestretch;
 pub(crate) mod solid;
 pub mod spec;
+pub mod spec_joints;
 pub mod spec_material;
 pub mod spec_solids;
 pub(crate) mod trunk;

@@ -7,13 +7,10 @@ use std::collections::BTreeMap;
 use crate::files::scene::circuit::CircuitSpec;
 use crate::files::scene::components::{LoadSpec, SpringSpec, TendonSpec};
 use crate::files::scene::point::{Point, PointSpec};
+use crate::files::scene::spec_joints::JointSpec;
 use crate::files::scene::spec_material::MaterialSpec;
 use crate::files::scene::spec_solids::{ElementSpec, SolidSpec};
-use crate::files::signal::spec::SignalSpec;
-use crate::files::units::quantity::{
-    Acceleration, Angle, JointCoordinate, JointDamping, JointStiffness, Length, Mass,
-    MomentOfInertia, Quantity,
-};
+use crate::files::units::quantity::{Acceleration, Length, Mass, MomentOfInertia, Quantity};
 
 /// Scene. Positions and axes are given in the reference configuration, in the ground frame; parts that are not written do not exist.
 #[derive(Clone, Debug, Default, Serialize, Deserialize, JsonSchema)]
@@ -113,88 +110,6 @@ pub struct SphereSpec {
     /// Radius, SI unit m.
     pub radius: Quantity<Length>,
 }
-
-/// A joint: exactly one of `revolute`, `prismatic`, `spherical`, `floating`, `fixed`.
-#[derive(Clone, Debug, Serialize, Deserialize, JsonSchema)]
-#[serde(deny_unknown_fields)]
-pub struct JointSpec {
-    /// Unique name.
-    pub name: String,
-    /// Rotation about an axis.
-    #[serde(default, skip_serializing_if = "Option::is_none")]
-    pub revolute: Option<AxisSpec>,
-    /// Translation along an axis.
-    #[serde(default, skip_serializing_if = "Option::is_none")]
-    pub prismatic: Option<AxisSpec>,
-    /// Rotation about a point.
-    #[serde(default, skip_serializing_if = "Option::is_none")]
-    pub spherical: Option<Nothing>,
-    /// Any motion: the child is as free as without the joint, and results give its orientation in the first body.
-    #[serde(default, skip_serializing_if = "Option::is_none")]
-    pub floating: Option<Nothing>,
-    /// No motion.
-    #[serde(default, skip_serializing_if = "Option::is_none")]
-    pub fixed: Option<Nothing>,
-    /// Body on the side of the root, or `ground`.
-    pub parent: String,
-    /// Body on the other side.
-    pub child: String,
-    /// Place, SI unit m.
-    pub at: Point,
-    /// True if the joint is locked as it stands in the reference configuration: it is then `fixed`, and the bodies that it connects are one
-    /// body.
-    #[serde(default, skip_serializing_if = "std::ops::Not::not")]
-    pub locked: bool,
-    /// Damping of the joint coordinate, SI unit N m s/rad (revolute) or N s/m (prismatic).
-    #[serde(default, skip_serializing_if = "Option::is_none")]
-    pub damping: Option<Quantity<JointDamping>>,
-    /// Stiffness of a spring of the joint coordinate, SI unit N m/rad (revolute) or N/m (prismatic).
-    #[serde(default, skip_serializing_if = "Option::is_none")]
-    pub stiffness: Option<Quantity<JointStiffness>>,
-    /// Angle of a revolute joint at which its spring exerts no torque, SI unit rad; 0 where absent: the reference configuration. It counts whole
-    /// turns.
-    #[serde(default, skip_serializing_if = "Option::is_none")]
-    pub rest_angle: Option<Quantity<Angle>>,
-    /// Displacement of a prismatic joint at which its spring exerts no force, SI unit m; 0 where absent.
-    #[serde(default, skip_serializing_if = "Option::is_none")]
-    pub rest_displacement: Option<Quantity<Length>>,
-    /// Elastic stops of the joint coordinate.
-    #[serde(default, skip_serializing_if = "Option::is_none")]
-    pub stops: Option<StopsSpec>,
-    /// Prescribed coordinate as a function of time, SI unit rad or m: a constant, or an object with `ramp`, `sine`, `table` or `csv`.
-    #[serde(default, skip_serializing_if = "Option::is_none")]
-    pub motion: Option<SignalSpec<JointCoordinate>>,
-}
-
-/// Elastic stops of a joint coordinate: `min`, `max` or both.
-#[derive(Clone, Debug, Serialize, Deserialize, JsonSchema)]
-#[serde(deny_unknown_fields)]
-pub struct StopsSpec {
-    /// Lowest coordinate without force, SI unit rad or m.
-    #[serde(default, skip_serializing_if = "Option::is_none")]
-    pub min: Option<Quantity<JointCoordinate>>,
-    /// Highest coordinate without force, SI unit rad or m.
-    #[serde(default, skip_serializing_if = "Option::is_none")]
-    pub max: Option<Quantity<JointCoordinate>>,
-    /// Stiffness beyond, SI unit N m/rad (revolute) or N/m (prismatic).
-    pub stiffness: Quantity<JointStiffness>,
-    /// Width around a stop over which the stiffness grows from zero, SI unit rad or m, for optimal control; it jumps where not written.
-    #[serde(default, skip_serializing_if = "Option::is_none")]
-    pub smoothing: Option<Quantity<JointCoordinate>>,
-}
-
-/// An axis.
-#[derive(Clone, Debug, Serialize, Deserialize, JsonSchema)]
-#[serde(deny_unknown_fields)]
-pub struct AxisSpec {
-    /// Direction, of any length.
-    pub axis: [f64; 3],
-}
-
-/// An object without entries.
-#[derive(Clone, Debug, Serialize, Deserialize, JsonSchema)]
-#[serde(deny_unknown_fields)]
-pub struct Nothing {}
 
 /// Declares the keys of stacked muscles: those that all have, and those of their places.
 macro_rules! stacked {

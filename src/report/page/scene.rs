@@ -211,8 +211,10 @@ impl Stage<'_> {
         let (system, trajectory) = (self.run.system, self.run.trajectory);
         let joint = |joint: &Joint| {
             let axis = match joint.kind {
-                JointKind::Revolute { axis } | JointKind::Prismatic { axis } => Some(axis),
-                JointKind::Spherical | JointKind::Floating | JointKind::Fixed => None,
+                JointKind::Revolute { axis }
+                | JointKind::Prismatic { axis }
+                | JointKind::Cylindrical { axis } => Some(axis),
+                _ => None,
             };
             let at = |shift: Vector3<f64>| {
                 let point = Attachment {
