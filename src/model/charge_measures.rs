@@ -10,6 +10,9 @@ use crate::model::internal::InternalKind;
 use crate::model::measures::{Known, Shape, instant, interval};
 use crate::model::quantity::Quantity;
 
+/// Vectors of span and charge, and the scalar of the voltage.
+type Read = ([(usize, Stencil); 2], [usize; 1]);
+
 impl Known<'_> {
     /// The measure of a quantity of a muscle behind a resistor.
     pub(super) fn of_charge(
@@ -30,11 +33,11 @@ impl Known<'_> {
                 instant(shape, FlowingChargeField { field, unit }, read)
             }
             Quantity::SourceCurrent { muscle, unit } => {
-                let (current, read, scalars) = self.source_current(muscle, unit, vectors)?;
+                let (current, (read, scalars)) = self.source_current(muscle, unit, vectors)?;
                 interval::<_, 7, 2, 1>(shape, current, read, scalars)
             }
             Quantity::SourcePower { muscle, unit } => {
-                let (current, read, scalars) = self.source_current(muscle, unit, vectors)?;
+                let (current, (read, scalars)) = self.source_current(muscle, unit, vectors)?;
                 interval::<_, 7, 2, 1>(shape, SourcePower(current), read, scalars)
             }
             _ => return None,
@@ -55,7 +58,7 @@ impl Known<'_> {
         muscle: usize,
         unit: f64,
         vectors: &mut Vectors,
-    ) -> Option<(SourceCurrent, [(usize, Stencil); 2], [usize; 1])> {
+    ) -> Option<(SourceCurrent, Read)> {
         let voltage = self.variables.input(muscle)?;
         let (capacitance, read) = self.charged(muscle, vectors)?;
         let circuit = self.presolved.system.muscles[muscle].circuit?;
@@ -65,6 +68,6 @@ impl Known<'_> {
             resistance: circuit.resistance?,
             unit,
         };
-        Some((current, read.map(|v| (v, Stencil::Mid)), [voltage]))
+        Some((current, (read.map(|v| (v, Stencil::Mid)), [voltage])))
     }
 }

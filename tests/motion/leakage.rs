@@ -55,6 +55,9 @@ fn exchanged(model: &Model, discrete: &DiscreteTrajectory) -> [f64; 4] {
     .map(last)
 }
 
+/// Time constants of resistor and leak, charge at the start and voltage, and the charge in time.
+type Case<'c> = ([f64; 2], [f64; 2], &'c dyn Fn(f64) -> f64);
+
 #[test]
 fn a_charge_leaks_and_charges_as_in_closed_form() {
     let volts = 1000.0;
@@ -62,7 +65,7 @@ fn a_charge_leaks_and_charges_as_in_closed_form() {
     // resistor that passes next to nothing it discharges through its leak.
     let charging = |t: f64| 0.75 * volts * CAPACITANCE * (1.0 - (-t / 22.5).exp());
     let discharging = |t: f64| volts * CAPACITANCE * (-t / 90.0).exp();
-    let cases: [([f64; 2], [f64; 2], &dyn Fn(f64) -> f64); 2] = [
+    let cases: [Case<'_>; 2] = [
         ([30.0, 90.0], [0.0, volts], &charging),
         ([9e15, 90.0], [volts * CAPACITANCE, 0.0], &discharging),
     ];
