@@ -25,6 +25,13 @@ Text: TypeAlias = "str | Part | PathLike[str]"
 """A text; a part stands for its name, a result for its folder."""
 
 
+class Axes(TypedDict):
+    """Two axes."""
+
+    axes: Sequence[Sequence[float] | Numbers]
+    """Directions of any length, perpendicular to each other: that of the parent, then that of the child."""
+
+
 AxisName: TypeAlias = "Literal['x', 'y', 'z']"
 """An axis of the ground frame."""
 
@@ -48,10 +55,13 @@ class Box(TypedDict):
 
 
 class Circuit(TypedDict):
-    """Circuit between a source and the electrodes of a muscle."""
+    """Circuit between a source and the electrodes of a muscle: a resistor, a leak or both."""
 
-    resistance: Quantity
-    """Resistance in series, SI unit Ohm."""
+    leakage: NotRequired[Quantity]
+    """Resistance of a leak parallel to the electrodes, SI unit Ohm."""
+
+    resistance: NotRequired[Quantity]
+    """Resistance in series, SI unit Ohm; without it the electrodes have the voltage of the source."""
 
 
 class Corners(TypedDict):
@@ -217,6 +227,13 @@ MuscleModel: TypeAlias = "Literal['lumped', 'finite_elements']"
 """Model of a muscle."""
 
 
+class Normal(TypedDict):
+    """A plane."""
+
+    normal: Sequence[float] | Numbers
+    """Direction across the plane, of any length."""
+
+
 class Nothing(TypedDict):
     """An object without entries."""
 
@@ -260,6 +277,9 @@ class Pair(TypedDict):
 
     model: NotRequired[MuscleModel]
     """Model; `lumped` where not written."""
+
+    prestretch: NotRequired[float]
+    """Stretch before it was glued between its ends, of a lumped muscle; 1 where not written."""
 
     rest_length: Quantity
     """Length at rest, SI unit m."""
@@ -456,6 +476,24 @@ Coordinates: TypeAlias = "Literal['reduced', 'redundant']"
 """Coordinates in which a problem is solved; reduced where the joints form a tree, unless written."""
 
 
+class CurrentLimit(TypedDict):
+    """Limits of the mean current in each interval from one source (`"source": name`) or each (`"sources": "all"`) of lumped muscles behind
+    resistors: `min`, `max` or both.
+    """
+
+    max: NotRequired[Quantity]
+    """Upper bound, SI unit A."""
+
+    min: NotRequired[Quantity]
+    """Lower bound, SI unit A."""
+
+    source: NotRequired[Text]
+    """Name of the source: that of its muscle or electrode."""
+
+    sources: NotRequired[All]
+    """All sources."""
+
+
 Duration: TypeAlias = "Quantity | FreeDuration"
 """A time, or bounds of a free one."""
 
@@ -648,7 +686,10 @@ class JointRateLimit(TypedDict):
 
 
 class Limit(TypedDict):
-    """A path limit: exactly one of the five."""
+    """A path limit: exactly one of the eight."""
+
+    current: NotRequired[CurrentLimit]
+    """Limits of the current of sources."""
 
     electric_field: NotRequired[ElectricFieldLimit]
     """Breakdown field of muscles or elastic blocks."""
@@ -662,8 +703,14 @@ class Limit(TypedDict):
     marker: NotRequired[MarkerLimit]
     """Region of a marker."""
 
+    power: NotRequired[PowerLimit]
+    """Limits of the power of sources."""
+
     stretch: NotRequired[StretchLimit]
     """Limits of the stretch of a muscle."""
+
+    voltage_rate: NotRequired[VoltageRateLimit]
+    """Limits of the rate of the voltage of sources."""
 
 
 LinearSolver: TypeAlias = "Literal['faer', 'mumps']"
@@ -745,6 +792,24 @@ class Path(TypedDict):
 
     z: NotRequired[Signal]
     """Along z."""
+
+
+class PowerLimit(TypedDict):
+    """Limits of the mean power in each interval of one source (`"source": name`) or each (`"sources": "all"`) of lumped muscles behind resistors:
+    `min`, `max` or both.
+    """
+
+    max: NotRequired[Quantity]
+    """Upper bound, SI unit W."""
+
+    min: NotRequired[Quantity]
+    """Lower bound, SI unit W."""
+
+    source: NotRequired[Text]
+    """Name of the source: that of its muscle or electrode."""
+
+    sources: NotRequired[All]
+    """All sources."""
 
 
 class RandomGuess(TypedDict):
@@ -932,6 +997,24 @@ class Track(TypedDict):
 
     marker: NotRequired[TrackMarker]
     """A marker follows a path in time."""
+
+
+class VoltageRateLimit(TypedDict):
+    """Limits of the rate of the voltage of one source (`"source": name`) or each (`"sources": "all"`) from interval to interval: `min`, `max` or
+    both. The duration has to be given.
+    """
+
+    max: NotRequired[Quantity]
+    """Upper bound, SI unit V/s."""
+
+    min: NotRequired[Quantity]
+    """Lower bound, SI unit V/s."""
+
+    source: NotRequired[Text]
+    """Name of the source: that of its muscle or electrode."""
+
+    sources: NotRequired[All]
+    """All sources."""
 
 
 Voltages: TypeAlias = "Solution | Table | Mapping[Any, Signal]"

@@ -113,17 +113,19 @@ class Body(Part):
 
 
 class Joint(Part):
-    """A joint: exactly one of `revolute`, `prismatic`, `spherical`, `floating`, `fixed`.
+    """A joint: exactly one of `revolute`, `prismatic`, `universal`, `cylindrical`, `planar`, `spherical`, `floating`, `fixed`.
 
     * `at`: Place, SI unit m.
     * `child`: Body on the other side.
     * `parent`: Body on the side of the root, or `ground`.
+    * `cylindrical`: Translation along an axis and rotation about it.
     * `damping`: Damping of the joint coordinate, SI unit N m s/rad (revolute) or N s/m (prismatic).
     * `fixed`: No motion.
     * `floating`: Any motion: the child is as free as without the joint, and results give its orientation in the first body.
     * `locked`: True if the joint is locked as it stands in the reference configuration: it is then `fixed`, and the bodies that it connects are
       one body.
     * `motion`: Prescribed coordinate as a function of time, SI unit rad or m: a constant, or an object with `ramp`, `sine`, `table` or `csv`.
+    * `planar`: Translation in a plane and rotation about its normal.
     * `prismatic`: Translation along an axis.
     * `rest_angle`: Angle of a revolute joint at which its spring exerts no torque, SI unit rad; 0 where absent: the reference configuration. It
       counts whole turns.
@@ -132,6 +134,7 @@ class Joint(Part):
     * `spherical`: Rotation about a point.
     * `stiffness`: Stiffness of a spring of the joint coordinate, SI unit N m/rad (revolute) or N/m (prismatic).
     * `stops`: Elastic stops of the joint coordinate.
+    * `universal`: Rotation about an axis of the parent and a perpendicular one of the child: a Cardan or Hooke joint.
     """
 
     kind, noun = "joints", "joint"
@@ -143,11 +146,13 @@ class Joint(Part):
         at: Sequence[Quantity] | Numbers,
         child: Text,
         parent: Text,
+        cylindrical: entries.Axis | None = None,
         damping: Quantity | None = None,
         fixed: entries.Nothing | None = None,
         floating: entries.Nothing | None = None,
         locked: bool | None = None,
         motion: entries.Signal | None = None,
+        planar: entries.Normal | None = None,
         prismatic: entries.Axis | None = None,
         rest_angle: Quantity | None = None,
         rest_displacement: Quantity | None = None,
@@ -155,6 +160,7 @@ class Joint(Part):
         spherical: entries.Nothing | None = None,
         stiffness: Quantity | None = None,
         stops: entries.Stops | None = None,
+        universal: entries.Axes | None = None,
     ) -> None:
         super().__init__(
             name,
@@ -162,11 +168,13 @@ class Joint(Part):
                 "at": at,
                 "child": child,
                 "parent": parent,
+                "cylindrical": cylindrical,
                 "damping": damping,
                 "fixed": fixed,
                 "floating": floating,
                 "locked": locked,
                 "motion": motion,
+                "planar": planar,
                 "prismatic": prismatic,
                 "rest_angle": rest_angle,
                 "rest_displacement": rest_displacement,
@@ -174,6 +182,7 @@ class Joint(Part):
                 "spherical": spherical,
                 "stiffness": stiffness,
                 "stops": stops,
+                "universal": universal,
             },
         )
 
@@ -191,6 +200,7 @@ class Muscle(Part):
     * `elements`: Elements along both sides of the cross-section and along the span; of `finite_elements` only.
     * `layers`: Layers of the model along the span, a divisor of the elements there, which is its default; of `finite_elements` only.
     * `model`: Model; `lumped` where not written.
+    * `prestretch`: Stretch before it was glued between its ends, of a lumped muscle; 1 where not written.
     * `section_inertia`: True if the inertia of the changing cross-section is taken into account.
     """
 
@@ -210,6 +220,7 @@ class Muscle(Part):
         elements: Sequence[int] | Numbers | None = None,
         layers: int | None = None,
         model: entries.MuscleModel | None = None,
+        prestretch: float | None = None,
         section_inertia: bool | None = None,
     ) -> None:
         super().__init__(
@@ -225,6 +236,7 @@ class Muscle(Part):
                 "elements": elements,
                 "layers": layers,
                 "model": model,
+                "prestretch": prestretch,
                 "section_inertia": section_inertia,
             },
         )
