@@ -13,6 +13,7 @@ use crate::report::axes::{Axis, Extent};
 use crate::report::lines::{LinePlot, Series};
 use crate::report::style;
 use crate::tasks::tracking_messages;
+use crate::workflow::tracking::Tracked;
 use crate::workflow::violations::Violation;
 use nalgebra::Vector3;
 use std::collections::BTreeMap;
@@ -51,7 +52,7 @@ pub(super) fn rows(summary: &Summary) -> Vec<(String, String)> {
                 row(&format!("drift when held for {held} s"), of(drift));
             }
         }
-        for (key, value) in summary.tracking.iter().map(tracking_messages::row) {
+        for (key, value) in summary.tracking.iter().map(tracking_row) {
             row(&key, value);
         }
         for violation in &program.violations {
@@ -157,4 +158,11 @@ pub(super) fn goal(model: &Model, boundary: &BoundaryConditions) -> Option<Vec<P
         model.action.map.place(&mut instant);
         model.poses(&instant)
     })
+}
+
+/// A row of a table: what follows, and its deviations.
+fn tracking_row(of: &Tracked) -> (String, String) {
+    let Tracked { kind, name, .. } = of;
+    let key = format!("deviation of {kind} {name} from its path");
+    (key, tracking_messages::words(of))
 }

@@ -32,10 +32,12 @@ impl<L: Default + Send> Batches<L> {
         mut add: impl FnMut(&E, &L),
     ) {
         // A constant, so that loops over threads are compiled only for what is kept.
-        if const { size_of::<L>() > 0 } && elements.len() >= PARALLEL && has_pool() {
-            if let Ok(mut locals) = self.0.try_lock() {
-                return Self::each_on_all_cores(&mut locals, elements, compute, add);
-            }
+        if const { size_of::<L>() > 0 }
+            && elements.len() >= PARALLEL
+            && has_pool()
+            && let Ok(mut locals) = self.0.try_lock()
+        {
+            return Self::each_on_all_cores(&mut locals, elements, compute, add);
         }
         let mut local = L::default();
         for element in elements {

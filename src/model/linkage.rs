@@ -17,6 +17,8 @@ const WEAK: f64 = 3e-4;
 const CLOSED: f64 = 1e-9;
 /// Gap at which no further update is worth its while.
 const ROUNDING: f64 = 1e-14;
+/// Coordinates at which updates have diverged.
+const FAR: f64 = 1e6;
 /// Updates towards a closed configuration.
 const UPDATES: usize = 60;
 /// Displacements from the reference that are tried, in rad and lengths of the system.
@@ -193,7 +195,11 @@ impl Linkage {
             if here.values.amax() <= ROUNDING {
                 break;
             }
-            q -= solve(&here.gradients, &here.values);
+            let next = &q - solve(&here.gradients, &here.values);
+            if !(next.iter().all(|x| x.abs() < FAR)) {
+                break;
+            }
+            q = next;
             here = self.at(&q);
         }
         (q, here)

@@ -68,6 +68,9 @@ impl Loops {
             return Ok(made);
         }
         let here = linkage.at(&DVector::zeros(n)).gradients;
+        if !here.iter().all(|value| value.is_finite()) {
+            return Ok(made);
+        }
         let own = rank(&here, NONE);
         made.mobility = Some(n - own);
         if own == m {

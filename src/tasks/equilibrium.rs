@@ -41,7 +41,7 @@ pub struct EquilibriumResult {
     /// The same as positions and voltages.
     pub trajectory: Trajectory,
     /// Muscles and blocks outside the domain of their material.
-    pub(crate) outside: Vec<Outside>,
+    pub outside: Vec<Outside>,
     /// Warnings and notes.
     pub remarks: Remarks,
     /// Seconds before the first iteration.

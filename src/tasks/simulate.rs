@@ -56,7 +56,7 @@ pub struct SimulationResult {
     /// The sum of the local errors of the steps.
     pub neglected: Option<LocalError>,
     /// Muscles and blocks outside the domain of their material.
-    pub(crate) outside: Vec<Outside>,
+    pub outside: Vec<Outside>,
     /// Warnings and notes.
     pub remarks: Remarks,
     /// Seconds before the first step.

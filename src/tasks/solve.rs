@@ -61,7 +61,7 @@ pub struct SolveResult {
     /// Values at the end for which final costs ask.
     pub final_values: Vec<FinalValue>,
     /// Muscles and blocks outside the domain of their material.
-    pub(crate) outside: Vec<Outside>,
+    pub outside: Vec<Outside>,
     /// Warnings and notes.
     pub remarks: Remarks,
 }

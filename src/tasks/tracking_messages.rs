@@ -7,20 +7,13 @@ use crate::workflow::tracking::Tracked;
 const NAMED: usize = 3;
 
 /// Deviations in words.
-fn words(of: &Tracked) -> String {
+pub(crate) fn words(of: &Tracked) -> String {
     let shown = |value: f64| match of.unit {
         "m" => format!("{} mm", significant(1e3 * value, 3)),
         unit => format!("{} {unit}", significant(value, 3)),
     };
     let [rms, most] = [of.error.rms, of.error.maximum].map(shown);
     format!("{rms} rms and at most {most}")
-}
-
-/// A row of a table: what follows, and its deviations.
-pub(crate) fn row(of: &Tracked) -> (String, String) {
-    let Tracked { kind, name, .. } = of;
-    let key = format!("deviation of {kind} {name} from its path");
-    (key, words(of))
 }
 
 /// Lines about the tracking errors of a motion; of many joints the worst.

@@ -9,7 +9,7 @@ const LISTED: usize = 4;
 
 /// A muscle or block outside the domain of its first-order dielectric.
 #[derive(Clone, Debug, Serialize)]
-pub(crate) struct Outside {
+pub struct Outside {
     /// The muscle or block.
     name: String,
     /// Largest stretch.

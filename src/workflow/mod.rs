@@ -64,6 +64,7 @@ pub use active::{Active, active};
 pub use afterwards::{Afterwards, Departure};
 pub use cause::Cause;
 pub use confirmed::EstimatedError;
+pub use domain::Outside;
 pub use effects::{EffectCounts, Plan, coupling, effect_counts};
 pub use error::WorkflowError;
 pub use final_values::FinalValue;

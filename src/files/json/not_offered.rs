@@ -60,7 +60,7 @@ const TABLE: &[NotOffered] = &[
             "body_force",
             "surface_charge",
         ],
-        said: "a motor, force, torque, pressure, traction or surface charge is an entry of \"loads\" of a scene; there are no servos that prescribe a motion",
+        said: "a motor, force, torque, pressure, traction or surface charge is an entry of \"loads\" of a scene; a servo that prescribes a motion is \"motion\" of a joint",
     },
     NotOffered {
         words: &[
