@@ -19,7 +19,7 @@ use crate::app::solution_file;
 use crate::app::summary::{self, MEASURED, Seconds, Summary};
 use crate::app::unfinished::{self, Unfinished};
 use crate::control::problem::Simulation;
-use crate::dynamics::trajectory::Observations;
+use crate::dynamics::trajectory::{Observations, Trajectory};
 use crate::dynamics::{DiscreteTrajectory, observed};
 use crate::files::Loaded;
 use crate::math::join;
@@ -28,7 +28,7 @@ use crate::report::atomic::WriteError;
 use crate::report::file_set::FileSet;
 use crate::report::origin::Origin;
 use crate::report::{self, write_run};
-use crate::tasks::{self, SimulationRequest, SimulationResult};
+use crate::tasks::{self, Assessment, SimulationRequest, SimulationResult};
 use crate::workflow::effects::Plan;
 use crate::workflow::integrate::grid;
 use crate::workflow::motion::{solved, solved_of};
@@ -58,14 +58,13 @@ pub(super) fn simulation(
     let writing = Instant::now();
     let mut summary = Summary::new(request, ended.word(), ended.model.coordinates.name());
     summary.plan = Plan::from_model(&ended.model, None, MEASURED);
-    summarise(&run, &ended, read, &mut summary);
     let mut files = FileSet::in_folder(&folder);
     let origin = request.origin(false);
-    let (observations, blocks) = observe(&run, &ended, &mut files, &origin)?;
-    summary.blocks = blocks;
+    let observed = observe(&run, &ended, &mut files, &origin)?;
+    summarise(&run, (&ended, &observed), read, &mut summary);
     write_pictures(
         &run,
-        (&ended, &observations),
+        (&ended, &observed),
         (&mut summary, asked),
         &mut files,
         &origin,
@@ -142,31 +141,42 @@ fn integrate(
     Ok((result, unfinished.made()?))
 }
 
-/// Observes a motion, and writes it with its fields at the same time.
+/// A motion with what is observed of it.
+struct Observed {
+    trajectory: Trajectory,
+    observations: Observations,
+    assessment: Assessment,
+    blocks: Option<BlockSizes>,
+}
+
+/// Observes and assesses a motion, and writes it with its fields at the same time.
 fn observe(
     run: &Run<'_>,
     ended: &SimulationResult,
     files: &mut FileSet,
     origin: &Origin,
-) -> Result<(Observations, Option<BlockSizes>), WriteError> {
+) -> Result<Observed, WriteError> {
     let SimulationResult {
-        model,
-        discrete,
-        trajectory,
-        ..
+        model, discrete, ..
     } = ended;
-    // Of many steps each takes long, and neither needs the other.
-    let (columns, written) = join(
+    // Of many steps each takes long, and most need no other.
+    let (columns, (trajectory, written, assessment)) = join(
         || observed(model, discrete),
         || {
-            let is_motion = trajectory.intervals() > 0;
-            if is_motion {
-                let kept = solved_of(model, discrete, trajectory.clone(), None);
-                solution_file::add(files, model, &kept)?;
-            }
-            let resumable = run.resumable.filter(|_| is_motion);
-            resume_file::add(files, discrete, resumable)?;
-            fields::write(files, model, discrete, origin)
+            let trajectory = Trajectory::from_discrete(model, discrete);
+            let write = || {
+                let is_motion = trajectory.intervals() > 0;
+                if is_motion {
+                    let kept = solved_of(model, discrete, trajectory.clone(), None);
+                    solution_file::add(files, model, &kept)?;
+                }
+                let resumable = run.resumable.filter(|_| is_motion);
+                resume_file::add(files, discrete, resumable)?;
+                fields::write(files, model, discrete, origin)
+            };
+            let assess = || ended.assess(&run.loaded.system, run.task, &trajectory);
+            let (written, assessment) = join(write, assess);
+            (trajectory, written, assessment)
         },
     );
     let written = written?;
@@ -174,19 +184,31 @@ fn observe(
     observations.columns.extend(columns);
     let blocks = BlockSizes::from_model(model);
     let blocks = blocks.map(|b| b.after(model, &observations, written));
-    observations.columns.extend(ended.exchange.columns());
-    Ok((observations, blocks))
+    observations.columns.extend(assessment.exchange.columns());
+    Ok(Observed {
+        trajectory,
+        observations,
+        assessment,
+        blocks,
+    })
 }
 
 /// Adds the numbers of a simulation to its summary, and the notes on them.
-fn summarise(run: &Run<'_>, ended: &SimulationResult, read: f64, summary: &mut Summary) {
+fn summarise(
+    run: &Run<'_>,
+    (ended, observed): (&SimulationResult, &Observed),
+    read: f64,
+    summary: &mut Summary,
+) {
+    let assessment = &observed.assessment;
     summary.message = ended.failure.as_ref().map(ToString::to_string);
     summary.simulation = Some(summary::Simulation::new(
         (&ended.discrete, ended.error),
         run.task,
-        ended.neglected,
+        assessment.neglected,
     ));
-    summary.domain.clone_from(&ended.outside);
+    summary.domain.clone_from(&assessment.outside);
+    summary.blocks.clone_from(&observed.blocks);
     summary.accuracy.clone_from(&ended.accuracy);
     summary.seconds = Seconds {
         total: run.began.elapsed().as_secs_f64(),
@@ -194,24 +216,27 @@ fn summarise(run: &Run<'_>, ended: &SimulationResult, read: f64, summary: &mut S
         solver: ended.seconds,
         ..Seconds::default()
     };
-    summary.energies = EnergySummary::new(&ended.exchange);
-    summary.notes.clone_from(&ended.remarks);
+    summary.energies = EnergySummary::new(&assessment.exchange);
+    summary.notes.clone_from(&assessment.remarks);
 }
 
 /// Writes tables, figures and page, next to the solution that the voltages come from, and adds what they show to the summary.
 fn write_pictures(
     run: &Run<'_>,
-    (ended, observations): (&SimulationResult, &Observations),
+    (ended, observed): (&SimulationResult, &Observed),
     (summary, asked): (&mut Summary, &[(String, String)]),
     files: &mut FileSet,
     origin: &Origin,
 ) -> Result<(), WriteError> {
     let SimulationResult {
-        model,
-        discrete,
-        trajectory,
-        ..
+        model, discrete, ..
     } = ended;
+    let Observed {
+        trajectory,
+        observations,
+        assessment,
+        ..
+    } = observed;
     let (request, task, system) = (run.request, run.task, &run.loaded.system);
     let path = task.voltages.solution();
     let earlier = path.and_then(|path| comparison::earlier(model, path));
@@ -228,7 +253,7 @@ fn write_pictures(
     summary.notes.note("shown", shown.notes.iter().cloned());
     summary.shown = shown.part;
     let mut content = page::content("Simulation", summary, asked);
-    content.rows = rows(summary, task, (model, discrete), ended.neglected);
+    content.rows = rows(summary, task, (model, discrete), assessment.neglected);
     let earlier = earlier.map(|earlier| shown.beside(earlier));
     let pictures = report::Run {
         name: "simulation",

@@ -1,6 +1,7 @@
 //! Simulations.
 
 use crate::control::problem::{self, Voltages};
+use crate::dynamics::trajectory::Trajectory;
 use crate::dynamics::{DiscreteTrajectory, Integrator, Newton, Solving};
 use crate::interface::error::{Error, Result, require, source};
 use crate::interface::handle::Handle;
@@ -83,12 +84,14 @@ impl Simulation {
         };
         let result = tasks::simulate(system, &task, request, go_on)?;
         let (failure, stopped) = (result.failure.clone(), result.stopped);
+        let trajectory = Trajectory::from_discrete(&result.model, &result.discrete);
+        let assessment = result.assess(system, &task, &trajectory);
         let motion = Box::new(Motion {
-            exchange: result.exchange,
+            exchange: assessment.exchange,
             model: Arc::new(result.model),
             discrete: Arc::new(result.discrete),
-            trajectory: result.trajectory,
-            remarks: result.remarks.0,
+            trajectory,
+            remarks: assessment.remarks.0,
         });
         match failure {
             Some(source) => Err(Error::Step { source, motion }),

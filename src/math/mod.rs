@@ -19,7 +19,9 @@ pub use digits::{no_smaller, shortest, significant};
 pub use jet::Jet;
 pub use join::cores;
 pub(crate) use join::join_if;
-pub(crate) use pool::{has_pool, join};
+pub(crate) use pool::has_pool;
+#[cfg(feature = "report")]
+pub(crate) use pool::join;
 pub use sets::DisjointSets;
 pub use signal::{Signal, in_order};
 pub use stopped::{IsOver, Stopped};

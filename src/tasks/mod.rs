@@ -13,6 +13,6 @@ pub(crate) mod tracking_messages;
 mod verdict;
 
 pub use equilibrium::{EquilibriumError, EquilibriumResult, equilibrium};
-pub use simulate::{SimulationRequest, SimulationResult, simulate};
+pub use simulate::{Assessment, SimulationRequest, SimulationResult, simulate};
 pub use solve::{SolveRequest, SolveResult, solve};
 pub use verdict::Verdict;

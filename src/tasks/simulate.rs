@@ -1,4 +1,4 @@
-//! A simulation: its motion, the error of its steps, and what is to be known of it.
+//! A simulation: its motion, and the assessment of it.
 
 use std::ops::ControlFlow;
 
@@ -8,7 +8,6 @@ use crate::dynamics::{
     DiscreteTrajectory, EnergyExchange, LocalError, StepError, local_error_of, out_of_domain,
 };
 use crate::ipopt::{Status, interrupt};
-use crate::math::join;
 use crate::model::{Model, System};
 use crate::tasks::moved_markers::moved_markers;
 use crate::tasks::simulation_messages::afterwards;
@@ -41,10 +40,6 @@ pub struct SimulationResult {
     pub model: Model,
     /// The motion as unknowns of the model.
     pub discrete: DiscreteTrajectory,
-    /// The motion as positions and voltages.
-    pub trajectory: Trajectory,
-    /// Energies from the sources.
-    pub exchange: EnergyExchange,
     /// The step that failed.
     pub failure: Option<StepError>,
     /// Status of a run that was stopped before its end.
@@ -53,16 +48,23 @@ pub struct SimulationResult {
     pub error: Option<EstimatedError>,
     /// Estimated errors, where an accuracy was wanted.
     pub accuracy: Option<Accuracy>,
+    /// Seconds before the first step.
+    pub setup: f64,
+    /// Seconds in the steps.
+    pub seconds: f64,
+}
+
+/// Energies, errors and remarks of a simulation.
+#[derive(Debug)]
+pub struct Assessment {
+    /// Energies from the sources.
+    pub exchange: EnergyExchange,
     /// The sum of the local errors of the steps.
     pub neglected: Option<LocalError>,
     /// Muscles and blocks outside the domain of their material.
     pub outside: Vec<Outside>,
     /// Warnings and notes.
     pub remarks: Remarks,
-    /// Seconds before the first step.
-    pub setup: f64,
-    /// Seconds in the steps.
-    pub seconds: f64,
 }
 
 impl SimulationResult {
@@ -79,9 +81,41 @@ impl SimulationResult {
     pub fn reached(&self) -> f64 {
         self.discrete.times[self.discrete.intervals()]
     }
+
+    /// Assesses it: a part of its own, since of many steps it takes long, and files can be written meanwhile. `trajectory` is the motion
+    /// as positions and voltages.
+    pub fn assess(
+        &self,
+        system: &System,
+        task: &Simulation,
+        trajectory: &Trajectory,
+    ) -> Assessment {
+        let (model, discrete) = (&self.model, &self.discrete);
+        let order = task.solving.integrator.order();
+        let ends = [task.start.voltages(), None];
+        let outside = domain::records(&out_of_domain(model, discrete));
+        let neglected = local_error_of(model, (discrete, trajectory), order);
+        let mut remarks = Remarks::default();
+        remarks.note("start", task.start.notes().iter().cloned());
+        remarks.note("moved_marker", moved_markers(system));
+        remarks.warn("singular_loops", model.loops.warning.clone());
+        remarks.note("voltages_end", afterwards(task));
+        remarks.note("step_divided", steps::divided(task));
+        remarks.warn("outside_domain", domain::note(&outside, true));
+        remarks.note("stops", stops::notes(system, trajectory));
+        remarks.warn("coarse_steps", steps::warning(neglected, discrete, task));
+        remarks.warn("tolerance_exceeded", steps::beyond(self.error, task));
+        remarks.warn("energy_balance", steps::unbalanced(discrete));
+        Assessment {
+            exchange: EnergyExchange::new(&model.system, trajectory, ends),
+            neglected,
+            outside,
+            remarks,
+        }
+    }
 }
 
-/// Simulates, in the steps of the task or in finer ones. After every step `observer` sees their number on the present grid and the motion so
+/// Simulates, in the steps of the task or in finer ones; the result is then [assessed](SimulationResult::assess). After every step `observer` sees their number on the present grid and the motion so
 /// far.
 ///
 /// # Errors
@@ -116,16 +150,6 @@ pub fn simulate(
     let is_early = reached < task.duration * (1.0 - 1e-12);
     let stopped = interrupt::stop().filter(|_| is_early);
     drop(watch);
-    Ok(result(system, task, simulated, (accuracy, stopped)))
-}
-
-/// Observes a motion that has ended.
-fn result(
-    system: &System,
-    task: &Simulation,
-    simulated: Simulated,
-    (accuracy, stopped): (Option<Accuracy>, Option<Status>),
-) -> SimulationResult {
     let Simulated {
         model,
         discrete,
@@ -134,54 +158,14 @@ fn result(
         setup,
         seconds,
     } = simulated;
-    let trajectory = Trajectory::from_discrete(&model, &discrete);
-    let order = task.solving.integrator.order();
-    let ends = [task.start.voltages(), None];
-    let (neglected, (outside, exchange)) = join(
-        || local_error_of(&model, (&discrete, &trajectory), order),
-        || {
-            let outside = domain::records(&out_of_domain(&model, &discrete));
-            let exchange = EnergyExchange::new(&model.system, &trajectory, ends);
-            (outside, exchange)
-        },
-    );
-    let mut result = SimulationResult {
+    Ok(SimulationResult {
         model,
         discrete,
-        trajectory,
-        exchange,
         failure,
         stopped,
         error,
         accuracy,
-        neglected,
-        outside,
-        remarks: Remarks::default(),
         setup,
         seconds,
-    };
-    result.remarks = remarks(system, task, &result);
-    result
-}
-
-/// All that is to be known of a result.
-fn remarks(system: &System, task: &Simulation, result: &SimulationResult) -> Remarks {
-    let SimulationResult {
-        discrete,
-        neglected,
-        error,
-        ..
-    } = result;
-    let mut remarks = Remarks::default();
-    remarks.note("start", task.start.notes().iter().cloned());
-    remarks.note("moved_marker", moved_markers(system));
-    remarks.warn("singular_loops", result.model.loops.warning.clone());
-    remarks.note("voltages_end", afterwards(task));
-    remarks.note("step_divided", steps::divided(task));
-    remarks.warn("outside_domain", domain::note(&result.outside, true));
-    remarks.note("stops", stops::notes(system, &result.trajectory));
-    remarks.warn("coarse_steps", steps::warning(*neglected, discrete, task));
-    remarks.warn("tolerance_exceeded", steps::beyond(*error, task));
-    remarks.warn("energy_balance", steps::unbalanced(discrete));
-    remarks
+    })
 }
