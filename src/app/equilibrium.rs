@@ -26,7 +26,7 @@ use crate::model::{Model, System};
 use crate::report::file_set::FileSet;
 use crate::report::skins::Skins;
 use crate::report::{Run, write_still};
-use crate::tasks::{self, EquilibriumError, EquilibriumResult};
+use crate::tasks::{self, EquilibriumResult, EquilibriumTaskError};
 use crate::workflow::effects::Plan;
 use crate::workflow::phase::phase;
 
@@ -81,10 +81,10 @@ pub(super) fn at(
     }
     let result = match tasks::equilibrium(system, task) {
         Ok(result) => result,
-        Err(EquilibriumError::NotFound(error)) => {
+        Err(EquilibriumTaskError::NotFound(error)) => {
             return refused(request, &error, "no equilibrium");
         }
-        Err(EquilibriumError::Workflow(error)) => {
+        Err(EquilibriumTaskError::Workflow(error)) => {
             return Err(CommandError::in_file(&request.input)(error));
         }
     };

@@ -29,6 +29,7 @@ use crate::report::file_set::FileSet;
 use crate::report::origin::Origin;
 use crate::report::{self, write_run};
 use crate::tasks::{self, Assessment, SimulationRequest, SimulationResult};
+use crate::workflow::Simulated;
 use crate::workflow::effects::Plan;
 use crate::workflow::integrate::grid;
 use crate::workflow::motion::{solved, solved_of};
@@ -52,12 +53,16 @@ pub(super) fn simulation(
         // Steps that are halved begin anew: what is kept of them is no motion to go on with.
         resumable: request.wanted.is_none().then_some(&*problem),
     };
+    let from = request.from.as_ref();
+    let begun = from.map(|from| resume_file::begun(from, &problem, task));
+    let begun = begun.transpose()?;
     let read = began.elapsed().as_secs_f64();
-    let (ended, folder) = integrate(&run, &problem, observer)?;
+    let (ended, folder) = integrate(&run, (begun, read), observer)?;
     phase("writing");
     let writing = Instant::now();
-    let mut summary = Summary::new(request, ended.word(), ended.model.coordinates.name());
-    summary.plan = Plan::from_model(&ended.model, None, MEASURED);
+    let model = &ended.simulated.model;
+    let mut summary = Summary::new(request, ended.word(), model.coordinates.name());
+    summary.plan = Plan::from_model(model, None, MEASURED);
     let mut files = FileSet::in_folder(&folder);
     let origin = request.origin(false);
     let observed = observe(&run, &ended, &mut files, &origin)?;
@@ -98,22 +103,18 @@ struct Run<'a> {
     resumable: Option<&'a str>,
 }
 
-/// Simulates and keeps the steps in the folder of the results, which is returned, until the motion has ended; `problem` is the text of the
-/// problem that a motion is resumed by.
+/// Simulates, from where a motion that has `begun` ends, and keeps the steps in the folder of the results, which is returned, until the motion
+/// has ended; `read` are the seconds so far.
 fn integrate(
     run: &Run<'_>,
-    problem: &str,
+    (begun, read): (Option<DiscreteTrajectory>, f64),
     observer: &mut dyn FnMut(Reached<'_>),
 ) -> Result<(SimulationResult, PathBuf), CommandError> {
     let (request, task) = (run.request, run.task);
-    let from = request.from.as_ref();
-    let begun = from.map(|from| resume_file::begun(from, problem, task));
     let asked = SimulationRequest {
         wanted: request.wanted,
-        begun: begun.transpose()?,
-        seconds: request
-            .max_seconds
-            .map(|s| s - run.began.elapsed().as_secs_f64()),
+        begun,
+        seconds: request.max_seconds.map(|s| s - read),
     };
     let file = match run.resumable {
         Some(_) => resume_file::UNFINISHED,
@@ -156,9 +157,9 @@ fn observe(
     files: &mut FileSet,
     origin: &Origin,
 ) -> Result<Observed, WriteError> {
-    let SimulationResult {
+    let Simulated {
         model, discrete, ..
-    } = ended;
+    } = &ended.simulated;
     // Of many steps each takes long, and most need no other.
     let (columns, (trajectory, written, assessment)) = join(
         || observed(model, discrete),
@@ -200,10 +201,10 @@ fn summarise(
     read: f64,
     summary: &mut Summary,
 ) {
-    let assessment = &observed.assessment;
-    summary.message = ended.failure.as_ref().map(ToString::to_string);
+    let (simulated, assessment) = (&ended.simulated, &observed.assessment);
+    summary.message = simulated.failure.as_ref().map(ToString::to_string);
     summary.simulation = Some(summary::Simulation::new(
-        (&ended.discrete, ended.error),
+        (&simulated.discrete, simulated.error),
         run.task,
         assessment.neglected,
     ));
@@ -212,8 +213,8 @@ fn summarise(
     summary.accuracy.clone_from(&ended.accuracy);
     summary.seconds = Seconds {
         total: run.began.elapsed().as_secs_f64(),
-        setup: read + ended.setup,
-        solver: ended.seconds,
+        setup: read + simulated.setup,
+        solver: simulated.seconds,
         ..Seconds::default()
     };
     summary.energies = EnergySummary::new(&assessment.exchange);
@@ -228,9 +229,9 @@ fn write_pictures(
     files: &mut FileSet,
     origin: &Origin,
 ) -> Result<(), WriteError> {
-    let SimulationResult {
+    let Simulated {
         model, discrete, ..
-    } = ended;
+    } = &ended.simulated;
     let Observed {
         trajectory,
         observations,
@@ -294,7 +295,7 @@ fn command_output(
         is_solved,
         result: format!(
             "{word}: {}, {} s of motion, {:.2} s, {}",
-            counted(ended.discrete.intervals(), "step"),
+            counted(ended.simulated.discrete.intervals(), "step"),
             ended.reached() / 1e3,
             summary.seconds.total,
             folder.display()

@@ -8,7 +8,7 @@ use crate::interface::input::Input;
 use crate::interface::motion::Motion;
 use crate::model::System;
 use crate::model::components::Load;
-use crate::tasks::{self, EquilibriumError};
+use crate::tasks::{self, EquilibriumTaskError};
 use std::sync::Arc;
 
 /// A stable static equilibrium under constant voltages and loads; zero where nothing is said.
@@ -53,8 +53,8 @@ impl Equilibrium {
             path: None,
         };
         let result = tasks::equilibrium(system, &task).map_err(|error| match error {
-            EquilibriumError::Workflow(error) => Error::Workflow(error),
-            EquilibriumError::NotFound(error) => Error::NoEquilibrium(error),
+            EquilibriumTaskError::Workflow(error) => Error::Workflow(error),
+            EquilibriumTaskError::NotFound(error) => Error::NoEquilibrium(error),
         })?;
         let model = &result.model;
         let motion = Motion {

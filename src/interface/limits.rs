@@ -18,66 +18,43 @@ impl Control {
     }
 
     /// Range of the stretch of a muscle.
-    pub fn stretch_within(mut self, muscle: Handle<Muscle>, range: RangeInclusive<f64>) -> Self {
-        self.limits.push(PathConstraint::Stretch {
-            muscle: muscle.index(),
-            min: *range.start(),
-            max: *range.end(),
-        });
-        self
+    pub fn stretch_within(self, muscle: Handle<Muscle>, range: RangeInclusive<f64>) -> Self {
+        let (muscle, (min, max)) = (muscle.index(), range.into_inner());
+        self.limited(PathConstraint::Stretch { muscle, min, max })
     }
 
     /// Range of the coordinate of a joint in rad or mm.
-    pub fn joint_within(mut self, joint: Handle<Joint>, range: RangeInclusive<f64>) -> Self {
-        self.limits.push(PathConstraint::JointAngle {
-            joint: joint.index(),
-            min: *range.start(),
-            max: *range.end(),
-        });
-        self
+    pub fn joint_within(self, joint: Handle<Joint>, range: RangeInclusive<f64>) -> Self {
+        let (joint, (min, max)) = (joint.index(), range.into_inner());
+        self.limited(PathConstraint::JointAngle { joint, min, max })
     }
 
     /// Range of the mean rate of the coordinate of a joint in each interval in rad/ms or mm/ms; the duration has to be given.
-    pub fn joint_rate_within(mut self, joint: Handle<Joint>, range: RangeInclusive<f64>) -> Self {
-        self.limits.push(PathConstraint::JointRate {
-            joint: joint.index(),
-            min: *range.start(),
-            max: *range.end(),
-        });
-        self
+    pub fn joint_rate_within(self, joint: Handle<Joint>, range: RangeInclusive<f64>) -> Self {
+        let (joint, (min, max)) = (joint.index(), range.into_inner());
+        self.limited(PathConstraint::JointRate { joint, min, max })
     }
 
     /// Range of the mean current in each interval in A of the source of a lumped muscle behind a resistor.
-    pub fn current_within(mut self, muscle: Handle<Muscle>, range: RangeInclusive<f64>) -> Self {
-        self.limits.push(PathConstraint::Current {
-            muscle: muscle.index(),
-            min: *range.start(),
-            max: *range.end(),
-        });
-        self
+    pub fn current_within(self, muscle: Handle<Muscle>, range: RangeInclusive<f64>) -> Self {
+        let (muscle, (min, max)) = (muscle.index(), range.into_inner());
+        self.limited(PathConstraint::Current { muscle, min, max })
     }
 
     /// Range of the rate of the voltage of a muscle in V/ms between the middles of neighbouring intervals; the duration has to be given.
-    pub fn voltage_rate_within(
-        mut self,
-        muscle: Handle<Muscle>,
-        range: RangeInclusive<f64>,
-    ) -> Self {
-        self.limits.push(PathConstraint::VoltageRate {
-            source: muscle.index(),
-            min: *range.start(),
-            max: *range.end(),
-        });
-        self
+    pub fn voltage_rate_within(self, muscle: Handle<Muscle>, range: RangeInclusive<f64>) -> Self {
+        let (source, (min, max)) = (muscle.index(), range.into_inner());
+        self.limited(PathConstraint::VoltageRate { source, min, max })
     }
 
     /// Range of the mean power in each interval in W of the source of a lumped muscle behind a resistor.
-    pub fn power_within(mut self, muscle: Handle<Muscle>, range: RangeInclusive<f64>) -> Self {
-        self.limits.push(PathConstraint::Power {
-            muscle: muscle.index(),
-            min: *range.start(),
-            max: *range.end(),
-        });
+    pub fn power_within(self, muscle: Handle<Muscle>, range: RangeInclusive<f64>) -> Self {
+        let (muscle, (min, max)) = (muscle.index(), range.into_inner());
+        self.limited(PathConstraint::Power { muscle, min, max })
+    }
+
+    fn limited(mut self, limit: PathConstraint) -> Self {
+        self.limits.push(limit);
         self
     }
 }

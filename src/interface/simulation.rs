@@ -13,6 +13,7 @@ use crate::math::Signal;
 use crate::model::components::Load;
 use crate::model::{Model, System};
 use crate::tasks::{self, SimulationRequest};
+use crate::workflow::Simulated;
 use std::ops::ControlFlow;
 use std::sync::Arc;
 
@@ -83,19 +84,25 @@ impl Simulation {
             false => ControlFlow::Continue(()),
         };
         let result = tasks::simulate(system, &task, request, go_on)?;
-        let (failure, stopped) = (result.failure.clone(), result.stopped);
-        let trajectory = Trajectory::from_discrete(&result.model, &result.discrete);
+        let moved = &result.simulated;
+        let trajectory = Trajectory::from_discrete(&moved.model, &moved.discrete);
         let assessment = result.assess(system, &task, &trajectory);
+        let Simulated {
+            model,
+            discrete,
+            failure,
+            ..
+        } = result.simulated;
         let motion = Box::new(Motion {
             exchange: assessment.exchange,
-            model: Arc::new(result.model),
-            discrete: Arc::new(result.discrete),
+            model: Arc::new(model),
+            discrete: Arc::new(discrete),
             trajectory,
             remarks: assessment.remarks.0,
         });
         match failure {
             Some(source) => Err(Error::Step { source, motion }),
-            None if stopped.is_some() => Err(Error::Interrupted { motion }),
+            None if result.stopped.is_some() => Err(Error::Interrupted { motion }),
             None => Ok(*motion),
         }
     }

@@ -18,7 +18,7 @@ use std::time::Instant;
 
 /// Reason why there is no equilibrium.
 #[derive(Debug, Error)]
-pub enum EquilibriumError {
+pub enum EquilibriumTaskError {
     /// The model does not exist, or the machine has no room for it.
     #[error(transparent)]
     Workflow(#[from] WorkflowError),
@@ -63,7 +63,10 @@ pub(crate) fn model_at_rest(system: &System, task: &AtRest) -> Result<Model, Wor
 ///
 /// # Errors
 /// The model does not exist, or no equilibrium was found at all. One that is lost under growing loads is no error: see the loss.
-pub fn equilibrium(system: &System, task: &AtRest) -> Result<EquilibriumResult, EquilibriumError> {
+pub fn equilibrium(
+    system: &System,
+    task: &AtRest,
+) -> Result<EquilibriumResult, EquilibriumTaskError> {
     let began = Instant::now();
     let model = model_at_rest(system, task)?;
     let setup = began.elapsed().as_secs_f64();

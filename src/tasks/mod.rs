@@ -1,4 +1,4 @@
-//! One function for each task: it validates once, computes, verifies, and returns numbers, verdict and remarks.
+//! One function for each task: it computes, verifies, and returns numbers, verdict and remarks; a simulation is assessed in a step of its own.
 //!
 //! - `solve`, `simulate`, `equilibrium`: the three tasks. The commands, Python and the interface for Rust call them; nothing here knows files.
 //! - `verdict`: the verdict on an optimum. `solve_messages`, `tracking_messages`, `simulation_messages`, `moved_markers`: their texts.
@@ -12,7 +12,7 @@ mod solve_messages;
 pub(crate) mod tracking_messages;
 mod verdict;
 
-pub use equilibrium::{EquilibriumError, EquilibriumResult, equilibrium};
+pub use equilibrium::{EquilibriumResult, EquilibriumTaskError, equilibrium};
 pub use simulate::{Assessment, SimulationRequest, SimulationResult, simulate};
 pub use solve::{SolveRequest, SolveResult, solve};
 pub use verdict::Verdict;

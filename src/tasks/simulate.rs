@@ -5,7 +5,7 @@ use std::ops::ControlFlow;
 use crate::control::problem::Simulation;
 use crate::dynamics::trajectory::Trajectory;
 use crate::dynamics::{
-    DiscreteTrajectory, EnergyExchange, LocalError, StepError, local_error_of, out_of_domain,
+    DiscreteTrajectory, EnergyExchange, LocalError, local_error_of, out_of_domain,
 };
 use crate::ipopt::{Status, interrupt};
 use crate::model::{Model, System};
@@ -13,7 +13,6 @@ use crate::tasks::moved_markers::moved_markers;
 use crate::tasks::simulation_messages::afterwards;
 use crate::workflow::WorkflowError;
 use crate::workflow::accuracy::{Accuracy, AccuracyTarget};
-use crate::workflow::confirmed::EstimatedError;
 use crate::workflow::domain::{self, Outside};
 use crate::workflow::grids::integrate_to;
 use crate::workflow::integrate::{Simulated, grid, integrate_on};
@@ -36,22 +35,12 @@ pub struct SimulationRequest {
 /// A simulation that has ended, before its time where it failed or was stopped.
 #[derive(Debug)]
 pub struct SimulationResult {
-    /// The model that moved.
-    pub model: Model,
-    /// The motion as unknowns of the model.
-    pub discrete: DiscreteTrajectory,
-    /// The step that failed.
-    pub failure: Option<StepError>,
+    /// The motion, on the grid that was taken.
+    pub simulated: Simulated,
     /// Status of a run that was stopped before its end.
     pub stopped: Option<Status>,
-    /// Error of steps by a tolerance.
-    pub error: Option<EstimatedError>,
     /// Estimated errors, where an accuracy was wanted.
     pub accuracy: Option<Accuracy>,
-    /// Seconds before the first step.
-    pub setup: f64,
-    /// Seconds in the steps.
-    pub seconds: f64,
 }
 
 /// Energies, errors and remarks of a simulation.
@@ -70,7 +59,7 @@ pub struct Assessment {
 impl SimulationResult {
     /// Its status.
     pub fn word(&self) -> &'static str {
-        match (&self.failure, self.stopped) {
+        match (&self.simulated.failure, self.stopped) {
             (Some(_), _) => "step_failed",
             (None, Some(stopped)) => stopped.word(),
             (None, None) => "simulated",
@@ -79,7 +68,8 @@ impl SimulationResult {
 
     /// Length of its motion in ms.
     pub fn reached(&self) -> f64 {
-        self.discrete.times[self.discrete.intervals()]
+        let discrete = &self.simulated.discrete;
+        discrete.times[discrete.intervals()]
     }
 
     /// Assesses it: a part of its own, since of many steps it takes long, and files can be written meanwhile. `trajectory` is the motion
@@ -90,7 +80,12 @@ impl SimulationResult {
         task: &Simulation,
         trajectory: &Trajectory,
     ) -> Assessment {
-        let (model, discrete) = (&self.model, &self.discrete);
+        let Simulated {
+            model,
+            discrete,
+            error,
+            ..
+        } = &self.simulated;
         let order = task.solving.integrator.order();
         let ends = [task.start.voltages(), None];
         let outside = domain::records(&out_of_domain(model, discrete));
@@ -104,7 +99,7 @@ impl SimulationResult {
         remarks.warn("outside_domain", domain::note(&outside, true));
         remarks.note("stops", stops::notes(system, trajectory));
         remarks.warn("coarse_steps", steps::warning(neglected, discrete, task));
-        remarks.warn("tolerance_exceeded", steps::beyond(self.error, task));
+        remarks.warn("tolerance_exceeded", steps::beyond(*error, task));
         remarks.warn("energy_balance", steps::unbalanced(discrete));
         Assessment {
             exchange: EnergyExchange::new(&model.system, trajectory, ends),
@@ -150,22 +145,9 @@ pub fn simulate(
     let is_early = reached < task.duration * (1.0 - 1e-12);
     let stopped = interrupt::stop().filter(|_| is_early);
     drop(watch);
-    let Simulated {
-        model,
-        discrete,
-        failure,
-        error,
-        setup,
-        seconds,
-    } = simulated;
     Ok(SimulationResult {
-        model,
-        discrete,
-        failure,
+        simulated,
         stopped,
-        error,
         accuracy,
-        setup,
-        seconds,
     })
 }

@@ -10,7 +10,7 @@ use crate::workflow::optimum::Optimum;
 pub struct Verdict {
     /// Its status: `solved`, `not_reproduced`, `not_held`, `infeasible`, ….
     pub word: &'static str,
-    /// Returns true if the motion is what was asked for.
+    /// True if the motion is what was asked for.
     pub is_solved: bool,
     /// Reason why it is not, in words.
     pub message: Option<String>,

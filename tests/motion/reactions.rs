@@ -26,7 +26,7 @@ fn bob(name: &str, centre: Vector3<f64>) -> Body {
     )
 }
 
-fn hinge(name: &str, parent: Option<usize>, child: usize, at: Vector3<f64>) -> Joint {
+pub(crate) fn hinge(name: &str, parent: Option<usize>, child: usize, at: Vector3<f64>) -> Joint {
     joint(
         name,
         JointKind::Revolute { axis: Vector3::z() },

@@ -2,12 +2,13 @@
 //!
 //! Parameters and solution: Test Set for IVP Solvers (F. Mazzia, C. Magherini), problem "Andrews' squeezing mechanism", in SI units.
 
-use crate::common::{at_reference, bare, body, joint, motion, richardson};
+use crate::common::{at_reference, bare, body, motion, richardson};
+use crate::reactions::hinge;
 use nalgebra::{Matrix3, Vector3};
 use proboscis::dynamics::Start;
 use proboscis::dynamics::trajectory::Trajectory;
 use proboscis::model::components::{Load, LoadPlace, Spring};
-use proboscis::model::system::{Attachment, Body, JointKind, System};
+use proboscis::model::system::{Attachment, Body, System};
 use proboscis::model::{Coordinates, Model};
 
 /// Angles β, Θ, γ, Φ, δ, Ω, ε at the start and at 0.03 s.
@@ -73,15 +74,6 @@ fn squeezer() -> System {
             Matrix3::identity(),
         )
     });
-    let hinge = |name: &str, parent, child, at| {
-        joint(
-            name,
-            JointKind::Revolute { axis: Vector3::z() },
-            parent,
-            child,
-            at,
-        )
-    };
     let joints = vec![
         hinge("O", None, 0, Vector3::zeros()),
         hinge("crank", Some(0), 1, crank),

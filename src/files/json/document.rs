@@ -1,7 +1,6 @@
 //! A JSON file as text and as values: reading, overrides, and errors with their place in it.
 
 use serde::de::DeserializeOwned;
-use serde_json::Value;
 use std::ops::Range;
 use std::path::{Path, PathBuf};
 
@@ -23,10 +22,8 @@ pub(crate) struct Document {
     pub(crate) set: Vec<Set>,
     /// As it was read.
     text: String,
-    /// The same with overrides.
+    /// The same with overrides, and with parts from another file.
     changed: Option<String>,
-    /// Text of values in place of these, where parts of them are from another file.
-    completed: Option<String>,
 }
 
 /// A place that was set.
@@ -75,7 +72,6 @@ impl Document {
             set: Vec::new(),
             text: String::new(),
             changed: None,
-            completed: None,
         }
     }
 
@@ -105,9 +101,9 @@ impl Document {
         self.changed = Some([&text[..bytes.start], by, &text[bytes.end..]].concat());
     }
 
-    /// Takes values for those of the text.
-    pub(crate) fn complete(&mut self, completed: &Value) {
-        self.completed = Some(completed.to_string());
+    /// Takes another text of the same document; positions of mistakes stay those of the text that was read.
+    pub(crate) fn complete(&mut self, text: String) {
+        self.changed = Some(text);
     }
 
     /// A path that is relative to this file.
@@ -121,8 +117,7 @@ impl Document {
     /// The values as a type, or the first error.
     pub(crate) fn parse<T: DeserializeOwned>(&self) -> Result<T, SceneError> {
         self.refuse_unprintable()?;
-        let text = self.completed.as_deref().unwrap_or(self.text());
-        parse(text).map_err(|(place, error)| {
+        parse(self.text()).map_err(|(place, error)| {
             let wording = wording(place.last_key(), &error.to_string());
             let at_key = wording.at_key;
             self.describe(

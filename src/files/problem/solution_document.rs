@@ -13,13 +13,10 @@ pub(crate) fn solution_document(
     is_wanted: impl Fn(&str) -> bool,
 ) -> Result<Document, SceneError> {
     let mut document = Document::read(path)?;
-    if document.entry("arrays").is_none() {
-        return Ok(document);
-    }
-    let mut values = document.parse()?;
-    match complete(path, &mut values, is_wanted) {
-        Ok(()) => {
-            document.complete(&values);
+    match complete(path, document.text(), is_wanted) {
+        Ok(None) => Ok(document),
+        Ok(Some(text)) => {
+            document.complete(text);
             Ok(document)
         }
         Err(reason) => Err(Scope::of(&document)

@@ -8,6 +8,7 @@ use std::path::Path;
 use serde::Deserialize;
 use serde_json::{Map, Value};
 
+use crate::files::json::scan::Scanner;
 use crate::files::npz::{self, NpzError, NpzWriter};
 use crate::files::solution::error::Reason;
 use crate::files::solution::record::{ArraysOf, File};
@@ -77,20 +78,24 @@ pub(crate) fn file_beside(path: &Path) -> Option<String> {
     Some(read.arrays?.file)
 }
 
-/// Puts the arrays that are wanted back to where they would stand in the solution at `path`; nothing where it has no file of arrays.
+/// The text of the solution at `path` with the arrays that are wanted where they would stand; `None` where it has no file of arrays.
 ///
 /// # Errors
 /// The file cannot be used.
 pub(crate) fn complete(
     path: &Path,
-    solution: &mut Value,
+    text: &str,
     is_wanted: impl Fn(&str) -> bool,
-) -> Result<(), Reason> {
+) -> Result<Option<String>, Reason> {
+    if Scanner::of(text).entry("arrays").is_none() {
+        return Ok(None);
+    }
+    let mut solution: Value = serde_json::from_str(text).map_err(Reason::NoJson)?;
     let Ok(WithArrays {
         arrays: Some(arrays),
-    }) = WithArrays::deserialize(&*solution)
+    }) = WithArrays::deserialize(&solution)
     else {
-        return Ok(());
+        return Ok(None);
     };
     let path = path.with_file_name(&arrays.file);
     let wrong = |cause: NpzError| Reason::Arrays {
@@ -102,11 +107,12 @@ pub(crate) fn complete(
         return Err(Reason::OtherArrays(path));
     }
     // A motion without a source has voltages of none.
-    put(solution, &["voltages"], Value::Object(Map::new()));
+    let root = &mut solution;
+    put(root, &["voltages"], Value::Object(Map::new()));
     for (name, array) in read.arrays {
-        put(solution, &steps(&name), value(&array.shape, &array.values));
+        put(root, &steps(&name), value(&array.shape, &array.values));
     }
-    Ok(())
+    Ok(Some(solution.to_string()))
 }
 
 /// The keys that lead to an array.

@@ -8,7 +8,6 @@ use std::path::{Path, PathBuf};
 
 use crate::control::{Costates, EarlierSolution, Solution};
 use crate::files::json::reader;
-use crate::files::json::scan::Scanner;
 use crate::files::json::source::{NoBytes, check_json, of_file};
 use crate::files::solution::arrays::complete;
 use crate::files::solution::error::{Reason, SolutionError};
@@ -57,14 +56,7 @@ fn read_file(path: &Path) -> Result<File, Reason> {
     let utf8 = |error| io::Error::new(io::ErrorKind::InvalidData, error);
     let text = String::from_utf8(bytes).map_err(|error| Reason::Unreadable(utf8(error)))?;
     check_json(&text).map_err(Reason::NoJson)?;
-    let text = match Scanner::of(&text).entry("arrays") {
-        None => text,
-        Some(_) => {
-            let mut values = serde_json::from_str(&text).map_err(Reason::NoJson)?;
-            complete(path, &mut values, |_| true)?;
-            values.to_string()
-        }
-    };
+    let text = complete(path, &text, |_| true)?.unwrap_or(text);
     reader::parse(&text).map_err(|(place, error)| Reason::NoSolution {
         place: place.to_string(),
         found: error.to_string(),
