@@ -1,6 +1,6 @@
 //! Immobile parts of a system: bodies, blocks and muscles at rest on which no force acts.
 //!
-//! In the reference configuration muscles and blocks are free of stress, so that weight, electric fields and loads are the only
+//! Without prestretch, muscles and blocks are free of stress in the reference configuration: weight, electric fields and loads are then the only
 //! forces. Joints, muscles and glue connect bodies. Two parts fixed to the ground are not thereby connected.
 
 use crate::math::DisjointSets;

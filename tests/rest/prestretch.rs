@@ -89,6 +89,44 @@ fn antagonists_rest_and_are_as_stiff_as_their_closed_form() {
     }
 }
 
+/// Nothing but their prestretch sets passive muscles in motion.
+#[test]
+fn unequal_passive_antagonists_pull_their_mass_to_one_side() {
+    let stretches = [1.5, 1.2];
+    let mut system = System::new("passive");
+    let mass = system.add(Body::cuboid([mm(20.0); 3]).mass(g(50.0)));
+    let slide = system.add(Joint::prismatic(X).between(GROUND, mass));
+    for (side, stretch) in [-X, X].into_iter().zip(stretches) {
+        let passive = Muscle {
+            material: Material::elastomer(MODULUS),
+            ..muscle(stretch)
+        };
+        let passive = passive.from(GROUND, side * DISTANCE);
+        system.add(passive.to(mass, Vector3::zeros()));
+    }
+    let pull = |x: f64| {
+        let [left, right] = stretches;
+        tension(right, DISTANCE - x, 0.0) - tension(left, DISTANCE + x, 0.0)
+    };
+    let exact = root(-20.0, 0.0, pull);
+    assert!(exact < -1.0, "{exact}");
+    let found = Equilibrium::new().find(&system).unwrap().joint(slide)[0];
+    assert!(
+        (found - exact).abs() < 1e-10 * DISTANCE,
+        "{found} for {exact}"
+    );
+
+    // From the reference configuration the mass falls towards it.
+    let run = Simulation::over(0.1).step(0.01).start(State::Reference);
+    let fall = *run.run(&system).unwrap().joint(slide).last().unwrap();
+    let exact = 0.5 * pull(0.0) / g(50.0) * 0.1 * 0.1;
+    assert!(exact < -1e-4, "{exact}");
+    assert!(
+        (fall - exact).abs() < 1e-3 * exact.abs(),
+        "{fall} for {exact}"
+    );
+}
+
 /// A dead load P keeps the prestretch p: P/A = μ (p − p⁻²). The field (V/t)² = (P/A − μ (λ − λ⁻²)) λ³/ε is largest where
 /// 4 λ³ − 3 (p − p⁻²) λ² = 1.
 #[test]
