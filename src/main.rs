@@ -20,7 +20,9 @@ use proboscis::files::{lines, message, note, printable_json};
 use proboscis::ipopt::interrupt;
 use proboscis::study::study;
 use proboscis::sweep::sweep;
-use tracing_subscriber::EnvFilter;
+use tracing::Level;
+use tracing_subscriber::filter::Targets;
+use tracing_subscriber::prelude::*;
 use words::{Events, answered, tell};
 
 /// The name of the program.
@@ -72,19 +74,33 @@ fn helped(other: &clap::Error) -> ExitCode {
 
 /// Shows the events that the environment names, or all of the program's own, or its warnings.
 fn show_events(verbose: bool) {
-    let named = EnvFilter::try_from_default_env();
-    let is_plain = named.is_err() && !verbose;
+    let named = named_events();
+    let is_plain = named.is_none() && !verbose;
     let is_coloured = io::stderr().is_terminal() && env::var_os("NO_COLOR").is_none();
-    let level = if verbose { "debug" } else { "warn" };
-    let shown = named.unwrap_or_else(|_| EnvFilter::new(format!("proboscis={level}")));
-    let events = tracing_subscriber::fmt()
+    let level = if verbose { Level::DEBUG } else { Level::WARN };
+    let shown = named.unwrap_or_else(|| Targets::new().with_target("proboscis", level));
+    let events = tracing_subscriber::fmt::layer()
         .with_writer(Events::on_a_new_line)
         .log_internal_errors(false)
-        .with_ansi(is_coloured)
-        .with_env_filter(shown);
-    match is_plain {
-        true => events.without_time().with_target(false).init(),
-        false => events.init(),
+        .with_ansi(is_coloured);
+    let events = match is_plain {
+        true => events.without_time().with_target(false).boxed(),
+        false => events.boxed(),
+    };
+    tracing_subscriber::registry()
+        .with(events.with_filter(shown))
+        .init();
+}
+
+/// The events for which `RUST_LOG` asks, as `proboscis::ipopt=trace,warn`.
+fn named_events() -> Option<Targets> {
+    let text = env::var("RUST_LOG").ok().filter(|text| !text.is_empty())?;
+    match text.parse() {
+        Ok(named) => Some(named),
+        Err(error) => {
+            tell(&format!("warning: RUST_LOG is ignored: {error}"));
+            None
+        }
     }
 }
 

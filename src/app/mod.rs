@@ -60,7 +60,7 @@ mod unfinished;
 pub(crate) use batch::{Batch, RunEnd, Said, check_run_in, run_all, task_runs_at_once};
 pub use batch::{RunIn, end_with_parent};
 pub use blocks::{BlockSize, BlockSizes};
-pub use check::{Checked, check, checked};
+pub use check::{check, checked};
 pub use equilibrium::equilibrium_of_file;
 pub use error::CommandError;
 pub(crate) use folder::make_folder;

@@ -5,8 +5,8 @@ use crate::control::goal::{Orientation, Place, Product};
 use crate::control::limits::{Limits, When};
 use crate::control::transcription::Site;
 use crate::functional::Sample;
+use crate::math::Random;
 use crate::math::Vector;
-use crate::math::random::Random;
 use crate::model::{Coordinates, Model, Quantity, System};
 use std::collections::BTreeMap;
 

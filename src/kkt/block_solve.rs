@@ -201,7 +201,7 @@ mod tests {
 
     use super::super::block_lu::{BlockLu, Room};
     use super::super::envelope::Envelope;
-    use crate::math::random::Random;
+    use crate::math::Random;
 
     const EQUATIONS: usize = 150;
     const UNKNOWNS: usize = 153;

@@ -137,7 +137,7 @@ mod tests {
     use super::{Count, Dense, Eliminate, Rules, Workspace};
     use crate::kkt::lanes::padded;
     use crate::kkt::progress::Progress;
-    use crate::math::random::Random;
+    use crate::math::Random;
     use nalgebra::DMatrix;
     use pulp::Arch;
 

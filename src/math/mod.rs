@@ -8,7 +8,7 @@ mod jet;
 mod join;
 pub(crate) mod memory;
 mod pool;
-pub mod random;
+mod random;
 mod sets;
 mod signal;
 mod stopped;
@@ -22,6 +22,7 @@ pub(crate) use join::join_if;
 pub(crate) use pool::has_pool;
 #[cfg(feature = "report")]
 pub(crate) use pool::join;
+pub use random::Random;
 pub use sets::DisjointSets;
 pub use signal::{Signal, in_order};
 pub use stopped::{IsOver, Stopped};

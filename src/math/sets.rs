@@ -41,7 +41,7 @@ impl DisjointSets {
 #[cfg(test)]
 mod tests {
     use crate::math::DisjointSets;
-    use crate::math::random::Random;
+    use crate::math::Random;
 
     /// Against the reachability of every pair by repeated passes over the list of pairs.
     #[test]

@@ -8,7 +8,7 @@
 //! Every result is checked against the rows that were left out.
 
 use crate::kinematics::Pose;
-use crate::math::random::Random;
+use crate::math::Random;
 use crate::model::analysis::Coordinates;
 use crate::model::error::ModelError;
 use crate::model::graph::Graph;

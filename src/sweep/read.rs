@@ -9,7 +9,7 @@ use crate::app::{Identity, task_runs_at_once};
 use crate::files::changes::Changes;
 use crate::files::sweep::{CombineSpec, SweepSpec};
 use crate::files::{Columns, Document, SceneError, Scope, read_problem};
-use crate::math::random::Random;
+use crate::math::Random;
 use crate::sweep::values::Values;
 
 /// Most variants of a sweep.

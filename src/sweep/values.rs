@@ -4,7 +4,7 @@ use serde_json::{Value, json};
 
 use crate::files::sweep::{RangeSpec, SpacingSpec, VarySpec};
 use crate::files::{SceneError, Scope};
-use crate::math::random::Random;
+use crate::math::Random;
 
 /// Most values of a range.
 const MOST: usize = 100_000;

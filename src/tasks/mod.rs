@@ -1,8 +1,10 @@
 //! One function for each task: it computes, verifies, and returns numbers, verdict and remarks; a simulation is assessed in a step of its own.
 //!
 //! - `solve`, `simulate`, `equilibrium`: the three tasks. The commands, Python and the interface for Rust call them; nothing here knows files.
+//! - `check`: the derivatives of a task against differences.
 //! - `verdict`: the verdict on an optimum. `solve_messages`, `tracking_messages`, `simulation_messages`, `moved_markers`: their texts.
 
+pub mod check;
 pub mod equilibrium;
 pub(crate) mod moved_markers;
 pub mod simulate;
@@ -12,6 +14,7 @@ mod solve_messages;
 pub(crate) mod tracking_messages;
 mod verdict;
 
+pub use check::{CheckResult, GreatestErrors, WrongDerivative, check};
 pub use equilibrium::{EquilibriumResult, EquilibriumTaskError, equilibrium};
 pub use simulate::{Assessment, SimulationRequest, SimulationResult, simulate};
 pub use solve::{SolveRequest, SolveResult, solve};

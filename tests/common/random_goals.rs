@@ -6,7 +6,7 @@ use nalgebra::Vector3;
 use proboscis::control::problem::Task;
 use proboscis::dynamics::equilibrium;
 use proboscis::files::read_problem;
-use proboscis::math::random::Random;
+use proboscis::math::Random;
 use proboscis::model::{Coordinates, Model};
 use proboscis::workflow::{Iterate, SolveLimits, optimise};
 use serde_json::{Value, json};

@@ -6,7 +6,7 @@ use proboscis::app::run;
 use proboscis::app::{PageWanted, ProgressDisplay};
 use proboscis::control::problem::{Control, Task};
 use proboscis::files::read_problem;
-use proboscis::math::random::Random;
+use proboscis::math::Random;
 use proboscis::model::System;
 use proboscis::nlp::Bounds;
 use proboscis::report::Figures;

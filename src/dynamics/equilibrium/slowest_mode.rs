@@ -6,7 +6,7 @@
 use crate::dynamics::equilibrium::result::Equilibrium;
 use crate::dynamics::equilibrium::statics::Statics;
 use crate::ipopt::interrupt;
-use crate::math::random::Random;
+use crate::math::Random;
 use crate::model::Model;
 use std::f64::consts::TAU;
 

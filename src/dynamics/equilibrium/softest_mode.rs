@@ -3,7 +3,7 @@
 
 use crate::dynamics::equilibrium::mode::{Mode, Softening};
 use crate::dynamics::equilibrium::statics::Statics;
-use crate::math::random::Random;
+use crate::math::Random;
 use crate::model::system::Fidelity;
 use crate::model::{Coordinates, Freedom, Model, Screw};
 use nalgebra::{DMatrix, SymmetricEigen};

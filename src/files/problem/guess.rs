@@ -7,7 +7,7 @@ use crate::files::json::scope::Scope;
 use crate::files::problem::spec_control::GuessSpec;
 use crate::files::problem::voltages::{SOLUTION_PATH, over_time};
 use crate::files::solution::SolutionFile;
-use crate::math::random::Random;
+use crate::math::Random;
 use crate::model::system::{Fidelity, Source, System};
 
 pub(crate) fn guess(

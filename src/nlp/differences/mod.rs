@@ -25,6 +25,7 @@
 mod comparison;
 mod report;
 
+use crate::math::Random;
 use crate::nlp::{Entries, Nlp};
 
 use comparison::Comparison;
@@ -78,10 +79,10 @@ pub fn check_along(
     let (n, m) = (nlp.variables().lower.len(), nlp.constraints().lower.len());
     assert_eq!(x.len(), n, "one value per variable");
     assert_eq!(sizes.len(), n, "one size per variable");
-    let mut random = SplitMix64(seed);
-    let sigma = random.in_half_to_two();
+    let random = &mut Random::new(seed);
+    let sigma = in_half_to_two(random);
     let costates: Vec<f64> = (0..m)
-        .map(|_| random.in_half_to_two() * random.sign())
+        .map(|_| in_half_to_two(random) * sign(random))
         .collect();
 
     let lagrangian = Lagrangian {
@@ -320,25 +321,14 @@ impl Slope {
     }
 }
 
-/// The generator `splitmix64` of S. Vigna (public domain).
-struct SplitMix64(u64);
+/// A number in [½, 2), whose logarithm is even about zero, so that it is rarely close to one.
+fn in_half_to_two(random: &mut Random) -> f64 {
+    random.between(-1.0, 1.0).exp2()
+}
 
-impl SplitMix64 {
-    fn next(&mut self) -> u64 {
-        self.0 = self.0.wrapping_add(0x9e37_79b9_7f4a_7c15);
-        let mut z = self.0;
-        z = (z ^ (z >> 30)).wrapping_mul(0xbf58_476d_1ce4_e5b9);
-        z = (z ^ (z >> 27)).wrapping_mul(0x94d0_49bb_1331_11eb);
-        z ^ (z >> 31)
-    }
-
-    /// A number in [½, 2), whose logarithm is even about zero, so that it is rarely close to one.
-    fn in_half_to_two(&mut self) -> f64 {
-        let unit = (self.next() >> 11) as f64 / (1_u64 << 53) as f64;
-        (2.0 * unit - 1.0).exp2()
-    }
-
-    fn sign(&mut self) -> f64 {
-        if self.next() >> 63 == 0 { 1.0 } else { -1.0 }
+fn sign(random: &mut Random) -> f64 {
+    match random.between(0.0, 1.0) < 0.5 {
+        true => 1.0,
+        false => -1.0,
     }
 }

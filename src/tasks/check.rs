@@ -1,0 +1,290 @@
+//! The derivatives of a problem against differences, at its guess moved by noise.
+
+use std::collections::{BTreeMap, HashMap};
+
+use serde::Serialize;
+
+use crate::control::problem::{
+    BoundaryState, Control, Duration, Guess, Objective, Simulation, Solver, Task, Voltages,
+};
+use crate::control::{Column, Row, Transcription};
+use crate::ipopt::LinearSolver;
+use crate::ipopt::interrupt::{self, TimeLimit};
+use crate::math::{Random, Signal};
+use crate::mesh::Mesh;
+use crate::model::{Coordinates, Model, System};
+use crate::nlp::Nlp;
+use crate::nlp::differences::{self, DifferenceVariables, Matrix, WrongEntry};
+use crate::workflow::WorkflowError;
+use crate::workflow::effects;
+use crate::workflow::prepare::{Counted, Prepared, prepare};
+use crate::workflow::resolve::resolve;
+
+/// Noise on each variable, relative to its size.
+const NOISE: f64 = 1e-2;
+/// Seed of noise, factor and costates.
+const SEED: u64 = 7;
+/// Intervals checked where the problem has no grid of its own; all intervals are alike.
+const INTERVALS: usize = 6;
+/// Maximum number of entries of the Jacobian that are evaluated for the differences; of larger programs a part of the variables is checked.
+const WORK: f64 = 2e8;
+
+/// Result of a comparison of derivatives with differences.
+#[derive(Clone, Debug, Serialize)]
+pub struct CheckResult {
+    /// True if all were compared, and none is wrong.
+    pub agrees: bool,
+    /// The same in words.
+    pub message: String,
+    /// Greatest relative errors.
+    pub errors: GreatestErrors,
+    /// Variables along which they were compared.
+    pub checked: usize,
+    /// Variables of the program.
+    pub variables: usize,
+    /// Variables near which a value does not exist.
+    pub unchecked: Vec<String>,
+    /// Entries that are wrong, the worst first, twenty at most.
+    pub wrong: Vec<WrongDerivative>,
+    /// Notes on each.
+    #[serde(skip)]
+    pub notes: Vec<String>,
+}
+
+/// Greatest relative errors of derivatives.
+#[derive(Clone, Copy, Debug, Serialize)]
+pub struct GreatestErrors {
+    /// Of the objective.
+    pub gradient: f64,
+    /// Of the constraints.
+    pub jacobian: f64,
+    /// Of the Lagrangian, of second order.
+    pub hessian: f64,
+}
+
+/// A derivative that is wrong.
+#[derive(Clone, Debug, Serialize)]
+pub struct WrongDerivative {
+    /// `gradient`, `jacobian` or `hessian`.
+    pub matrix: &'static str,
+    /// Name of the row.
+    pub row: String,
+    /// The variable of the column.
+    pub column: String,
+    /// Value given by the program.
+    pub analytic: f64,
+    /// Value from differences.
+    pub difference: f64,
+    /// Relative error.
+    pub error: f64,
+    /// Effects that couple row and column.
+    pub effects: Vec<String>,
+}
+
+/// Compares gradient, Jacobian and Hessian of a task with differences, within `seconds`; they do not agree where an entry is wrong.
+///
+/// Another task is converted to a control problem without a goal, so that every equation of its motion is checked.
+///
+/// # Errors
+/// Start, goal or guess is wrong, or the machine has no room.
+pub fn check(
+    system: &System,
+    task: Task,
+    seconds: Option<f64>,
+) -> Result<CheckResult, WorkflowError> {
+    let watch = interrupt::watch(seconds);
+    let control = as_control(task, system);
+    let (model, boundary) = resolve(system, &control)?;
+    let Prepared {
+        mut program, point, ..
+    } = prepare(&model, &boundary, &control, None, Counted::No)?;
+    let sizes = sizes(&program, &model);
+    let mut noise = Random::new(SEED);
+    let mut moved = |(x, size): (&f64, &f64)| x + NOISE * size * noise.between(-1.0, 1.0);
+    let x: Vec<f64> = point.x.iter().zip(&sizes).map(&mut moved).collect();
+    let columns = columns(&program, &mut noise);
+    let along = DifferenceVariables {
+        columns: &columns,
+        sizes: &sizes,
+    };
+    // What is evaluated while it becomes time to stop would be there in part, and seem to be wrong.
+    let limit = interrupt::limit();
+    drop(watch);
+    let mut stopped = None;
+    let report = differences::check_along(&mut program, &x, along, SEED, || {
+        stopped = limit.as_ref().and_then(TimeLimit::reached);
+        stopped.is_some()
+    });
+    let mut notes: Vec<String> = report.to_string().lines().map(str::to_owned).collect();
+    let mut wrong = Vec::new();
+    for (entry, note) in report.wrong.iter().zip(&mut notes[1..]) {
+        let effects = coupling(&program, &model, &entry.row, &entry.column);
+        if !effects.is_empty() {
+            note.push_str(&format!(" [{}]", effects.join(", ")));
+        }
+        wrong.push(wrong_derivative(entry, effects));
+    }
+    let worst = report.gradient.max(report.jacobian).max(report.hessian);
+    let of = match report.checked == x.len() {
+        true => String::new(),
+        false => format!(", along {} of {} variables", report.checked, x.len()),
+    };
+    let message = match (report.is_consistent(), stopped) {
+        (true, _) => format!("derivatives agree with differences to {worst:.1e}{of}"),
+        (false, Some(status)) if report.wrong.is_empty() => {
+            let why = status.word().replace('_', " ");
+            format!("not all derivatives were compared ({why}): {worst:.1e}{of}")
+        }
+        (false, _) => format!(
+            "derivatives are wrong: {} entries or more, {} variables not checked{of}",
+            report.wrong.len(),
+            report.unchecked.len()
+        ),
+    };
+    Ok(CheckResult {
+        agrees: report.is_consistent(),
+        message,
+        errors: GreatestErrors {
+            gradient: report.gradient,
+            jacobian: report.jacobian,
+            hessian: report.hessian,
+        },
+        checked: report.checked,
+        variables: x.len(),
+        unchecked: report.unchecked,
+        wrong,
+        notes,
+    })
+}
+
+fn wrong_derivative(entry: &WrongEntry, effects: Vec<String>) -> WrongDerivative {
+    WrongDerivative {
+        matrix: match entry.matrix {
+            Matrix::Gradient => "gradient",
+            Matrix::Jacobian => "jacobian",
+            Matrix::Hessian => "hessian",
+        },
+        row: entry.row.clone(),
+        column: entry.column.clone(),
+        analytic: entry.analytic,
+        difference: entry.difference,
+        error: entry.error,
+        effects,
+    }
+}
+
+/// The size of each variable as the solver sees it: that of an element for the coordinates of its nodes.
+fn sizes(program: &Transcription<'_>, model: &Model) -> Vec<f64> {
+    let blocks = model.solids.iter().map(|block| &block.solid.mesh);
+    let edge = blocks
+        .map(Mesh::shortest_edge)
+        .fold(f64::INFINITY, f64::min);
+    let size = (edge / model.length()).min(1.0);
+    let nodes = model.action.map.nodes();
+    let of = |column: &Column| match *column {
+        Column::Instant { i, .. } if nodes.contains(&i) => size,
+        _ => 1.0,
+    };
+    program.unknowns().columns.iter().map(of).collect()
+}
+
+/// The variables that are checked: all, or a random part of them whose differences take some minutes.
+fn columns(program: &Transcription<'_>, noise: &mut Random) -> Vec<usize> {
+    let count = program.unknowns().columns.len();
+    let entries = program.jacobian_structure().rows.len();
+    let share = WORK / (count as f64 * entries as f64);
+    let is_taken = |_: &usize| share >= 1.0 || noise.between(-1.0, 1.0).abs() < share;
+    (0..count).filter(is_taken).collect()
+}
+
+/// Names of the effects that couple the unknowns of a row and a column.
+fn coupling(program: &Transcription<'_>, model: &Model, row: &str, column: &str) -> Vec<String> {
+    let n = model.coordinate_count();
+    let of_column = |column: &Column| match *column {
+        Column::Instant { i, .. } => Some(i),
+        Column::Interval { s, .. } | Column::Parameter { s } => Some(n + s),
+        Column::Horizon => None,
+    };
+    let mut entries = HashMap::new();
+    for (i, column) in program.unknowns().columns.iter().enumerate() {
+        entries.insert(program.variable_name(i), of_column(column));
+    }
+    for (r, kind) in program.unknowns().rows.iter().enumerate() {
+        let entry = match *kind {
+            Row::Instant { i, .. } => Some(i),
+            Row::Interval { s, .. } => Some(n + s),
+            Row::Limit { .. } => None,
+        };
+        entries.insert(program.constraint_name(r), entry);
+    }
+    let entry = |name: &str| entries.get(name).copied().flatten();
+    let (Some(i), Some(j)) = (entry(row), entry(column)) else {
+        return Vec::new();
+    };
+    effects::coupling(model, i, j)
+}
+
+/// The control problem whose program has the derivatives of a task.
+fn as_control(task: Task, system: &System) -> Control {
+    let at_reference = || BoundaryState::JointAngles {
+        angles: BTreeMap::new(),
+        rates: BTreeMap::new(),
+        velocities: Default::default(),
+    };
+    let without_goal = |start, step, voltages, coordinates: Option<Coordinates>| Control {
+        duration: Duration::Given(step * INTERVALS as f64),
+        intervals: INTERVALS,
+        is_refined: false,
+        start,
+        // A joint that goes on does not rest.
+        goal: match system.joints.iter().any(|joint| joint.motion.is_some()) {
+            true => BoundaryState::Free,
+            false => at_reference(),
+        },
+        voltage_bounds: [f64::NEG_INFINITY, f64::INFINITY],
+        load_bounds: BTreeMap::new(),
+        given: BTreeMap::new(),
+        course: None,
+        parameters: Vec::new(),
+        hold: Default::default(),
+        objective: Objective {
+            effort: 1.0,
+            rate: 1.0,
+            ..Objective::default()
+        },
+        limits: Vec::new(),
+        waypoints: Vec::new(),
+        coordinates,
+        guess: Guess::Simulate(Voltages::Constant(voltages)),
+        solver: Solver {
+            tolerance: 1e-10,
+            max_iterations: 0,
+            linear_solver: LinearSolver::Auto,
+            ipopt: BTreeMap::new(),
+        },
+    };
+    match task {
+        Task::Control(control) => *control,
+        Task::Simulate(simulation) => {
+            let zero_inputs = simulation.analysis(system, simulation.step).zero_inputs;
+            let Simulation {
+                step,
+                start,
+                voltages,
+                coordinates,
+                ..
+            } = simulation;
+            let row = voltages.at(0.0).to_vec();
+            Control {
+                given: zero_inputs
+                    .into_iter()
+                    .map(|source| (source, Signal::Constant(0.0)))
+                    .collect(),
+                ..without_goal(start, step, row, coordinates)
+            }
+        }
+        Task::Equilibrium(task) => {
+            without_goal(at_reference(), 1.0, task.voltages, task.coordinates)
+        }
+    }
+}
