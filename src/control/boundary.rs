@@ -12,7 +12,7 @@ use crate::control::rest::rest_at;
 use crate::control::sought;
 use crate::control::transcription::count::overdetermined;
 use crate::control::transcription::layout::Layout;
-use crate::dynamics::{Equilibrium, Start, muscle_beyond_law, muscle_without_length};
+use crate::dynamics::{Equilibrium, Start, muscle_without_length, part_beyond_law};
 use crate::functional::Order;
 use crate::math::shortest;
 use crate::model::{
@@ -326,8 +326,8 @@ pub fn resolve_start(
 
 /// Checks that no muscle has lost its length or its energy at coordinates.
 fn check_muscles(model: &Model, z: &[f64], place: &'static str) -> Result<(), BoundaryError> {
-    if let Some(muscle) = muscle_beyond_law(model, z) {
-        return Err(BoundaryError::BeyondLaw { place, muscle });
+    if let Some(part) = part_beyond_law(model, z) {
+        return Err(BoundaryError::BeyondLaw { place, part });
     }
     match muscle_without_length(model, z) {
         None => Ok(()),

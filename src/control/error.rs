@@ -63,13 +63,13 @@ pub enum BoundaryError {
         /// The muscle.
         muscle: String,
     },
-    /// A muscle is beyond the limit of its law in a given configuration.
-    #[error("{place}: {muscle}")]
+    /// A muscle or block is beyond the limit of its law in a given configuration.
+    #[error("{place}: {part}")]
     BeyondLaw {
         /// `start` or `goal`.
         place: &'static str,
-        /// The muscle.
-        muscle: BeyondLaw,
+        /// The muscle or block.
+        part: BeyondLaw,
     },
     /// A parameter cannot be sought.
     #[error("sought parameter \"{name}\": {reason}")]

@@ -22,7 +22,7 @@ pub enum StepError {
         residuals: Vec<f64>,
         /// Shortest lumped muscle at the start of the step and its stretch, if it is rather short.
         muscle: Option<(String, f64)>,
-        /// Lumped muscle near the limit of its law at the start of the step, or beyond it at the end that was tried.
+        /// Lumped muscle or block near the limit of its law at the start of the step, or beyond it at the end that was tried.
         limit: Option<Box<BeyondLaw>>,
         /// Forces beyond the range of numbers, and the greatest voltage, where an inverted element is not what they are laid to.
         overflow: Option<f64>,
@@ -39,15 +39,15 @@ pub enum StepError {
         /// The muscle.
         muscle: String,
     },
-    /// A lumped muscle is stretched beyond the limit of its law at the end of the step, although it was halved.
-    #[error("the step from t = {time} ms ends where {muscle}, even with a step of {step} ms")]
+    /// A lumped muscle or block is stretched beyond the limit of its law at the end of the step, although it was halved.
+    #[error("the step from t = {time} ms ends where {part}, even with a step of {step} ms")]
     BeyondLaw {
         /// Start of the step in ms.
         time: f64,
         /// Smallest step that was tried in ms.
         step: f64,
-        /// The muscle.
-        muscle: BeyondLaw,
+        /// The muscle or block.
+        part: BeyondLaw,
     },
     /// An element of a block is inverted at the end of the step, although it was halved.
     #[error(

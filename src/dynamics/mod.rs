@@ -65,7 +65,7 @@ pub use observe::{observations, observed};
 pub use resolution::Balance;
 pub use simulate::{Lengths, StepControl, TimeGrid, go_on, simulate, simulate_by, simulate_within};
 pub use singular_configurations::{
-    BeyondLaw, muscle_beyond_law, muscle_without_length, reversed_muscle,
+    BeyondLaw, muscle_without_length, part_beyond_law, reversed_muscle,
 };
 pub use solving::{Integrator, Newton, Solving};
 pub use start::Start;

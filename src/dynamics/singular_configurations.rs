@@ -1,5 +1,5 @@
-//! Singular configurations: lumped muscles of zero length or beyond the limit of their law, inverted elements. Steps must neither jump over such
-//! places nor end there.
+//! Singular configurations: lumped muscles of zero length, inverted elements, muscles and blocks beyond the limit of their law. Steps must
+//! neither jump over such places nor end there.
 //!
 //! Forces are those at the middle of a step, which says nothing of its end: a span that turns by a right angle or more within
 //! a step may have passed through zero, and an element that is sound in the middle may be crushed.
@@ -7,8 +7,9 @@
 use crate::coordinates::{Configuration, Interval};
 use crate::dynamics::discrete_trajectory::DiscreteTrajectory;
 use crate::functional::TermKind;
-use crate::model::Model;
-use crate::model::system::{Fidelity, Muscle};
+use crate::math::Vector;
+use crate::model::system::{ElasticLaw, Fidelity, Muscle};
+use crate::model::{Model, SolidBlock};
 use std::fmt;
 
 /// Below this stretch a muscle is named where a step fails; pull-in of an ideal dielectric is at 0.63.
@@ -57,15 +58,27 @@ pub fn muscle_without_length(model: &Model, coordinates: &[f64]) -> Option<usize
     (stretch < NOTHING).then_some(muscle)
 }
 
-/// A lumped muscle whose law has no energy at its stretch.
+/// A lumped muscle or a block that Gent's law leaves no energy.
 #[derive(Clone, Debug, PartialEq)]
-pub struct BeyondLaw {
-    /// Name of the muscle.
-    pub muscle: String,
-    /// Its stretch.
-    pub stretch: f64,
-    /// Stretches between which there is an energy.
-    pub range: [f64; 2],
+pub enum BeyondLaw {
+    /// A lumped muscle.
+    Muscle {
+        /// Its name.
+        name: String,
+        /// Its stretch.
+        stretch: f64,
+        /// Stretches between which there is an energy.
+        range: [f64; 2],
+    },
+    /// A block of finite elements.
+    Block {
+        /// Its name.
+        name: String,
+        /// Greatest Ī₁ − 3 at its Gauss points.
+        strain: f64,
+        /// Jₘ, below which there is an energy.
+        limit: f64,
+    },
 }
 
 impl BeyondLaw {
@@ -73,8 +86,8 @@ impl BeyondLaw {
     fn within(muscle: &Muscle, stretch: f64, part: f64) -> Option<Self> {
         let [low, high] = muscle.material.law?.stretches()?;
         let is_inside = low + part * (1.0 - low) < stretch && stretch < high - part * (high - 1.0);
-        (!is_inside).then(|| Self {
-            muscle: muscle.name.clone(),
+        (!is_inside).then(|| Self::Muscle {
+            name: muscle.name.clone(),
             stretch,
             range: [low, high],
         })
@@ -84,39 +97,77 @@ impl BeyondLaw {
     pub fn at(muscle: &Muscle, stretch: f64) -> Option<Self> {
         Self::within(muscle, stretch, 0.0)
     }
+
+    /// Of a block with its nodes at `x` within the same part of Jₘ, or beyond.
+    fn of_block(block: &SolidBlock, x: &[Vector], part: f64) -> Option<Self> {
+        let strain = |element: usize, limit: f64| {
+            let nodes = block.nodes(element).map(|v| x[v]);
+            let shape = &block.shapes[element];
+            let points = (0..shape.weights().len()).map(|g| {
+                let gradient = shape.gradient_of(&nodes, g);
+                gradient.norm_squared() * gradient.determinant().powf(-2.0 / 3.0) - 3.0
+            });
+            (points.fold(f64::NEG_INFINITY, f64::max), limit)
+        };
+        let elements = (0..block.shapes.len()).filter_map(|e| match block.material(e).law? {
+            ElasticLaw::Gent { limit } => Some(strain(e, limit)),
+            _ => None,
+        });
+        let (strain, limit) = elements.max_by(|a, b| (a.0 / a.1).total_cmp(&(b.0 / b.1)))?;
+        (strain >= (1.0 - part) * limit).then(|| Self::Block {
+            name: block.solid.name.clone(),
+            strain,
+            limit,
+        })
+    }
 }
 
 impl fmt::Display for BeyondLaw {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        let [low, high] = self.range;
-        write!(
-            f,
-            "muscle \"{}\" has the stretch {:.4}; Gent's limit leaves its law an energy between {low:.4} and {high:.4} only",
-            self.muscle, self.stretch
-        )
+        match self {
+            Self::Muscle {
+                name,
+                stretch,
+                range: [low, high],
+            } => write!(
+                f,
+                "muscle \"{name}\" has the stretch {stretch:.4}; Gent's limit leaves its law an energy between {low:.4} and {high:.4} only"
+            ),
+            Self::Block {
+                name,
+                strain,
+                limit,
+            } => write!(
+                f,
+                "block \"{name}\" has I1 - 3 = {strain:.4} at a Gauss point; Gent's limit leaves its law an energy below {limit} only"
+            ),
+        }
     }
 }
 
-/// The first lumped muscle of a placed instant that is within a part of the range of its law, from 0 at its ends to 1 at rest, or beyond.
+/// The first lumped muscle or block of a placed instant that is within a part of the range of its law, from 0 at its ends to 1 at rest, or
+/// beyond.
 fn at_limit(model: &Model, at: &Configuration, part: f64) -> Option<BeyondLaw> {
-    lumped(model).find_map(|(m, span)| {
+    let muscle = lumped(model).find_map(|(m, span)| {
         let muscle = &model.system.muscles[m];
         BeyondLaw::within(muscle, at.x[span].norm() / muscle.length(), part)
-    })
+    });
+    let mut blocks = model.solids.iter();
+    muscle.or_else(|| blocks.find_map(|block| BeyondLaw::of_block(block, &at.x, part)))
 }
 
-/// The first lumped muscle of a placed instant that has no energy by its law.
+/// The first lumped muscle or block of a placed instant that has no energy by its law.
 pub(super) fn beyond_law(model: &Model, at: &Configuration) -> Option<BeyondLaw> {
     at_limit(model, at, 0.0)
 }
 
-/// The first lumped muscle of a placed instant to which a step that fails there is laid, as the limit of its law is near.
+/// The first lumped muscle or block of a placed instant to which a step that fails there is laid, as the limit of its law is near.
 pub(super) fn near_limit(model: &Model, at: &Configuration) -> Option<BeyondLaw> {
     at_limit(model, at, NEAR)
 }
 
-/// The first lumped muscle that has no energy by its law at coordinates.
-pub fn muscle_beyond_law(model: &Model, coordinates: &[f64]) -> Option<BeyondLaw> {
+/// The first lumped muscle or block that has no energy by its law at coordinates.
+pub fn part_beyond_law(model: &Model, coordinates: &[f64]) -> Option<BeyondLaw> {
     beyond_law(model, &model.action.map.placed(coordinates))
 }
 

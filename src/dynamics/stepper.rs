@@ -224,7 +224,7 @@ impl<E: Equations> Steps<E> {
                 break;
             }
         }
-        let limit = self.muscle_near_limit(residuals.last().is_some_and(|r| r.is_finite()));
+        let limit = self.part_near_limit(residuals.last().is_some_and(|r| r.is_finite()));
         self.equations.restore();
         let first = residuals.first().copied().unwrap_or(f64::NAN);
         let last = &residuals[residuals.len().saturating_sub(4)..];
@@ -292,8 +292,8 @@ impl<E: Equations> Steps<E> {
             let muscle = self.muscle_name(muscle);
             return Some(StepError::Reversed { time, step, muscle });
         }
-        if let Some(muscle) = singular_configurations::beyond_law(model, end) {
-            return Some(StepError::BeyondLaw { time, step, muscle });
+        if let Some(part) = singular_configurations::beyond_law(model, end) {
+            return Some(StepError::BeyondLaw { time, step, part });
         }
         if let Some((what, angle)) = turned(model, start, end) {
             return Some(StepError::Turned {
@@ -334,9 +334,9 @@ impl<E: Equations> Steps<E> {
         Some((self.muscle_name(muscle), stretch))
     }
 
-    /// The muscle that a failure is laid to, as its law is near its limit at this instant, or has no energy at the end of the step that was tried
+    /// The muscle or block that a failure is laid to, as its law is near its limit at this instant, or has no energy at the end of the step that was tried
     /// where forces do not exist.
-    fn muscle_near_limit(&mut self, is_finite: bool) -> Option<BeyondLaw> {
+    fn part_near_limit(&mut self, is_finite: bool) -> Option<BeyondLaw> {
         if !is_finite {
             self.equations.place_end();
         }

@@ -1,13 +1,16 @@
 //! Prestretched blocks: closed forms of their rest and vibration, and what files say of them.
 
-use crate::common::solid::{block, held, system};
+use crate::common::solid::{DRIVEN, block, electrode, held, system};
 use nalgebra::Vector3;
-use proboscis::dynamics::{Start, stable_equilibrium};
+use proboscis::dynamics::{
+    EquilibriumError, Instability, Start, StepError, equilibrium, simulate, stable_equilibrium,
+};
 use proboscis::energy::ElasticLaw;
 use proboscis::files::read_system;
 use proboscis::mesh::grid::Grid;
 use proboscis::model::Model;
-use proboscis::model::system::{Material, Solid, System};
+use proboscis::model::system::{ElectricConstants, Material, Potential, Solid, System};
+use std::ops::ControlFlow;
 use std::path::Path;
 
 /// MPa, g/mm³ and the sides in mm of a block as it is glued.
@@ -116,6 +119,78 @@ fn a_prestretch_beyond_gents_limit_is_refused_by_name() {
     assert!(
         error.contains("Gent's limit") && error.contains("15.01"),
         "{error}"
+    );
+}
+
+#[test]
+fn a_membrane_on_a_frame_pulls_in_at_the_voltage_of_its_closed_form() {
+    let electric = ElectricConstants::ideal(3.0);
+    for p in [1.0, 2.0, 3.0] {
+        // ∂/∂c of W(p, p, c) − ½ ε p² V²/(L₀² c) is zero: V² is greatest at a stretch c across.
+        let thickness = SIDES[2] * p * p;
+        let slope = neo_hookean([p, p]);
+        let squared =
+            |c: f64| -2.0 * (thickness * c / p).powi(2) * slope(c) / electric.permittivity;
+        let (rest, _) = at_rest(neo_hookean([p, p]));
+        let (mut low, mut high) = (0.01 * rest, rest);
+        for _ in 0..200 {
+            let [a, b] = [1.0 / 3.0, 2.0 / 3.0].map(|part| low + part * (high - low));
+            match squared(a) < squared(b) {
+                true => low = a,
+                false => high = b,
+            }
+        }
+        let expected = squared(low).sqrt();
+        assert!(low < 0.8 * rest && expected > 1e4, "{low} {expected}");
+        let mut system = membrane([p, p], None, [2, 1, 1]);
+        let solid = &mut system.solids[0];
+        solid.materials[0].electric = Some(electric);
+        solid.electrodes = vec![
+            electrode(&solid.mesh, "bottom", 0.0, Potential::Given(0.0)),
+            electrode(&solid.mesh, "top", SIDES[2], DRIVEN),
+        ];
+        let model = Model::new(system, None, 1.0, &[]).unwrap();
+        let asked = 2.0 * expected;
+        let refused = equilibrium(&model, &model.coordinates_at(&[]), &[asked]).unwrap_err();
+        let EquilibriumError::LimitPoint { fraction, kind, .. } = refused else {
+            panic!("{refused}");
+        };
+        assert_eq!(kind, Some(Instability::PullIn));
+        let found = fraction * asked;
+        assert!(
+            (found / expected - 1.0).abs() < 1e-7,
+            "{p}: {found} {expected}"
+        );
+    }
+}
+
+#[test]
+fn a_motion_that_reaches_gents_limit_names_the_block() {
+    let law = Some(ElasticLaw::Gent { limit: 15.5 });
+    let model = Model::new(membrane([3.0, 3.0], law, [1; 3]), None, 1e-3, &[]).unwrap();
+    let z = model.reference_coordinates();
+    let rates = vec![1e4; model.coordinate_count()];
+    let start = Start::with_rates(&model, z, &rates);
+    let (_, failure) = simulate(
+        &model,
+        &start,
+        1e-3,
+        20,
+        |_, _| vec![],
+        |_| ControlFlow::Continue(()),
+    );
+    let failure = failure.unwrap();
+    let message = failure.to_string();
+    assert!(
+        message.contains("block \"block\" has I1 - 3") && message.contains("below 15.5"),
+        "{message}"
+    );
+    assert!(
+        matches!(
+            failure,
+            StepError::NoConvergence { .. } | StepError::BeyondLaw { .. }
+        ),
+        "{message}"
     );
 }
 
