@@ -191,7 +191,7 @@ fn start_of(
     match start {
         BoundaryState::RestAtVoltages(voltages, _) => {
             let rest = rest_at(model, voltages, ("start", 0.0))?;
-            Ok((at_rest(model, rest.z), Some(rest.scalars)))
+            Ok((at_rest(model, rest.z, "start")?, Some(rest.scalars)))
         }
         state => Ok((resolve_start(model, state, "start")?, None)),
     }
@@ -290,11 +290,11 @@ pub fn resolve_start(
 ) -> Result<Start, BoundaryError> {
     match state {
         BoundaryState::RestAtVoltages(voltages, _) => {
-            Ok(at_rest(model, rest_at(model, voltages, (place, 0.0))?.z))
+            at_rest(model, rest_at(model, voltages, (place, 0.0))?.z, place)
         }
         BoundaryState::JointAngles {
             angles,
-            rates,
+            rates: named_rates,
             velocities,
         } => {
             let value = |one: &Prescribed| one.motion.at(0.0);
@@ -303,14 +303,14 @@ pub fn resolve_start(
             check_constraints(model, &z, place)?;
             check_muscles(model, &z, place)?;
             let rate = |one: &Prescribed| one.motion.derivatives(0.0)[1];
-            let of_joints = prescribed::by_joint(model, rates, rate, (place, "rate"))?;
+            let of_joints = prescribed::by_joint(model, named_rates, rate, (place, "rate"))?;
             let rates = model.rates_at(&joints, &of_joints, velocities);
             let rates = rates.map_err(|body| BoundaryError::Follows {
                 place,
                 body: model.system.bodies[body].name.clone(),
             })?;
             let rates = model.rates_of_all(&rates, &of_joints);
-            Ok(Start::with_rates(model, z, &rates))
+            prescribed::in_loops(model, z, rates, named_rates.clone(), place)
         }
         BoundaryState::EndOf(end) => {
             let start = end

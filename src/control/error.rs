@@ -31,6 +31,16 @@ pub enum BoundaryError {
         /// Its value.
         value: f64,
     },
+    /// The rates of joints do not fit a closed loop.
+    #[error(
+        "{place}: the rates of the joints open a closed loop, by {constraint}; leave out those that follow from the others"
+    )]
+    OpenRates {
+        /// `start`.
+        place: &'static str,
+        /// The constraint that they violate most.
+        constraint: String,
+    },
     /// A body cannot be given a velocity.
     #[error("{place}: the motion of body \"{body}\" follows from its joints")]
     Follows {

@@ -2,7 +2,7 @@
 
 use crate::control::error::BoundaryError;
 use crate::control::problem::{Control, Duration};
-use crate::dynamics::Start;
+use crate::dynamics::{Start, rates_in_loops};
 use crate::math::significant;
 use crate::model::{Model, Prescribed, joint_unit};
 use std::collections::BTreeMap;
@@ -55,12 +55,40 @@ fn check(
 }
 
 /// A start at coordinates of rest; nodes and prescribed joints may have velocities of their own.
-pub(super) fn at_rest(model: &Model, z: Vec<f64>) -> Start {
-    let rates = model.rates_at_rest(0.0, &model.action.map.placed(&z));
-    match rates {
-        Some(rates) => Start::with_rates(model, z, &rates),
-        None => Start::at_rest(model, z),
+///
+/// # Errors
+/// The rates of prescribed joints open a loop.
+pub(super) fn at_rest(
+    model: &Model,
+    z: Vec<f64>,
+    place: &'static str,
+) -> Result<Start, BoundaryError> {
+    match model.rates_at_rest(0.0, &model.action.map.placed(&z)) {
+        Some(rates) => in_loops(model, z, rates, BTreeMap::new(), place),
+        None => Ok(Start::at_rest(model, z)),
     }
+}
+
+/// A start at coordinates with the rates of joints that are named or prescribed; those of closed loops follow from them.
+///
+/// # Errors
+/// The rates open a loop.
+pub(super) fn in_loops(
+    model: &Model,
+    z: Vec<f64>,
+    rates: Vec<f64>,
+    named: BTreeMap<usize, f64>,
+    place: &'static str,
+) -> Result<Start, BoundaryError> {
+    let moving = model.moving_joints();
+    let mut joints = named;
+    let prescribed = model.prescribed.iter();
+    joints.extend(prescribed.map(|one| (one.joint, one.motion.derivatives(0.0)[1])));
+    let joints = joints.into_iter();
+    let joints: Vec<(usize, f64)> = joints.filter(|(j, _)| moving.contains(j)).collect();
+    let rates = rates_in_loops(model, &z, rates, &joints)
+        .map_err(|constraint| BoundaryError::OpenRates { place, constraint })?;
+    Ok(Start::with_rates(model, z, &rates))
 }
 
 /// Checks that the end of another motion has the prescribed values of a start.

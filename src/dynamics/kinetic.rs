@@ -62,11 +62,25 @@ impl<'m> Kinetic<'m> {
         time: f64,
         momentum: &[f64],
     ) -> Option<Vec<f64>> {
+        self.assemble(instant);
+        let mut prescribed = vec![0.0; self.model.action.map.unknowns()];
+        self.model.prescribe_rates(time, &mut prescribed);
+        let right = self.without(momentum, &prescribed);
+        let found = self.solved(&right);
+        let mut rates = found.or_else(|| self.within(&right, momentum.len()))?;
+        for (rate, prescribed) in rates.iter_mut().zip(prescribed) {
+            *rate += prescribed;
+        }
+        Some(rates)
+    }
+
+    /// Evaluates masses and gradients of constraints at a placed instant.
+    fn assemble(&mut self, instant: &mut Configuration) {
         let action = &self.model.action;
         self.values.fill(0.0);
         // The gradients of the constraints alone: neither forces nor multipliers bend them.
         let mut bare = instant.clone();
-        bare.z[momentum.len()..action.map.unknowns()].fill(0.0);
+        bare.z[action.map.coordinates..action.map.unknowns()].fill(0.0);
         bare.forces.fill(Vector::zeros());
         action.evaluate_instant(Order::Hessian, &mut bare, &[], &mut self.scratch);
         action.pull_back_instant(
@@ -102,15 +116,6 @@ impl<'m> Kinetic<'m> {
             &mut self.scratch,
             &mut self.values,
         );
-        let mut prescribed = vec![0.0; action.map.unknowns()];
-        self.model.prescribe_rates(time, &mut prescribed);
-        let right = self.without(momentum, &prescribed);
-        let found = self.solved(&right);
-        let mut rates = found.or_else(|| self.within(&right, momentum.len()))?;
-        for (rate, prescribed) in rates.iter_mut().zip(prescribed) {
-            *rate += prescribed;
-        }
-        Some(rates)
     }
 
     /// Right-hand sides of what is not prescribed: momenta and constraints, less those of the prescribed rates.
@@ -142,42 +147,74 @@ impl<'m> Kinetic<'m> {
         if n > DECOMPOSED || right.iter().any(|p| !p.is_finite()) {
             return None;
         }
+        let (mass, mut gradients) = self.dense(n);
+        let prescribed = &self.model.prescribed;
+        let largest = gradients.amax().max(1.0);
+        for one in prescribed {
+            gradients.row_mut(one.coordinate).fill(0.0);
+        }
+        let met = gradients.ncols();
+        gradients = gradients.insert_columns(met, prescribed.len(), 0.0);
+        for (column, one) in (met..).zip(prescribed) {
+            gradients[(one.coordinate, column)] = largest;
+        }
+        let mut values = right[n..].to_vec();
+        values.resize(gradients.ncols(), 0.0);
+        Some(constrained((&mass, &gradients), [&right[..n], &values]))
+    }
+
+    /// Masses, and the gradients of the constraints as columns, of all `n` coordinates.
+    fn dense(&self, n: usize) -> (DMatrix<f64>, DMatrix<f64>) {
         let mut mass = DMatrix::<f64>::zeros(n, n);
         let mut gradients = DMatrix::<f64>::zeros(n, self.model.action.map.multipliers);
         let entries = self.model.action.layout().same.entries();
         for ((i, j), &value) in entries.zip(&self.values) {
             match (i < n, j < n) {
                 (true, true) => mass[(i, j)] += value,
-                (true, false) if !self.model.is_prescribed(i) => gradients[(i, j - n)] += value,
+                (true, false) => gradients[(i, j - n)] += value,
                 _ => {}
             }
         }
-        let mut square = &gradients * gradients.transpose();
-        let largest = square.amax();
-        for one in &self.model.prescribed {
-            square[(one.coordinate, one.coordinate)] = largest;
-        }
-        let square = SymmetricEigen::new(square);
-        let least = DEPENDENT * square.eigenvalues.amax();
-        let (free, held): (Vec<usize>, Vec<usize>) =
-            (0..n).partition(|&i| square.eigenvalues[i] <= least);
-        let of_constraints = &gradients * DVector::from_column_slice(&right[n..]);
-        let mut met = DVector::<f64>::zeros(n);
-        for i in held {
-            let vector = square.eigenvectors.column(i);
-            met += vector * (vector.dot(&of_constraints) / square.eigenvalues[i]);
-        }
-        let left = DVector::from_column_slice(&right[..n]) - &mass * &met;
-        let basis = square.eigenvectors.select_columns(&free);
-        let rates = rates_within(&mass, &basis, left.as_slice());
-        Some(
-            rates
-                .iter()
-                .zip(&met)
-                .map(|(free, met)| free + met)
-                .collect(),
-        )
+        (mass, gradients)
     }
+
+    /// Masses and gradients of the constraints at a placed instant; `None` of systems that are too large for them.
+    pub(super) fn dense_at(
+        &mut self,
+        instant: &mut Configuration,
+    ) -> Option<(DMatrix<f64>, DMatrix<f64>)> {
+        let n = self.model.coordinate_count();
+        (n <= DECOMPOSED).then(|| {
+            self.assemble(instant);
+            self.dense(n)
+        })
+    }
+}
+
+/// The v of least ½ vᵀM v − pᵀv with Gᵀv = g, or the least squares of it where constraints contradict each other; G has columns.
+pub(super) fn constrained(
+    (mass, gradients): (&DMatrix<f64>, &DMatrix<f64>),
+    [momentum, values]: [&[f64]; 2],
+) -> Vec<f64> {
+    let n = mass.nrows();
+    let square = SymmetricEigen::new(gradients * gradients.transpose());
+    let least = DEPENDENT * square.eigenvalues.amax();
+    let (free, held): (Vec<usize>, Vec<usize>) =
+        (0..n).partition(|&i| square.eigenvalues[i] <= least);
+    let of_constraints = gradients * DVector::from_column_slice(values);
+    let mut met = DVector::<f64>::zeros(n);
+    for i in held {
+        let vector = square.eigenvectors.column(i);
+        met += vector * (vector.dot(&of_constraints) / square.eigenvalues[i]);
+    }
+    let left = DVector::from_column_slice(momentum) - mass * &met;
+    let basis = square.eigenvectors.select_columns(&free);
+    let rates = rates_within(mass, &basis, left.as_slice());
+    rates
+        .iter()
+        .zip(&met)
+        .map(|(free, met)| free + met)
+        .collect()
 }
 
 /// Second derivatives of the kinetic energy by the rates of vectors, at rest at places `x`: the last of the four blocks of an

@@ -8,6 +8,7 @@
 //! - `resolution`, `singular_configurations`: which steps are refused; `local_error`: what those neglect that are not.
 //! - `simulate`, `discrete_trajectory`, `observe`, `part_columns`, `reactions`, `to_instants`, `at_instant`, `interval_energies`, `kinetic`: step after step,
 //!   recorded and observed.
+//! - `loop_rates`: rates of the joints of closed loops, completed from those that are named.
 //! - `exchange`: electrical energy from the sources and mechanical work of their muscles.
 //! - `statics`, `weights`: the rows of rest; `growing`: these by loads; `ramp`, `growth`, `load_path`: paths of rest under growing loads; `minimum`: minima
 //!   of the potential energy; `stable`: a stable equilibrium by all of these; `softest_mode`: its softest mode.
@@ -27,6 +28,7 @@ mod galerkin;
 mod interval_energies;
 mod kinetic;
 mod local_error;
+mod loop_rates;
 mod midpoint;
 mod momenta;
 mod observe;
@@ -59,6 +61,7 @@ pub use exchange::{EnergyExchange, SourceEnergies};
 pub use galerkin::GalerkinEquations;
 pub use interval_energies::{Energies, Work, energies};
 pub use local_error::{LocalError, local_error, local_error_of};
+pub use loop_rates::rates_in_loops;
 pub use midpoint::{Midpoint, Stepper};
 pub use momenta::last_momentum;
 pub use observe::{observations, observed};

@@ -39,6 +39,11 @@ impl Model {
         !self.graph.free().is_empty() || joints.any(|joint| joint.kind.freedoms() > 1)
     }
 
+    /// Returns true if joints close loops of bodies.
+    pub fn has_loops(&self) -> bool {
+        !self.graph.loops().is_empty()
+    }
+
     /// First coordinate and coordinates at poses of the joints of several coordinates without a chart.
     fn several(&self, poses: &[Pose]) -> Vec<(usize, Vec<f64>)> {
         let mut next = 0;

@@ -87,6 +87,7 @@ impl WorkflowError {
             BoundaryError::Inconsistent { place, .. }
             | BoundaryError::NoLength { place, .. }
             | BoundaryError::BeyondLaw { place, .. }
+            | BoundaryError::OpenRates { place, .. }
             | BoundaryError::Follows { place, .. } => {
                 let text = error.to_string();
                 let reason = text.strip_prefix(&format!("{place}: ")).unwrap_or(&text);

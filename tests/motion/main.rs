@@ -17,6 +17,7 @@ mod joint_springs;
 mod joint_stops;
 mod leakage;
 mod loads;
+mod loop_rates;
 mod maxwell;
 mod maxwell_limits;
 mod observe;

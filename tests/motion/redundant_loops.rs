@@ -46,7 +46,7 @@ fn holds(model: &Model, discrete: &DiscreteTrajectory) {
 }
 
 /// Crank, coupler and rocker in a plane turned by `turn`; kinds of the joints of the coupler.
-fn plane_four_bar(turn: &Rotation3<f64>, kinds: [JointKind; 2]) -> System {
+pub(crate) fn plane_four_bar(turn: &Rotation3<f64>, kinds: [JointKind; 2]) -> System {
     let at = |x: f64, y: f64| turn * Vector3::new(x, y, 0.0);
     let [o, a, b, c] = [at(0.0, 0.0), at(0.3, -0.8), at(1.1, -1.0), at(1.0, 0.0)];
     let bodies = vec![
