@@ -75,7 +75,7 @@ impl<'m> Kinetic<'m> {
     }
 
     /// Evaluates masses and gradients of constraints at a placed instant.
-    fn assemble(&mut self, instant: &mut Configuration) {
+    pub(super) fn assemble(&mut self, instant: &mut Configuration) {
         let action = &self.model.action;
         self.values.fill(0.0);
         // The gradients of the constraints alone: neither forces nor multipliers bend them.
@@ -135,7 +135,17 @@ impl<'m> Kinetic<'m> {
     }
 
     fn solved(&mut self, right: &[f64]) -> Option<Vec<f64>> {
-        self.tangent.factor(&self.values).ok()?;
+        self.factor()?;
+        self.solve(right)
+    }
+
+    /// Factorises the bordered masses; `None` where they have no inverse.
+    pub(super) fn factor(&mut self) -> Option<()> {
+        self.tangent.factor(&self.values).ok()
+    }
+
+    /// Rates that solve the factorised equations; `None` where they are not finite.
+    pub(super) fn solve(&mut self, right: &[f64]) -> Option<Vec<f64>> {
         let mut rates = right.to_vec();
         self.tangent.solve(&mut rates);
         rates.truncate(self.model.action.map.coordinates);
@@ -178,16 +188,38 @@ impl<'m> Kinetic<'m> {
         (mass, gradients)
     }
 
-    /// Masses and gradients of the constraints at a placed instant; `None` of systems that are too large for them.
-    pub(super) fn dense_at(
-        &mut self,
-        instant: &mut Configuration,
-    ) -> Option<(DMatrix<f64>, DMatrix<f64>)> {
+    /// The same of systems that are small enough for it.
+    pub(super) fn small(&self) -> Option<(DMatrix<f64>, DMatrix<f64>)> {
         let n = self.model.coordinate_count();
-        (n <= DECOMPOSED).then(|| {
-            self.assemble(instant);
-            self.dense(n)
-        })
+        (n <= DECOMPOSED).then(|| self.dense(n))
+    }
+
+    /// Zero for each coordinate, then the rates of the constraints with rates of the coordinates.
+    pub(super) fn opening(&self, rates: &[f64]) -> Vec<f64> {
+        let n = rates.len();
+        let mut sums = vec![0.0; self.model.action.map.unknowns()];
+        let entries = self.model.action.layout().same.entries();
+        for ((i, j), value) in entries.zip(&self.values) {
+            if i < n && j >= n {
+                sums[j] += value * rates[i];
+            }
+        }
+        sums
+    }
+
+    /// Rates of the constraints with rates of the coordinates, each relative to the size of its gradient.
+    pub(super) fn of_constraints(&self, rates: &[f64]) -> Vec<f64> {
+        let n = rates.len();
+        let mut squares = vec![f64::MIN_POSITIVE; self.model.action.map.unknowns()];
+        let entries = self.model.action.layout().same.entries();
+        for ((i, j), value) in entries.zip(&self.values) {
+            if i < n && j >= n {
+                squares[j] += value * value;
+            }
+        }
+        let opening = self.opening(rates);
+        let both = opening[n..].iter().zip(&squares[n..]);
+        both.map(|(rate, square)| rate / square.sqrt()).collect()
     }
 }
 

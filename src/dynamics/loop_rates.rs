@@ -1,27 +1,33 @@
 //! Rates of a system with closed loops: those that a state names, completed so that no loop opens.
 //!
-//! With v₀ the rates at which all joints of the tree rest but those that are named, v has the least
+//! With v₀ the rates at which all joints of the tree rest but those that are named, v = v₀ + d has the least
 //!
 //! ```text
-//! ½ (v − v₀)ᵀ M (v − v₀)     with  Gᵀ v = 0,   Jᵀ v = r
+//! ½ dᵀ M d     with  Gᵀ v = 0,   Jᵀ v = r
 //! ```
 //!
-//! of the gradients G of the constraints and J of the joint coordinates with the named rates r.
+//! of the gradients G of the constraints and J of the joint coordinates with the named rates r: with d = d₀ + D ν,
+//!
+//! ```text
+//! M d₀ + G μ₀ = 0,  Gᵀ d₀ = −Gᵀ v₀;      M D + G μ = J,  Gᵀ D = 0;      (Jᵀ D) ν = r − Jᵀ (v₀ + d₀).
+//! ```
 
 use crate::coordinates::Configuration;
 use crate::dynamics::kinetic::{Kinetic, constrained};
 use crate::model::{Model, Role};
 use nalgebra::{DMatrix, DVector};
 
-/// Part of the product of a gradient and the rates that a constraint may change by.
+/// Part of the greatest rate by which a constraint or a named joint may be missed.
 const OPEN: f64 = 1e-9;
-/// Corrections of the rates, each with the square of the digits of the one before.
+/// Singular values of Jᵀ D below this part of the greatest belong to named joints that follow from the others.
+const DEPENDENT: f64 = 1e-10;
+/// Corrections of rates by squares of gradients, each with half of the digits.
 const CORRECTIONS: usize = 3;
 
 /// Rates v of the coordinates at coordinates `z`, completed from v₀ and the rates of joints that are `named`.
 ///
 /// # Errors
-/// The name of the constraint that the named rates violate most.
+/// The constraint or joint that the named rates violate most.
 pub fn rates_in_loops(
     model: &Model,
     z: &[f64],
@@ -33,66 +39,108 @@ pub fn rates_in_loops(
         return Ok(rates);
     }
     let mut instant = model.action.map.placed(z);
-    let Some((mass, of_constraints)) = Kinetic::new(model).dense_at(&mut instant) else {
-        return Ok(rates);
+    let mut kinetic = Kinetic::new(model);
+    kinetic.assemble(&mut instant);
+    let problem = Problem {
+        of_joints: of_joints(model, &mut instant, named),
+        wanted: DVector::from_iterator(named.len(), named.iter().map(|(_, rate)| *rate)),
+        given: DVector::from_vec(rates),
     };
-    let gradients = with_joints(model, &mut instant, &of_constraints, named);
-    let given = DVector::from_vec(rates);
-    let mut wanted = -gradients.tr_mul(&given);
-    let of_joints = of_constraints.ncols()..;
-    for (k, (_, rate)) in of_joints.zip(named) {
-        wanted[k] += rate;
-    }
-    for (k, column) in gradients.column_iter().enumerate() {
-        wanted[k] /= size(column.norm());
-    }
-    let unit = DMatrix::from_fn(gradients.nrows(), gradients.ncols(), |i, k| {
-        gradients[(i, k)] / size(gradients.column(k).norm())
-    });
-    let mut added = DVector::<f64>::zeros(given.len());
-    for _ in 0..CORRECTIONS {
-        let left = &wanted - unit.tr_mul(&added);
-        let pull = -(&mass * &added);
-        let step = constrained((&mass, &unit), [pull.as_slice(), left.as_slice()]);
-        added += DVector::from_vec(step);
-    }
-    let left = &wanted - unit.tr_mul(&added);
-    let found = &given + added;
-    let worst = left.iamax();
-    if left[worst].abs() <= OPEN * found.amax() {
+    let exact = problem.by_factors(&mut kinetic, model.action.map.unknowns());
+    let found = exact.filter(|found| problem.gaps(&kinetic, found).amax() <= OPEN * found.amax());
+    let found = found.or_else(|| problem.by_squares(&kinetic));
+    let found = found.unwrap_or_else(|| problem.given.clone());
+    let gaps = problem.gaps(&kinetic, &found);
+    let worst = gaps.iamax();
+    if gaps[worst].abs() <= OPEN * found.amax() {
         return Ok(found.as_slice().to_vec());
     }
-    let multipliers = model.variables.with(Role::Multiplier);
-    Err(match multipliers.get(worst) {
+    let constraints = model.variables.with(Role::Multiplier);
+    Err(match constraints.get(worst) {
         Some(constraint) => constraint.name.clone(),
         None => {
-            let (joint, _) = named[worst - of_constraints.ncols()];
+            let (joint, _) = named[worst - constraints.len()];
             model.system.joints[joint].name.clone()
         }
     })
 }
 
-/// A length to divide by.
-fn size(norm: f64) -> f64 {
-    if norm > 0.0 { norm } else { 1.0 }
+struct Problem {
+    /// J.
+    of_joints: DMatrix<f64>,
+    /// r.
+    wanted: DVector<f64>,
+    /// v₀.
+    given: DVector<f64>,
 }
 
-/// The gradients of the constraints, then those of the coordinates of joints, which are linear in the rates.
-fn with_joints(
-    model: &Model,
-    instant: &mut Configuration,
-    of_constraints: &DMatrix<f64>,
-    joints: &[(usize, f64)],
-) -> DMatrix<f64> {
-    let (n, count) = of_constraints.shape();
-    let mut all = of_constraints
-        .clone()
-        .insert_columns(count, joints.len(), 0.0);
+impl Problem {
+    /// v by the factors of the bordered masses; `None` where these have no inverse.
+    fn by_factors(&self, kinetic: &mut Kinetic<'_>, unknowns: usize) -> Option<DVector<f64>> {
+        kinetic.factor()?;
+        let n = self.given.len();
+        let mut right = kinetic.opening(self.given.as_slice());
+        right.iter_mut().for_each(|value| *value = -*value);
+        let mut found = &self.given + DVector::from_vec(kinetic.solve(&right)?);
+        let mut pulls = DMatrix::zeros(n, self.wanted.len());
+        for (k, gradient) in self.of_joints.column_iter().enumerate() {
+            right.clear();
+            right.extend(gradient.iter());
+            right.resize(unknowns, 0.0);
+            pulls.set_column(k, &DVector::from_vec(kinetic.solve(&right)?));
+        }
+        let left = &self.wanted - self.of_joints.tr_mul(&found);
+        let moved = self.of_joints.tr_mul(&pulls).svd(true, true);
+        let least = DEPENDENT * moved.singular_values.amax();
+        found += pulls * moved.solve(&left, least).ok()?;
+        Some(found)
+    }
+
+    /// v by the squares of all gradients, also where masses are missing; `None` of large systems.
+    fn by_squares(&self, kinetic: &Kinetic<'_>) -> Option<DVector<f64>> {
+        let (mass, mut gradients) = kinetic.small()?;
+        let count = gradients.ncols();
+        gradients = gradients.insert_columns(count, self.wanted.len(), 0.0);
+        let mut joints = gradients.columns_mut(count, self.wanted.len());
+        joints.copy_from(&self.of_joints);
+        let mut wanted = DVector::zeros(gradients.ncols());
+        wanted
+            .rows_mut(count, self.wanted.len())
+            .copy_from(&self.wanted);
+        for (mut column, wanted) in gradients.column_iter_mut().zip(wanted.iter_mut()) {
+            let size = column.norm().max(f64::MIN_POSITIVE);
+            column /= size;
+            *wanted /= size;
+        }
+        let mut found = self.given.clone();
+        for _ in 0..CORRECTIONS {
+            let left = &wanted - gradients.tr_mul(&found);
+            let pull = &mass * (&self.given - &found);
+            let step = constrained((&mass, &gradients), [pull.as_slice(), left.as_slice()]);
+            found += DVector::from_vec(step);
+        }
+        Some(found)
+    }
+
+    /// Rates by which constraints and then named joints are missed, relative to their gradients.
+    fn gaps(&self, kinetic: &Kinetic<'_>, found: &DVector<f64>) -> DVector<f64> {
+        let mut gaps = kinetic.of_constraints(found.as_slice());
+        let missed = self.of_joints.tr_mul(found) - &self.wanted;
+        let joints = missed.iter().zip(self.of_joints.column_iter());
+        gaps.extend(joints.map(|(gap, column)| gap / column.norm().max(f64::MIN_POSITIVE)));
+        DVector::from_vec(gaps)
+    }
+}
+
+/// The gradients of the coordinates of joints, whose rates are linear in those of the coordinates.
+fn of_joints(model: &Model, instant: &mut Configuration, joints: &[(usize, f64)]) -> DMatrix<f64> {
+    let n = model.coordinate_count();
+    let mut all = DMatrix::zeros(n, joints.len());
     for i in 0..n {
         instant.l.fill(0.0);
         instant.l[i] = 1.0;
         for (k, &(joint, _)) in joints.iter().enumerate() {
-            all[(i, count + k)] = model.joint_rate(joint, instant);
+            all[(i, k)] = model.joint_rate(joint, instant);
         }
     }
     all
