@@ -5,7 +5,7 @@
 //! - `signal`: functions of time.
 //! - [`study`], [`sweep`]: types of a study of variants of a problem, or a sweep of them; `changes`: their overrides.
 //! - [`solution`]: motions that later runs start from; [`npz`]: arrays of long ones; [`continuation`]: motions that go on.
-//! - `columns`: columns of CSV files; `typed`: scenes and voltages named on the command line.
+//! - [`stl`]: surfaces; `columns`: columns of CSV files; `typed`: scenes and voltages named on the command line.
 
 pub(crate) mod changes;
 mod columns;
@@ -16,6 +16,7 @@ pub mod problem;
 pub mod scene;
 mod signal;
 pub mod solution;
+pub mod stl;
 pub mod study;
 pub mod sweep;
 mod typed;

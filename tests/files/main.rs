@@ -1,6 +1,8 @@
 //! Scene and problem files, as written and as mistaken.
 
 mod arbitrary;
+mod body_mesh_mistakes;
+mod body_meshes;
 mod extremes;
 mod free;
 mod fuzz_reader;

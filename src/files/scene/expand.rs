@@ -69,7 +69,8 @@ impl Link {
         let centre = self.axis * ((self.number as f64 - 0.5) * chain.length.value());
         BodySpec {
             name: self.segment(),
-            mass: chain.mass.clone(),
+            mass: Some(chain.mass.clone()),
+            density: None,
             cylinder: Some(CylinderSpec {
                 length: chain.length.clone(),
                 radius: chain.radius.clone(),
@@ -77,8 +78,10 @@ impl Link {
             }),
             cuboid: None,
             sphere: None,
+            mesh: None,
             inertia: None,
-            position: point(&centre),
+            products_of_inertia: None,
+            position: Some(point(&centre)),
             free: false,
         }
     }
