@@ -133,6 +133,13 @@ pub(crate) enum New {
     Gripper(NewFiles),
     /// A satellite that carries a trunk and tumbles freely.
     Satellite(NewFiles),
+    /// The bodies and joints of a URDF file, which fall from rest; names on standard error what is left out.
+    Urdf {
+        /// The URDF file.
+        urdf: PathBuf,
+        #[command(flatten)]
+        files: NewFiles,
+    },
 }
 
 #[derive(Args, Debug)]

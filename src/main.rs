@@ -175,6 +175,7 @@ fn new_files(what: New) -> Result<CommandOutput, CommandError> {
         New::Finger(files) => (Template::Finger, files.folder),
         New::Gripper(files) => (Template::Gripper, files.folder),
         New::Satellite(files) => (Template::Satellite, files.folder),
+        New::Urdf { urdf, files } => return app::new_from_urdf(&urdf, &files.folder),
     };
     app::new_files(template, &folder)
 }

@@ -5,7 +5,7 @@
 //! - `signal`: functions of time.
 //! - [`study`], [`sweep`]: types of a study of variants of a problem, or a sweep of them; `changes`: their overrides.
 //! - [`solution`]: motions that later runs start from; [`npz`]: arrays of long ones; [`continuation`]: motions that go on.
-//! - [`stl`]: surfaces; `columns`: columns of CSV files; `typed`: scenes and voltages named on the command line.
+//! - [`urdf`]: robots of ROS; [`stl`]: surfaces; `columns`: columns of CSV files; `typed`: scenes and voltages named on the command line.
 
 pub(crate) mod changes;
 mod columns;
@@ -21,6 +21,7 @@ pub mod study;
 pub mod sweep;
 mod typed;
 pub mod units;
+pub mod urdf;
 
 pub(crate) use columns::Columns;
 pub(crate) use json::document::Document;

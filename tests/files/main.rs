@@ -16,3 +16,4 @@ mod schema_walk;
 mod slips;
 mod solids;
 mod tasks;
+mod urdf;

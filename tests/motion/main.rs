@@ -35,3 +35,4 @@ mod single_joints;
 mod squeezer;
 mod tolerance;
 mod tree;
+mod urdf;
