@@ -91,6 +91,11 @@ pub(crate) enum Command {
         /// The scene file.
         scene: PathBuf,
     },
+    /// List the materials with published constants, or print one of them with its source.
+    Materials {
+        /// Name of the material.
+        name: Option<String>,
+    },
     /// Print the JSON Schema of a file.
     Schema {
         /// Kind of file.

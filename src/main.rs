@@ -141,6 +141,7 @@ fn answer(command: Command) -> Result<CommandOutput, CommandError> {
         }
         Command::Report { results, output } => app::compare(&typed(), &results, &output),
         Command::Expand { scene } => app::expand(&scene).map(text),
+        Command::Materials { name } => app::materials(name.as_deref()).map(text),
         Command::Schema { file } => Ok(text(schema(file))),
         Command::New { what } => new_files(what),
         Command::Completions { shell } => Ok(text(completions(shell))),

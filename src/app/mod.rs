@@ -77,5 +77,6 @@ pub use side_by_side::compare;
 pub use summary::written_summary;
 pub use task::{run, run_observed, simulate};
 pub use templates::{
-    Template, expand, new_files, new_from_urdf, schema, study_schema, sweep_schema, write_file,
+    Template, expand, materials, new_files, new_from_urdf, schema, study_schema, sweep_schema,
+    write_file,
 };

@@ -6,6 +6,7 @@ use crate::app::error::CommandError;
 use crate::app::folder::make_folder;
 use crate::app::request::CommandOutput;
 use crate::files;
+use crate::files::named_materials;
 use crate::files::urdf::read_urdf;
 use crate::report::{atomic, shell};
 
@@ -165,6 +166,26 @@ pub fn write_file(path: &Path, bytes: &[u8]) -> Result<(), CommandError> {
 /// The scene is wrong.
 pub fn expand(path: &Path) -> Result<String, CommandError> {
     Ok(files::expand(path)?)
+}
+
+/// Names of the materials with published constants, or the text of one of them.
+///
+/// # Errors
+/// There is no material of this name.
+pub fn materials(name: Option<&str>) -> Result<String, CommandError> {
+    let mut all = named_materials();
+    let Some(wanted) = name else {
+        let names: Vec<&str> = all.map(|(name, _)| name).collect();
+        return Ok(names.join("\n"));
+    };
+    if let Some((_, text)) = all.find(|(name, _)| *name == wanted) {
+        return Ok(text.trim_end().to_owned());
+    }
+    let names: Vec<&str> = named_materials().map(|(name, _)| name).collect();
+    Err(CommandError::Option {
+        option: "materials",
+        reason: format!("found {wanted:?}, expected one of {}", names.join(", ")),
+    })
 }
 
 /// The JSON Schemas of scene and problem as text.
