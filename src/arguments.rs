@@ -91,6 +91,11 @@ pub(crate) enum Command {
         /// The scene file.
         scene: PathBuf,
     },
+    /// List the materials with published constants, or print one of them with its source.
+    Materials {
+        /// Name of the material.
+        name: Option<String>,
+    },
     /// Print the JSON Schema of a file.
     Schema {
         /// Kind of file.
@@ -133,6 +138,13 @@ pub(crate) enum New {
     Gripper(NewFiles),
     /// A satellite that carries a trunk and tumbles freely.
     Satellite(NewFiles),
+    /// The bodies and joints of a URDF file, which fall from rest; names on standard error what is left out.
+    Urdf {
+        /// The URDF file.
+        urdf: PathBuf,
+        #[command(flatten)]
+        files: NewFiles,
+    },
 }
 
 #[derive(Args, Debug)]

@@ -157,6 +157,7 @@ fn answer(command: Command) -> Result<CommandOutput, CommandError> {
         }
         Command::Report { results, output } => app::compare(&typed(), &results, &output),
         Command::Expand { scene } => app::expand(&scene).map(text),
+        Command::Materials { name } => app::materials(name.as_deref()).map(text),
         Command::Schema { file } => Ok(text(schema(file))),
         Command::New { what } => new_files(what),
         Command::Completions { shell } => Ok(text(completions(shell))),
@@ -191,6 +192,7 @@ fn new_files(what: New) -> Result<CommandOutput, CommandError> {
         New::Finger(files) => (Template::Finger, files.folder),
         New::Gripper(files) => (Template::Gripper, files.folder),
         New::Satellite(files) => (Template::Satellite, files.folder),
+        New::Urdf { urdf, files } => return app::new_from_urdf(&urdf, &files.folder),
     };
     app::new_files(template, &folder)
 }

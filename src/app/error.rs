@@ -7,6 +7,7 @@ use std::path::{Path, PathBuf};
 use thiserror::Error;
 
 use crate::files::SceneError;
+use crate::files::urdf::UrdfError;
 use crate::ipopt::Status;
 use crate::report::atomic::WriteError;
 use crate::workflow::WorkflowError;
@@ -17,6 +18,9 @@ pub enum CommandError {
     /// A scene, problem or override is wrong.
     #[error(transparent)]
     Scene(#[from] SceneError),
+    /// A URDF file is wrong.
+    #[error(transparent)]
+    Urdf(#[from] UrdfError),
     /// An earlier solution cannot be used.
     #[error(transparent)]
     Earlier(Box<dyn StdError + Send + Sync>),

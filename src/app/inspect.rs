@@ -13,6 +13,7 @@ use crate::app::request::{CommandInput, CommandOutput};
 use crate::app::sparsity;
 use crate::app::task::read;
 use crate::control::problem::{Control, Task};
+use crate::model::system::{Body, Shape};
 use crate::model::{Loops, Model, Role, System};
 use crate::nlp::Nlp;
 use crate::report::atomic;
@@ -138,7 +139,7 @@ fn of_model(model: &Model, control: Option<&Control>) -> Inspected {
         _ => "",
     };
     let words = format!(
-        "{}, {} coordinates\n\n{}\n{}\n{}\n{}{}{tangent}{}",
+        "{}, {} coordinates\n\n{}\n{}\n{}\n{}{}{tangent}{}{}",
         system.name,
         model.coordinates.name(),
         active(&plan),
@@ -146,7 +147,8 @@ fn of_model(model: &Model, control: Option<&Control>) -> Inspected {
         missing(&plan),
         left_out(&model.loops),
         numbers(&sizes),
-        length_unit_check::lines(system)
+        length_unit_check::lines(system),
+        meshed_bodies(system)
     );
     Inspected {
         system: system.name.clone(),
@@ -157,6 +159,21 @@ fn of_model(model: &Model, control: Option<&Control>) -> Inspected {
         words,
         notes: Vec::new(),
     }
+}
+
+/// Mass, centre of mass and principal moments of inertia of bodies from meshes.
+fn meshed_bodies(system: &System) -> String {
+    let is_meshed = |body: &&Body| matches!(body.shape, Shape::Surface(_));
+    let bodies = system.bodies.iter().filter(is_meshed);
+    let line = |body: &Body| {
+        let [x, y, z] = body.centre.into();
+        let [a, b, c] = body.inertia;
+        format!(
+            "{}: {:.4} g, centre of mass ({x:.3}, {y:.3}, {z:.3}) mm, moments of inertia {a:.4}, {b:.4}, {c:.4} g mm²\n",
+            body.name, body.mass
+        )
+    };
+    bodies.map(line).collect()
 }
 
 /// Names the closing constraints that are left out, and warns of a singular reference.

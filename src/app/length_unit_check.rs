@@ -2,6 +2,7 @@
 
 use nalgebra::Vector3;
 
+use crate::mesh::triangulated::Surface;
 use crate::model::System;
 use crate::model::system::Shape;
 
@@ -43,7 +44,11 @@ pub(super) fn lines(system: &System) -> String {
 
 fn dimensions((lower, upper): Corners) -> String {
     let [x, y, z] = [0, 1, 2].map(|axis| rounded(upper[axis] - lower[axis]));
-    let [a, b, c] = [0, 1, 2].map(|axis| rounded(lower[axis]));
+    let least = 1e-9 * (upper - lower).max();
+    let [a, b, c] = [0, 1, 2].map(|axis| match lower[axis] {
+        place if place.abs() < least => 0.0,
+        place => rounded(place),
+    });
     format!("{x} × {y} × {z} mm from ({a}, {b}, {c}) mm")
 }
 
@@ -66,6 +71,12 @@ fn around(places: impl IntoIterator<Item = Vector3<f64>>) -> Corners {
 fn places(system: &System) -> impl Iterator<Item = Vector3<f64>> + '_ {
     let bodies = system.bodies.iter().flat_map(|body| {
         let half = match body.shape {
+            Shape::Surface(_) => {
+                let mut surface = Surface::default();
+                body.shape.add_to(&mut surface, &body.pose());
+                let (lower, upper) = surface.bounds();
+                return [lower, upper];
+            }
             Shape::Cylinder { length, radius } => Vector3::new(radius, radius, 0.5 * length),
             Shape::Box { size } => Vector3::from(size) / 2.0,
             Shape::Sphere { radius } => Vector3::repeat(radius),

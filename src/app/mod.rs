@@ -76,4 +76,7 @@ pub use request::{CommandInput, CommandOutput, PageWanted};
 pub use side_by_side::compare;
 pub use summary::written_summary;
 pub use task::{run, run_observed, simulate};
-pub use templates::{Template, expand, new_files, schema, study_schema, sweep_schema, write_file};
+pub use templates::{
+    Template, expand, materials, new_files, new_from_urdf, schema, study_schema, sweep_schema,
+    write_file,
+};

@@ -1,4 +1,4 @@
-//! Templates: robots, the scene without shorthand, the schemas.
+//! Files to begin with: templates of robots, robots from URDF, the scene without shorthand, the schemas.
 
 use std::path::{Path, PathBuf};
 
@@ -6,6 +6,8 @@ use crate::app::error::CommandError;
 use crate::app::folder::make_folder;
 use crate::app::request::CommandOutput;
 use crate::files;
+use crate::files::named_materials;
+use crate::files::urdf::read_urdf;
 use crate::report::{atomic, shell};
 
 /// A robot to begin with.
@@ -46,20 +48,12 @@ impl Template {
         }
     }
 
-    /// The command that does what its problem asks, whose results go to a folder of its own name.
-    fn next(self, folder: &Path) -> String {
-        let command = match self {
+    /// The command that does what its problem asks.
+    const fn command(self) -> &'static str {
+        match self {
             Self::Satellite => "simulate",
             _ => "solve",
-        };
-        let problem = Path::new("problem.json");
-        let problem = match folder == Path::new(".") {
-            true => problem.to_owned(),
-            false => folder.join(problem),
-        };
-        let problem = problem.display().to_string();
-        let words = ["proboscis", command, &problem].map(str::to_owned);
-        shell::command(words)
+        }
     }
 }
 
@@ -79,27 +73,80 @@ pub fn new_files(template: Template, folder: &Path) -> Result<CommandOutput, Com
         });
     }
     let (scene, problem) = template.files();
+    let files = [("scene.json".to_owned(), scene.into_bytes())];
+    write_new(files.into(), problem, template.command(), folder)
+}
+
+/// Problem of a robot from a URDF file: its motion from rest.
+const OF_URDF: &str = r#"{
+  "$schema": "problem.schema.json",
+  "scene": "scene.json",
+  "simulate": { "duration": "1 s", "step": "1 ms" }
+}
+"#;
+
+/// Writes the scene of a URDF file with its meshes into a folder, a problem and the schemas, as [`new_files`] does.
+///
+/// # Errors
+/// The URDF file is wrong, a file exists, or cannot be written.
+pub fn new_from_urdf(urdf: &Path, folder: &Path) -> Result<CommandOutput, CommandError> {
+    let found = read_urdf(urdf)?;
+    let mut files = found.meshes;
+    files.push(("scene.json".to_owned(), found.scene.into_bytes()));
+    let output = write_new(files, OF_URDF.to_owned(), "simulate", folder)?;
+    files::read_scene(&folder.join("scene.json"))?;
+    let notes = found.notes.iter().map(|note| format!("note: {note}"));
+    Ok(CommandOutput {
+        notes: notes.collect(),
+        ..output
+    })
+}
+
+/// Writes files of a scene, its problem and the schemas into a folder; `command` does what the problem asks.
+fn write_new(
+    mut files: Vec<(String, Vec<u8>)>,
+    problem: String,
+    command: &str,
+    folder: &Path,
+) -> Result<CommandOutput, CommandError> {
     let (of_scene, of_problem) = schema();
-    let files: [(PathBuf, String); 4] = [
-        ("scene.json", scene),
-        ("problem.json", problem),
-        ("scene.schema.json", of_scene + "\n"),
-        ("problem.schema.json", of_problem + "\n"),
-    ]
-    .map(|(name, text)| (folder.join(name), text));
+    files.extend(
+        [
+            ("problem.json", problem),
+            ("scene.schema.json", of_scene + "\n"),
+            ("problem.schema.json", of_problem + "\n"),
+        ]
+        .map(|(name, text)| (name.to_owned(), text.into_bytes())),
+    );
+    let files: Vec<(PathBuf, Vec<u8>)> = files
+        .into_iter()
+        .map(|(name, bytes)| (folder.join(name), bytes))
+        .collect();
     if let Some((path, _)) = files.iter().find(|(path, _)| path.exists()) {
         return Err(CommandError::Exists(path.clone()));
     }
-    for (path, text) in &files {
-        write_file(path, text.as_bytes())?;
+    for (path, bytes) in &files {
+        write_file(path, bytes)?;
     }
     let names = files.iter().map(|(path, _)| path.display().to_string());
-    let next = format!("next: {}", template.next(folder));
+    let next = format!("next: {}", next(command, folder));
     Ok(CommandOutput {
         is_solved: true,
         result: names.chain([next]).collect::<Vec<_>>().join("\n"),
         notes: Vec::new(),
     })
+}
+
+/// A command on the problem in a folder, whose results go to a folder of its own name.
+fn next(command: &str, folder: &Path) -> String {
+    let problem = Path::new("problem.json");
+    let problem = match folder == Path::new(".") {
+        true => problem.to_owned(),
+        false => folder.join(problem),
+    };
+    let problem = problem.display().to_string();
+    let words = ["proboscis", command, &problem].map(str::to_owned);
+    shell::command(words)
 }
 
 /// Writes a file, and the folders that it lies in where they are missing.
@@ -119,6 +166,26 @@ pub fn write_file(path: &Path, bytes: &[u8]) -> Result<(), CommandError> {
 /// The scene is wrong.
 pub fn expand(path: &Path) -> Result<String, CommandError> {
     Ok(files::expand(path)?)
+}
+
+/// Names of the materials with published constants, or the text of one of them.
+///
+/// # Errors
+/// There is no material of this name.
+pub fn materials(name: Option<&str>) -> Result<String, CommandError> {
+    let mut all = named_materials();
+    let Some(wanted) = name else {
+        let names: Vec<&str> = all.map(|(name, _)| name).collect();
+        return Ok(names.join("\n"));
+    };
+    if let Some((_, text)) = all.find(|(name, _)| *name == wanted) {
+        return Ok(text.trim_end().to_owned());
+    }
+    let names: Vec<&str> = named_materials().map(|(name, _)| name).collect();
+    Err(CommandError::Option {
+        option: "materials",
+        reason: format!("found {wanted:?}, expected one of {}", names.join(", ")),
+    })
 }
 
 /// The JSON Schemas of scene and problem as text.

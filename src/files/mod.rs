@@ -5,7 +5,7 @@
 //! - `signal`: functions of time.
 //! - [`study`], [`sweep`]: types of a study of variants of a problem, or a sweep of them; `changes`: their overrides.
 //! - [`solution`]: motions that later runs start from; [`npz`]: arrays of long ones; [`continuation`]: motions that go on.
-//! - `columns`: columns of CSV files; `typed`: scenes and voltages named on the command line.
+//! - [`urdf`]: robots of ROS; [`stl`]: surfaces; `columns`: columns of CSV files; `typed`: scenes and voltages named on the command line.
 
 pub(crate) mod changes;
 mod columns;
@@ -16,10 +16,12 @@ pub mod problem;
 pub mod scene;
 mod signal;
 pub mod solution;
+pub mod stl;
 pub mod study;
 pub mod sweep;
 mod typed;
 pub mod units;
+pub mod urdf;
 
 pub(crate) use columns::Columns;
 pub(crate) use json::document::Document;
@@ -30,6 +32,7 @@ pub(crate) use json::scan::compact;
 pub(crate) use json::scope::Scope;
 pub(crate) use json::source::is_standard_input;
 pub(crate) use scene::build::LONGEST_CHAIN;
+pub use scene::named_materials::named_materials;
 pub use scene::trunk::new_trunk;
 pub use typed::{driven_voltages, read_system};
 pub(crate) use units::si;
@@ -44,7 +47,7 @@ use crate::files::problem::build::build_problem;
 use crate::files::problem::output::{Output, output};
 use crate::files::problem::spec::{ProblemSpec, SceneSource};
 use crate::files::scene::build::build_scene;
-use crate::files::scene::expand::expanded;
+use crate::files::scene::expand::{add_named, expanded};
 use crate::files::scene::spec::SceneSpec;
 use crate::files::study::StudySpec;
 use crate::files::sweep::SweepSpec;
@@ -191,8 +194,9 @@ pub fn read_scene(path: &Path) -> Result<System, SceneError> {
 /// As of [`read_problem`].
 pub fn expand(path: &Path) -> Result<String, SceneError> {
     let document = Document::read(path)?;
-    let scene: SceneSpec = document.parse()?;
+    let mut scene: SceneSpec = document.parse()?;
     build_scene(&scene, &Scope::of(&document))?;
+    add_named(&mut scene);
     let compact = serde_json::to_string(&expanded(scene)).expect("a scene is JSON");
     Ok(lay_out(&compact))
 }

@@ -15,6 +15,7 @@ impl Material {
             electric: None,
             viscosity: None,
             maxwell: MaxwellBranches::default(),
+            stretch_range: None,
         }
     }
 
@@ -22,6 +23,15 @@ impl Material {
     pub fn law(self, law: ElasticLaw) -> Self {
         let law = Some(law);
         Self { law, ..self }
+    }
+
+    /// Smallest and largest stretch for which the constants hold: a lumped muscle beyond them is a warning.
+    pub fn stretch_range(self, range: [f64; 2]) -> Self {
+        let stretch_range = Some(range);
+        Self {
+            stretch_range,
+            ..self
+        }
     }
 
     /// Density in g/mm³.

@@ -9,7 +9,7 @@ use crate::model::system::{
     JointSpring, JointStops, Marker, Material, Muscle, Potential, Shape, Solid, Support,
     directors_along,
 };
-use nalgebra::{Matrix3, Vector3};
+use nalgebra::Vector3;
 use std::ops::RangeInclusive;
 
 /// A point of a body or the ground in mm.
@@ -21,17 +21,6 @@ pub(super) fn attachment(carrier: impl Into<Carrier>, at: Vector3<f64>) -> Attac
 }
 
 impl Body {
-    fn from_shape(shape: Shape) -> Self {
-        Self {
-            name: String::new(),
-            mass: 0.0,
-            inertia: [0.0; 3],
-            centre: Vector3::zeros(),
-            directors: Matrix3::identity(),
-            shape,
-        }
-    }
-
     /// A homogeneous cylinder along z, lengths in mm.
     pub fn cylinder(length: f64, radius: f64) -> Self {
         Self::from_shape(Shape::Cylinder { length, radius })
@@ -54,6 +43,14 @@ impl Body {
             mass,
             inertia,
             ..self
+        }
+    }
+
+    /// Density in g/mm³, which gives the mass; a body without a volume keeps its mass.
+    pub fn density(self, density: f64) -> Self {
+        match self.shape.volume() {
+            Some(volume) => self.mass(density * volume),
+            None => self,
         }
     }
 

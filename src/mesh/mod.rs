@@ -1,7 +1,9 @@
 //! Hexahedral meshes: nodes, elements, named node sets. Geometry only: no material, no unknown.
 //!
 //! Meshes come from planes ([`grid`]) or from a file ([`gmsh`]); [`Mesh::check`] says whether elements can be integrated.
+//! [`triangulated`]: surfaces of triangles; [`enclosed`]: solids within them.
 
+pub mod enclosed;
 pub mod error;
 mod geometry;
 pub mod gmsh;
@@ -9,6 +11,7 @@ pub mod grid;
 pub mod quality;
 mod surface;
 pub mod topology;
+pub mod triangulated;
 
 use nalgebra::Vector3;
 use std::collections::BTreeMap;

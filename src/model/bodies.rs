@@ -1,7 +1,11 @@
 //! Rigid bodies and their shapes.
 
 use crate::kinematics::Pose;
-use nalgebra::{Matrix3, Vector3};
+use crate::mesh::error::MeshError;
+use crate::mesh::triangulated::{Surface, rings_of_sphere};
+use nalgebra::{Matrix3, SymmetricEigen, Vector3};
+use std::f64::consts::PI;
+use std::sync::Arc;
 
 /// A rigid body in the reference configuration.
 #[derive(Clone, Debug, PartialEq)]
@@ -21,7 +25,7 @@ pub struct Body {
 }
 
 /// Outline of a body about its centre, in its director frame, in mm.
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Debug, PartialEq)]
 pub enum Shape {
     /// Cylinder along d₃.
     Cylinder {
@@ -40,6 +44,8 @@ pub enum Shape {
         /// Radius.
         radius: f64,
     },
+    /// Surface of triangles.
+    Surface(Arc<Surface>),
     /// Not drawn.
     None,
 }
@@ -52,12 +58,74 @@ impl Body {
             directors: self.directors,
         }
     }
+
+    /// A homogeneous body without a mass yet, within a closed surface in the ground frame: centre of mass and principal axes are those of
+    /// the solid.
+    ///
+    /// # Errors
+    /// As of [`Surface::enclosed`].
+    pub fn within(surface: Surface) -> Result<Self, MeshError> {
+        let solid = surface.enclosed()?;
+        let (_, directors) = principal(&solid.inertia());
+        let centre = solid.centre;
+        let shape = Shape::surface(surface, &Pose { centre, directors });
+        Ok(Self {
+            centre,
+            directors,
+            ..Self::from_shape(shape)
+        })
+    }
+
+    /// A body at the origin without a name and a mass.
+    pub(crate) fn from_shape(shape: Shape) -> Self {
+        Self {
+            name: String::new(),
+            mass: 0.0,
+            inertia: [0.0; 3],
+            centre: Vector3::zeros(),
+            directors: Matrix3::identity(),
+            shape,
+        }
+    }
+}
+
+/// Off-diagonal entries of a tensor below this part of its trace are those of rounding.
+const DIAGONAL: f64 = 1e-12;
+
+/// Principal moments of a symmetric tensor, and right-handed principal axes as columns; the axes of the frame where the tensor is diagonal.
+pub fn principal(tensor: &Matrix3<f64>) -> ([f64; 3], Matrix3<f64>) {
+    match is_diagonal(tensor) {
+        true => (tensor.diagonal().into(), Matrix3::identity()),
+        false => eigen(tensor),
+    }
+}
+
+/// Returns true if off-diagonal entries of a tensor of inertia are those of rounding.
+pub fn is_diagonal(tensor: &Matrix3<f64>) -> bool {
+    let across = tensor - Matrix3::from_diagonal(&tensor.diagonal());
+    across.amax() <= DIAGONAL * tensor.trace()
+}
+
+/// Eigenvalues of a symmetric tensor, and right-handed eigenvectors as columns.
+pub(super) fn eigen(tensor: &Matrix3<f64>) -> ([f64; 3], Matrix3<f64>) {
+    let SymmetricEigen {
+        eigenvectors,
+        eigenvalues,
+    } = SymmetricEigen::new(*tensor);
+    let mut directors = eigenvectors;
+    if directors.determinant() < 0.0 {
+        directors.column_mut(2).neg_mut();
+    }
+    (eigenvalues.into(), directors)
 }
 
 impl Shape {
     /// Principal moments of a homogeneous body of a mass in g about its centre, in its director frame, in g mm².
     pub fn inertia(&self, mass: f64) -> [f64; 3] {
         match *self {
+            Self::Surface(ref surface) => surface.enclosed().map_or([f64::NAN; 3], |solid| {
+                (solid.inertia().diagonal() * (mass / solid.volume)).into()
+            }),
             Self::Cylinder { length, radius } => {
                 let transverse = mass * (3.0 * radius.powi(2) + length.powi(2)) / 12.0;
                 [transverse, transverse, mass * radius.powi(2) / 2.0]
@@ -68,6 +136,47 @@ impl Shape {
             }
             Self::Sphere { radius } => [0.4 * mass * radius.powi(2); 3],
             Self::None => [0.0; 3],
+        }
+    }
+
+    /// Volume in mm³; `None` without one.
+    pub fn volume(&self) -> Option<f64> {
+        match *self {
+            Self::Cylinder { length, radius } => Some(PI * radius.powi(2) * length),
+            Self::Box { size } => Some(size.iter().product()),
+            Self::Sphere { radius } => Some(4.0 / 3.0 * PI * radius.powi(3)),
+            Self::Surface(ref surface) => surface.enclosed().ok().map(|solid| solid.volume),
+            Self::None => None,
+        }
+    }
+
+    /// A surface in the ground frame as the shape of a body in a pose.
+    pub fn surface(surface: Surface, pose: &Pose) -> Self {
+        let turned = pose.directors.transpose();
+        let own = surface.transformed(|x| turned * (x - pose.centre));
+        Self::Surface(Arc::new(own))
+    }
+
+    /// Adds the surface of a body in a pose.
+    pub fn add_to(&self, surface: &mut Surface, pose: &Pose) {
+        let axes = [0, 1, 2].map(|i| pose.directors.column(i).into_owned());
+        match *self {
+            Self::Cylinder { length, radius } => {
+                let rings = [(-length / 2.0, radius), (length / 2.0, radius)];
+                surface.add_rings(pose.centre, axes, &rings);
+            }
+            Self::Sphere { radius } => {
+                surface.add_rings(pose.centre, axes, &rings_of_sphere(radius));
+            }
+            Self::Box { size } => {
+                let halves = [0, 1, 2].map(|i| axes[i] * (size[i] / 2.0));
+                surface.add_box(pose.centre, &halves);
+            }
+            Self::Surface(ref own) => {
+                let placed = |x| pose.centre + pose.directors * x;
+                surface.add(&own.as_ref().clone().transformed(placed));
+            }
+            Self::None => {}
         }
     }
 }

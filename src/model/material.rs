@@ -20,6 +20,8 @@ pub struct Material {
     pub viscosity: Option<f64>,
     /// Maxwell branches, which lumped muscles read.
     pub maxwell: MaxwellBranches,
+    /// Smallest and largest stretch for which the constants hold, for warnings.
+    pub stretch_range: Option<[f64; 2]>,
 }
 
 /// Constants of the electric energy c₁ E·E + c₂ C:(E⊗E) − ½ ε J C⁻¹:(E⊗E), in N/V².

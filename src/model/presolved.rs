@@ -6,11 +6,11 @@
 use crate::kinematics::Pose;
 use crate::math::{DisjointSets, Matrix, Vector};
 use crate::model::analysis::Analysis;
+use crate::model::bodies::eigen;
 use crate::model::immobile::{self, Immobile};
 use crate::model::system::{
     Body, Electrode, Joint, JointKind, Material, Muscle, Potential, Shape, Solid, Support, System,
 };
-use nalgebra::SymmetricEigen;
 
 /// Location of a body of the scene in the presolved system.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -292,19 +292,12 @@ fn weld(members: &[usize], bodies: &[Body]) -> Body {
         let away = Matrix::identity() * arm.norm_squared() - arm * arm.transpose();
         body.directors * own * body.directors.transpose() + away * body.mass
     };
-    let SymmetricEigen {
-        eigenvectors,
-        eigenvalues,
-    } = SymmetricEigen::new(all().map(tensor).sum::<Matrix>());
-    let mut directors = eigenvectors;
-    if directors.determinant() < 0.0 {
-        directors.column_mut(2).neg_mut();
-    }
+    let (inertia, directors) = eigen(&all().map(tensor).sum::<Matrix>());
     let names: Vec<&str> = all().map(|b| b.name.as_str()).collect();
     Body {
         name: names.join("+"),
         mass,
-        inertia: eigenvalues.into(),
+        inertia,
         centre,
         directors,
         shape: Shape::None,

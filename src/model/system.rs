@@ -4,7 +4,7 @@ pub use crate::energy::ElasticLaw;
 use crate::math::Signal;
 use crate::mesh::Mesh;
 pub use crate::model::attachment::Attachment;
-pub use crate::model::bodies::{Body, Shape, directors_along};
+pub use crate::model::bodies::{Body, Shape, directors_along, is_diagonal, principal};
 pub use crate::model::circuit::Circuit;
 use crate::model::components::{BlockLoad, Components, Load, LoadPlace};
 pub use crate::model::joint_elasticity::{JointSpring, JointStops};

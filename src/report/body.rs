@@ -3,9 +3,11 @@
 use nalgebra::Vector3;
 
 use crate::kinematics::Pose;
+use crate::mesh::triangulated::circle;
 use crate::model::system::Shape;
 use crate::report::canvas::{Canvas, Stroke};
-use crate::report::solids::{Prism, circle};
+use crate::report::silhouette::Silhouette;
+use crate::report::solids::Prism;
 use crate::report::style::{self, Colour};
 use crate::report::view::{View, hull};
 
@@ -37,7 +39,7 @@ impl Tint {
 /// Nested bands of light on a curved surface.
 const BANDS: usize = 9;
 
-/// Points in mm whose hull is the outline of a body.
+/// Points in mm whose hull is the outline of a body, or of a box around its surface.
 pub fn extent_points(shape: &Shape, pose: &Pose) -> Vec<Vector3<f64>> {
     match *shape {
         Shape::Cylinder { length, radius } => ends(pose, length, radius).concat(),
@@ -46,6 +48,16 @@ pub fn extent_points(shape: &Shape, pose: &Pose) -> Vec<Vector3<f64>> {
             .iter()
             .flat_map(|e| [pose.centre + e * radius, pose.centre - e * radius])
             .collect(),
+        Shape::Surface(ref surface) => {
+            let (lower, upper) = surface.bounds();
+            let middle = pose.centre + pose.directors * (0.5 * (lower + upper));
+            let size = (upper - lower).into();
+            let pose = Pose {
+                centre: middle,
+                ..*pose
+            };
+            Prism::block(&pose, size).corners().to_vec()
+        }
         Shape::None => vec![],
     }
 }
@@ -66,6 +78,11 @@ pub fn draw_back(canvas: &Canvas<'_>, view: &View, shape: &Shape, pose: &Pose, t
                 if face.normal.dot(&view.toward) <= 0.0 {
                     canvas.outline(&view.places(&face.corners), faint);
                 }
+            }
+        }
+        Shape::Surface(ref surface) => {
+            for edge in Silhouette::new(view, surface, pose).behind {
+                canvas.line(&edge, faint);
             }
         }
         Shape::Sphere { .. } | Shape::None => {}
@@ -109,6 +126,16 @@ pub fn draw_front(canvas: &Canvas<'_>, view: &View, shape: &Shape, pose: &Pose, 
                 canvas.fill(&view.places(&ring), style::PAPER, 0.05);
             }
         }
+        Shape::Surface(ref surface) => {
+            let silhouette = Silhouette::new(view, surface, pose);
+            for line in silhouette.before {
+                canvas.line(&line, Stroke::solid(tint.edge(), 0.5));
+            }
+            for line in silhouette.outline {
+                canvas.outline(&line, edge);
+            }
+            return;
+        }
         Shape::None => {}
     }
     canvas.outline(&outline, edge);
@@ -117,6 +144,7 @@ pub fn draw_front(canvas: &Canvas<'_>, view: &View, shape: &Shape, pose: &Pose, 
 fn outline(view: &View, shape: &Shape, pose: &Pose) -> Vec<[f64; 2]> {
     match *shape {
         Shape::Sphere { radius } => view.places(&circle(pose.centre, view.right, view.up, radius)),
+        Shape::Surface(ref surface) => Silhouette::new(view, surface, pose).polygon(),
         _ => hull(view.places(&extent_points(shape, pose))),
     }
 }

@@ -5,12 +5,13 @@ use std::collections::HashSet;
 use nalgebra::Vector3;
 
 use crate::dynamics::trajectory::Trajectory;
+use crate::mesh::triangulated::circle;
 use crate::model::system::System;
 use crate::report::body::extent_points;
 use crate::report::drawing::lumped;
 use crate::report::load_arrows::LoadArrows;
 use crate::report::skins::{Skins, shown};
-use crate::report::solids::{Prism, circle};
+use crate::report::solids::Prism;
 use crate::report::ties;
 
 /// Points in mm whose outline is that of all that is seen over a motion.

@@ -23,6 +23,7 @@ pub mod pose;
 mod run;
 pub mod sampled;
 pub mod shell;
+mod silhouette;
 pub mod skin;
 pub mod skins;
 mod snapshots;

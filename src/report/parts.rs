@@ -5,6 +5,7 @@ use std::fs;
 use nalgebra::Vector3;
 
 use crate::dynamics::trajectory::Trajectory;
+use crate::mesh::triangulated::Surface;
 use crate::model::system::System;
 use crate::report::atomic::WriteError;
 use crate::report::drawing::lumped;
@@ -12,7 +13,7 @@ use crate::report::file_set::FileSet;
 use crate::report::origin::Origin;
 use crate::report::paraview::{PACKED, Series, array, bytes_of, head, line};
 use crate::report::skins::shown;
-use crate::report::solids::{Prism, SurfaceMesh};
+use crate::report::solids::Prism;
 
 /// Folder of the instants, and name of the list of them.
 const NAME: &str = "parts";
@@ -28,7 +29,7 @@ enum ScenePartKind {
 /// The parts at one instant: points and triangles in m, markers as points of their own, and numbers of each cell.
 #[derive(Debug, Default)]
 struct Parts {
-    surface: SurfaceMesh,
+    surface: Surface,
     markers: Vec<Vector3<f64>>,
     /// Kind, number among its kind, voltage in V and stretch of each marker, then of each triangle.
     data: Vec<[f64; 4]>,
@@ -81,14 +82,14 @@ impl Parts {
             parts.data.push(number(ScenePartKind::Marker, m));
         }
         for (b, (body, pose)) in system.bodies.iter().zip(&trajectory.poses[k]).enumerate() {
-            parts.surface.add_body(&body.shape, pose);
+            body.shape.add_to(&mut parts.surface, pose);
             parts.fill(number(ScenePartKind::Body, b));
         }
         let voltages = trajectory.voltages.get(k.saturating_sub(1));
         for m in lumped(system) {
             let muscle = &system.muscles[m];
             let prism = Prism::muscle(system, trajectory, k, m);
-            parts.surface.add_prism(&prism);
+            parts.surface.add_box(prism.centre, &prism.halves);
             let rest = (muscle.to.at - muscle.from.at).norm();
             let [kind, number, ..] = number(ScenePartKind::Muscle, m);
             let voltage = voltages.map_or(0.0, |voltages| voltages[m]);

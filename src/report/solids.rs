@@ -1,30 +1,11 @@
 //! Bodies and muscles as solids in space: the geometry that figures and page share.
 
-use std::f64::consts::TAU;
-
 use nalgebra::Vector3;
 
 use crate::dynamics::trajectory::Trajectory;
 use crate::kinematics::Pose;
-use crate::model::system::{Attachment, Shape, System};
-
-/// Points around a circle.
-pub const AROUND: usize = 48;
-
-/// Circle of `radius` about `centre` in the plane of the orthonormal `a`, `b`; lengths in mm.
-pub fn circle(
-    centre: Vector3<f64>,
-    a: Vector3<f64>,
-    b: Vector3<f64>,
-    radius: f64,
-) -> Vec<Vector3<f64>> {
-    (0..AROUND)
-        .map(|i| {
-            let (s, c) = (TAU * i as f64 / AROUND as f64).sin_cos();
-            centre + radius * (c * a + s * b)
-        })
-        .collect()
-}
+use crate::mesh::triangulated::faces_of_box;
+use crate::model::system::{Attachment, System};
 
 /// A box that may be skewed: corner `i` is at + or − along edge `j` as bit `j` of `i` is set or not.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -90,19 +71,14 @@ impl Prism {
 
     /// The six faces.
     pub fn faces(&self) -> [Face; 6] {
+        let faces = faces_of_box(self.centre, &self.halves);
         std::array::from_fn(|i| {
             let (axis, sign) = (i / 2, if i % 2 == 0 { 1.0 } else { -1.0 });
             let out = self.halves[axis] * sign;
             let (a, b) = (self.halves[(axis + 1) % 3], self.halves[(axis + 2) % 3]);
-            let middle = self.centre + out;
             Face {
                 normal: a.cross(&b) * a.cross(&b).dot(&out).signum(),
-                corners: [
-                    middle - a - b,
-                    middle + a - b,
-                    middle + a + b,
-                    middle - a + b,
-                ],
+                corners: faces[i],
             }
         })
     }
@@ -140,69 +116,4 @@ pub(super) fn slice(
         .filter(|(a, b)| (at(a) - height) * (at(b) - height) < 0.0)
         .map(|(a, b)| a + (b - a) * ((height - at(&a)) / (at(&b) - at(&a))))
         .collect()
-}
-
-/// Vertices in mm and triangles of a surface.
-#[derive(Clone, Debug, Default, PartialEq)]
-pub struct SurfaceMesh {
-    /// Vertices in mm.
-    pub vertices: Vec<Vector3<f64>>,
-    /// Vertices of each triangle.
-    pub triangles: Vec<[usize; 3]>,
-}
-
-impl SurfaceMesh {
-    /// Adds the surface of a body.
-    pub fn add_body(&mut self, shape: &Shape, pose: &Pose) {
-        match *shape {
-            Shape::Cylinder { length, radius } => {
-                self.add_rings(pose, &[(-length / 2.0, radius), (length / 2.0, radius)]);
-            }
-            Shape::Sphere { radius } => {
-                let rings: Vec<_> = (0..=12)
-                    .map(|i| (TAU / 24.0 * f64::from(i)).sin_cos())
-                    .map(|(s, c)| (-radius * c, radius * s))
-                    .collect();
-                self.add_rings(pose, &rings);
-            }
-            Shape::Box { size } => self.add_prism(&Prism::block(pose, size)),
-            Shape::None => {}
-        }
-    }
-
-    /// Adds the surface of a prism.
-    pub fn add_prism(&mut self, prism: &Prism) {
-        for face in prism.faces() {
-            let n = self.vertices.len();
-            self.vertices.extend(face.corners);
-            self.triangles
-                .extend([[n, n + 1, n + 2], [n, n + 2, n + 3]]);
-        }
-    }
-
-    /// Adds the surface of revolution about d₃ through rings of (height, radius), closed by flat ends.
-    fn add_rings(&mut self, pose: &Pose, rings: &[(f64, f64)]) {
-        const SIDES: usize = 24;
-        let [d1, d2, d3] = [0, 1, 2].map(|i| pose.directors.column(i).into_owned());
-        let first = self.vertices.len();
-        for (height, radius) in rings {
-            let centre = pose.centre + d3 * *height;
-            let ring = circle(centre, d1, d2, *radius);
-            self.vertices.extend(ring.iter().step_by(AROUND / SIDES));
-        }
-        let vertex = |ring: usize, side: usize| first + ring * SIDES + side % SIDES;
-        for ring in 1..rings.len() {
-            for side in 0..SIDES {
-                let (a, b) = (vertex(ring - 1, side), vertex(ring - 1, side + 1));
-                let (c, d) = (vertex(ring, side), vertex(ring, side + 1));
-                self.triangles.extend([[a, b, d], [a, d, c]]);
-            }
-        }
-        for ring in [0, rings.len() - 1] {
-            for side in 1..SIDES - 1 {
-                self.triangles
-                    .push([vertex(ring, 0), vertex(ring, side), vertex(ring, side + 1)]);
-            }
-        }
-    }
 }

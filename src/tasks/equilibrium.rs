@@ -5,7 +5,8 @@ use thiserror::Error;
 use crate::control::problem::AtRest;
 use crate::dynamics::trajectory::Trajectory;
 use crate::dynamics::{
-    self, DiscreteTrajectory, Equilibrium, StabilityLoss, out_of_domain, stable_equilibrium,
+    self, DiscreteTrajectory, Equilibrium, StabilityLoss, out_of_domain, out_of_range,
+    stable_equilibrium,
 };
 use crate::model::{Model, System};
 use crate::tasks::moved_markers::moved_markers;
@@ -14,6 +15,7 @@ use crate::workflow::domain::{self, Outside};
 use crate::workflow::memory;
 use crate::workflow::phase::phase;
 use crate::workflow::remark::Remarks;
+use crate::workflow::stretch_range;
 use std::time::Instant;
 
 /// Reason why there is no equilibrium.
@@ -84,6 +86,8 @@ pub fn equilibrium(
     remarks.note("moved_marker", moved_markers(system));
     remarks.warn("singular_loops", model.loops.warning.clone());
     remarks.warn("outside_domain", domain::note(&outside, false));
+    let beyond = out_of_range(&model, &discrete);
+    remarks.warn("outside_range", stretch_range::warning(&beyond, false));
     Ok(EquilibriumResult {
         trajectory: Trajectory::from_discrete(&model, &discrete),
         model,

@@ -5,7 +5,7 @@ use std::ops::ControlFlow;
 use crate::control::problem::Simulation;
 use crate::dynamics::trajectory::Trajectory;
 use crate::dynamics::{
-    DiscreteTrajectory, EnergyExchange, LocalError, local_error_of, out_of_domain,
+    DiscreteTrajectory, EnergyExchange, LocalError, local_error_of, out_of_domain, out_of_range,
 };
 use crate::ipopt::{Status, interrupt};
 use crate::model::{Model, System};
@@ -20,6 +20,7 @@ use crate::workflow::memory;
 use crate::workflow::remark::Remarks;
 use crate::workflow::steps;
 use crate::workflow::stops;
+use crate::workflow::stretch_range;
 
 /// Options of a simulation in addition to its problem.
 #[derive(Debug, Default)]
@@ -97,6 +98,8 @@ impl SimulationResult {
         remarks.note("voltages_end", afterwards(task));
         remarks.note("step_divided", steps::divided(task));
         remarks.warn("outside_domain", domain::note(&outside, true));
+        let beyond = out_of_range(model, discrete);
+        remarks.warn("outside_range", stretch_range::warning(&beyond, true));
         remarks.note("stops", stops::notes(system, trajectory));
         remarks.warn("coarse_steps", steps::warning(neglected, discrete, task));
         remarks.warn("tolerance_exceeded", steps::beyond(*error, task));

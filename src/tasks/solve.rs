@@ -4,7 +4,7 @@ use std::ops::ControlFlow;
 
 use crate::control::problem::Control;
 use crate::dynamics::trajectory::Trajectory;
-use crate::dynamics::{DiscreteTrajectory, EnergyExchange, out_of_domain};
+use crate::dynamics::{DiscreteTrajectory, EnergyExchange, out_of_domain, out_of_range};
 use crate::model::System;
 use crate::tasks::moved_markers::moved_markers;
 use crate::tasks::solve_messages::{carried, ends, restarted};
@@ -27,6 +27,7 @@ use crate::workflow::refine_until_reproduced::{RefinedOptimum, reproduced};
 use crate::workflow::remark::Remarks;
 use crate::workflow::resimulate::Resimulation;
 use crate::workflow::stops;
+use crate::workflow::stretch_range;
 use crate::workflow::tracking::{Tracked, followed};
 use crate::workflow::verified::{ACCURACY, verified};
 
@@ -189,6 +190,8 @@ fn remarks(
     remarks.note("earlier_solution", carried(&optimum.carried));
     remarks.note("second_start", optimum.restarted.map(restarted));
     remarks.warn("outside_domain", domain::note(&result.outside, true));
+    let beyond = out_of_range(&optimum.model, &result.discrete);
+    remarks.warn("outside_range", stretch_range::warning(&beyond, true));
     remarks.note(
         "stops",
         stops::notes(&optimum.model.system, &result.trajectory),

@@ -55,6 +55,7 @@ mod solves;
 pub(crate) mod steps;
 pub(crate) mod stops;
 mod stopwatch;
+pub(crate) mod stretch_range;
 pub(crate) mod tolerance;
 pub(crate) mod tracking;
 pub(crate) mod verified;

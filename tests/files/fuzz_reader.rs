@@ -69,8 +69,12 @@ pub(crate) fn beside_scenes(bytes: &[u8]) -> (TempDir, PathBuf) {
     let folder = tempfile::tempdir().unwrap();
     let scenes = folder.path().join("scenes");
     fs::create_dir(&scenes).unwrap();
-    for (name, text) in kept("problems/scenes") {
-        fs::write(scenes.join(name), text).unwrap();
+    let meshes = folder.path().join("meshes");
+    fs::create_dir(&meshes).unwrap();
+    for (to, from) in [(scenes, "problems/scenes"), (meshes, "problems/meshes")] {
+        for (name, text) in kept(from) {
+            fs::write(to.join(name), text).unwrap();
+        }
     }
     let path = folder.path().join("changed.json");
     fs::write(&path, bytes).unwrap();

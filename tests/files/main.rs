@@ -1,10 +1,13 @@
 //! Scene and problem files, as written and as mistaken.
 
 mod arbitrary;
+mod body_mesh_mistakes;
+mod body_meshes;
 mod extremes;
 mod free;
 mod fuzz_reader;
 mod meaning;
+mod named_materials;
 mod npz;
 mod objectives;
 mod quantities;
@@ -14,3 +17,4 @@ mod schema_walk;
 mod slips;
 mod solids;
 mod tasks;
+mod urdf;

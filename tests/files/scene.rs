@@ -108,7 +108,7 @@ fn mistakes_in_a_scene_name_place_found_and_expected() {
         ("\"mass\": \"30 g\"", "\"mass\": true", "bodies[0].mass", "boolean true", "a mass", "true"),
         ("\"mass\": \"30 g\"", "\"mass\": \"30\"", "bodies[0].mass", "\"30\", which has no unit", "a mass", "30"),
         ("\"mass\": \"30 g\"", "\"mass\": \"30 flops\"", "bodies[0].mass", "\"flops\" is no known unit", "a mass", "flops"),
-        ("\"mass\": \"30 g\", ", "", "bodies[0]", "no key \"mass\"", "the key \"mass\"", "segment1"),
+        ("\"mass\": \"30 g\", ", "", "bodies[0]", "none of them", "exactly one of \"mass\", \"density\"", "segment1"),
         ("\"name\": \"segment2\"", "\"name\": \"segment1\"", "bodies[1].name", "\"segment1\" a second time", "not taken", "\"segment1\""),
         ("\"name\": \"muscle2\"", "\"name\": \"muscle1\"", "muscles[1].name", "\"muscle1\" a second time", "not taken", "\"muscle1\""),
         ("\"rubber\":", "\"silicone\":", "materials.silicone", "\"silicone\" twice", "each key once", "\"silicone\""),

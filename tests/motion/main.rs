@@ -36,3 +36,4 @@ mod single_joints;
 mod squeezer;
 mod tolerance;
 mod tree;
+mod urdf;

@@ -34,6 +34,54 @@ fn new_files_name_their_schemas_and_the_next_command() {
 }
 
 #[test]
+fn a_robot_from_urdf_names_what_is_left_out_and_moves() {
+    let folder = workshop();
+    let path = folder.path();
+    let urdf = Path::new(env!("CARGO_MANIFEST_DIR")).join("problems/urdf/two_links.urdf");
+    let text = fs::read_to_string(urdf).unwrap();
+    let two = r#"<visual><geometry><box size="0.1 0.1 0.1"/></geometry></visual><visual><geometry><sphere radius="0.1"/></geometry></visual>"#;
+    let text = text.replacen("</inertial>", &format!("</inertial>{two}<collision/>"), 1);
+    fs::write(path.join("arm.urdf"), text).unwrap();
+    let (status, out, err) = run(path, &["new", "urdf", "arm.urdf", "arm"]);
+    assert_eq!(status, 0, "{err}");
+    assert_eq!(
+        out.lines().collect::<Vec<_>>(),
+        [
+            "arm/meshes/upper.stl",
+            "arm/scene.json",
+            "arm/problem.json",
+            "arm/scene.schema.json",
+            "arm/problem.schema.json",
+            "next: proboscis simulate arm/problem.json"
+        ]
+    );
+    let left_out = "note: left out: <collision> of the link \"upper\"";
+    assert!(err.lines().any(|line| line == left_out), "{err}");
+    // The folder may be moved.
+    fs::rename(path.join("arm"), path.join("moved")).unwrap();
+    let set = "simulate.duration=0.05 s";
+    let (status, _, err) = run(
+        path,
+        &["simulate", "moved/problem.json", "--set", set, "-o", "out"],
+    );
+    assert!(status == 0 && err.is_empty(), "{err}");
+    refused_run(
+        path,
+        &["new", "urdf", "arm.urdf", "moved"],
+        &["moved/meshes/upper.stl exists already"],
+    );
+    refused_run(
+        path,
+        &["new", "urdf", "nothing.urdf", "other"],
+        &[
+            "nothing.urdf: found no readable file",
+            "expected a URDF file",
+        ],
+    );
+    assert!(!path.join("other").exists());
+}
+
+#[test]
 fn another_command_than_the_right_one_names_it() {
     let folder = workshop();
     let path = folder.path();

@@ -15,6 +15,7 @@ mod gltf;
 mod kept;
 mod killed;
 mod loops;
+mod materials;
 mod messages;
 mod names;
 mod observed;

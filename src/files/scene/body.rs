@@ -1,23 +1,46 @@
 //! Conversion of a body of a scene file to its principal moments of inertia and directors.
 
-use nalgebra::{Matrix3, Vector3};
+use nalgebra::{Matrix3, Unit, UnitQuaternion, Vector3};
 
 use crate::files::json::error::SceneError;
 use crate::files::json::scope::Scope;
+use crate::files::scene::mesh::{DEFAULT_UNIT, mesh_mistake};
 use crate::files::scene::point::{unit_axis, vector};
-use crate::files::scene::spec::BodySpec;
-use crate::model::system::{Body, Shape, directors_along};
+use crate::files::scene::spec::{BodyMeshSpec, BodySpec};
+use crate::files::stl;
+use crate::kinematics::Pose;
+use crate::mesh::triangulated::Surface;
+use crate::model::system::{Body, Shape, directors_along, is_diagonal, principal};
 
 /// Rounding of moments that satisfy the triangle inequality with equality.
 const ROUNDING: f64 = 1e-12;
 
 /// The body that is written.
 pub(crate) fn body(spec: &BodySpec, scope: &Scope<'_>) -> Result<Body, SceneError> {
-    let mass = scope.key("mass").positive(&spec.mass)?;
-    let (shape, directors) = shape(spec, scope)?;
+    check_keys(spec, scope)?;
+    let surface = match &spec.mesh {
+        Some(mesh) => Some(surface(mesh, &scope.key("mesh"))?),
+        None => None,
+    };
+    let body = match (surface, &spec.inertia) {
+        (Some(surface), None) => within(surface, spec, scope)?,
+        (surface, inertia) => {
+            let (shape, directors) = simple(spec, scope)?;
+            let body = Body {
+                centre: position(spec, scope)?,
+                directors,
+                ..Body::from_shape(shape)
+            };
+            match inertia {
+                None => body,
+                Some(_) => with_tensor(body, surface, &tensor(spec, scope)?),
+            }
+        }
+    };
+    let mass = mass(spec, &body.shape, scope)?;
     let inertia = match &spec.inertia {
-        None => shape.inertia(mass),
-        Some(_) => explicit_inertia(spec, &directors, scope)?,
+        None => body.shape.inertia(mass),
+        Some(_) => body.inertia,
     };
     if !inertia
         .iter()
@@ -30,31 +53,41 @@ pub(crate) fn body(spec: &BodySpec, scope: &Scope<'_>) -> Result<Body, SceneErro
         name: spec.name.clone(),
         mass,
         inertia,
-        centre: vector(&spec.position),
-        directors,
-        shape,
+        ..body
     })
 }
 
-/// Shape and directors; d₃ is the axis of a cylinder.
-fn shape(spec: &BodySpec, scope: &Scope<'_>) -> Result<(Shape, Matrix3<f64>), SceneError> {
+/// Checks that there is one mass or density, and one shape or explicit moments or both.
+fn check_keys(spec: &BodySpec, scope: &Scope<'_>) -> Result<(), SceneError> {
+    scope.exactly_one([
+        ("mass", spec.mass.as_ref().map(|_| ())),
+        ("density", spec.density.as_ref().map(|_| ())),
+    ])?;
     let shapes = [
         ("cylinder", spec.cylinder.is_some()),
         ("box", spec.cuboid.is_some()),
         ("sphere", spec.sphere.is_some()),
+        ("mesh", spec.mesh.is_some()),
     ];
-    if spec.inertia.is_none() || shapes.iter().filter(|(_, there)| *there).count() > 1 {
-        let [cylinder, cuboid, sphere] = shapes.map(|(key, there)| (key, there.then_some(())));
-        if spec.inertia.is_some() {
-            scope.exactly_one([cylinder, cuboid, sphere])?;
+    let [cylinder, cuboid, sphere, mesh] = shapes.map(|(key, there)| (key, there.then_some(())));
+    let count = shapes.iter().filter(|(_, there)| *there).count();
+    match &spec.inertia {
+        Some(_) if count > 1 => scope.exactly_one([cylinder, cuboid, sphere, mesh]),
+        Some(_) => Ok(()),
+        None => scope.exactly_one([cylinder, cuboid, sphere, mesh, ("inertia", None)]),
+    }?;
+    match (&spec.inertia, &spec.products_of_inertia) {
+        (None, Some(_)) => {
+            let place = scope.key("products_of_inertia");
+            let expected = "\"inertia\", the diagonal of the tensor, beside it";
+            Err(place.wrong("products of inertia alone", expected))
         }
-        scope.exactly_one([
-            cylinder,
-            cuboid,
-            sphere,
-            ("inertia", spec.inertia.as_ref().map(|_| ())),
-        ])?;
+        _ => Ok(()),
     }
+}
+
+/// Shape and directors; d₃ is the axis of a cylinder.
+fn simple(spec: &BodySpec, scope: &Scope<'_>) -> Result<(Shape, Matrix3<f64>), SceneError> {
     if let Some(cylinder) = &spec.cylinder {
         let scope = scope.key("cylinder");
         let shape = Shape::Cylinder {
@@ -79,28 +112,107 @@ fn shape(spec: &BodySpec, scope: &Scope<'_>) -> Result<(Shape, Matrix3<f64>), Sc
     Ok((Shape::None, Matrix3::identity()))
 }
 
-/// Moments about the ground axes, put in the order of the directors.
-fn explicit_inertia(
-    spec: &BodySpec,
-    directors: &Matrix3<f64>,
-    scope: &Scope<'_>,
-) -> Result<[f64; 3], SceneError> {
-    let scope = scope.key("inertia");
-    let mut moments = Vector3::zeros();
+/// The surface of a mesh in the ground frame.
+fn surface(spec: &BodyMeshSpec, scope: &Scope<'_>) -> Result<Surface, SceneError> {
+    let unit = match &spec.unit {
+        Some(unit) => scope.key("unit").positive(unit)?,
+        None => DEFAULT_UNIT,
+    };
+    let place = scope.key("file");
+    let file = place.file(&spec.file, "the path of an STL file")?;
+    let surface = stl::read(&file, unit).map_err(|error| mesh_mistake(&error, &place))?;
+    let origin = spec.at.as_ref().map_or_else(Vector3::zeros, vector);
+    let Some(rotation) = &spec.rotation else {
+        return Ok(surface.transformed(|x| x + origin));
+    };
+    let axis = unit_axis(&rotation.axis, &scope.key("rotation").key("axis"))?;
+    let axis = Unit::new_unchecked(axis);
+    let turned = UnitQuaternion::from_axis_angle(&axis, rotation.angle.value());
+    Ok(surface.transformed(|x| origin + turned * x))
+}
+
+/// The body that a surface encloses.
+fn within(surface: Surface, spec: &BodySpec, scope: &Scope<'_>) -> Result<Body, SceneError> {
+    if spec.position.is_some() {
+        let found = "a position of a body whose centre of mass follows from its mesh";
+        let expected = "\"at\" of the mesh, the place of its origin";
+        return Err(scope.key("position").wrong(found, expected));
+    }
+    let place = scope.key("mesh").key("file");
+    Body::within(surface).map_err(|error| mesh_mistake(&error, &place))
+}
+
+fn position(spec: &BodySpec, scope: &Scope<'_>) -> Result<Vector3<f64>, SceneError> {
+    let missing = || scope.wrong("no \"position\"", "the place of its centre of mass");
+    spec.position.as_ref().map(vector).ok_or_else(missing)
+}
+
+/// The mass in g.
+fn mass(spec: &BodySpec, shape: &Shape, scope: &Scope<'_>) -> Result<f64, SceneError> {
+    let Some(density) = &spec.density else {
+        let mass = spec.mass.as_ref().expect("one of the two");
+        return scope.key("mass").positive(mass);
+    };
+    let scope = scope.key("density");
+    let density = scope.positive(density)?;
+    let missing = || {
+        let found = "a density of a body without a volume";
+        scope.wrong(found, "a cylinder, box, sphere or closed mesh, or \"mass\"")
+    };
+    Ok(density * shape.volume().ok_or_else(missing)?)
+}
+
+/// The tensor of inertia about the axes of the ground frame that is written.
+fn tensor(spec: &BodySpec, scope: &Scope<'_>) -> Result<Matrix3<f64>, SceneError> {
+    let mut tensor = Matrix3::zeros();
+    let place = scope.key("inertia");
     for (index, written) in spec.inertia.iter().flatten().enumerate() {
-        moments[index] = scope.index(index).positive(written)?;
+        tensor[(index, index)] = place.index(index).positive(written)?;
     }
+    if let Some([xy, xz, yz]) = &spec.products_of_inertia {
+        for (row, column, entry) in [(0, 1, xy), (0, 2, xz), (1, 2, yz)] {
+            tensor[(row, column)] = entry.value();
+            tensor[(column, row)] = entry.value();
+        }
+    }
+    let (moments, _) = principal(&tensor);
+    let moments = Vector3::from(moments);
     let largest = moments.max();
-    if moments.sum() - 2.0 * largest < -ROUNDING * largest {
-        let found = format!("{:?} g mm^2", moments.as_slice());
-        let expected = "moments of which none is larger than the sum of the two others";
-        return Err(scope.wrong(found, expected));
+    if moments.min() <= 0.0 || moments.sum() - 2.0 * largest < -ROUNDING * largest {
+        let found = match &spec.products_of_inertia {
+            None => format!("{:?} g mm^2", moments.as_slice()),
+            Some(_) => format!("principal moments of {:?} g mm^2", moments.as_slice()),
+        };
+        let expected = "positive moments of which none is larger than the sum of the two others";
+        return Err(place.wrong(found, expected));
     }
-    let permuted = directors.map(f64::abs).transpose();
-    if permuted.iter().any(|entry| *entry != 0.0 && *entry != 1.0) {
-        let found = "moments about the ground axes beside a cylinder with an oblique axis";
-        let expected = "a cylinder along a ground axis, or no explicit inertia";
-        return Err(scope.wrong(found, expected));
+    Ok(tensor)
+}
+
+/// A body with a tensor of inertia; a shape whose axes are not principal axes is drawn as a surface, and so is a mesh.
+fn with_tensor(body: Body, surface: Option<Surface>, tensor: &Matrix3<f64>) -> Body {
+    let own = body.directors.transpose() * tensor * body.directors;
+    let (inertia, directors) = match is_diagonal(&own) {
+        true => (own.diagonal().into(), body.directors),
+        false => principal(tensor),
+    };
+    let pose = Pose {
+        centre: body.centre,
+        directors,
+    };
+    let shape = match (surface, &body.shape) {
+        (Some(surface), _) => Shape::surface(surface, &pose),
+        (None, Shape::Cylinder { .. } | Shape::Box { .. }) if directors != body.directors => {
+            let mut surface = Surface::default();
+            body.shape.add_to(&mut surface, &body.pose());
+            Shape::surface(surface, &pose)
+        }
+        (None, shape) => shape.clone(),
+    };
+    Body {
+        inertia,
+        directors,
+        shape,
+        ..body
     }
-    Ok((permuted * moments).into())
 }

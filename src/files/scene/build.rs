@@ -6,7 +6,7 @@ use crate::files::json::error::SceneError;
 use crate::files::json::scope::Scope;
 use crate::files::scene::body::body;
 use crate::files::scene::components::{load, spring, tendon};
-use crate::files::scene::expand::expanded;
+use crate::files::scene::expand::{add_named, expanded};
 use crate::files::scene::graph::check_connected;
 use crate::files::scene::joint::joint;
 use crate::files::scene::marker::marker;
@@ -25,12 +25,14 @@ pub(crate) const LONGEST_CHAIN: usize = 1000;
 
 /// The system that a scene means.
 pub(crate) fn build_scene(scene: &SceneSpec, scope: &Scope<'_>) -> Result<System, SceneError> {
+    let mut scene = scene.clone();
+    add_named(&mut scene);
     let materials = materials(&scene.materials, &scope.key("materials"))?;
     if let Some(chain) = &scene.chain {
         check_chain(chain, &materials, &scope.key("chain"))?;
     }
-    let lists = Lists::new(scene, scope);
-    let scene = expanded(scene.clone());
+    let lists = Lists::new(&scene, scope);
+    let scene = expanded(scene);
     lists.check_names(&scene, scope)?;
     let body_names = names(&scene.bodies, |body| &body.name);
 

@@ -1,6 +1,7 @@
 //! Constants of a scene by their paths, as an optimisation may seek them: the constants of components that follow each.
 
 use crate::files::json::locate::{JsonPath, Step};
+use crate::files::scene::named_materials::named_material;
 use crate::files::scene::spec::SceneSpec;
 use crate::files::scene::spec_material::Dielectric;
 use crate::files::units::quantity::{
@@ -104,7 +105,8 @@ fn one(constant: Constant, kind: Kind, value: f64) -> SceneConstant {
 }
 
 fn of_material(name: &str, key: &str, written: &SceneSpec, system: &System) -> Option<Found> {
-    let Some(material) = written.materials.get(name) else {
+    let of_scene = written.materials.get(name).cloned();
+    let Some(material) = of_scene.or_else(|| named_material(name)) else {
         return Some(Err(missing("material", name)));
     };
     let law = match material.dielectric.unwrap_or_default() {

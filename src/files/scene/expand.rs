@@ -1,7 +1,8 @@
-//! The chain shorthand, written out as bodies, joints, muscles and a marker.
+//! Shorthand written out: chains as bodies, joints, muscles and a marker, and materials that are only named.
 
 use nalgebra::Vector3;
 
+use crate::files::scene::named_materials::named_material;
 use crate::files::scene::point::direction;
 use crate::files::scene::point::{Point, PointSpec};
 use crate::files::scene::spec::{
@@ -24,6 +25,25 @@ pub(crate) fn expanded(mut scene: SceneSpec) -> SceneSpec {
         scene.markers.extend(tip(&chain));
     }
     scene
+}
+
+/// Writes the materials with published constants that muscles and blocks name, and that the scene does not write, among its materials.
+pub(crate) fn add_named(scene: &mut SceneSpec) {
+    let muscles = scene.muscles.iter().map(|muscle| &muscle.material);
+    let pairs = scene
+        .chain
+        .iter()
+        .filter_map(|chain| chain.muscles.as_ref());
+    let blocks = scene.solids.iter().flat_map(|solid| solid.material_names());
+    let names = muscles
+        .chain(pairs.map(|pair| &pair.material))
+        .chain(blocks);
+    let is_absent = |name: &&String| !scene.materials.contains_key(*name);
+    let added: Vec<_> = names
+        .filter(is_absent)
+        .filter_map(|name| Some((name.clone(), named_material(name)?)))
+        .collect();
+    scene.materials.extend(added);
 }
 
 /// One joint and the segment behind it.
@@ -69,7 +89,8 @@ impl Link {
         let centre = self.axis * ((self.number as f64 - 0.5) * chain.length.value());
         BodySpec {
             name: self.segment(),
-            mass: chain.mass.clone(),
+            mass: Some(chain.mass.clone()),
+            density: None,
             cylinder: Some(CylinderSpec {
                 length: chain.length.clone(),
                 radius: chain.radius.clone(),
@@ -77,8 +98,10 @@ impl Link {
             }),
             cuboid: None,
             sphere: None,
+            mesh: None,
             inertia: None,
-            position: point(&centre),
+            products_of_inertia: None,
+            position: Some(point(&centre)),
             free: false,
         }
     }

@@ -39,7 +39,19 @@ fn material(spec: &MaterialSpec, scope: &Scope<'_>) -> Result<Material, SceneErr
             .key("viscosity")
             .absent_or_positive(spec.viscosity.as_ref())?,
         maxwell: maxwell(&spec.maxwell, &scope.key("maxwell"))?,
+        stretch_range: stretch_range(spec, scope)?,
     })
+}
+
+fn stretch_range(spec: &MaterialSpec, scope: &Scope<'_>) -> Result<Option<[f64; 2]>, SceneError> {
+    match spec.stretch_range {
+        Some([low, high]) if !(low > 0.0 && low <= 1.0 && high >= 1.0) => {
+            let expected = "two stretches with 1 between them, such as [0.6, 2]";
+            let place = scope.key("stretch_range");
+            Err(place.wrong(format!("[{low}, {high}]"), expected))
+        }
+        range => Ok(range),
+    }
 }
 
 fn maxwell(specs: &[MaxwellSpec], scope: &Scope<'_>) -> Result<MaxwellBranches, SceneError> {

@@ -11,8 +11,8 @@ use crate::mesh::error::MeshError;
 use crate::mesh::grid::Grid;
 use crate::mesh::{Mesh, gmsh};
 
-/// Unit of a Gmsh file in mm where none is written: the metre.
-const DEFAULT_UNIT: f64 = 1e3;
+/// Unit of a mesh file in mm where none is written: the metre.
+pub(crate) const DEFAULT_UNIT: f64 = 1e3;
 
 /// A mesh, and for boxes the node planes along x, y, z in mm.
 pub(crate) struct Meshed {
@@ -52,11 +52,11 @@ fn from_file(path: &str, spec: &SolidSpec, scope: &Scope<'_>) -> Result<Meshed, 
 }
 
 /// Converts an error of a mesh to one at the place in the scene that asks for it.
-fn mesh_mistake(error: &MeshError, scope: &Scope<'_>) -> SceneError {
+pub(crate) fn mesh_mistake(error: &MeshError, scope: &Scope<'_>) -> SceneError {
     match error {
         MeshError::Unreadable { file, cause } => {
             let found = format!("{file:?}, which cannot be read ({cause})");
-            scope.wrong(found, "a readable Gmsh file")
+            scope.wrong(found, "a readable file")
         }
         MeshError::Line {
             file,

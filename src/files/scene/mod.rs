@@ -2,7 +2,7 @@
 //!
 //! - `build`: the scene; `body`, `material`, `muscle`, `marker`: its parts; `components`: kinds of which each has one file for both.
 //! - `solid`, `mesh`, `electrodes`, `nodes`: elastic solids; `graph`: connections by joints; `names`: resolution of names.
-//! - `law`: laws of elasticity of materials; `circuit`: circuits of muscles.
+//! - `law`: laws of elasticity of materials; `named_materials`: published constants; `circuit`: circuits of muscles.
 //! - `constants`: constants by their paths, as an optimisation may seek them.
 //! - `expand`: the shorthand of chains; `trunk`: a scene to begin with.
 
@@ -20,6 +20,7 @@ pub(crate) mod marker;
 pub(crate) mod material;
 pub(crate) mod mesh;
 pub(crate) mod muscle;
+pub(crate) mod named_materials;
 pub(crate) mod names;
 pub(crate) mod nodes;
 pub mod point;

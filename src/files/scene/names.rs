@@ -2,7 +2,8 @@
 
 use crate::energy::ElasticLaw;
 use crate::files::json::error::SceneError;
-use crate::files::json::scope::Scope;
+use crate::files::json::scope::{Scope, list};
+use crate::files::scene::named_materials::named_materials;
 use crate::files::scene::point::{Point, vector};
 use crate::model::system::{Attachment, Material};
 
@@ -17,9 +18,17 @@ pub(crate) fn find_material(
     materials: &[(String, Material)],
     scope: &Scope<'_>,
 ) -> Result<Material, SceneError> {
+    if let Some((_, material)) = materials.iter().find(|(other, _)| other == name) {
+        return Ok(*material);
+    }
     let names: Vec<String> = materials.iter().map(|(name, _)| name.clone()).collect();
-    let found = scope.find(name, &names, "the name of a material");
-    found.map(|index| materials[index].1)
+    let kept = named_materials().map(|(name, _)| name.to_owned());
+    let all: Vec<String> = names.into_iter().chain(kept).collect();
+    let expected = format!("the name of a material: one of {}", list(all.iter()));
+    Err(scope.find(name, &all, &expected).map_or_else(
+        |error| error,
+        |_| scope.wrong(format!("{name:?}"), expected),
+    ))
 }
 
 /// The material of finite elements, whose name stands at `scope`: it says how it resists changes of volume.

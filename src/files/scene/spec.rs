@@ -10,7 +10,9 @@ use crate::files::scene::point::{Point, PointSpec};
 use crate::files::scene::spec_joints::JointSpec;
 use crate::files::scene::spec_material::MaterialSpec;
 use crate::files::scene::spec_solids::{ElementSpec, SolidSpec};
-use crate::files::units::quantity::{Acceleration, Length, Mass, MomentOfInertia, Quantity};
+use crate::files::units::quantity::{
+    Acceleration, Angle, Density, Length, Mass, MomentOfInertia, Quantity,
+};
 
 /// Scene. Positions and axes are given in the reference configuration, in the ground frame; parts that are not written do not exist.
 #[derive(Clone, Debug, Default, Serialize, Deserialize, JsonSchema)]
@@ -56,14 +58,18 @@ pub struct SceneSpec {
     pub chain: Option<ChainSpec>,
 }
 
-/// A rigid body: one shape, or an explicit inertia, or both.
+/// A rigid body: a mass or a density; one shape, or an explicit inertia, or both.
 #[derive(Clone, Debug, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct BodySpec {
     /// Unique name other than `ground`.
     pub name: String,
     /// Mass, SI unit kg.
-    pub mass: Quantity<Mass>,
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub mass: Option<Quantity<Mass>>,
+    /// Density of the shape, SI unit kg/m³, in place of the mass.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub density: Option<Quantity<Density>>,
     /// Solid cylinder.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub cylinder: Option<CylinderSpec>,
@@ -73,11 +79,18 @@ pub struct BodySpec {
     /// Solid sphere.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub sphere: Option<SphereSpec>,
+    /// Solid within a closed surface of triangles, from an STL file; beside `inertia` it is only drawn.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub mesh: Option<BodyMeshSpec>,
     /// Moments of inertia about the axes of the ground frame through the centre of mass, SI unit kg m²; overrides the shape's.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub inertia: Option<[Quantity<MomentOfInertia>; 3]>,
-    /// Centre of mass, SI unit m.
-    pub position: Point,
+    /// Entries xy, xz, yz of the tensor of inertia whose diagonal is `inertia`, such as −∫ x y dm, SI unit kg m²; zero where not written.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub products_of_inertia: Option<[Quantity<MomentOfInertia>; 3]>,
+    /// Centre of mass, SI unit m; of a `mesh` without `inertia` it follows from the surface, and is not written.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub position: Option<Point>,
     /// True if the body is free of the ground: no chain of joints leads there.
     #[serde(default, skip_serializing_if = "std::ops::Not::not")]
     pub free: bool,
@@ -109,6 +122,33 @@ pub struct BoxSpec {
 pub struct SphereSpec {
     /// Radius, SI unit m.
     pub radius: Quantity<Length>,
+}
+
+/// A surface from an STL file.
+#[derive(Clone, Debug, Serialize, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct BodyMeshSpec {
+    /// STL file, binary or text; its path is relative to the scene file.
+    pub file: String,
+    /// Length of its unit, SI unit m; 1 m where not written.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub unit: Option<Quantity<Length>>,
+    /// Place of its origin, SI unit m; that of the ground frame where not written.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub at: Option<Point>,
+    /// Rotation about its origin; where not written its axes are those of the ground frame.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub rotation: Option<RotationSpec>,
+}
+
+/// A rotation.
+#[derive(Clone, Debug, Serialize, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct RotationSpec {
+    /// Direction of the axis, of any length.
+    pub axis: [f64; 3],
+    /// Angle by the right-hand rule, SI unit rad.
+    pub angle: Quantity<Angle>,
 }
 
 /// Declares the keys of stacked muscles: those that all have, and those of their places.

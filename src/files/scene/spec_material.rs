@@ -10,6 +10,15 @@ use crate::files::units::quantity::{Density, Permittivity, Quantity, Stress, Tim
 #[derive(Clone, Debug, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct MaterialSpec {
+    /// Source of the constants, for readers.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub source: Option<String>,
+    /// Conditions under which the constants were measured and fitted, for readers.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub conditions: Option<String>,
+    /// Smallest and largest stretch for which the constants hold; a lumped muscle beyond them is a warning.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub stretch_range: Option<[f64; 2]>,
     /// Density, SI unit kg/m³; without it muscles are massless.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub density: Option<Quantity<Density>>,

@@ -5,8 +5,8 @@ use base64::engine::general_purpose::STANDARD;
 use nalgebra::{UnitQuaternion, Vector3};
 use serde_json::{Value, json};
 
+use crate::mesh::triangulated::Surface;
 use crate::report::origin::Origin;
-use crate::report::solids::SurfaceMesh;
 use crate::report::style::Colour;
 
 /// Numbers of the standard for kinds of numbers, buffers and primitives.
@@ -110,7 +110,7 @@ impl Document {
     }
 
     /// A mesh of triangles.
-    pub(super) fn mesh(&mut self, name: &str, surface: &SurfaceMesh, material: usize) -> usize {
+    pub(super) fn mesh(&mut self, name: &str, surface: &Surface, material: usize) -> usize {
         let primitive = self.primitive(
             &surface.vertices,
             &Mode::Triangles(surface.triangles.clone()),

@@ -3,20 +3,20 @@
 use nalgebra::{Matrix3, Vector3};
 
 use crate::kinematics::Pose;
+use crate::mesh::triangulated::Surface;
 use crate::model::system::Shape;
-use crate::report::solids::{Prism, SurfaceMesh};
 
 /// Length in m of a length in mm.
 pub(super) const METRE: f64 = 1e-3;
 
 /// A body in its own frame, in m.
-pub(super) fn body(shape: &Shape) -> SurfaceMesh {
+pub(super) fn body(shape: &Shape) -> Surface {
     let own = Pose {
         centre: Vector3::zeros(),
         directors: Matrix3::identity(),
     };
-    let mut mesh = SurfaceMesh::default();
-    mesh.add_body(shape, &own);
+    let mut mesh = Surface::default();
+    shape.add_to(&mut mesh, &own);
     for vertex in &mut mesh.vertices {
         *vertex *= METRE;
     }
@@ -24,19 +24,17 @@ pub(super) fn body(shape: &Shape) -> SurfaceMesh {
 }
 
 /// A ball about the origin.
-pub(super) fn sphere(radius: f64) -> SurfaceMesh {
+pub(super) fn sphere(radius: f64) -> Surface {
     body(&Shape::Sphere {
         radius: radius / METRE,
     })
 }
 
 /// A cube of edge 2 about the origin.
-pub(super) fn cube() -> SurfaceMesh {
-    let mut mesh = SurfaceMesh::default();
-    mesh.add_prism(&Prism {
-        centre: Vector3::zeros(),
-        halves: [Vector3::x(), Vector3::y(), Vector3::z()],
-    });
+pub(super) fn cube() -> Surface {
+    let mut mesh = Surface::default();
+    let halves = [Vector3::x(), Vector3::y(), Vector3::z()];
+    mesh.add_box(Vector3::zeros(), &halves);
     mesh
 }
 

@@ -4,6 +4,7 @@ use nalgebra::Vector3;
 use serde_json::{Value, json};
 
 use crate::kinematics::Pose;
+use crate::mesh::triangulated::Surface;
 use crate::model::system::{Attachment, Joint, JointKind, Marker};
 use crate::report::Run;
 use crate::report::drawing::lumped;
@@ -12,7 +13,7 @@ use crate::report::frame::{ground_plate, held_faces};
 use crate::report::load_arrows::LoadArrows;
 use crate::report::page::numbers::{indices, numbers, places};
 use crate::report::skins::{Skin, shown};
-use crate::report::solids::{Prism, SurfaceMesh};
+use crate::report::solids::Prism;
 use crate::report::style;
 use crate::report::ties;
 
@@ -82,8 +83,8 @@ impl Stage<'_> {
     fn bodies(&self) -> Vec<Value> {
         let bodies = self.run.system.bodies.iter().enumerate();
         let part = bodies.map(|(b, body)| {
-            let mut mesh = SurfaceMesh::default();
-            mesh.add_body(&body.shape, &Pose::GROUND);
+            let mut mesh = Surface::default();
+            body.shape.add_to(&mut mesh, &Pose::GROUND);
             let poses = self.instants.iter();
             let motion = poses.flat_map(|&k| moved(&self.run.trajectory.poses[k][b]));
             json!({

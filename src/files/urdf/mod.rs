@@ -1,0 +1,66 @@
+//! Robots from URDF, the XML format of ROS: links and joints become the bodies and joints of a scene.
+//!
+//! - `element`: elements of XML with places, numbers and vectors; `read`: links and joints as they are written; `left_out`: what is not
+//!   taken over.
+//! - `tree`: poses of the links in the reference configuration; `scene`: the scene; `outline`: shapes of bodies.
+//!
+//! What a scene does not have is left out by name.
+
+mod element;
+mod error;
+mod left_out;
+mod outline;
+mod read;
+mod scene;
+mod tree;
+
+pub use error::UrdfError;
+pub use scene::FromUrdf;
+
+use roxmltree::Document;
+use std::path::Path;
+
+use crate::files::json::source::{NoBytes, of_file};
+use crate::files::urdf::left_out::LeftOut;
+
+/// Reads a file.
+///
+/// # Errors
+/// It cannot be read, or is no tree of links and joints that a scene can hold.
+pub fn read_urdf(path: &Path) -> Result<FromUrdf, UrdfError> {
+    let wrong = |found: String, expected: String| UrdfError {
+        place: path.display().to_string(),
+        found,
+        expected,
+    };
+    let bytes = of_file(path).map_err(|error| match error {
+        NoBytes::Unreadable(cause) => wrong(
+            format!("no readable file ({cause})"),
+            "a URDF file".to_owned(),
+        ),
+        NoBytes::TooLarge(found, expected) => wrong(found, expected),
+    })?;
+    let text = String::from_utf8(bytes).map_err(|_| {
+        wrong(
+            "bytes that are no UTF-8".to_owned(),
+            "a URDF file".to_owned(),
+        )
+    })?;
+    parse_urdf(path, &text)
+}
+
+/// Reads the text of a file; `path` is that of the file, to which paths of meshes are relative.
+///
+/// # Errors
+/// As of [`read_urdf`].
+pub fn parse_urdf(path: &Path, text: &str) -> Result<FromUrdf, UrdfError> {
+    let document = Document::parse(text).map_err(|error| UrdfError {
+        place: format!("{}:{}", path.display(), error.pos().row),
+        found: format!("no XML ({error})"),
+        expected: "a URDF file; a file of xacro is expanded by xacro first".to_owned(),
+    })?;
+    let mut left_out = LeftOut::default();
+    let robot = read::robot(path, &document, &mut left_out)?;
+    let tree = tree::tree(&robot)?;
+    scene::scene(&robot, &tree, path, left_out)
+}

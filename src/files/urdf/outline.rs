@@ -1,0 +1,136 @@
+//! Shapes of bodies of a URDF file: one about the centre of mass by its key, others as a surface of triangles.
+
+use nalgebra::{Isometry3, Matrix3, Point3, Vector3};
+use serde_json::{Value, json};
+use std::path::{Path, PathBuf};
+
+use crate::files::stl;
+use crate::files::urdf::left_out::LeftOut;
+use crate::files::urdf::read::{Geometry, Visual};
+use crate::mesh::triangulated::{Surface, rings_of_sphere};
+
+/// Distances in m and deviations of directions that are those of rounding.
+const NEAR: f64 = 1e-9;
+
+/// Shape of a body.
+pub(super) enum Outline {
+    /// A key of the body, and its value.
+    Key(&'static str, Value),
+    /// A surface in m in the ground frame.
+    Surface(Surface),
+    /// Nothing.
+    None,
+}
+
+/// Shape of a body with its centre of mass in m, from visuals with their poses in the ground frame.
+pub(super) fn outline(
+    visuals: &[Visual],
+    centre: &Vector3<f64>,
+    (path, owner): (&Path, &str),
+    left_out: &mut LeftOut,
+) -> Outline {
+    if let [visual] = visuals
+        && let Some((key, value)) = by_key(visual, centre)
+    {
+        return Outline::Key(key, value);
+    }
+    let mut surface = Surface::default();
+    for Visual { pose, geometry } in visuals {
+        match own(geometry, path) {
+            Ok(own) => {
+                let placed = own.transformed(|x| (pose * Point3::from(x)).coords);
+                surface.add(&placed);
+            }
+            Err(kind) => left_out.add(kind, owner),
+        }
+    }
+    match surface.triangles.is_empty() {
+        true => Outline::None,
+        false => Outline::Surface(surface),
+    }
+}
+
+/// The shape about the centre of mass as a key of a body.
+fn by_key(visual: &Visual, centre: &Vector3<f64>) -> Option<(&'static str, Value)> {
+    let Visual { pose, geometry } = visual;
+    if (pose.translation.vector - centre).norm() > NEAR {
+        return None;
+    }
+    let axes = pose.rotation.to_rotation_matrix().into_inner();
+    match *geometry {
+        Geometry::Sphere(radius) => Some(("sphere", json!({ "radius": radius }))),
+        Geometry::Cylinder { radius, length } => {
+            let axis = rounded(&axes.column(2).into_owned());
+            let value = json!({ "length": length, "radius": radius, "axis": axis });
+            Some(("cylinder", value))
+        }
+        Geometry::Box(size) => {
+            let near = axes.map(|entry| entry.abs().round());
+            let is_aligned = (axes.map(f64::abs) - near).amax() < NEAR;
+            let turned = near * Vector3::from(size);
+            is_aligned.then(|| ("box", json!({ "size": turned.as_slice() })))
+        }
+        Geometry::Mesh { .. } => None,
+    }
+}
+
+/// A shape in its own frame in m, or the kind of shape that is left out.
+fn own(geometry: &Geometry, path: &Path) -> Result<Surface, String> {
+    let mut surface = Surface::default();
+    let axes: [Vector3<f64>; 3] = [Vector3::x(), Vector3::y(), Vector3::z()];
+    match geometry {
+        Geometry::Box(size) => {
+            let halves = [0, 1, 2].map(|i| axes[i] * (0.5 * size[i]));
+            surface.add_box(Vector3::zeros(), &halves);
+        }
+        &Geometry::Cylinder { radius, length } => {
+            let rings = [(-0.5 * length, radius), (0.5 * length, radius)];
+            surface.add_rings(Vector3::zeros(), axes, &rings);
+        }
+        &Geometry::Sphere(radius) => {
+            surface.add_rings(Vector3::zeros(), axes, &rings_of_sphere(radius));
+        }
+        Geometry::Mesh { file, scale } => {
+            let found = mesh_file(file, path)
+                .ok_or_else(|| format!("the mesh {file:?}, where there is no file,"))?;
+            let read = stl::read(&found, 1.0);
+            let read = read.map_err(|_| format!("the mesh {file:?}, which is no STL file,"))?;
+            surface = read.transformed(|x| x.component_mul(&Vector3::from(*scale)));
+        }
+    }
+    Ok(surface)
+}
+
+/// The file of a mesh: relative to the URDF file, or in the folder of its package, which is one above that file.
+fn mesh_file(name: &str, path: &Path) -> Option<PathBuf> {
+    let folder = path.parent().unwrap_or(Path::new(""));
+    let is_file = |file: &PathBuf| file.is_file();
+    if let Some(in_package) = name.strip_prefix("package://") {
+        let (_, rest) = in_package.split_once('/')?;
+        let folder = folder.canonicalize().ok()?;
+        let mut folders = folder.ancestors();
+        return folders.find_map(|above| {
+            let inside = Some(above.join(rest)).filter(is_file);
+            inside.or_else(|| Some(above.join(in_package)).filter(is_file))
+        });
+    }
+    let name = name.strip_prefix("file://").unwrap_or(name);
+    Some(folder.join(name)).filter(is_file)
+}
+
+/// A direction or place without the rounding of rotations by right angles.
+pub(super) fn rounded(vector: &Vector3<f64>) -> [f64; 3] {
+    let largest = vector.amax();
+    vector
+        .map(|entry| match entry.abs() < 1e-15 * largest {
+            true => 0.0,
+            false => entry + 0.0,
+        })
+        .into()
+}
+
+/// A tensor in the frame of a pose as one in the ground frame.
+pub(super) fn turned(tensor: &Matrix3<f64>, pose: &Isometry3<f64>) -> Matrix3<f64> {
+    let axes = pose.rotation.to_rotation_matrix().into_inner();
+    axes * tensor * axes.transpose()
+}
