@@ -18,7 +18,7 @@ pub struct Material {
     pub electric: Option<ElectricConstants>,
     /// Viscosity η in MPa ms, σ_vis = η d.
     pub viscosity: Option<f64>,
-    /// Maxwell branches, which lumped muscles read.
+    /// Maxwell branches.
     pub maxwell: MaxwellBranches,
 }
 
