@@ -22,7 +22,7 @@ use crate::dynamics::observations;
 use crate::dynamics::trajectory::Observations;
 use crate::files::{driven_voltages, read_problem, read_system};
 use crate::ipopt::interrupt;
-use crate::model::{Model, System};
+use crate::model::{Model, Response, System};
 use crate::report::file_set::FileSet;
 use crate::report::skins::Skins;
 use crate::report::{Run, write_still};
@@ -49,6 +49,7 @@ pub fn equilibrium_of_file(
         let task = AtRest {
             voltages,
             coordinates: None,
+            response: Response::Relaxed,
             path: None,
         };
         return at((request, &[]), &system, &task, began);

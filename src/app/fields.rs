@@ -126,8 +126,8 @@ impl<'m> SolidStates<'m> {
     fn at(&mut self, k: usize) -> Vec<Block<'m>> {
         let model = self.model;
         let state = self.place(k);
-        let blocks = model.solids.iter().enumerate();
-        blocks.map(|(b, c)| Block::new(b, c, &state)).collect()
+        let blocks = 0..model.solids.len();
+        blocks.map(|b| Block::new(model, b, &state)).collect()
     }
 }
 
@@ -140,7 +140,8 @@ struct Block<'m> {
 }
 
 impl<'m> Block<'m> {
-    fn new(number: usize, block: &'m SolidBlock, state: &SolidState<'_>) -> Self {
+    fn new(model: &'m Model, number: usize, state: &SolidState<'_>) -> Self {
+        let block = &model.solids[number];
         let mesh = &block.solid.mesh;
         let places = block.places(&state.here.x);
         let potentials = block.potentials(state.scalars);
@@ -164,7 +165,11 @@ impl<'m> Block<'m> {
             point_data.push(field("potential [V]", 1, values));
         }
         let is_dielectric = block.is_dielectric.contains(&true);
-        let cell_data = cells(number, block, &places, &potentials, velocities.as_deref());
+        let elements = 0..block.shapes.len();
+        let branches = elements.map(|e| model.branch_stress(number, e, state.here));
+        let branches = branches.collect::<Vec<_>>();
+        let at = (&places[..], &potentials[..], velocities.as_deref());
+        let cell_data = cells(number, block, at, &branches);
         Self {
             hexahedra: &mesh.hexahedra,
             points: places.iter().map(|x| x * 1e-3).collect(),
@@ -190,14 +195,18 @@ impl<'m> Block<'m> {
 fn cells(
     number: usize,
     block: &SolidBlock,
-    places: &[Vector],
-    potentials: &[f64],
-    velocities: Option<&[Vector]>,
+    (places, potentials, velocities): (&[Vector], &[f64], Option<&[Vector]>),
+    branches: &[Option<Matrix>],
 ) -> Vec<Field<'static>> {
     let count = block.shapes.len();
     let mut all: Vec<Fields> = (0..count)
         .map(|e| block.fields(e, places, potentials))
         .collect();
+    for (fields, stress) in all.iter_mut().zip(branches) {
+        if let Some(stress) = stress {
+            fields.stress += stress;
+        }
+    }
     if let Some(velocities) = velocities {
         for (e, fields) in all.iter_mut().enumerate() {
             let Some(viscosity) = block.material(e).viscosity else {

@@ -10,7 +10,7 @@ use crate::dynamics::Solving;
 use crate::ipopt::{LinearSolver, OptionValue};
 use crate::math::Signal;
 use crate::model::system::{ElectricConstants, InputKind, Muscle};
-use crate::model::{Coordinates, Parameter, Region, Role, System, Variable};
+use crate::model::{Coordinates, Parameter, Region, Response, Role, System, Variable};
 use std::collections::BTreeMap;
 
 /// A task with everything resolved: one voltage per muscle, indices for names.
@@ -31,8 +31,9 @@ pub struct AtRest {
     pub voltages: Vec<f64>,
     /// `None`: reduced where the joints form a tree.
     pub coordinates: Option<Coordinates>,
-    /// Number of equilibria of the path from zero voltage that are followed by arc length, past limit points; `None`: only the
-    /// equilibrium under the voltages is sought.
+    /// Response of Maxwell branches.
+    pub response: Response,
+    /// Number of equilibria followed from zero voltage by arc length, past limit points; `None`: that under the voltages alone.
     pub path: Option<usize>,
 }
 

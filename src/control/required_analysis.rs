@@ -33,6 +33,7 @@ impl AtRest {
         Analysis {
             coordinates: self.coordinates,
             zero_inputs: zero_inputs(system, |s| self.voltages[s] != 0.0, []),
+            response: self.response,
             ..Analysis::of_rest()
         }
     }

@@ -350,11 +350,14 @@ fn linear(vector: &MaterialVector, nodes: &[NodePlace], of_node: &[Vec<LinearPar
                     }
                 }
             }
-            Carrier::Coordinate(coordinate) => parts.push(LinearPart {
-                coordinate,
-                axis: 0,
-                factor: term.centre,
-            }),
+            Carrier::Coordinate(coordinate) => {
+                let axes = (0..3).filter(|&axis| term.directors[axis] != 0.0);
+                parts.extend(axes.map(|axis| LinearPart {
+                    coordinate,
+                    axis,
+                    factor: term.directors[axis],
+                }));
+            }
             Carrier::Node(node) => {
                 let NodePlace { reference, free } = nodes[node];
                 for axis in (0..3).filter(|&axis| !free[axis]) {

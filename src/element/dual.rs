@@ -189,4 +189,13 @@ impl<P: Points<Plain = P>> Points for Dual<P> {
             rate: self.rate.sum(),
         }
     }
+
+    #[inline(always)]
+    fn each(self) -> [Self::Uniform; 8] {
+        let (values, rates) = (self.value.each(), self.rate.each());
+        std::array::from_fn(|point| Dual {
+            value: values[point],
+            rate: rates[point],
+        })
+    }
 }

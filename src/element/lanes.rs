@@ -174,4 +174,12 @@ impl<S: Simd, const K: usize> Points for Lanes<S, K> {
         }
         self.unit.reduce_sum_f64s(total)
     }
+
+    #[inline(always)]
+    fn each(self) -> [f64; 8] {
+        let mut values = [0.0; 8];
+        let (registers, _) = S::as_mut_simd_f64s(&mut values);
+        registers.copy_from_slice(&self.registers);
+        values
+    }
 }

@@ -7,7 +7,7 @@
 //! ```
 //!
 //! summed over eight Gauss points, 2 × 2 × 2 of weight w_g = det ∂X/∂ξ for the hexahedron. [`ElementGeometry`] holds G_i and w_g, [`Elastomer`] the law Ω with
-//! the derivatives of W to third order, [`Viscosity`] the virtual work of σ = η d, [`Fields`] what is shown of a state,
+//! the derivatives of W to third order, [`Viscosity`] the virtual work of σ = η d, [`MaxwellSpring`] the energy of a Maxwell branch, [`Fields`] what is shown of a state,
 //! [`FieldPoint`] the true field that limits bound.
 //!
 //! The formulas are written in the spatial gradients g_i = F⁻ᵀG_i and evaluated at all Gauss points side by side.
@@ -18,6 +18,8 @@
 )]
 
 mod algebra;
+mod branch;
+mod branch_local;
 mod charged;
 mod dispatch;
 mod dual;
@@ -30,12 +32,14 @@ mod kinematics;
 mod lanes;
 mod law;
 mod local;
+mod maxwell_spring;
 mod number;
 mod state;
 mod variations;
 mod viscosity;
 mod viscous_local;
 
+pub use branch_local::{BranchLocal, COORDINATES};
 pub use elastomer::Elastomer;
 pub use field_point::{FieldPoint, SpatialField};
 pub use fields::Fields;
@@ -43,5 +47,6 @@ pub use geometry::{ElementGeometry, Inverted};
 pub use isochoric::{ElementLaw, IsochoricLaw};
 pub use law::{Dielectric, ElectricDerivatives, Field, Passive, Volume};
 pub use local::Local;
+pub use maxwell_spring::{MaxwellSpring, ViscousStrains, relaxed};
 pub use viscosity::Viscosity;
 pub use viscous_local::{ViscousContraction, ViscousLocal};

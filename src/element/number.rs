@@ -51,6 +51,8 @@ pub(super) trait Points: Real {
     fn positive(self) -> Self;
     /// The sum over the points.
     fn sum(self) -> Self::Uniform;
+    /// The number at each point.
+    fn each(self) -> [Self::Uniform; 8];
 }
 
 impl Real for f64 {

@@ -40,7 +40,7 @@ pub use limit::{
     ProjectionStep, SquaredDistance, SquaredField,
 };
 pub use load::{DeadLoad, FollowingForce, SurfaceCharge};
-pub use maxwell::MaxwellCell;
+pub use maxwell::{MaxwellCell, MaxwellDamper};
 pub use muscle::{DielectricCell, ElasticCell, SectionInertia};
 pub use of_square::OfSquare;
 pub use sought_damper::SoughtDamper;

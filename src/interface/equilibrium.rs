@@ -6,8 +6,8 @@ use crate::interface::error::{Error, Result, require, source};
 use crate::interface::handle::Handle;
 use crate::interface::input::Input;
 use crate::interface::motion::Motion;
-use crate::model::System;
 use crate::model::components::Load;
+use crate::model::{NO_BRANCHES, Response, System};
 use crate::tasks::{self, EquilibriumTaskError};
 use std::sync::Arc;
 
@@ -15,6 +15,7 @@ use std::sync::Arc;
 #[derive(Clone, Debug, Default)]
 pub struct Equilibrium {
     inputs: Vec<(Input, f64)>,
+    response: Response,
 }
 
 impl Equilibrium {
@@ -34,6 +35,13 @@ impl Equilibrium {
         self.voltage(load, size)
     }
 
+    /// The state right after the voltages and loads came to act: Maxwell branches are springs without stress in the reference
+    /// configuration. Otherwise the state after a long time, in which they carry nothing.
+    pub fn instantaneous(self) -> Self {
+        let response = Response::Instantaneous;
+        Self { response, ..self }
+    }
+
     /// Finds it, as a motion of one instant.
     ///
     /// # Errors
@@ -47,9 +55,17 @@ impl Equilibrium {
             require(value.is_finite(), "equilibrium", found, "a finite number")?;
             voltages[source(input, system)?] = *value;
         }
+        let found = || "an instantaneous response".to_owned();
+        require(
+            self.response == Response::Relaxed || system.has_branches(),
+            "equilibrium",
+            found,
+            NO_BRANCHES,
+        )?;
         let task = AtRest {
             voltages,
             coordinates: None,
+            response: self.response,
             path: None,
         };
         let result = tasks::equilibrium(system, &task).map_err(|error| match error {

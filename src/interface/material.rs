@@ -59,7 +59,7 @@ impl Material {
         Self { viscosity, ..self }
     }
 
-    /// One more Maxwell branch of lumped muscles: shear modulus μ₁ of its spring in MPa, relaxation time in ms.
+    /// One more Maxwell branch: shear modulus μ₁ of its spring in MPa, relaxation time in ms.
     ///
     /// # Panics
     /// It has five.

@@ -2,10 +2,11 @@
 //!
 //! On director coordinates q = [φ; d₁; d₂; d₃] of a body every point φ + ρᵢ dᵢ, every director dᵢ and every difference
 //! of points of two bodies is linear: x = Σ (c φ + ρᵢ dᵢ) over a few terms. So is the place of a node of an elastic
-//! block, and a coordinate that is no place in its first component. Energies are functions of such vectors.
+//! block, and so are coordinates that are no places, as components. Energies are functions of such vectors.
 
 use crate::math::{Matrix, Vector};
 use nalgebra::{Rotation3, UnitQuaternion};
+use std::ops::Range;
 
 /// Pose of a rigid body at an instant.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -56,7 +57,7 @@ pub enum Carrier {
     Body(usize),
     /// A node with coordinates of its own, numbered over all blocks; it has a place and no directors.
     Node(usize),
-    /// A coordinate of a joint of a tree, or an internal one: the first component.
+    /// A coordinate of a joint of a tree, or an internal one, times the coefficients ρ.
     Coordinate(usize),
 }
 
@@ -159,12 +160,18 @@ impl MaterialVector {
 
     /// A coordinate of a joint of a tree, or an internal one, in the first component.
     pub fn coordinate(coordinate: usize) -> Self {
+        Self::coordinates(coordinate..coordinate + 1)
+    }
+
+    /// Up to three successive coordinates as the first components.
+    pub fn coordinates(coordinates: Range<usize>) -> Self {
+        let component = |(axis, coordinate)| VectorTerm {
+            carrier: Carrier::Coordinate(coordinate),
+            centre: 0.0,
+            directors: Vector::ith(axis, 1.0),
+        };
         Self {
-            terms: vec![VectorTerm {
-                carrier: Carrier::Coordinate(coordinate),
-                centre: 1.0,
-                directors: Vector::zeros(),
-            }],
+            terms: coordinates.enumerate().map(component).collect(),
         }
     }
 

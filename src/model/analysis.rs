@@ -1,6 +1,7 @@
 //! The analysis of a system, as far as it decides which terms the model needs.
 
 use crate::model::constant::Parameter;
+use crate::model::maxwell::Response;
 use crate::model::quantity::Quantity;
 use std::collections::BTreeSet;
 
@@ -45,6 +46,8 @@ pub struct Analysis {
     pub parameters: Vec<Parameter>,
     /// True for a motion; a state of rest has neither inertia nor viscosity.
     pub of_motion: bool,
+    /// Response of Maxwell branches at rest; in a motion they relax.
+    pub response: Response,
     /// Sources whose voltage or load is zero all the time.
     pub zero_inputs: BTreeSet<usize>,
     /// Bodies and blocks that may start to move; `None`: anything may be set in motion by hand.
@@ -71,6 +74,7 @@ impl Analysis {
             curved: BTreeSet::new(),
             parameters: Vec::new(),
             of_motion: true,
+            response: Response::Relaxed,
             zero_inputs: BTreeSet::new(),
             initially_moving: None,
         }

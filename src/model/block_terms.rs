@@ -1,11 +1,14 @@
 //! Terms of elastic blocks: elements by kind, masses, weights.
 
-use crate::element::{ElementLaw, Viscosity};
-use crate::energy::NeoHooke;
-use crate::functional::{FiniteElement, Mass, ViscousElement};
+use crate::element::{ElementLaw, MaxwellSpring, Viscosity};
+use crate::energy::{MaxwellDamper, NeoHooke};
+use crate::functional::{Element, FiniteElement, Mass, MaxwellElement, POINTS, ViscousElement};
+use crate::kinematics::MaterialVector;
+use crate::model::internal::Internals;
+use crate::model::maxwell::MaxwellBranch;
 use crate::model::solid_block::SolidBlock;
 use crate::model::solids::Solids;
-use crate::model::terms::Terms;
+use crate::model::terms::{Terms, UNRELAXED, mid, rate};
 use std::collections::BTreeMap;
 
 const INERTIA: &str = "block inertia";
@@ -17,22 +20,29 @@ const GENERAL: [&str; 2] = [
     "general block electroelasticity",
 ];
 const VISCOSITY: &str = "block viscosity";
+const MAXWELL: [&str; 2] = ["block maxwell elasticity", "block maxwell viscosity"];
 
 impl Solids {
     /// Elements of all blocks of which anything is unknown, as pairs of block and element.
     fn elements(&self) -> impl Iterator<Item = (&SolidBlock, usize)> + '_ {
-        self.list
-            .iter()
-            .filter(|block| !block.is_immobile)
-            .flat_map(|block| (0..block.shapes.len()).map(move |e| (block, e)))
+        self.numbered().map(|(_, block, e)| (block, e))
+    }
+
+    /// The same, with the number of the block.
+    fn numbered(&self) -> impl Iterator<Item = (usize, &SolidBlock, usize)> + '_ {
+        let blocks = self.list.iter().enumerate();
+        blocks
+            .filter(|(_, block)| !block.is_immobile)
+            .flat_map(|(b, block)| (0..block.shapes.len()).map(move |e| (b, block, e)))
     }
 
     /// Terms of all blocks.
-    pub(super) fn build(&self, terms: &mut Terms<'_>) {
+    pub(super) fn build(&self, internals: &Internals, terms: &mut Terms<'_>) {
         let all = [INERTIA, ELASTICITY, ELECTROELASTICITY, VISCOSITY];
         self.add_inertia(terms);
         self.add_elements(terms);
         self.add_viscosity(terms);
+        self.add_branches(internals, terms);
         for term in all {
             terms.without(
                 term,
@@ -111,6 +121,29 @@ impl Solids {
         }
     }
 
+    /// Springs and dampers of Maxwell branches.
+    fn add_branches(&self, internals: &Internals, terms: &mut Terms<'_>) {
+        for (b, c, e) in self.numbered() {
+            for (branch, constants) in c.material(e).maxwell.list().iter().enumerate() {
+                if let Some(strains) = internals.strains(b, e, branch) {
+                    add_branch((c, e), constants, strains, terms);
+                } else if terms.is_instantaneous() {
+                    let element = FiniteElement {
+                        shape: c.reference_shape(e),
+                        law: c.unrelaxed(constants.shear_modulus),
+                        nodes: c.nodes(e),
+                        terminals: (),
+                    };
+                    terms.collect(MAXWELL[0], UNRELAXED, &c.solid.name, element);
+                }
+            }
+        }
+        terms.without_branches(
+            MAXWELL,
+            "no elastic block that moves names a Maxwell branch",
+        );
+    }
+
     /// The consistent mass matrix of all blocks.
     fn masses(&self) -> Vec<Mass> {
         let mut sums: BTreeMap<[usize; 2], f64> = BTreeMap::new();
@@ -141,6 +174,41 @@ impl Solids {
         };
         moving.flat_map(masses).collect()
     }
+}
+
+/// One branch of an element: its spring, and the damper of each Gauss point.
+fn add_branch(
+    (c, e): (&SolidBlock, usize),
+    &MaxwellBranch {
+        shear_modulus,
+        relaxation_time,
+    }: &MaxwellBranch,
+    strains: [[MaterialVector; 2]; POINTS],
+    terms: &mut Terms<'_>,
+) {
+    let ([elasticity, viscosity], why) = (MAXWELL, "Maxwell branches of");
+    let strains = strains.map(|parts| parts.map(|part| terms.new_vector(part)));
+    let shape = c.shapes[e].clone();
+    for ([stretches, shears], volume) in strains.into_iter().zip(shape.weights()) {
+        let damper = MaxwellDamper {
+            coefficient: relaxation_time * shear_modulus * volume,
+        };
+        let (stretched, sheared) = (mid(stretches), mid(shears));
+        let rates = [rate(stretches), rate(shears)];
+        let element = Element {
+            energy: damper,
+            vectors: [stretched, sheared, stretched, sheared, rates[0], rates[1]],
+            scalars: [],
+        };
+        terms.add::<_, 18, 6, 0>(viscosity, why, &c.solid.name, element);
+    }
+    let element = MaxwellElement {
+        shape,
+        law: MaxwellSpring { shear_modulus },
+        nodes: c.nodes(e),
+        strains,
+    };
+    terms.collect(elasticity, why, &c.solid.name, element);
 }
 
 /// One elastic or dielectric element, in one of two terms.

@@ -125,6 +125,7 @@ impl Model {
             node_names: blocks.names,
             prescribed: prescribed::prescribed((&system, &presolved), &internals),
             internals: internals.list,
+            of_elements: internals.of_elements,
             spans,
             markers,
             measured: measures.places,
@@ -277,12 +278,17 @@ impl Construction<'_> {
         vectors: &mut Vectors,
     ) -> (Vec<Box<dyn Term>>, Vec<Present>, Vec<LeftOut>) {
         let system = self.system;
-        let called = (self.analysis.of_motion, &self.analysis.parameters[..]);
-        let mut terms = Terms::new(self.carriers(), system.gravity, called, variables, vectors);
+        let (analysis, gravity) = (self.analysis, system.gravity);
+        let called = (
+            analysis.of_motion,
+            analysis.response,
+            &analysis.parameters[..],
+        );
+        let mut terms = Terms::new(self.carriers(), gravity, called, variables, vectors);
         body::build(&self.presolved.system.bodies, self.reference, &mut terms);
         muscle::build(&system.muscles, spans, self.internals, &mut terms);
         circuit::build(&system.muscles, spans, self.internals, &mut terms);
-        self.blocks.build(&mut terms);
+        self.blocks.build(self.internals, &mut terms);
         let no_weight = match system.gravity {
             None => "the scene names no gravity",
             Some(_) => "nothing that moves has a mass",

@@ -147,7 +147,7 @@ impl Model {
     pub fn charge(&self, i: usize) -> Option<usize> {
         match self.internal_kind(i)? {
             InternalKind::Charge(muscle) => Some(muscle),
-            InternalKind::Joint(_) | InternalKind::Branch { .. } => None,
+            _ => None,
         }
     }
 

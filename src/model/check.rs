@@ -3,7 +3,7 @@
 use crate::math::Vector;
 use crate::model::circuit::{EMPTY_CIRCUIT, NO_CIRCUIT};
 use crate::model::components::{BlockLoad, LoadPlace};
-use crate::model::system::{Attachment, Fidelity, Joint, JointKind, Muscle, System};
+use crate::model::system::{Attachment, Fidelity, Joint, JointKind, Material, Muscle, System};
 use std::collections::BTreeSet;
 use thiserror::Error;
 
@@ -86,6 +86,7 @@ impl System {
             for material in &solid.materials {
                 positive(&solid.name, "shear modulus", material.shear_modulus)?;
                 material.check_law(&solid.name)?;
+                check_branches(&solid.name, material)?;
                 material.check_of_elements(&solid.name)?;
             }
         }
@@ -304,11 +305,7 @@ impl System {
                 positive(name, "density or viscosity", value)?;
             }
             material.check_law(name)?;
-            for branch in material.maxwell.list() {
-                let modulus = "shear modulus of a Maxwell branch";
-                positive(name, modulus, branch.shear_modulus)?;
-                positive(name, "relaxation time", branch.relaxation_time)?;
-            }
+            check_branches(name, material)?;
             check_circuit(name, muscle)?;
             if muscle.fidelity.elements() > 0 {
                 material.check_of_elements(name)?;
@@ -358,6 +355,16 @@ fn check_direction(name: &str, direction: &Vector) -> Result<(), SystemError> {
         || format!("the direction {direction:?}"),
         "a direction of length one",
     )
+}
+
+/// Checks the constants of the Maxwell branches of a material.
+fn check_branches(name: &str, material: &Material) -> Result<(), SystemError> {
+    for branch in material.maxwell.list() {
+        let modulus = "shear modulus of a Maxwell branch";
+        positive(name, modulus, branch.shear_modulus)?;
+        positive(name, "relaxation time", branch.relaxation_time)?;
+    }
+    Ok(())
 }
 
 /// Checks the resistances of the circuit of a muscle, and that it can have one.

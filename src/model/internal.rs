@@ -2,14 +2,18 @@
 //!
 //! They have no mass. Each has an equation: a force that depends on it, or a constraint.
 
+use crate::element::COORDINATES;
+use crate::functional::POINTS;
 use crate::kinematics::MaterialVector;
 use crate::model::analysis::{Analysis, Coordinates};
 use crate::model::components::LoadPlace;
 use crate::model::graph::Graph;
 use crate::model::presolved::Presolved;
+use crate::model::solid_block::SolidBlock;
 use crate::model::solids::Solids;
 use crate::model::system::{Fidelity, Joint, JointKind, System};
 use crate::model::variables::Size;
+use std::collections::BTreeMap;
 
 /// An internal coordinate.
 #[derive(Clone, Debug, PartialEq)]
@@ -34,12 +38,23 @@ pub(super) enum InternalKind {
         /// Its branch.
         branch: usize,
     },
+    /// A coordinate of the viscous strain of a Maxwell branch at a Gauss point of a block: what the block remembers.
+    Strain {
+        /// The block.
+        block: usize,
+        /// Its element.
+        element: usize,
+        /// The Gauss point.
+        point: usize,
+        /// Number of the coordinate among those of the strain.
+        component: usize,
+    },
     /// The charge of a muscle behind a resistor, in the unit of its muscle: a current brings and takes it.
     Charge(usize),
 }
 
 impl InternalKind {
-    /// Returns true if it is what a muscle remembers: it has no momentum, and nothing brings it to rest but time.
+    /// Returns true if it is what a muscle or block remembers: it has no momentum, and nothing brings it to rest but time.
     pub(super) fn is_memory(self) -> bool {
         !matches!(self, Self::Joint(_))
     }
@@ -65,6 +80,28 @@ impl Internal {
         }
     }
 
+    /// Those of the viscous strains of the branches of an element, branch by branch and point by point.
+    fn of_element(block: usize, of: &SolidBlock, element: usize) -> impl Iterator<Item = Self> {
+        let branches = 0..of.material(element).maxwell.list().len();
+        let points = branches.flat_map(|branch| (0..POINTS).map(move |point| (branch, point)));
+        let all = points.flat_map(|at| (0..COORDINATES).map(move |component| (at, component)));
+        all.map(move |((branch, point), component)| Self {
+            name: format!(
+                "viscous strain {} of branch {} at point {point} of element {element} of {}",
+                component + 1,
+                branch + 1,
+                of.solid.name
+            ),
+            size: Size::One,
+            kind: InternalKind::Strain {
+                block,
+                element,
+                point,
+                component,
+            },
+        })
+    }
+
     fn of_charge(name: &str, muscle: usize) -> Self {
         Self {
             name: format!("charge of {name}"),
@@ -81,12 +118,14 @@ pub(super) struct Internals {
     of_tree: Vec<Option<usize>>,
     /// Number of the coordinates before them.
     first: usize,
+    /// First in the list of each block and element with Maxwell branches.
+    pub(super) of_elements: BTreeMap<(usize, usize), usize>,
     pub(super) list: Vec<Internal>,
 }
 
 impl Internals {
     /// Those of a scene and its presolved system with its graph: redundant coordinates lack those of joints with
-    /// springs, loads or a prescribed motion. Muscles at rest remember nothing, and have the voltages of their sources.
+    /// springs, loads or a prescribed motion. Muscles and blocks at rest remember nothing, and have the voltages of their sources.
     pub(super) fn new(
         (scene, presolved): (&System, &Presolved),
         analysis: &Analysis,
@@ -119,6 +158,16 @@ impl Internals {
                 list.push(Internal::of_charge(&muscle.name, m));
             }
         }
+        let mut of_elements = BTreeMap::new();
+        let moving = blocks.list.iter().enumerate();
+        let moving = moving.filter(|(_, block)| analysis.of_motion && !block.is_immobile);
+        for (b, block) in moving {
+            let elements = 0..block.shapes.len();
+            for e in elements.filter(|&e| !block.material(e).maxwell.list().is_empty()) {
+                of_elements.insert((b, e), list.len());
+                list.extend(Internal::of_element(b, block, e));
+            }
+        }
         let (of_tree, of_bodies) = match coordinates {
             Coordinates::Reduced => (system.joint_coordinates(), graph.coordinate_count(system)),
             Coordinates::Redundant => (vec![None; system.joints.len()], 12 * system.bodies.len()),
@@ -126,6 +175,7 @@ impl Internals {
         Self {
             of_tree,
             first: of_bodies + of_nodes,
+            of_elements,
             list,
         }
     }
@@ -146,6 +196,22 @@ impl Internals {
     pub(super) fn vector(&self, kind: InternalKind) -> Option<MaterialVector> {
         let mut own = self.vectors().filter(|(internal, _)| internal.kind == kind);
         own.next().map(|(_, vector)| vector)
+    }
+
+    /// The vectors (z₁, z₂, ·) and (a, b, c) of the viscous strain of a branch at each Gauss point of an element of a block; `None` where
+    /// nothing calls for it.
+    pub(super) fn strains(
+        &self,
+        block: usize,
+        element: usize,
+        branch: usize,
+    ) -> Option<[[MaterialVector; 2]; POINTS]> {
+        let first = self.first + self.of_elements.get(&(block, element))?;
+        let at = |point: usize| first + COORDINATES * (POINTS * branch + point);
+        Some(std::array::from_fn(|point| {
+            let [start, end] = [at(point), at(point + 1)];
+            [start..start + 2, start + 2..end].map(MaterialVector::coordinates)
+        }))
     }
 
     /// All of them, each with the vector that has it in its first component.

@@ -18,7 +18,7 @@ pub struct Material {
     pub electric: Option<ElectricConstants>,
     /// Viscosity η in MPa ms, σ_vis = η d.
     pub viscosity: Option<f64>,
-    /// Maxwell branches, which lumped muscles read.
+    /// Maxwell branches.
     pub maxwell: MaxwellBranches,
     /// Smallest and largest stretch for which the constants hold, for warnings.
     pub stretch_range: Option<[f64; 2]>,

@@ -15,15 +15,9 @@ impl Material {
         }
     }
 
-    /// Checks that finite elements can be made of a material: it is compressible, follows no law of principal stretches, and has no Maxwell
-    /// branches.
+    /// Checks that finite elements can be made of a material: it is compressible, and follows no law of principal
+    /// stretches.
     pub(super) fn check_of_elements(&self, name: &str) -> Result<(), SystemError> {
-        require(
-            self.maxwell.list().is_empty(),
-            name,
-            || "Maxwell branches of finite elements".to_owned(),
-            "none: only lumped muscles have them",
-        )?;
         require(
             !matches!(self.law, Some(ElasticLaw::Ogden { .. })),
             name,

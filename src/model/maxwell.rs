@@ -3,6 +3,9 @@
 /// Greatest number of branches of a material.
 pub const MOST_BRANCHES: usize = 5;
 
+/// Expectation of a response, for messages.
+pub const NO_BRANCHES: &str = "a scene with Maxwell branches";
+
 /// A spring in series with a damper.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct MaxwellBranch {
@@ -36,4 +39,14 @@ impl MaxwellBranches {
     pub fn list(&self) -> &[MaxwellBranch] {
         &self.list[..self.count]
     }
+}
+
+/// Response of Maxwell branches to loads under which a system rests.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum Response {
+    /// After a long time: branches carry nothing.
+    #[default]
+    Relaxed,
+    /// At once: branches are springs without stress in the reference configuration.
+    Instantaneous,
 }

@@ -1,6 +1,7 @@
 //! The model of a system, and what is read off its instants.
 
 use crate::coordinates::{Configuration, NodePlace, Reduced};
+use crate::element::relaxed;
 use crate::kinematics::{MaterialVector, Pose};
 use crate::math::Vector;
 use crate::model::analysis::{Analysis, Coordinates};
@@ -16,6 +17,7 @@ use crate::model::solid_block::SolidBlock;
 use crate::model::system::{InputKind, Source, System};
 use crate::model::variables::{Size, Variable, Variables};
 use crate::sparse::Symmetry;
+use std::collections::BTreeMap;
 
 /// A system with its coordinates, vectors and terms: constant during a run.
 #[derive(Debug)]
@@ -65,6 +67,8 @@ pub struct Model {
     pub node_names: Vec<(usize, usize)>,
     /// Internal coordinates.
     pub(super) internals: Vec<Internal>,
+    /// First of the internal coordinates of each block and element with Maxwell branches.
+    pub(super) of_elements: BTreeMap<(usize, usize), usize>,
 }
 
 impl Model {
@@ -137,7 +141,7 @@ impl Model {
         self.internal_kinds()
             .filter_map(|(coordinate, kind)| match kind {
                 InternalKind::Joint(joint) => Some((coordinate, self.presolved.joints[joint])),
-                InternalKind::Branch { .. } | InternalKind::Charge(_) => None,
+                _ => None,
             })
     }
 
@@ -146,7 +150,7 @@ impl Model {
         self.internal_kinds()
             .filter_map(|(coordinate, kind)| match kind {
                 InternalKind::Branch { muscle, branch } => Some((coordinate, muscle, branch)),
-                InternalKind::Joint(_) | InternalKind::Charge(_) => None,
+                _ => None,
             })
     }
 
@@ -156,18 +160,32 @@ impl Model {
         own.map(|(coordinate, ..)| coordinate).collect()
     }
 
-    /// Gives internal coordinates their values at joint coordinates (by joint of the scene); muscles have been held there for long.
+    /// Gives internal coordinates their values at joint coordinates (by joint of the scene); muscles and blocks have been held there for long.
     pub(super) fn place_internals(&self, z: &mut [f64], joints: &[f64]) {
         for (coordinate, joint) in self.internal_joints() {
             z[coordinate] = joints[joint];
         }
-        if self.branches().next().is_none() {
+        if self.memory().next().is_none() {
             return;
         }
-        let instant = self.action.map.placed(z);
-        for (coordinate, muscle, _) in self.branches() {
-            let length = self.system.muscles[muscle].length();
-            z[coordinate] = (instant.x[self.spans[muscle]].norm() / length).ln();
+        let x = self.action.map.placed(z).x;
+        for (coordinate, kind) in self.internal_kinds() {
+            match kind {
+                InternalKind::Joint(_) | InternalKind::Charge(_) => {}
+                InternalKind::Branch { muscle, .. } => {
+                    let length = self.system.muscles[muscle].length();
+                    z[coordinate] = (x[self.spans[muscle]].norm() / length).ln();
+                }
+                InternalKind::Strain {
+                    block,
+                    element,
+                    point,
+                    component,
+                } => {
+                    let deformation = self.solids[block].deformation(element, point, &x);
+                    z[coordinate] = relaxed(&deformation)[component];
+                }
+            }
         }
     }
 
@@ -191,7 +209,7 @@ impl Model {
         self.branches().map(|(coordinate, ..)| coordinate)
     }
 
-    /// Coordinates that muscles remember: they have no momentum, and nothing brings them to rest but time.
+    /// Coordinates that muscles and blocks remember: they have no momentum, and nothing brings them to rest but time.
     pub fn memory(&self) -> impl Iterator<Item = usize> + '_ {
         let own = self.internal_kinds().filter(|(_, kind)| kind.is_memory());
         own.map(|(coordinate, _)| coordinate)

@@ -5,7 +5,7 @@
 pub(super) const GRAVITY: &str = "gravity";
 
 /// Names of the terms of the library, in the order of the sum; those of other crates follow.
-pub const TERMS: [&str; 34] = [
+pub const TERMS: [&str; 36] = [
     "body inertia",
     "muscle inertia",
     "block inertia",
@@ -21,6 +21,7 @@ pub const TERMS: [&str; 34] = [
     "general muscle electroelasticity",
     "muscle charges",
     "maxwell elasticity",
+    "block maxwell elasticity",
     "joint elasticity",
     "joint stops",
     "spring elasticity",
@@ -32,6 +33,7 @@ pub const TERMS: [&str; 34] = [
     "block viscosity",
     "muscle viscosity",
     "maxwell viscosity",
+    "block maxwell viscosity",
     "circuit resistance",
     "joint damping",
     "spring damping",

@@ -5,7 +5,7 @@ use crate::element::{
 };
 use crate::energy::NeoHooke;
 use crate::functional::ScalarArg;
-use crate::math::Vector;
+use crate::math::{Matrix, Vector};
 use crate::model::system::{ElectricConstants, Electrode, ElementKind, Material, Potential, Solid};
 use std::collections::BTreeMap;
 
@@ -62,6 +62,12 @@ impl SolidBlock {
         ElementGeometry::central_gradients(&nodes.map(|node| self.solid.unstretched(node)))
     }
 
+    /// Deformation gradient at a Gauss point of an element at vectors x.
+    pub(super) fn deformation(&self, element: usize, point: usize, x: &[Vector]) -> Matrix {
+        let nodes = self.nodes(element).map(|v| x[v]);
+        self.shapes[element].gradient_of(&nodes, point)
+    }
+
     /// Terminals of the nodes of a dielectric element.
     pub fn terminals(&self, element: usize) -> [ScalarArg; 8] {
         self.solid.mesh.hexahedra[element]
@@ -71,6 +77,29 @@ impl SolidBlock {
     /// The law of elasticity of an element other than the neo-Hookean one.
     pub fn isochoric(&self, element: usize) -> Option<IsochoricLaw> {
         IsochoricLaw::new(self.material(element).law?)
+    }
+
+    /// Geometry of an element whose deformation gradient is one in the reference configuration.
+    ///
+    /// # Panics
+    /// It is inverted there; an element of a checked block is not.
+    pub(super) fn reference_shape(&self, element: usize) -> ElementGeometry {
+        let nodes = self.solid.mesh.hexahedra[element].map(|n| self.solid.mesh.nodes[n]);
+        ElementGeometry::new(&nodes).expect("stretches of a prestretch are positive")
+    }
+
+    /// The law of a branch without stress in the reference configuration: μ₁/2 (Ī₁ − 3) of a volume that is free of stress, on the
+    /// [geometry](Self::reference_shape) there.
+    pub(super) fn unrelaxed(&self, shear_modulus: f64) -> Elastomer<Passive, IsochoricLaw> {
+        let stretches = self.solid.prestretch.unwrap_or([1.0; 3]);
+        let shear_modulus = shear_modulus / stretches.iter().product::<f64>();
+        Elastomer {
+            shear_modulus,
+            lame_lambda: -2.0 / 3.0 * shear_modulus,
+            volume: Volume::Pointwise,
+            field: Passive,
+            law: IsochoricLaw::Yeoh { c2: 0.0, c3: 0.0 },
+        }
     }
 
     /// The neo-Hookean law of a passive element.

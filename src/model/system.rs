@@ -47,6 +47,14 @@ impl System {
         solid.supports.iter().any(holds)
     }
 
+    /// Returns true if a material of a muscle or block has Maxwell branches.
+    pub fn has_branches(&self) -> bool {
+        let of_muscles = self.muscles.iter().map(|muscle| &muscle.material);
+        let of_blocks = self.solids.iter().flat_map(|solid| &solid.materials);
+        let mut materials = of_muscles.chain(of_blocks);
+        materials.any(|material| !material.maxwell.list().is_empty())
+    }
+
     /// Indices of the muscles of finite elements; their blocks follow those of the scene in this order.
     pub fn meshed_muscles(&self) -> impl Iterator<Item = usize> + '_ {
         let muscles = self.muscles.iter().enumerate();

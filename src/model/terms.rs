@@ -4,19 +4,23 @@
 use crate::element::ElementLaw;
 use crate::energy::{Energy, Gravity, SoughtEnergy};
 use crate::functional::{
-    Electrical, Element, FiniteElement, FiniteElements, Formulas, Group, Inertia, Mass, Path,
-    Paths, PressureFace, PressureFaces, SoughtElement, SoughtFormulas, Stencil, Term, VectorArg,
-    ViscousElement, ViscousElements,
+    Electrical, Element, FiniteElement, FiniteElements, Formulas, Group, Inertia, Mass,
+    MaxwellElement, MaxwellElements, Path, Paths, PressureFace, PressureFaces, SoughtElement,
+    SoughtFormulas, Stencil, Term, VectorArg, ViscousElement, ViscousElements,
 };
 use crate::kinematics::{Carrier, MaterialVector, Pose, Vectors};
 use crate::math::Vector;
 use crate::model::attachment::Attachment;
 use crate::model::constant::Parameter;
+use crate::model::maxwell::Response;
 use crate::model::plan::{self, LeftOut, Present};
 use crate::model::sought::Sought;
 use crate::model::variables::{Role, Variables};
 use std::any::Any;
 use std::fmt;
+
+/// Reason for the springs of branches at rest.
+pub(super) const UNRELAXED: &str = "unrelaxed Maxwell branches of";
 
 /// The bodies of the presolved system that carry those of the scene.
 pub(super) struct Carriers<'a> {
@@ -44,6 +48,7 @@ pub struct Terms<'a> {
     vectors: &'a mut Vectors,
     variables: &'a Variables,
     of_motion: bool,
+    response: Response,
     sought: Sought,
     collected: Vec<Collected>,
     present: Vec<Present>,
@@ -84,6 +89,12 @@ impl<F: Electrical, L: ElementLaw> Member for FiniteElement<F, L> {
 impl Member for ViscousElement {
     fn term(name: &str, list: Vec<Self>) -> Box<dyn Term> {
         Box::new(Group::<ViscousElements>::intervals(name, 1.0, list))
+    }
+}
+
+impl Member for MaxwellElement {
+    fn term(name: &str, list: Vec<Self>) -> Box<dyn Term> {
+        Box::new(Group::<MaxwellElements>::intervals(name, -1.0, list))
     }
 }
 
@@ -139,7 +150,7 @@ impl<'a> Terms<'a> {
     pub(super) fn new(
         bodies: Carriers<'a>,
         gravity: Option<Vector>,
-        (of_motion, parameters): (bool, &[Parameter]),
+        (of_motion, response, parameters): (bool, Response, &[Parameter]),
         variables: &'a Variables,
         vectors: &'a mut Vectors,
     ) -> Self {
@@ -150,6 +161,7 @@ impl<'a> Terms<'a> {
             vectors,
             variables,
             of_motion,
+            response,
             sought: Sought::new(parameters, first),
             collected: Vec::new(),
             present: Vec::new(),
@@ -160,6 +172,26 @@ impl<'a> Terms<'a> {
     /// Returns true if inertia and dissipation count: a state of rest has neither.
     pub fn is_of_motion(&self) -> bool {
         self.of_motion
+    }
+
+    /// Returns true if Maxwell branches are springs that have not relaxed.
+    pub(super) fn is_instantaneous(&self) -> bool {
+        !self.of_motion && self.response == Response::Instantaneous
+    }
+
+    /// Says why terms of Maxwell branches are left out, should they be; `none` where nothing names a branch.
+    pub(super) fn without_branches(
+        &mut self,
+        [elasticity, viscosity]: [&'static str; 2],
+        none: &'static str,
+    ) {
+        let reasons = match (self.of_motion, self.response) {
+            (true, _) => [none; 2],
+            (false, Response::Relaxed) => ["at rest Maxwell branches are relaxed"; 2],
+            (false, Response::Instantaneous) => [none, "a state of rest dissipates nothing"],
+        };
+        self.without(elasticity, reasons[0]);
+        self.without(viscosity, reasons[1]);
     }
 
     /// The point as a vector, whose body is the one that carries it.
@@ -187,6 +219,11 @@ impl<'a> Terms<'a> {
     /// Index of a vector, for [`mid`] and [`rate`].
     pub fn vector(&mut self, vector: MaterialVector) -> usize {
         self.vectors.index(vector)
+    }
+
+    /// Index of a vector that is known to be new.
+    pub(super) fn new_vector(&mut self, vector: MaterialVector) -> usize {
+        self.vectors.push(vector)
     }
 
     /// Index of the vector from one point to another; `None` where no motion of the robot changes its length.

@@ -4,6 +4,7 @@ use std::collections::{HashMap, HashSet};
 
 use nalgebra::Vector3;
 
+use crate::coordinates::Configuration;
 use crate::dynamics::DiscreteTrajectory;
 use crate::model::system::Fidelity;
 use crate::model::{Model, SolidBlock};
@@ -93,10 +94,11 @@ impl Skins {
             instant.z.copy_from_slice(&discrete.z[k]);
             model.action.map.vectors(&mut instant);
             let scalars = discrete.scalars.get(k.saturating_sub(1)).unwrap_or(&none);
-            for (block, (skin, nodes)) in model.solids.iter().zip(&mut parts) {
+            for (b, (skin, nodes)) in parts.iter_mut().enumerate() {
+                let block = &model.solids[b];
                 let vectors = nodes.iter().map(|&n| instant.x[block.vectors[n]]);
                 skin.places.push(vectors.collect());
-                skin.observe(block, nodes, &instant.x, scalars);
+                skin.observe((model, b), nodes, &instant, scalars);
                 let potentials = match skin.muscle {
                     Some(muscle) => {
                         let s = model.variables.input(muscle);
@@ -160,19 +162,23 @@ impl Skin {
     /// Adds fields and stresses of an instant at the nodes that the corners are.
     fn observe(
         &mut self,
-        block: &SolidBlock,
+        (model, number): (&Model, usize),
         nodes: &[usize],
-        x: &[Vector3<f64>],
+        at: &Configuration,
         scalars: &[f64],
     ) {
-        let (places, potentials) = (block.places(x), block.potentials(scalars));
+        let block = &model.solids[number];
+        let (places, potentials) = (block.places(&at.x), block.potentials(scalars));
         let mut sums = vec![[0.0; 3]; places.len()];
         let at_surface = nodes.iter().copied().collect::<HashSet<_>>();
         for (e, corners) in block.solid.mesh.hexahedra.iter().enumerate() {
             if !corners.iter().any(|node| at_surface.contains(node)) {
                 continue;
             }
-            let fields = block.fields(e, &places, &potentials);
+            let mut fields = block.fields(e, &places, &potentials);
+            if let Some(stress) = model.branch_stress(number, e, at) {
+                fields.stress += stress;
+            }
             let values = [1.0, fields.electric_field.norm(), fields.von_mises()];
             for &node in corners {
                 for (sum, value) in sums[node].iter_mut().zip(values) {

@@ -2,9 +2,10 @@
 
 pub use super::limited::{all_limits, charge_limits};
 use super::pairs::pairs;
+use super::remembering::{remembering, remembering_blocks};
 use super::systems::{
-    GRAVITY, ball, blocks, branched, charged, loaded, pressed, remembering, satellite, sprung,
-    stiffening, stiffening_blocks, tied,
+    GRAVITY, ball, blocks, branched, charged, loaded, pressed, satellite, sprung, stiffening,
+    stiffening_blocks, tied,
 };
 use super::tracked::{energies, tracked};
 use super::trunk;
@@ -271,6 +272,9 @@ pub fn cases() -> Vec<Case> {
             },
         ),
         case("blocks that stiffen", stiffening_blocks(), &|c| {
+            c.goal = corner_goal();
+        }),
+        case("blocks that remember", remembering_blocks(), &|c| {
             c.goal = corner_goal();
         }),
         case("blocks", blocks(), &|c| c.goal = corner_goal()),

@@ -11,6 +11,7 @@ pub mod pairs;
 pub mod programs;
 pub mod random;
 pub mod random_goals;
+pub mod remembering;
 pub mod signals;
 pub mod solid;
 pub mod sought;

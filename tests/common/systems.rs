@@ -7,8 +7,8 @@ use proboscis::mesh::grid::Grid;
 use proboscis::model::components::{Load, LoadPlace, Spring, Tendon};
 use proboscis::model::system::{
     Attachment, Body, Discretisation, ElasticLaw, ElectricConstants, Electrode, ElementKind,
-    Fidelity, Glue, Joint, JointKind, JointSpring, JointStops, Marker, Material, MaxwellBranch,
-    MaxwellBranches, Muscle, Potential, Shape, Solid, Support, System, VACUUM_PERMITTIVITY,
+    Fidelity, Glue, Joint, JointKind, JointSpring, JointStops, Marker, Material, Muscle, Potential,
+    Shape, Solid, Support, System, VACUUM_PERMITTIVITY,
 };
 
 /// Gravity along −y in mm/ms².
@@ -55,19 +55,6 @@ pub fn tied(mut system: System) -> System {
         rest_length: 80.0,
         smoothing: 0.0,
     }];
-    system
-}
-
-/// The branched tree with muscles of one and two Maxwell branches.
-pub fn remembering() -> System {
-    let mut system = branched();
-    let branch = |shear_modulus, relaxation_time| MaxwellBranch {
-        shear_modulus,
-        relaxation_time,
-    };
-    let [one, two] = [branch(0.04, 30.0), branch(0.02, 400.0)];
-    system.muscles[0].material.maxwell = MaxwellBranches::new(&[one]).unwrap();
-    system.muscles[2].material.maxwell = MaxwellBranches::new(&[one, two]).unwrap();
     system
 }
 

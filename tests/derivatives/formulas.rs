@@ -12,7 +12,7 @@ use num_dual::{Dual64, HyperDual};
 use proboscis::energy::{
     Angle, AngularDamper, Capacitance, Coincidence, CoordinateDamper, CoordinateSpring,
     CoordinateStops, DielectricCell, ElasticCell, Energy, Gravity, JointAngle, JointDisplacement,
-    LinearDamper, LinearSpring, MaxwellCell, NeoHooke, Orthogonality, OutsideBox,
+    LinearDamper, LinearSpring, MaxwellCell, MaxwellDamper, NeoHooke, Orthogonality, OutsideBox,
     PositionComponent, Projection, SectionInertia, SpanDamper, SquaredDistance, SquaredField,
     ViscousCell,
 };
@@ -275,6 +275,12 @@ fn energies_have_the_derivatives_of_naive_formulas() {
         shear_modulus: 0.7,
     };
     law("maxwell", &branch, 0.4, 1.2);
+    law(
+        "maxwell damper",
+        &MaxwellDamper { coefficient: 0.7 },
+        0.2,
+        1.1,
+    );
     law("joint angle", &JointAngle, 0.3, 1.1);
     law("joint displacement", &JointDisplacement, 0.2, 1.1);
     law(

@@ -14,6 +14,7 @@ mod formulas_of_loads;
 mod gathered;
 mod hexahedron;
 mod hexahedron_laws;
+mod hexahedron_maxwell;
 mod hexahedron_states;
 mod hexahedron_viscosity;
 mod horizon;

@@ -1,14 +1,15 @@
 //! Every formula written anew over dual numbers, without thought of speed.
 
+use crate::naive_hexahedron::{contracted, inverse, inverse_strain, product, transposed};
 use num_dual::{Dual, DualNum};
 use proboscis::energy::{
     Angle, AngleStep, AngularDamper, Capacitance, Coincidence, CoordinateDamper, CoordinateSpring,
     CoordinateStops, DeadLoad, DielectricCell, ElasticCell, Energy, FlowingCharge,
     FlowingChargeField, FollowingForce, GivenCharge, GivenChargeField, Gravity, JointAngle,
-    JointDisplacement, LinearDamper, LinearSpring, MaxwellCell, Multiple, Orthogonality,
-    OutsideBox, PeakExcess, PositionComponent, Projection, ProjectionStep, SectionInertia,
-    SourceCurrent, SourcePower, SpanDamper, SquaredDistance, SquaredField, SurfaceCharge,
-    ViscousCell,
+    JointDisplacement, LinearDamper, LinearSpring, MaxwellCell, MaxwellDamper, Multiple,
+    Orthogonality, OutsideBox, PeakExcess, PositionComponent, Projection, ProjectionStep,
+    SectionInertia, SourceCurrent, SourcePower, SpanDamper, SquaredDistance, SquaredField,
+    SurfaceCharge, ViscousCell,
 };
 
 /// The naive formula of an energy.
@@ -246,6 +247,21 @@ impl Formula<6> for MaxwellCell {
     fn naive<D: DualNum<f64> + Copy>(&self, p: &[D; 6]) -> D {
         let elastic = (stretch(three(p, 0), self.length).ln() - p[3]).exp();
         (elastic.powi(2) + elastic.recip() * 2.0 - 3.0) * (0.5 * self.shear_modulus * self.volume)
+    }
+}
+
+impl Formula<18> for MaxwellDamper {
+    fn naive<D: DualNum<f64> + Copy>(&self, p: &[D; 18]) -> D {
+        let strain = |at: usize| [p[at], p[at + 1], p[at + 3], p[at + 4], p[at + 5]];
+        let middle = strain(6);
+        let rate = |at: usize| -> [[D; 3]; 3] {
+            std::array::from_fn(|i| {
+                std::array::from_fn(|j| along(middle, strain(at), |q| inverse_strain(q)[i][j]))
+            })
+        };
+        let left = inverse(inverse_strain(middle));
+        let [real, imagined] = [rate(12), rate(0)].map(|rate| product(left, rate));
+        -contracted(real, transposed(imagined)) * (0.5 * self.coefficient)
     }
 }
 

@@ -153,3 +153,12 @@ impl Naive {
         energy
     }
 }
+
+/// C_i⁻¹ = UᵀDU of the coordinates (z₁, z₂, a, b, c) of a viscous strain C_i.
+pub(crate) fn inverse_strain<D: DualNum<f64> + Copy>([z1, z2, a, b, c]: [D; 5]) -> M<D> {
+    let (zero, one) = (D::zero(), D::one());
+    let upper = [[one, a, b], [zero, one, c], [zero, zero, one]];
+    let stretches = [z1, z2, -z1 - z2].map(|z| z.exp());
+    let scaled = std::array::from_fn(|k| upper[k].map(|entry| entry * stretches[k]));
+    product(transposed(upper), scaled)
+}

@@ -255,17 +255,12 @@ fn files_list_branches() {
     } = found.list()[2];
     assert!((shear_modulus - 0.05).abs() < 1e-15 && (relaxation_time - 100.0).abs() < 1e-12);
     let negative = list(1).replace("0.1 s", "-0.1 s");
-    let elements = SCENE.replace("LIST", &list(1)).replace(
-        r#""layer_thickness""#,
-        r#""model": "finite_elements", "elements": [1, 1, 2], "layers": 1, "layer_thickness""#,
-    );
     for (text, words) in [
         (SCENE.replace("LIST", &list(6)), "5 branches at most"),
         (
             SCENE.replace("LIST", &negative),
             "maxwell[0].relaxation_time",
         ),
-        (elements, "lumped"),
     ] {
         let refused = read(&text).expect_err(words);
         assert!(refused.contains(words), "{refused}");

@@ -7,6 +7,8 @@ mod dynamics;
 mod gmsh;
 mod invariants;
 mod loads;
+mod maxwell;
+mod maxwell_limits;
 mod mesh;
 mod physics;
 mod prestretch;

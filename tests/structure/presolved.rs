@@ -15,7 +15,7 @@ use proboscis::functional::{Term, TermKind};
 use proboscis::mesh::grid::Grid;
 use proboscis::model::plan::TERMS;
 use proboscis::model::system::{Potential, System};
-use proboscis::model::{Analysis, Coordinates, Model, Role};
+use proboscis::model::{Analysis, Coordinates, Model, Response, Role};
 use proboscis::sparse::Symmetry;
 use proboscis::workflow::Plan;
 use std::collections::BTreeSet;
@@ -136,6 +136,7 @@ fn at_rest_there_is_neither_inertia_nor_friction() {
                 .map(|s| 200.0 * s as f64)
                 .collect();
             let task = AtRest {
+                response: Response::Relaxed,
                 voltages: volts.clone(),
                 coordinates: Some(coordinates),
                 path: None,

@@ -8,7 +8,7 @@
 
 use crate::dynamics::galerkin::rule::{Rule, Weights};
 use crate::functional::{Blocks, SumDerivatives};
-use crate::kinematics::MaterialVector;
+use crate::kinematics::{Carrier, MaterialVector};
 use crate::math::Vector;
 use crate::model::Model;
 
@@ -17,7 +17,7 @@ use crate::model::Model;
 pub(super) struct Massless {
     /// Coordinates.
     pub(super) coordinates: Vec<usize>,
-    /// The vector of each of them.
+    /// The vectors of them.
     vectors: Vec<usize>,
     /// Slots of couplings with full and with isotropic blocks.
     slots: [Vec<usize>; 2],
@@ -28,15 +28,16 @@ pub(super) struct Massless {
 impl Massless {
     pub(super) fn new(model: &Model, rule: &Rule) -> Self {
         let coordinates: Vec<usize> = model.memory().collect();
-        let vector = |&coordinate: &usize| {
-            let own = MaterialVector::coordinate(coordinate);
-            model.vectors.iter().position(|vector| *vector == own)
+        let is_massless = |vector: &MaterialVector| {
+            let mut terms = vector.terms.iter();
+            terms.any(|term| matches!(term.carrier, Carrier::Coordinate(i) if model.is_memory(i)))
         };
-        let vectors: Vec<usize> = coordinates.iter().filter_map(vector).collect();
+        let is_massless: Vec<bool> = model.vectors.iter().map(is_massless).collect();
+        let vectors: Vec<usize> = (0..is_massless.len()).filter(|&v| is_massless[v]).collect();
         let couplings = &model.action.intervals.couplings;
         let of_rows = |pairs: &[(usize, usize)]| {
             let slots = pairs.iter().enumerate();
-            let own = slots.filter(|(_, (row, _))| vectors.contains(row));
+            let own = slots.filter(|(_, (row, _))| is_massless[*row]);
             own.map(|(slot, _)| slot).collect()
         };
         Self {

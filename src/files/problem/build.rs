@@ -14,6 +14,7 @@ use crate::files::scene::spec::SceneSpec;
 use crate::files::signal::spec::SignalSpec;
 use crate::files::units::quantity::{LoadSize, Quantity};
 use crate::model::system::System;
+use crate::model::{NO_BRANCHES, Response};
 
 /// Most equilibria of a path.
 const MOST_POINTS: usize = 1_000_000;
@@ -51,9 +52,15 @@ pub(crate) fn build_problem(
             if let Some(points) = spec.path {
                 count(points, "point", MOST_POINTS, &scope.key("path"))?;
             }
+            let response = Response::from(spec.response.unwrap_or_default());
+            if response == Response::Instantaneous && !system.has_branches() {
+                let place = scope.key("response");
+                return Err(place.wrong("\"instantaneous\"", NO_BRANCHES));
+            }
             Ok(Task::Equilibrium(AtRest {
                 voltages,
                 coordinates,
+                response,
                 path: spec.path,
             }))
         })

@@ -13,6 +13,7 @@ use crate::files::problem::spec_simulate::SimulateSpec;
 use crate::files::problem::spec_voltages::VoltageMap;
 use crate::files::scene::spec::SceneSpec;
 use crate::files::units::quantity::{LoadSize, Quantity};
+use crate::model::Response;
 
 /// Task for a scene: exactly one of `simulate`, `equilibrium`, `control`.
 #[derive(Clone, Debug, Deserialize, JsonSchema)]
@@ -51,9 +52,32 @@ pub struct EquilibriumSpec {
     /// Coordinates.
     #[serde(default)]
     pub coordinates: Option<CoordinatesSpec>,
+    /// Response of Maxwell branches; `relaxed` where not written.
+    #[serde(default)]
+    pub response: Option<ResponseSpec>,
     /// Number of points of the path of equilibria from zero voltage that are followed by arc length, past limit points such as pull-in.
     #[serde(default)]
     pub path: Option<usize>,
+}
+
+/// Response of Maxwell branches to voltages and loads.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Deserialize, JsonSchema)]
+#[serde(rename_all = "snake_case")]
+pub enum ResponseSpec {
+    /// After a long time: branches carry nothing.
+    #[default]
+    Relaxed,
+    /// At once: branches are springs without stress in the reference configuration.
+    Instantaneous,
+}
+
+impl From<ResponseSpec> for Response {
+    fn from(spec: ResponseSpec) -> Self {
+        match spec {
+            ResponseSpec::Relaxed => Self::Relaxed,
+            ResponseSpec::Instantaneous => Self::Instantaneous,
+        }
+    }
 }
 
 /// A scene by its path, or the scene itself.

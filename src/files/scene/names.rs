@@ -38,11 +38,6 @@ pub(crate) fn find_compressible(
     scope: &Scope<'_>,
 ) -> Result<Material, SceneError> {
     let material = find_material(name, materials, scope)?;
-    if !material.maxwell.list().is_empty() {
-        let found = format!("{name:?}, which has \"maxwell\" branches");
-        let expected = "a material without them: only lumped muscles have Maxwell branches";
-        return Err(scope.wrong(found, expected));
-    }
     if let Some(ElasticLaw::Ogden { .. }) = material.law {
         let found = format!("{name:?}, which follows Ogden's law");
         let expected = "a law of the invariants of the strain, as \"yeoh\": only lumped muscles follow Ogden's";

@@ -48,7 +48,7 @@ pub struct MaterialSpec {
     /// Viscosity η in σ = η d, SI unit Pa s; without it no viscous force.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub viscosity: Option<Quantity<Viscosity>>,
-    /// Maxwell branches, five at most: springs in series with dampers, in which stress relaxes. Lumped muscles read them.
+    /// Maxwell branches, five at most: springs in series with dampers, in which stress relaxes.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub maxwell: Vec<MaxwellSpec>,
 }

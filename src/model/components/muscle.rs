@@ -11,7 +11,7 @@ use crate::model::components::sought_muscle::SoughtMuscle;
 use crate::model::internal::{InternalKind, Internals};
 use crate::model::maxwell::MaxwellBranch;
 use crate::model::system::{ElectricConstants, Fidelity, Muscle};
-use crate::model::terms::{Terms, mid, rate};
+use crate::model::terms::{Terms, UNRELAXED, mid, rate};
 use nalgebra::SVector;
 
 const INERTIA: &str = "muscle inertia";
@@ -42,16 +42,16 @@ pub(in crate::model) fn build(
                 true => lumped(muscle, m, span, terms),
                 false => lumped(&muscle.at_rest(), m, span, terms),
             }
-            relaxation(muscle, m, span, internals, terms);
+            match terms.is_instantaneous() {
+                true => unrelaxed(muscle, span, terms),
+                false => relaxation(muscle, m, span, internals, terms),
+            }
         }
     }
-    let none = match terms.is_of_motion() {
-        true => "no lumped muscle that moves names a Maxwell branch",
-        false => "at rest Maxwell branches are relaxed",
-    };
-    for term in [MAXWELL_ELASTICITY, MAXWELL_VISCOSITY] {
-        terms.without(term, none);
-    }
+    terms.without_branches(
+        [MAXWELL_ELASTICITY, MAXWELL_VISCOSITY],
+        "no lumped muscle that moves names a Maxwell branch",
+    );
     for term in GENERAL {
         terms.without(term, "no lumped muscle names a law of elasticity");
     }
@@ -299,6 +299,27 @@ fn viscosity(
                 terms.add(VISCOSITY, "viscosity of", &muscle.name, element);
             }
         }
+    }
+}
+
+/// Springs of Maxwell branches that have no stress in the reference configuration.
+fn unrelaxed(muscle: &Muscle, span: usize, terms: &mut Terms<'_>) {
+    if terms.is_immobile(&[muscle.from, muscle.to]) {
+        return;
+    }
+    for constants in muscle.material.maxwell.list() {
+        let energy = ElasticCell {
+            length: (muscle.to.at - muscle.from.at).norm(),
+            volume: muscle.volume(),
+            shear_modulus: constants.shear_modulus,
+            law: NeoHooke,
+        };
+        let element = Element {
+            energy,
+            vectors: [mid(span)],
+            scalars: [],
+        };
+        terms.add(MAXWELL_ELASTICITY, UNRELAXED, &muscle.name, element);
     }
 }
 
