@@ -10,6 +10,7 @@ use crate::control::prescribed::{self, at_rest};
 use crate::control::problem::{BoundaryState, Control, Rest, Waypoint};
 use crate::control::rest::rest_at;
 use crate::control::sought;
+use crate::control::sought_hold;
 use crate::control::transcription::count::overdetermined;
 use crate::control::transcription::layout::Layout;
 use crate::dynamics::{Equilibrium, Start, muscle_beyond_law, muscle_without_length};
@@ -79,6 +80,7 @@ impl BoundaryConditions {
             ..with_quantities(analysis, &limits, control)
         };
         let mut model = Model::of_presolved(system.clone(), analysis, presolved)?;
+        sought_hold::check(&model, control)?;
         let (start, of_start) = start_of(&model, &control.start)?;
         goal_rows::leave_out_constant(&mut model, &limits, &start.z)?;
         let (mut given, of_goal) = coordinates_at_goal(&model, control)?;

@@ -25,8 +25,10 @@ mod resample;
 mod rest;
 mod solution;
 mod sought;
+mod sought_hold;
 mod transcription;
 mod uniform_grid;
+mod waypoint;
 
 pub use boundary::resolve_start;
 pub use boundary_conditions::{BoundaryConditions, Rests, TerminalState};

@@ -91,6 +91,15 @@ pub struct InputColumn {
     pub input: usize,
 }
 
+/// An instant with the coordinates of another one: it has no columns of its own for them, and none of their constraints.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(in crate::control) struct Twin {
+    /// The instant, the last one.
+    pub(in crate::control) instant: usize,
+    /// The instant whose coordinates it has.
+    pub(in crate::control) of: usize,
+}
+
 /// Columns and rows of a horizon.
 #[derive(Clone, Debug)]
 pub struct Numbering {
@@ -110,11 +119,11 @@ pub struct Numbering {
 }
 
 impl Numbering {
-    /// Numbers the variables of `intervals` intervals. `is_given` says which values are given, `is_balanced(k, i)` whether the momentum
-    /// balance of coordinate i of instant k is an equation.
-    pub fn new(
+    /// Numbers the variables of `intervals` intervals, the last instant of which may be the `twin` of another one. `is_given` says which
+    /// values are given, `is_balanced(k, i)` whether the momentum balance of coordinate i of instant k is an equation.
+    pub(in crate::control) fn new(
         variables: &Variables,
-        intervals: usize,
+        (intervals, twin): (usize, Option<Twin>),
         is_given: impl Fn(Column) -> bool,
         is_balanced: impl Fn(usize, usize) -> bool,
     ) -> Self {
@@ -138,10 +147,14 @@ impl Numbering {
             for (i, variable) in variables.of(Time::Instant).iter().enumerate() {
                 let at = k * of_instant + i;
                 let column = Column::Instant { k, i };
-                out.column_of_instant[at] = out.column(column, is_given(column));
+                let twin = twin.filter(|twin| twin.instant == k);
+                out.column_of_instant[at] = match (twin, variable.role) {
+                    (Some(twin), Role::Coordinate) => out.unknown(twin.of, i),
+                    _ => out.column(column, is_given(column)),
+                };
                 let is_row = match variable.role {
                     Role::Coordinate => is_balanced(k, i),
-                    role => role.has_equation() && !all_given,
+                    role => role.has_equation() && !all_given && twin.is_none(),
                 };
                 out.row_of_instant[at] = out.row_where(is_row, Row::Instant { k, i });
             }

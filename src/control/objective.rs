@@ -22,17 +22,20 @@ struct Weights {
 pub struct Cost {
     weights: Weights,
     scalars: usize,
+    /// Intervals of the motion.
+    end: usize,
+    /// All intervals: those of the motion and one that holds its goal, where its inputs are sought.
     intervals: usize,
     /// Rest voltages before the first and after the last interval in kV.
     ends: [Option<Vec<f64>>; 2],
 }
 
 impl Cost {
-    /// An objective over `intervals` intervals; `ends` are the rest voltages in kV where they are known.
+    /// An objective over all `intervals`, of which the motion takes `end`; `ends` are the rest voltages in kV where they are known.
     pub fn new(
         objective: &Objective,
         scalars: usize,
-        intervals: usize,
+        [end, intervals]: [usize; 2],
         ends: [Option<Vec<f64>>; 2],
     ) -> Self {
         let weights = Weights {
@@ -43,6 +46,7 @@ impl Cost {
         Self {
             weights,
             scalars,
+            end,
             intervals,
             ends,
         }
@@ -93,7 +97,7 @@ impl Cost {
     pub fn value(&self, v: &[f64], tau: f64) -> f64 {
         let (effort, rate) = self.squares(v);
         let w = &self.weights;
-        let mut sum = w.effort * tau * effort + w.duration * self.intervals as f64 * tau;
+        let mut sum = w.effort * tau * effort + w.duration * self.end as f64 * tau;
         if w.rate != 0.0 {
             sum += w.rate * rate / tau;
         }
@@ -108,7 +112,7 @@ impl Cost {
         }
         self.add_rate_gradient(v, tau, out);
         let (effort, rate) = self.squares(v);
-        w.effort * effort - w.rate * rate / (tau * tau) + w.duration * self.intervals as f64
+        w.effort * effort - w.rate * rate / (tau * tau) + w.duration * self.end as f64
     }
 
     /// Adds ∂/∂v of the rate term.

@@ -32,6 +32,7 @@ pub struct Control {
     intervals: usize,
     start: State,
     goal: State,
+    seeks_hold: bool,
     voltage_bounds: [f64; 2],
     load_bounds: Vec<(Handle<Load>, [f64; 2])>,
     pub(super) objective: Objective,
@@ -52,6 +53,7 @@ impl Control {
             intervals,
             start: State::rest(),
             goal: State::Reference,
+            seeks_hold: false,
             voltage_bounds: [0.0, f64::INFINITY],
             load_bounds: Vec::new(),
             objective: Objective::default(),
@@ -83,6 +85,15 @@ impl Control {
     /// The goal, at rest unless it is [`State::Free`].
     pub fn goal(self, goal: State) -> Self {
         Self { goal, ..self }
+    }
+
+    /// Seeks the voltages and loads that hold a goal of places or joint coordinates together with the motion: the goal is an equilibrium under
+    /// them, and they count as those of one more interval.
+    pub fn find_hold(self) -> Self {
+        Self {
+            seeks_hold: true,
+            ..self
+        }
     }
 
     /// Bounds of all voltages in V; from 0 to infinity where nothing is said.
@@ -257,6 +268,7 @@ impl Control {
             given,
             course: None,
             parameters: self.parameters.clone(),
+            seeks_hold: self.seeks_hold,
             hold: Hold::Reported,
             objective: self.objective.clone(),
             limits: self.limits.clone(),

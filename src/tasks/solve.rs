@@ -16,6 +16,7 @@ use crate::workflow::accuracy::{Accuracy, AccuracyTarget, Refined};
 use crate::workflow::afterwards::Afterwards;
 use crate::workflow::domain::{self, Outside};
 use crate::workflow::final_values::{FinalValue, final_values};
+use crate::workflow::found_hold;
 use crate::workflow::further::is_unreached;
 use crate::workflow::grids::optimise_to;
 use crate::workflow::hold_check::{self, free_end};
@@ -182,6 +183,13 @@ fn remarks(
     remarks.warn("goal_not_held", not_kept.into_iter().chain(left_goal));
     remarks.warn("optimality_gap", optimum.wide.clone());
     remarks.note("free_end", free_end(control));
+    if control.seeks_hold && result.verdict.is_solved {
+        let held = optimum.boundary.rest[1].as_deref();
+        remarks.note(
+            "hold",
+            held.map(|held| found_hold::note(&optimum.model, held)),
+        );
+    }
     remarks.note("linear_solver", optimum.solution.linear.note());
     if is_unreached(&optimum.solution) {
         remarks.note("infeasible", explain(control, optimum));

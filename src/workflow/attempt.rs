@@ -11,6 +11,7 @@ use crate::model::{Model, System};
 use crate::nlp::Nlp;
 use crate::workflow::active::{Active, active};
 use crate::workflow::error::WorkflowError;
+use crate::workflow::found_hold;
 use crate::workflow::gap;
 use crate::workflow::iterate::Iterate;
 use crate::workflow::motion::solved;
@@ -78,7 +79,10 @@ pub(crate) fn attempt(
     let motion = final_motion(&model, &boundary, (&discrete, costates), &solution);
     let point = FinalPoint::new(&mut program, &solution, &model, control);
     drop(program);
-    let (model, boundary, sought) = of_motion(system, control, (model, boundary), &motion)?;
+    let (model, mut boundary, sought) = of_motion(system, control, (model, boundary), &motion)?;
+    if solution.status.is_solved() {
+        found_hold::keep(&model, &mut boundary, &discrete);
+    }
     let verified = match solution.status.is_solved() {
         true => Verification::new(&model, &boundary, control, (&discrete, &motion)),
         false => Verification::default(),
@@ -128,13 +132,14 @@ fn final_motion(
     (discrete, costates): (&DiscreteTrajectory, Costates),
     solution: &SolverResult,
 ) -> Solution {
+    let motion = solved(model, discrete, Some(costates));
     Solution {
-        hold: boundary.rest[1].clone(),
+        hold: boundary.rest[1].clone().or(motion.hold.clone()),
         barrier: match solution.status.is_solved() {
             true => None,
             false => solution.iterations.last().map(|last| last.mu),
         },
-        ..solved(model, discrete, Some(costates))
+        ..motion
     }
 }
 

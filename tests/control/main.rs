@@ -28,6 +28,7 @@ mod rate_limits;
 mod reference;
 mod resample;
 mod sought;
+mod sought_hold;
 mod squares;
 mod tracking;
 mod unreached;

@@ -2,6 +2,7 @@
 
 use crate::control::limits::{BoundedQuantity, When};
 use crate::control::numbering::Numbering;
+use crate::control::waypoint::instant_at;
 use crate::coordinates::Reduced;
 use crate::functional::{Functional, Measure, Outer};
 use crate::model::{Model, Quantity};
@@ -51,6 +52,8 @@ pub(super) struct InputStep {
     pub(super) slope: f64,
     /// Values at rest before the start and after the end.
     ends: [Option<f64>; 2],
+    /// Intervals of the motion, and all.
+    end: usize,
     intervals: usize,
 }
 
@@ -59,7 +62,7 @@ impl InputStep {
         quantity: &Quantity,
         model: &Model,
         rest: &[Option<Vec<f64>>; 2],
-        intervals: usize,
+        [end, intervals]: [usize; 2],
     ) -> Option<Self> {
         let Quantity::VoltageStep { source, unit, .. } = *quantity else {
             return None;
@@ -68,6 +71,7 @@ impl InputStep {
             scalar: model.variables.input(source)?,
             slope: 1.0 / unit,
             ends: ends(rest, source),
+            end,
             intervals,
         })
     }
@@ -104,7 +108,7 @@ impl InputStep {
 
     /// Part of the bounds that holds before interval k.
     pub(super) fn part(&self, k: usize) -> f64 {
-        match k == 0 || k == self.intervals {
+        match k == 0 || k == self.end {
             true => 0.5,
             false => 1.0,
         }
@@ -118,11 +122,11 @@ fn ends(rest: &[Option<Vec<f64>>; 2], source: usize) -> [Option<f64>; 2] {
 }
 
 /// Rows of the bounded quantities over a horizon, with the entries their gradients have. A path limit has no row where start
-/// or goal give all that it reads: there it is checked before.
+/// or goal give all that it reads: there it is checked before. Those of inputs hold in all `intervals` too, behind the `end` of the motion.
 pub(super) fn limit_rows(
     model: &Model,
     (list, rest): (&[BoundedQuantity], &[Option<Vec<f64>>; 2]),
-    intervals: usize,
+    [end, intervals]: [usize; 2],
     unknowns: &Numbering,
 ) -> Vec<LimitRow> {
     let map = &model.action.map;
@@ -145,18 +149,22 @@ pub(super) fn limit_rows(
         if site == Site::Intervals {
             entries.extend(reads.scalars().into_iter().map(|s| (SCALAR, s)));
         }
-        let step = InputStep::new(&bounded.quantity, model, rest, intervals);
+        let step = InputStep::new(&bounded.quantity, model, rest, [end, intervals]);
         entries.extend(step.map(|step| (BEFORE, step.scalar)));
         let at = match (bounded.when, site) {
-            (When::Goal, Site::Instants) => intervals..intervals + 1,
-            (When::Goal, Site::Intervals) => intervals - 1..intervals,
+            (When::Goal, Site::Instants) => end..end + 1,
+            (When::Goal, Site::Intervals) => end - 1..end,
             (When::At(part), _) => {
-                let k = ((part * intervals as f64).round() as usize).clamp(1, intervals);
-                let k = k + 1 - site.sides();
+                let k = instant_at(part, end) + 1 - site.sides();
                 k..k + 1
             }
             (When::Everywhere | When::Steps, _) => {
-                let everywhere = 0..intervals + 2 - site.sides();
+                let last = if reads.scalars().is_empty() {
+                    end
+                } else {
+                    intervals
+                };
+                let everywhere = 0..last + 2 - site.sides();
                 let mut all = step.map_or(everywhere, |step| step.at());
                 let is_open = |k: usize| {
                     let mut entries = entries.iter();

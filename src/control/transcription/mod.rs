@@ -108,7 +108,7 @@ impl<'m> Transcription<'m> {
         initial: &InitialGuess,
         layout: Layout,
     ) -> Result<Self, BoundaryError> {
-        let objective = Objective::new(model, boundary, control, initial);
+        let objective = Objective::new(model, boundary, (control, &layout), initial);
         let structure = Structure::new(model, &layout, &objective)?;
         let workspace = Workspace::new(model, boundary, control, initial, &layout);
         let mut out = Self {
@@ -131,9 +131,9 @@ impl<'m> Transcription<'m> {
         Ok(out)
     }
 
-    /// Number of intervals N.
+    /// Number of intervals N of the motion.
     pub fn intervals(&self) -> usize {
-        self.layout.intervals
+        self.layout.end
     }
 
     /// The model whose motion is looked for.

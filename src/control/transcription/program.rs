@@ -170,8 +170,11 @@ impl Nlp for Transcription<'_> {
             (Row::Instant { k, .. }, Some(Role::Multiplier)) => {
                 format!("constraint {name} at instant {k}")
             }
-            (Row::Instant { k, .. }, _) if k == self.layout.intervals => {
+            (Row::Instant { k, .. }, _) if k == self.layout.end => {
                 format!("rest at the goal, {name}")
+            }
+            (Row::Instant { k, .. }, _) if k > self.layout.end => {
+                format!("equilibrium at the goal, {name}")
             }
             (Row::Instant { k, .. }, _) => format!("motion at instant {k}, {name}"),
             (Row::Interval { k, .. }, _) => format!("Gauss's law of {name} in interval {k}"),

@@ -1,0 +1,58 @@
+//! Control problems whose ends are sought with the motion.
+
+use super::cases::{Case, control, joints, partly};
+use super::limited::all_limits;
+use super::systems::{branched, loaded};
+use super::tracked::{energies, tracked};
+use super::trunk;
+use proboscis::System;
+use proboscis::control::problem::{Control, Duration, Objective};
+
+/// The list: goals whose holding inputs are sought.
+pub fn ends() -> Vec<Case> {
+    let case = |name, system: System, change: &dyn Fn(&mut Control)| {
+        let mut control = control(&system, 3);
+        change(&mut control);
+        Case {
+            name,
+            system,
+            control,
+        }
+    };
+    let free = Duration::Free {
+        min: 10.0,
+        max: 90.0,
+        guess: 30.0,
+    };
+    let inputs = Objective {
+        effort: 0.7,
+        rate: 0.02,
+        duration: 0.3,
+        ..Objective::default()
+    };
+    let everything = Objective {
+        effort: 0.7,
+        rate: 0.02,
+        energies: energies(&[(0, 2e3), (1, 3e3)], &[(1, 1e3), (2, 4e3)]),
+        ..tracked(&[0, 1], &[(0, true)])
+    };
+    vec![
+        case("branched tree, found hold, all limits", branched(), &|c| {
+            c.goal = joints(&[(1, 2.0)]);
+            c.seeks_hold = true;
+            c.limits = all_limits();
+            c.objective = everything.clone();
+        }),
+        case("branched tree, found hold, free time", branched(), &|c| {
+            c.goal = partly(&[(0, [None, Some(128.0), None])], &[]);
+            c.seeks_hold = true;
+            c.objective = inputs.clone();
+            c.duration = free;
+        }),
+        case("loads, found hold, free time", loaded(trunk(2)), &|c| {
+            c.seeks_hold = true;
+            c.duration = free;
+            c.objective = inputs.clone();
+        }),
+    ]
+}
