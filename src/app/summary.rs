@@ -59,6 +59,9 @@ pub(super) struct Summary {
     /// Deviations of markers and joints from the references of the objective.
     #[serde(skip_serializing_if = "Vec::is_empty")]
     pub(super) tracking: Vec<Tracked>,
+    /// Values at waypoints for which costs ask.
+    #[serde(skip_serializing_if = "Vec::is_empty")]
+    pub(super) waypoint_values: Vec<FinalValue>,
     /// Values at its end for which final costs ask.
     #[serde(skip_serializing_if = "Vec::is_empty")]
     pub(super) final_values: Vec<FinalValue>,
@@ -350,6 +353,7 @@ impl Summary {
             shown: None,
             accuracy: None,
             tracking: Vec::new(),
+            waypoint_values: Vec::new(),
             final_values: Vec::new(),
             energies: None,
             comparison: None,

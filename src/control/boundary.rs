@@ -7,7 +7,7 @@ use crate::control::error::BoundaryError;
 use crate::control::goal_rows;
 use crate::control::limits::{Limits, When};
 use crate::control::prescribed::{self, at_rest};
-use crate::control::problem::{BoundaryState, Control, Rest, Waypoint};
+use crate::control::problem::{BoundaryState, Control, During, Rest};
 use crate::control::rest::rest_at;
 use crate::control::sought;
 use crate::control::sought_hold;
@@ -113,19 +113,27 @@ impl BoundaryConditions {
 
 /// Notes about waypoints that lie between two instants.
 fn off_grid(control: &Control) -> Vec<String> {
-    let note = |waypoint: &Waypoint| {
-        let wanted = waypoint.part * control.intervals as f64;
+    let note = |name: String, part: f64| {
+        let wanted = part * control.intervals as f64;
         let k = wanted.round();
         let time = k / control.intervals as f64 * control.duration.first() / 1e3;
-        ((wanted - k).abs() > OFF).then(|| {
-            format!(
-                "{} lies between two instants: it is reached at {} s",
-                waypoint.name,
-                shortest(time, 4)
-            )
-        })
+        let time = shortest(time, 4);
+        ((wanted - k).abs() > OFF)
+            .then(|| format!("{name} lies between two instants: it is reached at {time} s"))
     };
-    control.waypoints.iter().filter_map(note).collect()
+    let exact = control.waypoints.iter();
+    let exact = exact.filter_map(|waypoint| note(waypoint.name.clone(), waypoint.part));
+    let costs = control.objective.quantities.iter();
+    let near = costs.filter_map(|cost| match cost.during {
+        During::At(part) => note(
+            format!("waypoint at {} of the duration", shortest(part, 6)),
+            part,
+        ),
+        During::Motion | During::End => None,
+    });
+    let mut notes: Vec<String> = exact.chain(near).collect();
+    notes.dedup();
+    notes
 }
 
 /// The path limits of a problem, and the parts of its goal and its waypoints that are equations of measures.

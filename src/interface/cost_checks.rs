@@ -1,6 +1,8 @@
 //! Checks of the costs, limits and waypoints of a control problem against its system.
 
-use crate::control::problem::{CostFunction, EnergyCost, PathConstraint, QuantityCost, Waypoint};
+use crate::control::problem::{
+    CostFunction, During, EnergyCost, PathConstraint, QuantityCost, Waypoint,
+};
 use crate::interface::error::{Result, require};
 use crate::model::system::{Joint, Muscle};
 use crate::model::{Quantity, System};
@@ -17,10 +19,14 @@ pub(super) fn check_costs(costs: &[QuantityCost], system: &System) -> Result<()>
             _ => true,
         };
         let CostFunction::Square { reference } = &cost.function;
-        let is_sound = cost.weight > 0.0 && cost.weight.is_finite() && reference.is_sound();
+        let is_on_the_way = match cost.during {
+            During::At(part) => part > 0.0 && part < 1.0,
+            During::Motion | During::End => true,
+        };
+        let is_sound =
+            cost.weight > 0.0 && cost.weight.is_finite() && reference.is_sound() && is_on_the_way;
         let found = || format!("{cost:?}");
-        let expected =
-            "a positive weight of a marker, or of a joint with one coordinate, along finite values";
+        let expected = "a positive weight of a marker, or of a joint with one coordinate, along finite values or at a part of the duration above 0 and below 1";
         require(exists && is_sound, "cost", found, expected)?;
     }
     Ok(())

@@ -23,6 +23,8 @@ pub struct Optimum {
     /// Deviations of markers and joints from the references that [`Control::track`](crate::interface::Control::track) and
     /// [`Control::track_joint`](crate::interface::Control::track_joint) name, marker by marker and joint by joint, in m and rad.
     pub tracking: Vec<Tracked>,
+    /// Values at waypoints for which [`Control::marker_passes_near`](crate::interface::Control::marker_passes_near) and its neighbour ask.
+    pub waypoint_values: Vec<FinalValue>,
     /// Values at the end of the motion for which final costs ask.
     pub final_values: Vec<FinalValue>,
     /// The motion that follows a goal that no voltages are known to hold.
@@ -54,6 +56,7 @@ impl Optimum {
             },
             parameters: optimum.motion.parameters.clone(),
             tracking: result.tracking,
+            waypoint_values: result.waypoint_values,
             final_values: result.final_values,
             afterwards: optimum.afterwards,
             solution: optimum.motion,

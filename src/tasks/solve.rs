@@ -59,6 +59,8 @@ pub struct SolveResult {
     pub exchange: EnergyExchange,
     /// Deviations from the references of the objective.
     pub tracking: Vec<Tracked>,
+    /// Values at waypoints for which costs ask.
+    pub waypoint_values: Vec<FinalValue>,
     /// Values at the end for which final costs ask.
     pub final_values: Vec<FinalValue>,
     /// Muscles and blocks outside the domain of their material.
@@ -95,10 +97,12 @@ pub fn solve(
     let discrete = discrete_trajectory(model, &optimum.motion);
     let trajectory = trajectory(model, &optimum.motion);
     let held = boundary.rest.each_ref().map(Option::as_deref);
+    let [waypoint_values, final_values] = final_values(&model.system, control, &trajectory);
     let mut result = SolveResult {
         exchange: EnergyExchange::new(&model.system, &trajectory, held),
         tracking: followed(&optimum, control, &trajectory),
-        final_values: final_values(&model.system, control, &trajectory),
+        waypoint_values,
+        final_values,
         outside: domain::records(&out_of_domain(model, &discrete)),
         remarks: Remarks::default(),
         optimum,
@@ -202,6 +206,7 @@ fn remarks(
         stops::notes(&optimum.model.system, &result.trajectory),
     );
     remarks.note("tracking", tracking_messages::notes(&result.tracking));
+    remarks.note("waypoint_value", ends(&result.waypoint_values));
     remarks.note("final_value", ends(&result.final_values));
     remarks
 }

@@ -1,4 +1,4 @@
-//! Control problems whose ends are sought with the motion.
+//! Control problems whose ends are sought with the motion, and what they pass.
 
 use super::cases::{Case, control, joints, partly};
 use super::limited::all_limits;
@@ -6,9 +6,10 @@ use super::systems::{branched, loaded};
 use super::tracked::{energies, tracked};
 use super::trunk;
 use proboscis::System;
-use proboscis::control::problem::{Control, Duration, Objective};
+use proboscis::control::problem::{Control, Duration, Objective, Place, Waypoint};
+use std::collections::BTreeMap;
 
-/// The list: goals whose holding inputs are sought.
+/// The list: goals whose holding inputs are sought, and costs at an instant on the way.
 pub fn ends() -> Vec<Case> {
     let case = |name, system: System, change: &dyn Fn(&mut Control)| {
         let mut control = control(&system, 3);
@@ -49,6 +50,23 @@ pub fn ends() -> Vec<Case> {
             c.objective = inputs.clone();
             c.duration = free;
         }),
+        case(
+            "branched tree, costs on the way, free time",
+            branched(),
+            &|c| {
+                let near = Waypoint {
+                    part: 0.4,
+                    places: BTreeMap::from([(0, Place([Some(20.0), None, Some(5.0)]))]),
+                    angles: BTreeMap::from([(0, 0.3), (1, 2.0)]),
+                    ..Waypoint::default()
+                };
+                c.objective = Objective {
+                    quantities: near.costs(3.0),
+                    ..inputs.clone()
+                };
+                c.duration = free;
+            },
+        ),
         case("loads, found hold, free time", loaded(trunk(2)), &|c| {
             c.seeks_hold = true;
             c.duration = free;

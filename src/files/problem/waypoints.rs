@@ -1,6 +1,6 @@
 //! Waypoints as they are written, and their conversion.
 
-use crate::control::problem::{Duration, Waypoint};
+use crate::control::problem::{Duration, QuantityCost, Waypoint};
 use crate::files::json::error::SceneError;
 use crate::files::json::scope::Scope;
 use crate::files::problem::goal::places;
@@ -15,7 +15,7 @@ use serde::Deserialize;
 use std::collections::BTreeMap;
 
 /// Places that the motion reaches at a time on its way, at the instant nearest to it: `markers`, `orientations`, `joint_angles`, or several
-/// of them.
+/// of them. With a `weight` it passes near them: their squared distances are costs.
 #[derive(Clone, Debug, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct WaypointSpec {
@@ -34,18 +34,40 @@ pub struct WaypointSpec {
     /// Joint coordinates by joint, SI unit rad or m.
     #[serde(default)]
     pub joint_angles: Option<BTreeMap<String, Quantity<JointCoordinate>>>,
+    /// Weight of the squared distances at that instant, in mm² of markers and prismatic joints and rad² of revolute ones, as costs in the
+    /// objective in place of exact conditions; not of `orientations`.
+    #[serde(default)]
+    pub weight: Option<f64>,
 }
 
-/// The waypoints that are written.
+/// The waypoints that are written: those that are conditions, and the costs that others are.
 pub(crate) fn waypoints(
     specs: &[WaypointSpec],
     duration: Duration,
     system: &System,
     scope: &Scope<'_>,
-) -> Result<Vec<Waypoint>, SceneError> {
-    let each = specs.iter().enumerate();
-    each.map(|(index, spec)| spec.waypoint(duration, system, &scope.index(index)))
-        .collect()
+) -> Result<(Vec<Waypoint>, Vec<QuantityCost>), SceneError> {
+    let (mut exact, mut near) = (Vec::new(), Vec::new());
+    for (index, spec) in specs.iter().enumerate() {
+        let scope = scope.index(index);
+        let waypoint = spec.waypoint(duration, system, &scope)?;
+        match spec.weight {
+            None => exact.push(waypoint),
+            Some(_) if spec.orientations.is_some() => {
+                let expected = "an orientation without \"weight\", which is reached exactly";
+                return Err(scope
+                    .key("orientations")
+                    .wrong("an orientation with a weight", expected));
+            }
+            Some(weight) if weight > 0.0 => near.extend(waypoint.costs(weight)),
+            Some(weight) => {
+                return Err(scope
+                    .key("weight")
+                    .wrong(weight.to_string(), "a positive weight"));
+            }
+        }
+    }
+    Ok((exact, near))
 }
 
 impl WaypointSpec {
