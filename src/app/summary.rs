@@ -27,6 +27,7 @@ use crate::workflow::afterwards::Afterwards;
 use crate::workflow::domain::Outside;
 use crate::workflow::effects::Plan;
 use crate::workflow::final_values::FinalValue;
+use crate::workflow::period::Repeated;
 use crate::workflow::resimulate::Resimulation;
 use crate::workflow::violations::Violation;
 use crate::workflow::{EstimatedError, Remarks, Tracked};
@@ -123,6 +124,9 @@ pub(super) struct Program {
     /// Motion after a goal that no known voltages hold.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub(super) afterwards: Option<Afterwards>,
+    /// A periodic motion under the same inputs again.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub(super) repeated: Option<Repeated>,
 }
 
 /// A parameter that was sought: the value that was found.

@@ -6,6 +6,7 @@ use crate::control::energy_cost::sources;
 use crate::control::error::BoundaryError;
 use crate::control::goal_rows;
 use crate::control::limits::{Limits, When};
+use crate::control::periodic;
 use crate::control::prescribed::{self, at_rest};
 use crate::control::problem::{BoundaryState, Control, During, Rest};
 use crate::control::rest::rest_at;
@@ -81,6 +82,7 @@ impl BoundaryConditions {
         };
         let mut model = Model::of_presolved(system.clone(), analysis, presolved)?;
         sought_hold::check(&model, control)?;
+        periodic::check(&model, control)?;
         let (start, of_start) = start_of(&model, &control.start)?;
         goal_rows::leave_out_constant(&mut model, &limits, &start.z)?;
         let (mut given, of_goal) = coordinates_at_goal(&model, control)?;
@@ -91,7 +93,10 @@ impl BoundaryConditions {
             check_muscles(&model, &z, "goal")?;
         }
         let scalars = [of_start, of_goal.as_ref().map(|rest| rest.scalars.clone())];
-        let rest = [&control.start, &control.goal].map(BoundaryState::voltages);
+        let rest = match control.goal {
+            BoundaryState::Periodic => [None; 2],
+            _ => [&control.start, &control.goal].map(BoundaryState::voltages),
+        };
         let boundary = Self {
             start,
             goal: TerminalState {
@@ -104,7 +109,9 @@ impl BoundaryConditions {
             notes: off_grid(control),
         };
         let rest = boundary.goal.rest.as_ref();
-        let ends = [Some(&boundary.start.z[..]), rest.map(|rest| &rest.z[..])];
+        let is_known = control.goal != BoundaryState::Periodic;
+        let start = is_known.then_some(&boundary.start.z[..]);
+        let ends = [start, rest.map(|rest| &rest.z[..])];
         sought::check(&model, control, ends)?;
         endpoint_checks::check(&model, &boundary, control, scalars)?;
         Ok((model, boundary))
@@ -269,7 +276,7 @@ fn forget(model: &Model, given: &mut [Option<f64>], is_set: impl Fn(usize) -> bo
 /// Part of the system that rests at a goal.
 fn rests_at(goal: &BoundaryState) -> Rests {
     match goal {
-        BoundaryState::Free => Rests::Nothing,
+        BoundaryState::Free | BoundaryState::Periodic => Rests::Nothing,
         BoundaryState::Markers {
             rest: Rest::Bodies, ..
         }
@@ -330,7 +337,9 @@ pub fn resolve_start(
             prescribed::check_end(model, &start.z, place)?;
             Ok(start)
         }
-        BoundaryState::Markers { .. } | BoundaryState::Free => unreachable!("it is a goal only"),
+        BoundaryState::Markers { .. } | BoundaryState::Free | BoundaryState::Periodic => {
+            unreachable!("it is a goal only")
+        }
     }
 }
 

@@ -98,6 +98,8 @@ pub(in crate::control) struct Twin {
     pub(in crate::control) instant: usize,
     /// The instant whose coordinates it has.
     pub(in crate::control) of: usize,
+    /// True if their balances are one, as where a periodic motion comes back to its start.
+    pub(in crate::control) is_closed: bool,
 }
 
 /// Columns and rows of a horizon.
@@ -114,6 +116,8 @@ pub struct Numbering {
     column_of_horizon: Option<usize>,
     row_of_instant: Vec<Option<usize>>,
     row_of_interval: Vec<Option<usize>>,
+    /// The interval that comes before the first one of a periodic motion.
+    before_first: Option<usize>,
     /// Numbers of variables of an instant and of an interval.
     counts: [usize; 2],
 }
@@ -138,6 +142,9 @@ impl Numbering {
             column_of_horizon: None,
             row_of_instant: vec![None; (intervals + 1) * of_instant],
             row_of_interval: vec![None; intervals * of_interval],
+            before_first: twin
+                .filter(|twin| twin.is_closed)
+                .and_then(|_| intervals.checked_sub(1)),
             counts,
         };
         let inputs = variables.sources_range();
@@ -156,7 +163,10 @@ impl Numbering {
                     Role::Coordinate => is_balanced(k, i),
                     role => role.has_equation() && !all_given && twin.is_none(),
                 };
-                out.row_of_instant[at] = out.row_where(is_row, Row::Instant { k, i });
+                out.row_of_instant[at] = match (twin, variable.role) {
+                    (Some(twin), Role::Coordinate) if twin.is_closed => out.row(twin.of, i),
+                    _ => out.row_where(is_row, Row::Instant { k, i }),
+                };
             }
             if k == intervals {
                 break;
@@ -211,6 +221,11 @@ impl Numbering {
     /// Column of scalar s of interval k; none behind the last interval.
     pub fn scalar(&self, k: usize, s: usize) -> Option<usize> {
         *self.column_of_interval.get(k * self.counts[1] + s)?
+    }
+
+    /// The interval before interval k: of the first one the last, where the motion is periodic.
+    pub(in crate::control) fn before(&self, k: usize) -> Option<usize> {
+        k.checked_sub(1).or(self.before_first)
     }
 
     /// Column of the interval length.

@@ -82,7 +82,7 @@ impl Control {
         Self { start, ..self }
     }
 
-    /// The goal, at rest unless it is [`State::Free`].
+    /// The goal, at rest unless it is [`State::Free`] or [`State::Periodic`].
     pub fn goal(self, goal: State) -> Self {
         Self { goal, ..self }
     }
@@ -249,9 +249,10 @@ impl Control {
         let holds = weights.iter().all(|w| *w >= 0.0 && w.is_finite()) && is_any;
         let found = || format!("weights {weights:?} of effort, rate, time and peak");
         require(holds, "control", found, "weights of which one is positive")?;
-        check_costs(costs, system)?;
+        let is_periodic = self.goal == State::Periodic;
+        check_costs((costs, is_periodic), system)?;
         check_energies(energies, system)?;
-        check_waypoints(&self.waypoints, system)?;
+        check_waypoints((&self.waypoints, is_periodic), system)?;
         check_limits(&self.limits, system)?;
         let is_rate = |limit: &PathConstraint| limit.is_rate();
         let holds = matches!(self.duration, Duration::Given(_)) || !self.limits.iter().any(is_rate);

@@ -4,7 +4,7 @@ use crate::control::Solution;
 use crate::interface::motion::Motion;
 use crate::model::FoundParameter;
 use crate::tasks::SolveResult;
-use crate::workflow::{Afterwards, FinalValue, Tracked};
+use crate::workflow::{Afterwards, FinalValue, Repeated, Tracked};
 use std::sync::Arc;
 
 /// Result of the solver: an optimal motion, or its last iterate.
@@ -29,6 +29,8 @@ pub struct Optimum {
     pub final_values: Vec<FinalValue>,
     /// The motion that follows a goal that no voltages are known to hold.
     pub afterwards: Option<Afterwards>,
+    /// A periodic motion under the same inputs again.
+    pub repeated: Option<Repeated>,
     /// Parameters that were sought.
     pub parameters: Vec<FoundParameter>,
     pub(super) is_solved: bool,
@@ -59,6 +61,7 @@ impl Optimum {
             waypoint_values: result.waypoint_values,
             final_values: result.final_values,
             afterwards: optimum.afterwards,
+            repeated: optimum.repeated,
             solution: optimum.motion,
         }
     }

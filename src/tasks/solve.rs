@@ -24,6 +24,7 @@ use crate::workflow::infeasible::explain;
 use crate::workflow::memory;
 use crate::workflow::motion::{discrete_trajectory, trajectory};
 use crate::workflow::optimum::{Optimum, SolveLimits};
+use crate::workflow::period::Repeated;
 use crate::workflow::refine_until_reproduced::{RefinedOptimum, reproduced};
 use crate::workflow::remark::Remarks;
 use crate::workflow::resimulate::Resimulation;
@@ -185,6 +186,9 @@ fn remarks(
     remarks.note("refined_grid", refined);
     remarks.warn("coarse_intervals", tested.and_then(Resimulation::warning));
     remarks.warn("goal_not_held", not_kept.into_iter().chain(left_goal));
+    let repeated = optimum.repeated.as_ref();
+    remarks.warn("not_periodic", repeated.and_then(Repeated::warning));
+    remarks.note("periodic", repeated.and_then(Repeated::note));
     remarks.warn("optimality_gap", optimum.wide.clone());
     remarks.note("free_end", free_end(control));
     if control.seeks_hold && result.verdict.is_solved {

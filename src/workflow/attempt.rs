@@ -17,6 +17,7 @@ use crate::workflow::iterate::Iterate;
 use crate::workflow::motion::solved;
 use crate::workflow::optimum::{Optimum, Shortest, SolveLimits};
 use crate::workflow::ordering::ordering;
+use crate::workflow::period;
 use crate::workflow::phase::phase;
 use crate::workflow::prepare::{Counted, Prepared, prepare};
 use crate::workflow::resimulate::{Resimulation, resimulate};
@@ -80,11 +81,8 @@ pub(crate) fn attempt(
     let point = FinalPoint::new(&mut program, &solution, &model, control);
     drop(program);
     let (model, mut boundary, sought) = of_motion(system, control, (model, boundary), &motion)?;
-    if solution.status.is_solved() {
-        found_hold::keep(&model, &mut boundary, &discrete);
-    }
     let verified = match solution.status.is_solved() {
-        true => Verification::new(&model, &boundary, control, (&discrete, &motion)),
+        true => Verification::new(&model, &mut boundary, control, (&discrete, &motion)),
         false => Verification::default(),
     };
     Ok(Optimum {
@@ -111,6 +109,7 @@ pub(crate) fn attempt(
         gap: point.gap,
         wide: point.wide,
         afterwards: None,
+        repeated: None,
     })
 }
 
@@ -209,12 +208,15 @@ struct Verification {
 }
 
 impl Verification {
+    /// Completes start and goal by what was found with the motion, and verifies it from there.
     fn new(
         model: &Model,
-        boundary: &BoundaryConditions,
+        boundary: &mut BoundaryConditions,
         control: &Control,
         (discrete, motion): (&DiscreteTrajectory, &Solution),
     ) -> Self {
+        found_hold::keep(model, boundary, discrete);
+        period::begin(control, boundary, motion);
         let reversed = reversed_muscle(model, discrete);
         if reversed.is_some() {
             return Self {

@@ -2,14 +2,14 @@
 
 use super::cases::{Case, control, joints, partly};
 use super::limited::all_limits;
-use super::systems::{branched, loaded};
+use super::systems::{branched, loaded, remembering};
 use super::tracked::{energies, tracked};
 use super::trunk;
 use proboscis::System;
-use proboscis::control::problem::{Control, Duration, Objective, Place, Waypoint};
+use proboscis::control::problem::{BoundaryState, Control, Duration, Objective, Place, Waypoint};
 use std::collections::BTreeMap;
 
-/// The list: goals whose holding inputs are sought, and costs at an instant on the way.
+/// The list: goals whose holding inputs are sought, costs at an instant on the way, and periodic motions.
 pub fn ends() -> Vec<Case> {
     let case = |name, system: System, change: &dyn Fn(&mut Control)| {
         let mut control = control(&system, 3);
@@ -50,6 +50,28 @@ pub fn ends() -> Vec<Case> {
             c.objective = inputs.clone();
             c.duration = free;
         }),
+        case("branched tree, periodic, all limits", branched(), &|c| {
+            c.goal = BoundaryState::Periodic;
+            c.limits = all_limits();
+            c.objective = Objective {
+                rate: 0.02,
+                ..tracked(&[0, 1], &[(0, true)])
+            };
+            c.waypoints = vec![Waypoint {
+                part: 1.0,
+                angles: BTreeMap::from([(1, 2.0)]),
+                ..Waypoint::default()
+            }];
+        }),
+        case(
+            "remembering tree, periodic, free time",
+            remembering(),
+            &|c| {
+                c.goal = BoundaryState::Periodic;
+                c.objective = inputs.clone();
+                c.duration = free;
+            },
+        ),
         case(
             "branched tree, costs on the way, free time",
             branched(),

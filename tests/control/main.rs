@@ -23,6 +23,7 @@ mod meshes;
 mod moved;
 mod optimality;
 mod peak_voltage;
+mod periodic;
 mod prescribed;
 mod rate_limits;
 mod reference;

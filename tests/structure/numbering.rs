@@ -75,8 +75,8 @@ fn check(system: &System, control: &Control) -> [usize; 2] {
     let goal = &boundary.goal.coordinates[..n];
     let open = goal.iter().filter(|value| value.is_none()).count();
     let multipliers = names(&columns, "multiplier of ").len();
-    // A free end has no balance for a constraint force.
-    let is_free = control.goal == BoundaryState::Free;
+    // A free end and that of a periodic motion have no balance for a constraint force.
+    let is_free = matches!(control.goal, BoundaryState::Free | BoundaryState::Periodic);
     assert_eq!(multipliers, (intervals + held + usize::from(!is_free)) * m);
     assert_eq!(names(&rows, "equilibrium at the goal, ").len(), held * n);
     let balances = names(&rows, "rest at the goal, ").len();

@@ -71,7 +71,7 @@ impl Transcription<'_> {
     /// Adds the gradients in the rows to those by the variables.
     pub(super) fn gather_cost_gradient(&mut self, grad: &mut [f64]) {
         let (stride, coordinates) = (self.stride(), self.model.action.map.unknowns());
-        if let Some(Twin { instant, of }) = self.layout.twin {
+        if let Some(Twin { instant, of, .. }) = self.layout.twin {
             let (before, twin) = self.workspace.rows.split_at_mut(instant * stride);
             let sums = before[of * stride..][..coordinates].iter_mut();
             sums.zip(twin).for_each(|(sum, row)| *sum += *row);

@@ -4,7 +4,8 @@ use std::ops::Range;
 
 use crate::control::boundary_conditions::{BoundaryConditions, Rests};
 use crate::control::numbering::{Column, Numbering, Row, Twin};
-use crate::control::problem::{Control, Duration};
+use crate::control::problem::{BoundaryState, Control, Duration};
+use crate::control::span::Span;
 use crate::control::transcription::limit_rows::{LimitRow, Site, limit_rows};
 use crate::coordinates::{Configuration, CoordinateMap};
 use crate::functional::Horizon;
@@ -38,9 +39,11 @@ impl Layout {
         end: usize,
     ) -> Self {
         let intervals = end + usize::from(control.seeks_hold);
-        let twin = control.seeks_hold.then_some(Twin {
+        let is_closed = control.goal == BoundaryState::Periodic;
+        let twin = (control.seeks_hold || is_closed).then_some(Twin {
             instant: intervals,
-            of: end,
+            of: if is_closed { 0 } else { end },
+            is_closed,
         });
         let map = &model.action.map;
         let goal = &boundary.goal.coordinates;
@@ -49,7 +52,8 @@ impl Layout {
             let variable = column.of(&model.variables);
             match (column, variable.role) {
                 (Column::Instant { k, i }, Role::Coordinate) => {
-                    k == 0 || (k == end && goal[i].is_some()) || model.is_prescribed(i)
+                    let is_start = k == 0 && !is_closed;
+                    is_start || (k == end && goal[i].is_some()) || model.is_prescribed(i)
                 }
                 // No balance at the end, so nothing that a constraint force would balance.
                 (Column::Instant { k, .. }, _) => k == end && ends_anyhow,
@@ -76,10 +80,15 @@ impl Layout {
         let is_balanced = |k: usize, i: usize| (k != end || rests(i)) && !model.is_prescribed(i);
         let all = (intervals, twin);
         let mut unknowns = Numbering::new(&model.variables, all, is_given, is_balanced);
+        let span = Span {
+            end,
+            intervals,
+            is_closed,
+        };
         let limits = limit_rows(
             model,
             (&boundary.limits.list, &boundary.rest),
-            [end, intervals],
+            span,
             &unknowns,
         );
         let mut limit_rows = Vec::new();
@@ -103,9 +112,23 @@ impl Layout {
         }
     }
 
+    /// The intervals of the horizon.
+    pub(super) fn span(&self) -> Span {
+        Span {
+            end: self.end,
+            intervals: self.intervals,
+            is_closed: self.is_closed(),
+        }
+    }
+
+    /// Returns true if the motion is periodic.
+    pub(super) fn is_closed(&self) -> bool {
+        self.twin.is_some_and(|twin| twin.is_closed)
+    }
+
     /// Gives an instant that has the coordinates of another one these, and its charts.
     pub(super) fn share(&self, instants: &mut [Configuration], map: &CoordinateMap) {
-        let Some(Twin { instant, of }) = self.twin else {
+        let Some(Twin { instant, of, .. }) = self.twin else {
             return;
         };
         let (before, twin) = instants.split_at_mut(instant);

@@ -66,7 +66,7 @@ impl Objective {
         (control, layout): (&Control, &Layout),
         initial: &InitialGuess,
     ) -> Self {
-        let (objective, all) = (&control.objective, [layout.end, layout.intervals]);
+        let objective = &control.objective;
         let (paid, energies) = (&objective.quantities, &objective.energies);
         let inputs = CostInput::of_model(model, control);
         let ends = boundary.rest.each_ref();
@@ -81,7 +81,7 @@ impl Objective {
         let of_loads = inputs.iter().filter(unknown).map(|input| input.scale);
         let largest = of_loads.fold(volts / KILOVOLT, f64::max);
         Self {
-            cost: Cost::new(objective, inputs.len(), all, ends),
+            cost: Cost::new(objective, inputs.len(), layout.span(), ends),
             quantities: cost_rows(model, paid, boundary.limits.list.len(), layout.end),
             energies: energy_rows(model, energies, &boundary.rest, layout.intervals),
             inputs,

@@ -1,7 +1,7 @@
 //! Conversion between motions and points of the program.
 
 use crate::control::guess::InitialGuess;
-use crate::control::numbering::{Column, Row};
+use crate::control::numbering::{Column, Row, Twin};
 use crate::control::solution::Costates;
 use crate::control::transcription::Transcription;
 use crate::control::transcription::kinematic_state::Placed;
@@ -16,6 +16,7 @@ pub struct Decoder {
     scalars: Vec<Vec<f64>>,
     /// Scalars behind the motion.
     held: Option<Vec<f64>>,
+    twin: Option<Twin>,
     h: f64,
     columns: Vec<Column>,
     scales: Vec<f64>,
@@ -42,6 +43,9 @@ impl Decoder {
                 // Multipliers behind the motion are those of no instant of it.
                 Column::Instant { .. } => {}
             }
+        }
+        if let Some(Twin { instant, of, .. }) = self.twin.filter(|twin| twin.instant < instants) {
+            z[instant] = z[of].clone();
         }
         DiscreteTrajectory {
             held,
@@ -108,6 +112,7 @@ impl Transcription<'_> {
                 .collect(),
             scalars: (0..end).map(scalars).collect(),
             held: (end < self.layout.intervals).then(|| scalars(end)),
+            twin: self.layout.twin,
             h: self.workspace.h,
             columns: self.layout.unknowns.columns.clone(),
             scales: self.variable_scales.clone(),
@@ -181,12 +186,22 @@ impl Transcription<'_> {
         workspace.scalars_along.fill(0.0);
         let (rows, limits) = (&self.layout.unknowns.rows, self.layout.limit_rows.len());
         let count = self.model.action.layout().interval_scalars;
+        let coordinates = self.model.coordinate_count();
         let total = workspace.rows.len() - limits;
         let first = rows.len() - limits;
         for (r, (row, y)) in rows.iter().zip(costates).enumerate() {
             let y = y * self.row_scales[r];
             match *row {
-                Row::Instant { k, i } => workspace.instants[k].l[i] = y,
+                Row::Instant { k, i } => {
+                    workspace.instants[k].l[i] = y;
+                    let twin = self
+                        .layout
+                        .twin
+                        .filter(|twin| twin.is_closed && k == twin.of);
+                    if let Some(twin) = twin.filter(|_| i < coordinates) {
+                        workspace.instants[twin.instant].l[i] = y;
+                    }
+                }
                 Row::Interval { k, s } => workspace.scalars_along[k * count + s] = y,
                 Row::Limit { .. } => workspace.rows[total + r - first] = y,
             }

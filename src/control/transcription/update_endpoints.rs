@@ -23,7 +23,9 @@ impl Transcription<'_> {
             start, goal, rest, ..
         } = boundary;
         self.workspace.instants[0].z.copy_from_slice(&start.z);
-        self.momentum.copy_from_slice(&start.momentum);
+        if !self.layout.is_closed() {
+            self.momentum.copy_from_slice(&start.momentum);
+        }
         let unknowns = self.model.action.map.unknowns();
         let last = &mut self.workspace.instants[self.layout.end].z;
         goal.give(last, unknowns);

@@ -92,7 +92,9 @@ fn given_instants(
     for (k, instant) in instants.iter_mut().enumerate() {
         model.prescribe(k as f64 * initial.h, &mut instant.z);
     }
-    instants[0].z.copy_from_slice(&boundary.start.z);
+    if !layout.is_closed() {
+        instants[0].z.copy_from_slice(&boundary.start.z);
+    }
     boundary.goal.give(&mut instants[layout.end].z, unknowns);
     layout.share(&mut instants, map);
     instants

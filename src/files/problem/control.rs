@@ -62,7 +62,8 @@ pub(crate) fn control(
     let mut objective = objective(&spec.objective, system, &scope.key("objective"))?;
     let mut goal = goal(spec, &objective, system, scope)?;
     let place = scope.key("waypoints");
-    let (waypoints, near) = waypoints(&spec.waypoints, duration, system, &place)?;
+    let is_periodic = goal == BoundaryState::Periodic;
+    let (waypoints, near) = waypoints(&spec.waypoints, (duration, is_periodic), system, &place)?;
     objective.quantities.extend(near);
     let parameters = parameters(&spec.free, written, system, &scope.key("free"))?;
     let loads = loads(&spec.loads, system, &scope.key("loads"))?;
@@ -280,7 +281,10 @@ pub(crate) fn check_final_conditions(
             (given.sum(), "markers")
         }
         BoundaryState::JointAngles { angles, .. } => (angles.len(), "joint_angles"),
-        BoundaryState::RestAtVoltages(..) | BoundaryState::EndOf(_) | BoundaryState::Free => {
+        BoundaryState::RestAtVoltages(..)
+        | BoundaryState::EndOf(_)
+        | BoundaryState::Free
+        | BoundaryState::Periodic => {
             return Ok(());
         }
     };

@@ -6,7 +6,7 @@ use crate::control::problem::{BoundaryState, Orientation, Place, Rest};
 use crate::files::json::error::SceneError;
 use crate::files::json::scope::Scope;
 use crate::files::problem::spec_states::{
-    GoalSpec, HeldSpec, HeldWord, OrientationSpec, RestGoalSpec,
+    GoalSpec, GoalWord, HeldSpec, HeldWord, OrientationSpec, RestGoalSpec,
 };
 use crate::files::problem::spec_voltages::VoltageMap;
 use crate::files::problem::state::{by_joint, moving_marker, voltages};
@@ -23,7 +23,8 @@ pub(crate) fn goal_state(
     scope: &Scope<'_>,
 ) -> Result<BoundaryState, SceneError> {
     let spec = match spec {
-        GoalSpec::Word(_) => return Ok(BoundaryState::Free),
+        GoalSpec::Word(GoalWord::Free) => return Ok(BoundaryState::Free),
+        GoalSpec::Word(GoalWord::Periodic) => return Ok(BoundaryState::Periodic),
         GoalSpec::Rest(spec) => spec.as_ref(),
     };
     let key = given_key(spec, scope)?;

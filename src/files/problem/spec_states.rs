@@ -47,11 +47,11 @@ pub struct BodyVelocitySpec {
     pub angular: Option<[Quantity<AngularVelocity>; 3]>,
 }
 
-/// `"free"`, or a state at the end, at rest.
+/// `"free"`, `"periodic"`, or a state at the end, at rest.
 #[derive(Clone, Debug, JsonSchema)]
 #[serde(untagged)]
 pub enum GoalSpec {
-    /// Anything, in motion or at rest.
+    /// Anything, in motion or at rest, or the start, which is sought.
     Word(GoalWord),
     /// A state of rest.
     Rest(Box<RestGoalSpec>),
@@ -63,11 +63,13 @@ pub enum GoalSpec {
 pub enum GoalWord {
     /// Anything, in motion or at rest.
     Free,
+    /// The start, which is sought: the motion is periodic.
+    Periodic,
 }
 
 scalar_or_object! {
     GoalSpec: GoalWord = Self::Word, Box<RestGoalSpec> = Self::Rest,
-        "\"free\", or an object with \"rest_at_voltages\", \"joint_angles\", \"markers\" or \"orientations\"";
+        "\"free\", \"periodic\", or an object with \"rest_at_voltages\", \"joint_angles\", \"markers\" or \"orientations\"";
     HeldSpec: HeldWord = Self::Word, VoltageMap = Self::Given,
         "\"find\", or voltages by name";
 }

@@ -22,7 +22,7 @@ pub struct WaypointSpec {
     /// Time, SI unit s; or give `part`.
     #[serde(default)]
     pub time: Option<Quantity<Time>>,
-    /// Part of the duration, above 0 and below 1, which may be free.
+    /// Part of the duration, above 0 and below 1, which may be free; of a periodic motion 1 is its start and its end.
     #[serde(default)]
     pub part: Option<f64>,
     /// Positions by marker, SI unit m; directions that are `null` are free.
@@ -43,14 +43,14 @@ pub struct WaypointSpec {
 /// The waypoints that are written: those that are conditions, and the costs that others are.
 pub(crate) fn waypoints(
     specs: &[WaypointSpec],
-    duration: Duration,
+    (duration, is_periodic): (Duration, bool),
     system: &System,
     scope: &Scope<'_>,
 ) -> Result<(Vec<Waypoint>, Vec<QuantityCost>), SceneError> {
     let (mut exact, mut near) = (Vec::new(), Vec::new());
     for (index, spec) in specs.iter().enumerate() {
         let scope = scope.index(index);
-        let waypoint = spec.waypoint(duration, system, &scope)?;
+        let waypoint = spec.waypoint((duration, is_periodic), system, &scope)?;
         match spec.weight {
             None => exact.push(waypoint),
             Some(_) if spec.orientations.is_some() => {
@@ -73,11 +73,11 @@ pub(crate) fn waypoints(
 impl WaypointSpec {
     fn waypoint(
         &self,
-        duration: Duration,
+        of: (Duration, bool),
         system: &System,
         scope: &Scope<'_>,
     ) -> Result<Waypoint, SceneError> {
-        let (part, name) = self.part_of(duration, scope)?;
+        let (part, name) = self.part_of(of, scope)?;
         let written = (self.markers.as_ref(), self.orientations.as_ref());
         let (places, orientations) = places(written, system, scope)?;
         let kinds = [Angle::kind(), Length::kind()];
@@ -106,7 +106,11 @@ impl WaypointSpec {
     }
 
     /// Part of the duration, and the name in messages.
-    fn part_of(&self, duration: Duration, scope: &Scope<'_>) -> Result<(f64, String), SceneError> {
+    fn part_of(
+        &self,
+        (duration, is_periodic): (Duration, bool),
+        scope: &Scope<'_>,
+    ) -> Result<(f64, String), SceneError> {
         let key = scope.exactly_one([
             ("time", self.time.as_ref().map(|_| "time")),
             ("part", self.part.map(|_| "part")),
@@ -125,10 +129,15 @@ impl WaypointSpec {
             (None, _) => {
                 let part = self.part.unwrap_or_default();
                 let name = format!("waypoint at {} of the duration", shortest(part, 6));
-                (part, name, part.to_string(), "a number above 0 and below 1")
+                let expected = match is_periodic {
+                    true => "a number above 0 and at most 1",
+                    false => "a number above 0 and below 1",
+                };
+                (part, name, part.to_string(), expected)
             }
         };
-        match part > 0.0 && part < 1.0 {
+        // The end of a periodic motion is its start.
+        match part > 0.0 && (part < 1.0 || (is_periodic && part == 1.0)) {
             true => Ok((part, name)),
             false => Err(scope.key(key).wrong(found, expected)),
         }
