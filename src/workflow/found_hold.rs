@@ -7,6 +7,9 @@ use crate::math::significant;
 use crate::model::Model;
 use crate::model::system::Source;
 
+/// A part of the largest input that holds a goal; smaller ones are not named.
+const HARDLY: f64 = 1e-3;
+
 /// Makes the goal of a motion the state of rest that it is, under the inputs that were found with it; nothing where none were.
 ///
 /// Its stability is known where the coordinates are free of constraints.
@@ -20,17 +23,21 @@ pub(crate) fn keep(model: &Model, boundary: &mut BoundaryConditions, motion: &Di
     }
 }
 
-/// Names the inputs that were found and hold the goal.
+/// Names the inputs that were found and hold the goal, without those that are hardly any.
 pub(crate) fn note(model: &Model, held: &[f64]) -> String {
-    let acting = model
-        .sources
-        .iter()
-        .zip(held)
-        .filter(|(source, value)| source.acts() && **value != 0.0);
-    let named = acting.map(|(source, value): (&Source, &f64)| {
+    let counted = |(source, value): (&Source, &f64)| {
         let (unit, size) = source.kind.counted();
-        format!("{} {} {unit}", source.name, significant(value / size, 4))
-    });
+        (source.name.clone(), value / size, unit)
+    };
+    let all: Vec<_> = model.sources.iter().zip(held).map(counted).collect();
+    let largest = all
+        .iter()
+        .fold(0.0, |most: f64, (_, value, _)| most.max(value.abs()));
+    let named = all
+        .iter()
+        .filter(|(_, value, _)| value.abs() > HARDLY * largest);
+    let named =
+        named.map(|(name, value, unit)| format!("{name} {} {unit}", significant(*value, 4)));
     let named: Vec<String> = named.collect();
     match named.is_empty() {
         true => "the goal was found to be held without any voltage or load".to_owned(),
