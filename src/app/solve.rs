@@ -13,7 +13,7 @@ use crate::app::progress::{Progress, Reached};
 use crate::app::request::{CommandInput, CommandOutput};
 use crate::app::resume_file;
 use crate::app::solution_file;
-use crate::app::solve_page::{convergence, goal, rows, targets};
+use crate::app::solve_page::{convergence, goal, rows, targets, waypoints};
 use crate::app::solve_summary::{command_output, program, seconds};
 use crate::app::summary::{MEASURED, Summary};
 use crate::app::unfinished::{self, Unfinished};
@@ -117,6 +117,7 @@ fn add_observed(summary: &mut Summary, result: &SolveResult) {
     summary.domain.clone_from(&result.outside);
     summary.energies = EnergySummary::new(&result.exchange);
     summary.tracking.clone_from(&result.tracking);
+    summary.waypoint_values.clone_from(&result.waypoint_values);
     summary.final_values.clone_from(&result.final_values);
     summary.notes.clone_from(&result.remarks);
 }
@@ -201,6 +202,7 @@ fn write_pictures(
         tracked: &shown.tracked(&summary.tracking),
         goal: goal.as_deref(),
         targets: &targets(control, motion.trajectory),
+        waypoints: &waypoints(control, motion.trajectory),
         page: request.page.of(&content),
         ..shown.run(&model.system, origin)
     };

@@ -3,7 +3,7 @@
 use crate::app::energy_summary::EnergySummary;
 use crate::app::summary::{Program, Summary};
 use crate::control::BoundaryConditions;
-use crate::control::problem::{BoundaryState, Control, CostFunction, During, Place};
+use crate::control::problem::{BoundaryState, Control, CostFunction, During, Place, instant_at};
 use crate::dynamics::trajectory::Trajectory;
 use crate::ipopt::Iteration;
 use crate::kinematics::Pose;
@@ -135,6 +135,32 @@ pub(super) fn targets(control: &Control, motion: &Trajectory) -> Vec<(usize, Vec
     }
     let whole = |(marker, place): (usize, Place)| {
         let mut at = motion.marks[last][marker];
+        place.given().for_each(|(axis, value)| at[axis] = value);
+        (marker, at)
+    };
+    places.into_iter().map(whole).collect()
+}
+
+/// Places in mm that markers are to pass, exactly or near, with their indices; as they pass in directions that are free.
+pub(super) fn waypoints(control: &Control, motion: &Trajectory) -> Vec<(usize, Vector3<f64>)> {
+    let mut places: BTreeMap<(usize, usize), Place> = BTreeMap::new();
+    let instant = |part: f64| instant_at(part, motion.intervals());
+    for waypoint in &control.waypoints {
+        let all = waypoint.places.iter();
+        places.extend(all.map(|(&marker, place)| ((instant(waypoint.part), marker), *place)));
+    }
+    for cost in &control.objective.quantities {
+        let CostFunction::Square { reference } = &cost.function;
+        if let (Quantity::MarkerPlace { marker, axis }, During::At(part)) =
+            (cost.quantity, cost.during)
+        {
+            let k = instant(part);
+            let place = &mut places.entry((k, marker)).or_default().0[axis];
+            place.get_or_insert_with(|| reference.at(motion.times[k]));
+        }
+    }
+    let whole = |((k, marker), place): ((usize, usize), Place)| {
+        let mut at = motion.marks[k][marker];
         place.given().for_each(|(axis, value)| at[axis] = value);
         (marker, at)
     };

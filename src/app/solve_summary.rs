@@ -50,6 +50,7 @@ pub(super) fn program(system: &System, control: &Control, result: &SolveResult) 
         parameters: kept.parameters.iter().map(SoughtValue::new).collect(),
         gap: Some(optimum.gap).filter(|gap| is_solved && gap.is_finite()),
         afterwards: optimum.afterwards.clone(),
+        repeated: optimum.repeated.clone(),
     }
 }
 

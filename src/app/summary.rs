@@ -27,6 +27,7 @@ use crate::workflow::afterwards::Afterwards;
 use crate::workflow::domain::Outside;
 use crate::workflow::effects::Plan;
 use crate::workflow::final_values::FinalValue;
+use crate::workflow::period::Repeated;
 use crate::workflow::resimulate::Resimulation;
 use crate::workflow::violations::Violation;
 use crate::workflow::{EstimatedError, Remarks, Tracked};
@@ -59,6 +60,9 @@ pub(super) struct Summary {
     /// Deviations of markers and joints from the references of the objective.
     #[serde(skip_serializing_if = "Vec::is_empty")]
     pub(super) tracking: Vec<Tracked>,
+    /// Values at waypoints for which costs ask.
+    #[serde(skip_serializing_if = "Vec::is_empty")]
+    pub(super) waypoint_values: Vec<FinalValue>,
     /// Values at its end for which final costs ask.
     #[serde(skip_serializing_if = "Vec::is_empty")]
     pub(super) final_values: Vec<FinalValue>,
@@ -120,6 +124,9 @@ pub(super) struct Program {
     /// Motion after a goal that no known voltages hold.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub(super) afterwards: Option<Afterwards>,
+    /// A periodic motion under the same inputs again.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub(super) repeated: Option<Repeated>,
 }
 
 /// A parameter that was sought: the value that was found.
@@ -350,6 +357,7 @@ impl Summary {
             shown: None,
             accuracy: None,
             tracking: Vec::new(),
+            waypoint_values: Vec::new(),
             final_values: Vec::new(),
             energies: None,
             comparison: None,

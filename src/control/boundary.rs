@@ -6,10 +6,12 @@ use crate::control::energy_cost::sources;
 use crate::control::error::BoundaryError;
 use crate::control::goal_rows;
 use crate::control::limits::{Limits, When};
+use crate::control::periodic;
 use crate::control::prescribed::{self, at_rest};
-use crate::control::problem::{BoundaryState, Control, Rest, Waypoint};
+use crate::control::problem::{BoundaryState, Control, During, Rest};
 use crate::control::rest::rest_at;
 use crate::control::sought;
+use crate::control::sought_hold;
 use crate::control::transcription::count::overdetermined;
 use crate::control::transcription::layout::Layout;
 use crate::dynamics::{Equilibrium, Start, muscle_without_length, part_beyond_law};
@@ -79,6 +81,8 @@ impl BoundaryConditions {
             ..with_quantities(analysis, &limits, control)
         };
         let mut model = Model::of_presolved(system.clone(), analysis, presolved)?;
+        sought_hold::check(&model, control)?;
+        periodic::check(&model, control)?;
         let (start, of_start) = start_of(&model, &control.start)?;
         goal_rows::leave_out_constant(&mut model, &limits, &start.z)?;
         let (mut given, of_goal) = coordinates_at_goal(&model, control)?;
@@ -89,7 +93,10 @@ impl BoundaryConditions {
             check_muscles(&model, &z, "goal")?;
         }
         let scalars = [of_start, of_goal.as_ref().map(|rest| rest.scalars.clone())];
-        let rest = [&control.start, &control.goal].map(BoundaryState::voltages);
+        let rest = match control.goal {
+            BoundaryState::Periodic => [None; 2],
+            _ => [&control.start, &control.goal].map(BoundaryState::voltages),
+        };
         let boundary = Self {
             start,
             goal: TerminalState {
@@ -102,7 +109,9 @@ impl BoundaryConditions {
             notes: off_grid(control),
         };
         let rest = boundary.goal.rest.as_ref();
-        let ends = [Some(&boundary.start.z[..]), rest.map(|rest| &rest.z[..])];
+        let is_known = control.goal != BoundaryState::Periodic;
+        let start = is_known.then_some(&boundary.start.z[..]);
+        let ends = [start, rest.map(|rest| &rest.z[..])];
         sought::check(&model, control, ends)?;
         endpoint_checks::check(&model, &boundary, control, scalars)?;
         Ok((model, boundary))
@@ -111,19 +120,27 @@ impl BoundaryConditions {
 
 /// Notes about waypoints that lie between two instants.
 fn off_grid(control: &Control) -> Vec<String> {
-    let note = |waypoint: &Waypoint| {
-        let wanted = waypoint.part * control.intervals as f64;
+    let note = |name: String, part: f64| {
+        let wanted = part * control.intervals as f64;
         let k = wanted.round();
         let time = k / control.intervals as f64 * control.duration.first() / 1e3;
-        ((wanted - k).abs() > OFF).then(|| {
-            format!(
-                "{} lies between two instants: it is reached at {} s",
-                waypoint.name,
-                shortest(time, 4)
-            )
-        })
+        let time = shortest(time, 4);
+        ((wanted - k).abs() > OFF)
+            .then(|| format!("{name} lies between two instants: it is reached at {time} s"))
     };
-    control.waypoints.iter().filter_map(note).collect()
+    let exact = control.waypoints.iter();
+    let exact = exact.filter_map(|waypoint| note(waypoint.name.clone(), waypoint.part));
+    let costs = control.objective.quantities.iter();
+    let near = costs.filter_map(|cost| match cost.during {
+        During::At(part) => note(
+            format!("waypoint at {} of the duration", shortest(part, 6)),
+            part,
+        ),
+        During::Motion | During::End => None,
+    });
+    let mut notes: Vec<String> = exact.chain(near).collect();
+    notes.dedup();
+    notes
 }
 
 /// The path limits of a problem, and the parts of its goal and its waypoints that are equations of measures.
@@ -259,7 +276,7 @@ fn forget(model: &Model, given: &mut [Option<f64>], is_set: impl Fn(usize) -> bo
 /// Part of the system that rests at a goal.
 fn rests_at(goal: &BoundaryState) -> Rests {
     match goal {
-        BoundaryState::Free => Rests::Nothing,
+        BoundaryState::Free | BoundaryState::Periodic => Rests::Nothing,
         BoundaryState::Markers {
             rest: Rest::Bodies, ..
         }
@@ -320,7 +337,9 @@ pub fn resolve_start(
             prescribed::check_end(model, &start.z, place)?;
             Ok(start)
         }
-        BoundaryState::Markers { .. } | BoundaryState::Free => unreachable!("it is a goal only"),
+        BoundaryState::Markers { .. } | BoundaryState::Free | BoundaryState::Periodic => {
+            unreachable!("it is a goal only")
+        }
     }
 }
 

@@ -35,6 +35,9 @@ pub enum BoundaryState {
     },
     /// Anything, in motion or at rest; only as a goal.
     Free,
+    /// The start, which is sought: coordinates and momenta are the same there; only as a goal. The state at the start is where the solver
+    /// begins.
+    Periodic,
 }
 
 /// Part of the system that comes to rest at a goal.
@@ -67,7 +70,7 @@ impl BoundaryState {
             Self::RestAtVoltages(voltages, _) => Some(voltages),
             Self::EndOf(end) => Some(&end.voltages),
             Self::Markers { hold, .. } => hold.as_deref(),
-            Self::JointAngles { .. } | Self::Free => None,
+            Self::JointAngles { .. } | Self::Free | Self::Periodic => None,
         }
     }
 

@@ -31,9 +31,12 @@ pub(super) fn check(
         let place = "limits";
         return Err(BoundaryError::Limit { place, reason });
     }
-    let start: Vec<_> = boundary.start.z.iter().copied().map(Some).collect();
+    let is_known = control.goal != BoundaryState::Periodic;
+    let start = boundary.start.z.iter().copied();
+    let start: Vec<_> = start.map(|value| is_known.then_some(value)).collect();
     let goal = &boundary.goal.coordinates;
     let [at_start, at_goal] = scalars;
+    let at_start = at_start.filter(|_| is_known);
     let first = model.action.map.unknowns();
     let charts = [&boundary.start.z[first..], boundary.goal.charts(first)];
     let ends = [
@@ -47,9 +50,13 @@ pub(super) fn check(
         };
         let mut end = End::new(model, (control, time), coordinates, charts, scalars);
         match state {
+            _ if !is_known => {}
             BoundaryState::JointAngles { angles, .. } => end.angles = angles.clone(),
             BoundaryState::Markers { places, .. } => end.places = places.clone(),
-            BoundaryState::RestAtVoltages(..) | BoundaryState::EndOf(_) | BoundaryState::Free => {}
+            BoundaryState::RestAtVoltages(..)
+            | BoundaryState::EndOf(_)
+            | BoundaryState::Free
+            | BoundaryState::Periodic => {}
         }
         let of_joints = control.limits.iter().find_map(|limit| end.joint(limit));
         let bounded = || {

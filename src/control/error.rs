@@ -65,6 +65,12 @@ pub enum BoundaryError {
         /// Difference.
         reason: String,
     },
+    /// The inputs that hold a goal cannot be sought.
+    #[error("goal.hold: {reason}")]
+    Hold {
+        /// Reason.
+        reason: String,
+    },
     /// The ends of a muscle meet in a given configuration.
     #[error("{place}: the ends of muscle \"{muscle}\" meet there, where it has no energy")]
     NoLength {

@@ -215,6 +215,7 @@ fn from_solution(
         times: (0..=intervals).map(|k| k as f64 * h).collect(),
         z,
         scalars: scalars(model, solved, grids, intervals),
+        held: held(model, control, solved),
         ..DiscreteTrajectory::default()
     };
     InitialGuess {
@@ -225,6 +226,12 @@ fn from_solution(
             .flatten(),
         carried,
     }
+}
+
+/// Scalars that hold the goal, where they are sought and known of the solution.
+fn held(model: &Model, control: &Control, solved: &Solution) -> Option<Vec<f64>> {
+    let hold = solved.hold.as_ref().filter(|_| control.seeks_hold)?;
+    Some(model.variables.scalars(&model.scalars(hold)))
 }
 
 /// Coordinates at the instants of another grid by joint coordinates and poses of a solution, from which the model takes its own.

@@ -91,6 +91,17 @@ pub struct InputColumn {
     pub input: usize,
 }
 
+/// An instant with the coordinates of another one: it has no columns of its own for them, and none of their constraints.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(in crate::control) struct Twin {
+    /// The instant, the last one.
+    pub(in crate::control) instant: usize,
+    /// The instant whose coordinates it has.
+    pub(in crate::control) of: usize,
+    /// True if their balances are one, as where a periodic motion comes back to its start.
+    pub(in crate::control) is_closed: bool,
+}
+
 /// Columns and rows of a horizon.
 #[derive(Clone, Debug)]
 pub struct Numbering {
@@ -105,16 +116,18 @@ pub struct Numbering {
     column_of_horizon: Option<usize>,
     row_of_instant: Vec<Option<usize>>,
     row_of_interval: Vec<Option<usize>>,
+    /// The interval that comes before the first one of a periodic motion.
+    before_first: Option<usize>,
     /// Numbers of variables of an instant and of an interval.
     counts: [usize; 2],
 }
 
 impl Numbering {
-    /// Numbers the variables of `intervals` intervals. `is_given` says which values are given, `is_balanced(k, i)` whether the momentum
-    /// balance of coordinate i of instant k is an equation.
-    pub fn new(
+    /// Numbers the variables of `intervals` intervals, the last instant of which may be the `twin` of another one. `is_given` says which
+    /// values are given, `is_balanced(k, i)` whether the momentum balance of coordinate i of instant k is an equation.
+    pub(in crate::control) fn new(
         variables: &Variables,
-        intervals: usize,
+        (intervals, twin): (usize, Option<Twin>),
         is_given: impl Fn(Column) -> bool,
         is_balanced: impl Fn(usize, usize) -> bool,
     ) -> Self {
@@ -129,6 +142,9 @@ impl Numbering {
             column_of_horizon: None,
             row_of_instant: vec![None; (intervals + 1) * of_instant],
             row_of_interval: vec![None; intervals * of_interval],
+            before_first: twin
+                .filter(|twin| twin.is_closed)
+                .and_then(|_| intervals.checked_sub(1)),
             counts,
         };
         let inputs = variables.sources_range();
@@ -138,12 +154,19 @@ impl Numbering {
             for (i, variable) in variables.of(Time::Instant).iter().enumerate() {
                 let at = k * of_instant + i;
                 let column = Column::Instant { k, i };
-                out.column_of_instant[at] = out.column(column, is_given(column));
+                let twin = twin.filter(|twin| twin.instant == k);
+                out.column_of_instant[at] = match (twin, variable.role) {
+                    (Some(twin), Role::Coordinate) => out.unknown(twin.of, i),
+                    _ => out.column(column, is_given(column)),
+                };
                 let is_row = match variable.role {
                     Role::Coordinate => is_balanced(k, i),
-                    role => role.has_equation() && !all_given,
+                    role => role.has_equation() && !all_given && twin.is_none(),
                 };
-                out.row_of_instant[at] = out.row_where(is_row, Row::Instant { k, i });
+                out.row_of_instant[at] = match (twin, variable.role) {
+                    (Some(twin), Role::Coordinate) if twin.is_closed => out.row(twin.of, i),
+                    _ => out.row_where(is_row, Row::Instant { k, i }),
+                };
             }
             if k == intervals {
                 break;
@@ -198,6 +221,11 @@ impl Numbering {
     /// Column of scalar s of interval k; none behind the last interval.
     pub fn scalar(&self, k: usize, s: usize) -> Option<usize> {
         *self.column_of_interval.get(k * self.counts[1] + s)?
+    }
+
+    /// The interval before interval k: of the first one the last, where the motion is periodic.
+    pub(in crate::control) fn before(&self, k: usize) -> Option<usize> {
+        k.checked_sub(1).or(self.before_first)
     }
 
     /// Column of the interval length.

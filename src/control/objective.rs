@@ -8,6 +8,7 @@
 
 use crate::control::problem::nearest_thousand;
 use crate::control::quantity_cost::Objective;
+use crate::control::span::Span;
 
 /// Weights of effort, rate and duration.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -22,17 +23,17 @@ struct Weights {
 pub struct Cost {
     weights: Weights,
     scalars: usize,
-    intervals: usize,
+    span: Span,
     /// Rest voltages before the first and after the last interval in kV.
     ends: [Option<Vec<f64>>; 2],
 }
 
 impl Cost {
-    /// An objective over `intervals` intervals; `ends` are the rest voltages in kV where they are known.
+    /// An objective over the intervals of a horizon; `ends` are the rest voltages in kV where they are known.
     pub fn new(
         objective: &Objective,
         scalars: usize,
-        intervals: usize,
+        span: Span,
         ends: [Option<Vec<f64>>; 2],
     ) -> Self {
         let weights = Weights {
@@ -43,7 +44,7 @@ impl Cost {
         Self {
             weights,
             scalars,
-            intervals,
+            span,
             ends,
         }
     }
@@ -55,7 +56,7 @@ impl Cost {
 
     /// Returns true if neighbouring intervals couple.
     pub fn couples_intervals(&self) -> bool {
-        self.weights.rate != 0.0 && self.intervals > 1
+        self.weights.rate != 0.0 && self.span.intervals > 1
     }
 
     /// Returns true if voltages enter by their squares alone.
@@ -66,12 +67,11 @@ impl Cost {
     /// Voltage s of interval k, where k = 0 is the rest before the first.
     fn jump(&self, v: &[f64], k: usize, s: usize) -> Option<f64> {
         let at = |k: usize| v[k * self.scalars + s];
-        let before = if k == 0 {
-            self.ends[0].as_ref().map(|e| e[s])
-        } else {
-            Some(at(k - 1))
+        let before = match self.span.before(k) {
+            None => self.ends[0].as_ref().map(|e| e[s]),
+            Some(before) => Some(at(before)),
         };
-        let after = if k == self.intervals {
+        let after = if k == self.span.intervals {
             self.ends[1].as_ref().map(|e| e[s])
         } else {
             Some(at(k))
@@ -81,7 +81,7 @@ impl Cost {
 
     fn squares(&self, v: &[f64]) -> (f64, f64) {
         let effort = v.iter().map(|x| x * x).sum();
-        let jumps = (0..=self.intervals).flat_map(|k| (0..self.scalars).map(move |s| (k, s)));
+        let jumps = (0..=self.span.intervals).flat_map(|k| (0..self.scalars).map(move |s| (k, s)));
         let rate = jumps
             .filter_map(|(k, s)| self.jump(v, k, s))
             .map(|j| j * j)
@@ -93,7 +93,7 @@ impl Cost {
     pub fn value(&self, v: &[f64], tau: f64) -> f64 {
         let (effort, rate) = self.squares(v);
         let w = &self.weights;
-        let mut sum = w.effort * tau * effort + w.duration * self.intervals as f64 * tau;
+        let mut sum = w.effort * tau * effort + w.duration * self.span.end as f64 * tau;
         if w.rate != 0.0 {
             sum += w.rate * rate / tau;
         }
@@ -108,7 +108,7 @@ impl Cost {
         }
         self.add_rate_gradient(v, tau, out);
         let (effort, rate) = self.squares(v);
-        w.effort * effort - w.rate * rate / (tau * tau) + w.duration * self.intervals as f64
+        w.effort * effort - w.rate * rate / (tau * tau) + w.duration * self.span.end as f64
     }
 
     /// Adds ∂/∂v of the rate term.
@@ -116,16 +116,16 @@ impl Cost {
         if self.weights.rate == 0.0 {
             return;
         }
-        for k in 0..=self.intervals {
+        for k in 0..=self.span.intervals {
             for s in 0..self.scalars {
                 let Some(jump) = self.jump(v, k, s) else {
                     continue;
                 };
                 let slope = 2.0 * self.weights.rate / tau * jump;
-                if k > 0 {
-                    out[(k - 1) * self.scalars + s] -= slope;
+                if let Some(before) = self.span.before(k) {
+                    out[before * self.scalars + s] -= slope;
                 }
-                if k < self.intervals {
+                if k < self.span.intervals {
                     out[k * self.scalars + s] += slope;
                 }
             }
@@ -134,8 +134,8 @@ impl Cost {
 
     /// ∂²f/∂v² of one voltage of interval k with itself.
     pub fn curvature(&self, k: usize, tau: f64) -> f64 {
-        let before = k > 0 || self.ends[0].is_some();
-        let after = k + 1 < self.intervals || self.ends[1].is_some();
+        let before = self.span.before(k).is_some() || self.ends[0].is_some();
+        let after = k + 1 < self.span.intervals || self.span.is_closed || self.ends[1].is_some();
         let jumps = f64::from(u8::from(before) + u8::from(after));
         2.0 * self.weights.effort * tau + 2.0 * self.weights.rate / tau * jumps
     }

@@ -6,6 +6,7 @@ pub use crate::control::energy_cost::{EnergyCost, SourceEnergy};
 pub use crate::control::goal::{Orientation, Place};
 pub use crate::control::inputs::{Afterwards, Voltages, absent_loads};
 pub use crate::control::quantity_cost::{CostFunction, During, Objective, QuantityCost};
+pub use crate::control::waypoint::{Waypoint, instant_at};
 use crate::dynamics::Solving;
 use crate::ipopt::{LinearSolver, OptionValue};
 use crate::math::Signal;
@@ -114,6 +115,8 @@ pub struct Control {
     pub course: Option<Voltages>,
     /// Constants of the system that are sought.
     pub parameters: Vec<Parameter>,
+    /// True if the inputs that hold the goal are sought with the motion: at the goal they are in equilibrium.
+    pub seeks_hold: bool,
     /// Treatment of a goal that cannot be kept.
     pub hold: Hold,
     /// Objective that is minimised.
@@ -220,21 +223,6 @@ pub fn nearest_thousand(size: f64) -> f64 {
         return 1.0;
     }
     1e3_f64.powf((size.log10() / 3.0).round())
-}
-
-/// Places, orientations and joint coordinates at one instant on the way.
-#[derive(Clone, Debug, Default, PartialEq)]
-pub struct Waypoint {
-    /// Part of the duration at which they are reached, above 0 and at most 1: at the instant nearest to it.
-    pub part: f64,
-    /// Name in messages.
-    pub name: String,
-    /// Places of markers.
-    pub places: BTreeMap<usize, Place>,
-    /// Orientations of bodies.
-    pub orientations: BTreeMap<usize, Orientation>,
-    /// Coordinates of joints in rad or mm.
-    pub angles: BTreeMap<usize, f64>,
 }
 
 /// An inequality that holds at every instant or in every interval.

@@ -46,12 +46,14 @@ pub enum CostFunction {
 }
 
 /// Times at which a cost counts.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, PartialEq)]
 pub enum During {
     /// All the time: the integral over the time in s by the trapezoidal rule.
     Motion,
     /// At the final instant.
     End,
+    /// At the instant nearest to a part of the duration: a waypoint that the motion passes near.
+    At(f64),
 }
 
 impl Objective {
@@ -95,7 +97,7 @@ impl QuantityCost {
         };
         match self.during {
             During::Motion => format!("{squared} s").trim_start().to_owned(),
-            During::End => squared,
+            During::End | During::At(_) => squared,
         }
     }
 

@@ -113,23 +113,25 @@ impl<'a> Named<'a> {
                 let moved = all.filter(|(_, value)| **value != 0.0);
                 moved.for_each(|(&joint, _)| self.of_joint(joint));
             }
-            BoundaryState::EndOf(_) => {
-                self.initially_moving
-                    .bodies
-                    .extend(0..self.system.bodies.len());
-                self.initially_moving
-                    .solids
-                    .extend(0..self.system.solids.len());
-            }
+            BoundaryState::EndOf(_) => self.of_everything(),
             BoundaryState::RestAtVoltages(..)
             | BoundaryState::Markers { .. }
-            | BoundaryState::Free => {}
+            | BoundaryState::Free
+            | BoundaryState::Periodic => {}
         }
+    }
+
+    fn of_everything(&mut self) {
+        let system = self.system;
+        self.initially_moving.bodies.extend(0..system.bodies.len());
+        self.initially_moving.solids.extend(0..system.solids.len());
     }
 
     fn of_goal(&mut self, state: &BoundaryState) {
         match state {
             BoundaryState::RestAtVoltages(..) | BoundaryState::EndOf(_) | BoundaryState::Free => {}
+            // Its start may be anything.
+            BoundaryState::Periodic => self.of_everything(),
             BoundaryState::JointAngles { angles, .. } => {
                 angles.keys().for_each(|&j| self.of_joint(j));
             }

@@ -144,6 +144,16 @@ pub(super) fn costates(
     let ratio = grids.ratio();
     let constraint = ratio * solved.multiplier_time / model.multiplier_time;
     let row = |row: &Row| match *row {
+        // What holds the goal: the impulse of the static forces shrinks with the interval, in the balances at both of its ends.
+        Row::Instant { k, i } if k > to.end => {
+            let of = |k: usize| from.unknowns.row(k, i).map_or(0.0, |r| old.rows[r]);
+            let last = of(from.end);
+            (last + of(from.end + 1)) / ratio - last
+        }
+        Row::Interval { k, s } if k >= to.end => {
+            let place = from.unknowns.row_of_scalar(from.end, s);
+            place.map_or(0.0, |r| old.rows[r])
+        }
         Row::Instant { k, i } => {
             let weights = grids.weights(k);
             let factor = match model.variables.unknown(i).role {
@@ -163,6 +173,10 @@ pub(super) fn costates(
         Row::Limit { limit, k } => from.carried(limit, k, grids, &old.rows),
     };
     let bound = |list: &[f64], column: &Column| match *column {
+        Column::Interval { k, s } if k >= to.end => {
+            let place = from.unknowns.scalar(from.end, s);
+            place.map_or(0.0, |v| list[v])
+        }
         Column::Instant { k, i } => {
             let place = from.unknowns.unknown(grids.nearest(k), i);
             ratio * place.map_or(0.0, |v| list[v])
@@ -197,6 +211,7 @@ impl Layout {
     fn carried(&self, limit: usize, k: usize, grids: Grids, old: &[f64]) -> f64 {
         let of = self.limit(limit);
         let site = match of.is_of_intervals {
+            true if k >= grids.to && !of.is_single => self.end,
             true => grids.interval(k),
             false => grids.nearest(k),
         };

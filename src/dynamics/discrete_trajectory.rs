@@ -19,6 +19,8 @@ pub struct DiscreteTrajectory {
     pub begun: f64,
     /// Voltages of each interval in V and potentials in their unit, by scalar of the interval.
     pub scalars: Vec<Vec<f64>>,
+    /// The same after the last interval, where the inputs that hold the end of the motion were found with it.
+    pub held: Option<Vec<f64>>,
     /// Times at which energies and momenta are read.
     pub reading: Reading,
     /// Work of forces without a potential in each interval, where instants alone do not determine it.

@@ -50,15 +50,8 @@ impl Trajectory {
             let marks = model.markers.iter().map(|&vector| instant.x[vector]);
             trajectory.marks.push(marks.collect());
         }
-        for scalars in &discrete.scalars {
-            let mut voltages = vec![0.0; model.sources.len()];
-            for (variable, &scalar) in model.variables.of(Time::Interval).iter().zip(scalars) {
-                if let Some(source) = variable.source {
-                    voltages[source] = scalar;
-                }
-            }
-            trajectory.voltages.push(voltages);
-        }
+        let rows = discrete.scalars.iter();
+        trajectory.voltages = rows.map(|scalars| by_source(model, scalars)).collect();
         trajectory
     }
 
@@ -125,6 +118,17 @@ impl Trajectory {
         }
         Observations { columns }
     }
+}
+
+/// Voltages and loads by source of an interval with these scalars; zero of sources that do nothing.
+pub fn by_source(model: &Model, scalars: &[f64]) -> Vec<f64> {
+    let mut row = vec![0.0; model.sources.len()];
+    for (variable, &scalar) in model.variables.of(Time::Interval).iter().zip(scalars) {
+        if let Some(source) = variable.source {
+            row[source] = scalar;
+        }
+    }
+    row
 }
 
 /// Name and unit of a joint coordinate.

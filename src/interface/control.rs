@@ -32,6 +32,7 @@ pub struct Control {
     intervals: usize,
     start: State,
     goal: State,
+    seeks_hold: bool,
     voltage_bounds: [f64; 2],
     load_bounds: Vec<(Handle<Load>, [f64; 2])>,
     pub(super) objective: Objective,
@@ -52,6 +53,7 @@ impl Control {
             intervals,
             start: State::rest(),
             goal: State::Reference,
+            seeks_hold: false,
             voltage_bounds: [0.0, f64::INFINITY],
             load_bounds: Vec::new(),
             objective: Objective::default(),
@@ -80,9 +82,18 @@ impl Control {
         Self { start, ..self }
     }
 
-    /// The goal, at rest unless it is [`State::Free`].
+    /// The goal, at rest unless it is [`State::Free`] or [`State::Periodic`].
     pub fn goal(self, goal: State) -> Self {
         Self { goal, ..self }
+    }
+
+    /// Seeks the voltages and loads that hold a goal of places or joint coordinates together with the motion: the goal is an equilibrium under
+    /// them, and they count as those of one more interval.
+    pub fn find_hold(self) -> Self {
+        Self {
+            seeks_hold: true,
+            ..self
+        }
     }
 
     /// Bounds of all voltages in V; from 0 to infinity where nothing is said.
@@ -238,9 +249,10 @@ impl Control {
         let holds = weights.iter().all(|w| *w >= 0.0 && w.is_finite()) && is_any;
         let found = || format!("weights {weights:?} of effort, rate, time and peak");
         require(holds, "control", found, "weights of which one is positive")?;
-        check_costs(costs, system)?;
+        let is_periodic = self.goal == State::Periodic;
+        check_costs((costs, is_periodic), system)?;
         check_energies(energies, system)?;
-        check_waypoints(&self.waypoints, system)?;
+        check_waypoints((&self.waypoints, is_periodic), system)?;
         check_limits(&self.limits, system)?;
         let is_rate = |limit: &PathConstraint| limit.is_rate();
         let holds = matches!(self.duration, Duration::Given(_)) || !self.limits.iter().any(is_rate);
@@ -257,6 +269,7 @@ impl Control {
             given,
             course: None,
             parameters: self.parameters.clone(),
+            seeks_hold: self.seeks_hold,
             hold: Hold::Reported,
             objective: self.objective.clone(),
             limits: self.limits.clone(),

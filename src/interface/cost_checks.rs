@@ -1,12 +1,17 @@
 //! Checks of the costs, limits and waypoints of a control problem against its system.
 
-use crate::control::problem::{CostFunction, EnergyCost, PathConstraint, QuantityCost, Waypoint};
+use crate::control::problem::{
+    CostFunction, During, EnergyCost, PathConstraint, QuantityCost, Waypoint,
+};
 use crate::interface::error::{Result, require};
 use crate::model::system::{Joint, Muscle};
 use crate::model::{Quantity, System};
 
 /// Refuses costs of parts that the system does not have, and weights and functions of time that are not finite.
-pub(super) fn check_costs(costs: &[QuantityCost], system: &System) -> Result<()> {
+pub(super) fn check_costs(
+    (costs, is_periodic): (&[QuantityCost], bool),
+    system: &System,
+) -> Result<()> {
     for cost in costs {
         let exists = match cost.quantity {
             Quantity::Joint { joint, .. } => {
@@ -17,10 +22,14 @@ pub(super) fn check_costs(costs: &[QuantityCost], system: &System) -> Result<()>
             _ => true,
         };
         let CostFunction::Square { reference } = &cost.function;
-        let is_sound = cost.weight > 0.0 && cost.weight.is_finite() && reference.is_sound();
+        let is_timed = match cost.during {
+            During::At(part) => is_on_the_way(part, is_periodic),
+            During::Motion | During::End => true,
+        };
+        let is_sound =
+            cost.weight > 0.0 && cost.weight.is_finite() && reference.is_sound() && is_timed;
         let found = || format!("{cost:?}");
-        let expected =
-            "a positive weight of a marker, or of a joint with one coordinate, along finite values";
+        let expected = "a positive weight of a marker, or of a joint with one coordinate, along finite values or at a part of the duration above 0 and below 1";
         require(exists && is_sound, "cost", found, expected)?;
     }
     Ok(())
@@ -72,15 +81,17 @@ pub(super) fn check_limits(limits: &[PathConstraint], system: &System) -> Result
 }
 
 /// Refuses waypoints of parts that the system does not have, and those that are not on the way.
-pub(super) fn check_waypoints(waypoints: &[Waypoint], system: &System) -> Result<()> {
+pub(super) fn check_waypoints(
+    (waypoints, is_periodic): (&[Waypoint], bool),
+    system: &System,
+) -> Result<()> {
     for waypoint in waypoints {
         let of_joint = |(joint, value): (&usize, &f64)| {
             let joint = system.joints.get(*joint);
             joint.is_some_and(Joint::has_coordinate) && value.is_finite()
         };
         let mut given = waypoint.places.values().flat_map(|place| place.given());
-        let holds = waypoint.part > 0.0
-            && waypoint.part < 1.0
+        let holds = is_on_the_way(waypoint.part, is_periodic)
             && waypoint.places.keys().all(|&m| m < system.markers.len())
             && given.all(|(_, value)| value.is_finite())
             && waypoint.angles.iter().all(of_joint);
@@ -90,4 +101,9 @@ pub(super) fn check_waypoints(waypoints: &[Waypoint], system: &System) -> Result
         require(holds, "waypoint", found, expected)?;
     }
     Ok(())
+}
+
+/// Returns true if a part of the duration lies on the way: the end of a periodic motion does.
+fn is_on_the_way(part: f64, is_periodic: bool) -> bool {
+    part > 0.0 && (part < 1.0 || (is_periodic && part == 1.0))
 }

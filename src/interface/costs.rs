@@ -98,6 +98,36 @@ impl Control {
         self
     }
 
+    /// A marker passes near a place in mm, in the directions that have a value, at the instant nearest to a part of the duration: minimises
+    /// |x − r|² there in mm², with a weight.
+    pub fn marker_passes_near(
+        mut self,
+        marker: Handle<Marker>,
+        place: [Option<f64>; 3],
+        part: f64,
+        weight: f64,
+    ) -> Self {
+        let near = Waypoint {
+            places: BTreeMap::from([(marker.index(), Place(place))]),
+            ..waypoint(part)
+        };
+        self.objective.quantities.extend(near.costs(weight));
+        self
+    }
+
+    /// A joint passes near a coordinate in rad or mm at the instant nearest to a part of the duration: minimises (θ − r)² there, with a
+    /// weight.
+    pub fn joint_passes_near(
+        self,
+        joint: Handle<Joint>,
+        coordinate: f64,
+        part: f64,
+        weight: f64,
+    ) -> Self {
+        let during = During::At(part);
+        self.square(of_joint(joint), Some(coordinate.into()), during, weight)
+    }
+
     /// A marker ends near a place in mm: minimises |x − r|² at the end in mm², with a weight.
     pub fn end_near(mut self, marker: Handle<Marker>, place: Vector3<f64>, weight: f64) -> Self {
         let marker = marker.index();

@@ -4,7 +4,7 @@ use crate::control::Solution;
 use crate::interface::motion::Motion;
 use crate::model::FoundParameter;
 use crate::tasks::SolveResult;
-use crate::workflow::{Afterwards, FinalValue, Tracked};
+use crate::workflow::{Afterwards, FinalValue, Repeated, Tracked};
 use std::sync::Arc;
 
 /// Result of the solver: an optimal motion, or its last iterate.
@@ -23,10 +23,14 @@ pub struct Optimum {
     /// Deviations of markers and joints from the references that [`Control::track`](crate::interface::Control::track) and
     /// [`Control::track_joint`](crate::interface::Control::track_joint) name, marker by marker and joint by joint, in m and rad.
     pub tracking: Vec<Tracked>,
+    /// Values at waypoints for which [`Control::marker_passes_near`](crate::interface::Control::marker_passes_near) and its neighbour ask.
+    pub waypoint_values: Vec<FinalValue>,
     /// Values at the end of the motion for which final costs ask.
     pub final_values: Vec<FinalValue>,
     /// The motion that follows a goal that no voltages are known to hold.
     pub afterwards: Option<Afterwards>,
+    /// A periodic motion under the same inputs again.
+    pub repeated: Option<Repeated>,
     /// Parameters that were sought.
     pub parameters: Vec<FoundParameter>,
     pub(super) is_solved: bool,
@@ -54,8 +58,10 @@ impl Optimum {
             },
             parameters: optimum.motion.parameters.clone(),
             tracking: result.tracking,
+            waypoint_values: result.waypoint_values,
             final_values: result.final_values,
             afterwards: optimum.afterwards,
+            repeated: optimum.repeated,
             solution: optimum.motion,
         }
     }

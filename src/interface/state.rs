@@ -29,6 +29,9 @@ pub enum State {
     },
     /// Anything, in motion or at rest; a goal only.
     Free,
+    /// The start, which is sought: the motion is periodic, and its [`Control::start`](crate::interface::Control::start) is where the solver
+    /// begins; a goal only.
+    Periodic,
 }
 
 impl State {
@@ -68,6 +71,7 @@ impl State {
                 of_joints(values.collect())
             }
             Self::Free => BoundaryState::Free,
+            Self::Periodic => BoundaryState::Periodic,
             Self::Places { markers, bodies } => {
                 for (marker, place) in markers {
                     let finite = place.iter().flatten().all(|x| x.is_finite());

@@ -33,6 +33,8 @@ pub enum Mark {
     Ring,
     /// A disc.
     Disc,
+    /// Two crossed lines.
+    Cross,
 }
 
 impl Series {
@@ -316,6 +318,9 @@ impl PlotFrame<'_, '_> {
     }
 }
 
+/// Half of the side of the square that a cross fills, in points.
+const ARM: f64 = 3.6;
+
 /// Line and marks of a series along places on the sheet.
 fn trace(canvas: &Canvas<'_>, places: &[CanvasPoint], series: &Series) {
     if let Some(dash) = series.line {
@@ -331,6 +336,13 @@ fn trace(canvas: &Canvas<'_>, places: &[CanvasPoint], series: &Series) {
             Mark::None => {}
             Mark::Ring => canvas.disc(*place, 3.4, style::PAPER, rim),
             Mark::Disc => canvas.disc(*place, 3.0, series.colour, rim),
+            Mark::Cross => {
+                for turn in [1.0, -1.0] {
+                    let [x, y] = *place;
+                    let arm = [[x - ARM, y - turn * ARM], [x + ARM, y + turn * ARM]];
+                    canvas.line(&arm, rim);
+                }
+            }
         }
     }
 }

@@ -56,6 +56,8 @@ pub struct Run<'a> {
     pub goal: Option<&'a [Pose]>,
     /// Places in mm where markers were to end, with their indices.
     pub targets: &'a [(usize, Vector3<f64>)],
+    /// Places in mm that markers were to pass on the way, with their indices.
+    pub waypoints: &'a [(usize, Vector3<f64>)],
     /// Texts of the page; none where no page is wanted.
     pub page: Option<&'a PageContent>,
 }
@@ -129,6 +131,7 @@ impl<'a> Run<'a> {
             origin,
             goal: None,
             targets: &[],
+            waypoints: &[],
             page: None,
         }
     }

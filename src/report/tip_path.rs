@@ -33,26 +33,26 @@ fn plane<'a>(points: impl Iterator<Item = &'a Vector3<f64>>) -> [usize; 2] {
     }
 }
 
-/// `tip_path.svg`: the motion of each marker under each named trajectory, with its start and end.
+/// `tip_path.svg`: the motion of each marker under each named trajectory, with its start and end, and the places that it was to pass.
 ///
 /// The last trajectory is the one that matters: drawn strong and on top of the others, below what its markers were to follow, dashed.
 pub fn svg(
     system: &System,
     trajectories: &[(&str, &Trajectory)],
-    tracked: &[Tracked],
+    (tracked, waypoints): (&[Tracked], &[(usize, Vector3<f64>)]),
     view: Viewpoint,
     origin: &Origin,
 ) -> String {
     let all = trajectories.iter().flat_map(|(_, one)| &one.marks);
     let plane = view.plane().unwrap_or_else(|| plane(all.flatten()));
-    plot(system, trajectories, tracked, plane).svg(origin)
+    plot(system, trajectories, (tracked, waypoints), plane).svg(origin)
 }
 
 /// The paths in the plane of two axes, horizontal first.
 pub(super) fn plot(
     system: &System,
     trajectories: &[(&str, &Trajectory)],
-    tracked: &[Tracked],
+    (tracked, waypoints): (&[Tracked], &[(usize, Vector3<f64>)]),
     [horizontal, vertical]: [usize; 2],
 ) -> LinePlot {
     let paths: Vec<_> = trajectories
@@ -96,6 +96,11 @@ pub(super) fn plot(
             let curve = Series::curve(name, points, style::INK);
             series.push(curve.dashed(Dash::Dashed));
         }
+    }
+    if !waypoints.is_empty() {
+        let places = waypoints.iter().map(|(_, place)| flat(place)).collect();
+        let crosses = Series::curve("to pass", places, style::INK);
+        series.push(crosses.marked(Mark::Cross).unjoined());
     }
     for (name, points, mark) in [("start", starts, Mark::Ring), ("end", ends, Mark::Disc)] {
         series.push(

@@ -246,6 +246,7 @@ fn as_control(task: Task, system: &System) -> Control {
         given: BTreeMap::new(),
         course: None,
         parameters: Vec::new(),
+        seeks_hold: false,
         hold: Default::default(),
         objective: Objective {
             effort: 1.0,

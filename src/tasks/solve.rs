@@ -16,6 +16,7 @@ use crate::workflow::accuracy::{Accuracy, AccuracyTarget, Refined};
 use crate::workflow::afterwards::Afterwards;
 use crate::workflow::domain::{self, Outside};
 use crate::workflow::final_values::{FinalValue, final_values};
+use crate::workflow::found_hold;
 use crate::workflow::further::is_unreached;
 use crate::workflow::grids::optimise_to;
 use crate::workflow::hold_check::{self, free_end};
@@ -23,6 +24,7 @@ use crate::workflow::infeasible::explain;
 use crate::workflow::memory;
 use crate::workflow::motion::{discrete_trajectory, trajectory};
 use crate::workflow::optimum::{Optimum, SolveLimits};
+use crate::workflow::period::Repeated;
 use crate::workflow::refine_until_reproduced::{RefinedOptimum, reproduced};
 use crate::workflow::remark::Remarks;
 use crate::workflow::resimulate::Resimulation;
@@ -59,6 +61,8 @@ pub struct SolveResult {
     pub exchange: EnergyExchange,
     /// Deviations from the references of the objective.
     pub tracking: Vec<Tracked>,
+    /// Values at waypoints for which costs ask.
+    pub waypoint_values: Vec<FinalValue>,
     /// Values at the end for which final costs ask.
     pub final_values: Vec<FinalValue>,
     /// Muscles and blocks outside the domain of their material.
@@ -95,10 +99,12 @@ pub fn solve(
     let discrete = discrete_trajectory(model, &optimum.motion);
     let trajectory = trajectory(model, &optimum.motion);
     let held = boundary.rest.each_ref().map(Option::as_deref);
+    let [waypoint_values, final_values] = final_values(&model.system, control, &trajectory);
     let mut result = SolveResult {
         exchange: EnergyExchange::new(&model.system, &trajectory, held),
         tracking: followed(&optimum, control, &trajectory),
-        final_values: final_values(&model.system, control, &trajectory),
+        waypoint_values,
+        final_values,
         outside: domain::records(&out_of_domain(model, &discrete)),
         remarks: Remarks::default(),
         optimum,
@@ -181,8 +187,18 @@ fn remarks(
     remarks.note("refined_grid", refined);
     remarks.warn("coarse_intervals", tested.and_then(Resimulation::warning));
     remarks.warn("goal_not_held", not_kept.into_iter().chain(left_goal));
+    let repeated = optimum.repeated.as_ref();
+    remarks.warn("not_periodic", repeated.and_then(Repeated::warning));
+    remarks.note("periodic", repeated.and_then(Repeated::note));
     remarks.warn("optimality_gap", optimum.wide.clone());
     remarks.note("free_end", free_end(control));
+    if control.seeks_hold && result.verdict.is_solved {
+        let held = optimum.boundary.rest[1].as_deref();
+        remarks.note(
+            "hold",
+            held.map(|held| found_hold::note(&optimum.model, held)),
+        );
+    }
     remarks.note("linear_solver", optimum.solution.linear.note());
     if is_unreached(&optimum.solution) {
         remarks.note("infeasible", explain(control, optimum));
@@ -197,6 +213,7 @@ fn remarks(
         stops::notes(&optimum.model.system, &result.trajectory),
     );
     remarks.note("tracking", tracking_messages::notes(&result.tracking));
+    remarks.note("waypoint_value", ends(&result.waypoint_values));
     remarks.note("final_value", ends(&result.final_values));
     remarks
 }

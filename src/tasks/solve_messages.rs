@@ -2,7 +2,7 @@
 
 use crate::control::Carried;
 use crate::ipopt::Status;
-use crate::math::significant;
+use crate::math::{shortest, significant};
 use crate::model::Model;
 use crate::workflow::final_values::FinalValue;
 use crate::workflow::optimum::Restarted;
@@ -84,7 +84,7 @@ pub(crate) fn restarted(restarted: Restarted) -> String {
     format!("found from {from}; the first start ended {first}")
 }
 
-/// Lists the final values of a motion for which final costs ask; of many the farthest in their own unit.
+/// Lists the values of a motion at its end or at waypoints for which costs ask; of many the farthest in their own unit.
 pub(crate) fn ends(values: &[FinalValue]) -> Vec<String> {
     let mut order: Vec<&FinalValue> = values.iter().collect();
     if order.len() > TOLD {
@@ -93,21 +93,29 @@ pub(crate) fn ends(values: &[FinalValue]) -> Vec<String> {
     let mut lines: Vec<String> = order.iter().take(TOLD).map(|one| end(one)).collect();
     if order.len() > TOLD {
         let more = order.len() - TOLD;
+        let (kind, key) = match values[0].time {
+            Some(_) => ("values at waypoints", "waypoint_values"),
+            None => ("final values", "final_values"),
+        };
         lines.push(format!(
-            "{more} more final values are nearer, see \"final_values\" in summary.json"
+            "{more} more {kind} are nearer, see \"{key}\" in summary.json"
         ));
     }
     lines
 }
 
-/// Describes one final value: lengths in mm, angles in degrees.
+/// Describes one value: lengths in mm, angles in degrees.
 fn end(value: &FinalValue) -> String {
     let shown = |number: f64| match value.unit {
         "m" => format!("{} mm", significant(1e3 * number, 4)),
         _ => format!("{}°", significant(number.to_degrees(), 4)),
     };
+    let (at, cost) = match value.time {
+        Some(time) => (format!("passes at {} s", shortest(time, 4)), "waypoint"),
+        None => ("ends".to_owned(), "final cost"),
+    };
     format!(
-        "{} ends at {}, {} from the {} of its final cost",
+        "{} {at} at {}, {} from the {} of its {cost}",
         value.name,
         shown(value.reached),
         shown(value.deviation),

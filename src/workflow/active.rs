@@ -38,6 +38,7 @@ pub fn active(
     for (i, &column) in program.unknowns().columns.iter().enumerate() {
         let side = reached(x[i], bounds.lower[i], bounds.upper[i]);
         match (column, column.of(&model.variables).role) {
+            (Column::Interval { k, .. }, _) if k >= program.intervals() => {}
             (_, Role::Voltage | Role::Load) => {
                 let variable = column.of(&model.variables);
                 let source = variable.source.expect("an input of a source");

@@ -54,7 +54,7 @@ pub(crate) fn afterwards(
         BoundaryState::Markers { hold, .. } => hold.is_none(),
         BoundaryState::JointAngles { .. } => true,
         _ => false,
-    };
+    } && !control.seeks_hold;
     let n = optimal.intervals();
     let end = Start {
         z: optimal.z.get(n)?.clone(),
@@ -159,7 +159,7 @@ impl Afterwards {
         );
         Some(format!(
             "nothing holds the goal: with the last inputs held on for {} s, {}; for an end that stays take \"rest_at_voltages\", or \
-             \"markers\" with \"hold\"",
+             \"markers\" or \"joint_angles\" with \"hold\" (\"hold\": \"find\" seeks its voltages)",
             significant(self.seconds, 3),
             far.join(", ")
         ))

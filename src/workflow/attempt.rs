@@ -11,11 +11,13 @@ use crate::model::{Model, System};
 use crate::nlp::Nlp;
 use crate::workflow::active::{Active, active};
 use crate::workflow::error::WorkflowError;
+use crate::workflow::found_hold;
 use crate::workflow::gap;
 use crate::workflow::iterate::Iterate;
 use crate::workflow::motion::solved;
 use crate::workflow::optimum::{Optimum, Shortest, SolveLimits};
 use crate::workflow::ordering::ordering;
+use crate::workflow::period;
 use crate::workflow::phase::phase;
 use crate::workflow::prepare::{Counted, Prepared, prepare};
 use crate::workflow::resimulate::{Resimulation, resimulate};
@@ -78,9 +80,9 @@ pub(crate) fn attempt(
     let motion = final_motion(&model, &boundary, (&discrete, costates), &solution);
     let point = FinalPoint::new(&mut program, &solution, &model, control);
     drop(program);
-    let (model, boundary, sought) = of_motion(system, control, (model, boundary), &motion)?;
+    let (model, mut boundary, sought) = of_motion(system, control, (model, boundary), &motion)?;
     let verified = match solution.status.is_solved() {
-        true => Verification::new(&model, &boundary, control, (&discrete, &motion)),
+        true => Verification::new(&model, &mut boundary, control, (&discrete, &motion)),
         false => Verification::default(),
     };
     Ok(Optimum {
@@ -107,6 +109,7 @@ pub(crate) fn attempt(
         gap: point.gap,
         wide: point.wide,
         afterwards: None,
+        repeated: None,
     })
 }
 
@@ -128,13 +131,14 @@ fn final_motion(
     (discrete, costates): (&DiscreteTrajectory, Costates),
     solution: &SolverResult,
 ) -> Solution {
+    let motion = solved(model, discrete, Some(costates));
     Solution {
-        hold: boundary.rest[1].clone(),
+        hold: boundary.rest[1].clone().or(motion.hold.clone()),
         barrier: match solution.status.is_solved() {
             true => None,
             false => solution.iterations.last().map(|last| last.mu),
         },
-        ..solved(model, discrete, Some(costates))
+        ..motion
     }
 }
 
@@ -204,12 +208,15 @@ struct Verification {
 }
 
 impl Verification {
+    /// Completes start and goal by what was found with the motion, and verifies it from there.
     fn new(
         model: &Model,
-        boundary: &BoundaryConditions,
+        boundary: &mut BoundaryConditions,
         control: &Control,
         (discrete, motion): (&DiscreteTrajectory, &Solution),
     ) -> Self {
+        found_hold::keep(model, boundary, discrete);
+        period::begin(control, boundary, motion);
         let reversed = reversed_muscle(model, discrete);
         if reversed.is_some() {
             return Self {

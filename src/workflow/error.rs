@@ -94,6 +94,7 @@ impl WorkflowError {
                 (*place, reason.to_owned())
             }
             BoundaryError::OtherEnd { reason, .. } => ("start.end_of", reason.clone()),
+            BoundaryError::Hold { reason } => ("goal.hold", reason.clone()),
             BoundaryError::Parameter { name, reason } => {
                 ("free", format!("parameter \"{name}\": {reason}"))
             }

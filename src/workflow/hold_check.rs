@@ -16,7 +16,7 @@ pub(crate) fn check(
     model: &Model,
     boundary: &BoundaryConditions,
 ) -> Result<(), WorkflowError> {
-    if control.hold == Hold::Reported {
+    if control.hold == Hold::Reported || control.seeks_hold {
         return Ok(());
     }
     let refused = |key: &str, reason: String| {
@@ -27,7 +27,7 @@ pub(crate) fn check(
     };
     if boundary.rest[1].is_none() {
         let reason = "the final state must be held, but the goal names no voltages that hold it: take \"rest_at_voltages\", or \
-                      \"markers\" with \"hold\"";
+                      \"markers\" or \"joint_angles\" with \"hold\"";
         return refused("goal", reason.to_owned());
     }
     if let Some((name, reason)) = beyond_bounds(control, model) {

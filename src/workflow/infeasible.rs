@@ -168,7 +168,7 @@ fn distances(
             all.map(|(&j, &angle)| of_joint(j, angle, found[j]))
                 .collect()
         }
-        BoundaryState::Free | BoundaryState::EndOf(_) => Vec::new(),
+        BoundaryState::Free | BoundaryState::Periodic | BoundaryState::EndOf(_) => Vec::new(),
         BoundaryState::RestAtVoltages(..) => {
             let Some(rest) = &boundary.goal.rest else {
                 return Vec::new();

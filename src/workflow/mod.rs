@@ -4,7 +4,7 @@
 //!   phase of work; `remark`: warnings and notes.
 //! - `grids`, `accuracy`, `estimate`: as finely as an accuracy needs.
 //! - `resimulate`: verification of an optimum, by the `distance` of motions; `refine_until_reproduced`, `verified`: finer grids where it fails, by `grid_solves`; `gap`: duality gap of its
-//!  objective; `held`, `hold_check`, `afterwards`: its end; `final_values`: deviations from final costs.
+//!  objective; `held`, `hold_check`, `found_hold`, `afterwards`, `period`: its end; `final_values`: deviations from final costs.
 //! - `recentre`: a motion with other charts.
 //! - `further`, `retry_displaced`, `shortest`, `combined`, `infeasible`, `active`, `violations`: attempts before a problem is called infeasible, and the explanation.
 //! - `effects`, `reasons`, `stopwatch`: terms of a model, their reasons and times; `memory`: a refusal of more than the machine has.
@@ -25,6 +25,7 @@ pub(crate) mod effects;
 mod error;
 pub mod estimate;
 pub(crate) mod final_values;
+pub(crate) mod found_hold;
 pub(crate) mod further;
 pub(crate) mod gap;
 mod grid_solves;
@@ -40,6 +41,7 @@ pub(crate) mod optimise;
 pub(crate) mod optimum;
 mod ordering;
 pub mod parallel_map;
+pub(crate) mod period;
 pub(crate) mod phase;
 pub(crate) mod prepare;
 pub(crate) mod reasons;
@@ -75,6 +77,7 @@ pub use iterate::Iterate;
 pub use motion::{solved, trajectory};
 pub use optimise::optimise;
 pub use optimum::{Optimum, Restarted, Shortest, SolveLimits};
+pub use period::Repeated;
 pub use phase::listen_to_phases;
 pub use prepare::Counted;
 pub use reasons::{Absent, absent};

@@ -3,7 +3,7 @@
 use std::collections::BTreeMap;
 
 use crate::control::{Costates, Solution};
-use crate::dynamics::trajectory::Trajectory;
+use crate::dynamics::trajectory::{Trajectory, by_source};
 use crate::dynamics::{DiscreteTrajectory, last_momentum};
 use crate::math::Vector;
 use crate::model::system::Joint;
@@ -50,7 +50,7 @@ pub(crate) fn solved_of(
         meshes: meshes(model),
         multiplier_time: model.multiplier_time,
         voltages: motion.voltages,
-        hold: None,
+        hold: discrete.held.as_ref().map(|row| by_source(model, row)),
         potentials: potentials(model, discrete),
         parameters: parameters(model, discrete),
         costates,

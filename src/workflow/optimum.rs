@@ -7,6 +7,7 @@ use crate::model::Model;
 use crate::workflow::active::Active;
 use crate::workflow::afterwards::{Afterwards, afterwards};
 use crate::workflow::cause::Cause;
+use crate::workflow::period::{Repeated, repeated};
 use crate::workflow::resimulate::Resimulation;
 use crate::workflow::violations::Violation;
 use std::time::Instant;
@@ -76,6 +77,8 @@ pub struct Optimum {
     pub(crate) wide: Option<String>,
     /// The motion after a goal that no voltages are known to hold.
     pub afterwards: Option<Afterwards>,
+    /// A periodic motion under the same inputs again.
+    pub repeated: Option<Repeated>,
 }
 
 impl Optimum {
@@ -84,10 +87,12 @@ impl Optimum {
         self.meets_equations() && self.cause().is_none()
     }
 
-    /// Holds the voltages of the goal after its end, or those of the last interval where none are known, if it is reproduced.
+    /// Holds the voltages of the goal after its end, or those of the last interval where none are known, if it is reproduced; repeats a
+    /// periodic motion.
     pub(crate) fn hold(&mut self, control: &Control) {
         if self.is_solved() {
             self.afterwards = afterwards(&self.model, control, &self.motion);
+            self.repeated = repeated(&self.model, control, &self.boundary.start, &self.motion);
         }
         let Self {
             model,

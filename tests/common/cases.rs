@@ -1,5 +1,6 @@
 //! A list of control problems that together call for every effect, joint, limit, goal and objective.
 
+use super::ends::ends;
 pub use super::limited::{all_limits, charge_limits};
 use super::pairs::pairs;
 use super::remembering::{remembering, remembering_blocks};
@@ -52,6 +53,7 @@ pub fn control(system: &System, intervals: usize) -> Control {
         given: BTreeMap::new(),
         course: None,
         parameters: Vec::new(),
+        seeks_hold: false,
         hold: Default::default(),
         objective: Objective {
             effort: 1.0,
@@ -166,7 +168,7 @@ pub fn cases() -> Vec<Case> {
         duration: 0.3,
         ..Objective::default()
     };
-    vec![
+    let mut list = vec![
         case("pair at rest", trunk(1), &|c| {
             c.goal = BoundaryState::RestAtVoltages(hold(1), Rest::Everything);
         }),
@@ -381,5 +383,7 @@ pub fn cases() -> Vec<Case> {
                 hold: None,
             };
         }),
-    ]
+    ];
+    list.extend(ends());
+    list
 }

@@ -4,6 +4,7 @@
 
 pub mod cases;
 pub mod counting;
+pub mod ends;
 pub mod force;
 pub mod limited;
 pub mod loaded;

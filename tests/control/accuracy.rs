@@ -59,6 +59,7 @@ fn double_integrator(intervals: usize) -> Attempt<usize> {
         given: Default::default(),
         course: None,
         parameters: Vec::new(),
+        seeks_hold: false,
         hold: Default::default(),
         // h is in ms and the effort in s.
         objective: Objective {

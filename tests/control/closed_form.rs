@@ -60,6 +60,7 @@ fn optimum(
         given: BTreeMap::new(),
         course: None,
         parameters: Vec::new(),
+        seeks_hold: false,
         hold: Default::default(),
         // h is in ms and the effort in s.
         objective: Objective {

@@ -41,6 +41,7 @@ fn problem(name: &str, coordinates: Coordinates) -> Control {
         given: BTreeMap::new(),
         course: None,
         parameters: Vec::new(),
+        seeks_hold: false,
         hold: Default::default(),
         objective,
         limits: Vec::new(),

@@ -6,8 +6,10 @@ use proboscis::control::problem::{Control, Duration, Task, Waypoint};
 use proboscis::files::read_problem;
 use proboscis::ipopt::Status;
 use proboscis::prelude::{Body, GROUND, Joint, Load, State, System, X};
-use proboscis::workflow::Optimum;
+use proboscis::tasks::{SolveRequest, solve};
+use proboscis::workflow::{Iterate, Optimum};
 use std::collections::BTreeMap;
+use std::ops::ControlFlow;
 use std::path::Path;
 
 /// 1 m at half time and back, by the coordinate of the joint.
@@ -63,6 +65,68 @@ fn a_free_duration_has_waypoints_at_its_parts() {
     let times = &optimum.motion.times;
     assert!((times[20] - 2000.0).abs() < 1e-3, "{}", times[20]);
     assert!((optimum.motion.joints[10][0] - 1000.0).abs() < 1e-6);
+}
+
+#[test]
+fn a_weight_trades_the_distance_for_effort_as_its_closed_form_with_order_two() {
+    // To pass d on the way costs 192 d² N² s, and to miss 1 m by the rest W (1 − d)²: with W = 64, d = 1/4 and 48 in all.
+    for coordinates in ["reduced", "redundant"] {
+        let errors = [20, 40].map(|intervals| {
+            let (system, mut control) = there_and_back(intervals, coordinates);
+            let waypoints = std::mem::take(&mut control.waypoints);
+            control.objective.quantities = waypoints[0].costs(64e-6);
+            let optimum = solved(&system, &control);
+            assert_eq!(optimum.solution.status, Status::Solved);
+            let passed = optimum.motion.joints[intervals / 2][0];
+            assert!((passed - 250.0).abs() < 3.0, "{passed}");
+            optimum.solution.objective - 48.0
+        });
+        assert!(errors[0].abs() > 1e-3, "{errors:?}");
+        let ratio = errors[0] / errors[1];
+        assert!((ratio - 4.0).abs() < 0.2, "{coordinates}: {errors:?}");
+    }
+}
+
+#[test]
+fn what_a_waypoint_that_is_a_cost_misses_is_told() {
+    let path = Path::new(env!("CARGO_MANIFEST_DIR")).join("problems/elephant_trunk.json");
+    let near = r#"control.waypoints=[{ "time": "0.1 s", "weight": 1e-3, "markers": { "tip": ["20 mm", null, "40 mm"] }, "joint_angles": { "joint1": "5 deg" } }]"#;
+    let changes = [near.to_owned(), "control.intervals=40".into()];
+    let loaded = read_problem(&path, &changes).unwrap();
+    let Task::Control(control) = loaded.task else {
+        panic!("a problem of control");
+    };
+    assert!(control.waypoints.is_empty() && control.objective.quantities.len() == 3);
+    let request = SolveRequest::default();
+    let go_on = &mut |_: usize, _: &Iterate<'_>| ControlFlow::Continue(());
+    let result = solve(&loaded.system, &control, request, go_on).unwrap();
+    assert!(result.verdict.is_solved);
+    assert!(result.final_values.is_empty());
+    let values = &result.waypoint_values;
+    let names: Vec<&str> = values.iter().map(|value| value.name.as_str()).collect();
+    assert_eq!(names, ["tip_x", "tip_z", "joint1"]);
+    let optimum = &result.optimum;
+    // 0.1 s lies between the instants 13 and 14.
+    let map = &optimum.model.action.map;
+    let tip = map.placed(&optimum.motion.z[13]).x[optimum.model.markers[0]];
+    for (value, (at, asked)) in values.iter().zip([(tip.x, 20.0), (tip.z, 40.0)]) {
+        assert!((1e3 * value.reached - at).abs() < 1e-9, "{value:?} {at}");
+        assert!((value.deviation - (value.reached - 1e-3 * asked).abs()).abs() < 1e-12);
+        assert!(
+            value.deviation > 1e-6 && value.time == Some(0.0975),
+            "{value:?}"
+        );
+    }
+    let lines: Vec<String> = result.remarks.lines().collect();
+    let told = |words: &str| lines.iter().any(|line| line.contains(words));
+    assert!(
+        told("tip_x passes at 0.0975 s at ") && told("mm of its waypoint"),
+        "{lines:?}"
+    );
+    assert!(
+        told("lies between two instants: it is reached at 0.0975 s"),
+        "{lines:?}"
+    );
 }
 
 fn trunk(waypoints: &str) -> Optimum {
@@ -148,6 +212,16 @@ fn wrong_waypoints_have_one_message_with_their_place() {
             "joint_angles.joint9",
             "a joint",
         ),
+        (
+            r#"{ "part": 0.5, "weight": 0, "joint_angles": { "joint1": 0 } }"#,
+            "waypoints[0].weight",
+            "a positive weight",
+        ),
+        (
+            r#"{ "part": 0.5, "weight": 1, "orientations": { "segment6": { "axis": [0, 0, 1], "angle": 0.1 } } }"#,
+            "waypoints[0].orientations",
+            "exactly",
+        ),
     ] {
         let change = format!("control.waypoints=[{waypoint}]");
         assert_refused("elephant_trunk", &change, place, words);
@@ -172,6 +246,16 @@ fn a_program_passes_a_place_too() {
         .solve(&system)
         .unwrap();
     assert!((optimum.objective - 192.0).abs() < 5.0);
+    let near = proboscis::Control::over(1000.0, 20)
+        .load_within(motor, -100.0..=100.0)
+        .effort(1.0)
+        .start(State::Reference)
+        .goal(State::Joints(vec![(slide, 0.0)]))
+        .joint_passes_near(slide, 1000.0, 0.5, 64e-6)
+        .solve(&system)
+        .unwrap();
+    assert!((near.objective - 48.0).abs() < 1.5, "{}", near.objective);
+    assert!((near.waypoint_values[0].deviation - 0.75).abs() < 3e-3);
     let wrong = proboscis::Control::over(1000.0, 20)
         .load_within(motor, -100.0..=100.0)
         .effort(1.0)

@@ -131,6 +131,7 @@ fn the_sum_is_the_trapezoidal_rule() {
                     * match cost.during {
                         During::Motion => pairs.sum::<f64>() * motion.times[1] / 1e3,
                         During::End => squares[motion.z.len() - 1],
+                        During::At(_) => unreachable!("no waypoint"),
                     };
             }
             let mut without = control.clone();

@@ -17,6 +17,8 @@ fn names<'n>(names: &'n [String], begin: &str) -> Vec<&'n str> {
 /// Numbers of potentials and given voltages that were seen.
 fn check(system: &System, control: &Control) -> [usize; 2] {
     let (intervals, h) = (control.intervals, 10.0);
+    // Where inputs that hold the goal are sought, one interval more has inputs and an equilibrium.
+    let held = usize::from(control.seeks_hold);
     let (model, boundary) = BoundaryConditions::resolve(system, control, h).unwrap();
     let initial = guess(&model, &boundary, control, h, None);
     let program = Transcription::of_any(&model, &boundary, control, &initial).unwrap();
@@ -41,7 +43,7 @@ fn check(system: &System, control: &Control) -> [usize; 2] {
         };
         format!("{role} {} in interval {k}", source.name)
     };
-    let sought = (0..intervals).flat_map(|k| {
+    let sought = (0..intervals + held).flat_map(|k| {
         let open = sources.iter().filter(|s| !control.given.contains_key(s));
         open.map(move |&s| voltage(k, s))
     });
@@ -58,7 +60,7 @@ fn check(system: &System, control: &Control) -> [usize; 2] {
     let potentials = names(&columns, "potential of ");
     let laws = names(&rows, "Gauss's law of ");
     let count = model.action.intervals.scalars - sources.len();
-    assert_eq!(potentials.len(), count * intervals);
+    assert_eq!(potentials.len(), count * (intervals + held));
     let of = |list: Vec<&str>, begin: &str| {
         let rest = |name: &str| name[begin.len()..].to_owned();
         list.into_iter().map(rest).collect::<Vec<_>>()
@@ -73,9 +75,10 @@ fn check(system: &System, control: &Control) -> [usize; 2] {
     let goal = &boundary.goal.coordinates[..n];
     let open = goal.iter().filter(|value| value.is_none()).count();
     let multipliers = names(&columns, "multiplier of ").len();
-    // A free end has no balance for a constraint force.
-    let is_free = control.goal == BoundaryState::Free;
-    assert_eq!(multipliers, (intervals + usize::from(!is_free)) * m);
+    // A free end and that of a periodic motion have no balance for a constraint force.
+    let is_free = matches!(control.goal, BoundaryState::Free | BoundaryState::Periodic);
+    assert_eq!(multipliers, (intervals + held + usize::from(!is_free)) * m);
+    assert_eq!(names(&rows, "equilibrium at the goal, ").len(), held * n);
     let balances = names(&rows, "rest at the goal, ").len();
     assert_eq!(balances == 0, is_free, "{balances} balances at the end");
     // At the start, and where the goal gives all, nothing is left for a constraint to decide.

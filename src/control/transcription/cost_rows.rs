@@ -3,12 +3,13 @@
 //! At instant k, t = k h, a cost with the deviation e = m − r(t) is the summand
 //!
 //! ```text
-//! f_k = w φ e²,     φ = ω_k τ of an integral (trapezoidal rule: ω = ½ at both ends, else 1; τ = h in s),  φ = 1 at the end.
+//! f_k = w φ e²,     φ = ω_k τ of an integral (trapezoidal rule: ω = ½ at both ends, else 1; τ = h in s),  φ = 1 at the end and at a waypoint.
 //! ```
 
 use crate::control::quantity_cost::{CostFunction, During, QuantityCost};
 use crate::control::transcription::limit_rows::Site;
 use crate::control::transcription::units::MILLISECOND;
+use crate::control::waypoint::instant_at;
 use crate::coordinates::Reduced;
 use crate::functional::{Outer, Sample};
 use crate::model::{Model, Size};
@@ -61,6 +62,10 @@ pub(super) fn cost_rows(
         let at = match cost.during {
             During::Motion => 0..count,
             During::End => count - 1..count,
+            During::At(part) => {
+                let k = instant_at(part, intervals) + 1 - site.sides();
+                k..k + 1
+            }
         };
         Some(CostRow {
             cost: cost.clone(),
@@ -93,7 +98,7 @@ pub(super) fn costs_size(model: &Model, costs: &[QuantityCost], duration: f64) -
             };
         let time = match cost.during {
             During::Motion => duration,
-            During::End => 1.0,
+            During::End | During::At(_) => 1.0,
         };
         match cost.function {
             CostFunction::Square { .. } => cost.weight * time * deviation * deviation,
@@ -113,7 +118,7 @@ impl CostRow {
                 let part = if is_end { 0.5 } else { 1.0 } * MILLISECOND;
                 [part * h, part]
             }
-            During::End => [1.0, 0.0],
+            During::End | During::At(_) => [1.0, 0.0],
         };
         match &self.cost.function {
             CostFunction::Square { reference } => {

@@ -1,6 +1,6 @@
 //! Costs of quantities, their gradients, and their derivatives with the interval length.
 
-use crate::control::numbering::Column;
+use crate::control::numbering::{Column, Twin};
 use crate::control::transcription::Transcription;
 use crate::control::transcription::cost_rows::Summand;
 use crate::control::transcription::kinematic_state::Placed;
@@ -69,8 +69,13 @@ impl Transcription<'_> {
     }
 
     /// Adds the gradients in the rows to those by the variables.
-    pub(super) fn gather_cost_gradient(&self, grad: &mut [f64]) {
+    pub(super) fn gather_cost_gradient(&mut self, grad: &mut [f64]) {
         let (stride, coordinates) = (self.stride(), self.model.action.map.unknowns());
+        if let Some(Twin { instant, of, .. }) = self.layout.twin {
+            let (before, twin) = self.workspace.rows.split_at_mut(instant * stride);
+            let sums = before[of * stride..][..coordinates].iter_mut();
+            sums.zip(twin).for_each(|(sum, row)| *sum += *row);
+        }
         let of_interval = |k: usize, s: usize| self.workspace.rows[k * stride + coordinates + s];
         let columns = self.layout.unknowns.columns.iter();
         let columns = columns.zip(&self.variable_scales);

@@ -3,9 +3,11 @@
 use std::ops::Range;
 
 use crate::control::boundary_conditions::{BoundaryConditions, Rests};
-use crate::control::numbering::{Column, Numbering, Row};
-use crate::control::problem::{Control, Duration};
+use crate::control::numbering::{Column, Numbering, Row, Twin};
+use crate::control::problem::{BoundaryState, Control, Duration};
+use crate::control::span::Span;
 use crate::control::transcription::limit_rows::{LimitRow, Site, limit_rows};
+use crate::coordinates::{Configuration, CoordinateMap};
 use crate::functional::Horizon;
 use crate::model::{Model, Role};
 
@@ -15,7 +17,12 @@ const TWO_STRETCHES: usize = 16;
 /// Variables and rows of the program of a control problem on a number of intervals.
 #[derive(Clone, Debug)]
 pub(in crate::control) struct Layout {
+    /// All intervals: those of the motion and, where the inputs that hold its goal are sought, one at rest behind them.
     pub(super) intervals: usize,
+    /// Intervals of the motion: the instant at which it ends.
+    pub(in crate::control) end: usize,
+    /// The instant with the coordinates of another one.
+    pub(super) twin: Option<Twin>,
     pub(super) horizon: Horizon,
     pub(in crate::control) unknowns: Numbering,
     pub(super) limits: Vec<LimitRow>,
@@ -24,13 +31,20 @@ pub(in crate::control) struct Layout {
 }
 
 impl Layout {
-    /// The layout on `intervals` intervals, whatever number the problem names.
+    /// The layout of a motion of `end` intervals, whatever number the problem names.
     pub(in crate::control) fn new(
         model: &Model,
         boundary: &BoundaryConditions,
         control: &Control,
-        intervals: usize,
+        end: usize,
     ) -> Self {
+        let intervals = end + usize::from(control.seeks_hold);
+        let is_closed = control.goal == BoundaryState::Periodic;
+        let twin = (control.seeks_hold || is_closed).then_some(Twin {
+            instant: intervals,
+            of: if is_closed { 0 } else { end },
+            is_closed,
+        });
         let map = &model.action.map;
         let goal = &boundary.goal.coordinates;
         let ends_anyhow = boundary.goal.rests == Rests::Nothing;
@@ -38,10 +52,11 @@ impl Layout {
             let variable = column.of(&model.variables);
             match (column, variable.role) {
                 (Column::Instant { k, i }, Role::Coordinate) => {
-                    k == 0 || (k == intervals && goal[i].is_some()) || model.is_prescribed(i)
+                    let is_start = k == 0 && !is_closed;
+                    is_start || (k == end && goal[i].is_some()) || model.is_prescribed(i)
                 }
                 // No balance at the end, so nothing that a constraint force would balance.
-                (Column::Instant { k, .. }, _) => k == intervals && ends_anyhow,
+                (Column::Instant { k, .. }, _) => k == end && ends_anyhow,
                 (Column::Interval { .. }, _) => variable
                     .source
                     .is_some_and(|source| control.is_given(source)),
@@ -62,13 +77,18 @@ impl Layout {
             Rests::Nothing => false,
         };
         let rests = |i: usize| is_in_rest(i) && !model.is_memory(i);
-        let is_balanced =
-            |k: usize, i: usize| (k < intervals || rests(i)) && !model.is_prescribed(i);
-        let mut unknowns = Numbering::new(&model.variables, intervals, is_given, is_balanced);
+        let is_balanced = |k: usize, i: usize| (k != end || rests(i)) && !model.is_prescribed(i);
+        let all = (intervals, twin);
+        let mut unknowns = Numbering::new(&model.variables, all, is_given, is_balanced);
+        let span = Span {
+            end,
+            intervals,
+            is_closed,
+        };
         let limits = limit_rows(
             model,
             (&boundary.limits.list, &boundary.rest),
-            intervals,
+            span,
             &unknowns,
         );
         let mut limit_rows = Vec::new();
@@ -80,6 +100,8 @@ impl Layout {
         }
         Self {
             intervals,
+            end,
+            twin,
             horizon: match control.duration {
                 Duration::Given(_) => Horizon::Given,
                 Duration::Free { .. } => Horizon::Free,
@@ -88,6 +110,31 @@ impl Layout {
             limits,
             limit_rows,
         }
+    }
+
+    /// The intervals of the horizon.
+    pub(super) fn span(&self) -> Span {
+        Span {
+            end: self.end,
+            intervals: self.intervals,
+            is_closed: self.is_closed(),
+        }
+    }
+
+    /// Returns true if the motion is periodic.
+    pub(super) fn is_closed(&self) -> bool {
+        self.twin.is_some_and(|twin| twin.is_closed)
+    }
+
+    /// Gives an instant that has the coordinates of another one these, and its charts.
+    pub(super) fn share(&self, instants: &mut [Configuration], map: &CoordinateMap) {
+        let Some(Twin { instant, of, .. }) = self.twin else {
+            return;
+        };
+        let (before, twin) = instants.split_at_mut(instant);
+        let (from, to) = (&before[of].z, &mut twin[0].z);
+        to[..map.coordinates].copy_from_slice(&from[..map.coordinates]);
+        to[map.unknowns()..].copy_from_slice(&from[map.unknowns()..]);
     }
 
     /// Instant at which a long horizon is cut in two.

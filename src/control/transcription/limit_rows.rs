@@ -2,6 +2,8 @@
 
 use crate::control::limits::{BoundedQuantity, When};
 use crate::control::numbering::Numbering;
+use crate::control::span::Span;
+use crate::control::waypoint::instant_at;
 use crate::coordinates::Reduced;
 use crate::functional::{Functional, Measure, Outer};
 use crate::model::{Model, Quantity};
@@ -51,7 +53,7 @@ pub(super) struct InputStep {
     pub(super) slope: f64,
     /// Values at rest before the start and after the end.
     ends: [Option<f64>; 2],
-    intervals: usize,
+    span: Span,
 }
 
 impl InputStep {
@@ -59,7 +61,7 @@ impl InputStep {
         quantity: &Quantity,
         model: &Model,
         rest: &[Option<Vec<f64>>; 2],
-        intervals: usize,
+        span: Span,
     ) -> Option<Self> {
         let Quantity::VoltageStep { source, unit, .. } = *quantity else {
             return None;
@@ -68,7 +70,7 @@ impl InputStep {
             scalar: model.variables.input(source)?,
             slope: 1.0 / unit,
             ends: ends(rest, source),
-            intervals,
+            span,
         })
     }
 
@@ -87,14 +89,15 @@ impl InputStep {
     /// Intervals before which a step is limited, the end counted as one.
     fn at(&self) -> Range<usize> {
         let [first, last] = self.ends.map(|end| usize::from(end.is_some()));
-        1 - first..self.intervals + last
+        let first = first.max(usize::from(self.span.is_closed));
+        1 - first..self.span.intervals + last
     }
 
     /// The step before interval k, of the scalars of all intervals, `count` of each.
     pub(super) fn value(&self, k: usize, scalars: &[f64], count: usize) -> f64 {
         let of = |k: usize| scalars[k * count + self.scalar];
-        let before = k.checked_sub(1).map_or(self.ends[0], |k| Some(of(k)));
-        let after = match k == self.intervals {
+        let before = self.span.before(k).map(of).or(self.ends[0]);
+        let after = match k == self.span.intervals {
             true => self.ends[1],
             false => Some(of(k)),
         };
@@ -104,7 +107,7 @@ impl InputStep {
 
     /// Part of the bounds that holds before interval k.
     pub(super) fn part(&self, k: usize) -> f64 {
-        match k == 0 || k == self.intervals {
+        match self.span.before(k).is_none() || k == self.span.end {
             true => 0.5,
             false => 1.0,
         }
@@ -118,11 +121,11 @@ fn ends(rest: &[Option<Vec<f64>>; 2], source: usize) -> [Option<f64>; 2] {
 }
 
 /// Rows of the bounded quantities over a horizon, with the entries their gradients have. A path limit has no row where start
-/// or goal give all that it reads: there it is checked before.
+/// or goal give all that it reads: there it is checked before. Those of inputs hold behind the end of the motion too.
 pub(super) fn limit_rows(
     model: &Model,
     (list, rest): (&[BoundedQuantity], &[Option<Vec<f64>>; 2]),
-    intervals: usize,
+    span: Span,
     unknowns: &Numbering,
 ) -> Vec<LimitRow> {
     let map = &model.action.map;
@@ -145,32 +148,25 @@ pub(super) fn limit_rows(
         if site == Site::Intervals {
             entries.extend(reads.scalars().into_iter().map(|s| (SCALAR, s)));
         }
-        let step = InputStep::new(&bounded.quantity, model, rest, intervals);
+        let step = InputStep::new(&bounded.quantity, model, rest, span);
         entries.extend(step.map(|step| (BEFORE, step.scalar)));
-        let at = match (bounded.when, site) {
-            (When::Goal, Site::Instants) => intervals..intervals + 1,
-            (When::Goal, Site::Intervals) => intervals - 1..intervals,
-            (When::At(part), _) => {
-                let k = ((part * intervals as f64).round() as usize).clamp(1, intervals);
-                let k = k + 1 - site.sides();
-                k..k + 1
-            }
-            (When::Everywhere | When::Steps, _) => {
-                let everywhere = 0..intervals + 2 - site.sides();
-                let mut all = step.map_or(everywhere, |step| step.at());
-                let is_open = |k: usize| {
-                    let mut entries = entries.iter();
-                    entries.any(|&entry| unknowns.column_of_entry(k, entry).is_some())
-                };
-                while !all.is_empty() && !is_open(all.start) {
-                    all.start += 1;
-                }
-                while !all.is_empty() && !is_open(all.end - 1) {
-                    all.end -= 1;
-                }
-                all
-            }
+        let reads_inputs = !reads.scalars().is_empty();
+        let mut at = match step {
+            Some(step) => step.at(),
+            None => sites((bounded.when, site), span, reads_inputs),
         };
+        if !bounded.when.is_single() {
+            let is_open = |k: usize| {
+                let mut entries = entries.iter();
+                entries.any(|&entry| unknowns.column_of_entry(k, entry).is_some())
+            };
+            while !at.is_empty() && !is_open(at.start) {
+                at.start += 1;
+            }
+            while !at.is_empty() && !is_open(at.end - 1) {
+                at.end -= 1;
+            }
+        }
         let mut vectors: Vec<usize> = Vec::new();
         for vector in reads.vectors() {
             if !vectors.contains(&vector) {
@@ -194,6 +190,27 @@ pub(super) fn limit_rows(
     list.iter().zip(&model.measured).filter_map(row).collect()
 }
 
+/// Instants or intervals at which a quantity is bounded.
+fn sites((when, site): (When, Site), span: Span, reads_inputs: bool) -> Range<usize> {
+    let Span {
+        end,
+        intervals,
+        is_closed,
+    } = span;
+    match (when, site) {
+        (When::Goal, Site::Instants) => end..end + 1,
+        (When::Goal, Site::Intervals) => end - 1..end,
+        (When::At(part), _) => {
+            let k = instant_at(part, end) + 1 - site.sides();
+            k..k + 1
+        }
+        // The last instant of a periodic motion is the first one.
+        (When::Everywhere | When::Steps, Site::Instants) => 0..end + 1 - usize::from(is_closed),
+        (When::Everywhere | When::Steps, Site::Intervals) if reads_inputs => 0..intervals,
+        (When::Everywhere | When::Steps, Site::Intervals) => 0..end,
+    }
+}
+
 /// Factor that brings the values of a quantity near 1.
 fn scale(bounded: &BoundedQuantity, model: &Model) -> f64 {
     match bounded.quantity {
@@ -212,7 +229,7 @@ impl Numbering {
     pub(super) fn column_of_entry(&self, k: usize, (side, i): (usize, usize)) -> Option<usize> {
         match side {
             SCALAR => self.scalar(k, i),
-            BEFORE => self.scalar(k.checked_sub(1)?, i),
+            BEFORE => self.scalar(self.before(k)?, i),
             _ => self.unknown(k + side, i),
         }
     }

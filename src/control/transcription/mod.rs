@@ -108,19 +108,22 @@ impl<'m> Transcription<'m> {
         initial: &InitialGuess,
         layout: Layout,
     ) -> Result<Self, BoundaryError> {
-        let objective = Objective::new(model, boundary, control, initial);
+        let objective = Objective::new(model, boundary, (control, &layout), initial);
         let structure = Structure::new(model, &layout, &objective)?;
         let workspace = Workspace::new(model, boundary, control, initial, &layout);
         let mut out = Self {
             model,
             variable_scales: Self::variable_scales(model, &layout, control, initial.h),
             row_scales: vec![1.0; layout.unknowns.rows.len()],
-            layout,
             objective,
             structure,
             bounds: Bounds::default(),
             row_bounds: Bounds::default(),
-            momentum: boundary.start.momentum.clone(),
+            momentum: match layout.is_closed() {
+                true => vec![0.0; boundary.start.momentum.len()],
+                false => boundary.start.momentum.clone(),
+            },
+            layout,
             rests: boundary.goal.rests,
             bounded: boundary.limits.list.len(),
             workspace,
@@ -131,9 +134,9 @@ impl<'m> Transcription<'m> {
         Ok(out)
     }
 
-    /// Number of intervals N.
+    /// Number of intervals N of the motion.
     pub fn intervals(&self) -> usize {
-        self.layout.intervals
+        self.layout.end
     }
 
     /// The model whose motion is looked for.

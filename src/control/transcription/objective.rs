@@ -6,6 +6,7 @@ use crate::control::objective::{Cost, objective_scale};
 use crate::control::problem::Control;
 use crate::control::transcription::cost_rows::{CostRow, cost_rows, costs_size};
 use crate::control::transcription::energy_rows::{EnergyRow, energies_size, energy_rows};
+use crate::control::transcription::layout::Layout;
 use crate::control::transcription::units::{KILOVOLT, MILLISECOND};
 use crate::model::{Model, Role, Time, Variable};
 
@@ -58,19 +59,19 @@ impl CostInput {
 }
 
 impl Objective {
-    /// The objective of a problem; the guess gives the length of an interval.
+    /// The objective of a problem on a layout; the guess gives the length of an interval.
     pub(super) fn new(
         model: &Model,
         boundary: &BoundaryConditions,
-        control: &Control,
+        (control, layout): (&Control, &Layout),
         initial: &InitialGuess,
     ) -> Self {
-        let (objective, intervals) = (&control.objective, control.intervals);
+        let objective = &control.objective;
         let (paid, energies) = (&objective.quantities, &objective.energies);
         let inputs = CostInput::of_model(model, control);
         let ends = boundary.rest.each_ref();
         let ends = ends.map(|row| row.as_ref().map(|row| counted(model, &inputs, row)));
-        let duration = intervals as f64 * initial.h * MILLISECOND;
+        let duration = layout.end as f64 * initial.h * MILLISECOND;
         let volts = control.voltage_unit(&model.system);
         let size = costs_size(model, paid, duration) + energies_size(model, energies, volts);
         let unknown = |input: &&CostInput| {
@@ -80,9 +81,9 @@ impl Objective {
         let of_loads = inputs.iter().filter(unknown).map(|input| input.scale);
         let largest = of_loads.fold(volts / KILOVOLT, f64::max);
         Self {
-            cost: Cost::new(objective, inputs.len(), intervals, ends),
-            quantities: cost_rows(model, paid, boundary.limits.list.len(), intervals),
-            energies: energy_rows(model, energies, &boundary.rest, intervals),
+            cost: Cost::new(objective, inputs.len(), layout.span(), ends),
+            quantities: cost_rows(model, paid, boundary.limits.list.len(), layout.end),
+            energies: energy_rows(model, energies, &boundary.rest, layout.intervals),
             inputs,
             scale: objective_scale(objective, largest, duration, size),
         }

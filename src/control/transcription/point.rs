@@ -1,7 +1,7 @@
 //! Conversion between motions and points of the program.
 
 use crate::control::guess::InitialGuess;
-use crate::control::numbering::{Column, Row};
+use crate::control::numbering::{Column, Row, Twin};
 use crate::control::solution::Costates;
 use crate::control::transcription::Transcription;
 use crate::control::transcription::kinematic_state::Placed;
@@ -14,6 +14,9 @@ use crate::ipopt;
 pub struct Decoder {
     z: Vec<Vec<f64>>,
     scalars: Vec<Vec<f64>>,
+    /// Scalars behind the motion.
+    held: Option<Vec<f64>>,
+    twin: Option<Twin>,
     h: f64,
     columns: Vec<Column>,
     scales: Vec<f64>,
@@ -24,16 +27,28 @@ impl Decoder {
     /// The motion of a point of the program.
     pub fn decode(&self, x: &[f64]) -> DiscreteTrajectory {
         let (mut z, mut scalars, mut h) = (self.z.clone(), self.scalars.clone(), self.h);
+        let mut held = self.held.clone();
+        let (instants, intervals) = (z.len(), scalars.len());
         for ((column, scale), x) in self.columns.iter().zip(&self.scales).zip(x) {
             let value = scale * x;
             match *column {
-                Column::Instant { k, i } => z[k][i] = value,
-                Column::Interval { k, s } => scalars[k][s] = value,
-                Column::Parameter { s } => scalars.iter_mut().for_each(|row| row[s] = value),
+                Column::Instant { k, i } if k < instants => z[k][i] = value,
+                Column::Interval { k, s } if k < intervals => scalars[k][s] = value,
+                Column::Interval { s, .. } => held.iter_mut().for_each(|row| row[s] = value),
+                Column::Parameter { s } => {
+                    let rows = scalars.iter_mut().chain(&mut held);
+                    rows.for_each(|row| row[s] = value);
+                }
                 Column::Horizon => h = value,
+                // Multipliers behind the motion are those of no instant of it.
+                Column::Instant { .. } => {}
             }
         }
+        if let Some(Twin { instant, of, .. }) = self.twin.filter(|twin| twin.instant < instants) {
+            z[instant] = z[of].clone();
+        }
         DiscreteTrajectory {
+            held,
             times: (0..z.len()).map(|k| k as f64 * h).collect(),
             z,
             scalars,
@@ -62,9 +77,11 @@ impl Transcription<'_> {
             .zip(&self.workspace.instants)
             .map(here)
             .collect();
+        let last = discrete.held.as_ref().or(discrete.scalars.last());
+        let last = last.expect("a motion has intervals");
         let value = |column: &Column| match *column {
-            Column::Instant { k, i } => z[k][i],
-            Column::Interval { k, s } => discrete.scalars[k][s],
+            Column::Instant { k, i } => z.get(k).map_or(0.0, |z| z[i]),
+            Column::Interval { k, s } => discrete.scalars.get(k).unwrap_or(last)[s],
             Column::Parameter { s } => discrete.scalars[0][s],
             Column::Horizon => h,
         };
@@ -85,16 +102,17 @@ impl Transcription<'_> {
     /// Returns a decoder of points to motions that works without the program, which a solver holds while it works.
     pub fn decoder(&self) -> Decoder {
         let scalar_count = self.model.action.layout().interval_scalars;
+        let end = self.layout.end;
+        let scalars =
+            |k: usize| self.workspace.scalars[k * scalar_count..(k + 1) * scalar_count].to_vec();
         Decoder {
-            z: self
-                .workspace
-                .instants
+            z: self.workspace.instants[..=end]
                 .iter()
                 .map(|instant| instant.z.clone())
                 .collect(),
-            scalars: (0..self.layout.intervals)
-                .map(|k| self.workspace.scalars[k * scalar_count..(k + 1) * scalar_count].to_vec())
-                .collect(),
+            scalars: (0..end).map(scalars).collect(),
+            held: (end < self.layout.intervals).then(|| scalars(end)),
+            twin: self.layout.twin,
             h: self.workspace.h,
             columns: self.layout.unknowns.columns.clone(),
             scales: self.variable_scales.clone(),
@@ -148,6 +166,8 @@ impl Transcription<'_> {
                 Column::Horizon => workspace.h = value,
             }
         }
+        self.layout
+            .share(&mut workspace.instants, &self.model.action.map);
         let inputs = &self.objective.inputs;
         for entry in &self.layout.unknowns.inputs {
             let value = self.variable_scales[entry.column] * x[entry.column];
@@ -166,12 +186,22 @@ impl Transcription<'_> {
         workspace.scalars_along.fill(0.0);
         let (rows, limits) = (&self.layout.unknowns.rows, self.layout.limit_rows.len());
         let count = self.model.action.layout().interval_scalars;
+        let coordinates = self.model.coordinate_count();
         let total = workspace.rows.len() - limits;
         let first = rows.len() - limits;
         for (r, (row, y)) in rows.iter().zip(costates).enumerate() {
             let y = y * self.row_scales[r];
             match *row {
-                Row::Instant { k, i } => workspace.instants[k].l[i] = y,
+                Row::Instant { k, i } => {
+                    workspace.instants[k].l[i] = y;
+                    let twin = self
+                        .layout
+                        .twin
+                        .filter(|twin| twin.is_closed && k == twin.of);
+                    if let Some(twin) = twin.filter(|_| i < coordinates) {
+                        workspace.instants[twin.instant].l[i] = y;
+                    }
+                }
                 Row::Interval { k, s } => workspace.scalars_along[k * count + s] = y,
                 Row::Limit { .. } => workspace.rows[total + r - first] = y,
             }

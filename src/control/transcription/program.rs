@@ -71,6 +71,7 @@ impl Nlp for Transcription<'_> {
         self.sweep(Order::Gradient);
         let stride = self.stride();
         let count = self.model.action.map.unknowns();
+        let coordinates = self.model.coordinate_count();
         for (value, (row, scale)) in g
             .iter_mut()
             .zip(self.layout.unknowns.rows.iter().zip(&self.row_scales))
@@ -83,7 +84,13 @@ impl Nlp for Transcription<'_> {
                         } else {
                             0.0
                         };
-                        self.workspace.rows[k * stride + i] + start
+                        let again = match self.layout.twin {
+                            Some(twin) if twin.is_closed && k == twin.of && i < coordinates => {
+                                self.workspace.rows[twin.instant * stride + i]
+                            }
+                            _ => 0.0,
+                        };
+                        self.workspace.rows[k * stride + i] + start + again
                     }
                     Row::Interval { k, s } => self.workspace.rows[k * stride + count + s],
                     Row::Limit { limit, k } => self.limit_value(&self.layout.limits[limit], k),
@@ -130,6 +137,8 @@ impl Nlp for Transcription<'_> {
             Column::Instant { k, .. } if role(column) == Role::Multiplier => {
                 Stage::Multiplier(2 * k as u32 + 2)
             }
+            // A motion that comes back couples its ends.
+            Column::Instant { k: 0, .. } => Stage::Border,
             Column::Instant { k, .. } => Stage::Of(2 * k as u32),
             Column::Interval { k, .. } if role(column).has_equation() => {
                 Stage::Of(2 * k as u32 + 2)
@@ -170,8 +179,11 @@ impl Nlp for Transcription<'_> {
             (Row::Instant { k, .. }, Some(Role::Multiplier)) => {
                 format!("constraint {name} at instant {k}")
             }
-            (Row::Instant { k, .. }, _) if k == self.layout.intervals => {
+            (Row::Instant { k, .. }, _) if k == self.layout.end => {
                 format!("rest at the goal, {name}")
+            }
+            (Row::Instant { k, .. }, _) if k > self.layout.end => {
+                format!("equilibrium at the goal, {name}")
             }
             (Row::Instant { k, .. }, _) => format!("motion at instant {k}, {name}"),
             (Row::Interval { k, .. }, _) => format!("Gauss's law of {name} in interval {k}"),

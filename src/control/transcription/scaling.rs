@@ -116,7 +116,7 @@ impl Transcription<'_> {
                 }
                 (Column::Horizon, _) => match control.duration {
                     Duration::Free { min, max, .. } => {
-                        [min, max].map(|t| t / self.layout.intervals as f64)
+                        [min, max].map(|t| t / self.layout.end as f64)
                     }
                     Duration::Given(_) => [self.workspace.h; 2],
                 },

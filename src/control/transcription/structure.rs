@@ -1,7 +1,7 @@
 //! Structures of Jacobian and Hessian: the entries of the periodic values that they keep.
 
 use crate::control::BoundaryError;
-use crate::control::numbering::Row;
+use crate::control::numbering::{Row, Twin};
 use crate::control::transcription::energy_rows::Jump;
 use crate::control::transcription::layout::Layout;
 use crate::control::transcription::objective::{CostInput, Objective};
@@ -206,7 +206,24 @@ fn hessian(model: &Model, layout: &Layout) -> Result<Matrix, BoundaryError> {
             matrix.add(row.max(col), row.min(col), place);
         }
     }
+    add_squares(model, layout, &mut matrix);
     Ok(matrix)
+}
+
+/// Adds the couplings of a coordinate with itself between neighbouring instants that share it, a second time: an entry of a square counts for
+/// both of its sides.
+fn add_squares(model: &Model, layout: &Layout, matrix: &mut Matrix) {
+    let Some(Twin { instant, of, .. }) = layout.twin.filter(|twin| twin.instant == twin.of + 1)
+    else {
+        return;
+    };
+    let (pattern, u) = (model.action.layout(), &layout.unknowns);
+    for (slot, (i, j)) in pattern.cross.entries().enumerate() {
+        let [row, col] = [(instant, i), (of, j)].map(|(k, i)| u.unknown(k, i));
+        if let Some(square) = row.filter(|_| row == col) {
+            matrix.add(square, square, pattern.lower_at(of) + slot);
+        }
+    }
 }
 
 /// Inputs that meet those of the interval before, with the energies that couple them; adds their entries.
@@ -221,11 +238,12 @@ fn jumps(layout: &Layout, objective: &Objective, entries: &mut Entries) -> Vec<J
     });
     let coupling: Vec<_> = coupling.collect();
     let mut jumps = Vec::new();
-    for k in 1..layout.intervals {
+    let first = usize::from(!layout.is_closed());
+    for (k, before) in (first..layout.intervals).filter_map(|k| Some((k, u.before(k)?))) {
         for &(input, s, energy) in &coupling {
-            if let (Some(row), Some(col)) = (u.scalar(k, s), u.scalar(k - 1, s)) {
-                entries.rows.push(row as u32);
-                entries.cols.push(col as u32);
+            if let (Some(row), Some(col)) = (u.scalar(k, s), u.scalar(before, s)) {
+                entries.rows.push(row.max(col) as u32);
+                entries.cols.push(row.min(col) as u32);
                 jumps.push(Jump { k, input, energy });
             }
         }

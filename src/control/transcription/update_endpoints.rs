@@ -23,9 +23,11 @@ impl Transcription<'_> {
             start, goal, rest, ..
         } = boundary;
         self.workspace.instants[0].z.copy_from_slice(&start.z);
-        self.momentum.copy_from_slice(&start.momentum);
+        if !self.layout.is_closed() {
+            self.momentum.copy_from_slice(&start.momentum);
+        }
         let unknowns = self.model.action.map.unknowns();
-        let last = &mut self.workspace.instants[self.layout.intervals].z;
+        let last = &mut self.workspace.instants[self.layout.end].z;
         goal.give(last, unknowns);
         for (limit, bounded) in self
             .layout
@@ -67,12 +69,7 @@ impl Transcription<'_> {
         {
             return other("the start belongs to another model".to_owned());
         }
-        let is_given = |i: usize| {
-            self.layout
-                .unknowns
-                .unknown(self.layout.intervals, i)
-                .is_none()
-        };
+        let is_given = |i: usize| self.layout.unknowns.unknown(self.layout.end, i).is_none();
         let given = goal.coordinates.iter().map(Option::is_some);
         if !given.eq((0..self.model.coordinate_count()).map(is_given)) {
             return other("the goal gives other coordinates".to_owned());

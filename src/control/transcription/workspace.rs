@@ -51,7 +51,7 @@ impl Workspace {
     ) -> Self {
         let (action, intervals) = (&model.action, layout.intervals);
         let map = &action.map;
-        let scalars = given_scalars(model, control, intervals);
+        let scalars = given_scalars(model, control, layout);
         let scalar_count = model.variables.of(Time::Interval).len();
         let inputs = input_values(model, &scalars, scalar_count, intervals);
         let stride = map.unknowns() + scalar_count;
@@ -59,7 +59,7 @@ impl Workspace {
         let limit_entries: usize = limits.map(|&(l, _)| layout.limits[l].entries.len()).sum();
         Self {
             point: vec![f64::NAN; layout.unknowns.columns.len()],
-            instants: given_instants(model, boundary, initial, intervals),
+            instants: given_instants(model, boundary, initial, layout),
             placed: Placed::Nothing,
             scalars_along: vec![0.0; scalars.len()],
             scalars,
@@ -81,30 +81,36 @@ fn given_instants(
     model: &Model,
     boundary: &BoundaryConditions,
     initial: &InitialGuess,
-    intervals: usize,
+    layout: &Layout,
 ) -> Vec<Configuration> {
     let map = &model.action.map;
     let unknowns = map.unknowns();
-    let mut instants = vec![map.instant(); intervals + 1];
+    let mut instants = vec![map.instant(); layout.intervals + 1];
     for (instant, z) in instants.iter_mut().zip(&initial.discrete.z) {
         instant.z[unknowns..].copy_from_slice(&z[unknowns..]);
     }
     for (k, instant) in instants.iter_mut().enumerate() {
         model.prescribe(k as f64 * initial.h, &mut instant.z);
     }
-    instants[0].z.copy_from_slice(&boundary.start.z);
-    boundary.goal.give(&mut instants[intervals].z, unknowns);
+    if !layout.is_closed() {
+        instants[0].z.copy_from_slice(&boundary.start.z);
+    }
+    boundary.goal.give(&mut instants[layout.end].z, unknowns);
+    layout.share(&mut instants, map);
     instants
 }
 
 /// Scalars of all intervals; zero where they are unknowns.
-fn given_scalars(model: &Model, control: &Control, intervals: usize) -> Vec<f64> {
+fn given_scalars(model: &Model, control: &Control, layout: &Layout) -> Vec<f64> {
     let given = |k: usize| {
-        let time = control.middle(k);
+        let time = match k == layout.end {
+            true => control.duration.first(),
+            false => control.middle(k),
+        };
         let scalars = model.variables.of(Time::Interval).iter();
         scalars.map(move |variable| control.given(variable, time).unwrap_or(0.0))
     };
-    (0..intervals).flat_map(given).collect()
+    (0..layout.intervals).flat_map(given).collect()
 }
 
 /// Inputs of all intervals in kV, N and N m, from `count` scalars of each.

@@ -16,6 +16,7 @@ use crate::files::problem::spec_control::{
     ControlSolverSpec, ControlSpec, DurationSpec, IntervalsSpec, IntervalsWord, ObjectiveSpec,
     OptionSpec, SolverSpec,
 };
+use crate::files::problem::spec_states::GoalSpec;
 use crate::files::problem::spec_voltages::VoltagesSpec;
 use crate::files::problem::state::{ELECTRIC_KEYS, driven, start_state};
 use crate::files::problem::track::{at_the_end, track};
@@ -58,15 +59,12 @@ pub(crate) fn control(
         return Err(scope.wrong(found, expected));
     }
     let mut start = start_state(&spec.start, system, &scope.key("start"))?;
-    let objective = objective(&spec.objective, system, &scope.key("objective"))?;
-    let mut goal = match &spec.goal {
-        Some(goal) => goal_state(goal, system, &scope.key("goal"))?,
-        None if objective.quantities.is_empty() => {
-            let expected = "the key \"goal\", or an objective that names something to \"track\" or a \"final\" place";
-            return Err(scope.wrong("no key \"goal\"", expected));
-        }
-        None => BoundaryState::Free,
-    };
+    let mut objective = objective(&spec.objective, system, &scope.key("objective"))?;
+    let mut goal = goal(spec, &objective, system, scope)?;
+    let place = scope.key("waypoints");
+    let is_periodic = goal == BoundaryState::Periodic;
+    let (waypoints, near) = waypoints(&spec.waypoints, (duration, is_periodic), system, &place)?;
+    objective.quantities.extend(near);
     let parameters = parameters(&spec.free, written, system, &scope.key("free"))?;
     let loads = loads(&spec.loads, system, &scope.key("loads"))?;
     let load_bounds = load_bounds(&spec.load_bounds, &loads, system, &scope.key("load_bounds"))?;
@@ -103,16 +101,34 @@ pub(crate) fn control(
         given,
         course,
         parameters,
+        seeks_hold: spec.goal.as_ref().is_some_and(GoalSpec::seeks_hold),
         hold: spec.hold.into(),
         objective,
         limits,
-        waypoints: waypoints(&spec.waypoints, duration, system, &scope.key("waypoints"))?,
+        waypoints,
         coordinates: coordinates(spec.coordinates, system, scope)?,
         guess,
         solver: solver(&spec.solver, &scope.key("solver"))?,
     };
     let place = scope.key("objective").key("peak_voltage");
     with_peak(control, spec.objective.peak_voltage, system, &place)
+}
+
+/// The goal; free where none is written and the objective names what to follow or where to end.
+fn goal(
+    spec: &ControlSpec,
+    objective: &Objective,
+    system: &System,
+    scope: &Scope<'_>,
+) -> Result<BoundaryState, SceneError> {
+    match &spec.goal {
+        Some(goal) => goal_state(goal, system, &scope.key("goal")),
+        None if objective.quantities.is_empty() => {
+            let expected = "the key \"goal\", or an objective that names something to \"track\" or a \"final\" place";
+            Err(scope.wrong("no key \"goal\"", expected))
+        }
+        None => Ok(BoundaryState::Free),
+    }
 }
 
 /// The problem with the cost of the peak voltage, where that has a weight.
@@ -265,7 +281,10 @@ pub(crate) fn check_final_conditions(
             (given.sum(), "markers")
         }
         BoundaryState::JointAngles { angles, .. } => (angles.len(), "joint_angles"),
-        BoundaryState::RestAtVoltages(..) | BoundaryState::EndOf(_) | BoundaryState::Free => {
+        BoundaryState::RestAtVoltages(..)
+        | BoundaryState::EndOf(_)
+        | BoundaryState::Free
+        | BoundaryState::Periodic => {
             return Ok(());
         }
     };

@@ -5,7 +5,9 @@ use std::collections::BTreeMap;
 use crate::control::problem::{BoundaryState, Orientation, Place, Rest};
 use crate::files::json::error::SceneError;
 use crate::files::json::scope::Scope;
-use crate::files::problem::spec_states::{GoalSpec, OrientationSpec, RestGoalSpec};
+use crate::files::problem::spec_states::{
+    GoalSpec, GoalWord, HeldSpec, HeldWord, OrientationSpec, RestGoalSpec,
+};
 use crate::files::problem::spec_voltages::VoltageMap;
 use crate::files::problem::state::{by_joint, moving_marker, voltages};
 use crate::files::scene::names::names;
@@ -21,7 +23,8 @@ pub(crate) fn goal_state(
     scope: &Scope<'_>,
 ) -> Result<BoundaryState, SceneError> {
     let spec = match spec {
-        GoalSpec::Word(_) => return Ok(BoundaryState::Free),
+        GoalSpec::Word(GoalWord::Free) => return Ok(BoundaryState::Free),
+        GoalSpec::Word(GoalWord::Periodic) => return Ok(BoundaryState::Periodic),
         GoalSpec::Rest(spec) => spec.as_ref(),
     };
     let key = given_key(spec, scope)?;
@@ -55,12 +58,18 @@ fn given_key(spec: &RestGoalSpec, scope: &Scope<'_>) -> Result<&'static str, Sce
 fn check_companions(spec: &RestGoalSpec, key: &str, scope: &Scope<'_>) -> Result<(), SceneError> {
     let beside_places = "it beside \"markers\" or \"orientations\" only";
     let beside_rest = "it beside \"rest_at_voltages\", \"markers\" or \"orientations\" only";
+    let beside_goals = "it beside \"joint_angles\", \"markers\" or \"orientations\"; voltages at rest hold their equilibrium";
     let is_of_angles = spec.joint_angles.is_some();
+    let is_found = matches!(spec.hold, Some(HeldSpec::Word(_)));
     for (name, is_ignored, expected) in [
         (
             "hold",
-            spec.hold.is_some() && !is_of_places(spec),
-            beside_places,
+            spec.hold.is_some() && !is_of_places(spec) && !(is_found && is_of_angles),
+            if is_found {
+                beside_goals
+            } else {
+                beside_places
+            },
         ),
         ("rest", spec.rest.is_some() && is_of_angles, beside_rest),
     ] {
@@ -100,12 +109,15 @@ fn positions(
 ) -> Result<BoundaryState, SceneError> {
     let written = (spec.markers.as_ref(), spec.orientations.as_ref());
     let (places, orientations) = places(written, system, scope)?;
-    let held = |map| voltages(map, system, &scope.key("hold"));
+    let held = match &spec.hold {
+        Some(HeldSpec::Given(map)) => Some(voltages(map, system, &scope.key("hold"))?),
+        Some(HeldSpec::Word(HeldWord::Find)) | None => None,
+    };
     Ok(BoundaryState::Markers {
         places,
         orientations,
         rest: reached(spec),
-        hold: spec.hold.as_ref().map(held).transpose()?,
+        hold: held,
     })
 }
 

@@ -28,7 +28,7 @@ pub struct ControlSpec {
     /// an error of 1 % of the path length, or of the part that `--accuracy` gives.
     #[serde(default)]
     pub intervals: Option<IntervalsSpec>,
-    /// Initial state.
+    /// Initial state; of a periodic motion, whose start is sought, the state where the solver begins.
     pub start: StartSpec,
     /// Final state; may be left out where the objective names something to `track` or where to end (`final`), and is free then.
     #[serde(default)]

@@ -47,11 +47,11 @@ pub struct BodyVelocitySpec {
     pub angular: Option<[Quantity<AngularVelocity>; 3]>,
 }
 
-/// `"free"`, or a state at the end, at rest.
+/// `"free"`, `"periodic"`, or a state at the end, at rest.
 #[derive(Clone, Debug, JsonSchema)]
 #[serde(untagged)]
 pub enum GoalSpec {
-    /// Anything, in motion or at rest.
+    /// Anything, in motion or at rest, or the start, which is sought.
     Word(GoalWord),
     /// A state of rest.
     Rest(Box<RestGoalSpec>),
@@ -63,11 +63,22 @@ pub enum GoalSpec {
 pub enum GoalWord {
     /// Anything, in motion or at rest.
     Free,
+    /// The start, which is sought: the motion is periodic.
+    Periodic,
 }
 
 scalar_or_object! {
     GoalSpec: GoalWord = Self::Word, Box<RestGoalSpec> = Self::Rest,
-        "\"free\", or an object with \"rest_at_voltages\", \"joint_angles\", \"markers\" or \"orientations\"";
+        "\"free\", \"periodic\", or an object with \"rest_at_voltages\", \"joint_angles\", \"markers\" or \"orientations\"";
+    HeldSpec: HeldWord = Self::Word, VoltageMap = Self::Given,
+        "\"find\", or voltages by name";
+}
+
+impl GoalSpec {
+    /// Returns true if the voltages that hold it are sought.
+    pub(crate) fn seeks_hold(&self) -> bool {
+        matches!(self, Self::Rest(rest) if matches!(rest.hold, Some(HeldSpec::Word(HeldWord::Find))))
+    }
 }
 
 /// A state at the end, at rest: `rest_at_voltages`, or `joint_angles`, or `markers` and `orientations`.
@@ -92,9 +103,28 @@ pub struct RestGoalSpec {
     #[serde(default)]
     pub rest: Option<RestSpec>,
     /// Voltages that are held after positions of markers and orientations are reached, SI unit V; 0 where not named. Of elastic blocks the motion
-    /// under them is the guess, where no other is written.
+    /// under them is the guess, where no other is written. `"find"`: they are sought with the motion, so that the goal is an equilibrium; also of
+    /// `joint_angles`, for lumped muscles.
     #[serde(default)]
-    pub hold: Option<VoltageMap>,
+    pub hold: Option<HeldSpec>,
+}
+
+/// Voltages that are held after a goal.
+#[derive(Clone, Debug, JsonSchema)]
+#[serde(untagged)]
+pub enum HeldSpec {
+    /// `"find"`: they are sought with the motion.
+    Word(HeldWord),
+    /// Given ones.
+    Given(VoltageMap),
+}
+
+/// Voltages that are not given.
+#[derive(Clone, Copy, Debug, Deserialize, JsonSchema)]
+#[serde(rename_all = "snake_case")]
+pub enum HeldWord {
+    /// Sought with the motion.
+    Find,
 }
 
 /// An orientation of a body: `axis` with exactly one of `towards` and `angle`.

@@ -1,6 +1,6 @@
 //! Waypoints as they are written, and their conversion.
 
-use crate::control::problem::{Duration, Waypoint};
+use crate::control::problem::{Duration, QuantityCost, Waypoint};
 use crate::files::json::error::SceneError;
 use crate::files::json::scope::Scope;
 use crate::files::problem::goal::places;
@@ -15,14 +15,14 @@ use serde::Deserialize;
 use std::collections::BTreeMap;
 
 /// Places that the motion reaches at a time on its way, at the instant nearest to it: `markers`, `orientations`, `joint_angles`, or several
-/// of them.
+/// of them. With a `weight` it passes near them: their squared distances are costs.
 #[derive(Clone, Debug, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct WaypointSpec {
     /// Time, SI unit s; or give `part`.
     #[serde(default)]
     pub time: Option<Quantity<Time>>,
-    /// Part of the duration, above 0 and below 1, which may be free.
+    /// Part of the duration, above 0 and below 1, which may be free; of a periodic motion 1 is its start and its end.
     #[serde(default)]
     pub part: Option<f64>,
     /// Positions by marker, SI unit m; directions that are `null` are free.
@@ -34,28 +34,50 @@ pub struct WaypointSpec {
     /// Joint coordinates by joint, SI unit rad or m.
     #[serde(default)]
     pub joint_angles: Option<BTreeMap<String, Quantity<JointCoordinate>>>,
+    /// Weight of the squared distances at that instant, in mm² of markers and prismatic joints and rad² of revolute ones, as costs in the
+    /// objective in place of exact conditions; not of `orientations`.
+    #[serde(default)]
+    pub weight: Option<f64>,
 }
 
-/// The waypoints that are written.
+/// The waypoints that are written: those that are conditions, and the costs that others are.
 pub(crate) fn waypoints(
     specs: &[WaypointSpec],
-    duration: Duration,
+    (duration, is_periodic): (Duration, bool),
     system: &System,
     scope: &Scope<'_>,
-) -> Result<Vec<Waypoint>, SceneError> {
-    let each = specs.iter().enumerate();
-    each.map(|(index, spec)| spec.waypoint(duration, system, &scope.index(index)))
-        .collect()
+) -> Result<(Vec<Waypoint>, Vec<QuantityCost>), SceneError> {
+    let (mut exact, mut near) = (Vec::new(), Vec::new());
+    for (index, spec) in specs.iter().enumerate() {
+        let scope = scope.index(index);
+        let waypoint = spec.waypoint((duration, is_periodic), system, &scope)?;
+        match spec.weight {
+            None => exact.push(waypoint),
+            Some(_) if spec.orientations.is_some() => {
+                let expected = "an orientation without \"weight\", which is reached exactly";
+                return Err(scope
+                    .key("orientations")
+                    .wrong("an orientation with a weight", expected));
+            }
+            Some(weight) if weight > 0.0 => near.extend(waypoint.costs(weight)),
+            Some(weight) => {
+                return Err(scope
+                    .key("weight")
+                    .wrong(weight.to_string(), "a positive weight"));
+            }
+        }
+    }
+    Ok((exact, near))
 }
 
 impl WaypointSpec {
     fn waypoint(
         &self,
-        duration: Duration,
+        of: (Duration, bool),
         system: &System,
         scope: &Scope<'_>,
     ) -> Result<Waypoint, SceneError> {
-        let (part, name) = self.part_of(duration, scope)?;
+        let (part, name) = self.part_of(of, scope)?;
         let written = (self.markers.as_ref(), self.orientations.as_ref());
         let (places, orientations) = places(written, system, scope)?;
         let kinds = [Angle::kind(), Length::kind()];
@@ -84,7 +106,11 @@ impl WaypointSpec {
     }
 
     /// Part of the duration, and the name in messages.
-    fn part_of(&self, duration: Duration, scope: &Scope<'_>) -> Result<(f64, String), SceneError> {
+    fn part_of(
+        &self,
+        (duration, is_periodic): (Duration, bool),
+        scope: &Scope<'_>,
+    ) -> Result<(f64, String), SceneError> {
         let key = scope.exactly_one([
             ("time", self.time.as_ref().map(|_| "time")),
             ("part", self.part.map(|_| "part")),
@@ -103,10 +129,15 @@ impl WaypointSpec {
             (None, _) => {
                 let part = self.part.unwrap_or_default();
                 let name = format!("waypoint at {} of the duration", shortest(part, 6));
-                (part, name, part.to_string(), "a number above 0 and below 1")
+                let expected = match is_periodic {
+                    true => "a number above 0 and at most 1",
+                    false => "a number above 0 and below 1",
+                };
+                (part, name, part.to_string(), expected)
             }
         };
-        match part > 0.0 && part < 1.0 {
+        // The end of a periodic motion is its start.
+        match part > 0.0 && (part < 1.0 || (is_periodic && part == 1.0)) {
             true => Ok((part, name)),
             false => Err(scope.key(key).wrong(found, expected)),
         }

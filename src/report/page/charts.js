@@ -174,7 +174,7 @@ class Panel extends Drawn {
         label: one.name, data: panel.y.log ? one.points.filter((point) => point.y > 0) : one.points, order: -i, hidden: one.hidden, parsing: false, showLine: one.joined,
         borderColor: colour, backgroundColor: one.mark === "ring" ? themed("paper") : colour,
         borderWidth: one.joined ? one.width * 1.1 : 1.6, borderDash: one.dashed ? [6, 4] : [],
-        pointRadius: one.mark === "none" ? 0 : 3.5, pointHitRadius: 6, tension: 0,
+        pointStyle: one.mark === "cross" ? "crossRot" : "circle", pointRadius: one.mark === "none" ? 0 : 3.5, pointHitRadius: 6, tension: 0,
       };
     };
     settings.data = { datasets: this.series.map(dataset) };

@@ -203,7 +203,7 @@ fn paths(run: &Run<'_>) -> Option<Value> {
     motions.push((run.name, run.trajectory));
     let planes = [[0, 1], [2, 1], [0, 2]];
     let panels = planes.map(|plane| {
-        let plot = tip_path::plot(run.system, &motions, run.tracked, plane);
+        let plot = tip_path::plot(run.system, &motions, (run.tracked, run.waypoints), plane);
         let name = format!(
             "{}–{}",
             ["x", "y", "z"][plane[0]],
@@ -241,6 +241,7 @@ fn series(series: &Series) -> Value {
             Mark::None => "none",
             Mark::Ring => "ring",
             Mark::Disc => "disc",
+            Mark::Cross => "cross",
         },
         "labels": series.labels,
         "points": numbers(thinned(&series.points).into_iter().flatten()),

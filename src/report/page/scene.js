@@ -208,11 +208,13 @@ class Scene {
     // Seen through what is before them.
     const material = new THREE.MeshBasicMaterial({ color: GOAL, depthTest: false, transparent: true, opacity: 0.85 });
     for (const { target } of this.markers.filter((marker) => marker.target.length)) {
-      for (let i = 0; i < 3; i++) {
-        const arm = new THREE.Mesh(new THREE.BoxBufferGeometry(...[0, 1, 2].map((j) => (i === j ? long : thin))), material);
-        arm.position.fromArray(target);
-        arm.renderOrder = 1;
-        group.add(arm);
+      for (let at = 0; at < target.length; at += 3) {
+        for (let i = 0; i < 3; i++) {
+          const arm = new THREE.Mesh(new THREE.BoxBufferGeometry(...[0, 1, 2].map((j) => (i === j ? long : thin))), material);
+          arm.position.fromArray(target, at);
+          arm.renderOrder = 1;
+          group.add(arm);
+        }
       }
     }
     group.visible = !this.data.goal;

@@ -260,10 +260,11 @@ impl Stage<'_> {
                 };
                 places(&kept.clone().map(place).collect::<Vec<_>>())
             });
-            let target = self.run.targets.iter().find(|(index, _)| *index == m);
+            let marked = self.run.targets.iter().chain(self.run.waypoints);
+            let targets: Vec<_> = marked.filter(|(index, _)| *index == m).collect();
             json!({
                 "name": marker.name,
-                "target": target.map(|(_, place)| places([place])),
+                "target": (!targets.is_empty()).then(|| places(targets.iter().map(|(_, place)| place))),
                 "colour": style::hue(m).hex(),
                 "times": numbers(kept.clone().map(|k| motion.times[k] / 1e3)),
                 "path": places(kept.clone().map(|k| &path[k])),

@@ -1,0 +1,49 @@
+//! Periodic motions: the start is sought, and the end has its coordinates and momenta.
+//!
+//! The last instant shares the coordinates of the first one, and their balances are one:
+//!
+//! ```text
+//! D₂L_d(q_{N−1}, q_0) + D₁L_d(q_0, q_1) + f⁺ + f⁻ = 0.
+//! ```
+
+use crate::control::error::BoundaryError;
+use crate::control::problem::{BoundaryState, Control, Duration};
+use crate::model::{Model, joint_unit};
+
+/// Parts of a radian or of the length of the system by which a prescribed motion may miss its start, and of these in a ms its rate.
+const SAME: f64 = 1e-9;
+
+/// Refuses what has no meaning of a motion without a start, or does not repeat.
+pub(super) fn check(model: &Model, control: &Control) -> Result<(), BoundaryError> {
+    if control.goal != BoundaryState::Periodic {
+        return Ok(());
+    }
+    let refused = |reason: String| {
+        let place = "goal";
+        Err(BoundaryError::Prescribed { place, reason })
+    };
+    if !control.objective.energies.is_empty() {
+        return refused(
+            "energies of sources are no costs of a periodic motion; take \"effort\" or \"rate\""
+                .to_owned(),
+        );
+    }
+    for one in &model.prescribed {
+        let Duration::Given(end) = control.duration else {
+            continue;
+        };
+        let size = match joint_unit(&model.system, one.joint) {
+            "mm" => model.length(),
+            _ => 1.0,
+        };
+        let [first, last] = [0.0, end].map(|time| one.motion.derivatives(time));
+        let changes = first.iter().zip(last).take(2).map(|(a, b)| (a - b).abs());
+        if changes.fold(0.0, f64::max) > SAME * size {
+            let name = &model.system.joints[one.joint].name;
+            return refused(format!(
+                "joint \"{name}\" has a prescribed motion that does not come back after the duration of a periodic motion"
+            ));
+        }
+    }
+    Ok(())
+}

@@ -1,0 +1,225 @@
+//! Goals that are held by inputs found with the motion: an independent program, states of rest of a trunk, and what is refused.
+
+use crate::loads::{assert_refused, loaded, solved};
+use proboscis::control::problem::{Control, Task};
+use proboscis::dynamics::stable_equilibrium;
+use proboscis::files::read_problem;
+use proboscis::ipopt::Status;
+use proboscis::prelude::{Body, GROUND, Joint, Load, State, System, X};
+use proboscis::tasks::{SolveRequest, solve};
+use std::ops::ControlFlow;
+use std::path::Path;
+
+/// Two rods that hang from each other; a motor at the upper one lifts the lower tip to 0.15 m along x.
+fn rods(coordinates: &str) -> (System, Control) {
+    let rod = |k: usize| {
+        let top = -0.3 * k as f64;
+        let parent = ["ground", "rod0"][k];
+        let body = serde_json::json!({
+            "name": format!("rod{k}"), "mass": 0.2, "position": [0, top - 0.15, 0],
+            "cylinder": { "radius": 0.005, "length": 0.3, "axis": [0, 1, 0] },
+        });
+        let joint = serde_json::json!({
+            "name": format!("hinge{k}"), "revolute": { "axis": [0, 0, 1] }, "parent": parent,
+            "child": format!("rod{k}"), "at": [0, top, 0],
+        });
+        (body, joint)
+    };
+    let (bodies, joints): (Vec<_>, Vec<_>) = (0..2).map(rod).unzip();
+    loaded(&[
+        format!("scene.bodies={}", serde_json::json!(bodies)),
+        format!("scene.joints={}", serde_json::json!(joints)),
+        r#"scene.loads=[{"name": "motor", "joint": "hinge0"}]"#.to_owned(),
+        r#"scene.markers=[{"name": "tip", "body": "rod1", "at": [0, -0.6, 0]}]"#.to_owned(),
+        "control.loads={}".to_owned(),
+        "control.intervals=40".to_owned(),
+        r#"control.start={"joint_angles": {}}"#.to_owned(),
+        r#"control.goal={"markers": {"tip": [0.15, null, null]}, "hold": "find"}"#.to_owned(),
+        r#"control.load_bounds={"motor": [-10, 10]}"#.to_owned(),
+        r#"control.objective={"effort": 1, "rate": 0.002}"#.to_owned(),
+        format!("control.coordinates={coordinates:?}"),
+        r#"control.solver={"tolerance": 1e-12}"#.to_owned(),
+    ])
+}
+
+#[test]
+fn a_motor_lifts_rods_to_where_it_holds_them_as_in_an_independent_program() {
+    let text = include_str!("../reference/held.json");
+    let reference: serde_json::Value = serde_json::from_str(text).unwrap();
+    let number = |value: &serde_json::Value| value.as_f64().unwrap();
+    let [exact, torque] = ["objective", "hold"].map(|key| number(&reference[key]));
+    // Both rods weigh on the motor: the upper one at half the lever, the lower one, which hangs, at the whole.
+    assert!((torque - 1.5 * 0.2 * 9.81 * 0.15).abs() < 1e-9);
+    for coordinates in ["reduced", "redundant"] {
+        let (system, control) = rods(coordinates);
+        let optimum = solved(&system, &control);
+        assert_eq!(optimum.solution.status, Status::Solved);
+        let found = optimum.solution.objective;
+        assert!((found - exact).abs() < 1e-8 * exact, "{found:e} {exact:e}");
+        let hold = optimum.motion.hold.as_ref().unwrap()[0] / 1e3;
+        assert!((hold - torque).abs() < 1e-8, "{coordinates}: {hold}");
+        let last = optimum.motion.voltages.last().unwrap()[0] / 1e3;
+        assert!(
+            (last - hold).abs() > 1e-3,
+            "the motion does not end with it: {last}"
+        );
+        for (joint, angle) in optimum.motion.joints[40]
+            .iter()
+            .zip(reference["angles"].as_array().unwrap())
+        {
+            assert!((joint - number(angle)).abs() < 1e-7, "{joint} {angle}");
+        }
+    }
+}
+
+#[test]
+fn a_finer_grid_starts_from_what_was_found() {
+    let (system, control) = rods("reduced");
+    let coarse = solved(&system, &control);
+    let finer = Control {
+        intervals: 80,
+        ..control
+    };
+    let cold = solved(&system, &finer);
+    let warm = proboscis::workflow::optimise(
+        &system,
+        &finer,
+        Some(&coarse.motion),
+        Default::default(),
+        &mut |_| ControlFlow::Continue(()),
+    )
+    .unwrap();
+    assert_eq!(warm.solution.status, Status::Solved);
+    let [a, b] = [&cold, &warm].map(|optimum| optimum.solution.objective);
+    assert!((a - b).abs() < 1e-8 * a, "{a} {b}");
+    let [a, b] = [&cold, &warm].map(|optimum| optimum.solution.iterations.len());
+    assert!(b < a, "{b} iterations, and {a} without a guess");
+}
+
+fn trunk(goal: &str) -> (System, Control) {
+    let path = Path::new(env!("CARGO_MANIFEST_DIR")).join("problems/elephant_trunk.json");
+    let changes = [
+        format!("control.goal={goal}"),
+        "control.intervals=30".to_owned(),
+    ];
+    let loaded = read_problem(&path, &changes).unwrap();
+    let Task::Control(control) = loaded.task else {
+        panic!("a problem of control");
+    };
+    (loaded.system, *control)
+}
+
+#[test]
+fn a_trunk_rests_at_a_place_under_voltages_that_are_found_with_the_motion() {
+    let goal = r#"{"markers": {"tip": ["-60 mm", null, "40 mm"]}, "hold": "find"}"#;
+    let (system, control) = trunk(goal);
+    let request = SolveRequest::default();
+    let result = solve(&system, &control, request, &mut |_, _| {
+        ControlFlow::Continue(())
+    })
+    .unwrap();
+    assert!(result.verdict.is_solved, "{:?}", result.verdict);
+    let optimum = &result.optimum;
+    let held = optimum.motion.hold.as_ref().unwrap();
+    assert!(held.iter().any(|v| *v > 500.0), "{held:?}");
+    assert!(
+        held.iter().all(|v| (-1e-3..3000.001).contains(v)),
+        "{held:?}"
+    );
+    // The state of rest under these voltages, found from the reference configuration.
+    let model = &optimum.model;
+    let zero = model.reference_coordinates();
+    let rest = stable_equilibrium(model, &zero, &model.scalars(held)).unwrap();
+    let tip = model.action.map.placed(&rest.z).x[model.markers[0]];
+    assert!(
+        (tip.x + 60.0).abs() < 1e-5 && (tip.z - 40.0).abs() < 1e-5,
+        "{tip}"
+    );
+    let last = optimum.motion.z.last().unwrap();
+    let apart = rest.z.iter().zip(last).map(|(a, b)| (a - b).abs());
+    let apart = apart.fold(0.0, f64::max);
+    assert!(apart < 1e-7, "{apart}");
+    // It is kept, and what keeps it is named.
+    let tested = optimum.resimulation.as_ref().unwrap();
+    let drift = tested.drift.unwrap();
+    assert!(drift.angle < 1e-5 && drift.length < 1e-3, "{drift}");
+    let notes: Vec<String> = result.remarks.lines().collect();
+    assert!(
+        notes
+            .iter()
+            .any(|n| n.contains("held by inputs that were found with the motion: muscle")),
+        "{notes:?}"
+    );
+    assert!(
+        !notes.iter().any(|n| n.contains("nothing holds the goal")),
+        "{notes:?}"
+    );
+    assert_eq!(
+        optimum.boundary.goal.rest.as_ref().unwrap().is_stable(),
+        Some(true)
+    );
+}
+
+#[test]
+fn a_joint_coordinate_is_held_too() {
+    let (system, control) = trunk(r#"{"joint_angles": {"joint1": "6 deg"}, "hold": "find"}"#);
+    let optimum = solved(&system, &control);
+    assert_eq!(optimum.solution.status, Status::Solved);
+    let held = optimum.motion.hold.as_ref().unwrap();
+    assert!(held.iter().any(|v| *v > 100.0), "{held:?}");
+    let joint = optimum.motion.joints[30][0];
+    assert!((joint - 6_f64.to_radians()).abs() < 1e-7, "{joint}");
+}
+
+#[test]
+fn a_program_finds_what_holds_its_goal() {
+    let mut system = System::new("cart");
+    let body = system.add(Body::sphere(10.0).mass(1000.0));
+    let slide = system.add(Joint::prismatic(X).between(GROUND, body).spring(0.05, 0.0));
+    let motor = system.add(Load::motor(slide));
+    let optimum = proboscis::Control::over(1000.0, 20)
+        .load_within(motor, -100.0..=100.0)
+        .effort(1.0)
+        .start(State::Reference)
+        .goal(State::Joints(vec![(slide, 1000.0)]))
+        .find_hold()
+        .solve(&system)
+        .unwrap();
+    assert!(optimum.is_solved(), "{}", optimum.status);
+    let hold = optimum.solution.hold.as_ref().unwrap()[0];
+    assert!((hold - 50.0).abs() < 1e-6, "{hold} N against the spring");
+    let free = proboscis::Control::over(1000.0, 20)
+        .load_within(motor, -100.0..=100.0)
+        .effort(1.0)
+        .start(State::Reference)
+        .goal(State::Free)
+        .find_hold()
+        .solve(&system);
+    assert!(free.unwrap_err().to_string().contains("goal.hold"));
+}
+
+#[test]
+fn what_cannot_be_found_is_refused_with_its_place() {
+    for (problem, goal, place, words) in [
+        (
+            "elephant_trunk",
+            r#"{"rest_at_voltages": {}, "hold": "find"}"#,
+            "control.goal.hold",
+            "joint_angles",
+        ),
+        (
+            "elephant_trunk",
+            r#"{"markers": {"tip": [0, 0.3, 0]}, "hold": "seek"}"#,
+            "control.goal.hold",
+            "find",
+        ),
+        (
+            "elephant_trunk",
+            r#"{"joint_angles": {"joint1": 0.1}, "hold": {"muscle1": "1 kV"}}"#,
+            "control.goal.hold",
+            "markers",
+        ),
+    ] {
+        assert_refused(problem, &format!("control.goal={goal}"), place, words);
+    }
+}
