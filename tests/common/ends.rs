@@ -2,7 +2,8 @@
 
 use super::cases::{Case, control, joints, partly};
 use super::limited::all_limits;
-use super::systems::{branched, loaded, remembering};
+use super::remembering::remembering;
+use super::systems::{branched, loaded};
 use super::tracked::{energies, tracked};
 use super::trunk;
 use proboscis::System;
