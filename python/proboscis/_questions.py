@@ -74,7 +74,7 @@ class Questions:
 
         * `duration`: Final time, SI unit s, or its bounds and a guess.
         * `objective`: Objective that is minimised.
-        * `start`: Initial state.
+        * `start`: Initial state; of a periodic motion, whose start is sought, the state where the solver begins.
         * `coordinates`: Coordinates.
         * `free`: Constants of the scene that are sought, by their paths, such as `materials.silicone.shear_modulus`.
         * `goal`: Final state; may be left out where the objective names something to `track` or where to end (`final`), and is free then.
@@ -173,6 +173,7 @@ class Questions:
         coordinates: entries.Coordinates | None = None,
         loads: Mapping[Any, Quantity] | None = None,
         path: int | None = None,
+        response: entries.Response | None = None,
         voltages: Mapping[Any, Quantity] | None = None,
         output: str | PathLike[str] | None = None,
         max_seconds: float | None = None,
@@ -183,6 +184,7 @@ class Questions:
         * `loads`: Loads by name, SI units N, N m, Pa, N/m³ and C/m²; 0 where not named.
         * `path`: Number of points of the path of equilibria from zero voltage that are followed by arc length, past limit points such as
           pull-in.
+        * `response`: Response of Maxwell branches; `relaxed` where not written.
         * `voltages`: Voltages by the names of muscles and driven electrodes (`block.electrode`), SI unit V; 0 where not named.
         """
         problem = self._problem(
@@ -191,6 +193,7 @@ class Questions:
                 "coordinates": coordinates,
                 "loads": loads,
                 "path": path,
+                "response": response,
                 "voltages": voltages,
             },
         )

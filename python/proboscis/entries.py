@@ -47,6 +47,22 @@ BlockLoadKind: TypeAlias = "Literal['traction', 'pressure', 'surface_charge', 'b
 """Kind of a load of an elastic block. Areas and volumes are those of the reference configuration but for a pressure that follows."""
 
 
+class BodyMesh(TypedDict):
+    """A surface from an STL file."""
+
+    at: NotRequired[Sequence[Quantity] | Numbers]
+    """Place of its origin, SI unit m; that of the ground frame where not written."""
+
+    file: Text
+    """STL file, binary or text; its path is relative to the scene file."""
+
+    rotation: NotRequired[Rotation]
+    """Rotation about its origin; where not written its axes are those of the ground frame."""
+
+    unit: NotRequired[Quantity]
+    """Length of its unit, SI unit m; 1 m where not written."""
+
+
 class Box(TypedDict):
     """A box."""
 
@@ -337,6 +353,16 @@ Ramp = TypedDict(
 """Linear between two values, constant before and after."""
 
 
+class Rotation(TypedDict):
+    """A rotation."""
+
+    angle: Quantity
+    """Angle by the right-hand rule, SI unit rad."""
+
+    axis: Sequence[float] | Numbers
+    """Direction of the axis, of any length."""
+
+
 class SignalCsv(TypedDict):
     """Values at times, from a CSV file: one line of headers such as `muscle1 [kV]`, SI units where a header has none; lines that begin with `#`
     are comments.
@@ -594,10 +620,10 @@ class Free(TypedDict):
 
 
 Goal: TypeAlias = "GoalWord | RestGoal"
-"""`"free"`, or a state at the end, at rest."""
+"""`"free"`, `"periodic"`, or a state at the end, at rest."""
 
 
-GoalWord: TypeAlias = "Literal['free']"
+GoalWord: TypeAlias = "Literal['free', 'periodic']"
 """A word of a goal."""
 
 
@@ -627,6 +653,14 @@ Guess: TypeAlias = "GuessWord | GuessObject"
 
 GuessWord: TypeAlias = "Literal['interpolate']"
 """A word of a guess."""
+
+
+Held2: TypeAlias = "HeldWord | Mapping[Any, Quantity]"
+"""Voltages that are held after a goal."""
+
+
+HeldWord: TypeAlias = "Literal['find']"
+"""Voltages that are not given."""
 
 
 Hold: TypeAlias = "Literal['reported', 'required']"
@@ -829,12 +863,17 @@ class Region(TypedDict):
     """Ball."""
 
 
+Response: TypeAlias = "Literal['relaxed', 'instantaneous']"
+"""Response of Maxwell branches to voltages and loads."""
+
+
 class RestGoal(TypedDict):
     """A state at the end, at rest: `rest_at_voltages`, or `joint_angles`, or `markers` and `orientations`."""
 
-    hold: NotRequired[Mapping[Any, Quantity]]
+    hold: NotRequired[Held2]
     """Voltages that are held after positions of markers and orientations are reached, SI unit V; 0 where not named. Of elastic blocks the motion
-    under them is the guess, where no other is written.
+    under them is the guess, where no other is written. `"find"`: they are sought with the motion, so that the goal is an equilibrium; also of
+    `joint_angles`, for lumped muscles.
     """
 
     joint_angles: NotRequired[Mapping[Any, Quantity]]
@@ -1025,7 +1064,7 @@ Voltages: TypeAlias = "Solution | Table | Mapping[Any, Signal]"
 
 class Waypoint(TypedDict):
     """Places that the motion reaches at a time on its way, at the instant nearest to it: `markers`, `orientations`, `joint_angles`, or several of
-    them.
+    them. With a `weight` it passes near them: their squared distances are costs.
     """
 
     joint_angles: NotRequired[Mapping[Any, Quantity]]
@@ -1038,10 +1077,15 @@ class Waypoint(TypedDict):
     """Orientations by body."""
 
     part: NotRequired[float]
-    """Part of the duration, above 0 and below 1, which may be free."""
+    """Part of the duration, above 0 and below 1, which may be free; of a periodic motion 1 is its start and its end."""
 
     time: NotRequired[Quantity]
     """Time, SI unit s; or give `part`."""
+
+    weight: NotRequired[float]
+    """Weight of the squared distances at that instant, in mm² of markers and prismatic joints and rad² of revolute ones, as costs in the objective
+    in place of exact conditions; not of `orientations`.
+    """
 
 
 class Control(TypedDict):
@@ -1090,7 +1134,7 @@ class Control(TypedDict):
     """Options of the solver."""
 
     start: Start
-    """Initial state."""
+    """Initial state; of a periodic motion, whose start is sought, the state where the solver begins."""
 
     voltage_bounds: NotRequired[Sequence[Quantity] | Numbers]
     """Lower and upper bound of every voltage that is sought, SI unit V; not needed where none is."""
@@ -1152,6 +1196,9 @@ class Equilibrium(TypedDict):
 
     path: NotRequired[int]
     """Number of points of the path of equilibria from zero voltage that are followed by arc length, past limit points such as pull-in."""
+
+    response: NotRequired[Response]
+    """Response of Maxwell branches; `relaxed` where not written."""
 
     voltages: NotRequired[Mapping[Any, Quantity]]
     """Voltages by the names of muscles and driven electrodes (`block.electrode`), SI unit V; 0 where not named."""

@@ -26,13 +26,16 @@ class Material(Part):
     * `shear_modulus`: Shear modulus μ of small strains, SI unit Pa.
     * `c1`: Constant of the term c₁ E·E, SI unit F/m = N/V².
     * `c2`: Constant of the term c₂ C:(E⊗E), SI unit F/m = N/V².
+    * `conditions`: Conditions under which the constants were measured and fitted, for readers.
     * `density`: Density, SI unit kg/m³; without it muscles are massless.
     * `dielectric`: Law by which `relative_permittivity` enters the energy; `first_order` where not written.
     * `lame_lambda`: First Lamé constant λ, SI unit Pa; or give `poisson_ratio`. Finite elements need one of them.
     * `law`: Law of elasticity; the neo-Hookean one where not written.
-    * `maxwell`: Maxwell branches, five at most: springs in series with dampers, in which stress relaxes. Lumped muscles read them.
+    * `maxwell`: Maxwell branches, five at most: springs in series with dampers, in which stress relaxes.
     * `poisson_ratio`: Poisson's ratio, between −1 and 0.5; or give `lame_lambda`.
     * `relative_permittivity`: Relative permittivity, 1 or more; or give `c1` and `c2`; without either the material has no electric term.
+    * `source`: Source of the constants, for readers.
+    * `stretch_range`: Smallest and largest stretch for which the constants hold; a lumped muscle beyond them is a warning.
     * `viscosity`: Viscosity η in σ = η d, SI unit Pa s; without it no viscous force.
     """
 
@@ -45,6 +48,7 @@ class Material(Part):
         shear_modulus: Quantity,
         c1: Quantity | None = None,
         c2: Quantity | None = None,
+        conditions: Text | None = None,
         density: Quantity | None = None,
         dielectric: entries.Dielectric | None = None,
         lame_lambda: Quantity | None = None,
@@ -52,6 +56,8 @@ class Material(Part):
         maxwell: Sequence[entries.Maxwell] | None = None,
         poisson_ratio: float | None = None,
         relative_permittivity: float | None = None,
+        source: Text | None = None,
+        stretch_range: Sequence[float] | Numbers | None = None,
         viscosity: Quantity | None = None,
     ) -> None:
         super().__init__(
@@ -60,6 +66,7 @@ class Material(Part):
                 "shear_modulus": shear_modulus,
                 "c1": c1,
                 "c2": c2,
+                "conditions": conditions,
                 "density": density,
                 "dielectric": dielectric,
                 "lame_lambda": lame_lambda,
@@ -67,20 +74,26 @@ class Material(Part):
                 "maxwell": maxwell,
                 "poisson_ratio": poisson_ratio,
                 "relative_permittivity": relative_permittivity,
+                "source": source,
+                "stretch_range": stretch_range,
                 "viscosity": viscosity,
             },
         )
 
 
 class Body(Part):
-    """A rigid body: one shape, or an explicit inertia, or both.
+    """A rigid body: a mass or a density; one shape, or an explicit inertia, or both.
 
-    * `mass`: Mass, SI unit kg.
-    * `position`: Centre of mass, SI unit m.
     * `box`: Solid box with edges along the axes of the ground frame.
     * `cylinder`: Solid cylinder.
+    * `density`: Density of the shape, SI unit kg/m³, in place of the mass.
     * `free`: True if the body is free of the ground: no chain of joints leads there.
     * `inertia`: Moments of inertia about the axes of the ground frame through the centre of mass, SI unit kg m²; overrides the shape's.
+    * `mass`: Mass, SI unit kg.
+    * `mesh`: Solid within a closed surface of triangles, from an STL file; beside `inertia` it is only drawn.
+    * `position`: Centre of mass, SI unit m; of a `mesh` without `inertia` it follows from the surface, and is not written.
+    * `products_of_inertia`: Entries xy, xz, yz of the tensor of inertia whose diagonal is `inertia`, such as −∫ x y dm, SI unit kg m²; zero where
+      not written.
     * `sphere`: Solid sphere.
     """
 
@@ -90,23 +103,29 @@ class Body(Part):
         self,
         name: str | None = None,
         *,
-        mass: Quantity,
-        position: Sequence[Quantity] | Numbers,
         box: entries.Box | None = None,
         cylinder: entries.Cylinder | None = None,
+        density: Quantity | None = None,
         free: bool | None = None,
         inertia: Sequence[Quantity] | Numbers | None = None,
+        mass: Quantity | None = None,
+        mesh: entries.BodyMesh | None = None,
+        position: Sequence[Quantity] | Numbers | None = None,
+        products_of_inertia: Sequence[Quantity] | Numbers | None = None,
         sphere: entries.Sphere | None = None,
     ) -> None:
         super().__init__(
             name,
             {
-                "mass": mass,
-                "position": position,
                 "box": box,
                 "cylinder": cylinder,
+                "density": density,
                 "free": free,
                 "inertia": inertia,
+                "mass": mass,
+                "mesh": mesh,
+                "position": position,
+                "products_of_inertia": products_of_inertia,
                 "sphere": sphere,
             },
         )
