@@ -33,7 +33,7 @@ class Iteration:
     """Its number; the starting point is number zero."""
     objective: float
     infeasibility: float
-    """Greatest violation of a constraint, as the solver measures it."""
+    """Greatest scaled violation of a constraint."""
     optimality: float
     """Greatest entry of the gradient of the Lagrangian."""
 

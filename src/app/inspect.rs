@@ -231,13 +231,13 @@ fn active(plan: &Plan) -> String {
 /// Lists the reasons for the terms.
 fn reasons(plan: &Plan) -> String {
     let effects = plan.effects.iter();
-    listed("called for by", effects.map(|e| (&e.name, &e.why)))
+    listed("active because of", effects.map(|e| (&e.name, &e.why)))
 }
 
 /// Lists the absent terms.
 fn missing(plan: &Plan) -> String {
     let absent = plan.absent.iter();
-    listed("not there", absent.map(|a| (&a.name, &a.why)))
+    listed("inactive", absent.map(|a| (&a.name, &a.why)))
 }
 
 /// Lists names under a heading with their texts, in two columns.

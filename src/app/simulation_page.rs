@@ -22,7 +22,7 @@ pub(super) fn rows(
         row("duration", format!("{} s", reached / 1e3)),
         row("method", method(task)),
         row("coordinates", model.coordinates.name().to_owned()),
-        row("time", format!("{:.3} s", summary.seconds.total)),
+        row("computing time", format!("{:.3} s", summary.seconds.total)),
     ];
     rows.extend(summary.energies.iter().flat_map(EnergySummary::rows));
     rows.extend(summary.accuracy.iter().flat_map(|a| {

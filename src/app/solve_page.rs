@@ -36,7 +36,7 @@ pub(super) fn rows(summary: &Summary) -> Vec<(String, String)> {
         );
         row("variables", program.variables.to_string());
         row("constraints", program.constraints.to_string());
-        row("time", format!("{:.3} s", summary.seconds.total));
+        row("computing time", format!("{:.3} s", summary.seconds.total));
         for (key, value) in summary.energies.iter().flat_map(EnergySummary::rows) {
             row(&key, value);
         }
@@ -84,7 +84,7 @@ pub(super) fn describe(violation: &Violation) -> String {
                 unit => format!(" {unit}"),
             };
             format!(
-                "{}: violated by {}{unit} ({scaled:.1e} as the solver measures it)",
+                "{}: violated by {}{unit} (scaled violation {scaled:.1e})",
                 violation.row,
                 significant(distance, 4)
             )
@@ -112,7 +112,7 @@ pub(super) fn convergence(iterations: &[Iteration]) -> (String, LinePlot) {
     ];
     let plot = LinePlot::new(
         Axis::linear("iteration", Extent::Tight),
-        Axis::log("as the solver measures it"),
+        Axis::log("scaled value"),
         series,
     );
     ("Convergence".to_owned(), plot)

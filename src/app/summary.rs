@@ -108,7 +108,7 @@ pub(super) struct Program {
     pub(super) evaluations: Evaluations,
     /// Mean time of one evaluation per interval.
     pub(super) interval_microseconds: PerInterval,
-    /// Greatest violation of an equation or limit, as the solver measures it; absent where one has no value.
+    /// Greatest scaled violation of an equation or limit; absent where one has no value.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub(super) infeasibility: Option<f64>,
     /// The worst rows that do not hold; none of a solution.

@@ -90,8 +90,8 @@ pub(super) fn plot(
     for marker in &system.markers {
         if let Some(points) = tracking::reference(tracked, &marker.name, [horizontal, vertical]) {
             let name = match system.markers.len() {
-                1 => "to follow".to_owned(),
-                _ => format!("{}, to follow", marker.name),
+                1 => "reference".to_owned(),
+                _ => format!("{}, reference", marker.name),
             };
             let curve = Series::curve(name, points, style::INK);
             series.push(curve.dashed(Dash::Dashed));

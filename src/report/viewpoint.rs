@@ -93,7 +93,7 @@ fn least(system: &System, trajectory: &Trajectory, skins: &Skins) -> Vector3<f64
     let all = (unit(motion.sum()) + unit(shape.sum())).symmetric_eigen();
     let direction = all.eigenvectors.column(all.eigenvalues.imin()).into_owned();
     let main = direction.iamax();
-    // From before, from the right, or from below, where x is to the right and z upwards.
+    // From the front, from the right, or from below, where x is to the right and z upwards.
     let sign = if main == 1 { -1.0 } else { 1.0 };
     direction * (sign * direction[main].signum())
 }

@@ -45,7 +45,7 @@ pub struct Optimum {
     pub reversed: Option<(usize, usize)>,
     /// The worst rows that do not hold; none of a solution.
     pub violated: Vec<Violation>,
-    /// Greatest violation of an equation or limit, as the solver measures it.
+    /// Greatest scaled violation of an equation or limit.
     pub infeasibility: f64,
     /// Number of equations and limits.
     pub constraints: usize,

@@ -17,7 +17,7 @@ pub struct Violation {
     /// The unit; none of a pure number.
     #[serde(skip_serializing_if = "str::is_empty")]
     pub unit: &'static str,
-    /// The same as the solver measures it.
+    /// The same, scaled as in the solver.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub scaled: Option<f64>,
 }

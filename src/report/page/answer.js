@@ -16,7 +16,7 @@ function again(data, holder) {
   if (data.command) {
     const copy = element("button", { id: "copy" }, "Copy");
     copy.addEventListener("click", () => navigator.clipboard?.writeText(data.command).then(() => { copy.textContent = "Copied"; }));
-    holder.append(element("h2", {}, "Again"), element("p", {}, element("code", {}, data.command), " ", copy));
+    holder.append(element("h2", {}, "Reproduce"), element("p", {}, element("code", {}, data.command), " ", copy));
   }
 }
 
@@ -63,9 +63,9 @@ function tables(data, holder) {
   const fold = (title, ...children) => holder.append(element("details", {}, element("summary", {}, title), ...children));
   if (summary.effects?.length) {
     const columns = ["name", "kind", "why", "elements", "unknowns", "equations", "nonzeros", "microseconds"];
-    const header = ["effect", "kind", "called for by", "elements", "unknowns", "equations", "pairs coupled", "µs"];
+    const header = ["effect", "kind", "active because of", "elements", "unknowns", "equations", "pairs coupled", "µs"];
     const absent = (summary.absent || []).map(({ name, why }) => [name, why]);
-    fold("Plan of effects", table(header, summary.effects.map((effect) => columns.map((column) => effect[column]))),
+    fold("Model terms", table(header, summary.effects.map((effect) => columns.map((column) => effect[column]))),
       ...(absent.length ? [element("h3", {}, "What is not called for"), table(["effect", "why"], absent)] : []));
   }
   const plain = (value) => typeof value === "number" || typeof value === "string";

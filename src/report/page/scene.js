@@ -253,7 +253,7 @@ class Scene {
     const several = this.markers.some((marker) => marker.compared);
     if (this.markers.length <= NAMED) for (const { name, colour } of this.markers) named.push({ name: several ? `${name}, ${motion}` : name, colour, group: "paths" });
     if (several) named.push({ name: beside, colour: BESIDE, group: "paths" });
-    if (this.markers.some((marker) => marker.followed)) named.push({ name: "to follow", colour: ASKED, group: "paths" });
+    if (this.markers.some((marker) => marker.followed)) named.push({ name: "reference", colour: ASKED, group: "paths" });
     named.push({ name: "goal", colour: GOAL, group: "goal", solid: true }, { name: "reference configuration", colour: BESIDE, group: "reference" }, { name: "ground", colour: GROUND, group: "ground", solid: true });
     return named.filter(({ group }) => this.groups[group]);
   }
