@@ -7,8 +7,8 @@ PROGRAM := target/release/proboscis
 GALLERY := results/gallery
 STUDIES := $(wildcard problems/studies/*.json)
 
-BLOCKS := bending_actuator clamped_stack pull_in fe_bending_control
-MOTIONS := fe_trunk clamped_stack_step bending_actuator_step free_flight
+BLOCKS := bending_actuator clamped_stack pull_in fe_bending_control creeping_block_at_once
+MOTIONS := fe_trunk clamped_stack_step bending_actuator_step free_flight creeping_block
 
 FUZZ_SECONDS := 600
 ADVERSARY_SECONDS := 600

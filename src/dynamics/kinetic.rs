@@ -42,7 +42,8 @@ impl<'m> Kinetic<'m> {
                 entries.add(slot, (i, j));
             }
         }
-        let held = model.prescribed_coordinates();
+        let mut held = model.prescribed_coordinates();
+        held.extend(model.strains());
         entries.hold(&held, 1.0);
         let size = action.map.unknowns();
         Self {
@@ -122,6 +123,7 @@ impl<'m> Kinetic<'m> {
     fn without(&self, momentum: &[f64], prescribed: &[f64]) -> Vec<f64> {
         let mut right = momentum.to_vec();
         right.resize(prescribed.len(), 0.0);
+        self.model.strains().for_each(|i| right[i] = 0.0);
         if !self.model.prescribed.is_empty() {
             let (same, n) = (&self.model.action.layout().same, momentum.len());
             for ((i, j), value) in same.entries().zip(&self.values) {

@@ -43,20 +43,34 @@ fn free_rates(model: &Model, instant: &mut Configuration, momentum: &[f64]) -> V
     if momentum.iter().all(|&p| p == 0.0) {
         return vec![0.0; n];
     }
-    if n > DECOMPOSED {
-        return iterated(model, instant, momentum);
+    let mut momentum = momentum.to_vec();
+    let mut is_free: Vec<bool> = (0..n).map(|i| !model.is_prescribed(i)).collect();
+    let mut inert = n;
+    for i in model.strains() {
+        (is_free[i], momentum[i]) = (false, 0.0);
+        inert -= 1;
     }
-    let mut mass = DMatrix::<f64>::zeros(n, n);
+    if inert > DECOMPOSED {
+        return iterated(model, instant, &momentum);
+    }
+    let free: Vec<usize> = (0..n).filter(|&i| is_free[i]).collect();
+    let mut mass = DMatrix::<f64>::zeros(free.len(), free.len());
     let mut unit = vec![0.0; n];
-    for i in 0..n {
+    for (mut column, &i) in mass.column_iter_mut().zip(&free) {
         unit[i] = 1.0;
-        let column = model.action.momentum(instant, &unit);
-        mass.column_mut(i).copy_from_slice(&column);
+        let of_unit = model.action.momentum(instant, &unit);
+        for (entry, &row) in column.iter_mut().zip(&free) {
+            *entry = of_unit[row];
+        }
         unit[i] = 0.0;
     }
-    let free: Vec<usize> = (0..n).filter(|&i| !model.is_prescribed(i)).collect();
-    let basis = DMatrix::identity(n, n).select_columns(&free);
-    rates_within(&mass, &basis, momentum)
+    let basis = DMatrix::identity(free.len(), free.len());
+    let momenta: Vec<f64> = free.iter().map(|&i| momentum[i]).collect();
+    let mut rates = vec![0.0; n];
+    for (&i, rate) in free.iter().zip(rates_within(&mass, &basis, &momenta)) {
+        rates[i] = rate;
+    }
+    rates
 }
 
 /// Rates with given momenta of a mass matrix, within the span of a basis with orthonormal columns.

@@ -7,6 +7,7 @@ use crate::dynamics::step_state::TangentState;
 use crate::math::{IsOver, Stopped, compact_index};
 use crate::model::Model;
 use crate::sparse::{Backend, Direct, Precision, Singular, Symmetry};
+use std::collections::HashSet;
 
 /// Places in the values of the action, summed into the entries of a matrix.
 #[derive(Debug)]
@@ -86,7 +87,8 @@ impl EntryList {
             return;
         }
         let entries = &self.entries;
-        let is_held = |i: u32| unknowns.contains(&(i as usize));
+        let held: HashSet<usize> = unknowns.iter().copied().collect();
+        let is_held = |i: u32| held.contains(&(i as usize));
         self.gather.retain(|(_, entry)| {
             let (row, col) = entries[*entry as usize];
             !is_held(row) && !is_held(col)

@@ -14,6 +14,7 @@ mod joint_stops;
 mod limit;
 mod load;
 mod maxwell;
+mod maxwell_damper;
 mod muscle;
 mod of_square;
 mod one_sided;
@@ -40,7 +41,8 @@ pub use limit::{
     ProjectionStep, SquaredDistance, SquaredField,
 };
 pub use load::{DeadLoad, FollowingForce, SurfaceCharge};
-pub use maxwell::{MaxwellCell, MaxwellDamper};
+pub use maxwell::MaxwellCell;
+pub use maxwell_damper::{DamperDerivatives, MaxwellDamper};
 pub use muscle::{DielectricCell, ElasticCell, SectionInertia};
 pub use of_square::OfSquare;
 pub use sought_damper::SoughtDamper;

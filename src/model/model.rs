@@ -215,6 +215,15 @@ impl Model {
         own.map(|(coordinate, _)| coordinate)
     }
 
+    /// Coordinates of the viscous strains of blocks: they have no inertia, whatever moves.
+    pub fn strains(&self) -> impl Iterator<Item = usize> + '_ {
+        let is_strain = |kind: &InternalKind| matches!(kind, InternalKind::Strain { .. });
+        let own = self
+            .internal_kinds()
+            .filter(move |(_, kind)| is_strain(kind));
+        own.map(|(coordinate, _)| coordinate)
+    }
+
     /// Returns true if coordinate `i` is one of [`memory`](Self::memory).
     pub fn is_memory(&self, i: usize) -> bool {
         self.internal_kind(i).is_some_and(InternalKind::is_memory)

@@ -1,7 +1,10 @@
 //! Systems of rubber that creeps.
 
-use super::systems::{blocks, branched};
-use proboscis::model::system::{MaxwellBranch, MaxwellBranches, System};
+use super::systems::branched;
+use super::trunk;
+use proboscis::model::system::{
+    Discretisation, ElementKind, Fidelity, MaxwellBranch, MaxwellBranches, System,
+};
 
 fn branch(shear_modulus: f64, relaxation_time: f64) -> MaxwellBranch {
     MaxwellBranch {
@@ -19,10 +22,16 @@ pub fn remembering() -> System {
     system
 }
 
-/// The blocks with a Maxwell branch of the muscle of finite elements.
+/// One segment with a lumped muscle and one of finite elements with a Maxwell branch.
 pub fn remembering_blocks() -> System {
-    let mut system = blocks();
-    let branch = branch(0.04, 30.0);
-    system.muscles[0].material.maxwell = MaxwellBranches::new(&[branch]).unwrap();
+    let mut system = trunk(1);
+    let muscle = &mut system.muscles[0];
+    muscle.material.lame_lambda = Some(0.4);
+    muscle.material.maxwell = MaxwellBranches::new(&[branch(0.04, 30.0)]).unwrap();
+    muscle.fidelity = Fidelity::FiniteElements(Discretisation {
+        elements: [1, 1, 2],
+        layers: 2,
+        element: ElementKind::Hex8,
+    });
     system
 }

@@ -1,8 +1,13 @@
 //! Control of rubber that creeps.
 
-use proboscis::control::problem::Task;
+use crate::common::cases::{control, hold};
+use crate::common::trunk;
+use proboscis::control::problem::{BoundaryState, Rest, Task};
 use proboscis::files::read_problem;
 use proboscis::model::Role;
+use proboscis::model::system::{
+    Discretisation, ElementKind, Fidelity, MaxwellBranch, MaxwellBranches,
+};
 use proboscis::workflow::{SolveLimits, optimise};
 use std::ops::ControlFlow;
 use std::path::Path;
@@ -48,4 +53,45 @@ fn the_trunk_of_rubber_that_creeps_reaches_its_goal() {
     let apart = creeping.motion.voltages.iter().zip(&plain.motion.voltages);
     let apart = apart.flat_map(|(a, b)| a.iter().zip(b).map(|(a, b)| (a - b).abs()));
     assert!(apart.fold(0.0, f64::max) > 100.0, "other voltages");
+}
+
+/// One segment between a lumped muscle and one hexahedron, whose nodes are all glued: what it remembers is all that it adds.
+#[test]
+fn a_muscle_of_finite_elements_that_creeps_is_steered() {
+    let mut system = trunk(1);
+    let branch = MaxwellBranch {
+        shear_modulus: 0.03,
+        relaxation_time: 60.0,
+    };
+    let muscle = &mut system.muscles[1];
+    muscle.material.lame_lambda = Some(0.4);
+    muscle.material.maxwell = MaxwellBranches::new(&[branch]).unwrap();
+    muscle.fidelity = Fidelity::FiniteElements(Discretisation {
+        elements: [1, 1, 1],
+        layers: 1,
+        element: ElementKind::Hex8,
+    });
+    let mut control = control(&system, 15);
+    control.goal = BoundaryState::RestAtVoltages(hold(1), Rest::Everything);
+    let limits = SolveLimits::default();
+    let found = optimise(&system, &control, None, limits, &mut |_| {
+        ControlFlow::Continue(())
+    });
+    let found = found.unwrap();
+    assert!(found.is_solved(), "{:?}", found.solution.status);
+    assert_eq!(found.model.variables.count(Role::Coordinate), 1 + 40);
+    let tested = found.resimulation.as_ref().unwrap();
+    assert!(tested.is_confirmed, "{tested:?}");
+    let strains: Vec<usize> = found.model.strains().collect();
+    assert_eq!(strains.len(), 40);
+    // It starts relaxed, and at the end still remembers a shorter way than it has been turned.
+    let (first, last) = (&found.motion.z[0], found.motion.z.last().unwrap());
+    let largest = |z: &[f64]| strains.iter().map(|&i| z[i].abs()).fold(0.0, f64::max);
+    assert!(largest(first) < 1e-9, "{}", largest(first));
+    let turned = found.motion.joints.last().unwrap()[0].abs();
+    assert!(
+        turned > 0.02 && largest(last) > 1e-3,
+        "{turned} {}",
+        largest(last)
+    );
 }

@@ -5,6 +5,7 @@ use proboscis::control::problem::{Afterwards, BoundaryState, Task, Voltages};
 use proboscis::dynamics::Integrator;
 use proboscis::files::read_problem;
 use proboscis::math::Signal;
+use proboscis::model::Response;
 use std::fs;
 use std::path::Path;
 
@@ -268,4 +269,34 @@ fn voltages_of_a_control_problem_may_be_given() {
         panic!("a control problem")
     };
     assert_eq!(control.given, [(1, Signal::Constant(4000.0))].into());
+}
+
+#[test]
+fn the_response_of_an_equilibrium_is_read_and_checked() {
+    const REST: &str = r#"{ "scene": "scene.json", "equilibrium": { "response": "relaxed" } }"#;
+    let branch = r#"[{ "shear_modulus": "20 kPa", "relaxation_time": "1 s" }]"#;
+    let creeping = SCENE.replacen(
+        "\"shear_modulus\"",
+        &format!("\"maxwell\": {branch}, \"shear_modulus\""),
+        2,
+    );
+    assert_ne!(creeping, SCENE);
+    let at_once = REST.replace("relaxed", "instantaneous");
+    for (scene, problem, expected) in [
+        (SCENE, REST, Response::Relaxed),
+        (&creeping, REST, Response::Relaxed),
+        (&creeping, &at_once, Response::Instantaneous),
+    ] {
+        let (_folder, path) = folder(scene, problem);
+        let Task::Equilibrium(task) = read_problem(&path, &[]).expect("a problem").task else {
+            panic!("an equilibrium")
+        };
+        assert_eq!(task.response, expected);
+    }
+    #[rustfmt::skip]
+    let cases: &[Case] = &[
+        ("\"relaxed\"", "\"instantaneous\"", "equilibrium.response", "\"instantaneous\"", "a scene with Maxwell branches", "instantaneous"),
+        ("\"relaxed\"", "\"slow\"", "equilibrium.response", "\"slow\"", "\"instantaneous\"", "slow"),
+    ];
+    check(cases, REST, |problem| mistake(SCENE, problem, &[]));
 }

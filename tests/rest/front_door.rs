@@ -59,3 +59,32 @@ fn what_is_no_number_is_refused() {
     let text = wrong.unwrap_err().to_string();
     assert!(text.contains("expected a finite number"), "{text}");
 }
+
+/// Stretches of an ideal dielectric under 30 V/µm of the published law of one branch: at once, and after a long time.
+#[test]
+fn a_response_is_instantaneous_or_relaxed() {
+    let rubber = |branches: bool| {
+        let rubber = Material::elastomer(kpa(100.0)).ideal_dielectric(3.0);
+        match branches {
+            true => rubber.maxwell(kpa(50.0), ms(100.0)),
+            false => rubber,
+        }
+    };
+    let stretched = |branches: bool, response: fn(Equilibrium) -> Equilibrium| {
+        let mut system = System::new("stack");
+        let mass = system.add(Body::cuboid([mm(10.0); 3]).mass(g(10.0)).at(Y * mm(45.0)));
+        let slide = system.add(Joint::prismatic(Y).between(GROUND, mass));
+        let muscle = Muscle::of(&rubber(branches)).from(GROUND, Vector3::zeros());
+        let muscle = muscle.to(mass, Y * mm(40.0)).layer(um(50.0));
+        let muscle = system.add(muscle.section(mm(10.0), mm(10.0)));
+        let found = response(Equilibrium::new().voltage(muscle, 1500.0)).find(&system)?;
+        Ok::<_, Error>(1.0 + found.joint(slide)[0] / mm(40.0))
+    };
+    let relaxed = stretched(true, |equilibrium| equilibrium).unwrap();
+    let at_once = stretched(true, Equilibrium::instantaneous).unwrap();
+    assert!((relaxed - 0.9025085022).abs() < 1e-9, "{relaxed}");
+    assert!((at_once - 0.9399464523).abs() < 1e-9, "{at_once}");
+    let refused = stretched(false, Equilibrium::instantaneous).unwrap_err();
+    let text = refused.to_string();
+    assert!(text.contains("a scene with Maxwell branches"), "{text}");
+}
