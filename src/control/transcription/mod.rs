@@ -136,7 +136,8 @@ impl<'m> Transcription<'m> {
 
     /// Number of intervals N of the motion.
     pub fn intervals(&self) -> usize {
-        self.layout.end
+        let Layout { end, .. } = &self.layout;
+        *end
     }
 
     /// The model whose motion is looked for.
