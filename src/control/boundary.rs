@@ -338,7 +338,7 @@ pub fn resolve_start(
             Ok(start)
         }
         BoundaryState::Markers { .. } | BoundaryState::Free | BoundaryState::Periodic => {
-            unreachable!("it is a goal only")
+            Err(BoundaryError::NoStart { place })
         }
     }
 }

@@ -31,6 +31,14 @@ pub enum BoundaryError {
         /// Its value.
         value: f64,
     },
+    /// A state that is that of a goal only.
+    #[error(
+        "{place}: a motion starts at joint coordinates, at rest under voltages, or at the end of another motion; free and periodic states and places of markers are goals"
+    )]
+    NoStart {
+        /// `start`.
+        place: &'static str,
+    },
     /// The rates of joints do not fit a closed loop.
     #[error(
         "{place}: the rates of the joints open a closed loop, by {constraint}; leave out those that follow from the others"

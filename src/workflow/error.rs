@@ -88,6 +88,7 @@ impl WorkflowError {
             | BoundaryError::NoLength { place, .. }
             | BoundaryError::BeyondLaw { place, .. }
             | BoundaryError::OpenRates { place, .. }
+            | BoundaryError::NoStart { place }
             | BoundaryError::Follows { place, .. } => {
                 let text = error.to_string();
                 let reason = text.strip_prefix(&format!("{place}: ")).unwrap_or(&text);

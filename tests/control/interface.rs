@@ -222,6 +222,14 @@ fn what_makes_no_sense_is_refused() {
     wrong.add(Joint::revolute(X * 0.0).between(GROUND, wrong_body(&trunk)));
     assert!(told(simulate(&wrong)).contains("the axis"));
 
+    for goal in [State::Free, State::Periodic, State::Markers(Vec::new())] {
+        let none = Simulation::over(ms(20.0)).start(goal.clone()).run(&trunk);
+        assert!(told(none).contains("are goals"));
+        let none = Control::over(ms(20.0), 4).start(goal).effort(1.0);
+        let refused = none.solve(&trunk).unwrap_err().to_string();
+        assert!(refused.contains("are goals"), "{refused}");
+    }
+
     let backwards = Control::over(s(0.4), 20).electrical_energy(&muscles, -1.0);
     let refused = backwards.solve(&trunk).unwrap_err().to_string();
     assert!(
