@@ -68,16 +68,16 @@ impl DamperDerivatives {
 
     /// Adds ½ c (ż₁ δz₁ + ż₂ δz₂ + ż₃ δz₃).
     fn add_stretches(&mut self, coefficient: f64, virtual_z: [f64; 2], rate: [f64; 2]) {
-        for i in 0..2 {
-            for j in 0..2 {
+        for (i, virtual_z) in virtual_z.into_iter().enumerate() {
+            for (j, rate) in rate.into_iter().enumerate() {
                 let factor = if i == j {
                     coefficient
                 } else {
                     0.5 * coefficient
                 };
-                self.value += factor * virtual_z[i] * rate[j];
-                self.gradient[VIRTUAL_Z + i] += factor * rate[j];
-                self.gradient[RATE_Z + j] += factor * virtual_z[i];
+                self.value += factor * virtual_z * rate;
+                self.gradient[VIRTUAL_Z + i] += factor * rate;
+                self.gradient[RATE_Z + j] += factor * virtual_z;
                 self.pair(VIRTUAL_Z + i, RATE_Z + j, factor);
             }
         }
@@ -97,8 +97,8 @@ impl DamperDerivatives {
             for (place, slope) in one.slopes {
                 let slope = e * other.value * slope;
                 self.gradient[place] += slope;
-                for i in 0..2 {
-                    self.pair(Z + i, place, omega[i] * slope);
+                for (i, omega) in omega.iter().enumerate() {
+                    self.pair(Z + i, place, omega * slope);
                 }
             }
             if let Some(place) = one.curvature {

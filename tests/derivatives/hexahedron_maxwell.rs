@@ -1,5 +1,10 @@
 //! Maxwell branches of the hexahedron against naive formulas: derivatives, and the strain to which a branch relaxes.
 
+#![expect(
+    clippy::needless_range_loop,
+    reason = "nodes and components are the indices of the formulas"
+)]
+
 use crate::common::random::Random;
 use crate::hexahedron::{Flat, STATES, close, close_flat, list, oracle};
 use crate::naive_hexahedron::{
