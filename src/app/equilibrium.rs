@@ -46,10 +46,15 @@ pub fn equilibrium_of_file(
     if let Some(voltages) = voltages {
         let system = read_system(&request.input, &request.set)?;
         let voltages = driven_voltages(voltages, &system)?;
+        // A file of a problem says how branches respond.
+        let response = match read_problem(&request.input, &request.set).map(|loaded| loaded.task) {
+            Ok(Task::Equilibrium(task)) => task.response,
+            _ => Response::Relaxed,
+        };
         let task = AtRest {
             voltages,
             coordinates: None,
-            response: Response::Relaxed,
+            response,
             path: None,
         };
         return at((request, &[]), &system, &task, began);

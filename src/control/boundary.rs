@@ -327,7 +327,8 @@ pub fn resolve_start(
                 body: model.system.bodies[body].name.clone(),
             })?;
             let rates = model.rates_of_all(&rates, &of_joints);
-            prescribed::in_loops(model, z, rates, named_rates.clone(), place)
+            let bodies: Vec<usize> = velocities.keys().copied().collect();
+            prescribed::in_loops((model, place), z, rates, (named_rates.clone(), &bodies))
         }
         BoundaryState::EndOf(end) => {
             let start = end

@@ -39,9 +39,9 @@ pub enum BoundaryError {
         /// `start`.
         place: &'static str,
     },
-    /// The rates of joints do not fit a closed loop.
+    /// The rates of joints and bodies do not fit a closed loop.
     #[error(
-        "{place}: the rates of the joints open a closed loop, by {constraint}; leave out those that follow from the others"
+        "{place}: the rates of joints and bodies open a closed loop, by {constraint}; leave out those that follow from the others, or name them all"
     )]
     OpenRates {
         /// `start`.

@@ -28,6 +28,16 @@ pub(super) fn check(model: &Model, control: &Control) -> Result<(), BoundaryErro
                 .to_owned(),
         );
     }
+    if control.intervals < 2 {
+        return refused("a periodic motion needs at least two intervals".to_owned());
+    }
+    // What is read in the middle of intervals alone may alternate from instant to instant in a ring of an even number of them.
+    if model.memory().next().is_some() {
+        return refused(
+            "periodic motions are those of muscles and blocks that do not creep and have no circuit"
+                .to_owned(),
+        );
+    }
     for one in &model.prescribed {
         let Duration::Given(end) = control.duration else {
             continue;

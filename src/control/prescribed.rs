@@ -64,21 +64,21 @@ pub(super) fn at_rest(
     place: &'static str,
 ) -> Result<Start, BoundaryError> {
     match model.rates_at_rest(0.0, &model.action.map.placed(&z)) {
-        Some(rates) => in_loops(model, z, rates, BTreeMap::new(), place),
+        Some(rates) => in_loops((model, place), z, rates, (BTreeMap::new(), &[])),
         None => Ok(Start::at_rest(model, z)),
     }
 }
 
-/// A start at coordinates with the rates of joints that are named or prescribed; those of closed loops follow from them.
+/// A start at coordinates with the rates of joints that are named or prescribed and of bodies that are named; those of closed loops follow from
+/// them.
 ///
 /// # Errors
 /// The rates open a loop.
 pub(super) fn in_loops(
-    model: &Model,
+    (model, place): (&Model, &'static str),
     z: Vec<f64>,
     rates: Vec<f64>,
-    named: BTreeMap<usize, f64>,
-    place: &'static str,
+    (named, bodies): (BTreeMap<usize, f64>, &[usize]),
 ) -> Result<Start, BoundaryError> {
     let moving = model.moving_joints();
     let mut joints = named;
@@ -86,7 +86,7 @@ pub(super) fn in_loops(
     joints.extend(prescribed.map(|one| (one.joint, one.motion.derivatives(0.0)[1])));
     let joints = joints.into_iter();
     let joints: Vec<(usize, f64)> = joints.filter(|(j, _)| moving.contains(j)).collect();
-    let rates = rates_in_loops(model, &z, rates, &joints)
+    let rates = rates_in_loops(model, &z, rates, (&joints, bodies))
         .map_err(|constraint| BoundaryError::OpenRates { place, constraint })?;
     Ok(Start::with_rates(model, z, &rates))
 }

@@ -6,7 +6,7 @@
 //! ½ dᵀ M d     with  Gᵀ v = 0,   Jᵀ v = r
 //! ```
 //!
-//! of the gradients G of the constraints and J of the joint coordinates with the named rates r: with d = d₀ + D ν,
+//! of the gradients G of the constraints and J of what is named, joint coordinates and bodies, with the rates r: with d = d₀ + D ν,
 //!
 //! ```text
 //! M d₀ + G μ₀ = 0,  Gᵀ d₀ = −Gᵀ v₀;      M D + G μ = J,  Gᵀ D = 0;      (Jᵀ D) ν = r − Jᵀ (v₀ + d₀).
@@ -17,35 +17,43 @@ use crate::dynamics::kinetic::{Kinetic, constrained};
 use crate::model::{Model, Role};
 use nalgebra::{DMatrix, DVector};
 
-/// Part of the greatest rate by which a constraint or a named joint may be missed.
+/// Part of the greatest rate by which a constraint or what is named may be missed.
 const OPEN: f64 = 1e-9;
-/// Singular values of Jᵀ D below this part of the greatest belong to named joints that follow from the others.
+/// Singular values of Jᵀ D below this part of the greatest belong to named rates that follow from the others.
 const DEPENDENT: f64 = 1e-10;
 /// Corrections of rates by squares of gradients, each with half of the digits.
 const CORRECTIONS: usize = 3;
 
-/// Rates v of the coordinates at coordinates `z`, completed from v₀ and the rates of joints that are `named`.
+/// Rates v of the coordinates at coordinates `z`, completed from v₀ and the rates of joints that are named; named bodies keep those of v₀.
 ///
 /// # Errors
-/// The constraint or joint that the named rates violate most.
+/// The constraint, joint or body that the named rates violate most.
 pub fn rates_in_loops(
     model: &Model,
     z: &[f64],
     rates: Vec<f64>,
-    named: &[(usize, f64)],
+    (joints, bodies): (&[(usize, f64)], &[usize]),
 ) -> Result<Vec<f64>, String> {
-    let mut all = rates.iter().chain(named.iter().map(|(_, rate)| rate));
+    let mut all = rates.iter().chain(joints.iter().map(|(_, rate)| rate));
     if !model.has_loops() || all.all(|rate| *rate == 0.0) {
         return Ok(rates);
     }
     let mut instant = model.action.map.placed(z);
     let mut kinetic = Kinetic::new(model);
     kinetic.assemble(&mut instant);
-    let problem = Problem {
-        of_joints: of_joints(model, &mut instant, named),
-        wanted: DVector::from_iterator(named.len(), named.iter().map(|(_, rate)| *rate)),
+    let mut problem = Problem {
+        named: of_joints(model, &mut instant, joints),
+        wanted: DVector::from_iterator(joints.len(), joints.iter().map(|(_, rate)| *rate)),
         given: DVector::from_vec(rates),
     };
+    let joints = joints.iter().map(|&(j, _)| &model.system.joints[j].name);
+    let mut names: Vec<&String> = joints.collect();
+    for &body in bodies {
+        for coordinate in model.coordinates_of_body(body) {
+            problem.keep(coordinate);
+            names.push(&model.system.bodies[body].name);
+        }
+    }
     let exact = problem.by_factors(&mut kinetic, model.action.map.unknowns());
     let found = exact.filter(|found| problem.gaps(&kinetic, found).amax() <= OPEN * found.amax());
     let found = found.or_else(|| problem.by_squares(&kinetic));
@@ -58,16 +66,13 @@ pub fn rates_in_loops(
     let constraints = model.variables.with(Role::Multiplier);
     Err(match constraints.get(worst) {
         Some(constraint) => constraint.name.clone(),
-        None => {
-            let (joint, _) = named[worst - constraints.len()];
-            model.system.joints[joint].name.clone()
-        }
+        None => names[worst - constraints.len()].clone(),
     })
 }
 
 struct Problem {
     /// J.
-    of_joints: DMatrix<f64>,
+    named: DMatrix<f64>,
     /// r.
     wanted: DVector<f64>,
     /// v₀.
@@ -75,6 +80,16 @@ struct Problem {
 }
 
 impl Problem {
+    /// Names the rate that a coordinate has in v₀.
+    fn keep(&mut self, coordinate: usize) {
+        let count = self.wanted.len();
+        let named = std::mem::replace(&mut self.named, DMatrix::zeros(0, 0));
+        self.named = named.insert_column(count, 0.0);
+        self.named[(coordinate, count)] = 1.0;
+        let wanted = std::mem::replace(&mut self.wanted, DVector::zeros(0));
+        self.wanted = wanted.push(self.given[coordinate]);
+    }
+
     /// v by the factors of the bordered masses; `None` where these have no inverse.
     fn by_factors(&self, kinetic: &mut Kinetic<'_>, unknowns: usize) -> Option<DVector<f64>> {
         kinetic.factor()?;
@@ -82,15 +97,18 @@ impl Problem {
         let mut right = kinetic.opening(self.given.as_slice());
         right.iter_mut().for_each(|value| *value = -*value);
         let mut found = &self.given + DVector::from_vec(kinetic.solve(&right)?);
+        if self.wanted.is_empty() {
+            return Some(found);
+        }
         let mut pulls = DMatrix::zeros(n, self.wanted.len());
-        for (k, gradient) in self.of_joints.column_iter().enumerate() {
+        for (k, gradient) in self.named.column_iter().enumerate() {
             right.clear();
             right.extend(gradient.iter());
             right.resize(unknowns, 0.0);
             pulls.set_column(k, &DVector::from_vec(kinetic.solve(&right)?));
         }
-        let left = &self.wanted - self.of_joints.tr_mul(&found);
-        let moved = self.of_joints.tr_mul(&pulls).svd(true, true);
+        let left = &self.wanted - self.named.tr_mul(&found);
+        let moved = self.named.tr_mul(&pulls).svd(true, true);
         let least = DEPENDENT * moved.singular_values.amax();
         found += pulls * moved.solve(&left, least).ok()?;
         Some(found)
@@ -101,8 +119,8 @@ impl Problem {
         let (mass, mut gradients) = kinetic.small()?;
         let count = gradients.ncols();
         gradients = gradients.insert_columns(count, self.wanted.len(), 0.0);
-        let mut joints = gradients.columns_mut(count, self.wanted.len());
-        joints.copy_from(&self.of_joints);
+        let mut named = gradients.columns_mut(count, self.wanted.len());
+        named.copy_from(&self.named);
         let mut wanted = DVector::zeros(gradients.ncols());
         wanted
             .rows_mut(count, self.wanted.len())
@@ -122,12 +140,12 @@ impl Problem {
         Some(found)
     }
 
-    /// Rates by which constraints and then named joints are missed, relative to their gradients.
+    /// Rates by which constraints and then what is named are missed, relative to their gradients.
     fn gaps(&self, kinetic: &Kinetic<'_>, found: &DVector<f64>) -> DVector<f64> {
         let mut gaps = kinetic.of_constraints(found.as_slice());
-        let missed = self.of_joints.tr_mul(found) - &self.wanted;
-        let joints = missed.iter().zip(self.of_joints.column_iter());
-        gaps.extend(joints.map(|(gap, column)| gap / column.norm().max(f64::MIN_POSITIVE)));
+        let missed = self.named.tr_mul(found) - &self.wanted;
+        let named = missed.iter().zip(self.named.column_iter());
+        gaps.extend(named.map(|(gap, column)| gap / column.norm().max(f64::MIN_POSITIVE)));
         DVector::from_vec(gaps)
     }
 }

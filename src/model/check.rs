@@ -86,6 +86,7 @@ impl System {
             for material in &solid.materials {
                 positive(&solid.name, "shear modulus", material.shear_modulus)?;
                 material.check_law(&solid.name)?;
+                material.check_range(&solid.name)?;
                 check_branches(&solid.name, material)?;
                 material.check_of_elements(&solid.name)?;
             }
@@ -305,6 +306,7 @@ impl System {
                 positive(name, "density or viscosity", value)?;
             }
             material.check_law(name)?;
+            material.check_range(name)?;
             check_branches(name, material)?;
             check_circuit(name, muscle)?;
             if muscle.fidelity.elements() > 0 {

@@ -4,6 +4,17 @@ use crate::model::check::{SystemError, require};
 use crate::model::system::{ElasticLaw, Material};
 
 impl Material {
+    /// Checks the stretches for which its constants hold.
+    pub(super) fn check_range(&self, name: &str) -> Result<(), SystemError> {
+        require(
+            self.stretch_range
+                .is_none_or(|[low, high]| 0.0 < low && low < high && high < f64::INFINITY),
+            name,
+            || format!("the stretch range {:?}", self.stretch_range),
+            "two positive stretches, the smaller one first",
+        )
+    }
+
     /// Checks the constants of a law of elasticity.
     pub(super) fn check_law(&self, name: &str) -> Result<(), SystemError> {
         match self.law.and_then(|law| law.fault()) {

@@ -6,6 +6,7 @@ use crate::math::Vector;
 use crate::model::analysis::Coordinates;
 use crate::model::model::Model;
 use std::collections::BTreeMap;
+use std::ops::Range;
 
 impl Model {
     /// Rates of director coordinates at joint coordinates with given rates.
@@ -37,6 +38,12 @@ impl Model {
     pub fn turns_freely(&self) -> bool {
         let mut joints = self.presolved.system.joints.iter();
         !self.graph.free().is_empty() || joints.any(|joint| joint.kind.freedoms() > 1)
+    }
+
+    /// Coordinates of the body that carries a body of the scene, in directors; none of one that does not move.
+    pub fn coordinates_of_body(&self, body: usize) -> Range<usize> {
+        let carrier = self.presolved.carrier(Some(body));
+        carrier.map_or(0..0, |b| 12 * b..12 * (b + 1))
     }
 
     /// Returns true if joints close loops of bodies.

@@ -158,8 +158,8 @@ impl Afterwards {
                 .map(|failure| format!("the motion ends early: {failure}")),
         );
         Some(format!(
-            "nothing holds the goal: with the last inputs held on for {} s, {}; for an end that stays take \"rest_at_voltages\", or \
-             \"markers\" or \"joint_angles\" with \"hold\" (\"hold\": \"find\" seeks its voltages)",
+            "nothing holds the goal: with the last inputs held on for {} s, {}; for an end that stays take \"rest_at_voltages\", \
+             \"markers\" with \"hold\", or \"hold\": \"find\", which seeks the voltages of markers and joint angles",
             significant(self.seconds, 3),
             far.join(", ")
         ))

@@ -26,8 +26,8 @@ pub(crate) fn check(
         })
     };
     if boundary.rest[1].is_none() {
-        let reason = "the final state must be held, but the goal names no voltages that hold it: take \"rest_at_voltages\", or \
-                      \"markers\" or \"joint_angles\" with \"hold\"";
+        let reason = "the final state must be held, but the goal names no voltages that hold it: take \"rest_at_voltages\", \
+                      \"markers\" with \"hold\", or either of \"markers\" and \"joint_angles\" with \"hold\": \"find\"";
         return refused("goal", reason.to_owned());
     }
     if let Some((name, reason)) = beyond_bounds(control, model) {

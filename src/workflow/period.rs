@@ -45,14 +45,15 @@ pub(crate) fn begin(control: &Control, boundary: &mut BoundaryConditions, motion
     boundary.rest[0] = motion.voltages.last().cloned();
 }
 
-/// Simulates the inputs of a periodic motion again and again, with its step.
+/// Simulates the inputs of a periodic motion again and again, with its step; nothing where joints have motions of their own.
 pub(crate) fn repeated(
     model: &Model,
     control: &Control,
     start: &Start,
     optimal: &Solution,
 ) -> Option<Repeated> {
-    if control.goal != BoundaryState::Periodic {
+    // Prescribed motions go on as functions of time.
+    if control.goal != BoundaryState::Periodic || !model.prescribed.is_empty() {
         return None;
     }
     let n = optimal.intervals();

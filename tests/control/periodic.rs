@@ -8,6 +8,7 @@ use proboscis::control::problem::{
 use proboscis::dynamics::simulate;
 use proboscis::files::read_problem;
 use proboscis::ipopt::Status;
+use proboscis::model::system::{MaxwellBranch, MaxwellBranches};
 use proboscis::prelude::{Body, GROUND, Joint, Load, State, System, X};
 use proboscis::tasks::{SolveRequest, solve};
 use std::collections::BTreeMap;
@@ -252,4 +253,21 @@ fn what_has_no_period_is_refused_with_its_place() {
     });
     let error = BoundaryConditions::resolve(&system, &control, 5.0).unwrap_err();
     assert!(error.to_string().contains("energies of sources"), "{error}");
+    let (mut system, control) = pair(&[]);
+    let one = Control {
+        intervals: 1,
+        ..control.clone()
+    };
+    let error = BoundaryConditions::resolve(&system, &one, 5.0).unwrap_err();
+    assert!(
+        error.to_string().contains("at least two intervals"),
+        "{error}"
+    );
+    let branch = MaxwellBranch {
+        shear_modulus: 0.05,
+        relaxation_time: 20.0,
+    };
+    system.muscles[0].material.maxwell = MaxwellBranches::new(&[branch]).unwrap();
+    let error = BoundaryConditions::resolve(&system, &control, 5.0).unwrap_err();
+    assert!(error.to_string().contains("do not creep"), "{error}");
 }

@@ -3,7 +3,7 @@
 use crate::loads::{assert_refused, loaded, solved};
 use proboscis::control::problem::{Control, Task};
 use proboscis::dynamics::stable_equilibrium;
-use proboscis::files::read_problem;
+use proboscis::files::{read_problem, solution};
 use proboscis::ipopt::Status;
 use proboscis::prelude::{Body, GROUND, Joint, Load, State, System, X};
 use proboscis::tasks::{SolveRequest, solve};
@@ -63,6 +63,14 @@ fn a_motor_lifts_rods_to_where_it_holds_them_as_in_an_independent_program() {
             (last - hold).abs() > 1e-3,
             "the motion does not end with it: {last}"
         );
+        // Its file has it too.
+        let folder = tempfile::tempdir().unwrap();
+        let file = folder.path().join("solution.json");
+        let texts = solution::written(&optimum.model, &optimum.motion, "solution.npz").unwrap();
+        std::fs::write(&file, texts.json).unwrap();
+        let read = solution::read(&file, &optimum.model).unwrap();
+        let both = [read.hold, optimum.motion.hold.clone()].map(|hold| hold.unwrap()[0]);
+        assert!((both[0] / both[1] - 1.0).abs() < 1e-15, "{both:?}");
         for (joint, angle) in optimum.motion.joints[40]
             .iter()
             .zip(reference["angles"].as_array().unwrap())

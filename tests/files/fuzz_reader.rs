@@ -113,7 +113,12 @@ thread_local! {
 
 /// Reads a changed problem or scene; whether it was refused.
 pub(crate) fn is_refused(bytes: &[u8], is_scene: bool) -> bool {
-    let path = FOLDER.with(|(_, path)| path.clone());
+    let problem = FOLDER.with(|(_, path)| path.clone());
+    // Each where its kept like stands, for what it names relative to itself.
+    let path = match is_scene {
+        true => problem.with_file_name("scenes").join("changed.json"),
+        false => problem,
+    };
     fs::write(&path, bytes).unwrap();
     let is_text = std::str::from_utf8(bytes).is_ok();
     let answer = match is_scene {

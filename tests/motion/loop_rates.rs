@@ -1,5 +1,6 @@
 //! Rates of closed loops at a start: completed from those of one joint, against plane geometry.
 
+use crate::closed_loop::{AXIAL, bar};
 use crate::common::{column, motion, placed};
 use crate::redundant_loops::plane_four_bar;
 use nalgebra::{Matrix2, Rotation3, Vector2, Vector3};
@@ -77,6 +78,47 @@ fn the_rate_of_one_joint_sets_the_whole_loop_in_motion() {
         let wrong = start(&[(0, crank), (3, 1.01 * rocker)]);
         let refused = resolve_start(&model, &wrong, "start").unwrap_err();
         assert!(refused.to_string().contains("closed loop"), "{refused}");
+    }
+}
+
+/// A free hull carries the loop: its velocity stays, and what is named completes the rest.
+#[test]
+fn a_named_velocity_stays_beside_a_loop() {
+    let axis = Vector3::z();
+    let mut system = plane_four_bar(&Rotation3::identity(), [JointKind::Revolute { axis }; 2]);
+    let free = bar("free", 1.0, AXIAL, Vector3::zeros(), Vector3::y());
+    let hull = bar("hull", 5.0, AXIAL, Vector3::zeros(), Vector3::x());
+    system.bodies.insert(0, hull);
+    system.bodies.push(free);
+    for joint in &mut system.joints {
+        joint.parent = Some(joint.parent.map_or(0, |body| body + 1));
+        joint.child += 1;
+    }
+    let model = Model::new(system, None, 1e-3, &[]).unwrap();
+    assert!(model.has_loops());
+    let velocity = [Vector3::new(0.1, 0.0, 0.3), Vector3::new(0.2, -0.1, 0.5)];
+    for (body, rate) in [(4, None), (0, None), (0, Some(2.0))] {
+        let state = BoundaryState::JointAngles {
+            angles: BTreeMap::new(),
+            rates: rate.map(|rate| (0, rate)).into_iter().collect(),
+            velocities: BTreeMap::from([(body, velocity)]),
+        };
+        let start = resolve_start(&model, &state, "start").unwrap();
+        let rates = start.rates.unwrap();
+        let own = &rates[12 * body..12 * body + 3];
+        let expected: Vec<f64> = velocity[0].iter().copied().collect();
+        assert!(
+            own.iter()
+                .zip(&expected)
+                .all(|(a, b)| (a - b).abs() < 1e-12)
+        );
+        let mut instant = placed(&model, &start.z);
+        instant.l[..rates.len()].copy_from_slice(&rates);
+        let found = model.joint_rate(0, &instant);
+        assert!((found - rate.unwrap_or(0.0)).abs() < 1e-12, "{found}");
+        let rocker = model.joint_rate(3, &instant);
+        let ([_, _, expected], _) = plane(rate.unwrap_or(0.0));
+        assert!((rocker - expected).abs() < 1e-12, "{rocker} {expected}");
     }
 }
 

@@ -73,9 +73,9 @@ fn parse(path: &Path, model: &Model) -> Result<Solution, Reason> {
     let loads = load_columns(file.loads.as_ref(), model)?;
     let joints = joint_rows(by_joint, system, instants)?;
     let voltages = input_rows([by_source, &loads], model, instants - 1)?;
-    let hold = file.hold.as_ref();
-    let hold = hold.map(|held| self::hold(held, voltages.last(), model));
-    let hold = hold.transpose()?;
+    let held = file.hold.as_ref();
+    let held = held.map(|held| hold((held, file.hold_loads.as_ref()), voltages.last(), model));
+    let hold = held.transpose()?;
     let poses = poses(file.configuration.as_ref(), system, instants)?;
     let coordinates = coordinates(file.coordinates.as_deref(), model)?;
     let state = match file.state {
@@ -161,10 +161,7 @@ fn joint_rows(
 /// Loads by their names, one column for each that acts in the scene.
 fn load_columns(columns: Option<&Columns>, model: &Model) -> Result<Columns, Reason> {
     let columns = columns.cloned().unwrap_or_default();
-    let loads = model.reached.iter().map(|&s| &model.sources[s]);
-    let loads = loads.filter(|source| source.is_load());
-    let loads = loads.map(|source| source.name.as_str());
-    same_names("load", columns.keys().map(String::as_str), loads)?;
+    same_loads(columns.keys(), model)?;
     Ok(columns)
 }
 
@@ -192,16 +189,27 @@ fn input_rows(
     Ok(rows)
 }
 
-/// Inputs by source that hold the goal: these voltages, and the loads of the last interval.
+/// Inputs by source that hold the goal: these voltages, and these loads or those of the last interval.
 fn hold(
-    held: &BTreeMap<String, f64>,
+    (held, loads): (&BTreeMap<String, f64>, Option<&BTreeMap<String, f64>>),
     last: Option<&Vec<f64>>,
     model: &Model,
 ) -> Result<Vec<f64>, Reason> {
     same_sources(held.keys(), model)?;
-    let value = |(s, source): (usize, &Source)| match (source.is_load(), last) {
-        (true, Some(last)) => last[s],
-        _ => held.get(&source.name).copied().unwrap_or(0.0),
+    if let Some(loads) = loads {
+        same_loads(loads.keys(), model)?;
+    }
+    let value = |(s, source): (usize, &Source)| {
+        let load = || {
+            loads?
+                .get(&source.name)
+                .map(|load| load * source.kind.si().1)
+        };
+        match source.is_load() {
+            true => load().or_else(|| Some(last?[s])),
+            false => held.get(&source.name).copied(),
+        }
+        .unwrap_or(0.0)
     };
     Ok(model.sources.iter().enumerate().map(value).collect())
 }
@@ -300,6 +308,14 @@ fn same_sources<'a>(
     let driven = driven.filter(|source| !source.is_load());
     let driven = driven.map(|source| source.name.as_str());
     same_names("muscle or electrode", names.map(String::as_str), driven)
+}
+
+/// Checks that names are those of the loads that act in the scene.
+fn same_loads<'a>(names: impl Iterator<Item = &'a String>, model: &'a Model) -> Result<(), Reason> {
+    let loads = model.reached.iter().map(|&s| &model.sources[s]);
+    let loads = loads.filter(|source| source.is_load());
+    let loads = loads.map(|source| source.name.as_str());
+    same_names("load", names.map(String::as_str), loads)
 }
 
 fn same_names<'a>(

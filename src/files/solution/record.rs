@@ -33,6 +33,9 @@ pub(super) struct File {
     /// Voltages that hold the goal.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub(super) hold: Option<BTreeMap<String, f64>>,
+    /// Loads that hold the goal, where they are not those of the last interval, in N and N m.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub(super) hold_loads: Option<BTreeMap<String, f64>>,
     /// Potentials of elastic blocks by interval, as multiples of their unit.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub(super) potentials: Vec<Vec<f64>>,

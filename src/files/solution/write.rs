@@ -53,6 +53,17 @@ fn numbers(solved: &Solution) -> usize {
 }
 
 /// Returns the record that is written.
+/// Loads that hold the goal in N and N m, where one is not that of the last interval.
+fn hold_loads(model: &Model, solved: &Solution) -> Option<BTreeMap<String, f64>> {
+    let (held, last) = (solved.hold.as_ref()?, solved.voltages.last()?);
+    let sources = model.system.sources();
+    let loads = model.reached.iter().copied();
+    let loads: Vec<usize> = loads.filter(|&s| sources[s].is_load()).collect();
+    let differs = loads.iter().any(|&s| held[s] != last[s]);
+    let value = |&s: &usize| (sources[s].name.clone(), held[s] / sources[s].kind.si().1);
+    differs.then(|| loads.iter().map(value).collect())
+}
+
 fn record(model: &Model, solved: &Solution) -> File {
     let system = &model.system;
     let columns = |j: usize, unit: f64| solved.joints.iter().map(|row| row[j] / unit).collect();
@@ -93,6 +104,7 @@ fn record(model: &Model, solved: &Solution) -> File {
             let held = |&s: &usize| (sources[s].name.clone(), row[s]);
             driven().map(held).collect()
         }),
+        hold_loads: hold_loads(model, solved),
         potentials: solved.potentials.clone(),
         parameters: solved
             .parameters
