@@ -35,10 +35,12 @@ pub fn changed_text(input: &Path, text: &str, set: &[String]) -> Result<String, 
     if let Some(file) = file.filter(|_| set.iter().any(is_of_scene)) {
         let mut scene = value(&loaded.scene);
         let folder = file.parent().unwrap_or(Path::new(""));
-        let solids = scene.get_mut("solids").and_then(Value::as_array_mut);
-        for solid in solids.into_iter().flatten() {
-            // Paths in a scene are relative to its file.
-            if let Some(mesh) = solid.get_mut("mesh").filter(|mesh| mesh.is_string()) {
+        // Paths in a scene are relative to its file.
+        for (parts, place) in [("solids", "/mesh"), ("bodies", "/mesh/file")] {
+            let parts = scene.get_mut(parts).and_then(Value::as_array_mut);
+            let meshes = parts.into_iter().flatten();
+            let meshes = meshes.filter_map(|part| part.pointer_mut(place));
+            for mesh in meshes.filter(|mesh| mesh.is_string()) {
                 let beside = folder.join(mesh.as_str().unwrap_or_default());
                 *mesh = beside.display().to_string().into();
             }

@@ -12,7 +12,7 @@
 use super::error::MeshError;
 use super::triangulated::Surface;
 use nalgebra::{Matrix3, Vector3};
-use rustc_hash::FxHashMap;
+use rustc_hash::{FxHashMap, FxHashSet};
 
 /// A volume below this part of that of the box around the surface is one of rounding.
 const FLAT: f64 = 1e-9;
@@ -84,6 +84,15 @@ impl Surface {
         let outside = |vertex: &&Vector3<f64>| !vertex.iter().all(|x| x.is_finite());
         if let Some(vertex) = self.vertices.iter().find(outside) {
             return Err(whole(place(vertex), "finite places"));
+        }
+        let mut seen = FxHashSet::default();
+        for triangle in &self.triangles {
+            let least = (0..3).min_by_key(|&i| triangle[i]).unwrap_or(0);
+            if !seen.insert([0, 1, 2].map(|i| triangle[(least + i) % 3])) {
+                let [a, b, c] = triangle.map(|vertex| place(&self.vertices[vertex]));
+                let found = format!("the triangle {a}, {b}, {c} twice");
+                return Err(whole(found, "each triangle once"));
+            }
         }
         // Passes of an edge from the lower vertex to the higher one, and the other way.
         let mut passes: FxHashMap<[usize; 2], [usize; 2]> = FxHashMap::default();

@@ -95,17 +95,20 @@ impl Surface {
                 self.triangles.extend([[a, b, d], [a, d, c]]);
             }
         }
-        for ring in [0, rings.len() - 1] {
-            for side in 1..SIDES - 1 {
-                self.triangles
-                    .push([vertex(ring, 0), vertex(ring, side), vertex(ring, side + 1)]);
-            }
+        let last = rings.len() - 1;
+        for side in 1..SIDES - 1 {
+            let below = [0, side + 1, side].map(|side| vertex(0, side));
+            let above = [0, side, side + 1].map(|side| vertex(last, side));
+            self.triangles.extend([below, above]);
         }
     }
 
     /// Adds a box, see [`faces_of_box`].
     pub fn add_box(&mut self, centre: Vector3<f64>, halves: &[Vector3<f64>; 3]) {
-        for corners in faces_of_box(centre, halves) {
+        for (face, mut corners) in faces_of_box(centre, halves).into_iter().enumerate() {
+            if face % 2 == 1 {
+                corners.reverse();
+            }
             let n = self.vertices.len();
             self.vertices.extend(corners);
             self.triangles

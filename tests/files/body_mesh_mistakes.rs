@@ -42,7 +42,13 @@ fn mistakes_in_a_surface_have_one_message() {
     let mut binary = stl::bytes_of(&Surface::from_corners(cube.clone()), 1.0);
     let cut = binary[..200].to_vec();
     binary[100..104].copy_from_slice(&f32::NAN.to_le_bytes());
-    let cases: [(Option<Vec<u8>>, &str, &str); 11] = [
+    let repeated: Vec<_> = cube.iter().chain(&cube[..1]).copied().collect();
+    let cases: [(Option<Vec<u8>>, &str, &str); 12] = [
+        (
+            Some(text(&repeated).into_bytes()),
+            "twice",
+            "each triangle once",
+        ),
         (None, "where there is no file", "the path of an STL file"),
         (Some(vec![]), "which is empty", "an STL file"),
         (

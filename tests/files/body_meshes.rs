@@ -3,7 +3,7 @@
 use crate::scene::folder;
 use nalgebra::{Matrix3, Rotation3, Vector3};
 use proboscis::files::{read_scene, stl};
-use proboscis::mesh::triangulated::Surface;
+use proboscis::mesh::triangulated::{Surface, rings_of_sphere};
 use proboscis::model::system::{Body, Shape};
 use std::f64::consts::{PI, TAU};
 use std::fs;
@@ -83,6 +83,32 @@ pub(crate) const KEYS: &str =
 /// The tensor of inertia about the centre of mass and the axes of the ground frame.
 fn tensor(body: &Body) -> Matrix3<f64> {
     body.directors * Matrix3::from_diagonal(&body.inertia.into()) * body.directors.transpose()
+}
+
+/// Volume that triangles enclose whose corners are counter-clockwise seen from outside.
+fn volume(surface: &Surface) -> f64 {
+    let corners = surface.corners();
+    corners.map(|[a, b, c]| a.cross(&b).dot(&c) / 6.0).sum()
+}
+
+#[test]
+fn shapes_are_drawn_with_their_faces_outwards() {
+    let axes = [Vector3::x(), Vector3::y(), Vector3::z()];
+    // Away from the origin, so that each face counts.
+    let centre = Vector3::new(3.0, -5.0, 7.0);
+    let mut cuboid = Surface::default();
+    cuboid.add_box(centre, &[axes[0], axes[1] * 2.0, axes[2] * 3.0]);
+    assert!((volume(&cuboid) - 48.0).abs() < 1e-12);
+    let mut cylinder = Surface::default();
+    cylinder.add_rings(centre, axes, &[(-1.0, 2.0), (1.0, 2.0)]);
+    let exact = PI * 8.0;
+    let found = volume(&cylinder);
+    assert!(0.95 * exact < found && found < exact, "{found} {exact}");
+    let mut sphere = Surface::default();
+    sphere.add_rings(centre, axes, &rings_of_sphere(2.0));
+    let exact = PI * 32.0 / 3.0;
+    let found = volume(&sphere);
+    assert!(0.9 * exact < found && found < exact, "{found} {exact}");
 }
 
 #[test]

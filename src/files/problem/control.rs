@@ -123,8 +123,10 @@ fn goal(
 ) -> Result<BoundaryState, SceneError> {
     match &spec.goal {
         Some(goal) => goal_state(goal, system, &scope.key("goal")),
-        None if objective.quantities.is_empty() => {
-            let expected = "the key \"goal\", or an objective that names something to \"track\" or a \"final\" place";
+        None if objective.quantities.is_empty()
+            && spec.waypoints.iter().all(|point| point.weight.is_none()) =>
+        {
+            let expected = "the key \"goal\", or an objective that names something to \"track\" or a \"final\" place, or a waypoint with a weight";
             Err(scope.wrong("no key \"goal\"", expected))
         }
         None => Ok(BoundaryState::Free),

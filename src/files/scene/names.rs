@@ -23,7 +23,8 @@ pub(crate) fn find_material(
     }
     let names: Vec<String> = materials.iter().map(|(name, _)| name.clone()).collect();
     let kept = named_materials().map(|(name, _)| name.to_owned());
-    let all: Vec<String> = names.into_iter().chain(kept).collect();
+    let kept = kept.filter(|name| !names.contains(name));
+    let all: Vec<String> = names.iter().cloned().chain(kept).collect();
     let expected = format!("the name of a material: one of {}", list(all.iter()));
     Err(scope.find(name, &all, &expected).map_or_else(
         |error| error,

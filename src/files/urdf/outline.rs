@@ -94,25 +94,34 @@ fn own(geometry: &Geometry, path: &Path) -> Result<Surface, String> {
             let found = mesh_file(file, path)
                 .ok_or_else(|| format!("the mesh {file:?}, where there is no file,"))?;
             let read = stl::read(&found, 1.0);
-            let read = read.map_err(|_| format!("the mesh {file:?}, which is no STL file,"))?;
+            let read = read.map_err(|error| {
+                let why = error.to_string();
+                format!("the mesh {file:?}, which cannot be read ({why}),")
+            })?;
             surface = read.transformed(|x| x.component_mul(&Vector3::from(*scale)));
+            if scale.iter().product::<f64>() < 0.0 {
+                // A mirror image has its corners the other way round.
+                surface
+                    .triangles
+                    .iter_mut()
+                    .for_each(|triangle| triangle.swap(1, 2));
+            }
         }
     }
     Ok(surface)
 }
 
-/// The file of a mesh: relative to the URDF file, or in the folder of its package, which is one above that file.
+/// The file of a mesh: relative to the URDF file, or in the folder with the name of its package, which is one above that file or stands in one.
 fn mesh_file(name: &str, path: &Path) -> Option<PathBuf> {
-    let folder = path.parent().unwrap_or(Path::new(""));
+    let path = path.canonicalize().ok()?;
+    let folder = path.parent()?;
     let is_file = |file: &PathBuf| file.is_file();
     if let Some(in_package) = name.strip_prefix("package://") {
-        let (_, rest) = in_package.split_once('/')?;
-        let folder = folder.canonicalize().ok()?;
-        let mut folders = folder.ancestors();
-        return folders.find_map(|above| {
-            let inside = Some(above.join(rest)).filter(is_file);
-            inside.or_else(|| Some(above.join(in_package)).filter(is_file))
-        });
+        let (package, rest) = in_package.split_once('/')?;
+        let own = |above: &&Path| above.file_name().is_some_and(|name| name == package);
+        let inside = folder.ancestors().filter(own).map(|above| above.join(rest));
+        let beside = folder.ancestors().map(|above| above.join(in_package));
+        return inside.chain(beside).find(is_file);
     }
     let name = name.strip_prefix("file://").unwrap_or(name);
     Some(folder.join(name)).filter(is_file)

@@ -208,8 +208,11 @@ fn geometry(element: &Element<'_>, left_out: &mut LeftOut) -> Result<Option<Geom
     mesh.only(&[], &["filename", "scale"], left_out);
     let scale = match mesh.node.has_attribute("scale") {
         true => mesh.numbers("scale")?,
-        false => [1.0; 3],
+        false => [1.0_f64; 3],
     };
+    if scale.contains(&0.0) {
+        return Err(mesh.wrong(format!("scale={scale:?}"), "factors other than zero"));
+    }
     let file = mesh.word("filename")?.to_owned();
     Ok(Some(Geometry::Mesh { file, scale }))
 }

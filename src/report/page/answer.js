@@ -66,7 +66,7 @@ function tables(data, holder) {
     const header = ["effect", "kind", "active because of", "elements", "unknowns", "equations", "pairs coupled", "µs"];
     const absent = (summary.absent || []).map(({ name, why }) => [name, why]);
     fold("Model terms", table(header, summary.effects.map((effect) => columns.map((column) => effect[column]))),
-      ...(absent.length ? [element("h3", {}, "What is not called for"), table(["effect", "why"], absent)] : []));
+      ...(absent.length ? [element("h3", {}, "Inactive"), table(["effect", "why"], absent)] : []));
   }
   const plain = (value) => typeof value === "number" || typeof value === "string";
   const listed = (object, before = "") => Object.entries(object).flatMap(([name, value]) => {
