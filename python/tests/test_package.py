@@ -395,6 +395,14 @@ def test_changes_reach_a_scene_of_a_file(pair: pb.Problem, optimum: pb.Result) -
     assert caught.value.path == "control.intervls"
 
 
+def test_a_change_of_a_scene_keeps_the_meshes_of_its_bodies() -> None:
+    arm = pb.Problem.from_file(PROBLEMS / "mesh_arm.json")
+    heavy = arm.changed({"scene.bodies[0].density": "2400 kg/m^3", "simulate.duration": "5 ms"})
+    file = heavy.to_dict()["scene"]["bodies"][0]["mesh"]["file"]
+    assert file == "scenes/../meshes/bracket.stl"
+    assert heavy.simulate().status == "simulated"
+
+
 def test_all_mistakes_are_one_exception(pair: pb.Problem, optimum: pb.Result, tmp_path: Path) -> None:
     with pytest.raises(pb.Error, match="no column 'x'"):
         optimum.table["x"]

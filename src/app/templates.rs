@@ -1,5 +1,6 @@
 //! Files to begin with: templates of robots, robots from URDF, the scene without shorthand, the schemas.
 
+use std::fs;
 use std::path::{Path, PathBuf};
 
 use crate::app::error::CommandError;
@@ -94,7 +95,6 @@ pub fn new_from_urdf(urdf: &Path, folder: &Path) -> Result<CommandOutput, Comman
     let mut files = found.meshes;
     files.push(("scene.json".to_owned(), found.scene.into_bytes()));
     let output = write_new(files, OF_URDF.to_owned(), "simulate", folder)?;
-    files::read_scene(&folder.join("scene.json"))?;
     let notes = found.notes.iter().map(|note| format!("note: {note}"));
     Ok(CommandOutput {
         notes: notes.collect(),
@@ -102,7 +102,7 @@ pub fn new_from_urdf(urdf: &Path, folder: &Path) -> Result<CommandOutput, Comman
     })
 }
 
-/// Writes files of a scene, its problem and the schemas into a folder; `command` does what the problem asks.
+/// Writes files of a scene, its problem and the schemas into a folder, or none where the scene is wrong; `command` does what the problem asks.
 fn write_new(
     mut files: Vec<(String, Vec<u8>)>,
     problem: String,
@@ -128,6 +128,10 @@ fn write_new(
     for (path, bytes) in &files {
         write_file(path, bytes)?;
     }
+    if let Err(wrong) = files::read_scene(&folder.join("scene.json")) {
+        remove(&files, folder);
+        return Err(wrong.into());
+    }
     let names = files.iter().map(|(path, _)| path.display().to_string());
     let next = format!("next: {}", next(command, folder));
     Ok(CommandOutput {
@@ -135,6 +139,18 @@ fn write_new(
         result: names.chain([next]).collect::<Vec<_>>().join("\n"),
         notes: Vec::new(),
     })
+}
+
+/// Removes files that were written, and their folders where nothing else is in them.
+fn remove(files: &[(PathBuf, Vec<u8>)], folder: &Path) {
+    let paths = files.iter().map(|(path, _)| path);
+    // What cannot be removed stays; the mistake is told all the same.
+    for path in paths.clone() {
+        let _ = fs::remove_file(path);
+    }
+    for beside in paths.filter_map(|path| path.parent()).chain([folder]) {
+        let _ = fs::remove_dir(beside);
+    }
 }
 
 /// A command on the problem in a folder, whose results go to a folder of its own name.

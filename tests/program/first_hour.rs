@@ -41,7 +41,8 @@ fn a_robot_from_urdf_names_what_is_left_out_and_moves() {
     let text = fs::read_to_string(urdf).unwrap();
     let two = r#"<visual><geometry><box size="0.1 0.1 0.1"/></geometry></visual><visual><geometry><sphere radius="0.1"/></geometry></visual>"#;
     let text = text.replacen("</inertial>", &format!("</inertial>{two}<collision/>"), 1);
-    fs::write(path.join("arm.urdf"), text).unwrap();
+    fs::write(path.join("arm.urdf"), &text).unwrap();
+    let arm = text;
     let (status, out, err) = run(path, &["new", "urdf", "arm.urdf", "arm"]);
     assert_eq!(status, 0, "{err}");
     assert_eq!(
@@ -78,6 +79,11 @@ fn a_robot_from_urdf_names_what_is_left_out_and_moves() {
             "expected a URDF file",
         ],
     );
+    // Two joints of one name are no scene: nothing is written.
+    let twice = arm.replace("joint name=\"elbow\"", "joint name=\"shoulder\"");
+    assert_ne!(twice, arm);
+    fs::write(path.join("twice.urdf"), twice).unwrap();
+    refused_run(path, &["new", "urdf", "twice.urdf", "other"], &["shoulder"]);
     assert!(!path.join("other").exists());
 }
 
