@@ -2,7 +2,6 @@
 
 use super::cases::{Case, control, joints, partly};
 use super::limited::all_limits;
-use super::remembering::remembering;
 use super::systems::{branched, loaded};
 use super::tracked::{energies, tracked};
 use super::trunk;
@@ -64,15 +63,11 @@ pub fn ends() -> Vec<Case> {
                 ..Waypoint::default()
             }];
         }),
-        case(
-            "remembering tree, periodic, free time",
-            remembering(),
-            &|c| {
-                c.goal = BoundaryState::Periodic;
-                c.objective = inputs.clone();
-                c.duration = free;
-            },
-        ),
+        case("branched tree, periodic, free time", branched(), &|c| {
+            c.goal = BoundaryState::Periodic;
+            c.objective = inputs.clone();
+            c.duration = free;
+        }),
         case(
             "branched tree, costs on the way, free time",
             branched(),
