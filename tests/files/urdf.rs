@@ -171,6 +171,38 @@ fn what_is_left_out_is_named() {
     assert_eq!(system(&found).bodies[2].shape, Shape::None);
 }
 
+#[test]
+fn shapes_and_tensors_that_are_not_taken_are_named() {
+    let link = |inside: &str| {
+        format!(
+            r#"<robot name="r"><link name="base">{inside}</link>
+            <link name="arm"><inertial><mass value="1"/><inertia ixx="1" iyy="1" izz="1"/></inertial></link>
+            <joint name="j" type="continuous"><parent link="base"/><child link="arm"/></joint></robot>"#
+        )
+    };
+    for (inside, told) in [
+        (
+            "<visual><geometry><box size=\"1 1 1\"/><sphere radius=\"1\"/></geometry></visual>",
+            "all but one shape of a <geometry> of the link \"base\"",
+        ),
+        (
+            "<visual><geometry/></visual>",
+            "a <geometry> without a shape of the link \"base\"",
+        ),
+        (
+            "<inertial><mass value=\"0\"/><inertia ixx=\"1\" iyy=\"1\" izz=\"1\"/></inertial>",
+            "the <inertia> beside a mass of zero of the link \"base\"",
+        ),
+    ] {
+        let found = parse_urdf(Path::new("r.urdf"), &link(inside)).unwrap();
+        assert!(
+            found.notes.iter().any(|note| note.contains(told)),
+            "{told} in {:?}",
+            found.notes
+        );
+    }
+}
+
 /// Each mistake has one line with its place, what was found and what is expected.
 #[test]
 fn mistakes_have_one_message() {

@@ -113,8 +113,8 @@ fn own(geometry: &Geometry, path: &Path) -> Result<Surface, String> {
 
 /// The file of a mesh: relative to the URDF file, or in the folder with the name of its package, which is one above that file or stands in one.
 fn mesh_file(name: &str, path: &Path) -> Option<PathBuf> {
-    let path = path.canonicalize().ok()?;
-    let folder = path.parent()?;
+    let beside = path.parent().filter(|folder| *folder != Path::new(""));
+    let folder = beside.unwrap_or(Path::new(".")).canonicalize().ok()?;
     let is_file = |file: &PathBuf| file.is_file();
     if let Some(in_package) = name.strip_prefix("package://") {
         let (package, rest) = in_package.split_once('/')?;

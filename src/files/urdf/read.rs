@@ -1,7 +1,7 @@
 //! Links and joints of a URDF file as they are written, in SI units.
 
 use nalgebra::{Isometry3, Matrix3, Vector3};
-use roxmltree::Document;
+use roxmltree::{Document, Node};
 use std::path::Path;
 
 use crate::files::scene::point::direction;
@@ -164,6 +164,9 @@ fn inertial(element: &Element<'_>, left_out: &mut LeftOut) -> Result<Option<Iner
         };
     }
     if value == 0.0 {
+        if entries.iter().any(|entry| *entry != 0.0) {
+            left_out.add("the <inertia> beside a mass of zero", &element.owner);
+        }
         return Ok(None);
     }
     let [xx, xy, xz, yy, yz, zz] = entries;
@@ -184,7 +187,17 @@ fn inertial(element: &Element<'_>, left_out: &mut LeftOut) -> Result<Option<Iner
 
 /// A shape; `None` of a kind that is left out.
 fn geometry(element: &Element<'_>, left_out: &mut LeftOut) -> Result<Option<Geometry>, UrdfError> {
-    element.only(&["box", "cylinder", "sphere", "mesh"], &[], left_out);
+    const SHAPES: [&str; 4] = ["box", "cylinder", "sphere", "mesh"];
+    element.only(&SHAPES, &[], left_out);
+    let shapes = element.node.children().filter(Node::is_element);
+    match shapes
+        .filter(|node| SHAPES.contains(&node.tag_name().name()))
+        .count()
+    {
+        0 => left_out.add("a <geometry> without a shape", &element.owner),
+        1 => {}
+        _ => left_out.add("all but one shape of a <geometry>", &element.owner),
+    }
     if let Some(cuboid) = element.child("box")? {
         cuboid.only(&[], &["size"], left_out);
         let size = cuboid.numbers::<3>("size")?;
