@@ -20,7 +20,7 @@ use crate::app::summary::{MEASURED, Seconds, Summary};
 use crate::control::problem::{AtRest, Task};
 use crate::dynamics::observations;
 use crate::dynamics::trajectory::Observations;
-use crate::files::{driven_voltages, read_problem, read_system};
+use crate::files::{Loaded, driven_voltages, read_problem, read_system};
 use crate::ipopt::interrupt;
 use crate::model::{Model, Response, System};
 use crate::report::file_set::FileSet;
@@ -44,13 +44,19 @@ pub fn equilibrium_of_file(
     phase("reading");
     refuse_foreign(request)?;
     if let Some(voltages) = voltages {
-        let system = read_system(&request.input, &request.set)?;
-        let voltages = driven_voltages(voltages, &system)?;
-        // A file of a problem says how branches respond.
-        let response = match read_problem(&request.input, &request.set).map(|loaded| loaded.task) {
-            Ok(Task::Equilibrium(task)) => task.response,
-            _ => Response::Relaxed,
+        // The file of an equilibrium says how branches respond; of others the scene alone is read.
+        let (system, response) = match read_problem(&request.input, &request.set) {
+            Ok(Loaded {
+                system,
+                task: Task::Equilibrium(task),
+                ..
+            }) => (system, task.response),
+            _ => (
+                read_system(&request.input, &request.set)?,
+                Response::Relaxed,
+            ),
         };
+        let voltages = driven_voltages(voltages, &system)?;
         let task = AtRest {
             voltages,
             coordinates: None,

@@ -8,7 +8,7 @@ use crate::coordinates::{Configuration, Interval};
 use crate::dynamics::discrete_trajectory::DiscreteTrajectory;
 use crate::functional::TermKind;
 use crate::math::Vector;
-use crate::model::system::{ElasticLaw, Fidelity, Muscle};
+use crate::model::system::{ElasticLaw, Fidelity, Material, Muscle};
 use crate::model::{Model, SolidBlock};
 use std::fmt;
 
@@ -100,6 +100,10 @@ impl BeyondLaw {
 
     /// Of a block with its nodes at `x` within the same part of Jₘ, or beyond.
     fn of_block(block: &SolidBlock, x: &[Vector], part: f64) -> Option<Self> {
+        let has_limit = |material: &Material| matches!(material.law, Some(ElasticLaw::Gent { .. }));
+        if !block.solid.materials.iter().any(has_limit) {
+            return None;
+        }
         let strain = |element: usize, limit: f64| {
             let nodes = block.nodes(element).map(|v| x[v]);
             let shape = &block.shapes[element];

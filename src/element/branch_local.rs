@@ -1,6 +1,6 @@
 //! Energy of a Maxwell branch of one hexahedron with its first and second derivatives by places of nodes and viscous strains.
 
-use super::dual::Dual;
+use super::dual::{Dual, rates, values};
 use crate::math::{Matrix, Vector};
 
 /// Number of coordinates of the viscous strain at a point.
@@ -143,14 +143,4 @@ impl<const NODES: usize> Output<Dual<f64>> for Pair<'_, NODES> {
         self.plain.inner(m, n, values(d));
         self.along.inner(m, n, rates(d));
     }
-}
-
-#[inline(always)]
-fn values<const N: usize>(d: [Dual<f64>; N]) -> [f64; N] {
-    std::array::from_fn(|i| d[i].value)
-}
-
-#[inline(always)]
-fn rates<const N: usize>(d: [Dual<f64>; N]) -> [f64; N] {
-    std::array::from_fn(|i| d[i].rate)
 }

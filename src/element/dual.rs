@@ -1,6 +1,7 @@
 //! Numbers with their derivative along a direction.
 
 use super::number::{Points, Real};
+use crate::math::Vector;
 use std::ops::{Add, Mul, Neg, Sub};
 
 /// A number `value` + ε `rate` with its derivative along a direction, ε² = 0.
@@ -8,6 +9,48 @@ use std::ops::{Add, Mul, Neg, Sub};
 pub(super) struct Dual<T> {
     pub(super) value: T,
     pub(super) rate: T,
+}
+
+/// The values of numbers.
+#[inline(always)]
+pub(super) fn values<const N: usize>(numbers: [Dual<f64>; N]) -> [f64; N] {
+    let mut values = [0.0; N];
+    for i in 0..N {
+        values[i] = numbers[i].value;
+    }
+    values
+}
+
+/// The rates of numbers.
+#[inline(always)]
+pub(super) fn rates<const N: usize>(numbers: [Dual<f64>; N]) -> [f64; N] {
+    let mut rates = [0.0; N];
+    for i in 0..N {
+        rates[i] = numbers[i].rate;
+    }
+    rates
+}
+
+/// Nodes at `x` that move along `w`.
+#[inline(always)]
+pub(super) fn moving<const NODES: usize>(
+    x: &[Vector; NODES],
+    w: &[Vector; NODES],
+) -> [[Dual<f64>; 3]; NODES] {
+    let zero = Dual {
+        value: 0.0,
+        rate: 0.0,
+    };
+    let mut nodes = [[zero; 3]; NODES];
+    for i in 0..NODES {
+        for a in 0..3 {
+            nodes[i][a] = Dual {
+                value: x[i][a],
+                rate: w[i][a],
+            };
+        }
+    }
+    nodes
 }
 
 impl<T: Real> Add for Dual<T> {

@@ -1,7 +1,7 @@
 //! The material law of an elastomer, passive or dielectric, and the energy of an element of it.
 
 use super::dispatch::{Task, dispatch};
-use super::dual::Dual;
+use super::dual::{Dual, moving};
 use super::geometry::ElementGeometry;
 use super::isochoric::{ElementLaw, IsochoricLaw};
 use super::lanes::Lanes;
@@ -206,12 +206,7 @@ impl<F: Field, L: ElementLaw, const NODES: usize> Task for RatesTask<'_, F, L, N
     #[inline(always)]
     fn run<S: Simd, const K: usize>(mut self, unit: S) {
         let dual = |value: f64, rate: f64| Dual { value, rate };
-        let mut x = [[dual(0.0, 0.0); 3]; NODES];
-        for i in 0..NODES {
-            for a in 0..3 {
-                x[i][a] = dual(self.x[i][a], self.w[i][a]);
-            }
-        }
+        let x = moving(self.x, self.w);
         let values = self.law.field.constants(self.potentials);
         let rates = self.law.field.constants(self.w_potentials);
         let mut phi = [dual(0.0, 0.0); NODES];

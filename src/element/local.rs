@@ -1,6 +1,6 @@
 //! Energy of one hexahedron with its first and second derivatives by the arguments of its nodes.
 
-use super::dual::Dual;
+use super::dual::{Dual, rates, values};
 use super::law::Field;
 use crate::math::{Matrix, Vector};
 
@@ -135,14 +135,4 @@ impl<F: Field, const NODES: usize> Output<Dual<f64>> for Pair<'_, F, NODES> {
         self.plain.permittivity(i, j, d.value);
         self.along.permittivity(i, j, d.rate);
     }
-}
-
-#[inline(always)]
-fn values(d: [Dual<f64>; 3]) -> [f64; 3] {
-    [d[0].value, d[1].value, d[2].value]
-}
-
-#[inline(always)]
-fn rates(d: [Dual<f64>; 3]) -> [f64; 3] {
-    [d[0].rate, d[1].rate, d[2].rate]
 }

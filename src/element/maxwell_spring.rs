@@ -3,7 +3,7 @@
 use super::branch::Branch;
 use super::branch_local::{BranchLocal, COORDINATES, Output, Pair};
 use super::dispatch::{Task, dispatch};
-use super::dual::Dual;
+use super::dual::{Dual, moving};
 use super::geometry::ElementGeometry;
 use super::lanes::Lanes;
 use super::number::Points;
@@ -160,13 +160,7 @@ impl<const NODES: usize> Task for Along<'_, NODES> {
 
     #[inline(always)]
     fn run<S: Simd, const K: usize>(mut self, unit: S) {
-        let dual = |value: f64, rate: f64| Dual { value, rate };
-        let mut x = [[dual(0.0, 0.0); 3]; NODES];
-        for i in 0..NODES {
-            for a in 0..3 {
-                x[i][a] = dual(self.at.0[i][a], self.direction.0[i][a]);
-            }
-        }
+        let x = moving(self.at.0, self.direction.0);
         let mut q = [Dual::<Lanes<S, K>>::constant(unit, 0.0); COORDINATES];
         for m in 0..COORDINATES {
             q[m] = Dual {

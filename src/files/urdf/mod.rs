@@ -4,7 +4,7 @@
 //!   taken over.
 //! - `tree`: poses of the links in the reference configuration; `scene`: the scene; `outline`: shapes of bodies.
 //!
-//! What a scene does not have is left out by name.
+//! Parts that a scene cannot hold are left out, each named.
 
 mod element;
 mod error;
