@@ -219,7 +219,7 @@ class Muscle(Part):
     * `elements`: Elements along both sides of the cross-section and along the span; of `finite_elements` only.
     * `layers`: Layers of the model along the span, a divisor of the elements there, which is its default; of `finite_elements` only.
     * `model`: Model; `lumped` where not written.
-    * `prestretch`: Stretch before it was glued between its ends, of a lumped muscle; 1 where not written.
+    * `prestretch`: Stretch before it was glued between its ends; 1 where not written.
     * `section_inertia`: True if the inertia of the changing cross-section is taken into account.
     """
 

@@ -1,7 +1,7 @@
 //! Bodies, joints, muscles, markers and solids, built with defaults.
 
 use crate::interface::handle::{Carrier, Handle, Part, named};
-use crate::math::Signal;
+use crate::math::{Matrix, Signal};
 use crate::mesh::Mesh;
 use crate::model::System;
 use crate::model::system::{
@@ -355,7 +355,7 @@ impl Solid {
 
     /// Stretches along x, y, z before it was glued and held, by which the mesh differs from the solid without stress.
     pub fn prestretch(self, stretches: [f64; 3]) -> Self {
-        let prestretch = Some(stretches);
+        let prestretch = Some(Matrix::from_diagonal(&stretches.into()));
         Self { prestretch, ..self }
     }
 

@@ -33,10 +33,13 @@ fn block(source: usize, muscle: &Muscle, discretisation: &Discretisation) -> Sol
         layers,
         element,
     } = *discretisation;
-    let (length, [a, b]) = (muscle.length(), muscle.cross_section);
-    let axis = (muscle.to.at - muscle.from.at) / length;
+    let span = muscle.to.at - muscle.from.at;
+    let (length, axis) = (span.norm(), span.normalize());
     let [first, _] = triad(&axis);
     let frame = Matrix::from_columns(&[first, axis.cross(&first), axis]);
+    let stretches = muscle.stretches();
+    let across = stretches.map_or(1.0, |[across, _]| across);
+    let [a, b] = muscle.cross_section.map(|side| side * across);
     let corner = Vector3::new(-0.5 * a, -0.5 * b, 0.0);
     let grid = Grid::uniform(corner, Vector3::new(a, b, length), elements);
     let mesh = grid.mesh();
@@ -49,7 +52,7 @@ fn block(source: usize, muscle: &Muscle, discretisation: &Discretisation) -> Sol
             potential: match driven {
                 true => Potential::Driven {
                     source,
-                    factor: length / layers as f64 / muscle.layer_thickness,
+                    factor: muscle.length() / layers as f64 / muscle.layer_thickness,
                 },
                 false => Potential::Given(0.0),
             },
@@ -74,7 +77,9 @@ fn block(source: usize, muscle: &Muscle, discretisation: &Discretisation) -> Sol
             glue("z_max", muscle.to.body),
         ],
         velocities: Vec::new(),
-        prestretch: None,
+        prestretch: stretches.map(|[across, along]| {
+            frame * Matrix::from_diagonal(&[across, across, along].into()) * frame.transpose()
+        }),
         mesh: mesh.transformed(|x| muscle.from.at + frame * x),
     }
 }

@@ -3,7 +3,7 @@
 use crate::math::Vector;
 use crate::model::circuit::{EMPTY_CIRCUIT, NO_CIRCUIT};
 use crate::model::components::{BlockLoad, LoadPlace};
-use crate::model::system::{Attachment, Fidelity, Joint, JointKind, Material, Muscle, System};
+use crate::model::system::{Attachment, Joint, JointKind, Material, Muscle, System};
 use std::collections::BTreeSet;
 use thiserror::Error;
 
@@ -282,12 +282,6 @@ impl System {
             self.check_point(name, &muscle.to)?;
             if let Some(stretch) = muscle.prestretch {
                 positive(name, "prestretch", stretch)?;
-                require(
-                    muscle.fidelity == Fidelity::Lumped,
-                    name,
-                    || "a prestretch of a muscle of finite elements".to_owned(),
-                    "a lumped muscle, or an elastic block with a prestretch",
-                )?;
             }
             positive(name, "length", muscle.length())?;
             require(

@@ -91,8 +91,8 @@ impl SolidBlock {
     /// The law of a branch without stress in the reference configuration: μ₁/2 (Ī₁ − 3) of a volume that is free of stress, on the
     /// [geometry](Self::reference_shape) there.
     pub(super) fn unrelaxed(&self, shear_modulus: f64) -> Elastomer<Passive, IsochoricLaw> {
-        let stretches = self.solid.prestretch.unwrap_or([1.0; 3]);
-        let shear_modulus = shear_modulus / stretches.iter().product::<f64>();
+        let volume = self.solid.prestretch.map_or(1.0, |u| u.determinant());
+        let shear_modulus = shear_modulus / volume;
         Elastomer {
             shear_modulus,
             lame_lambda: -2.0 / 3.0 * shear_modulus,

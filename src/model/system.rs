@@ -12,7 +12,7 @@ pub use crate::model::joint_kind::JointKind;
 pub use crate::model::material::{ElectricConstants, Material, VACUUM_PERMITTIVITY};
 pub use crate::model::maxwell::{MaxwellBranch, MaxwellBranches};
 pub use crate::model::source::{InputKind, Source, voltage_sources};
-use nalgebra::Vector3;
+use nalgebra::{Matrix3, Vector3};
 
 /// A mechanical system; `None` for a body index is the ground.
 #[derive(Clone, Debug, PartialEq)]
@@ -217,7 +217,7 @@ pub struct Muscle {
     pub layer_thickness: f64,
     /// Elastomer.
     pub material: Material,
-    /// Stretch before it was glued between its ends, of a lumped muscle; `None` where it is as long as at rest.
+    /// Stretch before it was glued between its ends; `None` where it is as long as at rest.
     pub prestretch: Option<f64>,
     /// True if the inertia of the changing cross-section is asked for.
     pub section_inertia: bool,
@@ -278,8 +278,8 @@ pub struct Solid {
     pub glued: Vec<Glue>,
     /// Velocity of each node at the start in mm/ms; empty at rest.
     pub velocities: Vec<Vector3<f64>>,
-    /// Stretches along x, y, z by which the reference configuration differs from that without stress; `None` where it has none.
-    pub prestretch: Option<[f64; 3]>,
+    /// Stretch U of the reference configuration x = U X of the places X without stress, symmetric; `None` where it has none.
+    pub prestretch: Option<Matrix3<f64>>,
 }
 
 /// Kind of hexahedron: its treatment of volume.

@@ -6,5 +6,6 @@ mod common;
 mod domain;
 mod front_door;
 mod prestretch;
+mod prestretched_elements;
 mod stable;
 mod trunk;

@@ -1,7 +1,7 @@
 //! Prestretched blocks: closed forms of their rest and vibration, and what files say of them.
 
 use crate::common::solid::{DRIVEN, block, electrode, held, system};
-use nalgebra::Vector3;
+use nalgebra::{Matrix3, Vector3};
 use proboscis::dynamics::{
     EquilibriumError, Instability, Start, StepError, equilibrium, simulate, stable_equilibrium,
 };
@@ -18,6 +18,11 @@ const SHEAR: f64 = 0.08;
 const LAMBDA: f64 = 0.9;
 const DENSITY: f64 = 1.1e-3;
 const SIDES: [f64; 3] = [6.0, 5.0, 0.4];
+
+/// Stretches along x, y and z.
+fn stretch(stretches: [f64; 3]) -> Matrix3<f64> {
+    Matrix3::from_diagonal(&stretches.into())
+}
 
 /// A membrane stretched by λ₁ and λ₂ whose nodes may move across alone, on a floor.
 fn membrane(stretches: [f64; 2], law: Option<ElasticLaw>, elements: [usize; 3]) -> System {
@@ -40,7 +45,7 @@ fn membrane(stretches: [f64; 2], law: Option<ElasticLaw>, elements: [usize; 3]) 
     ];
     let solid = Solid {
         supports,
-        prestretch: Some([a, b, 1.0 / (a * b)]),
+        prestretch: Some(stretch([a, b, 1.0 / (a * b)])),
         ..block(mesh, material)
     };
     system(vec![solid])
@@ -212,12 +217,12 @@ fn files_stretch_what_is_not_written_by_the_volume() {
     };
     assert_eq!(
         read(r#"{ "x": 3, "y": 3 }"#),
-        Ok(Some([3.0, 3.0, 1.0 / 9.0]))
+        Ok(Some(stretch([3.0, 3.0, 1.0 / 9.0])))
     );
-    assert_eq!(read(r#"{ "y": 4 }"#), Ok(Some([0.5, 4.0, 0.5])));
+    assert_eq!(read(r#"{ "y": 4 }"#), Ok(Some(stretch([0.5, 4.0, 0.5]))));
     assert_eq!(
         read(r#"{ "x": 2, "y": 1, "z": 1 }"#),
-        Ok(Some([2.0, 1.0, 1.0]))
+        Ok(Some(stretch([2.0, 1.0, 1.0])))
     );
     for (written, words) in [
         ("{}", "no stretch"),

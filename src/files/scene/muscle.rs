@@ -52,7 +52,7 @@ pub(crate) fn muscle(
             .key("body")
             .wrong(found, "another body than \"from\""));
     }
-    let prestretch = prestretch(spec.prestretch, fidelity, scope)?;
+    let prestretch = prestretch(spec.prestretch, scope)?;
     let rest = length / prestretch.unwrap_or(1.0);
     let muscle = Muscle {
         name: spec.name.clone(),
@@ -73,22 +73,14 @@ pub(crate) fn muscle(
 }
 
 /// The prestretch of a muscle.
-fn prestretch(
-    stretch: Option<f64>,
-    fidelity: Fidelity,
-    scope: &Scope<'_>,
-) -> Result<Option<f64>, SceneError> {
-    let (Some(stretch), place) = (stretch, scope.key("prestretch")) else {
-        return Ok(None);
-    };
-    if !(stretch > 0.0 && stretch.is_finite()) {
-        return Err(place.wrong(stretch.to_string(), "a positive stretch"));
+fn prestretch(stretch: Option<f64>, scope: &Scope<'_>) -> Result<Option<f64>, SceneError> {
+    match stretch.filter(|stretch| !(*stretch > 0.0 && stretch.is_finite())) {
+        None => Ok(stretch),
+        Some(wrong) => {
+            let place = scope.key("prestretch");
+            Err(place.wrong(wrong.to_string(), "a positive stretch"))
+        }
     }
-    if fidelity != Fidelity::Lumped {
-        let expected = "a lumped muscle, or one of \"solids\" with \"prestretch\"";
-        return Err(place.wrong("a prestretch of a muscle of finite elements", expected));
-    }
-    Ok(Some(stretch))
 }
 
 /// Returns the model of a muscle; the keys stand in `scope`.

@@ -3,11 +3,12 @@
 use crate::files::json::error::SceneError;
 use crate::files::json::scope::Scope;
 use crate::files::scene::spec_solids::PrestretchSpec;
+use crate::math::Matrix;
 
 pub(super) fn prestretch(
     spec: Option<&PrestretchSpec>,
     scope: &Scope<'_>,
-) -> Result<Option<[f64; 3]>, SceneError> {
+) -> Result<Option<Matrix>, SceneError> {
     let Some(spec) = spec else {
         return Ok(None);
     };
@@ -25,5 +26,6 @@ pub(super) fn prestretch(
         return Err(scope.wrong("no stretch", "\"x\", \"y\" or \"z\", or several of them"));
     }
     let other = given().product::<f64>().powf(-1.0 / others.max(1) as f64);
-    Ok(Some(written.map(|(_, stretch)| stretch.unwrap_or(other))))
+    let stretches = written.map(|(_, stretch)| stretch.unwrap_or(other));
+    Ok(Some(Matrix::from_diagonal(&stretches.into())))
 }

@@ -177,7 +177,7 @@ macro_rules! stacked {
             pub cross_section: [Quantity<Length>; 2],
             /// Thickness of one layer at rest, SI unit m.
             pub layer_thickness: Quantity<Length>,
-            /// Stretch before it was glued between its ends, of a lumped muscle; 1 where not written.
+            /// Stretch before it was glued between its ends; 1 where not written.
             #[serde(default, skip_serializing_if = "Option::is_none")]
             pub prestretch: Option<f64>,
             /// Circuit between the source and the electrodes, of a lumped muscle; without it they have the voltage of the source.
