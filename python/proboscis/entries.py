@@ -295,7 +295,7 @@ class Pair(TypedDict):
     """Model; `lumped` where not written."""
 
     prestretch: NotRequired[float]
-    """Stretch before it was glued between its ends, of a lumped muscle; 1 where not written."""
+    """Stretch before it was glued between its ends; 1 where not written."""
 
     rest_length: Quantity
     """Length at rest, SI unit m."""
@@ -659,7 +659,7 @@ Held2: TypeAlias = "HeldWord | Mapping[Any, Quantity]"
 """Voltages that are held after a goal."""
 
 
-HeldWord: TypeAlias = "Literal['find']"
+HeldWord: TypeAlias = "Literal['find', 'none']"
 """Voltages that are not given."""
 
 
@@ -873,7 +873,8 @@ class RestGoal(TypedDict):
     hold: NotRequired[Held2]
     """Voltages that are held after positions of markers and orientations are reached, SI unit V; 0 where not named. Of elastic blocks the motion
     under them is the guess, where no other is written. `"find"`: they are sought with the motion, so that the goal is an equilibrium; also of
-    `joint_angles`, for lumped muscles.
+    `joint_angles`, for lumped muscles. Where not written they are sought if the motion leaves its goal under the last voltages; `"none"`: they
+    are not.
     """
 
     joint_angles: NotRequired[Mapping[Any, Quantity]]

@@ -62,6 +62,18 @@ pub enum Hold {
     Required,
 }
 
+/// Search for the inputs that hold a goal of places or joint coordinates that names none.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum SoughtHold {
+    /// They are unknowns of a second solve, if the motion leaves the goal under its last inputs.
+    #[default]
+    WhereLeft,
+    /// They are unknowns.
+    Always,
+    /// They are not sought.
+    Never,
+}
+
 impl BoundaryState {
     /// The voltages in V, by source, that act there, where they are known: at rest those that hold it, where another motion ended those to
     /// which its muscles are charged.

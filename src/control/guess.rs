@@ -230,7 +230,7 @@ fn from_solution(
 
 /// Scalars that hold the goal, where they are sought and known of the solution.
 fn held(model: &Model, control: &Control, solved: &Solution) -> Option<Vec<f64>> {
-    let hold = solved.hold.as_ref().filter(|_| control.seeks_hold)?;
+    let hold = solved.hold.as_ref().filter(|_| control.seeks_hold())?;
     Some(model.variables.scalars(&model.scalars(hold)))
 }
 

@@ -44,5 +44,6 @@ pub use numbering::{Column, Numbering, Row};
 pub use objective::Cost;
 pub use peak_voltage::PEAK_VOLTAGE;
 pub use solution::{Costates, Solution};
+pub(crate) use sought_hold::obstacle as hold_obstacle;
 pub use span::Span;
 pub use transcription::Transcription;

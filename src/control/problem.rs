@@ -1,7 +1,7 @@
 //! Tasks of a problem: simulation, equilibrium, control. Units g, mm, ms, N, V.
 
 use crate::control::Earlier;
-pub use crate::control::boundary_state::{BoundaryState, Hold, Rest};
+pub use crate::control::boundary_state::{BoundaryState, Hold, Rest, SoughtHold};
 pub use crate::control::energy_cost::{EnergyCost, SourceEnergy};
 pub use crate::control::goal::{Orientation, Place};
 pub use crate::control::inputs::{Afterwards, Voltages, absent_loads};
@@ -115,8 +115,8 @@ pub struct Control {
     pub course: Option<Voltages>,
     /// Constants of the system that are sought.
     pub parameters: Vec<Parameter>,
-    /// True if the inputs that hold the goal are sought with the motion: at the goal they are in equilibrium.
-    pub seeks_hold: bool,
+    /// Search for the inputs that hold the goal.
+    pub sought_hold: SoughtHold,
     /// Treatment of a goal that cannot be kept.
     pub hold: Hold,
     /// Objective that is minimised.

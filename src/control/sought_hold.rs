@@ -8,38 +8,51 @@
 //! ```
 
 use crate::control::error::BoundaryError;
-use crate::control::problem::{BoundaryState, Control};
+use crate::control::problem::{BoundaryState, Control, SoughtHold};
 use crate::model::Model;
 
-/// Refuses to seek what holds a goal where nothing can: nodes and what muscles remember have no rest of their own there.
-pub(super) fn check(model: &Model, control: &Control) -> Result<(), BoundaryError> {
-    if !control.seeks_hold {
-        return Ok(());
+impl Control {
+    /// Returns true if the inputs that hold the goal are sought with the motion.
+    pub fn seeks_hold(&self) -> bool {
+        self.sought_hold == SoughtHold::Always
     }
-    let refused = |reason: &str| {
-        Err(BoundaryError::Hold {
-            reason: reason.to_owned(),
-        })
-    };
-    let is_open = match &control.goal {
-        BoundaryState::JointAngles { .. } => true,
-        BoundaryState::Markers { hold, .. } => hold.is_none(),
-        _ => false,
-    };
-    if !is_open {
-        return refused(
+
+    /// Returns true if the goal names places or joint coordinates and no voltages that hold it.
+    pub fn names_no_hold(&self) -> bool {
+        match &self.goal {
+            BoundaryState::JointAngles { .. } => true,
+            BoundaryState::Markers { hold, .. } => hold.is_none(),
+            _ => false,
+        }
+    }
+}
+
+/// The reason why nothing that holds a goal can be sought: nodes and what muscles remember have no rest of their own there.
+pub(crate) fn obstacle(model: &Model, control: &Control) -> Option<&'static str> {
+    if !control.names_no_hold() {
+        return Some(
             "inputs that hold a goal are sought for places or joint coordinates without given ones",
         );
     }
     if !model.solids.is_empty() {
-        return refused(
+        return Some(
             "\"find\" is for lumped muscles: a few voltages cannot hold every node of an elastic block where the motion leaves it; name the voltages",
         );
     }
-    if model.memory().next().is_some() {
-        return refused(
-            "\"find\" is for muscles without circuits that do not creep: no constant voltages keep what these remember",
-        );
-    }
-    Ok(())
+    model.memory().next().map(|_| {
+        "\"find\" is for muscles without circuits that do not creep: no constant voltages keep what these remember"
+    })
+}
+
+/// Refuses to seek what holds a goal where nothing can.
+pub(super) fn check(model: &Model, control: &Control) -> Result<(), BoundaryError> {
+    let reason = match control.seeks_hold() {
+        true => obstacle(model, control),
+        false => None,
+    };
+    reason.map_or(Ok(()), |reason| {
+        Err(BoundaryError::Hold {
+            reason: reason.to_owned(),
+        })
+    })
 }

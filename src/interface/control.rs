@@ -1,7 +1,7 @@
 //! Optimal control problems.
 
 use crate::control::problem::{
-    self, Duration, Guess, Hold, Objective, PathConstraint, QuantityCost, Solver,
+    self, Duration, Guess, Hold, Objective, PathConstraint, QuantityCost, Solver, SoughtHold,
 };
 use crate::control::{Earlier, EarlierSolution};
 use crate::interface::cost_checks::{check_costs, check_energies, check_limits, check_waypoints};
@@ -32,7 +32,7 @@ pub struct Control {
     intervals: usize,
     start: State,
     goal: State,
-    seeks_hold: bool,
+    sought_hold: SoughtHold,
     voltage_bounds: [f64; 2],
     load_bounds: Vec<(Handle<Load>, [f64; 2])>,
     pub(super) objective: Objective,
@@ -53,7 +53,7 @@ impl Control {
             intervals,
             start: State::rest(),
             goal: State::Reference,
-            seeks_hold: false,
+            sought_hold: SoughtHold::default(),
             voltage_bounds: [0.0, f64::INFINITY],
             load_bounds: Vec::new(),
             objective: Objective::default(),
@@ -87,11 +87,20 @@ impl Control {
         Self { goal, ..self }
     }
 
+    /// Does not seek inputs that hold a goal of places or joint coordinates. Otherwise, where the motion leaves such a goal under its last
+    /// inputs, the problem is solved again with [these](Self::find_hold) as unknowns.
+    pub fn without_hold(self) -> Self {
+        Self {
+            sought_hold: SoughtHold::Never,
+            ..self
+        }
+    }
+
     /// Seeks the voltages and loads that hold a goal of places or joint coordinates together with the motion: the goal is an equilibrium under
     /// them, and they count as those of one more interval.
     pub fn find_hold(self) -> Self {
         Self {
-            seeks_hold: true,
+            sought_hold: SoughtHold::Always,
             ..self
         }
     }
@@ -269,7 +278,7 @@ impl Control {
             given,
             course: None,
             parameters: self.parameters.clone(),
-            seeks_hold: self.seeks_hold,
+            sought_hold: self.sought_hold,
             hold: Hold::Reported,
             objective: self.objective.clone(),
             limits: self.limits.clone(),

@@ -5,7 +5,8 @@ use std::collections::{BTreeMap, HashMap};
 use serde::Serialize;
 
 use crate::control::problem::{
-    BoundaryState, Control, Duration, Guess, Objective, Simulation, Solver, Task, Voltages,
+    BoundaryState, Control, Duration, Guess, Objective, Simulation, Solver, SoughtHold, Task,
+    Voltages,
 };
 use crate::control::{Column, Row, Transcription};
 use crate::ipopt::LinearSolver;
@@ -246,7 +247,7 @@ fn as_control(task: Task, system: &System) -> Control {
         given: BTreeMap::new(),
         course: None,
         parameters: Vec::new(),
-        seeks_hold: false,
+        sought_hold: SoughtHold::Never,
         hold: Default::default(),
         objective: Objective {
             effort: 1.0,

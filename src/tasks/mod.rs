@@ -1,11 +1,14 @@
 //! One function for each task: it computes, verifies, and returns numbers, verdict and remarks; a simulation is assessed in a step of its own.
 //!
 //! - `solve`, `simulate`, `equilibrium`: the three tasks. The commands, Python and the interface for Rust call them; nothing here knows files.
+//! - `grid`, `held_goal`: the solves of a control problem, for an accuracy and for a goal that is kept.
 //! - `check`: the derivatives of a task against differences.
 //! - `verdict`: the verdict on an optimum. `solve_messages`, `tracking_messages`, `simulation_messages`, `moved_markers`: their texts.
 
 pub mod check;
 pub mod equilibrium;
+mod grid;
+mod held_goal;
 pub(crate) mod moved_markers;
 pub mod simulate;
 mod simulation_messages;
@@ -16,6 +19,7 @@ mod verdict;
 
 pub use check::{CheckResult, GreatestErrors, WrongDerivative, check};
 pub use equilibrium::{EquilibriumResult, EquilibriumTaskError, equilibrium};
+pub use grid::SolveRequest;
 pub use simulate::{Assessment, SimulationRequest, SimulationResult, simulate};
-pub use solve::{SolveRequest, SolveResult, solve};
+pub use solve::{SolveResult, solve};
 pub use verdict::Verdict;

@@ -6,41 +6,31 @@ use crate::control::problem::Control;
 use crate::dynamics::trajectory::Trajectory;
 use crate::dynamics::{DiscreteTrajectory, EnergyExchange, out_of_domain, out_of_range};
 use crate::model::System;
+use crate::tasks::grid::{Found, SolveRequest};
+use crate::tasks::held_goal::{HeldGoal, solve_and_hold};
 use crate::tasks::moved_markers::moved_markers;
 use crate::tasks::solve_messages::{carried, ends, restarted};
 use crate::tasks::tracking_messages;
 use crate::tasks::verdict::Verdict;
 use crate::workflow::Iterate;
 use crate::workflow::WorkflowError;
-use crate::workflow::accuracy::{Accuracy, AccuracyTarget, Refined};
+use crate::workflow::accuracy::Accuracy;
 use crate::workflow::afterwards::Afterwards;
 use crate::workflow::domain::{self, Outside};
 use crate::workflow::final_values::{FinalValue, final_values};
 use crate::workflow::found_hold;
 use crate::workflow::further::is_unreached;
-use crate::workflow::grids::optimise_to;
 use crate::workflow::hold_check::{self, free_end};
 use crate::workflow::infeasible::explain;
 use crate::workflow::memory;
 use crate::workflow::motion::{discrete_trajectory, trajectory};
-use crate::workflow::optimum::{Optimum, SolveLimits};
+use crate::workflow::optimum::Optimum;
 use crate::workflow::period::Repeated;
-use crate::workflow::refine_until_reproduced::{RefinedOptimum, reproduced};
 use crate::workflow::remark::Remarks;
 use crate::workflow::resimulate::Resimulation;
 use crate::workflow::stops;
 use crate::workflow::stretch_range;
 use crate::workflow::tracking::{Tracked, followed};
-use crate::workflow::verified::{ACCURACY, verified};
-
-/// Options of a solve in addition to its problem.
-#[derive(Clone, Copy, Debug, Default)]
-pub struct SolveRequest {
-    /// Accuracy of the grid; nothing takes that of the problem.
-    pub wanted: Option<AccuracyTarget>,
-    /// Limits of the solver.
-    pub limits: SolveLimits,
-}
 
 /// An optimal motion, or the last iterate of a solve that found none.
 #[derive(Debug)]
@@ -84,14 +74,18 @@ pub fn solve(
     observer: &mut dyn FnMut(usize, &Iterate<'_>) -> ControlFlow<()>,
 ) -> Result<SolveResult, WorkflowError> {
     memory::of_elements(system)?;
-    let found = find(system, control, request, observer)?;
+    let HeldGoal {
+        found,
+        control,
+        note: not_found,
+    } = solve_and_hold(system, control, request, observer)?;
+    let control = control.as_ref();
     let Found {
-        mut optimum,
+        optimum,
         iterations,
         accuracy,
         note,
     } = found;
-    optimum.hold(control);
     let (model, boundary) = (&optimum.model, &optimum.boundary);
     let tested = optimum.resimulation.as_ref();
     let not_kept = hold_check::warning(control, model, boundary, tested);
@@ -116,56 +110,8 @@ pub fn solve(
     };
     let not_kept = not_kept.filter(|_| result.verdict.is_solved);
     result.remarks = remarks(system, control, &result, (note, not_kept));
+    result.remarks.note("hold", not_found);
     Ok(result)
-}
-
-/// The optimum, and the way to it.
-struct Found {
-    optimum: Optimum,
-    iterations: usize,
-    accuracy: Option<Accuracy>,
-    /// Reason for another grid than that of the problem.
-    note: Option<String>,
-}
-
-/// Solves on the grid of the problem, or on finer ones where an accuracy is wanted.
-fn find(
-    system: &System,
-    control: &Control,
-    SolveRequest { wanted, limits }: SolveRequest,
-    observer: &mut dyn FnMut(usize, &Iterate<'_>) -> ControlFlow<()>,
-) -> Result<Found, WorkflowError> {
-    if let (false, Some(wanted)) = (control.is_refined, wanted) {
-        let Refined {
-            run: optimum,
-            iterations,
-            accuracy,
-            ..
-        } = optimise_to(system, control, wanted, limits, observer)?;
-        return Ok(Found {
-            optimum,
-            iterations,
-            accuracy: Some(accuracy),
-            note: None,
-        });
-    }
-    let RefinedOptimum {
-        optimum,
-        iterations,
-        note,
-    } = match (control.is_refined, wanted) {
-        (true, Some(AccuracyTarget::Below(part))) => {
-            verified(system, control, part, limits, observer)
-        }
-        (true, _) => verified(system, control, ACCURACY, limits, observer),
-        (false, _) => reproduced(system, control, limits, observer),
-    }?;
-    Ok(Found {
-        optimum,
-        iterations,
-        accuracy: None,
-        note,
-    })
 }
 
 /// All that is to be known of a result: `refined` is the reason for another grid than that of the problem, `not_kept` the reason why the end
@@ -192,7 +138,7 @@ fn remarks(
     remarks.note("periodic", repeated.and_then(Repeated::note));
     remarks.warn("optimality_gap", optimum.wide.clone());
     remarks.note("free_end", free_end(control));
-    if control.seeks_hold && result.verdict.is_solved {
+    if control.seeks_hold() && result.verdict.is_solved {
         let held = optimum.boundary.rest[1].as_deref();
         remarks.note(
             "hold",

@@ -50,11 +50,7 @@ pub(crate) fn afterwards(
     control: &Control,
     optimal: &Solution,
 ) -> Option<Afterwards> {
-    let is_named = match &control.goal {
-        BoundaryState::Markers { hold, .. } => hold.is_none(),
-        BoundaryState::JointAngles { .. } => true,
-        _ => false,
-    } && !control.seeks_hold;
+    let is_named = control.names_no_hold() && !control.seeks_hold();
     let n = optimal.intervals();
     let end = Start {
         z: optimal.z.get(n)?.clone(),
@@ -159,7 +155,7 @@ impl Afterwards {
         );
         Some(format!(
             "nothing holds the goal: with the last inputs held on for {} s, {}; for an end that stays take \"rest_at_voltages\", \
-             \"markers\" with \"hold\", or \"hold\": \"find\", which seeks the voltages of markers and joint angles",
+             or \"markers\" with \"hold\"",
             significant(self.seconds, 3),
             far.join(", ")
         ))

@@ -16,7 +16,7 @@ pub(crate) fn check(
     model: &Model,
     boundary: &BoundaryConditions,
 ) -> Result<(), WorkflowError> {
-    if control.hold == Hold::Reported || control.seeks_hold {
+    if control.hold == Hold::Reported || control.seeks_hold() {
         return Ok(());
     }
     let refused = |key: &str, reason: String| {

@@ -13,7 +13,7 @@ use super::trunk;
 use nalgebra::Vector3;
 use proboscis::control::problem::{
     BoundaryState, Control, Duration, Guess, Objective, Orientation, PathConstraint, Place, Rest,
-    Solver,
+    Solver, SoughtHold,
 };
 use proboscis::ipopt::LinearSolver;
 use proboscis::math::Signal;
@@ -53,7 +53,7 @@ pub fn control(system: &System, intervals: usize) -> Control {
         given: BTreeMap::new(),
         course: None,
         parameters: Vec::new(),
-        seeks_hold: false,
+        sought_hold: SoughtHold::default(),
         hold: Default::default(),
         objective: Objective {
             effort: 1.0,

@@ -6,7 +6,9 @@ use super::systems::{branched, loaded};
 use super::tracked::{energies, tracked};
 use super::trunk;
 use proboscis::System;
-use proboscis::control::problem::{BoundaryState, Control, Duration, Objective, Place, Waypoint};
+use proboscis::control::problem::{
+    BoundaryState, Control, Duration, Objective, Place, SoughtHold, Waypoint,
+};
 use std::collections::BTreeMap;
 
 /// The list: goals whose holding inputs are sought, costs at an instant on the way, and periodic motions.
@@ -40,13 +42,13 @@ pub fn ends() -> Vec<Case> {
     vec![
         case("branched tree, found hold, all limits", branched(), &|c| {
             c.goal = joints(&[(1, 2.0)]);
-            c.seeks_hold = true;
+            c.sought_hold = SoughtHold::Always;
             c.limits = all_limits();
             c.objective = everything.clone();
         }),
         case("branched tree, found hold, free time", branched(), &|c| {
             c.goal = partly(&[(0, [None, Some(128.0), None])], &[]);
-            c.seeks_hold = true;
+            c.sought_hold = SoughtHold::Always;
             c.objective = inputs.clone();
             c.duration = free;
         }),
@@ -86,7 +88,7 @@ pub fn ends() -> Vec<Case> {
             },
         ),
         case("loads, found hold, free time", loaded(trunk(2)), &|c| {
-            c.seeks_hold = true;
+            c.sought_hold = SoughtHold::Always;
             c.duration = free;
             c.objective = inputs.clone();
         }),

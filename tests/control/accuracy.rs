@@ -5,7 +5,8 @@ use crate::common::force::{Force, with_control};
 use crate::common::{bare, body, joint};
 use nalgebra::{Matrix3, Vector3};
 use proboscis::control::problem::{
-    BoundaryState, Control, Duration, Guess, Objective, Simulation, Solver, Task, Voltages,
+    BoundaryState, Control, Duration, Guess, Objective, Simulation, Solver, SoughtHold, Task,
+    Voltages,
 };
 use proboscis::control::{BoundaryConditions, Transcription, guess};
 use proboscis::dynamics::{DiscreteTrajectory, Solving};
@@ -59,7 +60,7 @@ fn double_integrator(intervals: usize) -> Attempt<usize> {
         given: Default::default(),
         course: None,
         parameters: Vec::new(),
-        seeks_hold: false,
+        sought_hold: SoughtHold::default(),
         hold: Default::default(),
         // h is in ms and the effort in s.
         objective: Objective {

@@ -6,7 +6,9 @@
 use crate::common::force::{Force, UNIT, with_control};
 use crate::common::{bare, body, joint};
 use nalgebra::{Matrix3, SVector, Vector3};
-use proboscis::control::problem::{BoundaryState, Control, Duration, Guess, Objective, Solver};
+use proboscis::control::problem::{
+    BoundaryState, Control, Duration, Guess, Objective, Solver, SoughtHold,
+};
 use proboscis::control::{BoundaryConditions, Transcription, guess};
 use proboscis::energy::Energy;
 use proboscis::ipopt::{self, LinearSolver, Options};
@@ -60,7 +62,7 @@ fn optimum(
         given: BTreeMap::new(),
         course: None,
         parameters: Vec::new(),
-        seeks_hold: false,
+        sought_hold: SoughtHold::default(),
         hold: Default::default(),
         // h is in ms and the effort in s.
         objective: Objective {

@@ -27,7 +27,7 @@ fn a_leg_that_nothing_holds_at_its_goal_falls_and_the_warning_says_how_far() {
     let folder = tempdir().unwrap();
     let out = folder.path().join("leg");
     let leg = Path::new(env!("CARGO_MANIFEST_DIR")).join("tests/trust/leg_swing.json");
-    let ended = output_of(&leg, &[], &out);
+    let ended = output_of(&leg, &[r#"control.goal.hold="none""#], &out);
     assert!(ended.is_solved);
     let summary = read(&out.join("summary.json"));
     let after = &summary["afterwards"];
@@ -89,7 +89,7 @@ fn a_goal_of_joint_angles_is_left_in_degrees() {
     let folder = tempdir().unwrap();
     let out = folder.path().join("leg");
     let leg = Path::new(env!("CARGO_MANIFEST_DIR")).join("tests/trust/leg_swing.json");
-    let goal = r#"control.goal={"joint_angles":{"hip":"20 deg","knee":"10 deg"}}"#;
+    let goal = r#"control.goal={"joint_angles":{"hip":"20 deg","knee":"10 deg"},"hold":"none"}"#;
     let ended = output_of(&leg, &[goal], &out);
     assert!(ended.is_solved);
     let warning = ended
@@ -97,7 +97,11 @@ fn a_goal_of_joint_angles_is_left_in_degrees() {
         .iter()
         .find(|n| n.contains("nothing holds the goal"));
     assert!(warning.unwrap().contains("° from its goal"), "{warning:?}");
-    // What voltages hold gets no such warning.
+    // Voltages that hold it are found, if this is not forbidden, and what voltages hold gets no such warning.
+    let ended = output_of(&leg, &[&goal.replace(r#","hold":"none""#, "")], &out);
+    assert!(ended.is_solved && !ended.notes.iter().any(|n| n.contains("nothing holds")));
+    let found = |n: &String| n.contains("held by inputs that were found");
+    assert!(ended.notes.iter().any(found), "{ended:?}");
     let goal = r#"control.goal={"rest_at_voltages":{"hip_front":"1.5 kV"}}"#;
     let ended = output_of(&leg, &[goal], &folder.path().join("held"));
     assert!(ended.is_solved);

@@ -2,7 +2,7 @@
 
 use crate::common::{numbers, reference, trunk};
 use proboscis::control::problem::{
-    BoundaryState, Control, Duration, Guess, Objective, Rest, Solver,
+    BoundaryState, Control, Duration, Guess, Objective, Rest, Solver, SoughtHold,
 };
 use proboscis::control::{BoundaryConditions, Transcription, guess};
 use proboscis::ipopt::{self, LinearSolver, Options, Start};
@@ -41,7 +41,7 @@ fn problem(name: &str, coordinates: Coordinates) -> Control {
         given: BTreeMap::new(),
         course: None,
         parameters: Vec::new(),
-        seeks_hold: false,
+        sought_hold: SoughtHold::default(),
         hold: Default::default(),
         objective,
         limits: Vec::new(),

@@ -1,12 +1,13 @@
 //! Goals that are held by inputs found with the motion: an independent program, states of rest of a trunk, and what is refused.
 
 use crate::loads::{assert_refused, loaded, solved};
-use proboscis::control::problem::{Control, Task};
+use proboscis::control::problem::{BoundaryState, Control, SoughtHold, Task};
 use proboscis::dynamics::stable_equilibrium;
 use proboscis::files::{read_problem, solution};
 use proboscis::ipopt::Status;
 use proboscis::prelude::{Body, GROUND, Joint, Load, State, System, X};
-use proboscis::tasks::{SolveRequest, solve};
+use proboscis::tasks::{SolveRequest, SolveResult, solve};
+use std::collections::BTreeMap;
 use std::ops::ControlFlow;
 use std::path::Path;
 
@@ -117,15 +118,19 @@ fn trunk(goal: &str) -> (System, Control) {
     (loaded.system, *control)
 }
 
+fn in_memory(system: &System, control: &Control) -> SolveResult {
+    let request = SolveRequest::default();
+    solve(system, control, request, &mut |_, _| {
+        ControlFlow::Continue(())
+    })
+    .unwrap()
+}
+
 #[test]
 fn a_trunk_rests_at_a_place_under_voltages_that_are_found_with_the_motion() {
     let goal = r#"{"markers": {"tip": ["-60 mm", null, "40 mm"]}, "hold": "find"}"#;
     let (system, control) = trunk(goal);
-    let request = SolveRequest::default();
-    let result = solve(&system, &control, request, &mut |_, _| {
-        ControlFlow::Continue(())
-    })
-    .unwrap();
+    let result = in_memory(&system, &control);
     assert!(result.verdict.is_solved, "{:?}", result.verdict);
     let optimum = &result.optimum;
     let held = optimum.motion.hold.as_ref().unwrap();
@@ -230,4 +235,50 @@ fn what_cannot_be_found_is_refused_with_its_place() {
     ] {
         assert_refused(problem, &format!("control.goal={goal}"), place, words);
     }
+}
+
+/// A goal without a hold is left under the last voltages: the program seeks what holds it, unless it is told not to.
+#[test]
+fn a_goal_that_is_left_is_held_by_inputs_that_are_found_afterwards() {
+    let run = |hold: &str| {
+        let goal = format!(r#"{{"markers": {{"tip": ["-60 mm", null, "40 mm"]}}{hold}}}"#);
+        let (system, control) = trunk(&goal);
+        let result = in_memory(&system, &control);
+        assert!(result.verdict.is_solved, "{:?}", result.verdict);
+        let notes: Vec<String> = result.remarks.lines().collect();
+        (result, notes.join("\n"))
+    };
+    let (left, warned) = run(r#", "hold": "none""#);
+    assert!(warned.contains("nothing holds the goal"), "{warned}");
+    assert!(left.optimum.motion.hold.is_none());
+    let (wanted, _) = run(r#", "hold": "find""#);
+    let (found, noted) = run("");
+    assert!(noted.contains("held by inputs that were found"), "{noted}");
+    assert!(!noted.contains("nothing holds the goal"), "{noted}");
+    assert!(found.iterations > left.iterations);
+    let [a, b] = [&wanted, &found].map(|result| result.optimum.solution.objective);
+    assert!((a - b).abs() < 1e-8 * a, "{a} {b}");
+    assert!(left.optimum.solution.objective < a * (1.0 - 1e-6));
+}
+
+/// Both rods upright: no torque of the motor keeps them there.
+#[test]
+fn a_goal_that_nothing_can_hold_is_told() {
+    let (system, mut control) = rods("reduced");
+    control.goal = BoundaryState::JointAngles {
+        angles: [(0, 0.5), (1, 0.5)].into(),
+        rates: BTreeMap::new(),
+        velocities: BTreeMap::new(),
+    };
+    control.sought_hold = SoughtHold::WhereLeft;
+    let result = in_memory(&system, &control);
+    assert!(result.verdict.is_solved, "{:?}", result.verdict);
+    let notes: Vec<String> = result.remarks.lines().collect();
+    let notes = notes.join("\n");
+    assert!(notes.contains("nothing holds the goal"), "{notes}");
+    assert!(
+        notes.contains("no inputs within the bounds were found that hold the goal"),
+        "{notes}"
+    );
+    assert!(result.optimum.motion.hold.is_none());
 }

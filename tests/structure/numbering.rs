@@ -18,7 +18,7 @@ fn names<'n>(names: &'n [String], begin: &str) -> Vec<&'n str> {
 fn check(system: &System, control: &Control) -> [usize; 2] {
     let (intervals, h) = (control.intervals, 10.0);
     // Where inputs that hold the goal are sought, one interval more has inputs and an equilibrium.
-    let held = usize::from(control.seeks_hold);
+    let held = usize::from(control.seeks_hold());
     let (model, boundary) = BoundaryConditions::resolve(system, control, h).unwrap();
     let initial = guess(&model, &boundary, control, h, None);
     let program = Transcription::of_any(&model, &boundary, control, &initial).unwrap();

@@ -38,9 +38,9 @@ impl Layout {
         control: &Control,
         end: usize,
     ) -> Self {
-        let intervals = end + usize::from(control.seeks_hold);
+        let intervals = end + usize::from(control.seeks_hold());
         let is_closed = control.goal == BoundaryState::Periodic;
-        let twin = (control.seeks_hold || is_closed).then_some(Twin {
+        let twin = (control.seeks_hold() || is_closed).then_some(Twin {
             instant: intervals,
             of: if is_closed { 0 } else { end },
             is_closed,

@@ -16,7 +16,7 @@ use crate::files::problem::spec_control::{
     ControlSolverSpec, ControlSpec, DurationSpec, IntervalsSpec, IntervalsWord, ObjectiveSpec,
     OptionSpec, SolverSpec,
 };
-use crate::files::problem::spec_states::GoalSpec;
+use crate::files::problem::spec_states::sought_hold;
 use crate::files::problem::spec_voltages::VoltagesSpec;
 use crate::files::problem::state::{ELECTRIC_KEYS, driven, start_state};
 use crate::files::problem::track::{at_the_end, track};
@@ -101,7 +101,7 @@ pub(crate) fn control(
         given,
         course,
         parameters,
-        seeks_hold: spec.goal.as_ref().is_some_and(GoalSpec::seeks_hold),
+        sought_hold: sought_hold(spec.goal.as_ref()),
         hold: spec.hold.into(),
         objective,
         limits,

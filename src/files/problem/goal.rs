@@ -6,7 +6,7 @@ use crate::control::problem::{BoundaryState, Orientation, Place, Rest};
 use crate::files::json::error::SceneError;
 use crate::files::json::scope::Scope;
 use crate::files::problem::spec_states::{
-    GoalSpec, GoalWord, HeldSpec, HeldWord, OrientationSpec, RestGoalSpec,
+    GoalSpec, GoalWord, HeldSpec, OrientationSpec, RestGoalSpec,
 };
 use crate::files::problem::spec_voltages::VoltageMap;
 use crate::files::problem::state::{by_joint, moving_marker, voltages};
@@ -111,7 +111,7 @@ fn positions(
     let (places, orientations) = places(written, system, scope)?;
     let held = match &spec.hold {
         Some(HeldSpec::Given(map)) => Some(voltages(map, system, &scope.key("hold"))?),
-        Some(HeldSpec::Word(HeldWord::Find)) | None => None,
+        Some(HeldSpec::Word(_)) | None => None,
     };
     Ok(BoundaryState::Markers {
         places,

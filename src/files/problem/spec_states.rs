@@ -1,6 +1,6 @@
 //! Start and goal as they are written.
 
-use crate::control::problem::{Hold, Rest};
+use crate::control::problem::{Hold, Rest, SoughtHold};
 use crate::files::json::either::{Either, ScalarOrObject, scalar_or_object};
 use crate::files::problem::spec_voltages::VoltageMap;
 use crate::files::scene::point::PartialPoint;
@@ -71,13 +71,18 @@ scalar_or_object! {
     GoalSpec: GoalWord = Self::Word, Box<RestGoalSpec> = Self::Rest,
         "\"free\", \"periodic\", or an object with \"rest_at_voltages\", \"joint_angles\", \"markers\" or \"orientations\"";
     HeldSpec: HeldWord = Self::Word, VoltageMap = Self::Given,
-        "\"find\", or voltages by name";
+        "\"find\", \"none\", or voltages by name";
 }
 
-impl GoalSpec {
-    /// Returns true if the voltages that hold it are sought.
-    pub(crate) fn seeks_hold(&self) -> bool {
-        matches!(self, Self::Rest(rest) if matches!(rest.hold, Some(HeldSpec::Word(HeldWord::Find))))
+/// The search for voltages that hold a goal.
+pub(crate) fn sought_hold(goal: Option<&GoalSpec>) -> SoughtHold {
+    let Some(GoalSpec::Rest(rest)) = goal else {
+        return SoughtHold::default();
+    };
+    match rest.hold {
+        Some(HeldSpec::Word(HeldWord::Find)) => SoughtHold::Always,
+        Some(HeldSpec::Word(HeldWord::None)) => SoughtHold::Never,
+        Some(HeldSpec::Given(_)) | None => SoughtHold::default(),
     }
 }
 
@@ -104,7 +109,8 @@ pub struct RestGoalSpec {
     pub rest: Option<RestSpec>,
     /// Voltages that are held after positions of markers and orientations are reached, SI unit V; 0 where not named. Of elastic blocks the motion
     /// under them is the guess, where no other is written. `"find"`: they are sought with the motion, so that the goal is an equilibrium; also of
-    /// `joint_angles`, for lumped muscles.
+    /// `joint_angles`, for lumped muscles. Where not written they are sought if the motion leaves its goal under the last voltages; `"none"`: they
+    /// are not.
     #[serde(default)]
     pub hold: Option<HeldSpec>,
 }
@@ -113,7 +119,7 @@ pub struct RestGoalSpec {
 #[derive(Clone, Debug, JsonSchema)]
 #[serde(untagged)]
 pub enum HeldSpec {
-    /// `"find"`: they are sought with the motion.
+    /// Sought with the motion, or not at all.
     Word(HeldWord),
     /// Given ones.
     Given(VoltageMap),
@@ -125,6 +131,8 @@ pub enum HeldSpec {
 pub enum HeldWord {
     /// Sought with the motion.
     Find,
+    /// Not sought.
+    None,
 }
 
 /// An orientation of a body: `axis` with exactly one of `towards` and `angle`.

@@ -1,0 +1,97 @@
+//! A solve whose goal is kept: where the motion leaves it under the last inputs, those that hold it are sought with the motion.
+
+use std::borrow::Cow;
+use std::ops::ControlFlow;
+use std::time::Instant;
+
+use crate::control::problem::{Control, Guess, SoughtHold};
+use crate::control::{Earlier, hold_obstacle};
+use crate::model::System;
+use crate::tasks::grid::{Found, SolveRequest, find};
+use crate::workflow::Iterate;
+use crate::workflow::WorkflowError;
+use crate::workflow::further::stopped;
+use crate::workflow::hold_check;
+use crate::workflow::optimum::{SolveLimits, seconds_left};
+
+/// An optimum, and the problem that it solves.
+pub(super) struct HeldGoal<'a> {
+    pub(super) found: Found,
+    /// The problem, in which the inputs that hold the goal are unknowns where these were found.
+    pub(super) control: Cow<'a, Control>,
+    /// Note that none were found.
+    pub(super) note: Option<String>,
+}
+
+/// Solves a problem, and again with the inputs that hold its goal as unknowns where it is left and can be held; that optimum counts if a
+/// simulation stays at the goal.
+///
+/// # Errors
+/// As of [`find`].
+pub(super) fn solve_and_hold<'a>(
+    system: &System,
+    control: &'a Control,
+    request: SolveRequest,
+    observer: &mut dyn FnMut(usize, &Iterate<'_>) -> ControlFlow<()>,
+) -> Result<HeldGoal<'a>, WorkflowError> {
+    let began = Instant::now();
+    let mut found = find(system, control, request, observer)?;
+    found.optimum.hold(control);
+    let seconds = seconds_left(request.limits.seconds, began);
+    if !is_left(&found, control) || stopped(seconds).is_some() {
+        return Ok(HeldGoal {
+            found,
+            control: Cow::Borrowed(control),
+            note: None,
+        });
+    }
+    let held = Control {
+        sought_hold: SoughtHold::Always,
+        guess: Guess::Solution(Earlier::new(found.optimum.motion.clone())),
+        ..control.clone()
+    };
+    let limits = SolveLimits {
+        seconds,
+        ..request.limits
+    };
+    let again = find(system, &held, SolveRequest { limits, ..request }, observer);
+    let iterations = |again: &Found| found.iterations + again.iterations;
+    match again {
+        Ok(mut again) => {
+            again.optimum.hold(&held);
+            again.iterations = iterations(&again);
+            if is_kept(&again, &held) {
+                again.optimum.carried = found.optimum.carried;
+                return Ok(HeldGoal {
+                    found: again,
+                    control: Cow::Owned(held),
+                    note: None,
+                });
+            }
+            found.iterations = again.iterations;
+        }
+        Err(error) => tracing::debug!(%error, "the inputs that hold the goal are not sought"),
+    }
+    Ok(HeldGoal {
+        found,
+        control: Cow::Borrowed(control),
+        note: Some("no inputs within the bounds were found that hold the goal".to_owned()),
+    })
+}
+
+/// Returns true if an optimum leaves a goal for which inputs that hold it may be sought.
+fn is_left(found: &Found, control: &Control) -> bool {
+    let optimum = &found.optimum;
+    let afterwards = optimum.afterwards.as_ref();
+    control.sought_hold == SoughtHold::WhereLeft
+        && afterwards.is_some_and(|after| !after.is_held)
+        && hold_obstacle(&optimum.model, control).is_none()
+}
+
+/// Returns true if an optimum is reproduced and its goal is kept.
+fn is_kept(found: &Found, control: &Control) -> bool {
+    let optimum = &found.optimum;
+    let tested = optimum.resimulation.as_ref();
+    optimum.is_solved()
+        && hold_check::warning(control, &optimum.model, &optimum.boundary, tested).is_none()
+}
