@@ -12,6 +12,11 @@ impl CoordinateMap {
         self.tree.as_ref().map_or_else(Vec::new, Tree::charted)
     }
 
+    /// Handedness of the axes of the turns behind each chart: 1 or −1.
+    pub fn handedness(&self) -> Vec<f64> {
+        self.tree.as_ref().map_or_else(Vec::new, Tree::handedness)
+    }
+
     /// Moves the charts of a placed instant to where its bodies are: nothing moves, and the coordinates that turn behind a
     /// chart become zero. Returns true if there are charts.
     pub fn recentre(&self, instant: &mut Configuration) -> bool {
@@ -22,6 +27,30 @@ impl CoordinateMap {
         tree.recentre(unknowns, charts);
         self.place(instant);
         true
+    }
+
+    /// Writes the differences between two lists of coordinates with the same charts: of turns behind a chart the rotation vector, which over
+    /// the time between is a smooth mean of the angular velocity.
+    pub fn differences(&self, [from, to]: [&[f64]; 2], differences: &mut [f64]) {
+        for (difference, (from, to)) in differences.iter_mut().zip(from.iter().zip(to)) {
+            *difference = to - from;
+        }
+        if let Some(tree) = &self.tree {
+            tree.rotations_between([from, to], differences);
+        }
+    }
+
+    /// Moves unknowns by a step along a direction, where the turns behind charts are zero: they stay zero, and the charts turn about the
+    /// rotation vectors of their parts of the direction.
+    pub fn advance(&self, step: f64, direction: &[f64], unknowns: &mut [f64], charts: &mut [f64]) {
+        match &self.tree {
+            Some(tree) => tree.advance(step, direction, unknowns, charts),
+            None => {
+                for (value, change) in unknowns.iter_mut().zip(direction) {
+                    *value += step * change;
+                }
+            }
+        }
     }
 
     /// Place of the link that carries a body in the list of a tree, in which parents come first.

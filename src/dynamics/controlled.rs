@@ -22,7 +22,7 @@ fn factor(used: f64) -> f64 {
 }
 
 impl<E: Equations> Steps<E> {
-    /// Goes on between two times of the drive by at most all of the `h` ms, with a local error of at most `allowed` per ms; returns
+    /// Goes on between two times of the drive by at most all of the `h` ms, with a local error that is allowed per ms and at least; returns
     /// how far it went and how far it would go next.
     ///
     /// # Errors
@@ -31,7 +31,7 @@ impl<E: Equations> Steps<E> {
         &mut self,
         [from, to]: [f64; 2],
         h: f64,
-        [least, allowed]: [f64; 2],
+        (least, allowed): (f64, [f64; 2]),
         drive: &dyn Drive,
     ) -> Result<Controlled, StepError> {
         self.allowed = Some(allowed);

@@ -43,7 +43,7 @@ pub trait Equations {
 
     /// Local error of the step that the last update led to, relative to the sizes of the coordinates; zero where the method
     /// has no estimate.
-    fn local_error(&self, _h: f64) -> f64 {
+    fn local_error(&mut self, _h: f64) -> f64 {
         0.0
     }
 

@@ -36,6 +36,8 @@ pub struct Midpoint<'m> {
     /// Rates of the coordinates over the last step, and how they changed, for the first guess.
     rates: Vec<f64>,
     changes: Vec<f64>,
+    /// Changes of the coordinates in the step.
+    differences: Vec<f64>,
     /// Energy in mJ relative to which rounding is seen.
     typical_energy: f64,
     /// Sizes of the coordinates.
@@ -83,6 +85,7 @@ impl<'m> Stepper<'m> {
             momentum_next: momentum.to_vec(),
             rates: vec![0.0; n],
             changes: vec![0.0; n],
+            differences: vec![0.0; n],
             typical_energy: typical_energy(model),
             sizes: sizes[..n].to_vec(),
             lengths: [0.0; 2],
@@ -114,6 +117,18 @@ impl<'m> Stepper<'m> {
     /// The instant now.
     pub fn instant(&self) -> &Place {
         &self.equations().here
+    }
+}
+
+impl Midpoint<'_> {
+    /// Measures the changes of the coordinates in the step that the last update led to.
+    fn measure_step(&mut self) {
+        let n = self.differences.len();
+        let ends = [&self.here.z[..n], &self.next.z[..n]];
+        self.model
+            .action
+            .map
+            .differences(ends, &mut self.differences);
     }
 }
 
@@ -251,20 +266,14 @@ impl Equations for Midpoint<'_> {
     }
 
     /// h³ u‴/12 with the third derivative of the last three rates; before the first step the system moved as at its start.
-    fn local_error(&self, h: f64) -> f64 {
+    fn local_error(&mut self, h: f64) -> f64 {
+        self.measure_step();
         let lengths = self.lengths.map(|l| if l > 0.0 { l } else { h });
         let [last, before] = lengths;
         let spans = [h + last, last + before].map(|span| 0.5 * span);
         let mut worst = 0.0_f64;
-        for (i, (from, to)) in self
-            .here
-            .z
-            .iter()
-            .zip(&self.next.z)
-            .enumerate()
-            .take(self.rates.len())
-        {
-            let slope = ((to - from) / h - self.rates[i]) / spans[0];
+        for (i, difference) in self.differences.iter().enumerate() {
+            let slope = (difference / h - self.rates[i]) / spans[0];
             let third = (slope - self.changes[i] / spans[1]) * 2.0 / (spans[0] + spans[1]);
             worst = worst.max((third / self.sizes[i]).abs());
         }
@@ -287,6 +296,7 @@ impl Equations for Midpoint<'_> {
 
     /// With the forces that the balance evaluated.
     fn accept(&mut self, h: f64) -> bool {
+        self.measure_step();
         let action = &self.model.action;
         let Self {
             here,
@@ -304,7 +314,7 @@ impl Equations for Midpoint<'_> {
         std::mem::swap(&mut self.momentum, &mut self.momentum_next);
         let is_first = self.lengths[0] == 0.0;
         for (i, rate) in self.rates.iter_mut().enumerate() {
-            let new = (next.z[i] - here.z[i]) / h;
+            let new = self.differences[i] / h;
             // In the first step nothing is known of the change.
             self.changes[i] = if is_first { 0.0 } else { new - *rate };
             *rate = new;

@@ -12,6 +12,8 @@ use std::ops::ControlFlow;
 
 /// The shortest step that a tolerance may ask for, as a part of the duration.
 const LEAST: f64 = 1e-9;
+/// Part of a tolerance that the first two steps behind the start and behind all switches may use in excess.
+const AT_JUMPS: f64 = 0.02;
 
 /// Integrates `steps` steps of `h` ms under the voltages of a drive.
 ///
@@ -175,8 +177,14 @@ fn controlled(
         };
         let begun = time;
         let to = if h == left { end } else { time + h };
-        let bounds = [LEAST * duration, tolerance / duration];
-        let step = match stepper.step_within([time, to], h, bounds, drive) {
+        // Behind a jump of voltages the change of the rates says more than the error: two steps may use a part of the tolerance.
+        let is_behind = k < 2 || discrete.times[k - 1] <= begin * (1.0 + 1e-12);
+        let at_jump = match is_behind {
+            true => AT_JUMPS * tolerance / (1 + switches.len()) as f64,
+            false => 0.0,
+        };
+        let allowed = [tolerance / duration, at_jump];
+        let step = match stepper.step_within([time, to], h, (LEAST * duration, allowed), drive) {
             Ok(step) => step,
             Err(StepError::Stopped { .. }) => break,
             Err(error) => {

@@ -35,8 +35,8 @@ pub struct Steps<E> {
     residual: Vec<f64>,
     /// Unknowns whose values are prescribed.
     held: Vec<usize>,
-    /// Local error that is allowed per ms; none of steps of given length.
-    pub(super) allowed: Option<f64>,
+    /// Local error that is allowed per ms, and at least in a step; none of steps of given length.
+    pub(super) allowed: Option<[f64; 2]>,
     /// Local error of the last attempt as a part of the allowed one.
     pub(super) used: f64,
     /// Energy balance of the last attempt, where the method has one.
@@ -314,7 +314,8 @@ impl<E: Equations> Steps<E> {
             }
         };
         let allowed = self.allowed.filter(|_| refusal.is_none());
-        let Some(allowed) = allowed.map(|allowed| allowed * step) else {
+        let allowed = allowed.map(|[per_time, least]| f64::max(per_time * step, least));
+        let Some(allowed) = allowed else {
             return refusal;
         };
         let error = self.equations.local_error(step);

@@ -189,3 +189,46 @@ fn steps_by_a_tolerance_are_refused_where_there_are_none() {
         assert!(err.contains(told), "{all:?}: {err}");
     }
 }
+
+/// Local errors of third order: a hundredth of the tolerance takes ten times the steps, of bodies that turn freely too.
+#[test]
+fn steps_of_turning_bodies_grow_with_the_root_of_the_tolerance() {
+    let folder = tempfile::tempdir().unwrap();
+    let path = Path::new(env!("CARGO_MANIFEST_DIR")).join("problems/satellite.json");
+    let satellite = path.to_str().unwrap();
+    let steps = ["1e-4", "1e-6"].map(|tolerance| {
+        let tolerance = format!("simulate.tolerance={tolerance}");
+        let auto = "simulate.step=\"auto\"";
+        let duration = "simulate.duration=50 ms";
+        let words = [
+            "simulate", satellite, "--set", auto, "--set", &tolerance, "--set", duration,
+        ];
+        let (status, err, summary) = program(folder.path(), &words, "out");
+        assert_eq!(status, 0, "{err}");
+        summary["steps"].as_u64().unwrap()
+    });
+    assert!(steps[0] > 50 && steps[1] < 13 * steps[0], "{steps:?}");
+}
+
+/// The first step behind a jump of voltages may be much longer than its change of rates over a long time would admit.
+#[test]
+fn a_long_motion_begins_with_a_jump_of_voltages() {
+    let folder = tempfile::tempdir().unwrap();
+    let path = Path::new(env!("CARGO_MANIFEST_DIR")).join("problems/pair_constant.json");
+    let auto = "simulate.step=\"auto\"";
+    let duration = "simulate.duration=100 s";
+    let pair = path.to_str().unwrap();
+    let words = [
+        "simulate",
+        pair,
+        "--set",
+        auto,
+        "--set",
+        duration,
+        "--no-report",
+    ];
+    let (status, err, summary) = program(folder.path(), &words, "out");
+    assert_eq!(status, 0, "{err}");
+    assert_eq!(summary["is_confirmed"], true, "{summary}");
+    assert!(summary["estimated_error"].as_f64().unwrap() < 1e-3);
+}

@@ -3,6 +3,7 @@
 #[path = "../common/mod.rs"]
 mod common;
 
+mod ball_joint;
 mod domain;
 mod front_door;
 mod prestretch;

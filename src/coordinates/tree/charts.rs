@@ -46,6 +46,14 @@ impl Tree {
         self.turns().map(turns).collect()
     }
 
+    /// Handedness of the axes of the turns behind each chart.
+    pub fn handedness(&self) -> Vec<f64> {
+        let axes = |links: &[Link]| Matrix::from_columns(&[0, 1, 2].map(|i| links[i].axis));
+        self.turns()
+            .map(|links| axes(links).determinant().signum())
+            .collect()
+    }
+
     /// Puts the turns behind each chart into the chart: the configuration stays, these coordinates become zero.
     pub fn recentre(&self, u: &mut [f64], charts: &mut [f64]) {
         for (links, chart) in self.turns().zip(charts.chunks_exact_mut(CHART)) {
@@ -53,6 +61,49 @@ impl Tree {
             for link in links {
                 u[link.coordinate.expect("a turn has a coordinate")] = 0.0;
             }
+        }
+    }
+
+    /// Replaces the differences of the turns behind each chart between two lists of coordinates by the rotation vector between them, by the
+    /// axes of the turns.
+    pub(in crate::coordinates) fn rotations_between(
+        &self,
+        [from, to]: [&[f64]; 2],
+        differences: &mut [f64],
+    ) {
+        let none = [1.0, 0.0, 0.0, 0.0];
+        for links in self.turns() {
+            let between = turned(links, from, &none).inverse() * turned(links, to, &none);
+            let vector = between.scaled_axis();
+            for link in links {
+                let coordinate = link.coordinate.expect("a turn has a coordinate");
+                differences[coordinate] = link.axis.dot(&vector);
+            }
+        }
+    }
+
+    /// Moves coordinates by a step along a direction, where the turns behind each chart are zero: they stay zero, and the chart is turned by
+    /// the rotation vector of its part of the direction, whose axes are those of the turns.
+    pub(in crate::coordinates) fn advance(
+        &self,
+        step: f64,
+        direction: &[f64],
+        u: &mut [f64],
+        charts: &mut [f64],
+    ) {
+        for (value, change) in u.iter_mut().zip(direction) {
+            *value += step * change;
+        }
+        for (links, chart) in self.turns().zip(charts.chunks_exact_mut(CHART)) {
+            let mut vector = Vector::zeros();
+            for link in links {
+                let coordinate = link.coordinate.expect("a turn has a coordinate");
+                vector += std::mem::take(&mut u[coordinate]) * link.axis;
+            }
+            write(
+                rotation(chart) * UnitQuaternion::from_scaled_axis(vector),
+                chart,
+            );
         }
     }
 

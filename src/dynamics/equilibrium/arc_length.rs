@@ -6,7 +6,8 @@
 
 use crate::dynamics::equilibrium::instability::Instability;
 use crate::dynamics::equilibrium::ramp::Ramp;
-use crate::dynamics::equilibrium::statics::{NewtonOutcome, RestState, Statics, UpdateRange};
+use crate::dynamics::equilibrium::rest_state::RestState;
+use crate::dynamics::equilibrium::statics::{NewtonOutcome, Statics, UpdateRange};
 use crate::dynamics::singular_configurations::shortest;
 use crate::ipopt::interrupt;
 
@@ -14,6 +15,8 @@ use crate::ipopt::interrupt;
 const CORRECTIONS: usize = 12;
 /// Convergence of a correction, relative to angles of one radian and the length of the system.
 const UPDATE: f64 = 1e-11;
+/// Least cosine of the angle between the tangents at both ends of a step.
+pub(super) const STRAIGHT: f64 = 0.9;
 /// First step along the path, in units of the fraction and of strains.
 pub(super) const FIRST: f64 = 0.02;
 /// Largest step.
@@ -36,6 +39,13 @@ pub(super) struct LimitPoint {
     pub(super) fraction: f64,
     pub(super) kind: Instability,
     pub(super) state: RestState,
+}
+
+/// End of a path of stable states.
+pub(super) enum PathEnd {
+    /// All of the load acts.
+    Reached(RestState),
+    Lost(LimitPoint),
 }
 
 /// A point of the path.
@@ -62,7 +72,7 @@ impl Path<'_, '_> {
     }
 
     /// Evaluates and factorises at a state; returns −K⁻¹ b.
-    fn linearise(&mut self, state: &[f64], fraction: f64) -> Option<Vec<f64>> {
+    fn linearise(&mut self, state: &RestState, fraction: f64) -> Option<Vec<f64>> {
         // A path that is to stop ends like one that cannot go on.
         if interrupt::stop().is_some() {
             return None;
@@ -83,10 +93,11 @@ impl Path<'_, '_> {
     /// The point at a state of equilibrium; its tangent goes on along `before`, or towards larger fractions.
     pub(super) fn point(
         &mut self,
-        state: RestState,
+        mut state: RestState,
         fraction: f64,
         before: Option<&(Vec<f64>, f64)>,
     ) -> Option<PathPoint> {
+        self.statics.recentre(&mut state);
         let slope = self.linearise(&state, fraction)?;
         let norm = (1.0 + self.dot(&slope, &slope)).sqrt();
         let along = before.map_or(1.0, |(y, f)| self.dot(&slope, y) + f);
@@ -103,8 +114,7 @@ impl Path<'_, '_> {
     /// The point at the arc length `step` from another; `None` where the corrections do not converge.
     pub(super) fn advance(&mut self, from: &PathPoint, step: f64) -> Option<PathPoint> {
         let (direction, ahead) = &from.tangent;
-        let predicted = from.state.iter().zip(direction);
-        let mut state: RestState = predicted.map(|(y, t)| y + step * t).collect();
+        let mut state = self.statics.moved(&from.state, step, direction);
         let mut fraction = from.fraction + step * ahead;
         for _ in 0..CORRECTIONS {
             self.statics.iterations += 1;
@@ -120,12 +130,12 @@ impl Path<'_, '_> {
             if size.is_nan() || size > 1.0 {
                 return None;
             }
-            for (y, u) in state.iter_mut().zip(&update) {
-                *y += u;
-            }
+            state = self.statics.moved(&state, 1.0, &update);
             fraction += change;
             if size < UPDATE {
-                return self.point(state, fraction, Some(&from.tangent));
+                let point = self.point(state, fraction, Some(&from.tangent))?;
+                let (turned, rise) = &point.tangent;
+                return (self.dot(turned, direction) + rise * ahead > STRAIGHT).then_some(point);
             }
         }
         None
@@ -165,6 +175,14 @@ impl Path<'_, '_> {
 }
 
 impl Path<'_, '_> {
+    /// The state in which all of the load acts next to a point, which is no limit point.
+    fn full(&mut self, near: &PathPoint) -> Option<RestState> {
+        let mut state = near.state.clone();
+        let all = self.ramp.apply(self.statics, 1.0);
+        let outcome = self.statics.newton(&mut state, &all, UpdateRange::Near);
+        (outcome == Ok(NewtonOutcome::Converged)).then_some(state)
+    }
+
     /// The last stable point between a stable point and the unstable one a step later.
     pub(super) fn switch(&mut self, before: &PathPoint, step: f64) -> PathPoint {
         let (mut low, mut high) = (0.0, step);
@@ -192,15 +210,15 @@ pub(super) fn path<'s, 'm>(statics: &'s mut Statics<'m>, ramp: Ramp<'s>) -> Path
     }
 }
 
-/// The limit point that the path from a state of equilibrium runs into, if there is one near.
-pub(super) fn limit_point(
+/// The end of the stable path from a state of equilibrium, where it is near.
+pub(super) fn path_end(
     statics: &mut Statics<'_>,
-    state: &[f64],
+    state: &RestState,
     ramp: Ramp<'_>,
     fraction: f64,
-) -> Option<LimitPoint> {
+) -> Option<PathEnd> {
     let mut path = path(statics, ramp);
-    let mut here = path.point(state.to_vec(), fraction, None)?;
+    let mut here = path.point(state.clone(), fraction, None)?;
     let mut step = FIRST;
     for _ in 0..STEPS {
         let Some(next) = path.advance(&here, step) else {
@@ -212,19 +230,26 @@ pub(super) fn limit_point(
         };
         if next.tangent.1 <= 0.0 {
             let found = path.turn(&here, step, &next);
-            return Some(LimitPoint {
+            return Some(PathEnd::Lost(LimitPoint {
                 fraction: found.fraction,
                 kind: Instability::of_turn(ramp.load),
                 state: found.state,
-            });
+            }));
         }
         if let (Some(0), Some(1..)) = (here.unstable, next.unstable) {
             let found = path.switch(&here, step);
-            return Some(LimitPoint {
+            return Some(PathEnd::Lost(LimitPoint {
                 fraction: found.fraction,
                 kind: Instability::Buckling,
                 state: found.state,
-            });
+            }));
+        }
+        if next.fraction >= 1.0 {
+            let nearest = match 1.0 - here.fraction < next.fraction - 1.0 {
+                true => here,
+                false => next,
+            };
+            return path.full(&nearest).map(PathEnd::Reached);
         }
         here = next;
         step = (1.5 * step).min(LARGEST);
@@ -237,7 +262,7 @@ pub(super) fn limit_point(
 /// nothing and twice as much, or where a muscle has almost no length.
 pub(super) fn crossings(
     statics: &mut Statics<'_>,
-    state: &[f64],
+    state: &RestState,
     ramp: Ramp<'_>,
     fraction: f64,
     direction: f64,
@@ -245,7 +270,7 @@ pub(super) fn crossings(
 ) -> Vec<RestState> {
     let mut found = Vec::new();
     let mut path = path(statics, ramp);
-    let Some(mut here) = path.point(state.to_vec(), fraction, None) else {
+    let Some(mut here) = path.point(state.clone(), fraction, None) else {
         return found;
     };
     here.tangent.0.iter_mut().for_each(|t| *t *= direction);
@@ -260,16 +285,11 @@ pub(super) fn crossings(
             continue;
         };
         if (here.fraction - 1.0) * (next.fraction - 1.0) < 0.0 {
-            // Newton from the point next to it: a crossing is no limit point.
             let nearest = match (here.fraction - 1.0).abs() < (next.fraction - 1.0).abs() {
                 true => &here,
                 false => &next,
             };
-            let mut state = nearest.state.clone();
-            let all = ramp.apply(path.statics, 1.0);
-            if let Ok(NewtonOutcome::Converged) =
-                path.statics.newton(&mut state, &all, UpdateRange::Near)
-            {
+            if let Some(state) = path.full(nearest) {
                 let is_stable = path.statics.unstable() == Some(0);
                 found.push(state);
                 if is_stable {

@@ -1,16 +1,20 @@
 //! Static equilibrium on the path of growing loads: the weights first, then the voltages in steps of V², cut when Newton
 //! fails.
 
-use crate::dynamics::equilibrium::arc_length::{LimitPoint, limit_point};
+use crate::dynamics::equilibrium::arc_length::{LimitPoint, PathEnd, STRAIGHT, path_end};
 use crate::dynamics::equilibrium::instability::Load;
 use crate::dynamics::equilibrium::ramp::Ramp;
+use crate::dynamics::equilibrium::rest_state::RestState;
 use crate::dynamics::equilibrium::result::{Equilibrium, Route, StabilityLoss};
-use crate::dynamics::equilibrium::statics::{NewtonOutcome, RestState, Statics, UpdateRange};
+use crate::dynamics::equilibrium::statics::{NewtonOutcome, Statics, UpdateRange};
 use crate::dynamics::error::EquilibriumError;
 use crate::model::{Floating, Model};
 
 /// Part of a load that is tried first, in V² for voltages.
 const FIRST: f64 = 0.25;
+/// Largest part of a predicted change by which it may be corrected, and the longest correction.
+const BEND: f64 = 0.25;
+const LONGEST: f64 = 0.1;
 /// Load increments below this end the path.
 const SMALLEST: f64 = 1e-6;
 
@@ -92,7 +96,6 @@ pub(super) fn grow(
     mut state: RestState,
     ramp: Ramp<'_>,
 ) -> Result<Grown, EquilibriumError> {
-    let m = statics.model.action.map.unknowns();
     let is_there = match ramp.load {
         // All of the weight acts already where nothing else holds the system.
         Load::Weight => statics.has_weight() && statics.weight < 1.0,
@@ -101,20 +104,31 @@ pub(super) fn grow(
     let (mut reached, mut increment) = (0.0, FIRST);
     let mut stable = Some((state.clone(), 0.0));
     let mut is_lost = false;
+    // At zero voltage nothing depends on the fraction to first order.
+    let mut slope = match ramp.load {
+        Load::Weight if is_there => {
+            let voltages = ramp.apply(statics, 0.0);
+            statics.evaluate(&state, &voltages);
+            statics.factor().ok().map(|()| slope(statics, ramp, 0.0))
+        }
+        _ => None,
+    };
     while is_there && reached < 1.0 && increment >= SMALLEST {
         let target = f64::min(reached + increment, 1.0);
-        let mut trial = state.clone();
-        // Potentials grow with the voltages.
-        let growth = match (ramp.load, reached > 0.0) {
-            (Load::Voltages, true) => (target / reached).sqrt(),
-            _ => 1.0,
-        };
-        trial[m..].iter_mut().for_each(|p| *p *= growth);
+        let (mut trial, most) = predicted(statics, &state, [reached, target], slope.as_deref());
         let fraction = ramp.fraction(target);
         let voltages = ramp.apply(statics, fraction);
-        match statics.newton(&mut trial, &voltages, UpdateRange::Near) {
+        match statics.newton(&mut trial, &voltages, UpdateRange::Within(most)) {
             Ok(NewtonOutcome::Converged) => {
-                (state, reached) = (trial, target);
+                let here = self::slope(statics, ramp, fraction);
+                if slope
+                    .as_ref()
+                    .is_some_and(|before| !is_straight(statics, before, &here))
+                {
+                    increment *= 0.5;
+                    continue;
+                }
+                (state, reached, slope) = (trial, target, Some(here));
                 increment *= 2.0;
                 match statics.unstable() {
                     Some(1..) => is_lost = true,
@@ -138,21 +152,58 @@ pub(super) fn grow(
     })
 }
 
+/// Derivative of the state by the part of a load, at the fraction evaluated and factorised last.
+fn slope(statics: &mut Statics<'_>, ramp: Ramp<'_>, fraction: f64) -> Vec<f64> {
+    let mut load = vec![0.0; statics.residual.len()];
+    ramp.add(statics, &mut load);
+    statics.solve(&mut load);
+    let by_part = ramp.slope(fraction);
+    load.iter().map(|v| -by_part * v).collect()
+}
+
+/// Returns true if a path with these derivatives at both ends of a step hardly turns within it.
+fn is_straight(statics: &Statics<'_>, before: &[f64], after: &[f64]) -> bool {
+    let weights = statics.weights();
+    let dot = |a: &[f64], b: &[f64]| {
+        let products = a.iter().zip(b).zip(&weights).map(|((a, b), w)| a * b * w);
+        1.0 + products.sum::<f64>()
+    };
+    dot(before, after) > STRAIGHT * (dot(before, before) * dot(after, after)).sqrt()
+}
+
+/// The state on the tangent of a path from one part of a load to another, and the longest correction from there; without a tangent the
+/// same state with potentials that have grown.
+fn predicted(
+    statics: &Statics<'_>,
+    state: &RestState,
+    [reached, target]: [f64; 2],
+    slope: Option<&[f64]>,
+) -> (RestState, f64) {
+    let Some(slope) = slope else {
+        return (state.clone(), LONGEST);
+    };
+    let step = target - reached;
+    (
+        statics.moved(state, step, slope),
+        BEND * step * statics.size(slope).min(LONGEST / BEND / step),
+    )
+}
+
 /// Returns the end of the path at a state: the limit point next to it, or the last equilibrium.
 pub(super) fn at_limit(
     statics: &mut Statics<'_>,
-    state: &[f64],
+    state: &RestState,
     ramp: Ramp<'_>,
     fraction: f64,
 ) -> EquilibriumError {
-    let found = limit_point(statics, state, ramp, fraction);
-    let (fraction, kind, last) = match found {
-        Some(LimitPoint {
+    let end = path_end(statics, state, ramp, fraction);
+    let (fraction, kind, last) = match end {
+        Some(PathEnd::Lost(LimitPoint {
             fraction,
             kind,
             state,
-        }) => (fraction, Some(kind), state),
-        None => (fraction, None, state.to_vec()),
+        })) => (fraction, Some(kind), state),
+        Some(PathEnd::Reached(_)) | None => (fraction, None, state.clone()),
     };
     let loss = StabilityLoss {
         load: ramp.load,

@@ -4,7 +4,8 @@
 //! positive definite where constraints and Gauss's law hold, by the inertia of its factorisation. The energy is that of states
 //! brought onto the constraints with potentials by Gauss's law, and falls in each step.
 
-use crate::dynamics::equilibrium::statics::{RestState, Statics};
+use crate::dynamics::equilibrium::rest_state::RestState;
+use crate::dynamics::equilibrium::statics::Statics;
 use crate::dynamics::singular_configurations::{reversed, shortest};
 use crate::ipopt::interrupt;
 
@@ -24,13 +25,14 @@ const COLLAPSED: f64 = 0.03;
 /// A state of least potential energy by descent from another; `None` where the energy falls without end.
 pub(super) fn minimise(
     statics: &mut Statics<'_>,
-    from: &[f64],
+    from: &RestState,
     voltages: &[f64],
 ) -> Option<RestState> {
     statics.weight = 1.0;
     let model = statics.model;
     let n = model.action.map.coordinates;
-    let mut state = from.to_vec();
+    let mut state = from.clone();
+    statics.recentre(&mut state);
     statics.settle(&mut state, voltages)?;
     let mut energy = statics.energy(&state, voltages);
     if !energy.is_finite() {
@@ -62,11 +64,7 @@ pub(super) fn minimise(
         let slope = slope / model.multiplier_time;
         let mut is_accepted = false;
         for _ in 0..HALVINGS {
-            let mut trial: RestState = state
-                .iter()
-                .zip(&update)
-                .map(|(y, u)| y - part * u)
-                .collect();
+            let mut trial = statics.moved(&state, -part, &update);
             if statics.settle(&mut trial, voltages).is_some() {
                 let after = statics.energy(&trial, voltages);
                 let noise = 1e-13 * energy.abs().max(after.abs());

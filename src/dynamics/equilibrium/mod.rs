@@ -1,6 +1,6 @@
 //! Static equilibria: under growing loads, along paths, and their stability.
 //!
-//! - `statics`: Newton on the rows of rest; `settle`, `minimum`: states that Newton's method does not reach.
+//! - `statics`: Newton on the rows of rest; `rest_state`, `states`: their unknowns; `settle`, `minimum`, `relaxation`: states that Newton's method does not reach.
 //! - `instability`, `ramp`, `growth`: loads that grow; `arc_length`: the path of equilibria by arc length; `load_path`: its points.
 //! - `in_joints`: equilibria in redundant coordinates by way of joint coordinates.
 //! - `result`, `mode`, `softest_mode`, `stability`: a state of rest and its softest mode; `slowest_mode`: its slowest vibration; `stable`: the
@@ -15,12 +15,15 @@ mod load_path;
 mod minimum;
 mod mode;
 mod ramp;
+mod relaxation;
+mod rest_state;
 mod result;
 mod settle;
 mod slowest_mode;
 mod softest_mode;
 mod stability;
 mod stable;
+mod states;
 mod statics;
 mod weights;
 

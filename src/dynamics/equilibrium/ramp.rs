@@ -42,6 +42,14 @@ impl Ramp<'_> {
         }
     }
 
+    /// Derivative of the fraction by the part of the way at a fraction.
+    pub(super) fn slope(&self, fraction: f64) -> f64 {
+        match self.load {
+            Load::Weight => 1.0,
+            Load::Voltages => 0.5 / fraction,
+        }
+    }
+
     /// The fraction at a part of the way that a path takes: forces of voltages grow with their squares.
     pub(super) fn fraction(&self, part: f64) -> f64 {
         match self.load {

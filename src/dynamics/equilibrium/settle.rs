@@ -1,7 +1,8 @@
 //! Energy of states of rest, and the way onto the constraints and to Gauss's law.
 
 use crate::coordinates::{Configuration, Interval};
-use crate::dynamics::equilibrium::statics::{ITERATIONS, RestState, Statics};
+use crate::dynamics::equilibrium::rest_state::RestState;
+use crate::dynamics::equilibrium::statics::{ITERATIONS, Statics};
 use crate::functional::{Order, TermKind};
 use crate::math::Vector;
 
@@ -10,14 +11,13 @@ const UPDATE: f64 = 1e-12;
 
 impl Statics<'_> {
     /// Potential energy in N mm of a state under voltages, all weights acting; the instant stays placed there.
-    pub(super) fn energy(&mut self, state: &[f64], voltages: &[f64]) -> f64 {
+    pub(super) fn energy(&mut self, state: &RestState, voltages: &[f64]) -> f64 {
         let action = &self.model.action;
         let m = action.map.unknowns();
         let variables = &self.model.variables;
         self.scalars[variables.inputs()].copy_from_slice(voltages);
         self.scalars[variables.algebraic()].copy_from_slice(&state[m..]);
-        self.a.z[..m].copy_from_slice(&state[..m]);
-        action.map.place(&mut self.a);
+        self.place(state);
         let interval = Interval::given(&self.scalars, 1.0);
         let sample = interval.sample([&self.a, &self.a]);
         let terms = action.intervals.terms.iter();
@@ -59,6 +59,7 @@ impl Statics<'_> {
             a.z[..n].copy_from_slice(&state[..n]);
             // The gradients of the constraints alone: no multiplier bends them.
             a.z[n..m].fill(0.0);
+            a.z[m..].copy_from_slice(state.charts());
             action.map.place(a);
             a.forces.fill(Vector::zeros());
             self.values.fill(0.0);

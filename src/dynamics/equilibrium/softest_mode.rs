@@ -2,6 +2,7 @@
 //! and the cause of its softness.
 
 use crate::dynamics::equilibrium::mode::{Mode, Softening};
+use crate::dynamics::equilibrium::rest_state::RestState;
 use crate::dynamics::equilibrium::statics::Statics;
 use crate::math::Random;
 use crate::model::system::Fidelity;
@@ -42,7 +43,9 @@ fn eigenpairs(statics: &Statics<'_>) -> Option<(Vec<f64>, Vec<f64>)> {
     if free.is_empty() {
         return None;
     }
-    let pairs = SymmetricEigen::new(matrix.select_rows(&free).select_columns(&free));
+    let matrix = matrix.select_rows(&free).select_columns(&free);
+    // Loads that follow what they act on: their symmetric part decides.
+    let pairs = SymmetricEigen::new(0.5 * (&matrix + matrix.transpose()));
     let mut order: Vec<usize> = (0..free.len()).collect();
     order.sort_by(|&i, &j| pairs.eigenvalues[i].total_cmp(&pairs.eigenvalues[j]));
     let mut lowest = vec![0.0; n];
@@ -62,7 +65,7 @@ pub(super) fn stiffness(statics: &Statics<'_>) -> Vec<f64> {
 /// The softest mode of the state evaluated and factorised last.
 pub(super) fn softest_mode(
     statics: &mut Statics<'_>,
-    state: &[f64],
+    state: &RestState,
     voltages: &[f64],
 ) -> Option<Mode> {
     let direction = match eigenpairs(statics) {
@@ -106,17 +109,17 @@ fn inverse_iteration(statics: &mut Statics<'_>) -> Option<Vec<f64>> {
     Some(vector)
 }
 
-/// A direction of length 1 with the parts that it moves.
-fn named(statics: &mut Statics<'_>, state: &[f64], voltages: &[f64], direction: Vec<f64>) -> Mode {
-    let largest = direction.iter().zip(statics.scales());
-    let (v, s) = largest.fold((0.0_f64, 1.0), |(m, s), (v, scale)| {
-        if (v / scale).abs() > (m / s).abs() {
-            (*v, *scale)
-        } else {
-            (m, s)
-        }
-    });
-    let direction: Vec<f64> = direction.iter().map(|d| d * s / v).collect();
+/// A direction of size 1 with the parts that it moves.
+fn named(
+    statics: &mut Statics<'_>,
+    state: &RestState,
+    voltages: &[f64],
+    direction: Vec<f64>,
+) -> Mode {
+    let relative = direction.iter().zip(statics.scales()).map(|(v, s)| v / s);
+    let largest = relative.max_by(|a, b| a.abs().total_cmp(&b.abs()));
+    let size = statics.size(&direction).copysign(largest.unwrap_or(1.0));
+    let direction: Vec<f64> = direction.iter().map(|d| d / size).collect();
     Mode {
         moves: moves(statics.model, &statics.configuration(state), &direction),
         softening: softening(statics, state, voltages, &direction),
@@ -127,16 +130,16 @@ fn named(statics: &mut Statics<'_>, state: &[f64], voltages: &[f64], direction: 
 /// The part of the stiffness along a direction that takes most from it; `None` where none does.
 fn softening(
     statics: &mut Statics<'_>,
-    state: &[f64],
+    state: &RestState,
     voltages: &[f64],
     direction: &[f64],
 ) -> Option<Softening> {
     let m = statics.model.action.map.unknowns();
-    let mut bare = state.to_vec();
+    let mut bare = state.clone();
     bare[m..].fill(0.0);
     let none = statics.without_voltages(voltages);
     let weight = statics.weight;
-    let mut along = |weight: f64, state: &[f64], voltages: &[f64]| {
+    let mut along = |weight: f64, state: &RestState, voltages: &[f64]| {
         statics.weight = weight;
         statics.evaluate(state, voltages);
         statics.stiffness_along(direction)

@@ -1,5 +1,6 @@
 //! Stiffness, stability and softest mode of a state of rest.
 
+use crate::dynamics::equilibrium::rest_state::RestState;
 use crate::dynamics::equilibrium::result::{Equilibrium, Route};
 use crate::dynamics::equilibrium::softest_mode::{softest_mode, stiffness};
 use crate::dynamics::equilibrium::statics::Statics;
@@ -18,11 +19,13 @@ impl Equilibrium {
     /// A state of rest of a model, from coordinates with multipliers and potentials.
     pub(super) fn new(
         statics: &mut Statics<'_>,
-        state: &[f64],
+        state: &RestState,
         voltages: &[f64],
         route: Route,
     ) -> Self {
-        let state = &statics.recentred(state);
+        let mut state = state.clone();
+        statics.recentre(&mut state);
+        let state = &state;
         let point = Self::on_path(statics, state, voltages, route);
         Self {
             softest: softest_mode(statics, state, voltages),
@@ -33,7 +36,7 @@ impl Equilibrium {
     /// The same without its softest mode.
     pub(super) fn on_path(
         statics: &mut Statics<'_>,
-        state: &[f64],
+        state: &RestState,
         voltages: &[f64],
         route: Route,
     ) -> Self {

@@ -7,15 +7,17 @@
 //!
 //! The first stable one is the answer.
 
-use crate::dynamics::equilibrium::arc_length::{LimitPoint, crossings, limit_point};
+use crate::dynamics::equilibrium::arc_length::{LimitPoint, PathEnd, crossings, path_end};
 use crate::dynamics::equilibrium::growth::{Grown, at_limit, begin, grow, unloaded};
 use crate::dynamics::equilibrium::in_joints;
 use crate::dynamics::equilibrium::instability::Load;
 use crate::dynamics::equilibrium::minimum::minimise;
 use crate::dynamics::equilibrium::ramp::Ramp;
+use crate::dynamics::equilibrium::relaxation::relax;
+use crate::dynamics::equilibrium::rest_state::RestState;
 use crate::dynamics::equilibrium::result::{Equilibrium, Route, StabilityLoss};
 use crate::dynamics::equilibrium::softest_mode::softest_mode;
-use crate::dynamics::equilibrium::statics::{NewtonOutcome, RestState, Statics, UpdateRange};
+use crate::dynamics::equilibrium::statics::{NewtonOutcome, Statics, UpdateRange};
 use crate::dynamics::error::EquilibriumError;
 use crate::ipopt::interrupt;
 use crate::model::{Coordinates, Model};
@@ -178,7 +180,17 @@ fn under(
     }
     // Where it was lost: the limit point from the last stable state on.
     let (before, at) = last_stable.unwrap_or((state.clone(), fraction));
-    let limit = limit_point(statics, &before, ramp, at);
+    let limit = match path_end(statics, &before, ramp, at) {
+        Some(PathEnd::Reached(found)) => {
+            ramp.apply(statics, 1.0);
+            if is_stable(statics, &found, &voltages) != Some(false) {
+                return Ok((found, Route::Loads));
+            }
+            None
+        }
+        Some(PathEnd::Lost(limit)) => Some(limit),
+        None => None,
+    };
     let loss = StabilityLoss {
         load: ramp.load,
         fraction: limit.as_ref().map_or(at, |l| l.fraction),
@@ -220,13 +232,16 @@ fn under(
 }
 
 /// Returns true if a state of rest is stable; `None` where that is not known.
-fn is_stable(statics: &mut Statics<'_>, state: &[f64], voltages: &[f64]) -> Option<bool> {
+fn is_stable(statics: &mut Statics<'_>, state: &RestState, voltages: &[f64]) -> Option<bool> {
     statics.evaluate(state, voltages);
     statics.factor().ok()?;
     statics.unstable().map(|count| count == 0)
 }
 
-/// The first stable equilibrium found by descent from one of some states, pushed to either side along its softest mode.
+/// A way from a state to one of rest under all loads.
+type Way = fn(&mut Statics<'_>, &RestState, &[f64]) -> Option<RestState>;
+
+/// A stable equilibrium that descent or, without blocks, overdamped motion from the first of some states finds.
 ///
 /// # Errors
 /// It was stopped.
@@ -235,29 +250,13 @@ fn descend(
     from: &[RestState],
     voltages: &[f64],
 ) -> Result<Option<RestState>, EquilibriumError> {
-    for state in from {
-        statics.evaluate(state, voltages);
-        // At a limit point the tangent is singular, and still the lowest eigenvalue has its direction.
-        statics.factor().ok();
-        let Some(mode) = softest_mode(statics, state, voltages) else {
-            continue;
-        };
-        for side in [PUSH, -PUSH] {
-            let Some(pushed) = pushed(statics, state, voltages, &mode.direction, side) else {
-                continue;
-            };
-            let found = minimise(statics, &pushed, voltages);
-            if let Some(status) = interrupt::stop() {
-                return Err(EquilibriumError::Stopped(status));
-            }
-            let Some(mut found) = found else {
-                continue;
-            };
-            statics.weight = 1.0;
-            let outcome = statics.newton(&mut found, voltages, UpdateRange::Near);
-            if outcome == Ok(NewtonOutcome::Converged)
-                && is_stable(statics, &found, voltages) == Some(true)
-            {
+    let ways: &[Way] = match statics.model.action.map.of_nodes.is_empty() {
+        true => &[relax, minimise],
+        false => &[minimise],
+    };
+    for &way in ways {
+        for state in from {
+            if let Some(found) = lowest(statics, state, voltages, way)? {
                 return Ok(Some(found));
             }
         }
@@ -265,19 +264,57 @@ fn descend(
     Ok(None)
 }
 
+/// The stable equilibrium of least potential energy to which a way leads from a state, pushed to either side along its softest mode.
+fn lowest(
+    statics: &mut Statics<'_>,
+    state: &RestState,
+    voltages: &[f64],
+    way: Way,
+) -> Result<Option<RestState>, EquilibriumError> {
+    statics.weight = 1.0;
+    statics.evaluate(state, voltages);
+    // At a limit point the tangent is singular, and still the lowest eigenvalue has its direction.
+    statics.factor().ok();
+    let Some(mode) = softest_mode(statics, state, voltages) else {
+        return Ok(None);
+    };
+    let mut lowest: Option<(RestState, f64)> = None;
+    for side in [PUSH, -PUSH] {
+        let Some(pushed) = pushed(statics, state, voltages, &mode.direction, side) else {
+            continue;
+        };
+        let found = way(statics, &pushed, voltages);
+        if let Some(status) = interrupt::stop() {
+            return Err(EquilibriumError::Stopped(status));
+        }
+        let Some(mut found) = found else {
+            continue;
+        };
+        statics.weight = 1.0;
+        let outcome = statics.newton(&mut found, voltages, UpdateRange::Near);
+        if outcome != Ok(NewtonOutcome::Converged)
+            || is_stable(statics, &found, voltages) != Some(true)
+        {
+            continue;
+        }
+        let energy = statics.energy(&found, voltages);
+        if lowest.as_ref().is_none_or(|(_, least)| energy < *least) {
+            lowest = Some((found, energy));
+        }
+    }
+    Ok(lowest.map(|(found, _)| found))
+}
+
 /// A state pushed along a direction, as far as it has energy there.
 fn pushed(
     statics: &mut Statics<'_>,
-    state: &[f64],
+    state: &RestState,
     voltages: &[f64],
     direction: &[f64],
     mut by: f64,
 ) -> Option<RestState> {
     for _ in 0..HALVINGS {
-        let mut moved = state.to_vec();
-        for (value, change) in moved.iter_mut().zip(direction) {
-            *value += by * change;
-        }
+        let mut moved = statics.moved(state, by, direction);
         if statics.settle(&mut moved, voltages).is_some()
             && statics.energy(&moved, voltages).is_finite()
         {

@@ -10,6 +10,7 @@
 //! state is stable. Where that part is positive no displacement gains energy from springs and loads.
 
 use crate::coordinates::{Configuration, Interval, Scratch};
+use crate::dynamics::equilibrium::rest_state::RestState;
 use crate::dynamics::equilibrium::weights::weights;
 use crate::dynamics::error::EquilibriumError;
 use crate::dynamics::tangent::{EntryList, Tangent};
@@ -23,19 +24,23 @@ use crate::sparse::{Singular, Symmetry};
 pub(super) const ITERATIONS: usize = 30;
 /// Convergence of the Newton update, relative to angles of one radian and the length of the system.
 const UPDATE: f64 = 1e-11;
+/// Largest ratio of the second update to the first one on a path: beyond it Newton's method may end on another path.
+const CONTRACTION: f64 = 0.25;
+/// First updates below this are not compared.
+const SHORT: f64 = 1e-6;
 /// An update longer than this leaves the region in which the tangent says anything.
 const LONG: f64 = 0.5;
 
-/// A state of rest: the unknowns of a step (see [`Variables`](crate::model::Variables)).
-pub(super) type RestState = Vec<f64>;
-
 /// Range of the updates of Newton's method.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) enum UpdateRange {
     /// Start from anywhere: long updates are shortened.
     Far,
-    /// Start at a neighbour on a path: a long update is a failure, for it may end on another path.
+    /// Start near: a long update is a failure, for it may end elsewhere.
     Near,
+    /// Start at a prediction on a path: a first update longer than this, or a second one that is not much shorter, is a failure, for it
+    /// may end on another path.
+    Within(f64),
 }
 
 /// Outcome of Newton's method.
@@ -43,6 +48,11 @@ pub(super) enum UpdateRange {
 pub(super) enum NewtonOutcome {
     Converged,
     Failed,
+}
+
+/// Pairs of the turns behind a chart, with the third one.
+pub(super) fn turned_pairs(&[a, b, c]: &[usize; 3]) -> [[usize; 3]; 3] {
+    [[a, b, c], [a, c, b], [b, c, a]]
 }
 
 /// Rows and tangent of rest.
@@ -70,6 +80,12 @@ pub(super) struct Statics<'m> {
     /// Rows, then the Newton update.
     pub(super) residual: Vec<f64>,
     pub(super) scales: Vec<f64>,
+    /// Coordinates that turn behind each chart.
+    pub(super) charted: Vec<[usize; 3]>,
+    /// 1 where their axes are a right-handed triad, otherwise −1.
+    pub(super) handedness: Vec<f64>,
+    /// First place of the curvature of charts in the values: three a chart.
+    pub(super) curved: usize,
     pub(super) iterations: usize,
 }
 
@@ -92,7 +108,16 @@ impl<'m> Statics<'m> {
         }
         entries.add_scalars(model, &[[0, 0], [1, 1]]);
         let (size, algebraic) = (model.variables.unknown_count(), model.variables.algebraic());
-        let added = layout.values(1);
+        let charts = map.charted();
+        let curved = layout.values(1);
+        for (place, [i, j, _]) in charts.iter().flat_map(turned_pairs).enumerate() {
+            for entry in [(i, j), (j, i)] {
+                let same = layout.same.find(entry.0, entry.1);
+                let same = same.expect("the turns of a joint are coupled");
+                entries.add_to(curved + place, same);
+            }
+        }
+        let added = curved + 3 * charts.len();
         for (place, i) in (0..n).chain(m..size).enumerate() {
             entries.add(added + place, (i, i));
         }
@@ -129,45 +154,27 @@ impl<'m> Statics<'m> {
             electric,
             residual: vec![0.0; size],
             scales: model.sizes(),
+            charted: charts,
+            handedness: map.handedness(),
+            curved,
             iterations: 0,
         }
     }
 
-    /// The state at a configuration, potentials being zero.
-    pub(super) fn state_without_field(&mut self, z: &[f64]) -> RestState {
-        let scalars = vec![0.0; self.model.variables.algebraic().len()];
-        self.state(z, &scalars)
-    }
-
-    /// The state at a configuration with scalars that have an equation; all states are meant with the charts of the configuration
-    /// taken last.
-    pub(super) fn state(&mut self, z: &[f64], scalars: &[f64]) -> RestState {
-        let (unknowns, charts) = z.split_at(self.model.action.map.unknowns());
-        for instant in [&mut self.a, &mut self.b] {
-            instant.z[unknowns.len()..].copy_from_slice(charts);
-        }
-        [unknowns, scalars].concat()
-    }
-
-    /// Coordinates, multipliers and charts of a state.
-    pub(super) fn configuration(&self, state: &[f64]) -> Vec<f64> {
-        let m = self.model.action.map.unknowns();
-        [&state[..m], &self.a.z[m..]].concat()
-    }
-
-    /// The state with charts where its bodies are.
-    pub(super) fn recentred(&mut self, state: &[f64]) -> RestState {
+    /// Places both instants at a state.
+    pub(super) fn place(&mut self, state: &RestState) {
         let map = &self.model.action.map;
-        let (m, z) = (map.unknowns(), self.configuration(state));
-        let mut instant = map.placed(&z);
-        match map.recentre(&mut instant) {
-            true => self.state(&instant.z, &state[m..]),
-            false => state.to_vec(),
+        let m = map.unknowns();
+        for instant in [&mut self.a, &mut self.b] {
+            instant.z[..m].copy_from_slice(&state[..m]);
+            instant.z[m..].copy_from_slice(state.charts());
+            map.place(instant);
         }
     }
 
     /// Rows and second derivatives at a state under voltages.
-    pub(super) fn evaluate(&mut self, state: &[f64], voltages: &[f64]) {
+    pub(super) fn evaluate(&mut self, state: &RestState, voltages: &[f64]) {
+        self.place(state);
         let action = &self.model.action;
         let m = action.map.unknowns();
         let variables = &self.model.variables;
@@ -189,8 +196,6 @@ impl<'m> Statics<'m> {
         scalars[variables.algebraic()].copy_from_slice(&state[m..]);
         values.fill(0.0);
         for instant in [&mut *a, &mut *b] {
-            instant.z[..m].copy_from_slice(&state[..m]);
-            action.map.place(instant);
             instant.forces.fill(Vector::zeros());
         }
         let interval = Interval::given(scalars, self.model.multiplier_time);
@@ -210,6 +215,7 @@ impl<'m> Statics<'m> {
         action.rows(a, scratch, &mut residual[..m]);
         let rows = &scratch.interval.plain.rows[variables.algebraic()];
         residual[m..].copy_from_slice(rows);
+        self.add_curvature();
     }
 
     /// Factorises the tangent of the state evaluated last.
@@ -279,15 +285,16 @@ impl<'m> Statics<'m> {
             .map(move |(entry, place)| (entry, -self.values[place] / h))
     }
 
-    /// Size of an update, relative to angles of one radian and the length of the system.
+    /// Size of an update, relative to angles of one radian and the length of the system; of turns behind a chart their angle, whatever
+    /// axes they have.
     pub(super) fn size(&self, update: &[f64]) -> f64 {
         let relative = |(u, s): (&f64, &f64)| (u / s).abs();
         let worst = |a: f64, b: f64| if b.is_nan() { b } else { a.max(b) };
-        update
-            .iter()
-            .zip(&self.scales)
-            .map(relative)
-            .fold(0.0, worst)
+        let singles = update.iter().zip(&self.scales).map(relative);
+        let angle =
+            |turns: &[usize; 3]| turns.map(|i| update[i]).iter().map(|u| u * u).sum::<f64>();
+        let angles = self.charted.iter().map(|turns| angle(turns).sqrt());
+        singles.chain(angles).fold(0.0, worst)
     }
 
     /// Newton at one load.
@@ -298,7 +305,8 @@ impl<'m> Statics<'m> {
         reach: UpdateRange,
     ) -> Result<NewtonOutcome, EquilibriumError> {
         let mut last = f64::INFINITY;
-        for _ in 0..ITERATIONS {
+        self.recentre(state);
+        for iteration in 0..ITERATIONS {
             if let Some(status) = interrupt::stop() {
                 return Err(EquilibriumError::Stopped(status));
             }
@@ -316,14 +324,18 @@ impl<'m> Statics<'m> {
             let mut update = std::mem::take(&mut self.residual);
             self.solve(&mut update);
             let size = self.size(&update);
-            if size.is_nan() || (size > LONG && reach == UpdateRange::Near) {
+            let is_far = match (reach, iteration) {
+                (UpdateRange::Far, _) => false,
+                (UpdateRange::Within(most), 0) => size > most.max(SHORT),
+                (UpdateRange::Within(_), 1) => size > (CONTRACTION * last).max(SHORT),
+                _ => size > LONG,
+            };
+            if size.is_nan() || is_far {
                 self.residual = update;
                 return Ok(NewtonOutcome::Failed);
             }
             let damping = if size > LONG { LONG / size } else { 1.0 };
-            for (value, update) in state.iter_mut().zip(&update) {
-                *value -= damping * update;
-            }
+            *state = self.moved(state, -damping, &update);
             self.residual = update;
             if size < UPDATE || (size < 1e-8 && size >= 0.5 * last) {
                 if let Some((constraint, gap)) =

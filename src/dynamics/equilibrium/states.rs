@@ -1,0 +1,67 @@
+//! States of rest of a model: made, moved, and seen from charts where their bodies are.
+
+use crate::dynamics::equilibrium::rest_state::RestState;
+use crate::dynamics::equilibrium::statics::{Statics, turned_pairs};
+
+impl Statics<'_> {
+    /// The state at a configuration, potentials being zero.
+    pub(super) fn state_without_field(&self, z: &[f64]) -> RestState {
+        let scalars = vec![0.0; self.model.variables.algebraic().len()];
+        self.state(z, &scalars)
+    }
+
+    /// The state at a configuration with scalars that have an equation.
+    pub(super) fn state(&self, z: &[f64], scalars: &[f64]) -> RestState {
+        let (unknowns, charts) = z.split_at(self.model.action.map.unknowns());
+        RestState {
+            unknowns: [unknowns, scalars].concat(),
+            charts: charts.to_vec(),
+        }
+    }
+
+    /// Coordinates, multipliers and charts of a state.
+    pub(super) fn configuration(&self, state: &RestState) -> Vec<f64> {
+        let m = self.model.action.map.unknowns();
+        [&state[..m], state.charts()].concat()
+    }
+
+    /// The state a step along a direction away: bodies behind charts turn by rotation vectors, so that no choice of axes matters.
+    pub(super) fn moved(&self, state: &RestState, step: f64, direction: &[f64]) -> RestState {
+        let mut moved = state.clone();
+        self.recentre(&mut moved);
+        let RestState { unknowns, charts } = &mut moved;
+        self.model
+            .action
+            .map
+            .advance(step, direction, unknowns, charts);
+        moved
+    }
+
+    /// Moves the charts of a state to where its bodies are: there turns are rotations about the axes of the ground or of a parent, without
+    /// singularity, and a stiffness by them does not depend on the choice of these axes.
+    pub(super) fn recentre(&self, state: &mut RestState) {
+        let map = &self.model.action.map;
+        let mut turns = map.charted().into_iter().flatten();
+        if turns.all(|turn| state[turn] == 0.0) {
+            return;
+        }
+        let m = map.unknowns();
+        let mut instant = map.placed(&self.configuration(state));
+        map.recentre(&mut instant);
+        state.unknowns[..m].copy_from_slice(&instant.z[..m]);
+        state.charts.copy_from_slice(&instant.z[m..]);
+    }
+
+    /// Makes second derivatives by turns those by rotation vectors, at turns of zero: a product of turns a, b, c about e₁, e₂, e₃ is the
+    /// rotation vector a e₁ + b e₂ + c e₃ + ½ (a b e₁ × e₂ + a c e₁ × e₃ + b c e₂ × e₃) + …
+    pub(super) fn add_curvature(&mut self) {
+        let pairs = self.charted.iter().flat_map(turned_pairs);
+        let signs = self
+            .handedness
+            .iter()
+            .flat_map(|s| [-0.5 * s, 0.5 * s, -0.5 * s]);
+        for ((place, [_, _, third]), sign) in pairs.enumerate().zip(signs) {
+            self.values[self.curved + place] = sign * self.residual[third];
+        }
+    }
+}
