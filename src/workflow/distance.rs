@@ -37,9 +37,14 @@ impl Distance {
 
     /// The longest path of a joint, and of a body or a node, along a motion.
     pub(crate) fn path_length(model: &Model, motion: &Solution) -> Self {
+        Self::path_length_by(model, motion, 1)
+    }
+
+    /// The same over every `stride`th instant.
+    pub(crate) fn path_length_by(model: &Model, motion: &Solution, stride: usize) -> Self {
         let mut lengths: Vec<(DistanceKind, f64)> = Vec::new();
-        for k in 1..motion.times.len() {
-            each(model, motion, k - 1, motion, k, |i, kind, apart| {
+        for k in (stride..motion.times.len()).step_by(stride) {
+            each(model, motion, k - stride, motion, k, |i, kind, apart| {
                 lengths.resize(lengths.len().max(i + 1), (kind, 0.0));
                 lengths[i] = (kind, lengths[i].1 + apart);
             });
@@ -57,6 +62,14 @@ impl Distance {
         Self {
             angle: self.angle.max(other.angle),
             length: self.length.max(other.length),
+        }
+    }
+
+    /// The smaller of both, part by part.
+    pub(crate) fn min(self, other: Self) -> Self {
+        Self {
+            angle: self.angle.min(other.angle),
+            length: self.length.min(other.length),
         }
     }
 

@@ -61,6 +61,11 @@ impl Repeat {
         all.fold(Distance::default(), Distance::max)
     }
 
+    /// Path length over the instants of the optimum, each of whose intervals has this number of steps.
+    pub(crate) fn path_length(&self, model: &Model, steps: usize) -> Distance {
+        Distance::path_length_by(model, &self.motion, steps)
+    }
+
     pub(crate) fn greatest(&self) -> Distance {
         let all = self.distances.iter().copied();
         all.fold(Distance::default(), Distance::max)

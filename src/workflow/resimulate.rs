@@ -39,7 +39,7 @@ const LOST: f64 = 1.0;
 pub struct Resimulation {
     /// Greatest deviation from the optimal motion at its instants, with its step.
     pub deviation: Distance,
-    /// The longest path of a joint, and of a body or node, along the optimal motion.
+    /// The longest path of a joint, and of a body or node, along the optimal motion or along that with finer steps, whichever is shorter.
     pub path_length: Distance,
     /// The same voltages with finer steps.
     pub finer: Vec<Finer>,
@@ -156,6 +156,8 @@ impl Resimulation {
                 self.half = Some(repeat.discrete.clone());
             }
             greatest = greatest.max(deviation);
+            // An optimum on a coarse grid may zigzag: its own path says little of the motion that it stands for.
+            self.path_length = self.path_length.min(repeat.path_length(model, steps));
             let apart = match &before {
                 Some((coarse, _)) => coarse.apart(model, &repeat),
                 None => deviation,
