@@ -48,6 +48,10 @@ impl Columns {
             .trim(Trim::All)
             .from_reader(file);
         let headers = reader.headers().map_err(|cause| mistake(&cause))?;
+        if headers.is_empty() {
+            let expected = "a CSV file: a line of headers, then lines of numbers";
+            return Err(scope.wrong(format!("{}, which is empty", path.display()), expected));
+        }
         let headers = headers.iter().map(plain).collect();
         let rows: Result<_, _> = reader.records().collect();
         Ok(Self {
@@ -68,10 +72,24 @@ impl Columns {
         name: &str,
         scope: &Scope<'_>,
     ) -> Result<Vec<Quantity<M>>, SceneError> {
-        let mut headers = self.headers.iter();
-        let whole = headers.position(|header| header == name);
-        let named = |header: &str| parts(header).0 == name;
-        let Some(at) = whole.or_else(|| self.headers.iter().position(named)) else {
+        let at = |is_it: &dyn Fn(&str) -> bool| {
+            let headers = self.headers.iter().enumerate();
+            let found = headers.filter(|(_, header)| is_it(header));
+            found.map(|(at, _)| at).collect::<Vec<_>>()
+        };
+        let mut columns = at(&|header| header == name);
+        if columns.is_empty() {
+            columns = at(&|header| parts(header).0 == name);
+        }
+        if columns.len() > 1 {
+            let found = format!(
+                "{} columns {name:?} in {}",
+                columns.len(),
+                self.path.display()
+            );
+            return Err(scope.wrong(found, "one column of this name"));
+        }
+        let Some(&at) = columns.first() else {
             let file = self.path.display();
             let candidates = self.headers.iter().map(|header| parts(header).0);
             let listed: Vec<&str> = self.headers.iter().take(20).collect();

@@ -35,7 +35,7 @@ pub fn read_system(path: &Path, overrides: &[String]) -> Result<System, SceneErr
 /// A source does not exist or takes no voltage, or a voltage is none.
 pub fn driven_voltages(words: &[String], system: &System) -> Result<Vec<f64>, SceneError> {
     let sources = system.sources();
-    let mut voltages = vec![0.0; sources.len()];
+    let mut voltages = vec![None; sources.len()];
     let mistake = |word: &str, expected: String, nearest: Option<String>| -> SceneError {
         Mistake {
             file: "command line".to_owned(),
@@ -64,7 +64,13 @@ pub fn driven_voltages(words: &[String], system: &System) -> Result<Vec<f64>, Sc
         let json = serde_json::from_str(value).unwrap_or_else(|_| Value::from(value));
         let quantity: Quantity<Voltage> = serde_json::from_value(json)
             .map_err(|_| mistake(word, Quantity::<Voltage>::expected(), None))?;
-        voltages[source] = quantity.value();
+        if voltages[source].replace(quantity.value()).is_some() {
+            let expected = format!("one voltage of {name:?}");
+            return Err(mistake(word, expected, None));
+        }
     }
-    Ok(voltages)
+    Ok(voltages
+        .into_iter()
+        .map(Option::unwrap_or_default)
+        .collect())
 }

@@ -201,7 +201,13 @@ fn voltages_may_come_from_a_csv_file() {
         (b"time,left\n0,1,2\n", left, "cannot be read"),
         (b"time,left\n\xff\xfe,1\n", left, "cannot be read"),
         (b"time,left\n", left, "one or more"),
-        (b"", left, "a column of"),
+        (b"", left, "which is empty"),
+        (b"time,left,left\n0,1,2\n", left, "2 columns \"left\""),
+        (
+            b"time,left [V],left [kV]\n0,1,2\n",
+            left,
+            "one column of this name",
+        ),
     ] {
         let error = with_csv(text, csv).unwrap_err();
         assert!(error.contains(told), "{error}");
