@@ -49,6 +49,7 @@ pub(super) fn check(
             _ => control.middle(control.intervals - 1),
         };
         let mut end = End::new(model, (control, time), coordinates, charts, scalars);
+        end.is_at_rest = matches!(state, BoundaryState::RestAtVoltages(..));
         match state {
             _ if !is_known => {}
             BoundaryState::JointAngles { angles, .. } => end.angles = angles.clone(),
@@ -80,6 +81,8 @@ struct End<'a> {
     known: Vec<bool>,
     /// Voltages and potentials, where they are known.
     scalars: Vec<Option<f64>>,
+    /// True if nothing moves there.
+    is_at_rest: bool,
     /// Joint coordinates that it names.
     angles: BTreeMap<usize, f64>,
     /// Places of markers that it names.
@@ -120,6 +123,7 @@ impl<'a> End<'a> {
                         .collect()
                 }
             },
+            is_at_rest: false,
             angles: BTreeMap::new(),
             places: BTreeMap::new(),
         }
@@ -168,6 +172,7 @@ impl<'a> End<'a> {
         let map = &self.model.action.map;
         let mut reads = measure.vectors().into_iter().flat_map(|v| map.support(v));
         let is_known = reads.all(|i| self.known[i])
+            && (self.is_at_rest || !measure.reads_rates())
             && measure.scalars().iter().all(|&s| self.scalars[s].is_some());
         let scalars: Vec<f64> = self.scalars.iter().map(|s| s.unwrap_or(0.0)).collect();
         let x = &self.instant.x[..];

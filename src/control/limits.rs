@@ -75,6 +75,12 @@ impl Limits {
                     let quantity = Quantity::SquaredStretch { muscle };
                     out.add(quantity, [min * min, max * max], name);
                 }
+                PathConstraint::Tension { muscle, min, max } => {
+                    let name = format!("tension of {}", system.muscles[muscle].name);
+                    let unit = largest([min, max]).unwrap_or(system.muscles[muscle].shear_force());
+                    let quantity = Quantity::Tension { muscle, unit };
+                    out.add(quantity, [min / unit, max / unit], name);
+                }
                 PathConstraint::ElectricField { muscle, max } => {
                     let name = format!("electric field of {}", system.muscles[muscle].name);
                     match system.muscles[muscle].is_behind_resistor() {

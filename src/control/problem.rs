@@ -255,6 +255,15 @@ pub enum PathConstraint {
         /// Upper bound or ∞.
         max: f64,
     },
+    /// Force in N with which a lumped muscle pulls its ends together, in the middle of the intervals.
+    Tension {
+        /// Muscle index.
+        muscle: usize,
+        /// Lower bound or −∞.
+        min: f64,
+        /// Upper bound or ∞.
+        max: f64,
+    },
     /// True electric field |V|/(t Λ) of a lumped muscle, in the intervals and at the instants; behind a resistor, where V follows from
     /// the charge, at the instants.
     ElectricField {

@@ -157,7 +157,7 @@ impl<'a> Named<'a> {
             PathConstraint::JointAngle { joint, .. } | PathConstraint::JointRate { joint, .. } => {
                 self.of_joint(joint);
             }
-            PathConstraint::Stretch { muscle, .. } => {
+            PathConstraint::Stretch { muscle, .. } | PathConstraint::Tension { muscle, .. } => {
                 let muscle = &self.system.muscles[muscle];
                 self.of_point(&muscle.from);
                 self.of_point(&muscle.to);

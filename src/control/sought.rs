@@ -43,6 +43,10 @@ fn reads(quantity: &Quantity, parameter: &Parameter) -> bool {
             let mut constants = parameter.constants.iter();
             parameter.moves(muscle) || constants.any(|c| c.constant == Constant::Layer(muscle))
         }
+        Quantity::Tension { muscle, .. } => {
+            let mut constants = parameter.constants.iter();
+            parameter.moves(muscle) || constants.any(|c| c.constant.muscle() == Some(muscle))
+        }
         Quantity::Capacitance { muscle } => {
             let is_read = |constant: Constant| {
                 let is_of_motion =

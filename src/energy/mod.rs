@@ -50,7 +50,7 @@ pub use sought_muscle::{SoughtCell, SoughtDielectric, SoughtShape, SoughtViscous
 pub use sought_spring::{SoughtSpanDamper, SoughtSpring};
 pub use spring::{LinearSpring, SpanDamper};
 pub use tendon::Cable;
-pub use viscosity::ViscousCell;
+pub use viscosity::{ViscousCell, ViscousTension};
 
 use crate::math::{Jet, Local};
 use nalgebra::SVector;

@@ -23,6 +23,12 @@ impl Control {
         self.limited(PathConstraint::Stretch { muscle, min, max })
     }
 
+    /// Range of the force in N with which a lumped muscle pulls its ends together, in the middle of the intervals.
+    pub fn tension_within(self, muscle: Handle<Muscle>, range: RangeInclusive<f64>) -> Self {
+        let (muscle, (min, max)) = (muscle.index(), range.into_inner());
+        self.limited(PathConstraint::Tension { muscle, min, max })
+    }
+
     /// Range of the coordinate of a joint in rad or mm.
     pub fn joint_within(self, joint: Handle<Joint>, range: RangeInclusive<f64>) -> Self {
         let (joint, (min, max)) = (joint.index(), range.into_inner());

@@ -132,6 +132,7 @@ impl Known<'_> {
             Quantity::ChargedField { .. }
             | Quantity::SourceCurrent { .. }
             | Quantity::SourcePower { .. } => return self.of_charge(quantity, shape, vectors),
+            Quantity::Tension { muscle, unit } => return self.tension(muscle, unit, vectors),
             Quantity::SquaredField { place, limit, at } => match place {
                 FieldPlace::Muscle(muscle) => {
                     return self.muscle_field(muscle, (limit, at), shape, vectors);

@@ -98,6 +98,13 @@ pub enum Quantity {
         /// Unit in W.
         unit: f64,
     },
+    /// Force with which a lumped muscle pulls its ends together, in the middle of the intervals.
+    Tension {
+        /// Muscle index.
+        muscle: usize,
+        /// Unit in N.
+        unit: f64,
+    },
     /// Voltage of a source in the intervals, of which the steps between them are limited.
     VoltageStep {
         /// Source index.
@@ -168,6 +175,7 @@ impl Quantity {
                 | Self::PeakExcess { .. }
                 | Self::SourceCurrent { .. }
                 | Self::SourcePower { .. }
+                | Self::Tension { .. }
                 | Self::VoltageStep { .. }
         )
     }
@@ -185,7 +193,8 @@ impl Quantity {
             | Self::PeakVoltage { .. }
             | Self::PeakExcess { .. }
             | Self::SourceCurrent { .. }
-            | Self::SourcePower { .. } => "in interval",
+            | Self::SourcePower { .. }
+            | Self::Tension { .. } => "in interval",
             Self::VoltageStep { .. } => "before interval",
             _ => "at instant",
         }
@@ -203,6 +212,7 @@ impl Quantity {
             | Self::ChargedField { .. }
             | Self::SourceCurrent { .. }
             | Self::SourcePower { .. }
+            | Self::Tension { .. }
             | Self::VoltageStep { .. }
             | Self::PeakExcess { .. }
             | Self::Direction { .. }
@@ -223,6 +233,7 @@ impl Quantity {
             }
             Self::SourceCurrent { unit, .. } => (1e3 * value * unit, "mA"),
             Self::SourcePower { unit, .. } => (value * unit, "W"),
+            Self::Tension { unit, .. } => (value * unit, "N"),
             Self::VoltageStep { unit, h, .. } => (value * unit / h, "kV/s"),
             Self::MarkerRegion { region, .. } => match region {
                 Region::Sphere { radius, .. } => (value.sqrt() * radius, "mm from its centre"),

@@ -1,7 +1,7 @@
 //! A list of control problems that together call for every effect, joint, limit, goal and objective.
 
 use super::ends::ends;
-pub use super::limited::{all_limits, charge_limits};
+pub use super::limited::{all_limits, charge_limits, tension};
 use super::pairs::pairs;
 use super::remembering::{remembering, remembering_blocks};
 use super::systems::{
@@ -235,8 +235,12 @@ pub fn cases() -> Vec<Case> {
         ),
         case("branched tree", branched(), &|_| {}),
         case("branched tree with joint springs", sprung(), &|_| {}),
-        case("branched tree that remembers", remembering(), &|_| {}),
-        case("branched tree that stiffens", stiffening(), &|_| {}),
+        case("branched tree that remembers", remembering(), &|c| {
+            c.limits = vec![tension(0), tension(2)];
+        }),
+        case("branched tree that stiffens", stiffening(), &|c| {
+            c.limits = vec![tension(0), tension(1), tension(3)];
+        }),
         case("charges", charged(), &|c| {
             c.load_bounds.insert(4, [1e-5, 3e-4]);
         }),

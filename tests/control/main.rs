@@ -31,6 +31,7 @@ mod resample;
 mod sought;
 mod sought_hold;
 mod squares;
+mod tension_limits;
 mod tracking;
 mod unreached;
 mod verdicts;

@@ -2,7 +2,7 @@
 
 use crate::control::transcription::Transcription;
 use crate::control::transcription::kinematic_state::Placed;
-use crate::control::transcription::limit_rows::{LimitRow, Site};
+use crate::control::transcription::limit_rows::{DURATION, LimitRow, Site};
 use crate::control::transcription::segment::{
     Segment, SegmentWorkspace, Shared, instant_of, needed,
 };
@@ -244,8 +244,11 @@ impl Transcription<'_> {
                     (at, place) = (at + 1, place + 1);
                 }
             }
-            for &(_, s) in &limit.entries[at..] {
-                self.workspace.values[place] = part.rows[s];
+            for &(mark, s) in &limit.entries[at..] {
+                self.workspace.values[place] = match mark {
+                    DURATION => measure.by_duration(&self.sample(site, k)),
+                    _ => part.rows[s],
+                };
                 place += 1;
             }
             for &vector in &limit.vectors {

@@ -14,6 +14,9 @@ pub(super) const SCALAR: usize = 2;
 /// Mark of a scalar of the interval before.
 pub(super) const BEFORE: usize = 3;
 
+/// Mark of the interval length.
+pub(super) const DURATION: usize = 4;
+
 /// Site in time at which a quantity is measured.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(in crate::control) enum Site {
@@ -148,6 +151,9 @@ pub(super) fn limit_rows(
         if site == Site::Intervals {
             entries.extend(reads.scalars().into_iter().map(|s| (SCALAR, s)));
         }
+        if reads.reads_rates() && unknowns.horizon().is_some() {
+            entries.push((DURATION, 0));
+        }
         let step = InputStep::new(&bounded.quantity, model, rest, span);
         entries.extend(step.map(|step| (BEFORE, step.scalar)));
         let reads_inputs = !reads.scalars().is_empty();
@@ -230,6 +236,7 @@ impl Numbering {
         match side {
             SCALAR => self.scalar(k, i),
             BEFORE => self.scalar(self.before(k)?, i),
+            DURATION => self.horizon(),
             _ => self.unknown(k + side, i),
         }
     }

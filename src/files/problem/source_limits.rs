@@ -45,7 +45,7 @@ pub(super) fn source_limits(
 }
 
 /// Both bounds, of which one at least is written.
-fn bounds<M: PhysicalQuantity>(
+pub(super) fn bounds<M: PhysicalQuantity>(
     [min, max]: [&Option<Quantity<M>>; 2],
     scope: &Scope<'_>,
 ) -> Result<[f64; 2], SceneError> {
