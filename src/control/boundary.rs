@@ -5,10 +5,10 @@ use crate::control::endpoint_checks;
 use crate::control::energy_cost::sources;
 use crate::control::error::BoundaryError;
 use crate::control::goal_rows;
-use crate::control::limits::{Limits, When};
+use crate::control::limits::{Length, Limits, When};
 use crate::control::periodic;
 use crate::control::prescribed::{self, at_rest};
-use crate::control::problem::{BoundaryState, Control, During, Rest};
+use crate::control::problem::{BoundaryState, Control, Duration, During, Rest};
 use crate::control::rest::rest_at;
 use crate::control::sought;
 use crate::control::sought_hold;
@@ -145,8 +145,11 @@ fn off_grid(control: &Control) -> Vec<String> {
 
 /// The path limits of a problem, and the parts of its goal and its waypoints that are equations of measures.
 fn limits_with_goal(system: &System, control: &Control, redundant: bool) -> Limits {
-    let h = control.duration.first() / control.intervals as f64;
-    let mut limits = Limits::new(&control.limits, system, redundant, h);
+    let length = Length {
+        h: control.duration.first() / control.intervals as f64,
+        is_free: matches!(control.duration, Duration::Free { .. }),
+    };
+    let mut limits = Limits::new(&control.limits, system, redundant, length);
     match &control.goal {
         BoundaryState::Markers {
             places,

@@ -29,7 +29,9 @@ pub use affine::Affine;
 pub use along_span::AlongSpan;
 pub use capacitance::Capacitance;
 pub use charge::{FlowingCharge, GivenCharge};
-pub use charge_limit::{FlowingChargeField, GivenChargeField, SourceCurrent, SourcePower};
+pub use charge_limit::{
+    FlowingChargeField, GivenChargeField, MeanCharge, SourceCurrent, SourcePower, StoredEnergy,
+};
 pub use constraint::{Coincidence, Orthogonality};
 pub use damper::{AngularDamper, CoordinateDamper, LinearDamper};
 pub use elastic_law::{ElasticLaw, Elasticity, Fault, NeoHooke};

@@ -60,7 +60,7 @@ pub(super) fn check_limits(limits: &[PathConstraint], system: &System) -> Result
             PathConstraint::Current { muscle, min, max }
             | PathConstraint::Power { muscle, min, max } => {
                 let muscle = system.muscles.get(muscle);
-                muscle.is_some_and(Muscle::is_behind_resistor) && min < max
+                muscle.is_some_and(Muscle::has_measured_current) && min < max
             }
             PathConstraint::Tension { muscle, min, max } => {
                 let muscle = system.muscles.get(muscle);

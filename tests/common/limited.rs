@@ -80,6 +80,21 @@ pub fn all_limits() -> Vec<PathConstraint> {
             min: -80.0,
             max: 60.0,
         },
+        PathConstraint::Current {
+            muscle: 1,
+            min: -2e-6,
+            max: 3e-6,
+        },
+        PathConstraint::Current {
+            muscle: 2,
+            min: f64::NEG_INFINITY,
+            max: 2e-6,
+        },
+        PathConstraint::Power {
+            muscle: 1,
+            min: -0.002,
+            max: 0.003,
+        },
         PathConstraint::Stretch {
             muscle: 0,
             min: 0.7,

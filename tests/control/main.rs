@@ -6,6 +6,7 @@ mod common;
 mod accuracy;
 mod closed_form;
 mod creep;
+mod direct_sources;
 mod drivers;
 mod endings;
 mod energies;

@@ -8,8 +8,8 @@ use proboscis::energy::{
     FlowingChargeField, FollowingForce, GivenCharge, GivenChargeField, Gravity, JointAngle,
     JointDisplacement, LinearDamper, LinearSpring, MaxwellCell, MaxwellDamper, Multiple,
     Orthogonality, OutsideBox, PeakExcess, PositionComponent, Projection, ProjectionStep,
-    SectionInertia, SourceCurrent, SourcePower, SpanDamper, SquaredDistance, SquaredField,
-    SurfaceCharge, ViscousCell, ViscousTension,
+    SectionInertia, SpanDamper, SquaredDistance, SquaredField, SurfaceCharge, ViscousCell,
+    ViscousTension,
 };
 
 /// The naive formula of an energy.
@@ -111,20 +111,6 @@ impl Formula<4> for GivenChargeField {
 impl Formula<6> for FlowingChargeField {
     fn naive<D: DualNum<f64> + Copy>(&self, p: &[D; 6]) -> D {
         field_of_charge(&self.field, three(p, 0), p[3] * self.unit)
-    }
-}
-
-impl Formula<7> for SourceCurrent {
-    fn naive<D: DualNum<f64> + Copy>(&self, p: &[D; 7]) -> D {
-        let charge = p[3] * self.unit_of_charge;
-        let across = charge / self.capacitance.naive(&three(p, 0));
-        (p[6] - across) / self.resistance / self.unit
-    }
-}
-
-impl Formula<7> for SourcePower {
-    fn naive<D: DualNum<f64> + Copy>(&self, p: &[D; 7]) -> D {
-        p[6] * self.0.naive(p)
     }
 }
 

@@ -1,6 +1,6 @@
 //! Conversion of path limits of a problem file to indices, bounds and regions.
 
-use crate::control::problem::{Duration, PathConstraint, Side};
+use crate::control::problem::{PathConstraint, Side};
 use crate::files::json::error::SceneError;
 use crate::files::json::scope::Scope;
 use crate::files::problem::bounds::check_bounds;
@@ -21,22 +21,12 @@ use crate::model::system::{Fidelity, System};
 
 /// The limits of a list of entries.
 pub(crate) fn limits(
-    (list, duration): (&[LimitSpec], Duration),
+    list: &[LimitSpec],
     system: &System,
     scope: &Scope<'_>,
 ) -> Result<Vec<PathConstraint>, SceneError> {
     let mut limits = Vec::new();
     for (index, spec) in list.iter().enumerate() {
-        let rate = match (&spec.joint_rate, &spec.voltage_rate) {
-            (Some(_), _) => Some("joint_rate"),
-            (_, Some(_)) => Some("voltage_rate"),
-            (None, None) => None,
-        };
-        if let (Some(key), Duration::Free { .. }) = (rate, duration) {
-            let place = scope.index(index).key(key);
-            let found = "a limit of a rate where the duration is free";
-            return Err(place.wrong(found, "a given duration"));
-        }
         limits.extend(limit(spec, system, &scope.index(index))?);
     }
     Ok(limits)

@@ -58,7 +58,7 @@ pub struct JointAngleLimitSpec {
     pub max: Option<Quantity<JointCoordinate>>,
 }
 
-/// Limits of the mean rate of a joint coordinate in each interval: `min`, `max` or both. The duration has to be given.
+/// Limits of the mean rate of a joint coordinate in each interval: `min`, `max` or both.
 #[derive(Clone, Debug, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct JointRateLimitSpec {
