@@ -242,11 +242,13 @@ pub fn cases() -> Vec<Case> {
             c.limits = vec![tension(0), tension(1), tension(3)];
         }),
         case("charges", charged(), &|c| {
+            c.objective.energies = energies(&[(0, 2e3)], &[]);
             c.load_bounds.insert(4, [1e-5, 3e-4]);
         }),
         case("charges, free time", charged(), &|c| {
             c.duration = free;
             c.objective.rate = 0.3;
+            c.objective.energies = energies(&[(0, 2e3), (2, 3e3)], &[(2, 1e3)]);
             c.given.insert(4, Signal::Constant(1e-4));
         }),
         case("charges, all limits", charged(), &|c| {

@@ -29,6 +29,7 @@ mod prescribed;
 mod rate_limits;
 mod reference;
 mod resample;
+mod resisted_energies;
 mod sought;
 mod sought_hold;
 mod squares;
