@@ -14,13 +14,13 @@ pub struct Sum {
 impl Sum {
     /// The sum of its parts.
     pub fn new(parts: Vec<Box<dyn Measure>>) -> Self {
-        let count = |part: &Box<dyn Measure>| {
+        let slots = parts.iter().map(|part| {
             let mut slots = Vec::new();
             part.couple(&mut Couplings::default(), &mut slots);
             slots.len()
-        };
+        });
         Self {
-            slots: parts.iter().map(count).collect(),
+            slots: slots.collect(),
             parts,
         }
     }
