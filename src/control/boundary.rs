@@ -2,13 +2,13 @@
 
 use crate::control::boundary_conditions::{BoundaryConditions, Rests, TerminalState};
 use crate::control::endpoint_checks;
-use crate::control::energy_cost::sources;
+use crate::control::energy_cost::{EnergyCost, resisted, sources};
 use crate::control::error::BoundaryError;
 use crate::control::goal_rows;
-use crate::control::limits::{Limits, When};
+use crate::control::limits::{Length, Limits, When};
 use crate::control::periodic;
 use crate::control::prescribed::{self, at_rest};
-use crate::control::problem::{BoundaryState, Control, During, Rest};
+use crate::control::problem::{BoundaryState, Control, Duration, During, Rest};
 use crate::control::rest::rest_at;
 use crate::control::sought;
 use crate::control::sought_hold;
@@ -78,7 +78,7 @@ impl BoundaryConditions {
         let limits = limits_with_goal(system, control, redundant);
         let analysis = Analysis {
             coordinates: Some(coordinates),
-            ..with_quantities(analysis, &limits, control)
+            ..with_quantities(analysis, &limits, (control, system))
         };
         let mut model = Model::of_presolved(system.clone(), analysis, presolved)?;
         sought_hold::check(&model, control)?;
@@ -145,8 +145,11 @@ fn off_grid(control: &Control) -> Vec<String> {
 
 /// The path limits of a problem, and the parts of its goal and its waypoints that are equations of measures.
 fn limits_with_goal(system: &System, control: &Control, redundant: bool) -> Limits {
-    let h = control.duration.first() / control.intervals as f64;
-    let mut limits = Limits::new(&control.limits, system, redundant, h);
+    let length = Length {
+        h: control.duration.first() / control.intervals as f64,
+        is_free: matches!(control.duration, Duration::Free { .. }),
+    };
+    let mut limits = Limits::new(&control.limits, system, redundant, length);
     match &control.goal {
         BoundaryState::Markers {
             places,
@@ -185,13 +188,19 @@ fn limits_with_goal(system: &System, control: &Control, redundant: bool) -> Limi
 }
 
 /// The analysis with the quantities of limits, goal and costs.
-fn with_quantities(analysis: Analysis, limits: &Limits, control: &Control) -> Analysis {
+fn with_quantities(
+    analysis: Analysis,
+    limits: &Limits,
+    (control, system): (&Control, &System),
+) -> Analysis {
     let mut quantities = limits.quantities();
     let paid = &control.objective.quantities;
     let curved = paid.iter().enumerate().filter(|(_, c)| c.is_curved());
     let curved = curved.map(|(i, _)| quantities.len() + i).collect();
     quantities.extend(paid.iter().map(|cost| cost.quantity));
-    let charged = sources(&control.objective.energies).into_iter();
+    let energies = &control.objective.energies;
+    quantities.extend(resisted(energies, system).map(EnergyCost::power));
+    let charged = sources(energies, system).into_iter();
     quantities.extend(charged.map(|muscle| Quantity::Capacitance { muscle }));
     Analysis {
         curved,

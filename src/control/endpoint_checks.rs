@@ -49,6 +49,7 @@ pub(super) fn check(
             _ => control.middle(control.intervals - 1),
         };
         let mut end = End::new(model, (control, time), coordinates, charts, scalars);
+        end.is_at_rest = matches!(state, BoundaryState::RestAtVoltages(..));
         match state {
             _ if !is_known => {}
             BoundaryState::JointAngles { angles, .. } => end.angles = angles.clone(),
@@ -61,7 +62,11 @@ pub(super) fn check(
         let of_joints = control.limits.iter().find_map(|limit| end.joint(limit));
         let bounded = || {
             let list = boundary.limits.list.iter().zip(&model.measured);
-            let paths = list.filter(|(bounded, _)| bounded.when == When::Everywhere);
+            let is_of_path = |bounded: &BoundedQuantity| {
+                let is_of_rate = bounded.rate.is_some() || bounded.quantity.before().is_some();
+                bounded.when == When::Everywhere && !is_of_rate
+            };
+            let paths = list.filter(|(bounded, _)| is_of_path(bounded));
             let mut values = paths.map(|(b, m)| (b, end.value(b, *m)));
             values.find_map(|(b, value)| b.broken(value?, &model.system))
         };
@@ -80,6 +85,8 @@ struct End<'a> {
     known: Vec<bool>,
     /// Voltages and potentials, where they are known.
     scalars: Vec<Option<f64>>,
+    /// True if nothing moves there.
+    is_at_rest: bool,
     /// Joint coordinates that it names.
     angles: BTreeMap<usize, f64>,
     /// Places of markers that it names.
@@ -120,6 +127,7 @@ impl<'a> End<'a> {
                         .collect()
                 }
             },
+            is_at_rest: false,
             angles: BTreeMap::new(),
             places: BTreeMap::new(),
         }
@@ -168,6 +176,7 @@ impl<'a> End<'a> {
         let map = &self.model.action.map;
         let mut reads = measure.vectors().into_iter().flat_map(|v| map.support(v));
         let is_known = reads.all(|i| self.known[i])
+            && (self.is_at_rest || !measure.reads_rates())
             && measure.scalars().iter().all(|&s| self.scalars[s].is_some());
         let scalars: Vec<f64> = self.scalars.iter().map(|s| s.unwrap_or(0.0)).collect();
         let x = &self.instant.x[..];
@@ -182,6 +191,7 @@ fn of_joint(joint: usize, lower: f64, upper: f64, model: &Model) -> BoundedQuant
         quantity: Quantity::Joint { joint, near: 0.0 },
         lower,
         upper,
+        rate: None,
         when: When::Everywhere,
         name: format!("joint {}", model.system.joints[joint].name),
     }
@@ -218,7 +228,7 @@ fn contradiction(
     let all: Vec<BoundedQuantity> = joints.chain(others).collect();
     let below = all.iter().filter(|bounded| bounded.lower.is_finite());
     let crossed = |low: &&BoundedQuantity, high: &&BoundedQuantity| {
-        low.quantity == high.quantity && low.lower > high.upper
+        low.quantity == high.quantity && low.bounds()[0] > high.bounds()[1]
     };
     let mut pairs = below.flat_map(|low| all.iter().map(move |high| (low, high)));
     let (low, high) = pairs.find(|(low, high)| crossed(low, high))?;
@@ -228,7 +238,7 @@ fn contradiction(
             .trim_end()
             .to_owned()
     };
-    let (least, most) = (told(low, low.lower), told(high, high.upper));
+    let (least, most) = (told(low, low.bounds()[0]), told(high, high.bounds()[1]));
     let name = &low.name;
     Some(format!(
         "{name}: at least {least} in one limit contradicts at most {most} in another"

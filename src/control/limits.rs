@@ -14,6 +14,8 @@ pub struct BoundedQuantity {
     pub lower: f64,
     /// Upper bound.
     pub upper: f64,
+    /// Rate in units over ms that is subtracted from the quantity, times the length of the interval: a bound where the duration is free.
+    pub rate: Option<f64>,
     /// At the final instant only (a goal), at one instant (a waypoint), or everywhere (a limit).
     pub when: When,
     /// Words for messages.
@@ -29,8 +31,6 @@ pub enum When {
     Goal,
     /// At the instant nearest to a part of the duration: a waypoint.
     At(f64),
-    /// In the steps between neighbouring intervals: a limit of what changes from one to the next.
-    Steps,
 }
 
 impl When {
@@ -38,6 +38,15 @@ impl When {
     pub fn is_single(self) -> bool {
         matches!(self, Self::Goal | Self::At(_))
     }
+}
+
+/// Length of the intervals, by which steps are rates.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Length {
+    /// Length in ms; where it is free at the guess.
+    pub h: f64,
+    /// True if it is an unknown.
+    pub is_free: bool,
 }
 
 /// All bounded quantities of a problem.
@@ -55,9 +64,15 @@ const OUTSIDE_BOX: f64 = 3.0;
 const TIMES: [Stencil; 3] = [Stencil::Here, Stencil::Mid, Stencil::Next];
 
 impl Limits {
-    /// The path limits of a problem with intervals of h ms. Joint limits become measures only where `measure_joints`; in joint
-    /// coordinates they are bounds of variables.
-    pub fn new(limits: &[PathConstraint], system: &System, measure_joints: bool, h: f64) -> Self {
+    /// The path limits of a problem. Joint limits become measures only where `measure_joints`; in joint coordinates they are bounds of
+    /// variables.
+    pub fn new(
+        limits: &[PathConstraint],
+        system: &System,
+        measure_joints: bool,
+        length: Length,
+    ) -> Self {
+        let h = length.h;
         let mut out = Self::default();
         for limit in limits {
             match *limit {
@@ -68,12 +83,18 @@ impl Limits {
                 }
                 PathConstraint::JointRate { joint, min, max } => {
                     let name = format!("rate of {}", system.joints[joint].name);
-                    out.add(Quantity::JointStep { joint, h }, [min * h, max * h], name);
+                    out.add_rate(Quantity::JointStep { joint, h }, [min, max], name, length);
                 }
                 PathConstraint::Stretch { muscle, min, max } => {
                     let name = format!("stretch of {}", system.muscles[muscle].name);
                     let quantity = Quantity::SquaredStretch { muscle };
                     out.add(quantity, [min * min, max * max], name);
+                }
+                PathConstraint::Tension { muscle, min, max } => {
+                    let name = format!("tension of {}", system.muscles[muscle].name);
+                    let unit = largest([min, max]).unwrap_or(system.muscles[muscle].shear_force());
+                    let quantity = Quantity::Tension { muscle, unit };
+                    out.add(quantity, [min / unit, max / unit], name);
                 }
                 PathConstraint::ElectricField { muscle, max } => {
                     let name = format!("electric field of {}", system.muscles[muscle].name);
@@ -85,24 +106,14 @@ impl Limits {
                         false => out.add_field(FieldPlace::Muscle(muscle), max, &name),
                     }
                 }
-                PathConstraint::Current { muscle, min, max } => {
-                    let name = format!("current of {}", system.muscles[muscle].name);
-                    let unit = largest([min, max]).unwrap_or(system.short_circuit(muscle)[0]);
-                    let quantity = Quantity::SourceCurrent { muscle, unit };
-                    out.add(quantity, [min / unit, max / unit], name);
-                }
-                PathConstraint::Power { muscle, min, max } => {
-                    let name = format!("power of {}", system.muscles[muscle].name);
-                    let unit = largest([min, max]).unwrap_or(system.short_circuit(muscle)[1]);
-                    let quantity = Quantity::SourcePower { muscle, unit };
-                    out.add(quantity, [min / unit, max / unit], name);
+                PathConstraint::Current { .. } | PathConstraint::Power { .. } => {
+                    out.add_source(limit, system, length);
                 }
                 PathConstraint::VoltageRate { source, min, max } => {
                     let name = format!("rate of the voltage of {}", system.sources()[source].name);
                     let unit = h * largest([min, max]).unwrap_or(1.0);
                     let quantity = Quantity::VoltageStep { source, unit, h };
-                    let bounds = [min * h / unit, max * h / unit];
-                    out.add_when(When::Steps, quantity, bounds, name);
+                    out.add_rate(quantity, [min, max], name, length);
                 }
                 PathConstraint::PeakVoltage {
                     source,
@@ -131,18 +142,70 @@ impl Limits {
     }
 
     /// Adds a limit.
-    fn add(&mut self, quantity: Quantity, bounds: [f64; 2], name: String) {
-        self.add_when(When::Everywhere, quantity, bounds, name);
-    }
-
-    fn add_when(&mut self, when: When, quantity: Quantity, [lower, upper]: [f64; 2], name: String) {
+    fn add(&mut self, quantity: Quantity, [lower, upper]: [f64; 2], name: String) {
         self.list.push(BoundedQuantity {
             quantity,
             lower,
             upper,
-            when,
+            rate: None,
+            when: When::Everywhere,
             name,
         });
+    }
+
+    /// Adds a limit of a rate by the steps of a quantity: bounds of the steps in their unit, or where the length of the intervals is free
+    /// one row for each bound, of what the step has more than the bound allows.
+    fn add_rate(&mut self, quantity: Quantity, bounds: [f64; 2], name: String, length: Length) {
+        let unit = quantity.step_unit();
+        if !length.is_free {
+            return self.add(quantity, bounds.map(|bound| bound * length.h / unit), name);
+        }
+        let sides = [[0.0, f64::INFINITY], [f64::NEG_INFINITY, 0.0]];
+        for (bound, side) in bounds.into_iter().zip(sides) {
+            if bound.is_finite() {
+                self.add(quantity, side, name.clone());
+                let added = self.list.last_mut().expect("it was added");
+                added.rate = Some(bound / unit);
+            }
+        }
+    }
+
+    /// Adds a limit of the current or the power of the source of a muscle: behind a resistor in the intervals, otherwise of the charge or energy
+    /// that flows from the middle of an interval to that of the next one.
+    fn add_source(&mut self, limit: &PathConstraint, system: &System, length: Length) {
+        let h = length.h;
+        let (muscle, bounds, is_current) = match *limit {
+            PathConstraint::Current { muscle, min, max } => (muscle, [min, max], true),
+            PathConstraint::Power { muscle, min, max } => (muscle, [min, max], false),
+            _ => return,
+        };
+        let name = &system.muscles[muscle].name;
+        let name = match is_current {
+            true => format!("current of {name}"),
+            false => format!("power of {name}"),
+        };
+        if system.muscles[muscle].is_behind_resistor() {
+            let typical = system.short_circuit(muscle)[usize::from(!is_current)];
+            let unit = largest(bounds).unwrap_or(typical);
+            let quantity = match is_current {
+                true => Quantity::SourceCurrent { muscle, unit },
+                false => Quantity::SourcePower { muscle, unit },
+            };
+            return self.add(quantity, bounds.map(|bound| bound / unit), name);
+        }
+        let typical = system.charging(muscle)[usize::from(!is_current)];
+        let unit = largest(bounds).map_or(typical, |largest| h * largest);
+        let at = Stencil::Next;
+        let quantity = match is_current {
+            true => Quantity::ChargeStep { muscle, unit, h },
+            false => Quantity::EnergyStep {
+                muscle,
+                at,
+                unit,
+                h,
+            },
+        };
+        self.add_rate(quantity, bounds, name, length);
     }
 
     /// Adds a limit of a joint that is measured.
@@ -214,6 +277,7 @@ impl Limits {
             quantity,
             lower: value,
             upper: value,
+            rate: None,
             when,
             name,
         });
@@ -225,14 +289,17 @@ impl Limits {
             quantity,
             lower,
             upper: f64::INFINITY,
+            rate: None,
             when,
             name,
         });
     }
 
-    /// Returns the quantities, in order.
+    /// Returns the quantities, in order, then those that are subtracted in the intervals before where they are others.
     pub fn quantities(&self) -> Vec<Quantity> {
-        self.list.iter().map(|b| b.quantity).collect()
+        let own = self.list.iter().map(|bounded| bounded.quantity);
+        own.chain(self.list.iter().filter_map(BoundedQuantity::other_before))
+            .collect()
     }
 }
 
@@ -244,6 +311,19 @@ fn largest(bounds: [f64; 2]) -> Option<f64> {
 }
 
 impl BoundedQuantity {
+    /// The quantity that is subtracted in the interval before, where it is another one.
+    pub fn other_before(&self) -> Option<Quantity> {
+        let before = self.quantity.before();
+        before.filter(|before| *before != self.quantity)
+    }
+
+    /// Its bounds, those of a rate in intervals of the length that the quantity names.
+    pub fn bounds(&self) -> [f64; 2] {
+        let of_rate = self.rate.zip(self.quantity.interval());
+        let moved = of_rate.map_or(0.0, |(rate, h)| rate * h);
+        [self.lower + moved, self.upper + moved]
+    }
+
     /// A value and the bound that it breaks, in words; `None` where it keeps its bounds up to rounding.
     pub fn broken(&self, value: f64, system: &System) -> Option<String> {
         let rounding = |bound: f64| ROUNDING * (1.0 + bound.abs());

@@ -213,9 +213,9 @@ impl Numbering {
         })
     }
 
-    /// Column of variable i of instant k.
+    /// Column of variable i of instant k; none behind the last instant.
     pub fn unknown(&self, k: usize, i: usize) -> Option<usize> {
-        self.column_of_instant[k * self.counts[0] + i]
+        *self.column_of_instant.get(k * self.counts[0] + i)?
     }
 
     /// Column of scalar s of interval k; none behind the last interval.

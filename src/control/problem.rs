@@ -237,7 +237,7 @@ pub enum PathConstraint {
         /// Upper bound or ∞.
         max: f64,
     },
-    /// Mean rate of a joint coordinate in each interval, where the duration is given (rad/ms or mm/ms).
+    /// Mean rate of a joint coordinate in each interval (rad/ms or mm/ms).
     JointRate {
         /// Joint index.
         joint: usize,
@@ -251,6 +251,15 @@ pub enum PathConstraint {
         /// Muscle index.
         muscle: usize,
         /// Lower bound or 0.
+        min: f64,
+        /// Upper bound or ∞.
+        max: f64,
+    },
+    /// Force in N with which a lumped muscle pulls its ends together, in the middle of the intervals.
+    Tension {
+        /// Muscle index.
+        muscle: usize,
+        /// Lower bound or −∞.
         min: f64,
         /// Upper bound or ∞.
         max: f64,
@@ -273,7 +282,8 @@ pub enum PathConstraint {
         /// Breakdown value in V/mm.
         max: f64,
     },
-    /// Current of the source of a lumped muscle behind a resistor in A: its mean in each interval.
+    /// Current of the source of a lumped muscle in A: behind a resistor its mean in each interval, otherwise that between the middles of
+    /// neighbouring intervals.
     Current {
         /// Muscle index.
         muscle: usize,
@@ -282,7 +292,7 @@ pub enum PathConstraint {
         /// Upper bound or ∞.
         max: f64,
     },
-    /// Power of the source of a lumped muscle behind a resistor in W: its mean in each interval.
+    /// Power of the source of a lumped muscle in W, at the times of a current.
     Power {
         /// Muscle index.
         muscle: usize,
@@ -291,7 +301,7 @@ pub enum PathConstraint {
         /// Upper bound or ∞.
         max: f64,
     },
-    /// Rate of the voltage of a source in V/ms between the middles of neighbouring intervals, where the duration is given.
+    /// Rate of the voltage of a source in V/ms between the middles of neighbouring intervals.
     VoltageRate {
         /// Source index.
         source: usize,
@@ -321,11 +331,6 @@ pub enum PathConstraint {
 }
 
 impl PathConstraint {
-    /// Returns true if its bounds are of changes in time, which a free duration has not.
-    pub fn is_rate(&self) -> bool {
-        matches!(self, Self::JointRate { .. } | Self::VoltageRate { .. })
-    }
-
     /// The source of whose current or power it is a limit.
     pub(super) fn source(&self) -> Option<usize> {
         match *self {

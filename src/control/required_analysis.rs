@@ -8,7 +8,7 @@ use std::collections::{BTreeMap, BTreeSet};
 use crate::control::problem::{
     AtRest, BoundaryState, Control, Orientation, PathConstraint, Place, Simulation,
 };
-use crate::model::system::{Attachment, System};
+use crate::model::system::{Attachment, Muscle, System};
 use crate::model::{Analysis, InitiallyMoving};
 
 impl Simulation {
@@ -43,7 +43,14 @@ impl Control {
     /// The analysis of a horizon of intervals of about `interval` ms, without the quantities that are measured.
     pub fn analysis(&self, system: &System, interval: f64) -> Analysis {
         // A source at zero volts takes current from a charged muscle.
-        let is_limited = |s: usize| self.limits.iter().any(|limit| limit.source() == Some(s));
+        let is_behind = |s: usize| {
+            system
+                .muscles
+                .get(s)
+                .is_some_and(Muscle::is_behind_resistor)
+        };
+        let has_limit = |s: usize| self.limits.iter().any(|limit| limit.source() == Some(s));
+        let is_limited = |s: usize| is_behind(s) && has_limit(s);
         let is_driven = |s: usize| match (self.given.get(&s), &self.course) {
             _ if is_limited(s) => true,
             (Some(signal), _) => !signal.is_zero(),
@@ -157,7 +164,7 @@ impl<'a> Named<'a> {
             PathConstraint::JointAngle { joint, .. } | PathConstraint::JointRate { joint, .. } => {
                 self.of_joint(joint);
             }
-            PathConstraint::Stretch { muscle, .. } => {
+            PathConstraint::Stretch { muscle, .. } | PathConstraint::Tension { muscle, .. } => {
                 let muscle = &self.system.muscles[muscle];
                 self.of_point(&muscle.from);
                 self.of_point(&muscle.to);

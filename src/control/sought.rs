@@ -43,7 +43,13 @@ fn reads(quantity: &Quantity, parameter: &Parameter) -> bool {
             let mut constants = parameter.constants.iter();
             parameter.moves(muscle) || constants.any(|c| c.constant == Constant::Layer(muscle))
         }
-        Quantity::Capacitance { muscle } => {
+        Quantity::Tension { muscle, .. } => {
+            let mut constants = parameter.constants.iter();
+            parameter.moves(muscle) || constants.any(|c| c.constant.muscle() == Some(muscle))
+        }
+        Quantity::Capacitance { muscle }
+        | Quantity::ChargeStep { muscle, .. }
+        | Quantity::EnergyStep { muscle, .. } => {
             let is_read = |constant: Constant| {
                 let is_of_motion =
                     matches!(constant, Constant::ShearModulus(_) | Constant::Viscosity(_));

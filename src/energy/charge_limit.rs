@@ -1,6 +1,7 @@
-//! Quantities of charged muscles that limits bound: current and power of a source behind a resistor, and fields.
+//! Quantities of charged muscles that limits bound: current and power of a source behind a resistor, charges and energies of which the steps are
+//! limited, and fields.
 
-use crate::energy::{Capacitance, Energy};
+use crate::energy::{Capacitance, Energy, OfSquare};
 use crate::math::Jet;
 use nalgebra::SVector;
 
@@ -69,6 +70,43 @@ impl Energy<7> for SourcePower {
 
     fn at<const ORDER: usize>(&self, p: &SVector<f64, 7>, w: &SVector<f64, 7>) -> Jet<7, ORDER> {
         self.0.at::<ORDER>(p, w) * Jet::argument(6, p, w)
+    }
+}
+
+/// `½ (C₁ + C₂) V`, arguments: spans r₁ and r₂ at both ends of an interval, voltage V. The mean charge in mC under a voltage.
+#[derive(Clone, Copy, Debug)]
+pub struct MeanCharge(pub Capacitance);
+
+impl Energy<7> for MeanCharge {
+    type Local<const ORDER: usize> = Jet<7, ORDER>;
+
+    const READINGS: usize = 2;
+
+    fn couples(i: usize, j: usize) -> bool {
+        i == j
+    }
+
+    fn at<const ORDER: usize>(&self, p: &SVector<f64, 7>, w: &SVector<f64, 7>) -> Jet<7, ORDER> {
+        let capacitance = |span: usize| {
+            let squared = Jet::dot(span, span, p, w) * self.0.scale();
+            squared.map(self.0.of_squared_stretch(squared.value))
+        };
+        (capacitance(0) + capacitance(3)) * Jet::argument(6, p, w) * 0.5
+    }
+}
+
+/// `½ C V²`, arguments: span r, voltage V. The electric energy in mJ that a muscle stores.
+#[derive(Clone, Copy, Debug)]
+pub struct StoredEnergy(pub Capacitance);
+
+impl Energy<4> for StoredEnergy {
+    type Local<const ORDER: usize> = OfSquare;
+
+    const OF_SQUARES: bool = true;
+
+    fn at<const ORDER: usize>(&self, p: &SVector<f64, 4>, w: &SVector<f64, 4>) -> OfSquare {
+        let half = |i| self.0.of_squared_stretch(i).map(|c| 0.5 * c);
+        OfSquare::new((p, w), self.0.scale(), |_| [0.0; 4], half)
     }
 }
 

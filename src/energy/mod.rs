@@ -29,7 +29,9 @@ pub use affine::Affine;
 pub use along_span::AlongSpan;
 pub use capacitance::Capacitance;
 pub use charge::{FlowingCharge, GivenCharge};
-pub use charge_limit::{FlowingChargeField, GivenChargeField, SourceCurrent, SourcePower};
+pub use charge_limit::{
+    FlowingChargeField, GivenChargeField, MeanCharge, SourceCurrent, SourcePower, StoredEnergy,
+};
 pub use constraint::{Coincidence, Orthogonality};
 pub use damper::{AngularDamper, CoordinateDamper, LinearDamper};
 pub use elastic_law::{ElasticLaw, Elasticity, Fault, NeoHooke};
@@ -50,7 +52,7 @@ pub use sought_muscle::{SoughtCell, SoughtDielectric, SoughtShape, SoughtViscous
 pub use sought_spring::{SoughtSpanDamper, SoughtSpring};
 pub use spring::{LinearSpring, SpanDamper};
 pub use tendon::Cable;
-pub use viscosity::ViscousCell;
+pub use viscosity::{ViscousCell, ViscousTension};
 
 use crate::math::{Jet, Local};
 use nalgebra::SVector;

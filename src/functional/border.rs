@@ -1,9 +1,10 @@
 //! Derivatives by the length of an interval, from those by arguments.
 //!
-//! With v = Δ/h and Π the projection on the rates, for G = h E(y, Δ/h)
+//! With v = Δ/h and Π the projection on the rates, for G = h E(y, Δ/h), and for a quantity E(y, Δ/h) itself,
 //!
 //! ```text
-//! ∂G/∂h = E − ∇E·Πv,     ∂/∂h (∇G) = ∇E − ∇²E Πv − Π∇E  (through the stencil weights),     ∂²G/∂h² = Πv·∇²E Πv / h.
+//! ∂G/∂h = E − ∇E·Πv,     ∂/∂h (∇G) = ∇E − ∇²E Πv − Π∇E  (through the stencil weights),     ∂²G/∂h² = Πv·∇²E Πv / h,
+//! ∂E/∂h = −∇E·Πv / h,    ∂/∂h (∇E) = −(∇²E Πv + Π∇E) / h,                                  ∂²E/∂h² = (2 ∇E·Πv + Πv·∇²E Πv) / h².
 //! ```
 
 use crate::functional::{Kernel, Sample, Stencil};
@@ -61,6 +62,11 @@ impl<'a, K: Kernel> Rates<'a, K> {
         self.list().map(|(j, v)| d.column(j, s).dot(&v)).sum()
     }
 
+    /// ∇E·Πv.
+    pub(super) fn along_gradient<D: Derivatives>(&self, d: &D) -> f64 {
+        self.list().map(|(j, v)| d.force(j).dot(&v)).sum()
+    }
+
     /// Πu·∇²E Πv of the rates u of this element and `v`.
     pub(super) fn form<D: Derivatives>(&self, d: &D, v: &Self) -> f64 {
         let mut sum = 0.0;
@@ -97,7 +103,29 @@ impl<K: Kernel, D: Derivatives> Border<'_, K, D> {
     }
 }
 
-/// The same contracted with the direction.
+/// −h ∂/∂h (∇E) of an element that is a quantity.
+pub(super) struct QuantityBorder<'a, K: Kernel, D> {
+    pub(super) plain: &'a D,
+    pub(super) v: &'a Rates<'a, K>,
+}
+
+impl<K: Kernel, D: Derivatives> QuantityBorder<'_, K, D> {
+    /// By argument `i`.
+    pub(super) fn force(&self, i: usize) -> Vector {
+        let by_h = self.v.block(self.plain, i);
+        match K::vector(self.v.element, i).stencil {
+            Stencil::Rate => by_h + self.plain.force(i),
+            _ => by_h,
+        }
+    }
+
+    /// By scalar `s`.
+    pub(super) fn row(&self, s: usize) -> f64 {
+        self.v.entry(self.plain, s)
+    }
+}
+
+/// ∂/∂h (∇G) of an element contracted with the direction.
 pub(super) struct BorderAlong<'a, K: Kernel, D, W> {
     pub(super) plain: &'a D,
     pub(super) along: &'a W,

@@ -33,7 +33,7 @@ where
 {
     /// Arguments at the sample and their rates along its direction; a virtual displacement takes the rate as value.
     #[inline(always)]
-    fn arguments(
+    pub(super) fn arguments(
         element: &Element<E, NV, NS>,
         order: Order,
         sample: &Sample<'_>,

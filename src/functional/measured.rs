@@ -1,10 +1,12 @@
 //! Elements of one kind as a quantity that is read by itself.
 
+use crate::functional::border::{QuantityBorder, Rates};
 use crate::functional::curved::OfQuantity;
 use crate::functional::scatter::{ALL, Places};
 use crate::functional::slots::Slots;
 use crate::functional::{
-    Couplings, Group, Kernel, Measure, Order, Outer, Sample, Scatter, SumDerivatives,
+    Couplings, Group, Horizon, Kernel, Measure, Order, Outer, Sample, Scatter, Stencil,
+    SumDerivatives, VectorArg,
 };
 use crate::math::{Derivatives, Vector};
 
@@ -26,11 +28,28 @@ impl<K: Kernel> Scatter for Gradient<'_, K> {
     fn along<D: Derivatives, W: Derivatives>(&mut self, _: &D, _: &W) {}
 }
 
+/// ∇E·Πv of the rates v that a quantity E reads.
+struct AlongRates<'a, K: Kernel> {
+    v: Rates<'a, K>,
+    sum: f64,
+}
+
+impl<K: Kernel> Scatter for AlongRates<'_, K> {
+    fn plain<D: Derivatives>(&mut self, d: &D) {
+        self.sum += self.v.along_gradient(d);
+    }
+
+    fn along<D: Derivatives, W: Derivatives>(&mut self, _: &D, _: &W) {}
+}
+
 /// The gradient and Hessian of a function of a quantity.
 struct Weighted<'a, K: Kernel> {
     places: Places<'a, K>,
     scale: f64,
     outer: Outer,
+    /// Rates that the quantity reads, where derivatives by the length of the interval are asked for.
+    rates: Option<Rates<'a, K>>,
+    h: f64,
     part: &'a mut SumDerivatives,
 }
 
@@ -43,6 +62,22 @@ impl<K: Kernel> Weighted<'_, K> {
         if K::DEGREE >= 2 {
             self.places.second(c, (ALL, ALL), d, part);
         }
+        if let Some(v) = &self.rates {
+            let c = c / self.h;
+            let border = QuantityBorder { plain: d, v };
+            let derivatives = (|i| border.force(i), |s| border.row(s));
+            let to = (&mut part.horizon_forces, part.horizon_rows.as_mut_slice());
+            self.places.first(-c, ALL, derivatives, to);
+            part.horizon += c * (2.0 * v.along_gradient(d) + v.form(d, v)) / self.h;
+        }
+    }
+}
+
+impl<K: Kernel> Group<K> {
+    /// All that its elements read of vectors.
+    fn read(&self) -> impl Iterator<Item = VectorArg> + '_ {
+        let of = |e| (0..K::vectors(e) * K::READINGS).map(move |i| K::vector(e, i));
+        self.elements.iter().flat_map(of)
     }
 }
 
@@ -81,14 +116,29 @@ impl<K: Kernel> Measure for Group<K> {
     }
 
     fn reads(&self, side: usize) -> bool {
-        let of = |e| (0..K::vectors(e) * K::READINGS).map(move |i| K::vector(e, i));
-        let mut args = self.elements.iter().flat_map(of);
-        args.any(|arg| arg.stencil.reads(side))
+        self.read().any(|arg| arg.stencil.reads(side))
+    }
+
+    fn reads_rates(&self) -> bool {
+        self.read().any(|arg| arg.stencil == Stencil::Rate)
     }
 
     fn value(&self, sample: &Sample<'_>) -> f64 {
         let value = |element| K::energy(element, sample);
         self.scale * self.elements.iter().map(value).sum::<f64>()
+    }
+
+    fn by_duration(&self, sample: &Sample<'_>) -> f64 {
+        let mut sum = 0.0;
+        for element in &self.elements {
+            let mut storage = K::Storage::default();
+            K::prepare(element, Order::Gradient, sample, &mut storage);
+            let v = Rates::new(element, sample);
+            let mut along = AlongRates::<K> { v, sum };
+            K::derivatives(element, Order::Gradient, sample, &storage, &mut along);
+            sum = along.sum;
+        }
+        -self.scale * sum / sample.h
     }
 
     fn gradient(&self, sample: &Sample<'_>, forces: &mut [Vec<Vector>; 2], rows: &mut [f64]) {
@@ -116,11 +166,14 @@ impl<K: Kernel> Measure for Group<K> {
         let is_one = self.elements.len() == 1;
         debug_assert!(outer.curvature == 0.0 || is_one, "a sum has one square");
         let order = Order::Hessian;
+        let is_free = sample.horizon == Horizon::Free && self.reads_rates();
         self.each(order, sample, slots, |element, places, storage| {
             let mut weighted = Weighted {
                 places,
                 scale: self.scale,
                 outer,
+                rates: is_free.then(|| Rates::new(element, sample)),
+                h: sample.h,
                 part: &mut *part,
             };
             K::derivatives(element, order, sample, storage, &mut weighted);

@@ -31,7 +31,9 @@ mod scalar_arg;
 mod scatter;
 mod slots;
 mod sought;
+mod span_forces;
 mod stencil;
+mod sum;
 mod term;
 mod viscous_elements;
 
@@ -49,6 +51,8 @@ pub use paths::{Path, Paths};
 pub use pressure::{PressureFace, PressureFaces};
 pub use scalar_arg::ScalarArg;
 pub use sought::{SoughtElement, SoughtFormulas, SpanMove};
+pub use span_forces::SpanForces;
 pub use stencil::{Stencil, VectorArg};
+pub use sum::Sum;
 pub use term::{Functional, Horizon, Measure, Order, Output, Sample, Term, TermKind};
 pub use viscous_elements::{ViscousElement, ViscousElements, ViscousVariations};

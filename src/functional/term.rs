@@ -158,13 +158,20 @@ pub trait Measure: Debug + Send + Sync {
     /// Returns true if it reads the instant k + side.
     fn reads(&self, side: usize) -> bool;
 
+    /// Returns true if it reads rates, so that it depends on the length of the interval.
+    fn reads_rates(&self) -> bool;
+
     /// Its value.
     fn value(&self, sample: &Sample<'_>) -> f64;
+
+    /// Its derivative by the length of the interval.
+    fn by_duration(&self, sample: &Sample<'_>) -> f64;
 
     /// Adds its gradient.
     fn gradient(&self, sample: &Sample<'_>, forces: &mut [Vec<Vector>; 2], rows: &mut [f64]);
 
-    /// Adds the gradient and Hessian of a function of it; `slots` are those of its couplings.
+    /// Adds the gradient and Hessian of a function of it, which is linear where it reads rates and the length of the interval is an argument;
+    /// `slots` are those of its couplings.
     fn add_function(
         &self,
         outer: Outer,

@@ -263,10 +263,6 @@ impl Control {
         check_energies(energies, system)?;
         check_waypoints((&self.waypoints, is_periodic), system)?;
         check_limits(&self.limits, system)?;
-        let is_rate = |limit: &PathConstraint| limit.is_rate();
-        let holds = matches!(self.duration, Duration::Given(_)) || !self.limits.iter().any(is_rate);
-        let found = || "a limit of a rate where the duration is free".to_owned();
-        require(holds, "limit", found, "a given duration")?;
         let control = problem::Control {
             duration: self.duration,
             intervals: self.intervals,

@@ -4,7 +4,7 @@ use crate::control::problem::{
     CostFunction, During, EnergyCost, PathConstraint, QuantityCost, Waypoint,
 };
 use crate::interface::error::{Result, require};
-use crate::model::system::{Joint, Muscle};
+use crate::model::system::{Fidelity, Joint, Muscle};
 use crate::model::{Quantity, System};
 
 /// Refuses costs of parts that the system does not have, and weights and functions of time that are not finite.
@@ -60,7 +60,11 @@ pub(super) fn check_limits(limits: &[PathConstraint], system: &System) -> Result
             PathConstraint::Current { muscle, min, max }
             | PathConstraint::Power { muscle, min, max } => {
                 let muscle = system.muscles.get(muscle);
-                muscle.is_some_and(Muscle::is_behind_resistor) && min < max
+                muscle.is_some_and(Muscle::has_measured_current) && min < max
+            }
+            PathConstraint::Tension { muscle, min, max } => {
+                let muscle = system.muscles.get(muscle);
+                muscle.is_some_and(|m| m.fidelity == Fidelity::Lumped) && min < max
             }
             PathConstraint::Stretch { muscle, min, max } => {
                 muscle < system.muscles.len() && min < max

@@ -14,7 +14,7 @@ use std::collections::BTreeMap;
 
 impl Control {
     /// Minimises the electrical energy from the sources of lumped muscles, with a weight per J; energy that flows back is negative, and
-    /// the switch to the voltages that hold the goal is counted where they are known.
+    /// the switch to the voltages that hold the goal is counted where they are known, and behind a resistor its heat.
     pub fn electrical_energy(self, muscles: &[Handle<Muscle>], weight: f64) -> Self {
         self.energy(SourceEnergy::Electrical, muscles, weight)
     }

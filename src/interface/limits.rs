@@ -23,31 +23,38 @@ impl Control {
         self.limited(PathConstraint::Stretch { muscle, min, max })
     }
 
+    /// Range of the force in N with which a lumped muscle pulls its ends together, in the middle of the intervals.
+    pub fn tension_within(self, muscle: Handle<Muscle>, range: RangeInclusive<f64>) -> Self {
+        let (muscle, (min, max)) = (muscle.index(), range.into_inner());
+        self.limited(PathConstraint::Tension { muscle, min, max })
+    }
+
     /// Range of the coordinate of a joint in rad or mm.
     pub fn joint_within(self, joint: Handle<Joint>, range: RangeInclusive<f64>) -> Self {
         let (joint, (min, max)) = (joint.index(), range.into_inner());
         self.limited(PathConstraint::JointAngle { joint, min, max })
     }
 
-    /// Range of the mean rate of the coordinate of a joint in each interval in rad/ms or mm/ms; the duration has to be given.
+    /// Range of the mean rate of the coordinate of a joint in each interval in rad/ms or mm/ms.
     pub fn joint_rate_within(self, joint: Handle<Joint>, range: RangeInclusive<f64>) -> Self {
         let (joint, (min, max)) = (joint.index(), range.into_inner());
         self.limited(PathConstraint::JointRate { joint, min, max })
     }
 
-    /// Range of the mean current in each interval in A of the source of a lumped muscle behind a resistor.
+    /// Range of the current in A of the source of a lumped muscle: behind a resistor its mean in each interval, otherwise that between the
+    /// middles of neighbouring intervals.
     pub fn current_within(self, muscle: Handle<Muscle>, range: RangeInclusive<f64>) -> Self {
         let (muscle, (min, max)) = (muscle.index(), range.into_inner());
         self.limited(PathConstraint::Current { muscle, min, max })
     }
 
-    /// Range of the rate of the voltage of a muscle in V/ms between the middles of neighbouring intervals; the duration has to be given.
+    /// Range of the rate of the voltage of a muscle in V/ms between the middles of neighbouring intervals.
     pub fn voltage_rate_within(self, muscle: Handle<Muscle>, range: RangeInclusive<f64>) -> Self {
         let (source, (min, max)) = (muscle.index(), range.into_inner());
         self.limited(PathConstraint::VoltageRate { source, min, max })
     }
 
-    /// Range of the mean power in each interval in W of the source of a lumped muscle behind a resistor.
+    /// Range of the power in W of the source of a lumped muscle, at the times of a current.
     pub fn power_within(self, muscle: Handle<Muscle>, range: RangeInclusive<f64>) -> Self {
         let (muscle, (min, max)) = (muscle.index(), range.into_inner());
         self.limited(PathConstraint::Power { muscle, min, max })

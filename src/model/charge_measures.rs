@@ -1,7 +1,8 @@
-//! Measures of muscles behind resistors: the field of the charge, current and power of the source.
+//! Measures of charges and sources: behind resistors the field of the charge, current and power; otherwise charge and energy under the voltage.
 
 use crate::energy::{
-    Capacitance, FlowingChargeField, GivenChargeField, SourceCurrent, SourcePower,
+    Capacitance, FlowingChargeField, GivenChargeField, MeanCharge, SourceCurrent, SourcePower,
+    StoredEnergy,
 };
 use crate::functional::{Measure, Stencil};
 use crate::kinematics::Vectors;
@@ -14,7 +15,7 @@ use crate::model::quantity::Quantity;
 type Read = ([(usize, Stencil); 2], [usize; 1]);
 
 impl Known<'_> {
-    /// The measure of a quantity of a muscle behind a resistor.
+    /// The measure of a quantity of a muscle and its source.
     pub(super) fn of_charge(
         &self,
         quantity: &Quantity,
@@ -40,8 +41,24 @@ impl Known<'_> {
                 let (current, (read, scalars)) = self.source_current(muscle, unit, vectors)?;
                 interval::<_, 7, 2, 1>(shape, SourcePower(current), read, scalars)
             }
+            Quantity::ChargeStep { muscle, .. } => {
+                let (capacitance, span, voltage) = self.direct(muscle, vectors)?;
+                let ends = [(span, Stencil::Here), (span, Stencil::Next)];
+                interval::<_, 7, 2, 1>(shape, MeanCharge(capacitance), ends, [voltage])
+            }
+            Quantity::EnergyStep { muscle, at, .. } => {
+                let (capacitance, span, voltage) = self.direct(muscle, vectors)?;
+                interval::<_, 4, 1, 1>(shape, StoredEnergy(capacitance), [(span, at)], [voltage])
+            }
             _ => return None,
         })
+    }
+
+    /// Capacitance of a muscle without a resistor, the vector of its span, and the scalar of its voltage.
+    fn direct(&self, muscle: usize, vectors: &mut Vectors) -> Option<(Capacitance, usize, usize)> {
+        let voltage = self.variables.input(muscle)?;
+        let capacitance = capacitance(&self.presolved.system.muscles[muscle])?;
+        Some((capacitance, self.span(muscle, vectors), voltage))
     }
 
     /// Capacitance of a muscle behind a resistor, with the vectors of its span and of its charge.

@@ -31,6 +31,19 @@ impl System {
         sizes.unwrap_or([1.0; 2])
     }
 
+    /// Charge in mC and energy in mJ of a muscle under a voltage whose field balances its elasticity; one without a capacitance.
+    pub fn charging(&self, muscle: usize) -> [f64; 2] {
+        let muscle = &self.muscles[muscle];
+        let sizes = capacitance(muscle).map(|capacitance| {
+            let charge = capacitance.unit_of_charge();
+            [
+                charge,
+                charge * charge / capacitance.at_length(muscle.length()),
+            ]
+        });
+        sizes.unwrap_or([1.0; 2])
+    }
+
     /// The source of the charge of a muscle, where a load gives it.
     pub fn charge_of(&self, muscle: usize) -> Option<usize> {
         let mut loads = self.loads();
@@ -48,6 +61,12 @@ impl Muscle {
     /// Returns true if a resistor lies between its source and its electrodes, so that its charge is an unknown.
     pub fn is_behind_resistor(&self) -> bool {
         self.inner_resistance().is_some()
+    }
+
+    /// Returns true if the charge that flows from its source can be limited: behind a resistor, or of a lumped muscle with a capacitance that
+    /// does not leak.
+    pub fn has_measured_current(&self) -> bool {
+        self.is_behind_resistor() || (self.circuit.is_none() && capacitance(self).is_some())
     }
 
     /// Resistance in Ω of the source that stands for its circuit; none without a resistor.

@@ -117,9 +117,9 @@ impl Known<'_> {
                 let multiple = Multiple { unit: KILOVOLT };
                 interval::<_, 1, 0, 1>(shape, multiple, [], [self.parameter(parameter)?])
             }
-            Quantity::VoltageStep { source, unit, .. } => {
+            Quantity::VoltageStep { source, .. } => {
                 let voltage = [self.variables.input(source)?];
-                interval::<_, 1, 0, 1>(shape, Multiple { unit }, [], voltage)
+                interval::<_, 1, 0, 1>(shape, Multiple { unit: 1.0 }, [], voltage)
             }
             Quantity::PeakExcess {
                 source,
@@ -131,7 +131,10 @@ impl Known<'_> {
             }
             Quantity::ChargedField { .. }
             | Quantity::SourceCurrent { .. }
-            | Quantity::SourcePower { .. } => return self.of_charge(quantity, shape, vectors),
+            | Quantity::SourcePower { .. }
+            | Quantity::ChargeStep { .. }
+            | Quantity::EnergyStep { .. } => return self.of_charge(quantity, shape, vectors),
+            Quantity::Tension { muscle, unit } => return self.tension(muscle, unit, vectors),
             Quantity::SquaredField { place, limit, at } => match place {
                 FieldPlace::Muscle(muscle) => {
                     return self.muscle_field(muscle, (limit, at), shape, vectors);

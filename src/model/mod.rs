@@ -54,6 +54,7 @@ mod sought;
 mod source;
 mod states;
 pub mod system;
+mod tension;
 mod terms;
 mod unknown_positions;
 mod variables;

@@ -98,11 +98,40 @@ pub enum Quantity {
         /// Unit in W.
         unit: f64,
     },
-    /// Voltage of a source in the intervals, of which the steps between them are limited.
+    /// Force with which a lumped muscle pulls its ends together, in the middle of the intervals.
+    Tension {
+        /// Muscle index.
+        muscle: usize,
+        /// Unit in N.
+        unit: f64,
+    },
+    /// Voltage of a source in V in the intervals, of which the steps between them are limited.
     VoltageStep {
         /// Source index.
         source: usize,
-        /// Unit in V.
+        /// Unit of the steps in V.
+        unit: f64,
+        /// Length of the interval in ms, for messages.
+        h: f64,
+    },
+    /// Mean charge `½ (C_k + C_{k+1}) V` in mC of a lumped muscle under the voltage of its source in the intervals, of which the steps between
+    /// them are limited.
+    ChargeStep {
+        /// Muscle index.
+        muscle: usize,
+        /// Unit of the steps in mC.
+        unit: f64,
+        /// Length of the interval in ms, for messages.
+        h: f64,
+    },
+    /// Stored energy `½ C V²` in mJ of a lumped muscle under the voltage of its source, of which the step from the start of the interval before to
+    /// the end of an interval is limited.
+    EnergyStep {
+        /// Muscle index.
+        muscle: usize,
+        /// At the start or at the end of the interval: `Here` or `Next`.
+        at: Stencil,
+        /// Unit of the steps in mJ.
         unit: f64,
         /// Length of the interval in ms, for messages.
         h: f64,
@@ -168,7 +197,10 @@ impl Quantity {
                 | Self::PeakExcess { .. }
                 | Self::SourceCurrent { .. }
                 | Self::SourcePower { .. }
+                | Self::Tension { .. }
                 | Self::VoltageStep { .. }
+                | Self::ChargeStep { .. }
+                | Self::EnergyStep { .. }
         )
     }
 
@@ -185,8 +217,11 @@ impl Quantity {
             | Self::PeakVoltage { .. }
             | Self::PeakExcess { .. }
             | Self::SourceCurrent { .. }
-            | Self::SourcePower { .. } => "in interval",
-            Self::VoltageStep { .. } => "before interval",
+            | Self::SourcePower { .. }
+            | Self::Tension { .. } => "in interval",
+            Self::VoltageStep { .. } | Self::ChargeStep { .. } | Self::EnergyStep { .. } => {
+                "before interval"
+            }
             _ => "at instant",
         }
     }
@@ -203,7 +238,10 @@ impl Quantity {
             | Self::ChargedField { .. }
             | Self::SourceCurrent { .. }
             | Self::SourcePower { .. }
+            | Self::Tension { .. }
             | Self::VoltageStep { .. }
+            | Self::ChargeStep { .. }
+            | Self::EnergyStep { .. }
             | Self::PeakExcess { .. }
             | Self::Direction { .. }
             | Self::MarkerRegion { .. } => "",
@@ -223,7 +261,10 @@ impl Quantity {
             }
             Self::SourceCurrent { unit, .. } => (1e3 * value * unit, "mA"),
             Self::SourcePower { unit, .. } => (value * unit, "W"),
+            Self::Tension { unit, .. } => (value * unit, "N"),
             Self::VoltageStep { unit, h, .. } => (value * unit / h, "kV/s"),
+            Self::ChargeStep { unit, h, .. } => (1e3 * value * unit / h, "mA"),
+            Self::EnergyStep { unit, h, .. } => (value * unit / h, "W"),
             Self::MarkerRegion { region, .. } => match region {
                 Region::Sphere { radius, .. } => (value.sqrt() * radius, "mm from its centre"),
                 Region::Box { .. } => (value.powf(1.0 / 16.0), "half edges from its centre"),
@@ -235,6 +276,55 @@ impl Quantity {
             | Self::PeakExcess { .. }
             | Self::MarkerPlace { .. }
             | Self::MarkerStep { .. } => (value, self.unit(system)),
+        }
+    }
+
+    /// The quantity that is subtracted in the interval before, where steps between intervals are limited.
+    pub fn before(&self) -> Option<Self> {
+        match *self {
+            Self::VoltageStep { .. } | Self::ChargeStep { .. } => Some(*self),
+            Self::EnergyStep {
+                muscle, unit, h, ..
+            } => Some(Self::EnergyStep {
+                muscle,
+                at: Stencil::Here,
+                unit,
+                h,
+            }),
+            _ => None,
+        }
+    }
+
+    /// The same with another length of the intervals in ms in messages.
+    pub fn with_interval(mut self, length: f64) -> Self {
+        match &mut self {
+            Self::JointStep { h, .. }
+            | Self::VoltageStep { h, .. }
+            | Self::ChargeStep { h, .. }
+            | Self::EnergyStep { h, .. } => *h = length,
+            _ => {}
+        }
+        self
+    }
+
+    /// Length of the intervals in ms by which a step is a rate.
+    pub fn interval(&self) -> Option<f64> {
+        match *self {
+            Self::JointStep { h, .. }
+            | Self::VoltageStep { h, .. }
+            | Self::ChargeStep { h, .. }
+            | Self::EnergyStep { h, .. } => Some(h),
+            _ => None,
+        }
+    }
+
+    /// Unit in which the steps of the quantity between intervals are rows.
+    pub fn step_unit(&self) -> f64 {
+        match *self {
+            Self::VoltageStep { unit, .. }
+            | Self::ChargeStep { unit, .. }
+            | Self::EnergyStep { unit, .. } => unit,
+            _ => 1.0,
         }
     }
 

@@ -361,6 +361,11 @@ impl Muscle {
         self.cross_section[0] * self.cross_section[1] * self.length()
     }
 
+    /// Force μ A₀ in N of the shear modulus and the cross-section at rest.
+    pub fn shear_force(&self) -> f64 {
+        self.material.shear_modulus * self.cross_section[0] * self.cross_section[1]
+    }
+
     /// Mass in g; `None` where the material has no density.
     pub fn mass(&self) -> Option<f64> {
         self.material.density.map(|rho| rho * self.volume())

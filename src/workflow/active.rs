@@ -153,7 +153,7 @@ impl ActiveLimits {
             true => "interval",
             false => "instant",
         };
-        for (bound, is_reached) in [bounded.lower, bounded.upper].into_iter().zip(side) {
+        for (bound, is_reached) in bounded.bounds().into_iter().zip(side) {
             if bound.is_finite() {
                 let (value, unit) = bounded.quantity.plain(bound, system);
                 let space = if unit.is_empty() { "" } else { " " };

@@ -1,7 +1,7 @@
 //! A list of control problems that together call for every effect, joint, limit, goal and objective.
 
 use super::ends::ends;
-pub use super::limited::{all_limits, charge_limits};
+pub use super::limited::{all_limits, charge_limits, tension};
 use super::pairs::pairs;
 use super::remembering::{remembering, remembering_blocks};
 use super::systems::{
@@ -235,14 +235,20 @@ pub fn cases() -> Vec<Case> {
         ),
         case("branched tree", branched(), &|_| {}),
         case("branched tree with joint springs", sprung(), &|_| {}),
-        case("branched tree that remembers", remembering(), &|_| {}),
-        case("branched tree that stiffens", stiffening(), &|_| {}),
+        case("branched tree that remembers", remembering(), &|c| {
+            c.limits = vec![tension(0), tension(2)];
+        }),
+        case("branched tree that stiffens", stiffening(), &|c| {
+            c.limits = vec![tension(0), tension(1), tension(3)];
+        }),
         case("charges", charged(), &|c| {
+            c.objective.energies = energies(&[(0, 2e3)], &[]);
             c.load_bounds.insert(4, [1e-5, 3e-4]);
         }),
         case("charges, free time", charged(), &|c| {
             c.duration = free;
             c.objective.rate = 0.3;
+            c.objective.energies = energies(&[(0, 2e3), (2, 3e3)], &[(2, 1e3)]);
             c.given.insert(4, Signal::Constant(1e-4));
         }),
         case("charges, all limits", charged(), &|c| {

@@ -4,6 +4,15 @@ use nalgebra::Vector3;
 use proboscis::control::problem::{PathConstraint, Side};
 use proboscis::model::Region;
 
+/// A limit of the tension of a muscle.
+pub fn tension(muscle: usize) -> PathConstraint {
+    PathConstraint::Tension {
+        muscle,
+        min: -2.0,
+        max: 3.0,
+    }
+}
+
 /// Every limit of charged muscles, of which one is behind a resistor and the charge of another is given.
 pub fn charge_limits() -> Vec<PathConstraint> {
     vec![
@@ -25,6 +34,8 @@ pub fn charge_limits() -> Vec<PathConstraint> {
             min: f64::NEG_INFINITY,
             max: 0.04,
         },
+        tension(0),
+        tension(1),
     ]
 }
 
@@ -69,6 +80,21 @@ pub fn all_limits() -> Vec<PathConstraint> {
             min: -80.0,
             max: 60.0,
         },
+        PathConstraint::Current {
+            muscle: 1,
+            min: -2e-6,
+            max: 3e-6,
+        },
+        PathConstraint::Current {
+            muscle: 2,
+            min: f64::NEG_INFINITY,
+            max: 2e-6,
+        },
+        PathConstraint::Power {
+            muscle: 1,
+            min: -0.002,
+            max: 0.003,
+        },
         PathConstraint::Stretch {
             muscle: 0,
             min: 0.7,
@@ -79,6 +105,9 @@ pub fn all_limits() -> Vec<PathConstraint> {
             min: 0.0,
             max: 1.5,
         },
+        tension(0),
+        tension(1),
+        tension(3),
         PathConstraint::ElectricField {
             muscle: 1,
             max: 5e4,

@@ -70,7 +70,27 @@ fn limits_of_rates_that_make_no_sense_are_refused() {
         &[place, "crossed"],
     );
     refused(json!({ "joint": "joint7", "max": 1 }), &[place, "joint7"]);
-    let mut free = problem(json!({ "joint": "joint1", "max": 1 }), "reduced");
-    free["control"]["duration"] = json!({ "min": 0.1, "max": 0.3, "guess": 0.2 });
-    run("solve", &free, &[]).is_refused(&[place, "a given duration"]);
+}
+
+#[test]
+fn a_joint_turns_no_faster_than_its_limit_in_the_least_time() {
+    let solved = |limit: Value, coordinates: &str| {
+        let mut problem = problem(limit, coordinates);
+        problem["control"]["duration"] = json!({ "min": 0.02, "max": 0.4, "guess": 0.1 });
+        problem["control"]["objective"] = json!({ "effort": 0.01, "duration": 1.0 });
+        let ran = run("solve", &problem, &[]);
+        ran.is_solved();
+        let summary = ran.read("summary.json");
+        (largest(&ran), summary["objective"].as_f64().unwrap())
+    };
+    let limit =
+        |max: f64| json!({ "joint": "joint1", "min": "-9 rad/s", "max": format!("{max} rad/s") });
+    let (free, cheap) = solved(limit(1e3), "reduced");
+    assert!(free > 6.0, "{free}");
+    let both = ["reduced", "redundant"].map(|coordinates| solved(limit(3.0), coordinates));
+    for (rate, objective) in &both {
+        assert!(*rate < 3.0 + 1e-6 && *rate > 3.0 - 1e-3, "{rate}");
+        assert!(*objective > 1.01 * cheap, "{objective} {cheap}");
+    }
+    assert!((both[0].1 / both[1].1 - 1.0).abs() < 1e-6);
 }

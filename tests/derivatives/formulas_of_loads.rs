@@ -3,8 +3,8 @@
 use crate::formulas::{DIELECTRIC, law};
 use proboscis::energy::{
     AngleStep, Capacitance, DeadLoad, DielectricCell, FlowingCharge, FlowingChargeField,
-    FollowingForce, GivenCharge, GivenChargeField, Multiple, PeakExcess, ProjectionStep,
-    SourceCurrent, SourcePower, SurfaceCharge,
+    FollowingForce, GivenCharge, GivenChargeField, MeanCharge, Multiple, PeakExcess,
+    ProjectionStep, SourceCurrent, SourcePower, StoredEnergy, SurfaceCharge,
 };
 use proboscis::math::Vector;
 
@@ -67,4 +67,6 @@ fn limits_of_charged_muscles_have_the_derivatives_of_naive_formulas() {
     };
     law("current of a source", &current, 0.3, 1.3);
     law("power of a source", &SourcePower(current), 0.3, 1.3);
+    law("mean charge", &MeanCharge(capacitance), 0.3, 1.3);
+    law("stored energy", &StoredEnergy(capacitance), 0.3, 1.3);
 }

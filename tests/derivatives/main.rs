@@ -21,4 +21,5 @@ mod horizon;
 mod kernel;
 mod naive_formulas;
 mod naive_hexahedron;
+mod naive_sources;
 mod sought;

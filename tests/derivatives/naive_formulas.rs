@@ -8,8 +8,8 @@ use proboscis::energy::{
     FlowingChargeField, FollowingForce, GivenCharge, GivenChargeField, Gravity, JointAngle,
     JointDisplacement, LinearDamper, LinearSpring, MaxwellCell, MaxwellDamper, Multiple,
     Orthogonality, OutsideBox, PeakExcess, PositionComponent, Projection, ProjectionStep,
-    SectionInertia, SourceCurrent, SourcePower, SpanDamper, SquaredDistance, SquaredField,
-    SurfaceCharge, ViscousCell,
+    SectionInertia, SpanDamper, SquaredDistance, SquaredField, SurfaceCharge, ViscousCell,
+    ViscousTension,
 };
 
 /// The naive formula of an energy.
@@ -114,20 +114,6 @@ impl Formula<6> for FlowingChargeField {
     }
 }
 
-impl Formula<7> for SourceCurrent {
-    fn naive<D: DualNum<f64> + Copy>(&self, p: &[D; 7]) -> D {
-        let charge = p[3] * self.unit_of_charge;
-        let across = charge / self.capacitance.naive(&three(p, 0));
-        (p[6] - across) / self.resistance / self.unit
-    }
-}
-
-impl Formula<7> for SourcePower {
-    fn naive<D: DualNum<f64> + Copy>(&self, p: &[D; 7]) -> D {
-        p[6] * self.0.naive(p)
-    }
-}
-
 impl Formula<6> for SectionInertia {
     fn naive<D: DualNum<f64> + Copy>(&self, p: &[D; 6]) -> D {
         let (r, v) = (three(p, 0), three(p, 3));
@@ -144,6 +130,15 @@ impl Formula<9> for ViscousCell {
         // −1.5 η V₀ Λ̇ δΛ/Λ²; no length at rest is left in it.
         let of = |direction| along(r, direction, |r| stretch(r, 0.7));
         -of(v) * of(delta) / stretch(r, 0.7).powi(2) * self.coefficient
+    }
+}
+
+impl Formula<6> for ViscousTension {
+    fn naive<D: DualNum<f64> + Copy>(&self, p: &[D; 6]) -> D {
+        // c ℓ̇/ℓ² of the length ℓ = |r|.
+        let (r, v) = (three(p, 0), three(p, 3));
+        let length = squared_length(r).sqrt();
+        along(r, v, |r| squared_length(r).sqrt()) / length.powi(2) * self.0.coefficient
     }
 }
 

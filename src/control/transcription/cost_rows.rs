@@ -5,20 +5,26 @@
 //! ```text
 //! f_k = w φ e²,     φ = ω_k τ of an integral (trapezoidal rule: ω = ½ at both ends, else 1; τ = h in s),  φ = 1 at the end and at a waypoint.
 //! ```
+//!
+//! In interval k the energy from a source of the power m is the summand w τ m.
 
+use crate::control::energy_cost::{EnergyCost, resisted};
 use crate::control::quantity_cost::{CostFunction, During, QuantityCost};
 use crate::control::transcription::limit_rows::Site;
 use crate::control::transcription::units::MILLISECOND;
 use crate::control::waypoint::instant_at;
 use crate::coordinates::Reduced;
 use crate::functional::{Outer, Sample};
-use crate::model::{Model, Size};
+use crate::math::Signal;
+use crate::model::{Model, Quantity, Size};
 use std::ops::Range;
 
 /// A cost of a quantity before it is summed.
 #[derive(Clone, Debug)]
 pub(super) struct CostRow {
-    cost: QuantityCost,
+    weight: f64,
+    function: Function,
+    during: During,
     /// Index among the measures of its site.
     pub(super) measure: usize,
     pub(super) site: Site,
@@ -33,6 +39,15 @@ pub(super) struct CostRow {
     intervals: usize,
 }
 
+/// Function of a quantity that is summed.
+#[derive(Clone, Debug)]
+enum Function {
+    /// The square of the deviation from a reference.
+    Square(Signal),
+    /// The quantity, a power in W.
+    Itself,
+}
+
 /// A summand of the objective with its derivatives by the value m of its quantity and by the interval length h in ms.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Summand {
@@ -44,22 +59,31 @@ pub(super) struct Summand {
     pub(super) by_h_twice: f64,
 }
 
-/// The costs of the quantities that the model can change; their measures follow those of `limits` limits and goals.
+/// The costs of the quantities that the model can change, then the energies that flow through resistors; their measures follow those of
+/// `limits` limits and goals.
 pub(super) fn cost_rows(
     model: &Model,
-    costs: &[QuantityCost],
+    (costs, energies): (&[QuantityCost], &[EnergyCost]),
     limits: usize,
     intervals: usize,
 ) -> Vec<CostRow> {
-    let row = |(cost, measure): (&QuantityCost, &Option<usize>)| {
+    let squares = costs.iter().map(|cost| {
+        let CostFunction::Square { reference } = &cost.function;
+        let function = Function::Square(reference.clone());
+        (cost.quantity, cost.weight, function, cost.during)
+    });
+    let powers = resisted(energies, &model.system)
+        .map(|cost| (cost.power(), cost.weight, Function::Itself, During::Motion));
+    let row = |((quantity, weight, function, during), measure): (_, &Option<usize>)| {
+        let quantity: Quantity = quantity;
         let measure = (*measure)?;
-        let site = Site::from_quantity(&cost.quantity);
+        let site = Site::from_quantity(&quantity);
         let reads = site.measure(model, measure);
         let mut vectors = reads.vectors();
         vectors.sort_unstable();
         vectors.dedup();
         let count = intervals + 2 - site.sides();
-        let at = match cost.during {
+        let at = match during {
             During::Motion => 0..count,
             During::End => count - 1..count,
             During::At(part) => {
@@ -68,19 +92,22 @@ pub(super) fn cost_rows(
             }
         };
         Some(CostRow {
-            cost: cost.clone(),
+            weight,
+            function,
+            during,
             measure,
             site,
             at,
             vectors,
             scalars: reads.scalars(),
-            period: cost.quantity.period(&model.system),
+            period: quantity.period(&model.system),
             intervals,
         })
     };
-    costs
-        .iter()
-        .zip(&model.measured[limits..])
+    let measured = &model.measured[limits..];
+    squares
+        .chain(powers)
+        .zip(measured)
         .filter_map(row)
         .collect()
 }
@@ -110,18 +137,25 @@ pub(super) fn costs_size(model: &Model, costs: &[QuantityCost], duration: f64) -
 impl CostRow {
     /// Its summand at instant or interval k, where the quantity is m.
     pub(super) fn summand(&self, m: f64, k: usize, h: f64) -> Summand {
-        let weight = self.cost.weight;
+        let weight = self.weight;
         // φ and ∂φ/∂h.
-        let [factor, by_h] = match self.cost.during {
+        let [factor, by_h] = match self.during {
             During::Motion => {
-                let is_end = k == 0 || k == self.intervals;
+                let is_end = self.site == Site::Instants && (k == 0 || k == self.intervals);
                 let part = if is_end { 0.5 } else { 1.0 } * MILLISECOND;
                 [part * h, part]
             }
             During::End | During::At(_) => [1.0, 0.0],
         };
-        match &self.cost.function {
-            CostFunction::Square { reference } => {
+        match &self.function {
+            Function::Itself => Summand {
+                value: weight * factor * m,
+                outer: Outer::linear(weight * factor),
+                by_h: weight * by_h * m,
+                by_value_and_h: weight * by_h,
+                by_h_twice: 0.0,
+            },
+            Function::Square(reference) => {
                 let steps = k as f64;
                 let [at, rate, second] = reference.derivatives(steps * h);
                 let e = self.nearest(m - at);

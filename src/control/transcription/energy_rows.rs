@@ -1,4 +1,4 @@
-//! Energies of sources on a horizon, instant by instant.
+//! Energies of sources without resistors on a horizon, instant by instant; those through resistors are integrals of powers, as costs of quantities.
 //!
 //! The sums over the intervals of docs/theory.md, 3.5 are, by summation by parts, sums over the instants in which the shape occurs in the
 //! capacitance `C_k = C(x_k)` alone. With the voltages a before and b after an instant and the weights e of the electrical energy and w of the
@@ -70,7 +70,7 @@ pub(super) fn energy_rows(
     rest: &[Option<Vec<f64>>; 2],
     intervals: usize,
 ) -> Vec<EnergyRow> {
-    let sources = sources(costs);
+    let sources = sources(costs, &model.system);
     let first = model.measured.len() - sources.len();
     let layout = model.action.layout();
     let row = |(&source, measure): (&usize, &Option<usize>)| {

@@ -2,13 +2,13 @@
 
 use crate::control::transcription::Transcription;
 use crate::control::transcription::kinematic_state::Placed;
-use crate::control::transcription::limit_rows::{LimitRow, Site};
+use crate::control::transcription::limit_rows::Site;
 use crate::control::transcription::segment::{
     Segment, SegmentWorkspace, Shared, instant_of, needed,
 };
 use crate::control::transcription::units::MILLISECOND;
 use crate::coordinates::{Configuration, Reduced};
-use crate::functional::{BlockMask, Horizon, Measure, Order, Sample};
+use crate::functional::{BlockMask, Horizon, Order, Sample};
 use crate::ipopt::interrupt;
 use crate::math::{Vector, join_if};
 
@@ -196,68 +196,9 @@ impl<'m> Transcription<'m> {
             outer: &[],
         }
     }
-
-    fn measure(&self, limit: &LimitRow) -> &'m dyn Measure {
-        limit.site.measure(self.model, limit.measure)
-    }
-
-    pub(super) fn limit_value(&self, limit: &LimitRow, k: usize) -> f64 {
-        if let Some(step) = &limit.step {
-            let count = self.model.action.layout().interval_scalars;
-            return step.value(k, &self.workspace.scalars, count);
-        }
-        self.measure(limit).value(&self.sample(limit.site, k))
-    }
 }
 
 impl Transcription<'_> {
-    /// Gradients of the limits, behind the periodic values.
-    pub(super) fn limit_gradients(&mut self) {
-        let map = &self.model.action.map;
-        let mut place = self.model.action.layout().values(self.layout.intervals);
-        self.workspace.rows[..map.unknowns()].fill(0.0);
-        for &(limit, k) in &self.layout.limit_rows {
-            let limit = &self.layout.limits[limit];
-            if let Some(step) = &limit.step {
-                // By the input of the interval, then by that of the one before.
-                self.workspace.values[place..place + 2].copy_from_slice(&[step.slope, -step.slope]);
-                place += 2;
-                continue;
-            }
-            let measure = self.measure(limit);
-            let site = limit.site;
-            let mut part = std::mem::take(&mut self.workspace.measured);
-            measure.gradient(&self.sample(site, k), &mut part.forces, &mut part.rows);
-            // Rows of the coordinates of one side at a time, in the storage of one instant's rows.
-            let mut at = 0;
-            for side in (0..site.sides()).filter(|&side| measure.reads(side)) {
-                for &vector in &limit.vectors {
-                    map.pull_back_one(
-                        vector,
-                        &self.workspace.instants[k + side].columns,
-                        &part.forces[side][vector],
-                        &mut self.workspace.rows,
-                    );
-                }
-                while let Some(&(_, i)) = limit.entries.get(at).filter(|(s, _)| *s == side) {
-                    self.workspace.values[place] = std::mem::take(&mut self.workspace.rows[i]);
-                    (at, place) = (at + 1, place + 1);
-                }
-            }
-            for &(_, s) in &limit.entries[at..] {
-                self.workspace.values[place] = part.rows[s];
-                place += 1;
-            }
-            for &vector in &limit.vectors {
-                for side in &mut part.forces {
-                    side[vector] = Vector::zeros();
-                }
-            }
-            part.rows.fill(0.0);
-            self.workspace.measured = part;
-        }
-    }
-
     /// Adds σ∇²f to the values.
     pub(super) fn objective_curvature(&mut self, sigma: f64) {
         let pattern = self.model.action.layout();

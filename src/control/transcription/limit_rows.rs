@@ -3,8 +3,9 @@
 use crate::control::limits::{BoundedQuantity, When};
 use crate::control::numbering::Numbering;
 use crate::control::span::Span;
+use crate::control::transcription::step::Step;
 use crate::control::waypoint::instant_at;
-use crate::coordinates::Reduced;
+use crate::coordinates::{CoordinateMap, Reduced};
 use crate::functional::{Functional, Measure, Outer};
 use crate::model::{Model, Quantity};
 use std::ops::Range;
@@ -13,6 +14,10 @@ use std::ops::Range;
 pub(super) const SCALAR: usize = 2;
 /// Mark of a scalar of the interval before.
 pub(super) const BEFORE: usize = 3;
+/// Mark of the interval length.
+pub(super) const DURATION: usize = 4;
+/// Mark of a coordinate of the instant at which the interval before begins.
+pub(super) const BEFORE_INSTANT: usize = 5;
 
 /// Site in time at which a quantity is measured.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -32,92 +37,20 @@ pub(super) struct LimitRow {
     pub(super) at: Range<usize>,
     /// Its first row among those of all limits.
     pub(super) first: usize,
-    /// Entries of its gradient: (side, entry of z) or ([`SCALAR`], scalar).
+    /// Entries of its gradient: (side, entry of z), ([`SCALAR`], scalar), or those of the other marks.
     pub(super) entries: Vec<(usize, usize)>,
     /// Vectors it reads.
     pub(super) vectors: Vec<usize>,
     pub(super) scale: f64,
-    /// The input whose steps between intervals are limited.
-    pub(super) step: Option<InputStep>,
+    /// Step from the interval before, where steps between intervals are limited.
+    pub(super) step: Option<Step>,
 }
 
-/// An input whose steps between neighbouring intervals are limited, and those from its value at rest and to it, where that is known.
-///
-/// An input of an interval is its value in the middle, half an interval from the start or the end of the motion: there half the bounds
-/// hold.
-#[derive(Clone, Copy, Debug)]
-pub(super) struct InputStep {
-    /// Scalar of the input.
-    scalar: usize,
-    /// One over its unit.
-    pub(super) slope: f64,
-    /// Values at rest before the start and after the end.
-    ends: [Option<f64>; 2],
-    span: Span,
-}
-
-impl InputStep {
-    fn new(
-        quantity: &Quantity,
-        model: &Model,
-        rest: &[Option<Vec<f64>>; 2],
-        span: Span,
-    ) -> Option<Self> {
-        let Quantity::VoltageStep { source, unit, .. } = *quantity else {
-            return None;
-        };
-        Some(Self {
-            scalar: model.variables.input(source)?,
-            slope: 1.0 / unit,
-            ends: ends(rest, source),
-            span,
-        })
-    }
-
-    /// Takes other values at rest before and after.
-    pub(super) fn move_ends(&mut self, quantity: &Quantity, rest: &[Option<Vec<f64>>; 2]) {
-        if let Quantity::VoltageStep { source, .. } = *quantity {
-            self.ends = ends(rest, source);
-        }
-    }
-
-    /// Returns true if values at rest are known where these are.
-    pub(super) fn has_ends(&self, rest: &[Option<Vec<f64>>; 2]) -> bool {
-        self.ends.map(|end| end.is_some()) == rest.each_ref().map(|row| row.is_some())
-    }
-
-    /// Intervals before which a step is limited, the end counted as one.
-    fn at(&self) -> Range<usize> {
-        let [first, last] = self.ends.map(|end| usize::from(end.is_some()));
-        let first = first.max(usize::from(self.span.is_closed));
-        1 - first..self.span.intervals + last
-    }
-
-    /// The step before interval k, of the scalars of all intervals, `count` of each.
-    pub(super) fn value(&self, k: usize, scalars: &[f64], count: usize) -> f64 {
-        let of = |k: usize| scalars[k * count + self.scalar];
-        let before = self.span.before(k).map(of).or(self.ends[0]);
-        let after = match k == self.span.intervals {
-            true => self.ends[1],
-            false => Some(of(k)),
-        };
-        let known = "a step from or to a value at rest that is known";
-        self.slope * (after.expect(known) - before.expect(known))
-    }
-
-    /// Part of the bounds that holds before interval k.
+impl LimitRow {
+    /// Part of the bounds that holds at instant or interval k.
     pub(super) fn part(&self, k: usize) -> f64 {
-        match self.span.before(k).is_none() || k == self.span.end {
-            true => 0.5,
-            false => 1.0,
-        }
+        self.step.as_ref().map_or(1.0, |step| step.part(k))
     }
-}
-
-/// Values of a source at rest before and after.
-fn ends(rest: &[Option<Vec<f64>>; 2], source: usize) -> [Option<f64>; 2] {
-    rest.each_ref()
-        .map(|row| row.as_ref().map(|row| row[source]))
 }
 
 /// Rows of the bounded quantities over a horizon, with the entries their gradients have. A path limit has no row where start
@@ -130,29 +63,30 @@ pub(super) fn limit_rows(
 ) -> Vec<LimitRow> {
     let map = &model.action.map;
     let mut first = 0;
+    let mut others = model.measured[list.len()..].iter();
     let row = |(bounded, measure): (&BoundedQuantity, &Option<usize>)| {
+        let before = match bounded.other_before() {
+            Some(_) => others.next().expect("a measure of each quantity"),
+            None => measure,
+        };
         let measure = (*measure)?;
         let site = Site::from_quantity(&bounded.quantity);
         let reads = site.measure(model, measure);
-        let mut support: Vec<usize> = reads
-            .vectors()
-            .iter()
-            .flat_map(|&v| map.support(v))
-            .collect();
-        support.sort_unstable();
-        support.dedup();
-        let sides = (0..site.sides()).filter(|&side| reads.reads(side));
-        let mut entries: Vec<(usize, usize)> = sides
-            .flat_map(|side| support.iter().map(move |&i| (side, i)))
-            .collect();
-        if site == Site::Intervals {
-            entries.extend(reads.scalars().into_iter().map(|s| (SCALAR, s)));
+        let step = (*before).filter(|_| bounded.quantity.before().is_some());
+        let step = step.map(|before| Step::new(before, &bounded.quantity, (model, rest), span));
+        let before = step.as_ref().map(|step| site.measure(model, step.before));
+        let support = support(reads, map);
+        let mut entries = entries((reads, site), before, &support);
+        let has_length = reads.reads_rates() || bounded.rate.is_some();
+        if has_length && unknowns.horizon().is_some() {
+            entries.push((DURATION, 0));
         }
-        let step = InputStep::new(&bounded.quantity, model, rest, span);
-        entries.extend(step.map(|step| (BEFORE, step.scalar)));
         let reads_inputs = !reads.scalars().is_empty();
-        let mut at = match step {
-            Some(step) => step.at(),
+        let mut at = match &step {
+            Some(step) => {
+                let is_given = |&i: &usize| unknowns.unknown(span.intervals, i).is_none();
+                step.at(support.iter().all(is_given))
+            }
             None => sites((bounded.when, site), span, reads_inputs),
         };
         if !bounded.when.is_single() {
@@ -190,6 +124,39 @@ pub(super) fn limit_rows(
     list.iter().zip(&model.measured).filter_map(row).collect()
 }
 
+/// Coordinates of an instant on which what a measure reads depends.
+fn support(reads: &dyn Measure, map: &CoordinateMap) -> Vec<usize> {
+    let vectors = reads.vectors();
+    let mut support: Vec<usize> = vectors.iter().flat_map(|&v| map.support(v)).collect();
+    support.sort_unstable();
+    support.dedup();
+    support
+}
+
+/// Entries of the gradient of a measure, and of one that is subtracted in the interval before, which reads the same coordinates.
+fn entries(
+    (reads, site): (&dyn Measure, Site),
+    before: Option<&dyn Measure>,
+    support: &[usize],
+) -> Vec<(usize, usize)> {
+    let is_read_before = |side: usize| before.is_some_and(|before| before.reads(side));
+    let marks = [
+        (0, reads.reads(0) || is_read_before(1)),
+        (1, site.sides() > 1 && reads.reads(1)),
+        (BEFORE_INSTANT, is_read_before(0)),
+    ];
+    let marks = marks.into_iter().filter(|(_, is_read)| *is_read);
+    let mut entries: Vec<(usize, usize)> = marks
+        .flat_map(|(mark, _)| support.iter().map(move |&i| (mark, i)))
+        .collect();
+    if site == Site::Intervals {
+        entries.extend(reads.scalars().into_iter().map(|s| (SCALAR, s)));
+    }
+    let before = before.into_iter().flat_map(Measure::scalars);
+    entries.extend(before.map(|s| (BEFORE, s)));
+    entries
+}
+
 /// Instants or intervals at which a quantity is bounded.
 fn sites((when, site): (When, Site), span: Span, reads_inputs: bool) -> Range<usize> {
     let Span {
@@ -205,9 +172,9 @@ fn sites((when, site): (When, Site), span: Span, reads_inputs: bool) -> Range<us
             k..k + 1
         }
         // The last instant of a periodic motion is the first one.
-        (When::Everywhere | When::Steps, Site::Instants) => 0..end + 1 - usize::from(is_closed),
-        (When::Everywhere | When::Steps, Site::Intervals) if reads_inputs => 0..intervals,
-        (When::Everywhere | When::Steps, Site::Intervals) => 0..end,
+        (When::Everywhere, Site::Instants) => 0..end + 1 - usize::from(is_closed),
+        (When::Everywhere, Site::Intervals) if reads_inputs => 0..intervals,
+        (When::Everywhere, Site::Intervals) => 0..end,
     }
 }
 
@@ -215,7 +182,7 @@ fn sites((when, site): (When, Site), span: Span, reads_inputs: bool) -> Range<us
 fn scale(bounded: &BoundedQuantity, model: &Model) -> f64 {
     match bounded.quantity {
         Quantity::JointStep { .. } => {
-            let bounds = [bounded.lower, bounded.upper].map(f64::abs).into_iter();
+            let bounds = bounded.bounds().map(f64::abs).into_iter();
             let finite = bounds.filter(|bound| *bound > 0.0 && bound.is_finite());
             1.0 / finite.reduce(f64::max).unwrap_or(1.0)
         }
@@ -230,6 +197,8 @@ impl Numbering {
         match side {
             SCALAR => self.scalar(k, i),
             BEFORE => self.scalar(self.before(k)?, i),
+            DURATION => self.horizon(),
+            BEFORE_INSTANT => self.unknown(self.before(k)?, i),
             _ => self.unknown(k + side, i),
         }
     }
@@ -275,10 +244,23 @@ pub(super) fn fill_limits(
     costates: &[f64],
 ) {
     outer.fill(Outer::default());
-    for limit in limits
-        .iter()
-        .filter(|l| l.site == site && l.at.contains(&k) && l.step.is_none())
-    {
-        outer[limit.measure] = Outer::linear(costates[limit.first + k - limit.at.start]);
+    for limit in limits.iter().filter(|l| l.site == site) {
+        let costate = |k: usize| {
+            let is_row = limit.at.contains(&k);
+            is_row.then(|| costates[limit.first + k - limit.at.start])
+        };
+        match &limit.step {
+            Some(step) => {
+                let after = costate(k).unwrap_or(0.0) * step.factor;
+                outer[limit.measure].slope += after;
+                let next = costate(step.after(k)).unwrap_or(0.0) * step.factor;
+                outer[step.before].slope -= next;
+            }
+            None => {
+                if let Some(costate) = costate(k) {
+                    outer[limit.measure] = Outer::linear(costate);
+                }
+            }
+        }
     }
 }

@@ -21,12 +21,14 @@ mod interval_pass;
 mod kinematic_state;
 pub(super) mod layout;
 mod limit_rows;
+mod limit_values;
 mod objective;
 mod point;
 mod program;
 mod scaling;
 mod segment;
 mod squares;
+mod step;
 mod structure;
 mod units;
 mod update_endpoints;
@@ -157,7 +159,11 @@ impl<'m> Transcription<'m> {
 
     /// Returns a value of a limit or goal as shown to users, and its unit.
     pub fn plain(&self, index: usize, value: f64) -> (f64, &'static str) {
-        let quantity = &self.layout.limits[index].bounded.quantity;
+        let BoundedQuantity { quantity, rate, .. } = self.limit(index);
+        let quantity = match rate {
+            Some(_) => quantity.with_interval(self.workspace.h),
+            None => *quantity,
+        };
         quantity.plain(value, &self.model.system)
     }
 

@@ -82,7 +82,12 @@ impl Objective {
         let largest = of_loads.fold(volts / KILOVOLT, f64::max);
         Self {
             cost: Cost::new(objective, inputs.len(), layout.span(), ends),
-            quantities: cost_rows(model, paid, boundary.limits.list.len(), layout.end),
+            quantities: cost_rows(
+                model,
+                (paid, energies),
+                boundary.limits.quantities().len(),
+                layout.end,
+            ),
             energies: energy_rows(model, energies, &boundary.rest, layout.intervals),
             inputs,
             scale: objective_scale(objective, largest, duration, size),

@@ -173,7 +173,7 @@ impl Nlp for Transcription<'_> {
                 } = self.limit(limit);
                 match when {
                     When::Goal | When::At(_) => name.clone(),
-                    When::Everywhere | When::Steps => format!("{name} {} {k}", quantity.when()),
+                    When::Everywhere => format!("{name} {} {k}", quantity.when()),
                 }
             }
             (Row::Instant { k, .. }, Some(Role::Multiplier)) => {

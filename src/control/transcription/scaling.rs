@@ -144,7 +144,7 @@ impl Transcription<'_> {
         for (i, row) in self.layout.unknowns.rows.iter().enumerate() {
             if let Row::Limit { limit, k } = *row {
                 let limit = &self.layout.limits[limit];
-                let part = limit.step.map_or(1.0, |step| step.part(k));
+                let part = limit.part(k);
                 lower[i] = limit.bounded.lower * limit.scale * part;
                 upper[i] = limit.bounded.upper * limit.scale * part;
             }

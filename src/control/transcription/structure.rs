@@ -137,11 +137,11 @@ fn jacobian_candidates(model: &Model, layout: &Layout) -> Result<Vec<Candidate>,
 
 fn jacobian(model: &Model, layout: &Layout) -> Result<Matrix, BoundaryError> {
     let u = &layout.unknowns;
-    // The horizon column has no entry in the rows of constraints, which are instantaneous.
+    // The horizon column has no entry in the rows of constraints, which are instantaneous; limits name theirs.
     let horizon = u.horizon();
     let lasts = |row: Row| {
         let variable = row.of(&model.variables);
-        variable.is_some_and(|variable| variable.role != Role::Multiplier)
+        variable.is_none_or(|variable| variable.role != Role::Multiplier)
     };
     let candidates = jacobian_candidates(model, layout)?;
     go_on()?;

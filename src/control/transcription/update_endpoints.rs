@@ -5,7 +5,8 @@ use crate::control::boundary_conditions::BoundaryConditions;
 use crate::control::limits::BoundedQuantity;
 use crate::control::transcription::Transcription;
 use crate::control::transcription::kinematic_state::Placed;
-use crate::control::transcription::limit_rows::{InputStep, LimitRow};
+use crate::control::transcription::limit_rows::LimitRow;
+use crate::control::transcription::step::Step;
 use crate::model::Model;
 
 impl Transcription<'_> {
@@ -37,7 +38,7 @@ impl Transcription<'_> {
         {
             (limit.bounded.lower, limit.bounded.upper) = (bounded.lower, bounded.upper);
             if let Some(step) = &mut limit.step {
-                step.move_ends(&bounded.quantity, rest);
+                step.move_ends(self.model, rest);
             }
         }
         self.set_row_bounds();
@@ -80,7 +81,7 @@ impl Transcription<'_> {
         if boundary.limits.list.len() != self.bounded {
             return other("there are more or fewer goals and limits".to_owned());
         }
-        let is_known = |step: &InputStep| step.has_ends(&boundary.rest);
+        let is_known = |step: &Step| step.has_ends(&boundary.rest);
         let mut steps = self
             .layout
             .limits

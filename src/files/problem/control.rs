@@ -85,7 +85,7 @@ pub(crate) fn control(
     }));
     given.extend(loads);
     check_final_conditions(&goal, system, &scope.key("goal"))?;
-    let limits = limits((&spec.limits, duration), system, &scope.key("limits"))?;
+    let limits = limits(&spec.limits, system, &scope.key("limits"))?;
     let guess = match &spec.guess {
         Some(guess_spec) => guess(guess_spec, system, voltage_bounds, &scope.key("guess"))?,
         None => unwritten(&goal, system),

@@ -26,9 +26,10 @@ pub(crate) fn energies(
             weight,
         };
         let muscle = system.muscles.get(source);
-        let what = match muscle.is_some_and(|m| m.circuit.is_some()) {
-            true => "has a circuit",
-            false => "drives finite elements",
+        let what = match muscle.and_then(|muscle| muscle.circuit) {
+            Some(circuit) if circuit.resistance.is_none() => "leaks and has no resistor",
+            Some(_) => "has a resistor",
+            None => "drives finite elements",
         };
         let found = || format!("{:?}, which {what}", sources[source].name);
         match cost.exists(system) {

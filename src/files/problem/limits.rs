@@ -1,12 +1,13 @@
 //! Conversion of path limits of a problem file to indices, bounds and regions.
 
-use crate::control::problem::{Duration, PathConstraint, Side};
+use crate::control::problem::{PathConstraint, Side};
 use crate::files::json::error::SceneError;
 use crate::files::json::scope::Scope;
 use crate::files::problem::bounds::check_bounds;
-use crate::files::problem::source_limits::source_limits;
+use crate::files::problem::source_limits::{bounds, source_limits};
 use crate::files::problem::spec_limits::{
     ElectricFieldLimitSpec, LimitSpec, MarkerLimitSpec, RegionSpec, StretchLimitSpec,
+    TensionLimitSpec,
 };
 use crate::files::problem::spec_source_limits::All;
 use crate::files::problem::state::{ELECTRIC_KEYS, joint_value, joint_with_coordinate};
@@ -16,26 +17,16 @@ use crate::files::units::quantity::{
     Angle, AngularVelocity, Kind, Length, PhysicalQuantity, Quantity, Velocity,
 };
 use crate::model::Region;
-use crate::model::system::System;
+use crate::model::system::{Fidelity, System};
 
 /// The limits of a list of entries.
 pub(crate) fn limits(
-    (list, duration): (&[LimitSpec], Duration),
+    list: &[LimitSpec],
     system: &System,
     scope: &Scope<'_>,
 ) -> Result<Vec<PathConstraint>, SceneError> {
     let mut limits = Vec::new();
     for (index, spec) in list.iter().enumerate() {
-        let rate = match (&spec.joint_rate, &spec.voltage_rate) {
-            (Some(_), _) => Some("joint_rate"),
-            (_, Some(_)) => Some("voltage_rate"),
-            (None, None) => None,
-        };
-        if let (Some(key), Duration::Free { .. }) = (rate, duration) {
-            let place = scope.index(index).key(key);
-            let found = "a limit of a rate where the duration is free";
-            return Err(place.wrong(found, "a given duration"));
-        }
         limits.extend(limit(spec, system, &scope.index(index))?);
     }
     Ok(limits)
@@ -54,6 +45,7 @@ fn limit(
         ),
         ("joint_rate", spec.joint_rate.as_ref().map(|_| "joint_rate")),
         ("stretch", spec.stretch.as_ref().map(|_| "stretch")),
+        ("tension", spec.tension.as_ref().map(|_| "tension")),
         (
             "electric_field",
             spec.electric_field.as_ref().map(|_| "electric_field"),
@@ -82,6 +74,9 @@ fn limit(
     }
     if let Some(spec) = &spec.stretch {
         limits.push(stretch(spec, system, &scope)?);
+    }
+    if let Some(spec) = &spec.tension {
+        limits.extend(tensions(spec, system, &scope)?);
     }
     if let Some(spec) = &spec.electric_field {
         limits.extend(electric_field(spec, system, &scope)?);
@@ -131,6 +126,35 @@ fn stretch(
     let (min, max) = (spec.min.unwrap_or(0.0), spec.max.unwrap_or(f64::INFINITY));
     check_bounds(min, max, spec.min.is_some() || spec.max.is_some(), scope)?;
     Ok(PathConstraint::Stretch { muscle, min, max })
+}
+
+fn tensions(
+    spec: &TensionLimitSpec,
+    system: &System,
+    scope: &Scope<'_>,
+) -> Result<Vec<PathConstraint>, SceneError> {
+    const EXPECTED: &str = "a lumped muscle";
+    let [min, max] = bounds([&spec.min, &spec.max], scope)?;
+    let is_lumped = |&m: &usize| system.muscles[m].fidelity == Fidelity::Lumped;
+    let one = spec.muscle.as_ref().map(Some);
+    let chosen = [("muscle", one), ("muscles", spec.muscles.map(|_| None))];
+    let muscles: Vec<usize> = match scope.exactly_one(chosen)? {
+        None => (0..system.muscles.len()).filter(is_lumped).collect(),
+        Some(name) => {
+            let (place, names) = (scope.key("muscle"), names(&system.muscles, |m| &m.name));
+            let muscle = place.find(name, &names, "the name of a muscle")?;
+            if !is_lumped(&muscle) {
+                let found = format!("{name:?}, a muscle of finite elements");
+                return Err(place.wrong(found, EXPECTED));
+            }
+            vec![muscle]
+        }
+    };
+    if muscles.is_empty() {
+        return Err(scope.key("muscles").wrong("no lumped muscle", EXPECTED));
+    }
+    let limit = |muscle| PathConstraint::Tension { muscle, min, max };
+    Ok(muscles.into_iter().map(limit).collect())
 }
 
 /// Choice of a limit of fields that means no part, for messages.

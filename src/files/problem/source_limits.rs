@@ -8,7 +8,7 @@ use crate::files::problem::spec_limits::LimitSpec;
 use crate::files::problem::spec_source_limits::All;
 use crate::files::problem::state::driven;
 use crate::files::units::quantity::{PhysicalQuantity, Quantity};
-use crate::model::system::{Muscle, Source, System};
+use crate::model::system::{Source, System};
 
 /// Sources of which a limit speaks.
 type Chosen<'s> = (&'s Option<String>, Option<All>);
@@ -23,13 +23,13 @@ pub(super) fn source_limits(
     if let Some(spec) = &spec.current {
         let [min, max] = bounds([&spec.min, &spec.max], scope)?;
         let limit = |muscle| PathConstraint::Current { muscle, min, max };
-        let muscles = resisted((&spec.source, spec.sources), system, scope)?;
+        let muscles = measured((&spec.source, spec.sources), system, scope)?;
         limits.extend(muscles.into_iter().map(limit));
     }
     if let Some(spec) = &spec.power {
         let [min, max] = bounds([&spec.min, &spec.max], scope)?;
         let limit = |muscle| PathConstraint::Power { muscle, min, max };
-        let muscles = resisted((&spec.source, spec.sources), system, scope)?;
+        let muscles = measured((&spec.source, spec.sources), system, scope)?;
         limits.extend(muscles.into_iter().map(limit));
     }
     if let Some(spec) = &spec.voltage_rate {
@@ -45,7 +45,7 @@ pub(super) fn source_limits(
 }
 
 /// Both bounds, of which one at least is written.
-fn bounds<M: PhysicalQuantity>(
+pub(super) fn bounds<M: PhysicalQuantity>(
     [min, max]: [&Option<Quantity<M>>; 2],
     scope: &Scope<'_>,
 ) -> Result<[f64; 2], SceneError> {
@@ -78,26 +78,23 @@ fn chosen<'s>(
     }
 }
 
-/// Muscles behind resistors.
-fn resisted(of: Chosen<'_>, system: &System, scope: &Scope<'_>) -> Result<Vec<usize>, SceneError> {
+/// Muscles of whose sources current and power are known: all of them without such a muscle is none.
+fn measured(of: Chosen<'_>, system: &System, scope: &Scope<'_>) -> Result<Vec<usize>, SceneError> {
+    const EXPECTED: &str = "sources of lumped muscles with a permittivity: without a \"circuit\", or with a \"resistance\" in it";
     let sources = system.sources();
-    let (muscles, place) = chosen(of, &sources, scope)?;
-    let is_direct = |&&s: &&usize| {
-        !system
-            .muscles
-            .get(s)
-            .is_some_and(Muscle::is_behind_resistor)
+    let (chosen, place) = chosen(of, &sources, scope)?;
+    let obstacle = |s: usize| match system.muscles.get(s) {
+        Some(muscle) if muscle.has_measured_current() => None,
+        Some(muscle) if muscle.circuit.is_some() => Some("which leaks and has no resistor"),
+        Some(_) => Some("a muscle of finite elements"),
+        None => Some("which drives finite elements"),
     };
-    if let Some(&source) = muscles.iter().find(is_direct) {
-        let found = format!("{:?}, which has no resistor", sources[source].name);
-        let expected = "sources of muscles with a \"resistance\" in their \"circuit\": without one a jump of the voltage charges at once";
-        return Err(place.wrong(found, expected));
+    if let Some((source, why)) = chosen.iter().find_map(|&s| Some((s, obstacle(s)?))) {
+        let found = format!("{:?}, {why}", sources[source].name);
+        return Err(place.wrong(found, EXPECTED));
     }
-    match muscles.is_empty() {
-        true => Err(place.wrong(
-            "no source",
-            "a muscle with a \"resistance\" in its \"circuit\"",
-        )),
-        false => Ok(muscles),
+    match chosen.is_empty() {
+        true => Err(place.wrong("no source", EXPECTED)),
+        false => Ok(chosen),
     }
 }

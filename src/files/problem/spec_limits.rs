@@ -7,9 +7,11 @@ use crate::files::problem::spec_source_limits::{
     All, CurrentLimitSpec, PowerLimitSpec, VoltageRateLimitSpec,
 };
 use crate::files::scene::point::{CornersSpec, Point};
-use crate::files::units::quantity::{ElectricField, JointCoordinate, JointRate, Length, Quantity};
+use crate::files::units::quantity::{
+    ElectricField, Force, JointCoordinate, JointRate, Length, Quantity,
+};
 
-/// A path limit: exactly one of the eight.
+/// A path limit: exactly one of the nine.
 #[derive(Clone, Debug, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct LimitSpec {
@@ -22,6 +24,9 @@ pub struct LimitSpec {
     /// Limits of the stretch of a muscle.
     #[serde(default)]
     pub stretch: Option<StretchLimitSpec>,
+    /// Limits of the tension of lumped muscles.
+    #[serde(default)]
+    pub tension: Option<TensionLimitSpec>,
     /// Breakdown field of muscles or elastic blocks.
     #[serde(default)]
     pub electric_field: Option<ElectricFieldLimitSpec>,
@@ -53,7 +58,7 @@ pub struct JointAngleLimitSpec {
     pub max: Option<Quantity<JointCoordinate>>,
 }
 
-/// Limits of the mean rate of a joint coordinate in each interval: `min`, `max` or both. The duration has to be given.
+/// Limits of the mean rate of a joint coordinate in each interval: `min`, `max` or both.
 #[derive(Clone, Debug, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct JointRateLimitSpec {
@@ -79,6 +84,28 @@ pub struct StretchLimitSpec {
     /// Upper bound.
     #[serde(default)]
     pub max: Option<f64>,
+}
+
+/// Limits of the force with which one lumped muscle (`"muscle": name`) or each (`"muscles": "all"`) pulls its ends together, of elasticity,
+/// field, viscosity and Maxwell branches: `min`, `max` or both.
+///
+/// It bounds the tension in the middle of every interval, under the voltage there; the column of the table is its mean in both intervals
+/// beside an instant.
+#[derive(Clone, Debug, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct TensionLimitSpec {
+    /// Name of the muscle.
+    #[serde(default)]
+    pub muscle: Option<String>,
+    /// All lumped muscles.
+    #[serde(default)]
+    pub muscles: Option<All>,
+    /// Lower bound, SI unit N. With `0` the muscle is never slack.
+    #[serde(default)]
+    pub min: Option<Quantity<Force>>,
+    /// Upper bound, SI unit N.
+    #[serde(default)]
+    pub max: Option<Quantity<Force>>,
 }
 
 /// Breakdown field of one muscle (`"muscle": name`) or all (`"muscles": "all"`), of one elastic block (`"solid": name`, or a

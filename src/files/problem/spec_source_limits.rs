@@ -39,13 +39,18 @@ macro_rules! source_limits {
 }
 
 source_limits! {
-    /// Limits of the mean current in each interval from one source (`"source": name`) or each (`"sources": "all"`) of lumped muscles
-    /// behind resistors: `min`, `max` or both.
+    /// Limits of the current from one source (`"source": name`) or each (`"sources": "all"`) of lumped muscles: `min`, `max` or both.
+    ///
+    /// Behind a resistor it is the mean current in each interval. Otherwise it is the charge that flows from the middle of an interval to that
+    /// of the next one, where the voltage jumps too; from and to states of rest that are known it is that of half an interval.
     CurrentLimitSpec: Current, "A";
-    /// Limits of the mean power in each interval of one source (`"source": name`) or each (`"sources": "all"`) of lumped muscles behind
-    /// resistors: `min`, `max` or both.
+    /// Limits of the power of one source (`"source": name`) or each (`"sources": "all"`) of lumped muscles: `min`, `max` or both, at the
+    /// times of a current.
+    ///
+    /// Without a resistor it is that of the stored energy and of the work on the motion, as in the table; losses of charging in steps do not
+    /// count.
     PowerLimitSpec: Power, "W";
     /// Limits of the rate of the voltage of one source (`"source": name`) or each (`"sources": "all"`) from interval to interval: `min`,
-    /// `max` or both. The duration has to be given.
+    /// `max` or both.
     VoltageRateLimitSpec: VoltageRate, "V/s";
 }

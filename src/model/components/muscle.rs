@@ -148,7 +148,7 @@ fn named(law: ElasticLaw) -> &'static str {
     }
 }
 
-fn elastic<L>(muscle: &Muscle, law: L) -> ElasticCell<L> {
+pub(in crate::model) fn elastic<L>(muscle: &Muscle, law: L) -> ElasticCell<L> {
     ElasticCell {
         length: muscle.length(),
         volume: muscle.volume(),
@@ -157,7 +157,11 @@ fn elastic<L>(muscle: &Muscle, law: L) -> ElasticCell<L> {
     }
 }
 
-fn dielectric<L>(muscle: &Muscle, electric: ElectricConstants, law: L) -> DielectricCell<L> {
+pub(in crate::model) fn dielectric<L>(
+    muscle: &Muscle,
+    electric: ElectricConstants,
+    law: L,
+) -> DielectricCell<L> {
     DielectricCell {
         elastic: elastic(muscle, law),
         c1: electric.c1,
@@ -219,13 +223,13 @@ fn first_force<E: Energy<M>, const M: usize>(energy: &E, arguments: [f64; M]) ->
     local.plain::<1>().force(0)
 }
 
-fn viscous_cell(muscle: &Muscle, viscosity: f64) -> ViscousCell {
+pub(in crate::model) fn viscous_cell(muscle: &Muscle, viscosity: f64) -> ViscousCell {
     ViscousCell {
         coefficient: 1.5 * viscosity * muscle.volume(),
     }
 }
 
-fn branch_cell(muscle: &Muscle, constants: &MaxwellBranch) -> MaxwellCell {
+pub(in crate::model) fn branch_cell(muscle: &Muscle, constants: &MaxwellBranch) -> MaxwellCell {
     MaxwellCell {
         length: muscle.length(),
         volume: muscle.volume(),

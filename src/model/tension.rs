@@ -1,0 +1,115 @@
+//! Measure of the tension of a lumped muscle: the sum of the forces of all its energies along its span, and of its viscosity.
+
+use crate::energy::{Elasticity, Energy, FlowingCharge, GivenCharge, NeoHooke, ViscousTension};
+use crate::functional::{
+    Element, Formulas, Group, Kernel, Measure, SpanForces, Stencil, Sum, VectorArg,
+};
+use crate::kinematics::Vectors;
+use crate::model::components::capacitance;
+use crate::model::components::muscle::{branch_cell, dielectric, elastic, viscous_cell};
+use crate::model::internal::InternalKind;
+use crate::model::measures::Known;
+use crate::model::system::{Fidelity, Muscle};
+
+/// The parts of a tension in a unit in N.
+struct Parts {
+    unit: f64,
+    list: Vec<Box<dyn Measure>>,
+}
+
+impl Parts {
+    fn add<K: Kernel>(&mut self, element: K::Element) {
+        let group = Group::<K>::intervals("tension", 1.0 / self.unit, vec![element]);
+        self.list.push(Box::new(group));
+    }
+
+    /// Adds the force of an energy along its first vector, in the middle of the interval.
+    fn add_energy<E: Energy<M> + 'static, const M: usize, const NV: usize, const NS: usize>(
+        &mut self,
+        energy: E,
+        vectors: [usize; NV],
+        scalars: [usize; NS],
+    ) {
+        self.add::<SpanForces<E, M, NV, NS>>(Element {
+            energy,
+            vectors: vectors.map(|vector| read(vector, Stencil::Mid)),
+            scalars,
+        });
+    }
+
+    /// Adds the force of elasticity, with that of a voltage, by a law of elasticity.
+    fn add_cell<L: Elasticity>(
+        &mut self,
+        (muscle, law): (&Muscle, L),
+        span: usize,
+        voltage: Option<usize>,
+    ) {
+        match (muscle.material.electric, voltage) {
+            (Some(electric), Some(voltage)) => {
+                self.add_energy(dielectric(muscle, electric, law), [span], [voltage]);
+            }
+            _ => self.add_energy(elastic(muscle, law), [span], []),
+        }
+    }
+}
+
+fn read(vector: usize, stencil: Stencil) -> VectorArg {
+    VectorArg { vector, stencil }
+}
+
+impl Known<'_> {
+    /// Tension of a lumped muscle that moves or has a voltage, in a unit in N, in the middle of the intervals.
+    pub(super) fn tension(
+        &self,
+        index: usize,
+        unit: f64,
+        vectors: &mut Vectors,
+    ) -> Option<Box<dyn Measure>> {
+        let muscle = &self.presolved.system.muscles[index];
+        let charge = self.internals.vector(InternalKind::Charge(index));
+        let given = self.system.charge_of(index);
+        let given = given.and_then(|source| self.variables.input(source));
+        let voltage = self.variables.input(index).filter(|_| charge.is_none());
+        let is_changed = charge.is_some() || given.is_some() || voltage.is_some();
+        if muscle.fidelity != Fidelity::Lumped || !(is_changed || self.presolved.moves(muscle)) {
+            return None;
+        }
+        let span = self.span(index, vectors);
+        let mut parts = Parts {
+            unit,
+            list: Vec::new(),
+        };
+        match muscle.material.law {
+            None => parts.add_cell((muscle, NeoHooke), span, voltage),
+            Some(law) => parts.add_cell((muscle, law), span, voltage),
+        }
+        if let Some((charge, capacitance)) = charge.zip(capacitance(muscle)) {
+            let energy = FlowingCharge {
+                capacitance,
+                unit: capacitance.unit_of_charge(),
+            };
+            parts.add_energy::<_, 6, 2, 0>(energy, [span, vectors.index(charge)], []);
+        }
+        if let Some((charge, capacitance)) = given.zip(capacitance(muscle)) {
+            parts.add_energy(GivenCharge { capacitance }, [span], [charge]);
+        }
+        for (branch, constants) in muscle.material.maxwell.list().iter().enumerate() {
+            let kind = InternalKind::Branch {
+                muscle: index,
+                branch,
+            };
+            if let Some(viscous) = self.internals.vector(kind) {
+                let energy = branch_cell(muscle, constants);
+                parts.add_energy::<_, 6, 2, 0>(energy, [span, vectors.index(viscous)], []);
+            }
+        }
+        if let Some(viscosity) = muscle.material.viscosity {
+            parts.add::<Formulas<ViscousTension, 6, 2, 0>>(Element {
+                energy: ViscousTension(viscous_cell(muscle, viscosity)),
+                vectors: [Stencil::Mid, Stencil::Rate].map(|stencil| read(span, stencil)),
+                scalars: [],
+            });
+        }
+        Some(Box::new(Sum::new(parts.list)))
+    }
+}
