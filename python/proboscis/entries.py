@@ -503,8 +503,10 @@ Coordinates: TypeAlias = "Literal['reduced', 'redundant']"
 
 
 class CurrentLimit(TypedDict):
-    """Limits of the mean current in each interval from one source (`"source": name`) or each (`"sources": "all"`) of lumped muscles behind
-    resistors: `min`, `max` or both.
+    """Limits of the current from one source (`"source": name`) or each (`"sources": "all"`) of lumped muscles: `min`, `max` or both.
+
+    Behind a resistor it is the mean current in each interval. Otherwise it is the charge that flows from the middle of an interval to that of
+    the next one, where the voltage jumps too; from and to states of rest that are known it is that of half an interval.
     """
 
     max: NotRequired[Quantity]
@@ -707,7 +709,7 @@ class JointAngleLimit(TypedDict):
 
 
 class JointRateLimit(TypedDict):
-    """Limits of the mean rate of a joint coordinate in each interval: `min`, `max` or both. The duration has to be given."""
+    """Limits of the mean rate of a joint coordinate in each interval: `min`, `max` or both."""
 
     joint: Text
     """Name of the joint."""
@@ -720,7 +722,7 @@ class JointRateLimit(TypedDict):
 
 
 class Limit(TypedDict):
-    """A path limit: exactly one of the eight."""
+    """A path limit: exactly one of the nine."""
 
     current: NotRequired[CurrentLimit]
     """Limits of the current of sources."""
@@ -742,6 +744,9 @@ class Limit(TypedDict):
 
     stretch: NotRequired[StretchLimit]
     """Limits of the stretch of a muscle."""
+
+    tension: NotRequired[TensionLimit]
+    """Limits of the tension of lumped muscles."""
 
     voltage_rate: NotRequired[VoltageRateLimit]
     """Limits of the rate of the voltage of sources."""
@@ -829,8 +834,10 @@ class Path(TypedDict):
 
 
 class PowerLimit(TypedDict):
-    """Limits of the mean power in each interval of one source (`"source": name`) or each (`"sources": "all"`) of lumped muscles behind resistors:
-    `min`, `max` or both.
+    """Limits of the power of one source (`"source": name`) or each (`"sources": "all"`) of lumped muscles: `min`, `max` or both, at the times of a
+    current.
+
+    Without a resistor it is that of the stored energy and of the work on the motion, as in the table; losses of charging in steps do not count.
     """
 
     max: NotRequired[Quantity]
@@ -988,6 +995,27 @@ class Table(TypedDict):
     """A voltage for each interval by the names of muscles and driven electrodes (`block.electrode`), SI unit V; 0 where not named."""
 
 
+class TensionLimit(TypedDict):
+    """Limits of the force with which one lumped muscle (`"muscle": name`) or each (`"muscles": "all"`) pulls its ends together, of elasticity,
+    field, viscosity and Maxwell branches: `min`, `max` or both.
+
+    It bounds the tension in the middle of every interval, under the voltage there; the column of the table is its mean in both intervals beside
+    an instant.
+    """
+
+    max: NotRequired[Quantity]
+    """Upper bound, SI unit N."""
+
+    min: NotRequired[Quantity]
+    """Lower bound, SI unit N. With `0` the muscle is never slack."""
+
+    muscle: NotRequired[Text]
+    """Name of the muscle."""
+
+    muscles: NotRequired[All]
+    """All lumped muscles."""
+
+
 class TrackJoint(TypedDict):
     """A joint and the function that its coordinate follows."""
 
@@ -1041,7 +1069,7 @@ class Track(TypedDict):
 
 class VoltageRateLimit(TypedDict):
     """Limits of the rate of the voltage of one source (`"source": name`) or each (`"sources": "all"`) from interval to interval: `min`, `max` or
-    both. The duration has to be given.
+    both.
     """
 
     max: NotRequired[Quantity]

@@ -3,7 +3,7 @@
 use crate::scene::{Case, PROBLEM, SCENE, check, folder, mistake};
 use proboscis::control::problem::{Afterwards, BoundaryState, Task, Voltages};
 use proboscis::dynamics::Integrator;
-use proboscis::files::read_problem;
+use proboscis::files::{driven_voltages, read_problem};
 use proboscis::math::Signal;
 use proboscis::model::Response;
 use std::fs;
@@ -212,6 +212,19 @@ fn voltages_may_come_from_a_csv_file() {
         let error = with_csv(text, csv).unwrap_err();
         assert!(error.contains(told), "{error}");
     }
+}
+
+#[test]
+fn a_voltage_that_is_typed_twice_is_refused() {
+    let (_folder, path) = folder(SCENE, PROBLEM);
+    let system = read_problem(&path, &[]).unwrap().system;
+    let words = ["muscle1=1kV", "muscle1=2kV"].map(str::to_owned);
+    assert_eq!(driven_voltages(&words[1..], &system).unwrap()[0], 2000.0);
+    let error = driven_voltages(&words, &system).unwrap_err();
+    assert!(
+        error.to_string().contains("one voltage of \"muscle1\""),
+        "{error}"
+    );
 }
 
 #[test]

@@ -38,17 +38,6 @@ fn found(model: &Model, voltages: &[f64]) -> Equilibrium {
     stable_equilibrium(model, &reference(model), voltages).unwrap()
 }
 
-#[test]
-fn a_voltage_that_is_typed_twice_is_refused() {
-    let (model, _) = upright(9.81);
-    let words = ["muscle2=1kV", "muscle2=2kV"].map(str::to_owned);
-    let error = driven_voltages(&words, &model.system).unwrap_err();
-    assert!(
-        error.to_string().contains("one voltage of \"muscle2\""),
-        "{error}"
-    );
-}
-
 /// The trunk upright under gravity in m/s², with voltages that bend it.
 fn upright(gravity: f64) -> (Model, Vec<f64>) {
     let set = format!("scene.gravity=[0,-{gravity},0]");
