@@ -109,6 +109,21 @@ pub fn local_error_of(
     })
 }
 
+/// Greatest distance in mm between points of a motion at some instants and those of another motion at all of its instants.
+pub fn distance_between(
+    model: &Model,
+    motion: (&DiscreteTrajectory, &Trajectory),
+    instants: &[usize],
+    other: (&DiscreteTrajectory, &Trajectory),
+) -> f64 {
+    let [here, there] = [motion, other].map(|(discrete, motion)| places(model, discrete, motion));
+    let pairs = instants.iter().map(|&k| &here[k]).zip(&there);
+    let points = pairs.flat_map(|(here, there)| here.iter().zip(there));
+    points
+        .map(|(here, there)| (here - there).norm())
+        .fold(0.0, f64::max)
+}
+
 /// The constant of the neglected term.
 fn constant(order: usize) -> f64 {
     let factorial = |n: usize| (1..=n).map(|i| i as f64).product::<f64>();

@@ -61,7 +61,7 @@ pub use error::{EquilibriumError, StepError};
 pub use exchange::{EnergyExchange, SourceEnergies};
 pub use galerkin::GalerkinEquations;
 pub use interval_energies::{Energies, Work, energies};
-pub use local_error::{LocalError, local_error, local_error_of};
+pub use local_error::{LocalError, distance_between, local_error, local_error_of};
 pub use loop_rates::rates_in_loops;
 pub use midpoint::{Midpoint, Stepper};
 pub use momenta::last_momentum;

@@ -13,7 +13,7 @@ use std::ops::ControlFlow;
 /// The shortest step that a tolerance may ask for, as a part of the duration.
 const LEAST: f64 = 1e-9;
 /// Part of a tolerance that the first two steps behind the start and behind all switches may use in excess.
-const AT_JUMPS: f64 = 0.02;
+const AT_JUMPS: f64 = 1e-3;
 
 /// Integrates `steps` steps of `h` ms under the voltages of a drive.
 ///

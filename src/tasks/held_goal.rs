@@ -6,6 +6,7 @@ use std::time::Instant;
 
 use crate::control::problem::{Control, Guess, SoughtHold};
 use crate::control::{Earlier, hold_obstacle};
+use crate::ipopt::interrupt;
 use crate::model::System;
 use crate::tasks::grid::{Found, SolveRequest, find};
 use crate::workflow::Iterate;
@@ -72,10 +73,14 @@ pub(super) fn solve_and_hold<'a>(
         }
         Err(error) => tracing::debug!(%error, "the inputs that hold the goal are not sought"),
     }
+    let note = match interrupt::stop().or(stopped(seconds_left(request.limits.seconds, began))) {
+        Some(_) => "the search for inputs that hold the goal was stopped",
+        None => "no inputs within the bounds were found that hold the goal",
+    };
     Ok(HeldGoal {
         found,
         control: Cow::Borrowed(control),
-        note: Some("no inputs within the bounds were found that hold the goal".to_owned()),
+        note: Some(note.to_owned()),
     })
 }
 

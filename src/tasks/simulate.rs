@@ -16,6 +16,7 @@ use crate::workflow::accuracy::{Accuracy, AccuracyTarget};
 use crate::workflow::domain::{self, Outside};
 use crate::workflow::grids::integrate_to;
 use crate::workflow::integrate::{Simulated, grid, integrate_on};
+use crate::workflow::longer_steps;
 use crate::workflow::memory;
 use crate::workflow::remark::Remarks;
 use crate::workflow::steps;
@@ -90,7 +91,8 @@ impl SimulationResult {
         let order = task.solving.integrator.order();
         let ends = [task.start.voltages(), None];
         let outside = domain::records(&out_of_domain(model, discrete));
-        let neglected = local_error_of(model, (discrete, trajectory), order);
+        let neglected = local_error_of(model, (discrete, trajectory), order)
+            .map(|local| longer_steps::confirmed(&self.simulated, task, trajectory, local));
         let mut remarks = Remarks::default();
         remarks.note("start", task.start.notes().iter().cloned());
         remarks.note("moved_marker", moved_markers(system));

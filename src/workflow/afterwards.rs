@@ -44,11 +44,12 @@ pub struct Departure {
     pub time: f64,
 }
 
-/// Simulates on from the end of a motion to a goal that names places or joint coordinates and no voltages that hold it.
+/// Simulates on from the end of a motion, with the length of its path, to a goal that names places or joint coordinates and no voltages that hold it.
 pub(crate) fn afterwards(
     model: &Model,
     control: &Control,
     optimal: &Solution,
+    path_length: Distance,
 ) -> Option<Afterwards> {
     let is_named = control.names_no_hold() && !control.seeks_hold();
     let n = optimal.intervals();
@@ -67,7 +68,6 @@ pub(crate) fn afterwards(
         drift,
         failure,
     } = held(model, &end, optimal, last);
-    let path_length = Distance::path_length(model, optimal);
     Some(Afterwards {
         seconds: motion.times[motion.intervals()] / 1e3,
         goal: departures(model, &control.goal, &trajectory(model, &motion)),

@@ -142,9 +142,9 @@ fn switches(inputs: &Voltages, model: &Model) -> Vec<f64> {
 }
 
 /// The voltages of a task as the steps of its model ask for them.
-struct Driven<'a> {
-    model: &'a Model,
-    voltages: &'a Voltages,
+pub(super) struct Driven<'a> {
+    pub(super) model: &'a Model,
+    pub(super) voltages: &'a Voltages,
 }
 
 impl Drive for Driven<'_> {

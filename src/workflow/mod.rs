@@ -8,7 +8,8 @@
 //! - `recentre`: a motion with other charts.
 //! - `further`, `retry_displaced`, `shortest`, `combined`, `infeasible`, `active`, `violations`: attempts before a problem is called infeasible, and the explanation.
 //! - `effects`, `reasons`, `stopwatch`: terms of a model, their reasons and times; `memory`: a refusal of more than the machine has.
-//! - `steps`, `domain`: warnings of a motion: steps that do not resolve it, muscles outside the domain of their material.
+//! - `steps`, `domain`: warnings of a motion: steps that do not resolve it, muscles outside the domain of their material; `longer_steps`: the error of
+//!   methods of high order.
 //! - `tracking`: deviations of a motion from the references of its objective.
 //! - `motion`: conversion between unknowns and a trajectory; `parallel_map`: pieces of work in several threads.
 
@@ -35,6 +36,7 @@ pub(crate) mod hold_check;
 pub(crate) mod infeasible;
 pub(crate) mod integrate;
 mod iterate;
+pub(crate) mod longer_steps;
 pub(crate) mod memory;
 pub(crate) mod motion;
 pub(crate) mod optimise;

@@ -7,6 +7,7 @@ use crate::model::Model;
 use crate::workflow::active::Active;
 use crate::workflow::afterwards::{Afterwards, afterwards};
 use crate::workflow::cause::Cause;
+use crate::workflow::distance::Distance;
 use crate::workflow::period::{Repeated, repeated};
 use crate::workflow::resimulate::Resimulation;
 use crate::workflow::violations::Violation;
@@ -91,7 +92,11 @@ impl Optimum {
     /// periodic motion.
     pub(crate) fn hold(&mut self, control: &Control) {
         if self.is_solved() {
-            self.afterwards = afterwards(&self.model, control, &self.motion);
+            let path_length = match &self.resimulation {
+                Some(tested) => tested.path_length,
+                None => Distance::path_length(&self.model, &self.motion),
+            };
+            self.afterwards = afterwards(&self.model, control, &self.motion, path_length);
             self.repeated = repeated(&self.model, control, &self.boundary.start, &self.motion);
         }
         let Self {

@@ -197,7 +197,7 @@ impl Drive for Shared<'_> {
 }
 
 /// A motion before its first step.
-fn at_start(discrete: &DiscreteTrajectory) -> DiscreteTrajectory {
+pub(super) fn at_start(discrete: &DiscreteTrajectory) -> DiscreteTrajectory {
     let mut start = DiscreteTrajectory {
         times: vec![0.0],
         z: discrete.z[..1].to_vec(),

@@ -15,8 +15,12 @@ use crate::ipopt::interrupt;
 const CORRECTIONS: usize = 12;
 /// Convergence of a correction, relative to angles of one radian and the length of the system.
 const UPDATE: f64 = 1e-11;
+/// Corrections below this that no longer fall are rounding.
+const ROUNDING: f64 = 1e-8;
 /// Least cosine of the angle between the tangents at both ends of a step.
 pub(super) const STRAIGHT: f64 = 0.9;
+/// Steps below this may turn by any angle: a path has kinks where tendons tighten and stops are met.
+pub(super) const KINK: f64 = 1e-3;
 /// First step along the path, in units of the fraction and of strains.
 pub(super) const FIRST: f64 = 0.02;
 /// Largest step.
@@ -111,11 +115,21 @@ impl Path<'_, '_> {
         })
     }
 
-    /// The point at the arc length `step` from another; `None` where the corrections do not converge.
+    /// The point at the arc length `step` from another; `None` where the corrections do not converge, or where the path turns by more than
+    /// a step of this length may see.
     pub(super) fn advance(&mut self, from: &PathPoint, step: f64) -> Option<PathPoint> {
+        let point = self.within(from, step)?;
+        let ((before, ahead), (after, rise)) = (&from.tangent, &point.tangent);
+        let is_straight = self.dot(before, after) + ahead * rise > STRAIGHT;
+        (is_straight || step < KINK).then_some(point)
+    }
+
+    /// The same within a step that was taken, however the path turns.
+    fn within(&mut self, from: &PathPoint, step: f64) -> Option<PathPoint> {
         let (direction, ahead) = &from.tangent;
         let mut state = self.statics.moved(&from.state, step, direction);
         let mut fraction = from.fraction + step * ahead;
+        let mut last = f64::INFINITY;
         for _ in 0..CORRECTIONS {
             self.statics.iterations += 1;
             let slope = self.linearise(&state, fraction)?;
@@ -132,11 +146,11 @@ impl Path<'_, '_> {
             }
             state = self.statics.moved(&state, 1.0, &update);
             fraction += change;
-            if size < UPDATE {
-                let point = self.point(state, fraction, Some(&from.tangent))?;
-                let (turned, rise) = &point.tangent;
-                return (self.dot(turned, direction) + rise * ahead > STRAIGHT).then_some(point);
+            // Next to a branching point rounding keeps corrections from falling further.
+            if size < UPDATE || (size < ROUNDING && size >= 0.5 * last) {
+                return self.point(state, fraction, Some(&from.tangent));
             }
+            last = size;
         }
         None
     }
@@ -154,7 +168,7 @@ impl Path<'_, '_> {
             let secant = low + (high - low) * at_low / (at_low - at_high);
             let middle = 0.5 * (low + high);
             let trial = if k % 4 == 3 { middle } else { secant };
-            let Some(point) = self.advance(before, trial) else {
+            let Some(point) = self.within(before, trial) else {
                 break;
             };
             let slope = point.tangent.1;
@@ -189,7 +203,7 @@ impl Path<'_, '_> {
         let mut best = before.clone();
         for _ in 0..HALVINGS {
             let middle = 0.5 * (low + high);
-            match self.advance(before, middle) {
+            match self.within(before, middle) {
                 Some(point) if point.unstable == Some(0) => {
                     low = middle;
                     best = point;

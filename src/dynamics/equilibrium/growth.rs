@@ -1,7 +1,7 @@
 //! Static equilibrium on the path of growing loads: the weights first, then the voltages in steps of V², cut when Newton
 //! fails.
 
-use crate::dynamics::equilibrium::arc_length::{LimitPoint, PathEnd, STRAIGHT, path_end};
+use crate::dynamics::equilibrium::arc_length::{KINK, LimitPoint, PathEnd, STRAIGHT, path_end};
 use crate::dynamics::equilibrium::instability::Load;
 use crate::dynamics::equilibrium::ramp::Ramp;
 use crate::dynamics::equilibrium::rest_state::RestState;
@@ -115,16 +115,23 @@ pub(super) fn grow(
     };
     while is_there && reached < 1.0 && increment >= SMALLEST {
         let target = f64::min(reached + increment, 1.0);
-        let (mut trial, most) = predicted(statics, &state, [reached, target], slope.as_deref());
+        let (mut trial, most) =
+            predicted(statics, &state, ramp, [reached, target], slope.as_deref());
         let fraction = ramp.fraction(target);
         let voltages = ramp.apply(statics, fraction);
+        if ramp.load == Load::Voltages && statics.settle(&mut trial, &voltages).is_none() {
+            increment *= 0.5;
+            continue;
+        }
         match statics.newton(&mut trial, &voltages, UpdateRange::Within(most)) {
             Ok(NewtonOutcome::Converged) => {
                 let here = self::slope(statics, ramp, fraction);
-                if slope
-                    .as_ref()
-                    .is_some_and(|before| !is_straight(statics, before, &here))
-                {
+                let turns = |before: &Vec<f64>| {
+                    let length =
+                        (target - reached) * statics.size(&before[..statics.scales().len()]);
+                    length > KINK && !is_straight(statics, before, &here)
+                };
+                if slope.as_ref().is_some_and(turns) {
                     increment *= 0.5;
                     continue;
                 }
@@ -163,30 +170,40 @@ fn slope(statics: &mut Statics<'_>, ramp: Ramp<'_>, fraction: f64) -> Vec<f64> {
 
 /// Returns true if a path with these derivatives at both ends of a step hardly turns within it.
 fn is_straight(statics: &Statics<'_>, before: &[f64], after: &[f64]) -> bool {
-    let weights = statics.weights();
+    let weights = &statics.weights()[..statics.scales().len()];
     let dot = |a: &[f64], b: &[f64]| {
-        let products = a.iter().zip(b).zip(&weights).map(|((a, b), w)| a * b * w);
+        let products = a.iter().zip(b).zip(weights).map(|((a, b), w)| a * b * w);
         1.0 + products.sum::<f64>()
     };
     dot(before, after) > STRAIGHT * (dot(before, before) * dot(after, after)).sqrt()
 }
 
 /// The state on the tangent of a path from one part of a load to another, and the longest correction from there; without a tangent the
-/// same state with potentials that have grown.
+/// same state. Potentials grow with the voltages.
 fn predicted(
     statics: &Statics<'_>,
     state: &RestState,
+    ramp: Ramp<'_>,
     [reached, target]: [f64; 2],
     slope: Option<&[f64]>,
 ) -> (RestState, f64) {
-    let Some(slope) = slope else {
-        return (state.clone(), LONGEST);
+    let (n, m) = (statics.scales().len(), statics.model.action.map.unknowns());
+    let (mut trial, most) = match slope {
+        None => (state.clone(), LONGEST),
+        Some(slope) => {
+            let step = target - reached;
+            let moved = statics.moved(state, step, &slope[..m]);
+            (
+                moved,
+                f64::min(BEND * step * statics.size(&slope[..n]), LONGEST),
+            )
+        }
     };
-    let step = target - reached;
-    (
-        statics.moved(state, step, slope),
-        BEND * step * statics.size(slope).min(LONGEST / BEND / step),
-    )
+    if let (Load::Voltages, true) = (ramp.load, reached > 0.0) {
+        let growth = (target / reached).sqrt();
+        trial[m..].iter_mut().for_each(|p| *p *= growth);
+    }
+    (trial, most)
 }
 
 /// Returns the end of the path at a state: the limit point next to it, or the last equilibrium.

@@ -147,6 +147,7 @@ fn without_stiffness(
     turns.for_each(|value| *value += PUSH);
     statics.weight = 1.0;
     statics.evaluate(&aside, none);
+    statics.leave_out_curvature();
     statics.factor().ok();
     let mut largest = vec![0.0_f64; model.coordinate_count()];
     for ((row, col), value) in statics.entries() {

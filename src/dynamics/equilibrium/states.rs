@@ -10,13 +10,15 @@ impl Statics<'_> {
         self.state(z, &scalars)
     }
 
-    /// The state at a configuration with scalars that have an equation.
+    /// The state at a configuration with scalars that have an equation, its turns behind charts zero.
     pub(super) fn state(&self, z: &[f64], scalars: &[f64]) -> RestState {
         let (unknowns, charts) = z.split_at(self.model.action.map.unknowns());
-        RestState {
+        let mut state = RestState {
             unknowns: [unknowns, scalars].concat(),
             charts: charts.to_vec(),
-        }
+        };
+        self.recentre(&mut state);
+        state
     }
 
     /// Coordinates, multipliers and charts of a state.
@@ -63,5 +65,10 @@ impl Statics<'_> {
         for ((place, [_, _, third]), sign) in pairs.enumerate().zip(signs) {
             self.values[self.curved + place] = sign * self.residual[third];
         }
+    }
+
+    /// Leaves the second derivatives evaluated last by turns: those by one on which nothing depends are zero, whatever the forces.
+    pub(super) fn leave_out_curvature(&mut self) {
+        self.values[self.curved..self.added].fill(0.0);
     }
 }

@@ -26,8 +26,8 @@ pub(super) const ITERATIONS: usize = 30;
 const UPDATE: f64 = 1e-11;
 /// Largest ratio of the second update to the first one on a path: beyond it Newton's method may end on another path.
 const CONTRACTION: f64 = 0.25;
-/// First updates below this are not compared.
-const SHORT: f64 = 1e-6;
+/// Updates below this are not compared: a path has kinks where tendons tighten and stops are met.
+const SHORT: f64 = 1e-4;
 /// An update longer than this leaves the region in which the tangent says anything.
 const LONG: f64 = 0.5;
 
@@ -279,8 +279,14 @@ impl<'m> Statics<'m> {
         let cross = cross.flat_map(|(slot, entry)| {
             [layout.lower_at(0), layout.upper_at(0)].map(|first| (entry, first + slot))
         });
+        let pairs = self.charted.iter().flat_map(turned_pairs).enumerate();
+        let curved = pairs.flat_map(|(place, [i, j, _])| {
+            let place = self.curved + place;
+            [((i, j), place), ((j, i), place)]
+        });
         let is_stiffness = move |((i, j), _): &((usize, usize), usize)| *i < n && *j < n;
         same.chain(cross)
+            .chain(curved)
             .filter(is_stiffness)
             .map(move |(entry, place)| (entry, -self.values[place] / h))
     }
@@ -304,7 +310,7 @@ impl<'m> Statics<'m> {
         voltages: &[f64],
         reach: UpdateRange,
     ) -> Result<NewtonOutcome, EquilibriumError> {
-        let mut last = f64::INFINITY;
+        let (mut last, mut first) = (f64::INFINITY, 0.0);
         self.recentre(state);
         for iteration in 0..ITERATIONS {
             if let Some(status) = interrupt::stop() {
@@ -324,12 +330,17 @@ impl<'m> Statics<'m> {
             let mut update = std::mem::take(&mut self.residual);
             self.solve(&mut update);
             let size = self.size(&update);
+            // Potentials follow from one update.
+            let moved = self.size(&update[..self.scales().len()]);
             let is_far = match (reach, iteration) {
                 (UpdateRange::Far, _) => false,
-                (UpdateRange::Within(most), 0) => size > most.max(SHORT),
-                (UpdateRange::Within(_), 1) => size > (CONTRACTION * last).max(SHORT),
+                (UpdateRange::Within(most), 0) => moved > most.max(SHORT),
+                (UpdateRange::Within(_), 1) => moved > (CONTRACTION * first).max(SHORT),
                 _ => size > LONG,
             };
+            if iteration == 0 {
+                first = moved;
+            }
             if size.is_nan() || is_far {
                 self.residual = update;
                 return Ok(NewtonOutcome::Failed);
