@@ -6,7 +6,6 @@ use std::time::Instant;
 
 use crate::control::problem::{Control, Guess, SoughtHold};
 use crate::control::{Earlier, hold_obstacle};
-use crate::ipopt::interrupt;
 use crate::model::System;
 use crate::tasks::grid::{Found, SolveRequest, find};
 use crate::workflow::Iterate;
@@ -39,12 +38,15 @@ pub(super) fn solve_and_hold<'a>(
     let mut found = find(system, control, request, observer)?;
     found.optimum.hold(control);
     let seconds = seconds_left(request.limits.seconds, began);
-    if !is_left(&found, control) || stopped(seconds).is_some() {
+    if !is_left(&found, control) {
         return Ok(HeldGoal {
             found,
             control: Cow::Borrowed(control),
             note: None,
         });
+    }
+    if stopped(seconds).is_some() {
+        return Ok(unfinished(found, control));
     }
     let held = Control {
         sought_hold: SoughtHold::Always,
@@ -73,15 +75,25 @@ pub(super) fn solve_and_hold<'a>(
         }
         Err(error) => tracing::debug!(%error, "the inputs that hold the goal are not sought"),
     }
-    let note = match interrupt::stop().or(stopped(seconds_left(request.limits.seconds, began))) {
-        Some(_) => "the search for inputs that hold the goal was stopped",
-        None => "no inputs within the bounds were found that hold the goal",
-    };
+    if stopped(seconds_left(request.limits.seconds, began)).is_some() {
+        return Ok(unfinished(found, control));
+    }
     Ok(HeldGoal {
         found,
         control: Cow::Borrowed(control),
-        note: Some(note.to_owned()),
+        note: Some("no inputs within the bounds were found that hold the goal".to_owned()),
     })
+}
+
+/// The first optimum, where the search for what holds its goal was stopped: by Ctrl-C the whole solve was.
+fn unfinished(mut found: Found, control: &Control) -> HeldGoal<'_> {
+    found.optimum.stopped = found.optimum.stopped.or(stopped(None));
+    let note = "the inputs that hold the goal were not found in the time: \"hold\": \"find\" seeks them at once";
+    HeldGoal {
+        found,
+        control: Cow::Borrowed(control),
+        note: Some(note.to_owned()),
+    }
 }
 
 /// Returns true if an optimum leaves a goal for which inputs that hold it may be sought.

@@ -1,6 +1,7 @@
 //! The verdict on an optimum: by verification, by the end where it has to be held, and by the solver.
 
 use crate::control::problem::{Control, Hold};
+use crate::ipopt::Status;
 use crate::tasks::solve_messages::{meaning, redundancy, stopped_after, unresolved};
 use crate::workflow::cause::Cause;
 use crate::workflow::optimum::Optimum;
@@ -28,7 +29,8 @@ impl Verdict {
         } = optimum;
         let refuted = optimum.reversed.map(|(k, m)| unresolved(model, k, m));
         let refuted = refuted.or_else(|| optimum.cause().map(Cause::message));
-        let mut is_solved = optimum.is_solved();
+        let is_interrupted = optimum.stopped == Some(Status::Interrupted);
+        let mut is_solved = optimum.is_solved() && !is_interrupted;
         let mut word = optimum.word();
         let has_to_hold = is_solved && control.hold == Hold::Required;
         let not_held = not_kept.filter(|_| has_to_hold).map(str::to_owned);

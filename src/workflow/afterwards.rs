@@ -155,7 +155,7 @@ impl Afterwards {
         );
         Some(format!(
             "nothing holds the goal: with the last inputs held on for {} s, {}; for an end that stays take \"rest_at_voltages\", \
-             or \"markers\" with \"hold\"",
+             \"markers\" with \"hold\", or \"hold\": \"find\", which seeks the voltages of markers and joint angles",
             significant(self.seconds, 3),
             far.join(", ")
         ))

@@ -242,28 +242,32 @@ pub(super) fn path_end(
             }
             continue;
         };
-        if next.tangent.1 <= 0.0 {
-            let found = path.turn(&here, step, &next);
-            return Some(PathEnd::Lost(LimitPoint {
-                fraction: found.fraction,
-                kind: Instability::of_turn(ramp.load),
-                state: found.state,
-            }));
-        }
-        if let (Some(0), Some(1..)) = (here.unstable, next.unstable) {
-            let found = path.switch(&here, step);
-            return Some(PathEnd::Lost(LimitPoint {
-                fraction: found.fraction,
-                kind: Instability::Buckling,
-                state: found.state,
-            }));
-        }
-        if next.fraction >= 1.0 {
-            let nearest = match 1.0 - here.fraction < next.fraction - 1.0 {
-                true => here,
-                false => next,
-            };
-            return path.full(&nearest).map(PathEnd::Reached);
+        let lost = if next.tangent.1 <= 0.0 {
+            let kind = Instability::of_turn(ramp.load);
+            Some((path.turn(&here, step, &next), kind))
+        } else if let (Some(0), Some(1..)) = (here.unstable, next.unstable) {
+            Some((path.switch(&here, step), Instability::Buckling))
+        } else {
+            None
+        };
+        let is_before = |fraction: f64| fraction < 1.0 || here.fraction >= 1.0;
+        match lost {
+            Some((found, kind)) if is_before(found.fraction) => {
+                return Some(PathEnd::Lost(LimitPoint {
+                    fraction: found.fraction,
+                    kind,
+                    state: found.state,
+                }));
+            }
+            Some(_) => return path.full(&here).map(PathEnd::Reached),
+            None if next.fraction >= 1.0 => {
+                let nearest = match 1.0 - here.fraction < next.fraction - 1.0 {
+                    true => here,
+                    false => next,
+                };
+                return path.full(&nearest).map(PathEnd::Reached);
+            }
+            None => {}
         }
         here = next;
         step = (1.5 * step).min(LARGEST);

@@ -101,6 +101,8 @@ pub(super) fn grow(
         Load::Weight => statics.has_weight() && statics.weight < 1.0,
         Load::Voltages => statics.is_driven(ramp.voltages),
     };
+    // Blocks bend far within few updates, and have no states of rest far from their path.
+    let has_nodes = !statics.model.action.map.of_nodes.is_empty();
     let (mut reached, mut increment) = (0.0, FIRST);
     let mut stable = Some((state.clone(), 0.0));
     let mut is_lost = false;
@@ -123,13 +125,17 @@ pub(super) fn grow(
             increment *= 0.5;
             continue;
         }
-        match statics.newton(&mut trial, &voltages, UpdateRange::Within(most)) {
+        let range = match has_nodes {
+            true => UpdateRange::Near,
+            false => UpdateRange::Within(most),
+        };
+        match statics.newton(&mut trial, &voltages, range) {
             Ok(NewtonOutcome::Converged) => {
                 let here = self::slope(statics, ramp, fraction);
                 let turns = |before: &Vec<f64>| {
                     let length =
                         (target - reached) * statics.size(&before[..statics.scales().len()]);
-                    length > KINK && !is_straight(statics, before, &here)
+                    !has_nodes && length > KINK && !is_straight(statics, before, &here)
                 };
                 if slope.as_ref().is_some_and(turns) {
                     increment *= 0.5;
