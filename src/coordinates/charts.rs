@@ -43,13 +43,11 @@ impl CoordinateMap {
     /// Moves unknowns by a step along a direction, where the turns behind charts are zero: they stay zero, and the charts turn about the
     /// rotation vectors of their parts of the direction.
     pub fn advance(&self, step: f64, direction: &[f64], unknowns: &mut [f64], charts: &mut [f64]) {
-        match &self.tree {
-            Some(tree) => tree.advance(step, direction, unknowns, charts),
-            None => {
-                for (value, change) in unknowns.iter_mut().zip(direction) {
-                    *value += step * change;
-                }
-            }
+        for (value, change) in unknowns.iter_mut().zip(direction) {
+            *value += step * change;
+        }
+        if let Some(tree) = &self.tree {
+            tree.turn_charts(unknowns, charts);
         }
     }
 

@@ -5,14 +5,12 @@
 //! and the motion in steps of four times the length, the error is d/(d₂/d − 1) where d₂/d, which is 2ᵖ for short steps, is at least half of
 //! that; otherwise the steps do not resolve the motion, and all of d is told.
 
-use std::ops::ControlFlow;
-
 use crate::control::problem::Simulation;
 use crate::dynamics::trajectory::Trajectory;
-use crate::dynamics::{DiscreteTrajectory, Lengths, LocalError, distance_between, go_on};
+use crate::dynamics::{LocalError, distance_between};
 use crate::ipopt::interrupt;
 use crate::workflow::integrate::{Driven, Simulated};
-use crate::workflow::tolerance::at_start;
+use crate::workflow::tolerance::repeated;
 
 /// Orders up to this are estimated from the motion itself.
 const LOW: usize = 2;
@@ -49,8 +47,15 @@ fn error(
 ) -> Option<(f64, bool)> {
     let (model, discrete) = (&simulated.model, &simulated.discrete);
     let [pairs, fours] = [2, 4].map(|count| every(count, discrete.intervals()));
-    let twice = repeated(simulated, task, &pairs)?;
-    let four_times = repeated(simulated, task, &fours)?;
+    let drive = Driven {
+        model,
+        voltages: &task.voltages,
+    };
+    let by = |instants: &[usize]| {
+        let times: Vec<f64> = instants.iter().map(|&k| discrete.times[k]).collect();
+        repeated(task.solving, model, &drive, discrete, &times)
+    };
+    let (twice, four_times) = (by(&pairs)?, by(&fours)?);
     let [of_twice, of_four] =
         [&twice, &four_times].map(|motion| Trajectory::from_discrete(model, motion));
     let among: Vec<usize> = fours
@@ -73,27 +78,4 @@ fn every(count: usize, steps: usize) -> Vec<usize> {
     let mut instants: Vec<usize> = (0..steps).step_by(count).collect();
     instants.push(steps);
     instants
-}
-
-/// The motion in steps between some of its instants; none where a step fails.
-fn repeated(
-    simulated: &Simulated,
-    task: &Simulation,
-    instants: &[usize],
-) -> Option<DiscreteTrajectory> {
-    let Simulated {
-        model, discrete, ..
-    } = simulated;
-    let times: Vec<f64> = instants.iter().map(|&k| discrete.times[k]).collect();
-    let drive = Driven {
-        model,
-        voltages: &task.voltages,
-    };
-    let go = |_: &DiscreteTrajectory| match interrupt::stop() {
-        Some(_) => ControlFlow::Break(()),
-        None => ControlFlow::Continue(()),
-    };
-    let lengths = Lengths::Between(&times);
-    let (motion, failure) = go_on(task.solving, model, at_start(discrete), lengths, drive, go);
-    (failure.is_none() && motion.times.len() == times.len()).then_some(motion)
 }

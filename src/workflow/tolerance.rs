@@ -161,13 +161,8 @@ impl ByTolerance<'_> {
         kept
     }
 
-    /// The motion in steps between other times; none where a step fails.
     fn repeated(&self, discrete: &DiscreteTrajectory, times: &[f64]) -> Option<DiscreteTrajectory> {
-        let lengths = Lengths::Between(times);
-        let (motion, failure) =
-            self.go_on(at_start(discrete), lengths, |_| ControlFlow::Continue(()));
-        let is_whole = failure.is_none() && motion.times.len() == times.len();
-        is_whole.then_some(motion)
+        repeated(self.solving, self.model, self.drive, discrete, times)
     }
 
     /// Greatest distance between some instants of a motion and all of another.
@@ -187,6 +182,21 @@ impl ByTolerance<'_> {
     }
 }
 
+/// A motion in steps between other times; none where a step fails.
+pub(super) fn repeated(
+    solving: Solving,
+    model: &Model,
+    drive: &dyn Drive,
+    discrete: &DiscreteTrajectory,
+    times: &[f64],
+) -> Option<DiscreteTrajectory> {
+    let (begun, lengths) = (at_start(discrete), Lengths::Between(times));
+    let each = |_: &DiscreteTrajectory| ControlFlow::Continue(());
+    let (motion, failure) = go_on(solving, model, begun, lengths, Shared(drive), each);
+    let is_whole = failure.is_none() && motion.times.len() == times.len();
+    is_whole.then_some(motion)
+}
+
 /// A drive that several motions share.
 struct Shared<'a>(&'a dyn Drive);
 
@@ -197,7 +207,7 @@ impl Drive for Shared<'_> {
 }
 
 /// A motion before its first step.
-pub(super) fn at_start(discrete: &DiscreteTrajectory) -> DiscreteTrajectory {
+fn at_start(discrete: &DiscreteTrajectory) -> DiscreteTrajectory {
     let mut start = DiscreteTrajectory {
         times: vec![0.0],
         z: discrete.z[..1].to_vec(),

@@ -82,18 +82,8 @@ impl Tree {
         }
     }
 
-    /// Moves coordinates by a step along a direction, where the turns behind each chart are zero: they stay zero, and the chart is turned by
-    /// the rotation vector of its part of the direction, whose axes are those of the turns.
-    pub(in crate::coordinates) fn advance(
-        &self,
-        step: f64,
-        direction: &[f64],
-        u: &mut [f64],
-        charts: &mut [f64],
-    ) {
-        for (value, change) in u.iter_mut().zip(direction) {
-            *value += step * change;
-        }
+    /// Turns each chart by the rotation vector that stands in the place of the turns behind it, by their axes; these become zero.
+    pub(in crate::coordinates) fn turn_charts(&self, u: &mut [f64], charts: &mut [f64]) {
         for (links, chart) in self.turns().zip(charts.chunks_exact_mut(CHART)) {
             let mut vector = Vector::zeros();
             for link in links {

@@ -87,21 +87,16 @@ impl Path<'_, '_> {
             return None;
         }
         self.statics.factor().ok()?;
-        let mut load = vec![0.0; state.len()];
-        self.ramp.add(self.statics, &mut load);
-        self.statics.solve(&mut load);
-        load.iter_mut().for_each(|v| *v = -*v);
-        Some(load)
+        Some(self.ramp.response(self.statics))
     }
 
     /// The point at a state of equilibrium; its tangent goes on along `before`, or towards larger fractions.
     pub(super) fn point(
         &mut self,
-        mut state: RestState,
+        state: RestState,
         fraction: f64,
         before: Option<&(Vec<f64>, f64)>,
     ) -> Option<PathPoint> {
-        self.statics.recentre(&mut state);
         let slope = self.linearise(&state, fraction)?;
         let norm = (1.0 + self.dot(&slope, &slope)).sqrt();
         let along = before.map_or(1.0, |(y, f)| self.dot(&slope, y) + f);
@@ -155,8 +150,25 @@ impl Path<'_, '_> {
         None
     }
 
+    /// The point between one and another a step later at which stability is lost, and how; none where it is not.
+    pub(super) fn lost(
+        &mut self,
+        before: &PathPoint,
+        step: f64,
+        after: &PathPoint,
+    ) -> Option<(PathPoint, Instability)> {
+        if before.tangent.1 > 0.0 && after.tangent.1 <= 0.0 {
+            let kind = Instability::of_turn(self.ramp.load);
+            return Some((self.turn(before, step, after), kind));
+        }
+        match (before.unstable, after.unstable) {
+            (Some(0), Some(1..)) => Some((self.switch(before, step), Instability::Buckling)),
+            _ => None,
+        }
+    }
+
     /// The zero of ḟ between a point and the one a step later.
-    pub(super) fn turn(&mut self, before: &PathPoint, step: f64, after: &PathPoint) -> PathPoint {
+    fn turn(&mut self, before: &PathPoint, step: f64, after: &PathPoint) -> PathPoint {
         let (mut low, mut high) = (0.0, step);
         let (mut at_low, mut at_high) = (before.tangent.1, after.tangent.1);
         let mut best = if at_low.abs() < at_high.abs() {
@@ -198,7 +210,7 @@ impl Path<'_, '_> {
     }
 
     /// The last stable point between a stable point and the unstable one a step later.
-    pub(super) fn switch(&mut self, before: &PathPoint, step: f64) -> PathPoint {
+    fn switch(&mut self, before: &PathPoint, step: f64) -> PathPoint {
         let (mut low, mut high) = (0.0, step);
         let mut best = before.clone();
         for _ in 0..HALVINGS {
@@ -242,14 +254,7 @@ pub(super) fn path_end(
             }
             continue;
         };
-        let lost = if next.tangent.1 <= 0.0 {
-            let kind = Instability::of_turn(ramp.load);
-            Some((path.turn(&here, step, &next), kind))
-        } else if let (Some(0), Some(1..)) = (here.unstable, next.unstable) {
-            Some((path.switch(&here, step), Instability::Buckling))
-        } else {
-            None
-        };
+        let lost = path.lost(&here, step, &next);
         let is_before = |fraction: f64| fraction < 1.0 || here.fraction >= 1.0;
         match lost {
             Some((found, kind)) if is_before(found.fraction) => {

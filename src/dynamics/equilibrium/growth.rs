@@ -167,11 +167,8 @@ pub(super) fn grow(
 
 /// Derivative of the state by the part of a load, at the fraction evaluated and factorised last.
 fn slope(statics: &mut Statics<'_>, ramp: Ramp<'_>, fraction: f64) -> Vec<f64> {
-    let mut load = vec![0.0; statics.residual.len()];
-    ramp.add(statics, &mut load);
-    statics.solve(&mut load);
     let by_part = ramp.slope(fraction);
-    load.iter().map(|v| -by_part * v).collect()
+    ramp.response(statics).iter().map(|v| by_part * v).collect()
 }
 
 /// Returns true if a path with these derivatives at both ends of a step hardly turns within it.

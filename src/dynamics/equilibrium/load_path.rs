@@ -62,13 +62,7 @@ pub fn continuation(
             continue;
         };
         let index = out.points.len() - 1;
-        let limit = if here.tangent.1 > 0.0 && next.tangent.1 <= 0.0 {
-            Some((path.turn(&here, step, &next), Instability::PullIn))
-        } else if let (Some(0), Some(1..)) = (here.unstable, next.unstable) {
-            Some((path.switch(&here, step), Instability::Buckling))
-        } else {
-            None
-        };
+        let limit = path.lost(&here, step, &next);
         let mut rest = |point: &PathPoint| {
             let loaded = ramp.apply(path.statics, point.fraction);
             Equilibrium::on_path(path.statics, &point.state, &loaded, Route::Loads)

@@ -20,7 +20,7 @@ const ARMIJO: f64 = 1e-4;
 /// Halvings of one step.
 const HALVINGS: usize = 30;
 /// Muscles shorter than this part of their length have collapsed.
-const COLLAPSED: f64 = 0.03;
+pub(super) const COLLAPSED: f64 = 0.03;
 
 /// A state of least potential energy by descent from another; `None` where the energy falls without end.
 pub(super) fn minimise(
@@ -32,7 +32,6 @@ pub(super) fn minimise(
     let model = statics.model;
     let n = model.action.map.coordinates;
     let mut state = from.clone();
-    statics.recentre(&mut state);
     statics.settle(&mut state, voltages)?;
     let mut energy = statics.energy(&state, voltages);
     if !energy.is_finite() {

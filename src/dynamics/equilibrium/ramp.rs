@@ -50,6 +50,15 @@ impl Ramp<'_> {
         }
     }
 
+    /// Derivative of the state by the fraction, −K⁻¹ b, at the state evaluated and factorised last.
+    pub(super) fn response(&self, statics: &mut Statics<'_>) -> Vec<f64> {
+        let mut load = vec![0.0; statics.residual.len()];
+        self.add(statics, &mut load);
+        statics.solve(&mut load);
+        load.iter_mut().for_each(|v| *v = -*v);
+        load
+    }
+
     /// The fraction at a part of the way that a path takes: forces of voltages grow with their squares.
     pub(super) fn fraction(&self, part: f64) -> f64 {
         match self.load {

@@ -3,6 +3,7 @@
 //! Implicit Euler steps with one Newton iteration each, (B/Δt − ∂f/∂q) Δq = f, as long as Δt admits: the matrix is positive definite and
 //! the step short (pseudo-transient continuation). Forces need no potential: loads may follow what they act on.
 
+use crate::dynamics::equilibrium::minimum::COLLAPSED;
 use crate::dynamics::equilibrium::rest_state::RestState;
 use crate::dynamics::equilibrium::statics::Statics;
 use crate::dynamics::singular_configurations::{reversed, shortest};
@@ -18,8 +19,6 @@ const UPDATE: f64 = 1e-9;
 const CUT: f64 = 0.25;
 /// Damping below this part of the largest stiffness is none.
 const NONE: f64 = 1e-9;
-/// Muscles shorter than this part of their length have collapsed.
-const COLLAPSED: f64 = 0.03;
 
 /// The state at which the overdamped motion from another comes to rest; `None` where it does not.
 pub(super) fn relax(
@@ -30,7 +29,6 @@ pub(super) fn relax(
     statics.weight = 1.0;
     let model = statics.model;
     let mut state = from.clone();
-    statics.recentre(&mut state);
     statics.settle(&mut state, voltages)?;
     statics.evaluate(&state, voltages);
     let mut placed = statics.instant().clone();

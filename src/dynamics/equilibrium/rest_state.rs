@@ -2,7 +2,8 @@
 
 use std::ops::{Deref, DerefMut};
 
-/// The unknowns of a step (see [`Variables`](crate::model::Variables)); as a slice they stand without the charts.
+/// The unknowns of a step (see [`Variables`](crate::model::Variables)); as a slice they stand without the charts, behind which turns are
+/// zero.
 #[derive(Clone, Debug, PartialEq)]
 pub(super) struct RestState {
     pub(super) unknowns: Vec<f64>,

@@ -78,9 +78,7 @@ impl Statics<'_> {
             let mut update = std::mem::take(&mut self.residual);
             self.solve(&mut update);
             let size = self.size(&update);
-            for (value, update) in state[..n].iter_mut().zip(&update) {
-                *value -= update;
-            }
+            *state = self.moved(state, -1.0, &update[..n]);
             self.residual = update;
             if size.is_nan() {
                 return None;

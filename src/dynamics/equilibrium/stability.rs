@@ -23,9 +23,6 @@ impl Equilibrium {
         voltages: &[f64],
         route: Route,
     ) -> Self {
-        let mut state = state.clone();
-        statics.recentre(&mut state);
-        let state = &state;
         let point = Self::on_path(statics, state, voltages, route);
         Self {
             softest: softest_mode(statics, state, voltages),

@@ -10,15 +10,17 @@ impl Statics<'_> {
         self.state(z, &scalars)
     }
 
-    /// The state at a configuration with scalars that have an equation, its turns behind charts zero.
+    /// The state at a configuration with scalars that have an equation. Its charts are where its bodies are: there turns are rotations about the
+    /// axes of the ground or of a parent, without singularity, and a stiffness by them does not depend on the choice of these axes.
     pub(super) fn state(&self, z: &[f64], scalars: &[f64]) -> RestState {
-        let (unknowns, charts) = z.split_at(self.model.action.map.unknowns());
-        let mut state = RestState {
+        let map = &self.model.action.map;
+        let mut instant = map.placed(z);
+        map.recentre(&mut instant);
+        let (unknowns, charts) = instant.z.split_at(map.unknowns());
+        RestState {
             unknowns: [unknowns, scalars].concat(),
             charts: charts.to_vec(),
-        };
-        self.recentre(&mut state);
-        state
+        }
     }
 
     /// Coordinates, multipliers and charts of a state.
@@ -30,28 +32,12 @@ impl Statics<'_> {
     /// The state a step along a direction away: bodies behind charts turn by rotation vectors, so that no choice of axes matters.
     pub(super) fn moved(&self, state: &RestState, step: f64, direction: &[f64]) -> RestState {
         let mut moved = state.clone();
-        self.recentre(&mut moved);
         let RestState { unknowns, charts } = &mut moved;
         self.model
             .action
             .map
             .advance(step, direction, unknowns, charts);
         moved
-    }
-
-    /// Moves the charts of a state to where its bodies are: there turns are rotations about the axes of the ground or of a parent, without
-    /// singularity, and a stiffness by them does not depend on the choice of these axes.
-    pub(super) fn recentre(&self, state: &mut RestState) {
-        let map = &self.model.action.map;
-        let mut turns = map.charted().into_iter().flatten();
-        if turns.all(|turn| state[turn] == 0.0) {
-            return;
-        }
-        let m = map.unknowns();
-        let mut instant = map.placed(&self.configuration(state));
-        map.recentre(&mut instant);
-        state.unknowns[..m].copy_from_slice(&instant.z[..m]);
-        state.charts.copy_from_slice(&instant.z[m..]);
     }
 
     /// Makes second derivatives by turns those by rotation vectors, at turns of zero: a product of turns a, b, c about e₁, e₂, e₃ is the

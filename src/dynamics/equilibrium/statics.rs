@@ -311,7 +311,6 @@ impl<'m> Statics<'m> {
         reach: UpdateRange,
     ) -> Result<NewtonOutcome, EquilibriumError> {
         let (mut last, mut first) = (f64::INFINITY, 0.0);
-        self.recentre(state);
         for iteration in 0..ITERATIONS {
             if let Some(status) = interrupt::stop() {
                 return Err(EquilibriumError::Stopped(status));
