@@ -1,7 +1,7 @@
 //! JSON text: values with their places, errors that quote them, overrides, the layout of written files.
 //!
 //! - `source`: the bytes of a file, if there is room for them; `document`: a file; `scope`: a value with its place, for messages.
-//! - `scan`, `locate`: its text value by value, and where these stand; `reader`: values of serde from it. Beside the text nothing is kept of a file.
+//! - `scan`, `locate`: its text value by value, and where these stand; `token`, `reader`: values of serde from it. Beside the text nothing is kept of a file.
 //! - `error`, `wording`: mistakes, and serde's in our words; `not_offered`: words for what is not offered; `either`: values that are written in two ways.
 //! - `set`: overrides of the command line; `layout`: lines of what is written.
 
@@ -16,4 +16,5 @@ pub(crate) mod scan;
 pub(crate) mod scope;
 pub(crate) mod set;
 pub(crate) mod source;
+mod token;
 pub(crate) mod wording;

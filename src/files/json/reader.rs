@@ -1,19 +1,21 @@
 //! Values of serde from the text of a JSON file, and the path of the first mistake.
 //!
 //! The text is JSON. Messages are those of [`serde_json::Value`] as a deserializer: they have no line, since a path identifies the place.
-//! The reader keeps the path itself: a deserializer around it would compile every type of a file once more.
+//! The reader keeps the path itself: a deserializer around it would compile every type of a file once more. For the same reason a type
+//! that asks for one kind of value is given the code of this kind alone.
 
 use serde::Deserialize;
 use serde::de::{
-    DeserializeOwned, DeserializeSeed, Deserializer, EnumAccess, Error as _, MapAccess, SeqAccess,
-    Unexpected, VariantAccess, Visitor,
+    DeserializeOwned, DeserializeSeed, Deserializer, EnumAccess, Error as _, Expected, MapAccess,
+    SeqAccess, Unexpected, VariantAccess, Visitor,
 };
-use serde_json::{Error, Number};
+use serde_json::Error;
 use std::borrow::Cow;
 use std::ops::Range;
 
 use crate::files::json::locate::{JsonPath, Step};
 use crate::files::json::scan::{Scanner, string};
+use crate::files::json::token::{Key, Token, visit};
 
 /// Reads the value of a JSON text.
 ///
@@ -31,16 +33,6 @@ pub(crate) fn parse<T: DeserializeOwned>(text: &str) -> Result<T, (JsonPath, Err
 enum Segment {
     Index(usize),
     Key(Range<usize>),
-}
-
-/// A value, or that entries follow.
-enum Token<'a> {
-    Object,
-    List,
-    Text(Cow<'a, str>),
-    Null,
-    Bool(bool),
-    Number(Number),
 }
 
 /// The next value of a text.
@@ -136,22 +128,32 @@ impl<'a> Reader<'a> {
         self.open()
     }
 
-    /// The error of a value that is no variant.
-    fn no_variant(&mut self) -> Error {
-        let wrong = |found| Error::invalid_type(found, &"string or map");
-        match self.token() {
-            Ok(Token::Null) => wrong(Unexpected::Unit),
-            Ok(Token::Bool(value)) => wrong(Unexpected::Bool(value)),
-            Ok(Token::Number(number)) => wrong(match (number.as_u64(), number.as_i64()) {
-                (Some(number), _) => Unexpected::Unsigned(number),
-                (None, Some(number)) => Unexpected::Signed(number),
-                (None, None) => Unexpected::Float(number.as_f64().unwrap_or_default()),
-            }),
-            Ok(Token::List) => wrong(Unexpected::Seq),
-            Ok(Token::Object) => wrong(Unexpected::Map),
-            Ok(Token::Text(text)) => wrong(Unexpected::Str(&text)),
-            Err(broken) => broken,
+    /// The error of the value that begins here where something else is expected.
+    fn unexpected(&mut self, expected: &dyn Expected) -> Error {
+        self.token()
+            .map_or_else(|broken| broken, |token| token.unexpected(expected))
+    }
+
+    /// Visits the object that begins here.
+    fn object<V: Visitor<'a>>(&mut self, visitor: V) -> Result<V::Value, Error> {
+        if self.scanner.peek() != Some(b'{') {
+            return Err(self.unexpected(&visitor));
         }
+        let whole = self.open()?;
+        let value = visitor.visit_map(Entries::of(self))?;
+        self.close(whole)?;
+        Ok(value)
+    }
+
+    /// Visits the list that begins here.
+    fn list<V: Visitor<'a>>(&mut self, visitor: V) -> Result<V::Value, Error> {
+        if self.scanner.peek() != Some(b'[') {
+            return Err(self.unexpected(&visitor));
+        }
+        let whole = self.open()?;
+        let value = visitor.visit_seq(Entries::of(self))?;
+        self.close(whole)?;
+        Ok(value)
     }
 
     /// Visits a variant by its word, which begins here, alone or as the key of its content.
@@ -176,32 +178,33 @@ impl<'a> Reader<'a> {
     }
 }
 
-/// Visits the string of a text.
-fn visit<'a, V: Visitor<'a>>(text: Cow<'a, str>, visitor: V) -> Result<V::Value, Error> {
-    match text {
-        Cow::Borrowed(text) => visitor.visit_borrowed_str(text),
-        Cow::Owned(text) => visitor.visit_string(text),
-    }
+/// Methods of a deserializer that visit values of one kind only.
+macro_rules! one_kind {
+    ($kind:ident: $($method:ident($($argument:ty),*)),+) => {$(
+        fn $method<V: Visitor<'a>>(self, $(_: $argument,)* visitor: V) -> Result<V::Value, Error> {
+            self.$kind(visitor)
+        }
+    )+};
+    ($kind:ident of a token: $($method:ident($($argument:ty),*)),+) => {$(
+        fn $method<V: Visitor<'a>>(self, $(_: $argument,)* visitor: V) -> Result<V::Value, Error> {
+            self.token()?.$kind(visitor)
+        }
+    )+};
 }
 
 impl<'a> Deserializer<'a> for &mut Reader<'a> {
     type Error = Error;
 
     fn deserialize_any<V: Visitor<'a>>(self, visitor: V) -> Result<V::Value, Error> {
-        match self.token()? {
-            kind @ (Token::Object | Token::List) => {
-                let whole = self.open()?;
-                let value = match kind {
-                    Token::Object => visitor.visit_map(Entries::of(self)),
-                    _ => visitor.visit_seq(Entries::of(self)),
-                }?;
-                self.close(whole)?;
-                Ok(value)
-            }
-            Token::Text(text) => visit(text, visitor),
-            Token::Null => visitor.visit_unit(),
-            Token::Bool(value) => visitor.visit_bool(value),
-            Token::Number(number) => number.deserialize_any(visitor),
+        match self.scanner.peek() {
+            Some(b'{') => self.object(visitor),
+            Some(b'[') => self.list(visitor),
+            _ => match self.token()? {
+                Token::Text(text) => visit(text, visitor),
+                Token::Bool(value) => visitor.visit_bool(value),
+                Token::Number(number) => number.deserialize_any(visitor),
+                _ => visitor.visit_unit(),
+            },
         }
     }
 
@@ -238,7 +241,7 @@ impl<'a> Deserializer<'a> for &mut Reader<'a> {
                 self.close(whole)?;
                 Ok(value)
             }
-            _ => Err(self.no_variant()),
+            _ => Err(self.unexpected(&"string or map")),
         }
     }
 
@@ -248,10 +251,23 @@ impl<'a> Deserializer<'a> for &mut Reader<'a> {
         visitor.visit_unit()
     }
 
+    one_kind!(boolean of a token: deserialize_bool());
+    one_kind!(number of a token:
+        deserialize_i8(), deserialize_i16(), deserialize_i32(), deserialize_i64(),
+        deserialize_u8(), deserialize_u16(), deserialize_u32(), deserialize_u64(),
+        deserialize_f32(), deserialize_f64());
+    one_kind!(text of a token:
+        deserialize_char(), deserialize_str(), deserialize_string(), deserialize_identifier());
+    one_kind!(null of a token: deserialize_unit(), deserialize_unit_struct(&'static str));
+    one_kind!(list:
+        deserialize_seq(), deserialize_tuple(usize),
+        deserialize_tuple_struct(&'static str, usize));
+    one_kind!(object:
+        deserialize_map(), deserialize_struct(&'static str, &'static [&'static str]));
+
     serde::forward_to_deserialize_any! {
         <W: Visitor<'a>>
-        bool i8 i16 i32 i64 i128 u8 u16 u32 u64 u128 f32 f64 char str string bytes byte_buf
-        unit unit_struct seq tuple tuple_struct map struct identifier
+        bytes byte_buf
     }
 }
 
@@ -343,32 +359,13 @@ impl<'r, 'a> EnumAccess<'a> for Word<'r, 'a> {
     }
 }
 
-/// The word of a variant.
-struct Key<'a>(Cow<'a, str>);
-
-impl<'a> Deserializer<'a> for Key<'a> {
-    type Error = Error;
-
-    fn deserialize_any<V: Visitor<'a>>(self, visitor: V) -> Result<V::Value, Error> {
-        visit(self.0, visitor)
-    }
-
-    serde::forward_to_deserialize_any! {
-        <W: Visitor<'a>>
-        bool i8 i16 i32 i64 i128 u8 u16 u32 u64 u128 f32 f64 char str string bytes byte_buf option
-        unit unit_struct newtype_struct seq tuple tuple_struct map struct enum identifier ignored_any
-    }
-}
-
 /// Value under the word of a variant.
 struct Content<'r, 'a>(Option<&'r mut Reader<'a>>);
 
-impl<'a> Content<'_, 'a> {
-    fn taken<V: Visitor<'a>>(self, visitor: V, expected: &str) -> Result<V::Value, Error> {
-        match self.0 {
-            Some(reader) => reader.deserialize_any(visitor),
-            None => Err(Error::invalid_type(Unexpected::UnitVariant, &expected)),
-        }
+impl<'r, 'a> Content<'r, 'a> {
+    fn taken(self, expected: &str) -> Result<&'r mut Reader<'a>, Error> {
+        let missing = || Error::invalid_type(Unexpected::UnitVariant, &expected);
+        self.0.ok_or_else(missing)
     }
 }
 
@@ -380,13 +377,11 @@ impl<'a> VariantAccess<'a> for Content<'_, 'a> {
     }
 
     fn newtype_variant_seed<T: DeserializeSeed<'a>>(self, seed: T) -> Result<T::Value, Error> {
-        let expected = "newtype variant";
-        let missing = || Error::invalid_type(Unexpected::UnitVariant, &expected);
-        seed.deserialize(self.0.ok_or_else(missing)?)
+        seed.deserialize(self.taken("newtype variant")?)
     }
 
     fn tuple_variant<V: Visitor<'a>>(self, _: usize, visitor: V) -> Result<V::Value, Error> {
-        self.taken(visitor, "tuple variant")
+        self.taken("tuple variant")?.list(visitor)
     }
 
     fn struct_variant<V: Visitor<'a>>(
@@ -394,6 +389,6 @@ impl<'a> VariantAccess<'a> for Content<'_, 'a> {
         _: &'static [&'static str],
         visitor: V,
     ) -> Result<V::Value, Error> {
-        self.taken(visitor, "struct variant")
+        self.taken("struct variant")?.object(visitor)
     }
 }
