@@ -8,7 +8,6 @@ use crate::functional::{
     Couplings, Horizon, Kernel, Order, Output, Sample, Scatter, Term, TermKind,
 };
 use crate::math::{Derivatives, Vector};
-use pulp::{Arch, Simd, WithSimd};
 use std::fmt;
 use std::ops::Range;
 
@@ -66,9 +65,14 @@ impl<K: Kernel> Group<K> {
 
     /// Scalars of the site that elements read, each once.
     pub(super) fn scalars_read(&self) -> Vec<usize> {
-        let of = |e| (0..K::scalars(e)).filter_map(move |s| K::scalar(e, s));
-        let scalars = self.elements.iter().flat_map(of).map(|(scalar, _)| scalar);
-        let mut scalars: Vec<usize> = scalars.collect();
+        let mut scalars = Vec::new();
+        for element in &self.elements {
+            for s in 0..K::scalars(element) {
+                if let Some((scalar, _)) = K::scalar(element, s) {
+                    scalars.push(scalar);
+                }
+            }
+        }
         scalars.sort_unstable();
         scalars.dedup();
         scalars
@@ -99,6 +103,14 @@ impl<K: Kernel> Group<K> {
                 receive(element, Places::new(element, own, sample), storage);
             },
         );
+    }
+}
+
+/// Names of the parts of an energy, or its own.
+fn names_of_parts(name: &str, parts: Option<[&str; 2]>) -> Vec<String> {
+    match parts {
+        Some(parts) => parts.map(|part| format!("{name} {part}")).to_vec(),
+        None => vec![name.to_owned()],
     }
 }
 
@@ -228,10 +240,7 @@ impl<K: Kernel> Term for Group<K> {
     }
 
     fn energy_parts(&self) -> Vec<String> {
-        match K::PARTS {
-            Some(parts) => parts.map(|part| format!("{} {part}", self.name)).to_vec(),
-            None => vec![self.name.clone()],
-        }
+        names_of_parts(&self.name, K::PARTS)
     }
 
     fn energies(&self, sample: &Sample<'_>, out: &mut Vec<f64>) {
@@ -260,53 +269,16 @@ impl<K: Kernel> Term for Group<K> {
         };
         let is_free =
             K::BY_DURATION && sample.horizon == Horizon::Free && self.site == Site::Intervals;
-        Arch::new().dispatch(All {
-            group: self,
-            c,
-            order,
-            sample,
-            slots,
-            is_free,
-            out,
-        });
-    }
-}
-
-/// The elements of a group at a sample.
-struct All<'a, K: Kernel> {
-    group: &'a Group<K>,
-    /// Factor of E, with the length of the interval.
-    c: f64,
-    order: Order,
-    sample: &'a Sample<'a>,
-    slots: &'a [u32],
-    /// True if derivatives by the length of the interval are asked for.
-    is_free: bool,
-    out: &'a mut Output,
-}
-
-/// Adds the derivatives of all elements, compiled for the vector unit of the machine; sums are the same on any.
-impl<K: Kernel> WithSimd for All<'_, K> {
-    type Output = ();
-
-    #[inline(always)]
-    fn with_simd<S: Simd>(self, _: S) {
-        let Self {
-            group,
-            order,
-            sample,
-            ..
-        } = self;
-        group.each(order, sample, self.slots, |element, places, storage| {
+        self.each(order, sample, slots, |element, places, storage| {
             let mut action = Action {
                 element,
                 places,
-                c: self.c,
-                scale: group.scale,
+                c,
+                scale: self.scale,
                 order,
                 sample,
-                is_free: self.is_free,
-                out: &mut *self.out,
+                is_free,
+                out: &mut *out,
             };
             K::derivatives(element, order, sample, storage, &mut action);
         });

@@ -67,35 +67,67 @@ pub(super) fn couple<K: Kernel>(
     if K::DEGREE < 2 {
         return;
     }
-    let (vectors, scalars) = (K::vectors(element), K::scalars(element));
-    let index = |a: usize| K::vector(element, a).vector;
-    let readings = |a: usize| (0..K::READINGS).map(move |k| k * vectors + a);
-    for a in 0..vectors {
-        for b in 0..vectors {
-            let couples = readings(a).any(|i| readings(b).any(|j| K::couples(i, j)));
-            slots.push(match (couples, K::ISOTROPIC) {
-                (false, _) => NONE,
-                (true, true) => couplings.add_isotropic(index(a), index(b)) as u32,
-                (true, false) => couplings.add_full(index(a), index(b)) as u32,
-            });
-        }
+    Arguments {
+        vectors: K::vectors(element),
+        scalars: K::scalars(element),
+        readings: K::READINGS,
+        is_isotropic: K::ISOTROPIC,
+        has_scalars,
+        vector: &|i| K::vector(element, i).vector,
+        scalar: &|s| K::scalar(element, s).map(|(at, _)| at),
+        couples: K::couples,
     }
-    let first = slots.len();
-    slots.resize(first + scalars * (vectors + scalars), NONE);
-    for s in 0..scalars {
-        let Some((at, _)) = K::scalar(element, s) else {
-            continue;
-        };
-        for a in 0..vectors {
-            slots[first + scalars * a + s] = couplings.add_mixed(index(a), at) as u32;
-        }
-        for t in 0..scalars {
-            // Pairs of different scalars are met twice, once in each order, and kept once.
-            let other = K::scalar(element, t).filter(|&(other, _)| has_scalars && other <= at);
-            if let Some((other, _)) = other {
-                let slot = couplings.add_scalars(at, other) as u32;
-                slots[first + scalars * (vectors + s) + t] = slot;
+    .couple(couplings, slots);
+}
+
+/// The arguments of an element of any kernel.
+struct Arguments<'a> {
+    vectors: usize,
+    scalars: usize,
+    /// Arguments for each vector.
+    readings: usize,
+    is_isotropic: bool,
+    has_scalars: bool,
+    vector: &'a dyn Fn(usize) -> usize,
+    scalar: &'a dyn Fn(usize) -> Option<usize>,
+    couples: fn(usize, usize) -> bool,
+}
+
+impl Arguments<'_> {
+    fn couple(&self, couplings: &mut Couplings, slots: &mut Vec<u32>) {
+        for a in 0..self.vectors {
+            for b in 0..self.vectors {
+                let (row, column) = ((self.vector)(a), (self.vector)(b));
+                slots.push(match (self.are_coupled(a, b), self.is_isotropic) {
+                    (false, _) => NONE,
+                    (true, true) => couplings.add_isotropic(row, column) as u32,
+                    (true, false) => couplings.add_full(row, column) as u32,
+                });
             }
         }
+        let first = slots.len();
+        slots.resize(first + self.scalars * (self.vectors + self.scalars), NONE);
+        let own = &mut slots[first..];
+        for s in 0..self.scalars {
+            let Some(at) = (self.scalar)(s) else {
+                continue;
+            };
+            for a in 0..self.vectors {
+                own[self.scalars * a + s] = couplings.add_mixed((self.vector)(a), at) as u32;
+            }
+            for t in 0..self.scalars {
+                // Pairs of different scalars are met twice, once in each order, and kept once.
+                let other = (self.scalar)(t).filter(|&other| self.has_scalars && other <= at);
+                if let Some(other) = other {
+                    let slot = couplings.add_scalars(at, other) as u32;
+                    own[self.scalars * (self.vectors + s) + t] = slot;
+                }
+            }
+        }
+    }
+
+    fn are_coupled(&self, a: usize, b: usize) -> bool {
+        let readings = |a: usize| (0..self.readings).map(move |k| k * self.vectors + a);
+        readings(a).any(|i| readings(b).any(|j| (self.couples)(i, j)))
     }
 }

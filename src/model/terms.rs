@@ -70,7 +70,7 @@ struct Collected {
 }
 
 /// Element that makes one term together with all of its type.
-pub(super) trait Member: Sized + 'static {
+pub(super) trait Member<Kind = ()>: Sized + 'static {
     fn term(name: &str, list: Vec<Self>) -> Box<dyn Term>;
 }
 
@@ -110,38 +110,35 @@ impl Member for Path {
     }
 }
 
-/// An element with the number of arguments of its formula, and true for a kinetic energy.
-struct Of<E, const M: usize, const NV: usize, const NS: usize, const KINETIC: bool>(
-    Element<E, NV, NS>,
-);
+/// Elements of a formula of `M` arguments; `KINETIC` is true for a kinetic energy.
+struct Formula<const M: usize, const KINETIC: bool>;
 
-impl<E, const M: usize, const NV: usize, const NS: usize, const KINETIC: bool> Member
-    for Of<E, M, NV, NS, KINETIC>
+impl<E, const M: usize, const NV: usize, const NS: usize, const KINETIC: bool>
+    Member<Formula<M, KINETIC>> for Element<E, NV, NS>
 where
     E: Energy<M> + 'static,
 {
     fn term(name: &str, list: Vec<Self>) -> Box<dyn Term> {
         // The action has the kinetic energy less the potential one; a virtual work is added.
         let scale = if KINETIC || E::VIRTUAL > 0 { 1.0 } else { -1.0 };
-        let elements = list.into_iter().map(|Self(element)| element).collect();
         Box::new(Group::<Formulas<E, M, NV, NS>>::intervals(
-            name, scale, elements,
+            name, scale, list,
         ))
     }
 }
 
-/// An element with sought parameters, with the number of arguments of its formula.
-struct OfSought<E, const M: usize, const R: usize, const N: usize>(SoughtElement<E, N>);
+/// Elements of a formula of `M` arguments with sought parameters, which reads each vector `R` times.
+struct SoughtFormula<const M: usize, const R: usize>;
 
-impl<E, const M: usize, const R: usize, const N: usize> Member for OfSought<E, M, R, N>
+impl<E, const M: usize, const R: usize, const N: usize> Member<SoughtFormula<M, R>>
+    for SoughtElement<E, N>
 where
     E: SoughtEnergy<M> + 'static,
 {
     fn term(name: &str, list: Vec<Self>) -> Box<dyn Term> {
         let scale = if E::VIRTUAL > 0 { 1.0 } else { -1.0 };
-        let elements = list.into_iter().map(|Self(element)| element).collect();
         Box::new(Group::<SoughtFormulas<E, M, R, N>>::intervals(
-            name, scale, elements,
+            name, scale, list,
         ))
     }
 }
@@ -264,7 +261,7 @@ impl<'a> Terms<'a> {
     ) where
         E: Energy<M> + 'static,
     {
-        self.collect(term, why, of, Of::<_, _, _, _, false>(element));
+        self.collect::<Formula<M, false>, _>(term, why, of, element);
     }
 
     /// Adds a formula of one span and of sought parameters, like [`add`](Self::add).
@@ -277,7 +274,7 @@ impl<'a> Terms<'a> {
     ) where
         E: SoughtEnergy<M> + 'static,
     {
-        self.collect(term, why, of, OfSought::<_, M, R, N>(element));
+        self.collect::<SoughtFormula<M, R>, _>(term, why, of, element);
     }
 
     /// Adds a kinetic energy of vectors and rates of the intervals.
@@ -290,7 +287,7 @@ impl<'a> Terms<'a> {
     ) where
         E: Energy<M> + 'static,
     {
-        self.collect(term, why, of, Of::<_, _, _, _, true>(element));
+        self.collect::<Formula<M, true>, _>(term, why, of, element);
     }
 
     /// Notes that a part of the scene calls for a term.
@@ -320,7 +317,7 @@ impl<'a> Terms<'a> {
 
     /// Adds the energy of the length of a path.
     pub fn add_path(&mut self, term: &'static str, why: &'static str, of: &str, path: Path) {
-        self.collect(term, why, of, path);
+        self.collect::<(), _>(term, why, of, path);
     }
 
     /// Says why a term is left out, should it be; the first reason counts.
@@ -331,7 +328,7 @@ impl<'a> Terms<'a> {
     }
 
     /// Adds an element to those of its type under the same name.
-    pub(super) fn collect<T: Member>(
+    pub(super) fn collect<Kind, T: Member<Kind>>(
         &mut self,
         term: &'static str,
         why: &'static str,
@@ -339,11 +336,11 @@ impl<'a> Terms<'a> {
         element: T,
     ) {
         self.note(term, why, of);
-        self.push(term, element);
+        self.push::<Kind, T>(term, element);
     }
 
     /// Adds an element whose parts of the scene are [noted](Self::note) by themselves.
-    pub(super) fn push<T: Member>(&mut self, term: &'static str, element: T) {
+    pub(super) fn push<Kind, T: Member<Kind>>(&mut self, term: &'static str, element: T) {
         let mut same = self.collected.iter_mut().filter(|c| c.term == term);
         if let Some(list) = same.find_map(|c| c.list.downcast_mut::<Vec<T>>()) {
             list.push(element);
