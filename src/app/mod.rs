@@ -28,6 +28,7 @@ mod folder;
 mod foreign;
 mod identity;
 mod inspect;
+mod left_out;
 mod length_unit_check;
 mod linear_systems;
 mod messages;

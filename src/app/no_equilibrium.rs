@@ -2,6 +2,7 @@
 
 use crate::app::error::CommandError;
 use crate::app::folder::make_folder;
+use crate::app::left_out::EARLIER;
 use crate::app::request::{CommandInput, CommandOutput};
 use crate::app::summary::Summary;
 use crate::dynamics::EquilibriumError;
@@ -9,31 +10,6 @@ use crate::report::file_set::FileSet;
 
 /// The status of such a run.
 const STATUS: &str = "no_equilibrium";
-
-/// Files of an earlier result of the folder.
-const EARLIER: [&str; 21] = [
-    "configuration.svg",
-    "continuation.npz",
-    "controls.csv",
-    "energy.svg",
-    "equilibrium.csv",
-    "joint_angles.svg",
-    "motion.gltf",
-    "parts.pvd",
-    "path.csv",
-    "path.svg",
-    "report.html",
-    "snapshots.svg",
-    "solution.json",
-    "solution.npz",
-    "tables.npz",
-    "tip_path.svg",
-    "tracking.csv",
-    "tracking.svg",
-    "trajectory.csv",
-    "trajectory.pvd",
-    "voltages.svg",
-];
 
 /// Writes the summary of a run that has ended so, and gives its answer back.
 ///

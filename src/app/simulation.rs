@@ -1,5 +1,6 @@
 //! A simulation from file to folder.
 
+use std::io;
 use std::path::{Path, PathBuf};
 use std::time::Instant;
 
@@ -9,6 +10,7 @@ use crate::app::displayed_motion::{DisplayedMotion, Motion};
 use crate::app::energy_summary::EnergySummary;
 use crate::app::error::CommandError;
 use crate::app::fields;
+use crate::app::left_out::{STOPPED, leave_out, time_to_write};
 use crate::app::messages::counted;
 use crate::app::page;
 use crate::app::progress::{Progress, Reached};
@@ -20,8 +22,9 @@ use crate::app::summary::{self, MEASURED, Seconds, Summary};
 use crate::app::unfinished::{self, Unfinished};
 use crate::control::problem::Simulation;
 use crate::dynamics::trajectory::{Observations, Trajectory};
-use crate::dynamics::{DiscreteTrajectory, observed};
+use crate::dynamics::{DiscreteTrajectory, LocalError, observed};
 use crate::files::Loaded;
+use crate::ipopt::interrupt::{self, TimeLimit};
 use crate::math::join;
 use crate::model::Model;
 use crate::report::atomic::WriteError;
@@ -60,20 +63,18 @@ pub(super) fn simulation(
     let (ended, folder) = integrate(&run, (begun, read), observer)?;
     phase("writing");
     let writing = Instant::now();
-    let model = &ended.simulated.model;
-    let mut summary = Summary::new(request, ended.word(), model.coordinates.name());
-    summary.plan = Plan::from_model(model, None, MEASURED);
     let mut files = FileSet::in_folder(&folder);
-    let origin = request.origin(false);
-    let observed = observe(&run, &ended, &mut files, &origin)?;
-    summarise(&run, (&ended, &observed), read, &mut summary);
-    write_pictures(
-        &run,
-        (&ended, &observed),
-        (&mut summary, asked),
-        &mut files,
-        &origin,
-    )?;
+    keep(&run, &ended, &mut files)?;
+    let (limit, kept) = (time_to_write(request, began), files.count());
+    files.limit(&limit);
+    let mut summary = summary_of(&run, &ended, read);
+    let written = write_all(&run, &ended, (&mut summary, asked), (&mut files, &limit));
+    if let Err(error) = written {
+        let status = limit.reached().ok_or(error)?;
+        summary = summary_of(&run, &ended, read);
+        let status = ended.stopped.unwrap_or(status);
+        leave_out(&mut summary, status, &mut files, kept);
+    }
     summary.seconds.wrote(began, writing);
     summary.write(files)?;
     unfinished::done(&folder);
@@ -150,37 +151,68 @@ struct Observed {
     blocks: Option<BlockSizes>,
 }
 
+/// Adds the file that a run leaves however it is stopped: the state from which it is resumed, or the motion where it cannot be.
+fn keep(run: &Run<'_>, ended: &SimulationResult, files: &mut FileSet) -> Result<(), WriteError> {
+    let Simulated {
+        model, discrete, ..
+    } = &ended.simulated;
+    let is_motion = discrete.intervals() > 0;
+    resume_file::add(files, discrete, run.resumable.filter(|_| is_motion))?;
+    match is_motion && run.resumable.is_none() {
+        true => solution_file::add(files, model, &solved(model, discrete, None)),
+        false => Ok(()),
+    }
+}
+
+/// Observes, assesses and writes a motion until a limit, and completes its summary.
+fn write_all(
+    run: &Run<'_>,
+    ended: &SimulationResult,
+    (summary, asked): (&mut Summary, &[(String, String)]),
+    (files, limit): (&mut FileSet, &TimeLimit),
+) -> Result<(), WriteError> {
+    let origin = run.request.origin(false);
+    let observed = observe(run, ended, (files, limit), &origin)?;
+    summarise(run, (ended, &observed), summary);
+    write_pictures(run, (ended, &observed), (summary, asked), files, &origin)
+}
+
 /// Observes and assesses a motion, and writes it with its fields at the same time.
 fn observe(
     run: &Run<'_>,
     ended: &SimulationResult,
-    files: &mut FileSet,
+    (files, limit): (&mut FileSet, &TimeLimit),
     origin: &Origin,
 ) -> Result<Observed, WriteError> {
     let Simulated {
         model, discrete, ..
     } = &ended.simulated;
+    let folder = files.folder().to_owned();
     // Of many steps each takes long, and most need no other.
     let (columns, (trajectory, written, assessment)) = join(
-        || observed(model, discrete),
+        || observed(model, discrete, &|| limit.reached().is_some()),
         || {
             let trajectory = Trajectory::from_discrete(model, discrete);
             let write = || {
-                let is_motion = trajectory.intervals() > 0;
-                if is_motion {
+                if discrete.intervals() > 0 && run.resumable.is_some() {
                     let kept = solved_of(model, discrete, trajectory.clone(), None);
                     solution_file::add(files, model, &kept)?;
                 }
-                let resumable = run.resumable.filter(|_| is_motion);
-                resume_file::add(files, discrete, resumable)?;
                 fields::write(files, model, discrete, origin)
             };
-            let assess = || ended.assess(&run.loaded.system, run.task, &trajectory);
+            let assess = || {
+                let _watch = interrupt::watch_by(limit.clone());
+                ended.assess(&run.loaded.system, run.task, &trajectory)
+            };
             let (written, assessment) = join(write, assess);
             (trajectory, written, assessment)
         },
     );
     let written = written?;
+    let columns = columns.map_err(|stopped| WriteError {
+        path: folder,
+        cause: io::Error::other(stopped),
+    })?;
     let mut observations = trajectory.observe(&model.system);
     observations.columns.extend(columns);
     let blocks = BlockSizes::from_model(model);
@@ -194,22 +226,14 @@ fn observe(
     })
 }
 
-/// Adds the numbers of a simulation to its summary, and the notes on them.
-fn summarise(
-    run: &Run<'_>,
-    (ended, observed): (&SimulationResult, &Observed),
-    read: f64,
-    summary: &mut Summary,
-) {
-    let (simulated, assessment) = (&ended.simulated, &observed.assessment);
+/// The summary of a simulation that is neither observed nor assessed.
+fn summary_of(run: &Run<'_>, ended: &SimulationResult, read: f64) -> Summary {
+    let simulated = &ended.simulated;
+    let model = &simulated.model;
+    let mut summary = Summary::new(run.request, ended.word(), model.coordinates.name());
+    summary.plan = Plan::from_model(model, None, MEASURED);
     summary.message = simulated.failure.as_ref().map(ToString::to_string);
-    summary.simulation = Some(summary::Simulation::new(
-        (&simulated.discrete, simulated.error),
-        run.task,
-        assessment.neglected,
-    ));
-    summary.domain.clone_from(&assessment.outside);
-    summary.blocks.clone_from(&observed.blocks);
+    summary.simulation = Some(simulation_summary(run, ended, None));
     summary.accuracy.clone_from(&ended.accuracy);
     summary.seconds = Seconds {
         total: run.began.elapsed().as_secs_f64(),
@@ -217,6 +241,29 @@ fn summarise(
         solver: simulated.seconds,
         ..Seconds::default()
     };
+    summary
+}
+
+/// The numbers of a simulation with the sum of its local errors.
+fn simulation_summary(
+    run: &Run<'_>,
+    ended: &SimulationResult,
+    neglected: Option<LocalError>,
+) -> summary::Simulation {
+    let simulated = &ended.simulated;
+    summary::Simulation::new((&simulated.discrete, simulated.error), run.task, neglected)
+}
+
+/// Adds what is observed of a simulation to its summary, and the notes on it.
+fn summarise(
+    run: &Run<'_>,
+    (ended, observed): (&SimulationResult, &Observed),
+    summary: &mut Summary,
+) {
+    let assessment = &observed.assessment;
+    summary.simulation = Some(simulation_summary(run, ended, assessment.neglected));
+    summary.domain.clone_from(&assessment.outside);
+    summary.blocks.clone_from(&observed.blocks);
     summary.energies = EnergySummary::new(&assessment.exchange);
     summary.notes.clone_from(&assessment.remarks);
 }
@@ -276,7 +323,7 @@ fn command_output(
     let mut notes: Vec<String> = summary.message.iter().cloned().collect();
     notes.extend(summary.comparison.iter().flat_map(Comparison::notes));
     notes.extend(summary.notes.lines());
-    if ended.stopped.is_some() && run.resumable.is_some() {
+    if STOPPED.contains(&&*summary.status) && run.resumable.is_some() {
         notes.extend(resume_file::command(run.request, &run.loaded.task));
     }
     let mut is_solved = summary.status == "simulated";
@@ -284,7 +331,10 @@ fn command_output(
         true => "simulated".to_owned(),
         false => {
             let status = summary.status.replace('_', " ");
-            format!("not simulated to the end ({status})")
+            match ended.word() {
+                "simulated" => format!("simulated, not all written ({status})"),
+                _ => format!("not simulated to the end ({status})"),
+            }
         }
     };
     if let (true, Some(accuracy)) = (is_solved, &summary.accuracy) {

@@ -1,6 +1,6 @@
 //! A control problem from file to folder: solved, re-simulated, and reported.
 
-use std::path::{Path, PathBuf};
+use std::path::PathBuf;
 use std::time::Instant;
 
 use crate::app::blocks::BlockSizes;
@@ -8,6 +8,7 @@ use crate::app::displayed_motion::{DisplayedMotion, Motion};
 use crate::app::energy_summary::EnergySummary;
 use crate::app::error::CommandError;
 use crate::app::fields;
+use crate::app::left_out::{leave_out, time_to_write};
 use crate::app::page;
 use crate::app::progress::{Progress, Reached};
 use crate::app::request::{CommandInput, CommandOutput};
@@ -21,6 +22,7 @@ use crate::control::problem::Control;
 use crate::dynamics::observations;
 use crate::files::Loaded;
 use crate::files::problem::output::Output;
+use crate::ipopt::interrupt;
 use crate::model::System;
 use crate::report::atomic::WriteError;
 use crate::report::file_set::FileSet;
@@ -36,7 +38,7 @@ use crate::workflow::resimulate::under_constant_voltages;
 /// Length of the motion under constant voltages that is drawn next to the optimal one, in durations.
 const COMPARED: usize = 3;
 /// Statuses of a solve that might have gone on.
-const STOPPED: [&str; 3] = ["interrupted", "time_limit", "iteration_limit"];
+const MIGHT_GO_ON: [&str; 3] = ["interrupted", "time_limit", "iteration_limit"];
 
 /// Solves a control problem and writes its folder, solved or not.
 pub(super) fn control(
@@ -60,16 +62,23 @@ pub(super) fn control(
     summary.plan = Plan::from_model(model, Some(control), MEASURED);
     summary.seconds = seconds(optimum, read, began);
     add_observed(&mut summary, &result);
-    write_files(
-        (request, asked),
-        &folder,
-        (control, &result, &loaded.output),
-        &mut summary,
-        began,
-    )?;
+    let writing = Instant::now();
+    let mut files = FileSet::in_folder(&folder);
+    solution_file::add(&mut files, &optimum.model, &optimum.motion)?;
+    let (limit, kept) = (time_to_write(request, began), files.count());
+    files.limit(&limit);
+    let watch = interrupt::watch_by(limit.clone());
+    let shown = (control, &result, &loaded.output);
+    if let Err(error) = write_files((request, asked), shown, &mut summary, &mut files) {
+        let status = limit.reached().ok_or(error)?;
+        leave_out(&mut summary, status, &mut files, kept);
+    }
+    drop(watch);
+    summary.seconds.wrote(began, writing);
+    summary.write(files)?;
     unfinished::done(&folder);
     let mut output = command_output(&summary, control.is_refined, &optimum.violated, &folder);
-    if STOPPED.contains(&verdict.word) {
+    if MIGHT_GO_ON.contains(&verdict.word) {
         output
             .notes
             .extend(resume_file::command(request, &loaded.task));
@@ -122,15 +131,13 @@ fn add_observed(summary: &mut Summary, result: &SolveResult) {
     summary.notes.clone_from(&result.remarks);
 }
 
-/// Writes the motion with its fields, tables, figures and page, and adds what they hold to the summary.
+/// Writes the fields of the motion, tables, figures and page, and adds what they hold to the summary.
 fn write_files(
     (request, asked): (&CommandInput, &[(String, String)]),
-    folder: &Path,
     (control, result, output): (&Control, &SolveResult, &Output),
     summary: &mut Summary,
-    began: Instant,
+    files: &mut FileSet,
 ) -> Result<(), WriteError> {
-    let writing = Instant::now();
     let SolveResult {
         optimum,
         discrete,
@@ -138,11 +145,9 @@ fn write_files(
         ..
     } = result;
     let model = &optimum.model;
-    let mut files = FileSet::in_folder(folder);
-    solution_file::add(&mut files, model, &optimum.motion)?;
     let mut observed = observations(model, discrete);
     let origin = request.origin(true);
-    let written = fields::write(&mut files, model, discrete, &origin)?;
+    let written = fields::write(files, model, discrete, &origin)?;
     summary.blocks = BlockSizes::from_model(model).map(|b| b.after(model, &observed, written));
     observed.columns.extend(result.exchange.columns());
     let motion = Motion {
@@ -151,7 +156,7 @@ fn write_files(
         trajectory,
         observations: &observed,
     };
-    let shown = DisplayedMotion::from_motion(motion, output, false, &mut files)?;
+    let shown = DisplayedMotion::from_motion(motion, output, false, files)?;
     summary.notes.note("shown", shown.notes.iter().cloned());
     summary.shown = shown.part;
     write_pictures(
@@ -159,11 +164,9 @@ fn write_files(
         (control, optimum),
         summary,
         (motion, &shown),
-        &mut files,
+        files,
         &origin,
-    )?;
-    summary.seconds.wrote(began, writing);
-    summary.write(files)
+    )
 }
 
 /// Writes tables, figures and page, next to the motion under the voltages of the goal alone.

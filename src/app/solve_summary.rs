@@ -3,6 +3,7 @@
 use std::path::Path;
 use std::time::Instant;
 
+use crate::app::left_out::STOPPED;
 use crate::app::linear_systems::LinearSystems;
 use crate::app::messages::counted;
 use crate::app::request::CommandOutput;
@@ -94,6 +95,8 @@ pub(super) fn command_output(
         notes.extend(accuracy.notes());
         (word, is_solved) = accuracy.outcome(&word);
     }
+    // An optimum of which not all is written.
+    is_solved &= !STOPPED.contains(&&*summary.status);
     let grid = match is_refined || summary.accuracy.is_some() {
         true => format!(
             ", {}",

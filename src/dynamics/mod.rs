@@ -6,7 +6,7 @@
 //! - `step_state`, `resume`: the state from which a motion is resumed.
 //! - `domain`: where the first-order dielectric ends.
 //! - `resolution`, `singular_configurations`: which steps are refused; `local_error`: what those neglect that are not.
-//! - `simulate`, `discrete_trajectory`, `observe`, `part_columns`, `reactions`, `to_instants`, `at_instant`, `interval_energies`, `kinetic`: step after step,
+//! - `simulate`, `discrete_trajectory`, `observe`, `pieces`, `part_columns`, `reactions`, `to_instants`, `at_instant`, `interval_energies`, `kinetic`: step after step,
 //!   recorded and observed.
 //! - `loop_rates`: rates of the joints of closed loops, completed from those that are named.
 //! - `exchange`: electrical energy from the sources and mechanical work of their muscles.
@@ -33,6 +33,7 @@ mod midpoint;
 mod momenta;
 mod observe;
 mod part_columns;
+mod pieces;
 mod reactions;
 mod resolution;
 mod resume;

@@ -15,62 +15,64 @@ use crate::dynamics::discrete_trajectory::{DiscreteTrajectory, Reading};
 use crate::dynamics::interval_energies::energies;
 use crate::dynamics::momenta::{Places, momentum_maps, moving, vector_momenta};
 use crate::dynamics::part_columns::PartColumns;
+use crate::dynamics::pieces::{PIECE, in_pieces};
 use crate::dynamics::reactions::reactions;
 use crate::dynamics::to_instants::{Last, Momenta, means, to_instants};
 use crate::dynamics::trajectory::{Column, Observations, Trajectory};
 use crate::functional::{Order, TermKind};
-use crate::math::{Vector, has_pool};
+use crate::math::{IsOver, Stopped, Vector};
 use crate::model::{Model, Role, SolidBlock};
-use rayon::prelude::*;
 use std::ops::Range;
-
-/// Instants that one thread observes in a row.
-const PIECE: usize = 256;
 
 /// All that is observed along a motion, time, joint coordinates and markers first.
 pub fn observations(model: &Model, discrete: &DiscreteTrajectory) -> Observations {
     let mut observations = Trajectory::from_discrete(model, discrete).observe(&model.system);
-    observations.columns.extend(observed(model, discrete));
+    let columns = observed(model, discrete, &|| false).expect("nothing stops it");
+    observations.columns.extend(columns);
     observations
 }
 
 /// Returns the observations in addition to time, joint coordinates and markers; pieces of a long motion in parallel.
-pub fn observed(model: &Model, discrete: &DiscreteTrajectory) -> Vec<Column> {
-    let mut columns = by_rows(model, discrete);
+///
+/// # Errors
+/// It was over before the end.
+pub fn observed(
+    model: &Model,
+    discrete: &DiscreteTrajectory,
+    is_over: IsOver<'_>,
+) -> Result<Vec<Column>, Stopped> {
+    let mut columns = by_rows(model, discrete, is_over)?;
     columns.extend(reactions(model, discrete));
-    columns
+    Ok(columns)
 }
 
 /// Columns whose rows are made one by one.
-fn by_rows(model: &Model, discrete: &DiscreteTrajectory) -> Vec<Column> {
+fn by_rows(
+    model: &Model,
+    discrete: &DiscreteTrajectory,
+    is_over: IsOver<'_>,
+) -> Result<Vec<Column>, Stopped> {
     let count = discrete.z.len();
     let piece = match discrete.reading {
         Reading::Intervals => PIECE,
         // The factorisation of the masses keeps its order from the first instant on.
         Reading::Instants => count.max(1),
     };
-    let pieces = count.div_ceil(piece);
-    let rows = |i: usize| {
+    let rows = in_pieces(count, piece, |instants| {
         let mut observer = Observer::new(model);
-        let instants = i * piece..count.min((i + 1) * piece);
         observer.begin(discrete, instants.start);
-        instants
-            .map(|k| observer.row(discrete, k))
-            .collect::<Vec<_>>()
-    };
-    let rows: Vec<_> = match has_pool() {
-        true => {
-            let pieces = (0..pieces).into_par_iter().with_max_len(1);
-            pieces.map(rows).collect()
-        }
-        false => (0..pieces).map(rows).collect(),
-    };
+        let row = |k: usize| match k % PIECE == 0 && is_over() {
+            true => Err(Stopped),
+            false => Ok(observer.row(discrete, k)),
+        };
+        instants.map(row).collect()
+    })?;
     let mut observer = Observer::new(model);
     let mut columns = observer.columns();
     for column in &mut columns {
         column.values.reserve_exact(count);
     }
-    for row in rows.iter().flatten() {
+    for row in rows.iter() {
         for (column, value) in columns.iter_mut().zip(&row.values) {
             column.values.push(*value);
         }
@@ -90,15 +92,15 @@ fn by_rows(model: &Model, discrete: &DiscreteTrajectory) -> Vec<Column> {
         let [ends, parts] = [&last.of_intervals(), &last.parts];
         to_instants(&discrete.times, &mut columns[of_intervals], ends);
         to_instants(&discrete.times, &mut columns[of_parts.clone()], parts);
-        let before: Vec<_> = rows.iter().flatten().map(|row| row.before).collect();
+        let before: Vec<_> = rows.iter().map(|row| row.before).collect();
         means(&discrete.times, &mut columns[of_momenta], &before, &last);
     }
-    for (k, row) in rows.iter().flatten().enumerate() {
+    for (k, row) in rows.iter().enumerate() {
         for (column, added) in columns[of_parts.clone()].iter_mut().zip(&row.switched) {
             column.values[k] += added;
         }
     }
-    columns
+    Ok(columns)
 }
 
 /// Observations at one instant.

@@ -52,13 +52,18 @@ pub fn request() -> StopRequest {
 /// A limit that counts calls: it is over after a number of questions, and counts how many there were. Tests use it in place of
 /// the clock, so that they stop at the same question every time.
 #[derive(Clone, Debug)]
-pub struct Questions(Arc<[AtomicU64; 2]>);
+pub struct Questions(Arc<[AtomicU64; 3]>);
 
 impl Questions {
     /// Makes a limit of this number of questions.
     #[must_use]
     pub fn allowed(count: u64) -> Self {
-        Self(Arc::new([AtomicU64::new(count), AtomicU64::new(0)]))
+        Self(Arc::new([count, 0, u64::MAX].map(AtomicU64::new)))
+    }
+
+    /// Sets the number of questions that stand for the [grace](GRACE); without it there is no end to these.
+    pub fn grant(&self, count: u64) {
+        self.0[2].store(count, Ordering::SeqCst);
     }
 
     /// Returns the number of questions so far.
@@ -72,13 +77,20 @@ impl Questions {
         self.0[0].store(self.asked().saturating_add(count), Ordering::SeqCst);
     }
 
-    /// Counts a question; returns true if the time is over.
-    fn ask(&self) -> bool {
-        let [allowed, asked] = &*self.0;
+    /// Counts a question; returns true if the time is over, and the grace where there is one.
+    fn ask(&self, has_grace: bool) -> bool {
+        let [allowed, asked, grace] = &*self.0;
         let before = asked.fetch_add(1, Ordering::SeqCst);
-        before >= allowed.load(Ordering::SeqCst)
+        let more = match has_grace {
+            true => grace.load(Ordering::SeqCst),
+            false => 0,
+        };
+        before >= allowed.load(Ordering::SeqCst).saturating_add(more)
     }
 }
+
+/// Seconds that what remains to be done after a stop may take.
+const GRACE: f64 = 1.0;
 
 /// Until when work may go on.
 #[derive(Clone, Debug)]
@@ -86,6 +98,8 @@ pub struct TimeLimit {
     end: Option<Instant>,
     questions: Option<Questions>,
     request: StopRequest,
+    heeds_requests: bool,
+    has_grace: bool,
 }
 
 impl TimeLimit {
@@ -99,17 +113,37 @@ impl TimeLimit {
             end,
             questions: None,
             request,
+            heeds_requests: true,
+            has_grace: false,
+        }
+    }
+
+    /// The limit of the work that remains when long work has ended, `seconds` from now and a second more: where a request has ended the
+    /// long work, a second from now, whatever was requested.
+    #[must_use]
+    pub fn with_grace(seconds: Option<f64>) -> Self {
+        let heeds_requests = !requested();
+        let seconds = match heeds_requests {
+            true => seconds,
+            false => Some(0.0),
+        };
+        Self {
+            questions: limit().and_then(|limit| limit.questions),
+            heeds_requests,
+            has_grace: true,
+            ..Self::after(seconds.map(|s| s.max(0.0) + GRACE))
         }
     }
 
     /// Returns the reason to stop now, if there is one: [`Status::Interrupted`] or [`Status::TimeLimit`].
     #[must_use]
     pub fn reached(&self) -> Option<Status> {
-        if have_asked() || self.request.is_made() {
+        if self.heeds_requests && (have_asked() || self.request.is_made()) {
             return Some(Status::Interrupted);
         }
         let is_late = self.end.is_some_and(|end| Instant::now() >= end);
-        let is_over = self.questions.as_ref().is_some_and(Questions::ask);
+        let questions = self.questions.as_ref();
+        let is_over = questions.is_some_and(|questions| questions.ask(self.has_grace));
         (is_late || is_over).then_some(Status::TimeLimit)
     }
 }
@@ -144,6 +178,14 @@ pub fn watch_questions(questions: &Questions) -> Watch {
         questions: Some(questions.clone()),
         ..TimeLimit::after(None)
     })
+}
+
+/// Begins to watch as a limit does, that of another thread or of [the work that remains](TimeLimit::with_grace), and no watch around this
+/// one.
+pub fn watch_by(limit: TimeLimit) -> Watch {
+    Watch {
+        before: LIMIT.replace(Some(limit)),
+    }
 }
 
 fn watch_until(mut own: TimeLimit) -> Watch {

@@ -1,8 +1,8 @@
 //! Error of long work that was stopped before its end, and the callback that requests the stop.
 
-/// The matrix is not factorised, because it was time to stop.
+/// The work has no result, because it was time to stop.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, thiserror::Error)]
-#[error("stopped within a factorisation")]
+#[error("stopped before the end")]
 pub struct Stopped;
 
 /// Callback that returns true when work is to stop; called on any thread.

@@ -12,6 +12,8 @@ use std::thread;
 
 use tempfile::NamedTempFile;
 
+use crate::ipopt::interrupt::TimeLimit;
+use crate::math::Stopped;
 use crate::report::atomic::{self, WriteError};
 
 /// Files that are brought to the disk at a time: the disk then writes many of them at once.
@@ -23,6 +25,7 @@ pub struct FileSet {
     folder: PathBuf,
     written: Vec<(NamedTempFile, PathBuf)>,
     removed: Vec<PathBuf>,
+    limit: Option<TimeLimit>,
 }
 
 impl FileSet {
@@ -32,7 +35,24 @@ impl FileSet {
             folder: folder.to_owned(),
             written: Vec::new(),
             removed: Vec::new(),
+            limit: None,
         }
+    }
+
+    /// Makes every file that follows an error once this limit is reached.
+    pub fn limit(&mut self, limit: &TimeLimit) {
+        self.limit = Some(limit.clone());
+    }
+
+    /// Returns the number of files so far.
+    pub fn count(&self) -> usize {
+        self.written.len()
+    }
+
+    /// Keeps the first files alone, and removes the limit.
+    pub fn truncate(&mut self, count: usize) {
+        self.written.truncate(count);
+        self.limit = None;
     }
 
     /// The folder.
@@ -43,9 +63,13 @@ impl FileSet {
     /// Writes a file, named relative to the folder, without its name.
     ///
     /// # Errors
-    /// It cannot be written; nothing of the set takes its name.
+    /// It cannot be written, or the limit is reached; nothing of the set takes its name.
     pub fn add(&mut self, name: impl AsRef<Path>, bytes: &[u8]) -> Result<(), WriteError> {
         let path = self.folder.join(name);
+        if self.limit.as_ref().and_then(TimeLimit::reached).is_some() {
+            let cause = io::Error::other(Stopped);
+            return Err(WriteError { path, cause });
+        }
         match atomic::partial(&path, bytes) {
             Ok(file) => {
                 self.written.push((file, path));

@@ -91,8 +91,11 @@ impl SimulationResult {
         let order = task.solving.integrator.order();
         let ends = [task.start.voltages(), None];
         let outside = domain::records(&out_of_domain(model, discrete));
-        let neglected = local_error_of(model, (discrete, trajectory), order)
-            .map(|local| longer_steps::confirmed(&self.simulated, task, trajectory, local));
+        let neglected =
+            local_error_of(model, (discrete, trajectory), order).map(|local| match self.stopped {
+                None => longer_steps::confirmed(&self.simulated, task, trajectory, local),
+                Some(_) => local,
+            });
         let mut remarks = Remarks::default();
         remarks.note("start", task.start.notes().iter().cloned());
         remarks.note("moved_marker", moved_markers(system));

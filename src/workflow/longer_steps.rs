@@ -8,7 +8,6 @@
 use crate::control::problem::Simulation;
 use crate::dynamics::trajectory::Trajectory;
 use crate::dynamics::{LocalError, distance_between};
-use crate::ipopt::interrupt;
 use crate::workflow::integrate::{Driven, Simulated};
 use crate::workflow::tolerance::repeated;
 
@@ -25,8 +24,7 @@ pub(crate) fn confirmed(
     trajectory: &Trajectory,
     local: LocalError,
 ) -> LocalError {
-    let is_whole = simulated.failure.is_none() && interrupt::stop().is_none();
-    if local.order <= LOW || task.tolerance.is_some() || !is_whole {
+    if local.order <= LOW || task.tolerance.is_some() || simulated.failure.is_some() {
         return local;
     }
     let found = error(simulated, task, trajectory, local.order);

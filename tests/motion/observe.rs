@@ -4,9 +4,11 @@ use crate::common::{at_reference, bare, body, column, columns, joint, motion, pl
 use nalgebra::{Matrix3, Vector3};
 use proboscis::dynamics::trajectory::Trajectory;
 use proboscis::dynamics::{DiscreteTrajectory, Start, observations, observed};
+use proboscis::math::Stopped;
 use proboscis::model::system::{JointKind, VACUUM_PERMITTIVITY};
 use proboscis::model::{Coordinates, Model};
 use std::f64::consts::TAU;
+use std::sync::atomic::{AtomicUsize, Ordering};
 
 #[test]
 fn stretches_and_charges_follow_their_formulas() {
@@ -59,7 +61,8 @@ fn pieces_of_a_long_motion_join() {
             ..DiscreteTrajectory::default()
         };
         let mut moving = 0;
-        for (whole, end) in observed(&model, &whole).iter().zip(observed(&model, &end)) {
+        let [seen, of_end] = [&whole, &end].map(|d| observed(&model, d, &|| false).unwrap());
+        for (whole, end) in seen.iter().zip(of_end) {
             assert_eq!(whole.values.len(), steps + 1);
             moving += usize::from(whole.values[begun] != whole.values[steps]);
             // Dissipated energy counts from the start.
@@ -76,6 +79,11 @@ fn pieces_of_a_long_motion_join() {
             }
         }
         assert!(moving > 8);
+        // It is asked before each piece, and nothing remains of a part.
+        let asked = AtomicUsize::new(0);
+        let is_over = || asked.fetch_add(1, Ordering::SeqCst) >= 2;
+        assert_eq!(observed(&model, &whole, &is_over), Err(Stopped));
+        assert_eq!(asked.into_inner(), 3);
     }
 }
 

@@ -152,7 +152,7 @@ fn ctrl_c_stops_a_motion_of_elements_within_a_step() {
     assert!(told.contains("stopping"), "{told}");
     let summary = read(folder.path().join("out/summary.json"));
     assert_eq!(summary["status"], "interrupted");
-    assert!(folder.path().join("out/solution.json").exists());
+    assert!(folder.path().join("out/continuation.npz").exists());
 }
 
 #[test]

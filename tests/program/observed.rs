@@ -5,7 +5,7 @@ use proboscis::app::{
     CommandInput, CommandOutput, PageWanted, ProgressDisplay, Reached, RunIn, changed_text,
     check_text, checked, inspected, run_observed, solve_text_from_starts, with_program,
 };
-use proboscis::ipopt::interrupt::{self, StopRequest};
+use proboscis::ipopt::interrupt::{self, Questions, StopRequest};
 use proboscis::report::Figures;
 use std::fs;
 use std::path::{Path, PathBuf};
@@ -117,6 +117,94 @@ fn a_request_stops_a_motion_after_a_step() {
     assert_eq!(summary["status"], "interrupted");
     assert_eq!((summary["steps"].as_u64(), times.len()), (Some(4), 4));
     assert_eq!(summary["duration"].as_f64(), Some(times[3] / 1e3));
+}
+
+/// Files of a folder but those that are always written.
+fn tables_and_figures(folder: &Path) -> Vec<String> {
+    let names = fs::read_dir(folder).unwrap().map(|entry| {
+        let name = entry.unwrap().file_name();
+        name.to_string_lossy().into_owned()
+    });
+    let kept = ["summary.json", "continuation.npz", "solution.json"];
+    let mut others: Vec<_> = names.filter(|name| !kept.contains(&&**name)).collect();
+    others.sort();
+    others
+}
+
+/// Rows of `trajectory.csv`.
+fn rows(folder: &Path) -> String {
+    let table = fs::read_to_string(folder.join("trajectory.csv")).unwrap();
+    table.split_once('\n').unwrap().1.to_owned()
+}
+
+#[test]
+fn writing_ends_with_the_time_and_goes_on_from_what_is_kept() {
+    let folder = tempfile::tempdir().unwrap();
+    let [whole, out] = ["whole", "out"].map(|name| folder.path().join(name));
+    let mut steps = 0;
+    let mut count = |_: Reached<'_>| steps += 1;
+    assert!(solve("pair_constant", None, &whole, &mut count).is_solved);
+    assert!(steps > 10);
+    fs::create_dir(&out).unwrap();
+    // The last step; a step on the way, where one second stands for two questions; and for as many as it takes.
+    for (last, grace, written) in [(steps, 0, false), (4, 2, false), (4, u64::MAX, true)] {
+        for name in tables_and_figures(&whole) {
+            fs::copy(whole.join(&name), out.join(&name)).unwrap();
+        }
+        let questions = Questions::allowed(u64::MAX);
+        questions.grant(grace);
+        let mut stop = |reached: Reached<'_>| match reached {
+            Reached::Step(step, _) if step == last => questions.end_after(0),
+            _ => {}
+        };
+        let watch = interrupt::watch_questions(&questions);
+        let told = solve("pair_constant", None, &out, &mut stop);
+        drop(watch);
+        let summary = read(out.join("summary.json"));
+        assert_eq!(summary["status"], "time_limit", "{told:?}");
+        assert_eq!(summary["steps"].as_u64(), Some(last as u64));
+        assert!(!told.is_solved, "{told:?}");
+        let is_warned = told.notes.iter().any(|note| note.contains("left out"));
+        assert_eq!(is_warned, !written, "{told:?}");
+        match written {
+            true => assert_eq!(tables_and_figures(&out), tables_and_figures(&whole)),
+            false => assert!(tables_and_figures(&out).is_empty()),
+        }
+        let mut on = request(problem("pair_constant").into(), &out);
+        on.from = Some(out.clone());
+        let told = run_observed(&on, None, &mut |_| {}).unwrap();
+        assert!(told.is_solved, "{told:?}");
+        assert!(rows(&out) == rows(&whole) && rows(&out).lines().count() > steps);
+    }
+}
+
+#[test]
+fn an_optimum_is_kept_where_its_writing_is_stopped() {
+    let folder = tempfile::tempdir().unwrap();
+    let [whole, out] = ["whole", "out"].map(|name| folder.path().join(name));
+    let run = |out: &Path, questions: &Questions| {
+        let _watch = interrupt::watch_questions(questions);
+        solve("pair", None, out, &mut |_| {})
+    };
+    let all = Questions::allowed(u64::MAX);
+    assert!(run(&whole, &all).is_solved);
+    // Before the last files.
+    let questions = Questions::allowed(all.asked() - 3);
+    questions.grant(0);
+    let told = run(&out, &questions);
+    assert!(
+        !told.is_solved && told.result.starts_with("solved (time limit)"),
+        "{told:?}"
+    );
+    let warning = told.notes.iter().find(|note| note.contains("left out"));
+    assert!(
+        warning.is_some_and(|note| note.starts_with("warning: ")),
+        "{told:?}"
+    );
+    assert_eq!(read(out.join("summary.json"))["status"], "time_limit");
+    assert!(tables_and_figures(&out).is_empty() && tables_and_figures(&whole).len() > 3);
+    let [one, other] = [&out, &whole].map(|f| fs::read(f.join("solution.json")).unwrap());
+    assert!(one == other);
 }
 
 #[test]

@@ -1,0 +1,54 @@
+//! Parts that a stop leaves out of a result: tables, figures and page that are not made in time.
+
+use std::time::Instant;
+
+use crate::app::request::CommandInput;
+use crate::app::summary::Summary;
+use crate::ipopt::Status;
+use crate::ipopt::interrupt::TimeLimit;
+use crate::report::file_set::FileSet;
+
+/// Files that an earlier result of the folder may have.
+pub(super) const EARLIER: [&str; 21] = [
+    "configuration.svg",
+    "continuation.npz",
+    "controls.csv",
+    "energy.svg",
+    "equilibrium.csv",
+    "joint_angles.svg",
+    "motion.gltf",
+    "parts.pvd",
+    "path.csv",
+    "path.svg",
+    "report.html",
+    "snapshots.svg",
+    "solution.json",
+    "solution.npz",
+    "tables.npz",
+    "tip_path.svg",
+    "tracking.csv",
+    "tracking.svg",
+    "trajectory.csv",
+    "trajectory.pvd",
+    "voltages.svg",
+];
+
+/// Statuses of a run that was stopped.
+pub(super) const STOPPED: [&str; 2] = ["interrupted", "time_limit"];
+
+/// The limit of writing, of a run that began at a time.
+pub(super) fn time_to_write(request: &CommandInput, began: Instant) -> TimeLimit {
+    let spent = began.elapsed().as_secs_f64();
+    TimeLimit::with_grace(request.max_seconds.map(|seconds| seconds - spent))
+}
+
+/// Makes a result one whose writing was stopped: the first `kept` files alone, a warning, and the status where it has no message of another.
+pub(super) fn leave_out(summary: &mut Summary, stopped: Status, files: &mut FileSet, kept: usize) {
+    files.truncate(kept);
+    EARLIER.iter().for_each(|name| files.remove(name));
+    if summary.message.is_none() {
+        stopped.word().clone_into(&mut summary.status);
+    }
+    let words = "tables, figures and page are left out: the run was stopped before they were made";
+    summary.notes.warn("left_out", [words.to_owned()]);
+}
