@@ -5,7 +5,7 @@
 //! that the process never ends; where no thread can be had OpenBLAS ends the process. It starts none where the process has one core.
 //!
 //! The OpenBLAS beside a MUMPS with MPI (0.3.29 in Debian 13) also takes a block of 128 MiB then, and asks for it for ever where the address
-//! space is limited to less: the process ends with a message instead.
+//! space is limited to less: the process ends with a message instead. Without MPI it ends so where the kept problems would run out of memory.
 
 use std::sync::OnceLock;
 
@@ -16,8 +16,15 @@ use rustix::thread::{CpuSet, sched_getaffinity, sched_setaffinity};
 /// The cores that the process was given.
 static CORES: OnceLock<CpuSet> = OnceLock::new();
 
-/// The first block that OpenBLAS takes, with its ends.
-const BLOCK: usize = 129 << 20;
+/// Address space that is left when the libraries are mapped: the first block that OpenBLAS takes, with its ends; without MPI what the trunk
+/// needs (60 MiB for 40 s of motion).
+const ROOM: usize = if cfg!(mpi) { 129 << 20 } else { 64 << 20 };
+/// Message where there is less.
+const TOO_LITTLE: &str = if cfg!(mpi) {
+    "error: too little address space: expected 129 MiB more than the libraries take (ulimit -v)\n"
+} else {
+    "error: too little address space: expected 64 MiB more than the libraries take (ulimit -v)\n"
+};
 
 /// Called by the loader before it initialises the libraries.
 #[used]
@@ -27,10 +34,9 @@ const BLOCK: usize = 129 << 20;
 static BEGIN: extern "C" fn() = begin;
 
 extern "C" fn begin() {
-    if cfg!(mpi) && getrlimit(Resource::As).current.is_some() && !has_room(BLOCK) {
-        let message = b"error: too little address space: the libraries take a block of 128 MiB as soon as they are loaded\n";
-        let _written = rustix::io::write(rustix::stdio::stderr(), message);
-        std::process::abort();
+    if is_limited() && !has_room(ROOM) {
+        let _written = rustix::io::write(rustix::stdio::stderr(), TOO_LITTLE.as_bytes());
+        exit_now();
     }
     let Ok(cores) = sched_getaffinity(None) else {
         return;
@@ -45,6 +51,31 @@ extern "C" fn begin() {
     }
 }
 
+/// Returns true if the process may have a part of the address space only.
+fn is_limited() -> bool {
+    getrlimit(Resource::As).current.is_some()
+}
+
+/// Ends the process with status 1, before anything that is to be done at its end.
+#[expect(unsafe_code, reason = "a function of C")]
+fn exit_now() -> ! {
+    // SAFETY: it takes any number and does not return.
+    unsafe { libc::_exit(1) }
+}
+
+/// Makes all threads share one pool of memory where the address space is limited: glibc reserves 64 MiB for each further one, and nothing is
+/// left for the first.
+fn share_memory() {
+    #[cfg(target_env = "gnu")]
+    if is_limited() {
+        #[expect(unsafe_code, reason = "a function of C")]
+        // SAFETY: it takes any numbers, and there is no other thread yet.
+        unsafe {
+            libc::mallopt(libc::M_ARENA_MAX, 1);
+        }
+    }
+}
+
 /// Returns true if a block of memory of this length can be had.
 #[expect(unsafe_code, reason = "memory of the process by its address")]
 fn has_room(length: usize) -> bool {
@@ -56,8 +87,9 @@ fn has_room(length: usize) -> bool {
     }
 }
 
-/// Gives the process its cores back.
+/// Gives the process its cores back, for threads that share its memory.
 pub(crate) fn end() {
+    share_memory();
     if let Some(cores) = CORES.get()
         && let Err(error) = sched_setaffinity(None, cores)
     {

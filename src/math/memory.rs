@@ -2,7 +2,7 @@
 
 use std::fs;
 
-/// Bytes that the machine and the group of this process leave; `None` where that is not known.
+/// Bytes that the machine, the group of this process and its limit of address space leave; `None` where that is not known.
 pub(crate) fn available() -> Option<f64> {
     let machine = fs::read_to_string("/proc/meminfo").ok();
     let machine = machine.as_deref().and_then(of_machine);
@@ -13,15 +13,37 @@ pub(crate) fn available() -> Option<f64> {
     let group = of_group("memory.max").zip(of_group("memory.current"));
     // What is cached is given back when it is needed.
     let group = group.map(|(limit, used)| (limit - used).max(0.5 * limit));
-    [machine, group].into_iter().flatten().reduce(f64::min)
+    let limits = fs::read_to_string("/proc/self/limits").ok();
+    let used = fs::read_to_string("/proc/self/status").ok();
+    let limit = limits.as_deref().and_then(of_limits);
+    let used = used.as_deref().and_then(of_process);
+    let space = limit.zip(used).map(|(limit, used)| (limit - used).max(0.0));
+    let all = [machine, group, space].into_iter();
+    all.flatten().reduce(f64::min)
+}
+
+/// Returns the limit of address space that `/proc/self/limits` states, in bytes.
+fn of_limits(text: &str) -> Option<f64> {
+    let line = text
+        .lines()
+        .find_map(|line| line.strip_prefix("Max address space"))?;
+    line.split_whitespace().next()?.parse().ok()
+}
+
+/// Returns the address space in use that `/proc/self/status` states, in bytes.
+fn of_process(text: &str) -> Option<f64> {
+    kilobytes(text, "VmSize:")
 }
 
 /// Returns the available memory that `/proc/meminfo` states, in bytes.
 fn of_machine(text: &str) -> Option<f64> {
-    let line = text
-        .lines()
-        .find(|line| line.starts_with("MemAvailable:"))?;
-    let kilobytes: f64 = line.split_whitespace().nth(1)?.parse().ok()?;
+    kilobytes(text, "MemAvailable:")
+}
+
+/// Returns the number of kilobytes under a name, in bytes.
+fn kilobytes(text: &str, name: &str) -> Option<f64> {
+    let line = text.lines().find_map(|line| line.strip_prefix(name))?;
+    let kilobytes: f64 = line.split_whitespace().next()?.parse().ok()?;
     Some(1024.0 * kilobytes)
 }
 
