@@ -127,13 +127,19 @@ fn shells_and_manuals_know_every_command() {
 #[test]
 fn robots_to_begin_with_are_solved() {
     let folder = workshop();
-    for (robot, status) in [
+    let others = [
         ("arm", "solved"),
         ("finger", "solved"),
         ("gripper", "solved"),
         ("satellite", "simulated"),
-    ] {
-        let (code, out, err) = run(folder.path(), &["new", robot, robot]);
+    ];
+    let trunks = ["1", "2", "3", "4", "6", "8"].map(|segments| (segments, "solved"));
+    for (robot, status) in others.into_iter().chain(trunks) {
+        let words = match robot.parse::<usize>() {
+            Ok(_) => &["new", "trunk", robot, "--segments", robot][..],
+            Err(_) => &["new", robot, robot],
+        };
+        let (code, out, err) = run(folder.path(), words);
         assert!(code == 0 && out.lines().count() == 5, "{err}");
         let problem = format!("{robot}/problem.json");
         let (code, out, err) = run(folder.path(), &["solve", &problem, "--json", "-o", robot]);
