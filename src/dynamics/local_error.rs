@@ -13,10 +13,13 @@ use crate::dynamics::trajectory::Trajectory;
 use crate::math::Vector;
 use crate::model::Model;
 
+/// Part of the length of the system below which a path is none: states of rest are found no nearer.
+const NO_PATH: f64 = 1e-8;
+
 /// The estimate for a motion.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct LocalError {
-    /// Sum of the local errors, of the point where it is greatest, in mm.
+    /// Sum of the local errors, of the point where it is greatest, in mm; zero of a robot at rest.
     pub error: f64,
     /// Way of the point that goes farthest, in mm.
     pub path: f64,
@@ -100,9 +103,11 @@ pub fn local_error_of(
         }
     }
     let worst = sums.iter().copied().max_by(|a, b| a[0].total_cmp(&b[0]))?;
+    let path = sums.iter().map(|sum| sum[1]).fold(0.0, f64::max);
+    let moves = path > NO_PATH * model.length();
     Some(LocalError {
-        error: worst[0],
-        path: sums.iter().map(|sum| sum[1]).fold(0.0, f64::max),
+        error: if moves { worst[0] } else { 0.0 },
+        path,
         order,
         is_resolved: worst[2] <= worst[3],
         step: (discrete.times[steps] - discrete.times[0]) / steps as f64,

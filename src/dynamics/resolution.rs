@@ -79,9 +79,9 @@ impl Balance {
         self.made
     }
 
-    /// Energy in motion during the step.
+    /// Energy in motion during the step, at least what is rounding: at rest no other moves.
     pub(super) fn exchanged(&self) -> f64 {
-        self.exchanged
+        self.exchanged.max(ROUNDING * self.size)
     }
 
     /// Returns the reason why a step of `step` ms is not accepted: an element is crushed at its end, or the balance does not close. Forces that

@@ -24,7 +24,10 @@ pub(crate) fn confirmed(
     trajectory: &Trajectory,
     local: LocalError,
 ) -> LocalError {
-    if local.order <= LOW || task.tolerance.is_some() || simulated.failure.is_some() {
+    let is_whole = simulated.failure.is_none();
+    // What rests has no error.
+    let moves = local.error > 0.0;
+    if local.order <= LOW || task.tolerance.is_some() || !is_whole || !moves {
         return local;
     }
     let found = error(simulated, task, trajectory, local.order);

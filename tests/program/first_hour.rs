@@ -258,3 +258,40 @@ fn what_cannot_rest_is_not_asked_to_and_moved_markers_are_told() {
     let (_, _, err) = run(folder.path(), &["inspect", &problem("fe_finger_control")]);
     assert!(!err.contains("is the node at"), "{err}");
 }
+
+/// It moves by rounding alone, of which no step is to blame.
+#[test]
+fn a_robot_at_rest_is_simulated_without_a_warning() {
+    let folder = workshop();
+    let path = folder.path();
+    for more in [
+        &[][..],
+        &["--set", "simulate.integrator={\"galerkin\":2}"],
+        &[
+            "--set",
+            "simulate.step=auto",
+            "--set",
+            "simulate.tolerance=1e-6",
+        ],
+    ] {
+        let pair = problem("pair_constant");
+        let rest = [
+            "simulate",
+            &pair,
+            "--set",
+            "simulate.start={\"rest_at_voltages\":{\"muscle2\":\"1.7 kV\"}}",
+            "--set",
+            "scene.gravity=[\"9.81 m/s^2\",0,0]",
+            "-o",
+            "out",
+        ];
+        let (status, out, err) = run(path, &[&rest, more].concat());
+        assert!(status == 0 && err.is_empty(), "{more:?}: {out}{err}");
+        let last = fs::read_to_string(path.join("out/trajectory.csv")).unwrap();
+        let last: Vec<&str> = last.lines().last().unwrap().split(',').collect();
+        let angle: f64 = last[1].parse().unwrap();
+        assert!(angle.abs() > 0.01, "{angle}");
+        let summary = read(path.join("out/summary.json"));
+        assert_eq!(summary["local_error"]["sum"], 0.0, "{more:?}");
+    }
+}
