@@ -126,7 +126,9 @@ pub(super) fn targets(control: &Control, motion: &Trajectory) -> Vec<(usize, Vec
     };
     let last = motion.times.len() - 1;
     for cost in &control.objective.quantities {
-        let CostFunction::Square { reference } = &cost.function;
+        let CostFunction::Square { reference } = &cost.function else {
+            continue;
+        };
         if let (Quantity::MarkerPlace { marker, axis }, During::End) = (cost.quantity, cost.during)
         {
             let place = &mut places.entry(marker).or_default().0[axis];
@@ -150,7 +152,9 @@ pub(super) fn waypoints(control: &Control, motion: &Trajectory) -> Vec<(usize, V
         places.extend(all.map(|(&marker, place)| ((instant(waypoint.part), marker), *place)));
     }
     for cost in &control.objective.quantities {
-        let CostFunction::Square { reference } = &cost.function;
+        let CostFunction::Square { reference } = &cost.function else {
+            continue;
+        };
         if let (Quantity::MarkerPlace { marker, axis }, During::At(part)) =
             (cost.quantity, cost.during)
         {

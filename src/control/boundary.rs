@@ -1,14 +1,15 @@
 //! Start and goal: the coordinates that they give, the equations that they add, and the voltages at rest.
 
 use crate::control::boundary_conditions::{BoundaryConditions, Rests, TerminalState};
+use crate::control::bounded_quantity::When;
 use crate::control::endpoint_checks;
 use crate::control::energy_cost::{EnergyCost, resisted, sources};
 use crate::control::error::BoundaryError;
 use crate::control::goal_rows;
-use crate::control::limits::{Length, Limits, When};
+use crate::control::limits::{Length, Limits};
 use crate::control::periodic;
 use crate::control::prescribed::{self, at_rest};
-use crate::control::problem::{BoundaryState, Control, Duration, During, Rest};
+use crate::control::problem::{BoundaryState, Control, Duration, During, PathConstraint, Rest};
 use crate::control::rest::rest_at;
 use crate::control::sought;
 use crate::control::sought_hold;
@@ -138,7 +139,14 @@ fn off_grid(control: &Control) -> Vec<String> {
         ),
         During::Motion | During::End => None,
     });
-    let mut notes: Vec<String> = exact.chain(near).collect();
+    let limits = control.limits.iter().filter_map(|limit| match *limit {
+        PathConstraint::Once { part, .. } => note(
+            format!("limit at {} of the duration", shortest(part, 6)),
+            part,
+        ),
+        _ => None,
+    });
+    let mut notes: Vec<String> = exact.chain(near).chain(limits).collect();
     notes.dedup();
     notes
 }

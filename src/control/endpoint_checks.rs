@@ -5,9 +5,9 @@ use std::collections::BTreeMap;
 use nalgebra::Vector3;
 
 use crate::control::boundary_conditions::BoundaryConditions;
+use crate::control::bounded_quantity::{BoundedQuantity, When};
 use crate::control::error::BoundaryError;
 use crate::control::goal::Place;
-use crate::control::limits::{BoundedQuantity, When};
 use crate::control::problem::{BoundaryState, Control, PathConstraint};
 use crate::control::transcription::Site;
 use crate::coordinates::Configuration;
@@ -59,12 +59,25 @@ pub(super) fn check(
             | BoundaryState::Free
             | BoundaryState::Periodic => {}
         }
-        let of_joints = control.limits.iter().find_map(|limit| end.joint(limit));
+        let is_goal = place == "goal";
+        let of_joints = control.limits.iter().filter_map(|limit| match limit {
+            PathConstraint::Once { part, limit } => (is_goal && *part == 1.0).then_some(&**limit),
+            limit => Some(limit),
+        });
+        let mut of_joints = of_joints;
+        let of_joints = of_joints.find_map(|limit| end.joint(limit));
         let bounded = || {
             let list = boundary.limits.list.iter().zip(&model.measured);
             let is_of_path = |bounded: &BoundedQuantity| {
                 let is_of_rate = bounded.rate.is_some() || bounded.quantity.before().is_some();
-                bounded.when == When::Everywhere && !is_of_rate
+                let is_then = match bounded.when {
+                    When::Everywhere => true,
+                    When::Goal => is_goal,
+                    When::At(part) => is_goal && part == 1.0,
+                };
+                let is_here =
+                    bounded.when == When::Everywhere || !bounded.quantity.is_of_intervals();
+                is_then && is_here && !is_of_rate
             };
             let paths = list.filter(|(bounded, _)| is_of_path(bounded));
             let mut values = paths.map(|(b, m)| (b, end.value(b, *m)));

@@ -1,44 +1,9 @@
 //! Path limits and goals as bounded quantities at instants and in intervals.
 
+use crate::control::bounded_quantity::{BoundedQuantity, When};
 use crate::control::problem::{PathConstraint, Side};
 use crate::functional::Stencil;
-use crate::math::significant;
 use crate::model::{FieldPlace, Quantity, Region, System};
-
-/// A quantity with bounds at some instants or intervals.
-#[derive(Clone, Debug, PartialEq)]
-pub struct BoundedQuantity {
-    /// Quantity that is bounded.
-    pub quantity: Quantity,
-    /// Lower bound.
-    pub lower: f64,
-    /// Upper bound.
-    pub upper: f64,
-    /// Rate in units over ms that is subtracted from the quantity, times the length of the interval: a bound where the duration is free.
-    pub rate: Option<f64>,
-    /// At the final instant only (a goal), at one instant (a waypoint), or everywhere (a limit).
-    pub when: When,
-    /// Words for messages.
-    pub name: String,
-}
-
-/// Instants or intervals at which a quantity is bounded.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub enum When {
-    /// At every instant, or in every interval.
-    Everywhere,
-    /// At the last instant.
-    Goal,
-    /// At the instant nearest to a part of the duration: a waypoint.
-    At(f64),
-}
-
-impl When {
-    /// Returns true unless it is a limit of the whole path.
-    pub fn is_single(self) -> bool {
-        matches!(self, Self::Goal | Self::At(_))
-    }
-}
 
 /// Length of the intervals, by which steps are rates.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -56,8 +21,6 @@ pub struct Limits {
     pub list: Vec<BoundedQuantity>,
 }
 
-/// A value this far beyond its bound, relative to it, is rounding.
-const ROUNDING: f64 = 1e-8;
 /// Σ ξ¹⁶ ≥ 3 holds only outside the box.
 const OUTSIDE_BOX: f64 = 3.0;
 /// Times at which fields are bounded: where the voltages of an interval act, and at the instants, where those of both neighbours do.
@@ -72,73 +35,127 @@ impl Limits {
         measure_joints: bool,
         length: Length,
     ) -> Self {
-        let h = length.h;
         let mut out = Self::default();
-        for limit in limits {
-            match *limit {
-                PathConstraint::JointAngle { joint, min, max } => {
-                    if measure_joints {
-                        out.add_joint(joint, [min, max], system);
+        let data = (system, measure_joints, length);
+        limits.iter().for_each(|limit| out.add_limit(limit, data));
+        out
+    }
+
+    /// Adds the quantities that a limit bounds.
+    fn add_limit(
+        &mut self,
+        limit: &PathConstraint,
+        (system, measure_joints, length): (&System, bool, Length),
+    ) {
+        let h = length.h;
+        let out = self;
+        match *limit {
+            PathConstraint::Once { part, ref limit } => {
+                out.add_once(limit, part, system, length);
+            }
+            PathConstraint::JointAngle { joint, min, max } => {
+                if measure_joints {
+                    out.add_joint(joint, [min, max], system);
+                }
+            }
+            PathConstraint::JointRate { joint, min, max } => {
+                let name = format!("rate of {}", system.joints[joint].name);
+                out.add_rate(Quantity::JointStep { joint, h }, [min, max], name, length);
+            }
+            PathConstraint::Stretch { muscle, min, max } => {
+                let name = format!("stretch of {}", system.muscles[muscle].name);
+                let quantity = Quantity::SquaredStretch { muscle };
+                out.add(quantity, [min * min, max * max], name);
+            }
+            PathConstraint::Tension { muscle, min, max } => {
+                let name = format!("tension of {}", system.muscles[muscle].name);
+                let unit = largest([min, max]).unwrap_or(system.muscles[muscle].shear_force());
+                let quantity = Quantity::Tension { muscle, unit };
+                out.add(quantity, [min / unit, max / unit], name);
+            }
+            PathConstraint::ElectricField { muscle, max } => {
+                let name = format!("electric field of {}", system.muscles[muscle].name);
+                match system.muscles[muscle].is_behind_resistor() {
+                    true => {
+                        let quantity = Quantity::ChargedField { muscle, limit: max };
+                        out.add(quantity, [f64::NEG_INFINITY, 1.0], name);
                     }
+                    false => out.add_field(FieldPlace::Muscle(muscle), max, &name),
                 }
-                PathConstraint::JointRate { joint, min, max } => {
-                    let name = format!("rate of {}", system.joints[joint].name);
-                    out.add_rate(Quantity::JointStep { joint, h }, [min, max], name, length);
-                }
-                PathConstraint::Stretch { muscle, min, max } => {
-                    let name = format!("stretch of {}", system.muscles[muscle].name);
-                    let quantity = Quantity::SquaredStretch { muscle };
-                    out.add(quantity, [min * min, max * max], name);
-                }
-                PathConstraint::Tension { muscle, min, max } => {
-                    let name = format!("tension of {}", system.muscles[muscle].name);
-                    let unit = largest([min, max]).unwrap_or(system.muscles[muscle].shear_force());
-                    let quantity = Quantity::Tension { muscle, unit };
-                    out.add(quantity, [min / unit, max / unit], name);
-                }
-                PathConstraint::ElectricField { muscle, max } => {
-                    let name = format!("electric field of {}", system.muscles[muscle].name);
-                    match system.muscles[muscle].is_behind_resistor() {
-                        true => {
-                            let quantity = Quantity::ChargedField { muscle, limit: max };
-                            out.add(quantity, [f64::NEG_INFINITY, 1.0], name);
-                        }
-                        false => out.add_field(FieldPlace::Muscle(muscle), max, &name),
-                    }
-                }
-                PathConstraint::Current { .. } | PathConstraint::Power { .. } => {
-                    out.add_source(limit, system, length);
-                }
-                PathConstraint::VoltageRate { source, min, max } => {
-                    let name = format!("rate of the voltage of {}", system.sources()[source].name);
-                    let unit = h * largest([min, max]).unwrap_or(1.0);
-                    let quantity = Quantity::VoltageStep { source, unit, h };
-                    out.add_rate(quantity, [min, max], name, length);
-                }
-                PathConstraint::PeakVoltage {
+            }
+            PathConstraint::Current { .. } | PathConstraint::Power { .. } => {
+                out.add_source(limit, system, length);
+            }
+            PathConstraint::BlockField { block, region, max } => {
+                out.add_block_field(block, region, max, system);
+            }
+            PathConstraint::VoltageRate { .. }
+            | PathConstraint::PeakVoltage { .. }
+            | PathConstraint::MarkerSpeed { .. }
+            | PathConstraint::Marker { .. } => out.add_other(limit, system, length),
+        }
+    }
+
+    /// Adds a limit of a voltage or of a marker.
+    fn add_other(&mut self, limit: &PathConstraint, system: &System, length: Length) {
+        let (out, h) = (self, length.h);
+        match *limit {
+            PathConstraint::VoltageRate { source, min, max } => {
+                let name = format!("rate of the voltage of {}", system.sources()[source].name);
+                let unit = h * largest([min, max]).unwrap_or(1.0);
+                let quantity = Quantity::VoltageStep { source, unit, h };
+                out.add_rate(quantity, [min, max], name, length);
+            }
+            PathConstraint::MarkerSpeed { marker, min, max } => {
+                let name = format!("speed of marker {}", system.markers[marker].name);
+                let limit = largest([min, max]).unwrap_or(1.0);
+                let square = |bound: f64| (bound / limit).powi(2);
+                let lower = if min > 0.0 {
+                    square(min)
+                } else {
+                    f64::NEG_INFINITY
+                };
+                out.add(
+                    Quantity::SquaredSpeed { marker, limit },
+                    [lower, square(max)],
+                    name,
+                );
+            }
+            PathConstraint::PeakVoltage {
+                source,
+                parameter,
+                unit,
+            } => {
+                let name = format!("peak voltage of {}", system.sources()[source].name);
+                let quantity = Quantity::PeakExcess {
                     source,
                     parameter,
                     unit,
-                } => {
-                    let name = format!("peak voltage of {}", system.sources()[source].name);
-                    let quantity = Quantity::PeakExcess {
-                        source,
-                        parameter,
-                        unit,
-                    };
-                    out.add(quantity, [f64::NEG_INFINITY, 0.0], name);
-                }
-                PathConstraint::BlockField { block, region, max } => {
-                    out.add_block_field(block, region, max, system);
-                }
-                PathConstraint::Marker {
-                    marker,
-                    region,
-                    side,
-                } => out.add_region(marker, region, side, system),
+                };
+                out.add(quantity, [f64::NEG_INFINITY, 0.0], name);
             }
+            PathConstraint::Marker {
+                marker,
+                region,
+                side,
+            } => out.add_region(marker, region, side, system),
+            _ => {}
         }
-        out
+    }
+
+    /// Adds a limit that holds at a part of the duration alone; of a field at the instant, under the voltages of the interval before.
+    fn add_once(&mut self, limit: &PathConstraint, part: f64, system: &System, length: Length) {
+        let mut own = Self::default();
+        own.add_limit(limit, (system, true, length));
+        let is_then = |quantity: &Quantity| match quantity {
+            Quantity::SquaredField { at, .. } => *at == Stencil::Next,
+            _ => true,
+        };
+        own.list.retain(|bounded| is_then(&bounded.quantity));
+        for bounded in &mut own.list {
+            bounded.when = When::At(part);
+        }
+        self.list.append(&mut own.list);
     }
 
     /// Adds a limit.
@@ -308,43 +325,4 @@ fn largest(bounds: [f64; 2]) -> Option<f64> {
     let sizes = bounds.map(f64::abs).into_iter();
     let finite = sizes.filter(|size| *size > 0.0 && size.is_finite());
     finite.reduce(f64::max)
-}
-
-impl BoundedQuantity {
-    /// The quantity that is subtracted in the interval before, where it is another one.
-    pub fn other_before(&self) -> Option<Quantity> {
-        let before = self.quantity.before();
-        before.filter(|before| *before != self.quantity)
-    }
-
-    /// Its bounds, those of a rate in intervals of the length that the quantity names.
-    pub fn bounds(&self) -> [f64; 2] {
-        let of_rate = self.rate.zip(self.quantity.interval());
-        let moved = of_rate.map_or(0.0, |(rate, h)| rate * h);
-        [self.lower + moved, self.upper + moved]
-    }
-
-    /// A value and the bound that it breaks, in words; `None` where it keeps its bounds up to rounding.
-    pub fn broken(&self, value: f64, system: &System) -> Option<String> {
-        let rounding = |bound: f64| ROUNDING * (1.0 + bound.abs());
-        let (is_below, is_above) = (
-            value < self.lower - rounding(self.lower),
-            value > self.upper + rounding(self.upper),
-        );
-        let bound = match (is_below, is_above) {
-            (true, _) => self.lower,
-            (_, true) => self.upper,
-            _ => return None,
-        };
-        let [value, bound] = [value, bound].map(|v| self.quantity.plain(v, system));
-        let side = if is_below { "at least" } else { "at most" };
-        let [value, bound] = [value, bound].map(|(v, unit)| {
-            let space = if unit.is_empty() { "" } else { " " };
-            format!("{}{space}{unit}", significant(v, 5))
-        });
-        let name = &self.name;
-        Some(format!(
-            "{name} is {value}, and its limit is {side} {bound}"
-        ))
-    }
 }

@@ -5,13 +5,14 @@ pub use crate::control::boundary_state::{BoundaryState, Hold, Rest, SoughtHold};
 pub use crate::control::energy_cost::{EnergyCost, SourceEnergy};
 pub use crate::control::goal::{Orientation, Place};
 pub use crate::control::inputs::{Afterwards, Voltages, absent_loads};
+pub use crate::control::path_constraint::{PathConstraint, Side};
 pub use crate::control::quantity_cost::{CostFunction, During, Objective, QuantityCost};
 pub use crate::control::waypoint::{Waypoint, instant_at};
 use crate::dynamics::Solving;
 use crate::ipopt::{LinearSolver, OptionValue};
 use crate::math::Signal;
 use crate::model::system::{ElectricConstants, InputKind, Muscle};
-use crate::model::{Coordinates, Parameter, Region, Response, Role, System, Variable};
+use crate::model::{Coordinates, Parameter, Response, Role, System, Variable};
 use std::collections::BTreeMap;
 
 /// A task with everything resolved: one voltage per muscle, indices for names.
@@ -223,130 +224,6 @@ pub fn nearest_thousand(size: f64) -> f64 {
         return 1.0;
     }
     1e3_f64.powf((size.log10() / 3.0).round())
-}
-
-/// An inequality that holds at every instant or in every interval.
-#[derive(Clone, Debug, PartialEq)]
-pub enum PathConstraint {
-    /// Joint coordinate (rad or mm).
-    JointAngle {
-        /// Joint index.
-        joint: usize,
-        /// Lower bound or −∞.
-        min: f64,
-        /// Upper bound or ∞.
-        max: f64,
-    },
-    /// Mean rate of a joint coordinate in each interval (rad/ms or mm/ms).
-    JointRate {
-        /// Joint index.
-        joint: usize,
-        /// Lower bound or −∞.
-        min: f64,
-        /// Upper bound or ∞.
-        max: f64,
-    },
-    /// Stretch Λ of a muscle at the instants.
-    Stretch {
-        /// Muscle index.
-        muscle: usize,
-        /// Lower bound or 0.
-        min: f64,
-        /// Upper bound or ∞.
-        max: f64,
-    },
-    /// Force in N with which a lumped muscle pulls its ends together, in the middle of the intervals.
-    Tension {
-        /// Muscle index.
-        muscle: usize,
-        /// Lower bound or −∞.
-        min: f64,
-        /// Upper bound or ∞.
-        max: f64,
-    },
-    /// True electric field |V|/(t Λ) of a lumped muscle, in the intervals and at the instants; behind a resistor, where V follows from
-    /// the charge, at the instants.
-    ElectricField {
-        /// Muscle index.
-        muscle: usize,
-        /// Breakdown value in V/mm.
-        max: f64,
-    },
-    /// True electric field |F⁻ᵀE| in the finite elements of a block, at centres and Gauss points, in the intervals and at
-    /// the instants.
-    BlockField {
-        /// Block: those of the scene, then those of the muscles of finite elements.
-        block: usize,
-        /// Region of its mesh; all elements where there is none.
-        region: Option<usize>,
-        /// Breakdown value in V/mm.
-        max: f64,
-    },
-    /// Current of the source of a lumped muscle in A: behind a resistor its mean in each interval, otherwise that between the middles of
-    /// neighbouring intervals.
-    Current {
-        /// Muscle index.
-        muscle: usize,
-        /// Lower bound or −∞.
-        min: f64,
-        /// Upper bound or ∞.
-        max: f64,
-    },
-    /// Power of the source of a lumped muscle in W, at the times of a current.
-    Power {
-        /// Muscle index.
-        muscle: usize,
-        /// Lower bound or −∞.
-        min: f64,
-        /// Upper bound or ∞.
-        max: f64,
-    },
-    /// Rate of the voltage of a source in V/ms between the middles of neighbouring intervals.
-    VoltageRate {
-        /// Source index.
-        source: usize,
-        /// Lower bound or −∞.
-        min: f64,
-        /// Upper bound or ∞.
-        max: f64,
-    },
-    /// Voltage of a source no larger than a sought parameter in the intervals.
-    PeakVoltage {
-        /// Source index.
-        source: usize,
-        /// Index of the parameter.
-        parameter: usize,
-        /// Unit of voltages in V.
-        unit: f64,
-    },
-    /// A marker relative to a region at the instants.
-    Marker {
-        /// Marker index.
-        marker: usize,
-        /// Region.
-        region: Region,
-        /// Inside or outside.
-        side: Side,
-    },
-}
-
-impl PathConstraint {
-    /// The source of whose current or power it is a limit.
-    pub(super) fn source(&self) -> Option<usize> {
-        match *self {
-            Self::Current { muscle, .. } | Self::Power { muscle, .. } => Some(muscle),
-            _ => None,
-        }
-    }
-}
-
-/// Side of a region.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Side {
-    /// Inside.
-    Inside,
-    /// Outside.
-    Outside,
 }
 
 /// Initial guess of the solver.

@@ -38,17 +38,20 @@ pub struct QuantityCost {
 /// Function of a quantity m in a cost.
 #[derive(Clone, Debug, PartialEq)]
 pub enum CostFunction {
-    /// (m − r(t))², in mm², or rad² with the difference of angles nearest to zero.
+    /// (m − r(t))², in the square of the [plain unit](Quantity::plain), with the difference of angles nearest to zero; of the rate of a joint
+    /// where m is its step in an interval.
     Square {
         /// Reference of the quantity, r(t) in its unit.
         reference: Signal,
     },
+    /// m itself: a quantity that is a square.
+    Itself,
 }
 
 /// Times at which a cost counts.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum During {
-    /// All the time: the integral over the time in s by the trapezoidal rule.
+    /// All the time: the integral over the time in s, by the trapezoidal rule, or in the middle of the intervals.
     Motion,
     /// At the final instant.
     End,
@@ -89,11 +92,10 @@ impl Objective {
 impl QuantityCost {
     /// Unit of the cost, without the weight.
     fn unit(&self, system: &System) -> String {
-        let squared = match self.function {
-            CostFunction::Square { .. } => match self.quantity.unit(system) {
-                "" => String::new(),
-                unit => format!("{unit}²"),
-            },
+        let squared = match self.quantity.plain(0.0, system).1 {
+            "" => String::new(),
+            unit if unit.contains('/') => format!("({unit})²"),
+            unit => format!("{unit}²"),
         };
         match self.during {
             During::Motion => format!("{squared} s").trim_start().to_owned(),
@@ -105,6 +107,7 @@ impl QuantityCost {
     pub fn is_curved(&self) -> bool {
         match self.function {
             CostFunction::Square { .. } => true,
+            CostFunction::Itself => false,
         }
     }
 }

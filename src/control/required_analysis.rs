@@ -49,8 +49,12 @@ impl Control {
                 .get(s)
                 .is_some_and(Muscle::is_behind_resistor)
         };
-        let has_limit = |s: usize| self.limits.iter().any(|limit| limit.source() == Some(s));
-        let is_limited = |s: usize| is_behind(s) && has_limit(s);
+        let limited = self.limits.iter().filter_map(PathConstraint::source);
+        let costs = self.objective.quantities.iter();
+        let measured: Vec<usize> = limited
+            .chain(costs.filter_map(|cost| cost.quantity.source()))
+            .collect();
+        let is_limited = |s: usize| is_behind(s) && measured.contains(&s);
         let is_driven = |s: usize| match (self.given.get(&s), &self.course) {
             _ if is_limited(s) => true,
             (Some(signal), _) => !signal.is_zero(),
@@ -161,6 +165,7 @@ impl<'a> Named<'a> {
 
     fn of_limit(&mut self, limit: &PathConstraint) {
         match *limit {
+            PathConstraint::Once { ref limit, .. } => self.of_limit(limit),
             PathConstraint::JointAngle { joint, .. } | PathConstraint::JointRate { joint, .. } => {
                 self.of_joint(joint);
             }
@@ -176,7 +181,9 @@ impl<'a> Named<'a> {
             | PathConstraint::VoltageRate { .. }
             | PathConstraint::Current { .. }
             | PathConstraint::Power { .. } => {}
-            PathConstraint::Marker { marker, .. } => self.of_marker(marker),
+            PathConstraint::Marker { marker, .. } | PathConstraint::MarkerSpeed { marker, .. } => {
+                self.of_marker(marker)
+            }
         }
     }
 

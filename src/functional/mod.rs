@@ -16,6 +16,7 @@ mod batches;
 mod border;
 mod couplings;
 mod curved;
+mod curved_sum;
 mod element_fields;
 mod finite_elements;
 mod formulas;
@@ -39,6 +40,7 @@ mod viscous_elements;
 
 pub use couplings::{BlockMask, Blocks, Couplings, SumDerivatives};
 pub use curved::Curved;
+pub use curved_sum::CurvedSum;
 pub use element_fields::{ElementField, ElementFields};
 pub use finite_elements::{Electrical, FiniteElement, FiniteElements, Variations};
 pub use formulas::{Element, Formulas};

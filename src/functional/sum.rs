@@ -25,6 +25,11 @@ impl Sum {
         }
     }
 
+    /// Number of slots of all parts.
+    pub(super) fn slot_count(&self) -> usize {
+        self.slots.iter().sum()
+    }
+
     /// Numbers of all parts, in their order.
     fn all(&self, of: impl Fn(&dyn Measure) -> Vec<usize>) -> Vec<usize> {
         self.parts

@@ -170,8 +170,8 @@ pub trait Measure: Debug + Send + Sync {
     /// Adds its gradient.
     fn gradient(&self, sample: &Sample<'_>, forces: &mut [Vec<Vector>; 2], rows: &mut [f64]);
 
-    /// Adds the gradient and Hessian of a function of it, which is linear where it reads rates and the length of the interval is an argument;
-    /// `slots` are those of its couplings.
+    /// Adds the gradient and Hessian of a function of it, of which the gradient by the length of the interval is left out; `slots` are those of
+    /// its couplings.
     fn add_function(
         &self,
         outer: Outer,

@@ -14,20 +14,34 @@ pub(super) fn check_costs(
 ) -> Result<()> {
     for cost in costs {
         let exists = match cost.quantity {
-            Quantity::Joint { joint, .. } => {
+            Quantity::Joint { joint, .. } | Quantity::JointStep { joint, .. } => {
                 let joint = system.joints.get(joint);
                 joint.is_some_and(Joint::has_coordinate)
             }
-            Quantity::MarkerPlace { marker, axis } => marker < system.markers.len() && axis < 3,
+            Quantity::MarkerPlace { marker, axis } | Quantity::MarkerRate { marker, axis } => {
+                marker < system.markers.len() && axis < 3
+            }
+            Quantity::SquaredSpeed { marker, .. } => marker < system.markers.len(),
+            Quantity::Tension { muscle, .. } => {
+                let muscle = system.muscles.get(muscle);
+                muscle.is_some_and(|m| m.fidelity == Fidelity::Lumped)
+            }
+            Quantity::SourceCurrent { muscle, .. } | Quantity::SourcePower { muscle, .. } => {
+                let muscle = system.muscles.get(muscle);
+                muscle.is_some_and(Muscle::is_behind_resistor)
+            }
+            quantity if quantity.before().is_some() => false,
             _ => true,
         };
-        let CostFunction::Square { reference } = &cost.function;
+        let is_followed = match &cost.function {
+            CostFunction::Square { reference } => reference.is_sound(),
+            CostFunction::Itself => true,
+        };
         let is_timed = match cost.during {
             During::At(part) => is_on_the_way(part, is_periodic),
             During::Motion | During::End => true,
         };
-        let is_sound =
-            cost.weight > 0.0 && cost.weight.is_finite() && reference.is_sound() && is_timed;
+        let is_sound = cost.weight > 0.0 && cost.weight.is_finite() && is_followed && is_timed;
         let found = || format!("{cost:?}");
         let expected = "a positive weight of a marker, or of a joint with one coordinate, along finite values or at a part of the duration above 0 and below 1";
         require(exists && is_sound, "cost", found, expected)?;
@@ -50,6 +64,13 @@ pub(super) fn check_energies(costs: &[EnergyCost], system: &System) -> Result<()
 pub(super) fn check_limits(limits: &[PathConstraint], system: &System) -> Result<()> {
     for limit in limits {
         let holds = match *limit {
+            PathConstraint::Once { part, ref limit } => {
+                check_limits(std::slice::from_ref(limit), system)?;
+                part > 0.0 && part <= 1.0
+            }
+            PathConstraint::MarkerSpeed { marker, min, max } => {
+                marker < system.markers.len() && min < max
+            }
             PathConstraint::ElectricField { muscle, max } => {
                 muscle < system.muscles.len() && max > 0.0
             }

@@ -3,7 +3,7 @@
 use crate::control::problem::PathConstraint;
 use crate::interface::control::Control;
 use crate::interface::handle::Handle;
-use crate::model::system::{Joint, Muscle};
+use crate::model::system::{Joint, Marker, Muscle};
 use std::ops::RangeInclusive;
 
 impl Control {
@@ -58,6 +58,21 @@ impl Control {
     pub fn power_within(self, muscle: Handle<Muscle>, range: RangeInclusive<f64>) -> Self {
         let (muscle, (min, max)) = (muscle.index(), range.into_inner());
         self.limited(PathConstraint::Power { muscle, min, max })
+    }
+
+    /// Range of the size of the mean velocity of a marker in each interval in mm/ms.
+    pub fn marker_speed_within(self, marker: Handle<Marker>, range: RangeInclusive<f64>) -> Self {
+        let (marker, (min, max)) = (marker.index(), range.into_inner());
+        self.limited(PathConstraint::MarkerSpeed { marker, min, max })
+    }
+
+    /// Makes the limit that was added last hold only at a part of the duration, above 0 and at most 1, the end: at the instant nearest to it, or in
+    /// the interval before that instant. Nothing without a limit.
+    pub fn only_at(mut self, part: f64) -> Self {
+        if let Some(last) = self.limits.pop() {
+            self.limits.push(last.at_part(part));
+        }
+        self
     }
 
     fn limited(mut self, limit: PathConstraint) -> Self {

@@ -14,6 +14,7 @@ mod handle;
 mod input;
 mod limits;
 mod material;
+mod measured;
 mod motion;
 mod optimum;
 mod parts;

@@ -90,28 +90,17 @@ impl Known<'_> {
                 let energy = capacitance(&self.presolved.system.muscles[muscle])?;
                 instant(shape, energy, [self.span(muscle, vectors)])
             }
-            Quantity::MarkerPlace { marker, axis } => {
-                let normal = Vector::ith(axis, 1.0);
-                instant(
-                    shape,
-                    PositionComponent { origin, normal },
-                    [self.markers[marker]],
-                )
-            }
+            Quantity::MarkerPlace { .. }
+            | Quantity::MarkerRegion { .. }
+            | Quantity::MarkerStep { .. }
+            | Quantity::MarkerRate { .. }
+            | Quantity::SquaredSpeed { .. } => return self.of_marker(quantity, shape),
             Quantity::Direction { body, axis, along } => {
                 let body = self.presolved.carrier(Some(body));
                 let direction = MaterialVector::direction(body, &axis, self.reference);
                 let normal = along;
                 let component = PositionComponent { origin, normal };
                 instant(shape, component, [vectors.index(direction)])
-            }
-            Quantity::MarkerRegion { marker, region } => {
-                region_measure(region, self.markers[marker], shape)
-            }
-            Quantity::MarkerStep { marker, axis } => {
-                let normal = Vector::ith(axis, 1.0);
-                let marker = (self.markers[marker], Stencil::Difference);
-                interval::<_, 3, 1, 0>(shape, PositionComponent { origin, normal }, [marker], [])
             }
             Quantity::PeakVoltage { parameter } => {
                 let multiple = Multiple { unit: KILOVOLT };
@@ -134,7 +123,9 @@ impl Known<'_> {
             | Quantity::SourcePower { .. }
             | Quantity::ChargeStep { .. }
             | Quantity::EnergyStep { .. } => return self.of_charge(quantity, shape, vectors),
-            Quantity::Tension { muscle, unit } => return self.tension(muscle, unit, vectors),
+            Quantity::Tension { muscle, unit } => {
+                return self.tension(muscle, (unit, shape), vectors);
+            }
             Quantity::SquaredField { place, limit, at } => match place {
                 FieldPlace::Muscle(muscle) => {
                     return self.muscle_field(muscle, (limit, at), shape, vectors);
@@ -145,6 +136,43 @@ impl Known<'_> {
                     point,
                 } => return self.element_field(block, (element, point), (limit, at), shape),
             },
+        })
+    }
+
+    /// Place or velocity of a marker.
+    fn of_marker(&self, quantity: &Quantity, shape: Shape) -> Option<Box<dyn Measure>> {
+        let origin = Vector::zeros();
+        Some(match *quantity {
+            Quantity::MarkerPlace { marker, axis } => {
+                let normal = Vector::ith(axis, 1.0);
+                instant(
+                    shape,
+                    PositionComponent { origin, normal },
+                    [self.markers[marker]],
+                )
+            }
+            Quantity::MarkerRegion { marker, region } => {
+                region_measure(region, self.markers[marker], shape)
+            }
+            Quantity::MarkerStep { marker, axis } => {
+                let normal = Vector::ith(axis, 1.0);
+                let marker = (self.markers[marker], Stencil::Difference);
+                interval::<_, 3, 1, 0>(shape, PositionComponent { origin, normal }, [marker], [])
+            }
+            Quantity::MarkerRate { marker, axis } => {
+                let normal = Vector::ith(axis, 1.0);
+                let marker = (self.markers[marker], Stencil::Rate);
+                interval::<_, 3, 1, 0>(shape, PositionComponent { origin, normal }, [marker], [])
+            }
+            Quantity::SquaredSpeed { marker, limit } => {
+                let energy = SquaredDistance {
+                    centre: origin,
+                    scale: limit,
+                };
+                let marker = (self.markers[marker], Stencil::Rate);
+                interval::<_, 3, 1, 0>(shape, energy, [marker], [])
+            }
+            _ => return None,
         })
     }
 

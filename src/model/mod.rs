@@ -47,6 +47,7 @@ mod prescribed;
 mod presolved;
 mod prestretch;
 mod quantity;
+mod quantity_rates;
 mod redundancy;
 mod solid_block;
 mod solids;

@@ -150,6 +150,20 @@ pub enum Quantity {
         /// Component 0, 1 or 2.
         axis: usize,
     },
+    /// Component of the mean velocity of a marker in an interval, in mm/ms.
+    MarkerRate {
+        /// Marker index.
+        marker: usize,
+        /// Component 0, 1 or 2.
+        axis: usize,
+    },
+    /// (|v|/u)² of the mean velocity v of a marker in an interval.
+    SquaredSpeed {
+        /// Marker index.
+        marker: usize,
+        /// u in mm/ms.
+        limit: f64,
+    },
     /// a·b of a direction a fixed to a body and a direction b, at the instants.
     Direction {
         /// Body index.
@@ -192,6 +206,8 @@ impl Quantity {
             self,
             Self::SquaredField { .. }
                 | Self::MarkerStep { .. }
+                | Self::MarkerRate { .. }
+                | Self::SquaredSpeed { .. }
                 | Self::JointStep { .. }
                 | Self::PeakVoltage { .. }
                 | Self::PeakExcess { .. }
@@ -213,6 +229,8 @@ impl Quantity {
                 _ => "in the middle of interval",
             },
             Self::MarkerStep { .. }
+            | Self::MarkerRate { .. }
+            | Self::SquaredSpeed { .. }
             | Self::JointStep { .. }
             | Self::PeakVoltage { .. }
             | Self::PeakExcess { .. }
@@ -232,9 +250,11 @@ impl Quantity {
             Self::Joint { joint, .. } | Self::JointStep { joint, .. } => joint_unit(system, joint),
             Self::Capacitance { .. } => "mF",
             Self::MarkerPlace { .. } | Self::MarkerStep { .. } => "mm",
+            Self::MarkerRate { .. } => "m/s",
             Self::PeakVoltage { .. } => "kV",
             Self::SquaredStretch { .. }
             | Self::SquaredField { .. }
+            | Self::SquaredSpeed { .. }
             | Self::ChargedField { .. }
             | Self::SourceCurrent { .. }
             | Self::SourcePower { .. }
@@ -248,6 +268,25 @@ impl Quantity {
         }
     }
 
+    /// Name of a quantity that a cost names, such as `muscle1_tension`; none of places and joint coordinates.
+    pub fn column(&self, system: &System) -> Option<String> {
+        let of_muscle = |muscle: usize| &system.muscles[muscle].name;
+        let (name, what) = match *self {
+            Self::Tension { muscle, .. } => (of_muscle(muscle), "tension"),
+            Self::ChargedField { muscle, .. }
+            | Self::SquaredField {
+                place: FieldPlace::Muscle(muscle),
+                ..
+            } => (of_muscle(muscle), "field"),
+            Self::SourceCurrent { muscle, .. } => (of_muscle(muscle), "current"),
+            Self::SourcePower { muscle, .. } => (of_muscle(muscle), "power"),
+            Self::JointStep { joint, .. } => (&system.joints[joint].name, "rate"),
+            Self::SquaredSpeed { marker, .. } => (&system.markers[marker].name, "speed"),
+            _ => return None,
+        };
+        Some(format!("{name}_{what}"))
+    }
+
     /// Returns a value as shown to users: a coordinate, stretch, field or distance, and its unit.
     pub fn plain(&self, value: f64, system: &System) -> (f64, &'static str) {
         match *self {
@@ -259,6 +298,7 @@ impl Quantity {
             Self::SquaredField { limit, .. } | Self::ChargedField { limit, .. } => {
                 (value.sqrt() * limit / MEGAVOLT_PER_METRE, "V/um")
             }
+            Self::SquaredSpeed { limit, .. } => (value.sqrt() * limit, "m/s"),
             Self::SourceCurrent { unit, .. } => (1e3 * value * unit, "mA"),
             Self::SourcePower { unit, .. } => (value * unit, "W"),
             Self::Tension { unit, .. } => (value * unit, "N"),
@@ -275,56 +315,16 @@ impl Quantity {
             | Self::PeakVoltage { .. }
             | Self::PeakExcess { .. }
             | Self::MarkerPlace { .. }
+            | Self::MarkerRate { .. }
             | Self::MarkerStep { .. } => (value, self.unit(system)),
         }
     }
 
-    /// The quantity that is subtracted in the interval before, where steps between intervals are limited.
-    pub fn before(&self) -> Option<Self> {
+    /// The source whose current or power it is, behind a resistor.
+    pub fn source(&self) -> Option<usize> {
         match *self {
-            Self::VoltageStep { .. } | Self::ChargeStep { .. } => Some(*self),
-            Self::EnergyStep {
-                muscle, unit, h, ..
-            } => Some(Self::EnergyStep {
-                muscle,
-                at: Stencil::Here,
-                unit,
-                h,
-            }),
+            Self::SourceCurrent { muscle, .. } | Self::SourcePower { muscle, .. } => Some(muscle),
             _ => None,
-        }
-    }
-
-    /// The same with another length of the intervals in ms in messages.
-    pub fn with_interval(mut self, length: f64) -> Self {
-        match &mut self {
-            Self::JointStep { h, .. }
-            | Self::VoltageStep { h, .. }
-            | Self::ChargeStep { h, .. }
-            | Self::EnergyStep { h, .. } => *h = length,
-            _ => {}
-        }
-        self
-    }
-
-    /// Length of the intervals in ms by which a step is a rate.
-    pub fn interval(&self) -> Option<f64> {
-        match *self {
-            Self::JointStep { h, .. }
-            | Self::VoltageStep { h, .. }
-            | Self::ChargeStep { h, .. }
-            | Self::EnergyStep { h, .. } => Some(h),
-            _ => None,
-        }
-    }
-
-    /// Unit in which the steps of the quantity between intervals are rows.
-    pub fn step_unit(&self) -> f64 {
-        match *self {
-            Self::VoltageStep { unit, .. }
-            | Self::ChargeStep { unit, .. }
-            | Self::EnergyStep { unit, .. } => unit,
-            _ => 1.0,
         }
     }
 

@@ -2,13 +2,13 @@
 
 use crate::energy::{Elasticity, Energy, FlowingCharge, GivenCharge, NeoHooke, ViscousTension};
 use crate::functional::{
-    Element, Formulas, Group, Kernel, Measure, SpanForces, Stencil, Sum, VectorArg,
+    CurvedSum, Element, Formulas, Group, Kernel, Measure, SpanForces, Stencil, Sum, VectorArg,
 };
 use crate::kinematics::Vectors;
 use crate::model::components::capacitance;
 use crate::model::components::muscle::{branch_cell, dielectric, elastic, viscous_cell};
 use crate::model::internal::InternalKind;
-use crate::model::measures::Known;
+use crate::model::measures::{Known, Shape};
 use crate::model::system::{Fidelity, Muscle};
 
 /// The parts of a tension in a unit in N.
@@ -62,7 +62,7 @@ impl Known<'_> {
     pub(super) fn tension(
         &self,
         index: usize,
-        unit: f64,
+        (unit, shape): (f64, Shape),
         vectors: &mut Vectors,
     ) -> Option<Box<dyn Measure>> {
         let muscle = &self.presolved.system.muscles[index];
@@ -110,6 +110,9 @@ impl Known<'_> {
                 scalars: [],
             });
         }
-        Some(Box::new(Sum::new(parts.list)))
+        Some(match shape {
+            Shape::Linear => Box::new(Sum::new(parts.list)),
+            Shape::Curved => Box::new(CurvedSum::new(parts.list)),
+        })
     }
 }

@@ -93,7 +93,7 @@ pub fn solve(
     let discrete = discrete_trajectory(model, &optimum.motion);
     let trajectory = trajectory(model, &optimum.motion);
     let held = boundary.rest.each_ref().map(Option::as_deref);
-    let [waypoint_values, final_values] = final_values(&model.system, control, &trajectory);
+    let [waypoint_values, final_values] = final_values(&optimum, control, (&trajectory, &discrete));
     let mut result = SolveResult {
         exchange: EnergyExchange::new(&model.system, &trajectory, held),
         tracking: followed(&optimum, control, &trajectory),

@@ -108,7 +108,8 @@ pub(crate) fn ends(values: &[FinalValue]) -> Vec<String> {
 fn end(value: &FinalValue) -> String {
     let shown = |number: f64| match value.unit {
         "m" => format!("{} mm", significant(1e3 * number, 4)),
-        _ => format!("{}°", significant(number.to_degrees(), 4)),
+        "rad" => format!("{}°", significant(number.to_degrees(), 4)),
+        unit => format!("{} {unit}", significant(number, 4)),
     };
     let (at, cost) = match value.time {
         Some(time) => (format!("passes at {} s", shortest(time, 4)), "waypoint"),

@@ -151,7 +151,9 @@ pub(crate) fn path(
     cost: &QuantityCost,
     motion: &Trajectory,
 ) -> Option<TrackedPath> {
-    let CostFunction::Square { reference } = &cost.function;
+    let CostFunction::Square { reference } = &cost.function else {
+        return None;
+    };
     let (name, axis, value): (String, Option<usize>, Vec<f64>) = match cost.quantity {
         Quantity::MarkerPlace { marker, axis } => {
             let name = format!("{}_{}", system.markers[marker].name, ["x", "y", "z"][axis]);

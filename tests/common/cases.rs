@@ -2,6 +2,7 @@
 
 use super::ends::ends;
 pub use super::limited::{all_limits, charge_limits, tension};
+use super::measuring::measuring;
 use super::pairs::pairs;
 use super::remembering::{remembering, remembering_blocks};
 use super::systems::{
@@ -391,5 +392,6 @@ pub fn cases() -> Vec<Case> {
         }),
     ];
     list.extend(ends());
+    list.extend(measuring());
     list
 }

@@ -13,6 +13,15 @@ pub fn tension(muscle: usize) -> PathConstraint {
     }
 }
 
+/// A limit of the speed of a marker.
+pub fn speed(marker: usize) -> PathConstraint {
+    PathConstraint::MarkerSpeed {
+        marker,
+        min: 0.02,
+        max: 0.6,
+    }
+}
+
 /// Every limit of charged muscles, of which one is behind a resistor and the charge of another is given.
 pub fn charge_limits() -> Vec<PathConstraint> {
     vec![
@@ -108,6 +117,11 @@ pub fn all_limits() -> Vec<PathConstraint> {
         tension(0),
         tension(1),
         tension(3),
+        PathConstraint::MarkerSpeed {
+            marker: 1,
+            min: 0.0,
+            max: 0.6,
+        },
         PathConstraint::ElectricField {
             muscle: 1,
             max: 5e4,

@@ -8,6 +8,7 @@ pub mod ends;
 pub mod force;
 pub mod limited;
 pub mod loaded;
+pub mod measuring;
 pub mod pairs;
 pub mod programs;
 pub mod random;

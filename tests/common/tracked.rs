@@ -3,8 +3,9 @@
 use proboscis::control::problem::{
     CostFunction, During, EnergyCost, Objective, QuantityCost, SourceEnergy,
 };
+use proboscis::functional::Stencil;
 use proboscis::math::Signal;
-use proboscis::model::Quantity;
+use proboscis::model::{FieldPlace, Quantity};
 
 /// Signals of each kind about a mean, changing within some ms.
 pub fn signals(mean: f64, size: f64) -> [Signal; 4] {
@@ -60,6 +61,69 @@ pub fn tracked(markers: &[usize], joints: &[(usize, bool)]) -> Objective {
         quantities,
         ..Objective::default()
     }
+}
+
+/// A quantity that is itself a cost.
+fn itself(quantity: Quantity, weight: f64) -> QuantityCost {
+    QuantityCost {
+        quantity,
+        weight,
+        function: CostFunction::Itself,
+        during: During::Motion,
+    }
+}
+
+/// Costs of tensions of muscles, of rates of joints, angles with `true`, of speeds of markers and of true fields of muscles; every third at
+/// the end only.
+pub fn measured(
+    muscles: &[usize],
+    joints: &[(usize, bool)],
+    markers: &[usize],
+    fields: &[usize],
+) -> Vec<QuantityCost> {
+    let mut costs = Vec::new();
+    for (i, &muscle) in muscles.iter().enumerate() {
+        let quantity = Quantity::Tension { muscle, unit: 0.5 };
+        costs.push(square(quantity, 0.3, signals(1.0, 0.7)[i % 4].clone()));
+    }
+    for (i, &(joint, is_angle)) in joints.iter().enumerate() {
+        let size = if is_angle { 5.0 } else { 0.4 };
+        let quantity = Quantity::JointStep { joint, h: 1.0 };
+        costs.push(square(
+            quantity,
+            0.2,
+            signals(0.0, size)[(i + 2) % 4].clone(),
+        ));
+    }
+    for &marker in markers {
+        costs.push(itself(Quantity::SquaredSpeed { marker, limit: 0.5 }, 0.4));
+        let quantity = Quantity::MarkerRate { marker, axis: 0 };
+        costs.push(square(quantity, 3.0, signals(0.1, 0.3)[1].clone()));
+    }
+    for &muscle in fields {
+        let place = FieldPlace::Muscle(muscle);
+        let (limit, at) = (2e4, Stencil::Mid);
+        costs.push(itself(Quantity::SquaredField { place, limit, at }, 2.0));
+    }
+    for cost in costs.iter_mut().skip(2).step_by(3) {
+        cost.during = During::End;
+    }
+    costs
+}
+
+/// Costs of current, power and field of a muscle behind a resistor.
+pub fn measured_source(muscle: usize) -> Vec<QuantityCost> {
+    let current = Quantity::SourceCurrent { muscle, unit: 2e-5 };
+    let power = Quantity::SourcePower { muscle, unit: 0.03 };
+    let field = Quantity::ChargedField { muscle, limit: 4e4 };
+    let mut end = square(power, 1.0, Signal::Constant(0.2));
+    end.during = During::End;
+    vec![
+        square(current, 0.7, signals(0.1, 0.4)[2].clone()),
+        square(power, 0.3, Signal::Constant(0.0)),
+        itself(field, 2.0),
+        end,
+    ]
 }
 
 /// Electrical energies, then mechanical works, by source and weight.

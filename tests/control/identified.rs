@@ -104,7 +104,9 @@ fn shear_modulus_and_viscosity_are_recovered_from_a_motion() {
     let problem = identification(&system);
     // The motion moves, and its guess is far from it.
     for cost in &problem.objective.quantities {
-        let CostFunction::Square { reference } = &cost.function;
+        let CostFunction::Square { reference } = &cost.function else {
+            unreachable!("squares of deviations");
+        };
         let largest = (0..=INTERVALS).map(|k| reference.at(k as f64 * H).abs());
         assert!(largest.fold(0.0, f64::max) > 0.02);
     }

@@ -20,6 +20,7 @@ mod identified;
 mod interface;
 mod limits;
 mod loads;
+mod measured;
 mod meshes;
 mod moved;
 mod optimality;

@@ -20,7 +20,7 @@ fn problem(limits: Value, coordinates: &str, is_free: bool) -> Value {
 
 /// Tension in N in the middle of an interval of the muscle from (−15, −20) mm on the ground to (−15, 20) mm on a segment that
 /// turns about the origin by two angles within a time in s, at a voltage in V: of its length, written out.
-fn tension([from, to]: [f64; 2], time: f64, voltage: f64) -> f64 {
+pub(crate) fn tension([from, to]: [f64; 2], time: f64, voltage: f64) -> f64 {
     const LENGTH: f64 = 40e-3;
     let span = |angle: f64| {
         let (sin, cos) = angle.sin_cos();

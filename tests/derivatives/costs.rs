@@ -4,7 +4,7 @@
 use crate::common::cases::control;
 use crate::common::random::Random;
 use crate::common::systems::branched;
-use crate::common::tracked::tracked;
+use crate::common::tracked::{measured, tracked};
 use nalgebra::Vector3;
 use proboscis::control::problem::{Control, CostFunction, Duration, During, QuantityCost};
 use proboscis::control::{BoundaryConditions, Transcription, guess};
@@ -51,7 +51,9 @@ fn marker(system: &System, model: &Model, z: &[f64], marker: usize) -> Vector3<f
 }
 
 fn deviation(system: &System, model: &Model, z: &[f64], cost: &QuantityCost, t: f64) -> f64 {
-    let CostFunction::Square { reference } = &cost.function;
+    let CostFunction::Square { reference } = &cost.function else {
+        unreachable!("not squared here");
+    };
     match cost.quantity {
         Quantity::MarkerPlace { marker: m, axis } => {
             marker(system, model, z, m)[axis] - follow(reference, t)
@@ -207,6 +209,16 @@ fn the_hessian_of_the_objective_alone_is_that_of_its_differences() {
 }
 
 #[test]
+fn measured_costs_have_the_derivatives_of_their_values() {
+    let short = |control: &Control| control.intervals < 10;
+    for mut control in problems().into_iter().filter(short) {
+        control.objective.quantities =
+            measured(&[0, 1, 3], &[(0, true), (1, false)], &[0], &[1, 3]);
+        at_random(&control, |_, program, x| compare_hessian(program, &x));
+    }
+}
+
+#[test]
 fn signals_have_the_derivatives_of_their_values() {
     let step = 1e-4;
     for signal in crate::common::tracked::signals(0.3, 2.0) {
@@ -230,7 +242,10 @@ fn an_angle_is_compared_without_its_full_turns() {
     let value = |by: f64| {
         let mut control = control(&branched(), 3);
         control.objective = tracked(&[], &[(0, true)]);
-        let CostFunction::Square { reference } = &mut control.objective.quantities[0].function;
+        let CostFunction::Square { reference } = &mut control.objective.quantities[0].function
+        else {
+            unreachable!("a square");
+        };
         *reference = Signal::Constant(0.2 + by);
         assert_eq!(control.objective.quantities[0].quantity, quantity);
         at_random(&control, |_, program, x| program.objective(&x))

@@ -1,12 +1,13 @@
 //! Costs of quantities on a horizon: their values and derivatives, step by step.
 //!
-//! At instant k, t = k h, a cost with the deviation e = m − r(t) is the summand
+//! At instant k, t = k h, or in interval k, t = (k + ½) h, a cost with the deviation e = m − r(t) is the summand
 //!
 //! ```text
 //! f_k = w φ e²,     φ = ω_k τ of an integral (trapezoidal rule: ω = ½ at both ends, else 1; τ = h in s),  φ = 1 at the end and at a waypoint.
 //! ```
 //!
-//! In interval k the energy from a source of the power m is the summand w τ m.
+//! Of the rate of a quantity whose step in an interval is m it is e = g m/h − r(t) with the factor g of the unit. A cost of m itself, as the
+//! energy from a source of the power m, is w φ m.
 
 use crate::control::energy_cost::{EnergyCost, resisted};
 use crate::control::quantity_cost::{CostFunction, During, QuantityCost};
@@ -36,6 +37,10 @@ pub(super) struct CostRow {
     pub(super) scalars: Vec<usize>,
     /// After which values repeat themselves: angles.
     period: Option<f64>,
+    /// Factor g of a rate over a step, where the cost is that of a rate.
+    rate_factor: Option<f64>,
+    /// True if the length of the interval is part of the quantity.
+    pub(super) reads_rates: bool,
     intervals: usize,
 }
 
@@ -44,7 +49,7 @@ pub(super) struct CostRow {
 enum Function {
     /// The square of the deviation from a reference.
     Square(Signal),
-    /// The quantity, a power in W.
+    /// The quantity.
     Itself,
 }
 
@@ -68,8 +73,10 @@ pub(super) fn cost_rows(
     intervals: usize,
 ) -> Vec<CostRow> {
     let squares = costs.iter().map(|cost| {
-        let CostFunction::Square { reference } = &cost.function;
-        let function = Function::Square(reference.clone());
+        let function = match &cost.function {
+            CostFunction::Square { reference } => Function::Square(reference.clone()),
+            CostFunction::Itself => Function::Itself,
+        };
         (cost.quantity, cost.weight, function, cost.during)
     });
     let powers = resisted(energies, &model.system)
@@ -101,6 +108,8 @@ pub(super) fn cost_rows(
             vectors,
             scalars: reads.scalars(),
             period: quantity.period(&model.system),
+            rate_factor: quantity.rate_factor(&model.system),
+            reads_rates: reads.reads_rates(),
             intervals,
         })
     };
@@ -127,9 +136,7 @@ pub(super) fn costs_size(model: &Model, costs: &[QuantityCost], duration: f64) -
             During::Motion => duration,
             During::End | During::At(_) => 1.0,
         };
-        match cost.function {
-            CostFunction::Square { .. } => cost.weight * time * deviation * deviation,
-        }
+        cost.weight * time * deviation * deviation
     };
     costs.iter().map(size).sum()
 }
@@ -156,19 +163,28 @@ impl CostRow {
                 by_h_twice: 0.0,
             },
             Function::Square(reference) => {
-                let steps = k as f64;
+                let steps = match self.site {
+                    Site::Instants => k as f64,
+                    Site::Intervals => k as f64 + 0.5,
+                };
                 let [at, rate, second] = reference.derivatives(steps * h);
-                let e = self.nearest(m - at);
+                // e = s m − r with ∂s/∂h and ∂²s/∂h².
+                let [s, s_h, s_hh] = match self.rate_factor {
+                    None => [1.0, 0.0, 0.0],
+                    Some(g) => [g / h, -g / (h * h), 2.0 * g / (h * h * h)],
+                };
+                let e = self.nearest(s * m - at);
                 // ∂e/∂h and ∂²e/∂h².
-                let (e_h, e_hh) = (-steps * rate, -steps * steps * second);
+                let e_h = s_h * m - steps * rate;
+                let e_hh = s_hh * m - steps * steps * second;
                 Summand {
                     value: weight * factor * e * e,
                     outer: Outer {
-                        slope: 2.0 * weight * factor * e,
-                        curvature: 2.0 * weight * factor,
+                        slope: 2.0 * weight * factor * e * s,
+                        curvature: 2.0 * weight * factor * s * s,
                     },
                     by_h: weight * (by_h * e * e + 2.0 * factor * e * e_h),
-                    by_value_and_h: 2.0 * weight * (by_h * e + factor * e_h),
+                    by_value_and_h: 2.0 * weight * (by_h * e * s + factor * (e_h * s + e * s_h)),
                     by_h_twice: 2.0
                         * weight
                         * (2.0 * by_h * e * e_h + factor * (e_h * e_h + e * e_hh)),

@@ -4,6 +4,7 @@ use crate::control::numbering::{Column, Twin};
 use crate::control::transcription::Transcription;
 use crate::control::transcription::cost_rows::Summand;
 use crate::control::transcription::kinematic_state::Placed;
+use crate::functional::Horizon;
 use crate::math::Vector;
 
 impl Transcription<'_> {
@@ -25,11 +26,11 @@ impl Transcription<'_> {
     }
 
     /// Puts a factor times the gradient of each cost by coordinates and scalars into the rows, step by step; the factor is taken
-    /// of its summand. Returns the sum of what `by_horizon` takes of it.
+    /// of its summand. Returns the sum of what `by_horizon` takes of it and of the derivative of the quantity by the interval length.
     pub(super) fn cost_gradients(
         &mut self,
         factor: impl Fn(&Summand) -> f64,
-        by_horizon: impl Fn(&Summand) -> f64,
+        by_horizon: impl Fn(&Summand, f64) -> f64,
     ) -> f64 {
         self.place(Placed::Columns);
         let map = &self.model.action.map;
@@ -44,7 +45,11 @@ impl Transcription<'_> {
                 let summand = cost.summand(measure.value(&sample), k, self.workspace.h);
                 measure.gradient(&sample, &mut part.forces, &mut part.rows);
                 let factor = factor(&summand);
-                sum += by_horizon(&summand);
+                let by_h = match cost.reads_rates && self.layout.horizon == Horizon::Free {
+                    true => measure.by_duration(&sample),
+                    false => 0.0,
+                };
+                sum += by_horizon(&summand, by_h);
                 for side in (0..cost.site.sides()).filter(|&side| measure.reads(side)) {
                     for &vector in &cost.vectors {
                         let force = part.forces[side][vector] * factor;
@@ -97,7 +102,10 @@ impl Transcription<'_> {
         if self.objective.quantities.is_empty() {
             return;
         }
-        let square = self.cost_gradients(|s| sigma * s.by_value_and_h, |s| sigma * s.by_h_twice);
+        let square = self.cost_gradients(
+            |s| sigma * s.by_value_and_h,
+            |s, by_h| sigma * (s.by_h_twice + 2.0 * s.by_value_and_h * by_h),
+        );
         let pattern = self.model.action.layout();
         let (stride, coordinates) = (self.stride(), self.model.action.map.unknowns());
         for k in 0..=self.layout.intervals {

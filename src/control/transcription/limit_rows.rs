@@ -1,6 +1,6 @@
 //! Limits and goals as rows behind the equations of motion.
 
-use crate::control::limits::{BoundedQuantity, When};
+use crate::control::bounded_quantity::{BoundedQuantity, When};
 use crate::control::numbering::Numbering;
 use crate::control::span::Span;
 use crate::control::transcription::step::Step;
@@ -82,14 +82,20 @@ pub(super) fn limit_rows(
             entries.push((DURATION, 0));
         }
         let reads_inputs = !reads.scalars().is_empty();
+        let single = sites((bounded.when, site), span, reads_inputs);
         let mut at = match &step {
             Some(step) => {
                 let is_given = |&i: &usize| unknowns.unknown(span.intervals, i).is_none();
-                step.at(support.iter().all(is_given))
+                let all = step.at(support.iter().all(is_given));
+                match bounded.when.is_single() {
+                    true => single.start.max(all.start)..single.end.min(all.end),
+                    false => all,
+                }
             }
-            None => sites((bounded.when, site), span, reads_inputs),
+            None => single,
         };
-        if !bounded.when.is_single() {
+        let is_at_end = at.end + site.sides() == span.end + 2;
+        if !bounded.when.is_single() || (is_at_end && !entries.is_empty()) {
             let is_open = |k: usize| {
                 let mut entries = entries.iter();
                 entries.any(|&entry| unknowns.column_of_entry(k, entry).is_some())
@@ -227,7 +233,7 @@ impl Site {
     }
 
     /// Returns the number of instants that a quantity of the site reads.
-    pub(super) fn sides(self) -> usize {
+    pub(in crate::control) fn sides(self) -> usize {
         match self {
             Self::Instants => 1,
             Self::Intervals => 2,

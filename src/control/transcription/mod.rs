@@ -36,8 +36,8 @@ mod workspace;
 
 use crate::control::BoundaryError;
 use crate::control::boundary_conditions::{BoundaryConditions, Rests};
+use crate::control::bounded_quantity::BoundedQuantity;
 use crate::control::guess::InitialGuess;
-use crate::control::limits::BoundedQuantity;
 use crate::control::numbering::Numbering;
 use crate::control::problem::Control;
 use crate::model::Model;

@@ -1,6 +1,6 @@
 //! The transcription as a nonlinear program: values, derivatives and structures for the solver.
 
-use crate::control::limits::{BoundedQuantity, When};
+use crate::control::bounded_quantity::{BoundedQuantity, When};
 use crate::control::numbering::{Column, Row};
 use crate::control::transcription::Transcription;
 use crate::control::transcription::objective::Objective;
@@ -51,7 +51,8 @@ impl Nlp for Transcription<'_> {
         by_horizon *= MILLISECOND;
         grad.fill(0.0);
         if !self.objective.quantities.is_empty() || !self.objective.energies.is_empty() {
-            by_horizon += self.cost_gradients(|s| s.outer.slope, |s| s.by_h);
+            by_horizon +=
+                self.cost_gradients(|s| s.outer.slope, |s, by_h| s.by_h + s.outer.slope * by_h);
             self.energy_gradients();
             self.gather_cost_gradient(grad);
         }

@@ -2,7 +2,7 @@
 
 use crate::control::BoundaryError;
 use crate::control::boundary_conditions::BoundaryConditions;
-use crate::control::limits::BoundedQuantity;
+use crate::control::bounded_quantity::BoundedQuantity;
 use crate::control::transcription::Transcription;
 use crate::control::transcription::kinematic_state::Placed;
 use crate::control::transcription::limit_rows::LimitRow;

@@ -6,11 +6,13 @@ use crate::files::json::scope::Scope;
 use crate::files::problem::bounds::check_bounds;
 use crate::files::problem::source_limits::{bounds, source_limits};
 use crate::files::problem::spec_limits::{
-    ElectricFieldLimitSpec, LimitSpec, MarkerLimitSpec, RegionSpec, StretchLimitSpec,
-    TensionLimitSpec,
+    ElectricFieldLimitSpec, LimitSpec, MarkerLimitSpec, MarkerSpeedLimitSpec, RegionSpec,
+    StretchLimitSpec, TensionLimitSpec,
 };
 use crate::files::problem::spec_source_limits::All;
-use crate::files::problem::state::{ELECTRIC_KEYS, joint_value, joint_with_coordinate};
+use crate::files::problem::state::{
+    ELECTRIC_KEYS, joint_value, joint_with_coordinate, moving_marker,
+};
 use crate::files::scene::names::names;
 use crate::files::scene::point::vector;
 use crate::files::units::quantity::{
@@ -27,7 +29,18 @@ pub(crate) fn limits(
 ) -> Result<Vec<PathConstraint>, SceneError> {
     let mut limits = Vec::new();
     for (index, spec) in list.iter().enumerate() {
-        limits.extend(limit(spec, system, &scope.index(index))?);
+        let scope = scope.index(index);
+        let own = limit(spec, system, &scope)?.into_iter();
+        match spec.part {
+            None => limits.extend(own),
+            Some(part) if part > 0.0 && part <= 1.0 => {
+                limits.extend(own.map(|limit| limit.at_part(part)));
+            }
+            Some(part) => {
+                let expected = "a part of the duration, above 0 and at most 1, the end";
+                return Err(scope.key("part").wrong(part.to_string(), expected));
+            }
+        }
     }
     Ok(limits)
 }
@@ -51,6 +64,10 @@ fn limit(
             spec.electric_field.as_ref().map(|_| "electric_field"),
         ),
         ("marker", spec.marker.as_ref().map(|_| "marker")),
+        (
+            "marker_speed",
+            spec.marker_speed.as_ref().map(|_| "marker_speed"),
+        ),
         ("current", spec.current.as_ref().map(|_| "current")),
         ("power", spec.power.as_ref().map(|_| "power")),
         (
@@ -80,6 +97,9 @@ fn limit(
     }
     if let Some(spec) = &spec.electric_field {
         limits.extend(electric_field(spec, system, &scope)?);
+    }
+    if let Some(spec) = &spec.marker_speed {
+        limits.push(marker_speed(spec, system, &scope)?);
     }
     if let Some(spec) = &spec.marker {
         limits.push(marker(spec, system, &scope)?);
@@ -128,16 +148,35 @@ fn stretch(
     Ok(PathConstraint::Stretch { muscle, min, max })
 }
 
-fn tensions(
-    spec: &TensionLimitSpec,
+/// The limit of a speed; a lower bound of zero is none.
+fn marker_speed(
+    spec: &MarkerSpeedLimitSpec,
     system: &System,
     scope: &Scope<'_>,
-) -> Result<Vec<PathConstraint>, SceneError> {
+) -> Result<PathConstraint, SceneError> {
+    let marker = moving_marker(&spec.marker, system, &scope.key("marker"))?;
+    let bound = |key: &str, bound: &Option<Quantity<Velocity>>, absent: f64| match bound {
+        Some(bound) => scope.key(key).positive(bound),
+        None => Ok(absent),
+    };
+    let (min, max) = (
+        bound("min", &spec.min, 0.0)?,
+        bound("max", &spec.max, f64::INFINITY)?,
+    );
+    check_bounds(min, max, spec.min.is_some() || spec.max.is_some(), scope)?;
+    Ok(PathConstraint::MarkerSpeed { marker, min, max })
+}
+
+/// One lumped muscle, or all.
+pub(super) fn lumped_muscles(
+    (muscle, muscles): (&Option<String>, Option<All>),
+    system: &System,
+    scope: &Scope<'_>,
+) -> Result<Vec<usize>, SceneError> {
     const EXPECTED: &str = "a lumped muscle";
-    let [min, max] = bounds([&spec.min, &spec.max], scope)?;
     let is_lumped = |&m: &usize| system.muscles[m].fidelity == Fidelity::Lumped;
-    let one = spec.muscle.as_ref().map(Some);
-    let chosen = [("muscle", one), ("muscles", spec.muscles.map(|_| None))];
+    let one = muscle.as_ref().map(Some);
+    let chosen = [("muscle", one), ("muscles", muscles.map(|_| None))];
     let muscles: Vec<usize> = match scope.exactly_one(chosen)? {
         None => (0..system.muscles.len()).filter(is_lumped).collect(),
         Some(name) => {
@@ -150,9 +189,19 @@ fn tensions(
             vec![muscle]
         }
     };
-    if muscles.is_empty() {
-        return Err(scope.key("muscles").wrong("no lumped muscle", EXPECTED));
+    match muscles.is_empty() {
+        true => Err(scope.key("muscles").wrong("no lumped muscle", EXPECTED)),
+        false => Ok(muscles),
     }
+}
+
+fn tensions(
+    spec: &TensionLimitSpec,
+    system: &System,
+    scope: &Scope<'_>,
+) -> Result<Vec<PathConstraint>, SceneError> {
+    let [min, max] = bounds([&spec.min, &spec.max], scope)?;
+    let muscles = lumped_muscles((&spec.muscle, spec.muscles), system, scope)?;
     let limit = |muscle| PathConstraint::Tension { muscle, min, max };
     Ok(muscles.into_iter().map(limit).collect())
 }

@@ -1,7 +1,7 @@
 //! The problem file: its types as written (`spec`, `spec_*`) and their conversion to a [`Task`](crate::control::problem::Task).
 //!
 //! - `build`: the problem; `control`, `simulation`: its two longer tasks.
-//! - `state`, `end_of`, `goal`, `limits`, `source_limits`, `free`, `guess`, `voltages`, `track`, `energies`, `coordinates`: their parts; `output`: what is written of a motion; `solution_voltages`,
+//! - `state`, `end_of`, `goal`, `limits`, `source_limits`, `free`, `guess`, `voltages`, `track`, `measured`, `energies`, `coordinates`: their parts; `output`: what is written of a motion; `solution_voltages`,
 //!   `solution_joints`, `solution_document`:
 //!   what is read of an earlier solution.
 
@@ -16,6 +16,7 @@ pub(crate) mod goal;
 pub(crate) mod guess;
 pub(crate) mod limits;
 mod loads;
+mod measured;
 pub mod output;
 pub(crate) mod simulation;
 pub(crate) mod solution_document;
@@ -29,6 +30,7 @@ pub mod spec_energies;
 pub mod spec_free;
 pub mod spec_integrator;
 pub mod spec_limits;
+pub mod spec_measured;
 pub mod spec_output;
 pub mod spec_simulate;
 pub mod spec_source_limits;

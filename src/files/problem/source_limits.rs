@@ -11,7 +11,7 @@ use crate::files::units::quantity::{PhysicalQuantity, Quantity};
 use crate::model::system::{Source, System};
 
 /// Sources of which a limit speaks.
-type Chosen<'s> = (&'s Option<String>, Option<All>);
+pub(super) type Chosen<'s> = (&'s Option<String>, Option<All>);
 
 /// The limits of sources that one entry stands for; `scope` is that of its key.
 pub(super) fn source_limits(
@@ -79,7 +79,11 @@ fn chosen<'s>(
 }
 
 /// Muscles of whose sources current and power are known: all of them without such a muscle is none.
-fn measured(of: Chosen<'_>, system: &System, scope: &Scope<'_>) -> Result<Vec<usize>, SceneError> {
+pub(super) fn measured(
+    of: Chosen<'_>,
+    system: &System,
+    scope: &Scope<'_>,
+) -> Result<Vec<usize>, SceneError> {
     const EXPECTED: &str = "sources of lumped muscles with a permittivity: without a \"circuit\", or with a \"resistance\" in it";
     let sources = system.sources();
     let (chosen, place) = chosen(of, &sources, scope)?;

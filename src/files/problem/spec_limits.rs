@@ -8,13 +8,17 @@ use crate::files::problem::spec_source_limits::{
 };
 use crate::files::scene::point::{CornersSpec, Point};
 use crate::files::units::quantity::{
-    ElectricField, Force, JointCoordinate, JointRate, Length, Quantity,
+    ElectricField, Force, JointCoordinate, JointRate, Length, Quantity, Velocity,
 };
 
-/// A path limit: exactly one of the nine.
+/// A path limit: exactly one of the keys but `part`. `min` and `max` may be equal with `part`: the quantity is then prescribed there.
 #[derive(Clone, Debug, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct LimitSpec {
+    /// Part of the duration, above 0 and at most 1, at which alone the limit holds: at the instant nearest to it, or in the interval before
+    /// that instant; 1 is the end. Where not written it holds from start to end.
+    #[serde(default)]
+    pub part: Option<f64>,
     /// Limits of a joint coordinate.
     #[serde(default)]
     pub joint_angle: Option<JointAngleLimitSpec>,
@@ -33,6 +37,9 @@ pub struct LimitSpec {
     /// Region of a marker.
     #[serde(default)]
     pub marker: Option<MarkerLimitSpec>,
+    /// Limits of the speed of a marker.
+    #[serde(default)]
+    pub marker_speed: Option<MarkerSpeedLimitSpec>,
     /// Limits of the current of sources.
     #[serde(default)]
     pub current: Option<CurrentLimitSpec>,
@@ -70,6 +77,20 @@ pub struct JointRateLimitSpec {
     /// Upper bound, SI unit rad/s or m/s.
     #[serde(default)]
     pub max: Option<Quantity<JointRate>>,
+}
+
+/// Limits of the size of the mean velocity of a marker in each interval: `min`, `max` or both.
+#[derive(Clone, Debug, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct MarkerSpeedLimitSpec {
+    /// Name of the marker.
+    pub marker: String,
+    /// Lower bound, SI unit m/s.
+    #[serde(default)]
+    pub min: Option<Quantity<Velocity>>,
+    /// Upper bound, SI unit m/s.
+    #[serde(default)]
+    pub max: Option<Quantity<Velocity>>,
 }
 
 /// Limits of the stretch of a muscle: `min`, `max` or both.

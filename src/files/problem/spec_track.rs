@@ -3,11 +3,16 @@
 use schemars::JsonSchema;
 use serde::Deserialize;
 
+use crate::files::problem::spec_measured::{
+    CurrentCostSpec, FieldCostSpec, JointRateCostSpec, MarkerSpeedCostSpec, PowerCostSpec,
+    TensionCostSpec,
+};
 use crate::files::scene::point::PartialPoint;
 use crate::files::signal::spec::SignalSpec;
 use crate::files::units::quantity::{JointCoordinate, Length, Quantity};
 
-/// Marker or joints that follow a reference: exactly one of the three.
+/// Marker or joints that follow a reference, or a measured quantity whose squared deviation from a value, times `weight`, is integrated over the
+/// time in s: exactly one of them.
 #[derive(Clone, Debug, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct TrackSpec {
@@ -20,6 +25,24 @@ pub struct TrackSpec {
     /// The coordinates of all joints follow an earlier solution.
     #[serde(default)]
     pub joints: Option<TrackJointsSpec>,
+    /// The tension of muscles along the motion.
+    #[serde(default)]
+    pub tension: Option<TensionCostSpec>,
+    /// The true electric field of muscles along the motion.
+    #[serde(default)]
+    pub electric_field: Option<FieldCostSpec>,
+    /// The current of sources along the motion.
+    #[serde(default)]
+    pub current: Option<CurrentCostSpec>,
+    /// The power of sources along the motion.
+    #[serde(default)]
+    pub power: Option<PowerCostSpec>,
+    /// The rate of a joint along the motion.
+    #[serde(default)]
+    pub joint_rate: Option<JointRateCostSpec>,
+    /// The speed of a marker along the motion.
+    #[serde(default)]
+    pub marker_speed: Option<MarkerSpeedCostSpec>,
 }
 
 /// A marker and its path.
@@ -75,7 +98,7 @@ pub struct TrackJointsSpec {
     pub weight: Option<f64>,
 }
 
-/// Marker or joint that ends near a place: exactly one of the two.
+/// Marker or joint that ends near a place, or a measured quantity that ends near a value, in the last interval: exactly one of them.
 #[derive(Clone, Debug, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct FinalSpec {
@@ -85,6 +108,24 @@ pub struct FinalSpec {
     /// The coordinate of a joint ends near a value.
     #[serde(default)]
     pub joint: Option<FinalJointSpec>,
+    /// The tension of muscles at the end.
+    #[serde(default)]
+    pub tension: Option<TensionCostSpec>,
+    /// The true electric field of muscles at the end.
+    #[serde(default)]
+    pub electric_field: Option<FieldCostSpec>,
+    /// The current of sources at the end.
+    #[serde(default)]
+    pub current: Option<CurrentCostSpec>,
+    /// The power of sources at the end.
+    #[serde(default)]
+    pub power: Option<PowerCostSpec>,
+    /// The rate of a joint at the end.
+    #[serde(default)]
+    pub joint_rate: Option<JointRateCostSpec>,
+    /// The speed of a marker at the end.
+    #[serde(default)]
+    pub marker_speed: Option<MarkerSpeedCostSpec>,
 }
 
 /// A marker and where it is to end.

@@ -3,6 +3,7 @@
 use crate::control::problem::{CostFunction, During, QuantityCost};
 use crate::files::json::error::SceneError;
 use crate::files::json::scope::Scope;
+use crate::files::problem::measured::Measured;
 use crate::files::problem::solution_joints;
 use crate::files::problem::spec_track::{
     FinalJointSpec, FinalMarkerSpec, FinalSpec, TrackJointSpec, TrackJointsSpec, TrackMarkerSpec,
@@ -16,27 +17,48 @@ use crate::math::Signal;
 use crate::model::system::System;
 use crate::model::{Quantity, joint_unit};
 
+/// Possible entries of a specification by their keys, each with its key.
+macro_rules! entries {
+    ($spec:ident, $($key:ident: $make:expr;)*) => {
+        [$((
+            stringify!($key),
+            $spec.$key.as_ref().map(|one| (stringify!($key), $make(one))),
+        ),)*]
+    };
+}
+
+/// A path that an entry names.
+enum Path<'a> {
+    Marker(&'a TrackMarkerSpec),
+    Joint(&'a TrackJointSpec),
+    Joints(&'a TrackJointsSpec),
+    Measured(Measured<'a>),
+}
+
 /// The costs that one entry stands for.
 pub(crate) fn track(
     spec: &TrackSpec,
     system: &System,
     scope: &Scope<'_>,
 ) -> Result<Vec<QuantityCost>, SceneError> {
-    type Build<'a> = Box<dyn FnOnce() -> Result<Vec<QuantityCost>, SceneError> + 'a>;
-    let marker = spec
-        .marker
-        .as_ref()
-        .map(|spec| -> Build<'_> { Box::new(|| of_marker(spec, system, &scope.key("marker"))) });
-    let joint = spec
-        .joint
-        .as_ref()
-        .map(|spec| -> Build<'_> { Box::new(|| of_joint(spec, system, &scope.key("joint"))) });
-    let joints = spec
-        .joints
-        .as_ref()
-        .map(|spec| -> Build<'_> { Box::new(|| of_joints(spec, system, &scope.key("joints"))) });
-    let build = scope.exactly_one([("marker", marker), ("joint", joint), ("joints", joints)])?;
-    build()
+    let (key, path) = scope.exactly_one(entries! { spec,
+        marker: Path::Marker;
+        joint: Path::Joint;
+        joints: Path::Joints;
+        tension: |one| Path::Measured(Measured::Tension(one));
+        electric_field: |one| Path::Measured(Measured::Field(one));
+        current: |one| Path::Measured(Measured::Current(one));
+        power: |one| Path::Measured(Measured::Power(one));
+        joint_rate: |one| Path::Measured(Measured::JointRate(one));
+        marker_speed: |one| Path::Measured(Measured::MarkerSpeed(one));
+    })?;
+    let scope = scope.key(key);
+    match path {
+        Path::Marker(spec) => of_marker(spec, system, &scope),
+        Path::Joint(spec) => of_joint(spec, system, &scope),
+        Path::Joints(spec) => of_joints(spec, system, &scope),
+        Path::Measured(spec) => spec.costs(During::Motion, system, &scope),
+    }
 }
 
 fn of_marker(
@@ -102,51 +124,66 @@ fn of_joints(
     Ok(joints.into_iter().map(cost).collect())
 }
 
+/// A part that an entry names at the end.
+enum End<'a> {
+    Marker(&'a FinalMarkerSpec),
+    Joint(&'a FinalJointSpec),
+    Measured(Measured<'a>),
+}
+
 /// The costs of an end that one entry stands for.
 pub(crate) fn at_the_end(
     spec: &FinalSpec,
     system: &System,
     scope: &Scope<'_>,
 ) -> Result<Vec<QuantityCost>, SceneError> {
-    let marker = spec.marker.as_ref().map(|_| "marker");
-    let joint = spec.joint.as_ref().map(|_| "joint");
-    let key = scope.exactly_one([("marker", marker), ("joint", joint)])?;
+    let (key, end) = scope.exactly_one(entries! { spec,
+        marker: End::Marker;
+        joint: End::Joint;
+        tension: |one| End::Measured(Measured::Tension(one));
+        electric_field: |one| End::Measured(Measured::Field(one));
+        current: |one| End::Measured(Measured::Current(one));
+        power: |one| End::Measured(Measured::Power(one));
+        joint_rate: |one| End::Measured(Measured::JointRate(one));
+        marker_speed: |one| End::Measured(Measured::MarkerSpeed(one));
+    })?;
     let scope = scope.key(key);
-    let mut costs = Vec::new();
-    if let Some(FinalMarkerSpec {
-        marker,
-        at,
-        weight: w,
-    }) = &spec.marker
-    {
-        let marker = moving_marker(marker, system, &scope.key("marker"))?;
-        let weight = weight(*w, &scope)?;
-        for (axis, at) in at.iter().enumerate() {
-            if let Some(at) = at {
-                let quantity = Quantity::MarkerPlace { marker, axis };
-                let reference = Signal::Constant(at.value());
-                costs.push(square(quantity, reference, weight, During::End));
-            }
+    match end {
+        End::Marker(spec) => marker_at_end(spec, system, &scope),
+        End::Joint(spec) => {
+            let joint = joint_with_coordinate(&spec.joint, system, &scope.key("joint"))?;
+            let kinds = [Angle::kind(), Length::kind()];
+            let at = joint_value(&spec.at, &kinds, joint, system, &scope.key("at"))?;
+            let quantity = Quantity::Joint { joint, near: 0.0 };
+            let weight = weight(spec.weight, &scope)?;
+            let reference = Signal::Constant(at);
+            Ok(vec![square(quantity, reference, weight, During::End)])
         }
-        if costs.is_empty() {
+        End::Measured(spec) => spec.costs(During::End, system, &scope),
+    }
+}
+
+fn marker_at_end(
+    spec: &FinalMarkerSpec,
+    system: &System,
+    scope: &Scope<'_>,
+) -> Result<Vec<QuantityCost>, SceneError> {
+    let marker = moving_marker(&spec.marker, system, &scope.key("marker"))?;
+    let weight = weight(spec.weight, scope)?;
+    let given = spec.at.iter().enumerate();
+    let given = given.filter_map(|(axis, at)| Some((axis, at.as_ref()?)));
+    let costs = given.map(|(axis, at)| {
+        let quantity = Quantity::MarkerPlace { marker, axis };
+        square(quantity, Signal::Constant(at.value()), weight, During::End)
+    });
+    let costs: Vec<QuantityCost> = costs.collect();
+    match costs.is_empty() {
+        true => {
             let expected = "one that is not null, or more";
-            return Err(scope.key("at").wrong("no coordinate", expected));
+            Err(scope.key("at").wrong("no coordinate", expected))
         }
+        false => Ok(costs),
     }
-    if let Some(FinalJointSpec {
-        joint,
-        at,
-        weight: w,
-    }) = &spec.joint
-    {
-        let joint = joint_with_coordinate(joint, system, &scope.key("joint"))?;
-        let kinds = [Angle::kind(), Length::kind()];
-        let at = joint_value(at, &kinds, joint, system, &scope.key("at"))?;
-        let quantity = Quantity::Joint { joint, near: 0.0 };
-        let weight = weight(*w, &scope)?;
-        costs.push(square(quantity, Signal::Constant(at), weight, During::End));
-    }
-    Ok(costs)
 }
 
 fn square(quantity: Quantity, reference: Signal, weight: f64, during: During) -> QuantityCost {

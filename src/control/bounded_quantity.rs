@@ -1,0 +1,81 @@
+//! Quantities with bounds: limits, goals and waypoints before they are rows.
+
+use crate::math::significant;
+use crate::model::{Quantity, System};
+
+/// A quantity with bounds at some instants or intervals.
+#[derive(Clone, Debug, PartialEq)]
+pub struct BoundedQuantity {
+    /// Quantity that is bounded.
+    pub quantity: Quantity,
+    /// Lower bound.
+    pub lower: f64,
+    /// Upper bound.
+    pub upper: f64,
+    /// Rate in units over ms that is subtracted from the quantity, times the length of the interval: a bound where the duration is free.
+    pub rate: Option<f64>,
+    /// At the final instant only (a goal), at one instant (a waypoint), or everywhere (a limit).
+    pub when: When,
+    /// Words for messages.
+    pub name: String,
+}
+
+/// Instants or intervals at which a quantity is bounded.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum When {
+    /// At every instant, or in every interval.
+    Everywhere,
+    /// At the last instant.
+    Goal,
+    /// At the instant nearest to a part of the duration: a waypoint.
+    At(f64),
+}
+
+impl When {
+    /// Returns true unless it is a limit of the whole path.
+    pub fn is_single(self) -> bool {
+        matches!(self, Self::Goal | Self::At(_))
+    }
+}
+
+/// A value this far beyond its bound, relative to it, is rounding.
+const ROUNDING: f64 = 1e-8;
+
+impl BoundedQuantity {
+    /// The quantity that is subtracted in the interval before, where it is another one.
+    pub fn other_before(&self) -> Option<Quantity> {
+        let before = self.quantity.before();
+        before.filter(|before| *before != self.quantity)
+    }
+
+    /// Its bounds, those of a rate in intervals of the length that the quantity names.
+    pub fn bounds(&self) -> [f64; 2] {
+        let of_rate = self.rate.zip(self.quantity.interval());
+        let moved = of_rate.map_or(0.0, |(rate, h)| rate * h);
+        [self.lower + moved, self.upper + moved]
+    }
+
+    /// A value and the bound that it breaks, in words; `None` where it keeps its bounds up to rounding.
+    pub fn broken(&self, value: f64, system: &System) -> Option<String> {
+        let rounding = |bound: f64| ROUNDING * (1.0 + bound.abs());
+        let (is_below, is_above) = (
+            value < self.lower - rounding(self.lower),
+            value > self.upper + rounding(self.upper),
+        );
+        let bound = match (is_below, is_above) {
+            (true, _) => self.lower,
+            (_, true) => self.upper,
+            _ => return None,
+        };
+        let [value, bound] = [value, bound].map(|v| self.quantity.plain(v, system));
+        let side = if is_below { "at least" } else { "at most" };
+        let [value, bound] = [value, bound].map(|(v, unit)| {
+            let space = if unit.is_empty() { "" } else { " " };
+            format!("{}{space}{unit}", significant(v, 5))
+        });
+        let name = &self.name;
+        Some(format!(
+            "{name} is {value}, and its limit is {side} {bound}"
+        ))
+    }
+}

@@ -1,0 +1,57 @@
+//! Problems with costs of measured quantities, and with limits at single times.
+
+use super::cases::{Case, control};
+use super::limited::{all_limits, speed, tension};
+use super::remembering::remembering;
+use super::systems::{branched, charged};
+use super::tracked::{measured, measured_source};
+use proboscis::control::problem::{Control, Duration};
+use proboscis::model::system::System;
+
+/// The list.
+pub fn measuring() -> Vec<Case> {
+    let case = |name, system: System, change: &dyn Fn(&mut Control)| {
+        let mut control = control(&system, 3);
+        change(&mut control);
+        Case {
+            name,
+            system,
+            control,
+        }
+    };
+    let free = Duration::Free {
+        min: 10.0,
+        max: 90.0,
+        guess: 30.0,
+    };
+    vec![
+        case(
+            "branched tree that remembers, measured costs",
+            remembering(),
+            &|c| {
+                c.objective.quantities = measured(&[0, 2], &[], &[], &[]);
+            },
+        ),
+        case("charges, measured costs, free time", charged(), &|c| {
+            c.duration = free;
+            c.objective.quantities = measured(&[0, 1], &[], &[], &[1]);
+            c.objective.quantities.extend(measured_source(0));
+            c.load_bounds.insert(4, [1e-5, 3e-4]);
+        }),
+        case(
+            "branched tree, measured costs, free time",
+            branched(),
+            &|c| {
+                c.objective.quantities =
+                    measured(&[0, 1, 3], &[(0, true), (1, false)], &[0], &[1, 3]);
+                c.duration = free;
+            },
+        ),
+        case("branched tree, limits at single times", branched(), &|c| {
+            let limits = all_limits().into_iter();
+            c.limits = limits.map(|limit| limit.at_part(1.0)).collect();
+            c.limits.push(speed(0).at_part(0.5));
+            c.limits.push(tension(1).at_part(0.4));
+        }),
+    ]
+}
