@@ -8,7 +8,7 @@ use crate::app::equilibrium_summary::at_rest;
 use crate::app::equilibrium_summary::{Rest, describe, lost, rows, status, text};
 use crate::app::error::CommandError;
 use crate::app::fields;
-use crate::app::folder::make_folder;
+use crate::app::folder::make_folder_of;
 use crate::app::foreign::refuse_foreign;
 use crate::app::no_equilibrium::refused;
 use crate::app::other_task::no_equilibrium;
@@ -108,8 +108,7 @@ pub(super) fn at(
         ..
     } = &result;
     let still = Still::new(&result);
-    let folder = request.folder();
-    make_folder(&folder)?;
+    let folder = make_folder_of(request)?;
     let writing = Instant::now();
     let origin = request.origin(false);
     let mut files = FileSet::in_folder(&folder);

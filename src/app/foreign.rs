@@ -14,28 +14,35 @@ struct Summary {
     input: PathBuf,
 }
 
-/// Refuses to replace the results of another problem file, unless their folder was named: then it says so before anything is done.
+/// Refuses to replace the results of another problem file, unless their folder was named.
 ///
 /// # Errors
 /// The folder that was not named has results of another problem file.
 pub(super) fn refuse_foreign(request: &CommandInput) -> Result<(), CommandError> {
-    let folder = request.folder();
-    let text = fs::read_to_string(folder.join("summary.json")).ok();
-    let summary = text.and_then(|text| serde_json::from_str::<Summary>(&text).ok());
-    let Some(Summary { input }) = summary.filter(|there| !is_same(&there.input, &request.input))
-    else {
-        return Ok(());
-    };
-    if request.output.is_none() {
-        return Err(CommandError::Foreign {
-            folder,
+    match foreign(request) {
+        Some(input) if request.output.is_none() => Err(CommandError::Foreign {
+            folder: request.folder(),
             input,
             own: request.input.clone(),
-        });
+        }),
+        _ => Ok(()),
     }
+}
+
+/// A warning that results of another problem file are replaced, for a run whose input is right.
+pub(super) fn replaced(request: &CommandInput) -> Option<String> {
+    let (folder, input) = (request.folder(), foreign(request)?);
     let (folder, input) = (folder.display(), input.display());
-    tracing::warn!("{folder} has results of {input}, which this run replaces");
-    Ok(())
+    Some(format!(
+        "{folder} has results of {input}, which this run replaces"
+    ))
+}
+
+/// The other problem file whose results the folder of a run has.
+fn foreign(request: &CommandInput) -> Option<PathBuf> {
+    let text = fs::read_to_string(request.folder().join("summary.json")).ok()?;
+    let Summary { input } = serde_json::from_str(&text).ok()?;
+    (!is_same(&input, &request.input)).then_some(input)
 }
 
 /// Returns true if two paths as typed, the first one maybe elsewhere, name one file.

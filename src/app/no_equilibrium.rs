@@ -1,7 +1,7 @@
 //! Result of a run that finds no state of rest to begin with, to end with, or at all: its summary alone.
 
 use crate::app::error::CommandError;
-use crate::app::folder::make_folder;
+use crate::app::folder::make_folder_of;
 use crate::app::left_out::EARLIER;
 use crate::app::request::{CommandInput, CommandOutput};
 use crate::app::summary::Summary;
@@ -30,8 +30,7 @@ pub(super) fn kept<T>(
 /// # Errors
 /// It cannot be written.
 pub(super) fn write(request: &CommandInput, reason: &str) -> Result<(), CommandError> {
-    let folder = request.folder();
-    make_folder(&folder)?;
+    let folder = make_folder_of(request)?;
     let mut summary = Summary::new(request, STATUS, None);
     summary.message = Some(reason.to_owned());
     let mut files = FileSet::in_folder(&folder);

@@ -7,7 +7,7 @@ use std::time::Instant;
 use crate::app::equilibrium_summary::at_rest;
 use crate::app::error::CommandError;
 use crate::app::fields;
-use crate::app::folder::make_folder;
+use crate::app::folder::make_folder_of;
 use crate::app::messages::counted;
 use crate::app::no_equilibrium::refused;
 use crate::app::page;
@@ -53,8 +53,7 @@ pub(super) fn follow(
         Err(error) => return refused(request, &error, "no equilibrium to start from"),
     };
     let stopped = interrupt::stop();
-    let folder = request.folder();
-    make_folder(&folder)?;
+    let folder = make_folder_of(request)?;
     let origin = request.origin(false);
     let path = EquilibriumPath::new(&model, &found);
     let writing = Instant::now();

@@ -121,7 +121,7 @@ fn integrate(
         Some(_) => resume_file::UNFINISHED,
         None => solution_file::UNFINISHED,
     };
-    let mut unfinished = Unfinished::in_folder(request.folder(), file);
+    let mut unfinished = Unfinished::new(request, file);
     let progress = Progress::of_steps(request.progress, grid(task).0);
     let mut observe = |steps: usize, model: &Model, discrete: &DiscreteTrajectory| {
         let step = discrete.intervals();

@@ -94,7 +94,7 @@ fn solve(
     read: f64,
     observer: &mut dyn FnMut(Reached<'_>),
 ) -> Result<(SolveResult, PathBuf), CommandError> {
-    let mut unfinished = Unfinished::in_folder(request.folder(), solution_file::UNFINISHED);
+    let mut unfinished = Unfinished::new(request, solution_file::UNFINISHED);
     let limits = SolveLimits {
         iterations: request.max_iterations,
         seconds: request.max_seconds.map(|s| (s - read).max(0.0)),

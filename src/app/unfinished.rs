@@ -6,6 +6,8 @@ use std::path::{Path, PathBuf};
 use std::time::{Duration, Instant};
 
 use crate::app::folder::make_folder;
+use crate::app::foreign::replaced;
+use crate::app::request::CommandInput;
 use crate::app::{resume_file, solution_file};
 use crate::report::atomic::WriteError;
 
@@ -27,22 +29,29 @@ pub(super) struct Unfinished {
     violation: f64,
     /// Reason why the folder cannot be made.
     unwritable: Option<WriteError>,
+    /// A warning that the results of another problem are replaced, until it is told.
+    replaced: Option<String>,
 }
 
 impl Unfinished {
     /// Nothing is written yet; the first time comes after two seconds.
-    pub(super) fn in_folder(folder: PathBuf, file: &str) -> Self {
+    pub(super) fn new(request: &CommandInput, file: &str) -> Self {
+        let folder = request.folder();
         Self {
             path: folder.join(file),
             folder,
             next: Instant::now() + PERIOD[0],
             violation: f64::INFINITY,
             unwritable: None,
+            replaced: replaced(request),
         }
     }
 
     /// Makes the folder at the first iterate: one that cannot be made is told before a long run, not after it.
     pub(super) fn begin(&mut self) {
+        if let Some(words) = self.replaced.take() {
+            tracing::warn!("{words}");
+        }
         if self.unwritable.is_none() {
             self.unwritable = make_folder(&self.folder).err();
         }
@@ -57,12 +66,12 @@ impl Unfinished {
     }
 
     /// The folder, once the run has ended.
-    pub(super) fn made(self) -> Result<PathBuf, WriteError> {
-        if let Some(error) = self.unwritable {
-            return Err(error);
+    pub(super) fn made(mut self) -> Result<PathBuf, WriteError> {
+        self.begin();
+        match self.unwritable {
+            Some(error) => Err(error),
+            None => Ok(self.folder),
         }
-        make_folder(&self.folder)?;
-        Ok(self.folder)
     }
 
     /// Writes the iterate, when it is time and it is as good as the one written before: `violation` is that of its equations and

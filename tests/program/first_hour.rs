@@ -295,3 +295,94 @@ fn a_robot_at_rest_is_simulated_without_a_warning() {
         assert_eq!(summary["local_error"]["sum"], 0.0, "{more:?}");
     }
 }
+
+#[test]
+fn a_refused_run_tells_nothing_of_results_that_it_would_replace() {
+    let folder = workshop();
+    let path = folder.path();
+    let rest = problem("bending_actuator");
+    let [pair, moved] = ["pair", "pair_constant"].map(problem);
+    let (status, _, err) = run(path, &["simulate", &moved, "-o", "out"]);
+    assert_eq!(status, 0, "{err}");
+    for words in [
+        &["equilibrium", &pair][..],
+        &["equilibrium", &pair, "--voltages", "muscle7=3"],
+        &["solve", &pair, "--from", "nowhere"],
+        &[
+            "solve",
+            &pair,
+            "--set",
+            "control.goal={\"joint_angles\":{\"joint7\":1}}",
+        ],
+    ] {
+        let (status, _, err) = run(path, &[words, &["-o", "out"]].concat());
+        assert!(status == 2 && !err.contains("replaces"), "{words:?}: {err}");
+        assert_eq!(
+            err.lines()
+                .filter(|line| line.starts_with("error: "))
+                .count(),
+            1
+        );
+    }
+    for words in [["equilibrium", &rest], ["solve", &pair]] {
+        let (status, _, err) = run(path, &[&words[..], &["-o", "out"]].concat());
+        assert!(
+            status == 0 && err.matches("which this run replaces").count() == 1,
+            "{err}"
+        );
+    }
+}
+
+#[test]
+fn an_entry_of_the_parts_of_a_chain_is_told_where_it_stands() {
+    let folder = workshop();
+    let path = folder.path();
+    for entry in [
+        "muscles.muscle1.layer_thickness",
+        "muscles[0].layer_thickness",
+        "bodies.segment1.mass",
+    ] {
+        let set = format!("scene.{entry}=1");
+        let trunk = problem("elephant_trunk");
+        let (status, _, err) = run(path, &["solve", &trunk, "--set", &set, "-o", "out"]);
+        assert!(
+            status == 2
+                && err.contains("scene.chain.muscles.arm")
+                && err.contains("`proboscis expand`"),
+            "{err}"
+        );
+    }
+}
+
+#[test]
+fn a_byte_order_mark_is_no_part_of_the_text() {
+    let folder = workshop();
+    let path = folder.path();
+    let text = fs::read_to_string(problem("pair_constant")).unwrap();
+    let scene = problem("scenes/pair");
+    let text = text.replace("scenes/pair.json", &scene);
+    fs::write(path.join("marked.json"), format!("\u{feff}{text}")).unwrap();
+    let (status, _, err) = run(path, &["simulate", "marked.json", "-o", "out"]);
+    assert_eq!(status, 0, "{err}");
+    let digits = "3".repeat(300);
+    let long = ["--set", &format!("simulate.duration=0.{digits}")].map(str::to_owned);
+    let long: Vec<&str> = long.iter().map(String::as_str).collect();
+    let (status, out, err) = run(
+        path,
+        &[&["simulate", "marked.json", "-o", "out"], &long[..]].concat(),
+    );
+    assert!(status == 0 && out.contains(" 0.333333333"), "{out}{err}");
+    for number in [
+        "9".repeat(400),
+        format!("0.{digits} parsec"),
+        format!("-{digits}"),
+    ] {
+        let set = format!("simulate.duration={number}");
+        let (status, _, err) = run(
+            path,
+            &["simulate", "marked.json", "-o", "out", "--set", &set],
+        );
+        assert!(status == 2 && err.contains("simulate.duration: "), "{err}");
+        assert!(err.chars().count() < 1000, "{err}");
+    }
+}
