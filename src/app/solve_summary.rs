@@ -104,10 +104,14 @@ pub(super) fn command_output(
         ),
         false => String::new(),
     };
+    let objective = match objective.abs() < 1e9 {
+        true => format!("{objective:.7}"),
+        false => format!("{objective:.7e}"),
+    };
     CommandOutput {
         is_solved,
         result: format!(
-            "{word}: objective {objective:.7}{grid}, {}, {:.2} s, {}",
+            "{word}: objective {objective}{grid}, {}, {:.2} s, {}",
             counted(iterations, "iteration"),
             summary.seconds.total,
             folder.display()

@@ -9,7 +9,7 @@ use crate::files::json::locate::{JsonPath, around, find, repeated, wrong_string}
 use crate::files::json::reader::parse;
 use crate::files::json::scan::Scanner;
 use crate::files::json::source::{
-    NoBytes, check_json, is_standard_input, of_file, of_standard_input,
+    NoBytes, check_json, is_standard_input, of_file, of_standard_input, unmarked,
 };
 use crate::files::json::wording::wording;
 
@@ -78,7 +78,7 @@ impl Document {
     /// Takes a text for that of a file, which need not exist.
     pub(crate) fn of_text(path: &Path, text: String) -> Result<Self, SceneError> {
         let mut document = Self::empty(path);
-        document.text = text;
+        document.text = unmarked(text);
         check_json(&document.text).map_err(|error| document.syntax_mistake(&error))?;
         document.refuse_repeated_keys()?;
         Ok(document)

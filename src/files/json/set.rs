@@ -81,6 +81,9 @@ impl Override {
     }
 }
 
+/// Parts of a scene for which a chain stands.
+const OF_CHAIN: [&str; 3] = ["bodies", "joints", "muscles"];
+
 /// Destination of a value.
 struct Slot {
     /// The place itself, entries of lists by their indices, or the first place on the way to it that is not there yet.
@@ -155,6 +158,15 @@ fn slot(text: &str, place: &JsonPath) -> Slot {
 impl Slot {
     /// In an object without the first of these steps.
     fn made(mut self, text: &str, object: Scanner<'_>, steps: &[Step]) -> Self {
+        if let [Step::Key(key), _, ..] = steps
+            && OF_CHAIN.contains(&key.as_str())
+            && object.entry("chain").is_some()
+        {
+            let found = format!("an entry of {key:?}, which a chain stands for,");
+            let expected = "an entry of the chain, such as scene.chain.muscles.arm; `proboscis expand` writes its parts out";
+            self.wrong = Some((found, expected.to_owned()));
+            return self;
+        }
         for (position, step) in steps.iter().enumerate() {
             match step {
                 Step::Key(key) => self.missing.keys.push(key.clone()),

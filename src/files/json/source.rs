@@ -75,6 +75,14 @@ fn limited(from: impl Read, size: u64) -> Result<Vec<u8>, NoBytes> {
     }
 }
 
+/// A text without the byte-order mark that some editors write before it.
+pub(crate) fn unmarked(mut text: String) -> String {
+    if let Some(rest) = text.strip_prefix('\u{feff}') {
+        text = rest.to_owned();
+    }
+    text
+}
+
 /// Checks that a text is JSON.
 ///
 /// # Errors

@@ -119,6 +119,7 @@ fn json_word(text: &str) -> String {
         "a sequence" | "sequence" => "a list",
         "a boolean" => "true or false",
         "a string" | "a borrowed string" => "a text",
+        "string or map" => "a text or an object",
         "null" => "null",
         "unit variant" => "a word alone",
         "newtype variant" => "an object with this key",

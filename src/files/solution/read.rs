@@ -8,7 +8,7 @@ use std::path::{Path, PathBuf};
 
 use crate::control::{Costates, EarlierSolution, Solution};
 use crate::files::json::reader;
-use crate::files::json::source::{NoBytes, check_json, of_file};
+use crate::files::json::source::{NoBytes, check_json, of_file, unmarked};
 use crate::files::solution::arrays::complete;
 use crate::files::solution::error::{Reason, SolutionError};
 use crate::files::solution::record::{
@@ -55,6 +55,7 @@ fn read_file(path: &Path) -> Result<File, Reason> {
     })?;
     let utf8 = |error| io::Error::new(io::ErrorKind::InvalidData, error);
     let text = String::from_utf8(bytes).map_err(|error| Reason::Unreadable(utf8(error)))?;
+    let text = unmarked(text);
     check_json(&text).map_err(Reason::NoJson)?;
     let text = complete(path, &text, |_| true)?.unwrap_or(text);
     reader::parse(&text).map_err(|(place, error)| Reason::NoSolution {
