@@ -5,6 +5,7 @@ use crate::control::bounded_quantity::When;
 use crate::control::endpoint_checks;
 use crate::control::energy_cost::{EnergyCost, resisted, sources};
 use crate::control::error::BoundaryError;
+use crate::control::given_rates;
 use crate::control::goal_rows;
 use crate::control::limits::{Length, Limits};
 use crate::control::periodic;
@@ -115,6 +116,7 @@ impl BoundaryConditions {
         let ends = [start, rest.map(|rest| &rest.z[..])];
         sought::check(&model, control, ends)?;
         endpoint_checks::check(&model, &boundary, control, scalars)?;
+        given_rates::check(system, control, &boundary.rest)?;
         Ok((model, boundary))
     }
 }

@@ -94,3 +94,30 @@ fn a_joint_turns_no_faster_than_its_limit_in_the_least_time() {
     }
     assert!((both[0].1 / both[1].1 - 1.0).abs() < 1e-6);
 }
+
+/// The ramp of 50 kV/s from 50 ms on is read in the middles of intervals of 10 ms; the rest before and after is half an interval away.
+#[test]
+fn a_given_voltage_keeps_the_limit_of_its_rate_or_is_refused() {
+    let ran = |bounds: Value, end: &str| {
+        let mut problem = problem(json!({ "joint": "joint1", "max": "1e6 rad/s" }), "reduced");
+        let control = &mut problem["control"];
+        let ramp = json!({ "ramp": { "to": "1 kV", "start": "50 ms", "duration": "20 ms" } });
+        control["voltages"] = json!({ "muscle1": ramp });
+        control["goal"] = json!({ "rest_at_voltages": { "muscle1": end, "muscle2": "1.7 kV" } });
+        let mut limit = bounds;
+        limit["source"] = json!("muscle1");
+        control["limits"] = json!([{ "voltage_rate": limit }]);
+        run("solve", &problem, &[])
+    };
+    let below = |max: &str| json!({ "max": max });
+    let words = [
+        "limits",
+        "given voltage of muscle1 is 50000 V/s at 60 ms",
+        "at most 40000 V/s",
+    ];
+    ran(below("40 kV/s"), "1 kV").is_refused(&words);
+    ran(below("51 kV/s"), "1 kV").is_solved();
+    let words = ["is -200000 V/s at 200 ms", "at least -60000 V/s"];
+    ran(json!({ "min": "-60 kV/s" }), "0 V").is_refused(&words);
+    ran(json!({ "min": "-201 kV/s" }), "0 V").is_solved();
+}

@@ -1,0 +1,70 @@
+//! Limits of the rates of voltages that are given, over a given duration: data that no row of the program could change.
+
+use crate::control::error::BoundaryError;
+use crate::control::problem::{BoundaryState, Control, Duration, PathConstraint};
+use crate::math::{shortest, significant};
+use crate::model::System;
+
+/// Relative rounding of a rate.
+const ROUNDING: f64 = 1e-8;
+
+/// Refuses a given voltage that breaks a limit of its rate. `rest` are the inputs before the start and after the end, where these are known; the
+/// steps from them and to them take half an interval.
+pub(super) fn check(
+    system: &System,
+    control: &Control,
+    rest: &[Option<Vec<f64>>; 2],
+) -> Result<(), BoundaryError> {
+    if !matches!(control.duration, Duration::Given(_)) {
+        return Ok(());
+    }
+    let broken = control.limits.iter().find_map(|limit| match *limit {
+        PathConstraint::VoltageRate { source, min, max } if control.is_given(source) => {
+            let mut steps = steps(control, source, rest).into_iter();
+            let is_out = |rate: f64| {
+                let rounding = ROUNDING * rate.abs();
+                rate < min - rounding || rate > max + rounding
+            };
+            let (time, rate) = steps.find(|(_, rate)| is_out(*rate))?;
+            let (side, bound) = if rate < min { ("at least", min) } else { ("at most", max) };
+            let source = &system.sources()[source];
+            let [rate, bound] = [rate, bound].map(|rate| significant(rate * 1e3, 5));
+            let unit = source.kind.unit();
+            Some(format!(
+                "the rate of the given voltage of {} is {rate} {unit}/s at {} ms, and its limit is {side} {bound} {unit}/s",
+                source.name,
+                shortest(time, 6)
+            ))
+        }
+        _ => None,
+    });
+    match broken {
+        Some(reason) => Err(BoundaryError::Limit {
+            place: "limits",
+            reason,
+        }),
+        None => Ok(()),
+    }
+}
+
+/// Times in ms and rates of the steps of a given voltage between the middles of intervals, and from rest and to it.
+fn steps(control: &Control, source: usize, rest: &[Option<Vec<f64>>; 2]) -> Vec<(f64, f64)> {
+    let last = control.intervals - 1;
+    let at = |k: usize| control.given_voltage(source, control.middle(k));
+    let voltages: Vec<f64> = (0..=last).filter_map(at).collect();
+    let h = 2.0 * control.middle(0);
+    let end = h * control.intervals as f64;
+    let [before, after] = rest
+        .each_ref()
+        .map(|row| row.as_ref().map(|row| row[source]));
+    let (first_one, last_one) = (voltages[0], voltages[last]);
+    let mut steps = Vec::new();
+    if control.goal == BoundaryState::Periodic {
+        steps.push((0.0, (first_one - last_one) / h));
+    }
+    steps.extend(before.map(|before| (0.0, 2.0 * (first_one - before) / h)));
+    let within = voltages.windows(2).zip(1..);
+    steps.extend(within.map(|(pair, k)| (f64::from(k) * h, (pair[1] - pair[0]) / h)));
+    steps.extend(after.map(|after| (end, 2.0 * (after - last_one) / h)));
+    steps
+}
