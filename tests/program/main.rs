@@ -2,6 +2,8 @@
 
 #[path = "../common/mod.rs"]
 mod common;
+#[path = "../../src/app/multistart/rank.rs"]
+mod rank;
 
 mod accuracy;
 mod commands;

@@ -1,6 +1,7 @@
 //! Several starting points, in threads and in processes.
 
 use crate::common::signals::Listening as _;
+use crate::rank::Rank;
 use crate::runs::{problem, read, run};
 use proboscis::ipopt::LinearSolver;
 use serde_json::Value;
@@ -354,4 +355,16 @@ fn ctrl_c_ends_all_starts_and_keeps_the_best() {
     );
     // None of them is left.
     assert!(!crate::common::signals::group_runs(&child));
+}
+
+#[test]
+fn optima_that_are_held_come_before_those_of_less_objective() {
+    let [held, better_held] = [2.0, 1.0].map(|objective| Rank::of_optimum(objective, true));
+    let left = Rank::of_optimum(0.1, false);
+    let [near, far] = [1e-3, 1.0].map(|violation| Rank::of_end(Some(violation)));
+    let none = Rank::of_end(None);
+    let mut all = [none, far, left, held, near, better_held];
+    all.sort_by(Rank::compare);
+    assert_eq!(all, [better_held, held, left, near, far, none]);
+    assert!(far.has_point() && !none.has_point());
 }

@@ -1,5 +1,6 @@
 //! End of one start, and comparison of the optima of several.
 
+use super::rank::Rank;
 use super::start::{Start, folder_of};
 use crate::app::batch::{RunEnd, Said};
 use crate::app::error::CommandError;
@@ -15,6 +16,9 @@ pub(super) const SAME_OBJECTIVE: f64 = 1e-6;
 
 /// Difference of the voltages of one optimum, relative to the largest: weakly bounded ones are known to 1e-4.
 pub(super) const SAME_VOLTAGE: f64 = 1e-3;
+
+/// Warnings about an optimum whose goal is not held, or whose period does not come back.
+const LEAVES: [&str; 2] = ["goal_not_held", "not_periodic"];
 
 /// The word of a start for which there was no time.
 const NOT_STARTED: &str = "not_started";
@@ -40,6 +44,9 @@ pub(super) struct Ended {
     pub(super) optimum: Option<usize>,
     #[serde(skip)]
     pub(super) is_solved: bool,
+    /// True if nothing warns that it leaves its goal afterwards, or does not come back to its period.
+    #[serde(skip)]
+    pub(super) is_held: bool,
     #[serde(skip)]
     pub(super) voltages: Vec<f64>,
     /// Further notes on it.
@@ -84,6 +91,7 @@ impl Ended {
             seconds,
             optimum: None,
             is_solved: false,
+            is_held: true,
             voltages: Vec::new(),
             notes: Vec::new(),
         }
@@ -135,10 +143,23 @@ impl Ended {
             infeasibility: summary.infeasibility,
             seconds: summary.seconds.total,
             is_solved,
+            is_held: !summary
+                .notes
+                .0
+                .iter()
+                .any(|one| LEAVES.contains(&&*one.code)),
             voltages,
             notes: summary.notes.lines().collect(),
             ..Self::without_files(start, "", seconds)
         })
+    }
+
+    /// Its rank.
+    fn rank(&self) -> Rank {
+        match (self.is_solved, self.objective) {
+            (true, Some(objective)) => Rank::of_optimum(objective, self.is_held),
+            _ => Rank::of_end(self.infeasibility),
+        }
     }
 
     /// Returns true if two solutions are one optimum.
@@ -165,27 +186,16 @@ pub(super) fn parsed<T: for<'de> Deserialize<'de>>(path: &Path) -> Option<T> {
     serde_json::from_str(&fs::read_to_string(path).ok()?).ok()
 }
 
-/// The solution of least objective; where there is none, the start that came closest.
+/// The best start: see [`Rank`]; none where no start left a point.
 pub(super) fn best(ended: &[Ended]) -> Option<usize> {
-    let rank = |one: &Ended| match (one.is_solved, one.objective, one.infeasibility) {
-        (true, Some(objective), _) => (0, objective),
-        (_, _, Some(infeasibility)) => (1, infeasibility),
-        _ => (2, 0.0),
-    };
-    let compare = |a: &usize, b: &usize| {
-        let (a, b) = (rank(&ended[*a]), rank(&ended[*b]));
-        a.0.cmp(&b.0).then(a.1.total_cmp(&b.1))
-    };
-    let all = 0..ended.len();
-    let best = all.min_by(compare)?;
-    (rank(&ended[best]).0 < 2).then_some(best)
+    let best = (0..ended.len()).min_by(|&a, &b| ended[a].rank().compare(&ended[b].rank()))?;
+    ended[best].rank().has_point().then_some(best)
 }
 
 /// Numbers the distinct optima, the best first; returns their number.
 pub(super) fn number_optima(ended: &mut [Ended]) -> usize {
     let mut solved: Vec<usize> = (0..ended.len()).filter(|&i| ended[i].is_solved).collect();
-    let objective = |i: usize| ended[i].objective.unwrap_or(f64::INFINITY);
-    solved.sort_by(|&a, &b| objective(a).total_cmp(&objective(b)));
+    solved.sort_by(|&a, &b| ended[a].rank().compare(&ended[b].rank()));
     let mut firsts: Vec<usize> = Vec::new();
     for i in solved {
         let known = firsts

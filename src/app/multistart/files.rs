@@ -77,6 +77,7 @@ pub(super) fn write(
         _ => format!("not solved: {counts}"),
     };
     let mut notes = best.map_or_else(Vec::new, |best| best.notes.clone());
+    notes.extend(best.and_then(|best| lower(best, ended)));
     for one in ended {
         let told = one.message.as_deref().map(printable);
         notes.extend(told.map(|message| format!("start {} failed: {message}", one.start)));
@@ -89,6 +90,17 @@ pub(super) fn write(
         result: format!("{head}\n{}", aligned(&rows(ended))),
         notes,
     })
+}
+
+/// A note where a start whose goal is not held has a lower objective than the best one.
+fn lower(best: &Ended, ended: &[Ended]) -> Option<String> {
+    let objective = best.objective.filter(|_| best.is_solved)?;
+    let others = ended.iter().filter(|one| one.is_solved && !one.is_held);
+    let mut lower = others.filter_map(|one| Some((one.start, one.objective?)));
+    let (start, other) = lower.find(|(_, other)| best.is_held && *other < objective)?;
+    Some(format!(
+        "note: start {start} has the lower objective {other:.7}, and nothing holds where it ends"
+    ))
 }
 
 pub(super) const COLUMNS: [&str; 7] = [

@@ -5,6 +5,7 @@
 
 mod ended;
 mod files;
+mod rank;
 mod start;
 
 use std::fs;
@@ -14,7 +15,7 @@ use std::time::Instant;
 
 use crate::app::batch::{Batch, RunIn, run_all, task_runs_at_once};
 use crate::app::error::CommandError;
-use crate::app::folder::make_folder;
+use crate::app::folder::{make_folder, make_folder_of};
 use crate::app::messages::key;
 use crate::app::no_equilibrium;
 use crate::app::progress::Progress;
@@ -68,8 +69,7 @@ pub fn solve_text_from_starts(
                 .to_owned(),
         ));
     }
-    let folder = request.folder();
-    make_folder(&folder)?;
+    let folder = make_folder_of(request)?;
     remove_older(&folder.join(FOLDER));
     make_folder(&folder.join(FOLDER))?;
     let plan = plan(starts, seed);
