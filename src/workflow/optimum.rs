@@ -97,7 +97,8 @@ impl Optimum {
                 None => Distance::path_length(&self.model, &self.motion),
             };
             self.afterwards = afterwards(&self.model, control, &self.motion, path_length);
-            self.repeated = repeated(&self.model, control, &self.boundary.start, &self.motion);
+            let start = &self.boundary.start;
+            self.repeated = repeated(&self.model, control, start, &self.motion, path_length);
         }
         let Self {
             model,

@@ -45,12 +45,14 @@ pub(crate) fn begin(control: &Control, boundary: &mut BoundaryConditions, motion
     boundary.rest[0] = motion.voltages.last().cloned();
 }
 
-/// Simulates the inputs of a periodic motion again and again, with its step; nothing where joints have motions of their own.
+/// Simulates the inputs of a periodic motion again and again, with its step, and compares the drift with the length of its path; nothing
+/// where joints have motions of their own.
 pub(crate) fn repeated(
     model: &Model,
     control: &Control,
     start: &Start,
     optimal: &Solution,
+    path_length: Distance,
 ) -> Option<Repeated> {
     // Prescribed motions go on as functions of time.
     if control.goal != BoundaryState::Periodic || !model.prescribed.is_empty() {
@@ -71,7 +73,6 @@ pub(crate) fn repeated(
     let of = |k: usize| Distance::between(model, &motion, k, optimal, k % n);
     let drift = (0..motion.times.len()).map(of);
     let drift = drift.fold(Distance::default(), Distance::max);
-    let path_length = Distance::path_length(model, optimal);
     Some(Repeated {
         periods: motion.intervals() / n,
         drift,
