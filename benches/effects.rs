@@ -292,6 +292,7 @@ fn pairs_of_trunk(system: &System, volts: &[f64]) -> Vec<Pair> {
         called("without", beside(system), &row, Reduced),
     ));
     let elements = Fidelity::FiniteElements(Discretisation {
+        first_side: None,
         elements: [1, 1, 4],
         layers: 4,
         element: ElementKind::Hex8,

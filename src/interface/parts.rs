@@ -269,11 +269,20 @@ impl Muscle {
             elements,
             layers: elements[2],
             element: ElementKind::Hex8,
+            first_side: None,
         };
         Self {
             fidelity: Fidelity::FiniteElements(discretisation),
             ..self
         }
+    }
+
+    /// Direction of the first side of the cross-section in the ground frame, of finite elements; a lumped muscle has none.
+    pub fn first_side(mut self, direction: Vector3<f64>) -> Self {
+        if let Fidelity::FiniteElements(discretisation) = &mut self.fidelity {
+            discretisation.first_side = Some(direction);
+        }
+        self
     }
 
     /// A name of its own.

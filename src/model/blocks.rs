@@ -32,10 +32,14 @@ fn block(source: usize, muscle: &Muscle, discretisation: &Discretisation) -> Sol
         elements,
         layers,
         element,
+        first_side,
     } = *discretisation;
     let span = muscle.to.at - muscle.from.at;
     let (length, axis) = (span.norm(), span.normalize());
-    let [first, _] = triad(&axis);
+    let first = match first_side {
+        Some(side) => (side - axis * axis.dot(&side)).normalize(),
+        None => triad(&axis)[0],
+    };
     let frame = Matrix::from_columns(&[first, axis.cross(&first), axis]);
     let stretches = muscle.stretches();
     let across = stretches.map_or(1.0, |[across, _]| across);

@@ -3,7 +3,9 @@
 use crate::math::Vector;
 use crate::model::circuit::{EMPTY_CIRCUIT, NO_CIRCUIT};
 use crate::model::components::{BlockLoad, LoadPlace};
-use crate::model::system::{Attachment, Joint, JointKind, Material, Muscle, System};
+use crate::model::system::{
+    Attachment, Discretisation, Fidelity, Joint, JointKind, Material, Muscle, System,
+};
 use std::collections::BTreeSet;
 use thiserror::Error;
 
@@ -21,6 +23,8 @@ pub struct SystemError {
 
 /// Rounding of moments that satisfy the triangle inequality with equality, and of unit vectors.
 const ROUNDING: f64 = 1e-12;
+/// Sine of the angle to the span of a muscle below which a direction is along it.
+const ALONG: f64 = 1e-6;
 
 /// Collects nothing: the first error is returned.
 pub(super) fn require(
@@ -290,6 +294,19 @@ impl System {
                 || "one body at both ends".to_owned(),
                 "two bodies, or a body and the ground",
             )?;
+            if let Fidelity::FiniteElements(Discretisation {
+                first_side: Some(side),
+                ..
+            }) = muscle.fidelity
+            {
+                let across = (muscle.to.at - muscle.from.at).cross(&side).norm();
+                require(
+                    across > ALONG * muscle.length() * side.norm(),
+                    name,
+                    || format!("a first side along {:?}", side.as_slice()),
+                    "a direction across the span",
+                )?;
+            }
             for side in muscle.cross_section {
                 positive(name, "side of the cross-section", side)?;
             }

@@ -228,7 +228,7 @@ pub struct Muscle {
 }
 
 /// Model of a muscle: lumped or finite elements.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub enum Fidelity {
     /// One stretch at constant volume.
     #[default]
@@ -248,7 +248,7 @@ impl Fidelity {
 }
 
 /// The finite elements of a muscle.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Discretisation {
     /// Elements along both sides of the cross-section and along the span.
     pub elements: [usize; 3],
@@ -257,6 +257,9 @@ pub struct Discretisation {
     pub layers: usize,
     /// Kind of hexahedron.
     pub element: ElementKind,
+    /// Direction of the first side of the cross-section in the ground frame, of which the part across the span counts; `None` for the direction
+    /// that is perpendicular to the span and to the first ground axis within 0.6 of its cosine.
+    pub first_side: Option<Vector3<f64>>,
 }
 
 /// An elastic block of hexahedra.

@@ -29,6 +29,7 @@ pub fn remembering_blocks() -> System {
     muscle.material.lame_lambda = Some(0.4);
     muscle.material.maxwell = MaxwellBranches::new(&[branch(0.04, 30.0)]).unwrap();
     muscle.fidelity = Fidelity::FiniteElements(Discretisation {
+        first_side: None,
         elements: [1, 1, 2],
         layers: 2,
         element: ElementKind::Hex8,

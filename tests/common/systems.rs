@@ -299,6 +299,7 @@ pub fn blocks() -> System {
         muscle.material.lame_lambda = Some(0.4);
     }
     system.muscles[0].fidelity = Fidelity::FiniteElements(Discretisation {
+        first_side: None,
         elements: [1, 1, 2],
         layers: 2,
         element: ElementKind::Hex8,

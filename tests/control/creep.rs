@@ -67,6 +67,7 @@ fn a_muscle_of_finite_elements_that_creeps_is_steered() {
     muscle.material.lame_lambda = Some(0.4);
     muscle.material.maxwell = MaxwellBranches::new(&[branch]).unwrap();
     muscle.fidelity = Fidelity::FiniteElements(Discretisation {
+        first_side: None,
         elements: [1, 1, 1],
         layers: 1,
         element: ElementKind::Hex8,

@@ -104,6 +104,7 @@ fn a_solution_of_lumped_muscles_starts_finite_elements() {
     for muscle in &mut system.muscles {
         muscle.material.lame_lambda = Some(0.4);
         muscle.fidelity = Fidelity::FiniteElements(Discretisation {
+            first_side: None,
             elements: [1, 1, 2],
             layers: 2,
             element: ElementKind::Hex8,

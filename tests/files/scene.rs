@@ -132,6 +132,7 @@ fn mistakes_in_a_scene_name_place_found_and_expected() {
         ("\"position\": [0, \"75 mm\", 0]", "\"position\": [0, \"75 mm\", 0], \"inertia\": [1e-6, 1e-6, 3e-6]", "bodies[1].inertia", "3", "none is larger than the sum", "3e-6"),
         ("\"name\": \"muscle2\"", "\"name\": \"muscle2\", \"model\": \"finite_elements\", \"elements\": [2, 2, 8]", "muscles[1].material", "\"rubber\", which has neither \"lame_lambda\" nor \"poisson_ratio\"", "a material with one of them", "\"rubber\""),
         ("\"name\": \"muscle2\"", "\"name\": \"muscle2\", \"elements\": [2, 2, 8]", "muscles[1].elements", "\"elements\" of a lumped muscle", "\"model\": \"finite_elements\"", "[2, 2, 8]"),
+        ("\"name\": \"muscle2\"", "\"name\": \"muscle2\", \"first_side\": [1, 0, 0]", "muscles[1].first_side", "\"first_side\" of a lumped muscle", "\"finite_elements\"", "[1, 0, 0]"),
         ("\"name\": \"muscle2\"", "\"name\": \"muscle2\", \"layers\": 4", "muscles[1].layers", "\"layers\" of a lumped muscle", "\"finite_elements\"", "4"),
         ("\"name\": \"muscle2\"", "\"name\": \"muscle2\", \"element\": \"hex8_q1p0\"", "muscles[1].element", "\"element\" of a lumped muscle", "\"finite_elements\"", "hex8"),
         ("\"name\": \"muscle2\"", "\"name\": \"muscle2\", \"model\": \"lumpd\"", "muscles[1].model", "\"lumpd\"", "one of \"lumped\"", "lumpd"),
@@ -167,6 +168,8 @@ fn mistakes_in_a_muscle_of_finite_elements_name_place_found_and_expected() {
         ("[2, 3, 8]", "[9999, 9999, 9999]", "muscles[0].elements", "9999", "no more than", "9999"),
         ("[2, 3, 8]", "[2, 3, 8], \"layers\": 3", "muscles[0].layers", "3", "a divisor of the 8 elements along the span", "3"),
         ("[2, 3, 8]", "[2, 3, 8], \"element\": \"hex20\"", "muscles[0].element", "\"hex20\"", "\"hex8\"", "hex20"),
+        ("[2, 3, 8]", "[2, 3, 8], \"first_side\": [0, 2, 0]", "muscles[0].first_side", "along the span", "across the span", "[0, 2, 0]"),
+        ("[2, 3, 8]", "[2, 3, 8], \"first_side\": [0, 0, 0]", "muscles[0].first_side", "0.0", "a direction", "[0, 0, 0]"),
         ("[2, 3, 8]", "[2, 3, 8], \"section_inertia\": true", "muscles[0].section_inertia", "finite elements", "no such key", "true"),
     ];
     check(cases, &elastic_scene(), |scene| {
@@ -188,6 +191,7 @@ fn mistakes_in_a_muscle_of_finite_elements_name_place_found_and_expected() {
     let (_folder, path) = folder(&elastic_scene(), PROBLEM);
     let loaded = read_problem(&path, &[of_stretch.to_owned()]).expect("a stretch limit");
     let expected = Discretisation {
+        first_side: None,
         elements: [2, 3, 8],
         layers: 8,
         element: ElementKind::Hex8,

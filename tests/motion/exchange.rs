@@ -166,6 +166,7 @@ fn what_drives_finite_elements_is_left_out() {
     let whole = EnergyExchange::new(&system, &motion, [None; 2]);
     assert!(whole.is_complete && whole.totals().unwrap()[0][1] > 0.1);
     system.muscles[0].fidelity = Fidelity::FiniteElements(Discretisation {
+        first_side: None,
         elements: [1, 1, 2],
         layers: 2,
         element: ElementKind::Hex8,

@@ -159,6 +159,7 @@ impl Link {
                     body: self.segment(),
                     at: point(&(middle + half)),
                 },
+                first_side: None,
                 section_inertia: false,
             }
         };

@@ -4,15 +4,19 @@ use crate::files::json::error::SceneError;
 use crate::files::json::scope::Scope;
 use crate::files::scene::circuit::circuit;
 use crate::files::scene::names::{attachment, find_compressible, find_material};
-use crate::files::scene::point::PointSpec;
+use crate::files::scene::point::{PointSpec, unit_axis};
 use crate::files::scene::spec::{ModelSpec, MuscleModel, MuscleSpec};
 use crate::files::scene::spec_solids::ElementSpec;
 use crate::files::units::quantity::{Length, Quantity};
 use crate::math::shortest;
 use crate::model::system::{Discretisation, ElementKind, Fidelity, Material, Muscle};
+use nalgebra::Vector3;
 
 /// Spans shorter than this in mm have no direction.
 const SHORTEST_SPAN: f64 = 1e-9;
+
+/// Sine of the angle to the span below which a direction is along it.
+const ALONG: f64 = 1e-6;
 
 /// Lengths of a muscle that a side of its section may have: a wider one is a slip of a unit.
 const WIDEST: f64 = 100.0;
@@ -52,6 +56,10 @@ pub(crate) fn muscle(
             .key("body")
             .wrong(found, "another body than \"from\""));
     }
+    let fidelity = match &spec.first_side {
+        Some(side) => turned(fidelity, side, to.at - from.at, &scope.key("first_side"))?,
+        None => fidelity,
+    };
     let prestretch = prestretch(spec.prestretch, scope)?;
     let rest = length / prestretch.unwrap_or(1.0);
     let muscle = Muscle {
@@ -70,6 +78,31 @@ pub(crate) fn muscle(
         circuit: circuit(spec.circuit.as_ref(), &muscle, scope)?,
         ..muscle
     })
+}
+
+/// Finite elements of a muscle along a span, with the direction of the first side of its cross-section.
+fn turned(
+    fidelity: Fidelity,
+    side: &[f64; 3],
+    span: Vector3<f64>,
+    scope: &Scope<'_>,
+) -> Result<Fidelity, SceneError> {
+    let Fidelity::FiniteElements(discretisation) = fidelity else {
+        let found = "\"first_side\" of a lumped muscle";
+        let expected = "no such key, or \"model\": \"finite_elements\"";
+        return Err(scope.wrong(found, expected));
+    };
+    let first_side = unit_axis(side, scope)?;
+    if span.normalize().cross(&first_side).norm() < ALONG {
+        return Err(scope.wrong(
+            format!("{side:?}, along the span"),
+            "a direction across the span",
+        ));
+    }
+    Ok(Fidelity::FiniteElements(Discretisation {
+        first_side: Some(first_side),
+        ..discretisation
+    }))
 }
 
 /// The prestretch of a muscle.
@@ -117,6 +150,7 @@ pub(crate) fn fidelity(
         elements,
         layers,
         element: element_kind(spec.element),
+        first_side: None,
     }))
 }
 

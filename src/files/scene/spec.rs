@@ -211,6 +211,10 @@ stacked! {
         pub from: PointSpec,
         /// End.
         pub to: PointSpec,
+        /// Direction of the first side of the cross-section, of which the part across the span counts; where not written perpendicular to the span
+        /// and to the first of the axes x, y, z whose cosine with the span is below 0.6. Of `finite_elements` only.
+        #[serde(default, skip_serializing_if = "Option::is_none")]
+        pub first_side: Option<[f64; 3]>,
         /// True if the inertia of the changing cross-section is taken into account.
         #[serde(default, skip_serializing_if = "std::ops::Not::not")]
         pub section_inertia: bool,
