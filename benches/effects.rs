@@ -466,6 +466,7 @@ fn by_hand(system: &System, volts: &[f64]) -> Variant {
         )),
     ];
     let scalars = model.action.intervals.scalars;
+    let effects = effects.into_iter().map(Into::into).collect();
     let intervals = Functional::new(effects, Vec::new(), list.len(), scalars);
     let instants = Functional::new(Vec::new(), Vec::new(), list.len(), 0);
     model.action = Reduced::new(model.action.map.clone(), intervals, instants);

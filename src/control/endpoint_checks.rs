@@ -27,7 +27,9 @@ pub(super) fn check(
 ) -> Result<(), BoundaryError> {
     let mut limits = control.limits.iter();
     let beyond = || limits.find_map(|limit| beyond_law(model, limit));
-    if let Some(reason) = contradiction(model, boundary, control).or_else(beyond) {
+    let unknown = || unknown_reaction(model, boundary);
+    let reason = contradiction(model, boundary, control).or_else(beyond);
+    if let Some(reason) = reason.or_else(unknown) {
         let place = "limits";
         return Err(BoundaryError::Limit { place, reason });
     }
@@ -208,6 +210,19 @@ fn of_joint(joint: usize, lower: f64, upper: f64, model: &Model) -> BoundedQuant
         when: When::Everywhere,
         name: format!("joint {}", model.system.joints[joint].name),
     }
+}
+
+/// The message of a limit of a reaction that the balance of bodies does not tell.
+fn unknown_reaction(model: &Model, boundary: &BoundaryConditions) -> Option<String> {
+    let mut limits = boundary.limits.list.iter().zip(&model.measured);
+    let is_unknown = |(bounded, measure): &(&BoundedQuantity, &Option<usize>)| {
+        matches!(bounded.quantity, Quantity::ReactionStep { .. }) && measure.is_none()
+    };
+    let (bounded, _) = limits.find(is_unknown)?;
+    Some(format!(
+        "{} is not known: the joint does not move or is in a loop, or constraints glue blocks to bodies",
+        bounded.name
+    ))
 }
 
 /// The message of a limit of a stretch at which the law of the muscle has no energy.

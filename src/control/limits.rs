@@ -90,13 +90,14 @@ impl Limits {
                 out.add_block_field(block, region, max, system);
             }
             PathConstraint::VoltageRate { .. }
+            | PathConstraint::ReactionForce { .. }
             | PathConstraint::PeakVoltage { .. }
             | PathConstraint::MarkerSpeed { .. }
             | PathConstraint::Marker { .. } => out.add_other(limit, system, length),
         }
     }
 
-    /// Adds a limit of a voltage or of a marker.
+    /// Adds a limit of a voltage, a reaction or a marker.
     fn add_other(&mut self, limit: &PathConstraint, system: &System, length: Length) {
         let (out, h) = (self, length.h);
         match *limit {
@@ -104,6 +105,23 @@ impl Limits {
                 let name = format!("rate of the voltage of {}", system.sources()[source].name);
                 let unit = h * largest([min, max]).unwrap_or(1.0);
                 let quantity = Quantity::VoltageStep { source, unit, h };
+                out.add_rate(quantity, [min, max], name, length);
+            }
+            PathConstraint::ReactionForce {
+                joint,
+                along,
+                min,
+                max,
+            } => {
+                let name = format!("reaction force of {}", system.joints[joint].name);
+                let (unit, at) = (h * largest([min, max]).unwrap_or(1.0), Stencil::Here);
+                let quantity = Quantity::ReactionStep {
+                    joint,
+                    along,
+                    at,
+                    unit,
+                    h,
+                };
                 out.add_rate(quantity, [min, max], name, length);
             }
             PathConstraint::MarkerSpeed { marker, min, max } => {

@@ -1,5 +1,6 @@
 //! Path limits of a problem: bounds of quantities along the motion, or at a single time.
 
+use crate::math::Vector;
 use crate::model::Region;
 
 /// An inequality that holds at every instant or in every interval.
@@ -47,6 +48,18 @@ pub enum PathConstraint {
         /// Muscle index.
         muscle: usize,
         /// Breakdown value in V/mm.
+        max: f64,
+    },
+    /// Component in N, along a direction of the ground frame, of the force from the parent of a joint on its child, at the instants between
+    /// intervals.
+    ReactionForce {
+        /// Joint index.
+        joint: usize,
+        /// Unit vector.
+        along: Vector,
+        /// Lower bound or −∞.
+        min: f64,
+        /// Upper bound or ∞.
         max: f64,
     },
     /// Size in mm/ms of the mean velocity of a marker in each interval.

@@ -166,7 +166,9 @@ impl<'a> Named<'a> {
     fn of_limit(&mut self, limit: &PathConstraint) {
         match *limit {
             PathConstraint::Once { ref limit, .. } => self.of_limit(limit),
-            PathConstraint::JointAngle { joint, .. } | PathConstraint::JointRate { joint, .. } => {
+            PathConstraint::JointAngle { joint, .. }
+            | PathConstraint::JointRate { joint, .. }
+            | PathConstraint::ReactionForce { joint, .. } => {
                 self.of_joint(joint);
             }
             PathConstraint::Stretch { muscle, .. } | PathConstraint::Tension { muscle, .. } => {

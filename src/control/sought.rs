@@ -57,6 +57,7 @@ fn reads(quantity: &Quantity, parameter: &Parameter) -> bool {
             };
             parameter.moves(muscle) || parameter.constants.iter().any(|c| is_read(c.constant))
         }
+        Quantity::ReactionStep { .. } => true,
         // Constants of finite elements are not sought.
         Quantity::SquaredField { .. } => false,
         // They read the parameter itself, which no constant follows.

@@ -3,6 +3,7 @@
 use crate::functional::{BlockMask, Couplings, Outer, SumDerivatives};
 use crate::math::Vector;
 use std::fmt::Debug;
+use std::sync::Arc;
 
 /// Highest order of the derivatives that are asked for.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
@@ -185,7 +186,7 @@ pub trait Measure: Debug + Send + Sync {
 #[derive(Debug, Default)]
 pub struct Functional {
     /// The terms.
-    pub terms: Vec<Box<dyn Term>>,
+    pub terms: Vec<Arc<dyn Term>>,
     /// The quantities.
     pub measures: Vec<Box<dyn Measure>>,
     /// Couplings of vectors and scalars in them.
@@ -203,7 +204,7 @@ pub struct Functional {
 impl Functional {
     /// A sum over terms that read `vectors` vectors and `scalars` scalars.
     pub fn new(
-        terms: Vec<Box<dyn Term>>,
+        terms: Vec<Arc<dyn Term>>,
         measures: Vec<Box<dyn Measure>>,
         vectors: usize,
         scalars: usize,
@@ -215,7 +216,7 @@ impl Functional {
             slots
         };
         let of_term = |term: &dyn Term| laid(&|c, slots| term.couple(c, slots));
-        let effect_slots = terms.iter().map(Box::as_ref).map(of_term).collect();
+        let effect_slots = terms.iter().map(Arc::as_ref).map(of_term).collect();
         let of_measure = |measure: &dyn Measure| laid(&|c, slots| measure.couple(c, slots));
         let measure_slots = measures.iter().map(Box::as_ref).map(of_measure).collect();
         Self {
@@ -231,7 +232,7 @@ impl Functional {
 
     /// The terms with the slots of their couplings.
     pub fn terms(&self) -> impl Iterator<Item = (&dyn Term, &[u32])> {
-        let terms = self.terms.iter().map(Box::as_ref);
+        let terms = self.terms.iter().map(Arc::as_ref);
         terms.zip(self.effect_slots.iter().map(Vec::as_slice))
     }
 

@@ -68,6 +68,15 @@ pub(super) fn check_limits(limits: &[PathConstraint], system: &System) -> Result
                 check_limits(std::slice::from_ref(limit), system)?;
                 part > 0.0 && part <= 1.0
             }
+            PathConstraint::ReactionForce {
+                joint,
+                along,
+                min,
+                max,
+            } => {
+                let is_unit = (along.norm() - 1.0).abs() < 1e-9;
+                joint < system.joints.len() && is_unit && min < max
+            }
             PathConstraint::MarkerSpeed { marker, min, max } => {
                 marker < system.markers.len() && min < max
             }

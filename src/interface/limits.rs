@@ -3,6 +3,7 @@
 use crate::control::problem::PathConstraint;
 use crate::interface::control::Control;
 use crate::interface::handle::Handle;
+use crate::math::Vector;
 use crate::model::system::{Joint, Marker, Muscle};
 use std::ops::RangeInclusive;
 
@@ -58,6 +59,23 @@ impl Control {
     pub fn power_within(self, muscle: Handle<Muscle>, range: RangeInclusive<f64>) -> Self {
         let (muscle, (min, max)) = (muscle.index(), range.into_inner());
         self.limited(PathConstraint::Power { muscle, min, max })
+    }
+
+    /// Range in N of the component, along a unit vector of the ground frame, of the force from the parent of a joint on its child, at the
+    /// instants between intervals.
+    pub fn reaction_within(
+        self,
+        joint: Handle<Joint>,
+        along: Vector,
+        range: RangeInclusive<f64>,
+    ) -> Self {
+        let (joint, (min, max)) = (joint.index(), range.into_inner());
+        self.limited(PathConstraint::ReactionForce {
+            joint,
+            along,
+            min,
+            max,
+        })
     }
 
     /// Range of the size of the mean velocity of a marker in each interval in mm/ms.

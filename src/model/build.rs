@@ -9,6 +9,7 @@ use crate::model::components::{body, circuit, muscle};
 use crate::model::error::ModelError;
 use crate::model::graph::Graph;
 use crate::model::internal::Internals;
+use crate::model::interval_variables::interval_variables;
 use crate::model::joints::JointReading;
 use crate::model::loops::Loops;
 use crate::model::measures::{self, Measures};
@@ -18,13 +19,14 @@ use crate::model::plan::{LeftOut, Present};
 use crate::model::presolved::Presolved;
 use crate::model::quantity::Quantity;
 use crate::model::solids::Solids;
-use crate::model::system::{Attachment, Body, Marker, Muscle, Source, System};
+use crate::model::system::{Attachment, Body, Marker, Muscle, System};
 use crate::model::terms::{Carriers, Terms};
 use crate::model::variables::{Role, Size, Time, Variable, Variables};
 use crate::model::{
     blocks, constraints, dampers, field_extent, joint_springs, loads, plan, prescribed,
 };
 use std::collections::BTreeSet;
+use std::sync::Arc;
 
 impl Model {
     /// Builds the model of a system for intervals of about `h0` ms, in which `quantities` can be measured, any voltage may act
@@ -84,12 +86,8 @@ impl Model {
             &mut variables,
             &mut vectors,
         )?;
-        let internals = Internals::new(
-            (&system, &presolved),
-            &analysis,
-            (coordinates, &graph),
-            &blocks,
-        );
+        let (scene, joined) = ((&system, &presolved), (coordinates, &graph));
+        let internals = Internals::new(scene, &analysis, joined, &blocks);
         let size = length(rest, &blocks.nodes);
         let loops = Loops::new(coordinates, (rest, &graph), &reference, size)?;
         let construction = Construction {
@@ -105,7 +103,8 @@ impl Model {
         let spans = construction.spans(&mut vectors);
         let (intervals, made) = construction.sums(&spans, &variables, &mut vectors);
         let markers = construction.markers(&mut vectors);
-        let measures = construction.measures(&variables, &markers, &mut vectors);
+        let known = (&variables, &markers[..], &intervals[..], &made.present[..]);
+        let measures = construction.measures(known, &mut vectors);
         let list = vectors.list();
         let multipliers = made.multipliers.len();
         let map = construction.coordinate_map(&graph, list, multipliers);
@@ -203,19 +202,6 @@ fn reached(system: &System, analysis: &Analysis, inputs: &[usize]) -> Vec<usize>
     }
 }
 
-/// Voltages, loads and parameters, the first scalars of an interval.
-fn interval_variables(inputs: &[usize], sources: &[Source], analysis: &Analysis) -> Variables {
-    let mut variables = Variables::default();
-    for &source in inputs {
-        let Source { name, kind, .. } = &sources[source];
-        variables.add(Variable::input(source, *kind, name.clone()));
-    }
-    for parameter in &analysis.parameters {
-        variables.add(Variable::parameter(parameter.name.clone()));
-    }
-    variables
-}
-
 /// A scene with what remains of it, from which the parts of a model are constructed.
 struct Construction<'a> {
     system: &'a System,
@@ -256,7 +242,7 @@ impl Construction<'_> {
         spans: &[usize],
         variables: &Variables,
         vectors: &mut Vectors,
-    ) -> (Vec<Box<dyn Term>>, constraints::Made) {
+    ) -> (Vec<Arc<dyn Term>>, constraints::Made) {
         let (terms, mut present, mut left_out) = self.terms(spans, variables, vectors);
         let made = self.constraints(vectors);
         present.extend(made.present);
@@ -267,7 +253,7 @@ impl Construction<'_> {
             left_out,
             ..made
         };
-        (terms, made)
+        (terms.into_iter().map(Arc::from).collect(), made)
     }
 
     /// Terms of an interval in the order of the plan, and the reasons for those that are present and for those that are not.
@@ -335,11 +321,10 @@ impl Construction<'_> {
         markers.map(&mut vector).collect()
     }
 
-    /// Measures of the quantities of the analysis.
+    /// Measures of the quantities of the analysis, from variables, markers, terms of the intervals and what is present.
     fn measures(
         &self,
-        variables: &Variables,
-        markers: &[usize],
+        (variables, markers, terms, present): (&Variables, &[usize], &[Arc<dyn Term>], &[Present]),
         vectors: &mut Vectors,
     ) -> Measures {
         let known = measures::Known {
@@ -350,6 +335,8 @@ impl Construction<'_> {
             variables,
             markers,
             blocks: &self.blocks.list,
+            terms,
+            is_glued: present.iter().any(|one| one.term == constraints::GLUE),
         };
         Measures::new(self.analysis, &known, vectors)
     }

@@ -10,6 +10,7 @@ use crate::model::loops::Loops;
 use crate::model::plan::{self, LeftOut, Present};
 use crate::model::solids::Solids;
 use crate::model::system::{Glue, System};
+use std::sync::Arc;
 
 /// Terms of constraints.
 const RIGID: &str = "rigid bodies";
@@ -42,7 +43,7 @@ pub(super) struct Builder<'a> {
 /// Constraints collected for the action, with the names of their multipliers.
 #[derive(Default)]
 pub(super) struct Made {
-    pub(super) terms: Vec<Box<dyn Term>>,
+    pub(super) terms: Vec<Arc<dyn Term>>,
     pub(super) multipliers: Vec<String>,
     pub(super) present: Vec<Present>,
     pub(super) left_out: Vec<LeftOut>,
@@ -80,7 +81,7 @@ impl Made {
             plan::note(&mut self.present, term, why, name);
         }
         let group = Group::<Formulas<E, M, NV, NS>>::instants(term, scale, elements);
-        self.terms.push(Box::new(group));
+        self.terms.push(Arc::new(group));
     }
 }
 

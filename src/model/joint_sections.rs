@@ -4,7 +4,8 @@ use crate::kinematics::{Carrier, MaterialVector, Pose};
 use crate::math::{DisjointSets, Vector};
 use crate::model::constraints::GLUE;
 use crate::model::model::Model;
-use crate::model::system::JointKind;
+use crate::model::presolved::Presolved;
+use crate::model::system::{JointKind, System};
 
 /// A joint that alone connects the bodies on one side of it to the ground or to the others.
 #[derive(Clone, Debug)]
@@ -28,42 +29,10 @@ impl Model {
             return Vec::new();
         }
         let joints = 0..self.presolved.system.joints.len();
-        joints.filter_map(|kept| self.section(kept)).collect()
-    }
-
-    fn section(&self, kept: usize) -> Option<JointSection> {
-        let system = &self.presolved.system;
-        let ground = system.bodies.len();
-        let joint = &system.joints[kept];
-        let mut sets = DisjointSets::new(ground + 1);
-        for (other, joint) in system.joints.iter().enumerate() {
-            if other != kept {
-                sets.join(joint.parent.unwrap_or(ground), joint.child);
-            }
-        }
-        let [child, parent, fixed] =
-            [joint.child, joint.parent.unwrap_or(ground), ground].map(|body| sets.smallest(body));
-        if joint.kind == JointKind::Floating || child == parent {
-            return None;
-        }
-        let (side, own) = match child == fixed {
-            true => (parent, -1.0),
-            false => (child, 1.0),
-        };
-        let index = self.presolved.joints[kept];
-        let of_scene = Some(self.system.joints[index].child);
-        let turned = match self.presolved.carrier(of_scene) == Some(joint.child) {
-            true => 1.0,
-            false => -1.0,
-        };
-        let bodies = 0..ground;
-        Some(JointSection {
-            joint: index,
-            bodies: bodies.filter(|&b| sets.smallest(b) == side).collect(),
-            sign: own * turned,
-            at: MaterialVector::point(Some(joint.child), &joint.at, &self.reference),
-            has_torque: joint.kind != JointKind::Spherical,
-        })
+        let of = (&self.system, &self.presolved);
+        joints
+            .filter_map(|kept| JointSection::new(of, &self.reference, kept))
+            .collect()
     }
 
     /// Force and torque about the origin on each body of the presolved system, of forces on all vectors at poses.
@@ -83,6 +52,57 @@ impl Model {
 }
 
 impl JointSection {
+    /// The section at a joint of the presolved system; none where it moves nothing or is in a loop.
+    pub(super) fn new(
+        (scene, presolved): (&System, &Presolved),
+        reference: &[Pose],
+        kept: usize,
+    ) -> Option<Self> {
+        let system = &presolved.system;
+        let ground = system.bodies.len();
+        let joint = &system.joints[kept];
+        let mut sets = DisjointSets::new(ground + 1);
+        for (other, joint) in system.joints.iter().enumerate() {
+            if other != kept {
+                sets.join(joint.parent.unwrap_or(ground), joint.child);
+            }
+        }
+        let [child, parent, fixed] =
+            [joint.child, joint.parent.unwrap_or(ground), ground].map(|body| sets.smallest(body));
+        if joint.kind == JointKind::Floating || child == parent {
+            return None;
+        }
+        let (side, own) = match child == fixed {
+            true => (parent, -1.0),
+            false => (child, 1.0),
+        };
+        let index = presolved.joints[kept];
+        let of_scene = Some(scene.joints[index].child);
+        let turned = match presolved.carrier(of_scene) == Some(joint.child) {
+            true => 1.0,
+            false => -1.0,
+        };
+        let bodies = 0..ground;
+        Some(JointSection {
+            joint: index,
+            bodies: bodies.filter(|&b| sets.smallest(b) == side).collect(),
+            sign: own * turned,
+            at: MaterialVector::point(Some(joint.child), &joint.at, reference),
+            has_torque: joint.kind != JointKind::Spherical,
+        })
+    }
+
+    /// Displacement of a vector when all bodies of the section move along a direction, with the sign of the force from the parent on the child.
+    pub(super) fn displacement(&self, vector: &MaterialVector, direction: &Vector) -> Vector {
+        let moved = |carrier: Carrier| match carrier {
+            Carrier::Body(body) => self.bodies.contains(&body),
+            _ => false,
+        };
+        let terms = vector.terms.iter().filter(|term| moved(term.carrier));
+        let factor: f64 = terms.map(|term| term.centre).sum();
+        direction * (-self.sign * factor)
+    }
+
     /// Force and torque about the point of the joint that balance wrenches of the bodies at poses: from the parent on the child.
     pub fn reaction(&self, wrenches: &[[Vector; 2]], poses: &[Pose]) -> [Vector; 2] {
         let sum = |part: usize| -> Vector { self.bodies.iter().map(|&b| wrenches[b][part]).sum() };

@@ -6,7 +6,7 @@ use crate::energy::{
     PositionComponent, Projection, ProjectionStep, SquaredDistance, SquaredField,
 };
 use crate::functional::{
-    Curved, Element, ElementField, ElementFields, Formulas, Group, Kernel, Measure, Stencil,
+    Curved, Element, ElementField, ElementFields, Formulas, Group, Kernel, Measure, Stencil, Term,
     VectorArg,
 };
 use crate::kinematics::{MaterialVector, Pose, Vectors};
@@ -20,6 +20,7 @@ use crate::model::quantity::{FieldPlace, Quantity, Region};
 use crate::model::solid_block::SolidBlock;
 use crate::model::system::System;
 use crate::model::variables::{Role, Variables};
+use std::sync::Arc;
 
 /// V in a kV.
 const KILOVOLT: f64 = 1e3;
@@ -44,6 +45,10 @@ pub(super) struct Known<'a> {
     /// Vector of each marker.
     pub(super) markers: &'a [usize],
     pub(super) blocks: &'a [SolidBlock],
+    /// Terms of the intervals.
+    pub(super) terms: &'a [Arc<dyn Term>],
+    /// True if constraints glue blocks to bodies, so that terms do not tell the forces on bodies.
+    pub(super) is_glued: bool,
 }
 
 impl Measures {
@@ -123,6 +128,9 @@ impl Known<'_> {
             | Quantity::SourcePower { .. }
             | Quantity::ChargeStep { .. }
             | Quantity::EnergyStep { .. } => return self.of_charge(quantity, shape, vectors),
+            Quantity::ReactionStep {
+                joint, along, at, ..
+            } => return self.reaction(joint, (along, at), vectors),
             Quantity::Tension { muscle, unit } => {
                 return self.tension(muscle, (unit, shape), vectors);
             }

@@ -136,6 +136,20 @@ pub enum Quantity {
         /// Length of the interval in ms, for messages.
         h: f64,
     },
+    /// Impulse of a joint along a direction in N ms: at the start of an interval, or minus that at its end, so that the step from one interval to
+    /// the next is the whole impulse at the instant between them, which is limited.
+    ReactionStep {
+        /// Joint index.
+        joint: usize,
+        /// Unit vector of the ground frame.
+        along: Vector,
+        /// At the start or at the end of the interval: `Here` or `Next`.
+        at: Stencil,
+        /// Unit of the steps in N ms.
+        unit: f64,
+        /// Length of the interval in ms, for messages.
+        h: f64,
+    },
     /// A component of the place of a marker in mm at the instants.
     MarkerPlace {
         /// Marker index.
@@ -217,6 +231,7 @@ impl Quantity {
                 | Self::VoltageStep { .. }
                 | Self::ChargeStep { .. }
                 | Self::EnergyStep { .. }
+                | Self::ReactionStep { .. }
         )
     }
 
@@ -237,9 +252,10 @@ impl Quantity {
             | Self::SourceCurrent { .. }
             | Self::SourcePower { .. }
             | Self::Tension { .. } => "in interval",
-            Self::VoltageStep { .. } | Self::ChargeStep { .. } | Self::EnergyStep { .. } => {
-                "before interval"
-            }
+            Self::VoltageStep { .. }
+            | Self::ChargeStep { .. }
+            | Self::EnergyStep { .. }
+            | Self::ReactionStep { .. } => "before interval",
             _ => "at instant",
         }
     }
@@ -262,6 +278,7 @@ impl Quantity {
             | Self::VoltageStep { .. }
             | Self::ChargeStep { .. }
             | Self::EnergyStep { .. }
+            | Self::ReactionStep { .. }
             | Self::PeakExcess { .. }
             | Self::Direction { .. }
             | Self::MarkerRegion { .. } => "",
@@ -305,6 +322,7 @@ impl Quantity {
             Self::VoltageStep { unit, h, .. } => (value * unit / h, "kV/s"),
             Self::ChargeStep { unit, h, .. } => (1e3 * value * unit / h, "mA"),
             Self::EnergyStep { unit, h, .. } => (value * unit / h, "W"),
+            Self::ReactionStep { unit, h, .. } => (value * unit / h, "N"),
             Self::MarkerRegion { region, .. } => match region {
                 Region::Sphere { radius, .. } => (value.sqrt() * radius, "mm from its centre"),
                 Region::Box { .. } => (value.powf(1.0 / 16.0), "half edges from its centre"),

@@ -17,6 +17,19 @@ impl Quantity {
                 unit,
                 h,
             }),
+            Self::ReactionStep {
+                joint,
+                along,
+                unit,
+                h,
+                ..
+            } => Some(Self::ReactionStep {
+                joint,
+                along,
+                at: Stencil::Next,
+                unit,
+                h,
+            }),
             _ => None,
         }
     }
@@ -27,7 +40,8 @@ impl Quantity {
             Self::JointStep { h, .. }
             | Self::VoltageStep { h, .. }
             | Self::ChargeStep { h, .. }
-            | Self::EnergyStep { h, .. } => *h = length,
+            | Self::EnergyStep { h, .. }
+            | Self::ReactionStep { h, .. } => *h = length,
             _ => {}
         }
         self
@@ -39,7 +53,8 @@ impl Quantity {
             Self::JointStep { h, .. }
             | Self::VoltageStep { h, .. }
             | Self::ChargeStep { h, .. }
-            | Self::EnergyStep { h, .. } => Some(h),
+            | Self::EnergyStep { h, .. }
+            | Self::ReactionStep { h, .. } => Some(h),
             _ => None,
         }
     }
@@ -60,7 +75,8 @@ impl Quantity {
         match *self {
             Self::VoltageStep { unit, .. }
             | Self::ChargeStep { unit, .. }
-            | Self::EnergyStep { unit, .. } => unit,
+            | Self::EnergyStep { unit, .. }
+            | Self::ReactionStep { unit, .. } => unit,
             _ => 1.0,
         }
     }

@@ -3,7 +3,7 @@
 use nalgebra::{SVector, Vector3};
 use proboscis::coordinates::Reduced;
 use proboscis::energy::Energy;
-use proboscis::functional::{Element, Formulas, Functional, Group, Stencil, Term, VectorArg};
+use proboscis::functional::{Element, Formulas, Functional, Group, Stencil, VectorArg};
 use proboscis::kinematics::MaterialVector;
 use proboscis::math::Jet;
 use proboscis::model::system::InputKind;
@@ -51,7 +51,7 @@ pub fn with_control<E: Energy<4> + 'static>(
         ..
     } = model.action;
     let mut terms = intervals.terms;
-    terms.push(Box::new(control) as Box<dyn Term>);
+    terms.push(std::sync::Arc::new(control));
     let intervals = Functional::new(terms, intervals.measures, intervals.vectors, 1);
     model.action = Reduced::new(map, intervals, instants);
     let control = Variable::input(0, InputKind::Voltage, "control".to_owned());

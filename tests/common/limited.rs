@@ -13,6 +13,16 @@ pub fn tension(muscle: usize) -> PathConstraint {
     }
 }
 
+/// A limit of the force of a joint along an oblique direction.
+pub fn reaction(joint: usize) -> PathConstraint {
+    PathConstraint::ReactionForce {
+        joint,
+        along: Vector3::new(0.48, 0.6, 0.64),
+        min: -3.0,
+        max: 2.0,
+    }
+}
+
 /// A limit of the speed of a marker.
 pub fn speed(marker: usize) -> PathConstraint {
     PathConstraint::MarkerSpeed {

@@ -1,11 +1,12 @@
 //! Problems with costs of measured quantities, and with limits at single times.
 
 use super::cases::{Case, control};
-use super::limited::{all_limits, speed, tension};
+use super::limited::{all_limits, reaction, speed, tension};
 use super::remembering::remembering;
 use super::systems::{branched, charged};
 use super::tracked::{measured, measured_source};
 use proboscis::control::problem::{Control, Duration};
+use proboscis::math::Signal;
 use proboscis::model::system::System;
 
 /// The list.
@@ -25,6 +26,19 @@ pub fn measuring() -> Vec<Case> {
         guess: 30.0,
     };
     vec![
+        case("branched tree, reactions", branched(), &|c| {
+            c.limits = vec![reaction(0), reaction(1), reaction(2).at_part(1.0)];
+        }),
+        case("branched tree, reactions, free time", branched(), &|c| {
+            c.limits = vec![reaction(0), reaction(2)];
+            c.duration = free;
+            c.objective.rate = 0.3;
+        }),
+        case("charges, reactions, free time", charged(), &|c| {
+            c.limits = vec![reaction(0)];
+            c.duration = free;
+            c.given.insert(4, Signal::Constant(1e-4));
+        }),
         case(
             "branched tree that remembers, measured costs",
             remembering(),

@@ -28,6 +28,7 @@ mod peak_voltage;
 mod periodic;
 mod prescribed;
 mod rate_limits;
+mod reaction_limits;
 mod reference;
 mod resample;
 mod resisted_energies;

@@ -6,7 +6,7 @@ use crate::limits::run;
 use serde_json::{Value, json};
 
 /// The pair with ideal dielectrics in a short time, with limits.
-fn problem(limits: Value, coordinates: &str, is_free: bool) -> Value {
+pub(crate) fn problem(limits: Value, coordinates: &str, is_free: bool) -> Value {
     let mut problem = pair(&Value::Null, limits, coordinates);
     problem["control"]["duration"] = match is_free {
         true => json!({ "min": 0.02, "max": 0.4, "guess": 0.1 }),
@@ -61,7 +61,7 @@ fn solved(problem: &Value) -> (Vec<f64>, Vec<f64>, f64) {
     )
 }
 
-fn greatest(values: &[f64]) -> f64 {
+pub(crate) fn greatest(values: &[f64]) -> f64 {
     values.iter().copied().fold(f64::NEG_INFINITY, f64::max)
 }
 

@@ -231,7 +231,12 @@ fn compare(
 fn one_scatter_serves_every_arity() {
     let (scale, waves_of_oracle) = (-0.8, waves());
     let term = Group::<Waves>::intervals("waves", scale, waves());
-    let sum = Functional::new(vec![Box::new(term)], Vec::new(), VECTORS, SCALARS);
+    let sum = Functional::new(
+        vec![std::sync::Arc::new(term)],
+        Vec::new(),
+        VECTORS,
+        SCALARS,
+    );
     let mut random = Random(8);
     let mut u: Vec<f64> = (0..UNKNOWNS).map(|_| random.unit()).collect();
     u[LENGTH] = 0.9;

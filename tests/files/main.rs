@@ -7,6 +7,7 @@ mod extremes;
 mod free;
 mod fuzz_reader;
 mod meaning;
+mod measured_costs;
 mod named_materials;
 mod npz;
 mod objectives;

@@ -20,10 +20,10 @@ const EDGE: f64 = 0.01;
 
 /// Arrays of a `.vtu` file by name.
 #[derive(Debug)]
-struct Fields(HashMap<String, Vec<f64>>);
+pub(crate) struct Fields(HashMap<String, Vec<f64>>);
 
 impl Fields {
-    fn read(path: &Path) -> Self {
+    pub(crate) fn read(path: &Path) -> Self {
         let text = fs::read_to_string(path).unwrap();
         let arrays = text.split("<DataArray").skip(1).map(|array| {
             let (tag, rest) = array.split_once('>').unwrap();
@@ -41,14 +41,14 @@ impl Fields {
         self.0.contains_key(name)
     }
 
-    fn numbers(&self, name: &str) -> &[f64] {
+    pub(crate) fn numbers(&self, name: &str) -> &[f64] {
         let names = || self.0.keys().collect::<Vec<_>>();
         self.0
             .get(name)
             .unwrap_or_else(|| panic!("{name} in {:?}", names()))
     }
 
-    fn vectors(&self, name: &str) -> Vec<Vector> {
+    pub(crate) fn vectors(&self, name: &str) -> Vec<Vector> {
         let numbers = self.numbers(name);
         numbers
             .chunks_exact(3)
@@ -57,14 +57,14 @@ impl Fields {
     }
 
     /// Places in the reference configuration in m.
-    fn reference(&self) -> Vec<Vector> {
+    pub(crate) fn reference(&self) -> Vec<Vector> {
         let moved = self.vectors("displacement [m]");
         let places = self.vectors("Points");
         places.iter().zip(&moved).map(|(x, u)| x - u).collect()
     }
 }
 
-fn request(input: PathBuf, output: &Path, set: &[&str]) -> CommandInput {
+pub(crate) fn request(input: PathBuf, output: &Path, set: &[&str]) -> CommandInput {
     CommandInput {
         command: "proboscis".to_owned(),
         input,

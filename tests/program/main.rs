@@ -7,6 +7,7 @@ mod rank;
 
 mod accuracy;
 mod commands;
+mod creeping_fields;
 mod end_of;
 mod end_of_refused;
 mod engine;

@@ -278,7 +278,7 @@ fn every_call_of_a_solve_may_fail_under_both_linear_solvers() {
 /// An effect whose derivatives do not exist in some of its evaluations.
 #[derive(Debug)]
 struct Failing {
-    effect: Box<dyn Term>,
+    effect: Arc<dyn Term>,
     calls: Arc<AtomicUsize>,
     /// First call that fails, and the first one after it that does not.
     from: usize,
@@ -340,7 +340,7 @@ fn swing(
         from,
         until,
     };
-    effects.insert(0, Box::new(failing));
+    effects.insert(0, Arc::new(failing));
     let scalars = model.scalars(&[0.0, 1700.0]);
     let voltages = |_: f64, _: f64| scalars.clone();
     let go_on = |_: &_| ControlFlow::Continue(());

@@ -5,7 +5,7 @@ use crate::control::transcription::limit_rows::{
     BEFORE, BEFORE_INSTANT, DURATION, LimitRow, SCALAR, Site,
 };
 use crate::control::transcription::step::Step;
-use crate::functional::{Measure, Sample, SumDerivatives};
+use crate::functional::{Horizon, Measure, Sample, SumDerivatives};
 use crate::math::Vector;
 
 /// A part of a step in an interval: a measure times a factor.
@@ -142,8 +142,12 @@ impl<'m> Transcription<'m> {
             sides: [BEFORE_INSTANT, 0],
             scalars: BEFORE,
         });
+        let mut by_duration = 0.0;
         for part in [after, before].into_iter().flatten() {
             let sample = self.sample(Site::Intervals, part.interval);
+            if part.measure.reads_rates() && self.layout.horizon == Horizon::Free {
+                by_duration += part.factor * part.measure.by_duration(&sample);
+            }
             part.measure
                 .gradient(&sample, &mut derivatives.forces, &mut derivatives.rows);
             for side in (0..2).filter(|&side| part.measure.reads(side)) {
@@ -164,7 +168,7 @@ impl<'m> Transcription<'m> {
         }
         let rate = limit.bounded.rate.unwrap_or(0.0) * limit.part(k);
         for (at, _) in entries().filter(|(_, (mark, _))| *mark == DURATION) {
-            self.workspace.values[place + at] = -rate;
+            self.workspace.values[place + at] = by_duration - rate;
         }
     }
 }

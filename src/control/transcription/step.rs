@@ -14,8 +14,9 @@ pub(super) struct Step {
     pub(super) before: usize,
     /// f, one over the unit.
     pub(super) factor: f64,
-    /// Scalars of an interval at rest before the start and after the end.
+    /// Scalars of an interval at rest before the start and after the end; none of an impulse, which rest does not tell.
     ends: [Option<Vec<f64>>; 2],
+    is_impulse: bool,
     span: Span,
 }
 
@@ -26,22 +27,30 @@ impl Step {
         (model, rest): (&Model, &[Option<Vec<f64>>; 2]),
         span: Span,
     ) -> Self {
+        let is_impulse = matches!(quantity, Quantity::ReactionStep { .. });
         Self {
             before,
             factor: 1.0 / quantity.step_unit(),
-            ends: ends(model, rest),
+            ends: match is_impulse {
+                true => [None, None],
+                false => ends(model, rest),
+            },
+            is_impulse,
             span,
         }
     }
 
     /// Takes other inputs at rest before and after.
     pub(super) fn move_ends(&mut self, model: &Model, rest: &[Option<Vec<f64>>; 2]) {
-        self.ends = ends(model, rest);
+        if !self.is_impulse {
+            self.ends = ends(model, rest);
+        }
     }
 
     /// Returns true if inputs at rest are known where these are.
     pub(super) fn has_ends(&self, rest: &[Option<Vec<f64>>; 2]) -> bool {
-        self.ends.each_ref().map(Option::is_some) == rest.each_ref().map(Option::is_some)
+        self.is_impulse
+            || self.ends.each_ref().map(Option::is_some) == rest.each_ref().map(Option::is_some)
     }
 
     /// Intervals before which a step is limited, the end counted as one: the step there is that of a place that is given.
@@ -78,7 +87,8 @@ impl Step {
 
     /// Part of the bounds that holds before interval k.
     pub(super) fn part(&self, k: usize) -> f64 {
-        match self.span.before(k).is_none() || k == self.span.end {
+        let is_at_rest = self.span.before(k).is_none() || k == self.span.end;
+        match is_at_rest && !self.is_impulse {
             true => 0.5,
             false => 1.0,
         }

@@ -37,6 +37,9 @@ pub struct LimitSpec {
     /// Region of a marker.
     #[serde(default)]
     pub marker: Option<MarkerLimitSpec>,
+    /// Limits of the force that a joint transmits.
+    #[serde(default)]
+    pub reaction_force: Option<ReactionForceLimitSpec>,
     /// Limits of the speed of a marker.
     #[serde(default)]
     pub marker_speed: Option<MarkerSpeedLimitSpec>,
@@ -77,6 +80,24 @@ pub struct JointRateLimitSpec {
     /// Upper bound, SI unit rad/s or m/s.
     #[serde(default)]
     pub max: Option<Quantity<JointRate>>,
+}
+
+/// Limits of the component, along a direction of the ground frame, of the force from the parent of a joint on its child: `min`, `max` or both.
+///
+/// It is the force of the columns of reactions, at the instants between intervals. Joints in loops are refused.
+#[derive(Clone, Debug, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct ReactionForceLimitSpec {
+    /// Name of the joint.
+    pub joint: String,
+    /// Direction of the ground frame, of any length.
+    pub along: [f64; 3],
+    /// Lower bound, SI unit N.
+    #[serde(default)]
+    pub min: Option<Quantity<Force>>,
+    /// Upper bound, SI unit N.
+    #[serde(default)]
+    pub max: Option<Quantity<Force>>,
 }
 
 /// Limits of the size of the mean velocity of a marker in each interval: `min`, `max` or both.

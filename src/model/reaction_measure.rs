@@ -1,0 +1,37 @@
+//! Measure of the force that a joint transmits: the impulse that is missing in the balance of the bodies on one side of it.
+
+use crate::functional::{Impulse, Measure, Stencil};
+use crate::kinematics::Vectors;
+use crate::math::Vector;
+use crate::model::dampers::DAMPING;
+use crate::model::joint_sections::JointSection;
+use crate::model::measures::Known;
+use crate::model::variables::Time;
+
+impl Known<'_> {
+    /// Impulse of a joint along a direction at the start of an interval, or minus that at its end.
+    pub(super) fn reaction(
+        &self,
+        joint: usize,
+        (along, at): (Vector, Stencil),
+        vectors: &Vectors,
+    ) -> Option<Box<dyn Measure>> {
+        let kept = self.presolved.joint(joint).filter(|_| !self.is_glued)?;
+        let section = JointSection::new((self.system, self.presolved), self.reference, kept)?;
+        let (side, direction) = match at {
+            Stencil::Next => (1, -along),
+            _ => (0, along),
+        };
+        let moved = vectors.list().iter();
+        let moved = moved.map(|vector| section.displacement(vector, &direction));
+        let terms = self.terms.iter().filter(|term| term.name() != DAMPING);
+        let scalars = self.variables.of(Time::Interval).len();
+        let terms = terms.cloned().collect();
+        Some(Box::new(Impulse::new(
+            terms,
+            scalars,
+            moved.collect(),
+            side,
+        )))
+    }
+}
