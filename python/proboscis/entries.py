@@ -502,6 +502,22 @@ Coordinates: TypeAlias = "Literal['reduced', 'redundant']"
 """Coordinates in which a problem is solved; reduced where the joints form a tree, unless written."""
 
 
+class CurrentCost(TypedDict):
+    """The current of one source (`"source": name`) or of each (`"sources": "all"`) of lumped muscles behind a resistor."""
+
+    at: NotRequired[Quantity]
+    """Current that is asked for, SI unit A; 0 where not written."""
+
+    source: NotRequired[Text]
+    """Name of the source: that of its muscle."""
+
+    sources: NotRequired[All]
+    """All sources."""
+
+    weight: NotRequired[float]
+    """Weight of the squared deviation in mA²; 1 where not written."""
+
+
 class CurrentLimit(TypedDict):
     """Limits of the current from one source (`"source": name`) or each (`"sources": "all"`) of lumped muscles: `min`, `max` or both.
 
@@ -556,6 +572,21 @@ Energy: TypeAlias = "float | SourceEnergy"
 """The weight of an energy of all sources, or of those that are named."""
 
 
+class FieldCost(TypedDict):
+    """The true electric field of one lumped muscle (`"muscle": name`) or of each (`"muscles": "all"`), in the middle of the intervals; behind a
+    resistor at the instants.
+    """
+
+    muscle: NotRequired[Text]
+    """Name of the muscle."""
+
+    muscles: NotRequired[All]
+    """All lumped muscles with an electric term."""
+
+    weight: NotRequired[float]
+    """Weight of the squared field in (V/µm)²; 1 where not written."""
+
+
 class FinalJoint(TypedDict):
     """A joint and where it is to end."""
 
@@ -583,13 +614,31 @@ class FinalMarker(TypedDict):
 
 
 class Final(TypedDict):
-    """Marker or joint that ends near a place: exactly one of the two."""
+    """Marker or joint that ends near a place, or a measured quantity that ends near a value, in the last interval: exactly one of them."""
+
+    current: NotRequired[CurrentCost]
+    """The current of sources at the end."""
+
+    electric_field: NotRequired[FieldCost]
+    """The true electric field of muscles at the end."""
 
     joint: NotRequired[FinalJoint]
     """The coordinate of a joint ends near a value."""
 
+    joint_rate: NotRequired[JointRateCost]
+    """The rate of a joint at the end."""
+
     marker: NotRequired[FinalMarker]
     """A marker ends near a place."""
+
+    marker_speed: NotRequired[MarkerSpeedCost]
+    """The speed of a marker at the end."""
+
+    power: NotRequired[PowerCost]
+    """The power of sources at the end."""
+
+    tension: NotRequired[TensionCost]
+    """The tension of muscles at the end."""
 
 
 class FreeDuration(TypedDict):
@@ -708,6 +757,19 @@ class JointAngleLimit(TypedDict):
     """Lower bound, SI unit rad or m."""
 
 
+class JointRateCost(TypedDict):
+    """The mean rate of the coordinate of a joint in the intervals."""
+
+    at: NotRequired[Quantity]
+    """Rate that is asked for, SI unit rad/s or m/s; 0 where not written."""
+
+    joint: Text
+    """Name of the joint, revolute or prismatic."""
+
+    weight: NotRequired[float]
+    """Weight of the squared deviation in (rad/s)², or (m/s)² of a prismatic joint; 1 where not written."""
+
+
 class JointRateLimit(TypedDict):
     """Limits of the mean rate of a joint coordinate in each interval: `min`, `max` or both."""
 
@@ -722,7 +784,7 @@ class JointRateLimit(TypedDict):
 
 
 class Limit(TypedDict):
-    """A path limit: exactly one of the nine."""
+    """A path limit: exactly one of the keys but `part`. `min` and `max` may be equal with `part`: the quantity is then prescribed there."""
 
     current: NotRequired[CurrentLimit]
     """Limits of the current of sources."""
@@ -739,8 +801,19 @@ class Limit(TypedDict):
     marker: NotRequired[MarkerLimit]
     """Region of a marker."""
 
+    marker_speed: NotRequired[MarkerSpeedLimit]
+    """Limits of the speed of a marker."""
+
+    part: NotRequired[float]
+    """Part of the duration, above 0 and at most 1, at which alone the limit holds: at the instant nearest to it, or in the interval before that
+    instant; 1 is the end. Where not written it holds from start to end.
+    """
+
     power: NotRequired[PowerLimit]
     """Limits of the power of sources."""
+
+    reaction_force: NotRequired[ReactionForceLimit]
+    """Limits of the force that a joint transmits."""
 
     stretch: NotRequired[StretchLimit]
     """Limits of the stretch of a muscle."""
@@ -767,6 +840,29 @@ class MarkerLimit(TypedDict):
 
     outside: NotRequired[Region]
     """Region outside which it stays."""
+
+
+class MarkerSpeedCost(TypedDict):
+    """The size of the mean velocity of a marker in the intervals."""
+
+    marker: Text
+    """Name of the marker."""
+
+    weight: NotRequired[float]
+    """Weight of the squared speed in (m/s)²; 1 where not written."""
+
+
+class MarkerSpeedLimit(TypedDict):
+    """Limits of the size of the mean velocity of a marker in each interval: `min`, `max` or both."""
+
+    marker: Text
+    """Name of the marker."""
+
+    max: NotRequired[Quantity]
+    """Upper bound, SI unit m/s."""
+
+    min: NotRequired[Quantity]
+    """Lower bound, SI unit m/s."""
 
 
 Newton: TypeAlias = "Literal['full', 'modified', 'reused']"
@@ -833,6 +929,22 @@ class Path(TypedDict):
     """Along z."""
 
 
+class PowerCost(TypedDict):
+    """The power of one source (`"source": name`) or of each (`"sources": "all"`) of lumped muscles behind a resistor."""
+
+    at: NotRequired[Quantity]
+    """Power that is asked for, SI unit W; 0 where not written."""
+
+    source: NotRequired[Text]
+    """Name of the source: that of its muscle."""
+
+    sources: NotRequired[All]
+    """All sources."""
+
+    weight: NotRequired[float]
+    """Weight of the squared deviation in W²; 1 where not written."""
+
+
 class PowerLimit(TypedDict):
     """Limits of the power of one source (`"source": name`) or each (`"sources": "all"`) of lumped muscles: `min`, `max` or both, at the times of a
     current.
@@ -858,6 +970,25 @@ class RandomGuess(TypedDict):
 
     seed: int
     """Equal seeds give equal guesses."""
+
+
+class ReactionForceLimit(TypedDict):
+    """Limits of the component, along a direction of the ground frame, of the force from the parent of a joint on its child: `min`, `max` or both.
+
+    It is the force of the columns of reactions, at the instants between intervals. Joints in loops are refused.
+    """
+
+    along: Sequence[float] | Numbers
+    """Direction of the ground frame, of any length."""
+
+    joint: Text
+    """Name of the joint."""
+
+    max: NotRequired[Quantity]
+    """Upper bound, SI unit N."""
+
+    min: NotRequired[Quantity]
+    """Lower bound, SI unit N."""
 
 
 class Region(TypedDict):
@@ -995,6 +1126,22 @@ class Table(TypedDict):
     """A voltage for each interval by the names of muscles and driven electrodes (`block.electrode`), SI unit V; 0 where not named."""
 
 
+class TensionCost(TypedDict):
+    """The tension of one lumped muscle (`"muscle": name`) or of each (`"muscles": "all"`), in the middle of the intervals."""
+
+    at: NotRequired[Quantity]
+    """Tension that is asked for, SI unit N; 0 where not written."""
+
+    muscle: NotRequired[Text]
+    """Name of the muscle."""
+
+    muscles: NotRequired[All]
+    """All lumped muscles."""
+
+    weight: NotRequired[float]
+    """Weight of the squared deviation in N²; 1 where not written."""
+
+
 class TensionLimit(TypedDict):
     """Limits of the force with which one lumped muscle (`"muscle": name`) or each (`"muscles": "all"`) pulls its ends together, of elasticity,
     field, viscosity and Maxwell branches: `min`, `max` or both.
@@ -1055,16 +1202,36 @@ class TrackMarker(TypedDict):
 
 
 class Track(TypedDict):
-    """Marker or joints that follow a reference: exactly one of the three."""
+    """Marker or joints that follow a reference, or a measured quantity whose squared deviation from a value, times `weight`, is integrated over
+    the time in s: exactly one of them.
+    """
+
+    current: NotRequired[CurrentCost]
+    """The current of sources along the motion."""
+
+    electric_field: NotRequired[FieldCost]
+    """The true electric field of muscles along the motion."""
 
     joint: NotRequired[TrackJoint]
     """The coordinate of a joint follows a function of time."""
+
+    joint_rate: NotRequired[JointRateCost]
+    """The rate of a joint along the motion."""
 
     joints: NotRequired[TrackJoints]
     """The coordinates of all joints follow an earlier solution."""
 
     marker: NotRequired[TrackMarker]
     """A marker follows a path in time."""
+
+    marker_speed: NotRequired[MarkerSpeedCost]
+    """The speed of a marker along the motion."""
+
+    power: NotRequired[PowerCost]
+    """The power of sources along the motion."""
+
+    tension: NotRequired[TensionCost]
+    """The tension of muscles along the motion."""
 
 
 class VoltageRateLimit(TypedDict):

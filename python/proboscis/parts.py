@@ -217,6 +217,8 @@ class Muscle(Part):
     * `circuit`: Circuit between the source and the electrodes, of a lumped muscle; without it they have the voltage of the source.
     * `element`: Kind of hexahedron; `hex8` where not written. Of `finite_elements` only.
     * `elements`: Elements along both sides of the cross-section and along the span; of `finite_elements` only.
+    * `first_side`: Direction of the first side of the cross-section, of which the part across the span counts; where not written perpendicular to
+      the span and to the first of the axes x, y, z whose cosine with the span is below 0.6. Of `finite_elements` only.
     * `layers`: Layers of the model along the span, a divisor of the elements there, which is its default; of `finite_elements` only.
     * `model`: Model; `lumped` where not written.
     * `prestretch`: Stretch before it was glued between its ends; 1 where not written.
@@ -237,6 +239,7 @@ class Muscle(Part):
         circuit: entries.Circuit | None = None,
         element: entries.Element | None = None,
         elements: Sequence[int] | Numbers | None = None,
+        first_side: Sequence[float] | Numbers | None = None,
         layers: int | None = None,
         model: entries.MuscleModel | None = None,
         prestretch: float | None = None,
@@ -253,6 +256,7 @@ class Muscle(Part):
                 "circuit": circuit,
                 "element": element,
                 "elements": elements,
+                "first_side": first_side,
                 "layers": layers,
                 "model": model,
                 "prestretch": prestretch,
