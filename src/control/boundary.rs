@@ -8,9 +8,10 @@ use crate::control::error::BoundaryError;
 use crate::control::given_rates;
 use crate::control::goal_rows;
 use crate::control::limits::{Length, Limits};
+use crate::control::off_grid::off_grid;
 use crate::control::periodic;
 use crate::control::prescribed::{self, at_rest};
-use crate::control::problem::{BoundaryState, Control, Duration, During, PathConstraint, Rest};
+use crate::control::problem::{BoundaryState, Control, Duration, Rest};
 use crate::control::rest::rest_at;
 use crate::control::sought;
 use crate::control::sought_hold;
@@ -18,13 +19,9 @@ use crate::control::transcription::count::overdetermined;
 use crate::control::transcription::layout::Layout;
 use crate::dynamics::{Equilibrium, Start, muscle_without_length, part_beyond_law};
 use crate::functional::Order;
-use crate::math::shortest;
 use crate::model::{
     Analysis, Coordinates, Graph, Model, Prescribed, Presolved, Quantity, Role, System,
 };
-
-/// Parts of an interval by which a waypoint may miss an instant.
-const OFF: f64 = 1e-6;
 
 impl BoundaryConditions {
     /// Builds the model of a control problem and resolves its start and goal.
@@ -119,38 +116,6 @@ impl BoundaryConditions {
         given_rates::check(system, control, &boundary.rest)?;
         Ok((model, boundary))
     }
-}
-
-/// Notes about waypoints that lie between two instants.
-fn off_grid(control: &Control) -> Vec<String> {
-    let note = |name: String, part: f64| {
-        let wanted = part * control.intervals as f64;
-        let k = wanted.round();
-        let time = k / control.intervals as f64 * control.duration.first() / 1e3;
-        let time = shortest(time, 4);
-        ((wanted - k).abs() > OFF)
-            .then(|| format!("{name} lies between two instants: it is reached at {time} s"))
-    };
-    let exact = control.waypoints.iter();
-    let exact = exact.filter_map(|waypoint| note(waypoint.name.clone(), waypoint.part));
-    let costs = control.objective.quantities.iter();
-    let near = costs.filter_map(|cost| match cost.during {
-        During::At(part) => note(
-            format!("waypoint at {} of the duration", shortest(part, 6)),
-            part,
-        ),
-        During::Motion | During::End => None,
-    });
-    let limits = control.limits.iter().filter_map(|limit| match *limit {
-        PathConstraint::Once { part, .. } => note(
-            format!("limit at {} of the duration", shortest(part, 6)),
-            part,
-        ),
-        _ => None,
-    });
-    let mut notes: Vec<String> = exact.chain(near).chain(limits).collect();
-    notes.dedup();
-    notes
 }
 
 /// The path limits of a problem, and the parts of its goal and its waypoints that are equations of measures.

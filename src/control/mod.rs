@@ -19,6 +19,7 @@ mod measured_values;
 mod mesh_match;
 mod numbering;
 mod objective;
+mod off_grid;
 mod path_constraint;
 mod peak_voltage;
 mod periodic;
