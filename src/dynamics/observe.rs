@@ -61,7 +61,7 @@ fn by_rows(
     let rows = in_pieces(count, piece, |instants| {
         let mut observer = Observer::new(model);
         observer.begin(discrete, instants.start);
-        let row = |k: usize| match k % PIECE == 0 && is_over() {
+        let row = |k: usize| match k.is_multiple_of(PIECE) && is_over() {
             true => Err(Stopped),
             false => Ok(observer.row(discrete, k)),
         };
