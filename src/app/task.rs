@@ -93,7 +93,8 @@ pub(super) fn read(
         Some(text) => read_problem_text(input, text, set),
         None => read_problem(input, set),
     }?;
-    memory::of_elements(&loaded.system).map_err(CommandError::in_file(input))?;
+    let is_of_motion = !matches!(loaded.task, Task::Equilibrium(_));
+    memory::of_elements(&loaded.system, is_of_motion).map_err(CommandError::in_file(input))?;
     Ok(loaded)
 }
 

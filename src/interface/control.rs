@@ -210,7 +210,7 @@ impl Control {
         read: impl FnOnce(&mut dyn Nlp, &[f64]) -> R,
     ) -> Result<R> {
         let system = &system.checked()?;
-        memory::of_elements(system)?;
+        memory::of_elements(system, true)?;
         let control = self.resolve(system)?;
         let (model, boundary) = resolve(system, &control)?;
         let Prepared {

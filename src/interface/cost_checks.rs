@@ -43,7 +43,7 @@ pub(super) fn check_costs(
         };
         let is_sound = cost.weight > 0.0 && cost.weight.is_finite() && is_followed && is_timed;
         let found = || format!("{cost:?}");
-        let expected = "a positive weight of a marker, or of a joint with one coordinate, along finite values or at a part of the duration above 0 and below 1";
+        let expected = "a positive weight of a marker, of a joint with one coordinate, or of a quantity of a lumped muscle (of its source behind a resistor), along finite values or at a part of the duration above 0 and below 1";
         require(exists && is_sound, "cost", found, expected)?;
     }
     Ok(())
@@ -75,34 +75,34 @@ pub(super) fn check_limits(limits: &[PathConstraint], system: &System) -> Result
                 max,
             } => {
                 let is_unit = (along.norm() - 1.0).abs() < 1e-9;
-                joint < system.joints.len() && is_unit && min < max
+                joint < system.joints.len() && is_unit && min <= max
             }
             PathConstraint::MarkerSpeed { marker, min, max } => {
-                marker < system.markers.len() && min < max
+                marker < system.markers.len() && min <= max
             }
             PathConstraint::ElectricField { muscle, max } => {
                 muscle < system.muscles.len() && max > 0.0
             }
             PathConstraint::VoltageRate { source, min, max } => {
                 let sources = system.sources();
-                sources.get(source).is_some_and(|s| s.takes_voltage) && min < max
+                sources.get(source).is_some_and(|s| s.takes_voltage) && min <= max
             }
             PathConstraint::Current { muscle, min, max }
             | PathConstraint::Power { muscle, min, max } => {
                 let muscle = system.muscles.get(muscle);
-                muscle.is_some_and(Muscle::has_measured_current) && min < max
+                muscle.is_some_and(Muscle::has_measured_current) && min <= max
             }
             PathConstraint::Tension { muscle, min, max } => {
                 let muscle = system.muscles.get(muscle);
-                muscle.is_some_and(|m| m.fidelity == Fidelity::Lumped) && min < max
+                muscle.is_some_and(|m| m.fidelity == Fidelity::Lumped) && min <= max
             }
             PathConstraint::Stretch { muscle, min, max } => {
-                muscle < system.muscles.len() && min < max
+                muscle < system.muscles.len() && min <= max
             }
             PathConstraint::JointAngle { joint, min, max }
             | PathConstraint::JointRate { joint, min, max } => {
                 let joint = system.joints.get(joint);
-                joint.is_some_and(Joint::has_coordinate) && min < max
+                joint.is_some_and(Joint::has_coordinate) && min <= max
             }
             PathConstraint::BlockField { .. }
             | PathConstraint::PeakVoltage { .. }

@@ -55,7 +55,7 @@ pub struct EquilibriumResult {
 /// # Errors
 /// It does not exist in the coordinates that the task names, or the machine has no room for it.
 pub(crate) fn model_at_rest(system: &System, task: &AtRest) -> Result<Model, WorkflowError> {
-    memory::of_elements(system)?;
+    memory::of_elements(system, false)?;
     phase("building");
     let model = Model::for_analysis(system.clone(), task.analysis(system));
     model.map_err(|error| WorkflowError::boundary("equilibrium", &error.into()))

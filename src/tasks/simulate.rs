@@ -129,7 +129,7 @@ pub fn simulate(
     request: SimulationRequest,
     observer: &mut dyn FnMut(usize, &Model, &DiscreteTrajectory) -> ControlFlow<()>,
 ) -> Result<SimulationResult, WorkflowError> {
-    memory::of_elements(system)?;
+    memory::of_elements(system, true)?;
     let SimulationRequest {
         wanted,
         begun,

@@ -73,7 +73,7 @@ pub fn solve(
     request: SolveRequest,
     observer: &mut dyn FnMut(usize, &Iterate<'_>) -> ControlFlow<()>,
 ) -> Result<SolveResult, WorkflowError> {
-    memory::of_elements(system)?;
+    memory::of_elements(system, true)?;
     let HeldGoal {
         found,
         control,

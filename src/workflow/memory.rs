@@ -1,13 +1,18 @@
 //! Lower bounds of the memory that a run needs, checked before it begins.
 
 use crate::math::memory::{available, readable};
-use crate::model::system::Fidelity;
+use crate::model::system::{Fidelity, Material};
 use crate::model::{Model, System, Time};
 use crate::workflow::error::WorkflowError;
 
 /// Bytes of an element with its share of nodes, couplings, tangent and factors: dielectric blocks of 2048 to 16 384 elements took
 /// 133 000 at rest, 155 000 to 193 000 with the first step of a motion.
 const OF_ELEMENT: f64 = 1.2e5;
+/// Bytes of a Maxwell branch of an element in a motion, with the derivatives and factors of what it remembers: blocks of 512 and 1024
+/// elements took 410 000 to 500 000 more with each branch.
+const OF_BRANCH: f64 = 4e5;
+/// Unknowns of a branch of an element: five at each of eight Gauss points.
+const REMEMBERED: usize = 40;
 /// Bytes of a second derivative of an interval in a program and in the solver: 300 were measured for the trunk without fill-in, 220
 /// for each entry of Jacobian and Hessian of a block of 64 elements with its factors.
 const OF_DERIVATIVE: f64 = 200.0;
@@ -16,15 +21,33 @@ const OF_INSTANT: f64 = 1e3;
 /// Bytes of a body at an instant: its pose, in the motion and in the drawings.
 const OF_POSE: f64 = 192.0;
 
-/// Refuses a scene whose elements need more than there is.
+/// Refuses a scene whose elements need more than there is; at rest their Maxwell branches are no unknowns.
 ///
 /// # Errors
 /// They do.
-pub(crate) fn of_elements(system: &System) -> Result<(), WorkflowError> {
+pub(crate) fn of_elements(system: &System, is_of_motion: bool) -> Result<(), WorkflowError> {
     let elements = system.elements();
-    let unknowns = unknowns(system);
-    let what = format!("{elements} elements with about {unknowns} unknowns");
-    enough("scene", &what, elements as f64 * OF_ELEMENT)
+    let branches = if is_of_motion { branches(system) } else { 0 };
+    let unknowns = unknowns(system) + REMEMBERED * branches;
+    let with = match branches {
+        0 => String::new(),
+        branches => format!("{branches} Maxwell branches and "),
+    };
+    let what = format!("{elements} elements with {with}about {unknowns} unknowns");
+    let bytes = elements as f64 * OF_ELEMENT + branches as f64 * OF_BRANCH;
+    enough("scene", &what, bytes)
+}
+
+/// Maxwell branches of all finite elements.
+fn branches(system: &System) -> usize {
+    let count = |material: &Material| material.maxwell.list().len();
+    let of_muscles = system.muscles.iter();
+    let of_muscles = of_muscles.map(|m| m.fidelity.elements() * count(&m.material));
+    let of_blocks = system.solids.iter().flat_map(|solid| {
+        let regions = solid.mesh.regions.iter();
+        regions.map(|&region| count(&solid.materials[region]))
+    });
+    of_muscles.chain(of_blocks).sum()
 }
 
 /// Places and potentials of the nodes of finite elements, those that are fixed or given included.

@@ -18,6 +18,7 @@ mod guesses;
 mod held_ends;
 mod identified;
 mod interface;
+mod interface_measured;
 mod limits;
 mod loads;
 mod measured;

@@ -339,4 +339,14 @@ fn a_block_that_the_memory_cannot_hold_is_refused_with_its_numbers() {
         assert!(err.contains(told), "{err}");
         assert!(fs::read_dir(folder.path()).unwrap().next().is_none());
     }
+    if kilobytes.is_none_or(|kb| kb > 3e7) {
+        return;
+    }
+    let large = "scene.solids[0].box.elements=[30,30,40]";
+    let creeping = problem("creeping_block");
+    let (status, out, err) = run(folder.path(), &["simulate", &creeping, "--set", large]);
+    assert_eq!(status, 2, "{out}{err}");
+    // Three coordinates of 31 × 31 × 41 nodes, and five numbers at eight points of each element and branch.
+    let told = "36000 elements with 72000 Maxwell branches and about 2998203 unknowns needs 33.1 GB of memory or more";
+    assert!(err.contains(told), "{err}");
 }
