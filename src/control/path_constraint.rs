@@ -123,7 +123,7 @@ pub enum PathConstraint {
         /// Part of the duration, above 0 and at most 1, the end.
         part: f64,
         /// The limit.
-        limit: Box<PathConstraint>,
+        limit: Box<Self>,
     },
     /// A marker relative to a region at the instants.
     Marker {

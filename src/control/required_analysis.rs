@@ -184,7 +184,7 @@ impl<'a> Named<'a> {
             | PathConstraint::Current { .. }
             | PathConstraint::Power { .. } => {}
             PathConstraint::Marker { marker, .. } | PathConstraint::MarkerSpeed { marker, .. } => {
-                self.of_marker(marker)
+                self.of_marker(marker);
             }
         }
     }

@@ -103,8 +103,11 @@ impl Model {
         let spans = construction.spans(&mut vectors);
         let (intervals, made) = construction.sums(&spans, &variables, &mut vectors);
         let markers = construction.markers(&mut vectors);
-        let known = (&variables, &markers[..], &intervals[..], &made.present[..]);
-        let measures = construction.measures(known, &mut vectors);
+        let (read, balance) = (
+            (&variables, &markers[..]),
+            (&intervals[..], &made.present[..]),
+        );
+        let measures = construction.measures(read, balance, &mut vectors);
         let list = vectors.list();
         let multipliers = made.multipliers.len();
         let map = construction.coordinate_map(&graph, list, multipliers);
@@ -324,7 +327,8 @@ impl Construction<'_> {
     /// Measures of the quantities of the analysis, from variables, markers, terms of the intervals and what is present.
     fn measures(
         &self,
-        (variables, markers, terms, present): (&Variables, &[usize], &[Arc<dyn Term>], &[Present]),
+        (variables, markers): (&Variables, &[usize]),
+        (terms, present): (&[Arc<dyn Term>], &[Present]),
         vectors: &mut Vectors,
     ) -> Measures {
         let known = measures::Known {

@@ -83,7 +83,7 @@ impl JointSection {
             false => -1.0,
         };
         let bodies = 0..ground;
-        Some(JointSection {
+        Some(Self {
             joint: index,
             bodies: bodies.filter(|&b| sets.smallest(b) == side).collect(),
             sign: own * turned,
