@@ -39,10 +39,15 @@ pub(super) fn write(
     }
     series.finish(files)?;
     // Those of a longer motion that stood here before.
-    for number in instants.len()..=MOST {
+    remove_from(instants.len(), files);
+    Ok(instants.len())
+}
+
+/// Removes the files from a number on of a motion that stood here before.
+pub(super) fn remove_from(first: usize, files: &mut FileSet) {
+    for number in first..=MOST {
         files.remove(format!("{FOLDER}/{number:04}.vtu"));
     }
-    Ok(instants.len())
 }
 
 /// Largest reference field −∂φ/∂X of an element in V/m at an instant; `None` where there is none.

@@ -2,6 +2,7 @@
 
 use std::time::Instant;
 
+use crate::app::fields;
 use crate::app::request::CommandInput;
 use crate::app::summary::Summary;
 use crate::ipopt::Status;
@@ -9,12 +10,16 @@ use crate::ipopt::interrupt::TimeLimit;
 use crate::report::file_set::FileSet;
 
 /// Files that an earlier result of the folder may have.
-pub(super) const EARLIER: [&str; 21] = [
+pub(super) const EARLIER: [&str; 28] = [
+    "body_forces.svg",
+    "charge.svg",
+    "charges.svg",
     "configuration.svg",
     "continuation.npz",
     "controls.csv",
     "energy.svg",
     "equilibrium.csv",
+    "forces.svg",
     "joint_angles.svg",
     "motion.gltf",
     "parts.pvd",
@@ -24,10 +29,13 @@ pub(super) const EARLIER: [&str; 21] = [
     "snapshots.svg",
     "solution.json",
     "solution.npz",
+    "surface_charges.svg",
     "tables.npz",
     "tip_path.svg",
+    "torques.svg",
     "tracking.csv",
     "tracking.svg",
+    "tractions.svg",
     "trajectory.csv",
     "trajectory.pvd",
     "voltages.svg",
@@ -46,6 +54,7 @@ pub(super) fn time_to_write(request: &CommandInput, began: Instant) -> TimeLimit
 pub(super) fn leave_out(summary: &mut Summary, stopped: Status, files: &mut FileSet, kept: usize) {
     files.truncate(kept);
     EARLIER.iter().for_each(|name| files.remove(name));
+    fields::remove_from(0, files);
     if summary.message.is_none() {
         stopped.word().clone_into(&mut summary.status);
     }

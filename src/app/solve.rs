@@ -78,7 +78,7 @@ pub(super) fn control(
     summary.write(files)?;
     unfinished::done(&folder);
     let mut output = command_output(&summary, control.is_refined, &optimum.violated, &folder);
-    if MIGHT_GO_ON.contains(&verdict.word) {
+    if MIGHT_GO_ON.contains(&&*summary.status) {
         output
             .notes
             .extend(resume_file::command(request, &loaded.task));

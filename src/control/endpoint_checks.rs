@@ -10,6 +10,7 @@ use crate::control::error::BoundaryError;
 use crate::control::goal::Place;
 use crate::control::problem::{BoundaryState, Control, PathConstraint};
 use crate::control::transcription::Site;
+use crate::control::waypoint::instant_at;
 use crate::coordinates::Configuration;
 use crate::dynamics::BeyondLaw;
 use crate::energy::{Energy, OutsideBox, SquaredDistance};
@@ -62,8 +63,10 @@ pub(super) fn check(
             | BoundaryState::Periodic => {}
         }
         let is_goal = place == "goal";
+        let is_there =
+            |part: f64| is_goal && instant_at(part, control.intervals) == control.intervals;
         let of_joints = control.limits.iter().filter_map(|limit| match limit {
-            PathConstraint::Once { part, limit } => (is_goal && *part == 1.0).then_some(&**limit),
+            PathConstraint::Once { part, limit } => is_there(*part).then_some(&**limit),
             limit => Some(limit),
         });
         let mut of_joints = of_joints;
@@ -71,11 +74,16 @@ pub(super) fn check(
         let bounded = || {
             let list = boundary.limits.list.iter().zip(&model.measured);
             let is_of_path = |bounded: &BoundedQuantity| {
-                let is_of_rate = bounded.rate.is_some() || bounded.quantity.before().is_some();
+                let is_mean = matches!(
+                    bounded.quantity,
+                    Quantity::JointStep { .. } | Quantity::SquaredSpeed { .. }
+                );
+                let is_of_rate =
+                    is_mean || bounded.rate.is_some() || bounded.quantity.before().is_some();
                 let is_then = match bounded.when {
                     When::Everywhere => true,
                     When::Goal => is_goal,
-                    When::At(part) => is_goal && part == 1.0,
+                    When::At(part) => is_there(part),
                 };
                 let is_here =
                     bounded.when == When::Everywhere || !bounded.quantity.is_of_intervals();
@@ -153,6 +161,12 @@ impl<'a> End<'a> {
         let PathConstraint::JointAngle { joint, min, max } = *limit else {
             return None;
         };
+        let value = self.joint_coordinate(joint)?;
+        of_joint(joint, min, max, self.model).broken(value, &self.model.system)
+    }
+
+    /// The coordinate of a joint, where it is known.
+    fn joint_coordinate(&self, joint: usize) -> Option<f64> {
         let joints = &self.model.system.joints;
         let of_gauge = || {
             if !self.known.iter().all(|known| *known) {
@@ -166,14 +180,15 @@ impl<'a> End<'a> {
             let near = (0..joints.len()).map(|j| self.angles.get(&j).copied().unwrap_or(0.0));
             Some(self.model.joints(&instant, &near.collect::<Vec<_>>())[joint])
         };
-        let value = self.angles.get(&joint).copied().or_else(of_gauge)?;
-        of_joint(joint, min, max, self.model).broken(value, &self.model.system)
+        self.angles.get(&joint).copied().or_else(of_gauge)
     }
 
     /// The value of a limited quantity.
     fn value(&self, bounded: &BoundedQuantity, measure: Option<usize>) -> Option<f64> {
         match bounded.quantity {
-            Quantity::Joint { .. } => return None,
+            // Limits of the path are checked by themselves, whatever the coordinates.
+            Quantity::Joint { .. } if bounded.when == When::Everywhere => return None,
+            Quantity::Joint { joint, .. } => return self.joint_coordinate(joint),
             Quantity::MarkerPlace { marker, axis } => {
                 let given = self.places.get(&marker).and_then(|place| place.0[axis]);
                 if given.is_some() {

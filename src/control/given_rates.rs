@@ -2,6 +2,7 @@
 
 use crate::control::error::BoundaryError;
 use crate::control::problem::{BoundaryState, Control, Duration, PathConstraint};
+use crate::control::waypoint::instant_at;
 use crate::math::{shortest, significant};
 use crate::model::System;
 
@@ -18,9 +19,21 @@ pub(super) fn check(
     if !matches!(control.duration, Duration::Given(_)) {
         return Ok(());
     }
-    let broken = control.limits.iter().find_map(|limit| match *limit {
+    let broken = control.limits.iter().find_map(|limit| {
+        let (limit, part) = match limit {
+            PathConstraint::Once { part, limit } => (&**limit, Some(*part)),
+            limit => (limit, None),
+        };
+        match *limit {
         PathConstraint::VoltageRate { source, min, max } if control.is_given(source) => {
-            let mut steps = steps(control, source, rest).into_iter();
+            let mut steps = steps(control, source, rest);
+            if let Some(part) = part {
+                let time = instant_at(part, control.intervals) as f64 * 2.0 * control.middle(0);
+                let apart = |step: &(f64, f64)| (step.0 - time).abs();
+                steps.sort_by(|a, b| apart(a).total_cmp(&apart(b)));
+                steps.truncate(1);
+            }
+            let mut steps = steps.into_iter();
             let is_out = |rate: f64| {
                 let rounding = ROUNDING * rate.abs();
                 rate < min - rounding || rate > max + rounding
@@ -37,6 +50,7 @@ pub(super) fn check(
             ))
         }
         _ => None,
+        }
     });
     match broken {
         Some(reason) => Err(BoundaryError::Limit {

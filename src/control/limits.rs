@@ -54,7 +54,8 @@ impl Limits {
                 out.add_once(limit, part, system, length);
             }
             PathConstraint::JointAngle { joint, min, max } => {
-                if measure_joints {
+                // Without a column of its own, in which bounds would stand.
+                if measure_joints || system.joints[joint].motion.is_some() {
                     out.add_joint(joint, [min, max], system);
                 }
             }

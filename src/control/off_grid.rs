@@ -1,28 +1,38 @@
 //! Notes about what is asked for between two instants of the grid, and is reached at the nearest one.
 
-use crate::control::problem::{Control, During, PathConstraint};
+use crate::control::problem::{Control, Duration, During, PathConstraint};
+use crate::control::waypoint::instant_at;
 use crate::math::shortest;
 
 /// Parts of an interval by which a waypoint may miss an instant.
 const OFF: f64 = 1e-6;
 
+/// Verb of the notes about waypoints.
+const REACHED: &str = "is reached";
+
 /// Notes about waypoints and limits at a time that lie between two instants.
 pub(super) fn off_grid(control: &Control) -> Vec<String> {
-    let note = |name: String, part: f64| {
-        let wanted = part * control.intervals as f64;
-        let k = wanted.round();
-        let time = k / control.intervals as f64 * control.duration.first() / 1e3;
-        let time = shortest(time, 4);
-        ((wanted - k).abs() > OFF)
-            .then(|| format!("{name} lies between two instants: it is reached at {time} s"))
+    let count = control.intervals;
+    let note = |name: String, part: f64, verb: &str| {
+        let k = instant_at(part, count);
+        let at = match control.duration {
+            Duration::Given(duration) => {
+                let time = k as f64 / count as f64 * duration / 1e3;
+                format!("{} s", shortest(time, 4))
+            }
+            Duration::Free { .. } => format!("instant {k} of {count}"),
+        };
+        ((part * count as f64 - k as f64).abs() > OFF)
+            .then(|| format!("{name} lies between two instants: it {verb} at {at}"))
     };
     let exact = control.waypoints.iter();
-    let exact = exact.filter_map(|waypoint| note(waypoint.name.clone(), waypoint.part));
+    let exact = exact.filter_map(|waypoint| note(waypoint.name.clone(), waypoint.part, REACHED));
     let costs = control.objective.quantities.iter();
     let near = costs.filter_map(|cost| match cost.during {
         During::At(part) => note(
             format!("waypoint at {} of the duration", shortest(part, 6)),
             part,
+            REACHED,
         ),
         During::Motion | During::End => None,
     });
@@ -30,6 +40,7 @@ pub(super) fn off_grid(control: &Control) -> Vec<String> {
         PathConstraint::Once { part, .. } => note(
             format!("limit at {} of the duration", shortest(part, 6)),
             part,
+            "holds",
         ),
         _ => None,
     });

@@ -97,9 +97,7 @@ pub(crate) fn ends(values: &[FinalValue]) -> Vec<String> {
             Some(_) => ("values at waypoints", "waypoint_values"),
             None => ("final values", "final_values"),
         };
-        lines.push(format!(
-            "{more} more {kind} are nearer, see \"{key}\" in summary.json"
-        ));
+        lines.push(format!("{more} more {kind}: see \"{key}\" in summary.json"));
     }
     lines
 }

@@ -33,6 +33,7 @@ mod reaction_limits;
 mod reference;
 mod resample;
 mod resisted_energies;
+mod single_times;
 mod sought;
 mod sought_hold;
 mod squares;

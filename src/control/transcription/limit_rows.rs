@@ -87,26 +87,19 @@ pub(super) fn limit_rows(
             Some(step) => {
                 let is_given = |&i: &usize| unknowns.unknown(span.intervals, i).is_none();
                 let all = step.at(support.iter().all(is_given));
-                match bounded.when.is_single() {
-                    true => single.start.max(all.start)..single.end.min(all.end),
-                    false => all,
+                match bounded.when {
+                    When::Everywhere => all,
+                    When::Goal => single.start.max(all.start)..single.end.min(all.end),
+                    When::At(part) => step.nearest(instant_at(part, span.end), all),
                 }
             }
             None => single,
         };
-        let is_at_end = at.end + site.sides() == span.end + 2;
-        if !bounded.when.is_single() || (is_at_end && !entries.is_empty()) {
-            let is_open = |k: usize| {
-                let mut entries = entries.iter();
-                entries.any(|&entry| unknowns.column_of_entry(k, entry).is_some())
-            };
-            while !at.is_empty() && !is_open(at.start) {
-                at.start += 1;
-            }
-            while !at.is_empty() && !is_open(at.end - 1) {
-                at.end -= 1;
-            }
-        }
+        let is_open = |k: usize| {
+            let mut entries = entries.iter();
+            entries.any(|&entry| unknowns.column_of_entry(k, entry).is_some())
+        };
+        at = unchecked((bounded, site), at, span, is_open);
         let mut vectors: Vec<usize> = Vec::new();
         for vector in reads.vectors() {
             if !vectors.contains(&vector) {
@@ -128,6 +121,37 @@ pub(super) fn limit_rows(
         Some(limit)
     };
     list.iter().zip(&model.measured).filter_map(row).collect()
+}
+
+/// The rows of a limit without those at its ends of which nothing is open: start, goal and given inputs are checked before. Where all
+/// follows from prescribed motions nothing is checked before, and no row is left out.
+fn unchecked(
+    (bounded, site): (&BoundedQuantity, Site),
+    at: Range<usize>,
+    span: Span,
+    is_open: impl Fn(usize) -> bool,
+) -> Range<usize> {
+    let is_of_goal = site == Site::Instants && at.end == span.end + 1;
+    let is_checked = match bounded.when {
+        When::Everywhere => true,
+        When::Goal => false,
+        When::At(_) => is_of_goal,
+    };
+    if !is_checked {
+        return at;
+    }
+    let mut open = at.clone();
+    while !open.is_empty() && !is_open(open.start) {
+        open.start += 1;
+    }
+    while !open.is_empty() && !is_open(open.end - 1) {
+        open.end -= 1;
+    }
+    let is_prescribed = bounded.when == When::Everywhere && open.is_empty();
+    match is_prescribed && !matches!(bounded.quantity, Quantity::VoltageStep { .. }) {
+        true => at,
+        false => open,
+    }
 }
 
 /// Coordinates of an instant on which what a measure reads depends.

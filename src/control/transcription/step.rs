@@ -61,6 +61,19 @@ impl Step {
         usize::from(!is_first)..self.span.intervals + usize::from(is_last)
     }
 
+    /// The step at instant k as one of those that are limited.
+    pub(super) fn nearest(&self, k: usize, limited: Range<usize>) -> Range<usize> {
+        if limited.is_empty() {
+            return limited;
+        }
+        let k = match self.span.is_closed {
+            true => k % self.span.intervals,
+            false => k,
+        };
+        let k = k.clamp(limited.start, limited.end - 1);
+        k..k + 1
+    }
+
     /// The interval before interval k, if the step from it is none from rest.
     pub(super) fn interval_before(&self, k: usize) -> Option<usize> {
         self.span.before(k)
