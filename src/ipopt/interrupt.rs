@@ -61,7 +61,7 @@ impl Questions {
         Self(Arc::new([count, 0, u64::MAX].map(AtomicU64::new)))
     }
 
-    /// Sets the number of questions that stand for the [grace](GRACE); without it there is no end to these.
+    /// Sets the number of questions that stand for the second after a limit in which results are written; without it there is no end to these.
     pub fn grant(&self, count: u64) {
         self.0[2].store(count, Ordering::SeqCst);
     }
