@@ -65,12 +65,11 @@ pub(super) fn check(
         let is_goal = place == "goal";
         let is_there =
             |part: f64| is_goal && instant_at(part, control.intervals) == control.intervals;
-        let of_joints = control.limits.iter().filter_map(|limit| match limit {
-            PathConstraint::Once { part, limit } => is_there(*part).then_some(&**limit),
-            limit => Some(limit),
+        let mut limits = control.limits.iter().map(PathConstraint::with_part);
+        let of_joints = limits.find_map(|(limit, part)| match part.is_none_or(is_there) {
+            true => end.joint(limit),
+            false => None,
         });
-        let mut of_joints = of_joints;
-        let of_joints = of_joints.find_map(|limit| end.joint(limit));
         let bounded = || {
             let list = boundary.limits.list.iter().zip(&model.measured);
             let is_of_path = |bounded: &BoundedQuantity| {

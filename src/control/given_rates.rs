@@ -19,46 +19,52 @@ pub(super) fn check(
     if !matches!(control.duration, Duration::Given(_)) {
         return Ok(());
     }
-    let broken = control.limits.iter().find_map(|limit| {
-        let (limit, part) = match limit {
-            PathConstraint::Once { part, limit } => (&**limit, Some(*part)),
-            limit => (limit, None),
-        };
-        match *limit {
-        PathConstraint::VoltageRate { source, min, max } if control.is_given(source) => {
-            let mut steps = steps(control, source, rest);
-            if let Some(part) = part {
-                let time = instant_at(part, control.intervals) as f64 * 2.0 * control.middle(0);
-                let apart = |step: &(f64, f64)| (step.0 - time).abs();
-                steps.sort_by(|a, b| apart(a).total_cmp(&apart(b)));
-                steps.truncate(1);
-            }
-            let mut steps = steps.into_iter();
-            let is_out = |rate: f64| {
-                let rounding = ROUNDING * rate.abs();
-                rate < min - rounding || rate > max + rounding
-            };
-            let (time, rate) = steps.find(|(_, rate)| is_out(*rate))?;
-            let (side, bound) = if rate < min { ("at least", min) } else { ("at most", max) };
-            let source = &system.sources()[source];
-            let [rate, bound] = [rate, bound].map(|rate| significant(rate * 1e3, 5));
-            let unit = source.kind.unit();
-            Some(format!(
-                "the rate of the given voltage of {} is {rate} {unit}/s at {} ms, and its limit is {side} {bound} {unit}/s",
-                source.name,
-                shortest(time, 6)
-            ))
-        }
-        _ => None,
-        }
-    });
-    match broken {
+    let broken = |limit| broken(limit, (system, control), rest);
+    match control.limits.iter().find_map(broken) {
         Some(reason) => Err(BoundaryError::Limit {
             place: "limits",
             reason,
         }),
         None => Ok(()),
     }
+}
+
+/// The message of a limit that a given voltage breaks.
+fn broken(
+    limit: &PathConstraint,
+    (system, control): (&System, &Control),
+    rest: &[Option<Vec<f64>>; 2],
+) -> Option<String> {
+    let (limit, part) = limit.with_part();
+    let PathConstraint::VoltageRate { source, min, max } = *limit else {
+        return None;
+    };
+    if !control.is_given(source) {
+        return None;
+    }
+    let mut steps = steps(control, source, rest);
+    if let Some(part) = part {
+        let time = instant_at(part, control.intervals) as f64 * 2.0 * control.middle(0);
+        let apart = |step: &(f64, f64)| (step.0 - time).abs();
+        steps.sort_by(|a, b| apart(a).total_cmp(&apart(b)));
+        steps.truncate(1);
+    }
+    let is_out = |rate: f64| {
+        let rounding = ROUNDING * rate.abs();
+        rate < min - rounding || rate > max + rounding
+    };
+    let (time, rate) = steps.into_iter().find(|(_, rate)| is_out(*rate))?;
+    let (side, bound) = match rate < min {
+        true => ("at least", min),
+        false => ("at most", max),
+    };
+    let source = &system.sources()[source];
+    let [rate, bound] = [rate, bound].map(|rate| significant(rate * 1e3, 5));
+    let (name, unit, time) = (&source.name, source.kind.unit(), shortest(time, 6));
+    Some(format!(
+        "the rate of the given voltage of {name} is {rate} {unit}/s at {time} ms, \
+         and its limit is {side} {bound} {unit}/s"
+    ))
 }
 
 /// Times in ms and rates of the steps of a given voltage between the middles of intervals, and from rest and to it.

@@ -144,10 +144,17 @@ impl PathConstraint {
         Self::Once { part, limit }
     }
 
+    /// The limit by itself, and the part of the duration at which alone it holds.
+    pub(super) fn with_part(&self) -> (&Self, Option<f64>) {
+        match self {
+            Self::Once { part, limit } => (limit, Some(*part)),
+            limit => (limit, None),
+        }
+    }
+
     /// The source of whose current or power it is a limit.
     pub(super) fn source(&self) -> Option<usize> {
-        match *self {
-            Self::Once { ref limit, .. } => limit.source(),
+        match *self.with_part().0 {
             Self::Current { muscle, .. } | Self::Power { muscle, .. } => Some(muscle),
             _ => None,
         }

@@ -15,6 +15,7 @@ mod component;
 pub mod components;
 mod constant;
 mod constraints;
+mod cost_quantities;
 mod dampers;
 mod error;
 mod field_extent;
@@ -69,6 +70,7 @@ pub use component::Component;
 pub use constant::{
     Constant, DielectricLaw, Follower, FoundParameter, MOST_MOVES, Parameter, SiUnit,
 };
+pub use cost_quantities::MILLIAMPERE;
 pub use dampers::DAMPING as JOINT_DAMPING;
 pub use error::ModelError;
 pub use floating::Floating;

@@ -13,10 +13,9 @@ use crate::files::problem::state::{
     ELECTRIC_KEYS, joint_value, joint_with_coordinate, moving_marker,
 };
 use crate::files::units::quantity::{AngularVelocity, Velocity};
-use crate::functional::Stencil;
 use crate::math::Signal;
 use crate::model::system::{Muscle, System};
-use crate::model::{FieldPlace, Quantity};
+use crate::model::{MILLIAMPERE, Quantity};
 
 /// A cost of a measured quantity as it is written.
 #[derive(Clone, Copy, Debug)]
@@ -31,10 +30,6 @@ pub(super) enum Measured<'a> {
 
 /// Quantities of which a cost is written, with the value that each is to have; those that are squares have none.
 type Asked = Vec<(Quantity, Option<f64>)>;
-
-/// A milliampere in A, and a V/µm in V/mm: units of costs.
-const MILLIAMPERE: f64 = 1e-3;
-const VOLT_PER_MICROMETRE: f64 = 1e3;
 
 impl Measured<'_> {
     /// The costs that it stands for.
@@ -81,21 +76,20 @@ impl Measured<'_> {
             Self::Tension(spec) => {
                 let at = spec.at.as_ref().map_or(0.0, |at| at.value());
                 let muscles = lumped_muscles((&spec.muscle, spec.muscles), system, scope)?;
-                let tension = |muscle| (Quantity::Tension { muscle, unit: 1.0 }, Some(at));
+                let tension = |muscle| (Quantity::tension(muscle), Some(at));
                 muscles.into_iter().map(tension).collect()
             }
             Self::Field(spec) => fields(spec, system, scope)?,
             Self::Current(spec) => {
                 let at = spec.at.as_ref().map_or(0.0, |at| at.value() / MILLIAMPERE);
                 let muscles = behind_resistors((&spec.source, spec.sources), system, scope)?;
-                let unit = MILLIAMPERE;
-                let current = |muscle| (Quantity::SourceCurrent { muscle, unit }, Some(at));
+                let current = |muscle| (Quantity::current(muscle), Some(at));
                 muscles.into_iter().map(current).collect()
             }
             Self::Power(spec) => {
                 let at = spec.at.as_ref().map_or(0.0, |at| at.value());
                 let muscles = behind_resistors((&spec.source, spec.sources), system, scope)?;
-                let power = |muscle| (Quantity::SourcePower { muscle, unit: 1.0 }, Some(at));
+                let power = |muscle| (Quantity::power(muscle), Some(at));
                 muscles.into_iter().map(power).collect()
             }
             Self::JointRate(spec) => {
@@ -104,14 +98,13 @@ impl Measured<'_> {
                 let at = spec.at.as_ref().map_or(Ok(0.0), |at| {
                     joint_value(at, &kinds, joint, system, &scope.key("at"))
                 })?;
-                let quantity = Quantity::JointStep { joint, h: 1.0 };
+                let quantity = Quantity::joint_rate(joint);
                 let factor = quantity.rate_factor(system).unwrap_or(1.0);
                 vec![(quantity, Some(factor * at))]
             }
             Self::MarkerSpeed(spec) => {
                 let marker = moving_marker(&spec.marker, system, &scope.key("marker"))?;
-                let limit = 1.0;
-                vec![(Quantity::SquaredSpeed { marker, limit }, None)]
+                vec![(Quantity::squared_speed(marker), None)]
             }
         })
     }
@@ -132,14 +125,8 @@ fn fields(spec: &FieldCostSpec, system: &System, scope: &Scope<'_>) -> Result<As
         let expected = format!("a muscle of {ELECTRIC_KEYS}");
         return Err(scope.key(key).wrong(found, expected));
     }
-    let limit = VOLT_PER_MICROMETRE;
-    let field = |muscle: usize| match system.muscles[muscle].is_behind_resistor() {
-        true => Quantity::ChargedField { muscle, limit },
-        false => Quantity::SquaredField {
-            place: FieldPlace::Muscle(muscle),
-            limit,
-            at: Stencil::Mid,
-        },
+    let field = |muscle: usize| {
+        Quantity::squared_field(muscle, system.muscles[muscle].is_behind_resistor())
     };
     Ok(muscles.into_iter().map(|m| (field(m), None)).collect())
 }
