@@ -111,19 +111,12 @@ fn of_model(model: &Model, control: Option<&Control>) -> Inspected {
     if count(Role::Load) > 0 {
         sizes.push(("loads of an interval", count(Role::Load)));
     }
-    let components = &system.components;
     if let Some(mobility) = model.loops.mobility {
         sizes.push(("degrees of freedom with loops closed", mobility));
     }
-    let kinds = [
-        ("springs", components.springs.len()),
-        ("tendons", components.tendons.len()),
-        ("loads", components.loads.len()),
-        ("other components", components.others.len()),
-        ("prescribed coordinates", model.prescribed.len()),
-    ];
-    let kinds = kinds.into_iter().filter(|(_, count)| *count > 0);
-    sizes.splice(3..3, kinds);
+    let prescribed = ("prescribed coordinates", model.prescribed.len());
+    let kinds = system.components.counts().into_iter().chain([prescribed]);
+    sizes.splice(3..3, kinds.filter(|(_, count)| *count > 0));
     if !system.solids.is_empty() {
         sizes.insert(3, ("elastic blocks", system.solids.len()));
     }

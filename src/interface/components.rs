@@ -4,7 +4,9 @@ use crate::interface::handle::{Carrier, Handle, Part, named};
 use crate::interface::parts::attachment;
 use crate::model::Component;
 use crate::model::System;
-use crate::model::components::{BlockLoad, Faces, Load, LoadPlace, Other, Spring, Tendon};
+use crate::model::components::{
+    BlockLoad, Components, Faces, Kind, Load, LoadPlace, Other, Spring,
+};
 use crate::model::system::{Body, Joint, Muscle, Solid};
 use nalgebra::Vector3;
 use std::sync::Arc;
@@ -46,21 +48,16 @@ impl Spring {
     }
 }
 
-impl Part for Spring {
+impl<K: Kind> Part for K
+where
+    Components: AsMut<Vec<K>>,
+{
     fn join(mut self, system: &mut System) -> usize {
-        let springs = &mut system.components.springs;
-        self.name = named(self.name, "spring", springs.len());
-        springs.push(self);
-        springs.len() - 1
-    }
-}
-
-impl Part for Tendon {
-    fn join(mut self, system: &mut System) -> usize {
-        let tendons = &mut system.components.tendons;
-        self.name = named(self.name, "tendon", tendons.len());
-        tendons.push(self);
-        tendons.len() - 1
+        let parts: &mut Vec<K> = system.components.as_mut();
+        let name = std::mem::take(self.name_mut());
+        *self.name_mut() = named(name, K::NAME, parts.len());
+        parts.push(self);
+        parts.len() - 1
     }
 }
 

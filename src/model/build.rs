@@ -20,6 +20,7 @@ use crate::model::presolved::Presolved;
 use crate::model::quantity::Quantity;
 use crate::model::solids::Solids;
 use crate::model::system::{Attachment, Body, Marker, Muscle, System};
+use crate::model::term_order::rank;
 use crate::model::terms::{Carriers, Terms};
 use crate::model::variables::{Role, Size, Time, Variable, Variables};
 use crate::model::{
@@ -250,7 +251,7 @@ impl Construction<'_> {
         let made = self.constraints(vectors);
         present.extend(made.present);
         left_out.extend(made.left_out);
-        plan::settle(&present, &mut left_out);
+        plan::settle(&present, &mut left_out, rank);
         let made = constraints::Made {
             present,
             left_out,
@@ -292,7 +293,7 @@ impl Construction<'_> {
             &mut terms,
         );
         system.components.build(&mut terms);
-        terms.finish()
+        terms.finish(rank)
     }
 
     /// Constraints of an instant.

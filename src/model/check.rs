@@ -6,52 +6,13 @@ use crate::model::components::{BlockLoad, LoadPlace};
 use crate::model::system::{
     Attachment, Discretisation, Fidelity, Joint, JointKind, Material, Muscle, System,
 };
+use crate::model::system_error::{SystemError, positive, require};
 use std::collections::BTreeSet;
-use thiserror::Error;
-
-/// A part of a system that makes no sense.
-#[derive(Clone, Debug, Error, PartialEq, Eq)]
-#[error("{part}: {found}, expected {expected}")]
-pub struct SystemError {
-    /// Name of the part.
-    pub part: String,
-    /// Value that was found.
-    pub found: String,
-    /// Value that was expected.
-    pub expected: String,
-}
 
 /// Rounding of moments that satisfy the triangle inequality with equality, and of unit vectors.
 const ROUNDING: f64 = 1e-12;
 /// Sine of the angle to the span of a muscle below which a direction is along it.
 const ALONG: f64 = 1e-6;
-
-/// Collects nothing: the first error is returned.
-pub(super) fn require(
-    holds: bool,
-    part: &str,
-    found: impl FnOnce() -> String,
-    expected: &str,
-) -> Result<(), SystemError> {
-    match holds {
-        true => Ok(()),
-        false => Err(SystemError {
-            part: part.to_owned(),
-            found: found(),
-            expected: expected.to_owned(),
-        }),
-    }
-}
-
-fn positive(part: &str, what: &str, value: f64) -> Result<(), SystemError> {
-    let holds = value > 0.0 && value.is_finite();
-    require(
-        holds,
-        part,
-        || format!("{what} {value}"),
-        "a positive number",
-    )
-}
 
 impl System {
     /// Checks names, masses, lengths, axes, materials, and that parts refer to bodies that exist.
@@ -67,6 +28,7 @@ impl System {
             for point in component.points() {
                 self.check_point(component.name(), &point)?;
             }
+            component.check()?;
         }
         self.check_loads()?;
         for solid in &self.solids {
@@ -169,11 +131,12 @@ impl System {
         let muscles = self.muscles.iter().map(|part| &part.name);
         let solids = self.solids.iter().map(|part| &part.name);
         let markers = self.markers.iter().map(|part| &part.name);
-        let lists: [Vec<&String>; 4] = [
-            bodies.collect(),
-            joints.collect(),
-            muscles.chain(solids).collect(),
-            markers.collect(),
+        let lists: [Vec<&str>; 5] = [
+            bodies.map(String::as_str).collect(),
+            joints.map(String::as_str).collect(),
+            muscles.chain(solids).map(String::as_str).collect(),
+            markers.map(String::as_str).collect(),
+            self.components.iter().map(|part| part.name()).collect(),
         ];
         for list in lists {
             let mut seen = BTreeSet::new();

@@ -2,6 +2,7 @@
 //! observations.
 
 use crate::model::attachment::Attachment;
+use crate::model::system_error::SystemError;
 use crate::model::terms::Terms;
 use nalgebra::Vector3;
 use std::fmt::Debug;
@@ -16,6 +17,14 @@ pub trait Component: Debug + Send + Sync {
 
     /// The points that it ties together, in the order in which a picture joins them by lines.
     fn points(&self) -> Vec<Attachment>;
+
+    /// Checks its constants.
+    ///
+    /// # Errors
+    /// The first constant that makes no sense.
+    fn check(&self) -> Result<(), SystemError> {
+        Ok(())
+    }
 
     /// Returns true if it exerts a force in the reference configuration: then it may move what it ties, otherwise nothing starts to
     /// move because of it.

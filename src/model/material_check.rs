@@ -1,7 +1,7 @@
 //! Validation of a material: the constants of its law, and what finite elements need of it.
 
-use crate::model::check::{SystemError, require};
 use crate::model::system::{ElasticLaw, Material};
+use crate::model::system_error::{SystemError, require};
 
 impl Material {
     /// Checks the stretches for which its constants hold.

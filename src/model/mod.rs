@@ -58,13 +58,15 @@ mod sought;
 mod source;
 mod states;
 pub mod system;
+mod system_error;
 mod tension;
+pub mod term_order;
 mod terms;
 mod unknown_positions;
 mod variables;
 
 pub use analysis::{Analysis, Coordinates, InitiallyMoving};
-pub use check::{NO_CHARGE, NO_MUSCLE_CHARGE, SystemError};
+pub use check::{NO_CHARGE, NO_MUSCLE_CHARGE};
 pub use circuit::{EMPTY_CIRCUIT, NO_CIRCUIT};
 pub use component::Component;
 pub use constant::{
@@ -90,5 +92,6 @@ pub use quantity::{FieldPlace, Quantity, Region, joint_unit};
 pub use solid_block::SolidBlock;
 pub use sought::{Arguments, Sought};
 pub use system::{System, VACUUM_PERMITTIVITY};
+pub use system_error::SystemError;
 pub use terms::{Terms, mid, rate};
 pub use variables::{Role, Size, Time, Variable, Variables};

@@ -1,54 +1,7 @@
-//! Plan of the action: names of the terms in the order in which they are summed, and the reasons why each is present or
-//! absent.
+//! Plan of the action: the reasons why each term is present or absent.
 
 /// Weight, the one term that acts in every place with a mass.
 pub(super) const GRAVITY: &str = "gravity";
-
-/// Names of the terms of the library, in the order of the sum; those of other crates follow.
-pub const TERMS: [&str; 36] = [
-    "body inertia",
-    "muscle inertia",
-    "block inertia",
-    "section inertia",
-    GRAVITY,
-    "block elasticity",
-    "block electroelasticity",
-    "general block elasticity",
-    "general block electroelasticity",
-    "muscle elasticity",
-    "muscle electroelasticity",
-    "general muscle elasticity",
-    "general muscle electroelasticity",
-    "muscle charges",
-    "maxwell elasticity",
-    "block maxwell elasticity",
-    "joint elasticity",
-    "joint stops",
-    "spring elasticity",
-    "tendon elasticity",
-    "loads",
-    "surface charges",
-    "circuit sources",
-    "following loads",
-    "block viscosity",
-    "muscle viscosity",
-    "maxwell viscosity",
-    "block maxwell viscosity",
-    "circuit resistance",
-    "joint damping",
-    "spring damping",
-    "rigid bodies",
-    "joint directions",
-    "joint points",
-    "joint coordinates",
-    "glue",
-];
-
-/// Place of a term in the sum.
-pub(super) fn rank(term: &str) -> usize {
-    let place = TERMS.iter().position(|name| *name == term);
-    place.unwrap_or(TERMS.len())
-}
 
 /// Term that is present, with its reason.
 #[derive(Clone, Debug, PartialEq, Eq)]
@@ -70,8 +23,12 @@ pub struct LeftOut {
     pub why: &'static str,
 }
 
-/// Keeps the first reason for each term that is not there, in the order of the sum.
-pub(super) fn settle(present: &[Present], left_out: &mut Vec<LeftOut>) {
+/// Keeps the first reason for each term that is not there, in the order of the sum, in which `rank` is the place of a term.
+pub(super) fn settle(
+    present: &[Present],
+    left_out: &mut Vec<LeftOut>,
+    rank: impl Fn(&str) -> usize,
+) {
     let is_there = |term| present.iter().any(|p| p.term == term);
     left_out.retain(|l| !is_there(l.term));
     left_out.sort_by_key(|l| rank(l.term));

@@ -356,10 +356,12 @@ impl<'a> Terms<'a> {
         });
     }
 
-    /// Returns the terms in the order of the plan, their reasons, and the absent terms.
-    pub(super) fn finish(mut self) -> (Vec<Box<dyn Term>>, Vec<Present>, Vec<LeftOut>) {
-        self.collected
-            .sort_by_key(|collected| plan::rank(collected.term));
+    /// Returns the terms in the order of the sum, in which `rank` is the place of each, their reasons, and the absent terms.
+    pub(super) fn finish(
+        mut self,
+        rank: impl Fn(&str) -> usize,
+    ) -> (Vec<Box<dyn Term>>, Vec<Present>, Vec<LeftOut>) {
+        self.collected.sort_by_key(|collected| rank(collected.term));
         let collected = self.collected.into_iter();
         let terms = collected.map(|c| (c.finish)(c.term, c.list));
         (terms.collect(), self.present, self.left_out)

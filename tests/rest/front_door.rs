@@ -88,3 +88,47 @@ fn a_response_is_instantaneous_or_relaxed() {
     let text = refused.to_string();
     assert!(text.contains("a scene with Maxwell branches"), "{text}");
 }
+
+#[test]
+fn wrong_constants_of_components_are_refused() {
+    let (system, ..) = cart();
+    let told = |change: &dyn Fn(&mut System)| {
+        let mut wrong = system.clone();
+        change(&mut wrong);
+        wrong.check().unwrap_err().to_string()
+    };
+    assert_eq!(system.check(), Ok(()));
+    let spring = |change: fn(&mut Spring)| {
+        told(&|system: &mut System| change(&mut system.components.springs[0]))
+    };
+    let wrong = "spring1: stiffness -1, expected a positive number";
+    assert_eq!(spring(|s| s.stiffness = Some(-1.0)), wrong);
+    assert!(spring(|s| s.damping = Some(f64::NAN)).contains("spring1: damping NaN"));
+    assert!(spring(|s| s.rest_length = -2.0).contains("zero or a positive length"));
+    assert!(spring(|s| s.to.at = s.from.at).contains("ends in two places"));
+    let twin = |system: &mut System| {
+        let twin = system.components.springs[0].clone();
+        system.components.springs.push(twin);
+    };
+    assert!(told(&twin).contains("spring1: a name that another part"));
+
+    let tendon = |change: fn(&mut Tendon)| {
+        told(&|system: &mut System| {
+            let spring = system.components.springs[0].clone();
+            let mut tendon = Tendon {
+                name: "cable".to_owned(),
+                through: vec![spring.from, spring.to],
+                stiffness: 1.0,
+                rest_length: 50.0,
+                smoothing: 0.0,
+            };
+            change(&mut tendon);
+            system.components.tendons.push(tendon);
+        })
+    };
+    assert!(tendon(|t| t.stiffness = 0.0).contains("cable: stiffness 0"));
+    assert!(tendon(|t| t.rest_length = f64::INFINITY).contains("cable: rest length inf"));
+    assert!(tendon(|t| t.smoothing = 101.0).contains("twice the rest length"));
+    assert!(tendon(|t| t.through.truncate(1)).contains("two points or more"));
+    assert!(tendon(|t| t.through[1] = t.through[0]).contains("the one before"));
+}

@@ -5,19 +5,21 @@ use std::cell::Cell;
 use crate::files::json::error::SceneError;
 use crate::files::json::scope::Scope;
 use crate::files::scene::body::body;
-use crate::files::scene::components::{load, spring, tendon};
+use crate::files::scene::component_lists::{check_component_names, components};
+use crate::files::scene::components::load;
 use crate::files::scene::expand::{add_named, expanded};
 use crate::files::scene::graph::check_connected;
 use crate::files::scene::joint::joint;
 use crate::files::scene::marker::marker;
 use crate::files::scene::material::materials;
 use crate::files::scene::muscle::{MOST_ELEMENTS, fidelity, layer, muscle, positive_sides};
+use crate::files::scene::named_entries::NamedEntries;
 use crate::files::scene::names::{find_material, names};
 use crate::files::scene::point::unit_axis;
 use crate::files::scene::point::vector;
 use crate::files::scene::solid::solid;
 use crate::files::scene::spec::{ChainSpec, SceneSpec};
-use crate::model::components::{Components, Load, LoadPlace};
+use crate::model::components::{Load, LoadPlace};
 use crate::model::system::{Material, System, number_sources};
 
 /// Longest chain that the shorthand writes out.
@@ -67,16 +69,7 @@ pub(crate) fn build_scene(scene: &SceneSpec, scope: &Scope<'_>) -> Result<System
             .as_ref()
             .map(vector)
             .filter(|g| g.norm() > 0.0),
-        components: Components {
-            loads,
-            springs: lists.springs.build(&scene.springs, |spec, scope| {
-                spring(spec, &body_names, scope)
-            })?,
-            tendons: lists.tendons.build(&scene.tendons, |spec, scope| {
-                tendon(spec, &body_names, scope)
-            })?,
-            others: Vec::new(),
-        },
+        components: components(&scene, loads, &body_names, scope)?,
         joints: built_joints,
         name: scene.name,
     };
@@ -127,8 +120,6 @@ struct Lists<'a> {
     muscles: NamedEntries<'a>,
     solids: NamedEntries<'a>,
     markers: NamedEntries<'a>,
-    springs: NamedEntries<'a>,
-    tendons: NamedEntries<'a>,
     loads: NamedEntries<'a>,
 }
 
@@ -142,8 +133,6 @@ impl<'a> Lists<'a> {
             muscles: list("muscles", scene.muscles.len()),
             solids: list("solids", scene.solids.len()),
             markers: list("markers", scene.markers.len()),
-            springs: list("springs", scene.springs.len()),
-            tendons: list("tendons", scene.tendons.len()),
             loads: list("loads", scene.loads.len()),
         }
     }
@@ -155,66 +144,22 @@ impl<'a> Lists<'a> {
         let muscles = names(&scene.muscles, |muscle| &muscle.name);
         let solids = names(&scene.solids, |solid| &solid.name);
         let markers = names(&scene.markers, |marker| &marker.name);
-        let springs = names(&scene.springs, |spring| &spring.name);
-        let tendons = names(&scene.tendons, |tendon| &tendon.name);
         let loads = names(&scene.loads, |load| &load.name);
 
         self.bodies.unique(&bodies, &["ground"])?;
         self.joints.unique(&joints, &[])?;
         let reserved = ["solution", "time", "voltages", "hold"];
         self.muscles.unique(&muscles, &reserved)?;
-        self.springs.unique(&springs, &[])?;
-        self.tendons.unique(&tendons, &borrowed(&springs))?;
+        check_component_names(scene, scope)?;
         // Blocks and muscles share files and names of voltages.
         let driven = [muscles, solids].concat();
         let place = |index: usize| scope.key("solids").index(index - scene.muscles.len());
         scope.unique(&driven, &[], |index| place(index).key("name"))?;
-        self.loads.unique(&loads, &borrowed(&driven))?;
+        self.loads.unique(
+            &loads,
+            &driven.iter().map(String::as_str).collect::<Vec<_>>(),
+        )?;
         self.markers.unique(&markers, &[])
-    }
-}
-
-fn borrowed(names: &[String]) -> Vec<&str> {
-    names.iter().map(String::as_str).collect()
-}
-
-/// One list of the scene; entries beyond the written ones come from the chain.
-struct NamedEntries<'a> {
-    list: Scope<'a>,
-    chain: Scope<'a>,
-    written: usize,
-}
-
-impl<'a> NamedEntries<'a> {
-    fn new(scene: &Scope<'a>, list: &str, written: usize) -> Self {
-        Self {
-            list: scene.key(list),
-            chain: scene.key("chain"),
-            written,
-        }
-    }
-
-    fn scope(&self, index: usize) -> Scope<'a> {
-        match index {
-            index if index < self.written => self.list.index(index),
-            _ => self.chain.clone(),
-        }
-    }
-
-    fn unique(&self, names: &[String], reserved: &[&str]) -> Result<(), SceneError> {
-        self.list.unique(names, reserved, |index| match index {
-            index if index < self.written => self.scope(index).key("name"),
-            _ => self.scope(index),
-        })
-    }
-
-    fn build<S, T>(
-        &self,
-        specs: &[S],
-        build: impl Fn(&S, &Scope<'a>) -> Result<T, SceneError>,
-    ) -> Result<Vec<T>, SceneError> {
-        let build = |(index, spec)| build(spec, &self.scope(index));
-        specs.iter().enumerate().map(build).collect()
     }
 }
 

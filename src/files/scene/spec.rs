@@ -5,7 +5,7 @@ use serde::{Deserialize, Serialize};
 use std::collections::BTreeMap;
 
 use crate::files::scene::circuit::CircuitSpec;
-use crate::files::scene::components::{LoadSpec, SpringSpec, TendonSpec};
+use crate::files::scene::components::{LoadSpec, SpringSpec, TendonSpec, component_lists};
 use crate::files::scene::point::{Point, PointSpec};
 use crate::files::scene::spec_joints::JointSpec;
 use crate::files::scene::spec_material::MaterialSpec;
@@ -14,49 +14,55 @@ use crate::files::units::quantity::{
     Acceleration, Angle, Density, Length, Mass, MomentOfInertia, Quantity,
 };
 
-/// Scene. Positions and axes are given in the reference configuration, in the ground frame; parts that are not written do not exist.
-#[derive(Clone, Debug, Default, Serialize, Deserialize, JsonSchema)]
-#[serde(deny_unknown_fields)]
-pub struct SceneSpec {
-    /// JSON Schema of this file, for editors.
-    #[serde(rename = "$schema", default, skip_serializing_if = "Option::is_none")]
-    pub schema: Option<String>,
-    /// Name for captions.
-    pub name: String,
-    /// Elastomers by name.
-    #[serde(default, skip_serializing_if = "BTreeMap::is_empty")]
-    pub materials: BTreeMap<String, MaterialSpec>,
-    /// Rigid bodies; `ground` is there without being written.
-    #[serde(default, skip_serializing_if = "Vec::is_empty")]
-    pub bodies: Vec<BodySpec>,
-    /// Joints between bodies or to the ground.
-    #[serde(default, skip_serializing_if = "Vec::is_empty")]
-    pub joints: Vec<JointSpec>,
-    /// Dielectric elastomer muscles.
-    #[serde(default, skip_serializing_if = "Vec::is_empty")]
-    pub muscles: Vec<MuscleSpec>,
-    /// Elastic blocks of finite elements.
-    #[serde(default, skip_serializing_if = "Vec::is_empty")]
-    pub solids: Vec<SolidSpec>,
-    /// Springs and dampers between two points.
-    #[serde(default, skip_serializing_if = "Vec::is_empty")]
-    pub springs: Vec<SpringSpec>,
-    /// Elastic cables through points.
-    #[serde(default, skip_serializing_if = "Vec::is_empty")]
-    pub tendons: Vec<TendonSpec>,
-    /// Forces and torques whose sizes a problem gives or seeks.
-    #[serde(default, skip_serializing_if = "Vec::is_empty")]
-    pub loads: Vec<LoadSpec>,
-    /// Points whose motion is reported.
-    #[serde(default, skip_serializing_if = "Vec::is_empty")]
-    pub markers: Vec<MarkerSpec>,
-    /// Acceleration of gravity, SI unit m/s².
-    #[serde(default, skip_serializing_if = "Option::is_none")]
-    pub gravity: Option<[Quantity<Acceleration>; 3]>,
-    /// Shorthand for a chain of segments with a pair of muscles at each joint.
-    #[serde(default, skip_serializing_if = "Option::is_none")]
-    pub chain: Option<ChainSpec>,
+/// Declares the scene with the lists of components between points.
+macro_rules! scene {
+    ($($(#[$about:meta])* $list:ident: $spec:ty,)*) => {
+        /// Scene. Positions and axes are given in the reference configuration, in the ground frame; parts that are not written do not exist.
+        #[derive(Clone, Debug, Default, Serialize, Deserialize, JsonSchema)]
+        #[serde(deny_unknown_fields)]
+        pub struct SceneSpec {
+            /// JSON Schema of this file, for editors.
+            #[serde(rename = "$schema", default, skip_serializing_if = "Option::is_none")]
+            pub schema: Option<String>,
+            /// Name for captions.
+            pub name: String,
+            /// Elastomers by name.
+            #[serde(default, skip_serializing_if = "BTreeMap::is_empty")]
+            pub materials: BTreeMap<String, MaterialSpec>,
+            /// Rigid bodies; `ground` is there without being written.
+            #[serde(default, skip_serializing_if = "Vec::is_empty")]
+            pub bodies: Vec<BodySpec>,
+            /// Joints between bodies or to the ground.
+            #[serde(default, skip_serializing_if = "Vec::is_empty")]
+            pub joints: Vec<JointSpec>,
+            /// Dielectric elastomer muscles.
+            #[serde(default, skip_serializing_if = "Vec::is_empty")]
+            pub muscles: Vec<MuscleSpec>,
+            /// Elastic blocks of finite elements.
+            #[serde(default, skip_serializing_if = "Vec::is_empty")]
+            pub solids: Vec<SolidSpec>,
+            $(
+                $(#[$about])*
+                #[serde(default, skip_serializing_if = "Vec::is_empty")]
+                pub $list: Vec<$spec>,
+            )*
+            /// Forces and torques whose sizes a problem gives or seeks.
+            #[serde(default, skip_serializing_if = "Vec::is_empty")]
+            pub loads: Vec<LoadSpec>,
+            /// Points whose motion is reported.
+            #[serde(default, skip_serializing_if = "Vec::is_empty")]
+            pub markers: Vec<MarkerSpec>,
+            /// Acceleration of gravity, SI unit m/s².
+            #[serde(default, skip_serializing_if = "Option::is_none")]
+            pub gravity: Option<[Quantity<Acceleration>; 3]>,
+            /// Shorthand for a chain of segments with a pair of muscles at each joint.
+            #[serde(default, skip_serializing_if = "Option::is_none")]
+            pub chain: Option<ChainSpec>,
+        }
+    };
 }
+
+component_lists!(scene);
 
 /// A rigid body: a mass or a density; one shape, or an explicit inertia, or both.
 #[derive(Clone, Debug, Serialize, Deserialize, JsonSchema)]

@@ -2,12 +2,14 @@
 
 pub(super) mod body;
 pub(super) mod circuit;
+mod kind;
 pub(super) mod load;
 pub(super) mod muscle;
 mod sought_muscle;
 mod spring;
 mod tendon;
 
+pub(crate) use kind::Kind;
 pub use load::{BlockLoad, Faces, Load, LoadPlace};
 pub use muscle::capacitance;
 pub use spring::Spring;
@@ -15,41 +17,65 @@ pub use tendon::Tendon;
 
 use crate::model::component::Component;
 use crate::model::terms::Terms;
+use kind::build;
 use std::sync::Arc;
 
-/// The components of a system.
-#[derive(Clone, Debug, Default, PartialEq)]
-pub struct Components {
-    /// Springs and dampers.
-    pub springs: Vec<Spring>,
-    /// Tendons.
-    pub tendons: Vec<Tendon>,
-    /// Loads: forces and torques.
-    pub loads: Vec<Load>,
-    /// Those that a user of the library defines.
-    pub others: Vec<Other>,
+/// Declares the kinds of components between points: a line for each, `list: Type`, in the order in which they are built.
+macro_rules! kinds {
+    ($($(#[$about:meta])* $list:ident: $kind:ty,)*) => {
+        /// The components of a system.
+        #[derive(Clone, Debug, Default, PartialEq)]
+        pub struct Components {
+            $($(#[$about])* pub $list: Vec<$kind>,)*
+            /// Loads: forces and torques.
+            pub loads: Vec<Load>,
+            /// Those that a user of the library defines.
+            pub others: Vec<Other>,
+        }
+
+        impl Components {
+            /// Their terms.
+            pub(super) fn build(&self, terms: &mut Terms<'_>) {
+                $(build(&self.$list, terms);)*
+                self.others.iter().for_each(|other| other.0.build(terms));
+            }
+
+            /// All of them but loads, kind by kind.
+            pub fn iter(&self) -> impl Iterator<Item = &dyn Component> {
+                let all = std::iter::empty();
+                $(let all = all.chain(self.$list.iter().map(|part| part as &dyn Component));)*
+                all.chain(self.others.iter().map(|other| other.0.as_ref()))
+            }
+
+            /// Numbers of components of each kind.
+            pub fn counts(&self) -> Vec<(&'static str, usize)> {
+                vec![
+                    $((stringify!($list), self.$list.len()),)*
+                    ("loads", self.loads.len()),
+                    ("other components", self.others.len()),
+                ]
+            }
+        }
+
+        $(impl AsMut<Vec<$kind>> for Components {
+            fn as_mut(&mut self) -> &mut Vec<$kind> {
+                &mut self.$list
+            }
+        })*
+
+        /// Names of the terms with a potential, kind by kind.
+        pub(super) const POTENTIALS: &[&[&str]] = &[$(<$kind>::POTENTIALS),*];
+
+        /// Names of the terms that dissipate, kind by kind.
+        pub(super) const DISSIPATIONS: &[&[&str]] = &[$(<$kind>::DISSIPATIONS),*];
+    };
 }
 
-impl Components {
-    /// Their terms.
-    pub(super) fn build(&self, terms: &mut Terms<'_>) {
-        let springs = self.springs.iter().enumerate();
-        springs.for_each(|(index, spring)| spring.add(Some(index), terms));
-        let others = self.iter().skip(self.springs.len());
-        others.for_each(|component| component.build(terms));
-        for term in [spring::ELASTICITY, spring::DAMPING] {
-            terms.without(term, "no spring");
-        }
-        terms.without(tendon::ELASTICITY, "no tendon");
-    }
-
-    /// All of them but loads, kind by kind.
-    pub fn iter(&self) -> impl Iterator<Item = &dyn Component> {
-        let springs = self.springs.iter().map(|spring| spring as &dyn Component);
-        let tendons = self.tendons.iter().map(|tendon| tendon as &dyn Component);
-        let others = self.others.iter().map(|other| other.0.as_ref());
-        springs.chain(tendons).chain(others)
-    }
+kinds! {
+    /// Springs and dampers.
+    springs: Spring,
+    /// Tendons.
+    tendons: Tendon,
 }
 
 /// A component of another crate; equal to itself only.

@@ -4,8 +4,10 @@ use crate::energy::{Affine, LinearSpring, SoughtSpanDamper, SoughtSpring, SpanDa
 use crate::functional::{Element, SoughtElement};
 use crate::model::attachment::Attachment;
 use crate::model::component::Component;
+use crate::model::components::kind::Kind;
 use crate::model::constant::Constant;
 use crate::model::sought::{Arguments, Sought};
+use crate::model::system_error::{SystemError, positive, require};
 use crate::model::terms::{Terms, mid, rate};
 use nalgebra::Vector3;
 
@@ -26,8 +28,8 @@ pub struct Spring {
     pub rest_length: f64,
 }
 
-pub(super) const ELASTICITY: &str = "spring elasticity";
-pub(super) const DAMPING: &str = "spring damping";
+const ELASTICITY: &str = "spring elasticity";
+const DAMPING: &str = "spring damping";
 
 impl Spring {
     fn length(&self) -> f64 {
@@ -42,7 +44,7 @@ impl Spring {
     }
 
     /// Makes the terms; `index` is its place among the springs of the system, constants of which can be sought.
-    pub(super) fn add(&self, index: Option<usize>, terms: &mut Terms<'_>) {
+    fn add(&self, index: Option<usize>, terms: &mut Terms<'_>) {
         let Some(span) = terms.span(&self.from, &self.to) else {
             for term in [ELASTICITY, DAMPING] {
                 terms.without(term, "no spring that moves");
@@ -139,6 +141,21 @@ fn sought_element<E>(energy: E, span: usize, arguments: Arguments) -> SoughtElem
     }
 }
 
+impl Kind for Spring {
+    const NAME: &'static str = "spring";
+    const ABSENT: &'static str = "no spring";
+    const POTENTIALS: &'static [&'static str] = &[ELASTICITY];
+    const DISSIPATIONS: &'static [&'static str] = &[DAMPING];
+
+    fn name_mut(&mut self) -> &mut String {
+        &mut self.name
+    }
+
+    fn build_at(&self, index: usize, terms: &mut Terms<'_>) {
+        self.add(Some(index), terms);
+    }
+}
+
 impl Component for Spring {
     fn name(&self) -> &str {
         &self.name
@@ -146,6 +163,29 @@ impl Component for Spring {
 
     fn points(&self) -> Vec<Attachment> {
         vec![self.from, self.to]
+    }
+
+    fn check(&self) -> Result<(), SystemError> {
+        if let Some(stiffness) = self.stiffness {
+            positive(&self.name, "stiffness", stiffness)?;
+        }
+        if let Some(damping) = self.damping {
+            positive(&self.name, "damping", damping)?;
+        }
+        let length = self.rest_length;
+        require(
+            length >= 0.0 && length.is_finite(),
+            &self.name,
+            || format!("rest length {length}"),
+            "zero or a positive length",
+        )?;
+        let needs_direction = self.damping.is_some() || self.stiffness.is_some() && length > 0.0;
+        require(
+            !needs_direction || self.length() > 0.0,
+            &self.name,
+            || "both ends in one place".to_owned(),
+            "ends in two places, as the force has no direction there",
+        )
     }
 
     fn is_prestressed(&self) -> bool {

@@ -4,6 +4,8 @@ use crate::energy::Cable;
 use crate::functional::Path;
 use crate::model::attachment::Attachment;
 use crate::model::component::Component;
+use crate::model::components::kind::Kind;
+use crate::model::system_error::{SystemError, positive, require};
 use crate::model::terms::Terms;
 use nalgebra::Vector3;
 
@@ -23,7 +25,7 @@ pub struct Tendon {
     pub smoothing: f64,
 }
 
-pub(super) const ELASTICITY: &str = "tendon elasticity";
+const ELASTICITY: &str = "tendon elasticity";
 
 /// Sum of the distances of neighbours.
 fn path_length(places: impl Iterator<Item = Vector3<f64>> + Clone) -> f64 {
@@ -45,6 +47,16 @@ impl Tendon {
     }
 }
 
+impl Kind for Tendon {
+    const NAME: &'static str = "tendon";
+    const ABSENT: &'static str = "no tendon";
+    const POTENTIALS: &'static [&'static str] = &[ELASTICITY];
+
+    fn name_mut(&mut self) -> &mut String {
+        &mut self.name
+    }
+}
+
 impl Component for Tendon {
     fn name(&self) -> &str {
         &self.name
@@ -52,6 +64,25 @@ impl Component for Tendon {
 
     fn points(&self) -> Vec<Attachment> {
         self.through.clone()
+    }
+
+    fn check(&self) -> Result<(), SystemError> {
+        positive(&self.name, "stiffness", self.stiffness)?;
+        positive(&self.name, "rest length", self.rest_length)?;
+        let width = self.smoothing;
+        require(
+            (0.0..=2.0 * self.rest_length).contains(&width),
+            &self.name,
+            || format!("a smoothing of {width}"),
+            "zero or a positive width, at most twice the rest length",
+        )?;
+        let mut spans = self.through.windows(2);
+        require(
+            self.through.len() >= 2 && spans.all(|pair| pair[0].at != pair[1].at),
+            &self.name,
+            || format!("the points {:?}", self.through),
+            "two points or more, none of them in the place of the one before",
+        )
     }
 
     fn is_prestressed(&self) -> bool {

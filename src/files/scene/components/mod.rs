@@ -1,5 +1,6 @@
 //! Components of a scene with one file for each kind: its type as written, and the conversion to a component.
 
+pub(super) mod component_spec;
 mod load;
 mod spring;
 mod tendon;
@@ -7,6 +8,17 @@ mod tendon;
 pub use load::LoadSpec;
 pub(crate) use load::load;
 pub use spring::SpringSpec;
-pub(crate) use spring::spring;
 pub use tendon::TendonSpec;
-pub(crate) use tendon::tendon;
+
+/// Gives a macro the lists of components between points, `list: Type` for each kind, with the documentation of the key.
+macro_rules! component_lists {
+    ($macro:ident) => {
+        $macro! {
+            /// Springs and dampers between two points.
+            springs: SpringSpec,
+            /// Elastic cables through points.
+            tendons: TendonSpec,
+        }
+    };
+}
+pub(crate) use component_lists;

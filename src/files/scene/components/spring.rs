@@ -2,6 +2,7 @@
 
 use crate::files::json::error::SceneError;
 use crate::files::json::scope::Scope;
+use crate::files::scene::components::component_spec::ComponentSpec;
 use crate::files::scene::names::attachment;
 use crate::files::scene::point::PointSpec;
 use crate::files::units::quantity::{Damping, Length, PhysicalQuantity, Quantity, Stiffness};
@@ -30,49 +31,53 @@ pub struct SpringSpec {
     pub rest_length: Option<Quantity<Length>>,
 }
 
-/// The spring that is written.
-pub(crate) fn spring(
-    spec: &SpringSpec,
-    bodies: &[String],
-    scope: &Scope<'_>,
-) -> Result<Spring, SceneError> {
-    let end =
-        |key: &str, point: &PointSpec| attachment(&point.body, &point.at, bodies, &scope.key(key));
-    let (from, to) = (end("from", &spec.from)?, end("to", &spec.to)?);
-    if spec.stiffness.is_none() && spec.damping.is_none() {
-        return Err(scope.wrong("neither of them", "\"stiffness\" or \"damping\""));
+impl ComponentSpec for SpringSpec {
+    type Part = Spring;
+
+    fn name(&self) -> &String {
+        &self.name
     }
-    let stiffness = not_negative(spec.stiffness.as_ref(), &scope.key("stiffness"))?;
-    let damping = not_negative(spec.damping.as_ref(), &scope.key("damping"))?;
-    let place = scope.key("rest_length");
-    if spec.rest_length.is_some() && spec.stiffness.is_none() {
-        let expected = "no such key, as a spring without \"stiffness\" does not read it";
-        return Err(place.wrong("\"rest_length\"", expected));
+
+    fn component(&self, bodies: &[String], scope: &Scope<'_>) -> Result<Spring, SceneError> {
+        let end = |key: &str, point: &PointSpec| {
+            attachment(&point.body, &point.at, bodies, &scope.key(key))
+        };
+        let (from, to) = (end("from", &self.from)?, end("to", &self.to)?);
+        if self.stiffness.is_none() && self.damping.is_none() {
+            return Err(scope.wrong("neither of them", "\"stiffness\" or \"damping\""));
+        }
+        let stiffness = not_negative(self.stiffness.as_ref(), &scope.key("stiffness"))?;
+        let damping = not_negative(self.damping.as_ref(), &scope.key("damping"))?;
+        let place = scope.key("rest_length");
+        if self.rest_length.is_some() && self.stiffness.is_none() {
+            let expected = "no such key, as a spring without \"stiffness\" does not read it";
+            return Err(place.wrong("\"rest_length\"", expected));
+        }
+        let distance = (to.at - from.at).norm();
+        let written = self.rest_length.as_ref().map(Quantity::value);
+        let rest_length = written.unwrap_or(distance);
+        if rest_length < 0.0 {
+            return Err(place.wrong(format!("{} mm", rest_length), "zero or a positive length"));
+        }
+        // The force of a spring with a rest length has no direction where the ends meet; nor has that of a damper.
+        let has_direction = damping.is_some() || (stiffness.is_some() && rest_length > 0.0);
+        if has_direction && distance == 0.0 {
+            let expected =
+                "another place than \"from\", as the force along the span has no direction there";
+            return Err(scope
+                .key("to")
+                .key("at")
+                .wrong("the place of \"from\"", expected));
+        }
+        Ok(Spring {
+            name: self.name.clone(),
+            from,
+            to,
+            stiffness,
+            damping,
+            rest_length,
+        })
     }
-    let distance = (to.at - from.at).norm();
-    let written = spec.rest_length.as_ref().map(Quantity::value);
-    let rest_length = written.unwrap_or(distance);
-    if rest_length < 0.0 {
-        return Err(place.wrong(format!("{} mm", rest_length), "zero or a positive length"));
-    }
-    // The force of a spring with a rest length has no direction where the ends meet; nor has that of a damper.
-    let has_direction = damping.is_some() || (stiffness.is_some() && rest_length > 0.0);
-    if has_direction && distance == 0.0 {
-        let expected =
-            "another place than \"from\", as the force along the span has no direction there";
-        return Err(scope
-            .key("to")
-            .key("at")
-            .wrong("the place of \"from\"", expected));
-    }
-    Ok(Spring {
-        name: spec.name.clone(),
-        from,
-        to,
-        stiffness,
-        damping,
-        rest_length,
-    })
 }
 
 /// A value that is not negative; zero leaves no trace.

@@ -2,6 +2,7 @@
 
 use crate::files::json::error::SceneError;
 use crate::files::json::scope::Scope;
+use crate::files::scene::components::component_spec::ComponentSpec;
 use crate::files::scene::names::attachment;
 use crate::files::scene::point::PointSpec;
 use crate::files::units::quantity::{Length, Quantity, Stiffness};
@@ -27,53 +28,57 @@ pub struct TendonSpec {
     pub smoothing: Option<Quantity<Length>>,
 }
 
-/// The tendon that is written.
-pub(crate) fn tendon(
-    spec: &TendonSpec,
-    bodies: &[String],
-    scope: &Scope<'_>,
-) -> Result<Tendon, SceneError> {
-    let place = scope.key("through");
-    if spec.through.len() < 2 {
-        let found = format!("{} points", spec.through.len());
-        return Err(place.wrong(found, "2 points or more"));
+impl ComponentSpec for TendonSpec {
+    type Part = Tendon;
+
+    fn name(&self) -> &String {
+        &self.name
     }
-    let point = |(index, point): (usize, &PointSpec)| {
-        attachment(&point.body, &point.at, bodies, &place.index(index))
-    };
-    let points = spec.through.iter().enumerate().map(point);
-    let through = points.collect::<Result<Vec<_>, _>>()?;
-    let spans = || {
-        through
-            .windows(2)
-            .map(|pair| (pair[1].at - pair[0].at).norm())
-    };
-    if let Some(index) = spans().position(|span| span == 0.0) {
-        let expected = "another place than the point before, as the span has no direction there";
-        let place = place.index(index + 1).key("at");
-        return Err(place.wrong("the place of the point before", expected));
-    }
-    let stiffness = scope.key("stiffness").positive(&spec.stiffness)?;
-    let rest_length = match &spec.rest_length {
-        Some(length) => scope.key("rest_length").positive(length)?,
-        None => spans().sum(),
-    };
-    let smoothing = match &spec.smoothing {
-        Some(width) => {
-            let place = scope.key("smoothing");
-            let value = place.positive(width)?;
-            if value > 2.0 * rest_length {
-                return Err(place.wrong(width.to_string(), "at most twice the rest length"));
-            }
-            value
+
+    fn component(&self, bodies: &[String], scope: &Scope<'_>) -> Result<Tendon, SceneError> {
+        let place = scope.key("through");
+        if self.through.len() < 2 {
+            let found = format!("{} points", self.through.len());
+            return Err(place.wrong(found, "2 points or more"));
         }
-        None => 0.0,
-    };
-    Ok(Tendon {
-        name: spec.name.clone(),
-        through,
-        stiffness,
-        rest_length,
-        smoothing,
-    })
+        let point = |(index, point): (usize, &PointSpec)| {
+            attachment(&point.body, &point.at, bodies, &place.index(index))
+        };
+        let points = self.through.iter().enumerate().map(point);
+        let through = points.collect::<Result<Vec<_>, _>>()?;
+        let spans = || {
+            through
+                .windows(2)
+                .map(|pair| (pair[1].at - pair[0].at).norm())
+        };
+        if let Some(index) = spans().position(|span| span == 0.0) {
+            let expected =
+                "another place than the point before, as the span has no direction there";
+            let place = place.index(index + 1).key("at");
+            return Err(place.wrong("the place of the point before", expected));
+        }
+        let stiffness = scope.key("stiffness").positive(&self.stiffness)?;
+        let rest_length = match &self.rest_length {
+            Some(length) => scope.key("rest_length").positive(length)?,
+            None => spans().sum(),
+        };
+        let smoothing = match &self.smoothing {
+            Some(width) => {
+                let place = scope.key("smoothing");
+                let value = place.positive(width)?;
+                if value > 2.0 * rest_length {
+                    return Err(place.wrong(width.to_string(), "at most twice the rest length"));
+                }
+                value
+            }
+            None => 0.0,
+        };
+        Ok(Tendon {
+            name: self.name.clone(),
+            through,
+            stiffness,
+            rest_length,
+            smoothing,
+        })
+    }
 }
