@@ -6,7 +6,7 @@ use std::collections::BTreeMap;
 use crate::dynamics::discrete_trajectory::DiscreteTrajectory;
 use crate::kinematics::Pose;
 use crate::model::system::{Attachment, Joint, JointKind, System};
-use crate::model::{Model, Time};
+use crate::model::{Model, Time, nearest_turn};
 
 /// Values over time: N + 1 instants and the N intervals between them.
 #[derive(Clone, Debug, Default, PartialEq)]
@@ -92,6 +92,33 @@ impl Trajectory {
         system.joints.iter().filter_map(coordinate).collect()
     }
 
+    /// Columns of a joint with several coordinates and without a chart; angles go on beyond whole turns.
+    fn several(&self, joint: &Joint, system: &System) -> Vec<Column> {
+        let names = joint.several_names().into_iter();
+        let mut columns: Vec<Column> = names
+            .map(|(name, unit)| Column {
+                name,
+                unit,
+                values: Vec::with_capacity(self.poses.len()),
+            })
+            .collect();
+        if columns.is_empty() {
+            return columns;
+        }
+        let reference: Vec<Pose> = system.bodies.iter().map(|body| body.pose()).collect();
+        for poses in &self.poses {
+            let values = joint.several(poses, &reference).unwrap_or_default();
+            for (column, value) in columns.iter_mut().zip(values) {
+                let before = column.values.last().copied().unwrap_or(0.0);
+                column.values.push(match column.unit {
+                    "rad" => nearest_turn(value, before),
+                    _ => value,
+                });
+            }
+        }
+        columns
+    }
+
     /// Returns the observations that need no model: time, joint coordinates and marker positions.
     pub fn observe(&self, system: &System) -> Observations {
         let mut columns = vec![Column {
@@ -106,6 +133,8 @@ impl Trajectory {
                 values: self.joints.iter().map(|u| u[i]).collect(),
             });
         }
+        let several = system.joints.iter();
+        columns.extend(several.flat_map(|joint| self.several(joint, system)));
         for (m, marker) in system.markers.iter().enumerate() {
             let path = self.path(m);
             for (i, axis) in ["x", "y", "z"].into_iter().enumerate() {

@@ -17,6 +17,12 @@ pub(super) fn triad(n: &Vector) -> [Vector; 2] {
     [a, n.cross(&a)]
 }
 
+/// An angle and as many whole turns as bring it nearest to another one.
+pub fn nearest_turn(angle: f64, near: f64) -> f64 {
+    use std::f64::consts::TAU;
+    angle + ((near - angle) / TAU).round() * TAU
+}
+
 /// A joint coordinate whose value is prescribed.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Prescribed {
@@ -111,8 +117,20 @@ impl Joint {
         self.kind.freedoms() == 1
     }
 
+    /// Names and units of the coordinates of a kind of several coordinates without a chart: `wrist_angle1`.
+    pub fn several_names(&self) -> Vec<(String, &'static str)> {
+        let parts: &[_] = match self.kind {
+            JointKind::Universal { .. } => &[("angle1", "rad"), ("angle2", "rad")],
+            JointKind::Cylindrical { .. } => &[("slide", "mm"), ("angle", "rad")],
+            JointKind::Planar { .. } => &[("slide1", "mm"), ("slide2", "mm"), ("angle", "rad")],
+            _ => &[],
+        };
+        let named = |&(part, unit)| (format!("{}_{part}", self.name), unit);
+        parts.iter().map(named).collect()
+    }
+
     /// Coordinates at poses of the bodies, for a kind of several coordinates without a chart: angles without whole turns.
-    pub(super) fn several(&self, poses: &[Pose], reference: &[Pose]) -> Option<Vec<f64>> {
+    pub fn several(&self, poses: &[Pose], reference: &[Pose]) -> Option<Vec<f64>> {
         let pose = |poses: &[Pose], body: Option<usize>| body.map_or(Pose::GROUND, |b| poses[b]);
         // Rotations and places of both bodies relative to the reference configuration.
         let [p, c] = [self.parent, Some(self.child)].map(|body| {
@@ -214,8 +232,7 @@ impl JointReading {
         match &self.measure {
             JointCoordinate::Angle { vectors } => {
                 let [a, b, c] = vectors.each_ref().map(|v| v.at(poses, &[]));
-                let angle = b.dot(&c).atan2(a.dot(&c));
-                angle + ((near - angle) / std::f64::consts::TAU).round() * std::f64::consts::TAU
+                nearest_turn(b.dot(&c).atan2(a.dot(&c)), near)
             }
             JointCoordinate::Displacement { axis, span } => {
                 axis.at(poses, &[]).dot(&span.at(poses, &[]))

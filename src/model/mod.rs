@@ -79,7 +79,7 @@ pub use floating::Floating;
 pub use graph::Graph;
 pub use immobile::Immobile;
 pub use joint_sections::JointSection;
-pub use joints::{JointReading, Prescribed, Screw};
+pub use joints::{JointReading, Prescribed, Screw, nearest_turn};
 pub use loops::{Loops, OPEN};
 pub use maxwell::{MOST_BRANCHES, MaxwellBranch, MaxwellBranches, NO_BRANCHES, Response};
 pub use model::Model;

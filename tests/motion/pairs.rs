@@ -119,6 +119,7 @@ fn pairs_move_like_hinges_and_slides_in_a_row() {
         let moved = run(&reduced, &rates);
         let same = run(&redundant, &directors);
         let mut row = run(&twin, &rates);
+        same_columns(&moved, &row, kind);
         for poses in &mut row.poses {
             poses.drain(..kind.freedoms() - 1);
         }
@@ -135,6 +136,29 @@ fn pairs_move_like_hinges_and_slides_in_a_row() {
             apart[0], apart[1]
         );
         assert!(apart[0] < 1e-10 && apart[1] < 1e-10, "{apart:?}");
+    }
+}
+
+/// Compares the coordinates of a joint in tables with those of hinges and slides in a row.
+fn same_columns(moved: &Trajectory, row: &Trajectory, kind: JointKind) {
+    let columns = moved.observe(&robot(&[kind])).columns;
+    let of_joint: Vec<_> = columns
+        .iter()
+        .filter(|column| column.name.starts_with("joint0_"))
+        .collect();
+    assert_eq!(of_joint.len(), kind.freedoms());
+    let turns = [0.0, 2.0 * std::f64::consts::PI];
+    for (i, column) in of_joint.into_iter().enumerate() {
+        let greatest = column.values.iter().fold(0.0_f64, |m, v| m.max(v.abs()));
+        println!("{} reaches {greatest} {}", column.name, column.unit);
+        assert!(greatest > 0.1, "{}", column.name);
+        for (value, joints) in column.values.iter().zip(&row.joints) {
+            let apart = (value - joints[i]).abs();
+            let apart = turns.map(|turn| (apart - turn).abs());
+            assert!(apart[0].min(apart[1]) < 1e-9, "{}: {apart:?}", column.name);
+        }
+        let steps = column.values.windows(2).map(|w| (w[1] - w[0]).abs());
+        assert!(steps.fold(0.0, f64::max) < 1.0, "{} jumps", column.name);
     }
 }
 
