@@ -4,6 +4,7 @@ use crate::control::bounded_quantity::{BoundedQuantity, When};
 use crate::control::problem::{PathConstraint, Side};
 use crate::functional::Stencil;
 use crate::model::{FieldPlace, Quantity, Region, System};
+use nalgebra::Vector3;
 
 /// Length of the intervals, by which steps are rates.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -12,6 +13,13 @@ pub struct Length {
     pub h: f64,
     /// True if it is an unknown.
     pub is_free: bool,
+}
+
+/// What a source gives.
+#[derive(Clone, Copy, Debug, PartialEq)]
+enum Flow {
+    Current,
+    Power,
 }
 
 /// All bounded quantities of a problem.
@@ -47,8 +55,8 @@ impl Limits {
         limit: &PathConstraint,
         (system, measure_joints, length): (&System, bool, Length),
     ) {
-        let h = length.h;
         let out = self;
+        let muscle_name = |muscle: usize| &system.muscles[muscle].name;
         match *limit {
             PathConstraint::Once { part, ref limit } => {
                 out.add_once(limit, part, system, length);
@@ -61,21 +69,22 @@ impl Limits {
             }
             PathConstraint::JointRate { joint, min, max } => {
                 let name = format!("rate of {}", system.joints[joint].name);
-                out.add_rate(Quantity::JointStep { joint, h }, [min, max], name, length);
+                let quantity = Quantity::JointStep { joint, h: length.h };
+                out.add_rate(quantity, [min, max], name, length);
             }
             PathConstraint::Stretch { muscle, min, max } => {
-                let name = format!("stretch of {}", system.muscles[muscle].name);
+                let name = format!("stretch of {}", muscle_name(muscle));
                 let quantity = Quantity::SquaredStretch { muscle };
                 out.add(quantity, [min * min, max * max], name);
             }
             PathConstraint::Tension { muscle, min, max } => {
-                let name = format!("tension of {}", system.muscles[muscle].name);
+                let name = format!("tension of {}", muscle_name(muscle));
                 let unit = largest([min, max]).unwrap_or(system.muscles[muscle].shear_force());
                 let quantity = Quantity::Tension { muscle, unit };
                 out.add(quantity, [min / unit, max / unit], name);
             }
             PathConstraint::ElectricField { muscle, max } => {
-                let name = format!("electric field of {}", system.muscles[muscle].name);
+                let name = format!("electric field of {}", muscle_name(muscle));
                 match system.muscles[muscle].is_behind_resistor() {
                     true => {
                         let quantity = Quantity::ChargedField { muscle, limit: max };
@@ -84,29 +93,20 @@ impl Limits {
                     false => out.add_field(FieldPlace::Muscle(muscle), max, &name),
                 }
             }
-            PathConstraint::Current { .. } | PathConstraint::Power { .. } => {
-                out.add_source(limit, system, length);
+            PathConstraint::Current { muscle, min, max } => {
+                let name = format!("current of {}", muscle_name(muscle));
+                out.add_source(Flow::Current, (muscle, name), [min, max], system, length);
+            }
+            PathConstraint::Power { muscle, min, max } => {
+                let name = format!("power of {}", muscle_name(muscle));
+                out.add_source(Flow::Power, (muscle, name), [min, max], system, length);
             }
             PathConstraint::BlockField { block, region, max } => {
                 out.add_block_field(block, region, max, system);
             }
-            PathConstraint::VoltageRate { .. }
-            | PathConstraint::ReactionForce { .. }
-            | PathConstraint::PeakVoltage { .. }
-            | PathConstraint::MarkerSpeed { .. }
-            | PathConstraint::Marker { .. } => out.add_other(limit, system, length),
-        }
-    }
-
-    /// Adds a limit of a voltage, a reaction or a marker.
-    fn add_other(&mut self, limit: &PathConstraint, system: &System, length: Length) {
-        let (out, h) = (self, length.h);
-        match *limit {
             PathConstraint::VoltageRate { source, min, max } => {
                 let name = format!("rate of the voltage of {}", system.sources()[source].name);
-                let unit = h * largest([min, max]).unwrap_or(1.0);
-                let quantity = Quantity::VoltageStep { source, unit, h };
-                out.add_rate(quantity, [min, max], name, length);
+                out.add_voltage_rate(source, [min, max], name, length);
             }
             PathConstraint::ReactionForce {
                 joint,
@@ -115,30 +115,11 @@ impl Limits {
                 max,
             } => {
                 let name = format!("reaction force of {}", system.joints[joint].name);
-                let (unit, at) = (h * largest([min, max]).unwrap_or(1.0), Stencil::Here);
-                let quantity = Quantity::ReactionStep {
-                    joint,
-                    along,
-                    at,
-                    unit,
-                    h,
-                };
-                out.add_rate(quantity, [min, max], name, length);
+                out.add_reaction(joint, along, ([min, max], name), length);
             }
             PathConstraint::MarkerSpeed { marker, min, max } => {
                 let name = format!("speed of marker {}", system.markers[marker].name);
-                let limit = largest([min, max]).unwrap_or(1.0);
-                let square = |bound: f64| (bound / limit).powi(2);
-                let lower = if min > 0.0 {
-                    square(min)
-                } else {
-                    f64::NEG_INFINITY
-                };
-                out.add(
-                    Quantity::SquaredSpeed { marker, limit },
-                    [lower, square(max)],
-                    name,
-                );
+                out.add_speed(marker, [min, max], name);
             }
             PathConstraint::PeakVoltage {
                 source,
@@ -158,8 +139,47 @@ impl Limits {
                 region,
                 side,
             } => out.add_region(marker, region, side, system),
-            _ => {}
         }
+    }
+
+    /// Adds a limit of the rate of a voltage.
+    fn add_voltage_rate(&mut self, source: usize, bounds: [f64; 2], name: String, length: Length) {
+        let h = length.h;
+        let unit = h * largest(bounds).unwrap_or(1.0);
+        let quantity = Quantity::VoltageStep { source, unit, h };
+        self.add_rate(quantity, bounds, name, length);
+    }
+
+    /// Adds a limit of the force that a joint transmits.
+    fn add_reaction(
+        &mut self,
+        joint: usize,
+        along: Vector3<f64>,
+        (bounds, name): ([f64; 2], String),
+        length: Length,
+    ) {
+        let h = length.h;
+        let quantity = Quantity::ReactionStep {
+            joint,
+            along,
+            at: Stencil::Here,
+            unit: h * largest(bounds).unwrap_or(1.0),
+            h,
+        };
+        self.add_rate(quantity, bounds, name, length);
+    }
+
+    /// Adds a limit of the speed of a marker.
+    fn add_speed(&mut self, marker: usize, [min, max]: [f64; 2], name: String) {
+        let limit = largest([min, max]).unwrap_or(1.0);
+        let square = |bound: f64| (bound / limit).powi(2);
+        let lower = if min > 0.0 {
+            square(min)
+        } else {
+            f64::NEG_INFINITY
+        };
+        let quantity = Quantity::SquaredSpeed { marker, limit };
+        self.add(quantity, [lower, square(max)], name);
     }
 
     /// Adds a limit that holds at a part of the duration alone; of a field at the instant, under the voltages of the interval before.
@@ -206,35 +226,32 @@ impl Limits {
         }
     }
 
-    /// Adds a limit of the current or the power of the source of a muscle: behind a resistor in the intervals, otherwise of the charge or energy
-    /// that flows from the middle of an interval to that of the next one.
-    fn add_source(&mut self, limit: &PathConstraint, system: &System, length: Length) {
+    /// Adds a limit of what the source of a muscle gives: behind a resistor in the intervals, otherwise of the charge or energy that flows from
+    /// the middle of an interval to that of the next one.
+    fn add_source(
+        &mut self,
+        flow: Flow,
+        (muscle, name): (usize, String),
+        bounds: [f64; 2],
+        system: &System,
+        length: Length,
+    ) {
         let h = length.h;
-        let (muscle, bounds, is_current) = match *limit {
-            PathConstraint::Current { muscle, min, max } => (muscle, [min, max], true),
-            PathConstraint::Power { muscle, min, max } => (muscle, [min, max], false),
-            _ => return,
-        };
-        let name = &system.muscles[muscle].name;
-        let name = match is_current {
-            true => format!("current of {name}"),
-            false => format!("power of {name}"),
-        };
         if system.muscles[muscle].is_behind_resistor() {
-            let typical = system.short_circuit(muscle)[usize::from(!is_current)];
+            let typical = system.short_circuit(muscle)[flow as usize];
             let unit = largest(bounds).unwrap_or(typical);
-            let quantity = match is_current {
-                true => Quantity::SourceCurrent { muscle, unit },
-                false => Quantity::SourcePower { muscle, unit },
+            let quantity = match flow {
+                Flow::Current => Quantity::SourceCurrent { muscle, unit },
+                Flow::Power => Quantity::SourcePower { muscle, unit },
             };
             return self.add(quantity, bounds.map(|bound| bound / unit), name);
         }
-        let typical = system.charging(muscle)[usize::from(!is_current)];
+        let typical = system.charging(muscle)[flow as usize];
         let unit = largest(bounds).map_or(typical, |largest| h * largest);
         let at = Stencil::Next;
-        let quantity = match is_current {
-            true => Quantity::ChargeStep { muscle, unit, h },
-            false => Quantity::EnergyStep {
+        let quantity = match flow {
+            Flow::Current => Quantity::ChargeStep { muscle, unit, h },
+            Flow::Power => Quantity::EnergyStep {
                 muscle,
                 at,
                 unit,
