@@ -3,7 +3,7 @@
 use crate::control::bounded_quantity::{BoundedQuantity, When};
 use crate::control::problem::{PathConstraint, Side};
 use crate::functional::Stencil;
-use crate::model::{FieldPlace, Quantity, Region, System};
+use crate::model::{FieldPlace, Quantity, Reaction, Region, System};
 use nalgebra::Vector3;
 
 /// Length of the intervals, by which steps are rates.
@@ -108,14 +108,19 @@ impl Limits {
                 let name = format!("rate of the voltage of {}", system.sources()[source].name);
                 out.add_voltage_rate(source, [min, max], name, length);
             }
-            PathConstraint::ReactionForce {
+            PathConstraint::Reaction {
                 joint,
+                of,
                 along,
                 min,
                 max,
             } => {
-                let name = format!("reaction force of {}", system.joints[joint].name);
-                out.add_reaction(joint, along, ([min, max], name), length);
+                let what = match of {
+                    Reaction::Force => "force",
+                    Reaction::Torque => "torque",
+                };
+                let name = format!("reaction {what} of {}", system.joints[joint].name);
+                out.add_reaction((joint, of), along, ([min, max], name), length);
             }
             PathConstraint::MarkerSpeed { marker, min, max } => {
                 let name = format!("speed of marker {}", system.markers[marker].name);
@@ -150,10 +155,10 @@ impl Limits {
         self.add_rate(quantity, bounds, name, length);
     }
 
-    /// Adds a limit of the force that a joint transmits.
+    /// Adds a limit of the force or torque that a joint transmits.
     fn add_reaction(
         &mut self,
-        joint: usize,
+        (joint, of): (usize, Reaction),
         along: Vector3<f64>,
         (bounds, name): ([f64; 2], String),
         length: Length,
@@ -161,6 +166,7 @@ impl Limits {
         let h = length.h;
         let quantity = Quantity::ReactionStep {
             joint,
+            of,
             along,
             at: Stencil::Here,
             unit: h * largest(bounds).unwrap_or(1.0),

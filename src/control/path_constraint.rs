@@ -1,7 +1,7 @@
 //! Path limits of a problem: bounds of quantities along the motion, or at a single time.
 
 use crate::math::Vector;
-use crate::model::Region;
+use crate::model::{Reaction, Region};
 
 /// An inequality that holds at every instant or in every interval.
 #[derive(Clone, Debug, PartialEq)]
@@ -50,11 +50,13 @@ pub enum PathConstraint {
         /// Breakdown value in V/mm.
         max: f64,
     },
-    /// Component in N, along a direction of the ground frame, of the force from the parent of a joint on its child, at the instants between
-    /// intervals.
-    ReactionForce {
+    /// Component, along a direction of the ground frame, of the force in N from the parent of a joint on its child, or of the torque in N mm
+    /// about the point of the joint, at the instants between intervals.
+    Reaction {
         /// Joint index.
         joint: usize,
+        /// Force or torque.
+        of: Reaction,
         /// Unit vector.
         along: Vector,
         /// Lower bound or −∞.

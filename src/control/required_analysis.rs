@@ -168,7 +168,7 @@ impl<'a> Named<'a> {
             PathConstraint::Once { ref limit, .. } => self.of_limit(limit),
             PathConstraint::JointAngle { joint, .. }
             | PathConstraint::JointRate { joint, .. }
-            | PathConstraint::ReactionForce { joint, .. } => {
+            | PathConstraint::Reaction { joint, .. } => {
                 self.of_joint(joint);
             }
             PathConstraint::Stretch { muscle, .. } | PathConstraint::Tension { muscle, .. } => {

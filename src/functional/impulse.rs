@@ -1,21 +1,50 @@
 //! Impulse of the forces of terms along a displacement of one end of an interval, as a quantity.
 //!
-//! With the part S of the action in an interval and a constant displacement w of the vectors of one instant it is `m = ∇S·w`, and
-//! `∇m = ∇(∇S·w)` and `∇²m = ∇²(∇S·w)` are what terms give contracted with the direction w, virtual works included.
+//! With the part S of the action in an interval and a displacement w of the vectors of one instant it is `m = ∇S·w`. For a constant w
+//! `∇m = ∇(∇S·w)` and `∇²m = ∇²(∇S·w)` are what terms give contracted with the direction w, virtual works included. For a turn
+//! `w_i = c e × x_j` with `f = ∇S` the sum has `∂m/∂x_j = c f_i × e` too, and `∂²m/∂x_j∂y = −c e × ∂f_i/∂y` for all y that x_i couples with.
 
 use crate::functional::{
-    BlockMask, Couplings, Functional, Horizon, Measure, Order, Outer, Output, Sample,
+    BlockMask, Blocks, Couplings, Functional, Horizon, Measure, Order, Outer, Output, Sample,
     SumDerivatives, Term,
 };
-use crate::math::Vector;
+use crate::math::{Matrix, Vector};
 use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
+
+/// A displacement of the vectors of an instant.
+#[derive(Clone, Debug)]
+pub enum Displacement {
+    /// Constant displacements by vectors.
+    Shift(Vec<Vector>),
+    /// Turns about an axis.
+    Turn {
+        /// Unit vector e.
+        axis: Vector,
+        /// The turns.
+        turns: Vec<Turn>,
+    },
+}
+
+/// A part `c e × x_j` of the displacement of a vector i.
+#[derive(Clone, Copy, Debug)]
+pub struct Turn {
+    /// Vector i.
+    pub of: usize,
+    /// Vector j.
+    pub by: usize,
+    /// Factor c.
+    pub factor: f64,
+}
 
 /// The impulse of some terms.
 #[derive(Debug)]
 pub struct Impulse {
     functional: Functional,
-    /// Displacement w by vectors; zero at the other end.
-    along: Vec<Vector>,
+    /// Unit vector e of its turns.
+    axis: Vector,
+    turns: Vec<Turn>,
+    /// Couplings that a turn adds to: its place, and the pair of its vector i with another one, with the same up to a factor, and with a scalar.
+    turned: [Vec<(usize, usize)>; 3],
     still: Vec<Vector>,
     scalars_still: Vec<f64>,
     /// The end of the interval, 0 or 1.
@@ -23,13 +52,30 @@ pub struct Impulse {
     /// Vectors and scalars that the derivatives of the impulse belong to, each once.
     vectors: Vec<usize>,
     scalars: Vec<usize>,
-    out: Mutex<Output>,
+    evaluation: Mutex<Evaluation>,
+}
+
+/// The displacement w by vectors, zero at the other end, and derivatives of the terms.
+#[derive(Debug)]
+struct Evaluation {
+    along: Vec<Vector>,
+    out: Output,
 }
 
 impl Impulse {
-    /// The impulse of terms that read this number of scalars, along a displacement by vectors of one end of the interval.
-    pub fn new(terms: Vec<Arc<dyn Term>>, scalars: usize, along: Vec<Vector>, side: usize) -> Self {
-        let functional = Functional::new(terms, Vec::new(), along.len(), scalars);
+    /// The impulse of terms along a displacement of one end of the interval; `counts` are those of vectors and scalars.
+    pub fn new(
+        terms: Vec<Arc<dyn Term>>,
+        [vectors, scalars]: [usize; 2],
+        displacement: Displacement,
+        side: usize,
+    ) -> Self {
+        let functional = Functional::new(terms, Vec::new(), vectors, scalars);
+        let still = vec![Vector::zeros(); vectors];
+        let (along, axis, turns) = match displacement {
+            Displacement::Shift(along) => (along, Vector::zeros(), Vec::new()),
+            Displacement::Turn { axis, turns } => (still.clone(), axis, turns),
+        };
         let Couplings {
             full,
             isotropic,
@@ -43,41 +89,108 @@ impl Impulse {
             list
         };
         let of_pairs = full.iter().chain(isotropic).flat_map(|&(a, b)| [a, b]);
-        let vectors = once(of_pairs.chain(mixed.iter().map(|&(a, _)| a)).collect());
-        let of_pairs = pairs.iter().flat_map(|&(s, t)| [s, t]);
-        let read = once(of_pairs.chain(mixed.iter().map(|&(_, s)| s)).collect());
+        let of_turns = turns.iter().map(|turn| turn.by);
+        let of_pairs = of_pairs.chain(mixed.iter().map(|&(a, _)| a));
+        let read = pairs.iter().flat_map(|&(s, t)| [s, t]);
+        let turned = |pairs: &[(usize, usize)]| {
+            let of = |(t, turn): (usize, &Turn)| {
+                let own = pairs.iter().enumerate();
+                let own = own.filter(|(_, (a, _))| *a == turn.of);
+                own.map(|(pair, _)| (t, pair)).collect::<Vec<_>>()
+            };
+            turns.iter().enumerate().flat_map(of).collect()
+        };
         Self {
-            still: vec![Vector::zeros(); along.len()],
+            vectors: once(of_pairs.chain(of_turns).collect()),
+            scalars: once(read.chain(mixed.iter().map(|&(_, s)| s)).collect()),
+            turned: [full, isotropic, mixed].map(|pairs| turned(pairs)),
+            evaluation: Mutex::new(Evaluation {
+                along,
+                out: functional.output(Order::Third),
+            }),
             scalars_still: vec![0.0; scalars],
-            out: Mutex::new(functional.output(Order::Third)),
             functional,
-            along,
+            axis,
+            turns,
+            still,
             side,
-            vectors,
-            scalars: read,
         }
     }
 
     /// The derivatives of the terms up to an order, those contracted with the displacement included.
-    fn evaluated(&self, order: Order, sample: &Sample<'_>) -> MutexGuard<'_, Output> {
-        let mut along = [&self.still[..], &self.still];
-        along[self.side] = &self.along;
+    fn evaluated(&self, order: Order, sample: &Sample<'_>) -> MutexGuard<'_, Evaluation> {
+        let lock = self.evaluation.lock();
+        let mut evaluation = lock.unwrap_or_else(PoisonError::into_inner);
+        let Evaluation { along, out } = &mut *evaluation;
+        for turn in &self.turns {
+            along[turn.of] = Vector::zeros();
+        }
+        for turn in &self.turns {
+            let x = sample.vectors[self.side][turn.by];
+            along[turn.of] += self.axis.cross(&x) * turn.factor;
+        }
+        let mut both = [&self.still[..], &self.still];
+        both[self.side] = along;
         let sample = Sample {
-            along,
+            along: both,
             scalars_along: &self.scalars_still,
             sides: BlockMask::ALL,
             outer: &[],
             ..*sample
         };
-        let mut out = self.out.lock().unwrap_or_else(PoisonError::into_inner);
-        self.functional.evaluate(order, &sample, &mut out);
-        out
+        self.functional.evaluate(order, &sample, out);
+        evaluation
     }
 
     /// The product of forces at its end with the displacement.
-    fn product(&self, forces: &[Vec<Vector>; 2]) -> f64 {
-        let pairs = forces[self.side].iter().zip(&self.along);
+    fn product(&self, along: &[Vector], forces: &[Vec<Vector>; 2]) -> f64 {
+        let pairs = forces[self.side].iter().zip(along);
         pairs.map(|(force, along)| force.dot(along)).sum()
+    }
+
+    /// Adds c times the derivatives of turned vectors times forces.
+    fn add_turned(&self, c: f64, from: &[Vec<Vector>; 2], to: &mut [Vec<Vector>; 2]) {
+        for turn in &self.turns {
+            let force = from[self.side][turn.of];
+            to[self.side][turn.by] += force.cross(&self.axis) * (c * turn.factor);
+        }
+    }
+
+    /// Adds c times the derivatives of turned vectors times the derivatives of forces.
+    fn add_turned_blocks(
+        &self,
+        c: f64,
+        from: &Blocks,
+        (slots, mask): (&mut impl Iterator<Item = usize>, &[bool; 4]),
+        to: &mut Blocks,
+    ) {
+        let side = self.side;
+        let cross = self.axis.cross_matrix() * -c;
+        let [full, isotropic, mixed] = &self.turned;
+        let full = full
+            .iter()
+            .map(|&(t, pair)| (t, from.full[pair].map(|block| cross * block)));
+        let isotropic = isotropic
+            .iter()
+            .map(|&(t, pair)| (t, from.isotropic[pair].map(|factor| cross * factor)));
+        for (t, blocks) in full.chain(isotropic) {
+            let factor = self.turns[t].factor;
+            let mut next = || slots.next().expect("a slot of each pair");
+            let [row, column] = [next(), next()];
+            for other in 0..2 {
+                let block: Matrix = blocks[2 * side + other] * factor;
+                let [at, across] = [2 * side + other, 2 * other + side];
+                if mask[at] {
+                    to.full[row][at] += block;
+                }
+                if mask[across] {
+                    to.full[column][across] += block.transpose();
+                }
+            }
+        }
+        for (&(t, pair), slot) in mixed.iter().zip(slots) {
+            to.mixed[slot][side] += cross * from.mixed[pair][side] * self.turns[t].factor;
+        }
     }
 }
 
@@ -106,6 +219,18 @@ impl Measure for Impulse {
         own.scalars
             .iter()
             .for_each(|&(s, t)| add(couplings.add_scalars(s, t)));
+        let [full, isotropic, mixed] = &self.turned;
+        let of_vectors = full.iter().map(|&(t, pair)| (t, own.full[pair]));
+        let of_vectors =
+            of_vectors.chain(isotropic.iter().map(|&(t, pair)| (t, own.isotropic[pair])));
+        for (t, (_, b)) in of_vectors {
+            let by = self.turns[t].by;
+            add(couplings.add_full(by, b));
+            add(couplings.add_full(b, by));
+        }
+        for &(t, pair) in mixed {
+            add(couplings.add_mixed(self.turns[t].by, own.mixed[pair].1));
+        }
     }
 
     fn vectors(&self) -> Vec<usize> {
@@ -130,7 +255,8 @@ impl Measure for Impulse {
     }
 
     fn value(&self, sample: &Sample<'_>) -> f64 {
-        self.product(&self.evaluated(Order::Gradient, sample).plain.forces)
+        let evaluation = self.evaluated(Order::Gradient, sample);
+        self.product(&evaluation.along, &evaluation.out.plain.forces)
     }
 
     fn by_duration(&self, sample: &Sample<'_>) -> f64 {
@@ -138,12 +264,14 @@ impl Measure for Impulse {
             horizon: Horizon::Free,
             ..*sample
         };
-        self.product(&self.evaluated(Order::Hessian, &sample).plain.horizon_forces)
+        let evaluation = self.evaluated(Order::Hessian, &sample);
+        self.product(&evaluation.along, &evaluation.out.plain.horizon_forces)
     }
 
     fn gradient(&self, sample: &Sample<'_>, forces: &mut [Vec<Vector>; 2], rows: &mut [f64]) {
-        let out = self.evaluated(Order::Third, sample);
-        let own = &out.contracted;
+        let evaluation = self.evaluated(Order::Third, sample);
+        let own = &evaluation.out.contracted;
+        self.add_turned(1.0, &evaluation.out.plain.forces, forces);
         for (to, from) in forces.iter_mut().zip(&own.forces) {
             add!(&self.vectors, from, 1.0, to);
         }
@@ -159,8 +287,9 @@ impl Measure for Impulse {
     ) {
         debug_assert!(outer.curvature == 0.0, "an impulse is bounded, not squared");
         let c = outer.slope;
-        let out = self.evaluated(Order::Third, sample);
-        let own = &out.contracted;
+        let evaluation = self.evaluated(Order::Third, sample);
+        let (own, plain) = (&evaluation.out.contracted, &evaluation.out.plain);
+        self.add_turned(c, &plain.forces, &mut part.forces);
         for (to, from) in part.forces.iter_mut().zip(&own.forces) {
             add!(&self.vectors, from, c, to);
         }
@@ -188,7 +317,9 @@ impl Measure for Impulse {
         for (from, slot) in own.blocks.scalars.iter().zip(&mut slots) {
             part.blocks.scalars[slot] += from * c;
         }
+        self.add_turned_blocks(c, &plain.blocks, (&mut slots, mask), &mut part.blocks);
         if sample.horizon == Horizon::Free {
+            self.add_turned(c, &plain.horizon_forces, &mut part.horizon_forces);
             for (to, from) in part.horizon_forces.iter_mut().zip(&own.horizon_forces) {
                 add!(&self.vectors, from, c, to);
             }

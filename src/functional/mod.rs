@@ -46,7 +46,7 @@ pub use element_fields::{ElementField, ElementFields};
 pub use finite_elements::{Electrical, FiniteElement, FiniteElements, Variations};
 pub use formulas::{Element, Formulas};
 pub use group::Group;
-pub use impulse::Impulse;
+pub use impulse::{Displacement, Impulse, Turn};
 pub use inertia::{Inertia, Mass};
 pub use kernel::{Kernel, Scatter};
 pub use maxwell_elements::{MaxwellElement, MaxwellElements, POINTS};

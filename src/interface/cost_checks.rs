@@ -5,7 +5,7 @@ use crate::control::problem::{
 };
 use crate::interface::error::{Result, require};
 use crate::model::system::{Fidelity, Joint, Muscle};
-use crate::model::{Quantity, System};
+use crate::model::{Quantity, Reaction, System};
 
 /// Refuses costs of parts that the system does not have, and weights and functions of time that are not finite.
 pub(super) fn check_costs(
@@ -68,14 +68,17 @@ pub(super) fn check_limits(limits: &[PathConstraint], system: &System) -> Result
                 check_limits(std::slice::from_ref(limit), system)?;
                 part > 0.0 && part <= 1.0
             }
-            PathConstraint::ReactionForce {
+            PathConstraint::Reaction {
                 joint,
+                of,
                 along,
                 min,
                 max,
             } => {
                 let is_unit = (along.norm() - 1.0).abs() < 1e-9;
-                joint < system.joints.len() && is_unit && min <= max
+                let joint = system.joints.get(joint);
+                let is_known = |joint: &Joint| of == Reaction::Force || joint.has_torque();
+                joint.is_some_and(is_known) && is_unit && min <= max
             }
             PathConstraint::MarkerSpeed { marker, min, max } => {
                 marker < system.markers.len() && min <= max

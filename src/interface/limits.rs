@@ -4,6 +4,7 @@ use crate::control::problem::PathConstraint;
 use crate::interface::control::Control;
 use crate::interface::handle::Handle;
 use crate::math::Vector;
+use crate::model::Reaction;
 use crate::model::system::{Joint, Marker, Muscle};
 use std::ops::RangeInclusive;
 
@@ -70,8 +71,27 @@ impl Control {
         range: RangeInclusive<f64>,
     ) -> Self {
         let (joint, (min, max)) = (joint.index(), range.into_inner());
-        self.limited(PathConstraint::ReactionForce {
+        self.limited(PathConstraint::Reaction {
             joint,
+            of: Reaction::Force,
+            along,
+            min,
+            max,
+        })
+    }
+
+    /// Range in N mm of the component, along a unit vector of the ground frame, of the torque from the parent of a joint on its child about the
+    /// point of the joint, at the instants between intervals.
+    pub fn reaction_torque_within(
+        self,
+        joint: Handle<Joint>,
+        along: Vector,
+        range: RangeInclusive<f64>,
+    ) -> Self {
+        let (joint, (min, max)) = (joint.index(), range.into_inner());
+        self.limited(PathConstraint::Reaction {
+            joint,
+            of: Reaction::Torque,
             along,
             min,
             max,

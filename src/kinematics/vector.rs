@@ -182,6 +182,11 @@ impl MaterialVector {
             .all(|t| matches!(t.carrier, Carrier::Ground | Carrier::Body(_)))
     }
 
+    /// Sum of the coefficients of its centres: its displacement where all that carries it moves by a unit.
+    pub fn centre(&self) -> f64 {
+        self.terms.iter().map(|term| term.centre).sum()
+    }
+
     /// The value at given poses of the bodies and places of the nodes; coordinates that are no places are not read from poses.
     pub fn at(&self, poses: &[Pose], nodes: &[Vector]) -> Vector {
         let part = |t: &VectorTerm| match t.carrier {

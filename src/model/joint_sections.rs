@@ -1,6 +1,7 @@
 //! Sections at joints: the bodies on one side of each, whose balance of momentum gives the force and torque that the joint transmits.
 
-use crate::kinematics::{Carrier, MaterialVector, Pose};
+use crate::functional::Turn;
+use crate::kinematics::{Carrier, MaterialVector, Pose, VectorTerm, Vectors};
 use crate::math::{DisjointSets, Vector};
 use crate::model::constraints::GLUE;
 use crate::model::model::Model;
@@ -88,19 +89,44 @@ impl JointSection {
             bodies: bodies.filter(|&b| sets.smallest(b) == side).collect(),
             sign: own * turned,
             at: MaterialVector::point(Some(joint.child), &joint.at, reference),
-            has_torque: joint.kind != JointKind::Spherical,
+            has_torque: joint.has_torque(),
         })
+    }
+
+    /// The part of a vector that is carried by bodies of the section.
+    fn part(&self, vector: &MaterialVector) -> MaterialVector {
+        let moved = |term: &&VectorTerm| match term.carrier {
+            Carrier::Body(body) => self.bodies.contains(&body),
+            _ => false,
+        };
+        MaterialVector {
+            terms: vector.terms.iter().filter(moved).copied().collect(),
+        }
     }
 
     /// Displacement of a vector when all bodies of the section move along a direction, with the sign of the force from the parent on the child.
     pub(super) fn displacement(&self, vector: &MaterialVector, direction: &Vector) -> Vector {
-        let moved = |carrier: Carrier| match carrier {
-            Carrier::Body(body) => self.bodies.contains(&body),
-            _ => false,
-        };
-        let terms = vector.terms.iter().filter(|term| moved(term.carrier));
-        let factor: f64 = terms.map(|term| term.centre).sum();
-        direction * (-self.sign * factor)
+        direction * (-self.sign * self.part(vector).centre())
+    }
+
+    /// Displacements of vectors when all bodies of the section turn about the point of the joint, with the sign of the torque from the parent on
+    /// the child; what they read joins the vectors.
+    pub(super) fn turns(&self, vectors: &mut Vectors) -> Vec<Turn> {
+        let mut turns = Vec::new();
+        let at = vectors.index(self.at.clone());
+        for of in 0..vectors.list().len() {
+            let part = self.part(&vectors.list()[of]);
+            let centre = part.centre();
+            if !part.terms.is_empty() {
+                let (by, factor) = (vectors.index(part), -self.sign);
+                turns.push(Turn { of, by, factor });
+            }
+            if centre != 0.0 {
+                let factor = self.sign * centre;
+                turns.push(Turn { of, by: at, factor });
+            }
+        }
+        turns
     }
 
     /// Force and torque about the point of the joint that balance wrenches of the bodies at poses: from the parent on the child.

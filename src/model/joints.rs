@@ -129,6 +129,11 @@ impl Joint {
         parts.iter().map(named).collect()
     }
 
+    /// Returns true if it transmits a torque.
+    pub fn has_torque(&self) -> bool {
+        self.kind != JointKind::Spherical
+    }
+
     /// Coordinates at poses of the bodies, for a kind of several coordinates without a chart: angles without whole turns.
     pub fn several(&self, poses: &[Pose], reference: &[Pose]) -> Option<Vec<f64>> {
         let pose = |poses: &[Pose], body: Option<usize>| body.map_or(Pose::GROUND, |b| poses[b]);

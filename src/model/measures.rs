@@ -129,8 +129,12 @@ impl Known<'_> {
             | Quantity::ChargeStep { .. }
             | Quantity::EnergyStep { .. } => return self.of_charge(quantity, shape, vectors),
             Quantity::ReactionStep {
-                joint, along, at, ..
-            } => return self.reaction(joint, (along, at), vectors),
+                joint,
+                of,
+                along,
+                at,
+                ..
+            } => return self.reaction((joint, of), (along, at), vectors),
             Quantity::Tension { muscle, unit } => {
                 return self.tension(muscle, (unit, shape), vectors);
             }

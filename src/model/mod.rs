@@ -88,7 +88,7 @@ pub use named::Freedom;
 pub use parameter::{NotSought, check as check_parameters, with_parameters};
 pub use plan::{LeftOut, Present};
 pub use presolved::{BodyLocation, Presolved};
-pub use quantity::{FieldPlace, Quantity, Region, joint_unit};
+pub use quantity::{FieldPlace, Quantity, Reaction, Region, joint_unit};
 pub use solid_block::SolidBlock;
 pub use sought::{Arguments, Sought};
 pub use system::{System, VACUUM_PERMITTIVITY};

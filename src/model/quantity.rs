@@ -41,6 +41,15 @@ pub enum FieldPlace {
     },
 }
 
+/// Force or torque that a joint transmits along a direction.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Reaction {
+    /// Force in N.
+    Force,
+    /// Torque in N mm about the point of the joint.
+    Torque,
+}
+
 /// Something to measure.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Quantity {
@@ -136,16 +145,18 @@ pub enum Quantity {
         /// Length of the interval in ms, for messages.
         h: f64,
     },
-    /// Impulse of a joint along a direction in N ms: at the start of an interval, or minus that at its end, so that the step from one interval to
-    /// the next is the whole impulse at the instant between them, which is limited.
+    /// Impulse of a joint along a direction in N ms, or its moment about the joint in N mm ms: at the start of an interval, or minus that at its
+    /// end, so that the step from one interval to the next is the whole impulse at the instant between them, which is limited.
     ReactionStep {
         /// Joint index.
         joint: usize,
+        /// The impulse of its force or of its torque.
+        of: Reaction,
         /// Unit vector of the ground frame.
         along: Vector,
         /// At the start or at the end of the interval: `Here` or `Next`.
         at: Stencil,
-        /// Unit of the steps in N ms.
+        /// Unit of the steps in N ms or N mm ms.
         unit: f64,
         /// Length of the interval in ms, for messages.
         h: f64,
@@ -322,7 +333,10 @@ impl Quantity {
             Self::VoltageStep { unit, h, .. } => (value * unit / h, "kV/s"),
             Self::ChargeStep { unit, h, .. } => (1e3 * value * unit / h, "mA"),
             Self::EnergyStep { unit, h, .. } => (value * unit / h, "W"),
-            Self::ReactionStep { unit, h, .. } => (value * unit / h, "N"),
+            Self::ReactionStep { of, unit, h, .. } => match of {
+                Reaction::Force => (value * unit / h, "N"),
+                Reaction::Torque => (value * unit / h, "N mm"),
+            },
             Self::MarkerRegion { region, .. } => match region {
                 Region::Sphere { radius, .. } => (value.sqrt() * radius, "mm from its centre"),
                 Region::Box { .. } => (value.powf(1.0 / 16.0), "half edges from its centre"),

@@ -19,12 +19,14 @@ impl Quantity {
             }),
             Self::ReactionStep {
                 joint,
+                of,
                 along,
                 unit,
                 h,
                 ..
             } => Some(Self::ReactionStep {
                 joint,
+                of,
                 along,
                 at: Stencil::Next,
                 unit,

@@ -2,7 +2,7 @@
 
 use nalgebra::Vector3;
 use proboscis::control::problem::{PathConstraint, Side};
-use proboscis::model::Region;
+use proboscis::model::{Reaction, Region};
 
 /// A limit of the tension of a muscle.
 pub fn tension(muscle: usize) -> PathConstraint {
@@ -13,10 +13,11 @@ pub fn tension(muscle: usize) -> PathConstraint {
     }
 }
 
-/// A limit of the force of a joint along an oblique direction.
-pub fn reaction(joint: usize) -> PathConstraint {
-    PathConstraint::ReactionForce {
+/// A limit of the force or torque of a joint along an oblique direction.
+pub fn reaction(joint: usize, of: Reaction) -> PathConstraint {
+    PathConstraint::Reaction {
         joint,
+        of,
         along: Vector3::new(0.48, 0.6, 0.64),
         min: -3.0,
         max: 2.0,

@@ -7,6 +7,7 @@ use super::systems::{branched, charged};
 use super::tracked::{measured, measured_source};
 use proboscis::control::problem::{Control, Duration};
 use proboscis::math::Signal;
+use proboscis::model::Reaction;
 use proboscis::model::system::System;
 
 /// The list.
@@ -20,6 +21,8 @@ pub fn measuring() -> Vec<Case> {
             control,
         }
     };
+    let force = |joint| reaction(joint, Reaction::Force);
+    let torque = |joint| reaction(joint, Reaction::Torque);
     let free = Duration::Free {
         min: 10.0,
         max: 90.0,
@@ -27,15 +30,18 @@ pub fn measuring() -> Vec<Case> {
     };
     vec![
         case("branched tree, reactions", branched(), &|c| {
-            c.limits = vec![reaction(0), reaction(1), reaction(2).at_part(1.0)];
+            c.limits = vec![force(0), force(1), force(2).at_part(1.0)];
+        }),
+        case("branched tree, reaction torques", branched(), &|c| {
+            c.limits = vec![torque(0), torque(1), torque(2).at_part(1.0)];
         }),
         case("branched tree, reactions, free time", branched(), &|c| {
-            c.limits = vec![reaction(0), reaction(2)];
+            c.limits = vec![force(0), torque(1), torque(2)];
             c.duration = free;
             c.objective.rate = 0.3;
         }),
         case("charges, reactions, free time", charged(), &|c| {
-            c.limits = vec![reaction(0)];
+            c.limits = vec![force(0), torque(0)];
             c.duration = free;
             c.given.insert(4, Signal::Constant(1e-4));
         }),

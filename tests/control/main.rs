@@ -30,6 +30,7 @@ mod periodic;
 mod prescribed;
 mod rate_limits;
 mod reaction_limits;
+mod reaction_torques;
 mod reference;
 mod resample;
 mod resisted_energies;

@@ -4,17 +4,18 @@ use crate::control::problem::{PathConstraint, Side};
 use crate::files::json::error::SceneError;
 use crate::files::json::scope::Scope;
 use crate::files::problem::bounds::check_bounds;
+use crate::files::problem::reaction_limits::{reaction_force, reaction_torque};
 use crate::files::problem::source_limits::{bounds, source_limits};
 use crate::files::problem::spec_limits::{
-    ElectricFieldLimitSpec, LimitSpec, MarkerLimitSpec, MarkerSpeedLimitSpec,
-    ReactionForceLimitSpec, RegionSpec, StretchLimitSpec, TensionLimitSpec,
+    ElectricFieldLimitSpec, LimitSpec, MarkerLimitSpec, MarkerSpeedLimitSpec, RegionSpec,
+    StretchLimitSpec, TensionLimitSpec,
 };
 use crate::files::problem::spec_source_limits::All;
 use crate::files::problem::state::{
     ELECTRIC_KEYS, joint_value, joint_with_coordinate, moving_marker,
 };
 use crate::files::scene::names::names;
-use crate::files::scene::point::{unit_axis, vector};
+use crate::files::scene::point::vector;
 use crate::files::units::quantity::{
     Angle, AngularVelocity, Kind, Length, PhysicalQuantity, Quantity, Velocity,
 };
@@ -69,6 +70,10 @@ fn limit(
             spec.reaction_force.as_ref().map(|_| "reaction_force"),
         ),
         (
+            "reaction_torque",
+            spec.reaction_torque.as_ref().map(|_| "reaction_torque"),
+        ),
+        (
             "marker_speed",
             spec.marker_speed.as_ref().map(|_| "marker_speed"),
         ),
@@ -104,6 +109,9 @@ fn limit(
     }
     if let Some(spec) = &spec.reaction_force {
         limits.push(reaction_force(spec, system, &scope)?);
+    }
+    if let Some(spec) = &spec.reaction_torque {
+        limits.push(reaction_torque(spec, system, &scope)?);
     }
     if let Some(spec) = &spec.marker_speed {
         limits.push(marker_speed(spec, system, &scope)?);
@@ -153,24 +161,6 @@ fn stretch(
     let (min, max) = (spec.min.unwrap_or(0.0), spec.max.unwrap_or(f64::INFINITY));
     check_bounds(min, max, spec.min.is_some() || spec.max.is_some(), scope)?;
     Ok(PathConstraint::Stretch { muscle, min, max })
-}
-
-fn reaction_force(
-    spec: &ReactionForceLimitSpec,
-    system: &System,
-    scope: &Scope<'_>,
-) -> Result<PathConstraint, SceneError> {
-    let joints = names(&system.joints, |joint| &joint.name);
-    let joint = scope
-        .key("joint")
-        .find(&spec.joint, &joints, "the name of a joint")?;
-    let [min, max] = bounds([&spec.min, &spec.max], scope)?;
-    Ok(PathConstraint::ReactionForce {
-        joint,
-        along: unit_axis(&spec.along, &scope.key("along"))?,
-        min,
-        max,
-    })
 }
 
 /// The limit of a speed; a lower bound of zero is none.

@@ -18,6 +18,7 @@ pub(crate) mod limits;
 mod loads;
 mod measured;
 pub mod output;
+mod reaction_limits;
 pub(crate) mod simulation;
 pub(crate) mod solution_document;
 pub(crate) mod solution_joints;

@@ -8,7 +8,7 @@ use crate::files::problem::spec_source_limits::{
 };
 use crate::files::scene::point::{CornersSpec, Point};
 use crate::files::units::quantity::{
-    ElectricField, Force, JointCoordinate, JointRate, Length, Quantity, Velocity,
+    ElectricField, Force, JointCoordinate, JointRate, Length, Quantity, Torque, Velocity,
 };
 
 /// A path limit: exactly one of the keys but `part`. `min` and `max` may be equal with `part`: the quantity is then prescribed there.
@@ -40,6 +40,9 @@ pub struct LimitSpec {
     /// Limits of the force that a joint transmits.
     #[serde(default)]
     pub reaction_force: Option<ReactionForceLimitSpec>,
+    /// Limits of the torque that a joint transmits.
+    #[serde(default)]
+    pub reaction_torque: Option<ReactionTorqueLimitSpec>,
     /// Limits of the speed of a marker.
     #[serde(default)]
     pub marker_speed: Option<MarkerSpeedLimitSpec>,
@@ -98,6 +101,25 @@ pub struct ReactionForceLimitSpec {
     /// Upper bound, SI unit N.
     #[serde(default)]
     pub max: Option<Quantity<Force>>,
+}
+
+/// Limits of the component, about a direction of the ground frame, of the torque from the parent of a joint on its child: `min`, `max` or both.
+///
+/// It is the torque of the columns of reactions, about the point of the joint, at the instants between intervals. Spherical joints and joints in
+/// loops are refused.
+#[derive(Clone, Debug, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct ReactionTorqueLimitSpec {
+    /// Name of the joint.
+    pub joint: String,
+    /// Direction of the ground frame, of any length.
+    pub about: [f64; 3],
+    /// Lower bound, SI unit N m.
+    #[serde(default)]
+    pub min: Option<Quantity<Torque>>,
+    /// Upper bound, SI unit N m.
+    #[serde(default)]
+    pub max: Option<Quantity<Torque>>,
 }
 
 /// Limits of the size of the mean velocity of a marker in each interval: `min`, `max` or both.
