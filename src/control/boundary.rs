@@ -8,7 +8,7 @@ use crate::control::error::BoundaryError;
 use crate::control::given_rates;
 use crate::control::goal_rows;
 use crate::control::limits::{Length, Limits};
-use crate::control::off_grid::off_grid;
+use crate::control::off_grid::{off_grid, without_steps};
 use crate::control::periodic;
 use crate::control::prescribed::{self, at_rest};
 use crate::control::problem::{BoundaryState, Control, Duration, Rest};
@@ -104,8 +104,8 @@ impl BoundaryConditions {
                 rest: of_goal,
             },
             rest: rest.map(|voltages| voltages.map(<[f64]>::to_vec)),
+            notes: [off_grid(control), without_steps(control, &limits)].concat(),
             limits,
-            notes: off_grid(control),
         };
         let rest = boundary.goal.rest.as_ref();
         let is_known = control.goal != BoundaryState::Periodic;

@@ -15,7 +15,7 @@ pub struct Length {
     pub is_free: bool,
 }
 
-/// What a source gives.
+/// Measure of a source.
 #[derive(Clone, Copy, Debug, PartialEq)]
 enum Flow {
     Current,

@@ -1,5 +1,7 @@
-//! Notes about what is asked for between two instants of the grid, and is reached at the nearest one.
+//! Notes about what is asked for where the grid has no instant or no step: the nearest instant, or nothing, stands for it.
 
+use crate::control::bounded_quantity::BoundedQuantity;
+use crate::control::limits::Limits;
 use crate::control::problem::{Control, Duration, During, PathConstraint};
 use crate::control::waypoint::instant_at;
 use crate::math::shortest;
@@ -45,6 +47,21 @@ pub(super) fn off_grid(control: &Control) -> Vec<String> {
         _ => None,
     });
     let mut notes: Vec<String> = exact.chain(near).chain(limits).collect();
+    notes.dedup();
+    notes
+}
+
+/// Notes about limits of steps between intervals, of which one interval has none.
+pub(super) fn without_steps(control: &Control, limits: &Limits) -> Vec<String> {
+    let steps = limits.list.iter().filter(|_| control.intervals == 1);
+    let steps = steps.filter(|bounded| bounded.quantity.before().is_some());
+    let note = |bounded: &BoundedQuantity| {
+        let name = &bounded.name;
+        format!(
+            "the {name} is limited from one interval to the next: one interval has no such step"
+        )
+    };
+    let mut notes: Vec<String> = steps.map(note).collect();
     notes.dedup();
     notes
 }

@@ -67,7 +67,6 @@ fn reads(quantity: &Quantity, parameter: &Parameter) -> bool {
         | Quantity::JointStep { .. }
         | Quantity::MarkerPlace { .. }
         | Quantity::MarkerStep { .. }
-        | Quantity::MarkerRate { .. }
         | Quantity::SquaredSpeed { .. }
         | Quantity::MarkerRegion { .. }
         | Quantity::Direction { .. } => false,

@@ -98,7 +98,6 @@ impl Known<'_> {
             Quantity::MarkerPlace { .. }
             | Quantity::MarkerRegion { .. }
             | Quantity::MarkerStep { .. }
-            | Quantity::MarkerRate { .. }
             | Quantity::SquaredSpeed { .. } => return self.of_marker(quantity, shape),
             Quantity::Direction { body, axis, along } => {
                 let body = self.presolved.carrier(Some(body));
@@ -169,11 +168,6 @@ impl Known<'_> {
             Quantity::MarkerStep { marker, axis } => {
                 let normal = Vector::ith(axis, 1.0);
                 let marker = (self.markers[marker], Stencil::Difference);
-                interval::<_, 3, 1, 0>(shape, PositionComponent { origin, normal }, [marker], [])
-            }
-            Quantity::MarkerRate { marker, axis } => {
-                let normal = Vector::ith(axis, 1.0);
-                let marker = (self.markers[marker], Stencil::Rate);
                 interval::<_, 3, 1, 0>(shape, PositionComponent { origin, normal }, [marker], [])
             }
             Quantity::SquaredSpeed { marker, limit } => {

@@ -175,13 +175,6 @@ pub enum Quantity {
         /// Component 0, 1 or 2.
         axis: usize,
     },
-    /// Component of the mean velocity of a marker in an interval, in mm/ms.
-    MarkerRate {
-        /// Marker index.
-        marker: usize,
-        /// Component 0, 1 or 2.
-        axis: usize,
-    },
     /// (|v|/u)² of the mean velocity v of a marker in an interval.
     SquaredSpeed {
         /// Marker index.
@@ -231,7 +224,6 @@ impl Quantity {
             self,
             Self::SquaredField { .. }
                 | Self::MarkerStep { .. }
-                | Self::MarkerRate { .. }
                 | Self::SquaredSpeed { .. }
                 | Self::JointStep { .. }
                 | Self::PeakVoltage { .. }
@@ -255,7 +247,6 @@ impl Quantity {
                 _ => "in the middle of interval",
             },
             Self::MarkerStep { .. }
-            | Self::MarkerRate { .. }
             | Self::SquaredSpeed { .. }
             | Self::JointStep { .. }
             | Self::PeakVoltage { .. }
@@ -277,7 +268,6 @@ impl Quantity {
             Self::Joint { joint, .. } | Self::JointStep { joint, .. } => joint_unit(system, joint),
             Self::Capacitance { .. } => "mF",
             Self::MarkerPlace { .. } | Self::MarkerStep { .. } => "mm",
-            Self::MarkerRate { .. } => "m/s",
             Self::PeakVoltage { .. } => "kV",
             Self::SquaredStretch { .. }
             | Self::SquaredField { .. }
@@ -347,7 +337,6 @@ impl Quantity {
             | Self::PeakVoltage { .. }
             | Self::PeakExcess { .. }
             | Self::MarkerPlace { .. }
-            | Self::MarkerRate { .. }
             | Self::MarkerStep { .. } => (value, self.unit(system)),
         }
     }

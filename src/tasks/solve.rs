@@ -15,7 +15,6 @@ use crate::tasks::verdict::Verdict;
 use crate::workflow::Iterate;
 use crate::workflow::WorkflowError;
 use crate::workflow::accuracy::Accuracy;
-use crate::workflow::afterwards::Afterwards;
 use crate::workflow::domain::{self, Outside};
 use crate::workflow::final_values::{FinalValue, final_values};
 use crate::workflow::found_hold;
@@ -109,22 +108,24 @@ pub fn solve(
         trajectory,
     };
     let not_kept = not_kept.filter(|_| result.verdict.is_solved);
-    result.remarks = remarks(system, control, &result, (note, not_kept));
+    let is_sought = not_found.is_some();
+    result.remarks = remarks(system, control, &result, (note, not_kept, is_sought));
     result.remarks.note("hold", not_found);
     Ok(result)
 }
 
 /// All that is to be known of a result: `refined` is the reason for another grid than that of the problem, `not_kept` the reason why the end
-/// is not kept.
+/// is not kept, `is_sought` is true where inputs that hold the goal were sought in vain.
 fn remarks(
     system: &System,
     control: &Control,
     result: &SolveResult,
-    (refined, not_kept): (Option<String>, Option<String>),
+    (refined, not_kept, is_sought): (Option<String>, Option<String>, bool),
 ) -> Remarks {
     let optimum = &result.optimum;
     let tested = optimum.resimulation.as_ref();
-    let left_goal = optimum.afterwards.as_ref().and_then(Afterwards::warning);
+    let afterwards = optimum.afterwards.as_ref();
+    let left_goal = afterwards.and_then(|after| after.warning(is_sought));
     let mut remarks = Remarks::default();
     remarks.note("start", control.start.notes().iter().cloned());
     remarks.note("goal", optimum.boundary.notes.iter().cloned());

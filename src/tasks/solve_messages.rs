@@ -84,11 +84,17 @@ pub(crate) fn restarted(restarted: Restarted) -> String {
     format!("found from {from}; the first start ended {first}")
 }
 
-/// Lists the values of a motion at its end or at waypoints for which costs ask; of many the farthest in their own unit.
+/// Lists the values of a motion at its end or at waypoints for which costs ask; of many the farthest of each unit in turn.
 pub(crate) fn ends(values: &[FinalValue]) -> Vec<String> {
     let mut order: Vec<&FinalValue> = values.iter().collect();
     if order.len() > TOLD {
-        order.sort_by(|a, b| b.deviation.total_cmp(&a.deviation));
+        let farther = |one: &FinalValue| {
+            let others = values.iter().filter(|other| other.unit == one.unit);
+            others
+                .filter(|other| other.deviation > one.deviation)
+                .count()
+        };
+        order.sort_by_key(|one| farther(one));
     }
     let mut lines: Vec<String> = order.iter().take(TOLD).map(|one| end(one)).collect();
     if order.len() > TOLD {

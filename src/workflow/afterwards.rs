@@ -136,8 +136,8 @@ impl Departure {
 }
 
 impl Afterwards {
-    /// That nothing holds the goal, where it is left.
-    pub(crate) fn warning(&self) -> Option<String> {
+    /// That nothing holds the goal, where it is left; `is_sought` where inputs that hold it were sought in vain.
+    pub(crate) fn warning(&self, is_sought: bool) -> Option<String> {
         if self.is_held {
             return None;
         }
@@ -153,9 +153,14 @@ impl Afterwards {
                 .iter()
                 .map(|failure| format!("the motion ends early: {failure}")),
         );
+        let advice = match is_sought {
+            true => "\"rest_at_voltages\", or \"markers\" with \"hold\"",
+            false => {
+                "\"rest_at_voltages\", \"markers\" with \"hold\", or \"hold\": \"find\", which seeks the voltages of markers and joint angles"
+            }
+        };
         Some(format!(
-            "nothing holds the goal: with the last inputs held on for {} s, {}; for an end that stays take \"rest_at_voltages\", \
-             \"markers\" with \"hold\", or \"hold\": \"find\", which seeks the voltages of markers and joint angles",
+            "nothing holds the goal: with the last inputs held on for {} s, {}; for an end that stays take {advice}",
             significant(self.seconds, 3),
             far.join(", ")
         ))

@@ -97,8 +97,6 @@ pub fn measured(
     }
     for &marker in markers {
         costs.push(itself(Quantity::SquaredSpeed { marker, limit: 0.5 }, 0.4));
-        let quantity = Quantity::MarkerRate { marker, axis: 0 };
-        costs.push(square(quantity, 3.0, signals(0.1, 0.3)[1].clone()));
     }
     for &muscle in fields {
         let place = FieldPlace::Muscle(muscle);

@@ -65,6 +65,19 @@ fn steps_are_limited_at_the_instant_that_is_named() {
     }
 }
 
+#[test]
+fn limits_of_steps_are_said_to_be_empty_in_one_interval() {
+    let limit = json!({ "voltage_rate": { "source": "muscle1", "max": "1 kV/s" } });
+    let told = "the rate of the voltage of muscle1 is limited from one interval to the next";
+    for (intervals, is_told) in [(1, true), (2, false)] {
+        let ran = with(&limit, |control| {
+            control["intervals"] = json!(intervals);
+            control["goal"] = json!("free");
+        });
+        assert_eq!(ran.err.contains(told), is_told, "{}", ran.err);
+    }
+}
+
 /// A cart that a prescribed motion moves with up to 0.157 m/s, and a body on it that a muscle moves.
 fn cart(limit: &Value) -> Value {
     let size = json!({ "size": ["10 mm", "10 mm", "10 mm"] });

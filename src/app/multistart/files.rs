@@ -99,7 +99,7 @@ fn lower(best: &Ended, ended: &[Ended]) -> Option<String> {
     let mut lower = others.filter_map(|one| Some((one.start, one.objective?)));
     let (start, other) = lower.find(|(_, other)| best.is_held && *other < objective)?;
     Some(format!(
-        "note: start {start} has the lower objective {other:.7}, and nothing holds where it ends"
+        "note: start {start} has the lower objective {other:.7}, but does not keep its goal or period"
     ))
 }
 
