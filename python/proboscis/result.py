@@ -122,6 +122,10 @@ class Result:
         """Rate of the coordinate of a joint at each instant: rad/s (revolute), m/s (prismatic)."""
         return self.table[f"{plain(joint)}_rate"]
 
+    def speed(self, marker: Any, /) -> Array:
+        """Size of the velocity of a marker at each instant in m/s."""
+        return self.table[f"{plain(marker)}_speed"]
+
     def force(self, joint: Any, /) -> Array:
         """Force in N that the parent of a joint exerts on its child through it, an array of one row of three numbers per instant."""
         name = plain(joint)

@@ -1,4 +1,4 @@
-//! Columns of the parts of a system in motion: rates of joints, tensions and fields of muscles, currents and powers of their sources,
+//! Columns of the parts of a system in motion: rates of joints, speeds of markers, tensions and fields of muscles, currents and powers of their sources,
 //! powers of loads. What does not exist has no column.
 //!
 //! Within an interval the voltage V of a source is constant, and its current is `V Ċ`. Where the voltage changes between two intervals,
@@ -14,6 +14,8 @@ use crate::model::{Model, MuscleReading, joint_unit};
 #[derive(Debug)]
 pub(super) struct PartColumns {
     joints: Vec<usize>,
+    /// Markers that can move, each with its vector.
+    markers: Vec<(usize, usize)>,
     muscles: Vec<MuscleReading>,
     /// Sources and scalars of loads.
     loads: Vec<(usize, usize)>,
@@ -23,6 +25,7 @@ impl PartColumns {
     pub(super) fn new(model: &Model) -> Self {
         Self {
             joints: model.moving_joints(),
+            markers: model.moving_markers(),
             muscles: model.muscle_readings(),
             loads: model.working_loads(),
         }
@@ -46,6 +49,9 @@ impl PartColumns {
             };
             add(&system.joints[joint].name, "rate", unit);
         }
+        for &(marker, _) in &self.markers {
+            add(&system.markers[marker].name, "speed", "mm/ms");
+        }
         for reading in &self.muscles {
             let name = &system.muscles[reading.muscle].name;
             add(name, "tension", "N");
@@ -66,7 +72,8 @@ impl PartColumns {
     /// Values at a placed configuration with the rates `l` of its coordinates and `w` of its vectors, and the scalars there.
     pub(super) fn values(&self, model: &Model, at: &Configuration, scalars: &[f64]) -> Vec<f64> {
         let rates = self.joints.iter().map(|&j| model.joint_rate(j, at));
-        let mut values: Vec<f64> = rates.collect();
+        let speeds = self.markers.iter().map(|&(_, vector)| at.w[vector].norm());
+        let mut values: Vec<f64> = rates.chain(speeds).collect();
         for reading in &self.muscles {
             values.push(reading.tension(model, at, scalars));
             if reading.has_voltage() {
@@ -112,7 +119,7 @@ impl PartColumns {
         here: &Configuration,
         (discrete, k): (&DiscreteTrajectory, usize),
     ) -> Vec<f64> {
-        let mut added = vec![0.0; self.joints.len()];
+        let mut added = vec![0.0; self.joints.len() + self.markers.len()];
         let beside = k.checked_sub(1).filter(|_| k < discrete.intervals());
         for reading in &self.muscles {
             added.extend([0.0].iter().chain(reading.has_voltage().then_some(&0.0)));

@@ -1,4 +1,4 @@
-//! Rates of joint coordinates, from the rates of the coordinates of an instant.
+//! Rates of joint coordinates, from the rates of the coordinates of an instant, and what moves.
 
 use crate::coordinates::Configuration;
 use crate::energy::{Angle, Energy, Projection};
@@ -16,6 +16,13 @@ impl Model {
         let moving = joints
             .filter(|(j, joint)| joint.has_coordinate() && self.presolved.joint(*j).is_some());
         moving.map(|(j, _)| j).collect()
+    }
+
+    /// Markers that can move, each with its vector.
+    pub fn moving_markers(&self) -> Vec<(usize, usize)> {
+        let markers = self.markers.iter().copied().enumerate();
+        let moves = |&(_, vector): &(usize, usize)| !self.action.map.support(vector).is_empty();
+        markers.filter(moves).collect()
     }
 
     /// Rate of the coordinate of a [moving joint](Self::moving_joints) in rad/ms or mm/ms, at a placed instant of which `l` holds the

@@ -12,7 +12,7 @@ use proboscis::dynamics::{
 };
 use proboscis::model::Model;
 use proboscis::model::components::LoadPlace;
-use proboscis::model::system::{ElasticLaw, JointKind, System};
+use proboscis::model::system::{Attachment, ElasticLaw, JointKind, Marker, System};
 use std::ops::ControlFlow;
 
 /// mm/ms².
@@ -70,7 +70,17 @@ fn a_pendulum_turns_at_the_rate_of_another_method() {
         0,
         Vector3::zeros(),
     );
-    let system = bare(vec![bob], vec![hip], Some(-Vector3::y() * GRAVITY));
+    let mut system = bare(vec![bob], vec![hip], Some(-Vector3::y() * GRAVITY));
+    system.markers = [("tip", Some(0)), ("wall", None)]
+        .map(|(name, body)| Marker {
+            name: name.into(),
+            point: Attachment {
+                body,
+                at: -Vector3::y() * arm,
+            },
+            solid: None,
+        })
+        .to_vec();
     let rate = |y: &Vector2<f64>| Vector2::new(y.y, -mass * GRAVITY * arm * y.x.sin() / inertia);
     let exact = |time: f64| {
         let start = Vector2::new(1.0, 2e-3);
@@ -98,9 +108,17 @@ fn a_pendulum_turns_at_the_rate_of_another_method() {
                 let seen = observations(&model, &discrete);
                 let rates = column(&seen, "hip_rate");
                 assert!((rates[0] - 2e-3).abs() < 1e-15, "{}", rates[0]);
-                [rates[count / 2] - exact[0], rates[count] - exact[1]]
+                let speeds = column(&seen, "tip_speed");
+                assert!((speeds[0] - 2e-3 * arm).abs() < 1e-13, "{}", speeds[0]);
+                assert!(!names(&seen).contains(&"wall_speed"));
+                let at = [count / 2, count];
+                let errors = [0, 1].map(|i| {
+                    let speed = speeds[at[i]] - arm * exact[i].abs();
+                    [rates[at[i]] - exact[i], speed / arm]
+                });
+                errors.as_flattened().to_vec()
             });
-            for at in 0..2 {
+            for at in 0..4 {
                 let ratio = errors[0][at] / errors[1][at];
                 assert!(
                     ratios.contains(&ratio),

@@ -16,9 +16,10 @@ pub struct Output {
 }
 
 /// Words for columns of one kind.
-const KINDS: [&str; 13] = [
+const KINDS: [&str; 14] = [
     "joints",
     "rates",
+    "speeds",
     "reactions",
     "markers",
     "stretches",
@@ -80,6 +81,7 @@ impl Output {
                     .any(|m| Some(m.name.as_str()) == marker)
             }
             "rates" => column.ends_with("_rate"),
+            "speeds" => column.ends_with("_speed"),
             "reactions" => column.contains("_force_") || column.contains("_torque_"),
             "stretches" => column.ends_with("_stretch"),
             "tensions" => column.ends_with("_tension"),

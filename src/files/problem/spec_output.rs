@@ -12,7 +12,7 @@ pub struct OutputSpec {
     /// nothing is lost to the eye.
     #[serde(default)]
     pub every: Option<Quantity<Time>>,
-    /// Columns of `trajectory.csv`: `joints`, `rates`, `reactions`, `markers`, `stretches`, `tensions`, `fields`, `charges`, `currents`,
+    /// Columns of `trajectory.csv`: `joints`, `rates`, `speeds`, `reactions`, `markers`, `stretches`, `tensions`, `fields`, `charges`, `currents`,
     /// `powers`, `energies`, `momenta`, `constraint_violation`, or all of a joint, marker, muscle, block, spring, tendon or load by its name. All where
     /// not written.
     #[serde(default)]
