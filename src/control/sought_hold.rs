@@ -39,9 +39,9 @@ pub(crate) fn obstacle(model: &Model, control: &Control) -> Option<&'static str>
             "\"find\" is for lumped muscles: a few voltages cannot hold every node of an elastic block where the motion leaves it; name the voltages",
         );
     }
-    model.memory().next().map(|_| {
-        "\"find\" is for muscles without circuits that do not creep: no constant voltages keep what these remember"
-    })
+    model.creeps().then_some(
+        "\"find\" is for muscles that do not creep: no constant voltages keep a stretch that relaxes",
+    )
 }
 
 /// Refuses to seek what holds a goal where nothing can.

@@ -215,6 +215,17 @@ impl Model {
         own.map(|(coordinate, _)| coordinate)
     }
 
+    /// Returns true if it has Maxwell branches, whose stretches follow the motion in times of their own.
+    pub fn creeps(&self) -> bool {
+        let is_branch = |kind: &InternalKind| {
+            matches!(
+                kind,
+                InternalKind::Branch { .. } | InternalKind::Strain { .. }
+            )
+        };
+        self.internal_kinds().any(|(_, kind)| is_branch(&kind))
+    }
+
     /// Coordinates of the viscous strains of blocks: they have no inertia, whatever moves.
     pub fn strains(&self) -> impl Iterator<Item = usize> + '_ {
         let is_strain = |kind: &InternalKind| matches!(kind, InternalKind::Strain { .. });

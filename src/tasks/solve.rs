@@ -2,6 +2,7 @@
 
 use std::ops::ControlFlow;
 
+use crate::control::hold_obstacle;
 use crate::control::problem::Control;
 use crate::dynamics::trajectory::Trajectory;
 use crate::dynamics::{DiscreteTrajectory, EnergyExchange, out_of_domain, out_of_range};
@@ -108,24 +109,26 @@ pub fn solve(
         trajectory,
     };
     let not_kept = not_kept.filter(|_| result.verdict.is_solved);
-    let is_sought = not_found.is_some();
-    result.remarks = remarks(system, control, &result, (note, not_kept, is_sought));
+    let cannot_seek =
+        not_found.is_some() || hold_obstacle(&result.optimum.model, control).is_some();
+    result.remarks = remarks(system, control, &result, (note, not_kept, cannot_seek));
     result.remarks.note("hold", not_found);
     Ok(result)
 }
 
 /// All that is to be known of a result: `refined` is the reason for another grid than that of the problem, `not_kept` the reason why the end
-/// is not kept, `is_sought` is true where inputs that hold the goal were sought in vain.
+/// is not kept, `cannot_seek` is true where inputs
+/// that hold the goal were sought in vain or cannot be sought.
 fn remarks(
     system: &System,
     control: &Control,
     result: &SolveResult,
-    (refined, not_kept, is_sought): (Option<String>, Option<String>, bool),
+    (refined, not_kept, cannot_seek): (Option<String>, Option<String>, bool),
 ) -> Remarks {
     let optimum = &result.optimum;
     let tested = optimum.resimulation.as_ref();
     let afterwards = optimum.afterwards.as_ref();
-    let left_goal = afterwards.and_then(|after| after.warning(is_sought));
+    let left_goal = afterwards.and_then(|after| after.warning(!cannot_seek));
     let mut remarks = Remarks::default();
     remarks.note("start", control.start.notes().iter().cloned());
     remarks.note("goal", optimum.boundary.notes.iter().cloned());

@@ -136,8 +136,8 @@ impl Departure {
 }
 
 impl Afterwards {
-    /// That nothing holds the goal, where it is left; `is_sought` where inputs that hold it were sought in vain.
-    pub(crate) fn warning(&self, is_sought: bool) -> Option<String> {
+    /// That nothing holds the goal, where it is left; with the advice to seek inputs that hold it where these `can_be_sought`.
+    pub(crate) fn warning(&self, can_be_sought: bool) -> Option<String> {
         if self.is_held {
             return None;
         }
@@ -153,9 +153,9 @@ impl Afterwards {
                 .iter()
                 .map(|failure| format!("the motion ends early: {failure}")),
         );
-        let advice = match is_sought {
-            true => "\"rest_at_voltages\", or \"markers\" with \"hold\"",
-            false => {
+        let advice = match can_be_sought {
+            false => "\"rest_at_voltages\", or \"markers\" with \"hold\"",
+            true => {
                 "\"rest_at_voltages\", \"markers\" with \"hold\", or \"hold\": \"find\", which seeks the voltages of markers and joint angles"
             }
         };

@@ -1,5 +1,7 @@
 //! Goals that are held by inputs found with the motion: an independent program, states of rest of a trunk, and what is refused.
 
+use crate::drivers;
+use crate::limits::run;
 use crate::loads::{assert_refused, loaded, solved};
 use proboscis::control::problem::{BoundaryState, Control, SoughtHold, Task};
 use proboscis::dynamics::stable_equilibrium;
@@ -281,4 +283,43 @@ fn a_goal_that_nothing_can_hold_is_told() {
         "{notes}"
     );
     assert!(result.optimum.motion.hold.is_none());
+}
+
+/// The pair held at −4°, behind circuits or at its sources: the voltage that holds it.
+fn held_pair(circuit: &serde_json::Value, coordinates: &str) -> f64 {
+    let mut problem = drivers::pair(circuit, serde_json::json!([]), coordinates);
+    problem["control"]["duration"] = "0.5 s".into();
+    problem["control"]["intervals"] = 60.into();
+    problem["control"]["goal"] =
+        serde_json::json!({ "joint_angles": { "joint1": "-4 deg" }, "hold": "find" });
+    let ran = run("solve", &problem, &["--no-report"]);
+    ran.is_solved();
+    let text = std::fs::read_to_string(ran.folder.path().join("p/solution.json")).unwrap();
+    let solution: serde_json::Value = serde_json::from_str(&text).unwrap();
+    let hold = solution["hold"]["muscle1"].as_f64();
+    hold.unwrap_or_else(|| panic!("{}", solution["hold"]))
+}
+
+#[test]
+fn sources_behind_circuits_hold_a_goal_at_what_leak_and_resistor_leave() {
+    let circuit = serde_json::json!({ "resistance": "5 MOhm", "leakage": "100 MOhm" });
+    let plain = held_pair(&serde_json::Value::Null, "reduced");
+    assert!(plain > 500.0, "{plain} V");
+    for coordinates in ["reduced", "redundant"] {
+        // The current through the leak goes through the resistor too.
+        let behind = held_pair(&circuit, coordinates);
+        let exact = plain * 105.0 / 100.0;
+        println!("{behind} V behind {coordinates} circuits, {exact} V");
+        assert!((behind - exact).abs() < 1e-5 * exact, "{behind} {exact}");
+    }
+}
+
+#[test]
+fn nothing_holds_a_stretch_that_relaxes() {
+    let mut problem = drivers::pair(&serde_json::Value::Null, serde_json::json!([]), "reduced");
+    problem["scene"]["materials"]["silicone"]["maxwell"] =
+        serde_json::json!([{ "shear_modulus": "20 kPa", "relaxation_time": "1 s" }]);
+    problem["control"]["goal"] =
+        serde_json::json!({ "joint_angles": { "joint1": "-4 deg" }, "hold": "find" });
+    run("solve", &problem, &[]).is_refused(&["goal.hold", "do not creep"]);
 }
