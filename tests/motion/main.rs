@@ -11,6 +11,7 @@ mod conserve;
 mod dissipation;
 mod elastic_laws;
 mod exchange;
+mod four_bars;
 mod free_robots;
 mod integrators;
 mod joint_springs;

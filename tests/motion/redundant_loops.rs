@@ -1,16 +1,14 @@
 //! Closed loops whose constraints repeat each other: what is left out, against twins without redundancy and published motions.
 
 use crate::closed_loop::{AXIAL, bar};
-use crate::common::{
-    at_reference, bare, column, distance, joint, motion, placed, richardson, spin,
-};
+use crate::common::{at_reference, bare, column, distance, joint, motion, placed};
 use nalgebra::{Rotation3, Vector3};
 use proboscis::dynamics::trajectory::Trajectory;
 use proboscis::dynamics::{DiscreteTrajectory, Start, energies, observations};
 use proboscis::model::system::{Joint, JointKind, System};
 use proboscis::model::{Coordinates, Model, ModelError};
 
-fn hinge(
+pub(crate) fn hinge(
     name: &str,
     axis: Vector3<f64>,
     parent: Option<usize>,
@@ -20,13 +18,13 @@ fn hinge(
     joint(name, JointKind::Revolute { axis }, parent, child, at)
 }
 
-fn model(system: System) -> Model {
+pub(crate) fn model(system: System) -> Model {
     let model = Model::new(system, None, 0.01, &[]).unwrap();
     assert_eq!(model.coordinates, Coordinates::Redundant);
     model
 }
 
-fn left_out(model: &Model) -> Vec<&str> {
+pub(crate) fn left_out(model: &Model) -> Vec<&str> {
     model.loops.left_out().collect()
 }
 
@@ -38,7 +36,7 @@ fn falls(model: &Model, h: f64, steps: usize) -> DiscreteTrajectory {
     discrete
 }
 
-fn holds(model: &Model, discrete: &DiscreteTrajectory) {
+pub(crate) fn holds(model: &Model, discrete: &DiscreteTrajectory) {
     let seen = observations(model, discrete);
     let violation = column(&seen, "constraint_violation");
     let worst = violation.iter().copied().fold(0.0, f64::max);
@@ -287,71 +285,4 @@ fn the_bricard_mechanism_has_one_degree_of_freedom() {
     });
     println!("energy of the Bricard mechanism over 10 s: {drifts:?}");
     assert!(((drifts[0] / drifts[1]).log2() - 2.0).abs() < 0.2);
-}
-
-/// N bars upright, N + 1 of them on the ground, and N across (IFToMM A02), with bars of 1 m and 1 kg.
-fn four_bars(n: usize) -> System {
-    let at = |x: usize, y: f64| Vector3::new(x as f64, y, 0.0);
-    let z = Vector3::z();
-    let mut bodies = Vec::new();
-    let mut joints = Vec::new();
-    for i in 0..=n {
-        bodies.push(bar(&format!("up{i}"), 1.0, AXIAL, at(i, 0.0), at(i, 1.0)));
-        joints.push(hinge(&format!("foot{i}"), z, None, i, at(i, 0.0)));
-    }
-    for i in 0..n {
-        let across = n + 1 + i;
-        bodies.push(bar(
-            &format!("across{i}"),
-            1.0,
-            AXIAL,
-            at(i, 1.0),
-            at(i + 1, 1.0),
-        ));
-        joints.push(hinge(&format!("left{i}"), z, Some(i), across, at(i, 1.0)));
-        joints.push(hinge(
-            &format!("right{i}"),
-            z,
-            Some(i + 1),
-            across,
-            at(i + 1, 1.0),
-        ));
-    }
-    bare(bodies, joints, Some(Vector3::new(0.0, -9.81, 0.0)))
-}
-
-#[test]
-fn a_row_of_four_bars_passes_its_singular_positions() {
-    // θ̈ = [((N+1)/2 + N)/((N+1)/3 + N)] g sin θ, θ(0) = 0, θ̇(0) = 1; top of the first bar at 1 s for N = 2.
-    let exact = [-0.1950203019, -0.9807992057];
-    let linkage = model(four_bars(2));
-    assert_eq!(left_out(&linkage).len(), 6);
-    assert_eq!(linkage.loops.mobility, Some(1));
-    let mut rates = Vec::new();
-    for (b, pose) in linkage.reference().iter().enumerate() {
-        let turn = Vector3::z() * -1.0;
-        let (velocity, turn) = match b < 3 {
-            true => (turn.cross(&Vector3::new(0.0, 0.5, 0.0)), turn),
-            false => (turn.cross(&Vector3::y()), Vector3::zeros()),
-        };
-        rates.extend(spin(pose, velocity, turn));
-    }
-    let start = Start::with_rates(&linkage, at_reference(&linkage), &rates);
-    let tops = [500, 1000, 2000].map(|steps| {
-        let discrete = motion(&linkage, &start, 1.0 / steps as f64, steps, &[]);
-        holds(&linkage, &discrete);
-        let pose = Trajectory::from_discrete(&linkage, &discrete).poses[steps][0];
-        let top = pose.centre + pose.directors.column(2) * 0.5;
-        [top.x, top.y]
-    });
-    for i in 0..2 {
-        let errors = tops.map(|top| (top[i] - exact[i]).abs());
-        let limit = richardson(&tops.map(|top| top[i]));
-        println!(
-            "top of N = 2 at 1 s: {errors:?}, limit {:e}",
-            (limit - exact[i]).abs()
-        );
-        assert!(errors[0] > 1e-7 && ((errors[1] / errors[2]).log2() - 2.0).abs() < 0.1);
-        assert!((limit - exact[i]).abs() < 1e-9);
-    }
 }
