@@ -58,7 +58,7 @@ use crate::math::{Jet, Local};
 use nalgebra::SVector;
 
 /// A scalar of `M` arguments, differentiated exactly: vectors first, three arguments each, then scalars.
-pub trait Energy<const M: usize>: Send + Sync {
+pub trait Energy<const M: usize>: Clone + Send + Sync {
     /// Polynomial degree: derivatives above it vanish and are never emitted.
     const DEGREE: usize = usize::MAX;
 
@@ -95,7 +95,7 @@ pub trait Energy<const M: usize>: Send + Sync {
 }
 
 /// A scalar of `M` arguments some of which are sought constants: span vectors first, three arguments each, then scalars.
-pub trait SoughtEnergy<const M: usize>: Send + Sync {
+pub trait SoughtEnergy<const M: usize>: Clone + Send + Sync {
     /// Number of leading vectors that are virtual displacements, as in [`Energy`].
     const VIRTUAL: usize = 0;
 

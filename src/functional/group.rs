@@ -10,6 +10,7 @@ use crate::functional::{
 use crate::math::{Derivatives, Vector};
 use std::fmt;
 use std::ops::Range;
+use std::sync::Arc;
 
 /// Elements of one kind under one name.
 pub struct Group<K: Kernel> {
@@ -214,6 +215,16 @@ impl<K: Kernel> Term for Group<K> {
 
     fn couple(&self, couplings: &mut Couplings, slots: &mut Vec<u32>) {
         self.register(couplings, slots);
+    }
+
+    fn reading(&self, is_meant: &dyn Fn(usize) -> bool) -> Option<Arc<dyn Term>> {
+        let reads = |element: &&K::Element| {
+            let mut vectors = 0..K::vectors(element);
+            vectors.any(|a| is_meant(K::vector(element, a).vector))
+        };
+        let elements: Vec<_> = self.elements.iter().filter(reads).cloned().collect();
+        let group = |elements| Self::new(&self.name, self.scale, self.site, elements);
+        (!elements.is_empty()).then(|| Arc::new(group(elements)) as Arc<dyn Term>)
     }
 
     fn is_weight(&self) -> bool {

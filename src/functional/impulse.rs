@@ -63,19 +63,23 @@ struct Evaluation {
 }
 
 impl Impulse {
-    /// The impulse of terms along a displacement of one end of the interval; `counts` are those of vectors and scalars.
+    /// The impulse of terms along a displacement of one end of the interval, from the numbers of vectors and scalars; elements that do not read
+    /// what is displaced have none.
     pub fn new(
-        terms: Vec<Arc<dyn Term>>,
+        terms: &[&Arc<dyn Term>],
         [vectors, scalars]: [usize; 2],
         displacement: Displacement,
         side: usize,
     ) -> Self {
-        let functional = Functional::new(terms, Vec::new(), vectors, scalars);
         let still = vec![Vector::zeros(); vectors];
         let (along, axis, turns) = match displacement {
             Displacement::Shift(along) => (along, Vector::zeros(), Vec::new()),
             Displacement::Turn { axis, turns } => (still.clone(), axis, turns),
         };
+        let is_turned = |vector: usize| turns.iter().any(|turn| turn.of == vector);
+        let is_moved = |vector: usize| along[vector] != Vector::zeros() || is_turned(vector);
+        let terms = terms.iter().filter_map(|term| term.reading(&is_moved));
+        let functional = Functional::new(terms.collect(), Vec::new(), vectors, scalars);
         let Couplings {
             full,
             isotropic,

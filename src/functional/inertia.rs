@@ -2,6 +2,7 @@
 
 use crate::functional::{BlockMask, Couplings, Horizon, Order, Output, Sample, Term, TermKind};
 use crate::math::{Vector, compact_index};
+use std::sync::Arc;
 
 /// A mass m on a material vector, ½ m |ẋ|², or between two, m ẋ·ẏ.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -84,6 +85,17 @@ impl Term for Inertia {
         for [a, b] in self.entries.iter().map(|e| e.vectors()) {
             slots.push(couplings.add_isotropic(a, b) as u32);
         }
+    }
+
+    fn reading(&self, is_meant: &dyn Fn(usize) -> bool) -> Option<Arc<dyn Term>> {
+        let reads = |entry: &&MassEntry| entry.vectors().into_iter().any(is_meant);
+        let entries: Vec<_> = self.entries.iter().filter(reads).copied().collect();
+        let inertia = |entries: Vec<_>| Self {
+            name: self.name.clone(),
+            masses: entries.len(),
+            entries,
+        };
+        (!entries.is_empty()).then(|| Arc::new(inertia(entries)) as Arc<dyn Term>)
     }
 
     fn kind(&self) -> TermKind {

@@ -21,7 +21,7 @@ pub trait Scatter {
 /// an entry lies is known to the group of the elements alone.
 pub trait Kernel: Debug + Send + Sync + 'static {
     /// One element.
-    type Element: Send + Sync;
+    type Element: Clone + Send + Sync;
 
     /// Storage in which [`prepare`](Self::prepare) keeps data of one element; `()` where nothing is worth it.
     type Storage: Debug + Default + Send;

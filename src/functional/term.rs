@@ -109,6 +109,9 @@ pub trait Term: Debug + Send + Sync {
     /// Registers the couplings of the elements, and lists the slots that they got in the order in which they are read.
     fn couple(&self, couplings: &mut Couplings, slots: &mut Vec<u32>);
 
+    /// The elements that read one of some vectors as a term; none where there are no such elements.
+    fn reading(&self, is_meant: &dyn Fn(usize) -> bool) -> Option<Arc<dyn Term>>;
+
     /// Returns the role of the term in the energy balance.
     fn kind(&self) -> TermKind;
 

@@ -43,7 +43,7 @@ impl Known<'_> {
             vectors.list().len(),
             self.variables.of(Time::Interval).len(),
         ];
-        let terms = terms.cloned().collect();
-        Some(Box::new(Impulse::new(terms, counts, displacement, side)))
+        let terms: Vec<_> = terms.collect();
+        Some(Box::new(Impulse::new(&terms, counts, displacement, side)))
     }
 }

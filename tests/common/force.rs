@@ -13,6 +13,7 @@ use proboscis::model::{Model, Variable};
 pub const UNIT: f64 = 1e-3;
 
 /// `−s n·x`, arguments: x and s.
+#[derive(Clone)]
 pub struct Force {
     pub direction: Vector3<f64>,
 }

@@ -22,6 +22,7 @@ use std::f64::consts::FRAC_PI_2;
 use std::ops::ControlFlow;
 
 /// `−s atan2(y, x)` of a vector (x, y, ·) that stays to the right, arguments: the vector and s.
+#[derive(Clone)]
 struct Torque;
 
 impl Energy<4> for Torque {

@@ -8,6 +8,7 @@ use proboscis::energy::Energy;
 use proboscis::math::Jet;
 
 /// All that jets can do, as an energy: `ln(1+|a|²) √(4+a·b) − (a·b)⁵/8 + 1/(1+|b|²) + (a₀−b₁)² sin a₂ + ‖(a·b, |a|²)‖² a₁`.
+#[derive(Clone)]
 struct Arithmetic;
 
 impl Energy<6> for Arithmetic {

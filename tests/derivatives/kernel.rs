@@ -9,6 +9,7 @@ use proboscis::functional::{
 use proboscis::math::{Derivatives, Matrix, Vector};
 
 /// `sin u` of a weighted sum u of midpoints, rates and scalars.
+#[derive(Clone)]
 struct Wave {
     vectors: Vec<usize>,
     /// Weights of the midpoints, then of the rates.

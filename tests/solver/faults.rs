@@ -298,6 +298,10 @@ impl Term for Failing {
         self.effect.couple(couplings, slots);
     }
 
+    fn reading(&self, _: &dyn Fn(usize) -> bool) -> Option<Arc<dyn Term>> {
+        unreachable!("no reaction is limited")
+    }
+
     fn kind(&self) -> TermKind {
         self.effect.kind()
     }
