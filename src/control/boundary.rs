@@ -56,7 +56,7 @@ impl BoundaryConditions {
         let (model, mut boundary) = Self::of_goal(system, &eased, h0)?;
         boundary.notes.push(format!(
             "{} voltages cannot bring all {} coordinates of elastic blocks and bodies to rest: at the goal {} rest, as by \"rest\": \"bodies\"",
-            layout.unknowns.inputs.len(),
+            layout.sought_inputs(),
             model.coordinate_count(),
             if names_markers { "bodies and its markers" } else { "bodies" },
         ));
@@ -82,12 +82,12 @@ impl BoundaryConditions {
         let mut model = Model::of_presolved(system.clone(), analysis, presolved)?;
         sought_hold::check(&model, control)?;
         periodic::check(&model, control)?;
+        let rests = rests_at(&control.goal);
+        prescribed::check_end_of_motions(&model, control, rests != Rests::Nothing)?;
         let (start, of_start) = start_of(&model, &control.start)?;
         goal_rows::leave_out_constant(&mut model, &limits, &start.z)?;
         let (mut given, of_goal) = coordinates_at_goal(&model, control)?;
-        let rests = rests_at(&control.goal);
-        let moving = (&mut given[..], rests != Rests::Nothing);
-        prescribed::at_goal(&model, control, moving)?;
+        prescribed::at_goal(&model, control, &mut given)?;
         if let Some(z) = given.iter().copied().collect::<Option<Vec<f64>>>() {
             check_muscles(&model, &z, "goal")?;
         }

@@ -9,6 +9,7 @@ mod end_state;
 mod endpoint_checks;
 mod energy_cost;
 mod error;
+mod functions_of_time;
 mod given_rates;
 mod goal;
 mod goal_rows;

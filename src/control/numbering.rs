@@ -60,6 +60,13 @@ pub enum Row {
         /// Scalar.
         s: usize,
     },
+    /// That a variable has the value of a function of time, where times are unknowns.
+    Time {
+        /// Its place among such rows.
+        place: usize,
+        /// The variable.
+        of: Column,
+    },
     /// Limit or goal `limit` at instant or interval `k`.
     Limit {
         /// Index of the limit.
@@ -75,6 +82,7 @@ impl Row {
         match self {
             Self::Instant { i, .. } => Some(&variables.of(Time::Instant)[i]),
             Self::Interval { s, .. } => Some(&variables.of(Time::Interval)[s]),
+            Self::Time { of, .. } => Some(of.of(variables)),
             Self::Limit { .. } => None,
         }
     }

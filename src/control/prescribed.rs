@@ -1,9 +1,9 @@
 //! Prescribed joint coordinates at start and goal: their values and rates there, and what contradicts them.
 
 use crate::control::error::BoundaryError;
-use crate::control::problem::{Control, Duration};
+use crate::control::problem::{BoundaryState, Control};
 use crate::dynamics::{Start, rates_in_loops};
-use crate::math::significant;
+use crate::math::{shortest, significant};
 use crate::model::{Model, Prescribed, joint_unit};
 use std::collections::BTreeMap;
 
@@ -104,14 +104,11 @@ pub(super) fn check_end(
     model.prescribed.iter().try_for_each(checked)
 }
 
-/// Gives the prescribed coordinates at the end of a motion.
-///
-/// # Errors
-/// The goal names another value, or is at rest while a joint moves on, or the duration is free.
-pub(super) fn at_goal(
+/// Refuses prescribed motions that go on where the goal is at rest, or do not fit a duration that is free.
+pub(super) fn check_end_of_motions(
     model: &Model,
     control: &Control,
-    (given, rests): (&mut [Option<f64>], bool),
+    rests: bool,
 ) -> Result<(), BoundaryError> {
     let refused = |one: &Prescribed, reason: &str| {
         let name = &model.system.joints[one.joint].name;
@@ -120,17 +117,43 @@ pub(super) fn at_goal(
             reason: format!("joint \"{name}\" has a prescribed motion, {reason}"),
         })
     };
+    let duration = control.duration;
     for one in &model.prescribed {
-        let Duration::Given(end) = control.duration else {
-            return refused(one, "which needs a duration that is given");
+        if let Some(time) = duration.jump(&one.motion) {
+            let time = shortest(time, 6);
+            let reason = format!("which jumps at {time} ms and needs a duration that is given");
+            return refused(one, &reason);
+        }
+        let is_open = duration.final_value(&one.motion).is_none();
+        if is_open && control.goal == BoundaryState::Periodic {
+            return refused(
+                one,
+                "with which a periodic one needs a duration that is given",
+            );
+        }
+        let [_, rate, _] = one.motion.derivatives(duration.first());
+        if rests && (is_open || rate.abs() > REST) {
+            return refused(one, "which goes on where the goal is at rest");
+        }
+    }
+    Ok(())
+}
+
+/// Gives the prescribed coordinates at the end of a motion, but those that depend on a duration that is free.
+///
+/// # Errors
+/// The goal names another value.
+pub(super) fn at_goal(
+    model: &Model,
+    control: &Control,
+    given: &mut [Option<f64>],
+) -> Result<(), BoundaryError> {
+    for one in &model.prescribed {
+        let Some(value) = control.duration.final_value(&one.motion) else {
+            continue;
         };
-        let value = one.motion.at(end);
         if let Some(found) = given[one.coordinate] {
             check(model, one, [found, value], ("goal", "coordinate"))?;
-        }
-        let [_, rate, _] = one.motion.derivatives(end);
-        if rests && rate.abs() > REST {
-            return refused(one, "which goes on where the goal is at rest");
         }
         given[one.coordinate] = Some(value);
     }

@@ -135,9 +135,14 @@ pub struct Control {
 }
 
 impl Control {
-    /// The value of a variable of the intervals that is given at a time in ms, in its unit.
+    /// The value of a variable of the intervals that is given at a time in ms, in its unit; `None` where the time is an unknown on which it
+    /// depends.
     pub fn given(&self, variable: &Variable, time: f64) -> Option<f64> {
-        self.given_voltage(variable.source?, time)
+        let source = variable.source?;
+        match self.follows_time(source) {
+            true => None,
+            false => self.given_voltage(source, time),
+        }
     }
 
     /// The voltage of a source that is given at a time in ms.

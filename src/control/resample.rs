@@ -2,7 +2,7 @@
 //!
 //! Data of an instant or interval are carried by value: coordinates, voltages, potentials, costates of
 //! momentum balances and of Gauss's laws. Sums over a step go with its length: impulses of constraints, costates
-//! of path limits and of bounds. A finer grid has more and smaller ones.
+//! of path limits, of bounds and of functions of time. A finer grid has more and smaller ones.
 
 use crate::control::boundary_conditions::BoundaryConditions;
 use crate::control::numbering::{Column, Row};
@@ -143,16 +143,16 @@ pub(super) fn costates(
     }
     let ratio = grids.ratio();
     let constraint = ratio * solved.multiplier_time / model.multiplier_time;
+    let interval = |k: usize| match k < to.end {
+        true => grids.interval(k),
+        false => from.end,
+    };
     let row = |row: &Row| match *row {
         // What holds the goal: the impulse of the static forces shrinks with the interval, in the balances at both of its ends.
         Row::Instant { k, i } if k > to.end => {
             let of = |k: usize| from.unknowns.row(k, i).map_or(0.0, |r| old.rows[r]);
             let last = of(from.end);
             (last + of(from.end + 1)) / ratio - last
-        }
-        Row::Interval { k, s } if k >= to.end => {
-            let place = from.unknowns.row_of_scalar(from.end, s);
-            place.map_or(0.0, |r| old.rows[r])
         }
         Row::Instant { k, i } => {
             let weights = grids.weights(k);
@@ -167,23 +167,21 @@ pub(super) fn costates(
             factor * smooth.or_else(nearest).unwrap_or(0.0)
         }
         Row::Interval { k, s } => {
-            let place = from.unknowns.row_of_scalar(grids.interval(k), s);
+            let place = from.unknowns.row_of_scalar(interval(k), s);
             place.map_or(0.0, |r| old.rows[r])
         }
+        Row::Time { of, .. } => from.carried_of_time(of, grids, to.end, &old.rows),
         Row::Limit { limit, k } => from.carried(limit, k, grids, &old.rows),
     };
     let bound = |list: &[f64], column: &Column| match *column {
-        Column::Interval { k, s } if k >= to.end => {
-            let place = from.unknowns.scalar(from.end, s);
-            place.map_or(0.0, |v| list[v])
-        }
         Column::Instant { k, i } => {
             let place = from.unknowns.unknown(grids.nearest(k), i);
             ratio * place.map_or(0.0, |v| list[v])
         }
         Column::Interval { k, s } => {
-            let place = from.unknowns.scalar(grids.interval(k), s);
-            ratio * place.map_or(0.0, |v| list[v])
+            let place = from.unknowns.scalar(interval(k), s);
+            let factor = if k < to.end { ratio } else { 1.0 };
+            factor * place.map_or(0.0, |v| list[v])
         }
         Column::Parameter { s } => from.unknowns.scalar(0, s).map_or(0.0, |v| list[v]),
         // The duration is a multiple of the interval length.
@@ -207,6 +205,23 @@ pub(super) fn costates(
 }
 
 impl Layout {
+    /// Costate of the row of a variable that is a function of time, on a grid whose motion ends at instant `end`. That of a prescribed motion at its
+    /// end is a momentum, no sum over a step.
+    fn carried_of_time(&self, of: Column, grids: Grids, end: usize, old: &[f64]) -> f64 {
+        let (column, is_end) = match of {
+            Column::Instant { k, i } if k == end => (self.unknowns.unknown(self.end, i), true),
+            Column::Instant { k, i } => {
+                let within = grids.nearest(k).min(self.end.max(1) - 1);
+                (self.unknowns.unknown(within, i), false)
+            }
+            Column::Interval { k, s } if k >= end => (self.unknowns.scalar(self.end, s), true),
+            Column::Interval { k, s } => (self.unknowns.scalar(grids.interval(k), s), false),
+            Column::Parameter { .. } | Column::Horizon => (None, false),
+        };
+        let factor = if is_end { 1.0 } else { grids.ratio() };
+        factor * self.row_of_time(column).map_or(0.0, |r| old[r])
+    }
+
     /// Costate of a limit or goal at new instant or interval k.
     fn carried(&self, limit: usize, k: usize, grids: Grids, old: &[f64]) -> f64 {
         let of = self.limit(limit);

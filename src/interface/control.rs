@@ -10,7 +10,7 @@ use crate::interface::handle::Handle;
 use crate::interface::input::Input;
 use crate::interface::optimum::Optimum;
 use crate::interface::state::State;
-use crate::math::Signal;
+use crate::math::{Signal, shortest};
 use crate::model::components::Load;
 use crate::model::system::Source;
 use crate::model::{Parameter, System};
@@ -302,15 +302,14 @@ impl Control {
         system: &System,
         sought: &BTreeMap<usize, [f64; 2]>,
     ) -> Result<BTreeMap<usize, Signal>> {
-        let holds = matches!(self.duration, Duration::Given(_))
-            || self.voltages.iter().all(|(_, signal)| signal.is_constant());
-        let found = || "voltages over time where the duration is free".to_owned();
-        require(
-            holds,
-            "control",
-            found,
-            "constant ones, or a given duration",
-        )?;
+        let mut functions = self.voltages.iter().map(|(_, function)| function);
+        let jump = functions.find_map(|function| self.duration.jump(function));
+        let found = || {
+            let time = shortest(jump.unwrap_or_default(), 6);
+            format!("a voltage or load that jumps at {time} ms where the duration is free")
+        };
+        let expected = "functions of time without jumps, or a given duration";
+        require(jump.is_none(), "control", found, expected)?;
         let place =
             |(input, signal): &(Input, Signal)| Ok((source(input, system)?, signal.clone()));
         let mut given: BTreeMap<usize, Signal> =

@@ -175,6 +175,36 @@ impl Signal {
         }
     }
 
+    /// Time in ms at which it jumps.
+    pub fn jump(&self) -> Option<f64> {
+        match self {
+            Self::Ramp {
+                from,
+                to,
+                start,
+                duration,
+            } => (*duration == 0.0 && from != to).then_some(*start),
+            _ => None,
+        }
+    }
+
+    /// The value, where it is the same from one time in ms to another.
+    pub fn constant_within(&self, [from, to]: [f64; 2]) -> Option<f64> {
+        if let Self::Sine {
+            mean, amplitude, ..
+        } = self
+        {
+            return (*amplitude == 0.0).then_some(*mean);
+        }
+        let value = self.at(from);
+        let mut times = self
+            .corners()
+            .into_iter()
+            .filter(|t| (from..to).contains(t));
+        let is_constant = self.at(to) == value && times.all(|t| self.at(t) == value);
+        is_constant.then_some(value)
+    }
+
     /// Times in ms at which it is not smooth.
     pub fn corners(&self) -> Vec<f64> {
         match self {

@@ -214,7 +214,7 @@ fn coupling(program: &Transcription<'_>, model: &Model, row: &str, column: &str)
         let entry = match *kind {
             Row::Instant { i, .. } => Some(i),
             Row::Interval { s, .. } => Some(n + s),
-            Row::Limit { .. } => None,
+            Row::Time { .. } | Row::Limit { .. } => None,
         };
         entries.insert(program.constraint_name(r), entry);
     }

@@ -99,7 +99,9 @@ pub fn absent(model: &Model, control: Option<&Control>) -> Vec<Absent> {
 }
 
 fn absent_of_control(model: &Model, control: &Control, add: &mut impl FnMut(String, String)) {
-    let is_absent = |&s: &usize| control.is_given(s) && model.variables.input(s).is_some();
+    let is_absent = |&s: &usize| {
+        control.is_given(s) && !control.follows_time(s) && model.variables.input(s).is_some()
+    };
     for source in (0..model.sources.len()).filter(is_absent) {
         let Source { name, kind, .. } = &model.sources[source];
         let name = match kind {

@@ -3,8 +3,9 @@
 use std::ops::ControlFlow;
 
 use crate::control::Solution;
-use crate::control::problem::{Control, Duration, Objective};
+use crate::control::problem::{Control, Duration, Objective, Voltages};
 use crate::ipopt::Status;
+use crate::math::Signal;
 use crate::model::{Model, Role};
 use crate::workflow::combined::put_after;
 use crate::workflow::further::{Further, ITERATIONS, displaced, is_infeasible};
@@ -40,6 +41,16 @@ fn freed(control: &Control, given: f64) -> Control {
         },
         ..control.clone()
     }
+}
+
+/// Returns true if what the problem gives over time has derivatives by the duration, and its goal rests at all of them or at none.
+fn fits(control: &Control) -> bool {
+    let has_jump = |function: &Signal| control.duration.jump(function).is_some();
+    let changes = |function: &Signal| control.duration.final_value(function).is_none();
+    let rests = control.goal.voltages().is_some();
+    let is_sampled = matches!(control.course, Some(Voltages::Sampled { .. }));
+    let mut functions = control.given.values();
+    !is_sampled && !functions.any(|function| has_jump(function) || (rests && changes(function)))
 }
 
 /// The same from half a period of the slowest mode on, with inputs that change slowly.
@@ -91,6 +102,9 @@ pub(crate) fn shortest(
         return (Shortest::Unknown, None);
     };
     let freed = freed(further.control, given);
+    if !fits(&freed) {
+        return (Shortest::Unknown, None);
+    }
     let iterations = iterations(first);
     let displaced = match earlier {
         None => Some((displaced(&freed, first), None, ITERATIONS)),
@@ -122,6 +136,9 @@ pub(crate) fn slow(
     };
     let half_period = first.half_period.filter(|half| *half > given)?;
     let problem = slowed(further.control, &first.model, given, half_period);
+    if !fits(&problem) {
+        return None;
+    }
     let found = solved(further, first, (&problem, None), ITERATIONS)?;
     let said = outcome(&found, given);
     let is_start = is_as_given(&found, given);

@@ -62,12 +62,20 @@ pub fn violations(
 }
 
 /// The violation of an equation with its unit: the momentum that a balance misses, the value of a constraint of places and directions, or the
-/// charge that is missing at an electrode times the interval.
+/// charge that is missing at an electrode times the interval; of a value that is a function of time, the value.
 fn of_equation(program: &Transcription<'_>, row: Row, violation: f64) -> (f64, &'static str) {
     let model = program.model();
     let Some(variable) = row.of(&model.variables) else {
         return (violation, "");
     };
+    if let Row::Time { .. } = row {
+        let of_coordinate = match variable.size {
+            Size::Length => "mm",
+            _ => "rad",
+        };
+        let of_input = variable.source.map(|s| model.input_kind(s).unit());
+        return (violation, of_input.unwrap_or(of_coordinate));
+    }
     match (variable.role, variable.size) {
         (Role::Coordinate, Size::Length) => (violation, "N ms"),
         (Role::Coordinate, _) => (violation, "N mm ms"),

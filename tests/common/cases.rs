@@ -9,6 +9,7 @@ use super::systems::{
     GRAVITY, ball, blocks, branched, charged, loaded, pressed, satellite, sprung, stiffening,
     stiffening_blocks, tied,
 };
+use super::timed::timed;
 use super::tracked::{energies, tracked};
 use super::trunk;
 use nalgebra::Vector3;
@@ -393,5 +394,6 @@ pub fn cases() -> Vec<Case> {
     ];
     list.extend(ends());
     list.extend(measuring());
+    list.extend(timed());
     list
 }

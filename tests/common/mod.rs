@@ -18,6 +18,7 @@ pub mod signals;
 pub mod solid;
 pub mod sought;
 pub mod systems;
+pub mod timed;
 pub mod tracked;
 pub mod trunk;
 pub mod vtk_arrays;

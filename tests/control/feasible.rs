@@ -89,7 +89,7 @@ fn law(
                 );
                 worst = worst.max(value.abs());
             }
-            Row::Limit { .. } => unreachable!("there are no limits"),
+            Row::Time { .. } | Row::Limit { .. } => unreachable!("there are none"),
         }
     }
     println!("{name} {coordinates:?}: largest row {worst:.1e}");

@@ -137,11 +137,6 @@ fn a_wrong_load_has_one_message_with_its_place() {
             "a load that is sought",
         ),
         (
-            r#"control.duration={"min": "1 s", "max": "2 s", "guess": "1.2 s"}"#,
-            "control.loads",
-            "constant loads, or a given duration",
-        ),
-        (
             r#"scene.loads=[{"name": "motor", "joint": "elbow"}]"#,
             "loads[0].joint",
             "the name of a joint",
@@ -154,6 +149,43 @@ fn a_wrong_load_has_one_message_with_its_place() {
     ] {
         assert_refused("swing_up", change, place, words);
     }
+}
+
+#[test]
+fn what_jumps_or_holds_a_goal_needs_a_duration_that_is_given() {
+    let free = r#"control.duration={"min": "1 s", "max": "2 s", "guess": "1.2 s"}"#;
+    let refused = |name: &str, change: &str, place: &str, words: &str| {
+        let path = Path::new(env!("CARGO_MANIFEST_DIR")).join(format!("problems/{name}.json"));
+        let said = read_problem(&path, &[free.to_owned(), change.to_owned()]).unwrap_err();
+        let said = said.to_string();
+        assert!(said.contains(place) && said.contains(words), "{said}");
+    };
+    let rest = r#"control.goal={"rest_at_voltages": {}}"#;
+    refused(
+        "swing_up",
+        rest,
+        "control.loads.wind",
+        "while the goal rests under it",
+    );
+    let ramp = |end: &str| {
+        let changes = [
+            free.to_owned(),
+            rest.to_owned(),
+            format!(
+                r#"control.loads={{"wind": {{"ramp": {{"to": "1 N", "duration": "{end}"}}}}}}"#
+            ),
+        ];
+        let path = Path::new(env!("CARGO_MANIFEST_DIR")).join("problems/swing_up.json");
+        read_problem(&path, &changes).map(|_| ())
+    };
+    assert!(ramp("1.1 s").is_err() && ramp("1 s").is_ok());
+    let table = r#"control.voltages={"time": [0, 0.1], "voltages": {"muscle1": ["1 kV"]}}"#;
+    refused(
+        "identify_pair",
+        table,
+        "control.voltages",
+        "functions of time",
+    );
 }
 
 #[test]

@@ -39,6 +39,7 @@ mod sought;
 mod sought_hold;
 mod squares;
 mod tension_limits;
+mod timed;
 mod tracking;
 mod unreached;
 mod verdicts;

@@ -1,7 +1,7 @@
 //! Controls of robots with prescribed joints: a closed form, and what a start or goal may not contradict.
 
 use crate::loads::{cart, loaded, solved};
-use proboscis::control::problem::{Control, Duration};
+use proboscis::control::problem::{BoundaryState, Control, Duration};
 use proboscis::ipopt::Status;
 use proboscis::math::Signal;
 use proboscis::model::system::{Joint, JointKind};
@@ -10,7 +10,7 @@ use proboscis::{Body, System};
 use std::ops::ControlFlow;
 
 /// The cart of 1 kg on a base that is carried on by 0.5 m.
-fn carried(intervals: usize, coordinates: &str, motion: Signal) -> (System, Control) {
+pub(crate) fn carried(intervals: usize, coordinates: &str, motion: Signal) -> (System, Control) {
     let (mut system, control) = cart(intervals, &[], coordinates);
     let base = Body {
         name: "base".to_owned(),
@@ -84,14 +84,30 @@ fn starts_and_goals_agree_with_what_is_prescribed() {
         "{error}"
     );
 
-    let (system, mut control) = carried(20, "reduced", smooth(1000.0));
-    control.duration = Duration::Free {
-        min: 100.0,
+    let free = |min: f64| Duration::Free {
+        min,
         max: 2000.0,
         guess: 1000.0,
     };
+    let (system, mut control) = carried(20, "reduced", smooth(1000.0));
+    control.duration = free(900.0);
+    let error = refused(&system, &control);
+    assert!(error.contains("goes on"), "{error}");
+    control.goal = BoundaryState::Periodic;
     let error = refused(&system, &control);
     assert!(error.contains("needs a duration that is given"), "{error}");
+
+    let jump = Signal::Ramp {
+        from: 0.0,
+        to: 500.0,
+        start: 700.0,
+        duration: 0.0,
+    };
+    let (system, mut control) = carried(20, "reduced", jump);
+    control.goal = BoundaryState::Free;
+    control.duration = free(900.0);
+    let error = refused(&system, &control);
+    assert!(error.contains("jumps at 700 ms"), "{error}");
 
     let named = |place: &str, value: &str| {
         let changes = [

@@ -79,6 +79,7 @@ fn kinds(costates: &Costates, variables: &[Column], rows: &[Row], count: usize) 
             Row::Instant { i, .. } if *i < count => "momentum balance",
             Row::Instant { .. } => "constraint",
             Row::Interval { .. } => "Gauss's law",
+            Row::Time { .. } => "function of time",
             Row::Limit { .. } => "limit",
         };
         out.entry(kind).or_default().push(value);

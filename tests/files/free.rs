@@ -154,7 +154,7 @@ fn voltages_may_all_be_given_where_a_constant_is_sought() {
         [at(50.0), at(150.0)],
         [[Some(1000.0), Some(0.0)], [Some(0.0); 2]]
     );
-    // Otherwise one is left to be sought, and intervals whose length is free have no times.
+    // Otherwise one is left to be sought, and a table jumps from interval to interval.
     let without = problem("{}").replace(
         "\"free\": {}",
         "\"voltages\": { \"time\": [0, 1], \"voltages\": {} }",
@@ -162,7 +162,11 @@ fn voltages_may_all_be_given_where_a_constant_is_sought() {
     let error = mistake(CHAIN, &without, &[]);
     assert_eq!(error.path(), "control.voltages");
     assert!(error.expected().contains("\"free\""), "{error}");
-    let text = problem(free).replace("\"0.2 s\"", "{ \"min\": 0.1, \"max\": 1, \"guess\": 0.2 }");
+    let [text, functions] = [table, free].map(|given| {
+        problem(given).replace("\"0.2 s\"", "{ \"min\": 0.1, \"max\": 1, \"guess\": 0.2 }")
+    });
     let error = mistake(CHAIN, &text, &[]);
     assert!(error.found().contains("the duration is free"), "{error}");
+    let (_folder, path) = folder(CHAIN, &functions);
+    assert!(read_problem(&path, &[]).is_ok());
 }

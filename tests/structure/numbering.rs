@@ -43,8 +43,10 @@ fn check(system: &System, control: &Control) -> [usize; 2] {
         };
         format!("{role} {} in interval {k}", source.name)
     };
+    // What follows a time that is sought has a column too, and a row in place of its balance.
+    let is_open = |s: usize| !control.given.contains_key(&s) || control.follows_time(s);
     let sought = (0..intervals + held).flat_map(|k| {
-        let open = sources.iter().filter(|s| !control.given.contains_key(s));
+        let open = sources.iter().filter(|&&s| is_open(s));
         open.map(move |&s| voltage(k, s))
     });
     let inputs = [names(&columns, "voltage of "), names(&columns, "load ")].map(|list| list.len());

@@ -40,3 +40,38 @@ fn signals_are_what_they_say() {
     };
     assert!(!unsorted.is_sound() && unsorted.is_zero());
 }
+
+#[test]
+fn functions_know_their_jumps_and_where_they_are_constant() {
+    let ramp = |duration: f64| Signal::Ramp {
+        from: 1.0,
+        to: 3.0,
+        start: 10.0,
+        duration,
+    };
+    assert_eq!([ramp(0.0).jump(), ramp(5.0).jump()], [Some(10.0), None]);
+    assert_eq!(Signal::ramp(2.0, 2.0, 0.0).jump(), None);
+    let table = Signal::Table {
+        times: vec![10.0, 12.0, 15.0],
+        values: vec![1.0, 5.0, 1.0],
+    };
+    for (function, range, expected) in [
+        (ramp(5.0), [0.0, 10.0], Some(1.0)),
+        (ramp(5.0), [9.0, 10.5], None),
+        (ramp(5.0), [15.0, 99.0], Some(3.0)),
+        (table.clone(), [9.0, 16.0], None),
+        (table, [15.0, 16.0], Some(1.0)),
+        (Signal::Constant(4.0), [0.0, 9.0], Some(4.0)),
+    ] {
+        assert_eq!(function.constant_within(range), expected, "{range:?}");
+    }
+    // A whole period apart, and not the same between.
+    let sine = |amplitude: f64| Signal::Sine {
+        mean: 2.0,
+        amplitude,
+        frequency: 0.25,
+        phase: 0.0,
+    };
+    assert_eq!(sine(3.0).constant_within([0.0, 4.0]), None);
+    assert_eq!(sine(0.0).constant_within([0.0, 4.0]), Some(2.0));
+}

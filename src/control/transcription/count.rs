@@ -37,7 +37,7 @@ pub(in crate::control) fn overdetermined(
         rest: rows.iter().filter(is_rest).count(),
         given: coordinates.clone().filter(is_given).count(),
         goals: named.into_iter().collect(),
-        voltages: layout.unknowns.inputs.len(),
+        voltages: layout.sought_inputs(),
         intervals,
         has_elements: !model.solids.is_empty(),
     })

@@ -7,6 +7,7 @@ use crate::control::numbering::{Column, Numbering, Row, Twin};
 use crate::control::problem::{BoundaryState, Control, Duration};
 use crate::control::span::Span;
 use crate::control::transcription::limit_rows::{LimitRow, Site, limit_rows};
+use crate::control::transcription::time_rows::TimeRows;
 use crate::coordinates::{Configuration, CoordinateMap};
 use crate::functional::Horizon;
 use crate::model::{Model, Role};
@@ -25,6 +26,8 @@ pub(in crate::control) struct Layout {
     pub(super) twin: Option<Twin>,
     pub(super) horizon: Horizon,
     pub(in crate::control) unknowns: Numbering,
+    /// Functions of time behind the equations of motion.
+    pub(super) times: TimeRows,
     pub(super) limits: Vec<LimitRow>,
     /// Limit, and instant or interval, of each row behind the equations.
     pub(super) limit_rows: Vec<(usize, usize)>,
@@ -46,24 +49,6 @@ impl Layout {
             is_closed,
         });
         let map = &model.action.map;
-        let goal = &boundary.goal.coordinates;
-        let ends_anyhow = boundary.goal.rests == Rests::Nothing;
-        let is_given = |column: Column| {
-            let variable = column.of(&model.variables);
-            match (column, variable.role) {
-                (Column::Instant { k, i }, Role::Coordinate) => {
-                    let is_start = k == 0 && !is_closed;
-                    is_start || (k == end && goal[i].is_some()) || model.is_prescribed(i)
-                }
-                // No balance at the end, so nothing that a constraint force would balance.
-                (Column::Instant { k, .. }, _) => k == end && ends_anyhow,
-                (Column::Interval { .. }, _) => variable
-                    .source
-                    .is_some_and(|source| control.is_given(source)),
-                (Column::Parameter { .. }, _) => false,
-                (Column::Horizon, _) => matches!(control.duration, Duration::Given(_)),
-            }
-        };
         // A node that multipliers hold rests with what they hold it to: its balance gives their last value.
         let mut is_held = vec![false; map.coordinates];
         for (i, j) in model.action.layout().same.entries() {
@@ -79,12 +64,14 @@ impl Layout {
         let rests = |i: usize| is_in_rest(i) && !model.is_memory(i);
         let is_balanced = |k: usize, i: usize| (k != end || rests(i)) && !model.is_prescribed(i);
         let all = (intervals, twin);
+        let is_given = |column| is_given(column, (model, boundary, control), end);
         let mut unknowns = Numbering::new(&model.variables, all, is_given, is_balanced);
         let span = Span {
             end,
             intervals,
             is_closed,
         };
+        let times = TimeRows::new(model, control, end, &mut unknowns);
         let limits = limit_rows(
             model,
             (&boundary.limits.list, &boundary.rest),
@@ -107,9 +94,27 @@ impl Layout {
                 Duration::Free { .. } => Horizon::Free,
             },
             unknowns,
+            times,
             limits,
             limit_rows,
         }
+    }
+
+    /// Number of inputs that are sought.
+    pub(in crate::control) fn sought_inputs(&self) -> usize {
+        let inputs = self.unknowns.inputs.iter();
+        let sought = inputs.filter(|input| self.times.place(input.column).is_none());
+        sought.count()
+    }
+
+    /// First of the rows of functions of time.
+    pub(super) fn first_time_row(&self) -> usize {
+        self.unknowns.rows.len() - self.limit_rows.len() - self.times.len()
+    }
+
+    /// The row of a column that is a function of time.
+    pub(in crate::control) fn row_of_time(&self, column: Option<usize>) -> Option<usize> {
+        Some(self.first_time_row() + self.times.place(column?)?)
     }
 
     /// The intervals of the horizon.
@@ -152,6 +157,32 @@ impl Layout {
             at: limit.at.clone(),
             first: self.unknowns.rows.len() - self.limit_rows.len() + limit.first,
         }
+    }
+}
+
+/// Returns true if a variable is given: by the start, the goal at instant `end`, or the problem, unless its value follows a time that is sought.
+fn is_given(
+    column: Column,
+    (model, boundary, control): (&Model, &BoundaryConditions, &Control),
+    end: usize,
+) -> bool {
+    let variable = column.of(&model.variables);
+    let is_followed = || control.followed(model, column).is_some();
+    match (column, variable.role) {
+        (Column::Instant { k, i }, Role::Coordinate) => {
+            let is_start = k == 0 && control.goal != BoundaryState::Periodic;
+            is_start
+                || (k == end && boundary.goal.coordinates[i].is_some())
+                || (model.is_prescribed(i) && !is_followed())
+        }
+        // No balance at the end, so nothing that a constraint force would balance.
+        (Column::Instant { k, .. }, _) => k == end && boundary.goal.rests == Rests::Nothing,
+        (Column::Interval { .. }, _) => {
+            let is_given = |source| control.is_given(source);
+            variable.source.is_some_and(is_given) && !is_followed()
+        }
+        (Column::Parameter { .. }, _) => false,
+        (Column::Horizon, _) => matches!(control.duration, Duration::Given(_)),
     }
 }
 

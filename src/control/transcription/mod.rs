@@ -10,7 +10,7 @@
 //!
 //! A [`Transcription`] has constant parts, `layout` (unknowns, equations, limits), `objective` and `structure` (entries of the derivatives),
 //! and one that every evaluation changes, `workspace`. Its methods are in `program` (the trait [`Nlp`]), `point`, `interval_pass`, `scaling`,
-//! `costs`, `energies`, `update_endpoints` and `squares`.
+//! `costs`, `energies`, `time_values`, `update_endpoints` and `squares`.
 
 mod cost_rows;
 mod costs;
@@ -30,6 +30,8 @@ mod segment;
 mod squares;
 mod step;
 mod structure;
+mod time_rows;
+mod time_values;
 mod units;
 mod update_endpoints;
 mod workspace;

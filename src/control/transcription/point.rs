@@ -63,7 +63,7 @@ impl Decoder {
 }
 
 impl Transcription<'_> {
-    /// The variables of a motion with interval length h (ms).
+    /// The variables of a motion with interval length h (ms); those that are functions of time have the values of its instants and intervals.
     pub fn encode(&self, discrete: &DiscreteTrajectory, h: f64) -> Vec<f64> {
         let map = &self.model.action.map;
         let here = |(z, instant): (&Vec<f64>, &Configuration)| {
@@ -85,13 +85,12 @@ impl Transcription<'_> {
             Column::Parameter { s } => discrete.scalars[0][s],
             Column::Horizon => h,
         };
-        self.layout
-            .unknowns
-            .columns
-            .iter()
-            .zip(&self.variable_scales)
-            .map(|(column, scale)| value(column) / scale)
-            .collect()
+        let columns = self.layout.unknowns.columns.iter();
+        let mut x: Vec<f64> = columns.map(value).collect();
+        for (column, value) in self.layout.times.values(h) {
+            x[column] = value;
+        }
+        divide(&x, &self.variable_scales)
     }
 
     /// The motion of a point of the program.
@@ -204,6 +203,7 @@ impl Transcription<'_> {
                 }
                 Row::Interval { k, s } => workspace.scalars_along[k * count + s] = y,
                 Row::Limit { .. } => workspace.rows[total + r - first] = y,
+                Row::Time { .. } => {}
             }
         }
         workspace.sigma = sigma;

@@ -94,6 +94,7 @@ impl Nlp for Transcription<'_> {
                         self.workspace.rows[k * stride + i] + start + again
                     }
                     Row::Interval { k, s } => self.workspace.rows[k * stride + count + s],
+                    Row::Time { place, .. } => self.time_value(place, x),
                     Row::Limit { limit, k } => self.limit_value(&self.layout.limits[limit], k),
                 };
         }
@@ -103,6 +104,7 @@ impl Nlp for Transcription<'_> {
         self.load(x);
         self.sweep(Order::Hessian);
         self.limit_gradients();
+        self.time_gradients();
         for (value, kept) in values.iter_mut().zip(&self.structure.jacobian.kept) {
             *value = kept.scale * self.workspace.values[kept.place];
         }
@@ -114,6 +116,7 @@ impl Nlp for Transcription<'_> {
         self.sweep(Order::Third);
         self.objective_curvature(sigma);
         self.energy_curvature(sigma);
+        self.time_curvature(costates);
         let tau = self.workspace.h * MILLISECOND;
         let (own, coupling) = values.split_at_mut(self.structure.hessian.kept.len());
         for (value, kept) in own.iter_mut().zip(&self.structure.hessian.kept) {
@@ -176,6 +179,11 @@ impl Nlp for Transcription<'_> {
                     When::Goal | When::At(_) => name.clone(),
                     When::Everywhere => format!("{name} {} {k}", quantity.when()),
                 }
+            }
+            (Row::Time { of, .. }, _) => {
+                let column = self.layout.unknowns.columns.iter().position(|c| *c == of);
+                let name = self.variable_name(column.expect("a column of the program"));
+                format!("{name}, a function of time")
             }
             (Row::Instant { k, .. }, Some(Role::Multiplier)) => {
                 format!("constraint {name} at instant {k}")

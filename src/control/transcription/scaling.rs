@@ -50,6 +50,9 @@ impl Transcription<'_> {
         for (scale, row) in self.row_scales.iter_mut().zip(rows) {
             *scale = match *row {
                 Row::Limit { limit, .. } => self.layout.limits[limit].scale,
+                Row::Time { place, .. } => {
+                    1.0 / self.variable_scales[self.layout.times.column(place)]
+                }
                 other => kind(other, count).map_or(1.0, |i| of_kinds[i]),
             };
         }
@@ -106,8 +109,10 @@ impl Transcription<'_> {
                 }
             }
         }
-        let bound = |(&column, &scale): (&Column, &f64)| {
+        let times = &self.layout.times;
+        let bound = |(number, (&column, &scale)): (usize, (&Column, &f64))| {
             let [low, high] = match (column, column.of(&self.model.variables).role) {
+                _ if times.place(number).is_some() => [f64::NEG_INFINITY, f64::INFINITY],
                 (Column::Instant { i, .. }, Role::Coordinate) => [lower[i], upper[i]],
                 (_, Role::Voltage | Role::Load) => control.bounds(column.of(&self.model.variables)),
                 (Column::Parameter { .. }, _) => {
@@ -130,6 +135,7 @@ impl Transcription<'_> {
             .columns
             .iter()
             .zip(&self.variable_scales)
+            .enumerate()
             .map(bound)
             .unzip();
         self.bounds = Bounds { lower, upper };
@@ -160,12 +166,12 @@ fn multiplier(column: Column, model: &Model) -> Option<usize> {
     }
 }
 
-/// Kind of a row, the place in its step; `count` is the number of unknowns of an instant. Limits are of no kind.
+/// Kind of a row, the place in its step; `count` is the number of unknowns of an instant. Limits and functions of time are of no kind.
 fn kind(row: Row, count: usize) -> Option<usize> {
     match row {
         Row::Instant { i, .. } => Some(i),
         Row::Interval { s, .. } => Some(count + s),
-        Row::Limit { .. } => None,
+        Row::Time { .. } | Row::Limit { .. } => None,
     }
 }
 

@@ -132,6 +132,13 @@ fn jacobian_candidates(model: &Model, layout: &Layout) -> Result<Vec<Candidate>,
             place += 1;
         }
     }
+    let first = layout.first_time_row();
+    for r in 0..layout.times.len() {
+        let column = Some(layout.times.column(r));
+        list.push((Some(first + r), column, place));
+        list.push((Some(first + r), u.horizon(), place + 1));
+        place += 2;
+    }
     Ok(list)
 }
 

@@ -71,7 +71,10 @@ impl Workspace {
             measured: SumDerivatives::new(map.vectors.len(), scalar_count, None),
             sigma: 0.0,
             rows: vec![0.0; (intervals + 1) * stride + layout.limit_rows.len()],
-            values: vec![0.0; action.layout().values(intervals) + limit_entries],
+            values: vec![
+                0.0;
+                action.layout().values(intervals) + limit_entries + 2 * layout.times.len()
+            ],
         }
     }
 }

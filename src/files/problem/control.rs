@@ -11,7 +11,7 @@ use crate::files::problem::free::parameters;
 use crate::files::problem::goal::goal_state;
 use crate::files::problem::guess::{guess, unwritten};
 use crate::files::problem::limits::limits;
-use crate::files::problem::loads::{load, load_bounds, loads};
+use crate::files::problem::loads::{check_end, load, load_bounds, loads};
 use crate::files::problem::spec_control::{
     ControlSolverSpec, ControlSpec, DurationSpec, IntervalsSpec, IntervalsWord, ObjectiveSpec,
     OptionSpec, SolverSpec,
@@ -68,7 +68,7 @@ pub(crate) fn control(
     let parameters = parameters(&spec.free, written, system, &scope.key("free"))?;
     let loads = loads(&spec.loads, system, &scope.key("loads"))?;
     let load_bounds = load_bounds(&spec.load_bounds, &loads, system, &scope.key("load_bounds"))?;
-    check_times(&loads, spec, &scope.key("loads"))?;
+    check_end((&loads, &goal), system, duration, &scope.key("loads"))?;
     load(&mut start, &loads, 0.0);
     load(&mut goal, &loads, duration.first());
     let (mut given, course) = given_voltages(spec, system, &scope.key("voltages"))?;
@@ -166,20 +166,6 @@ pub(crate) fn duration(spec: &DurationSpec, scope: &Scope<'_>) -> Result<Duratio
     Ok(Duration::Free { min, max, guess })
 }
 
-/// Refuses loads over time where the duration is free.
-fn check_times(
-    loads: &BTreeMap<usize, Signal>,
-    spec: &ControlSpec,
-    scope: &Scope<'_>,
-) -> Result<(), SceneError> {
-    let changes = !loads.values().all(Signal::is_constant);
-    if changes && matches!(spec.duration, DurationSpec::Free(_)) {
-        let found = "loads over time where the duration is free";
-        return Err(scope.wrong(found, "constant loads, or a given duration"));
-    }
-    Ok(())
-}
-
 /// Bounds of voltages; needed where one is sought.
 pub(crate) fn voltage_bounds(
     spec: &ControlSpec,
@@ -229,10 +215,11 @@ pub(crate) fn given_voltages(
         }
         other => course = Some(over_time(other, system, scope)?),
     }
-    let changes = course.is_some() || !given.values().all(Signal::is_constant);
-    if changes && matches!(spec.duration, DurationSpec::Free(_)) {
-        let found = "voltages over time where the duration is free";
-        return Err(scope.wrong(found, "constant voltages, or a given duration"));
+    let jumps = matches!(course, Some(Voltages::Sampled { .. }));
+    if jumps && matches!(spec.duration, DurationSpec::Free(_)) {
+        let found = "voltages that jump from interval to interval where the duration is free";
+        let expected = "functions of time by the names of sources, or a given duration";
+        return Err(scope.wrong(found, expected));
     }
     let is_sought =
         |s: usize| sources[s].takes_voltage && course.is_none() && !given.contains_key(&s);

@@ -1,6 +1,6 @@
 //! Loads of a problem: sizes over time, bounds of those that are sought, and loads at rest.
 
-use crate::control::problem::{BoundaryState, Voltages};
+use crate::control::problem::{BoundaryState, Duration, Voltages};
 use crate::files::json::error::SceneError;
 use crate::files::json::scope::Scope;
 use crate::files::signal::signal;
@@ -103,5 +103,29 @@ pub(crate) fn load(state: &mut BoundaryState, loads: &BTreeMap<usize, Signal>, t
     };
     for (&source, signal) in loads {
         row[source] = signal.at(time);
+    }
+}
+
+/// Refuses loads under which a goal rests at one free duration and not at another.
+pub(crate) fn check_end(
+    (loads, goal): (&BTreeMap<usize, Signal>, &BoundaryState),
+    system: &System,
+    duration: Duration,
+    scope: &Scope<'_>,
+) -> Result<(), SceneError> {
+    let changes = |(_, load): &(&usize, &Signal)| duration.final_value(load).is_none();
+    match loads
+        .iter()
+        .find(changes)
+        .filter(|_| goal.voltages().is_some())
+    {
+        Some((&source, _)) => {
+            let found = "a load that still changes between the bounds of the free duration, while the goal rests under it";
+            let expected =
+                "one that is constant from the lower bound on, another goal, or a given duration";
+            let name = &system.sources()[source].name;
+            Err(scope.key(name).wrong(found, expected))
+        }
+        None => Ok(()),
     }
 }

@@ -1,0 +1,87 @@
+//! Control problems of a free duration in which inputs and joints are functions of time.
+
+use super::cases::{Case, control, joints};
+use super::limited::all_limits;
+use super::loaded::loaded;
+use super::systems::{branched, charged};
+use super::tracked::{energies, signals, tracked};
+use super::trunk;
+use proboscis::System;
+use proboscis::control::problem::{BoundaryState, Control, Duration, Objective, SoughtHold};
+
+/// The list: voltages, loads, charges and motions of every kind of function, with costs, limits and energies that read them.
+pub fn timed() -> Vec<Case> {
+    let case = |name, system: System, change: &dyn Fn(&mut Control)| {
+        let mut control = control(&system, 3);
+        control.duration = Duration::Free {
+            min: 10.0,
+            max: 90.0,
+            guess: 30.0,
+        };
+        change(&mut control);
+        Case {
+            name,
+            system,
+            control,
+        }
+    };
+    let inputs = Objective {
+        effort: 0.7,
+        rate: 0.02,
+        duration: 0.3,
+        ..Objective::default()
+    };
+    let give = |c: &mut Control, sources: &[usize], mean: f64, size: f64| {
+        let functions = signals(mean, size).into_iter().skip(1);
+        c.given.extend(sources.iter().copied().zip(functions));
+    };
+    let moving = |joint: usize, kind: usize, mut system: System| {
+        system.joints[joint].motion = Some(signals(0.1, 0.3)[kind].clone());
+        system
+    };
+    vec![
+        case("loads in time, free time", loaded(trunk(2)), &|c| {
+            give(c, &[4, 5, 6], 0.3, 0.4);
+            c.objective = inputs.clone();
+        }),
+        case(
+            "all limits under voltages in time, free time",
+            branched(),
+            &|c| {
+                give(c, &[1, 0], 900.0, 400.0);
+                c.limits = all_limits();
+                c.goal = joints(&[(1, 2.0)]);
+                c.objective = Objective {
+                    rate: 0.02,
+                    energies: energies(&[(0, 2e3), (1, 3e3)], &[(1, 1e3), (2, 4e3)]),
+                    ..tracked(&[0, 1], &[(0, true)])
+                };
+            },
+        ),
+        case("charge in time, free time", charged(), &|c| {
+            give(c, &[0], 900.0, 400.0);
+            give(c, &[4], 1e-4, 5e-5);
+            c.objective = inputs.clone();
+        }),
+        case(
+            "found hold under a voltage in time, free time",
+            branched(),
+            &|c| {
+                give(c, &[2], 900.0, 400.0);
+                c.goal = joints(&[(1, 2.0)]);
+                c.sought_hold = SoughtHold::Always;
+                c.objective = inputs.clone();
+            },
+        ),
+        case(
+            "joint in time, all limits, free time",
+            moving(0, 2, branched()),
+            &|c| {
+                c.start = joints(&[]);
+                c.goal = BoundaryState::Free;
+                c.limits = all_limits();
+                c.objective = tracked(&[0, 1], &[(0, true), (1, false), (2, true)]);
+            },
+        ),
+    ]
+}
