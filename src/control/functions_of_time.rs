@@ -9,11 +9,11 @@ use crate::math::Signal;
 use crate::model::{Model, Time};
 
 impl Duration {
-    /// Time in ms of a jump of a function of time, where it is before the longest of several durations.
+    /// Time in ms of a jump of a function of time, where it is after the start and before the longest of several durations.
     pub fn jump(self, function: &Signal) -> Option<f64> {
         match self {
             Self::Given(_) => None,
-            Self::Free { max, .. } => function.jump().filter(|time| (0.0..max).contains(time)),
+            Self::Free { max, .. } => function.jump().filter(|&time| 0.0 < time && time < max),
         }
     }
 

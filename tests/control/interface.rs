@@ -251,6 +251,22 @@ fn what_makes_no_sense_is_refused() {
     assert!(told(none).contains("a muscle or a driven electrode"));
     let none = Control::over(ms(20.0), 0).effort(1.0).solve(&other);
     assert!(none.unwrap_err().to_string().contains("no interval"));
+    let step = |start: f64| Signal::Ramp {
+        from: 0.0,
+        to: 1000.0,
+        start,
+        duration: 0.0,
+    };
+    let free = |signal: Signal| {
+        let free = Control::over_free(ms(10.0)..=ms(30.0), 1).voltage(muscles[0], signal);
+        free.solve(&other).unwrap_err().to_string()
+    };
+    let refused = free(step(15.0));
+    assert!(refused.contains("jumps at 15 ms"), "{refused}");
+    // One at the start, or behind the end, is none.
+    for start in [0.0, 30.0] {
+        assert!(free(step(start)).contains("weights"));
+    }
     let none = Control::over(ms(20.0), 4).solve(&other);
     assert!(none.unwrap_err().to_string().contains("weights"));
 }

@@ -11,7 +11,7 @@ use proboscis::control::{BoundaryConditions, Row, Solution, Transcription, guess
 use proboscis::ipopt::Status;
 use proboscis::math::Signal;
 use proboscis::model::components::{Load, LoadPlace};
-use proboscis::workflow::{Optimum, SolveLimits, optimise};
+use proboscis::workflow::{Optimum, Shortest, SolveLimits, optimise};
 use std::collections::BTreeMap;
 use std::f64::consts::TAU;
 use std::ops::ControlFlow;
@@ -259,5 +259,47 @@ fn costates_of_functions_of_time_are_carried_to_a_finer_grid() {
         );
         assert!(count == 80 && size > 1e-12 && apart < 0.15);
         assert!(warm.0 < cold.0 && (warm.1 - cold.1).abs() < 1e-8 * cold.1);
+    }
+}
+
+#[test]
+fn a_motion_that_is_too_short_is_told_the_least_time_in_its_wind() {
+    // The motor pushes with 10 N until s and brakes then; the wind is 8 N/s t.
+    let (limit, a) = (10.0, 8.0);
+    let place = |t: f64| {
+        let s = t / 2.0 - a * t * t / (4.0 * limit);
+        limit * (s * t - s * s / 2.0 - (t - s).powi(2) / 2.0) + a * t.powi(3) / 6.0
+    };
+    let (exact, _) = least(|t| (place(t) - 1.0).powi(2), [0.3, 1.0]);
+    let in_calm = 2.0 / f64::sqrt(limit);
+    assert!((place(exact) - 1.0).abs() < 1e-6 && (exact / in_calm - 1.0).abs() > 0.03);
+    let (system, mut control) = pushed(40, "reduced");
+    control.duration = Duration::Given(400.0);
+    control.load_bounds.insert(0, [-limit, limit]);
+    control.given.insert(1, Signal::ramp(0.0, 80.0, 10_000.0));
+    let found = solved(&system, &control);
+    println!("{exact} s, {in_calm} s in calm: {:?}", found.shortest);
+    let Shortest::Longer(time) = found.shortest else {
+        panic!("{:?}", found.shortest);
+    };
+    assert!((time / 1e3 / exact - 1.0).abs() < 3e-3, "{time} ms");
+}
+
+#[test]
+fn a_goal_rests_behind_the_end_of_a_ramp_and_not_within_it() {
+    // The corners of the ramp lie between two instants.
+    let (system, control) = carried(20, "reduced", Signal::ramp(0.0, 500.0, 480.0));
+    let mut control = freed(control);
+    control.duration = Duration::Free {
+        min: 480.0,
+        max: 4000.0,
+        guess: 1000.0,
+    };
+    let free = assert_as_given(&system, &control);
+    let h = duration(&free) / 20.0;
+    assert!(h > 30.0 && (480.0 / h).fract() > 0.05 && (480.0 / h).fract() < 0.95);
+    for (k, joints) in free.motion.joints.iter().enumerate() {
+        let belt = f64::min(500.0, k as f64 * h / 480.0 * 500.0);
+        assert!((joints[1] - belt).abs() < 1e-7, "{joints:?} at instant {k}");
     }
 }
