@@ -56,7 +56,6 @@ impl Limits {
         (system, measure_joints, length): (&System, bool, Length),
     ) {
         let out = self;
-        let muscle_name = |muscle: usize| &system.muscles[muscle].name;
         match *limit {
             PathConstraint::Once { part, ref limit } => {
                 out.add_once(limit, part, system, length);
@@ -73,33 +72,21 @@ impl Limits {
                 out.add_rate(quantity, [min, max], name, length);
             }
             PathConstraint::Stretch { muscle, min, max } => {
-                let name = format!("stretch of {}", muscle_name(muscle));
+                let name = format!("stretch of {}", system.muscles[muscle].name);
                 let quantity = Quantity::SquaredStretch { muscle };
                 out.add(quantity, [min * min, max * max], name);
             }
             PathConstraint::Tension { muscle, min, max } => {
-                let name = format!("tension of {}", muscle_name(muscle));
-                let unit = largest([min, max]).unwrap_or(system.muscles[muscle].shear_force());
-                let quantity = Quantity::Tension { muscle, unit };
-                out.add(quantity, [min / unit, max / unit], name);
+                out.add_tension(muscle, [min, max], system);
             }
             PathConstraint::ElectricField { muscle, max } => {
-                let name = format!("electric field of {}", muscle_name(muscle));
-                match system.muscles[muscle].is_behind_resistor() {
-                    true => {
-                        let quantity = Quantity::ChargedField { muscle, limit: max };
-                        out.add(quantity, [f64::NEG_INFINITY, 1.0], name);
-                    }
-                    false => out.add_field(FieldPlace::Muscle(muscle), max, &name),
-                }
+                out.add_muscle_field(muscle, max, system);
             }
             PathConstraint::Current { muscle, min, max } => {
-                let name = format!("current of {}", muscle_name(muscle));
-                out.add_source(Flow::Current, (muscle, name), [min, max], system, length);
+                out.add_source((Flow::Current, muscle), [min, max], system, length);
             }
             PathConstraint::Power { muscle, min, max } => {
-                let name = format!("power of {}", muscle_name(muscle));
-                out.add_source(Flow::Power, (muscle, name), [min, max], system, length);
+                out.add_source((Flow::Power, muscle), [min, max], system, length);
             }
             PathConstraint::BlockField { block, region, max } => {
                 out.add_block_field(block, region, max, system);
@@ -114,14 +101,7 @@ impl Limits {
                 along,
                 min,
                 max,
-            } => {
-                let what = match of {
-                    Reaction::Force => "force",
-                    Reaction::Torque => "torque",
-                };
-                let name = format!("reaction {what} of {}", system.joints[joint].name);
-                out.add_reaction((joint, of), along, ([min, max], name), length);
-            }
+            } => out.add_reaction((joint, of), along, ([min, max], system), length),
             PathConstraint::MarkerSpeed { marker, min, max } => {
                 let name = format!("speed of marker {}", system.markers[marker].name);
                 out.add_speed(marker, [min, max], name);
@@ -147,6 +127,28 @@ impl Limits {
         }
     }
 
+    /// Adds a limit of the tension of a muscle.
+    fn add_tension(&mut self, muscle: usize, [min, max]: [f64; 2], system: &System) {
+        let of = &system.muscles[muscle];
+        let unit = largest([min, max]).unwrap_or(of.shear_force());
+        let quantity = Quantity::Tension { muscle, unit };
+        let name = format!("tension of {}", of.name);
+        self.add(quantity, [min / unit, max / unit], name);
+    }
+
+    /// Adds a limit of the field of a muscle.
+    fn add_muscle_field(&mut self, muscle: usize, limit: f64, system: &System) {
+        let of = &system.muscles[muscle];
+        let name = format!("electric field of {}", of.name);
+        match of.is_behind_resistor() {
+            true => {
+                let quantity = Quantity::ChargedField { muscle, limit };
+                self.add(quantity, [f64::NEG_INFINITY, 1.0], name);
+            }
+            false => self.add_field(FieldPlace::Muscle(muscle), limit, &name),
+        }
+    }
+
     /// Adds a limit of the rate of a voltage.
     fn add_voltage_rate(&mut self, source: usize, bounds: [f64; 2], name: String, length: Length) {
         let h = length.h;
@@ -160,10 +162,15 @@ impl Limits {
         &mut self,
         (joint, of): (usize, Reaction),
         along: Vector3<f64>,
-        (bounds, name): ([f64; 2], String),
+        (bounds, system): ([f64; 2], &System),
         length: Length,
     ) {
         let h = length.h;
+        let what = match of {
+            Reaction::Force => "force",
+            Reaction::Torque => "torque",
+        };
+        let name = format!("reaction {what} of {}", system.joints[joint].name);
         let quantity = Quantity::ReactionStep {
             joint,
             of,
@@ -236,13 +243,17 @@ impl Limits {
     /// the middle of an interval to that of the next one.
     fn add_source(
         &mut self,
-        flow: Flow,
-        (muscle, name): (usize, String),
+        (flow, muscle): (Flow, usize),
         bounds: [f64; 2],
         system: &System,
         length: Length,
     ) {
         let h = length.h;
+        let what = match flow {
+            Flow::Current => "current",
+            Flow::Power => "power",
+        };
+        let name = format!("{what} of {}", system.muscles[muscle].name);
         if system.muscles[muscle].is_behind_resistor() {
             let typical = system.short_circuit(muscle)[flow as usize];
             let unit = largest(bounds).unwrap_or(typical);
