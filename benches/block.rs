@@ -40,6 +40,7 @@ fn block(n: usize, viscosity: Option<f64>) -> System {
     )
     .mesh();
     let electrode = |layer: usize| Electrode {
+        circuit: None,
         name: format!("e{layer}"),
         nodes: mesh.nodes_on_plane(2, 10.0 * layer as f64, 1e-9),
         potential: match layer % 2 {

@@ -319,6 +319,7 @@ fn block(driven: bool, change: impl Fn(&mut Material)) -> System {
     let size = Vector3::new(10.0, 10.0, 40.0);
     let mesh = Grid::uniform(Vector3::zeros(), size, [2, 2, 8]).mesh();
     let electrode = |layer: usize| Electrode {
+        circuit: None,
         name: format!("e{layer}"),
         nodes: mesh.nodes_on_plane(2, 10.0 * layer as f64, 1e-9),
         potential: match layer % 2 {

@@ -71,7 +71,7 @@ class Box(TypedDict):
 
 
 class Circuit(TypedDict):
-    """Circuit between a source and the electrodes of a muscle: a resistor, a leak or both."""
+    """Circuit between a source and the electrodes of a muscle or a block: a resistor, a leak or both."""
 
     leakage: NotRequired[Quantity]
     """Resistance of a leak parallel to the electrodes, SI unit Ohm."""
@@ -119,6 +119,9 @@ class Electrode(TypedDict):
 
     box: NotRequired[Corners]
     """All nodes in a box."""
+
+    circuit: NotRequired[Circuit]
+    """Circuit between its source and a driven electrode."""
 
     face: NotRequired[Text]
     """All nodes of a face."""
@@ -420,6 +423,9 @@ class Stack(TypedDict):
 
     axis: AxisName
     """Direction across the layers."""
+
+    circuit: NotRequired[Circuit]
+    """Circuit between their source and the driven electrodes."""
 
     layers: int
     """Number of layers, a divisor of the elements along the axis."""
@@ -815,6 +821,9 @@ class Limit(TypedDict):
     reaction_force: NotRequired[ReactionForceLimit]
     """Limits of the force that a joint transmits."""
 
+    reaction_torque: NotRequired[ReactionTorqueLimit]
+    """Limits of the torque that a joint transmits."""
+
     stretch: NotRequired[StretchLimit]
     """Limits of the stretch of a muscle."""
 
@@ -989,6 +998,26 @@ class ReactionForceLimit(TypedDict):
 
     min: NotRequired[Quantity]
     """Lower bound, SI unit N."""
+
+
+class ReactionTorqueLimit(TypedDict):
+    """Limits of the component, about a direction of the ground frame, of the torque from the parent of a joint on its child: `min`, `max` or both.
+
+    It is the torque of the columns of reactions, about the point of the joint, at the instants between intervals. Spherical joints and joints
+    in loops are refused.
+    """
+
+    about: Sequence[float] | Numbers
+    """Direction of the ground frame, of any length."""
+
+    joint: Text
+    """Name of the joint."""
+
+    max: NotRequired[Quantity]
+    """Upper bound, SI unit N m."""
+
+    min: NotRequired[Quantity]
+    """Lower bound, SI unit N m."""
 
 
 class Region(TypedDict):
@@ -1441,7 +1470,7 @@ class Output(TypedDict):
     """
 
     quantities: NotRequired[Sequence[Text]]
-    """Columns of `trajectory.csv`: `joints`, `rates`, `reactions`, `markers`, `stretches`, `tensions`, `fields`, `charges`, `currents`, `powers`,
-    `energies`, `momenta`, `constraint_violation`, or all of a joint, marker, muscle, block, spring, tendon or load by its name. All where not
-    written.
+    """Columns of `trajectory.csv`: `joints`, `rates`, `speeds`, `reactions`, `markers`, `stretches`, `tensions`, `fields`, `charges`, `currents`,
+    `powers`, `energies`, `momenta`, `constraint_violation`, or all of a joint, marker, muscle, block, spring, tendon or load by its name. All
+    where not written.
     """

@@ -93,7 +93,10 @@ fn zero_inputs<const N: usize>(
     };
     let sources = system.sources();
     let takes = (0..sources.len()).filter(|&s| sources[s].acts());
-    takes.filter(|&s| !is_driven(s) && !is_held(s)).collect()
+    // Other electrodes drive a current through the resistor of a source at zero volts.
+    let is_silent = |&s: &usize| !is_driven(s) && !is_held(s);
+    let is_behind = |s: &usize| system.has_electrodes_behind_resistor(*s);
+    takes.filter(is_silent).filter(|s| !is_behind(s)).collect()
 }
 
 /// Bodies and blocks that are named.

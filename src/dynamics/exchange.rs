@@ -15,8 +15,10 @@
 //!
 //! A leak takes charge from the source too ([`Circuit::exchange`]).
 //!
+//! Of electrodes of finite elements behind a resistor the charge is known too, and the work within the elements is not.
+//!
 //! The last row of a motion whose voltages afterwards are known includes the switch to them. Both belong to the instants at the ends of an interval. The potentials within finite elements are known in the middle of intervals
-//! only, so sources that drive finite elements are not listed.
+//! only, so sources that drive finite elements without a resistor are not listed.
 
 use crate::dynamics::trajectory::{Column, Trajectory};
 use crate::model::System;
@@ -41,7 +43,7 @@ pub struct SourceEnergies {
     pub name: String,
     /// Electrical energy from the source in mJ; negative where more flows back.
     pub electrical_energy: Vec<f64>,
-    /// Work of the electrical forces in mJ.
+    /// Work of the electrical forces in mJ; empty of finite elements.
     pub mechanical_work: Vec<f64>,
     /// Heat of its resistor, if it has one, and of its leak in mJ; none without a leak.
     pub heats: Vec<(&'static str, Vec<f64>)>,
@@ -90,7 +92,20 @@ impl EnergyExchange {
                     }
                     out.sources.push(energies);
                 }
-                None => out.is_complete = false,
+                None => {
+                    out.is_complete = false;
+                    let circuit = system.electrode_circuit(source);
+                    let charged = circuit.zip(motion.charges.get(&source));
+                    let through = |(circuit, charges): (Circuit, &Vec<f64>)| {
+                        SourceEnergies::of_electrodes(
+                            (source, named.name),
+                            &circuit,
+                            charges,
+                            motion,
+                        )
+                    };
+                    out.sources.extend(charged.map(through));
+                }
             }
         }
         out
@@ -117,7 +132,8 @@ impl EnergyExchange {
     pub fn columns(&self) -> Vec<Column> {
         let mut columns = Vec::new();
         let mut add = |prefix: &str, [energy, work]: [Vec<f64>; 2]| {
-            for (name, values) in [("electrical_energy", energy), ("mechanical_work", work)] {
+            let both = [("electrical_energy", energy), ("mechanical_work", work)];
+            for (name, values) in both.into_iter().filter(|(_, values)| !values.is_empty()) {
                 let name = format!("{prefix}{name}");
                 let unit = "N mm";
                 columns.push(Column { name, unit, values });
@@ -143,6 +159,29 @@ impl EnergyExchange {
 }
 
 impl SourceEnergies {
+    /// Of electrodes of finite elements behind a resistor with these charges, without the work within the elements.
+    fn of_electrodes(
+        (source, name): (usize, String),
+        circuit: &Circuit,
+        charges: &Vec<f64>,
+        motion: &Trajectory,
+    ) -> Self {
+        let voltages = motion.voltages.iter().map(|row| row[source]);
+        let still = vec![1.0; charges.len()];
+        let [electrical_energy, _] = through_resistor(&still, charges, voltages);
+        let mut energies = Self {
+            source,
+            name: name.replace('.', "_"),
+            electrical_energy,
+            mechanical_work: Vec::new(),
+            heats: Vec::new(),
+        };
+        energies.leak(circuit, Some(charges), motion);
+        let has_part = |(part, _): &(&str, _)| *part == "resistor" || circuit.leakage.is_some();
+        energies.heats.retain(has_part);
+        energies
+    }
+
     /// Adds what the source supplies to a leak, and the heat of the circuit; `charges` are those of a muscle behind a resistor.
     fn leak(&mut self, circuit: &Circuit, charges: Option<&Vec<f64>>, motion: &Trajectory) {
         let (mut sum, mut heats) = (0.0, [0.0; 2]);

@@ -88,10 +88,10 @@ fn by_rows(
         }
     }
     if discrete.reading == Reading::Intervals && discrete.times.len() > 1 {
-        let last = observer.last(discrete);
-        let [ends, parts] = [&last.of_intervals(), &last.parts];
-        to_instants(&discrete.times, &mut columns[of_intervals], ends);
-        to_instants(&discrete.times, &mut columns[of_parts.clone()], parts);
+        let (mut last, times) = (observer.last(discrete), &discrete.times);
+        to_instants(times, &mut columns[of_intervals], &last.of_intervals());
+        let (parts, of) = (&mut columns[of_parts.clone()], (model, discrete));
+        observer.parts.to_instants(of, parts, &mut last.parts);
         let before: Vec<_> = rows.iter().map(|row| row.before).collect();
         means(&discrete.times, &mut columns[of_momenta], &before, &last);
     }

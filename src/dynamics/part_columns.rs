@@ -6,6 +6,7 @@
 
 use crate::coordinates::Configuration;
 use crate::dynamics::discrete_trajectory::DiscreteTrajectory;
+use crate::dynamics::to_instants::{beyond_middles, to_instants};
 use crate::dynamics::trajectory::Column;
 use crate::math::Vector;
 use crate::model::{Model, MuscleReading, joint_unit};
@@ -63,10 +64,38 @@ impl PartColumns {
                 add(name, "power", "W");
             }
         }
+        for circuit in &model.electrode_circuits {
+            for (quantity, unit) in [("voltage", "V"), ("current", "A"), ("power", "W")] {
+                add(&circuit.name().replace('.', "_"), quantity, unit);
+            }
+        }
         for &(source, _) in &self.loads {
             add(&model.sources[source].name, "power", "W");
         }
         columns
+    }
+
+    /// Turns values in the middle of intervals into values at the rows, of which `last` holds the last ones; the potentials of electrodes behind
+    /// resistors are known within intervals only and are extrapolated to both ends.
+    pub(super) fn to_instants(
+        &self,
+        (model, discrete): (&Model, &DiscreteTrajectory),
+        columns: &mut [Column],
+        last: &mut [f64],
+    ) {
+        let circuits = &model.electrode_circuits;
+        let first = columns.len() - self.loads.len() - 3 * circuits.len();
+        let scalars = [0, discrete.intervals() - 1].map(|k| &discrete.scalars[k]);
+        for (c, circuit) in circuits.iter().enumerate() {
+            let first = first + 3 * c;
+            let across = beyond_middles(&discrete.times, &columns[first].values);
+            let [start, end] = [0, 1].map(|i| circuit.flow(across[i], scalars[i]));
+            for i in 0..3 {
+                columns[first + i].values[0] = start[i];
+                last[first + i] = end[i];
+            }
+        }
+        to_instants(&discrete.times, columns, last);
     }
 
     /// Values at a placed configuration with the rates `l` of its coordinates and `w` of its vectors, and the scalars there.
@@ -82,6 +111,8 @@ impl PartColumns {
             let flow = reading.flow(model, at, scalars);
             values.extend(flow.iter().flat_map(|flow| [flow.current, flow.power]));
         }
+        let circuits = model.electrode_circuits.iter();
+        values.extend(circuits.flat_map(|circuit| circuit.flow(circuit.voltage(scalars), scalars)));
         let state = [at.x.as_slice(), at.w.as_slice()];
         let loads = self.loads.iter();
         values.extend(loads.map(|&(_, scalar)| model.load_power(scalar, state, scalars)));
@@ -132,7 +163,8 @@ impl PartColumns {
                 }));
             }
         }
-        added.resize(added.len() + self.loads.len(), 0.0);
+        let others = 3 * model.electrode_circuits.len() + self.loads.len();
+        added.resize(added.len() + others, 0.0);
         added
     }
 }

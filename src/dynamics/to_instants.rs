@@ -40,6 +40,20 @@ pub(super) fn to_instants(times: &[f64], columns: &mut [Column], last: &[f64]) {
     }
 }
 
+/// Values at the first and last row, extrapolated from those in the middle of the intervals that end at the rows.
+pub(super) fn beyond_middles(times: &[f64], middles: &[f64]) -> [f64; 2] {
+    let end = times.len() - 1;
+    let length = |k: usize| times[k] - times[k - 1];
+    let beyond = |k: usize, other: usize| {
+        let part = length(k) / (length(k) + length(other));
+        middles[k] + part * (middles[k] - middles[other])
+    };
+    match end {
+        1 => [middles[1]; 2],
+        _ => [beyond(1, 2), beyond(end, end - 1)],
+    }
+}
+
 /// Turns momenta as the interval before each row sees them into means of both intervals next to it, each weighted by the length of
 /// the other, so that a constant reaction cancels; `before` holds what the interval that ends at a row sees at the row before.
 pub(super) fn means(times: &[f64], columns: &mut [Column], before: &[Momenta], last: &Last) {

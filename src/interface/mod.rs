@@ -8,6 +8,7 @@ mod components;
 mod control;
 mod cost_checks;
 mod costs;
+mod electrodes;
 mod equilibrium;
 mod error;
 mod handle;

@@ -5,9 +5,8 @@ use crate::math::{Matrix, Signal};
 use crate::mesh::Mesh;
 use crate::model::System;
 use crate::model::system::{
-    Attachment, Body, Circuit, Discretisation, Electrode, ElementKind, Fidelity, Joint, JointKind,
-    JointSpring, JointStops, Marker, Material, Muscle, Potential, Shape, Solid, Support,
-    directors_along,
+    Attachment, Body, Circuit, Discretisation, ElementKind, Fidelity, Joint, JointKind,
+    JointSpring, JointStops, Marker, Material, Muscle, Shape, Solid, Support, directors_along,
 };
 use nalgebra::Vector3;
 use std::ops::RangeInclusive;
@@ -358,7 +357,7 @@ impl Solid {
     }
 
     /// Nodes of a set of the mesh, such as `z_min`; none where there is no such set, which a check of the system reports.
-    fn nodes(&self, set: &str) -> Vec<usize> {
+    pub(super) fn nodes(&self, set: &str) -> Vec<usize> {
         self.mesh.sets.get(set).cloned().unwrap_or_default()
     }
 
@@ -377,24 +376,4 @@ impl Solid {
         });
         self
     }
-
-    /// An electrode on the nodes of a set of the mesh.
-    pub fn electrode(mut self, name: &str, set: &str, potential: Potential) -> Self {
-        self.electrodes.push(Electrode {
-            name: name.to_owned(),
-            nodes: self.nodes(set),
-            potential,
-        });
-        self
-    }
-}
-
-impl Potential {
-    /// Zero.
-    pub const GROUNDED: Self = Self::Given(0.0);
-    /// The voltage that is given or sought under the name of the electrode.
-    pub const DRIVEN: Self = Self::Driven {
-        source: 0,
-        factor: 1.0,
-    };
 }

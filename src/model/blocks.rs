@@ -60,6 +60,7 @@ fn block(source: usize, muscle: &Muscle, discretisation: &Discretisation) -> Sol
                 },
                 false => Potential::Given(0.0),
             },
+            circuit: None,
         }
     };
     let is_dielectric = muscle.material.electric.is_some();

@@ -5,7 +5,7 @@ use crate::functional::{Functional, Term};
 use crate::kinematics::{MaterialVector, Pose, Vectors};
 use crate::model::analysis::{Analysis, Coordinates};
 use crate::model::components::Load;
-use crate::model::components::{body, circuit, muscle};
+use crate::model::components::{body, circuit, electrode_circuit, muscle};
 use crate::model::error::ModelError;
 use crate::model::graph::Graph;
 use crate::model::internal::Internals;
@@ -18,7 +18,7 @@ use crate::model::named::Named;
 use crate::model::plan::{LeftOut, Present};
 use crate::model::presolved::Presolved;
 use crate::model::quantity::Quantity;
-use crate::model::solids::Solids;
+use crate::model::solids::{Circuits, Solids};
 use crate::model::system::{Attachment, Body, Marker, Muscle, System};
 use crate::model::term_order::rank;
 use crate::model::terms::{Carriers, Terms};
@@ -80,12 +80,11 @@ impl Model {
         let mut variables = interval_variables(&inputs, &sources, &analysis);
         let blocks = Solids::new(
             solids,
-            system.solids.len(),
             &reference,
             |block| field_extent::charged(&system, block, &analysis.zero_inputs),
             coordinates == Coordinates::Redundant,
-            &mut variables,
-            &mut vectors,
+            &Circuits::new(&system, &analysis),
+            (&mut variables, &mut vectors),
         )?;
         let (scene, joined) = ((&system, &presolved), (coordinates, &graph));
         let internals = Internals::new(scene, &analysis, joined, &blocks);
@@ -124,6 +123,7 @@ impl Model {
             reached,
             sources,
             solids: blocks.list,
+            electrode_circuits: blocks.circuits,
             nodes: blocks.nodes,
             node_names: blocks.names,
             prescribed: prescribed::prescribed((&system, &presolved), &internals),
@@ -278,6 +278,7 @@ impl Construction<'_> {
         body::build(&self.presolved.system.bodies, self.reference, &mut terms);
         muscle::build(&system.muscles, spans, self.internals, &mut terms);
         circuit::build(&system.muscles, spans, self.internals, &mut terms);
+        electrode_circuit::build(&self.blocks.circuits, self.internals, &mut terms);
         self.blocks.build(self.internals, &mut terms);
         let no_weight = match system.gravity {
             None => "the scene names no gravity",

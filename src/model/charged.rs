@@ -66,7 +66,7 @@ impl Muscle {
     /// Returns true if the charge that flows from its source can be limited: behind a resistor, or of a lumped muscle with a capacitance that
     /// does not leak.
     pub fn has_measured_current(&self) -> bool {
-        self.is_behind_resistor() || (self.circuit.is_none() && capacitance(self).is_some())
+        capacitance(self).is_some() && (self.is_behind_resistor() || self.circuit.is_none())
     }
 
     /// Resistance in Ω of the source that stands for its circuit; none without a resistor.
@@ -95,7 +95,8 @@ impl Muscle {
 
     /// Returns true if a circuit can charge it.
     pub fn takes_circuit(&self) -> bool {
-        capacitance(self).is_some_and(|c| c.at_length(self.length()) > 0.0)
+        let is_lumped = capacitance(self).is_some_and(|c| c.at_length(self.length()) > 0.0);
+        is_lumped || (self.is_meshed() && self.material.electric.is_some())
     }
 
     /// Returns true if its charge can be given.
@@ -153,7 +154,7 @@ impl Model {
             Some((muscle, ChargePlace::Input(self.variables.input(source)?)))
         });
         behind.chain(given).filter_map(|(muscle, place)| {
-            let capacitance = capacitance(&self.system.muscles[muscle])?;
+            let capacitance = capacitance(self.system.muscles.get(muscle)?)?;
             Some(Charged {
                 muscle,
                 capacitance,
@@ -162,15 +163,15 @@ impl Model {
         })
     }
 
-    /// The muscle whose charge coordinate `i` is.
+    /// The source of whose muscle or electrodes coordinate `i` is the charge.
     pub fn charge(&self, i: usize) -> Option<usize> {
         match self.internal_kind(i)? {
-            InternalKind::Charge(muscle) => Some(muscle),
+            InternalKind::Charge(source) => Some(source),
             _ => None,
         }
     }
 
-    /// Charge in mC of each muscle behind a resistor at instants with coordinates z.
+    /// Charge in mC of each muscle and of electrodes behind a resistor, by source, at instants with coordinates z.
     pub fn circuit_charges(&self, z: &[Vec<f64>]) -> BTreeMap<usize, Vec<f64>> {
         let of_circuit = |charged: Charged| match charged.place {
             ChargePlace::Coordinate(coordinate) => {
@@ -180,7 +181,21 @@ impl Model {
             }
             ChargePlace::Input(_) => None,
         };
-        self.charged().filter_map(of_circuit).collect()
+        let mut charges = self.electrode_charges(z);
+        charges.extend(self.charged().filter_map(of_circuit));
+        charges
+    }
+
+    /// Charge in mC of electrodes behind resistors by source, at instants with coordinates z.
+    fn electrode_charges(&self, z: &[Vec<f64>]) -> BTreeMap<usize, Vec<f64>> {
+        let charges = self.internal_kinds().filter_map(|(coordinate, kind)| {
+            let of = self.electrode_circuits.iter();
+            let mut of = of.filter(|of| kind == InternalKind::Charge(of.source));
+            let of = of.next()?;
+            let charges = z.iter().map(|z| z[coordinate] * of.unit_of_charge);
+            Some((of.source, charges.collect()))
+        });
+        charges.collect()
     }
 
     /// Charges in mC of what voltages drive, from the derivatives by the scalars of an interval of h ms: `−∂W/∂V`, in which a leak
@@ -189,8 +204,8 @@ impl Model {
         let rows = &by_scalars[self.variables.range(Role::Voltage)];
         let voltages = self.variables.with(Role::Voltage).iter();
         let charge = |(row, voltage): (&f64, &Variable)| {
-            let muscle = voltage.source.and_then(|s| self.system.muscles.get(s));
-            row / h / muscle.map_or(1.0, |muscle| muscle.voltage_at_rest(1.0))
+            let division = voltage.source.map(|source| self.system.division(source));
+            row / h / division.unwrap_or(1.0)
         };
         rows.iter().zip(voltages).map(charge).collect()
     }

@@ -1,7 +1,7 @@
 //! Validation of a system that is made by a program: the checks that a reader of files makes entry by entry.
 
 use crate::math::Vector;
-use crate::model::circuit::{EMPTY_CIRCUIT, NO_CIRCUIT};
+use crate::model::circuit::{Circuit, EMPTY_CIRCUIT, NO_CIRCUIT};
 use crate::model::components::{BlockLoad, LoadPlace};
 use crate::model::system::{
     Attachment, Discretisation, Fidelity, Joint, JointKind, Material, Muscle, System,
@@ -47,6 +47,9 @@ impl System {
                     || "an electrode or support without nodes".to_owned(),
                     "the name of a set of the mesh",
                 )?;
+            }
+            for electrode in &solid.electrodes {
+                check_circuit(&solid.name, electrode.circuit, electrode.is_driven())?;
             }
             solid.check_prestretch()?;
             for material in &solid.materials {
@@ -282,7 +285,7 @@ impl System {
             material.check_law(name)?;
             material.check_range(name)?;
             check_branches(name, material)?;
-            check_circuit(name, muscle)?;
+            check_circuit(name, muscle.circuit, muscle.takes_circuit())?;
             if muscle.fidelity.elements() > 0 {
                 material.check_of_elements(name)?;
             }
@@ -343,19 +346,16 @@ fn check_branches(name: &str, material: &Material) -> Result<(), SystemError> {
     Ok(())
 }
 
-/// Checks the resistances of the circuit of a muscle, and that it can have one.
-fn check_circuit(name: &str, muscle: &Muscle) -> Result<(), SystemError> {
-    let Some(circuit) = muscle.circuit else {
+/// Checks the resistances of a circuit, and that what it drives can have one.
+fn check_circuit(name: &str, circuit: Option<Circuit>, is_driven: bool) -> Result<(), SystemError> {
+    let Some(circuit) = circuit else {
         return Ok(());
     };
     for resistance in circuit.parts() {
         positive(name, "resistance", resistance)?;
     }
-    let rules = [
-        (circuit.parts().next().is_some(), EMPTY_CIRCUIT),
-        (muscle.takes_circuit(), NO_CIRCUIT),
-    ];
-    for (holds, [found, expected]) in rules {
+    let has_parts = circuit.parts().next().is_some();
+    for (holds, [found, expected]) in [(has_parts, EMPTY_CIRCUIT), (is_driven, NO_CIRCUIT)] {
         require(holds, name, || found.to_owned(), expected)?;
     }
     Ok(())

@@ -1,6 +1,6 @@
-//! Circuits between the sources of lumped muscles and their electrodes.
+//! Circuits between sources and the electrodes that they charge.
 
-/// A resistor in series with the electrodes of a lumped muscle, a leak parallel to them, or both.
+/// A resistor in series with the electrodes of a muscle or a block, a leak parallel to them, or both.
 ///
 /// Behind a resistor R the charge Q of the muscle obeys `V = R (Q̇ + U/R_L) + U` with the voltage U = Q/C of the electrodes and the leak
 /// R_L. Without a resistor the electrodes have the voltage V of the source, and the leak takes the current V/R_L.
@@ -59,6 +59,6 @@ pub const EMPTY_CIRCUIT: [&str; 2] = [
 
 /// Circuit that drives no charge, and what is expected, for messages.
 pub const NO_CIRCUIT: [&str; 2] = [
-    "a circuit of a muscle that it does not charge",
-    "a lumped muscle with a permittivity; others have the voltages of their sources",
+    "a circuit of what it does not charge",
+    "a muscle with a permittivity, or a driven electrode",
 ];

@@ -49,7 +49,7 @@ pub(super) enum InternalKind {
         /// Number of the coordinate among those of the strain.
         component: usize,
     },
-    /// The charge of a muscle behind a resistor, in the unit of its muscle: a current brings and takes it.
+    /// The charge of a muscle or of electrodes behind the resistor of a source, in a unit of its own: a current brings and takes it.
     Charge(usize),
 }
 
@@ -154,10 +154,13 @@ impl Internals {
                 let branches = 0..muscle.material.maxwell.list().len();
                 list.extend(branches.map(|b| Internal::of_branch(&muscle.name, m, b)));
             }
-            if analysis.of_motion && muscle.is_behind_resistor() {
+            let is_lumped = muscle.fidelity == Fidelity::Lumped;
+            if analysis.of_motion && muscle.is_behind_resistor() && is_lumped {
                 list.push(Internal::of_charge(&muscle.name, m));
             }
         }
+        let circuits = blocks.circuits.iter();
+        list.extend(circuits.map(|of| Internal::of_charge(&of.name, of.source)));
         let mut of_elements = BTreeMap::new();
         let moving = blocks.list.iter().enumerate();
         let moving = moving.filter(|(_, block)| analysis.of_motion && !block.is_immobile);

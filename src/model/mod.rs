@@ -17,6 +17,7 @@ mod constant;
 mod constraints;
 mod cost_quantities;
 mod dampers;
+mod electrode_circuits;
 mod error;
 mod field_extent;
 mod floating;

@@ -6,6 +6,7 @@ use crate::kinematics::{MaterialVector, Pose};
 use crate::math::Vector;
 use crate::model::analysis::{Analysis, Coordinates};
 use crate::model::constant::Parameter;
+use crate::model::electrode_circuits::ElectrodeCircuit;
 use crate::model::floating::{self, Floating};
 use crate::model::graph::Graph;
 use crate::model::internal::{Internal, InternalKind};
@@ -42,6 +43,8 @@ pub struct Model {
     pub sources: Vec<Source>,
     /// Elastic blocks, those of muscles last.
     pub solids: Vec<SolidBlock>,
+    /// Electrodes of them behind resistors.
+    pub electrode_circuits: Vec<ElectrodeCircuit>,
     /// Vector of the span of each muscle.
     pub spans: Vec<usize>,
     /// Vector of each marker.

@@ -7,12 +7,14 @@ use crate::coordinates::NodePlace;
 use crate::element::{ElementGeometry, Inverted};
 use crate::functional::ScalarArg;
 use crate::kinematics::{Carrier, MaterialVector, Pose, Vectors};
+use crate::model::analysis::Analysis;
+use crate::model::electrode_circuits::ElectrodeCircuit;
 use crate::model::error::ModelError;
 use crate::model::field_extent;
 use crate::model::solid_block::SolidBlock;
-use crate::model::system::{Glue, Material, Potential, Solid};
+use crate::model::system::{Glue, Material, Potential, Solid, System};
 use crate::model::variables::{Variable, Variables};
-use std::collections::{BTreeSet, HashMap};
+use std::collections::{BTreeMap, BTreeSet, HashMap};
 
 /// Blocks before they become terms: nodes and ties of all of them.
 #[derive(Debug, Default)]
@@ -24,6 +26,22 @@ pub(super) struct Solids {
     pub(super) names: Vec<(usize, usize)>,
     /// Node and place on a body that multipliers keep together, and their names.
     pub(super) ties: Vec<(MaterialVector, String)>,
+    /// Electrodes behind resistors.
+    pub(super) circuits: Vec<ElectrodeCircuit>,
+}
+
+/// Circuits of a scene as blocks see them.
+pub(super) struct Circuits<'a> {
+    scene: &'a System,
+    /// True of a motion: at rest no charge flows.
+    of_motion: bool,
+}
+
+impl<'a> Circuits<'a> {
+    pub(super) fn new(scene: &'a System, analysis: &Analysis) -> Self {
+        let of_motion = analysis.of_motion;
+        Self { scene, of_motion }
+    }
 }
 
 /// Source of a potential before it is numbered.
@@ -32,30 +50,44 @@ enum Connection {
     Terminal(ScalarArg),
     /// The potential of a floating electrode, by index.
     Floating(usize),
+    /// The potential of electrodes behind the resistor of a source, times a factor.
+    Behind(usize, f64),
     Free,
 }
 
 impl Solids {
-    /// Lays out blocks, of which the first `scene` are those of the scene. Their potentials are added to `variables`, which have all
+    /// Lays out blocks, of which the first ones are those of the scene. Their potentials are added to `variables`, which have all
     /// voltages; `charged` nodes of a block carry a charge; glued nodes keep coordinates of their own where `ties` says so.
     ///
     /// # Errors
     /// An element of a mesh is inverted.
     pub(super) fn new(
         solids: Vec<Solid>,
-        scene: usize,
         reference: &[Pose],
         charged: impl Fn(usize) -> BTreeSet<usize>,
         ties: bool,
-        variables: &mut Variables,
-        vectors: &mut Vectors,
+        circuits: &Circuits<'_>,
+        (variables, vectors): (&mut Variables, &mut Vectors),
     ) -> Result<Self, ModelError> {
         let (mut out, unit) = (Self::default(), unit(&solids));
+        let scene = circuits.scene.solids.len();
         for (index, solid) in solids.into_iter().enumerate() {
             let shapes = shapes(&solid)?;
             let places = out.places(index, &solid, reference, ties, vectors);
             let is_dielectric = field_extent::dielectric(&solid, &charged(index));
-            let terminals = terminals(&solid, &is_dielectric, unit, variables);
+            let (terminals, own) = terminals(&solid, &is_dielectric, (unit, circuits), variables);
+            let charge = unit_of_charge(&solid, &shapes);
+            out.circuits
+                .extend(own.into_iter().filter_map(|(source, potential)| {
+                    Some(ElectrodeCircuit {
+                        source,
+                        name: circuits.scene.sources()[source].name.clone(),
+                        circuit: circuits.scene.electrode_circuit(source)?,
+                        input: variables.input(source)?,
+                        potential: (potential, unit),
+                        unit_of_charge: charge,
+                    })
+                }));
             let on_ground = |&v: &usize| {
                 let mut terms = vectors.list()[v].terms.iter();
                 terms.all(|term| term.carrier == Carrier::Ground)
@@ -126,13 +158,14 @@ impl Solids {
     }
 }
 
-/// The terminal of each node that a dielectric element has.
+/// The terminal of each node that a dielectric element has, and the potentials of electrodes behind resistors by source.
 fn terminals(
     solid: &Solid,
     is_dielectric: &[bool],
-    unit: f64,
+    (unit, circuits): (f64, &Circuits<'_>),
     variables: &mut Variables,
-) -> Vec<Option<ScalarArg>> {
+) -> (Vec<Option<ScalarArg>>, BTreeMap<usize, usize>) {
+    let Circuits { scene, of_motion } = *circuits;
     let mut wires = vec![None; solid.mesh.nodes.len()];
     let elements = solid.mesh.hexahedra.iter().zip(is_dielectric);
     for (nodes, _) in elements.filter(|(_, is)| **is) {
@@ -146,9 +179,18 @@ fn terminals(
                 constant,
                 scalar: None,
             }),
+            Potential::Driven { source, factor }
+                if of_motion
+                    && scene.has_electrodes_behind_resistor(source)
+                    && variables.input(source).is_some() =>
+            {
+                Connection::Behind(source, factor)
+            }
             Potential::Driven { source, factor } => Connection::Terminal(ScalarArg {
                 constant: 0.0,
-                scalar: variables.input(source).map(|s| (s, factor)),
+                scalar: variables
+                    .input(source)
+                    .map(|s| (s, factor * scene.division(source))),
             }),
             Potential::Floating => Connection::Floating(e),
         };
@@ -159,10 +201,17 @@ fn terminals(
         }
     }
     let mut floating: HashMap<usize, usize> = HashMap::new();
+    let mut behind: BTreeMap<usize, usize> = BTreeMap::new();
     let mut fresh = |name: String| variables.add(Variable::potential(name, unit));
     let mut terminal = |(node, wire): (usize, Option<Connection>)| {
+        let mut factor = 1.0;
         let scalar = match wire? {
             Connection::Terminal(terminal) => return Some(terminal),
+            Connection::Behind(source, of_source) => {
+                factor = of_source;
+                let name = || scene.sources()[source].name.clone();
+                *behind.entry(source).or_insert_with(|| fresh(name()))
+            }
             Connection::Floating(e) => *floating.entry(e).or_insert_with(|| {
                 let name = format!("{}.{}", solid.name, solid.electrodes[e].name);
                 fresh(name)
@@ -171,10 +220,23 @@ fn terminals(
         };
         Some(ScalarArg {
             constant: 0.0,
-            scalar: Some((scalar, unit)),
+            scalar: Some((scalar, factor * unit)),
         })
     };
-    wires.into_iter().enumerate().map(&mut terminal).collect()
+    let terminals = wires.into_iter().enumerate().map(&mut terminal).collect();
+    (terminals, behind)
+}
+
+/// √(μ ε) V^⅔ in mC of the volume V of a block: a charge whose field balances the elasticity.
+fn unit_of_charge(solid: &Solid, shapes: &[ElementGeometry]) -> f64 {
+    let volumes = shapes.iter().flat_map(ElementGeometry::weights);
+    let area = volumes.sum::<f64>().powf(2.0 / 3.0);
+    let of = |m: &Material| {
+        let electric = m.electric?;
+        Some((m.shear_modulus * electric.permittivity).sqrt() * area)
+    };
+    let units = solid.materials.iter().filter_map(of);
+    units.reduce(f64::max).unwrap_or(1.0)
 }
 
 /// √(μ/ε) in V/mm, the unit of fields in which mechanics and electrostatics have one magnitude; potentials are counted in

@@ -304,6 +304,8 @@ pub struct Electrode {
     pub nodes: Vec<usize>,
     /// Its potential.
     pub potential: Potential,
+    /// Circuit between it and its source, where it is driven.
+    pub circuit: Option<Circuit>,
 }
 
 /// The potential of an electrode.

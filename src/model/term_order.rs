@@ -26,9 +26,10 @@ const FIRST: [&str; 18] = [
 ];
 
 /// Terms between the potentials of components and their dissipation.
-const MIDDLE: [&str; 10] = [
+const MIDDLE: [&str; 11] = [
     "loads",
     "surface charges",
+    "electrode charges",
     "circuit sources",
     "following loads",
     "block viscosity",

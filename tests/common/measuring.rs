@@ -3,12 +3,24 @@
 use super::cases::{Case, control};
 use super::limited::{all_limits, reaction, speed, tension};
 use super::remembering::remembering;
-use super::systems::{branched, charged};
+use super::systems::{blocks, branched, charged};
 use super::tracked::{measured, measured_source};
-use proboscis::control::problem::{Control, Duration};
+use proboscis::control::problem::{BoundaryState, Control, Duration};
 use proboscis::math::Signal;
 use proboscis::model::Reaction;
-use proboscis::model::system::System;
+use proboscis::model::system::{Circuit, System};
+
+/// Blocks of which a muscle and an electrode are behind resistors, one with a leak.
+fn resisted() -> System {
+    let mut system = blocks();
+    let circuit = |leakage| Circuit {
+        resistance: Some(3e8),
+        leakage,
+    };
+    system.muscles[0].circuit = Some(circuit(Some(9e8)));
+    system.solids[0].electrodes[2].circuit = Some(circuit(None));
+    system
+}
 
 /// The list.
 pub fn measuring() -> Vec<Case> {
@@ -44,6 +56,10 @@ pub fn measuring() -> Vec<Case> {
             c.limits = vec![force(0), torque(0)];
             c.duration = free;
             c.given.insert(4, Signal::Constant(1e-4));
+        }),
+        case("blocks behind resistors, free time", resisted(), &|c| {
+            c.goal = BoundaryState::Free;
+            c.duration = free;
         }),
         case(
             "branched tree that remembers, measured costs",

@@ -82,6 +82,7 @@ pub(crate) fn held(mesh: &Mesh, face: &str, held: [bool; 3]) -> Support {
 /// An electrode on a plane z = `place`.
 pub(crate) fn electrode(mesh: &Mesh, name: &str, place: f64, potential: Potential) -> Electrode {
     Electrode {
+        circuit: None,
         name: name.into(),
         nodes: mesh.nodes_on_plane(2, place, 1e-9),
         potential,
@@ -220,6 +221,7 @@ pub(crate) fn crooked(viscosity: Option<f64>) -> Solid {
     solid.electrodes = vec![
         electrode(mesh, "bottom", 0.0, Potential::Given(0.0)),
         Electrode {
+            circuit: None,
             name: "island".into(),
             nodes: island,
             potential: Potential::Floating,

@@ -317,6 +317,7 @@ pub fn blocks() -> System {
     mesh.region_names = vec!["active".into(), "passive".into()];
     let plane = |z: f64| mesh.nodes_on_plane(2, z, 1e-9);
     let electrode = |name: &str, nodes: Vec<usize>, potential| Electrode {
+        circuit: None,
         name: name.into(),
         nodes,
         potential,

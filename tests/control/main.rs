@@ -8,6 +8,7 @@ mod closed_form;
 mod creep;
 mod direct_sources;
 mod drivers;
+mod electrode_circuits;
 mod endings;
 mod energies;
 mod feasible;

@@ -144,6 +144,7 @@ fn a_muscle_is_a_block_of_its_stretched_shape() {
     let grid = Grid::uniform(corner, Vector3::new(a, b, DISTANCE), [1, 2, 2]);
     let mesh = grid.mesh();
     let electrode = |layer: usize| Electrode {
+        circuit: None,
         name: format!("electrode{layer}"),
         nodes: mesh.nodes_on_plane(2, (layer as f64 / layers as f64 - 1.0) * DISTANCE, 1e-9),
         potential: match layer % 2 {

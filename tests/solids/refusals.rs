@@ -288,6 +288,7 @@ fn column() -> Model {
     let mut solid = block(mesh, silicone());
     let mesh = &solid.mesh;
     let side = |name: &str, face: &str, potential| proboscis::model::system::Electrode {
+        circuit: None,
         name: name.into(),
         nodes: mesh.sets[face].clone(),
         potential,

@@ -223,6 +223,7 @@ fn inner_nodes_of_dielectric_elements_have_a_potential() {
         middle(Potential::Given(0.0))(s);
         let nodes = s.mesh.nodes_on_plane(2, 5.0, 1e-9);
         s.electrodes.push(Electrode {
+            circuit: None,
             name: "idle".into(),
             nodes,
             potential: Potential::Driven {

@@ -8,7 +8,7 @@ use crate::model::{EMPTY_CIRCUIT, NO_CIRCUIT};
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
-/// Circuit between a source and the electrodes of a muscle: a resistor, a leak or both.
+/// Circuit between a source and the electrodes of a muscle or a block: a resistor, a leak or both.
 #[derive(Clone, Debug, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct CircuitSpec {
@@ -20,6 +20,18 @@ pub struct CircuitSpec {
     pub leakage: Option<Quantity<Resistance>>,
 }
 
+/// Resistances of a circuit; `place` is its own.
+pub(super) fn parts(spec: &CircuitSpec, place: &Scope<'_>) -> Result<Circuit, SceneError> {
+    let part = |key: &str, written: &Option<Quantity<Resistance>>| {
+        let part = written.as_ref().map(|part| place.key(key).positive(part));
+        part.transpose()
+    };
+    Ok(Circuit {
+        resistance: part("resistance", &spec.resistance)?,
+        leakage: part("leakage", &spec.leakage)?,
+    })
+}
+
 /// The circuit of a muscle.
 pub(super) fn circuit(
     spec: Option<&CircuitSpec>,
@@ -29,14 +41,7 @@ pub(super) fn circuit(
     let (Some(spec), place) = (spec, scope.key("circuit")) else {
         return Ok(None);
     };
-    let part = |key: &str, written: &Option<Quantity<Resistance>>| {
-        let part = written.as_ref().map(|part| place.key(key).positive(part));
-        part.transpose()
-    };
-    let circuit = Circuit {
-        resistance: part("resistance", &spec.resistance)?,
-        leakage: part("leakage", &spec.leakage)?,
-    };
+    let circuit = parts(spec, &place)?;
     let [found, expected] = match (circuit == Circuit::default(), muscle.takes_circuit()) {
         (true, _) => EMPTY_CIRCUIT,
         (false, false) => NO_CIRCUIT,

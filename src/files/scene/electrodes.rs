@@ -4,11 +4,13 @@ use std::collections::BTreeMap;
 
 use crate::files::json::error::SceneError;
 use crate::files::json::scope::Scope;
+use crate::files::scene::circuit::{CircuitSpec, parts};
 use crate::files::scene::mesh::Meshed;
 use crate::files::scene::nodes::{AXES, extent, in_plane, nodes, place, planes_near};
 use crate::files::scene::spec_solids::{PotentialSpec, SolidSpec, StackSpec};
 use crate::mesh::Mesh;
-use crate::model::system::{Electrode, Potential};
+use crate::model::EMPTY_CIRCUIT;
+use crate::model::system::{Circuit, Electrode, Potential};
 
 /// A voltage that has no number yet, see [`number_sources`].
 const DRIVEN: Potential = Potential::Driven {
@@ -42,7 +44,9 @@ pub(crate) fn electrodes(
             PotentialSpec::Driven => DRIVEN,
             PotentialSpec::Given(voltage) => Potential::Given(voltage.value()),
         };
-        placed.add(&electrode.name, &nodes, potential, &scope)?;
+        let circuit = circuit(electrode.circuit.as_ref(), potential == DRIVEN, &scope)?;
+        let of = (electrode.name.as_str(), circuit);
+        placed.add(of, &nodes, potential, &scope)?;
     }
     if let Some(stack) = &spec.stack {
         placed.add_stack(stack, meshed, &scope.key("stack"))?;
@@ -56,6 +60,24 @@ pub(crate) fn electrodes(
     Ok(placed.electrodes)
 }
 
+/// The circuit of an electrode.
+fn circuit(
+    spec: Option<&CircuitSpec>,
+    is_driven: bool,
+    scope: &Scope<'_>,
+) -> Result<Option<Circuit>, SceneError> {
+    let (Some(spec), place) = (spec, scope.key("circuit")) else {
+        return Ok(None);
+    };
+    let circuit = parts(spec, &place)?;
+    let [found, expected] = match (circuit == Circuit::default(), is_driven) {
+        (true, _) => EMPTY_CIRCUIT,
+        (false, false) => ["a circuit of an electrode without a source", "\"driven\""],
+        (false, true) => return Ok(Some(circuit)),
+    };
+    Err(place.wrong(found, expected))
+}
+
 /// Electrodes with the owner of each node.
 struct Placed<'a> {
     mesh: &'a Mesh,
@@ -67,7 +89,7 @@ impl Placed<'_> {
     /// Adds an electrode, or its nodes to the driven one of the same name.
     fn add(
         &mut self,
-        name: &str,
+        (name, circuit): (&str, Option<Circuit>),
         nodes: &[usize],
         potential: Potential,
         scope: &Scope<'_>,
@@ -78,6 +100,11 @@ impl Placed<'_> {
         let known = self.electrodes.iter().position(|other| other.name == name);
         let index = match known {
             Some(known) if potential == DRIVEN && self.electrodes[known].potential == DRIVEN => {
+                if circuit.is_some() && self.electrodes[known].circuit != circuit {
+                    let found = format!("another circuit of {name:?}");
+                    let expected = "one circuit, at the first electrode of the name";
+                    return Err(scope.key("circuit").wrong(found, expected));
+                }
                 known
             }
             Some(_) => {
@@ -90,6 +117,7 @@ impl Placed<'_> {
                     name: name.to_owned(),
                     nodes: Vec::new(),
                     potential,
+                    circuit,
                 });
                 self.electrodes.len() - 1
             }
@@ -134,8 +162,9 @@ impl Placed<'_> {
         }
         let [grounded, driven] = parts;
         let ground = format!("{}_ground", stack.name);
-        self.add(&ground, &grounded, Potential::Given(0.0), scope)?;
-        self.add(&stack.name, &driven, DRIVEN, scope)
+        let circuit = circuit(stack.circuit.as_ref(), true, scope)?;
+        self.add((&ground, None), &grounded, Potential::Given(0.0), scope)?;
+        self.add((&stack.name, circuit), &driven, DRIVEN, scope)
     }
 }
 

@@ -9,6 +9,7 @@ use std::fmt;
 use std::marker::PhantomData;
 
 use crate::files::json::either::{Either, ScalarOrObject, scalar_or_object};
+use crate::files::scene::circuit::CircuitSpec;
 use crate::files::scene::point::CornersSpec;
 use crate::files::scene::point::Point;
 use crate::files::units::quantity::{AngularVelocity, Length, Quantity, Rate, Velocity, Voltage};
@@ -148,6 +149,9 @@ pub struct ElectrodeSpec {
     pub cuboid: Option<CornersSpec>,
     /// Its potential.
     pub potential: PotentialSpec,
+    /// Circuit between its source and a driven electrode.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub circuit: Option<CircuitSpec>,
 }
 
 /// A plane at right angles to an axis: exactly one of the three.
@@ -189,6 +193,9 @@ pub struct StackSpec {
     pub layers: usize,
     /// Name of the driven electrodes, whose voltage is `block.name`.
     pub name: String,
+    /// Circuit between their source and the driven electrodes.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub circuit: Option<CircuitSpec>,
 }
 
 /// An axis of the ground frame.

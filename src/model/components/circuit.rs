@@ -8,8 +8,8 @@ use crate::model::internal::{InternalKind, Internals};
 use crate::model::system::Muscle;
 use crate::model::terms::{Terms, mid, rate};
 
-const SOURCES: &str = "circuit sources";
-const RESISTANCE: &str = "circuit resistance";
+pub(in crate::model) const SOURCES: &str = "circuit sources";
+pub(in crate::model) const RESISTANCE: &str = "circuit resistance";
 
 /// Terms of the circuits of the muscles of a scene; `spans` are the vectors of their spans.
 pub(in crate::model) fn build(
@@ -22,7 +22,7 @@ pub(in crate::model) fn build(
         circuit(muscle, m, span, internals, terms);
     }
     let none = match terms.is_of_motion() {
-        true => "no lumped muscle names a circuit with a resistor",
+        true => "no muscle or electrode names a circuit with a resistor",
         false => "at rest no charge flows",
     };
     for term in [SOURCES, RESISTANCE] {

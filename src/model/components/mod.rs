@@ -2,6 +2,7 @@
 
 pub(super) mod body;
 pub(super) mod circuit;
+pub(super) mod electrode_circuit;
 mod kind;
 pub(super) mod load;
 pub(super) mod muscle;
