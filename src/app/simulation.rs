@@ -25,7 +25,7 @@ use crate::dynamics::trajectory::{Observations, Trajectory};
 use crate::dynamics::{DiscreteTrajectory, LocalError, observed};
 use crate::files::Loaded;
 use crate::ipopt::interrupt::{self, TimeLimit};
-use crate::math::join;
+use crate::math::{join, shortest};
 use crate::model::Model;
 use crate::report::atomic::WriteError;
 use crate::report::file_set::FileSet;
@@ -346,7 +346,7 @@ fn command_output(
         result: format!(
             "{word}: {}, {} s of motion, {:.2} s, {}",
             counted(ended.simulated.discrete.intervals(), "step"),
-            ended.reached() / 1e3,
+            shortest(ended.reached() / 1e3, 9),
             summary.seconds.total,
             folder.display()
         ),
