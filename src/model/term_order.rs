@@ -53,8 +53,8 @@ const LAST: [&str; 5] = [
 pub fn terms() -> impl Iterator<Item = &'static str> {
     let of_components =
         |names: &'static [&[&'static str]]| names.iter().copied().flatten().copied();
-    let potentials = FIRST.into_iter().chain(of_components(&POTENTIALS));
-    let works = MIDDLE.into_iter().chain(of_components(&DISSIPATIONS));
+    let potentials = FIRST.into_iter().chain(of_components(POTENTIALS));
+    let works = MIDDLE.into_iter().chain(of_components(DISSIPATIONS));
     potentials.chain(works).chain(LAST)
 }
 
