@@ -8,6 +8,7 @@
 
 use crate::control::error::BoundaryError;
 use crate::control::problem::{BoundaryState, Control, Duration};
+use crate::math::Signal;
 use crate::model::{Model, joint_unit};
 
 /// Parts of a radian or of the length of the system by which a prescribed motion may miss its start, and of these in a ms its rate.
@@ -38,6 +39,15 @@ pub(super) fn check(model: &Model, control: &Control) -> Result<(), BoundaryErro
                 .to_owned(),
         );
     }
+    for (source, named) in model.sources.iter().enumerate() {
+        let function = control.function(source);
+        if function.is_some_and(|function| !repeats(function, control.duration)) {
+            return refused(format!(
+                "the given input of {} is a function of time that does not repeat after the duration of a periodic motion",
+                named.name
+            ));
+        }
+    }
     for one in &model.prescribed {
         let Duration::Given(end) = control.duration else {
             continue;
@@ -56,4 +66,15 @@ pub(super) fn check(model: &Model, control: &Control) -> Result<(), BoundaryErro
         }
     }
     Ok(())
+}
+
+/// Returns true if a function of time has the period of a motion.
+fn repeats(function: &Signal, duration: Duration) -> bool {
+    match (function, duration) {
+        (Signal::Sine { frequency, .. }, Duration::Given(end)) => {
+            let turns = frequency * end;
+            (turns - turns.round()).abs() < SAME * turns.abs().max(1.0)
+        }
+        _ => function.constant_within([0.0, f64::INFINITY]).is_some(),
+    }
 }

@@ -166,12 +166,11 @@ impl Control {
         self.objective.units(system, &self.input_kinds(system))
     }
 
-    /// Kinds of the inputs that are not always zero, each once: the objective counts them all.
+    /// Kinds of the inputs that are sought, each once: the objective counts them all.
     fn input_kinds(&self, system: &System) -> Vec<InputKind> {
         let mut kinds = Vec::new();
         for (source, named) in system.sources().into_iter().enumerate() {
-            let is_zero = self.given.get(&source).is_some_and(Signal::is_zero);
-            if named.acts() && !is_zero && !kinds.contains(&named.kind) {
+            if named.acts() && !self.is_given(source) && !kinds.contains(&named.kind) {
                 kinds.push(named.kind);
             }
         }

@@ -8,7 +8,7 @@
 //! ```
 
 use crate::control::error::BoundaryError;
-use crate::control::problem::{BoundaryState, Control, SoughtHold};
+use crate::control::problem::{BoundaryState, Control, Duration, SoughtHold};
 use crate::model::Model;
 
 impl Control {
@@ -37,6 +37,16 @@ pub(crate) fn obstacle(model: &Model, control: &Control) -> Option<&'static str>
     if !model.solids.is_empty() {
         return Some(
             "\"find\" is for lumped muscles: a few voltages cannot hold every node of an elastic block where the motion leaves it; name the voltages",
+        );
+    }
+    let from = match control.duration {
+        Duration::Given(end) => end,
+        Duration::Free { min, .. } => min,
+    };
+    let mut functions = (0..model.sources.len()).filter_map(|source| control.function(source));
+    if functions.any(|function| function.constant_within([from, f64::INFINITY]).is_none()) {
+        return Some(
+            "\"find\" is for given inputs that are constant from the end on: nothing rests under one that goes on",
         );
     }
     model.creeps().then_some(

@@ -61,7 +61,9 @@ impl EnergyExchange {
             let [before, after] = ends.map(|row| row.map(|row| row[source]));
             let voltages = motion.voltages.iter().map(|row| row[source]);
             let mut voltages = voltages.chain(before).chain(after);
-            if voltages.all(|voltage| voltage == 0.0) {
+            let is_zero = voltages.all(|voltage| voltage == 0.0);
+            // Other electrodes drive a current through the resistor of a source at zero volts.
+            if is_zero && !system.has_electrodes_behind_resistor(source) {
                 continue;
             }
             let muscle = system.muscles.get(source);

@@ -1,7 +1,7 @@
 //! Validation of a system that is made by a program: the checks that a reader of files makes entry by entry.
 
 use crate::math::Vector;
-use crate::model::circuit::{Circuit, EMPTY_CIRCUIT, NO_CIRCUIT};
+use crate::model::circuit::Circuit;
 use crate::model::components::{BlockLoad, LoadPlace};
 use crate::model::system::{
     Attachment, Discretisation, Fidelity, Joint, JointKind, Material, Muscle, System,
@@ -49,7 +49,11 @@ impl System {
                 )?;
             }
             for electrode in &solid.electrodes {
-                check_circuit(&solid.name, electrode.circuit, electrode.is_driven())?;
+                check_circuit(
+                    &solid.name,
+                    electrode.circuit,
+                    [electrode.is_driven(), true],
+                )?;
             }
             solid.check_prestretch()?;
             for material in &solid.materials {
@@ -285,7 +289,11 @@ impl System {
             material.check_law(name)?;
             material.check_range(name)?;
             check_branches(name, material)?;
-            check_circuit(name, muscle.circuit, muscle.takes_circuit())?;
+            check_circuit(
+                name,
+                muscle.circuit,
+                [muscle.takes_circuit(), muscle.is_meshed()],
+            )?;
             if muscle.fidelity.elements() > 0 {
                 material.check_of_elements(name)?;
             }
@@ -347,16 +355,18 @@ fn check_branches(name: &str, material: &Material) -> Result<(), SystemError> {
 }
 
 /// Checks the resistances of a circuit, and that what it drives can have one.
-fn check_circuit(name: &str, circuit: Option<Circuit>, is_driven: bool) -> Result<(), SystemError> {
+fn check_circuit(
+    name: &str,
+    circuit: Option<Circuit>,
+    [is_driven, is_meshed]: [bool; 2],
+) -> Result<(), SystemError> {
     let Some(circuit) = circuit else {
         return Ok(());
     };
     for resistance in circuit.parts() {
         positive(name, "resistance", resistance)?;
     }
-    let has_parts = circuit.parts().next().is_some();
-    for (holds, [found, expected]) in [(has_parts, EMPTY_CIRCUIT), (is_driven, NO_CIRCUIT)] {
-        require(holds, name, || found.to_owned(), expected)?;
-    }
-    Ok(())
+    let fault = circuit.fault(is_driven, is_meshed);
+    let [found, expected] = fault.unwrap_or_default();
+    require(fault.is_none(), name, || found.to_owned(), expected)
 }

@@ -51,14 +51,34 @@ impl Circuit {
     }
 }
 
+/// Leak of finite elements that nothing would read, and what is expected, for messages.
+const LONE_LEAK: [&str; 2] = [
+    "a leak without a resistor, which takes current from the source alone",
+    "\"resistance\" beside the \"leakage\" of finite elements, or no circuit",
+];
+
 /// Circuit without parts, and what is expected, for messages.
-pub const EMPTY_CIRCUIT: [&str; 2] = [
+const EMPTY_CIRCUIT: [&str; 2] = [
     "a circuit without parts",
     "\"resistance\", \"leakage\" or both",
 ];
 
 /// Circuit that drives no charge, and what is expected, for messages.
-pub const NO_CIRCUIT: [&str; 2] = [
+const NO_CIRCUIT: [&str; 2] = [
     "a circuit of what it does not charge",
     "a muscle with a permittivity, or a driven electrode",
 ];
+
+impl Circuit {
+    /// Returns the reason why something cannot have this circuit, and what is expected: `is_driven` if a source charges it, `is_meshed` if it
+    /// consists of finite elements.
+    pub fn fault(&self, is_driven: bool, is_meshed: bool) -> Option<[&'static str; 2]> {
+        if *self == Self::default() {
+            return Some(EMPTY_CIRCUIT);
+        }
+        if !is_driven {
+            return Some(NO_CIRCUIT);
+        }
+        (is_meshed && self.resistance.is_none()).then_some(LONE_LEAK)
+    }
+}

@@ -68,7 +68,6 @@ mod variables;
 
 pub use analysis::{Analysis, Coordinates, InitiallyMoving};
 pub use check::{NO_CHARGE, NO_MUSCLE_CHARGE};
-pub use circuit::{EMPTY_CIRCUIT, NO_CIRCUIT};
 pub use component::Component;
 pub use constant::{
     Constant, DielectricLaw, Follower, FoundParameter, MOST_MOVES, Parameter, SiUnit,

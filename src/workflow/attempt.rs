@@ -227,7 +227,7 @@ impl Verification {
         phase("simulating under the optimal inputs");
         let began = Instant::now();
         let tolerance = control.solver.tolerance;
-        let resimulation = resimulate(model, &boundary.start, motion, tolerance);
+        let resimulation = resimulate((model, control), &boundary.start, motion, tolerance);
         Self {
             reversed,
             resimulation: Some(resimulation),

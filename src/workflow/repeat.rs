@@ -3,8 +3,10 @@
 use std::ops::ControlFlow;
 
 use crate::control::Solution;
+use crate::control::problem::Control;
 use crate::dynamics::{DiscreteTrajectory, Start, simulate};
 use crate::ipopt::interrupt;
+use crate::math::Signal;
 use crate::model::Model;
 use crate::model::system::JointKind;
 use crate::workflow::cause::Cause;
@@ -26,17 +28,23 @@ pub(crate) struct Repeat {
 }
 
 impl Repeat {
+    /// Simulates with inputs that are sought as in the optimum; those that are given follow their functions of time from step to step.
     pub(crate) fn from_solution(
-        model: &Model,
+        (model, control): (&Model, &Control),
         start: &Start,
         optimal: &Solution,
         steps: usize,
     ) -> Self {
         let n = optimal.intervals();
         let h = optimal.times[n] / n as f64;
+        let given = given_functions(control, model, steps);
         let scalars = |from: f64, to: f64| {
-            let k = (0.5 * (from + to) / h) as usize;
-            model.scalars(&optimal.voltages[k.min(n - 1)])
+            let time = 0.5 * (from + to);
+            let mut inputs = optimal.voltages[((time / h) as usize).min(n - 1)].clone();
+            for (source, function) in &given {
+                inputs[*source] = function.at(time);
+            }
+            model.scalars(&inputs)
         };
         let step = h / steps as f64;
         let (discrete, failure) = simulate(model, start, step, steps * n, scalars, |_| go_on());
@@ -101,6 +109,17 @@ impl Repeat {
             distance: self.greatest(),
         })
     }
+}
+
+/// Inputs that are functions of time, which steps shorter than an interval resolve better than the optimum does.
+fn given_functions<'a>(
+    control: &'a Control,
+    model: &Model,
+    steps: usize,
+) -> Vec<(usize, &'a Signal)> {
+    let sources = (0..model.sources.len()).filter(|_| steps > 1);
+    let functions = sources.filter_map(|source| Some((source, control.function(source)?)));
+    functions.filter(|(_, f)| !f.is_constant()).collect()
 }
 
 /// The joint that turns farthest in the interval that ends at instant `k`.

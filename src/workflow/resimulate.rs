@@ -9,6 +9,7 @@ use std::ops::ControlFlow;
 
 use serde::Serialize;
 
+use crate::control::problem::Control;
 use crate::control::{BoundaryConditions, Solution};
 use crate::dynamics::{DiscreteTrajectory, Start, StepError};
 use crate::model::{Model, OPEN};
@@ -91,13 +92,13 @@ fn open(model: &Model, optimal: &Solution, tolerance: f64) -> Option<Cause> {
 
 /// Simulates optimal voltages; what the solver of a `tolerance` leaves of its equations is no deviation.
 pub(crate) fn resimulate(
-    model: &Model,
+    (model, control): (&Model, &Control),
     start: &Start,
     optimal: &Solution,
     tolerance: f64,
 ) -> Resimulation {
     let path_length = Distance::path_length(model, optimal);
-    let own = Repeat::from_solution(model, start, optimal, 1);
+    let own = Repeat::from_solution((model, control), start, optimal, 1);
     let mut out = Resimulation {
         deviation: own.greatest(),
         path_length,
@@ -119,7 +120,7 @@ pub(crate) fn resimulate(
         true => own.greatest().over(path_length, model),
         false => 0.0_f64,
     };
-    if !out.refine(model, start, optimal, least) {
+    if !out.refine((model, control), start, optimal, least) {
         return out;
     }
     let last = own.discrete.z.len() - 1;
@@ -135,8 +136,14 @@ pub(crate) fn resimulate(
 impl Resimulation {
     /// Estimates the error with finer and finer steps until their distances fall, of a large error twice in a row: a vibration that
     /// no step resolves may lie near by chance once. Returns true if no simulation ended early.
-    fn refine(&mut self, model: &Model, start: &Start, optimal: &Solution, least: f64) -> bool {
-        let with = |steps: usize| Repeat::from_solution(model, start, optimal, steps);
+    fn refine(
+        &mut self,
+        (model, control): (&Model, &Control),
+        start: &Start,
+        optimal: &Solution,
+        least: f64,
+    ) -> bool {
+        let with = |steps: usize| Repeat::from_solution((model, control), start, optimal, steps);
         let mut before: Option<(Repeat, f64)> = None;
         let mut greatest = Distance::default();
         let (mut error, mut is_confirmed, mut fallen) = (0.0, false, 0);

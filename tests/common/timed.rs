@@ -8,6 +8,7 @@ use super::tracked::{energies, signals, tracked};
 use super::trunk;
 use proboscis::System;
 use proboscis::control::problem::{BoundaryState, Control, Duration, Objective, SoughtHold};
+use proboscis::math::Signal;
 
 /// The list: voltages, loads, charges and motions of every kind of function, with costs, limits and energies that read them.
 pub fn timed() -> Vec<Case> {
@@ -67,7 +68,8 @@ pub fn timed() -> Vec<Case> {
             "found hold under a voltage in time, free time",
             branched(),
             &|c| {
-                give(c, &[2], 900.0, 400.0);
+                // It ends before the shortest motion does.
+                c.given.insert(2, Signal::ramp(900.0, 1300.0, 8.0));
                 c.goal = joints(&[(1, 2.0)]);
                 c.sought_hold = SoughtHold::Always;
                 c.objective = inputs.clone();

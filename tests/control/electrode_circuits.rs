@@ -251,6 +251,7 @@ fn circuits_of_electrodes_that_make_no_sense_are_refused() {
     refused(
         json!({ "resistance": 1e9 }),
         0,
-        &["without a source", "driven"],
+        &["does not charge", "a driven electrode"],
     );
+    refused(json!({ "leakage": 1e9 }), 1, &["a leak without a resistor"]);
 }

@@ -14,6 +14,7 @@ mod energies;
 mod feasible;
 mod field_limits;
 mod final_time;
+mod given_inputs;
 mod goals;
 mod guesses;
 mod held_ends;

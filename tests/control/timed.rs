@@ -61,7 +61,7 @@ fn least(f: impl Fn(f64) -> f64, [mut low, mut high]: [f64; 2]) -> (f64, f64) {
     (low, f(low))
 }
 
-/// Least effort and time of the pushed cart with the duration T: the motor force is α + β t, and the effort of the wind counts.
+/// Least effort and time of the pushed cart with the duration T: the motor force is α + β t, and the wind costs nothing.
 fn pushed_cost(t: f64) -> f64 {
     let a = 3.0;
     let [speed, place] = [-a * t * t / 2.0, 1.0 - a * t.powi(3) / 6.0];
@@ -69,7 +69,7 @@ fn pushed_cost(t: f64) -> f64 {
     let beta = (speed * t / 2.0 - place) * 12.0 / t.powi(3);
     let alpha = speed / t - beta * t / 2.0;
     let motor = alpha * alpha * t + alpha * beta * t * t + beta * beta * t.powi(3) / 3.0;
-    motor + a * a * t.powi(3) / 3.0 + PRICE * t
+    motor + PRICE * t
 }
 
 /// Deviations of the duration in s and of the objective from a closed form for two numbers of intervals: of order two.

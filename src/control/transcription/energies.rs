@@ -123,7 +123,7 @@ impl Transcription<'_> {
         let count = self.model.action.layout().interval_scalars;
         let product = row.factor(jump.k, &self.workspace.scalars, count).product;
         let input = &self.objective.inputs[jump.input];
-        let volts = input.scale * input.unit;
+        let volts = input.size;
         sigma * product * self.capacitance(row, jump.k) * volts * volts
     }
 }

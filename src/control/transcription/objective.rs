@@ -31,10 +31,12 @@ pub(super) struct CostInput {
     pub(super) scalar: usize,
     /// Slot of its second derivative with itself.
     pub(super) slot: usize,
-    /// Size of one kV, N or N m in the unit inside.
+    /// Size of one kV, N or N m in the unit inside; infinite of a given one, which costs nothing.
     pub(super) unit: f64,
     /// Scale of its variable in kV, N or N m.
     pub(super) scale: f64,
+    /// Scale of its variable in the unit inside.
+    pub(super) size: f64,
 }
 
 impl CostInput {
@@ -43,14 +45,16 @@ impl CostInput {
         let slots = &model.action.layout().scalars;
         let input = |(s, variable): (usize, &Variable)| {
             let source = variable.source.expect("an input of a source");
-            let (_, unit) = model.input_kind(source).counted();
+            let unit = unit_of(model, control, source);
+            let size = control.scale(variable, &model.system);
             Self {
                 scalar: s,
                 slot: slots
                     .find(s, s)
                     .expect("an input has a curvature of its own"),
                 unit,
-                scale: control.scale(variable, &model.system) / unit,
+                scale: size / unit,
+                size,
             }
         };
         let variables = &model.variables.of(Time::Interval)[model.variables.sources_range()];
@@ -92,6 +96,14 @@ impl Objective {
             inputs,
             scale: objective_scale(objective, largest, duration, size),
         }
+    }
+}
+
+/// Size of one kV, N or N m of an input in the unit inside; infinite of a given one, which costs nothing.
+pub(super) fn unit_of(model: &Model, control: &Control, source: usize) -> f64 {
+    match control.is_given(source) {
+        true => f64::INFINITY,
+        false => model.input_kind(source).counted().1,
     }
 }
 

@@ -5,6 +5,7 @@ use crate::control::guess::InitialGuess;
 use crate::control::problem::Control;
 use crate::control::transcription::kinematic_state::Placed;
 use crate::control::transcription::layout::Layout;
+use crate::control::transcription::objective::unit_of;
 use crate::control::transcription::segment::SegmentWorkspace;
 use crate::coordinates::Configuration;
 use crate::functional::SumDerivatives;
@@ -53,7 +54,7 @@ impl Workspace {
         let map = &action.map;
         let scalars = given_scalars(model, control, layout);
         let scalar_count = model.variables.of(Time::Interval).len();
-        let inputs = input_values(model, &scalars, scalar_count, intervals);
+        let inputs = input_values((model, control), &scalars, scalar_count, intervals);
         let stride = map.unknowns() + scalar_count;
         let limits = layout.limit_rows.iter();
         let limit_entries: usize = limits.map(|&(l, _)| layout.limits[l].entries.len()).sum();
@@ -117,9 +118,14 @@ fn given_scalars(model: &Model, control: &Control, layout: &Layout) -> Vec<f64> 
 }
 
 /// Inputs of all intervals in kV, N and N m, from `count` scalars of each.
-fn input_values(model: &Model, scalars: &[f64], count: usize, intervals: usize) -> Vec<f64> {
+fn input_values(
+    (model, control): (&Model, &Control),
+    scalars: &[f64],
+    count: usize,
+    intervals: usize,
+) -> Vec<f64> {
     let units = model.variables.sources();
-    let units: Vec<f64> = units.map(|s| model.input_kind(s).counted().1).collect();
+    let units: Vec<f64> = units.map(|s| unit_of(model, control, s)).collect();
     let values = (0..intervals).flat_map(|k| {
         let row = &scalars[k * count..(k + 1) * count];
         row.iter().zip(&units).map(|(value, unit)| value / unit)

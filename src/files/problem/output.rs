@@ -71,7 +71,10 @@ impl Output {
             return true;
         };
         let of_kind = |kind: &str| match kind {
-            "joints" => system.joints.iter().any(|joint| joint.name == column),
+            "joints" => system.joints.iter().any(|joint| {
+                let several = joint.several_names();
+                joint.name == column || several.iter().any(|(name, _)| name == column)
+            }),
             "markers" => {
                 let point = column.strip_suffix(['x', 'y', 'z']);
                 let marker = point.and_then(|point| point.strip_suffix('_'));

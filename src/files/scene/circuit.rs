@@ -4,7 +4,6 @@ use crate::files::json::error::SceneError;
 use crate::files::json::scope::Scope;
 use crate::files::units::quantity::{Quantity, Resistance};
 use crate::model::system::{Circuit, Muscle};
-use crate::model::{EMPTY_CIRCUIT, NO_CIRCUIT};
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
@@ -42,10 +41,8 @@ pub(super) fn circuit(
         return Ok(None);
     };
     let circuit = parts(spec, &place)?;
-    let [found, expected] = match (circuit == Circuit::default(), muscle.takes_circuit()) {
-        (true, _) => EMPTY_CIRCUIT,
-        (false, false) => NO_CIRCUIT,
-        (false, true) => return Ok(Some(circuit)),
-    };
-    Err(place.wrong(found, expected))
+    match circuit.fault(muscle.takes_circuit(), muscle.is_meshed()) {
+        Some([found, expected]) => Err(place.wrong(found, expected)),
+        None => Ok(Some(circuit)),
+    }
 }

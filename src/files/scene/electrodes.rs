@@ -9,7 +9,6 @@ use crate::files::scene::mesh::Meshed;
 use crate::files::scene::nodes::{AXES, extent, in_plane, nodes, place, planes_near};
 use crate::files::scene::spec_solids::{PotentialSpec, SolidSpec, StackSpec};
 use crate::mesh::Mesh;
-use crate::model::EMPTY_CIRCUIT;
 use crate::model::system::{Circuit, Electrode, Potential};
 
 /// A voltage that has no number yet, see [`number_sources`].
@@ -70,12 +69,10 @@ fn circuit(
         return Ok(None);
     };
     let circuit = parts(spec, &place)?;
-    let [found, expected] = match (circuit == Circuit::default(), is_driven) {
-        (true, _) => EMPTY_CIRCUIT,
-        (false, false) => ["a circuit of an electrode without a source", "\"driven\""],
-        (false, true) => return Ok(Some(circuit)),
-    };
-    Err(place.wrong(found, expected))
+    match circuit.fault(is_driven, true) {
+        Some([found, expected]) => Err(place.wrong(found, expected)),
+        None => Ok(Some(circuit)),
+    }
 }
 
 /// Electrodes with the owner of each node.
