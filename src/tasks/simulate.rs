@@ -109,6 +109,7 @@ impl SimulationResult {
         remarks.warn("coarse_steps", steps::warning(neglected, discrete, task));
         remarks.warn("tolerance_exceeded", steps::beyond(*error, task));
         remarks.warn("energy_balance", steps::unbalanced(discrete));
+        remarks.warn("energy_balance", steps::unchecked(model, task));
         Assessment {
             exchange: EnergyExchange::new(&model.system, trajectory, ends),
             neglected,
