@@ -299,12 +299,15 @@ fn the_library_moves_the_same_mass_with_a_motor() {
 
 #[test]
 fn an_objective_counts_loads_in_their_units() {
-    for (loads, expected) in [
-        ("{}", vec!["(N m)² s"]),
-        (r#"{"wind": "0.1 N"}"#, vec!["(N m)² s", "N² s"]),
-        (r#"{"wind": "0 N"}"#, vec!["(N m)² s"]),
+    // Given ones cost nothing.
+    let bounds = r#"control.load_bounds={"motor": [-0.1, 0.1], "wind": [-1, 1]}"#;
+    for (change, expected) in [
+        ("control.loads={}", vec!["(N m)² s"]),
+        (r#"control.loads={"wind": "0.1 N"}"#, vec!["(N m)² s"]),
+        (bounds, vec!["(N m)² s", "N² s"]),
     ] {
-        let (system, control) = loaded(&[format!("control.loads={loads}")]);
+        let changes = ["control.loads={}".to_owned(), change.to_owned()];
+        let (system, control) = loaded(&changes);
         assert_eq!(control.objective_units(&system), expected);
     }
 }
