@@ -27,20 +27,19 @@ impl Duration {
 }
 
 impl Control {
-    /// The function of time that gives the input of a source, where one does.
+    /// The function of time that gives the input of a source, where one that is not constant does.
     pub fn function(&self, source: usize) -> Option<&Signal> {
         let of_course = || match &self.course {
             Some(Voltages::Signals(signals)) if self.is_given(source) => signals.get(source),
             _ => None,
         };
-        self.given.get(&source).or_else(of_course)
+        let function = self.given.get(&source).or_else(of_course);
+        function.filter(|function| !function.is_constant())
     }
 
     /// Returns true if an input is a function of a time that is an unknown.
     pub fn follows_time(&self, source: usize) -> bool {
-        let is_free = matches!(self.duration, Duration::Free { .. });
-        let function = self.function(source).filter(|_| is_free);
-        function.is_some_and(|function| !function.is_constant())
+        matches!(self.duration, Duration::Free { .. }) && self.function(source).is_some()
     }
 
     /// The function of time that the variable of a column follows, where the time is an unknown.
@@ -52,18 +51,16 @@ impl Control {
         let Duration::Free { .. } = self.duration else {
             return None;
         };
-        let function = match column {
+        match column {
             Column::Instant { i, .. } => {
                 let mut motions = model.prescribed.iter();
-                motions
-                    .find(|one| one.coordinate == i)
-                    .map(|one| &one.motion)
+                let one = motions.find(|one| one.coordinate == i)?;
+                Some(&one.motion).filter(|motion| !motion.is_constant())
             }
             Column::Interval { s, .. } => {
                 self.function(model.variables.of(Time::Interval)[s].source?)
             }
             Column::Parameter { .. } | Column::Horizon => None,
-        };
-        function.filter(|function| !function.is_constant())
+        }
     }
 }

@@ -70,14 +70,7 @@ impl Control {
         along: Vector,
         range: RangeInclusive<f64>,
     ) -> Self {
-        let (joint, (min, max)) = (joint.index(), range.into_inner());
-        self.limited(PathConstraint::Reaction {
-            joint,
-            of: Reaction::Force,
-            along,
-            min,
-            max,
-        })
+        self.transmits_within((joint, Reaction::Force), along, range)
     }
 
     /// Range in N mm of the component, along a unit vector of the ground frame, of the torque from the parent of a joint on its child about the
@@ -88,10 +81,19 @@ impl Control {
         along: Vector,
         range: RangeInclusive<f64>,
     ) -> Self {
+        self.transmits_within((joint, Reaction::Torque), along, range)
+    }
+
+    fn transmits_within(
+        self,
+        (joint, of): (Handle<Joint>, Reaction),
+        along: Vector,
+        range: RangeInclusive<f64>,
+    ) -> Self {
         let (joint, (min, max)) = (joint.index(), range.into_inner());
         self.limited(PathConstraint::Reaction {
             joint,
-            of: Reaction::Torque,
+            of,
             along,
             min,
             max,

@@ -109,26 +109,24 @@ pub fn solve(
         trajectory,
     };
     let not_kept = not_kept.filter(|_| result.verdict.is_solved);
-    let cannot_seek =
-        not_found.is_some() || hold_obstacle(&result.optimum.model, control).is_some();
-    result.remarks = remarks(system, control, &result, (note, not_kept, cannot_seek));
+    let can_seek = not_found.is_none() && hold_obstacle(&result.optimum.model, control).is_none();
+    result.remarks = remarks(system, control, &result, (note, not_kept, can_seek));
     result.remarks.note("hold", not_found);
     Ok(result)
 }
 
 /// All that is to be known of a result: `refined` is the reason for another grid than that of the problem, `not_kept` the reason why the end
-/// is not kept, `cannot_seek` is true where inputs
-/// that hold the goal were sought in vain or cannot be sought.
+/// is not kept, `can_seek` is true where inputs that hold the goal can be sought and were not.
 fn remarks(
     system: &System,
     control: &Control,
     result: &SolveResult,
-    (refined, not_kept, cannot_seek): (Option<String>, Option<String>, bool),
+    (refined, not_kept, can_seek): (Option<String>, Option<String>, bool),
 ) -> Remarks {
     let optimum = &result.optimum;
     let tested = optimum.resimulation.as_ref();
     let afterwards = optimum.afterwards.as_ref();
-    let left_goal = afterwards.and_then(|after| after.warning(!cannot_seek));
+    let left_goal = afterwards.and_then(|after| after.warning(can_seek));
     let mut remarks = Remarks::default();
     remarks.note("start", control.start.notes().iter().cloned());
     remarks.note("goal", optimum.boundary.notes.iter().cloned());

@@ -40,11 +40,12 @@ impl Repeat {
         let given = given_functions(control, model, steps);
         let scalars = |from: f64, to: f64| {
             let time = 0.5 * (from + to);
-            let mut inputs = optimal.voltages[((time / h) as usize).min(n - 1)].clone();
-            for (source, function) in &given {
-                inputs[*source] = function.at(time);
+            let k = (time / h) as usize;
+            let mut scalars = model.scalars(&optimal.voltages[k.min(n - 1)]);
+            for (scalar, function) in &given {
+                scalars[*scalar] = function.at(time);
             }
-            model.scalars(&inputs)
+            scalars
         };
         let step = h / steps as f64;
         let (discrete, failure) = simulate(model, start, step, steps * n, scalars, |_| go_on());
@@ -111,15 +112,15 @@ impl Repeat {
     }
 }
 
-/// Inputs that are functions of time, which steps shorter than an interval resolve better than the optimum does.
+/// Scalars of an interval that are functions of time, which steps shorter than an interval resolve better than the optimum does.
 fn given_functions<'a>(
     control: &'a Control,
     model: &Model,
     steps: usize,
 ) -> Vec<(usize, &'a Signal)> {
     let sources = (0..model.sources.len()).filter(|_| steps > 1);
-    let functions = sources.filter_map(|source| Some((source, control.function(source)?)));
-    functions.filter(|(_, f)| !f.is_constant()).collect()
+    let scalar = |source| Some((model.variables.input(source)?, control.function(source)?));
+    sources.filter_map(scalar).collect()
 }
 
 /// The joint that turns farthest in the interval that ends at instant `k`.

@@ -8,8 +8,10 @@ use crate::model::internal::{InternalKind, Internals};
 use crate::model::system::Muscle;
 use crate::model::terms::{Terms, mid, rate};
 
-pub(in crate::model) const SOURCES: &str = "circuit sources";
-pub(in crate::model) const RESISTANCE: &str = "circuit resistance";
+pub(super) const SOURCES: &str = "circuit sources";
+const RESISTANCE: &str = "circuit resistance";
+/// Reason of the terms, before the names of their parts.
+const WHY: &str = "circuit of";
 
 /// Terms of the circuits of the muscles of a scene; `spans` are the vectors of their spans.
 pub(in crate::model) fn build(
@@ -46,29 +48,43 @@ fn circuit(
         return;
     };
     let (charge, unit) = (terms.vector(charge), capacitance.unit_of_charge());
-    let why = "circuit of";
     let element = Element {
         energy: FlowingCharge { capacitance, unit },
         vectors: [mid(span), mid(charge)],
         scalars: [],
     };
-    terms.add::<_, 6, 2, 0>(CHARGES, why, &muscle.name, element);
+    terms.add::<_, 6, 2, 0>(CHARGES, WHY, &muscle.name, element);
     if let Some(voltage) = terms.input(index) {
-        let element = Element {
-            energy: DeadLoad {
-                force: Vector::x() * muscle.voltage_at_rest(unit),
-            },
-            vectors: [mid(charge)],
-            scalars: [voltage],
-        };
-        terms.add::<_, 4, 1, 1>(SOURCES, why, &muscle.name, element);
+        let drive = (muscle.voltage_at_rest(unit), voltage);
+        add_voltage(SOURCES, &muscle.name, charge, drive, terms);
     }
+    add_resistor(&muscle.name, charge, resistance * unit * unit, terms);
+}
+
+/// Adds the energy of a charge in its unit at a voltage, which is a scalar of the interval times a factor.
+pub(super) fn add_voltage(
+    term: &'static str,
+    name: &str,
+    charge: usize,
+    (factor, voltage): (f64, usize),
+    terms: &mut Terms<'_>,
+) {
     let element = Element {
-        energy: CoordinateDamper {
-            coefficient: resistance * unit * unit,
+        energy: DeadLoad {
+            force: Vector::x() * factor,
         },
+        vectors: [mid(charge)],
+        scalars: [voltage],
+    };
+    terms.add::<_, 4, 1, 1>(term, WHY, name, element);
+}
+
+/// Adds a resistor as the damper of a charge in its unit.
+pub(super) fn add_resistor(name: &str, charge: usize, coefficient: f64, terms: &mut Terms<'_>) {
+    let element = Element {
+        energy: CoordinateDamper { coefficient },
         vectors: [mid(charge), rate(charge)],
         scalars: [],
     };
-    terms.add::<_, 6, 2, 0>(RESISTANCE, why, &muscle.name, element);
+    terms.add::<_, 6, 2, 0>(RESISTANCE, WHY, name, element);
 }
