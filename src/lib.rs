@@ -115,7 +115,8 @@ pub use model::system::{
     Potential, Shape, Solid, Support,
 };
 pub use model::{
-    Component, Constant, DielectricLaw, FoundParameter, Parameter, System, SystemError, Terms, mid,
+    Component, Constant, FoundParameter, MaterialConstant, Parameter, System, SystemError, Terms,
+    mid,
 };
 pub use nlp::Nlp;
 pub use workflow::{Remark, Severity, Tracked, TrackingError};

@@ -111,7 +111,7 @@ impl BoundaryConditions {
         let is_known = control.goal != BoundaryState::Periodic;
         let start = is_known.then_some(&boundary.start.z[..]);
         let ends = [start, rest.map(|rest| &rest.z[..])];
-        sought::check(&model, control, ends)?;
+        sought::check(&model, control, &boundary.start, ends)?;
         endpoint_checks::check(&model, &boundary, control, scalars)?;
         given_rates::check(system, control, &boundary.rest)?;
         Ok((model, boundary))

@@ -3,9 +3,11 @@
 use crate::control::error::BoundaryError;
 use crate::control::problem::{BoundaryState, Control};
 use crate::control::rest::rest_with;
+use crate::dynamics::Start;
+use crate::functional::{Term, TermKind};
 use crate::model::{
-    Constant, FieldPlace, Model, NotSought, Parameter, Quantity, Role, System, check_parameters,
-    with_parameters,
+    Constant, FieldPlace, MaterialConstant, Model, NotSought, Parameter, Quantity, Role, System,
+    check_parameters, with_parameters,
 };
 
 /// A state of rest that moves by less, relative to the size of its coordinates, does not depend on a parameter.
@@ -31,39 +33,38 @@ pub(super) fn at_guess(system: &System, control: &Control) -> Result<System, Bou
 
 /// Returns true if a quantity is a function of a parameter.
 fn reads(quantity: &Quantity, parameter: &Parameter) -> bool {
+    let follows = |muscle: usize, is_read: fn(Constant) -> bool| {
+        let mut constants = parameter.constants.iter().map(|c| c.constant);
+        constants.any(|c| c.muscle() == Some(muscle) && is_read(c))
+    };
+    let is_length = |c: Constant| matches!(c, Constant::End(..));
     match *quantity {
-        Quantity::SquaredStretch { muscle }
-        | Quantity::ChargedField { muscle, .. }
-        | Quantity::SourceCurrent { muscle, .. }
-        | Quantity::SourcePower { muscle, .. } => parameter.moves(muscle),
+        Quantity::SquaredStretch { muscle } => follows(muscle, is_length),
         Quantity::SquaredField {
             place: FieldPlace::Muscle(muscle),
             ..
         } => {
-            let mut constants = parameter.constants.iter();
-            parameter.moves(muscle) || constants.any(|c| c.constant == Constant::Layer(muscle))
+            let is_layer = |c: Constant| matches!(c, Constant::Layer(_));
+            follows(muscle, is_length) || follows(muscle, is_layer)
         }
-        Quantity::Tension { muscle, .. } => {
-            let mut constants = parameter.constants.iter();
-            parameter.moves(muscle) || constants.any(|c| c.constant.muscle() == Some(muscle))
-        }
-        Quantity::Capacitance { muscle }
+        Quantity::Tension { muscle, .. } => follows(muscle, |_| true),
+        Quantity::ChargedField { muscle, .. }
+        | Quantity::SourceCurrent { muscle, .. }
+        | Quantity::SourcePower { muscle, .. }
+        | Quantity::Capacitance { muscle }
         | Quantity::ChargeStep { muscle, .. }
-        | Quantity::EnergyStep { muscle, .. } => {
-            let is_read = |constant: Constant| {
-                let is_of_motion =
-                    matches!(constant, Constant::ShearModulus(_) | Constant::Viscosity(_));
-                constant.muscle() == Some(muscle) && !is_of_motion
-            };
-            parameter.moves(muscle) || parameter.constants.iter().any(|c| is_read(c.constant))
-        }
+        | Quantity::EnergyStep { muscle, .. } => follows(muscle, |c| {
+            use MaterialConstant::{C1, C2, Permittivity};
+            let is_electric = matches!(c, Constant::Material(_, C1 | C2 | Permittivity));
+            c.is_shape() || is_electric || matches!(c, Constant::Layer(_))
+        }),
         Quantity::ReactionStep { .. } => true,
-        // Constants of finite elements are not sought.
-        Quantity::SquaredField { .. } => false,
-        // They read the parameter itself, which no constant follows.
-        Quantity::PeakVoltage { .. } | Quantity::PeakExcess { .. } => false,
-        Quantity::VoltageStep { .. } => false,
-        Quantity::Joint { .. }
+        // Fields of finite elements follow from places and voltages; peaks read the parameter itself, which no constant follows.
+        Quantity::SquaredField { .. }
+        | Quantity::PeakVoltage { .. }
+        | Quantity::PeakExcess { .. }
+        | Quantity::VoltageStep { .. }
+        | Quantity::Joint { .. }
         | Quantity::JointStep { .. }
         | Quantity::MarkerPlace { .. }
         | Quantity::MarkerStep { .. }
@@ -77,8 +78,10 @@ fn reads(quantity: &Quantity, parameter: &Parameter) -> bool {
 pub(super) fn check(
     model: &Model,
     control: &Control,
+    start: &Start,
     rest: [Option<&[f64]>; 2],
 ) -> Result<(), BoundaryError> {
+    let moves = start.momentum.iter().any(|p| *p != 0.0);
     let layout = model.action.layout();
     let scalars = model.variables.range(Role::Parameter);
     for (s, parameter) in scalars.zip(&control.parameters) {
@@ -88,6 +91,17 @@ pub(super) fn check(
             return Err(BoundaryError::Parameter {
                 name: parameter.name.clone(),
                 reason: "nothing that moves reads it".to_owned(),
+            });
+        }
+        let terms = &model.action.intervals.terms;
+        let is_mass = |term: &dyn Term| {
+            term.kind() == TermKind::Kinetic && term.not_by_squares().contains(&s)
+        };
+        if moves && terms.iter().any(|term| is_mass(term.as_ref())) {
+            return Err(BoundaryError::Parameter {
+                name: parameter.name.clone(),
+                reason: "a mass depends on it, and with it the momentum at the start; give a start at rest"
+                    .to_owned(),
             });
         }
         let mut quantities = model.analysis.quantities.iter();

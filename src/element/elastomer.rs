@@ -5,7 +5,7 @@ use super::dual::{Dual, moving};
 use super::geometry::ElementGeometry;
 use super::isochoric::{ElementLaw, IsochoricLaw};
 use super::lanes::Lanes;
-use super::law::{Field, Passive, Volume};
+use super::law::{Dielectric, Field, Passive, Volume};
 use super::local::{Local, Output, Pair};
 use super::state::ElementState;
 use super::variations::Variations;
@@ -36,6 +36,36 @@ pub struct Elastomer<F, L = NeoHooke> {
     pub field: F,
     /// Law of elasticity: [`NeoHooke`], or an [`IsochoricLaw`](crate::element::IsochoricLaw).
     pub law: L,
+}
+
+impl<L> Elastomer<Dielectric, L> {
+    /// μ and λ in MPa, c₁, c₂ and ε in N/V².
+    pub fn constants(&self) -> [f64; 5] {
+        let field = &self.field;
+        [
+            self.shear_modulus,
+            self.lame_lambda,
+            field.c1,
+            field.c2,
+            field.permittivity,
+        ]
+    }
+
+    /// The same with other constants, in the order of [`constants`](Self::constants).
+    #[must_use]
+    pub fn with_constants(self, constants: [f64; 5]) -> Self {
+        let [shear_modulus, lame_lambda, c1, c2, permittivity] = constants;
+        Self {
+            shear_modulus,
+            lame_lambda,
+            field: Dielectric {
+                c1,
+                c2,
+                permittivity,
+            },
+            ..self
+        }
+    }
 }
 
 impl<F: Field, L: ElementLaw> Elastomer<F, L> {

@@ -1,14 +1,13 @@
 //! Constants of formulas that follow from sought parameters.
 
-use crate::math::Jet;
-use nalgebra::SVector;
+use crate::math::Number;
 
-/// A constant of a formula as a function of its arguments: `value + Σ factor · argument`.
+/// A constant of a formula as a function of sought parameters π: `value + Σ factor · π`.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Affine {
-    /// The part that no argument changes.
+    /// The part that no parameter changes.
     pub value: f64,
-    /// Arguments and their factors.
+    /// Places of parameters among those of the element, and their factors.
     pub slopes: Vec<(usize, f64)>,
 }
 
@@ -22,14 +21,6 @@ impl From<f64> for Affine {
 }
 
 impl Affine {
-    /// A multiple of an argument.
-    pub fn single(argument: usize, factor: f64) -> Self {
-        Self {
-            value: 0.0,
-            slopes: vec![(argument, factor)],
-        }
-    }
-
     /// `factor · self + value`.
     #[must_use]
     pub fn scaled(&self, factor: f64, value: f64) -> Self {
@@ -40,18 +31,22 @@ impl Affine {
         }
     }
 
-    /// Its jet at the arguments p, with rates along w.
-    pub fn jet<const M: usize, const ORDER: usize>(
-        &self,
-        p: &SVector<f64, M>,
-        w: &SVector<f64, M>,
-    ) -> Jet<M, ORDER> {
-        let mut jet = Jet::constant(self.value);
-        for &(i, factor) in &self.slopes {
-            jet.value += factor * p[i];
-            jet.gradient[i] += factor;
-            jet.value_w += factor * w[i];
+    /// `self + factor · other`.
+    #[must_use]
+    pub fn plus(mut self, factor: f64, other: &Self) -> Self {
+        self.value += factor * other.value;
+        let slopes = other.slopes.iter().map(|&(i, slope)| (i, factor * slope));
+        self.slopes.extend(slopes);
+        self
+    }
+
+    /// Its value at parameters.
+    #[inline(always)]
+    pub fn at<T: Number>(&self, parameters: &[T]) -> T {
+        let mut sum = T::of(self.value);
+        for &(place, factor) in &self.slopes {
+            sum += parameters[place].scaled(factor);
         }
-        jet
+        sum
     }
 }

@@ -3,70 +3,67 @@
 //! `Q²/(2 C(I))` with I = |r|²/L₀² is the Legendre transform of the energy `−½ C V²` by the voltage V = Q/C.
 
 use crate::energy::{Capacitance, Energy, OfSquare};
-use crate::math::Jet;
+use crate::math::{Jet, Number};
 use nalgebra::SVector;
 
-impl Capacitance {
+impl<T: Number> Capacitance<T> {
     /// `1/(2C)` as a function of I: value and three derivatives.
     #[inline(always)]
-    pub(super) fn half_inverse(&self, i: f64) -> [f64; 4] {
+    pub(super) fn half_inverse(&self, i: T) -> [T; 4] {
         let [c, c1, c2, c3] = self.of_squared_stretch(i);
-        let f = 1.0 / c;
+        let f = c.recip();
         [
-            0.5 * f,
-            -0.5 * c1 * f * f,
-            (c1 * c1 * f - 0.5 * c2) * f * f,
-            (3.0 * c1 * (c2 - c1 * c1 * f) * f - 0.5 * c3) * f * f,
+            f.scaled(0.5),
+            c1.scaled(-0.5) * f * f,
+            (c1 * c1 * f - c2.scaled(0.5)) * f * f,
+            (c1.scaled(3.0) * (c2 - c1 * c1 * f) * f - c3.scaled(0.5)) * f * f,
         ]
     }
+}
 
+impl Capacitance {
     /// Charge in mC whose field balances the elasticity of the muscle, `√(μ V₀ C)` with C at rest.
     pub fn unit_of_charge(&self) -> f64 {
         let elastic = self.cell.elastic;
         let at_rest = self.at_length(elastic.length);
         (elastic.shear_modulus * elastic.volume * at_rest).sqrt()
     }
-
-    /// Factor of |r|² in I.
-    pub(super) fn scale(&self) -> f64 {
-        let length = self.cell.elastic.length;
-        1.0 / (length * length)
-    }
 }
 
 /// Energy `Q²/(2C)` of a charge that is given, arguments: span r, charge Q in mC. Not finite for r = 0 and C = 0.
 #[derive(Clone, Copy, Debug)]
-pub struct GivenCharge {
+pub struct GivenCharge<T = f64> {
     /// Capacitance of the muscle.
-    pub capacitance: Capacitance,
+    pub capacitance: Capacitance<T>,
 }
 
-impl Energy<4> for GivenCharge {
-    type Local<const ORDER: usize> = OfSquare;
+impl<T: Number> Energy<4, T> for GivenCharge<T> {
+    type Local<const ORDER: usize> = OfSquare<T>;
 
     const OF_SQUARES: bool = true;
 
     #[inline(always)]
-    fn at<const ORDER: usize>(&self, p: &SVector<f64, 4>, w: &SVector<f64, 4>) -> OfSquare {
+    fn at<const ORDER: usize>(&self, p: &SVector<T, 4>, w: &SVector<T, 4>) -> OfSquare<T> {
         let electric = |i| self.capacitance.half_inverse(i);
-        OfSquare::new((p, w), self.capacitance.scale(), |_| [0.0; 4], electric)
+        let none = |_| [T::zero(); 4];
+        OfSquare::new((p, w), self.capacitance.scale(), none, electric)
     }
 }
 
 /// Energy `Q²/(2C)` of a charge that flows through a resistor, arguments: span r, and the charge in its unit in the first component of
 /// a vector. Not finite for r = 0 and C = 0.
 #[derive(Clone, Copy, Debug)]
-pub struct FlowingCharge {
+pub struct FlowingCharge<T = f64> {
     /// Capacitance of the muscle.
-    pub capacitance: Capacitance,
+    pub capacitance: Capacitance<T>,
     /// Unit of the charge in mC.
-    pub unit: f64,
+    pub unit: T,
 }
 
-impl Energy<6> for FlowingCharge {
-    type Local<const ORDER: usize> = Jet<6, ORDER>;
+impl<T: Number> Energy<6, T> for FlowingCharge<T> {
+    type Local<const ORDER: usize> = Jet<6, ORDER, T>;
 
-    fn at<const ORDER: usize>(&self, p: &SVector<f64, 6>, w: &SVector<f64, 6>) -> Jet<6, ORDER> {
+    fn at<const ORDER: usize>(&self, p: &SVector<T, 6>, w: &SVector<T, 6>) -> Jet<6, ORDER, T> {
         let squared = Jet::dot(0, 0, p, w) * self.capacitance.scale();
         let inverse = squared.map(self.capacitance.half_inverse(squared.value));
         inverse * (Jet::argument(3, p, w) * self.unit).squared()

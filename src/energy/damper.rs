@@ -4,18 +4,18 @@
 //! turn of vectors: the same force to O(h²).
 
 use crate::energy::Energy;
-use crate::math::Jet;
+use crate::math::{Jet, Number};
 use nalgebra::SVector;
 
 /// Virtual work `−d u̇ δu` of a joint; arguments: δu, then its rate, each in the first component of a vector.
 #[derive(Clone, Copy, Debug)]
-pub struct CoordinateDamper {
+pub struct CoordinateDamper<T = f64> {
     /// d in N mm ms or N ms/mm.
-    pub coefficient: f64,
+    pub coefficient: T,
 }
 
-impl Energy<6> for CoordinateDamper {
-    type Local<const ORDER: usize> = Jet<6, ORDER>;
+impl<T: Number> Energy<6, T> for CoordinateDamper<T> {
+    type Local<const ORDER: usize> = Jet<6, ORDER, T>;
 
     const READINGS: usize = 2;
     const DEGREE: usize = 2;
@@ -26,7 +26,7 @@ impl Energy<6> for CoordinateDamper {
         i != j
     }
 
-    fn at<const ORDER: usize>(&self, p: &SVector<f64, 6>, w: &SVector<f64, 6>) -> Jet<6, ORDER> {
+    fn at<const ORDER: usize>(&self, p: &SVector<T, 6>, w: &SVector<T, 6>) -> Jet<6, ORDER, T> {
         Jet::dot(0, 3, p, w) * -self.coefficient
     }
 }
@@ -36,23 +36,23 @@ impl Energy<6> for CoordinateDamper {
 ///
 /// `θ̇ = (ṡ c − ċ s)/(s² + c²)`, and likewise δθ.
 #[derive(Clone, Copy, Debug)]
-pub struct AngularDamper {
+pub struct AngularDamper<T = f64> {
     /// d in N mm ms.
-    pub coefficient: f64,
+    pub coefficient: T,
 }
 
-impl Energy<27> for AngularDamper {
-    type Local<const ORDER: usize> = Jet<27, ORDER>;
+impl<T: Number> Energy<27, T> for AngularDamper<T> {
+    type Local<const ORDER: usize> = Jet<27, ORDER, T>;
 
     const READINGS: usize = 3;
     const VIRTUAL: usize = 3;
 
-    fn at<const ORDER: usize>(&self, p: &SVector<f64, 27>, w: &SVector<f64, 27>) -> Jet<27, ORDER> {
+    fn at<const ORDER: usize>(&self, p: &SVector<T, 27>, w: &SVector<T, 27>) -> Jet<27, ORDER, T> {
         // Rate of a product of two vectors: one factor varies (at `shift`), the other stands.
         let rate =
             |a: usize, shift: usize| Jet::dot(a + shift, 15, p, w) + Jet::dot(a, 15 + shift, p, w);
         let virtual_rate = |a: usize| Jet::dot(a - 9, 15, p, w) + Jet::dot(a, 6, p, w);
-        let products: [Jet<27, ORDER>; 6] = [
+        let products: [Jet<27, ORDER, T>; 6] = [
             Jet::dot(12, 15, p, w),
             Jet::dot(9, 15, p, w),
             rate(12, 9),
@@ -64,7 +64,7 @@ impl Energy<27> for AngularDamper {
         let values = SVector::from_fn(|i, _| products[i].value);
         let along = SVector::from_fn(|i, _| products[i].value_w);
         let [s, c, ds, dc, vs, vc] =
-            std::array::from_fn(|i| Jet::<6, ORDER>::argument(i, &values, &along));
+            std::array::from_fn(|i| Jet::<6, ORDER, T>::argument(i, &values, &along));
         let turning = ds * c - dc * s;
         let virtual_turning = vs * c - vc * s;
         let square = s.squared() + c.squared();
@@ -75,18 +75,18 @@ impl Energy<27> for AngularDamper {
 
 /// Virtual work `−d ẏ δy` of a prismatic joint with y = n·r; arguments: δn, δr, then midpoints, then rates.
 #[derive(Clone, Copy, Debug)]
-pub struct LinearDamper {
+pub struct LinearDamper<T = f64> {
     /// d in N ms/mm.
-    pub coefficient: f64,
+    pub coefficient: T,
 }
 
-impl Energy<18> for LinearDamper {
-    type Local<const ORDER: usize> = Jet<18, ORDER>;
+impl<T: Number> Energy<18, T> for LinearDamper<T> {
+    type Local<const ORDER: usize> = Jet<18, ORDER, T>;
 
     const READINGS: usize = 3;
     const VIRTUAL: usize = 2;
 
-    fn at<const ORDER: usize>(&self, p: &SVector<f64, 18>, w: &SVector<f64, 18>) -> Jet<18, ORDER> {
+    fn at<const ORDER: usize>(&self, p: &SVector<T, 18>, w: &SVector<T, 18>) -> Jet<18, ORDER, T> {
         let virtual_rate = Jet::dot(0, 9, p, w) + Jet::dot(6, 3, p, w);
         let rate = Jet::dot(12, 9, p, w) + Jet::dot(6, 15, p, w);
         rate * virtual_rate * -self.coefficient

@@ -6,63 +6,101 @@
 //! I₁ = I + 2/√I,    I₂ = 2√I + 1/I,    Σ λᵃ = I^(a/2) + 2 I^(−a/4).
 //! ```
 
-use crate::math::Jet;
+use crate::math::{Jet, Number};
 use nalgebra::{SVector, Vector1};
 use std::f64::consts::PI;
 use std::fmt::Debug;
 
 /// A law of elasticity, the neo-Hookean one or another.
-pub trait Elasticity: Copy + Debug + Send + Sync + 'static {
+pub trait Elasticity<T = f64>: Copy + Debug + Send + Sync + 'static {
     /// Energy in mJ of the volume V₀ in mm³ with the shear modulus μ in MPa as a function of I: value and three derivatives.
-    fn of_squared_stretch(&self, shear_modulus: f64, volume: f64, i: f64) -> [f64; 4];
+    fn of_squared_stretch(&self, shear_modulus: T, volume: T, i: T) -> [T; 4];
 }
 
 /// The neo-Hookean law `μ/2 (I₁ − 3)`.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct NeoHooke;
 
-impl Elasticity for NeoHooke {
+impl<T: Number> Elasticity<T> for NeoHooke {
     #[inline(always)]
-    fn of_squared_stretch(&self, shear_modulus: f64, volume: f64, i: f64) -> [f64; 4] {
-        let c = 0.5 * shear_modulus * volume;
-        let r = 1.0 / i;
+    fn of_squared_stretch(&self, shear_modulus: T, volume: T, i: T) -> [T; 4] {
+        let c = shear_modulus.scaled(0.5) * volume;
+        let r = i.recip();
         let s = r.sqrt();
         [
-            c * (2.0 * s + i - 3.0),
-            c * (1.0 - s * r),
-            c * 1.5 * s * r * r,
-            c * -3.75 * s * r * r * r,
+            c * (s.scaled(2.0) + i).shifted(-3.0),
+            c * (T::one() - s * r),
+            c.scaled(1.5) * s * r * r,
+            c.scaled(-3.75) * s * r * r * r,
         ]
     }
 }
 
 /// A law beside the neo-Hookean one. The shear modulus μ of small strains is a constant of the material, for every law the same.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub enum ElasticLaw {
+pub enum ElasticLaw<T = f64> {
     /// Gent: `−μ/2 Jₘ ln(1 − (I₁ − 3)/Jₘ)`, which stiffens without bound as I₁ − 3 approaches Jₘ. NaN beyond.
     Gent {
         /// Jₘ.
-        limit: f64,
+        limit: T,
     },
     /// Mooney and Rivlin: `μ/2 [(1 − s)(I₁ − 3) + s (I₂ − 3)]`.
     MooneyRivlin {
         /// s, the part of the shear modulus that belongs to I₂.
-        share: f64,
+        share: T,
     },
     /// Yeoh: `μ/2 (I₁ − 3) + c₂ (I₁ − 3)² + c₃ (I₁ − 3)³`.
     Yeoh {
         /// c₂ in MPa.
-        c2: f64,
+        c2: T,
         /// c₃ in MPa.
-        c3: f64,
+        c3: T,
     },
     /// Ogden with two terms: `2μ [(1 − s)/α₁² Σ(λ^α₁ − 1) + s/α₂² Σ(λ^α₂ − 1)]`.
     Ogden {
         /// α₁ and α₂.
-        exponents: [f64; 2],
+        exponents: [T; 2],
         /// s, the part of the shear modulus that belongs to the second term.
-        share: f64,
+        share: T,
     },
+}
+
+impl<T> ElasticLaw<T> {
+    /// A constant of the law by its name, that of files.
+    pub fn get_mut(&mut self, name: &str) -> Option<&mut T> {
+        match (self, name) {
+            (Self::Gent { limit }, "limit") => Some(limit),
+            (Self::MooneyRivlin { share } | Self::Ogden { share, .. }, "share") => Some(share),
+            (Self::Yeoh { c2, .. }, "c2") => Some(c2),
+            (Self::Yeoh { c3, .. }, "c3") => Some(c3),
+            (Self::Ogden { exponents, .. }, "exponents[0]") => Some(&mut exponents[0]),
+            (Self::Ogden { exponents, .. }, "exponents[1]") => Some(&mut exponents[1]),
+            _ => None,
+        }
+    }
+
+    /// The law of the constants that a function makes of the names, those of files, and the values of these.
+    pub fn map<U>(&self, mut of: impl FnMut(&'static str, &T) -> U) -> ElasticLaw<U> {
+        match self {
+            Self::Gent { limit } => ElasticLaw::Gent {
+                limit: of("limit", limit),
+            },
+            Self::MooneyRivlin { share } => ElasticLaw::MooneyRivlin {
+                share: of("share", share),
+            },
+            Self::Yeoh { c2, c3 } => ElasticLaw::Yeoh {
+                c2: of("c2", c2),
+                c3: of("c3", c3),
+            },
+            Self::Ogden { exponents, share } => ElasticLaw::Ogden {
+                exponents: [
+                    of("exponents[0]", &exponents[0]),
+                    of("exponents[1]", &exponents[1]),
+                ],
+                share: of("share", share),
+            },
+        }
+    }
 }
 
 /// A constant of a law without a meaning.
@@ -136,52 +174,52 @@ impl ElasticLaw {
         let root = |angle: f64| 2.0 * third.sqrt() * angle.cos();
         Some([root(angle - 2.0 * PI / 3.0), root(angle)])
     }
+}
 
-    /// The energy for μ = 1 of Σ(λᵃ − 1) for two exponents, of which the second has the share s.
-    fn of_powers(i: &OfI, exponents: [f64; 2], share: f64) -> OfI {
-        let of = |exponent: f64, share: f64| {
-            let sum = power(i, 0.5 * exponent) + power(i, -0.25 * exponent) * 2.0 + -3.0;
-            sum * (2.0 * share / (exponent * exponent))
-        };
-        of(exponents[0], 1.0 - share) + of(exponents[1], share)
-    }
+/// The energy for μ = 1 of Σ(λᵃ − 1) for two exponents, of which the second has the share s.
+fn of_powers<T: Number>(i: &OfI<T>, exponents: [T; 2], share: T) -> OfI<T> {
+    let of = |exponent: T, share: T| {
+        let sum = power(i, exponent.scaled(0.5)) + power(i, exponent.scaled(-0.25)).scaled(2.0);
+        sum.shifted(-3.0) * share.scaled(2.0).over(exponent * exponent)
+    };
+    of(exponents[0], T::one() - share) + of(exponents[1], share)
 }
 
 /// A function of I.
-type OfI = Jet<1, 3>;
+type OfI<T> = Jet<1, 3, T>;
 
 /// `Iⁿ`.
-fn power(i: &OfI, n: f64) -> OfI {
-    let (r, p) = (1.0 / i.value, i.value.powf(n));
-    let (first, second) = (n * p * r, n * (n - 1.0) * p * r * r);
-    i.map([p, first, second, (n - 2.0) * second * r])
+fn power<T: Number>(i: &OfI<T>, n: T) -> OfI<T> {
+    let (r, p) = (i.value.recip(), i.value.powf(n));
+    let (first, second) = (n * p * r, n * n.shifted(-1.0) * p * r * r);
+    i.map([p, first, second, n.shifted(-2.0) * second * r])
 }
 
-impl Elasticity for ElasticLaw {
-    fn of_squared_stretch(&self, shear_modulus: f64, volume: f64, i: f64) -> [f64; 4] {
-        let i = OfI::argument(0, &Vector1::new(i), &SVector::repeat(1.0));
-        let strain = || i + i.sqrt().recip() * 2.0 + -3.0;
-        let half = 0.5 * shear_modulus;
+impl<T: Number> Elasticity<T> for ElasticLaw<T> {
+    fn of_squared_stretch(&self, shear_modulus: T, volume: T, i: T) -> [T; 4] {
+        let i = OfI::argument(0, &Vector1::new(i), &SVector::repeat(T::one()));
+        let strain = || (i + i.sqrt().recip().scaled(2.0)).shifted(-3.0);
+        let half = shear_modulus.scaled(0.5);
         let density = match *self {
             Self::Gent { limit } => {
-                let left = strain() * (-1.0 / limit) + 1.0;
+                let left = (strain() * T::of(-1.0).over(limit)).shifted(1.0);
                 // The derivatives exist beyond the limit, where there is no energy.
-                let left = if left.value > 0.0 {
+                let left = if left.value.real() > 0.0 {
                     left
                 } else {
-                    left * f64::NAN
+                    left.scaled(f64::NAN)
                 };
                 left.ln() * (-half * limit)
             }
-            Self::MooneyRivlin { share } => Self::of_powers(&i, [2.0, -2.0], share) * shear_modulus,
+            Self::MooneyRivlin { share } => {
+                of_powers(&i, [2.0, -2.0].map(T::of), share) * shear_modulus
+            }
             Self::Yeoh { c2, c3 } => {
                 let strain = strain();
                 let more = strain.squared() * c2 + strain.powi(3) * c3;
                 strain * half + more
             }
-            Self::Ogden { exponents, share } => {
-                Self::of_powers(&i, exponents, share) * shear_modulus
-            }
+            Self::Ogden { exponents, share } => of_powers(&i, exponents, share) * shear_modulus,
         };
         let jet = density * volume;
         [jet.value, jet.gradient.x, jet.hessian.x, jet.hessian_w.x]

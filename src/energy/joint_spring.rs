@@ -1,25 +1,25 @@
 //! Spring of a joint coordinate, and constraints that make an unknown the coordinate of a joint of directors.
 
 use crate::energy::Energy;
-use crate::math::Jet;
+use crate::math::{Jet, Number};
 use nalgebra::SVector;
 
 /// Elastic energy `½ k (u − u₀)²`, arguments: the coordinate u in the first component of a vector.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct CoordinateSpring {
+pub struct CoordinateSpring<T = f64> {
     /// Stiffness k in N mm/rad or N/mm.
-    pub stiffness: f64,
+    pub stiffness: T,
     /// Coordinate u₀ without force, in rad or mm.
-    pub rest: f64,
+    pub rest: T,
 }
 
-impl Energy<3> for CoordinateSpring {
-    type Local<const ORDER: usize> = Jet<3, ORDER>;
+impl<T: Number> Energy<3, T> for CoordinateSpring<T> {
+    type Local<const ORDER: usize> = Jet<3, ORDER, T>;
 
     const DEGREE: usize = 2;
 
-    fn at<const ORDER: usize>(&self, p: &SVector<f64, 3>, w: &SVector<f64, 3>) -> Jet<3, ORDER> {
-        (Jet::argument(0, p, w) + -self.rest).squared() * (0.5 * self.stiffness)
+    fn at<const ORDER: usize>(&self, p: &SVector<T, 3>, w: &SVector<T, 3>) -> Jet<3, ORDER, T> {
+        (Jet::argument(0, p, w) + -self.rest).squared() * self.stiffness.scaled(0.5)
     }
 }
 

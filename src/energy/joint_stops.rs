@@ -21,7 +21,7 @@ impl Energy<3> for CoordinateStops {
     type Local<const ORDER: usize> = Jet<3, ORDER>;
 
     fn at<const ORDER: usize>(&self, p: &SVector<f64, 3>, w: &SVector<f64, 3>) -> Jet<3, ORDER> {
-        let law = [self.stiffness, self.smoothing];
+        let law = (self.stiffness, self.smoothing);
         let above = one_sided(law, p[0] - self.at[1]);
         let below = one_sided(law, self.at[0] - p[0]);
         let signs = [1.0, -1.0, 1.0, -1.0];

@@ -1,7 +1,7 @@
 //! Quantities that path limits and goals bound.
 
 use crate::energy::{Energy, OfSquare};
-use crate::math::{Jet, Vector};
+use crate::math::{Jet, Number, Vector};
 use nalgebra::SVector;
 
 /// `(x − c)·n`, arguments: x.
@@ -28,23 +28,29 @@ impl Energy<3> for PositionComponent {
 
 /// `|x − c|²/s²`, arguments: x. The squared stretch of a muscle, the distance from a centre.
 #[derive(Clone, Copy, Debug)]
-pub struct SquaredDistance {
+pub struct SquaredDistance<T = f64> {
     /// c in mm.
     pub centre: Vector,
     /// s in mm.
-    pub scale: f64,
+    pub scale: T,
 }
 
-impl Energy<3> for SquaredDistance {
-    type Local<const ORDER: usize> = OfSquare;
+impl<T: Number> Energy<3, T> for SquaredDistance<T> {
+    type Local<const ORDER: usize> = OfSquare<T>;
 
     const DEGREE: usize = 2;
     const ISOTROPIC: bool = true;
 
-    fn at<const ORDER: usize>(&self, p: &SVector<f64, 3>, w: &SVector<f64, 3>) -> OfSquare {
-        let scale = 1.0 / (self.scale * self.scale);
-        let itself = |i| [i, 1.0, 0.0, 0.0];
-        OfSquare::new((&(p - self.centre), w), scale, itself, |_| [0.0; 4])
+    fn at<const ORDER: usize>(&self, p: &SVector<T, 3>, w: &SVector<T, 3>) -> OfSquare<T> {
+        let scale = (self.scale * self.scale).recip();
+        let [none, one] = [T::zero(), T::one()];
+        let from_centre = p - self.centre.map(T::of);
+        OfSquare::new(
+            (&from_centre, w),
+            scale,
+            |i| [i, one, none, none],
+            |_| [none; 4],
+        )
     }
 }
 
@@ -71,26 +77,27 @@ impl Energy<3> for OutsideBox {
 
 /// `V²/(E² I)` with I = |r|²/L₀²: the squared ratio of the true field |V|/(t Λ) to a limit, arguments: r and V.
 #[derive(Clone, Copy, Debug)]
-pub struct SquaredField {
+pub struct SquaredField<T = f64> {
     /// Rest length L₀ in mm.
-    pub length: f64,
+    pub length: T,
     /// Voltage t E that reaches the limit field E at rest length, in V.
-    pub voltage: f64,
+    pub voltage: T,
 }
 
-impl Energy<4> for SquaredField {
-    type Local<const ORDER: usize> = OfSquare;
+impl<T: Number> Energy<4, T> for SquaredField<T> {
+    type Local<const ORDER: usize> = OfSquare<T>;
 
     const OF_SQUARES: bool = true;
 
-    fn at<const ORDER: usize>(&self, p: &SVector<f64, 4>, w: &SVector<f64, 4>) -> OfSquare {
-        let factor = 1.0 / (self.voltage * self.voltage);
-        let inverse = |i: f64| {
-            let r = 1.0 / i;
-            [r, -r * r, 2.0 * r * r * r, -6.0 * r * r * r * r].map(|e| factor * e)
+    fn at<const ORDER: usize>(&self, p: &SVector<T, 4>, w: &SVector<T, 4>) -> OfSquare<T> {
+        let factor = (self.voltage * self.voltage).recip();
+        let inverse = |i: T| {
+            let r = i.recip();
+            let by_i = [r, -r * r, r.scaled(2.0) * r * r, r.scaled(-6.0) * r * r * r];
+            by_i.map(|e| factor * e)
         };
-        let scale = 1.0 / (self.length * self.length);
-        OfSquare::new((p, w), scale, |_| [0.0; 4], inverse)
+        let scale = (self.length * self.length).recip();
+        OfSquare::new((p, w), scale, |_| [T::zero(); 4], inverse)
     }
 }
 

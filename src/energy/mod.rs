@@ -11,6 +11,7 @@ mod elastic_law;
 mod gravity;
 mod joint_spring;
 mod joint_stops;
+mod kinetic;
 mod limit;
 mod load;
 mod maxwell;
@@ -18,9 +19,6 @@ mod maxwell_damper;
 mod muscle;
 mod of_square;
 mod one_sided;
-mod sought_damper;
-mod sought_muscle;
-mod sought_spring;
 mod spring;
 mod tendon;
 mod viscosity;
@@ -38,6 +36,7 @@ pub use elastic_law::{ElasticLaw, Elasticity, Fault, NeoHooke};
 pub use gravity::Gravity;
 pub use joint_spring::{CoordinateSpring, JointAngle, JointDisplacement};
 pub use joint_stops::CoordinateStops;
+pub use kinetic::KineticEnergy;
 pub use limit::{
     Angle, AngleStep, Multiple, OutsideBox, PeakExcess, PositionComponent, Projection,
     ProjectionStep, SquaredDistance, SquaredField,
@@ -47,18 +46,16 @@ pub use maxwell::MaxwellCell;
 pub use maxwell_damper::{DamperDerivatives, MaxwellDamper};
 pub use muscle::{DielectricCell, ElasticCell, SectionInertia};
 pub use of_square::OfSquare;
-pub use sought_damper::SoughtDamper;
-pub use sought_muscle::{SoughtCell, SoughtDielectric, SoughtShape, SoughtViscousCell};
-pub use sought_spring::{SoughtSpanDamper, SoughtSpring};
 pub use spring::{LinearSpring, SpanDamper};
 pub use tendon::Cable;
 pub use viscosity::{ViscousCell, ViscousTension};
 
-use crate::math::{Jet, Local};
+use crate::math::{Local, Number};
 use nalgebra::SVector;
 
-/// A scalar of `M` arguments, differentiated exactly: vectors first, three arguments each, then scalars.
-pub trait Energy<const M: usize>: Clone + Send + Sync {
+/// A scalar of `M` arguments, differentiated exactly: vectors first, three arguments each, then scalars. Its constants and arguments are
+/// numbers `T`, so that derivatives by constants ride along.
+pub trait Energy<const M: usize, T: Number = f64>: Clone + Send + Sync {
     /// Polynomial degree: derivatives above it vanish and are never emitted.
     const DEGREE: usize = usize::MAX;
 
@@ -84,21 +81,8 @@ pub trait Energy<const M: usize>: Clone + Send + Sync {
     }
 
     /// Storage of its derivatives up to an order: a [`Jet`], or fewer numbers.
-    type Local<const ORDER: usize>: Local;
+    type Local<const ORDER: usize>: Local<T>;
 
     /// Its derivatives at `p` up to `ORDER`, with rates along `w` when that is 3.
-    fn at<const ORDER: usize>(
-        &self,
-        p: &SVector<f64, M>,
-        w: &SVector<f64, M>,
-    ) -> Self::Local<ORDER>;
-}
-
-/// A scalar of `M` arguments some of which are sought constants: span vectors first, three arguments each, then scalars.
-pub trait SoughtEnergy<const M: usize>: Clone + Send + Sync {
-    /// Number of leading vectors that are virtual displacements, as in [`Energy`].
-    const VIRTUAL: usize = 0;
-
-    /// The jet at `p`, with rates along `w` when `ORDER` is 3.
-    fn jet<const ORDER: usize>(&self, p: &SVector<f64, M>, w: &SVector<f64, M>) -> Jet<M, ORDER>;
+    fn at<const ORDER: usize>(&self, p: &SVector<T, M>, w: &SVector<T, M>) -> Self::Local<ORDER>;
 }

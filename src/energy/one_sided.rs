@@ -9,24 +9,27 @@
 //!
 //! Beyond, the force is k x as without a width.
 
+use crate::math::Number;
+
 /// Energy W, force W′, stiffness W″ and W‴ at `x` beyond the point, of stiffness k over a width w. Up to −w/2, which is included, all are
 /// zero.
-pub(super) fn one_sided([k, w]: [f64; 2], x: f64) -> [f64; 4] {
+pub(super) fn one_sided<T: Number>((k, w): (T, f64), x: T) -> [T; 4] {
     // A place that is no number stays none.
-    if x <= -0.5 * w {
-        return [0.0; 4];
+    if x.real() <= -0.5 * w {
+        return [T::zero(); 4];
     }
-    if x < 0.5 * w {
-        let t = x / w + 0.5;
+    if x.real() < 0.5 * w {
+        let t = (x.over(T::of(w))).shifted(0.5);
         let [t2, t3] = [t * t, t * t * t];
+        let quadratic = t2.scaled(0.1);
         return [
-            k * w * w * t3 * (0.25 * t - 0.1 * t2),
-            k * w * t3 * (1.0 - 0.5 * t),
-            k * (3.0 * t2 - 2.0 * t3),
-            k / w * (6.0 * t - 6.0 * t2),
+            k.scaled(w).scaled(w) * t3 * (t.scaled(0.25) - quadratic),
+            k.scaled(w) * t3 * (T::one() - t.scaled(0.5)),
+            k * (t2.scaled(3.0) - t3.scaled(2.0)),
+            k.over(T::of(w)) * (t.scaled(6.0) - t2.scaled(6.0)),
         ];
     }
     // What the growth of the stiffness has stored more.
-    let stored = 0.025 * k * w * w;
-    [0.5 * k * x * x + stored, k * x, k, 0.0]
+    let stored = k.scaled(0.025).scaled(w).scaled(w);
+    [k.scaled(0.5) * x * x + stored, k * x, k, T::zero()]
 }

@@ -1,69 +1,71 @@
 //! A spring and a damper between two points.
 
 use crate::energy::{AlongSpan, Energy, OfSquare};
+use crate::math::Number;
 use nalgebra::SVector;
 
 /// Elastic energy `½ k (|r| − ℓ)²`, arguments: span r. Not finite for r = 0 unless ℓ = 0.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct LinearSpring {
+pub struct LinearSpring<T = f64> {
     /// Stiffness k in N/mm.
-    pub stiffness: f64,
+    pub stiffness: T,
     /// Length ℓ without force in mm.
-    pub length: f64,
+    pub length: T,
 }
 
-impl LinearSpring {
+impl<T: Number> LinearSpring<T> {
     /// ½ k (√I − ℓ)² as a function of I = |r|²: value and three derivatives.
     #[inline(always)]
-    fn of_squared_length(&self, i: f64) -> [f64; 4] {
+    fn of_squared_length(&self, i: T) -> [T; 4] {
         let (k, l) = (self.stiffness, self.length);
-        if l == 0.0 {
-            return [0.5 * k * i, 0.5 * k, 0.0, 0.0];
+        if l == T::zero() {
+            return [k.scaled(0.5) * i, k.scaled(0.5), T::zero(), T::zero()];
         }
         let s = i.sqrt();
-        let r = 1.0 / i;
-        let q = k * l * r / s;
+        let r = i.recip();
+        let q = (k * l * r).over(s);
         [
-            0.5 * k * (s - l) * (s - l),
-            0.5 * k * (1.0 - l / s),
-            0.25 * q,
-            -0.375 * q * r,
+            k.scaled(0.5) * (s - l) * (s - l),
+            k.scaled(0.5) * (T::one() - l.over(s)),
+            q.scaled(0.25),
+            q.scaled(-0.375) * r,
         ]
     }
 }
 
-impl Energy<3> for LinearSpring {
-    type Local<const ORDER: usize> = OfSquare;
+impl<T: Number> Energy<3, T> for LinearSpring<T> {
+    type Local<const ORDER: usize> = OfSquare<T>;
 
     #[inline(always)]
-    fn at<const ORDER: usize>(&self, p: &SVector<f64, 3>, w: &SVector<f64, 3>) -> OfSquare {
-        OfSquare::new((p, w), 1.0, |i| self.of_squared_length(i), |_| [0.0; 4])
+    fn at<const ORDER: usize>(&self, p: &SVector<T, 3>, w: &SVector<T, 3>) -> OfSquare<T> {
+        let none = |_| [T::zero(); 4];
+        OfSquare::new((p, w), T::one(), |i| self.of_squared_length(i), none)
     }
 }
 
 /// Virtual work `−c (r·ṙ)(r·δr)/|r|²` of a force c d|r|/dt along the span, arguments: δr, r̄, ṙ. Not finite for r = 0.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct SpanDamper {
+pub struct SpanDamper<T = f64> {
     /// Damping c in N ms/mm.
-    pub coefficient: f64,
+    pub coefficient: T,
 }
 
-impl Energy<9> for SpanDamper {
-    type Local<const ORDER: usize> = AlongSpan;
+impl<T: Number> Energy<9, T> for SpanDamper<T> {
+    type Local<const ORDER: usize> = AlongSpan<T>;
 
     const READINGS: usize = 3;
     const VIRTUAL: usize = 1;
 
     fn couples(i: usize, j: usize) -> bool {
-        AlongSpan::couples(i, j)
+        AlongSpan::<T>::couples(i, j)
     }
 
     #[inline(always)]
-    fn at<const ORDER: usize>(&self, p: &SVector<f64, 9>, _: &SVector<f64, 9>) -> AlongSpan {
+    fn at<const ORDER: usize>(&self, p: &SVector<T, 9>, _: &SVector<T, 9>) -> AlongSpan<T> {
         AlongSpan::new(p, |gamma| {
-            let r = 1.0 / gamma;
+            let r = gamma.recip();
             let k = -self.coefficient * r;
-            [k, -k * r, 2.0 * k * r * r]
+            [k, -k * r, k.scaled(2.0) * r * r]
         })
     }
 }

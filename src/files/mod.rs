@@ -47,6 +47,7 @@ use crate::files::problem::build::build_problem;
 use crate::files::problem::output::{Output, output};
 use crate::files::problem::spec::{ProblemSpec, SceneSource};
 use crate::files::scene::build::build_scene;
+use crate::files::scene::constants::WrittenScene;
 use crate::files::scene::expand::{add_named, expanded};
 use crate::files::scene::spec::SceneSpec;
 use crate::files::study::StudySpec;
@@ -137,7 +138,7 @@ fn problem_of(
     }
     let problem: ProblemSpec = document.parse()?;
     let scope = Scope::of(&document);
-    let (written, system, scene, scene_path) = match &problem.scene {
+    let (written, system, scene, scene_path, apart) = match &problem.scene {
         SceneSource::Inline(scene) => {
             let system = build_scene(scene, &scope.key("scene"))?;
             let written = scene.as_ref().clone();
@@ -145,6 +146,7 @@ fn problem_of(
                 written,
                 system,
                 document.entry("scene").unwrap_or_default().to_owned(),
+                None,
                 None,
             )
         }
@@ -156,10 +158,21 @@ fn problem_of(
             }
             let written: SceneSpec = scene.parse()?;
             let system = build_scene(&written, &Scope::of(&scene))?;
-            (written, system, scene.text().to_owned(), Some(file))
+            (
+                written,
+                system,
+                scene.text().to_owned(),
+                Some(file),
+                Some(scene),
+            )
         }
     };
-    let task = build_problem(&problem, (&written, &system), &scope)?;
+    let of_scene = WrittenScene {
+        spec: &written,
+        system: &system,
+        document: apart.as_ref().unwrap_or(&document),
+    };
+    let task = build_problem(&problem, &of_scene, &scope)?;
     let place = scope.key("output");
     let output = match (&problem.output, &task) {
         (None, _) => Output::default(),

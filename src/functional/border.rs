@@ -39,7 +39,7 @@ impl<'a, K: Kernel> Rates<'a, K> {
     /// Arguments that are rates, with their values.
     fn list(&self) -> impl Iterator<Item = (usize, Vector)> {
         let count = K::vectors(self.element) * K::READINGS;
-        (K::VIRTUAL..count).filter_map(|j| {
+        (K::virtuals(self.element)..count).filter_map(|j| {
             let arg = K::vector(self.element, j);
             (arg.stencil == Stencil::Rate).then(|| (j, arg.read(self.h, self.vectors)))
         })

@@ -131,16 +131,18 @@ struct Action<'a, K: Kernel> {
 }
 
 /// Arguments that give equations.
-const fn rows<K: Kernel>() -> Range<usize> {
+#[inline(always)]
+fn rows<K: Kernel>(element: &K::Element) -> Range<usize> {
     match K::VIRTUAL {
         0 => ALL,
-        count => 0..count,
+        _ => 0..K::virtuals(element),
     }
 }
 
 /// Arguments that are unknowns.
-const fn unknowns<K: Kernel>() -> Range<usize> {
-    K::VIRTUAL..usize::MAX
+#[inline(always)]
+fn unknowns<K: Kernel>(element: &K::Element) -> Range<usize> {
+    K::virtuals(element)..usize::MAX
 }
 
 impl<K: Kernel> Scatter for Action<'_, K> {
@@ -149,12 +151,13 @@ impl<K: Kernel> Scatter for Action<'_, K> {
         let part = &mut self.out.plain;
         let derivatives = (|i| d.force(i), |s| d.row(s));
         let to = (&mut part.forces, part.rows.as_mut_slice());
-        self.places.first(self.c, rows::<K>(), derivatives, to);
+        self.places
+            .first(self.c, rows::<K>(self.element), derivatives, to);
         if self.order < Order::Hessian {
             return;
         }
         if K::DEGREE >= 2 {
-            let between = (rows::<K>(), unknowns::<K>());
+            let between = (rows::<K>(self.element), unknowns::<K>(self.element));
             self.places.second(self.c, between, d, part);
         }
         if self.is_free {
@@ -162,7 +165,8 @@ impl<K: Kernel> Scatter for Action<'_, K> {
             let border = Border { plain: d, v: &v };
             let derivatives = (|i| border.force(i), |s| border.row(s));
             let to = (&mut part.horizon_forces, part.horizon_rows.as_mut_slice());
-            self.places.first(self.scale, rows::<K>(), derivatives, to);
+            self.places
+                .first(self.scale, rows::<K>(self.element), derivatives, to);
         }
     }
 
@@ -171,9 +175,10 @@ impl<K: Kernel> Scatter for Action<'_, K> {
         let part = &mut self.out.contracted;
         let derivatives = (|i| along.force(i), |s| along.row(s));
         let to = (&mut part.forces, part.rows.as_mut_slice());
-        self.places.first(self.c, unknowns::<K>(), derivatives, to);
+        self.places
+            .first(self.c, unknowns::<K>(self.element), derivatives, to);
         if K::DEGREE >= 3 {
-            let between = (unknowns::<K>(), unknowns::<K>());
+            let between = (unknowns::<K>(self.element), unknowns::<K>(self.element));
             self.places.second(self.c, between, along, part);
         }
         if !self.is_free {
@@ -187,7 +192,7 @@ impl<K: Kernel> Scatter for Action<'_, K> {
             let border = Border { plain, v: &v };
             let derivatives = (|i| border.force(i), |s| border.row(s));
             self.places
-                .first(self.scale, unknowns::<K>(), derivatives, to);
+                .first(self.scale, unknowns::<K>(self.element), derivatives, to);
             part.horizon += self.scale * v.form(plain, &v) / h;
         } else {
             let w = Rates::along(self.element, self.sample);

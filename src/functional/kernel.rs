@@ -29,7 +29,7 @@ pub trait Kernel: Debug + Send + Sync + 'static {
     /// Polynomial degree of E: derivatives above it vanish and are never asked for.
     const DEGREE: usize = usize::MAX;
 
-    /// Number of leading arguments that are virtual displacements: 0 for an energy; otherwise E is linear in them, and its scalars
+    /// Number of leading arguments of most elements that are virtual displacements: 0 for an energy; otherwise E is linear in them, and its scalars
     /// have no equations: they are inputs or parameters.
     const VIRTUAL: usize = 0;
 
@@ -50,6 +50,12 @@ pub trait Kernel: Debug + Send + Sync + 'static {
 
     /// Names of the two parts of its energy in reports, where it has parts.
     const PARTS: Option<[&'static str; 2]> = None;
+
+    /// Number of leading arguments of an element that are virtual displacements.
+    #[inline(always)]
+    fn virtuals(_: &Self::Element) -> usize {
+        Self::VIRTUAL
+    }
 
     /// Returns true if the arguments `i` and `j` have mixed second derivatives.
     fn couples(_i: usize, _j: usize) -> bool {

@@ -12,18 +12,20 @@
 //! (∂²W)˙ᵢⱼ = W‴ L_w uᵢ uⱼᵀ + W″ (u̇ᵢ uⱼᵀ + uᵢ u̇ⱼᵀ) + δᵢⱼ (W″ L_w Kᵢ + W′ K̇ᵢ).
 //! ```
 
-use crate::energy::Cable;
+use crate::energy::{Affine, Cable};
 use crate::functional::{Kernel, Order, Sample, Scatter, Stencil, VectorArg};
-use crate::math::{Derivatives, Matrix, Vector};
+use crate::math::{Derivatives, HyperDual, Matrix, Number, Vector};
 use std::cell::Cell;
 
-/// A path and the energy of its length.
+/// A path and the energy of its length, whose constants may follow from sought parameters.
 #[derive(Clone, Debug)]
 pub struct Path {
-    /// The energy.
-    pub energy: Cable,
+    /// Constants of the energy.
+    pub energy: Cable<Affine>,
     /// Vectors of the spans, one after the other.
     pub spans: Vec<usize>,
+    /// Parameters that the constants follow, scalars of the interval.
+    pub parameters: Vec<usize>,
 }
 
 /// The kind of elements that are paths: one argument a span, as many as a path has.
@@ -80,6 +82,33 @@ impl Span {
 }
 
 impl Path {
+    /// The energy, with seeds at one or two parameters where derivatives by them are asked for.
+    fn cable<T: Number>(&self, sample: &Sample<'_>, seeded: impl Fn(usize, f64) -> T) -> Cable<T> {
+        let at = |constant: &Affine| {
+            let mut sum = T::of(constant.value);
+            for &(place, factor) in &constant.slopes {
+                let value = sample.scalars[self.parameters[place]];
+                sum += seeded(place, value).scaled(factor);
+            }
+            sum
+        };
+        Cable {
+            stiffness: at(&self.energy.stiffness),
+            length: at(&self.energy.length),
+            smoothing: self.energy.smoothing,
+        }
+    }
+
+    /// Energy, tension, stiffness and its derivative with their derivatives by parameters `a` and `b`.
+    fn by(&self, sample: &Sample<'_>, length: f64, [a, b]: [usize; 2]) -> [HyperDual; 4] {
+        let seeded = |place, value| HyperDual {
+            a: f64::from(u8::from(place == a)),
+            b: f64::from(u8::from(place == b)),
+            ..HyperDual::of(value)
+        };
+        self.cable(sample, seeded).of_length(length)
+    }
+
     fn length(&self, sample: &Sample<'_>) -> f64 {
         let spans = self.spans.iter();
         spans.map(|&v| middle(v, sample.vectors).norm()).sum()
@@ -91,6 +120,8 @@ struct Taut<'a> {
     path: &'a Path,
     sample: &'a Sample<'a>,
     order: Order,
+    /// L.
+    length: f64,
     /// W′.
     tension: f64,
     /// W″.
@@ -106,6 +137,10 @@ struct Taut<'a> {
 impl Taut<'_> {
     fn span(&self, i: usize) -> Span {
         Span::new(self.path.spans[i], self.order, self.sample)
+    }
+
+    fn by(&self, parameters: [usize; 2]) -> [HyperDual; 4] {
+        self.path.by(self.sample, self.length, parameters)
     }
 
     fn row_span(&self, i: usize) -> Span {
@@ -129,6 +164,18 @@ impl Derivatives for Taut<'_> {
         }
         block
     }
+
+    fn row(&self, s: usize) -> f64 {
+        self.by([s; 2])[0].a
+    }
+
+    fn column(&self, i: usize, s: usize) -> Vector {
+        self.row_span(i).direction * self.by([s; 2])[1].a
+    }
+
+    fn entry(&self, s: usize, t: usize) -> f64 {
+        self.by([s, t])[0].ab
+    }
 }
 
 /// Rates of the derivatives of a taut path along the direction.
@@ -151,6 +198,19 @@ impl Derivatives for Rates<'_> {
         }
         rate
     }
+
+    fn row(&self, s: usize) -> f64 {
+        self.0.by([s; 2])[1].a * self.0.stretch
+    }
+
+    fn column(&self, i: usize, s: usize) -> Vector {
+        let (path, a, by) = (self.0, self.0.row_span(i), self.0.by([s; 2]));
+        a.direction * (by[2].a * path.stretch) + a.turn * by[1].a
+    }
+
+    fn entry(&self, s: usize, t: usize) -> f64 {
+        self.0.by([s, t])[1].ab * self.0.stretch
+    }
 }
 
 impl Kernel for Paths {
@@ -161,8 +221,8 @@ impl Kernel for Paths {
         path.spans.len()
     }
 
-    fn scalars(_: &Path) -> usize {
-        0
+    fn scalars(path: &Path) -> usize {
+        path.parameters.len()
     }
 
     fn vector(path: &Path, i: usize) -> VectorArg {
@@ -172,12 +232,13 @@ impl Kernel for Paths {
         }
     }
 
-    fn scalar(_: &Path, _s: usize) -> Option<(usize, f64)> {
-        None
+    fn scalar(path: &Path, s: usize) -> Option<(usize, f64)> {
+        Some((path.parameters[s], 1.0))
     }
 
     fn energy(path: &Path, sample: &Sample<'_>) -> f64 {
-        path.energy.of_length(path.length(sample))[0]
+        let cable = path.cable(sample, |_, value| value);
+        cable.of_length(path.length(sample))[0]
     }
 
     fn derivatives<S: Scatter>(
@@ -187,7 +248,9 @@ impl Kernel for Paths {
         (): &(),
         to: &mut S,
     ) {
-        let [_, tension, stiffness, stiffening] = path.energy.of_length(path.length(sample));
+        let length = path.length(sample);
+        let cable = path.cable(sample, |_, value| value);
+        let [_, tension, stiffness, stiffening] = cable.of_length(length);
         if tension == 0.0 {
             return;
         }
@@ -195,6 +258,7 @@ impl Kernel for Paths {
             path,
             sample,
             order,
+            length,
             tension,
             stiffness,
             stiffening,

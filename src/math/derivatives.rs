@@ -1,92 +1,92 @@
 //! Derivatives of one element, read block by block, whatever its arity.
 
-use crate::math::{Jet, Matrix, Vector};
-use nalgebra::{SMatrix, SVector};
+use crate::math::{Jet, Number};
+use nalgebra::{Matrix3, SMatrix, SVector, Vector3};
 
 /// First and second derivatives of a scalar E of one element by its arguments: vectors x_i, then scalars s.
 ///
 /// Units are those of E, mJ for an energy, over mm for a vector, mm/ms for a rate, and the unit of a scalar (V for voltages and
 /// potentials). What nobody asks for need not exist: after a gradient nobody asks for blocks, and of a pair of arguments that
 /// does not couple neither. What belongs to scalars is zero for elements without any.
-pub trait Derivatives {
+pub trait Derivatives<T: Number = f64> {
     /// ∂E/∂x_i.
-    fn force(&self, i: usize) -> Vector;
+    fn force(&self, i: usize) -> Vector3<T>;
 
     /// ∂E/∂s.
-    fn row(&self, _s: usize) -> f64 {
-        0.0
+    fn row(&self, _s: usize) -> T {
+        T::zero()
     }
 
     /// ∂²E/∂x_i∂x_j; rows belong to i.
-    fn block(&self, i: usize, j: usize) -> Matrix;
+    fn block(&self, i: usize, j: usize) -> Matrix3<T>;
 
     /// ∂²E/∂x_i∂s.
-    fn column(&self, _i: usize, _s: usize) -> Vector {
-        Vector::zeros()
+    fn column(&self, _i: usize, _s: usize) -> Vector3<T> {
+        Vector3::zeros()
     }
 
     /// ∂²E/∂s∂t.
-    fn entry(&self, _s: usize, _t: usize) -> f64 {
-        0.0
+    fn entry(&self, _s: usize, _t: usize) -> T {
+        T::zero()
     }
 }
 
 /// A scalar of vectors and scalars at a point, with its derivatives along a direction.
-pub trait Local {
+pub trait Local<T: Number = f64> {
     /// Its value.
-    fn value(&self) -> f64;
+    fn value(&self) -> T;
 
     /// Its derivatives, by `NV` vectors first.
-    fn plain<const NV: usize>(&self) -> impl Derivatives;
+    fn plain<const NV: usize>(&self) -> impl Derivatives<T>;
 
     /// The rates of its derivatives along the direction. Nobody asks for those of a virtual work: at δx = w it is the contraction
     /// itself.
-    fn along<const NV: usize>(&self) -> impl Derivatives;
+    fn along<const NV: usize>(&self) -> impl Derivatives<T>;
 }
 
 /// Gradient and Hessian by M arguments, NV vectors first.
-struct OfJet<'a, const M: usize, const NV: usize>(&'a SVector<f64, M>, &'a SMatrix<f64, M, M>);
+struct OfJet<'a, T, const M: usize, const NV: usize>(&'a SVector<T, M>, &'a SMatrix<T, M, M>);
 
-impl<const M: usize, const NV: usize> Derivatives for OfJet<'_, M, NV> {
+impl<T: Number, const M: usize, const NV: usize> Derivatives<T> for OfJet<'_, T, M, NV> {
     #[inline(always)]
-    fn force(&self, i: usize) -> Vector {
+    fn force(&self, i: usize) -> Vector3<T> {
         self.0.fixed_rows::<3>(3 * i).into()
     }
 
     #[inline(always)]
-    fn row(&self, s: usize) -> f64 {
+    fn row(&self, s: usize) -> T {
         self.0[3 * NV + s]
     }
 
     #[inline(always)]
-    fn block(&self, i: usize, j: usize) -> Matrix {
+    fn block(&self, i: usize, j: usize) -> Matrix3<T> {
         self.1.fixed_view::<3, 3>(3 * i, 3 * j).into()
     }
 
     #[inline(always)]
-    fn column(&self, i: usize, s: usize) -> Vector {
+    fn column(&self, i: usize, s: usize) -> Vector3<T> {
         self.1.fixed_view::<3, 1>(3 * i, 3 * NV + s).into()
     }
 
     #[inline(always)]
-    fn entry(&self, s: usize, t: usize) -> f64 {
+    fn entry(&self, s: usize, t: usize) -> T {
         self.1[(3 * NV + s, 3 * NV + t)]
     }
 }
 
-impl<const M: usize, const ORDER: usize> Local for Jet<M, ORDER> {
+impl<T: Number, const M: usize, const ORDER: usize> Local<T> for Jet<M, ORDER, T> {
     #[inline(always)]
-    fn value(&self) -> f64 {
+    fn value(&self) -> T {
         self.value
     }
 
     #[inline(always)]
-    fn plain<const NV: usize>(&self) -> impl Derivatives {
-        OfJet::<M, NV>(&self.gradient, &self.hessian)
+    fn plain<const NV: usize>(&self) -> impl Derivatives<T> {
+        OfJet::<T, M, NV>(&self.gradient, &self.hessian)
     }
 
     #[inline(always)]
-    fn along<const NV: usize>(&self) -> impl Derivatives {
-        OfJet::<M, NV>(&self.gradient_w, &self.hessian_w)
+    fn along<const NV: usize>(&self) -> impl Derivatives<T> {
+        OfJet::<T, M, NV>(&self.gradient_w, &self.hessian_w)
     }
 }

@@ -7,6 +7,7 @@ mod digits;
 mod jet;
 mod join;
 pub(crate) mod memory;
+mod number;
 mod pool;
 mod random;
 mod sets;
@@ -19,6 +20,7 @@ pub use digits::{no_smaller, shortest, significant};
 pub use jet::Jet;
 pub use join::cores;
 pub(crate) use join::join_if;
+pub use number::{HyperDual, Number};
 pub(crate) use pool::has_pool;
 #[cfg(feature = "report")]
 pub(crate) use pool::join;

@@ -1,6 +1,6 @@
 //! The analysis of a system, as far as it decides which terms the model needs.
 
-use crate::model::constant::Parameter;
+use crate::model::constant::{Constant, Parameter};
 use crate::model::maxwell::Response;
 use crate::model::quantity::Quantity;
 use std::collections::BTreeSet;
@@ -65,6 +65,12 @@ pub struct InitiallyMoving {
 }
 
 impl Analysis {
+    /// Returns true if a constant of some kind is sought.
+    pub(super) fn is_sought(&self, is_meant: impl Fn(Constant) -> bool) -> bool {
+        let mut constants = self.parameters.iter().flat_map(|p| &p.constants);
+        constants.any(|follower| is_meant(follower.constant))
+    }
+
     /// The motion in intervals of about `interval` ms, of which nothing is known: any voltage may act, anything may move.
     pub fn of_motion(interval: f64) -> Self {
         Self {

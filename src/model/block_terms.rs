@@ -1,13 +1,15 @@
 //! Terms of elastic blocks: elements by kind, masses, weights.
 
-use crate::element::{ElementLaw, MaxwellSpring, Viscosity};
-use crate::energy::{MaxwellDamper, NeoHooke};
+use crate::element::{Elastomer, ElementLaw, MaxwellSpring, Viscosity};
+use crate::energy::{Affine, MaxwellDamper, NeoHooke};
 use crate::functional::{Element, FiniteElement, Mass, MaxwellElement, POINTS, ViscousElement};
 use crate::kinematics::MaterialVector;
+use crate::model::constant::MaterialConstant;
 use crate::model::internal::Internals;
 use crate::model::maxwell::MaxwellBranch;
 use crate::model::solid_block::SolidBlock;
 use crate::model::solids::Solids;
+use crate::model::sought::Read;
 use crate::model::terms::{Terms, UNRELAXED, mid, rate};
 use std::collections::BTreeMap;
 
@@ -84,6 +86,7 @@ impl Solids {
     fn add_elements(&self, terms: &mut Terms<'_>) {
         for (c, e) in self.elements() {
             match c.isochoric(e) {
+                None if is_sought(c, e, terms) => add_sought_element(c, e, terms),
                 None => add_element(c, e, (NeoHooke, [ELASTICITY, ELECTROELASTICITY]), terms),
                 Some(law) => {
                     add_element(c, e, (law, GENERAL), terms);
@@ -112,12 +115,18 @@ impl Solids {
                 terms.without(VISCOSITY, "a state of rest dissipates nothing");
                 continue;
             }
-            let element = ViscousElement {
+            let element = |viscosity| ViscousElement {
                 shape: c.shapes[e].clone(),
                 law: Viscosity { viscosity },
                 nodes: c.nodes(e),
             };
-            terms.collect(VISCOSITY, "viscosity of", &c.solid.name, element);
+            let mut read = terms.sought().read();
+            let factor = read.constant(c.constant(e, MaterialConstant::Viscosity), viscosity);
+            let (why, name) = ("viscosity of", &c.solid.name);
+            match read.is_empty() {
+                true => terms.collect(VISCOSITY, why, name, element(viscosity)),
+                false => terms.add_scaled(VISCOSITY, why, name, (element(1.0), factor, read)),
+            }
         }
     }
 
@@ -245,5 +254,90 @@ fn add_element<L: ElementLaw>(
             terms.collect(electroelasticity, "elements in a field of", name, element);
             terms.without(elasticity, "a field reaches every element");
         }
+    }
+}
+
+/// Returns true if a constant of the elastic or electric energy of an element is sought.
+fn is_sought(c: &SolidBlock, e: usize, terms: &Terms<'_>) -> bool {
+    let sought = |constant: &MaterialConstant| terms.sought().is_sought(c.constant(e, *constant));
+    OF_ENERGY.iter().any(sought)
+}
+
+/// Constants of the energy of a neo-Hookean element, in all of which it is linear.
+const OF_ENERGY: [MaterialConstant; 5] = [
+    MaterialConstant::ShearModulus,
+    MaterialConstant::LameLambda,
+    MaterialConstant::C1,
+    MaterialConstant::C2,
+    MaterialConstant::Permittivity,
+];
+
+/// A neo-Hookean element some of whose constants are sought: the elements of one of these each times the constant, and one of the others.
+fn add_sought_element(c: &SolidBlock, e: usize, terms: &mut Terms<'_>) {
+    let is_charged = c.is_dielectric[e];
+    let given = match is_charged {
+        true => c.dielectric(e).constants(),
+        false => {
+            let law = c.passive(e);
+            [law.shear_modulus, law.lame_lambda, 0.0, 0.0, 0.0]
+        }
+    };
+    let mut rest = given;
+    for (i, constant) in OF_ENERGY.into_iter().enumerate() {
+        let mut read = terms.sought().read();
+        let factor = read.constant(c.constant(e, constant), given[i]);
+        if read.is_empty() || (i >= 2 && !is_charged) {
+            continue;
+        }
+        rest[i] = 0.0;
+        let mut unit = [0.0; 5];
+        unit[i] = 1.0;
+        add_part(c, e, (unit, Some((factor, read))), terms);
+    }
+    if rest != [0.0; 5] {
+        add_part(c, e, (rest, None), terms);
+    }
+}
+
+/// An element of these constants, times one that is sought.
+fn add_part(
+    c: &SolidBlock,
+    e: usize,
+    (constants, sought): ([f64; 5], Option<(Affine, Read)>),
+    terms: &mut Terms<'_>,
+) {
+    let (shape, nodes) = (c.shapes[e].clone(), c.nodes(e));
+    let name = &c.solid.name;
+    if c.is_dielectric[e] {
+        let element = FiniteElement {
+            shape,
+            law: c.dielectric(e).with_constants(constants),
+            nodes,
+            terminals: c.terminals(e),
+        };
+        let why = "elements in a field of";
+        match sought {
+            None => terms.collect(ELECTROELASTICITY, why, name, element),
+            Some((factor, read)) => {
+                terms.add_scaled(ELECTROELASTICITY, why, name, (element, factor, read));
+            }
+        }
+        return;
+    }
+    let law = Elastomer {
+        shear_modulus: constants[0],
+        lame_lambda: constants[1],
+        ..c.passive(e)
+    };
+    let element = FiniteElement {
+        shape,
+        law,
+        nodes,
+        terminals: (),
+    };
+    let why = "elements without a field of";
+    match sought {
+        None => terms.collect(ELASTICITY, why, name, element),
+        Some((factor, read)) => terms.add_scaled(ELASTICITY, why, name, (element, factor, read)),
     }
 }

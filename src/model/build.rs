@@ -276,6 +276,7 @@ impl Construction<'_> {
         );
         let mut terms = Terms::new(self.carriers(), gravity, called, variables, vectors);
         body::build(&self.presolved.system.bodies, self.reference, &mut terms);
+        body::build_sought(&system.bodies, &mut terms);
         muscle::build(&system.muscles, spans, self.internals, &mut terms);
         circuit::build(&system.muscles, spans, self.internals, &mut terms);
         electrode_circuit::build(&self.blocks.circuits, self.internals, &mut terms);
@@ -286,7 +287,7 @@ impl Construction<'_> {
         };
         terms.without(plan::GRAVITY, no_weight);
         dampers::build(self.presolved, self.reference, self.coordinates, &mut terms);
-        joint_springs::build(&self.presolved.system, self.internals, &mut terms);
+        joint_springs::build(self.presolved, self.internals, &mut terms);
         loads::build(
             system,
             (self.presolved, self.internals, self.blocks),

@@ -1,23 +1,44 @@
 //! Constants of components that may be sought, and parameters that they follow.
 
-/// Law by which a relative permittivity enters the energy.
+/// Part of a system that is made of a material.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum DielectricLaw {
-    /// As in [`first_order`](crate::model::system::ElectricConstants::first_order).
-    FirstOrder,
-    /// As in [`ideal`](crate::model::system::ElectricConstants::ideal).
-    Ideal,
+pub enum MaterialOf {
+    /// A muscle, by its index.
+    Muscle(usize),
+    /// A material of a block, by the index of the block and its own in the list of the block.
+    Block(usize, usize),
+}
+
+/// A constant of a material.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum MaterialConstant {
+    /// Density in g/mm³.
+    Density,
+    /// Shear modulus in MPa.
+    ShearModulus,
+    /// First Lamé constant in MPa, which finite elements read.
+    LameLambda,
+    /// Constant c₁ of the electric energy in N/V².
+    C1,
+    /// Constant c₂ of the electric energy in N/V².
+    C2,
+    /// Permittivity ε of the electric energy in N/V².
+    Permittivity,
+    /// Viscosity in MPa ms.
+    Viscosity,
+    /// A constant of the law of elasticity other than the neo-Hookean one, by its name in files.
+    Law(&'static str),
+    /// Shear modulus of a Maxwell branch in MPa.
+    BranchModulus(usize),
+    /// Relaxation time of a Maxwell branch in ms.
+    RelaxationTime(usize),
 }
 
 /// A constant of a component, by the index of the component in the system.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Constant {
-    /// Shear modulus of a muscle in MPa.
-    ShearModulus(usize),
-    /// Relative permittivity of a muscle.
-    Permittivity(usize, DielectricLaw),
-    /// Viscosity of a muscle in MPa ms.
-    Viscosity(usize),
+    /// A constant of a material.
+    Material(MaterialOf, MaterialConstant),
     /// A side, 0 or 1, of the cross-section of a muscle in mm.
     Side(usize, usize),
     /// Thickness of a layer of a muscle in mm.
@@ -30,8 +51,24 @@ pub enum Constant {
     SpringDamping(usize),
     /// Length of a spring without force in mm.
     SpringLength(usize),
+    /// A component of the place of an end of a spring in mm, as of a muscle.
+    SpringEnd(usize, usize, usize),
+    /// Stiffness of a tendon in N/mm.
+    TendonStiffness(usize),
+    /// Length in mm up to which a tendon is slack.
+    TendonLength(usize),
     /// Damping of a joint in N mm ms or N ms/mm.
     JointDamping(usize),
+    /// Stiffness of a joint in N mm/rad or N/mm.
+    JointStiffness(usize),
+    /// Coordinate of a joint without force of its spring in rad or mm.
+    JointRest(usize),
+    /// Mass of a body in g.
+    Mass(usize),
+    /// A principal moment of inertia, 0 to 2, of a body in g mm².
+    Inertia(usize, usize),
+    /// A component, 0 to 2, of gravity in mm/ms².
+    Gravity(usize),
     /// No constant of a component: the largest voltage in V of sources that are sought, which quantities read.
     PeakVoltage,
 }
@@ -82,16 +119,23 @@ pub struct Parameter {
     pub guess: f64,
 }
 
-/// Most parameters that move the ends of one muscle.
-pub const MOST_MOVES: usize = 2;
+impl MaterialConstant {
+    /// The constant of a muscle.
+    pub fn of_muscle(self, muscle: usize) -> Constant {
+        Constant::Material(MaterialOf::Muscle(muscle), self)
+    }
+
+    /// The constant of a material of a block.
+    pub fn of_block(self, block: usize, material: usize) -> Constant {
+        Constant::Material(MaterialOf::Block(block, material), self)
+    }
+}
 
 impl Constant {
     /// The muscle that it is of.
     pub fn muscle(self) -> Option<usize> {
         match self {
-            Self::ShearModulus(m)
-            | Self::Permittivity(m, _)
-            | Self::Viscosity(m)
+            Self::Material(MaterialOf::Muscle(m), _)
             | Self::Side(m, _)
             | Self::Layer(m)
             | Self::End(m, ..) => Some(m),
@@ -106,7 +150,17 @@ impl Constant {
 
     /// Returns true if it must be positive to have a meaning.
     pub fn is_positive(self) -> bool {
-        !matches!(self, Self::End(..) | Self::PeakVoltage)
+        use MaterialConstant::{C1, C2, LameLambda, Law, Permittivity};
+        !matches!(
+            self,
+            Self::End(..)
+                | Self::SpringEnd(..)
+                | Self::JointRest(_)
+                | Self::Inertia(..)
+                | Self::Gravity(_)
+                | Self::PeakVoltage
+                | Self::Material(_, Law(_) | LameLambda | C1 | C2 | Permittivity)
+        )
     }
 }
 
@@ -116,12 +170,6 @@ impl Parameter {
         let sizes = [self.guess.abs(), self.upper - self.lower];
         let found = sizes.into_iter().find(|s| *s > 0.0 && s.is_finite());
         found.unwrap_or(1.0)
-    }
-
-    /// Returns true if it moves an end of a muscle.
-    pub fn moves(&self, muscle: usize) -> bool {
-        let is_end = |c: Constant| matches!(c, Constant::End(m, ..) if m == muscle);
-        self.constants.iter().any(|c| is_end(c.constant))
     }
 }
 

@@ -1,10 +1,11 @@
 //! Terms of joint dampers: on the coordinate of the joint where it is one, on vectors of its bodies otherwise.
 
-use crate::energy::{AngularDamper, CoordinateDamper, Energy, LinearDamper, SoughtDamper};
-use crate::functional::{Element, VectorArg};
+use crate::energy::{Affine, AngularDamper, CoordinateDamper, LinearDamper};
+use crate::functional::{Law, VectorArg};
 use crate::kinematics::{MaterialVector, Pose};
+use crate::math::Number;
 use crate::model::analysis::Coordinates;
-use crate::model::constant::{Constant, Follower};
+use crate::model::constant::Constant;
 use crate::model::joints::{JointCoordinate, JointReading};
 use crate::model::presolved::Presolved;
 use crate::model::system::Joint;
@@ -31,8 +32,8 @@ pub(super) fn build(
         };
         let damper = Damper {
             joint,
+            index,
             coefficient,
-            sought: terms.sought().find(Constant::JointDamping(index)),
         };
         match (coordinates, coordinate) {
             (Coordinates::Reduced, Some(coordinate)) => damper.on_coordinate(coordinate, terms),
@@ -43,46 +44,56 @@ pub(super) fn build(
     terms.without(DAMPING, "no joint that moves names a damping");
 }
 
+/// Laws of dampers: formulas of one coefficient.
+macro_rules! laws {
+    ($($law:ident: $formula:ident of $arguments:literal;)*) => { $(
+        #[derive(Clone)]
+        struct $law(Affine);
+
+        impl Law<$arguments> for $law {
+            type Formula<T: Number> = $formula<T>;
+
+            fn formula<T: Number>(&self, parameters: &[T]) -> $formula<T> {
+                $formula {
+                    coefficient: self.0.at(parameters),
+                }
+            }
+        }
+    )* };
+}
+
+laws! {
+    OnCoordinate: CoordinateDamper of 6;
+    OnAngle: AngularDamper of 27;
+    OnDisplacement: LinearDamper of 18;
+}
+
 /// The damper of a joint.
 struct Damper<'a> {
     joint: &'a Joint,
+    /// Index of the joint in the scene.
+    index: usize,
     coefficient: f64,
-    /// The parameter that the coefficient is, where it is sought.
-    sought: Option<(usize, Follower)>,
 }
 
 impl Damper<'_> {
-    /// Adds the term of a formula with a coefficient.
-    fn add<E, const M: usize, const WITH: usize, const NV: usize>(
+    /// Adds the term of a law of the coefficient.
+    fn add<L: Law<M>, const M: usize, const NV: usize>(
         &self,
-        of_coefficient: impl Fn(f64) -> E,
+        law: fn(Affine) -> L,
         vectors: [VectorArg; NV],
         terms: &mut Terms<'_>,
-    ) where
-        E: Energy<M> + 'static,
-        SoughtDamper<E>: Energy<WITH> + 'static,
-    {
-        let (why, name) = ("damping of", &self.joint.name);
-        let Some((parameter, follower)) = self.sought else {
-            let element = Element {
-                energy: of_coefficient(self.coefficient),
-                vectors,
-                scalars: [],
-            };
-            return terms.add::<E, M, NV, 0>(DAMPING, why, name, element);
-        };
-        let element = Element {
-            energy: SoughtDamper(of_coefficient(follower.factor)),
-            vectors,
-            scalars: [terms.sought().scalar(parameter)],
-        };
-        terms.add::<SoughtDamper<E>, WITH, NV, 1>(DAMPING, why, name, element);
+    ) {
+        let mut read = terms.sought().read();
+        let constant = Constant::JointDamping(self.index);
+        let law = law(read.constant(constant, self.coefficient));
+        let element = read.element(law, vectors, []);
+        terms.add_law((DAMPING, "damping of"), &self.joint.name, element);
     }
 
     fn on_coordinate(&self, coordinate: usize, terms: &mut Terms<'_>) {
         let vector = terms.vector(MaterialVector::coordinate(coordinate));
-        let damper = |coefficient| CoordinateDamper { coefficient };
-        self.add::<_, 6, 7, 2>(damper, [mid(vector), rate(vector)], terms);
+        self.add(OnCoordinate, [mid(vector), rate(vector)], terms);
     }
 
     fn on_vectors(&self, reference: &[Pose], terms: &mut Terms<'_>) {
@@ -100,14 +111,12 @@ impl Damper<'_> {
                     rate(b),
                     rate(x),
                 ];
-                let damper = |coefficient| AngularDamper { coefficient };
-                self.add::<_, 27, 28, 9>(damper, vectors, terms);
+                self.add(OnAngle, vectors, terms);
             }
             JointCoordinate::Displacement { axis, span } => {
                 let [n, r] = [axis, span].map(|v| terms.vector(v));
                 let vectors = [mid(n), mid(r), mid(n), mid(r), rate(n), rate(r)];
-                let damper = |coefficient| LinearDamper { coefficient };
-                self.add::<_, 18, 19, 6>(damper, vectors, terms);
+                self.add(OnDisplacement, vectors, terms);
             }
             JointCoordinate::None => {}
         }

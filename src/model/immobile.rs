@@ -111,8 +111,7 @@ impl Parts {
         let weighs = system.gravity.is_some();
         let mut moved: Vec<usize> = Vec::new();
         for (index, component) in system.components.iter().enumerate() {
-            // Springs come first.
-            if component.is_prestressed() || is_sought(index, analysis) {
+            if component.is_prestressed() || is_sought_length(system, index, analysis) {
                 moved.extend(bodies_of(component));
             }
         }
@@ -124,7 +123,11 @@ impl Parts {
                 }
             }
         }
-        let loaded = system.joints.iter().filter(|joint| joint.moves_by_itself());
+        let loaded = system.joints.iter().enumerate().filter(|(j, joint)| {
+            let rest = Constant::JointRest(*j);
+            joint.moves_by_itself() || analysis.is_sought(|constant| constant == rest)
+        });
+        let loaded = loaded.map(|(_, joint)| joint);
         moved.extend(loaded.flat_map(|joint| joint.parent.into_iter().chain([joint.child])));
         moved.extend((0..self.bodies).filter(|b| weighs || initially_moving.bodies.contains(b)));
         for (s, solid) in system.solids.iter().enumerate() {
@@ -155,8 +158,12 @@ fn bodies_of(component: &dyn Component) -> Vec<usize> {
     points.iter().filter_map(|point| point.body).collect()
 }
 
-/// Returns true if the length of a spring is a free parameter.
-fn is_sought(spring: usize, analysis: &Analysis) -> bool {
-    let mut constants = analysis.parameters.iter().flat_map(|p| &p.constants);
-    constants.any(|c| c.constant == Constant::SpringLength(spring))
+/// Returns true if the length without force of a component, or that between its ends, is a free parameter; springs come before tendons.
+fn is_sought_length(system: &System, component: usize, analysis: &Analysis) -> bool {
+    let springs = system.components.springs.len();
+    analysis.is_sought(|constant| match constant {
+        Constant::SpringLength(s) | Constant::SpringEnd(s, ..) => s == component,
+        Constant::TendonLength(t) => springs + t == component,
+        _ => false,
+    })
 }

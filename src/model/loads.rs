@@ -1,15 +1,16 @@
 //! Terms of loads: forces on points of bodies, on coordinates of joints and on nodes of blocks, charges on nodes.
 
-use crate::energy::{Capacitance, DeadLoad, FollowingForce, GivenCharge, SurfaceCharge};
+use crate::energy::{DeadLoad, FollowingForce, SurfaceCharge};
 use crate::functional::{Element, PressureFace};
 use crate::math::Vector;
-use crate::model::components::muscle::CHARGES as MUSCLE_CHARGES;
-use crate::model::components::{BlockLoad, Load, LoadPlace, capacitance};
+use crate::model::components::muscle::{CHARGES as MUSCLE_CHARGES, constants};
+use crate::model::components::muscle_laws::Given;
+use crate::model::components::{BlockLoad, Load, LoadPlace};
 use crate::model::internal::Internals;
 use crate::model::presolved::Presolved;
 use crate::model::solid_block::SolidBlock;
 use crate::model::solids::Solids;
-use crate::model::system::System;
+use crate::model::system::{Muscle, System};
 use crate::model::terms::{Terms, mid};
 
 /// Term of the loads whose forces have a potential.
@@ -72,8 +73,7 @@ pub(super) fn build(
                 on.pull(coordinate, Vector::x());
             }
             LoadPlace::Muscle(muscle) => {
-                let capacitance = capacitance(&system.muscles[*muscle]);
-                on.charge_muscle(capacitance.expect("a charged muscle"), spans[*muscle]);
+                on.charge_muscle((&system.muscles[*muscle], *muscle), spans[*muscle]);
             }
             LoadPlace::Block { block, load } => on.block(&blocks.list[*block], load),
         }
@@ -120,14 +120,13 @@ impl Loaded<'_, '_> {
     }
 
     /// A charge on the electrodes of a muscle.
-    fn charge_muscle(&mut self, capacitance: Capacitance, span: usize) {
-        let element = Element {
-            energy: GivenCharge { capacitance },
-            vectors: [mid(span)],
-            scalars: [self.size],
-        };
-        self.terms
-            .add::<_, 4, 1, 1>(MUSCLE_CHARGES, "the charge of", self.name, element);
+    fn charge_muscle(&mut self, muscle: (&Muscle, usize), span: usize) {
+        let mut constants = constants(muscle, self.terms);
+        if let Some(capacitance) = constants.capacitance() {
+            let element = constants.element(Given(capacitance), [mid(span)], [self.size]);
+            let term = (MUSCLE_CHARGES, "the charge of");
+            self.terms.add_law(term, self.name, element);
+        }
     }
 
     /// A load of a block.

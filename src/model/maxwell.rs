@@ -35,6 +35,11 @@ impl MaxwellBranches {
         Some(all)
     }
 
+    /// A branch, to change it.
+    pub fn get_mut(&mut self, branch: usize) -> Option<&mut MaxwellBranch> {
+        self.list[..self.count].get_mut(branch)
+    }
+
     /// All of them.
     pub fn list(&self) -> &[MaxwellBranch] {
         &self.list[..self.count]

@@ -14,6 +14,7 @@ mod circuit;
 mod component;
 pub mod components;
 mod constant;
+mod constant_places;
 mod constraints;
 mod cost_quantities;
 mod dampers;
@@ -40,6 +41,7 @@ mod material;
 mod material_check;
 mod maxwell;
 mod measures;
+mod members;
 #[expect(clippy::module_inception, reason = "the file of the type of that name")]
 mod model;
 mod muscle_state;
@@ -65,12 +67,13 @@ pub mod term_order;
 mod terms;
 mod unknown_positions;
 mod variables;
+mod weight;
 
 pub use analysis::{Analysis, Coordinates, InitiallyMoving};
 pub use check::{NO_CHARGE, NO_MUSCLE_CHARGE};
 pub use component::Component;
 pub use constant::{
-    Constant, DielectricLaw, Follower, FoundParameter, MOST_MOVES, Parameter, SiUnit,
+    Constant, Follower, FoundParameter, MaterialConstant, MaterialOf, Parameter, SiUnit,
 };
 pub use cost_quantities::MILLIAMPERE;
 pub use dampers::DAMPING as JOINT_DAMPING;
@@ -90,7 +93,7 @@ pub use plan::{LeftOut, Present};
 pub use presolved::{BodyLocation, Presolved};
 pub use quantity::{FieldPlace, Quantity, Reaction, Region, joint_unit};
 pub use solid_block::SolidBlock;
-pub use sought::{Arguments, Sought};
+pub use sought::{Read, Sought};
 pub use system::{System, VACUUM_PERMITTIVITY};
 pub use system_error::SystemError;
 pub use terms::{Terms, mid, rate};

@@ -6,6 +6,7 @@ use crate::element::{
 use crate::energy::NeoHooke;
 use crate::functional::ScalarArg;
 use crate::math::{Matrix, Vector};
+use crate::model::constant::{Constant, MaterialConstant};
 use crate::model::system::{ElectricConstants, Electrode, ElementKind, Material, Potential, Solid};
 use std::collections::BTreeMap;
 
@@ -18,8 +19,8 @@ pub struct SolidBlock {
     pub vectors: Vec<usize>,
     /// Terminal of each node of the mesh; `None` where there is no potential.
     pub terminals: Vec<Option<ScalarArg>>,
-    /// True if it is a muscle, whose electrodes are one.
-    pub of_muscle: bool,
+    /// Part of the scene that it is.
+    pub owner: Owner,
     /// Geometry of each element.
     pub shapes: Vec<ElementGeometry>,
     /// For each element, true if a field reaches it.
@@ -28,7 +29,29 @@ pub struct SolidBlock {
     pub is_immobile: bool,
 }
 
+/// Part of a scene that a block is.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Owner {
+    /// A block, by its index.
+    Block(usize),
+    /// A muscle, by its index, whose electrodes are one.
+    Muscle(usize),
+}
+
 impl SolidBlock {
+    /// Returns true if it is a muscle, whose electrodes are one.
+    pub fn is_muscle(&self) -> bool {
+        matches!(self.owner, Owner::Muscle(_))
+    }
+
+    /// A constant of the material of an element.
+    pub(super) fn constant(&self, element: usize, constant: MaterialConstant) -> Constant {
+        match self.owner {
+            Owner::Block(block) => constant.of_block(block, self.solid.mesh.regions[element]),
+            Owner::Muscle(muscle) => constant.of_muscle(muscle),
+        }
+    }
+
     /// The material of an element.
     pub fn material(&self, element: usize) -> &Material {
         &self.solid.materials[self.solid.mesh.regions[element]]
@@ -179,7 +202,7 @@ impl SolidBlock {
     }
 
     fn is_immobile(&self, electrode: &Electrode) -> bool {
-        !self.of_muscle && !matches!(electrode.potential, Potential::Driven { .. })
+        !self.is_muscle() && !matches!(electrode.potential, Potential::Driven { .. })
     }
 
     /// Charges −∂W/∂φ in mC of the electrodes that no voltage drives, with the nodes at vectors x.

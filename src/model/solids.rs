@@ -11,8 +11,8 @@ use crate::model::analysis::Analysis;
 use crate::model::electrode_circuits::ElectrodeCircuit;
 use crate::model::error::ModelError;
 use crate::model::field_extent;
-use crate::model::solid_block::SolidBlock;
-use crate::model::system::{Glue, Material, Potential, Solid, System};
+use crate::model::solid_block::{Owner, SolidBlock};
+use crate::model::system::{Fidelity, Glue, Material, Potential, Solid, System};
 use crate::model::variables::{Variable, Variables};
 use std::collections::{BTreeMap, BTreeSet, HashMap};
 
@@ -71,7 +71,11 @@ impl Solids {
     ) -> Result<Self, ModelError> {
         let (mut out, unit) = (Self::default(), unit(&solids));
         let scene = circuits.scene.solids.len();
-        for (index, solid) in solids.into_iter().enumerate() {
+        let muscles = circuits.scene.muscles.iter().enumerate();
+        let meshed = muscles.filter(|(_, muscle)| muscle.fidelity != Fidelity::Lumped);
+        let of_scene = (0..scene).map(Owner::Block);
+        let owners = of_scene.chain(meshed.map(|(m, _)| Owner::Muscle(m)));
+        for ((index, solid), owner) in solids.into_iter().enumerate().zip(owners) {
             let shapes = shapes(&solid)?;
             let places = out.places(index, &solid, reference, ties, vectors);
             let is_dielectric = field_extent::dielectric(&solid, &charged(index));
@@ -96,7 +100,7 @@ impl Solids {
             out.list.push(SolidBlock {
                 solid,
                 vectors: places,
-                of_muscle: index >= scene,
+                owner,
                 terminals,
                 shapes,
                 is_dielectric,

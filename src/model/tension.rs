@@ -1,12 +1,13 @@
 //! Measure of the tension of a lumped muscle: the sum of the forces of all its energies along its span, and of its viscosity.
 
-use crate::energy::{Elasticity, Energy, FlowingCharge, GivenCharge, NeoHooke, ViscousTension};
+use crate::energy::{Energy, FlowingCharge, GivenCharge, NeoHooke, ViscousTension};
 use crate::functional::{
-    CurvedSum, Element, Formulas, Group, Kernel, Measure, SpanForces, Stencil, Sum, VectorArg,
+    CurvedSum, Element, Formulas, Group, Kernel, Law, Measure, SpanForces, Stencil, Sum, VectorArg,
 };
 use crate::kinematics::Vectors;
 use crate::model::components::capacitance;
-use crate::model::components::muscle::{branch_cell, dielectric, elastic, viscous_cell};
+use crate::model::components::muscle_constants::MuscleConstants;
+use crate::model::components::muscle_laws::ElasticConstants;
 use crate::model::internal::InternalKind;
 use crate::model::measures::{Known, Shape};
 use crate::model::system::{Fidelity, Muscle};
@@ -38,17 +39,19 @@ impl Parts {
     }
 
     /// Adds the force of elasticity, with that of a voltage, by a law of elasticity.
-    fn add_cell<L: Elasticity>(
+    fn add_cell<L: ElasticConstants>(
         &mut self,
         (muscle, law): (&Muscle, L),
         span: usize,
         voltage: Option<usize>,
     ) {
+        let mut of = MuscleConstants::given(muscle);
         match (muscle.material.electric, voltage) {
             (Some(electric), Some(voltage)) => {
-                self.add_energy(dielectric(muscle, electric, law), [span], [voltage]);
+                let energy = of.driven(electric, law).formula(&[]);
+                self.add_energy::<_, 4, 1, 1>(energy, [span], [voltage]);
             }
-            _ => self.add_energy(elastic(muscle, law), [span], []),
+            _ => self.add_energy::<_, 3, 1, 0>(of.elastic(law).formula(&[]), [span], []),
         }
     }
 }
@@ -79,9 +82,10 @@ impl Known<'_> {
             unit,
             list: Vec::new(),
         };
+        let mut of = MuscleConstants::given(muscle);
         match muscle.material.law {
             None => parts.add_cell((muscle, NeoHooke), span, voltage),
-            Some(law) => parts.add_cell((muscle, law), span, voltage),
+            Some(law) => parts.add_cell((muscle, of.law(law)), span, voltage),
         }
         if let Some((charge, capacitance)) = charge.zip(capacitance(muscle)) {
             let energy = FlowingCharge {
@@ -99,13 +103,13 @@ impl Known<'_> {
                 branch,
             };
             if let Some(viscous) = self.internals.vector(kind) {
-                let energy = branch_cell(muscle, constants);
+                let energy = of.branch_spring(branch, constants).formula(&[]);
                 parts.add_energy::<_, 6, 2, 0>(energy, [span, vectors.index(viscous)], []);
             }
         }
         if let Some(viscosity) = muscle.material.viscosity {
             parts.add::<Formulas<ViscousTension, 6, 2, 0>>(Element {
-                energy: ViscousTension(viscous_cell(muscle, viscosity)),
+                energy: ViscousTension(of.viscous(viscosity).formula(&[])),
                 vectors: [Stencil::Mid, Stencil::Rate].map(|stencil| read(span, stencil)),
                 scalars: [],
             });

@@ -1,21 +1,18 @@
 //! Collection of the terms of components: elements of one kind make one term, those that read nothing that moves are left out, and the
 //! reasons are recorded.
 
-use crate::element::ElementLaw;
-use crate::energy::{Energy, Gravity, SoughtEnergy};
-use crate::functional::{
-    Electrical, Element, FiniteElement, FiniteElements, Formulas, Group, Inertia, Mass,
-    MaxwellElement, MaxwellElements, Path, Paths, PressureFace, PressureFaces, SoughtElement,
-    SoughtFormulas, Stencil, Term, VectorArg, ViscousElement, ViscousElements,
-};
+use crate::energy::{Affine, Energy};
+use crate::functional::{Element, Law, LawElement, Path, ScaledElement, Stencil, Term, VectorArg};
 use crate::kinematics::{Carrier, MaterialVector, Pose, Vectors};
 use crate::math::Vector;
 use crate::model::attachment::Attachment;
-use crate::model::constant::Parameter;
+use crate::model::constant::{Constant, Parameter};
 use crate::model::maxwell::Response;
+use crate::model::members::{Formula, Member, OfKind};
 use crate::model::plan::{self, LeftOut, Present};
-use crate::model::sought::Sought;
+use crate::model::sought::{Read, Sought};
 use crate::model::variables::{Role, Variables};
+use crate::model::weight::Weight;
 use std::any::Any;
 use std::fmt;
 
@@ -67,80 +64,6 @@ struct Collected {
     /// A vector of the type.
     list: Box<dyn Any>,
     finish: fn(&str, Box<dyn Any>) -> Box<dyn Term>,
-}
-
-/// Element that makes one term together with all of its type.
-pub(super) trait Member<Kind = ()>: Sized + 'static {
-    fn term(name: &str, list: Vec<Self>) -> Box<dyn Term>;
-}
-
-impl Member for Mass {
-    fn term(name: &str, list: Vec<Self>) -> Box<dyn Term> {
-        Box::new(Inertia::new(name, list))
-    }
-}
-
-impl<F: Electrical, L: ElementLaw> Member for FiniteElement<F, L> {
-    fn term(name: &str, list: Vec<Self>) -> Box<dyn Term> {
-        Box::new(Group::<FiniteElements<F, L>>::intervals(name, -1.0, list))
-    }
-}
-
-impl Member for ViscousElement {
-    fn term(name: &str, list: Vec<Self>) -> Box<dyn Term> {
-        Box::new(Group::<ViscousElements>::intervals(name, 1.0, list))
-    }
-}
-
-impl Member for MaxwellElement {
-    fn term(name: &str, list: Vec<Self>) -> Box<dyn Term> {
-        Box::new(Group::<MaxwellElements>::intervals(name, -1.0, list))
-    }
-}
-
-impl Member for PressureFace {
-    fn term(name: &str, list: Vec<Self>) -> Box<dyn Term> {
-        Box::new(Group::<PressureFaces>::intervals(name, 1.0, list))
-    }
-}
-
-impl Member for Path {
-    fn term(name: &str, list: Vec<Self>) -> Box<dyn Term> {
-        Box::new(Group::<Paths>::intervals(name, -1.0, list))
-    }
-}
-
-/// Elements of a formula of `M` arguments; `KINETIC` is true for a kinetic energy.
-struct Formula<const M: usize, const KINETIC: bool>;
-
-impl<E, const M: usize, const NV: usize, const NS: usize, const KINETIC: bool>
-    Member<Formula<M, KINETIC>> for Element<E, NV, NS>
-where
-    E: Energy<M> + 'static,
-{
-    fn term(name: &str, list: Vec<Self>) -> Box<dyn Term> {
-        // The action has the kinetic energy less the potential one; a virtual work is added.
-        let scale = if KINETIC || E::VIRTUAL > 0 { 1.0 } else { -1.0 };
-        Box::new(Group::<Formulas<E, M, NV, NS>>::intervals(
-            name, scale, list,
-        ))
-    }
-}
-
-/// Elements of a formula of `M` arguments with sought parameters, which reads each vector `R` times.
-struct SoughtFormula<const M: usize, const R: usize>;
-
-impl<E, const M: usize, const R: usize, const N: usize> Member<SoughtFormula<M, R>>
-    for SoughtElement<E, N>
-where
-    E: SoughtEnergy<M> + 'static,
-{
-    fn term(name: &str, list: Vec<Self>) -> Box<dyn Term> {
-        let scale = if E::VIRTUAL > 0 { 1.0 } else { -1.0 };
-        Box::new(Group::<SoughtFormulas<E, M, R, N>>::intervals(
-            name, scale, list,
-        ))
-    }
 }
 
 impl<'a> Terms<'a> {
@@ -208,9 +131,15 @@ impl<'a> Terms<'a> {
         MaterialVector::direction(body, direction, self.bodies.reference)
     }
 
+    /// Index of the vector between directions that are fixed in the bodies of two points.
+    pub fn moved_span(&mut self, points: [&Attachment; 2], directions: [Vector; 2]) -> usize {
+        let [from, to] = [0, 1].map(|end| self.direction(points[end], &directions[end]));
+        self.vectors.index(MaterialVector::span(&from, &to))
+    }
+
     /// The sought parameters.
-    pub fn sought(&self) -> Sought {
-        self.sought.clone()
+    pub fn sought(&self) -> &Sought {
+        &self.sought
     }
 
     /// Index of a vector, for [`mid`] and [`rate`].
@@ -264,17 +193,50 @@ impl<'a> Terms<'a> {
         self.collect::<Formula<M, false>, _>(term, why, of, element);
     }
 
-    /// Adds a formula of one span and of sought parameters, like [`add`](Self::add).
-    pub fn add_sought<E, const M: usize, const R: usize, const N: usize>(
+    /// Adds the formula of a law, like [`add`](Self::add); with the parameters that it reads where constants of it are sought.
+    pub fn add_law<L, const M: usize, const NV: usize, const NS: usize>(
+        &mut self,
+        (term, why): (&'static str, &'static str),
+        of: &str,
+        element: LawElement<L, NV, NS>,
+    ) where
+        L: Law<M>,
+    {
+        match element.given() {
+            Some(given) => self.add(term, why, of, given),
+            None => self.collect::<Formula<M, false>, _>(term, why, of, element),
+        }
+    }
+
+    /// Adds the kinetic energy of a law, like [`add_law`](Self::add_law).
+    pub(super) fn add_kinetic_law<L, const M: usize, const NV: usize, const NS: usize>(
+        &mut self,
+        (term, why): (&'static str, &'static str),
+        of: &str,
+        element: LawElement<L, NV, NS>,
+    ) where
+        L: Law<M>,
+    {
+        match element.given() {
+            Some(given) => self.add_kinetic(term, why, of, given),
+            None => self.collect::<Formula<M, true>, _>(term, why, of, element),
+        }
+    }
+
+    /// Adds an element, of those that are no formulas, times a constant that is sought.
+    pub(super) fn add_scaled<E: OfKind>(
         &mut self,
         term: &'static str,
         why: &'static str,
         of: &str,
-        element: SoughtElement<E, N>,
-    ) where
-        E: SoughtEnergy<M> + 'static,
-    {
-        self.collect::<SoughtFormula<M, R>, _>(term, why, of, element);
+        (element, factor, read): (E, Affine, Read),
+    ) {
+        let element = ScaledElement {
+            of: element,
+            factor,
+            parameters: read.scalars(),
+        };
+        self.collect::<(), _>(term, why, of, element);
     }
 
     /// Adds a kinetic energy of vectors and rates of the intervals.
@@ -295,6 +257,12 @@ impl<'a> Terms<'a> {
         plan::note(&mut self.present, term, why, of);
     }
 
+    /// Gravity in mm/ms² as an element reads it, where there is any.
+    pub(super) fn gravity(&self, read: &mut Read) -> Option<[Affine; 3]> {
+        let g = self.gravity?;
+        Some([0, 1, 2].map(|axis| read.constant(Constant::Gravity(axis), g[axis])))
+    }
+
     /// Adds the weight of a mass in g at a point, where there is gravity.
     pub(super) fn weigh(&mut self, point: &MaterialVector, mass: f64) {
         if self.gravity.is_some() {
@@ -305,13 +273,11 @@ impl<'a> Terms<'a> {
 
     /// Adds the weight of a mass in g at the point of a vector of the list, where there is gravity.
     pub(super) fn weigh_vector(&mut self, vector: usize, mass: f64) {
-        if let Some(g) = self.gravity {
-            let element = Element {
-                energy: Gravity { weight: g * mass },
-                vectors: [mid(vector)],
-                scalars: [],
-            };
-            self.add(plan::GRAVITY, "gravity of", "the scene", element);
+        let mut read = self.sought.read();
+        if let Some(gravity) = self.gravity(&mut read) {
+            let mass = mass.into();
+            let element = read.element(Weight { mass, gravity }, [mid(vector)], []);
+            self.add_law((plan::GRAVITY, "gravity of"), "the scene", element);
         }
     }
 

@@ -83,7 +83,7 @@ impl Skins {
             .filter_map(|(i, m)| (m.fidelity != Fidelity::Lumped).then_some(i));
         let mut parts = Vec::new();
         for block in &model.solids {
-            let muscle = block.of_muscle.then(|| muscles.next()).flatten();
+            let muscle = block.is_muscle().then(|| muscles.next()).flatten();
             parts.push(Skin::immobile(block, muscle));
         }
         let places = parts.iter().map(|(skin, _)| skin.reference.len()).sum();

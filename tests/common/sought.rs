@@ -1,19 +1,32 @@
 //! A system whose components read sought parameters of every kind.
 
 use super::cases::{control, joints};
-use super::systems::{branched, tied};
+use super::systems::{blocks, branched, tied};
+use nalgebra::Vector3;
 use proboscis::control::problem::{Control, Duration, Guess, Voltages};
-use proboscis::model::system::{Attachment, System};
-use proboscis::model::{Constant, DielectricLaw, Follower, Parameter};
+use proboscis::model::system::{
+    Attachment, ElasticLaw, JointSpring, Material, MaxwellBranch, MaxwellBranches, System,
+};
+use proboscis::model::{Constant, Follower, MaterialConstant, Parameter};
 
-/// The branched tree without masses of muscles, tied by springs whose ends turn with it.
+/// The branched tree under gravity, tied by springs whose ends turn with it and a tendon, with a spring at a joint, a law of elasticity and Maxwell
+/// branches.
 pub fn robot() -> System {
     let mut system = tied(branched());
     for muscle in &mut system.muscles {
-        muscle.material.density = None;
-        muscle.section_inertia = false;
         muscle.material.viscosity = Some(1.3);
     }
+    system.gravity = Some(Vector3::new(1e-3, -9.81e-3, 2e-3));
+    system.muscles[2].material.law = Some(ElasticLaw::Gent { limit: 30.0 });
+    let branch = MaxwellBranch {
+        shear_modulus: 0.05,
+        relaxation_time: 25.0,
+    };
+    system.muscles[3].material.maxwell = MaxwellBranches::new(&[branch, branch]).unwrap();
+    system.joints[2].spring = Some(JointSpring {
+        stiffness: 300.0,
+        rest: 0.1,
+    });
     system
 }
 
@@ -42,30 +55,33 @@ pub fn parameter(name: &str, constants: &[(Constant, f64)], guess: f64) -> Param
 /// Parameters of every kind: shared by several muscles, and several in one.
 pub fn parameters(system: &System) -> Vec<Parameter> {
     use Constant as C;
+    use MaterialConstant as M;
     let place = |end: &Attachment, axis: usize| end.at[axis];
     let muscles = &system.muscles;
+    let of = |constant: M, muscle: usize| constant.of_muscle(muscle);
     vec![
         parameter(
             "shear modulus",
-            &[(C::ShearModulus(0), 1.0), (C::ShearModulus(2), 1.5)],
+            &[(of(M::ShearModulus, 0), 1.0), (of(M::ShearModulus, 2), 1.5)],
             0.12,
         ),
         parameter(
             "viscosity",
             &[
-                (C::Viscosity(0), 1.0),
-                (C::Viscosity(1), 0.5),
-                (C::Viscosity(3), 2.0),
+                (of(M::Viscosity, 0), 1.0),
+                (of(M::Viscosity, 1), 0.5),
+                (of(M::Viscosity, 3), 2.0),
             ],
             0.8,
         ),
         parameter(
             "permittivity",
             &[
-                (C::Permittivity(0, DielectricLaw::FirstOrder), 1.0),
-                (C::Permittivity(1, DielectricLaw::Ideal), 1.1),
+                (of(M::C1, 0), -1e-12),
+                (of(M::C2, 0), 0.5e-12),
+                (of(M::Permittivity, 1), 1.1e-12),
             ],
-            3.4,
+            26.0,
         ),
         parameter("width", &[(C::Side(0, 0), 1.0), (C::Side(3, 1), 0.8)], 9.0),
         parameter("layer", &[(C::Layer(1), 1.0)], 0.05),
@@ -79,6 +95,40 @@ pub fn parameters(system: &System) -> Vec<Parameter> {
             place(&muscles[0].from, 0),
         ),
         parameter("end", &[(C::End(0, 1, 1), 1.0)], place(&muscles[0].to, 1)),
+        parameter(
+            "density",
+            &[(of(M::Density, 0), 1.0), (of(M::Density, 1), 1.2)],
+            1.1e-3,
+        ),
+        parameter("limit", &[(of(M::Law("limit"), 2), 1.0)], 30.0),
+        parameter(
+            "branch",
+            &[
+                (of(M::BranchModulus(0), 3), 1.0),
+                (of(M::BranchModulus(1), 3), 0.5),
+            ],
+            0.05,
+        ),
+        parameter("time", &[(of(M::RelaxationTime(1), 3), 1.0)], 25.0),
+        parameter(
+            "mass",
+            &[
+                (C::Mass(2), 1.0),
+                (C::Inertia(2, 0), 180.0),
+                (C::Inertia(2, 2), 150.0),
+            ],
+            20.0,
+        ),
+        parameter("gravity", &[(C::Gravity(1), -1.0)], 9.81e-3),
+        parameter("tendon stiffness", &[(C::TendonStiffness(0), 1.0)], 0.012),
+        parameter("tendon length", &[(C::TendonLength(0), 1.0)], 80.0),
+        parameter("joint stiffness", &[(C::JointStiffness(2), 1.0)], 300.0),
+        parameter("joint rest", &[(C::JointRest(2), 1.0)], 0.1),
+        parameter(
+            "spring end",
+            &[(C::SpringEnd(0, 0, 0), 1.0), (C::SpringEnd(0, 1, 2), 0.3)],
+            30.0,
+        ),
         parameter("spring stiffness", &[(C::SpringStiffness(0), 1.0)], 0.03),
         parameter("spring length", &[(C::SpringLength(0), 1.0)], 35.0),
         parameter(
@@ -107,4 +157,34 @@ pub fn problem(system: &System, is_free: bool, course: Option<Voltages>) -> Cont
         };
     }
     control
+}
+
+/// A muscle and a block of finite elements, and constants of both in which their energies and viscous works are linear.
+pub fn elements() -> (System, Vec<Parameter>) {
+    use MaterialConstant as M;
+    let mut system = blocks();
+    // The unit of potentials is that of the stiffest material: one that nothing is made of, so that no parameter changes it.
+    let solid = &mut system.solids[0];
+    let stiff = Material {
+        shear_modulus: 100.0,
+        ..solid.materials[0]
+    };
+    solid.materials.push(stiff);
+    solid.mesh.region_names.push("nothing".into());
+    let of_both = |constant: M| [(constant.of_muscle(0), 1.0), (constant.of_block(0, 0), 1.3)];
+    let parameters = vec![
+        parameter("modulus", &of_both(M::ShearModulus), 0.12),
+        parameter("lambda", &[(M::LameLambda.of_block(0, 1), 1.0)], 2.5),
+        parameter(
+            "ratio",
+            &[
+                (M::C1.of_muscle(0), -1e-12),
+                (M::C2.of_muscle(0), 0.5e-12),
+                (M::Permittivity.of_block(0, 0), 0.4e-12),
+            ],
+            20.0,
+        ),
+        parameter("viscosity", &of_both(M::Viscosity), 0.9),
+    ];
+    (system, parameters)
 }

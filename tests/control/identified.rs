@@ -11,7 +11,7 @@ use proboscis::control::problem::{
 use proboscis::dynamics::{Start as Initial, simulate};
 use proboscis::ipopt::Start;
 use proboscis::model::{
-    Constant, Follower, Model, Parameter, Quantity, Role, System, with_parameters,
+    Follower, MaterialConstant, Model, Parameter, Quantity, Role, System, with_parameters,
 };
 use std::ops::ControlFlow;
 
@@ -22,19 +22,23 @@ const TRUE: [f64; 2] = [0.137, 0.71];
 
 /// Shear modulus and viscosity of all muscles.
 fn material(system: &System) -> Vec<Parameter> {
-    let of = |name: &str, constant: fn(usize) -> Constant, [lower, guess, upper]: [f64; 3]| {
+    let of = |name: &str, constant: MaterialConstant, [lower, guess, upper]: [f64; 3]| {
         let all = 0..system.muscles.len();
         Parameter {
             name: name.into(),
-            constants: all.map(|m| Follower::from(constant(m))).collect(),
+            constants: all.map(|m| Follower::from(constant.of_muscle(m))).collect(),
             lower,
             upper,
             guess,
         }
     };
     vec![
-        of("shear modulus", Constant::ShearModulus, [0.05, 0.1, 0.5]),
-        of("viscosity", Constant::Viscosity, [0.1, 1.0, 5.0]),
+        of(
+            "shear modulus",
+            MaterialConstant::ShearModulus,
+            [0.05, 0.1, 0.5],
+        ),
+        of("viscosity", MaterialConstant::Viscosity, [0.1, 1.0, 5.0]),
     ]
 }
 

@@ -9,7 +9,7 @@ use proboscis::control::problem::{BoundaryState, Control, Duration, PathConstrai
 use proboscis::control::{BoundaryConditions, BoundaryError};
 use proboscis::ipopt::Start;
 use proboscis::model::system::System;
-use proboscis::model::{Constant, Follower, Role, with_parameters};
+use proboscis::model::{Constant, Follower, MaterialConstant, Role, with_parameters};
 use proboscis::prelude::{
     Body, GROUND, Joint, Material, Muscle, Parameter, X, g, kpa, kv, mm, ms, um,
 };
@@ -134,18 +134,28 @@ fn parameters_are_refused_where_they_may_not_act() {
         upper,
         guess,
     };
-    let modulus = || of(Constant::ShearModulus(1), 0.05, 0.1, 0.2);
+    let modulus = || of(MaterialConstant::ShearModulus.of_muscle(1), 0.05, 0.1, 0.2);
     let says = |control: Control, words: &str| {
         let text = refusal(&system, &control);
         assert!(text.contains(words), "{text}");
     };
     assert!(BoundaryConditions::resolve(&system, &with(vec![modulus()]), 10.0).is_ok());
     says(
-        with(vec![of(Constant::ShearModulus(1), 0.05, 0.3, 0.2)]),
+        with(vec![of(
+            MaterialConstant::ShearModulus.of_muscle(1),
+            0.05,
+            0.3,
+            0.2,
+        )]),
         "within the bounds",
     );
     says(
-        with(vec![of(Constant::ShearModulus(1), -0.1, 0.1, 0.2)]),
+        with(vec![of(
+            MaterialConstant::ShearModulus.of_muscle(1),
+            -0.1,
+            0.1,
+            0.2,
+        )]),
         "positive",
     );
     says(
@@ -207,10 +217,21 @@ fn parameters_are_refused_where_they_may_not_act() {
     for control in [paid(1, modulus()), paid(0, layer())] {
         assert!(BoundaryConditions::resolve(&system, &control, 10.0).is_ok());
     }
+    // A mass that depends on one, where the motion starts with a velocity.
     let mut heavy = pair();
     heavy.muscles[1].material.density = Some(1e-3);
-    let text = refusal(&heavy, &with(vec![arm([4.0, 60.0], 15.0)]));
-    assert!(text.contains("mass of muscle"), "{text}");
+    let control = with(vec![arm([4.0, 60.0], 15.0)]);
+    assert!(BoundaryConditions::resolve(&heavy, &control, 10.0).is_ok());
+    let moving = Control {
+        start: BoundaryState::JointAngles {
+            angles: [].into(),
+            rates: [(0, 1e-3)].into(),
+            velocities: [].into(),
+        },
+        ..control
+    };
+    let text = refusal(&heavy, &moving);
+    assert!(text.contains("momentum at the start"), "{text}");
 }
 
 #[test]

@@ -1,10 +1,9 @@
 //! Sought constants as a problem names them, and its mistakes.
 
 use crate::scene::{Case, check, folder, mistake};
-use proboscis::Signal;
 use proboscis::control::problem::{Control, Task};
 use proboscis::files::read_problem;
-use proboscis::model::{Constant, DielectricLaw, Follower};
+use proboscis::model::{Constant, Follower, MaterialConstant};
 
 /// A chain without masses of muscles, and its own names beside.
 const CHAIN: &str = r#"{
@@ -58,12 +57,14 @@ fn constants_are_named_by_their_paths() {
     let modulus = by_name("materials.soft.shear_modulus");
     assert!((modulus.lower - 0.05).abs() < 1e-15 && (modulus.upper - 0.2).abs() < 1e-15);
     assert!((modulus.guess - 0.12).abs() < 1e-15);
-    let all: Vec<Follower> = (0..4).map(|m| Constant::ShearModulus(m).into()).collect();
+    let modulus_of = |m| MaterialConstant::ShearModulus.of_muscle(m);
+    let all: Vec<Follower> = (0..4).map(|m| modulus_of(m).into()).collect();
     assert_eq!(modulus.constants, all);
     let ratio = by_name("materials.soft.relative_permittivity");
     assert_eq!([ratio.lower, ratio.guess, ratio.upper], [2.0, 3.0, 4.0]);
-    let law = DielectricLaw::Ideal;
-    assert_eq!(ratio.constants[2], Constant::Permittivity(2, law).into());
+    let third = ratio.constants[2];
+    assert_eq!(third.constant, MaterialConstant::Permittivity.of_muscle(2));
+    assert!((third.factor / 8.854187817e-12 - 1.0).abs() < 1e-12 && third.offset == 0.0);
     let arm = by_name("chain.muscles.arm");
     assert_eq!([arm.lower, arm.guess, arm.upper], [5.0, 15.0, 30.0]);
     // Muscles of the first joint stand off along x, those of the second along z, two and two; both ends of each.
@@ -106,20 +107,20 @@ fn what_cannot_be_sought_is_refused() {
     #[rustfmt::skip]
     let cases: &[Case] = &[
         ("materials.soft.viscosity", "materials.hard.viscosity", "control.free.materials.hard.viscosity", "\"hard\", which is no material", "the name of a material", "{"),
-        ("materials.soft.viscosity", "materials.soft.density", "control.free.materials.soft.density", "no constant of the scene that can be sought", "materials.NAME.shear_modulus", "{"),
-        ("materials.soft.viscosity", "gravity[0]", "control.free.gravity[0]", "no constant of the scene that can be sought", "springs.NAME.stiffness", "{"),
-        ("materials.soft.viscosity", "", "control.free.", "no constant of the scene that can be sought", "joints.NAME.damping", "{"),
-        ("materials.soft.viscosity", "materials.spare.shear_modulus", "control.free.materials.spare.shear_modulus", "which no muscle is made of", "a material of a muscle", "{"),
+        ("materials.soft.viscosity", "materials.soft.density", "control.free.materials.soft.density.min", "which is a viscosity", "a density", "500 Pa s"),
+        ("materials.soft.viscosity", "gravity[0]", "control.free.gravity[0]", "the index 0", "gravity is no list", "{"),
+        ("materials.soft.viscosity", "", "control.free.", "no number of the scene that can be sought", "joints.NAME.damping", "{"),
+        ("materials.soft.viscosity", "materials.spare.shear_modulus", "control.free.materials.spare.shear_modulus.min", "which is a viscosity", "a stress", "500 Pa s"),
         ("materials.soft.viscosity", "joints.joint1.damping", "control.free.joints.joint1.damping.min", "which is a viscosity", "a rotational damping", "500 Pa s"),
-        ("materials.soft.viscosity", "muscles.nerve.layer_thickness", "control.free.muscles.nerve.layer_thickness", "\"nerve\", which is no muscle", "the name of a muscle", "{"),
-        ("materials.soft.viscosity", "muscles[4].layer_thickness", "control.free.muscles[4].layer_thickness", "which is no muscle", "the name of a muscle", "{"),
+        ("materials.soft.viscosity", "muscles.nerve.layer_thickness", "control.free.muscles.nerve.layer_thickness", "the name \"nerve\"", "muscle1", "{"),
+        ("materials.soft.viscosity", "muscles[4].layer_thickness", "control.free.muscles[4].layer_thickness", "the index 4", "an index below 4", "{"),
         ("materials.soft.viscosity", "springs.stay.damping", "control.free.springs.stay.damping.min", "which is a viscosity", "a damping", "500 Pa s"),
         ("\"500 Pa s\"", "\"500 mm\"", "control.free.materials.soft.viscosity.min", "which is a length", "a viscosity", "500 mm"),
         ("\"500 Pa s\"", "true", "control.free.materials.soft.viscosity.min", "true", "a viscosity", "true"),
-        ("\"500 Pa s\"", "\"-5 Pa s\"", "control.free.materials.soft.viscosity", "positive", "a constant that can be sought", "{"),
+        ("\"500 Pa s\"", "\"-5 Pa s\"", "control.free.materials.soft.viscosity.min", "-5 Pa s", "positive", "-5 Pa s"),
         ("\"500 Pa s\"", "\"3000 Pa s\"", "control.free.materials.soft.viscosity.max", "2000 Pa s", "larger than", "2000 Pa s"),
         ("\"900 Pa s\"", "\"9000 Pa s\"", "control.free.materials.soft.viscosity.guess", "9000 Pa s", "from \"500 Pa s\" to \"2000 Pa s\"", "9000 Pa s"),
-        ("\"guess\": \"900 Pa s\"", "\"also\": { \"chain.muscles.arm\": 1 }", "control.free.materials.soft.viscosity.also.chain.muscles.arm", "a length", "a viscosity", "1"),
+        ("\"guess\": \"900 Pa s\"", "\"also\": { \"chain.muscles.arm\": 1 }", "control.free.materials.soft.viscosity.also.chain.muscles.arm", "\"m\"", "\"Pa s\"", "1"),
         ("\"guess\": \"900 Pa s\"", "\"also\": { \"materials.soft.viscosity\": 1 }", "control.free.materials.soft.viscosity", "the same constant", "a constant that can be sought", "{"),
         ("\"guess\"", "\"gues\"", "control.free.materials.soft.viscosity.gues", "the key \"gues\"", "\"guess\"", "\"gues\""),
     ];
@@ -131,42 +132,4 @@ fn what_cannot_be_sought_is_refused() {
     let error = mistake(CHAIN, &text, &[]);
     assert_eq!(error.path(), at);
     assert!(error.found().contains("outside the bounds"), "{error}");
-    // A mass that depends on the parameter.
-    let heavy = CHAIN.replace("\"dielectric\": \"ideal\"", "\"density\": 1000");
-    let text = problem(r#"{ "chain.muscles.arm": { "min": "5 mm", "max": "30 mm" } }"#);
-    let error = mistake(&heavy, &text, &[]);
-    assert!(error.found().contains("the mass of muscle"), "{error}");
-}
-
-#[test]
-fn voltages_may_all_be_given_where_a_constant_is_sought() {
-    let free = r#"{ "materials.soft.viscosity": { "min": "500 Pa s", "max": "2000 Pa s" } }, "voltages": {
-        "muscle1": { "ramp": { "to": "1 kV", "duration": "0.1 s" } }, "muscle2": 0, "muscle3": 0, "muscle4": "900 V" }"#;
-    let control = read(free);
-    assert_eq!(control.given.len(), 4);
-    assert_eq!(control.given[&0], Signal::ramp(0.0, 1000.0, 100.0));
-    assert_eq!(control.given_voltage(0, 50.0), Some(500.0));
-    let table = r#"{ "materials.soft.viscosity": { "min": "500 Pa s", "max": "2000 Pa s" } }, "voltages": {
-        "time": [0, 0.1, 0.2], "voltages": { "muscle1": ["1 kV", 0] } }"#;
-    let control = read(table);
-    let at = |time| [0, 1].map(|s| control.given_voltage(s, time));
-    assert_eq!(
-        [at(50.0), at(150.0)],
-        [[Some(1000.0), Some(0.0)], [Some(0.0); 2]]
-    );
-    // Otherwise one is left to be sought, and a table jumps from interval to interval.
-    let without = problem("{}").replace(
-        "\"free\": {}",
-        "\"voltages\": { \"time\": [0, 1], \"voltages\": {} }",
-    );
-    let error = mistake(CHAIN, &without, &[]);
-    assert_eq!(error.path(), "control.voltages");
-    assert!(error.expected().contains("\"free\""), "{error}");
-    let [text, functions] = [table, free].map(|given| {
-        problem(given).replace("\"0.2 s\"", "{ \"min\": 0.1, \"max\": 1, \"guess\": 0.2 }")
-    });
-    let error = mistake(CHAIN, &text, &[]);
-    assert!(error.found().contains("the duration is free"), "{error}");
-    let (_folder, path) = folder(CHAIN, &functions);
-    assert!(read_problem(&path, &[]).is_ok());
 }

@@ -10,7 +10,7 @@ use proboscis::control::problem::Task;
 use proboscis::dynamics::{EquilibriumError, Start, simulate, stable_equilibrium};
 use proboscis::files::read_problem;
 use proboscis::model::system::{ElasticLaw, MaxwellBranches, System, VACUUM_PERMITTIVITY};
-use proboscis::model::{Analysis, Constant, Coordinates, Model, Parameter, check_parameters};
+use proboscis::model::{Analysis, Coordinates, Model};
 use proboscis::workflow::integrate;
 use std::collections::BTreeMap;
 use std::f64::consts::TAU;
@@ -285,35 +285,6 @@ fn files_say_laws() {
         message.contains("Ogden's law") && message.contains("\"rubber\""),
         "{message}"
     );
-}
-
-#[test]
-fn constants_of_another_law_are_not_sought() {
-    let sought = |constant: Constant, law: Option<ElasticLaw>| {
-        let mut system = system(LAWS[0]);
-        system.muscles[0].material.law = law;
-        system.muscles[0].material.viscosity = Some(1.0);
-        let parameter = Parameter {
-            name: "constant".into(),
-            constants: vec![constant.into()],
-            lower: 0.5,
-            upper: 2.0,
-            guess: 1.0,
-        };
-        check_parameters(&system, &[parameter])
-    };
-    let law = Some(LAWS[0]);
-    let refused = sought(Constant::ShearModulus(0), law).unwrap_err().reason;
-    assert!(
-        refused.contains("muscle \"muscle\" has a law of elasticity"),
-        "{refused}"
-    );
-    for (constant, law) in [
-        (Constant::ShearModulus(0), None),
-        (Constant::Viscosity(0), law),
-    ] {
-        assert_eq!(sought(constant, law), Ok(()));
-    }
 }
 
 /// The message of a problem with this task, or nothing.

@@ -49,6 +49,16 @@ impl Override {
         })
     }
 
+    /// A value for a place.
+    pub(crate) fn new(place: JsonPath, value: Value) -> Self {
+        Self {
+            typed: place.clone(),
+            written: place.to_string(),
+            place,
+            value,
+        }
+    }
+
     /// The same inside the scene, where its path begins with `scene.` and goes on.
     pub(crate) fn in_scene(&self) -> Option<Self> {
         match self.place.0.as_slice() {

@@ -10,10 +10,9 @@ use crate::files::problem::loads::loads;
 use crate::files::problem::simulation::simulation;
 use crate::files::problem::spec::ProblemSpec;
 use crate::files::problem::state::voltages;
-use crate::files::scene::spec::SceneSpec;
+use crate::files::scene::constants::WrittenScene;
 use crate::files::signal::spec::SignalSpec;
 use crate::files::units::quantity::{LoadSize, Quantity};
-use crate::model::system::System;
 use crate::model::{NO_BRANCHES, Response};
 
 /// Most equilibria of a path.
@@ -22,9 +21,10 @@ const MOST_POINTS: usize = 1_000_000;
 /// The task that a problem asks of a system.
 pub(crate) fn build_problem(
     problem: &ProblemSpec,
-    (scene, system): (&SceneSpec, &System),
+    scene: &WrittenScene<'_>,
     scope: &Scope<'_>,
 ) -> Result<Task, SceneError> {
+    let system = scene.system;
     type Build<'a> = Box<dyn FnOnce() -> Result<Task, SceneError> + 'a>;
     let simulate = problem.simulate.as_ref().map(|spec| -> Build<'_> {
         Box::new(|| {
@@ -32,7 +32,7 @@ pub(crate) fn build_problem(
             let task = simulation(spec, system, &scope)?;
             if let Some(path) = task.voltages.solution() {
                 let place = scope.key("voltages").key("solution");
-                check_solution(path, scene, system, &place)?;
+                check_solution(path, scene, &place)?;
             }
             Ok(Task::Simulate(task))
         })
@@ -67,7 +67,7 @@ pub(crate) fn build_problem(
     });
     let control = problem.control.as_ref().map(|spec| -> Build<'_> {
         Box::new(|| {
-            let control = control(spec, (scene, system), &scope.key("control"))?;
+            let control = control(spec, scene, &scope.key("control"))?;
             Ok(Task::Control(Box::new(control)))
         })
     });

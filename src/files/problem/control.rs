@@ -22,8 +22,8 @@ use crate::files::problem::state::{ELECTRIC_KEYS, driven, start_state};
 use crate::files::problem::track::{at_the_end, track};
 use crate::files::problem::voltages::over_time;
 use crate::files::problem::waypoints::waypoints;
+use crate::files::scene::constants::WrittenScene;
 use crate::files::scene::graph::tree_freedoms;
-use crate::files::scene::spec::SceneSpec;
 use crate::files::signal::signal;
 use crate::files::units::quantity::Voltage;
 use crate::ipopt::{LinearSolver, OptionValue};
@@ -40,9 +40,10 @@ const FIRST_INTERVALS: usize = 20;
 
 pub(crate) fn control(
     spec: &ControlSpec,
-    (written, system): (&SceneSpec, &System),
+    scene: &WrittenScene<'_>,
     scope: &Scope<'_>,
 ) -> Result<Control, SceneError> {
+    let system = scene.system;
     let duration = duration(&spec.duration, &scope.key("duration"))?;
     let intervals = match spec.intervals {
         Some(IntervalsSpec::Given(intervals)) => {
@@ -65,7 +66,7 @@ pub(crate) fn control(
     let is_periodic = goal == BoundaryState::Periodic;
     let (waypoints, near) = waypoints(&spec.waypoints, (duration, is_periodic), system, &place)?;
     objective.quantities.extend(near);
-    let parameters = parameters(&spec.free, written, system, &scope.key("free"))?;
+    let parameters = parameters(&spec.free, scene, &scope.key("free"))?;
     let loads = loads(&spec.loads, system, &scope.key("loads"))?;
     let load_bounds = load_bounds(&spec.load_bounds, &loads, system, &scope.key("load_bounds"))?;
     check_end((&loads, &goal), system, duration, &scope.key("loads"))?;

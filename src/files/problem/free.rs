@@ -4,29 +4,27 @@ use serde::Deserialize;
 use std::collections::BTreeMap;
 use std::path::Path;
 
+use serde_json::Value;
+
 use crate::control::PEAK_VOLTAGE;
 use crate::files::json::document::Document;
 use crate::files::json::error::SceneError;
+use crate::files::json::locate::JsonPath;
 use crate::files::json::scope::Scope;
 use crate::files::problem::spec_free::{FreeMap, FreeSpec};
-use crate::files::scene::constants::{NoConstant, SceneConstant, constant};
-use crate::files::scene::spec::SceneSpec;
-use crate::files::units::quantity::{Kind, Quantity, SoughtConstant};
-use crate::model::system::System;
-use crate::model::{Follower, NotSought, Parameter, check_parameters};
+use crate::files::scene::constants::{NoConstant, SceneConstant, WrittenScene};
+use crate::model::{Constant, Follower, NotSought, Parameter, check_parameters};
 
 /// The parameters of a problem.
 pub(crate) fn parameters(
     map: &FreeMap,
-    written: &SceneSpec,
-    system: &System,
+    scene: &WrittenScene<'_>,
     scope: &Scope<'_>,
 ) -> Result<Vec<Parameter>, SceneError> {
-    let parameter = |(path, spec): (&String, &FreeSpec)| {
-        parameter(path, spec, (written, system), &scope.key(path))
-    };
+    let parameter =
+        |(path, spec): (&String, &FreeSpec)| parameter(path, spec, scene, &scope.key(path));
     let parameters: Vec<Parameter> = map.iter().map(parameter).collect::<Result<_, _>>()?;
-    check_parameters(system, &parameters).map_err(|NotSought { parameter, reason }| {
+    check_parameters(scene.system, &parameters).map_err(|NotSought { parameter, reason }| {
         let place = scope.key(&parameters[parameter].name);
         place.wrong(reason, "a constant that can be sought")
     })?;
@@ -36,42 +34,45 @@ pub(crate) fn parameters(
 fn parameter(
     path: &str,
     spec: &FreeSpec,
-    (written, system): (&SceneSpec, &System),
+    scene: &WrittenScene<'_>,
     scope: &Scope<'_>,
 ) -> Result<Parameter, SceneError> {
-    let find = |path: &str, scope: &Scope<'_>| {
-        constant(path, written, system)
-            .map_err(|NoConstant { found, expected }| scope.wrong(found, expected))
-    };
-    let SceneConstant {
-        mut followers,
-        kind,
-        value,
-    } = find(path, scope)?;
-    for (path, &factor) in &spec.also {
-        let scope = scope.key("also").key(path);
-        let other = find(path, &scope)?;
-        if other.kind.name != kind.name {
-            let expected = format!("{}, as the constant that it follows", kind.name);
-            return Err(scope.wrong(other.kind.name, expected));
-        }
-        followers.extend(other.followers.into_iter().map(|follower| Follower {
-            factor: factor * follower.factor,
-            ..follower
-        }));
-    }
-    let read =
-        |quantity: &Quantity<SoughtConstant>, key: &str| read(quantity, &kind, &scope.key(key));
-    let (lower, upper) = (read(&spec.min, "min")?, read(&spec.max, "max")?);
+    let (lower, upper) = (spec.min.si(), spec.max.si());
     if lower >= upper {
         let expected = format!("a value larger than \"min\" {}", spec.min);
         return Err(scope.key("max").wrong(spec.max.to_string(), expected));
     }
-    let guess = match &spec.guess {
-        Some(guess) => read(guess, "guess")?,
-        None => value,
-    };
-    if guess < lower || guess > upper {
+    let texts = [&spec.min, &spec.max].map(|bound| serde_json::to_value(bound).unwrap_or_default());
+    let SceneConstant {
+        mut followers,
+        from_si,
+        value,
+    } = scene
+        .constant(path, [&texts[0], &texts[1]], [lower, upper])
+        .map_err(|reason| refused(reason, scope))?;
+    for (path, &factor) in &spec.also {
+        let place = scope.key("also").key(path);
+        let other = also(path, (factor, [lower, upper]), scene).map_err(
+            |NoConstant {
+                 found, expected, ..
+             }| place.wrong(found, expected),
+        )?;
+        let unit = |followers: &[Follower]| followers[0].constant.unit(scene.system).symbol;
+        let [own, others] = [&followers, &other.followers].map(|list| unit(list));
+        if own != others {
+            let found = format!("a number in {others:?}");
+            let expected = format!("one in {own:?}, as the number that it follows");
+            return Err(place.wrong(found, expected));
+        }
+        followers.extend(other.followers.into_iter().map(|follower| Follower {
+            factor: factor * follower.factor * other.from_si / from_si,
+            ..follower
+        }));
+    }
+    let guess = spec.guess.as_ref().map(|guess| guess.si() * from_si);
+    let guess_or_value = guess.unwrap_or(value);
+    let (lower, upper) = (lower * from_si, upper * from_si);
+    if guess_or_value < lower || guess_or_value > upper {
         let (place, found) = match &spec.guess {
             Some(guess) => (scope.key("guess"), guess.to_string()),
             None => (
@@ -82,23 +83,46 @@ fn parameter(
         let expected = format!("a guess from {} to {}", spec.min, spec.max);
         return Err(place.wrong(found, expected));
     }
+    if let Some(guess) = &spec.guess {
+        let text = serde_json::to_value(guess).unwrap_or_default();
+        let place = JsonPath::parse(path).unwrap_or_default();
+        scene.with(&place, &text).map_err(
+            |NoConstant {
+                 found, expected, ..
+             }| scope.key("guess").wrong(found, expected),
+        )?;
+    }
     Ok(Parameter {
         name: path.to_owned(),
         constants: followers,
         lower,
         upper,
-        guess,
+        guess: guess_or_value,
     })
 }
 
-fn read(
-    quantity: &Quantity<SoughtConstant>,
-    kind: &Kind,
-    scope: &Scope<'_>,
-) -> Result<f64, SceneError> {
-    quantity
-        .value_as(kind)
-        .map_err(|found| scope.wrong(found, kind.expected()))
+/// The number that another one times a factor is.
+fn also(
+    path: &str,
+    (factor, bounds): (f64, [f64; 2]),
+    scene: &WrittenScene<'_>,
+) -> Result<SceneConstant, NoConstant> {
+    let si = bounds.map(|bound| bound * factor);
+    let values = si.map(Value::from);
+    scene.constant(path, [&values[0], &values[1]], si)
+}
+
+/// The error of a bound, or of the path.
+fn refused(reason: NoConstant, scope: &Scope<'_>) -> SceneError {
+    let NoConstant {
+        is_value,
+        found,
+        expected,
+    } = reason;
+    match is_value {
+        true => scope.key("min").wrong(found, expected),
+        false => scope.wrong(found, expected),
+    }
 }
 
 /// Entries that are read of a solution: values that were found, in SI units, by paths in the scene.
@@ -114,8 +138,7 @@ const SAME: f64 = 1e-9;
 /// Refuses the voltages of a solution that was found with other constants than the scene has.
 pub(crate) fn check_solution(
     path: &Path,
-    written: &SceneSpec,
-    system: &System,
+    scene: &WrittenScene<'_>,
     scope: &Scope<'_>,
 ) -> Result<(), SceneError> {
     let document = &Document::read(path)?;
@@ -123,15 +146,27 @@ pub(crate) fn check_solution(
     // The peak is a result, and no constant of a scene.
     let constants = parameters.iter().filter(|(name, _)| *name != PEAK_VOLTAGE);
     for (name, &found) in constants {
-        let scene = constant(name, written, system).map_err(|NoConstant { found, expected }| {
-            scope.wrong(format!("{name:?}: {found}"), expected)
-        })?;
-        let unit = scene.followers[0].constant.unit(system);
-        let value = scene.value * unit.factor;
-        if (value - found).abs() > SAME * found.abs() {
+        let place = JsonPath::parse(name).unwrap_or_default();
+        let mut other = scene.with(&place, &Value::from(found)).map_err(
+            |NoConstant {
+                 found, expected, ..
+             }| { scope.wrong(format!("{name:?}: {found}"), expected) },
+        )?;
+        let mut system = scene.system.clone();
+        let differs = |constant: &Constant| {
+            let of_solution = constant.value(&mut other);
+            let of_scene = constant.value(&mut system);
+            match (of_solution, of_scene) {
+                (Some(a), Some(b)) => (a - b).abs() > SAME * a.abs(),
+                _ => of_solution != of_scene,
+            }
+        };
+        if let Some(constant) = Constant::all(scene.system).into_iter().find(differs) {
+            let unit = constant.unit(&system);
+            let of_scene = constant.value(&mut system).unwrap_or(f64::NAN) * unit.factor;
             let symbol = unit.symbol;
             let other = format!(
-                "a solution with {name} = {found} {symbol}, where the scene has {value} {symbol}"
+                "a solution with {name} = {found} {symbol}, where the scene has {of_scene} {symbol}"
             );
             return Err(scope.wrong(other, "the value of the solution in the scene"));
         }

@@ -1,264 +1,219 @@
-//! Constants of a scene by their paths, as an optimisation may seek them: the constants of components that follow each.
+//! Numbers of a scene by their paths, as an optimisation may seek them: the constants of components that follow each.
+//!
+//! A number is put in its place, and what it changes of the system is compared: constants that are linear in it follow it. So every number
+//! of a scene can be sought on which nothing but such constants depends, whatever it is written as.
 
+use serde_json::Value;
+
+use crate::files::json::document::Document;
+use crate::files::json::error::SceneError;
 use crate::files::json::locate::{JsonPath, Step};
+use crate::files::json::scope::Scope;
+use crate::files::json::set::Override;
+use crate::files::scene::build::build_scene;
+use crate::files::scene::expand::{add_named, expanded};
 use crate::files::scene::named_materials::named_material;
 use crate::files::scene::spec::SceneSpec;
-use crate::files::scene::spec_material::Dielectric;
-use crate::files::units::quantity::{
-    Damping, Kind, Length, Ratio, RotationalDamping, Stiffness, Stress, Viscosity,
-};
-use crate::model::system::{JointKind, System};
-use crate::model::{Constant, DielectricLaw, Follower};
+use crate::model::system::System;
+use crate::model::{Constant, Follower};
 
-/// A constant of a scene.
+/// A scene as it is written, and its system.
+#[derive(Debug)]
+pub(crate) struct WrittenScene<'a> {
+    /// As it is written.
+    pub(crate) spec: &'a SceneSpec,
+    /// The system that it means.
+    pub(crate) system: &'a System,
+    /// The document in which it stands, beside which its files are.
+    pub(crate) document: &'a Document,
+}
+
+/// A number of a scene.
 #[derive(Debug)]
 pub(crate) struct SceneConstant {
     /// Constants of components that follow it.
     pub(crate) followers: Vec<Follower>,
-    /// Its kind.
-    pub(crate) kind: Kind,
-    /// Its value in the scene, in the units inside.
+    /// Factor from International units to those of the number, which are those of the first follower where that is the number itself.
+    pub(crate) from_si: f64,
+    /// The number in the scene.
     pub(crate) value: f64,
 }
 
-/// Reason why a path names no constant that can be sought.
+/// Reason why a path names no number that can be sought.
 #[derive(Debug)]
 pub(crate) struct NoConstant {
-    /// Value that is wrong.
+    /// True if it is a value that is wrong, and not the path.
+    pub(crate) is_value: bool,
+    /// Value or path that was found.
     pub(crate) found: String,
-    /// Value that is expected.
+    /// Value or path that is expected.
     pub(crate) expected: String,
 }
 
-/// The keys of all paths that may be sought.
-const OFFERED: &str = "a path such as \"materials.NAME.shear_modulus\" (or viscosity, relative_permittivity), \
-     \"muscles.NAME.cross_section[0]\" (or layer_thickness, from.at[0], to.at[0]), \"chain.muscles.arm\" (or cross_section[0], \
-     layer_thickness), \"springs.NAME.stiffness\" (or damping, rest_length), \"joints.NAME.damping\"";
+/// Paths that may be sought.
+const OFFERED: &str = "the path of a number of the scene, such as \"materials.NAME.shear_modulus\", \"muscles.NAME.from.at[0]\", \
+     \"chain.muscles.arm\", \"springs.NAME.stiffness\", \"joints.NAME.damping\", \"bodies.NAME.mass\"";
+/// Numbers that differ by less, relative to their size, are the same.
+const SAME: f64 = 1e-9;
+/// A factor that differs by less from one is one.
+const ONE: f64 = 1e-12;
 
-type Found = Result<SceneConstant, NoConstant>;
+impl NoConstant {
+    fn of_path(found: impl Into<String>, expected: impl Into<String>) -> Self {
+        Self {
+            is_value: false,
+            found: found.into(),
+            expected: expected.into(),
+        }
+    }
 
-/// The constant at a path; `written` is the scene as it is written, `system` its system.
-pub(crate) fn constant(path: &str, written: &SceneSpec, system: &System) -> Found {
-    let unknown = || NoConstant {
-        found: "no constant of the scene that can be sought".to_owned(),
-        expected: OFFERED.to_owned(),
-    };
-    let place = JsonPath::parse(path).ok_or_else(unknown)?;
-    let key = |step: &Step| match step {
-        Step::Key(key) => key.clone(),
-        Step::Index(index) => format!("[{index}]"),
-    };
-    let keys: Vec<String> = place.0.iter().map(key).collect();
-    let keys: Vec<&str> = keys.iter().map(String::as_str).collect();
-    match keys.as_slice() {
-        ["materials", name, key] => {
-            of_material(name, key, written, system).unwrap_or_else(|| Err(unknown()))
+    fn of_value(error: &SceneError) -> Self {
+        Self {
+            is_value: true,
+            found: error.found().to_owned(),
+            expected: error.expected().to_owned(),
         }
-        ["chain", "muscles", rest @ ..] => of_chain(rest, written, system).ok_or_else(unknown),
-        ["muscles", name, rest @ ..] => {
-            let index = find(name, system.muscles.iter().map(|m| m.name.as_str()));
-            let index = index.ok_or_else(|| missing("muscle", name))?;
-            of_muscle(index, rest, system).ok_or_else(unknown)
+    }
+}
+
+impl WrittenScene<'_> {
+    /// The system of the scene with a value in the place of a path.
+    pub(crate) fn with(&self, path: &JsonPath, value: &Value) -> Result<System, NoConstant> {
+        let mut spec = self.spec.clone();
+        add_named(&mut spec);
+        let is_of_chain = matches!(path.0.first(), Some(Step::Key(key)) if key == "chain");
+        if let [Step::Key(list), Step::Key(name), ..] = path.0.as_slice()
+            && list == "materials"
+            && !spec.materials.contains_key(name)
+        {
+            let material = named_material(name).ok_or_else(|| {
+                let found = format!("{name:?}, which is no material of the scene");
+                NoConstant::of_path(found, "the name of a material")
+            })?;
+            spec.materials.insert(name.clone(), material);
         }
-        ["springs", name, key] => {
-            let springs = &system.components.springs;
-            let index = find(name, springs.iter().map(|s| s.name.as_str()));
-            let index = index.ok_or_else(|| missing("spring", name))?;
-            of_spring(index, key, system).ok_or_else(unknown)
+        let spec = match is_of_chain {
+            true => spec,
+            false => expanded(spec),
+        };
+        let text = serde_json::to_string(&spec).expect("a scene is JSON");
+        let mut document = Document::of_text(&self.document.path, text)
+            .map_err(|error| NoConstant::of_value(&error))?;
+        let change = Override::new(path.clone(), value.clone());
+        let not_there = |error: &SceneError| NoConstant::of_path(error.found(), error.expected());
+        change
+            .apply(&mut document)
+            .map_err(|error| not_there(&error))?;
+        let changed: SceneSpec = document
+            .parse()
+            .map_err(|error| NoConstant::of_value(&error))?;
+        let system = build_scene(&changed, &Scope::of(&document));
+        system.map_err(|error| NoConstant::of_value(&error))
+    }
+
+    /// The number at a path, of which both bounds are given as they are written, and in units of the International System.
+    pub(crate) fn constant(
+        &self,
+        path: &str,
+        written: [&Value; 2],
+        [lower, upper]: [f64; 2],
+    ) -> Result<SceneConstant, NoConstant> {
+        let place = JsonPath::parse(path).ok_or_else(|| {
+            NoConstant::of_path("no number of the scene that can be sought", OFFERED)
+        })?;
+        let [mut low, mut high] = [
+            self.with(&place, written[0])?,
+            self.with(&place, written[1])?,
+        ];
+        let mut base = self.system.clone();
+        let mut followers = Vec::new();
+        let mut values = Vec::new();
+        for constant in Constant::all(&high) {
+            let [a, b] = [constant.value(&mut low), constant.value(&mut high)];
+            let (Some(a), Some(b)) = (a, b) else { continue };
+            if a == b {
+                continue;
+            }
+            let given = constant.value(&mut base).ok_or_else(|| {
+                let found = format!("{}, which the scene has to name", constant.lacking());
+                NoConstant::of_path(found, OFFERED)
+            })?;
+            let factor = (b - a) / (upper - lower);
+            let offset = a - factor * lower;
+            followers.push(Follower {
+                constant,
+                factor,
+                offset,
+            });
+            values.push((given, a, b));
         }
-        ["joints", name, "damping"] => {
-            let index = find(name, system.joints.iter().map(|j| j.name.as_str()));
-            let index = index.ok_or_else(|| missing("joint", name))?;
-            let joint = &system.joints[index];
-            let kind = match joint.kind {
-                JointKind::Revolute { .. } => RotationalDamping::kind(),
-                _ => Damping::kind(),
+        self.check_rest(base, &followers, &values, &high)?;
+        let value = |follower: &Follower, given: f64| (given - follower.offset) / follower.factor;
+        let si = value(&followers[0], values[0].0);
+        let is_linear = |(follower, &(given, ..)): (&Follower, &(f64, f64, f64))| {
+            (value(follower, given) - si).abs() <= SAME * (upper - lower).abs().max(si.abs())
+        };
+        if !followers.iter().zip(&values).all(is_linear) {
+            let found = "a number of the scene in which a constant is not linear";
+            return Err(NoConstant::of_path(found, OFFERED));
+        }
+        Ok(in_own_units(followers, values[0], si, self.system))
+    }
+
+    /// That nothing of the system depends on the number but the followers.
+    fn check_rest(
+        &self,
+        mut base: System,
+        followers: &[Follower],
+        values: &[(f64, f64, f64)],
+        high: &System,
+    ) -> Result<(), NoConstant> {
+        if followers.is_empty() {
+            let found = match base == *high {
+                true => "a number of the scene on which nothing depends",
+                false => "no number of the scene that can be sought",
             };
-            let value = joint.damping.unwrap_or(0.0);
-            Ok(one(Constant::JointDamping(index), kind, value))
+            return Err(NoConstant::of_path(found, OFFERED));
         }
-        _ => Err(unknown()),
-    }
-}
-
-/// A component by its name, or by its index in brackets.
-fn find<'a>(name: &str, mut names: impl ExactSizeIterator<Item = &'a str>) -> Option<usize> {
-    match name.starts_with('[') && name.ends_with(']') {
-        true => index(name, names.len()),
-        false => names.position(|other| other == name),
-    }
-}
-
-fn missing(what: &str, name: &str) -> NoConstant {
-    NoConstant {
-        found: format!("{name:?}, which is no {what} of the scene"),
-        expected: format!("the name of a {what}"),
-    }
-}
-
-fn one(constant: Constant, kind: Kind, value: f64) -> SceneConstant {
-    SceneConstant {
-        followers: vec![constant.into()],
-        kind,
-        value,
-    }
-}
-
-fn of_material(name: &str, key: &str, written: &SceneSpec, system: &System) -> Option<Found> {
-    let of_scene = written.materials.get(name).cloned();
-    let Some(material) = of_scene.or_else(|| named_material(name)) else {
-        return Some(Err(missing("material", name)));
-    };
-    let law = match material.dielectric.unwrap_or_default() {
-        Dielectric::FirstOrder => DielectricLaw::FirstOrder,
-        Dielectric::Ideal => DielectricLaw::Ideal,
-    };
-    let absent = || {
-        Err(NoConstant {
-            found: format!("a material without {key:?}"),
-            expected: format!("a value of {key:?} in the scene"),
-        })
-    };
-    type Of = Box<dyn Fn(usize) -> Constant>;
-    let (constant, kind, value): (Of, Kind, Option<f64>) = match key {
-        "shear_modulus" => (
-            Box::new(Constant::ShearModulus),
-            Stress::kind(),
-            Some(material.shear_modulus.value()),
-        ),
-        "viscosity" => (
-            Box::new(Constant::Viscosity),
-            Viscosity::kind(),
-            material.viscosity.as_ref().map(|v| v.value()),
-        ),
-        "relative_permittivity" => (
-            Box::new(move |muscle| Constant::Permittivity(muscle, law)),
-            Ratio::kind(),
-            material.relative_permittivity,
-        ),
-        _ => return None,
-    };
-    let Some(value) = value else {
-        return Some(absent());
-    };
-    let reads = |solid: &crate::files::scene::spec_solids::SolidSpec| {
-        solid.material_names().any(|other| other == name)
-    };
-    if let Some(solid) = written.solids.iter().find(|solid| reads(solid)) {
-        return Some(Err(NoConstant {
-            found: format!("a constant that block \"{}\" reads", solid.name),
-            expected: "one that lumped muscles alone read: sought parameters of finite elements are not offered".to_owned(),
-        }));
-    }
-    // Muscles of the chain come after those that are written.
-    let of_chain = written
-        .chain
-        .as_ref()
-        .and_then(|chain| chain.muscles.as_ref());
-    let of_chain = of_chain.map(|pair| pair.material.as_str());
-    let named = written
-        .muscles
-        .iter()
-        .map(|muscle| muscle.material.as_str());
-    let followers: Vec<Follower> = named
-        .map(Some)
-        .chain(std::iter::repeat(of_chain))
-        .take(system.muscles.len())
-        .enumerate()
-        .filter(|(_, material)| *material == Some(name))
-        .map(|(muscle, _)| constant(muscle).into())
-        .collect();
-    if followers.is_empty() {
-        return Some(Err(NoConstant {
-            found: format!("a constant of {name:?}, which no muscle is made of"),
-            expected: "a material of a muscle".to_owned(),
-        }));
-    }
-    Some(Ok(SceneConstant {
-        followers,
-        kind,
-        value,
-    }))
-}
-
-fn of_muscle(m: usize, keys: &[&str], system: &System) -> Option<SceneConstant> {
-    let muscle = &system.muscles[m];
-    let (constant, value) = match *keys {
-        ["cross_section", side] => {
-            let side = index(side, 2)?;
-            (Constant::Side(m, side), muscle.cross_section[side])
+        for (follower, &(_, _, b)) in followers.iter().zip(values) {
+            follower.constant.set(b, &mut base);
         }
-        ["layer_thickness"] => (Constant::Layer(m), muscle.layer_thickness),
-        [end @ ("from" | "to"), "at", axis] => {
-            let (axis, end) = (index(axis, 3)?, usize::from(end == "to"));
-            let place = [&muscle.from, &muscle.to][end].at[axis];
-            (Constant::End(m, end, axis), place)
-        }
-        _ => return None,
-    };
-    Some(one(constant, Length::kind(), value))
-}
-
-fn of_spring(s: usize, key: &str, system: &System) -> Option<SceneConstant> {
-    let spring = &system.components.springs[s];
-    let (constant, kind, value) = match key {
-        "stiffness" => (
-            Constant::SpringStiffness(s),
-            Stiffness::kind(),
-            spring.stiffness,
-        ),
-        "damping" => (Constant::SpringDamping(s), Damping::kind(), spring.damping),
-        "rest_length" => {
-            let length = Some(spring.rest_length);
-            (Constant::SpringLength(s), Length::kind(), length)
-        }
-        _ => return None,
-    };
-    Some(one(constant, kind, value.unwrap_or(0.0)))
-}
-
-/// An index in brackets below a length.
-fn index(key: &str, length: usize) -> Option<usize> {
-    let index = key.strip_prefix('[')?.strip_suffix(']')?.parse().ok()?;
-    (index < length).then_some(index)
-}
-
-/// A constant that all muscles of the chain share.
-fn of_chain(keys: &[&str], written: &SceneSpec, system: &System) -> Option<SceneConstant> {
-    let chain = written.chain.as_ref()?;
-    let pair = chain.muscles.as_ref()?;
-    let muscles = system.muscles.len() - 2 * chain.segments..system.muscles.len();
-    if *keys != ["arm"] {
-        let first = of_muscle(muscles.start, keys, system)?;
-        let is_of_pair = !matches!(first.followers[0].constant, Constant::End(..));
-        let all = muscles.filter_map(|m| of_muscle(m, keys, system));
-        return is_of_pair.then(|| SceneConstant {
-            followers: all.flat_map(|constant| constant.followers).collect(),
-            ..first
-        });
-    }
-    // Both ends lie beside the joint by the arm.
-    let arm = pair.arm.value();
-    let joints = &system.joints[system.joints.len() - chain.segments..];
-    let mut followers = Vec::new();
-    for (place, m) in muscles.enumerate() {
-        let muscle = &system.muscles[m];
-        let middle = (muscle.from.at + muscle.to.at) * 0.5;
-        let side = (middle - joints[place / 2].at) / arm;
-        for (end, attachment) in [&muscle.from, &muscle.to].into_iter().enumerate() {
-            for axis in (0..3).filter(|&axis| side[axis].abs() > 1e-9) {
-                let factor = side[axis];
-                followers.push(Follower {
-                    constant: Constant::End(m, end, axis),
-                    factor,
-                    offset: attachment.at[axis] - factor * arm,
-                });
+        match base == *high {
+            true => Ok(()),
+            false => {
+                let found =
+                    "a number of the scene on which more depends than constants of energies";
+                Err(NoConstant::of_path(found, OFFERED))
             }
         }
     }
-    Some(SceneConstant {
+}
+
+/// Followers and value in the units of the first follower, where that is the number itself.
+fn in_own_units(
+    mut followers: Vec<Follower>,
+    (given, low, high): (f64, f64, f64),
+    si: f64,
+    system: &System,
+) -> SceneConstant {
+    let first = followers[0];
+    let from_si = 1.0 / first.constant.unit(system).factor;
+    let is_itself = (first.factor.abs() / from_si - 1.0).abs() <= ONE;
+    let from_si = if is_itself { from_si } else { 1.0 };
+    for follower in &mut followers {
+        follower.factor /= from_si;
+        let nearest = follower.factor.round();
+        if (follower.factor - nearest).abs() <= ONE * nearest.abs() {
+            follower.factor = nearest;
+        }
+        if follower.offset.abs() <= ONE * (low.abs() + high.abs()) {
+            follower.offset = 0.0;
+        }
+    }
+    let is_same = followers[0].factor == 1.0 && followers[0].offset == 0.0;
+    SceneConstant {
         followers,
-        kind: Length::kind(),
-        value: arm,
-    })
+        from_si,
+        value: if is_same { given } else { si * from_si },
+    }
 }

@@ -194,15 +194,7 @@ impl PhysicalQuantity for SoughtConstant {
     const NAME: &'static str = "SoughtConstant";
 
     fn kinds() -> Vec<Kind> {
-        vec![
-            Stress::kind(),
-            Viscosity::kind(),
-            Length::kind(),
-            Stiffness::kind(),
-            Damping::kind(),
-            RotationalDamping::kind(),
-            Ratio::kind(),
-        ]
+        named_kinds()
     }
 }
 
@@ -257,6 +249,13 @@ impl<M: PhysicalQuantity> Quantity<M> {
         let unit = unit.unwrap_or(Unit::ONE);
         let exponent = unit.exponent + kind.dimensions[0].internal_exponent();
         scale(number * unit.factor, exponent)
+    }
+
+    /// Value in units of the International System.
+    pub(crate) fn si(&self) -> f64 {
+        let (number, unit) = self.written.parts();
+        let unit = unit.unwrap_or(Unit::ONE);
+        scale(number * unit.factor, unit.exponent)
     }
 
     /// Value in the units inside, of the only kind of this measure.

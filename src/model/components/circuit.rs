@@ -1,9 +1,10 @@
 //! Terms of circuits: a charge that flows through a resistor, which with a leak is that of the equivalent source.
 
-use crate::energy::{CoordinateDamper, DeadLoad, FlowingCharge};
+use crate::energy::{CoordinateDamper, DeadLoad};
 use crate::functional::Element;
 use crate::math::Vector;
-use crate::model::components::muscle::{CHARGES, capacitance};
+use crate::model::components::muscle::{CHARGES, capacitance, constants};
+use crate::model::components::muscle_laws::Flowing;
 use crate::model::internal::{InternalKind, Internals};
 use crate::model::system::Muscle;
 use crate::model::terms::{Terms, mid, rate};
@@ -48,12 +49,12 @@ fn circuit(
         return;
     };
     let (charge, unit) = (terms.vector(charge), capacitance.unit_of_charge());
-    let element = Element {
-        energy: FlowingCharge { capacitance, unit },
-        vectors: [mid(span), mid(charge)],
-        scalars: [],
-    };
-    terms.add::<_, 6, 2, 0>(CHARGES, WHY, &muscle.name, element);
+    let mut constants = constants((muscle, index), terms);
+    if let Some(capacitance) = constants.capacitance() {
+        let law = Flowing { capacitance, unit };
+        let element = constants.element(law, [mid(span), mid(charge)], []);
+        terms.add_law((CHARGES, WHY), &muscle.name, element);
+    }
     if let Some(voltage) = terms.input(index) {
         let drive = (muscle.voltage_at_rest(unit), voltage);
         add_voltage(SOURCES, &muscle.name, charge, drive, terms);

@@ -6,7 +6,8 @@ pub(super) mod electrode_circuit;
 mod kind;
 pub(super) mod load;
 pub(super) mod muscle;
-mod sought_muscle;
+pub(super) mod muscle_constants;
+pub(super) mod muscle_laws;
 mod spring;
 mod tendon;
 

@@ -1,16 +1,14 @@
 //! Terms of lumped muscles.
 
-use crate::energy::{
-    Capacitance, CoordinateDamper, DielectricCell, ElasticCell, ElasticLaw, Elasticity, Energy,
-    MaxwellCell, NeoHooke, SectionInertia, ViscousCell,
-};
-use crate::functional::{Element, Mass};
+use crate::energy::{Capacitance, ElasticLaw, Energy, NeoHooke};
+use crate::functional::{Law, Mass};
 use crate::kinematics::MaterialVector;
 use crate::math::{Derivatives, Local, Vector};
-use crate::model::components::sought_muscle::SoughtMuscle;
+use crate::model::components::muscle_constants::MuscleConstants;
+use crate::model::components::muscle_laws::ElasticConstants;
 use crate::model::internal::{InternalKind, Internals};
-use crate::model::maxwell::MaxwellBranch;
-use crate::model::system::{ElectricConstants, Fidelity, Muscle};
+use crate::model::plan::GRAVITY;
+use crate::model::system::{Fidelity, Muscle};
 use crate::model::terms::{Terms, UNRELAXED, mid, rate};
 use nalgebra::SVector;
 
@@ -26,6 +24,7 @@ const GENERAL: [&str; 2] = [
 const VISCOSITY: &str = "muscle viscosity";
 const MAXWELL_ELASTICITY: &str = "maxwell elasticity";
 const MAXWELL_VISCOSITY: &str = "maxwell viscosity";
+const OF_MASS: &str = "density of";
 /// Electric energy of muscles whose charge is given, or flows through a circuit.
 pub(in crate::model) const CHARGES: &str = "muscle charges";
 
@@ -43,7 +42,7 @@ pub(in crate::model) fn build(
                 false => lumped(&muscle.at_rest(), m, span, terms),
             }
             match terms.is_instantaneous() {
-                true => unrelaxed(muscle, span, terms),
+                true => unrelaxed(muscle, m, span, terms),
                 false => relaxation(muscle, m, span, internals, terms),
             }
         }
@@ -72,39 +71,41 @@ fn lumped(muscle: &Muscle, source: usize, span: usize, terms: &mut Terms<'_>) {
         }
         return;
     }
-    inertia(muscle, span, terms);
-    let sought = SoughtMuscle::new(muscle, source, span, terms);
+    inertia((muscle, source), span, terms);
+    let constants = constants((muscle, source), terms);
     match muscle.material.law {
         None => {
             let named = [ELASTICITY, ELECTROELASTICITY];
-            elasticity(
-                muscle,
-                (NeoHooke, named),
-                sought.as_ref(),
-                (input, span),
-                terms,
-            );
+            elasticity(constants.clone(), (NeoHooke, named), (input, span), terms);
         }
         Some(law) => {
             let is_driven = input.is_some() && muscle.material.electric.is_some();
             terms.note(GENERAL[usize::from(is_driven)], named(law), &muscle.name);
-            elasticity(
-                muscle,
-                (law, GENERAL),
-                sought.as_ref(),
-                (input, span),
-                terms,
-            );
+            let mut constants = constants.clone();
+            let law = constants.law(law);
+            elasticity(constants, (law, GENERAL), (input, span), terms);
             for term in [ELASTICITY, ELECTROELASTICITY] {
                 terms.without(term, "every lumped muscle names a law of elasticity");
             }
         }
     }
-    viscosity(muscle, sought.as_ref(), span, terms);
+    viscosity(constants, span, terms);
+}
+
+/// The constants of a muscle, by its index.
+pub(in crate::model) fn constants<'a>(
+    (muscle, index): (&'a Muscle, usize),
+    terms: &mut Terms<'_>,
+) -> MuscleConstants<'a> {
+    let read = terms.sought().read();
+    let ends = [&muscle.from, &muscle.to];
+    MuscleConstants::new((muscle, index), read, |directions| {
+        terms.moved_span(ends, directions)
+    })
 }
 
 /// A uniform rod: m/6 (|va|² + va·vb + |vb|²) = m/2 |v_mid|² + m/24 |ṙ|², its weight, and the inertia of its section.
-fn inertia(muscle: &Muscle, span: usize, terms: &mut Terms<'_>) {
+fn inertia((muscle, index): (&Muscle, usize), span: usize, terms: &mut Terms<'_>) {
     let name = &muscle.name;
     let Some(mass) = muscle.mass() else {
         terms.without(INERTIA, "no lumped muscle names a density");
@@ -112,7 +113,13 @@ fn inertia(muscle: &Muscle, span: usize, terms: &mut Terms<'_>) {
     };
     let ends = [&muscle.from, &muscle.to].map(|end| terms.point(end));
     let middle = MaterialVector::combine(0.5, &ends[0], 0.5, &ends[1]);
-    terms.weigh(&middle, mass);
+    let mut of_span = constants((muscle, index), terms);
+    let section = of_span.section();
+    let is_given = of_span.are_given();
+    match is_given {
+        true => terms.weigh(&middle, mass),
+        false => sought_weight((muscle, index), &middle, terms),
+    }
     if !terms.is_of_motion() {
         for term in [INERTIA, SECTION] {
             terms.without(term, "a state of rest has no inertia");
@@ -120,22 +127,51 @@ fn inertia(muscle: &Muscle, span: usize, terms: &mut Terms<'_>) {
         return;
     }
     let middle = terms.vector(middle);
-    terms.collect(INERTIA, "density of", name, Mass::point(middle, mass));
-    terms.collect(INERTIA, "density of", name, Mass::point(span, mass / 12.0));
-    if !muscle.section_inertia {
-        return terms.without(SECTION, "no muscle with a density names section_inertia");
+    if is_given {
+        terms.collect(INERTIA, OF_MASS, name, Mass::point(middle, mass));
+        terms.collect(INERTIA, OF_MASS, name, Mass::point(span, mass / 12.0));
+    } else {
+        let constants = of_middle((muscle, index), terms);
+        for (mut constants, vector, factor) in [
+            (constants, middle, 1.0),
+            (of_span.clone(), span, 1.0 / 12.0),
+        ] {
+            if let Some(mass) = constants.mass(factor) {
+                let element = constants.element(mass, [rate(vector)], []);
+                terms.add_kinetic_law((INERTIA, OF_MASS), name, element);
+            }
+        }
     }
-    let [x, y] = muscle.cross_section;
-    let energy = SectionInertia {
-        length: muscle.length(),
-        moment: mass * (x * x + y * y) / 192.0,
-    };
-    let element = Element {
-        energy,
-        vectors: [mid(span), rate(span)],
-        scalars: [],
-    };
-    terms.add_kinetic(SECTION, "density and section_inertia of", name, element);
+    match section.filter(|_| muscle.section_inertia) {
+        None => terms.without(SECTION, "no muscle with a density names section_inertia"),
+        Some(section) => {
+            let element = of_span.element(section, [mid(span), rate(span)], []);
+            terms.add_kinetic_law((SECTION, "density and section_inertia of"), name, element);
+        }
+    }
+}
+
+/// The constants of a muscle whose elements read the vector of its middle.
+fn of_middle<'a>(
+    (muscle, index): (&'a Muscle, usize),
+    terms: &mut Terms<'_>,
+) -> MuscleConstants<'a> {
+    let read = terms.sought().read();
+    MuscleConstants::new((muscle, index), read, |[from, to]| {
+        let from = terms.direction(&muscle.from, &from);
+        let to = terms.direction(&muscle.to, &to);
+        terms.vector(MaterialVector::combine(0.5, &from, 0.5, &to))
+    })
+}
+
+/// Adds the weight of a muscle whose mass is sought, or whose ends are, where there is gravity.
+fn sought_weight(of: (&Muscle, usize), middle: &MaterialVector, terms: &mut Terms<'_>) {
+    let mut constants = of_middle(of, terms);
+    if let Some(weight) = constants.weight(terms) {
+        let middle = terms.vector(middle.clone());
+        let element = constants.element(weight, [mid(middle)], []);
+        terms.add_law((GRAVITY, "gravity of"), "the scene", element);
+    }
 }
 
 /// A law as the reason for a term.
@@ -148,34 +184,10 @@ fn named(law: ElasticLaw) -> &'static str {
     }
 }
 
-pub(in crate::model) fn elastic<L>(muscle: &Muscle, law: L) -> ElasticCell<L> {
-    ElasticCell {
-        length: muscle.length(),
-        volume: muscle.volume(),
-        shear_modulus: muscle.material.shear_modulus,
-        law,
-    }
-}
-
-pub(in crate::model) fn dielectric<L>(
-    muscle: &Muscle,
-    electric: ElectricConstants,
-    law: L,
-) -> DielectricCell<L> {
-    DielectricCell {
-        elastic: elastic(muscle, law),
-        c1: electric.c1,
-        c2: electric.c2,
-        permittivity: electric.permittivity,
-        layer: muscle.layer_thickness,
-    }
-}
-
 /// Capacitance of a lumped muscle; none of a muscle of finite elements, or without electric constants.
 pub fn capacitance(muscle: &Muscle) -> Option<Capacitance> {
-    let electric = muscle.material.electric?;
-    let cell = dielectric(muscle, electric, NeoHooke);
-    (muscle.fidelity == Fidelity::Lumped).then_some(Capacitance { cell })
+    let law = MuscleConstants::given(muscle).capacitance()?;
+    (muscle.fidelity == Fidelity::Lumped).then(|| law.formula(&[]))
 }
 
 /// Force in N with which a lumped muscle pulls its ends together, at a span r with its rate, a voltage between the electrodes, and the
@@ -186,77 +198,59 @@ pub(in crate::model) fn tension(
     voltage: Option<f64>,
     viscous: impl Iterator<Item = f64>,
 ) -> f64 {
+    let mut of = MuscleConstants::given(muscle);
     let mut force = match muscle.material.law {
         None => potential_force((muscle, NeoHooke), r, voltage),
-        Some(law) => potential_force((muscle, law), r, voltage),
+        Some(law) => potential_force((muscle, law.map(|_, &c| c.into())), r, voltage),
     };
-    for (constants, z) in muscle.material.maxwell.list().iter().zip(viscous) {
-        let energy = branch_cell(muscle, constants);
-        force += first_force(&energy, [r.x, r.y, r.z, z, 0.0, 0.0]);
+    let branches = muscle.material.maxwell.list().iter().enumerate();
+    for ((branch, constants), z) in branches.zip(viscous) {
+        let law = of.branch_spring(branch, constants);
+        force += first_force(&law, [r.x, r.y, r.z, z, 0.0, 0.0]);
     }
     if let Some(viscosity) = muscle.material.viscosity {
         // A virtual work: its force is that on the muscle.
         let v = rate;
         let arguments = [0.0, 0.0, 0.0, r.x, r.y, r.z, v.x, v.y, v.z];
-        force -= first_force(&viscous_cell(muscle, viscosity), arguments);
+        force -= first_force(&of.viscous(viscosity), arguments);
     }
     force.dot(r) / r.norm()
 }
 
 /// Elastic force and that of a voltage, by a law of elasticity.
-fn potential_force<L: Elasticity>(
+fn potential_force<L: ElasticConstants>(
     (muscle, law): (&Muscle, L),
     r: &Vector,
     voltage: Option<f64>,
 ) -> Vector {
+    let mut of = MuscleConstants::given(muscle);
     match (muscle.material.electric, voltage) {
-        (Some(electric), Some(v)) => {
-            first_force(&dielectric(muscle, electric, law), [r.x, r.y, r.z, v])
-        }
-        _ => first_force(&elastic(muscle, law), [r.x, r.y, r.z]),
+        (Some(electric), Some(v)) => first_force(&of.driven(electric, law), [r.x, r.y, r.z, v]),
+        _ => first_force(&of.elastic(law), [r.x, r.y, r.z]),
     }
 }
 
-/// Derivative of an energy by its first vector.
-fn first_force<E: Energy<M>, const M: usize>(energy: &E, arguments: [f64; M]) -> Vector {
+/// Derivative of the formula of a law by its first vector.
+fn first_force<L: Law<M>, const M: usize>(law: &L, arguments: [f64; M]) -> Vector {
+    let energy = law.formula::<f64>(&[]);
     let local = energy.at::<1>(&SVector::from(arguments), &SVector::zeros());
     local.plain::<1>().force(0)
 }
 
-pub(in crate::model) fn viscous_cell(muscle: &Muscle, viscosity: f64) -> ViscousCell {
-    ViscousCell {
-        coefficient: 1.5 * viscosity * muscle.volume(),
-    }
-}
-
-pub(in crate::model) fn branch_cell(muscle: &Muscle, constants: &MaxwellBranch) -> MaxwellCell {
-    MaxwellCell {
-        length: muscle.length(),
-        volume: muscle.volume(),
-        shear_modulus: constants.shear_modulus,
-    }
-}
-
-fn elasticity<L: Elasticity>(
-    muscle: &Muscle,
+fn elasticity<L: ElasticConstants>(
+    mut constants: MuscleConstants<'_>,
     (law, [elasticity, electroelasticity]): (L, [&'static str; 2]),
-    sought: Option<&SoughtMuscle<'_>>,
     (input, span): (Option<usize>, usize),
     terms: &mut Terms<'_>,
 ) {
+    let muscle = constants.muscle();
     let (vectors, name) = ([mid(span)], &muscle.name);
     match (muscle.material.electric, input) {
         (Some(electric), Some(voltage)) => {
-            let element = Element {
-                energy: dielectric(muscle, electric, law),
-                vectors,
-                scalars: [voltage],
-            };
+            let law = constants.driven(electric, law);
+            let element = constants.element(law, vectors, [voltage]);
             let why = "electric constants and a voltage of";
-            let named = (electroelasticity, why);
-            if !sought.is_some_and(|sought| sought.energy(input, named, terms)) {
-                terms.add(electroelasticity, why, name, element);
-            }
+            terms.add_law((electroelasticity, why), name, element);
             terms.without(elasticity, "every lumped muscle takes a voltage");
         }
         (electric, _) => {
@@ -265,14 +259,9 @@ fn elasticity<L: Elasticity>(
                 Some(_) => "0 V all the time at",
                 None => "no electric constants of",
             };
-            let element = Element {
-                energy: elastic(muscle, law),
-                vectors,
-                scalars: [],
-            };
-            if !sought.is_some_and(|sought| sought.energy(None, (elasticity, why), terms)) {
-                terms.add(elasticity, why, name, element);
-            }
+            let law = constants.elastic(law);
+            let element = constants.element(law, vectors, []);
+            terms.add_law((elasticity, why), name, element);
             terms.without(
                 electroelasticity,
                 "no lumped muscle takes a voltage other than 0",
@@ -281,49 +270,32 @@ fn elasticity<L: Elasticity>(
     }
 }
 
-fn viscosity(
-    muscle: &Muscle,
-    sought: Option<&SoughtMuscle<'_>>,
-    span: usize,
-    terms: &mut Terms<'_>,
-) {
+fn viscosity(mut constants: MuscleConstants<'_>, span: usize, terms: &mut Terms<'_>) {
+    let muscle = constants.muscle();
     match muscle.material.viscosity {
         _ if !terms.is_of_motion() => {
             terms.without(VISCOSITY, "a state of rest dissipates nothing");
         }
         None => terms.without(VISCOSITY, "no lumped muscle names a viscosity"),
         Some(viscosity) => {
-            let element = Element {
-                energy: viscous_cell(muscle, viscosity),
-                vectors: [mid(span), mid(span), rate(span)],
-                scalars: [],
-            };
-            let named = (VISCOSITY, "viscosity of");
-            if !sought.is_some_and(|sought| sought.viscosity(viscosity, named, terms)) {
-                terms.add(VISCOSITY, "viscosity of", &muscle.name, element);
-            }
+            let law = constants.viscous(viscosity);
+            let element = constants.element(law, [mid(span), mid(span), rate(span)], []);
+            terms.add_law((VISCOSITY, "viscosity of"), &muscle.name, element);
         }
     }
 }
 
 /// Springs of Maxwell branches that have no stress in the reference configuration.
-fn unrelaxed(muscle: &Muscle, span: usize, terms: &mut Terms<'_>) {
+fn unrelaxed(muscle: &Muscle, index: usize, span: usize, terms: &mut Terms<'_>) {
     if terms.is_immobile(&[muscle.from, muscle.to]) {
         return;
     }
-    for constants in muscle.material.maxwell.list() {
-        let energy = ElasticCell {
-            length: (muscle.to.at - muscle.from.at).norm(),
-            volume: muscle.volume(),
-            shear_modulus: constants.shear_modulus,
-            law: NeoHooke,
-        };
-        let element = Element {
-            energy,
-            vectors: [mid(span)],
-            scalars: [],
-        };
-        terms.add(MAXWELL_ELASTICITY, UNRELAXED, &muscle.name, element);
+    let known = constants((muscle, index), terms);
+    for (branch, of) in muscle.material.maxwell.list().iter().enumerate() {
+        let mut constants = known.clone();
+        let law = constants.unrelaxed_spring(branch, of);
+        let element = constants.element(law, [mid(span)], []);
+        terms.add_law((MAXWELL_ELASTICITY, UNRELAXED), &muscle.name, element);
     }
 }
 
@@ -335,7 +307,8 @@ fn relaxation(
     internals: &Internals,
     terms: &mut Terms<'_>,
 ) {
-    for (branch, constants) in muscle.material.maxwell.list().iter().enumerate() {
+    let why = "Maxwell branches of";
+    for (branch, of) in muscle.material.maxwell.list().iter().enumerate() {
         let kind = InternalKind::Branch {
             muscle: index,
             branch,
@@ -344,24 +317,14 @@ fn relaxation(
             continue;
         };
         let viscous = terms.vector(viscous);
-        let why = "Maxwell branches of";
-        let element = Element {
-            energy: branch_cell(muscle, constants),
-            vectors: [mid(span), mid(viscous)],
-            scalars: [],
-        };
-        terms.add::<_, 6, 2, 0>(MAXWELL_ELASTICITY, why, &muscle.name, element);
-        let damper = CoordinateDamper {
-            coefficient: 3.0
-                * constants.relaxation_time
-                * constants.shear_modulus
-                * muscle.volume(),
-        };
-        let element = Element {
-            energy: damper,
-            vectors: [mid(viscous), rate(viscous)],
-            scalars: [],
-        };
-        terms.add::<_, 6, 2, 0>(MAXWELL_VISCOSITY, why, &muscle.name, element);
+        let known = constants((muscle, index), terms);
+        let mut constants = known.clone();
+        let law = constants.branch_spring(branch, of);
+        let element = constants.element(law, [mid(span), mid(viscous)], []);
+        terms.add_law((MAXWELL_ELASTICITY, why), &muscle.name, element);
+        let mut constants = known.still();
+        let law = constants.branch_damper(branch, of);
+        let element = constants.element(law, [mid(viscous), rate(viscous)], []);
+        terms.add_law((MAXWELL_VISCOSITY, why), &muscle.name, element);
     }
 }

@@ -1,12 +1,13 @@
 //! A spring with or without a damper between two points.
 
-use crate::energy::{Affine, LinearSpring, SoughtSpanDamper, SoughtSpring, SpanDamper};
-use crate::functional::{Element, SoughtElement};
+use crate::energy::{Affine, LinearSpring, SpanDamper};
+use crate::functional::Law;
+use crate::math::Number;
 use crate::model::attachment::Attachment;
 use crate::model::component::Component;
 use crate::model::components::kind::Kind;
 use crate::model::constant::Constant;
-use crate::model::sought::{Arguments, Sought};
+use crate::model::sought::Read;
 use crate::model::system_error::{SystemError, positive, require};
 use crate::model::terms::{Terms, mid, rate};
 use nalgebra::Vector3;
@@ -31,16 +32,41 @@ pub struct Spring {
 const ELASTICITY: &str = "spring elasticity";
 const DAMPING: &str = "spring damping";
 
+/// Elasticity of a spring.
+#[derive(Clone)]
+struct Elasticity {
+    stiffness: Affine,
+    length: Affine,
+}
+
+impl Law<3> for Elasticity {
+    type Formula<T: Number> = LinearSpring<T>;
+
+    fn formula<T: Number>(&self, parameters: &[T]) -> LinearSpring<T> {
+        LinearSpring {
+            stiffness: self.stiffness.at(parameters),
+            length: self.length.at(parameters),
+        }
+    }
+}
+
+/// Damping of a spring.
+#[derive(Clone)]
+struct Damping(Affine);
+
+impl Law<9> for Damping {
+    type Formula<T: Number> = SpanDamper<T>;
+
+    fn formula<T: Number>(&self, parameters: &[T]) -> SpanDamper<T> {
+        SpanDamper {
+            coefficient: self.0.at(parameters),
+        }
+    }
+}
+
 impl Spring {
     fn length(&self) -> f64 {
         (self.to.at - self.from.at).norm()
-    }
-
-    fn energy(&self) -> Option<LinearSpring> {
-        self.stiffness.map(|stiffness| LinearSpring {
-            stiffness,
-            length: self.rest_length,
-        })
     }
 
     /// Makes the terms; `index` is its place among the springs of the system, constants of which can be sought.
@@ -51,93 +77,38 @@ impl Spring {
             }
             return;
         };
-        let sought = index.map(|index| (terms.sought(), index));
-        match self.energy() {
-            Some(energy) => self.add_energy(energy, span, sought.as_ref(), terms),
+        let mut nothing = match index {
+            Some(_) => terms.sought().read(),
+            None => Read::nothing(),
+        };
+        let index = index.unwrap_or_default();
+        let end = |end, axis| Constant::SpringEnd(index, end, axis);
+        nothing.moves(0, end, |ends| {
+            terms.moved_span([&self.from, &self.to], ends)
+        });
+        let name = &self.name;
+        match self.stiffness {
+            Some(stiffness) => {
+                let mut read = nothing.clone();
+                let law = Elasticity {
+                    stiffness: read.constant(Constant::SpringStiffness(index), stiffness),
+                    length: read.constant(Constant::SpringLength(index), self.rest_length),
+                };
+                let element = read.element(law, [mid(span)], []);
+                terms.add_law((ELASTICITY, "stiffness of"), name, element);
+            }
             None => terms.without(ELASTICITY, "no spring that moves names a stiffness"),
         }
         match self.damping {
-            Some(coefficient) if terms.is_of_motion() => {
-                self.add_damping(coefficient, span, sought.as_ref(), terms);
+            Some(damping) if terms.is_of_motion() => {
+                let mut read = nothing;
+                let law = Damping(read.constant(Constant::SpringDamping(index), damping));
+                let element = read.element(law, [mid(span), mid(span), rate(span)], []);
+                terms.add_law((DAMPING, "damping of"), name, element);
             }
             Some(_) => terms.without(DAMPING, "a state of rest dissipates nothing"),
             None => terms.without(DAMPING, "no spring that moves names a damping"),
         }
-    }
-
-    fn add_energy(
-        &self,
-        energy: LinearSpring,
-        span: usize,
-        sought: Option<&(Sought, usize)>,
-        terms: &mut Terms<'_>,
-    ) {
-        let (why, name) = ("stiffness of", &self.name);
-        let mut arguments = Arguments::new(3);
-        let mut constant = |constant: fn(usize) -> Constant, value: f64| {
-            sought_constant(sought, constant, value, &mut arguments)
-        };
-        let sought = SoughtSpring {
-            stiffness: constant(Constant::SpringStiffness, energy.stiffness),
-            length: constant(Constant::SpringLength, energy.length),
-        };
-        if arguments.count() > 0 {
-            let element = sought_element(sought, span, arguments);
-            return terms.add_sought::<_, 5, 1, 1>(ELASTICITY, why, name, element);
-        }
-        let element = Element {
-            energy,
-            vectors: [mid(span)],
-            scalars: [],
-        };
-        terms.add(ELASTICITY, why, name, element);
-    }
-
-    fn add_damping(
-        &self,
-        coefficient: f64,
-        span: usize,
-        sought: Option<&(Sought, usize)>,
-        terms: &mut Terms<'_>,
-    ) {
-        let (why, name) = ("damping of", &self.name);
-        let mut arguments = Arguments::new(9);
-        let constant = Constant::SpringDamping;
-        let sought = SoughtSpanDamper {
-            coefficient: sought_constant(sought, constant, coefficient, &mut arguments),
-        };
-        if arguments.count() > 0 {
-            let element = sought_element(sought, span, arguments);
-            return terms.add_sought::<_, 10, 3, 1>(DAMPING, why, name, element);
-        }
-        let element = Element {
-            energy: SpanDamper { coefficient },
-            vectors: [mid(span), mid(span), rate(span)],
-            scalars: [],
-        };
-        terms.add(DAMPING, why, name, element);
-    }
-}
-
-/// A constant of a spring as a function of the arguments.
-fn sought_constant(
-    sought: Option<&(Sought, usize)>,
-    constant: fn(usize) -> Constant,
-    value: f64,
-    arguments: &mut Arguments,
-) -> Affine {
-    match sought {
-        Some((sought, index)) => sought.constant(constant(*index), value, arguments),
-        None => value.into(),
-    }
-}
-
-fn sought_element<E>(energy: E, span: usize, arguments: Arguments) -> SoughtElement<E, 1> {
-    SoughtElement {
-        energy,
-        span,
-        moves: Vec::new(),
-        scalars: arguments.scalars(),
     }
 }
 

@@ -5,6 +5,8 @@ use crate::functional::Path;
 use crate::model::attachment::Attachment;
 use crate::model::component::Component;
 use crate::model::components::kind::Kind;
+use crate::model::constant::Constant;
+use crate::model::sought::Read;
 use crate::model::system_error::{SystemError, positive, require};
 use crate::model::terms::Terms;
 use nalgebra::Vector3;
@@ -42,6 +44,33 @@ impl Tendon {
         }
     }
 
+    /// Makes the term; `index` is its place among the tendons of the system, constants of which are read.
+    fn add(&self, mut read: Read, index: usize, terms: &mut Terms<'_>) {
+        let mut length = read.constant(Constant::TendonLength(index), self.rest_length);
+        let mut spans = Vec::new();
+        for pair in self.through.windows(2) {
+            match terms.span(&pair[0], &pair[1]) {
+                Some(span) => spans.push(span),
+                // What never changes its length leaves the rest to the others.
+                None => length.value -= (pair[1].at - pair[0].at).norm(),
+            }
+        }
+        if spans.is_empty() {
+            return terms.without(ELASTICITY, "no tendon that moves");
+        }
+        let energy = Cable {
+            stiffness: read.constant(Constant::TendonStiffness(index), self.stiffness),
+            length,
+            smoothing: self.smoothing,
+        };
+        let path = Path {
+            energy,
+            spans,
+            parameters: read.scalars(),
+        };
+        terms.add_path(ELASTICITY, "stiffness of", &self.name, path);
+    }
+
     fn length(&self) -> f64 {
         path_length(self.through.iter().map(|point| point.at))
     }
@@ -54,6 +83,10 @@ impl Kind for Tendon {
 
     fn name_mut(&mut self) -> &mut String {
         &mut self.name
+    }
+
+    fn build_at(&self, index: usize, terms: &mut Terms<'_>) {
+        self.add(terms.sought().read(), index, terms);
     }
 }
 
@@ -90,24 +123,7 @@ impl Component for Tendon {
     }
 
     fn build(&self, terms: &mut Terms<'_>) {
-        let mut energy = self.energy();
-        let mut spans = Vec::new();
-        for pair in self.through.windows(2) {
-            match terms.span(&pair[0], &pair[1]) {
-                Some(span) => spans.push(span),
-                // What never changes its length leaves the rest to the others.
-                None => energy.length -= (pair[1].at - pair[0].at).norm(),
-            }
-        }
-        match spans.is_empty() {
-            true => terms.without(ELASTICITY, "no tendon that moves"),
-            false => terms.add_path(
-                ELASTICITY,
-                "stiffness of",
-                &self.name,
-                Path { energy, spans },
-            ),
-        }
+        self.add(Read::nothing(), 0, terms);
     }
 
     fn columns(&self) -> Vec<(&'static str, &'static str)> {

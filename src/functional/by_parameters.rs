@@ -1,0 +1,122 @@
+//! Derivatives of an element by sought parameters, and by the arguments of the element from those by the arguments of its formula.
+
+use crate::functional::law::{LawElement, MOST_PARAMETERS, Move};
+use crate::math::{Derivatives, HyperDual, Matrix, Number, Vector};
+use nalgebra::{SVector, Vector3};
+
+/// Values of the parameters of an element, as many as it has.
+pub(super) type Values<T> = [T; MOST_PARAMETERS];
+
+/// First and second derivatives by parameters.
+pub(super) struct ByParameters<const NV: usize, const NS: usize> {
+    pub(super) rows: Values<f64>,
+    pub(super) columns: Values<[Vector; NV]>,
+    pub(super) mixed: Values<[f64; NS]>,
+    pub(super) entries: Values<Values<f64>>,
+}
+
+impl<const NV: usize, const NS: usize> Default for ByParameters<NV, NS> {
+    fn default() -> Self {
+        Self {
+            rows: [0.0; MOST_PARAMETERS],
+            columns: [[Vector::zeros(); NV]; MOST_PARAMETERS],
+            mixed: [[0.0; NS]; MOST_PARAMETERS],
+            entries: [[0.0; MOST_PARAMETERS]; MOST_PARAMETERS],
+        }
+    }
+}
+
+/// Derivatives by the arguments of an element from those by the arguments of its formula, or rates from rates.
+pub(super) struct OfElement<'a, D, L, const NV: usize, const NS: usize> {
+    pub(super) element: &'a LawElement<L, NV, NS>,
+    pub(super) values: &'a Values<f64>,
+    /// Number of vectors of the formula.
+    pub(super) base: usize,
+    /// Says which vectors of the formula have mixed second derivatives.
+    pub(super) couples: fn(usize, usize) -> bool,
+    pub(super) formula: D,
+    pub(super) by: &'a ByParameters<NV, NS>,
+}
+
+impl<D: Derivatives, L, const NV: usize, const NS: usize> OfElement<'_, D, L, NV, NS> {
+    /// Argument of the formula that argument `i` of the element enters, the factor, and the parameter that is the factor.
+    fn argument(&self, i: usize) -> (usize, f64, Option<usize>) {
+        let vectors = self.base + self.element.moves.len();
+        let (reading, a) = (i / vectors, i % vectors);
+        match a.checked_sub(self.base) {
+            None => (reading * self.base + a, 1.0, None),
+            Some(moved) => {
+                let Move {
+                    of, parameter, at, ..
+                } = self.element.moves[moved];
+                let factor = self.values[parameter] - at;
+                (reading * self.base + of, factor, Some(parameter))
+            }
+        }
+    }
+}
+
+impl<D: Derivatives, L, const NV: usize, const NS: usize> Derivatives
+    for OfElement<'_, D, L, NV, NS>
+{
+    fn force(&self, i: usize) -> Vector {
+        let (argument, factor, _) = self.argument(i);
+        self.formula.force(argument) * factor
+    }
+
+    fn row(&self, s: usize) -> f64 {
+        match s.checked_sub(NS) {
+            None => self.formula.row(s),
+            Some(a) => self.by.rows[a],
+        }
+    }
+
+    fn block(&self, i: usize, j: usize) -> Matrix {
+        let ((i, c, _), (j, d, _)) = (self.argument(i), self.argument(j));
+        match (self.couples)(i, j) {
+            true => self.formula.block(i, j) * (c * d),
+            false => Matrix::zeros(),
+        }
+    }
+
+    fn column(&self, i: usize, s: usize) -> Vector {
+        let (argument, factor, own) = self.argument(i);
+        match s.checked_sub(NS) {
+            None => self.formula.column(argument, s) * factor,
+            Some(a) if own == Some(a) => {
+                self.by.columns[a][argument] * factor + self.formula.force(argument)
+            }
+            Some(a) => self.by.columns[a][argument] * factor,
+        }
+    }
+
+    fn entry(&self, s: usize, t: usize) -> f64 {
+        match (s.checked_sub(NS), t.checked_sub(NS)) {
+            (None, None) => self.formula.entry(s, t),
+            (Some(a), None) => self.by.mixed[a][t],
+            (None, Some(b)) => self.by.mixed[b][s],
+            (Some(a), Some(b)) => self.by.entries[a.max(b)][a.min(b)],
+        }
+    }
+}
+
+/// ∇E·w.
+pub(super) fn contraction<
+    D: Derivatives<HyperDual>,
+    const NV: usize,
+    const NS: usize,
+    const M: usize,
+>(
+    d: &D,
+    w: &SVector<HyperDual, M>,
+) -> HyperDual {
+    let mut sum = HyperDual::of(0.0);
+    for i in 0..NV {
+        let along: Vector3<HyperDual> = w.fixed_rows::<3>(3 * i).into();
+        sum += d.force(i).dot(&along);
+    }
+    for s in 0..NS {
+        sum += d.row(s) * w[3 * NV + s];
+    }
+    sum
+}

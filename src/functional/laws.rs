@@ -1,0 +1,331 @@
+//! Elements of a formula whose constants are functions of sought parameters, some of which move the points that it reads.
+//!
+//! The formula is that of elements without parameters, over [`HyperDual`] numbers where derivatives by parameters are asked for. Parameters π have
+//! no equation, hence no direction, so that three derivatives are shared out. With the contraction D = ∇E·w,
+//!
+//! ```text
+//! ∂²D/∂x∂x    the plain formula, third order, as where nothing is sought
+//! ∂²D/∂x∂π    ∂/∂π of ∇²E w: the formula with a seeded parameter, second order
+//! ∂²D/∂π∂π    ∂²/∂π∂π of ∇E·w: the formula with two seeded parameters, first order
+//! ```
+//!
+//! A parameter that moves a point changes the vectors r that the formula reads: `r = r₀ + Σ c_a e_a` with the factors c_a = π_a − π_a⁰ and
+//! material vectors e_a, which are arguments of the element like r₀.
+
+use crate::energy::Energy;
+use crate::functional::by_parameters::{ByParameters, OfElement, Values, contraction};
+use crate::functional::law::{Law, LawElement, MOST_PARAMETERS, Move};
+use crate::functional::{Kernel, Order, Sample, Scatter, VectorArg};
+use crate::math::{Derivatives, HyperDual, Local, Number, Vector};
+use nalgebra::{SVector, Vector3};
+use std::fmt;
+use std::marker::PhantomData;
+
+/// Elements of one law of `M = 3 NV + NS` arguments.
+pub struct Laws<L, const M: usize, const NV: usize, const NS: usize>(PhantomData<L>);
+
+impl<L, const M: usize, const NV: usize, const NS: usize> fmt::Debug for Laws<L, M, NV, NS> {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        write!(f, "formulas of {M} arguments with sought parameters")
+    }
+}
+
+/// The formula over plain numbers.
+type Plain<L, const M: usize> = <L as Law<M>>::Formula<f64>;
+
+impl<L: Law<M>, const M: usize, const NV: usize, const NS: usize> Laws<L, M, NV, NS> {
+    /// Number of vectors of the formula.
+    const BASE: usize = NV / Plain::<L, M>::READINGS;
+    /// Leading arguments of the formula that are virtual displacements.
+    const VIRTUAL: usize = Plain::<L, M>::VIRTUAL;
+
+    fn values(element: &LawElement<L, NV, NS>, sample: &Sample<'_>) -> Values<f64> {
+        let mut values = [0.0; MOST_PARAMETERS];
+        for (value, &scalar) in values.iter_mut().zip(&element.parameters) {
+            *value = sample.scalars[scalar];
+        }
+        values
+    }
+
+    /// Vectors of the formula at parameters, each of what `read` reads.
+    #[inline(always)]
+    fn moved<T: Number>(
+        element: &LawElement<L, NV, NS>,
+        parameters: &[T],
+        read: impl Fn(usize, VectorArg) -> Vector,
+    ) -> SVector<T, M> {
+        let mut p = SVector::<T, M>::zeros();
+        for (i, &arg) in element.vectors.iter().enumerate() {
+            let mut value: Vector3<T> = read(i, arg).map(T::of);
+            for one in element.moves.iter().filter(|one| one.of == i % Self::BASE) {
+                let VectorArg { stencil, .. } = arg;
+                let vector = one.vector;
+                let along = read(i, VectorArg { vector, stencil });
+                value += along.map(T::of) * parameters[one.parameter].shifted(-one.at);
+            }
+            p.fixed_rows_mut::<3>(3 * i).copy_from(&value);
+        }
+        p
+    }
+
+    /// Arguments of the formula at a sample; a virtual displacement takes the direction.
+    #[inline(always)]
+    fn point<T: Number>(
+        element: &LawElement<L, NV, NS>,
+        order: Order,
+        sample: &Sample<'_>,
+        parameters: &[T],
+    ) -> SVector<T, M> {
+        const { assert!(M == 3 * NV + NS && Self::VIRTUAL.is_multiple_of(Self::BASE)) };
+        let mut p = Self::moved(element, parameters, |i, arg| {
+            match (i < Self::VIRTUAL, order) {
+                (false, _) => arg.read(sample.h, sample.vectors),
+                (true, Order::Third) => arg.read(sample.h, sample.along),
+                (true, _) => Vector::zeros(),
+            }
+        });
+        for (i, &s) in element.scalars.iter().enumerate() {
+            p[3 * NV + i] = T::of(sample.scalars[s]);
+        }
+        p
+    }
+
+    /// Rates of the arguments along the direction, where the formula is no virtual work.
+    #[inline(always)]
+    fn direction<T: Number>(
+        element: &LawElement<L, NV, NS>,
+        sample: &Sample<'_>,
+        parameters: &[T],
+    ) -> SVector<T, M> {
+        let read = |_, arg: VectorArg| arg.read(sample.h, sample.along);
+        let mut w = Self::moved(element, parameters, read);
+        for (i, &s) in element.scalars.iter().enumerate() {
+            w[3 * NV + i] = T::of(sample.scalars_along[s]);
+        }
+        w
+    }
+
+    /// Fills derivatives by parameter `a`, and where the contraction is asked for, those of it.
+    fn first<const ORDER: usize>(
+        element: &LawElement<L, NV, NS>,
+        (order, sample): (Order, &Sample<'_>),
+        (a, seeded): (usize, &[HyperDual]),
+        plain: &mut ByParameters<NV, NS>,
+        along: Option<&mut ByParameters<NV, NS>>,
+    ) {
+        let p = Self::point(element, order, sample, seeded);
+        let local = element
+            .law
+            .formula(seeded)
+            .at::<ORDER>(&p, &SVector::zeros());
+        let d = local.plain::<NV>();
+        plain.rows[a] = local.value().a;
+        plain.entries[a][a] = local.value().ab;
+        for i in 0..NV {
+            plain.columns[a][i] = d.force(i).map(|x| x.a);
+        }
+        for s in 0..NS {
+            plain.mixed[a][s] = d.row(s).a;
+        }
+        let Some(along) = along else {
+            return;
+        };
+        let w = Self::direction(element, sample, seeded);
+        let vector = |i: usize| -> Vector3<HyperDual> { w.fixed_rows::<3>(3 * i).into() };
+        for i in 0..NV {
+            let mut turned = Vector3::<HyperDual>::zeros();
+            for j in (0..NV).filter(|&j| Plain::<L, M>::couples(i, j)) {
+                turned += d.block(i, j) * vector(j);
+            }
+            for s in 0..NS {
+                turned += d.column(i, s) * w[3 * NV + s];
+            }
+            along.columns[a][i] = turned.map(|x| x.a);
+        }
+        for s in 0..NS {
+            let mut turned = HyperDual::of(0.0);
+            for i in 0..NV {
+                turned += d.column(i, s).dot(&vector(i));
+            }
+            for t in 0..NS {
+                turned += d.entry(s, t) * w[3 * NV + t];
+            }
+            along.mixed[a][s] = turned.a;
+        }
+        let value = contraction::<_, NV, NS, M>(&d, &w);
+        along.rows[a] = value.a;
+        along.entries[a][a] = value.ab;
+    }
+
+    /// Fills the mixed second derivative by parameters `a` and `b`, and where it is asked for, that of the contraction.
+    fn second(
+        element: &LawElement<L, NV, NS>,
+        (order, sample): (Order, &Sample<'_>),
+        ((a, b), seeded): ((usize, usize), &[HyperDual]),
+        plain: &mut ByParameters<NV, NS>,
+        along: Option<&mut ByParameters<NV, NS>>,
+    ) {
+        let p = Self::point(element, order, sample, seeded);
+        let local = element.law.formula(seeded).at::<1>(&p, &SVector::zeros());
+        plain.entries[a][b] = local.value().ab;
+        if let Some(along) = along {
+            let w = Self::direction(element, sample, seeded);
+            let value = contraction::<_, NV, NS, M>(&local.plain::<NV>(), &w);
+            along.entries[a][b] = value.ab;
+        }
+    }
+
+    /// Fills all derivatives by parameters.
+    fn by_parameters(
+        element: &LawElement<L, NV, NS>,
+        (order, sample): (Order, &Sample<'_>),
+        values: &Values<f64>,
+        plain: &mut ByParameters<NV, NS>,
+        mut along: Option<&mut ByParameters<NV, NS>>,
+    ) {
+        let count = element.parameters.len();
+        let constants = values.map(HyperDual::of);
+        let at = (order, sample);
+        for a in 0..count {
+            let mut seeded = constants;
+            seeded[a].a = 1.0;
+            for b in (0..a).filter(|_| order > Order::Gradient) {
+                seeded[b].b = 1.0;
+                Self::second(
+                    element,
+                    at,
+                    ((a, b), &seeded[..count]),
+                    plain,
+                    along.as_deref_mut(),
+                );
+                seeded[b].b = 0.0;
+            }
+            seeded[a].b = 1.0;
+            let seeds = (a, &seeded[..count]);
+            match along.as_deref_mut() {
+                None => Self::first::<1>(element, at, seeds, plain, None),
+                along => Self::first::<2>(element, at, seeds, plain, along),
+            }
+        }
+    }
+
+    fn of_element<'a, D: Derivatives>(
+        (element, values): (&'a LawElement<L, NV, NS>, &'a Values<f64>),
+        formula: D,
+        by: &'a ByParameters<NV, NS>,
+    ) -> OfElement<'a, D, L, NV, NS> {
+        OfElement {
+            element,
+            values,
+            base: Self::BASE,
+            couples: Plain::<L, M>::couples,
+            formula,
+            by,
+        }
+    }
+
+    fn hand<const ORDER: usize>(
+        element: &LawElement<L, NV, NS>,
+        order: Order,
+        sample: &Sample<'_>,
+        to: &mut impl Scatter,
+    ) {
+        let values = Self::values(element, sample);
+        let parameters = &values[..element.parameters.len()];
+        let is_contracted = order == Order::Third && Self::VIRTUAL == 0;
+        let p = Self::point(element, order, sample, parameters);
+        let w = match is_contracted {
+            true => Self::direction(element, sample, parameters),
+            false => SVector::zeros(),
+        };
+        let local = element.law.formula(parameters).at::<ORDER>(&p, &w);
+        let (mut by, mut by_along) = (ByParameters::default(), None);
+        if is_contracted {
+            by_along = Some(ByParameters::default());
+        }
+        let at = (order, sample);
+        Self::by_parameters(element, at, &values, &mut by, by_along.as_mut());
+        let plain = Self::of_element((element, &values), local.plain::<NV>(), &by);
+        to.plain(&plain);
+        match &by_along {
+            Some(by) => {
+                let along = Self::of_element((element, &values), local.along::<NV>(), by);
+                to.along(&plain, &along);
+            }
+            // At δx = w the virtual work itself is the contraction with the costates.
+            None if order == Order::Third => to.along(&plain, &plain),
+            None => {}
+        }
+    }
+}
+
+impl<L: Law<M>, const M: usize, const NV: usize, const NS: usize> Kernel for Laws<L, M, NV, NS> {
+    type Element = LawElement<L, NV, NS>;
+    type Storage = ();
+
+    const VIRTUAL: usize = Plain::<L, M>::VIRTUAL;
+    const APPLIED: bool = Plain::<L, M>::APPLIED;
+    const READINGS: usize = Plain::<L, M>::READINGS;
+    const ISOTROPIC: bool = Plain::<L, M>::ISOTROPIC;
+
+    fn virtuals(element: &Self::Element) -> usize {
+        Self::VIRTUAL / Self::BASE * Self::vectors(element)
+    }
+
+    fn vectors(element: &Self::Element) -> usize {
+        Self::BASE + element.moves.len()
+    }
+
+    fn scalars(element: &Self::Element) -> usize {
+        NS + element.parameters.len()
+    }
+
+    fn vector(element: &Self::Element, i: usize) -> VectorArg {
+        let vectors = Self::vectors(element);
+        let (reading, a) = (i / vectors, i % vectors);
+        match a.checked_sub(Self::BASE) {
+            None => element.vectors[reading * Self::BASE + a],
+            Some(moved) => {
+                let Move { of, vector, .. } = element.moves[moved];
+                let VectorArg { stencil, .. } = element.vectors[reading * Self::BASE + of];
+                VectorArg { vector, stencil }
+            }
+        }
+    }
+
+    fn scalar(element: &Self::Element, s: usize) -> Option<(usize, f64)> {
+        let scalar = match s.checked_sub(NS) {
+            None => element.scalars[s],
+            Some(a) => element.parameters[a],
+        };
+        Some((scalar, 1.0))
+    }
+
+    fn energy(element: &Self::Element, sample: &Sample<'_>) -> f64 {
+        let values = Self::values(element, sample);
+        let parameters = &values[..element.parameters.len()];
+        let mut p = Self::moved(element, parameters, |i, arg| match i < Self::VIRTUAL {
+            true => sample.vectors[1][arg.vector] - sample.vectors[0][arg.vector],
+            false => arg.read(sample.h, sample.vectors),
+        });
+        for (i, &s) in element.scalars.iter().enumerate() {
+            p[3 * NV + i] = sample.scalars[s];
+        }
+        let formula = element.law.formula(parameters);
+        formula.at::<1>(&p, &SVector::zeros()).value()
+    }
+
+    fn derivatives<S: Scatter>(
+        element: &Self::Element,
+        order: Order,
+        sample: &Sample<'_>,
+        (): &(),
+        to: &mut S,
+    ) {
+        match (order, Self::VIRTUAL) {
+            (Order::Gradient, _) => Self::hand::<1>(element, order, sample, to),
+            (Order::Third, 0) => Self::hand::<3>(element, order, sample, to),
+            _ => Self::hand::<2>(element, order, sample, to),
+        }
+    }
+}

@@ -1,0 +1,39 @@
+//! Weights and kinetic energies of masses, some of which are sought.
+
+use crate::energy::{Affine, Gravity, KineticEnergy};
+use crate::functional::Law;
+use crate::math::Number;
+use nalgebra::Vector3;
+
+/// Weight of a mass m in g under a gravity g in mm/ms².
+#[derive(Clone)]
+pub(super) struct Weight {
+    pub(super) mass: Affine,
+    pub(super) gravity: [Affine; 3],
+}
+
+impl Law<3> for Weight {
+    type Formula<T: Number> = Gravity<T>;
+
+    fn formula<T: Number>(&self, parameters: &[T]) -> Gravity<T> {
+        let mass = self.mass.at(parameters);
+        let [x, y, z] = self.gravity.each_ref().map(|g| g.at(parameters) * mass);
+        Gravity {
+            weight: Vector3::new(x, y, z),
+        }
+    }
+}
+
+/// Kinetic energy of a mass in g.
+#[derive(Clone)]
+pub(super) struct Moving(pub(super) Affine);
+
+impl Law<3> for Moving {
+    type Formula<T: Number> = KineticEnergy<T>;
+
+    fn formula<T: Number>(&self, parameters: &[T]) -> KineticEnergy<T> {
+        KineticEnergy {
+            mass: self.0.at(parameters),
+        }
+    }
+}
