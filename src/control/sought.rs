@@ -37,7 +37,7 @@ fn reads(quantity: &Quantity, parameter: &Parameter) -> bool {
         let mut constants = parameter.constants.iter().map(|c| c.constant);
         constants.any(|c| c.muscle() == Some(muscle) && is_read(c))
     };
-    let is_length = |c: Constant| matches!(c, Constant::End(..));
+    let is_length = |c: Constant| matches!(c, Constant::End(..) | Constant::Prestretch(_));
     match *quantity {
         Quantity::SquaredStretch { muscle } => follows(muscle, is_length),
         Quantity::SquaredField {
@@ -48,6 +48,14 @@ fn reads(quantity: &Quantity, parameter: &Parameter) -> bool {
             follows(muscle, is_length) || follows(muscle, is_layer)
         }
         Quantity::Tension { muscle, .. } => follows(muscle, |_| true),
+        Quantity::SourceCurrent { muscle, .. } | Quantity::SourcePower { muscle, .. }
+            if parameter
+                .constants
+                .iter()
+                .any(|c| c.constant == Constant::Resistance(muscle)) =>
+        {
+            true
+        }
         Quantity::ChargedField { muscle, .. }
         | Quantity::SourceCurrent { muscle, .. }
         | Quantity::SourcePower { muscle, .. }

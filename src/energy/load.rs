@@ -1,20 +1,20 @@
 //! Loads: forces and charges whose size is an input.
 
 use crate::energy::Energy;
-use crate::math::{Jet, Vector};
-use nalgebra::SVector;
+use crate::math::{Jet, Number};
+use nalgebra::{SVector, Vector3};
 
 /// Potential energy `−F w·x` of a load F that exerts the force F w, which does not turn, arguments: place x, load F.
 ///
 /// With w = (1, 0, 0) it is that of a generalised force F on a coordinate, which stands in the first component of a vector.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct DeadLoad {
+pub struct DeadLoad<T = f64> {
     /// Force w of a load of one.
-    pub force: Vector,
+    pub force: Vector3<T>,
 }
 
-impl Energy<4> for DeadLoad {
-    type Local<const ORDER: usize> = Jet<4, ORDER>;
+impl<T: Number> Energy<4, T> for DeadLoad<T> {
+    type Local<const ORDER: usize> = Jet<4, ORDER, T>;
 
     const DEGREE: usize = 2;
 
@@ -22,7 +22,7 @@ impl Energy<4> for DeadLoad {
         false
     }
 
-    fn at<const ORDER: usize>(&self, p: &SVector<f64, 4>, w: &SVector<f64, 4>) -> Jet<4, ORDER> {
+    fn at<const ORDER: usize>(&self, p: &SVector<T, 4>, w: &SVector<T, 4>) -> Jet<4, ORDER, T> {
         let component = |i: usize| Jet::argument(i, p, w) * -self.force[i];
         (component(0) + component(1) + component(2)) * Jet::argument(3, p, w)
     }

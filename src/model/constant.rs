@@ -45,6 +45,12 @@ pub enum Constant {
     Layer(usize),
     /// A component, 0 to 2, of the place of an end of a muscle, 0 for `from` and 1 for `to`, in mm.
     End(usize, usize, usize),
+    /// Stretch before a muscle was glued between its ends.
+    Prestretch(usize),
+    /// Resistance in series with the electrodes of a source in Ω.
+    Resistance(usize),
+    /// Resistance parallel to the electrodes of a source in Ω.
+    Leakage(usize),
     /// Stiffness of a spring in N/mm.
     SpringStiffness(usize),
     /// Damping of a spring in N ms/mm.
@@ -138,6 +144,7 @@ impl Constant {
             Self::Material(MaterialOf::Muscle(m), _)
             | Self::Side(m, _)
             | Self::Layer(m)
+            | Self::Prestretch(m)
             | Self::End(m, ..) => Some(m),
             _ => None,
         }
@@ -145,7 +152,7 @@ impl Constant {
 
     /// Returns true if it is a length of the geometry of a muscle at rest, on which its mass and stretch depend.
     pub fn is_shape(self) -> bool {
-        matches!(self, Self::Side(..) | Self::End(..))
+        matches!(self, Self::Side(..) | Self::End(..) | Self::Prestretch(_))
     }
 
     /// Returns true if it must be positive to have a meaning.

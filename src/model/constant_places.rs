@@ -1,7 +1,8 @@
 //! Places of constants in a system, and their units.
 
+use crate::model::circuit::Circuit;
 use crate::model::constant::{Constant, MaterialConstant, MaterialOf, SiUnit};
-use crate::model::system::{JointKind, Material, System};
+use crate::model::system::{JointKind, Material, Potential, System};
 
 impl MaterialConstant {
     /// Its place in a material; none where the material does not have it, or has it in another form.
@@ -77,11 +78,30 @@ impl MaterialOf {
     }
 }
 
+/// The circuit between a source and its electrodes, of a muscle or of a block.
+fn circuit(system: &mut System, source: usize) -> Option<&mut Circuit> {
+    let muscles = system.muscles.len();
+    if source < muscles {
+        return system.muscles[source].circuit.as_mut();
+    }
+    let electrodes = system
+        .solids
+        .iter_mut()
+        .flat_map(|solid| &mut solid.electrodes);
+    let mut own = electrodes.filter(|electrode| {
+        matches!(electrode.potential, Potential::Driven { source: s, .. } if s == source)
+    });
+    own.find_map(|electrode| electrode.circuit.as_mut())
+}
+
 impl Constant {
     /// Its place in the system; none of a constant that a part lacks, or that is no number of its own.
     fn place(self, system: &mut System) -> Option<&mut f64> {
-        if let Self::Material(of, constant) = self {
-            return constant.place(of.material(system)?);
+        match self {
+            Self::Material(of, constant) => return constant.place(of.material(system)?),
+            Self::Resistance(source) => return circuit(system, source)?.resistance.as_mut(),
+            Self::Leakage(source) => return circuit(system, source)?.leakage.as_mut(),
+            _ => {}
         }
         let muscles = &mut system.muscles;
         let (springs, tendons) = (
@@ -93,6 +113,7 @@ impl Constant {
             Self::Layer(m) => Some(&mut muscles.get_mut(m)?.layer_thickness),
             Self::End(m, 0, axis) => muscles.get_mut(m)?.from.at.get_mut(axis),
             Self::End(m, _, axis) => muscles.get_mut(m)?.to.at.get_mut(axis),
+            Self::Prestretch(m) => muscles.get_mut(m)?.prestretch.as_mut(),
             Self::SpringStiffness(s) => springs.get_mut(s)?.stiffness.as_mut(),
             Self::SpringDamping(s) => springs.get_mut(s)?.damping.as_mut(),
             Self::SpringLength(s) => Some(&mut springs.get_mut(s)?.rest_length),
@@ -112,7 +133,7 @@ impl Constant {
             Self::Mass(b) => Some(&mut system.bodies.get_mut(b)?.mass),
             Self::Inertia(b, axis) => system.bodies.get_mut(b)?.inertia.get_mut(axis),
             Self::Gravity(axis) => system.gravity.as_mut()?.get_mut(axis),
-            Self::PeakVoltage | Self::Material(..) => None,
+            Self::PeakVoltage | Self::Material(..) | Self::Resistance(_) | Self::Leakage(_) => None,
         }
     }
 
@@ -135,6 +156,7 @@ impl Constant {
             let of = MaterialOf::Muscle(m);
             all.extend(MaterialConstant::all(&muscle.material).map(|c| Self::Material(of, c)));
             all.extend([Self::Side(m, 0), Self::Side(m, 1), Self::Layer(m)]);
+            all.push(Self::Prestretch(m));
             all.extend((0..6).map(|i| Self::End(m, i / 3, i % 3)));
         }
         for (b, solid) in system.solids.iter().enumerate() {
@@ -143,6 +165,8 @@ impl Constant {
                 all.extend(MaterialConstant::all(material).map(|c| Self::Material(of, c)));
             }
         }
+        let sources = 0..system.sources().len();
+        all.extend(sources.flat_map(|s| [Self::Resistance(s), Self::Leakage(s)]));
         for s in 0..system.components.springs.len() {
             all.extend([
                 Self::SpringStiffness(s),
@@ -181,6 +205,8 @@ impl Constant {
             | Self::TendonLength(_) => ("m", 1e-3),
             Self::PeakVoltage => ("V", 1.0),
             Self::SpringStiffness(_) | Self::TendonStiffness(_) => ("N/m", 1e3),
+            Self::Prestretch(_) => ("", 1.0),
+            Self::Resistance(_) | Self::Leakage(_) => ("Ohm", 1.0),
             Self::SpringDamping(_) => ("N s/m", 1.0),
             Self::JointDamping(j) if is_angle(j) => ("N m s/rad", 1e-6),
             Self::JointDamping(_) => ("N s/m", 1.0),
@@ -223,7 +249,9 @@ impl Constant {
             Self::Material(MaterialOf::Muscle(m), _)
             | Self::Side(m, _)
             | Self::Layer(m)
+            | Self::Prestretch(m)
             | Self::End(m, ..) => ("muscle", m, system.muscles.len()),
+            Self::Resistance(s) | Self::Leakage(s) => ("source", s, system.sources().len()),
             Self::Gravity(_) | Self::PeakVoltage => return None,
         };
         (index >= count).then(|| format!("there is no {what} {index}, only {count}"))
@@ -239,6 +267,9 @@ impl Constant {
             }
             Self::JointDamping(_) => "the joint has no damping",
             Self::JointStiffness(_) | Self::JointRest(_) => "the joint has no stiffness",
+            Self::Prestretch(_) => "the muscle has no prestretch",
+            Self::Resistance(_) => "the source has no resistor",
+            Self::Leakage(_) => "the source has no leak",
             Self::Gravity(_) => "the scene has no gravity",
             _ => "there is no such constant",
         }

@@ -5,7 +5,7 @@ use super::systems::{blocks, branched, tied};
 use nalgebra::Vector3;
 use proboscis::control::problem::{Control, Duration, Guess, Voltages};
 use proboscis::model::system::{
-    Attachment, ElasticLaw, JointSpring, Material, MaxwellBranch, MaxwellBranches, System,
+    Attachment, Circuit, ElasticLaw, JointSpring, Material, MaxwellBranch, MaxwellBranches, System,
 };
 use proboscis::model::{Constant, Follower, MaterialConstant, Parameter};
 
@@ -185,6 +185,22 @@ pub fn elements() -> (System, Vec<Parameter>) {
             20.0,
         ),
         parameter("viscosity", &of_both(M::Viscosity), 0.9),
+    ];
+    (system, parameters)
+}
+
+/// The robot with a muscle behind a resistor with a leak and one that is prestretched, and constants of both.
+pub fn wired() -> (System, Vec<Parameter>) {
+    let mut system = robot();
+    system.muscles[1].circuit = Some(Circuit {
+        resistance: Some(2e7),
+        leakage: Some(9e7),
+    });
+    system.muscles[2].prestretch = Some(1.2);
+    let parameters = vec![
+        parameter("resistance", &[(Constant::Resistance(1), 1.0)], 2e7),
+        parameter("leak", &[(Constant::Leakage(1), 1.0)], 9e7),
+        parameter("prestretch", &[(Constant::Prestretch(2), 1.0)], 1.2),
     ];
     (system, parameters)
 }

@@ -4,7 +4,7 @@
 use crate::action::not_trivial;
 use crate::common::cases::joints;
 use crate::common::random::Random;
-use crate::common::sought::{elements, problem, robot};
+use crate::common::sought::{elements, problem, robot, wired};
 use proboscis::control::problem::{BoundaryState, Control, Voltages};
 use proboscis::control::{BoundaryConditions, Column, InitialGuess, Transcription, guess};
 use proboscis::model::{Coordinates, Model, Role, System, with_parameters};
@@ -33,7 +33,15 @@ fn variants() -> Vec<(System, Control)> {
         ..problem(&system, is_free, None)
     });
     let of_elements = of_elements.map(|control| (system.clone(), control));
-    cases.map(of).chain(of_elements).collect()
+    let (system, parameters) = wired();
+    let of_circuits = [false, true].map(|is_free| Control {
+        parameters: parameters.clone(),
+        goal: BoundaryState::Free,
+        ..problem(&system, is_free, None)
+    });
+    let of_circuits = of_circuits.map(|control| (system.clone(), control));
+    let others = of_elements.into_iter().chain(of_circuits);
+    cases.map(of).chain(others).collect()
 }
 
 /// Does `check` with the program of each variant, at a point beside its start.

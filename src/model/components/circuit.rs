@@ -1,13 +1,16 @@
 //! Terms of circuits: a charge that flows through a resistor, which with a leak is that of the equivalent source.
 
-use crate::energy::{CoordinateDamper, DeadLoad};
-use crate::functional::Element;
-use crate::math::Vector;
+use crate::energy::{Affine, CoordinateDamper, DeadLoad};
+use crate::functional::{Element, Law};
+use crate::math::{Number, Vector};
 use crate::model::components::muscle::{CHARGES, capacitance, constants};
 use crate::model::components::muscle_laws::Flowing;
+use crate::model::constant::Constant;
 use crate::model::internal::{InternalKind, Internals};
+use crate::model::sought::Read;
 use crate::model::system::Muscle;
 use crate::model::terms::{Terms, mid, rate};
+use nalgebra::Vector3;
 
 pub(super) const SOURCES: &str = "circuit sources";
 const RESISTANCE: &str = "circuit resistance";
@@ -41,8 +44,8 @@ fn circuit(
     internals: &Internals,
     terms: &mut Terms<'_>,
 ) {
-    let (Some(resistance), Some(capacitance)) = (muscle.inner_resistance(), capacitance(muscle))
-    else {
+    let series = muscle.circuit.and_then(|circuit| circuit.resistance);
+    let Some(capacitance) = capacitance(muscle).filter(|_| series.is_some()) else {
         return;
     };
     let Some(charge) = internals.vector(InternalKind::Charge(index)) else {
@@ -55,11 +58,111 @@ fn circuit(
         let element = constants.element(law, [mid(span), mid(charge)], []);
         terms.add_law((CHARGES, WHY), &muscle.name, element);
     }
-    if let Some(voltage) = terms.input(index) {
-        let drive = (muscle.voltage_at_rest(unit), voltage);
-        add_voltage(SOURCES, &muscle.name, charge, drive, terms);
+    if let (Some(circuit), Some(series)) = (&muscle.circuit, series) {
+        let wires = Wires::new((index, series), circuit.leakage, unit);
+        add_circuit(&muscle.name, (charge, terms.input(index)), wires, terms);
     }
-    add_resistor(&muscle.name, charge, resistance * unit * unit, terms);
+}
+
+/// A resistor in series with electrodes, and a leak parallel to them, whose resistances may be sought.
+#[derive(Clone)]
+pub(super) struct Wires {
+    source: usize,
+    series: f64,
+    leakage: Option<f64>,
+    /// Unit of the charge in mC.
+    unit: f64,
+}
+
+impl Wires {
+    /// Those of the circuit of a source with a resistance in series in Ω.
+    pub(super) fn new((source, series): (usize, f64), leakage: Option<f64>, unit: f64) -> Self {
+        Self {
+            source,
+            series,
+            leakage,
+            unit,
+        }
+    }
+
+    fn read(&self, read: &mut Read) -> Resistances {
+        let leakage = self.leakage;
+        Resistances {
+            series: read.constant(Constant::Resistance(self.source), self.series),
+            leakage: leakage.map(|r| read.constant(Constant::Leakage(self.source), r)),
+            unit: self.unit,
+        }
+    }
+}
+
+/// The resistances in Ω.
+#[derive(Clone)]
+struct Resistances {
+    series: Affine,
+    leakage: Option<Affine>,
+    unit: f64,
+}
+
+impl Resistances {
+    /// Resistance in series, and the part of the voltage that the leak leaves at rest.
+    fn at<T: Number>(&self, parameters: &[T]) -> [T; 2] {
+        let series = self.series.at(parameters);
+        let leakage = self.leakage.as_ref().map(|leak| leak.at(parameters));
+        [
+            series,
+            leakage.map_or(T::one(), |leak| leak.over(series + leak)),
+        ]
+    }
+}
+
+/// Energy of a charge in its unit at the voltage of the source that stands for source, resistor and leak.
+#[derive(Clone)]
+struct Supply(Resistances);
+
+impl Law<4> for Supply {
+    type Formula<T: Number> = DeadLoad<T>;
+
+    fn formula<T: Number>(&self, parameters: &[T]) -> DeadLoad<T> {
+        let [_, part] = self.0.at(parameters);
+        let none = T::zero();
+        DeadLoad {
+            force: Vector3::new(part.scaled(self.0.unit), none, none),
+        }
+    }
+}
+
+/// Resistor of that source, as the damper of a charge in its unit.
+#[derive(Clone)]
+struct Resistor(Resistances);
+
+impl Law<6> for Resistor {
+    type Formula<T: Number> = CoordinateDamper<T>;
+
+    fn formula<T: Number>(&self, parameters: &[T]) -> CoordinateDamper<T> {
+        let ([series, part], unit) = (self.0.at(parameters), self.0.unit);
+        CoordinateDamper {
+            coefficient: (part * series).scaled(unit).scaled(unit),
+        }
+    }
+}
+
+/// Adds source and resistor of a charge in its unit, from the scalar of the voltage of the source.
+pub(super) fn add_circuit(
+    name: &str,
+    (charge, voltage): (usize, Option<usize>),
+    wires: Wires,
+    terms: &mut Terms<'_>,
+) {
+    if let Some(voltage) = voltage {
+        let mut read = terms.sought().read();
+        let law = Supply(wires.read(&mut read));
+        let element = read.element(law, [mid(charge)], [voltage]);
+        terms.add_law((SOURCES, WHY), name, element);
+    }
+    let mut read = terms.sought().read();
+    let law = Resistor(wires.read(&mut read));
+    let element = read.element(law, [mid(charge), rate(charge)], []);
+    terms.add_law((RESISTANCE, WHY), name, element);
 }
 
 /// Adds the energy of a charge in its unit at a voltage, which is a scalar of the interval times a factor.
@@ -78,14 +181,4 @@ pub(super) fn add_voltage(
         scalars: [voltage],
     };
     terms.add::<_, 4, 1, 1>(term, WHY, name, element);
-}
-
-/// Adds a resistor as the damper of a charge in its unit.
-pub(super) fn add_resistor(name: &str, charge: usize, coefficient: f64, terms: &mut Terms<'_>) {
-    let element = Element {
-        energy: CoordinateDamper { coefficient },
-        vectors: [mid(charge), rate(charge)],
-        scalars: [],
-    };
-    terms.add::<_, 6, 2, 0>(RESISTANCE, WHY, name, element);
 }

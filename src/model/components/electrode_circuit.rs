@@ -3,7 +3,7 @@
 //! With the energy W(x, φ) of the elements, the charge Q of the electrodes, the voltage V of the source and its resistance R, the energy
 //! `W + φ Q − V Q` and the damper `−R Q̇ δQ` give `Q = −∂W/∂φ` and `R Q̇ + φ = V`; a leak makes V and R those of the equivalent source.
 
-use crate::model::components::circuit::{SOURCES, add_resistor, add_voltage};
+use crate::model::components::circuit::{Wires, add_circuit, add_voltage};
 use crate::model::electrode_circuits::ElectrodeCircuit;
 use crate::model::internal::{InternalKind, Internals};
 use crate::model::terms::Terms;
@@ -22,13 +22,16 @@ pub(in crate::model) fn build(
         };
         let (charge, unit) = (terms.vector(charge), of.unit_of_charge);
         let (potential, volts) = of.potential;
-        let held = (-(unit * volts), potential);
-        let driven = (unit * of.circuit.division().unwrap_or(1.0), of.input);
-        for (term, voltage) in [(CHARGES, held), (SOURCES, driven)] {
-            add_voltage(term, &of.name, charge, voltage, terms);
-        }
-        let resistance = of.circuit.inner_resistance().unwrap_or(0.0);
-        add_resistor(&of.name, charge, resistance * unit * unit, terms);
+        add_voltage(
+            CHARGES,
+            &of.name,
+            charge,
+            (-(unit * volts), potential),
+            terms,
+        );
+        let series = of.circuit.resistance.unwrap_or(0.0);
+        let wires = Wires::new((of.source, series), of.circuit.leakage, unit);
+        add_circuit(&of.name, (charge, Some(of.input)), wires, terms);
     }
     terms.without(
         CHARGES,

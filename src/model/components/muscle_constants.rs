@@ -52,7 +52,9 @@ impl<'a> MuscleConstants<'a> {
         });
         let shape = Shape {
             span,
-            prestretch: muscle.prestretch,
+            prestretch: muscle
+                .prestretch
+                .map(|stretch| read.constant(Constant::Prestretch(index), stretch)),
             sides,
         };
         Self {

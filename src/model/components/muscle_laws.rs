@@ -42,7 +42,7 @@ pub(in crate::model) struct Shape {
     /// Components of the span in the reference configuration in mm.
     pub(super) span: [Affine; 3],
     /// Stretch of the span.
-    pub(super) prestretch: Option<f64>,
+    pub(super) prestretch: Option<Affine>,
     /// Sides of the cross-section in mm.
     pub(super) sides: [Affine; 2],
 }
@@ -57,8 +57,10 @@ impl Shape {
     /// Rest length L₀ in mm.
     fn length<T: Number>(&self, parameters: &[T]) -> T {
         let distance = self.distance(parameters);
-        self.prestretch
-            .map_or(distance, |stretch| distance.over(T::of(stretch)))
+        match &self.prestretch {
+            None => distance,
+            Some(stretch) => distance.over(stretch.at(parameters)),
+        }
     }
 
     /// Rest volume V₀ in mm³.
