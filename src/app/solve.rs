@@ -101,15 +101,15 @@ fn solve(
     };
     let progress = Progress::of_solve(request.progress);
     let mut observe = |intervals: usize, iterate: &Iterate<'_>| {
-        let Iterate { report, model, .. } = *iterate;
+        let Iterate { report, models, .. } = *iterate;
         progress.iteration(intervals, report);
         observer(Reached::Iteration(intervals, report));
         if report.iteration == 0 {
             unfinished.begin();
         }
-        let (kept, motion) = iterate.before.unwrap_or((report, iterate.motion));
+        let (kept, motions) = iterate.before.unwrap_or((report, iterate.motions));
         unfinished.consider(kept.primal_infeasibility, |path| {
-            solution_file::replace(path, model, &motion())
+            solution_file::replace(path, models[0], &motions(0))
         });
         unfinished.flow()
     };

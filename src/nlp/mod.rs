@@ -1,6 +1,7 @@
 //! A nonlinear program: minimise f(x) subject to g_L ≤ g(x) ≤ g_U and x_L ≤ x ≤ x_U.
 
 pub mod differences;
+pub mod joined;
 
 /// Lower and upper bounds, one of each per entry; ±∞ where there is none.
 #[derive(Clone, Debug, Default, PartialEq)]

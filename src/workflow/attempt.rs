@@ -4,11 +4,12 @@ use std::ops::ControlFlow;
 use std::time::Instant;
 
 use crate::control::problem::Control;
-use crate::control::{BoundaryConditions, Costates, Solution, Transcription};
+use crate::control::{BoundaryConditions, Carried, Costates, Solution, Transcription};
 use crate::dynamics::{DiscreteTrajectory, reversed_muscle};
 use crate::ipopt::{Options, Solver, SolverResult, interrupt};
 use crate::model::{Model, System};
 use crate::nlp::Nlp;
+use crate::nlp::joined::{Joined, Places};
 use crate::workflow::active::{Active, active};
 use crate::workflow::error::WorkflowError;
 use crate::workflow::found_hold;
@@ -19,16 +20,31 @@ use crate::workflow::optimum::{Optimum, Shortest, SolveLimits};
 use crate::workflow::ordering::ordering;
 use crate::workflow::period;
 use crate::workflow::phase::phase;
-use crate::workflow::prepare::{Counted, Prepared, prepare};
+use crate::workflow::prepare::Counted;
+use crate::workflow::prepare_together::{MotionAsked, PreparedTogether, prepare_together};
 use crate::workflow::resimulate::{Resimulation, resimulate};
 use crate::workflow::resolve::{resolve, with_found};
-use crate::workflow::solves::Solves;
+use crate::workflow::solves::{ProgramMotion, Solves, multipliers_of};
 use crate::workflow::violations::{Violation, violations};
 
 /// Maximum number of rows named when a problem has no solution.
 const NAMED: usize = 5;
 /// A row that the solver could not make smaller than this does not hold.
 const HOLDS: f64 = 1e-6;
+
+/// Motions that were found by one program.
+pub(crate) struct FoundTogether {
+    /// The motions, each with its part of the result of the solver.
+    pub(crate) optima: Vec<Optimum>,
+    pub(crate) whole: WholeProgram,
+}
+
+impl FoundTogether {
+    /// Returns true if all of them meet the discrete equations.
+    pub(crate) fn meets_equations(&self) -> bool {
+        self.optima.iter().all(Optimum::meets_equations)
+    }
+}
 
 /// Solves a control problem from one start: an `earlier` solution where one is given, or the guess of the problem; `observer` sees every iterate.
 ///
@@ -41,29 +57,67 @@ pub(crate) fn attempt(
     allowed: SolveLimits,
     observer: &mut dyn FnMut(&Iterate<'_>) -> ControlFlow<()>,
 ) -> Result<Optimum, WorkflowError> {
+    let alone = MotionAsked {
+        name: "",
+        system,
+        control,
+        earlier,
+    };
+    let mut found = attempt_together(&[alone], &[], allowed, observer)?;
+    Ok(found.optima.remove(0))
+}
+
+/// Solves the control problems of several motions as one program, in which sought constants and the named inputs are shared; the options of the solver
+/// are those of the first one.
+///
+/// # Errors
+/// As of [`attempt`].
+///
+/// # Panics
+/// If there is no motion.
+pub(crate) fn attempt_together(
+    asked: &[MotionAsked<'_>],
+    shared_inputs: &[String],
+    allowed: SolveLimits,
+    observer: &mut dyn FnMut(&Iterate<'_>) -> ControlFlow<()>,
+) -> Result<FoundTogether, WorkflowError> {
     let began = Instant::now();
     let watch = interrupt::watch(allowed.seconds);
     phase("building the model, finding start and goal");
-    let (model, boundary) = resolve(system, control)?;
+    let resolved = asked
+        .iter()
+        .map(|one| resolve(one.system, one.control).map_err(|error| error.of_motion(one.name)));
+    let resolved: Vec<(Model, BoundaryConditions)> = resolved.collect::<Result<_, _>>()?;
     phase("building the program");
-    let Prepared {
+    let motions = asked
+        .iter()
+        .zip(&resolved)
+        .map(|(one, (model, boundary))| ProgramMotion {
+            name: one.name,
+            model,
+            boundary,
+            control: one.control,
+        });
+    let motions: Vec<ProgramMotion<'_>> = motions.collect();
+    let PreparedTogether {
         program,
+        shared,
         point,
         start,
         carried,
-    } = prepare(&model, &boundary, control, earlier, Counted::Yes)?;
+    } = prepare_together(&motions, asked, shared_inputs, Counted::Yes)?;
     let setup = began.elapsed().as_secs_f64();
+    let first = motions[0];
     let options = Options {
         start,
         max_seconds: allowed.seconds.map(|s| (s - setup).max(0.0)),
-        ..options(&model, control, allowed)
+        ..options(first.model, first.control, allowed)
     };
     phase("ordering and first factorisation");
     tracing::info!(?start, variables = point.x.len(), "solve");
     let mut solves = Solves {
-        model: &model,
-        boundary: &boundary,
-        control,
+        motions: &motions,
+        shared: &shared,
         solver: Solver::new(program, options.clone()),
         options,
         began,
@@ -73,14 +127,46 @@ pub(crate) fn attempt(
     let solution = solves.solve(&point)?;
     let solution = solves.recentre(solution)?;
     let solution = solves.tighten(solution)?;
-    let mut program = solves.solver.into_program();
+    let program = solves.solver.into_program();
     drop(watch);
-    let discrete = program.decode(&solution.x);
-    let costates = program.costates(&solution.costates);
-    let motion = final_motion(&model, &boundary, (&discrete, costates), &solution);
-    let point = FinalPoint::new(&mut program, &solution, &model, control);
-    drop(program);
-    let (model, mut boundary, sought) = of_motion(system, control, (model, boundary), &motion)?;
+    let whole = WholeProgram::new(&program, &solution);
+    let places = program.places().clone();
+    let mut ends = Vec::new();
+    for (number, (motion, mut part)) in motions.iter().zip(program.into_parts()).enumerate() {
+        let own = part_of(&places, number, &solution, &mut part);
+        let discrete = part.decode(&own.x);
+        let costates = part.costates(&own.costates);
+        let found = final_motion(motion.model, motion.boundary, (&discrete, costates), &own);
+        let point = FinalPoint::new(&mut part, &own, motion.model, motion.control);
+        ends.push((own, discrete, found, point));
+    }
+    let all = asked.iter().zip(resolved).zip(ends).zip(carried);
+    let optima = all.map(|(((one, resolved), end), carried)| {
+        let optimum = verified_optimum(*one, resolved, end, (setup, carried));
+        optimum.map_err(|error| error.of_motion(one.name))
+    });
+    let mut optima: Vec<Optimum> = optima.collect::<Result<_, _>>()?;
+    if let [_, _, ..] = asked {
+        // A part of an objective may vanish: the gap of the whole counts.
+        optima.iter_mut().for_each(|optimum| optimum.wide = None);
+    }
+    Ok(FoundTogether { optima, whole })
+}
+
+/// The end of the last solve for one motion: its part of the result, its motion in unknowns and as it is kept, and the point of its program.
+type End = (SolverResult, DiscreteTrajectory, Solution, FinalPoint);
+
+/// A motion with its verification.
+fn verified_optimum(
+    asked: MotionAsked<'_>,
+    resolved: (Model, BoundaryConditions),
+    (solution, discrete, motion, point): End,
+    (setup, carried): (f64, Carried),
+) -> Result<Optimum, WorkflowError> {
+    let MotionAsked {
+        system, control, ..
+    } = asked;
+    let (model, mut boundary, sought) = of_motion(system, control, resolved, &motion)?;
     let verified = match solution.status.is_solved() {
         true => Verification::new(&model, &mut boundary, control, (&discrete, &motion)),
         false => Verification::default(),
@@ -111,6 +197,60 @@ pub(crate) fn attempt(
         afterwards: None,
         repeated: None,
     })
+}
+
+/// The part of a result that is of one motion; the whole of a single one.
+fn part_of(
+    places: &Places,
+    number: usize,
+    whole: &SolverResult,
+    program: &mut Transcription<'_>,
+) -> SolverResult {
+    if places.programs() == 1 {
+        return whole.clone();
+    }
+    let x = places.values_of(number, &whole.x);
+    SolverResult {
+        objective: program.objective(&x),
+        x,
+        constraints: whole.constraints[places.rows(number)].to_vec(),
+        costates: multipliers_of(places, number, &whole.costates),
+        ..whole.clone()
+    }
+}
+
+/// The program of several motions in numbers, with its result.
+#[derive(Clone, Debug)]
+pub struct WholeProgram {
+    /// The sum of the objectives.
+    pub objective: f64,
+    /// Number of variables.
+    pub variables: usize,
+    /// Number of equations and limits.
+    pub constraints: usize,
+    /// Nonzeros of the Jacobian.
+    pub jacobian_nonzeros: usize,
+    /// Nonzeros of the lower triangle of the Hessian, those of shared variables motion by motion.
+    pub hessian_nonzeros: usize,
+    /// Duality gap of the sum, in its unit.
+    pub gap: f64,
+    /// A warning that it is large compared with the sum.
+    pub(crate) wide: Option<String>,
+}
+
+impl WholeProgram {
+    fn new(program: &Joined<Transcription<'_>>, solution: &SolverResult) -> Self {
+        let gap = gap::gap(program, solution);
+        Self {
+            objective: solution.objective,
+            variables: solution.x.len(),
+            constraints: solution.constraints.len(),
+            jacobian_nonzeros: program.jacobian_structure().rows.len(),
+            hessian_nonzeros: program.hessian_structure().rows.len(),
+            gap,
+            wide: gap::warning(gap, solution, program.objective_scale()),
+        }
+    }
 }
 
 /// Options of the solver for a problem, without those of its start and its time.

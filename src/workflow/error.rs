@@ -109,6 +109,25 @@ impl WorkflowError {
         }
     }
 
+    /// The same of one of several motions: its place in the problem, where it has one, is that of the motion.
+    pub(crate) fn of_motion(self, name: &str) -> Self {
+        let within = |place: String| match place.strip_prefix("control.") {
+            Some(rest) if !name.is_empty() => format!("control.motions.{name}.{rest}"),
+            _ => place,
+        };
+        match self {
+            Self::Problem { place, reason } => Self::Problem {
+                place: within(place),
+                reason,
+            },
+            Self::NoEquilibrium { place, reason } => Self::NoEquilibrium {
+                place: within(place),
+                reason,
+            },
+            other => other,
+        }
+    }
+
     /// An option or a problem that Ipopt does not take.
     pub(crate) fn ipopt(error: &IpoptError) -> Self {
         let place = match error {

@@ -5,7 +5,6 @@
 //! near the optimum. The tolerance is relative to the size that the objective has at the guess: where the objective falls far below, as costs of a deviation
 //! do that vanishes, the gap may be as large as the objective.
 
-use crate::control::Transcription;
 use crate::ipopt::SolverResult;
 use crate::nlp::{Bounds, Nlp};
 
@@ -20,7 +19,7 @@ const LEAST: f64 = 1e-11;
 const FACTORS: [f64; 2] = [1e-4, 0.1];
 
 /// The gap of a solution in the unit of its objective.
-pub(crate) fn gap(program: &Transcription<'_>, solution: &SolverResult) -> f64 {
+pub(crate) fn gap(program: &impl Nlp, solution: &SolverResult) -> f64 {
     let (variables, rows) = (program.variables(), program.constraints());
     let multipliers = &solution.costates;
     let of_variables = |i: usize, x: f64| {
@@ -52,11 +51,7 @@ fn product(multiplier: f64, distance: f64) -> f64 {
 }
 
 /// The tolerance with which the gap of a solution becomes small relative to its objective; none where it is small, or cannot become so.
-pub(crate) fn tighter(
-    program: &Transcription<'_>,
-    solution: &SolverResult,
-    tolerance: f64,
-) -> Option<f64> {
+pub(crate) fn tighter(program: &impl Nlp, solution: &SolverResult, tolerance: f64) -> Option<f64> {
     let gap = gap(program, solution);
     let wanted = PART * solution.objective.abs();
     let counts = gap > wanted && gap * program.objective_scale() > NONE;

@@ -6,16 +6,20 @@ use crate::control::Solution;
 use crate::ipopt::Iteration;
 use crate::model::Model;
 
+/// Gives the motions of an iterate by their numbers.
+pub type IterateMotions<'a> = &'a dyn Fn(usize) -> Solution;
+
 /// An iterate of the solver.
 pub struct Iterate<'a> {
     /// Report of the solver on it.
     pub report: &'a Iteration,
-    /// The model.
-    pub model: &'a Model,
-    /// Its motion.
-    pub motion: &'a dyn Fn() -> Solution,
-    /// Report of the solver on the iterate before, and that one with its costates, with which a later solve goes on; where they are known.
-    pub before: Option<(&'a Iteration, &'a dyn Fn() -> Solution)>,
+    /// The models, one for each motion.
+    pub models: &'a [&'a Model],
+    /// Its motions.
+    pub motions: IterateMotions<'a>,
+    /// Report of the solver on the iterate before, and the motions of that one with their costates, with which a later solve goes on; where they
+    /// are known.
+    pub before: Option<(&'a Iteration, IterateMotions<'a>)>,
 }
 
 impl fmt::Debug for Iterate<'_> {

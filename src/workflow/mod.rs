@@ -2,6 +2,7 @@
 //!
 //! - `integrate`, `optimise`: a simulation, a control problem, with its result, the `optimum`; each `attempt` from one start, `prepare`d, by one of its `solves` or more; `error`: errors of tasks; `phase`: the present
 //!   phase of work; `remark`: warnings and notes.
+//! - `together`: several motions as one program, `prepare_together`, with `shared_variables`.
 //! - `grids`, `accuracy`, `estimate`: as finely as an accuracy needs.
 //! - `resimulate`: verification of an optimum, by the `distance` of motions; `refine_until_reproduced`, `verified`: finer grids where it fails, by `grid_solves`; `gap`: duality gap of its
 //!  objective; `held`, `hold_check`, `found_hold`, `afterwards`, `period`: its end; `final_values`: deviations from final costs.
@@ -46,6 +47,7 @@ pub mod parallel_map;
 pub(crate) mod period;
 pub(crate) mod phase;
 pub(crate) mod prepare;
+pub(crate) mod prepare_together;
 pub(crate) mod reasons;
 mod recentre;
 pub(crate) mod refine_until_reproduced;
@@ -54,12 +56,14 @@ pub(crate) mod repeat;
 pub(crate) mod resimulate;
 pub(crate) mod resolve;
 pub(crate) mod retry_displaced;
+mod shared_variables;
 pub(crate) mod shortest;
 mod solves;
 pub(crate) mod steps;
 pub(crate) mod stops;
 mod stopwatch;
 pub(crate) mod stretch_range;
+mod together;
 pub(crate) mod tolerance;
 pub(crate) mod tracking;
 pub(crate) mod verified;
@@ -67,6 +71,7 @@ pub(crate) mod violations;
 
 pub use active::{Active, active};
 pub use afterwards::{Afterwards, Departure};
+pub use attempt::WholeProgram;
 pub use cause::Cause;
 pub use confirmed::EstimatedError;
 pub use domain::Outside;
@@ -75,7 +80,7 @@ pub use error::WorkflowError;
 pub use final_values::FinalValue;
 pub use grids::{integrate_to, optimise_to};
 pub use integrate::{Simulated, grid, integrate, integrate_on};
-pub use iterate::Iterate;
+pub use iterate::{Iterate, IterateMotions};
 pub use motion::{solved, trajectory};
 pub use optimise::optimise;
 pub use optimum::{Optimum, Restarted, Shortest, SolveLimits};
@@ -87,6 +92,7 @@ pub use refine_until_reproduced::RefinedOptimum;
 pub use remark::{Remark, Remarks, Severity};
 pub use resimulate::{Resimulation, under_constant_voltages};
 pub use steps::{beyond, counted, divided};
+pub use together::{Together, optimise_together};
 pub use tracking::{Tracked, TrackedPath, TrackingError, followed, tracked};
 pub use verified::{ACCURACY, verified};
 pub use violations::{Violation, violations};

@@ -9,7 +9,7 @@ use crate::workflow::memory;
 use crate::workflow::resolve::interval;
 
 /// Start from an earlier solution that was resampled and has no costates.
-const RESAMPLED: Start = Start::Primal { mu_init: 1e-2 };
+pub(super) const RESAMPLED: Start = Start::Primal { mu_init: 1e-2 };
 
 /// An earlier solution that violates the equations of another grid or duration by less lies on the right bounds: smooth voltages
 /// violate them by 1e-6 to 1e-4, those that jump at other instants by 4e-4 to 4e-2.

@@ -4,11 +4,14 @@ use std::ops::ControlFlow;
 use std::time::Instant;
 
 use crate::control::problem::Control;
-use crate::control::{BoundaryConditions, Costates, Solution, Transcription};
+use crate::control::{
+    BoundaryConditions, BoundaryError, Carried, InitialGuess, Solution, Transcription,
+};
 use crate::ipopt::{
-    Iteration, Options, Reached, Solver, SolverResult, Start, StartingPoint, interrupt,
+    Iteration, Multipliers, Options, Reached, Solver, SolverResult, Start, StartingPoint, interrupt,
 };
 use crate::model::Model;
+use crate::nlp::joined::{Joined, Places, SharedVariable};
 use crate::workflow::combined::one_of_both;
 use crate::workflow::error::WorkflowError;
 use crate::workflow::gap;
@@ -24,11 +27,19 @@ const TIGHTENED: usize = 3;
 /// Iterations of a solve to a smaller tolerance.
 const AGAIN: usize = 100;
 
-/// A control problem with its program in a solver.
+/// A motion of a program.
+#[derive(Clone, Copy)]
+pub(crate) struct ProgramMotion<'m> {
+    pub(crate) name: &'m str,
+    pub(crate) model: &'m Model,
+    pub(crate) boundary: &'m BoundaryConditions,
+    pub(crate) control: &'m Control,
+}
+
+/// The program of one or several motions in a solver.
 pub(super) struct Solves<'a, 'm> {
-    pub(super) model: &'m Model,
-    pub(super) boundary: &'a BoundaryConditions,
-    pub(super) control: &'a Control,
+    pub(super) motions: &'m [ProgramMotion<'m>],
+    pub(super) shared: &'a [SharedVariable],
     /// Options of the first solve.
     pub(super) options: Options,
     /// The time from which on seconds count, and how many there are.
@@ -36,33 +47,42 @@ pub(super) struct Solves<'a, 'm> {
     pub(super) seconds: Option<f64>,
     /// Function that sees every iterate.
     pub(super) observer: &'a mut dyn FnMut(&Iterate<'_>) -> ControlFlow<()>,
-    pub(super) solver: Solver<Transcription<'m>>,
+    pub(super) solver: Solver<Joined<Transcription<'m>>>,
 }
 
 impl Solves<'_, '_> {
     /// Solves from a point.
     pub(super) fn solve(&mut self, point: &StartingPoint) -> Result<SolverResult, WorkflowError> {
-        let model = self.model;
-        let decoder = self.solver.program().decoder();
+        let program = self.solver.program();
+        let places = program.places().clone();
+        let decoders: Vec<_> = program.parts().map(Transcription::decoder).collect();
+        let models: Vec<&Model> = self.motions.iter().map(|motion| motion.model).collect();
         let observer = &mut *self.observer;
         let mut observe = |report: &Iteration, reached: &Reached<'_>| {
-            let at = |report: &Iteration, x: &[f64], costates: Option<Costates>| Solution {
-                barrier: Some(report.mu),
-                ..solved(model, &decoder.decode(x), costates)
+            let at = |number: usize, report: &Iteration, x: &[f64], whole: Option<&Multipliers>| {
+                let decoder = &decoders[number];
+                let costates =
+                    whole.map(|whole| decoder.costates(&multipliers_of(&places, number, whole)));
+                let discrete = decoder.decode(&places.values_of(number, x));
+                Solution {
+                    barrier: Some(report.mu),
+                    ..solved(models[number], &discrete, costates)
+                }
             };
-            let motion = || at(report, reached.x, None);
+            let motions = |number: usize| at(number, report, reached.x, None);
             let before = reached.before.as_ref();
             let earlier = before.map(|before| {
-                let costates = || decoder.costates(&before.multipliers());
-                move || at(before.report, before.x, Some(costates()))
+                move |number: usize| {
+                    at(number, before.report, before.x, Some(&before.multipliers()))
+                }
             });
             let earlier = earlier
                 .as_ref()
-                .map(|motion| motion as &dyn Fn() -> Solution);
+                .map(|motions| motions as &dyn Fn(usize) -> Solution);
             observer(&Iterate {
                 report,
-                model,
-                motion: &motion,
+                models: &models,
+                motions: &motions,
                 before: before.map(|before| before.report).zip(earlier),
             })
         };
@@ -76,14 +96,23 @@ impl Solves<'_, '_> {
         mut solution: SolverResult,
     ) -> Result<SolverResult, WorkflowError> {
         for _ in 0..CHARTS {
-            let far = recentred(self.model, &self.solver.program().decode(&solution.x));
-            let Some(initial) = far.filter(|_| interrupt::stop().is_none()) else {
+            let Some(initial) = self.far(&solution).filter(|_| interrupt::stop().is_none()) else {
                 break;
             };
             phase("solving again, from the state that the first solution reached");
-            let program = Transcription::of_any(self.model, self.boundary, self.control, &initial);
+            let each = self.motions.iter().zip(&initial);
+            let program = each.map(|(motion, initial)| {
+                let ProgramMotion {
+                    name,
+                    model,
+                    boundary,
+                    control,
+                } = *motion;
+                let program = Transcription::of_any(model, boundary, control, initial)?;
+                Ok::<_, BoundaryError>((name.to_owned(), program))
+            });
             // What cannot be built in the time that is left leaves the solution as it is.
-            let Ok(program) = program else {
+            let Ok(programs) = program.collect::<Result<Vec<_>, _>>() else {
                 break;
             };
             let options = Options {
@@ -91,11 +120,35 @@ impl Solves<'_, '_> {
                 start: Start::PRIMAL,
                 ..self.options.clone()
             };
-            let point = program.start(&initial);
+            let each = programs.iter().zip(&initial);
+            let points = each.map(|((_, program), initial)| program.start(initial));
+            let points: Vec<StartingPoint> = points.collect();
+            let program = Joined::new(programs, self.shared);
+            let point = joined_point(program.places(), &points);
             self.solver = Solver::new(program, options);
             solution = self.solve(&point)?;
         }
         Ok(solution)
+    }
+
+    /// The motions with charts where the bodies are, where a rotation of one of them ends far from its chart.
+    fn far(&self, solution: &SolverResult) -> Option<Vec<InitialGuess>> {
+        let program = self.solver.program();
+        let mut is_far = false;
+        let each = self.motions.iter().zip(program.parts()).enumerate();
+        let initial = each.map(|(number, (motion, part))| {
+            let discrete = part.decode(&program.places().values_of(number, &solution.x));
+            let far = recentred(motion.model, &discrete);
+            is_far |= far.is_some();
+            far.unwrap_or_else(|| InitialGuess {
+                h: discrete.times[1],
+                discrete,
+                costates: None,
+                carried: Carried::default(),
+            })
+        });
+        let initial: Vec<InitialGuess> = initial.collect();
+        is_far.then_some(initial)
     }
 
     /// Solves again to a smaller tolerance, as long as the duality gap is wide.
@@ -132,5 +185,36 @@ impl Solves<'_, '_> {
     /// Seconds that are left.
     fn left(&self) -> Option<f64> {
         seconds_left(self.seconds, self.began)
+    }
+}
+
+/// The multipliers of the program of a motion.
+pub(super) fn multipliers_of(places: &Places, number: usize, whole: &Multipliers) -> Multipliers {
+    Multipliers {
+        constraints: whole.constraints[places.rows(number)].to_vec(),
+        lower: places.multipliers_of(number, &whole.lower),
+        upper: places.multipliers_of(number, &whole.upper),
+    }
+}
+
+/// The point of several programs as one; with multipliers where all of them have some.
+pub(super) fn joined_point(places: &Places, points: &[StartingPoint]) -> StartingPoint {
+    let x: Vec<&[f64]> = points.iter().map(|point| &*point.x).collect();
+    let all = points.iter().map(|point| point.costates.as_ref());
+    let all: Option<Vec<&Multipliers>> = all.collect();
+    let of = |list: fn(&Multipliers) -> &Vec<f64>, all: &[&Multipliers]| {
+        let lists: Vec<&[f64]> = all.iter().map(|one| &**list(one)).collect();
+        places.multipliers(&lists)
+    };
+    StartingPoint {
+        x: places.values(&x),
+        costates: all.map(|all| Multipliers {
+            constraints: all
+                .iter()
+                .flat_map(|one| one.constraints.iter().copied())
+                .collect(),
+            lower: of(|one| &one.lower, &all),
+            upper: of(|one| &one.upper, &all),
+        }),
     }
 }

@@ -21,7 +21,7 @@ const AIMED: f64 = 0.7;
 const FACTORS: [f64; 2] = [1.25, 4.0];
 const UNKNOWN: f64 = 2.0;
 /// Limit of grids.
-const GRIDS: usize = 7;
+pub(super) const GRIDS: usize = 7;
 
 /// Solves a control problem on its first grid, then on finer ones, until the verification confirms that the motion under the optimal voltages
 /// deviates from the optimum by no more than a part `accuracy` of the path length.
@@ -74,14 +74,7 @@ pub fn verified(
         best.stopped = solves.stopped();
     }
     let is_short = best.meets_equations() && !is_confirmed(&best, accuracy);
-    let note = is_short.then(|| {
-        format!(
-            "the verification does not confirm an error below {} % of the path length on {} intervals{}",
-            100.0 * accuracy,
-            best.motion.intervals(),
-            why.map_or(String::new(), |why| format!(": {why}")),
-        )
-    });
+    let note = is_short.then(|| unconfirmed(&best, accuracy, why));
     Ok(RefinedOptimum {
         optimum: best,
         iterations: solves.iterations,
@@ -89,8 +82,18 @@ pub fn verified(
     })
 }
 
+/// That the accuracy is not confirmed, and why no finer grid was tried.
+pub(super) fn unconfirmed(optimum: &Optimum, accuracy: f64, why: Option<&str>) -> String {
+    format!(
+        "the verification does not confirm an error below {} % of the path length on {} intervals{}",
+        100.0 * accuracy,
+        optimum.motion.intervals(),
+        why.map_or(String::new(), |why| format!(": {why}")),
+    )
+}
+
 /// Returns true if the verification confirms an error of no more than this part of the path length.
-fn is_confirmed(optimum: &Optimum, accuracy: f64) -> bool {
+pub(super) fn is_confirmed(optimum: &Optimum, accuracy: f64) -> bool {
     let tested = optimum.resimulation.as_ref();
     tested.is_some_and(|tested| {
         let error = tested.error.unwrap_or(f64::INFINITY);
@@ -99,7 +102,7 @@ fn is_confirmed(optimum: &Optimum, accuracy: f64) -> bool {
 }
 
 /// Returns the factor of the intervals of the next grid.
-fn factor(optimum: &Optimum, accuracy: f64) -> f64 {
+pub(super) fn factor(optimum: &Optimum, accuracy: f64) -> f64 {
     let tested = optimum
         .resimulation
         .as_ref()

@@ -25,6 +25,7 @@ mod limits;
 mod loads;
 mod measured;
 mod meshes;
+mod motions;
 mod moved;
 mod optimality;
 mod peak_voltage;

@@ -1,0 +1,101 @@
+//! The program of several motions as one, and the point and the kind of start of its solver.
+
+use crate::control::problem::Control;
+use crate::control::{Carried, Solution, Transcription};
+use crate::ipopt::{Start, StartingPoint};
+use crate::model::System;
+use crate::nlp::joined::{Joined, SharedVariable};
+use crate::workflow::error::WorkflowError;
+use crate::workflow::prepare::{Counted, Prepared, RESAMPLED, prepare};
+use crate::workflow::shared_variables::shared_variables;
+use crate::workflow::solves::{ProgramMotion, joined_point};
+
+/// A motion that is asked for, alone or with others.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct MotionAsked<'a> {
+    /// Its name among several.
+    pub(crate) name: &'a str,
+    pub(crate) system: &'a System,
+    pub(crate) control: &'a Control,
+    /// The solution that it starts from, in the place of the guess of its problem.
+    pub(crate) earlier: Option<&'a Solution>,
+}
+
+/// The program of motions with the point to start from.
+pub(crate) struct PreparedTogether<'m> {
+    pub(crate) program: Joined<Transcription<'m>>,
+    pub(crate) shared: Vec<SharedVariable>,
+    pub(crate) point: StartingPoint,
+    pub(crate) start: Start,
+    /// Changes of the earlier solution of each motion.
+    pub(crate) carried: Vec<Carried>,
+}
+
+/// Guesses and programs of motions, joined.
+///
+/// # Errors
+/// As of [`prepare`], or something cannot be shared.
+pub(crate) fn prepare_together<'m>(
+    motions: &[ProgramMotion<'m>],
+    asked: &[MotionAsked<'_>],
+    shared_inputs: &[String],
+    counted: Counted,
+) -> Result<PreparedTogether<'m>, WorkflowError> {
+    let (mut programs, mut points) = (Vec::new(), Vec::new());
+    let (mut starts, mut carried) = (Vec::new(), Vec::new());
+    for (motion, one) in motions.iter().zip(asked) {
+        let ProgramMotion {
+            model,
+            boundary,
+            control,
+            ..
+        } = *motion;
+        let prepared = prepare(model, boundary, control, one.earlier, counted);
+        let prepared = prepared.map_err(|error| error.of_motion(one.name))?;
+        let Prepared {
+            program,
+            point,
+            start,
+            carried: of_earlier,
+        } = prepared;
+        programs.push((one.name.to_owned(), program));
+        points.push(point);
+        starts.push(start);
+        carried.push(of_earlier);
+    }
+    let list: Vec<&Transcription<'_>> = programs.iter().map(|(_, program)| program).collect();
+    let shared = shared_variables(&list, shared_inputs)?;
+    let program = Joined::new(programs, &shared);
+    Ok(PreparedTogether {
+        point: joined_point(program.places(), &points),
+        start: common(&starts),
+        program,
+        shared,
+        carried,
+    })
+}
+
+/// The start that suits all of these: where they differ, what is known of all of them counts.
+fn common(starts: &[Start]) -> Start {
+    let barrier = |start: &Start| match start {
+        Start::Primal { mu_init } | Start::Resumed { mu_init } => Some(*mu_init),
+        _ => None,
+    };
+    let largest = starts.iter().filter_map(barrier).fold(0.0, f64::max);
+    let all = |is: fn(&Start) -> bool| starts.iter().all(is);
+    let first = starts[0];
+    if starts.iter().all(|start| *start == first) {
+        return first;
+    }
+    match first {
+        _ if all(|start| matches!(start, Start::Resumed { .. })) => {
+            Start::Resumed { mu_init: largest }
+        }
+        _ if all(|start| matches!(start, Start::Primal { .. })) => {
+            Start::Primal { mu_init: largest }
+        }
+        _ if all(|start| matches!(start, Start::PrimalDual | Start::Centred)) => Start::Centred,
+        _ if all(|start| !matches!(start, Start::Cold | Start::Simulated)) => RESAMPLED,
+        _ => Start::Cold,
+    }
+}
