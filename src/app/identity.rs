@@ -6,7 +6,7 @@ use std::path::Path;
 
 use crate::app::content_hash::{digest, digest_of};
 use crate::app::request::CommandInput;
-use crate::control::problem::{Guess, Task};
+use crate::control::problem::{Control, Guess, Task};
 use crate::files::Loaded;
 use crate::files::solution::file_beside;
 use crate::report::origin::Origin;
@@ -65,9 +65,16 @@ impl Identity {
 
 /// Hashes of the files of an earlier solution from which a task starts.
 fn earlier(task: &Task) -> Vec<String> {
-    let Task::Control(control) = task else {
-        return Vec::new();
+    let controls: Vec<&Control> = match task {
+        Task::Control(control) => vec![control],
+        Task::Motions(motions) => motions.list.iter().map(|one| &one.control).collect(),
+        Task::Simulate(_) | Task::Equilibrium(_) => Vec::new(),
     };
+    controls.into_iter().flat_map(of_guess).collect()
+}
+
+/// Hashes of the files of the solution that a problem starts from.
+fn of_guess(control: &Control) -> Vec<String> {
     let Guess::Solution(earlier) = &control.guess else {
         return Vec::new();
     };

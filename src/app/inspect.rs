@@ -77,6 +77,11 @@ pub fn inspected(request: &CommandInput, text: Option<&str>) -> Result<Inspected
     };
     let mut found = match &loaded.task {
         Task::Control(control) => of_control(request, system, control),
+        Task::Motions(_) => Err(CommandError::Problem {
+            file: request.input.clone(),
+            place: "control.motions".to_owned(),
+            reason: "found several motions, of which each has terms and sizes of its own; expected a problem of one motion".to_owned(),
+        }),
         Task::Simulate(task) => {
             let model = Model::for_analysis(system.clone(), task.analysis(system, task.step))
                 .map_err(|error| wrong(error.into()))?;

@@ -10,7 +10,7 @@ pub(super) fn counted(count: usize, noun: &str) -> String {
 /// Key of a task in its file.
 pub(super) fn key(task: &Task) -> &'static str {
     match task {
-        Task::Control(_) => "control",
+        Task::Control(_) | Task::Motions(_) => "control",
         Task::Simulate(_) => "simulate",
         Task::Equilibrium(..) => "equilibrium",
     }

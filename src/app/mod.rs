@@ -32,6 +32,8 @@ mod left_out;
 mod length_unit_check;
 mod linear_systems;
 mod messages;
+mod motions;
+mod motions_summary;
 mod multistart;
 mod no_equilibrium;
 mod once;

@@ -13,7 +13,7 @@ pub(super) fn refuse_all_but_motions(
 ) -> Result<(), CommandError> {
     let reason = match task {
         Task::Simulate(_) => return Ok(()),
-        Task::Control(_) => format!(
+        Task::Control(_) | Task::Motions(_) => format!(
             "asks for optimal voltages, found by `{}`; a motion under given voltages is asked for by \"simulate\" in place of \"control\"",
             command(request, "solve")
         ),
@@ -28,7 +28,7 @@ pub(super) fn refuse_all_but_motions(
 /// The refusal of a problem that asks for no state of rest.
 pub(super) fn no_equilibrium(request: &CommandInput, task: &Task) -> CommandError {
     let (asks, word) = match task {
-        Task::Control(_) => ("optimal voltages", "solve"),
+        Task::Control(_) | Task::Motions(_) => ("optimal voltages", "solve"),
         _ => ("a motion", "simulate"),
     };
     let reason = format!(

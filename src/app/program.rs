@@ -9,8 +9,10 @@ use crate::app::messages::key;
 use crate::app::task::read;
 use crate::control::problem::Task;
 use crate::nlp::Nlp;
-use crate::workflow::prepare::{Counted, Prepared, prepare};
-use crate::workflow::resolve::resolve;
+use crate::workflow::prepare::Counted;
+use crate::workflow::prepare_together::{
+    MotionAsked, PreparedTogether, prepare_together, program_motions, resolve_each,
+};
 
 /// Checks the text of a problem as if it stood in the file `input`, which need not exist: paths in it are relative to that file. Returns what it asks
 /// for: `control`, `simulate` or `equilibrium`.
@@ -61,18 +63,35 @@ pub fn with_program<R>(
     read_program: impl FnOnce(&mut dyn Nlp, &[f64]) -> R,
 ) -> Result<R, CommandError> {
     let loaded = read(input, Some(text), &[])?;
-    let Task::Control(control) = &loaded.task else {
-        return Err(CommandError::Problem {
-            file: input.to_owned(),
-            place: key(&loaded.task).to_owned(),
-            reason: "only \"control\" is a nonlinear program".to_owned(),
-        });
+    let (asked, shared_inputs) = match &loaded.task {
+        Task::Control(control) => (vec![("", &loaded.system, &**control)], &[][..]),
+        Task::Motions(motions) => {
+            let each = motions.list.iter();
+            let each = each.map(|one| (&*one.name, &one.system, &one.control));
+            (each.collect(), &*motions.shared_inputs)
+        }
+        Task::Simulate(_) | Task::Equilibrium(_) => {
+            return Err(CommandError::Problem {
+                file: input.to_owned(),
+                place: key(&loaded.task).to_owned(),
+                reason: "only \"control\" is a nonlinear program".to_owned(),
+            });
+        }
     };
-    let (model, boundary) =
-        resolve(&loaded.system, control).map_err(CommandError::in_file(input))?;
-    let Prepared {
+    let asked = asked
+        .into_iter()
+        .map(|(name, system, control)| MotionAsked {
+            name,
+            system,
+            control,
+            earlier: None,
+        });
+    let asked: Vec<MotionAsked<'_>> = asked.collect();
+    let resolved = resolve_each(&asked).map_err(CommandError::in_file(input))?;
+    let motions = program_motions(&asked, &resolved);
+    let PreparedTogether {
         mut program, point, ..
-    } = prepare(&model, &boundary, control, None, Counted::Yes)
+    } = prepare_together(&motions, &asked, shared_inputs, Counted::Yes)
         .map_err(CommandError::in_file(input))?;
     Ok(read_program(&mut program, &point.x))
 }

@@ -181,7 +181,7 @@ pub(super) fn solution(folder: &Path) -> Result<PathBuf, CommandError> {
 /// The command that resumes a run that was stopped.
 pub(super) fn command(request: &CommandInput, task: &Task) -> Option<String> {
     let command = match task {
-        Task::Control(_) => "solve",
+        Task::Control(_) | Task::Motions(_) => "solve",
         Task::Simulate(_) => "simulate",
         Task::Equilibrium(_) => return None,
     };

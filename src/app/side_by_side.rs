@@ -11,7 +11,7 @@ use crate::report::origin::Origin;
 use crate::report::page::compared;
 
 /// Name of the page of a result.
-const PAGE: &str = "report.html";
+pub(super) const PAGE: &str = "report.html";
 
 /// Writes `report.html` into `output`, which compares the results of some folders.
 ///
@@ -22,6 +22,22 @@ pub fn compare(
     folders: &[PathBuf],
     output: &Path,
 ) -> Result<CommandOutput, CommandError> {
+    let page = html(command, folders)?;
+    make_folder(output)?;
+    let file = output.join(PAGE);
+    atomic::write(&file, page.as_bytes())?;
+    Ok(CommandOutput {
+        is_solved: true,
+        result: file.display().to_string(),
+        notes: Vec::new(),
+    })
+}
+
+/// The page that compares the results of some folders.
+///
+/// # Errors
+/// A folder has no page of a result.
+pub(super) fn html(command: &str, folders: &[PathBuf]) -> Result<String, CommandError> {
     let wrong = |reason| CommandError::Option {
         option: "RESULT",
         reason,
@@ -48,14 +64,7 @@ pub fn compare(
         version: Origin::program(),
         ..Origin::default()
     };
-    make_folder(output)?;
-    let file = output.join(PAGE);
-    atomic::write(&file, compared::html(&results, &origin).as_bytes())?;
-    Ok(CommandOutput {
-        is_solved: true,
-        result: file.display().to_string(),
-        notes: Vec::new(),
-    })
+    Ok(compared::html(&results, &origin))
 }
 
 /// The last parts of the paths where all differ, otherwise the whole paths.

@@ -1,6 +1,6 @@
 //! A control problem from file to folder: solved, re-simulated, and reported.
 
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 use std::time::Instant;
 
 use crate::app::blocks::BlockSizes;
@@ -38,7 +38,7 @@ use crate::workflow::resimulate::under_constant_voltages;
 /// Length of the motion under constant voltages that is drawn next to the optimal one, in durations.
 const COMPARED: usize = 3;
 /// Statuses of a solve that might have gone on.
-const MIGHT_GO_ON: [&str; 3] = ["interrupted", "time_limit", "iteration_limit"];
+pub(super) const MIGHT_GO_ON: [&str; 3] = ["interrupted", "time_limit", "iteration_limit"];
 
 /// Solves a control problem and writes its folder, solved or not.
 pub(super) fn control(
@@ -51,24 +51,45 @@ pub(super) fn control(
     let read = began.elapsed().as_secs_f64();
     let system = &loaded.system;
     let (result, folder) = solve(request, system, control, read, observer)?;
+    let shown = (system, control, &loaded.output);
+    let summary = write_result((request, asked), shown, &result, (&folder, read), began)?;
+    unfinished::done(&folder);
+    let violated = &result.optimum.violated;
+    let mut output = command_output(&summary, control.is_refined, violated, &folder);
+    if MIGHT_GO_ON.contains(&&*summary.status) {
+        output
+            .notes
+            .extend(resume_file::command(request, &loaded.task));
+    }
+    Ok(output)
+}
+
+/// Writes the files of a result to a folder that exists, and its summary.
+pub(super) fn write_result(
+    (request, asked): (&CommandInput, &[(String, String)]),
+    (system, control, output): (&System, &Control, &Output),
+    result: &SolveResult,
+    (folder, read): (&Path, f64),
+    began: Instant,
+) -> Result<Summary, CommandError> {
     let SolveResult {
         optimum, verdict, ..
-    } = &result;
+    } = result;
     let mut summary = Summary::new(request, verdict.word, optimum.model.coordinates.name());
     summary.message.clone_from(&verdict.message);
-    summary.program = Some(program(system, control, &result));
+    summary.program = Some(program(system, control, result));
     summary.accuracy.clone_from(&result.accuracy);
     let model = optimum.sought.as_ref().unwrap_or(&optimum.model);
     summary.plan = Plan::from_model(model, Some(control), MEASURED);
     summary.seconds = seconds(optimum, read, began);
-    add_observed(&mut summary, &result);
+    add_observed(&mut summary, result);
     let writing = Instant::now();
-    let mut files = FileSet::in_folder(&folder);
+    let mut files = FileSet::in_folder(folder);
     solution_file::add(&mut files, &optimum.model, &optimum.motion)?;
     let (limit, kept) = (time_to_write(request, began), files.count());
     files.limit(&limit);
     let watch = interrupt::watch_by(limit.clone());
-    let shown = (control, &result, &loaded.output);
+    let shown = (control, result, output);
     if let Err(error) = write_files((request, asked), shown, &mut summary, &mut files) {
         let status = limit.reached().ok_or(error)?;
         leave_out(&mut summary, status, &mut files, kept);
@@ -76,14 +97,7 @@ pub(super) fn control(
     drop(watch);
     summary.seconds.wrote(began, writing);
     summary.write(files)?;
-    unfinished::done(&folder);
-    let mut output = command_output(&summary, control.is_refined, &optimum.violated, &folder);
-    if MIGHT_GO_ON.contains(&&*summary.status) {
-        output
-            .notes
-            .extend(resume_file::command(request, &loaded.task));
-    }
-    Ok(output)
+    Ok(summary)
 }
 
 /// Solves a control problem whose files were `read` in some seconds, and keeps its iterates in the folder of the results until it has ended.

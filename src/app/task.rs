@@ -6,6 +6,7 @@ use std::time::Instant;
 use crate::app::equilibrium;
 use crate::app::error::CommandError;
 use crate::app::foreign::refuse_foreign;
+use crate::app::motions;
 use crate::app::no_equilibrium;
 use crate::app::other_task::refuse_all_but_motions;
 use crate::app::page::asked;
@@ -75,6 +76,16 @@ fn run_checked(
             }
             solve::control(told, &loaded, &control, began, observer)
         }
+        Task::Motions(asked) => {
+            let mut asked = asked.clone();
+            for motion in asked.list.iter_mut() {
+                if let Some(folder) = &request.from {
+                    let file = SolutionFile(resume_file::solution(&folder.join(&motion.name))?);
+                    motion.control.guess = Guess::Solution(Earlier::new(file));
+                }
+            }
+            motions::motions(told, &loaded, &asked, began, observer)
+        }
         Task::Simulate(simulation) => {
             simulation::simulation(told, &loaded, simulation, began, observer)
         }
@@ -101,19 +112,38 @@ pub(super) fn read(
 /// Refuses results in the place of those of another problem, or of the one from whose end the motion starts.
 pub(super) fn refuse_replacing(request: &CommandInput, task: &Task) -> Result<(), CommandError> {
     refuse_foreign(request)?;
-    let (place, start) = match task {
-        Task::Control(control) => ("control.start.end_of", &control.start),
-        Task::Simulate(simulation) => ("simulate.start.end_of", &simulation.start),
-        Task::Equilibrium(_) => return Ok(()),
-    };
+    let own = request.folder();
+    match task {
+        Task::Control(control) => refuse_end(request, "control", &control.start, &own),
+        Task::Simulate(task) => refuse_end(request, "simulate", &task.start, &own),
+        Task::Motions(motions) => motions.list.iter().try_for_each(|motion| {
+            let place = format!("control.motions.{}", motion.name);
+            refuse_end(
+                request,
+                &place,
+                &motion.control.start,
+                &own.join(&motion.name),
+            )
+        }),
+        Task::Equilibrium(_) => Ok(()),
+    }
+}
+
+/// Refuses results in the `own` folder where that is the one from whose end the motion starts.
+fn refuse_end(
+    request: &CommandInput,
+    place: &str,
+    start: &BoundaryState,
+    own: &Path,
+) -> Result<(), CommandError> {
     let BoundaryState::EndOf(end) = start else {
         return Ok(());
     };
-    let folders = [&*request.folder(), &end.source].map(|folder| folder.canonicalize().ok());
+    let folders = [own, &end.source].map(|folder| folder.canonicalize().ok());
     match folders {
         [Some(to), Some(from)] if to == from => Err(CommandError::Problem {
             file: request.input.clone(),
-            place: place.to_owned(),
+            place: format!("{place}.start.end_of"),
             reason: format!(
                 "the results would replace {}, where the motion starts; expected another folder for them, by -o",
                 end.source.display()
@@ -130,12 +160,22 @@ fn refuse_unused(request: &CommandInput, task: &Task) -> Result<(), CommandError
         (Task::Equilibrium(_), Some(AccuracyTarget::Estimate)) => "--estimate-error",
         (Task::Equilibrium(_), _) if request.from.is_some() => "--from",
         (Task::Simulate(_), Some(_)) if request.from.is_some() => "--from",
+        (Task::Motions(_), Some(AccuracyTarget::Estimate)) => "--estimate-error",
+        (Task::Motions(motions), Some(AccuracyTarget::Below(_)))
+            if motions.list.iter().any(|one| !one.control.is_refined) =>
+        {
+            "--accuracy"
+        }
         (Task::Equilibrium(_) | Task::Simulate(_), _) if request.max_iterations.is_some() => {
             "--max-iterations"
         }
         _ => return Ok(()),
     };
     let asks = match task {
+        Task::Motions(_) if option == "--accuracy" => {
+            "several motions, and names \"intervals\" of some; expected none, or \"auto\", of all"
+        }
+        Task::Motions(_) => "several motions, of which no error is estimated on given grids",
         Task::Equilibrium(_) if option == "--from" => "an equilibrium, which goes on from nothing",
         Task::Simulate(_) if option == "--from" => {
             "a simulation, whose steps --accuracy and --estimate-error halve from the start"

@@ -24,6 +24,8 @@ pub enum Task {
     Equilibrium(AtRest),
     /// Find optimal voltages.
     Control(Box<Control>),
+    /// Find several optimal motions with constants or inputs in common.
+    Motions(Box<Motions>),
 }
 
 /// A static equilibrium, or the path of equilibria that leads there.
@@ -228,6 +230,26 @@ pub fn nearest_thousand(size: f64) -> f64 {
         return 1.0;
     }
     1e3_f64.powf((size.log10() / 3.0).round())
+}
+
+/// Motions whose sought constants are the same, and the inputs that are the same in all of them.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Motions {
+    /// The motions.
+    pub list: Vec<Motion>,
+    /// Names of the sources whose inputs are sought once for all motions.
+    pub shared_inputs: Vec<String>,
+}
+
+/// A motion among others.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Motion {
+    /// Its name, another one for each motion.
+    pub name: String,
+    /// The system that moves.
+    pub system: System,
+    /// Its problem.
+    pub control: Control,
 }
 
 /// Initial guess of the solver.

@@ -40,10 +40,12 @@ pub(crate) use units::si;
 use serde_json::Value;
 use std::path::{Path, PathBuf};
 
+use crate::control::Motion;
 use crate::control::problem::Task;
 use crate::files::json::scan::{Entry, Scanner, string};
 use crate::files::json::set::Override;
 use crate::files::problem::build::build_problem;
+use crate::files::problem::motions::{MotionDocument, motions, together};
 use crate::files::problem::output::{Output, output};
 use crate::files::problem::spec::{ProblemSpec, SceneSource};
 use crate::files::scene::build::build_scene;
@@ -128,11 +130,47 @@ fn problem_of(
     for change in &of_problem {
         change.apply(&mut document)?;
     }
+    let Some(list) = motions(&document)? else {
+        return alone(document, &of_scene);
+    };
+    let mut first: Option<Loaded> = None;
+    let mut each = Vec::new();
+    for MotionDocument {
+        name,
+        document: of_motion,
+        changes,
+    } in list
+    {
+        let own = changes.words.iter().map(|written| Override::parse(written));
+        let own: Vec<Override> = own.collect::<Result<_, _>>()?;
+        let all: Vec<Override> = of_scene.iter().cloned().chain(own).collect();
+        let loaded = alone(of_motion, &all);
+        let loaded = loaded.map_err(|error| changes.at_fault(error, &document.path))?;
+        let Task::Control(control) = &loaded.task else {
+            unreachable!("an entry \"control\" is that task");
+        };
+        each.push(Motion {
+            name,
+            system: loaded.system.clone(),
+            control: control.as_ref().clone(),
+        });
+        first.get_or_insert(loaded);
+    }
+    let first = first.expect("a list has a motion");
+    Ok(Loaded {
+        task: Task::Motions(Box::new(together(each, &document)?)),
+        problem: document.text().to_owned(),
+        ..first
+    })
+}
+
+/// A problem of one motion, or of another task.
+fn alone(mut document: Document, of_scene: &[Override]) -> Result<Loaded, SceneError> {
     let scene_apart = document
         .entry("scene")
         .is_some_and(|scene| scene.starts_with('"'));
     if !scene_apart {
-        for change in &of_scene {
+        for change in of_scene {
             change.apply(&mut document)?;
         }
     }

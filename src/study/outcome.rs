@@ -64,6 +64,7 @@ pub fn run(point: &StudyPoint, markers: Option<&[String]>) -> (RunOutcome, Optio
     let began = Instant::now();
     match &point.loaded.task {
         Task::Control(task) => control(point, task, markers, began),
+        Task::Motions(_) => unreachable!("refused where the study is read"),
         Task::Simulate(task) => motion(point, task, markers, began),
         Task::Equilibrium(task) => rest(point, task, markers, began),
     }

@@ -207,6 +207,13 @@ fn same_question(
         .chain(extra.iter().map(|point| (scope.key("reference"), point)));
     let mut first: Option<(StudyTask, Option<f64>)> = None;
     for (place, point) in all {
+        if let Task::Motions(_) = &point.loaded.task {
+            let found = "a problem of several motions";
+            return Err(place.wrong(
+                found,
+                "a problem of one motion, a simulation or an equilibrium",
+            ));
+        }
         let (asked, duration) = task_of(&point.loaded.task);
         if let Task::Equilibrium(task) = &point.loaded.task
             && task.path.is_some()
@@ -242,6 +249,7 @@ fn task_of(task: &Task) -> (StudyTask, Option<f64>) {
             Duration::Given(duration) => (StudyTask::Control, Some(duration)),
             Duration::Free { .. } => (StudyTask::Control, None),
         },
+        Task::Motions(_) => (StudyTask::Control, None),
     }
 }
 

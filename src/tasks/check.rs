@@ -1,6 +1,7 @@
 //! The derivatives of a problem against differences, at its guess moved by noise.
 
 use std::collections::{BTreeMap, HashMap};
+use std::time::Instant;
 
 use serde::Serialize;
 
@@ -8,7 +9,7 @@ use crate::control::problem::{
     BoundaryState, Control, Duration, Guess, Objective, Simulation, Solver, SoughtHold, Task,
     Voltages,
 };
-use crate::control::{Column, Row, Transcription};
+use crate::control::{Column, Motion, Motions, Row, Transcription};
 use crate::ipopt::LinearSolver;
 use crate::ipopt::interrupt::{self, TimeLimit};
 use crate::math::{Random, Signal};
@@ -18,6 +19,7 @@ use crate::nlp::Nlp;
 use crate::nlp::differences::{self, DifferenceVariables, Matrix, WrongEntry};
 use crate::workflow::WorkflowError;
 use crate::workflow::effects;
+use crate::workflow::optimum::seconds_left;
 use crate::workflow::prepare::{Counted, Prepared, prepare};
 use crate::workflow::resolve::resolve;
 
@@ -93,6 +95,9 @@ pub fn check(
     task: Task,
     seconds: Option<f64>,
 ) -> Result<CheckResult, WorkflowError> {
+    if let Task::Motions(motions) = task {
+        return all_motions(*motions, seconds);
+    }
     let watch = interrupt::watch(seconds);
     let control = as_control(task, system);
     let (model, boundary) = resolve(system, &control)?;
@@ -156,6 +161,49 @@ pub fn check(
         wrong,
         notes,
     })
+}
+
+/// Compares those of each motion by itself: a program of several has the same.
+fn all_motions(motions: Motions, seconds: Option<f64>) -> Result<CheckResult, WorkflowError> {
+    let began = Instant::now();
+    let mut all: Option<CheckResult> = None;
+    for Motion {
+        name,
+        system,
+        control,
+    } in motions.list
+    {
+        let left = seconds_left(seconds, began);
+        let found = check(&system, Task::Control(Box::new(control)), left);
+        let mut found = found.map_err(|error| error.of_motion(&name))?;
+        found.message = format!("motion \"{name}\": {}", found.message);
+        all = Some(match all {
+            None => found,
+            Some(before) => before.with(found),
+        });
+    }
+    Ok(all.expect("a list has a motion"))
+}
+
+impl CheckResult {
+    /// Both as one.
+    fn with(mut self, mut other: Self) -> Self {
+        self.unchecked.append(&mut other.unchecked);
+        self.wrong.append(&mut other.wrong);
+        self.notes.append(&mut other.notes);
+        Self {
+            agrees: self.agrees && other.agrees,
+            message: format!("{}\n{}", self.message, other.message),
+            errors: GreatestErrors {
+                gradient: self.errors.gradient.max(other.errors.gradient),
+                jacobian: self.errors.jacobian.max(other.errors.jacobian),
+                hessian: self.errors.hessian.max(other.errors.hessian),
+            },
+            checked: self.checked + other.checked,
+            variables: self.variables + other.variables,
+            ..self
+        }
+    }
 }
 
 fn wrong_derivative(entry: &WrongEntry, effects: Vec<String>) -> WrongDerivative {
@@ -267,6 +315,7 @@ fn as_control(task: Task, system: &System) -> Control {
     };
     match task {
         Task::Control(control) => *control,
+        Task::Motions(_) => unreachable!("checked motion by motion"),
         Task::Simulate(simulation) => {
             let zero_inputs = simulation.analysis(system, simulation.step).zero_inputs;
             let Simulation {

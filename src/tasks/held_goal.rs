@@ -12,7 +12,11 @@ use crate::workflow::Iterate;
 use crate::workflow::WorkflowError;
 use crate::workflow::further::stopped;
 use crate::workflow::hold_check;
-use crate::workflow::optimum::{SolveLimits, seconds_left};
+use crate::workflow::optimum::{Optimum, SolveLimits, seconds_left};
+
+/// Notes that no inputs that hold a goal were found, and that there was no time for it.
+pub(super) const NOT_FOUND: &str = "no inputs within the bounds were found that hold the goal";
+pub(super) const UNFINISHED: &str = "the inputs that hold the goal were not found in the time: \"hold\": \"find\" seeks them at once";
 
 /// An optimum, and the problem that it solves.
 pub(super) struct HeldGoal<'a> {
@@ -38,7 +42,7 @@ pub(super) fn solve_and_hold<'a>(
     let mut found = find(system, control, request, observer)?;
     found.optimum.hold(control);
     let seconds = seconds_left(request.limits.seconds, began);
-    if !is_left(&found, control) {
+    if !is_left(&found.optimum, control) {
         return Ok(HeldGoal {
             found,
             control: Cow::Borrowed(control),
@@ -48,11 +52,7 @@ pub(super) fn solve_and_hold<'a>(
     if stopped(seconds).is_some() {
         return Ok(unfinished(found, control));
     }
-    let held = Control {
-        sought_hold: SoughtHold::Always,
-        guess: Guess::Solution(Earlier::new(found.optimum.motion.clone())),
-        ..control.clone()
-    };
+    let held = held(control, &found.optimum, true);
     let limits = SolveLimits {
         seconds,
         ..request.limits
@@ -63,7 +63,7 @@ pub(super) fn solve_and_hold<'a>(
         Ok(mut again) => {
             again.optimum.hold(&held);
             again.iterations = iterations(&again);
-            if is_kept(&again, &held) {
+            if is_kept(&again.optimum, &held) {
                 again.optimum.carried = found.optimum.carried;
                 return Ok(HeldGoal {
                     found: again,
@@ -81,24 +81,34 @@ pub(super) fn solve_and_hold<'a>(
     Ok(HeldGoal {
         found,
         control: Cow::Borrowed(control),
-        note: Some("no inputs within the bounds were found that hold the goal".to_owned()),
+        note: Some(NOT_FOUND.to_owned()),
     })
+}
+
+/// The problem from an optimum of it, in which inputs that hold its goal are unknowns where they `are_sought`.
+pub(super) fn held(control: &Control, optimum: &Optimum, are_sought: bool) -> Control {
+    Control {
+        sought_hold: match are_sought {
+            true => SoughtHold::Always,
+            false => control.sought_hold,
+        },
+        guess: Guess::Solution(Earlier::new(optimum.motion.clone())),
+        ..control.clone()
+    }
 }
 
 /// The first optimum, where the search for what holds its goal was stopped: by Ctrl-C the whole solve was.
 fn unfinished(mut found: Found, control: &Control) -> HeldGoal<'_> {
     found.optimum.stopped = found.optimum.stopped.or(stopped(None));
-    let note = "the inputs that hold the goal were not found in the time: \"hold\": \"find\" seeks them at once";
     HeldGoal {
         found,
         control: Cow::Borrowed(control),
-        note: Some(note.to_owned()),
+        note: Some(UNFINISHED.to_owned()),
     }
 }
 
 /// Returns true if an optimum leaves a goal for which inputs that hold it may be sought.
-fn is_left(found: &Found, control: &Control) -> bool {
-    let optimum = &found.optimum;
+pub(super) fn is_left(optimum: &Optimum, control: &Control) -> bool {
     let afterwards = optimum.afterwards.as_ref();
     control.sought_hold == SoughtHold::WhereLeft
         && afterwards.is_some_and(|after| !after.is_held)
@@ -106,8 +116,7 @@ fn is_left(found: &Found, control: &Control) -> bool {
 }
 
 /// Returns true if an optimum is reproduced and its goal is kept.
-fn is_kept(found: &Found, control: &Control) -> bool {
-    let optimum = &found.optimum;
+pub(super) fn is_kept(optimum: &Optimum, control: &Control) -> bool {
     let tested = optimum.resimulation.as_ref();
     optimum.is_solved()
         && hold_check::warning(control, &optimum.model, &optimum.boundary, tested).is_none()

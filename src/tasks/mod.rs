@@ -2,6 +2,7 @@
 //!
 //! - `solve`, `simulate`, `equilibrium`: the three tasks. The commands, Python and the interface for Rust call them; nothing here knows files.
 //! - `grid`, `held_goal`: the solves of a control problem, for an accuracy and for a goal that is kept.
+//! - `motions`: several control problems solved together.
 //! - `check`: the derivatives of a task against differences.
 //! - `verdict`: the verdict on an optimum. `solve_messages`, `tracking_messages`, `simulation_messages`, `moved_markers`: their texts.
 
@@ -9,6 +10,7 @@ pub mod check;
 pub mod equilibrium;
 mod grid;
 mod held_goal;
+pub mod motions;
 pub(crate) mod moved_markers;
 pub mod simulate;
 mod simulation_messages;
@@ -20,6 +22,7 @@ mod verdict;
 pub use check::{CheckResult, GreatestErrors, WrongDerivative, check};
 pub use equilibrium::{EquilibriumResult, EquilibriumTaskError, equilibrium};
 pub use grid::SolveRequest;
+pub use motions::{MotionsResult, solve_motions};
 pub use simulate::{Assessment, SimulationRequest, SimulationResult, simulate};
 pub use solve::{SolveResult, solve};
 pub use verdict::Verdict;

@@ -77,9 +77,18 @@ pub fn solve(
     let HeldGoal {
         found,
         control,
-        note: not_found,
+        note,
     } = solve_and_hold(system, control, request, observer)?;
-    let control = control.as_ref();
+    Ok(assessed(system, control.as_ref(), found, note))
+}
+
+/// An optimum with its verdict and all that is observed of it; `not_found` says that inputs that hold its goal were not found.
+pub(super) fn assessed(
+    system: &System,
+    control: &Control,
+    found: Found,
+    not_found: Option<String>,
+) -> SolveResult {
     let Found {
         optimum,
         iterations,
@@ -112,7 +121,7 @@ pub fn solve(
     let can_seek = not_found.is_none() && hold_obstacle(&result.optimum.model, control).is_none();
     result.remarks = remarks(system, control, &result, (note, not_kept, can_seek));
     result.remarks.note("hold", not_found);
-    Ok(result)
+    result
 }
 
 /// All that is to be known of a result: `refined` is the reason for another grid than that of the problem, `not_kept` the reason why the end

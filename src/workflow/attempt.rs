@@ -21,10 +21,12 @@ use crate::workflow::ordering::ordering;
 use crate::workflow::period;
 use crate::workflow::phase::phase;
 use crate::workflow::prepare::Counted;
-use crate::workflow::prepare_together::{MotionAsked, PreparedTogether, prepare_together};
+use crate::workflow::prepare_together::{
+    MotionAsked, PreparedTogether, prepare_together, program_motions, resolve_each,
+};
 use crate::workflow::resimulate::{Resimulation, resimulate};
-use crate::workflow::resolve::{resolve, with_found};
-use crate::workflow::solves::{ProgramMotion, Solves, multipliers_of};
+use crate::workflow::resolve::with_found;
+use crate::workflow::solves::{Solves, multipliers_of};
 use crate::workflow::violations::{Violation, violations};
 
 /// Maximum number of rows named when a problem has no solution.
@@ -84,21 +86,9 @@ pub(crate) fn attempt_together(
     let began = Instant::now();
     let watch = interrupt::watch(allowed.seconds);
     phase("building the model, finding start and goal");
-    let resolved = asked
-        .iter()
-        .map(|one| resolve(one.system, one.control).map_err(|error| error.of_motion(one.name)));
-    let resolved: Vec<(Model, BoundaryConditions)> = resolved.collect::<Result<_, _>>()?;
+    let resolved = resolve_each(asked)?;
     phase("building the program");
-    let motions = asked
-        .iter()
-        .zip(&resolved)
-        .map(|(one, (model, boundary))| ProgramMotion {
-            name: one.name,
-            model,
-            boundary,
-            control: one.control,
-        });
-    let motions: Vec<ProgramMotion<'_>> = motions.collect();
+    let motions = program_motions(asked, &resolved);
     let PreparedTogether {
         program,
         shared,

@@ -1,12 +1,13 @@
 //! The program of several motions as one, and the point and the kind of start of its solver.
 
 use crate::control::problem::Control;
-use crate::control::{Carried, Solution, Transcription};
+use crate::control::{BoundaryConditions, Carried, Solution, Transcription};
 use crate::ipopt::{Start, StartingPoint};
-use crate::model::System;
+use crate::model::{Model, System};
 use crate::nlp::joined::{Joined, SharedVariable};
 use crate::workflow::error::WorkflowError;
 use crate::workflow::prepare::{Counted, Prepared, RESAMPLED, prepare};
+use crate::workflow::resolve::resolve;
 use crate::workflow::shared_variables::shared_variables;
 use crate::workflow::solves::{ProgramMotion, joined_point};
 
@@ -29,6 +30,34 @@ pub(crate) struct PreparedTogether<'m> {
     pub(crate) start: Start,
     /// Changes of the earlier solution of each motion.
     pub(crate) carried: Vec<Carried>,
+}
+
+/// Model and boundary of each motion.
+///
+/// # Errors
+/// Start or goal of one of them is wrong.
+pub(crate) fn resolve_each(
+    asked: &[MotionAsked<'_>],
+) -> Result<Vec<(Model, BoundaryConditions)>, WorkflowError> {
+    let each = asked
+        .iter()
+        .map(|one| resolve(one.system, one.control).map_err(|error| error.of_motion(one.name)));
+    each.collect()
+}
+
+/// The motions with their models and boundaries.
+pub(crate) fn program_motions<'m>(
+    asked: &[MotionAsked<'m>],
+    resolved: &'m [(Model, BoundaryConditions)],
+) -> Vec<ProgramMotion<'m>> {
+    let each = asked.iter().zip(resolved);
+    let each = each.map(|(one, (model, boundary))| ProgramMotion {
+        name: one.name,
+        model,
+        boundary,
+        control: one.control,
+    });
+    each.collect()
 }
 
 /// Guesses and programs of motions, joined.

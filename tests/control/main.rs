@@ -26,6 +26,7 @@ mod loads;
 mod measured;
 mod meshes;
 mod motions;
+mod motions_shared;
 mod moved;
 mod optimality;
 mod peak_voltage;

@@ -100,7 +100,7 @@ fn fitted(system: &System, intervals: usize, period: f64, upper: [f64; 2]) -> Co
     }
 }
 
-fn motion(name: &str, system: &System, control: Control) -> Motion {
+pub(crate) fn motion(name: &str, system: &System, control: Control) -> Motion {
     Motion {
         name: name.into(),
         system: system.clone(),
@@ -108,7 +108,7 @@ fn motion(name: &str, system: &System, control: Control) -> Motion {
     }
 }
 
-fn together(list: Vec<Motion>, shared_inputs: &[&str]) -> Together {
+pub(crate) fn together(list: Vec<Motion>, shared_inputs: &[&str]) -> Together {
     let shared_inputs = shared_inputs.iter().map(|name| name.to_string()).collect();
     let motions = Motions {
         list,
@@ -153,7 +153,7 @@ fn last(count: usize, programs: &[(String, Transcription<'_>)]) -> Vec<SharedVar
     (0..count).map(place).collect()
 }
 
-fn copies(system: &System, problem: &Control, count: usize) -> Vec<Motion> {
+pub(crate) fn copies(system: &System, problem: &Control, count: usize) -> Vec<Motion> {
     let copy = |k: usize| motion(&format!("copy{k}"), system, problem.clone());
     (0..count).map(copy).collect()
 }

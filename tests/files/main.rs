@@ -8,6 +8,7 @@ mod free;
 mod fuzz_reader;
 mod meaning;
 mod measured_costs;
+mod motions;
 mod named_materials;
 mod npz;
 mod objectives;

@@ -20,6 +20,7 @@ mod killed;
 mod loops;
 mod materials;
 mod messages;
+mod motions;
 mod names;
 mod observed;
 mod output;

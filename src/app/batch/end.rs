@@ -36,15 +36,17 @@ impl RunIn {
 
 /// Returns true if a task may run in parallel with others in one process.
 pub(crate) fn task_runs_at_once(task: &Task) -> bool {
-    match task {
-        Task::Control(control) => Options {
-            linear_solver: control.solver.linear_solver,
-            extra: control.solver.ipopt.clone(),
-            ..Options::default()
-        }
-        .run_at_once(),
-        Task::Simulate(_) | Task::Equilibrium(_) => true,
-    }
+    let solver = match task {
+        Task::Control(control) => &control.solver,
+        Task::Motions(motions) => &motions.list[0].control.solver,
+        Task::Simulate(_) | Task::Equilibrium(_) => return true,
+    };
+    let options = Options {
+        linear_solver: solver.linear_solver,
+        extra: solver.ipopt.clone(),
+        ..Options::default()
+    };
+    options.run_at_once()
 }
 
 /// End of a solve.

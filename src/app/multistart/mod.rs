@@ -111,9 +111,13 @@ fn check_number(starts: usize) -> Result<(), CommandError> {
 /// Checks that a problem has starting points, and that its start and goal exist.
 fn check_problem(request: &CommandInput, loaded: &Loaded) -> Result<(), CommandError> {
     let Task::Control(control) = &loaded.task else {
-        let task = key(&loaded.task);
+        let asks = match &loaded.task {
+            Task::Motions(_) => "for several motions: only one by itself",
+            task if key(task) == "simulate" => "to simulate: only \"control\"",
+            _ => "to equilibrium: only \"control\"",
+        };
         return Err(wrong_option(format!(
-            "{} asks to {task}: only \"control\" has starting points",
+            "{} asks {asks} has starting points",
             request.input.display()
         )));
     };

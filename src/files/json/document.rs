@@ -14,12 +14,14 @@ use crate::files::json::source::{
 use crate::files::json::wording::wording;
 
 /// A JSON file.
-#[derive(Debug)]
+#[derive(Clone, Debug)]
 pub(crate) struct Document {
     /// Path from which it was read.
     pub(crate) path: PathBuf,
     /// Places set on the command line.
     pub(crate) set: Vec<Set>,
+    /// Places of the text with overrides whose values stand elsewhere in the file, and where.
+    pub(crate) moved: Vec<(JsonPath, JsonPath)>,
     /// As it was read.
     text: String,
     /// The same with overrides, and with parts from another file.
@@ -27,7 +29,7 @@ pub(crate) struct Document {
 }
 
 /// A place that was set.
-#[derive(Debug)]
+#[derive(Clone, Debug)]
 pub(crate) struct Set {
     /// In the document: the place itself, or the first one on the way to it that was not there.
     pub(crate) place: JsonPath,
@@ -70,6 +72,7 @@ impl Document {
         Self {
             path: path.to_owned(),
             set: Vec::new(),
+            moved: Vec::new(),
             text: String::new(),
             changed: None,
         }
@@ -162,6 +165,7 @@ impl Document {
         nearest: Option<String>,
         at_key: bool,
     ) -> SceneError {
+        let place = &self.in_file(place);
         let mut set = self.set.iter().rev();
         let overridden = set.find(|set| place.is_within(&set.place));
         let overridden = overridden.map(|set| set.typed.clone());
@@ -176,6 +180,15 @@ impl Document {
             nearest,
             span,
             overridden,
+        )
+    }
+
+    /// The place in the file of a value that was moved.
+    fn in_file(&self, place: &JsonPath) -> JsonPath {
+        let moved = self.moved.iter().find(|(from, _)| place.is_within(from));
+        moved.map_or_else(
+            || place.clone(),
+            |(from, to)| JsonPath([&to.0[..], &place.0[from.0.len()..]].concat()),
         )
     }
 

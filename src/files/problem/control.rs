@@ -44,6 +44,10 @@ pub(crate) fn control(
     scope: &Scope<'_>,
 ) -> Result<Control, SceneError> {
     let system = scene.system;
+    if !spec.shared_inputs.is_empty() {
+        let place = scope.key("shared_inputs");
+        return Err(place.wrong("inputs in common", "none without \"motions\""));
+    }
     let duration = duration(&spec.duration, &scope.key("duration"))?;
     let intervals = match spec.intervals {
         Some(IntervalsSpec::Given(intervals)) => {

@@ -1,5 +1,6 @@
 //! The problem file: its types as written (`spec`, `spec_*`) and their conversion to a [`Task`](crate::control::problem::Task).
 //!
+//! - `motions`: several motions of one problem, each as a problem of its own.
 //! - `build`: the problem; `control`, `simulation`: its two longer tasks.
 //! - `state`, `end_of`, `goal`, `limits`, `source_limits`, `free`, `guess`, `voltages`, `track`, `measured`, `energies`, `coordinates`: their parts; `output`: what is written of a motion; `solution_voltages`,
 //!   `solution_joints`, `solution_document`:
@@ -17,6 +18,7 @@ pub(crate) mod guess;
 pub(crate) mod limits;
 mod loads;
 mod measured;
+pub(crate) mod motions;
 pub mod output;
 mod reaction_limits;
 pub(crate) mod simulation;

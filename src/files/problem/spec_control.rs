@@ -10,10 +10,13 @@ use crate::files::problem::spec_states::{GoalSpec, HoldSpec, StartSpec};
 use crate::files::problem::spec_track::{FinalSpec, TrackSpec};
 use crate::files::problem::spec_voltages::VoltagesSpec;
 use crate::files::problem::waypoints::WaypointSpec;
+use crate::files::study::ChangesSpec;
 use crate::files::units::quantity::{Quantity, Time, Voltage};
-use schemars::JsonSchema;
-use serde::de::{Error, IntoDeserializer, Unexpected, Visitor};
+use schemars::{JsonSchema, Schema, SchemaGenerator, json_schema};
+use serde::de::{Error, IgnoredAny, IntoDeserializer, Unexpected, Visitor};
 use serde::{Deserialize, Deserializer};
+use serde_json::Value;
+use std::borrow::Cow;
 use std::collections::BTreeMap;
 use std::fmt;
 use std::marker::PhantomData;
@@ -72,6 +75,53 @@ pub struct ControlSpec {
     /// Options of the solver.
     #[serde(default)]
     pub solver: SolverSpec,
+    /// Several motions in one optimisation: what `free` seeks is the same in all of them, and the objective is the sum of theirs. Each names the
+    /// keys that are other ones in it.
+    #[serde(default)]
+    pub motions: Vec<MotionSpec>,
+    /// Names of muscles, driven electrodes (`block.electrode`) and loads whose inputs are sought once for all motions; these have one
+    /// given duration and one number of intervals.
+    #[serde(default)]
+    pub shared_inputs: Vec<String>,
+}
+
+/// Keys of a control problem that all of its motions have in common.
+pub(crate) const COMMON: [&str; 4] = ["free", "motions", "shared_inputs", "solver"];
+
+/// One of several motions: the keys of a control problem that are other ones in it. It is read with those that it shares with the others.
+#[derive(Clone, Debug, Deserialize)]
+pub struct MotionSpec(IgnoredAny);
+
+impl JsonSchema for MotionSpec {
+    fn schema_name() -> Cow<'static, str> {
+        "MotionSpec".into()
+    }
+
+    fn json_schema(generator: &mut SchemaGenerator) -> Schema {
+        let name = json_schema!({
+            "description": "Name, and that of its folder of results; one without a name has its number, as in `motion1`.",
+            "type": ["string", "null"]
+        });
+        let mut set = generator.subschema_for::<ChangesSpec>();
+        set.insert(
+            "description".into(),
+            "Constants of the scene that are other ones in this motion, by their places, such as `scene.materials.silicone.shear_modulus`.".into(),
+        );
+        let mut schema = ControlSpec::json_schema(generator);
+        schema.remove("required");
+        if let Some(Value::Object(keys)) = schema.get_mut("properties") {
+            keys.retain(|key, _| !COMMON.contains(&&**key));
+            keys.insert("name".into(), name.into());
+            keys.insert("set".into(), set.into());
+        }
+        schema.insert(
+            "description".into(),
+            "One of several motions: the keys of a control problem that are other ones in it; those that it does not name are those of \
+             `control`."
+                .into(),
+        );
+        schema
+    }
 }
 
 /// Number of intervals.

@@ -1,0 +1,238 @@
+//! The motions of a control problem: each is the problem that remains with the keys of its entry in the place of those of `control`.
+
+use std::collections::BTreeSet;
+
+use serde_json::Value;
+
+use crate::control::problem::Duration;
+use crate::control::{Motion, Motions};
+use crate::files::changes::Changes;
+use crate::files::json::document::Document;
+use crate::files::json::error::SceneError;
+use crate::files::json::locate::JsonPath;
+use crate::files::json::scan::{Entry, Scanner, string};
+use crate::files::json::scope::Scope;
+use crate::files::problem::spec_control::COMMON;
+
+/// Keys of a motion that are none of a control problem.
+const OWN: [&str; 2] = ["name", "set"];
+/// Keys of a control problem with motions that no motion has.
+const OF_ALL: [&str; 2] = ["motions", "shared_inputs"];
+
+/// A motion as a problem of its own.
+pub(crate) struct MotionDocument<'a> {
+    pub(crate) name: String,
+    pub(crate) document: Document,
+    /// Constants of its scene, after those of all motions.
+    pub(crate) changes: Changes<'a>,
+}
+
+/// The motions of a problem, if it has a list of them.
+pub(crate) fn motions(document: &Document) -> Result<Option<Vec<MotionDocument<'_>>>, SceneError> {
+    let text = document.text();
+    let control = Scanner::of(text)
+        .entry("control")
+        .filter(|entry| text[entry.value.clone()].starts_with('{'));
+    let Some(control) = control else {
+        return Ok(None);
+    };
+    let inside = Scanner::from(text, control.value.start);
+    let Some(list) = inside.entry("motions") else {
+        return Ok(None);
+    };
+    let scope = Scope::of(document).key("control").key("motions");
+    let written = Scanner::from(text, list.value.start);
+    if written.peek() != Some(b'[') {
+        return Err(scope.wrong(&text[list.value], "a list of motions"));
+    }
+    let entries: Vec<Entry> = written.entries().collect();
+    if entries.is_empty() {
+        return Err(scope.wrong("no motion", "a list of one motion or more"));
+    }
+    let mut names = BTreeSet::new();
+    let each = entries.iter().enumerate().map(|(number, entry)| {
+        let motion = one(document, &control, (number, entry), &scope.index(number))?;
+        if !names.insert(motion.name.clone()) {
+            let found = format!("{:?} a second time", motion.name);
+            return Err(scope
+                .index(number)
+                .key("name")
+                .wrong(found, "another name for each motion"));
+        }
+        Ok(motion)
+    });
+    each.collect::<Result<_, _>>().map(Some)
+}
+
+/// A motion by its entry in the list.
+fn one<'a>(
+    document: &'a Document,
+    control: &Entry,
+    (number, entry): (usize, &Entry),
+    scope: &Scope<'a>,
+) -> Result<MotionDocument<'a>, SceneError> {
+    let text = document.text();
+    let motion = Scanner::from(text, entry.value.start);
+    if motion.peek() != Some(b'{') {
+        return Err(scope.wrong(
+            &text[entry.value.clone()],
+            "a motion: an object with the keys that are other ones in it",
+        ));
+    }
+    let key = |entry: &Entry| {
+        entry
+            .key
+            .clone()
+            .and_then(|key| string(text, key))
+            .unwrap_or_default()
+            .into_owned()
+    };
+    let own: Vec<(String, Entry)> = motion.entries().map(|entry| (key(&entry), entry)).collect();
+    if let Some((key, _)) = own.iter().find(|(key, _)| COMMON.contains(&&**key)) {
+        let found = format!("the key {key:?} in a motion");
+        return Err(scope.key(key).wrong(
+            found,
+            "it beside \"motions\": all of them have it in common",
+        ));
+    }
+    let has = |key: &str| own.iter().any(|(own, _)| own == key);
+    let shared = Scanner::from(text, control.value.start).entries();
+    let shared = shared.map(|entry| (key(&entry), entry));
+    let shared = shared.filter(|(key, _)| !OF_ALL.contains(&&**key) && !has(key));
+    let replaced = own.iter().filter(|(key, _)| !OWN.contains(&&**key));
+    let all = shared.chain(replaced.clone().cloned());
+    let all = all.map(|(key, entry)| format!("{}:{}", Value::from(key), &text[entry.value]));
+    let written = format!("{{{}}}", all.collect::<Vec<_>>().join(","));
+    let mut alone = document.clone();
+    alone.replace(control.value.clone(), &written);
+    let place = JsonPath::default().key("control");
+    for (key, _) in replaced {
+        alone.moved.push((place.key(key), scope.place.key(key)));
+    }
+    let value = |key: &str| {
+        let found = own.iter().find(|(own, _)| own == key);
+        found.and_then(|(_, entry)| serde_json::from_str(&text[entry.value.clone()]).ok())
+    };
+    Ok(MotionDocument {
+        name: name(value("name"), number, &scope.key("name"))?,
+        document: alone,
+        changes: changes(value("set"), &scope.key("set"))?,
+    })
+}
+
+/// The name of a motion, which is that of a folder.
+fn name(written: Option<Value>, number: usize, scope: &Scope<'_>) -> Result<String, SceneError> {
+    let name = match written {
+        None | Some(Value::Null) => return Ok(format!("motion{}", number + 1)),
+        Some(Value::String(name)) => name,
+        Some(other) => return Err(scope.wrong(other.to_string(), "a name")),
+    };
+    let fits = |c: char| c.is_alphanumeric() || "_-".contains(c);
+    match !name.is_empty() && name.chars().all(fits) {
+        true => Ok(name),
+        false => Err(scope.wrong(
+            format!("{name:?}"),
+            "a name of letters, digits, _ and -, which is that of its folder",
+        )),
+    }
+}
+
+/// The constants of the scene that are other ones in a motion.
+fn changes<'a>(written: Option<Value>, scope: &Scope<'a>) -> Result<Changes<'a>, SceneError> {
+    let mut changes = Changes::default();
+    let entries = match written {
+        None | Some(Value::Null) => return Ok(changes),
+        Some(Value::Object(entries)) => entries,
+        Some(other) => {
+            return Err(scope.wrong(
+                other.to_string(),
+                "an object of values by their places in the scene",
+            ));
+        }
+    };
+    for (key, value) in &entries {
+        let place = scope.key(key);
+        if !key.starts_with("scene.") {
+            let expected = "a place in the scene, such as scene.gravity; keys of \"control\" stand in the motion itself";
+            return Err(place.wrong(format!("the key {key:?}"), expected));
+        }
+        changes.push(key, value, place)?;
+    }
+    Ok(changes)
+}
+
+/// The motions, if what they are to share can be shared.
+pub(crate) fn together(list: Vec<Motion>, document: &Document) -> Result<Motions, SceneError> {
+    let scope = Scope::of(document).key("control").key("shared_inputs");
+    let text = document.text();
+    let control = Scanner::of(text).entry("control");
+    let written =
+        control.and_then(|entry| Scanner::from(text, entry.value.start).entry("shared_inputs"));
+    let shared_inputs: Vec<String> = match written.map(|entry| &text[entry.value]) {
+        None => Vec::new(),
+        Some(written) => serde_json::from_str(written).map_err(|_| {
+            scope.wrong(
+                written,
+                "a list of names of muscles, driven electrodes and loads",
+            )
+        })?,
+    };
+    let motions = Motions {
+        list,
+        shared_inputs,
+    };
+    scope.unique(&motions.shared_inputs, &[], |index| scope.index(index))?;
+    for (index, name) in motions.shared_inputs.iter().enumerate() {
+        check_input(&motions.list, name, &scope.index(index))?;
+    }
+    if !motions.shared_inputs.is_empty() {
+        check_grids(&motions.list, &scope)?;
+    }
+    Ok(motions)
+}
+
+/// That an input is sought in all motions.
+fn check_input(list: &[Motion], name: &str, scope: &Scope<'_>) -> Result<(), SceneError> {
+    for motion in list {
+        let sources = motion.system.sources();
+        let names: Vec<String> = sources.iter().map(|source| source.name.clone()).collect();
+        let source = scope.find(name, &names, "a muscle, driven electrode or load")?;
+        let is_sought = match sources[source].takes_voltage {
+            true => !motion.control.is_given(source),
+            false => motion.control.load_bounds.contains_key(&source),
+        };
+        if !is_sought {
+            let found = format!(
+                "{name:?}, which is not sought in the motion {:?}",
+                motion.name
+            );
+            return Err(scope.wrong(found, "an input that is sought in all motions"));
+        }
+    }
+    Ok(())
+}
+
+/// That all motions have the same instants.
+fn check_grids(list: &[Motion], scope: &Scope<'_>) -> Result<(), SceneError> {
+    let grid = |motion: &Motion| match motion.control.duration {
+        Duration::Given(duration) => Some((
+            duration,
+            motion.control.intervals,
+            motion.control.is_refined,
+        )),
+        Duration::Free { .. } => None,
+    };
+    let other = list
+        .iter()
+        .find(|motion| grid(motion).is_none() || grid(motion) != grid(&list[0]));
+    match other {
+        None => Ok(()),
+        Some(motion) => Err(scope.wrong(
+            format!(
+                "inputs in common with the motion {:?}, whose instants are other ones",
+                motion.name
+            ),
+            "motions of one given \"duration\" and one number of \"intervals\"",
+        )),
+    }
+}

@@ -1,0 +1,168 @@
+//! Several motions: solved together, each verified by a simulation and held after its end.
+
+use std::borrow::Cow;
+use std::ops::ControlFlow;
+use std::time::Instant;
+
+use crate::control::{Motion, Motions};
+use crate::tasks::grid::{Found, SolveRequest};
+use crate::tasks::held_goal::{NOT_FOUND, UNFINISHED, held, is_kept, is_left};
+use crate::tasks::solve::{SolveResult, assessed};
+use crate::tasks::verdict::Verdict;
+use crate::workflow::accuracy::AccuracyTarget;
+use crate::workflow::further::stopped;
+use crate::workflow::memory;
+use crate::workflow::optimum::{SolveLimits, seconds_left};
+use crate::workflow::{
+    ACCURACY, Iterate, Remarks, Together, WholeProgram, WorkflowError, optimise_together,
+};
+
+/// Motions that were optimised together.
+#[derive(Debug)]
+pub struct MotionsResult {
+    /// Each as the result of a problem of its own.
+    pub list: Vec<SolveResult>,
+    /// All of them as one program.
+    pub whole: WholeProgram,
+    /// Iterations on all grids.
+    pub iterations: usize,
+    /// The verdict on all of them: solved where each is.
+    pub verdict: Verdict,
+    /// Warnings and notes on all of them.
+    pub remarks: Remarks,
+}
+
+/// Solves for several motions as one program; each is verified, refined and held as one by itself. `observer` sees the number of all intervals
+/// and every iterate.
+///
+/// # Errors
+/// As of [`solve`](crate::tasks::solve).
+pub fn solve_motions(
+    motions: &Motions,
+    request: SolveRequest,
+    observer: &mut dyn FnMut(usize, &Iterate<'_>) -> ControlFlow<()>,
+) -> Result<MotionsResult, WorkflowError> {
+    for motion in &motions.list {
+        memory::of_elements(&motion.system, true)?;
+    }
+    let (found, motions, notes) = solve_and_hold(motions, request, observer)?;
+    let Together {
+        optima,
+        whole,
+        iterations,
+        notes: of_grids,
+    } = found;
+    let each = motions.list.iter().zip(optima).zip(of_grids).zip(notes);
+    let list = each.map(|(((motion, optimum), note), not_found)| {
+        let found = Found {
+            optimum,
+            iterations,
+            accuracy: None,
+            note,
+        };
+        assessed(&motion.system, &motion.control, found, not_found)
+    });
+    let list: Vec<SolveResult> = list.collect();
+    let mut remarks = Remarks::default();
+    remarks.warn("optimality_gap", whole.wide.clone());
+    Ok(MotionsResult {
+        verdict: verdict(&motions.list, &list),
+        list,
+        whole,
+        iterations,
+        remarks,
+    })
+}
+
+/// The verdict on all: the word of the first that is not solved, and the reasons of all of these.
+fn verdict(motions: &[Motion], list: &[SolveResult]) -> Verdict {
+    let verdicts = || list.iter().map(|result| &result.verdict);
+    let first = verdicts().find(|verdict| !verdict.is_solved);
+    let messages: Vec<&String> = verdicts()
+        .filter_map(|verdict| verdict.message.as_ref())
+        .collect();
+    let are_one = messages.len() == list.len() && messages.windows(2).all(|two| two[0] == two[1]);
+    let message = match &messages[..] {
+        [] => None,
+        [one, ..] if are_one => Some((*one).clone()),
+        _ => {
+            let named = motions.iter().zip(verdicts());
+            let named = named.filter_map(|(motion, verdict)| {
+                let message = verdict.message.as_ref()?;
+                Some(format!("motion \"{}\": {message}", motion.name))
+            });
+            Some(named.collect::<Vec<_>>().join("; "))
+        }
+    };
+    Verdict {
+        word: first.map_or("solved", |verdict| verdict.word),
+        is_solved: first.is_none(),
+        message,
+    }
+}
+
+/// Solves, and again with the inputs that hold the goals that are left as unknowns; for each motion a note where none were found.
+fn solve_and_hold<'a>(
+    motions: &'a Motions,
+    SolveRequest { wanted, limits }: SolveRequest,
+    observer: &mut dyn FnMut(usize, &Iterate<'_>) -> ControlFlow<()>,
+) -> Result<(Together, Cow<'a, Motions>, Vec<Option<String>>), WorkflowError> {
+    let began = Instant::now();
+    let accuracy = match wanted {
+        Some(AccuracyTarget::Below(part)) => part,
+        _ => ACCURACY,
+    };
+    let mut found = optimise_together(motions, accuracy, limits, observer)?;
+    hold(&mut found, motions);
+    let each = motions.list.iter().zip(&found.optima);
+    let left: Vec<bool> = each
+        .map(|(motion, optimum)| is_left(optimum, &motion.control))
+        .collect();
+    let told = |note: &str| {
+        left.iter()
+            .map(|is_left| is_left.then(|| note.to_owned()))
+            .collect()
+    };
+    let none = left.iter().map(|_| None).collect();
+    if !left.contains(&true) {
+        return Ok((found, Cow::Borrowed(motions), none));
+    }
+    let seconds = seconds_left(limits.seconds, began);
+    if stopped(seconds).is_some() {
+        return Ok((found, Cow::Borrowed(motions), told(UNFINISHED)));
+    }
+    let each = motions.list.iter().zip(&found.optima).zip(&left);
+    let again = each.map(|((motion, optimum), is_left)| Motion {
+        control: held(&motion.control, optimum, *is_left),
+        ..motion.clone()
+    });
+    let again = Motions {
+        list: again.collect(),
+        shared_inputs: motions.shared_inputs.clone(),
+    };
+    let limits = SolveLimits { seconds, ..limits };
+    match optimise_together(&again, accuracy, limits, observer) {
+        Ok(mut second) => {
+            hold(&mut second, &again);
+            second.iterations += found.iterations;
+            let mut each = again.list.iter().zip(&second.optima).zip(&left);
+            if each.all(|((motion, optimum), is_left)| {
+                optimum.is_solved() && (!is_left || is_kept(optimum, &motion.control))
+            }) {
+                for (new, old) in second.optima.iter_mut().zip(&found.optima) {
+                    new.carried = old.carried;
+                }
+                return Ok((second, Cow::Owned(again), none));
+            }
+            found.iterations = second.iterations;
+        }
+        Err(error) => tracing::debug!(%error, "the inputs that hold the goals are not sought"),
+    }
+    Ok((found, Cow::Borrowed(motions), told(NOT_FOUND)))
+}
+
+/// Holds the voltages of the goals after the ends.
+fn hold(found: &mut Together, motions: &Motions) {
+    let each = found.optima.iter_mut().zip(&motions.list);
+    each.for_each(|(optimum, motion)| optimum.hold(&motion.control));
+}

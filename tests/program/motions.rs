@@ -1,0 +1,221 @@
+//! Several motions from one file to their folders: the sum, the constants in common, going on, and what is refused.
+
+use crate::commands::summary;
+use crate::runs::{read, run, workshop};
+use std::fs;
+
+const PROBLEM: &str = "problems/pair_motions.json";
+const NAMES: [&str; 3] = ["sine", "ramp", "both"];
+
+#[test]
+fn three_recordings_give_one_value_of_each_constant() {
+    let folder = workshop();
+    let here = folder.path();
+    let (status, out, err) = run(here, &["solve", PROBLEM, "-o", "all"]);
+    assert_eq!(status, 0, "{out}{err}");
+    assert!(out.contains("3 motions"), "{out}");
+    // What all of them say is said once, what one says with its name.
+    assert_eq!(err.matches("the end is free").count(), 1, "{err}");
+    assert!(err.contains("motion \"ramp\": note: joint joint1"), "{err}");
+    assert_eq!(
+        err.matches("materials.silicone.viscosity: ").count(),
+        1,
+        "{err}"
+    );
+    let all = summary(here, "all");
+    assert_eq!(all["status"], "solved");
+    let number = |value: &serde_json::Value| value.as_f64().unwrap();
+    let mut sum = 0.0;
+    let mut variables = 2;
+    for (name, entry) in NAMES.into_iter().zip(all["motions"].as_array().unwrap()) {
+        assert_eq!(
+            (&entry["name"], &entry["folder"]),
+            (&name.into(), &name.into())
+        );
+        let own = summary(here, &format!("all/{name}"));
+        assert_eq!(own["status"], "solved");
+        assert_eq!(own["objective"], entry["objective"]);
+        assert_eq!(own["parameters"], all["parameters"]);
+        assert!(own["resimulation"].is_object());
+        sum += number(&own["objective"]);
+        variables += own["variables"].as_u64().unwrap() - 2;
+        for file in [
+            "trajectory.csv",
+            "tracking.csv",
+            "voltages.svg",
+            "report.html",
+            "solution.json",
+        ] {
+            assert!(
+                here.join("all").join(name).join(file).is_file(),
+                "{name}/{file}"
+            );
+        }
+    }
+    assert!(sum > 0.0 && (sum - number(&all["objective"])).abs() < 1e-12 * sum);
+    assert_eq!(all["variables"].as_u64(), Some(variables));
+    let page = fs::read_to_string(here.join("all/report.html")).unwrap();
+    assert!(NAMES.iter().all(|name| page.contains(name)));
+
+    // A run goes on from the results of all motions.
+    let (status, out, err) = run(
+        here,
+        &["solve", PROBLEM, "-o", "on", "--from", "all", "--no-report"],
+    );
+    assert_eq!(status, 0, "{out}{err}");
+    let on = summary(here, "on");
+    assert!(
+        on["iterations"].as_u64() < all["iterations"].as_u64(),
+        "{on}"
+    );
+    assert!(!here.join("on/report.html").exists());
+    let (status, _, err) = run(here, &["solve", PROBLEM, "-o", "on", "--from", "all/sine"]);
+    assert_eq!(status, 2);
+    assert!(err.contains("holds no solution.json"), "{err}");
+}
+
+#[test]
+fn a_stopped_solve_of_several_motions_goes_on() {
+    let folder = workshop();
+    let here = folder.path();
+    let (status, out, err) = run(
+        here,
+        &[
+            "solve",
+            PROBLEM,
+            "-o",
+            "cut",
+            "--max-iterations",
+            "2",
+            "--no-report",
+        ],
+    );
+    assert_eq!(status, 1, "{out}{err}");
+    assert_eq!(summary(here, "cut")["status"], "iteration_limit");
+    assert_eq!(
+        err.matches("the iterations allowed were used up").count(),
+        1,
+        "{err}"
+    );
+    assert!(err.contains("to go on: proboscis solve"), "{err}");
+    let (status, out, err) = run(
+        here,
+        &[
+            "solve",
+            PROBLEM,
+            "-o",
+            "cut",
+            "--from",
+            "cut",
+            "--no-report",
+        ],
+    );
+    assert_eq!(status, 0, "{out}{err}");
+    let solution = read(here.join("cut/ramp/solution.json"));
+    assert!(solution["parameters"]["materials.silicone.viscosity"].is_number());
+}
+
+#[test]
+fn each_motion_is_checked_and_what_cannot_be_done_is_refused() {
+    let folder = workshop();
+    let here = folder.path();
+    let (status, out, err) = run(here, &["check", PROBLEM]);
+    assert_eq!(status, 0, "{out}{err}");
+    assert!(
+        NAMES
+            .iter()
+            .all(|name| out.contains(&format!("motion \"{name}\": derivatives agree"))),
+        "{out}"
+    );
+    let refusals: [(&[&str], &str); 7] = [
+        (
+            &["inspect", PROBLEM],
+            "control.motions: found several motions",
+        ),
+        (&["solve", PROBLEM, "--accuracy", "0.01"], "--accuracy"),
+        (&["solve", PROBLEM, "--estimate-error"], "--estimate-error"),
+        (&["solve", PROBLEM, "--starts", "2"], "several motions"),
+        (&["simulate", PROBLEM], "asks for optimal voltages"),
+        (&["equilibrium", PROBLEM], "asks for optimal voltages"),
+        (
+            &[
+                "solve",
+                PROBLEM,
+                "--set",
+                "control.motions.ramp.set={\"scene.materials.silicone.viscosity\":\"900 Pa s\"}",
+            ],
+            "one constant of all motions",
+        ),
+    ];
+    for (arguments, words) in refusals {
+        let (status, out, err) = run(here, arguments);
+        assert_eq!(status, 2, "{arguments:?} {out}{err}");
+        assert!(err.contains(words), "{arguments:?} {err}");
+    }
+    // A start that one motion cannot have names the motion.
+    let set = "control.motions.ramp.start={\"rest_at_voltages\":{\"muscle2\":\"20 kV\"}}";
+    let (status, out, err) = run(here, &["solve", PROBLEM, "-o", "none", "--set", set]);
+    assert_ne!(status, 0, "{out}{err}");
+    assert!(
+        err.contains("control.motions.ramp.start") || err.contains("control.motions[1].start"),
+        "{err}"
+    );
+}
+
+#[test]
+fn motions_that_share_inputs_refine_one_grid() {
+    let folder = workshop();
+    let here = folder.path();
+    let arguments = [
+        "solve",
+        "problems/robust_pair.json",
+        "-o",
+        "robust",
+        "--set",
+        "control.intervals=auto",
+        "--accuracy",
+        "0.05",
+        "--no-report",
+    ];
+    let (status, out, err) = run(here, &arguments);
+    assert_eq!(status, 0, "{out}{err}");
+    let all = summary(here, "robust");
+    let intervals: Vec<u64> = all["motions"]
+        .as_array()
+        .unwrap()
+        .iter()
+        .map(|one| one["intervals"].as_u64().unwrap())
+        .collect();
+    assert!(
+        intervals[0] > 20 && intervals.iter().all(|n| *n == intervals[0]),
+        "{intervals:?}"
+    );
+    let inputs = |name: &str| {
+        fs::read_to_string(here.join("robust").join(name).join("controls.csv")).unwrap()
+    };
+    let rows = |name: &str| -> Vec<String> {
+        inputs(name)
+            .lines()
+            .filter(|line| !line.starts_with('#'))
+            .map(str::to_owned)
+            .collect()
+    };
+    assert!(rows("soft").len() > 20);
+    assert_eq!(
+        all["shared_inputs"],
+        serde_json::json!(["muscle1", "muscle2"])
+    );
+    let numbers = |name: &str| -> Vec<f64> {
+        rows(name)[1..]
+            .iter()
+            .flat_map(|row| {
+                row.split(',')
+                    .map(|cell| cell.parse::<f64>().unwrap())
+                    .collect::<Vec<_>>()
+            })
+            .collect()
+    };
+    for (a, b) in numbers("soft").into_iter().zip(numbers("stiff")) {
+        assert!((a - b).abs() <= 1e-12 * a.abs(), "{a} {b}");
+    }
+}
