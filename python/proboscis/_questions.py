@@ -65,6 +65,8 @@ class Questions:
         limits: Sequence[entries.Limit] | None = None,
         load_bounds: Mapping[Any, Sequence[Quantity] | Numbers] | None = None,
         loads: Mapping[Any, entries.Signal] | None = None,
+        motions: Sequence[entries.Motion] | None = None,
+        shared_inputs: Sequence[Text] | None = None,
         solver: entries.Solver | None = None,
         voltage_bounds: Sequence[Quantity] | Numbers | None = None,
         voltages: entries.Voltages | None = None,
@@ -88,6 +90,10 @@ class Questions:
         * `load_bounds`: Lower and upper bound of each load that is sought, by name, SI units N, N m, Pa, N/m³ and C/m².
         * `loads`: Loads that are given, by name, constant or functions of time, SI units N, N m, Pa, N/m³ and C/m²; 0 where neither given nor
           sought.
+        * `motions`: Several motions in one optimisation: what `free` seeks is the same in all of them, and the objective is the sum of
+          theirs. Each names the keys that are other ones in it.
+        * `shared_inputs`: Names of muscles, driven electrodes (`block.electrode`) and loads whose inputs are sought once for all motions;
+          these have one given duration and one number of intervals.
         * `solver`: Options of the solver.
         * `voltage_bounds`: Lower and upper bound of every voltage that is sought, SI unit V; not needed where none is.
         * `voltages`: Voltages that are given, by the names of muscles and driven electrodes (`block.electrode`), SI unit V: they are no
@@ -110,6 +116,8 @@ class Questions:
                 "limits": limits,
                 "load_bounds": load_bounds,
                 "loads": loads,
+                "motions": motions,
+                "shared_inputs": shared_inputs,
                 "solver": solver,
                 "voltage_bounds": voltage_bounds,
                 "voltages": voltages,

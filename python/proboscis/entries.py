@@ -874,6 +874,67 @@ class MarkerSpeedLimit(TypedDict):
     """Lower bound, SI unit m/s."""
 
 
+class Motion(TypedDict):
+    """One of several motions: the keys of a control problem that are other ones in it; those that it does not name are those of `control`."""
+
+    coordinates: NotRequired[Coordinates]
+    """Coordinates."""
+
+    duration: NotRequired[Duration]
+    """Final time, SI unit s, or its bounds and a guess."""
+
+    goal: NotRequired[Goal]
+    """Final state; may be left out where the objective names something to `track` or where to end (`final`), and is free then."""
+
+    guess: NotRequired[Guess]
+    """Initial guess of the solver; where not written, of elastic blocks whose goal has `hold`, the motion under these voltages, otherwise
+    `"interpolate"`.
+    """
+
+    hold: NotRequired[Hold]
+    """Treatment of a goal that cannot be kept, because it is unstable or its voltages are beyond their bounds: it is `reported` (where not
+    written), or refused where holding it is `required`.
+    """
+
+    intervals: NotRequired[Intervals]
+    """Number of intervals, 1 or more, or `"auto"`, as where it is not written: as many as the verification of the optimum needs to confirm an
+    error of 1 % of the path length, or of the part that `--accuracy` gives.
+    """
+
+    limits: NotRequired[Sequence[Limit]]
+    """Path limits."""
+
+    load_bounds: NotRequired[Mapping[Any, Sequence[Quantity] | Numbers]]
+    """Lower and upper bound of each load that is sought, by name, SI units N, N m, Pa, N/m³ and C/m²."""
+
+    loads: NotRequired[Mapping[Any, Signal]]
+    """Loads that are given, by name, constant or functions of time, SI units N, N m, Pa, N/m³ and C/m²; 0 where neither given nor sought."""
+
+    name: NotRequired[Text]
+    """Name, and that of its folder of results; one without a name has its number, as in `motion1`."""
+
+    objective: NotRequired[Objective]
+    """Objective that is minimised."""
+
+    set: NotRequired[Mapping[str, Any]]
+    """Constants of the scene that are other ones in this motion, by their places, such as `scene.materials.silicone.shear_modulus`."""
+
+    start: NotRequired[Start]
+    """Initial state; of a periodic motion, whose start is sought, the state where the solver begins."""
+
+    voltage_bounds: NotRequired[Sequence[Quantity] | Numbers]
+    """Lower and upper bound of every voltage that is sought, SI unit V; not needed where none is."""
+
+    voltages: NotRequired[Voltages]
+    """Voltages that are given, by the names of muscles and driven electrodes (`block.electrode`), SI unit V: they are no unknowns, and one of 0
+    for all the time leaves no electric term at all. Functions of time, a table and those of a solution give all voltages, as of a simulation;
+    then a constant of the scene has to be sought.
+    """
+
+    waypoints: NotRequired[Sequence[Waypoint]]
+    """Places, orientations and joint coordinates that the motion reaches on its way."""
+
+
 Newton: TypeAlias = "Literal['full', 'modified', 'reused']"
 """Occasions at which the tangent of a step is factorised."""
 
@@ -1352,8 +1413,18 @@ class Control(TypedDict):
     loads: NotRequired[Mapping[Any, Signal]]
     """Loads that are given, by name, constant or functions of time, SI units N, N m, Pa, N/m³ and C/m²; 0 where neither given nor sought."""
 
+    motions: NotRequired[Sequence[Motion]]
+    """Several motions in one optimisation: what `free` seeks is the same in all of them, and the objective is the sum of theirs. Each names the
+    keys that are other ones in it.
+    """
+
     objective: Objective
     """Objective that is minimised."""
+
+    shared_inputs: NotRequired[Sequence[Text]]
+    """Names of muscles, driven electrodes (`block.electrode`) and loads whose inputs are sought once for all motions; these have one given
+    duration and one number of intervals.
+    """
 
     solver: NotRequired[Solver]
     """Options of the solver."""

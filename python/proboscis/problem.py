@@ -236,11 +236,15 @@ class Problem:
     def _from(self, start: Result) -> Problem:
         if self.task != "control":
             raise Error(f"start: the problem asks to {self.task}, which starts from no result", "start")
-        solution = start.folder / "solution.json"
-        if not solution.is_file():
-            raise Error("start: the result holds no motion to start from", "start")
         content = self.to_dict()
-        content["control"]["guess"] = {"solution": str(solution.resolve())}
+        control = content["control"]
+        motions = control.get("motions")
+        named = [(one, one.get("name") or f"motion{number}") for number, one in enumerate(motions or [], 1)]
+        for place, folder in [(one, start.folder / name) for one, name in named] or [(control, start.folder)]:
+            solution = folder / "solution.json"
+            if not solution.is_file():
+                raise Error("start: the result holds no motion to start from", "start")
+            place["guess"] = {"solution": str(solution.resolve())}
         return self._of(content, self.folder, self.name)
 
     def __repr__(self) -> str:

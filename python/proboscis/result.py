@@ -93,6 +93,12 @@ class Result:
         return int(self._of_summary("iterations"))
 
     @cached_property
+    def motions(self) -> dict[str, Result]:
+        """Results of the motions that were optimised together, by their names."""
+        entries = self._of_summary("motions")
+        return {entry["name"]: Result(self.folder / entry["folder"], kept=self._kept) for entry in entries}
+
+    @cached_property
     def table(self) -> Table:
         """Columns by name: of a motion one row per instant, of a path one per equilibrium, of an equilibrium one; all at the time of the row.
 

@@ -124,7 +124,11 @@ fn write(
         .iter()
         .all(|folder| folder.join(side_by_side::PAGE).is_file());
     if request.page == PageWanted::Written && are_written {
-        let page = side_by_side::html(&request.command, &pages)?;
+        let own = summary.motions.iter();
+        let own: Vec<String> = own
+            .map(|one| format!("{}/{}", one.folder, side_by_side::PAGE))
+            .collect();
+        let page = side_by_side::html(&request.command, &pages, &own)?;
         files.add(side_by_side::PAGE, page.as_bytes())?;
     }
     summary.seconds.total = began.elapsed().as_secs_f64();

@@ -22,7 +22,7 @@ pub fn compare(
     folders: &[PathBuf],
     output: &Path,
 ) -> Result<CommandOutput, CommandError> {
-    let page = html(command, folders)?;
+    let page = html(command, folders, &[])?;
     make_folder(output)?;
     let file = output.join(PAGE);
     atomic::write(&file, page.as_bytes())?;
@@ -33,11 +33,15 @@ pub fn compare(
     })
 }
 
-/// The page that compares the results of some folders.
+/// The page that compares the results of some folders, whose names lead to `pages` of their own.
 ///
 /// # Errors
 /// A folder has no page of a result.
-pub(super) fn html(command: &str, folders: &[PathBuf]) -> Result<String, CommandError> {
+pub(super) fn html(
+    command: &str,
+    folders: &[PathBuf],
+    pages: &[String],
+) -> Result<String, CommandError> {
     let wrong = |reason| CommandError::Option {
         option: "RESULT",
         reason,
@@ -64,7 +68,7 @@ pub(super) fn html(command: &str, folders: &[PathBuf]) -> Result<String, Command
         version: Origin::program(),
         ..Origin::default()
     };
-    Ok(compared::html(&results, &origin))
+    Ok(compared::html(&results, pages, &origin))
 }
 
 /// The last parts of the paths where all differ, otherwise the whole paths.

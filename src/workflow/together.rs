@@ -102,7 +102,9 @@ impl OnGrids {
         let each = self.found.optima.iter_mut().zip(&self.controls);
         let ended = each.zip(&mut self.notes).map(|((optimum, control), note)| {
             let is_short = control.is_refined && !is_confirmed(optimum, accuracy);
-            if !optimum.is_solved() {
+            // What the solver found, or what it did not reach, might have been tried again.
+            let is_open = optimum.meets_equations() || is_unreached(&optimum.solution);
+            if is_open && !optimum.is_solved() {
                 optimum.stopped = stopped;
             }
             let n = optimum.motion.intervals();

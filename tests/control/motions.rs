@@ -303,10 +303,13 @@ fn copies_of_one_motion_are_that_motion() {
     );
 }
 
-/// Entries of the program, and multiplications of a factorisation, of copies that share the last variables.
-fn costs(list: &[Motion], shared: usize) -> [f64; 3] {
+/// Entries of the program, and multiplications of a factorisation, of motions that share variables.
+pub(crate) fn costs(
+    list: &[Motion],
+    shared: impl FnOnce(&[(String, Transcription<'_>)]) -> Vec<SharedVariable>,
+) -> [f64; 3] {
     with_programs(list, |programs, _| {
-        let shared = last(shared, &programs);
+        let shared = shared(&programs);
         let joined = Joined::new(programs, &shared);
         let (jacobian, hessian) = (joined.jacobian_structure(), joined.hessian_structure());
         let n = joined.variables().lower.len();
@@ -353,7 +356,7 @@ fn work_grows_in_proportion_to_the_number_of_motions() {
         ..given.clone()
     };
     for (problem, shared) in [(&given, 2), (&free, 0)] {
-        let of = |count: usize| costs(&copies(&system, problem, count), shared);
+        let of = |count: usize| costs(&copies(&system, problem, count), |list| last(shared, list));
         let (few, many) = (of(4), of(64));
         for (small, large) in few.into_iter().zip(many) {
             assert!(small > 0.0);

@@ -2,7 +2,7 @@
 
 use crate::common::cases::{control, hold, rest_to_rest};
 use crate::common::trunk;
-use crate::motions::{copies, motion, together};
+use crate::motions::{copies, costs, motion, together};
 use proboscis::control::Motions;
 use proboscis::control::problem::{
     BoundaryState, Control, CostFunction, Duration, During, Objective, QuantityCost, Task,
@@ -10,6 +10,7 @@ use proboscis::control::problem::{
 use proboscis::files::read_problem;
 use proboscis::math::Signal;
 use proboscis::model::{Quantity, System};
+use proboscis::nlp::joined::SharedVariable;
 use proboscis::workflow::{Iterate, Optimum, SolveLimits, optimise, optimise_together};
 use std::ops::ControlFlow;
 use std::path::Path;
@@ -116,6 +117,39 @@ fn copies_that_share_inputs_are_one_motion() {
             assert!((a - b).abs() < 1e-4 * 1700.0, "{a} {b}");
         }
     }
+}
+
+#[test]
+fn work_with_shared_inputs_grows_in_proportion_to_the_intervals() {
+    let system = trunk(1);
+    let of = |intervals: usize, count: usize| {
+        let problem = Control {
+            intervals,
+            ..steered(&system)
+        };
+        costs(&copies(&system, &problem, count), |programs| {
+            let (_, first) = &programs[0];
+            let inputs = (0..intervals).flat_map(|k| {
+                let scalars = first.model().variables.sources_range();
+                scalars.map(move |s| (k, s))
+            });
+            let shared = inputs.map(|(k, s)| {
+                let place = first
+                    .unknowns()
+                    .scalar(k, s)
+                    .expect("an input that is sought");
+                SharedVariable(programs.iter().map(|_| (place, 1.0)).collect())
+            });
+            shared.collect()
+        })
+    };
+    let (short, long) = (of(20, 4), of(160, 4));
+    for (short, long) in short.into_iter().zip(long) {
+        let growth = long / short;
+        assert!(growth > 7.0 && growth < 9.0, "{short} {long}");
+    }
+    let (few, many) = (of(20, 4), of(20, 16));
+    assert!(many[2] < 64.5 * few[2], "{few:?} {many:?}");
 }
 
 fn kept() -> Motions {

@@ -55,6 +55,7 @@ fn three_recordings_give_one_value_of_each_constant() {
     assert!(sum > 0.0 && (sum - number(&all["objective"])).abs() < 1e-12 * sum);
     assert_eq!(all["variables"].as_u64(), Some(variables));
     let page = fs::read_to_string(here.join("all/report.html")).unwrap();
+    assert!(page.contains("sine/report.html"));
     assert!(NAMES.iter().all(|name| page.contains(name)));
 
     // A run goes on from the results of all motions.

@@ -20,8 +20,8 @@ pub fn data(html: &str) -> Option<Value> {
     data["charts"].is_array().then_some(data)
 }
 
-/// The page of several results with their names.
-pub fn html(results: &[(String, Value)], origin: &Origin) -> String {
+/// The page of several results with their names, which lead to `pages` of their own where there are some.
+pub fn html(results: &[(String, Value)], pages: &[String], origin: &Origin) -> String {
     let names: Vec<&str> = results.iter().map(|(name, _)| name.as_str()).collect();
     let of_each = |key: &str| -> Vec<&Value> { results.iter().map(|(_, one)| &one[key]).collect() };
     let spans = results.iter().map(|(_, one)| &one["scene"]["span"]);
@@ -30,6 +30,7 @@ pub fn html(results: &[(String, Value)], origin: &Origin) -> String {
         "title": "side by side",
         "system": names.join(", "),
         "names": names,
+        "pages": pages,
         "colours": (0..results.len()).map(|r| style::hue(r).hex()).collect::<Vec<_>>(),
         "answers": of_each("answer"),
         "solved": of_each("isSolved"),
