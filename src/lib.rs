@@ -103,7 +103,7 @@ pub use energy::Energy;
 pub use functional::Element;
 pub use interface::{
     Carrier, Control, Equilibrium, Error, GROUND, Handle, Input, Motion, Optimum, Part, Result,
-    Simulation, State,
+    Simulation, State, Together,
 };
 pub use kinematics::Pose;
 pub use math::{Jet, Signal};
@@ -128,7 +128,7 @@ pub mod prelude {
         Attachment, Body, Carrier, Component, Control, ElasticLaw, Equilibrium, Error, GROUND,
         Grid, Handle, Input, Integrator, Joint, JointKind, Load, Marker, Material, Motion, Muscle,
         Optimum, Orientation, Parameter, Part, Potential, Result, Signal, Simulation, Solid,
-        Spring, State, System, Tendon, X, Y, Z,
+        Spring, State, System, Tendon, Together, X, Y, Z,
     };
 }
 

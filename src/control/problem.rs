@@ -241,6 +241,27 @@ pub struct Motions {
     pub shared_inputs: Vec<String>,
 }
 
+impl Motions {
+    /// The first motion whose instants are not those of the first one, or not given: no input can be the same in both.
+    pub fn other_grid(&self) -> Option<&Motion> {
+        let grid = |motion: &Motion| match motion.control.duration {
+            Duration::Given(duration) => {
+                let Control {
+                    intervals,
+                    is_refined,
+                    ..
+                } = motion.control;
+                Some((duration, intervals, is_refined))
+            }
+            Duration::Free { .. } => None,
+        };
+        let first = self.list.first().and_then(grid);
+        self.list
+            .iter()
+            .find(|motion| grid(motion).is_none() || grid(motion) != first)
+    }
+}
+
 /// A motion among others.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Motion {

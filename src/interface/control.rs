@@ -219,7 +219,7 @@ impl Control {
         Ok(read(&mut program, &point.x))
     }
 
-    fn resolve(&self, system: &System) -> Result<problem::Control> {
+    pub(super) fn resolve(&self, system: &System) -> Result<problem::Control> {
         let positive = |v: f64| v > 0.0 && v.is_finite();
         let (first, bounds) = match self.duration {
             Duration::Given(duration) => (duration, [duration; 2]),

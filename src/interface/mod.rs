@@ -22,6 +22,7 @@ mod parts;
 mod simulation;
 mod sought;
 mod state;
+mod together;
 
 pub use control::Control;
 pub use equilibrium::Equilibrium;
@@ -32,3 +33,4 @@ pub use motion::Motion;
 pub use optimum::Optimum;
 pub use simulation::Simulation;
 pub use state::State;
+pub use together::Together;

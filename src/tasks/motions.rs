@@ -101,12 +101,15 @@ fn verdict(motions: &[Motion], list: &[SolveResult]) -> Verdict {
     }
 }
 
+/// Motions, the problems that they solve, and for each a note where no inputs that hold its goal were found.
+type HeldGoals<'a> = (Together, Cow<'a, Motions>, Vec<Option<String>>);
+
 /// Solves, and again with the inputs that hold the goals that are left as unknowns; for each motion a note where none were found.
 fn solve_and_hold<'a>(
     motions: &'a Motions,
     SolveRequest { wanted, limits }: SolveRequest,
     observer: &mut dyn FnMut(usize, &Iterate<'_>) -> ControlFlow<()>,
-) -> Result<(Together, Cow<'a, Motions>, Vec<Option<String>>), WorkflowError> {
+) -> Result<HeldGoals<'a>, WorkflowError> {
     let began = Instant::now();
     let accuracy = match wanted {
         Some(AccuracyTarget::Below(part)) => part,

@@ -47,6 +47,15 @@ pub fn optimise_together(
     allowed: SolveLimits,
     observer: &mut dyn FnMut(usize, &Iterate<'_>) -> ControlFlow<()>,
 ) -> Result<Together, WorkflowError> {
+    if let (Some(other), [_, ..]) = (motions.other_grid(), &motions.shared_inputs[..]) {
+        return Err(WorkflowError::Problem {
+            place: "control.shared_inputs".to_owned(),
+            reason: format!(
+                "the instants of the motion \"{}\" are other ones",
+                other.name
+            ),
+        });
+    }
     let mut solves = Solves {
         motions,
         allowed,

@@ -385,6 +385,6 @@ fn one_value_of_each_constant_is_found_for_sixteen_motions() {
             .iter()
             .all(|optimum| optimum.solution.status.is_solved())
     );
-    let of = |k: usize| all.optima[k].motion.parameters[0].value;
+    let of = |k: usize| [0, 1].map(|i| all.optima[k].motion.parameters[i].value);
     assert!((1..16).all(|k| of(k) == of(0)));
 }

@@ -9,9 +9,11 @@ use proboscis::control::problem::{
 };
 use proboscis::files::read_problem;
 use proboscis::math::Signal;
+use proboscis::model::system::Muscle;
 use proboscis::model::{Quantity, System};
 use proboscis::nlp::joined::SharedVariable;
 use proboscis::workflow::{Iterate, Optimum, SolveLimits, optimise, optimise_together};
+use proboscis::{Handle, State, Together};
 use std::ops::ControlFlow;
 use std::path::Path;
 
@@ -195,4 +197,57 @@ fn constants_are_those_of_an_independent_program() {
             assert!(error < 1e-8 * expected, "{case}: {number} {expected}");
         }
     }
+}
+
+#[test]
+fn a_program_steers_two_robots_as_a_file_does() {
+    let made = |factor: f64| {
+        let whole = stiffer(factor);
+        let mut system = System::new("segment");
+        system.add(whole.bodies[0].clone());
+        let joint = system.add(whole.joints[0].clone());
+        let muscles = whole
+            .muscles
+            .iter()
+            .map(|muscle| system.add(muscle.clone()));
+        let muscles: Vec<Handle<Muscle>> = muscles.collect();
+        (system, joint, muscles)
+    };
+    let ((soft, joint, muscles), (stiff, ..)) = (made(0.8), made(1.2));
+    let over = |intervals: usize| {
+        proboscis::Control::over(200.0, intervals)
+            .goal(State::Free)
+            .voltage_bounds(0.0, 3000.0)
+            .effort(1.0)
+            .end_joint_near(joint, 0.1, 1e3)
+    };
+    let control = over(40);
+    let motions = |other| {
+        let both = Together::new()
+            .motion(&soft, &control)
+            .motion(&stiff, other);
+        both.shared_input(muscles[0]).shared_input(muscles[1])
+    };
+    let found = motions(&control).solve().unwrap();
+    assert!(found.len() == 2 && found.iter().all(proboscis::Optimum::is_solved));
+    assert_eq!(found[0].solution.voltages, found[1].solution.voltages);
+    let list = [&soft, &stiff].map(|system| {
+        motion(
+            &system.muscles[0].material.shear_modulus.to_string(),
+            system,
+            steered(system),
+        )
+    });
+    let all = together(list.into(), &INPUTS);
+    let sum: f64 = found.iter().map(|one| one.objective).sum();
+    assert!(
+        sum > 0.0 && (sum - all.whole.objective).abs() < 1e-8 * sum,
+        "{sum} {}",
+        all.whole.objective
+    );
+    let other = over(20);
+    let error = motions(&other).solve().unwrap_err().to_string();
+    assert!(error.contains("the instants of the motion"), "{error}");
+    let error = Together::new().solve().unwrap_err().to_string();
+    assert!(error.contains("one or more"), "{error}");
 }

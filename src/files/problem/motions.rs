@@ -4,7 +4,6 @@ use std::collections::BTreeSet;
 
 use serde_json::Value;
 
-use crate::control::problem::Duration;
 use crate::control::{Motion, Motions};
 use crate::files::changes::Changes;
 use crate::files::json::document::Document;
@@ -185,10 +184,19 @@ pub(crate) fn together(list: Vec<Motion>, document: &Document) -> Result<Motions
     for (index, name) in motions.shared_inputs.iter().enumerate() {
         check_input(&motions.list, name, &scope.index(index))?;
     }
-    if !motions.shared_inputs.is_empty() {
-        check_grids(&motions.list, &scope)?;
+    match motions
+        .other_grid()
+        .filter(|_| !motions.shared_inputs.is_empty())
+    {
+        None => Ok(motions),
+        Some(motion) => Err(scope.wrong(
+            format!(
+                "inputs in common with the motion {:?}, whose instants are other ones",
+                motion.name
+            ),
+            "motions of one given \"duration\" and one number of \"intervals\"",
+        )),
     }
-    Ok(motions)
 }
 
 /// That an input is sought in all motions.
@@ -210,29 +218,4 @@ fn check_input(list: &[Motion], name: &str, scope: &Scope<'_>) -> Result<(), Sce
         }
     }
     Ok(())
-}
-
-/// That all motions have the same instants.
-fn check_grids(list: &[Motion], scope: &Scope<'_>) -> Result<(), SceneError> {
-    let grid = |motion: &Motion| match motion.control.duration {
-        Duration::Given(duration) => Some((
-            duration,
-            motion.control.intervals,
-            motion.control.is_refined,
-        )),
-        Duration::Free { .. } => None,
-    };
-    let other = list
-        .iter()
-        .find(|motion| grid(motion).is_none() || grid(motion) != grid(&list[0]));
-    match other {
-        None => Ok(()),
-        Some(motion) => Err(scope.wrong(
-            format!(
-                "inputs in common with the motion {:?}, whose instants are other ones",
-                motion.name
-            ),
-            "motions of one given \"duration\" and one number of \"intervals\"",
-        )),
-    }
 }
