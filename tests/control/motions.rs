@@ -10,7 +10,9 @@ use proboscis::control::problem::{
 use proboscis::control::{BoundaryConditions, Motion, Motions, Transcription, guess};
 use proboscis::dynamics::{Start as Initial, simulate};
 use proboscis::kkt::{Plan, Unknown};
-use proboscis::model::{Constant, Follower, Model, Parameter, Quantity, System, with_parameters};
+use proboscis::model::{
+    Follower, MaterialConstant, Model, Parameter, Quantity, System, with_parameters,
+};
 use proboscis::nlp::joined::{Joined, SharedVariable};
 use proboscis::nlp::{Nlp, Stage, differences};
 use proboscis::workflow::{Iterate, SolveLimits, Together, optimise, optimise_together};
@@ -22,11 +24,11 @@ const TRUE: [f64; 2] = [0.137, 0.71];
 
 /// Shear modulus and viscosity of all muscles, with these upper bounds.
 fn material(system: &System, upper: [f64; 2]) -> Vec<Parameter> {
-    let of = |name: &str, constant: fn(usize) -> Constant, [lower, guess, upper]: [f64; 3]| {
+    let of = |name: &str, constant: MaterialConstant, [lower, guess, upper]: [f64; 3]| {
         let all = 0..system.muscles.len();
         Parameter {
             name: name.into(),
-            constants: all.map(|m| Follower::from(constant(m))).collect(),
+            constants: all.map(|m| Follower::from(constant.of_muscle(m))).collect(),
             lower,
             upper,
             guess,
@@ -35,10 +37,14 @@ fn material(system: &System, upper: [f64; 2]) -> Vec<Parameter> {
     vec![
         of(
             "shear modulus",
-            Constant::ShearModulus,
+            MaterialConstant::ShearModulus,
             [0.05, 0.1, upper[0]],
         ),
-        of("viscosity", Constant::Viscosity, [0.1, 0.5, upper[1]]),
+        of(
+            "viscosity",
+            MaterialConstant::Viscosity,
+            [0.1, 0.5, upper[1]],
+        ),
     ]
 }
 
