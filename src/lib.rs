@@ -65,6 +65,8 @@ pub mod files;
 #[cfg_attr(not(internals), doc(hidden))]
 pub mod functional;
 #[cfg_attr(not(internals), doc(hidden))]
+pub mod identify;
+#[cfg_attr(not(internals), doc(hidden))]
 pub mod interface;
 #[cfg_attr(not(internals), doc(hidden))]
 pub mod ipopt;

@@ -13,6 +13,7 @@ use crate::app::request::{CommandInput, CommandOutput};
 use crate::app::sparsity;
 use crate::app::task::read;
 use crate::control::problem::{Control, Task};
+use crate::identify;
 use crate::model::system::{Body, Shape};
 use crate::model::{Loops, Model, Role, System};
 use crate::nlp::Nlp;
@@ -90,6 +91,15 @@ pub fn inspected(request: &CommandInput, text: Option<&str>) -> Result<Inspected
         Task::Equilibrium(task) => {
             let model = Model::for_analysis(system.clone(), task.analysis(system))
                 .map_err(|error| wrong(error.into()))?;
+            Ok(of_model(&model, None))
+        }
+        Task::Identify(task) => {
+            let model =
+                identify::first_model(system, task).map_err(|error| CommandError::Problem {
+                    file: request.input.clone(),
+                    place: key(&loaded.task).to_owned(),
+                    reason: error.to_string(),
+                })?;
             Ok(of_model(&model, None))
         }
     }?;

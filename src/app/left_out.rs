@@ -10,7 +10,7 @@ use crate::ipopt::interrupt::TimeLimit;
 use crate::report::file_set::FileSet;
 
 /// Files that an earlier result of the folder may have.
-pub(super) const EARLIER: [&str; 28] = [
+pub(super) const EARLIER: [&str; 29] = [
     "body_forces.svg",
     "charge.svg",
     "charges.svg",
@@ -26,6 +26,7 @@ pub(super) const EARLIER: [&str; 28] = [
     "path.csv",
     "path.svg",
     "report.html",
+    "residuals.csv",
     "snapshots.svg",
     "solution.json",
     "solution.npz",

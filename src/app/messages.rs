@@ -13,5 +13,6 @@ pub(super) fn key(task: &Task) -> &'static str {
         Task::Control(_) | Task::Motions(_) => "control",
         Task::Simulate(_) => "simulate",
         Task::Equilibrium(..) => "equilibrium",
+        Task::Identify(_) => "identify",
     }
 }

@@ -17,6 +17,10 @@ pub(super) fn refuse_all_but_motions(
             "asks for optimal voltages, found by `{}`; a motion under given voltages is asked for by \"simulate\" in place of \"control\"",
             command(request, "solve")
         ),
+        Task::Identify(_) => format!(
+            "asks for constants, found by `{}`",
+            command(request, "solve")
+        ),
         Task::Equilibrium(_) => format!(
             "asks for a state of rest, found by `{}`",
             command(request, "equilibrium")
@@ -29,6 +33,7 @@ pub(super) fn refuse_all_but_motions(
 pub(super) fn no_equilibrium(request: &CommandInput, task: &Task) -> CommandError {
     let (asks, word) = match task {
         Task::Control(_) | Task::Motions(_) => ("optimal voltages", "solve"),
+        Task::Identify(_) => ("constants", "solve"),
         _ => ("a motion", "simulate"),
     };
     let reason = format!(

@@ -183,7 +183,7 @@ pub(super) fn command(request: &CommandInput, task: &Task) -> Option<String> {
     let command = match task {
         Task::Control(_) | Task::Motions(_) => "solve",
         Task::Simulate(_) => "simulate",
-        Task::Equilibrium(_) => return None,
+        Task::Equilibrium(_) | Task::Identify(_) => return None,
     };
     // What came through a pipe has gone.
     if is_standard_input(&request.input) {

@@ -11,6 +11,7 @@ use crate::app::displayed_motion::ShownPart;
 use crate::app::energy_summary::EnergySummary;
 use crate::app::equilibrium_summary::Rest;
 use crate::app::error::CommandError;
+use crate::app::identification_summary::Identification;
 use crate::app::linear_systems::LinearSystems;
 use crate::app::path_summary::PathSummary;
 use crate::app::request::CommandInput;
@@ -75,6 +76,9 @@ pub(super) struct Summary {
     pub(super) rest: Option<Rest>,
     #[serde(skip_serializing_if = "Option::is_none")]
     pub(super) path: Option<PathSummary>,
+    /// Constants that were fitted to recordings.
+    #[serde(flatten)]
+    pub(super) identification: Option<Identification>,
     /// Muscles and blocks that leave the domain of the first-order dielectric.
     #[serde(skip_serializing_if = "Vec::is_empty")]
     pub(super) domain: Vec<Outside>,
@@ -363,6 +367,7 @@ impl Summary {
             comparison: None,
             rest: None,
             path: None,
+            identification: None,
             domain: Vec::new(),
             blocks: None,
             coordinates: coordinates.into(),

@@ -1,4 +1,4 @@
-//! Runs the task of a problem file: control, simulation or equilibrium.
+//! Runs the task of a problem file: control, simulation, equilibrium or identification.
 
 use std::path::Path;
 use std::time::Instant;
@@ -6,6 +6,7 @@ use std::time::Instant;
 use crate::app::equilibrium;
 use crate::app::error::CommandError;
 use crate::app::foreign::refuse_foreign;
+use crate::app::identification;
 use crate::app::motions;
 use crate::app::no_equilibrium;
 use crate::app::other_task::refuse_all_but_motions;
@@ -23,7 +24,7 @@ use crate::workflow::accuracy::AccuracyTarget;
 use crate::workflow::memory;
 use crate::workflow::phase::phase;
 
-/// Runs the task of a problem: optimal control, simulation or equilibrium.
+/// Runs the task of a problem: optimal control, simulation, equilibrium or identification.
 ///
 /// # Errors
 /// The input is wrong, and nothing was written; or the results cannot be written.
@@ -90,6 +91,7 @@ fn run_checked(
             simulation::simulation(told, &loaded, simulation, began, observer)
         }
         Task::Equilibrium(task) => equilibrium::at(told, &loaded.system, task, began),
+        Task::Identify(task) => identification::run(told, &loaded, task, began),
     };
     no_equilibrium::kept(request, answer)
 }
@@ -125,7 +127,7 @@ pub(super) fn refuse_replacing(request: &CommandInput, task: &Task) -> Result<()
                 &own.join(&motion.name),
             )
         }),
-        Task::Equilibrium(_) => Ok(()),
+        Task::Equilibrium(_) | Task::Identify(_) => Ok(()),
     }
 }
 
@@ -155,20 +157,22 @@ fn refuse_end(
 
 /// Refuses options that the task has no use for.
 fn refuse_unused(request: &CommandInput, task: &Task) -> Result<(), CommandError> {
+    let is_simulation = matches!(task, Task::Simulate(_));
     let option = match (task, request.wanted) {
-        (Task::Equilibrium(_), Some(AccuracyTarget::Below(_))) => "--accuracy",
-        (Task::Equilibrium(_), Some(AccuracyTarget::Estimate)) => "--estimate-error",
-        (Task::Equilibrium(_), _) if request.from.is_some() => "--from",
-        (Task::Simulate(_), Some(_)) if request.from.is_some() => "--from",
+        (Task::Control(_), _) => return Ok(()),
         (Task::Motions(_), Some(AccuracyTarget::Estimate)) => "--estimate-error",
         (Task::Motions(motions), Some(AccuracyTarget::Below(_)))
             if motions.list.iter().any(|one| !one.control.is_refined) =>
         {
             "--accuracy"
         }
-        (Task::Equilibrium(_) | Task::Simulate(_), _) if request.max_iterations.is_some() => {
-            "--max-iterations"
+        (Task::Motions(_), _) => return Ok(()),
+        (Task::Equilibrium(_) | Task::Identify(_), Some(AccuracyTarget::Below(_))) => "--accuracy",
+        (Task::Equilibrium(_) | Task::Identify(_), Some(AccuracyTarget::Estimate)) => {
+            "--estimate-error"
         }
+        _ if request.from.is_some() && (!is_simulation || request.wanted.is_some()) => "--from",
+        _ if request.max_iterations.is_some() => "--max-iterations",
         _ => return Ok(()),
     };
     let asks = match task {
@@ -184,6 +188,11 @@ fn refuse_unused(request: &CommandInput, task: &Task) -> Result<(), CommandError
             "an equilibrium, which has no steps in time to refine"
         }
         Task::Equilibrium(_) => "an equilibrium, for which no solver of programs iterates",
+        Task::Identify(_) if option == "--from" => "an identification, which goes on from nothing",
+        Task::Identify(_) if request.wanted.is_some() => {
+            "an identification, whose steps are halved until their bias is small"
+        }
+        Task::Identify(_) => "an identification, for which no solver of programs iterates",
         _ => "a simulation, for which no solver of programs iterates",
     };
     Err(CommandError::Option {

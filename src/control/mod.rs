@@ -14,6 +14,7 @@ mod given_rates;
 mod goal;
 mod goal_rows;
 mod guess;
+mod identification;
 mod inputs;
 mod limits;
 mod measured_values;

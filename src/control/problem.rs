@@ -1,9 +1,12 @@
-//! Tasks of a problem: simulation, equilibrium, control. Units g, mm, ms, N, V.
+//! Tasks of a problem: simulation, equilibrium, control, identification. Units g, mm, ms, N, V.
 
 use crate::control::Earlier;
 pub use crate::control::boundary_state::{BoundaryState, Hold, Rest, SoughtHold};
 pub use crate::control::energy_cost::{EnergyCost, SourceEnergy};
 pub use crate::control::goal::{Orientation, Place};
+pub use crate::control::identification::{
+    Channel, Identification, Reading, Recording, Regime, SoughtStart,
+};
 pub use crate::control::inputs::{Afterwards, Voltages, absent_loads};
 pub use crate::control::path_constraint::{PathConstraint, Side};
 pub use crate::control::quantity_cost::{CostFunction, During, Objective, QuantityCost};
@@ -26,6 +29,8 @@ pub enum Task {
     Control(Box<Control>),
     /// Find several optimal motions with constants or inputs in common.
     Motions(Box<Motions>),
+    /// Fit constants to recordings.
+    Identify(Box<Identification>),
 }
 
 /// A static equilibrium, or the path of equilibria that leads there.

@@ -66,12 +66,33 @@ impl Columns {
         (&self.headers, &self.rows)
     }
 
-    /// The column with a header, or with a header of this name and any unit.
+    /// The column with a header, or with a header of this name and any unit; an empty cell is a mistake.
     pub(crate) fn column<M: PhysicalQuantity>(
         &self,
         name: &str,
         scope: &Scope<'_>,
     ) -> Result<Vec<Quantity<M>>, SceneError> {
+        let at = self.place(name, scope)?;
+        let read = |row: &StringRecord| self.cell(row, at, scope);
+        self.rows.iter().map(read).collect()
+    }
+
+    /// The same, where an empty cell is a gap.
+    pub(crate) fn with_gaps<M: PhysicalQuantity>(
+        &self,
+        name: &str,
+        scope: &Scope<'_>,
+    ) -> Result<Vec<Option<Quantity<M>>>, SceneError> {
+        let at = self.place(name, scope)?;
+        let read = |row: &StringRecord| {
+            let is_gap = row[at].is_empty();
+            (!is_gap).then(|| self.cell(row, at, scope)).transpose()
+        };
+        self.rows.iter().map(read).collect()
+    }
+
+    /// Place of the column with a header.
+    fn place(&self, name: &str, scope: &Scope<'_>) -> Result<usize, SceneError> {
         let at = |is_it: &dyn Fn(&str) -> bool| {
             let headers = self.headers.iter().enumerate();
             let found = headers.filter(|(_, header)| is_it(header));
@@ -98,22 +119,29 @@ impl Columns {
                 .document
                 .wrong_name(&scope.place, name, &expected, candidates));
         };
+        Ok(at)
+    }
+
+    /// A cell in the unit of its column.
+    fn cell<M: PhysicalQuantity>(
+        &self,
+        row: &StringRecord,
+        at: usize,
+        scope: &Scope<'_>,
+    ) -> Result<Quantity<M>, SceneError> {
         let (_, unit) = parts(&self.headers[at]);
-        let read = |row: &StringRecord| {
-            let cell = &row[at];
-            let quantity = match unit {
-                Some(unit) => Quantity::try_from_text(&format!("{cell} {unit}")),
-                None => match cell.parse() {
-                    Ok(number) => Quantity::try_from_number(number),
-                    Err(_) => Err(format!("{cell:?}, which is no number")),
-                },
-            };
-            quantity.map_err(|found| {
-                let line = row.position().map_or(0, csv::Position::line);
-                let place = format!("{found}, in line {line} of {}", self.path.display());
-                scope.wrong(place, Quantity::<M>::expected())
-            })
+        let cell = &row[at];
+        let quantity = match unit {
+            Some(unit) => Quantity::try_from_text(&format!("{cell} {unit}")),
+            None => match cell.parse() {
+                Ok(number) => Quantity::try_from_number(number),
+                Err(_) => Err(format!("{cell:?}, which is no number")),
+            },
         };
-        self.rows.iter().map(read).collect()
+        quantity.map_err(|found| {
+            let line = row.position().map_or(0, csv::Position::line);
+            let place = format!("{found}, in line {line} of {}", self.path.display());
+            scope.wrong(place, Quantity::<M>::expected())
+        })
     }
 }

@@ -218,6 +218,10 @@ fn alone(mut document: Document, of_scene: &[Override]) -> Result<Loaded, SceneE
             let expected = "none beside an equilibrium, which has no times";
             return Err(place.wrong("an \"output\"", expected));
         }
+        (Some(_), Task::Identify(_)) => {
+            let expected = "none beside an identification, which shows its readings";
+            return Err(place.wrong("an \"output\"", expected));
+        }
         (Some(spec), _) => output(spec, &system, &place)?,
     };
     Ok(Loaded {

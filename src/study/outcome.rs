@@ -67,6 +67,7 @@ pub fn run(point: &StudyPoint, markers: Option<&[String]>) -> (RunOutcome, Optio
         Task::Motions(_) => unreachable!("refused where the study is read"),
         Task::Simulate(task) => motion(point, task, markers, began),
         Task::Equilibrium(task) => rest(point, task, markers, began),
+        Task::Identify(_) => unreachable!("studies have no identifications"),
     }
 }
 

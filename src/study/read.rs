@@ -207,14 +207,10 @@ fn same_question(
         .chain(extra.iter().map(|point| (scope.key("reference"), point)));
     let mut first: Option<(StudyTask, Option<f64>)> = None;
     for (place, point) in all {
-        if let Task::Motions(_) = &point.loaded.task {
-            let found = "a problem of several motions";
-            return Err(place.wrong(
-                found,
-                "a problem of one motion, a simulation or an equilibrium",
-            ));
-        }
-        let (asked, duration) = task_of(&point.loaded.task);
+        let Some((asked, duration)) = task_of(&point.loaded.task) else {
+            let expected = "a simulation, an equilibrium or optimal control of one motion";
+            return Err(place.wrong("a problem of another kind", expected));
+        };
         if let Task::Equilibrium(task) = &point.loaded.task
             && task.path.is_some()
         {
@@ -240,17 +236,17 @@ fn same_question(
     Ok(asked)
 }
 
-/// The kind of a task, and its length in ms where that is given.
-fn task_of(task: &Task) -> (StudyTask, Option<f64>) {
-    match task {
+/// The kind of a task, and its length in ms where that is given; none of an identification.
+fn task_of(task: &Task) -> Option<(StudyTask, Option<f64>)> {
+    Some(match task {
         Task::Simulate(task) => (StudyTask::Motion, Some(task.duration)),
         Task::Equilibrium(_) => (StudyTask::Rest, None),
         Task::Control(task) => match task.duration {
             Duration::Given(duration) => (StudyTask::Control, Some(duration)),
             Duration::Free { .. } => (StudyTask::Control, None),
         },
-        Task::Motions(_) => (StudyTask::Control, None),
-    }
+        Task::Identify(_) | Task::Motions(_) => return None,
+    })
 }
 
 /// Markers that every scene has.

@@ -337,5 +337,12 @@ fn as_control(task: Task, system: &System) -> Control {
         Task::Equilibrium(task) => {
             without_goal(at_reference(), 1.0, task.voltages, task.coordinates)
         }
+        Task::Identify(task) => {
+            let row = task.recordings[0].voltages.at(0.0).to_vec();
+            Control {
+                parameters: task.parameters,
+                ..without_goal(at_reference(), 1.0, row, task.coordinates)
+            }
+        }
     }
 }

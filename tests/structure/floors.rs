@@ -3,7 +3,7 @@
 use crate::sources::sources;
 
 /// Floors from the ground up; folders of one line do not know each other.
-const FLOORS: [&[&str]; 14] = [
+const FLOORS: [&[&str]; 15] = [
     &["math"],
     &["mesh", "sparse", "kkt", "nlp"],
     &["energy", "ipopt"],
@@ -13,6 +13,7 @@ const FLOORS: [&[&str]; 14] = [
     &["model"],
     &["dynamics"],
     &["control"],
+    &["identify"],
     &["workflow", "files"],
     &["tasks"],
     &["report", "interface"],

@@ -39,7 +39,7 @@ pub(crate) fn task_runs_at_once(task: &Task) -> bool {
     let solver = match task {
         Task::Control(control) => &control.solver,
         Task::Motions(motions) => &motions.list[0].control.solver,
-        Task::Simulate(_) | Task::Equilibrium(_) => return true,
+        Task::Simulate(_) | Task::Equilibrium(_) | Task::Identify(_) => return true,
     };
     let options = Options {
         linear_solver: solver.linear_solver,

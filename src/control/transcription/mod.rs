@@ -169,6 +169,11 @@ impl<'m> Transcription<'m> {
         quantity.plain(value, &self.model.system)
     }
 
+    /// Scale of a column: value = scale · variable.
+    pub fn column_scale(&self, column: usize) -> f64 {
+        self.variable_scales[column]
+    }
+
     /// Scale of a row: scaled row = scale · row.
     pub fn row_scale(&self, row: usize) -> f64 {
         self.row_scales[row]

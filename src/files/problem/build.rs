@@ -6,6 +6,7 @@ use crate::files::json::scope::Scope;
 use crate::files::problem::control::control;
 use crate::files::problem::coordinates::{coordinates, count};
 use crate::files::problem::free::check_solution;
+use crate::files::problem::identify::identification;
 use crate::files::problem::loads::loads;
 use crate::files::problem::simulation::simulation;
 use crate::files::problem::spec::ProblemSpec;
@@ -71,10 +72,17 @@ pub(crate) fn build_problem(
             Ok(Task::Control(Box::new(control)))
         })
     });
+    let identify = problem.identify.as_ref().map(|spec| -> Build<'_> {
+        Box::new(|| {
+            let task = identification(spec, (scene, system), &scope.key("identify"))?;
+            Ok(Task::Identify(Box::new(task)))
+        })
+    });
     let build = scope.exactly_one([
         ("simulate", simulate),
         ("equilibrium", equilibrium),
         ("control", control),
+        ("identify", identify),
     ])?;
     build()
 }

@@ -1,13 +1,14 @@
 //! The problem file: its types as written (`spec`, `spec_*`) and their conversion to a [`Task`](crate::control::problem::Task).
 //!
 //! - `motions`: several motions of one problem, each as a problem of its own.
-//! - `build`: the problem; `control`, `simulation`: its two longer tasks.
+//! - `build`: the problem; `control`, `simulation`, `identify`: its longer tasks; `channels`: what recordings measure.
 //! - `state`, `end_of`, `goal`, `limits`, `source_limits`, `free`, `guess`, `voltages`, `track`, `measured`, `energies`, `coordinates`: their parts; `output`: what is written of a motion; `solution_voltages`,
 //!   `solution_joints`, `solution_document`:
 //!   what is read of an earlier solution.
 
 mod bounds;
 pub(crate) mod build;
+mod channels;
 pub(crate) mod control;
 pub(crate) mod coordinates;
 pub(crate) mod end_of;
@@ -15,6 +16,7 @@ pub(crate) mod energies;
 pub(crate) mod free;
 pub(crate) mod goal;
 pub(crate) mod guess;
+pub(crate) mod identify;
 pub(crate) mod limits;
 mod loads;
 mod measured;
@@ -31,6 +33,7 @@ pub mod spec_control;
 pub mod spec_coordinates;
 pub mod spec_energies;
 pub mod spec_free;
+pub mod spec_identify;
 pub mod spec_integrator;
 pub mod spec_limits;
 pub mod spec_measured;

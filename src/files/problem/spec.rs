@@ -8,6 +8,7 @@ use std::marker::PhantomData;
 use crate::files::json::either::{Either, ScalarOrObject, scalar_or_object};
 use crate::files::problem::spec_control::ControlSpec;
 use crate::files::problem::spec_coordinates::CoordinatesSpec;
+use crate::files::problem::spec_identify::IdentifySpec;
 use crate::files::problem::spec_output::OutputSpec;
 use crate::files::problem::spec_simulate::SimulateSpec;
 use crate::files::problem::spec_voltages::VoltageMap;
@@ -15,7 +16,7 @@ use crate::files::scene::spec::SceneSpec;
 use crate::files::units::quantity::{LoadSize, Quantity};
 use crate::model::Response;
 
-/// Task for a scene: exactly one of `simulate`, `equilibrium`, `control`.
+/// Task for a scene: exactly one of `simulate`, `equilibrium`, `control`, `identify`.
 #[derive(Clone, Debug, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct ProblemSpec {
@@ -34,6 +35,9 @@ pub struct ProblemSpec {
     /// Optimal control.
     #[serde(default)]
     pub control: Option<ControlSpec>,
+    /// Constants fitted to recordings.
+    #[serde(default)]
+    pub identify: Option<IdentifySpec>,
     /// Part of a motion that tables, figures and page show.
     #[serde(default)]
     pub output: Option<OutputSpec>,

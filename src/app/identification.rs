@@ -1,0 +1,83 @@
+//! An identification from file to folder.
+
+use std::time::Instant;
+
+use crate::app::error::CommandError;
+use crate::app::folder::make_folder_of;
+use crate::app::identification_page;
+use crate::app::identification_summary::{Identification, remarks, status, table};
+use crate::app::left_out::EARLIER;
+use crate::app::request::{CommandInput, CommandOutput, PageWanted};
+use crate::app::summary::Summary;
+use crate::control::problem;
+use crate::files::Loaded;
+use crate::identify::{Identified, IdentifyError, identify};
+use crate::ipopt::interrupt;
+use crate::report::file_set::FileSet;
+use crate::report::table::cells_csv;
+use crate::workflow::phase::phase;
+
+/// Fits the constants of a task to its recordings and writes the folder.
+pub(super) fn run(
+    (request, asked): (&CommandInput, &[(String, String)]),
+    loaded: &Loaded,
+    task: &problem::Identification,
+    began: Instant,
+) -> Result<CommandOutput, CommandError> {
+    let read = began.elapsed().as_secs_f64();
+    let watch = interrupt::watch(request.max_seconds.map(|seconds| seconds - read));
+    phase("fitting");
+    let found = identify(&loaded.system, task, &mut |fit, grid| {
+        tracing::debug!(intervals = ?grid.intervals, sum = fit.sum(), "fitted");
+    });
+    drop(watch);
+    let found = found.map_err(|error| refused(request, &error))?;
+    let folder = make_folder_of(request)?;
+    let writing = Instant::now();
+    let origin = request.origin(false);
+    let status = status(&found);
+    let mut summary = Summary::new(request, status, None);
+    summary.notes = remarks(task, &found);
+    let identification = Identification::new(&loaded.system, task, &found);
+    let text = identification.text();
+    summary.identification = Some(identification);
+    let mut files = FileSet::in_folder(&folder);
+    EARLIER.iter().for_each(|name| files.remove(name));
+    files.add(
+        "residuals.csv",
+        cells_csv(&table(task, &found), &origin).as_bytes(),
+    )?;
+    if request.page == PageWanted::Written {
+        let page = identification_page::html(task, &found, (&summary, asked), &origin);
+        files.add("report.html", page.as_bytes())?;
+    }
+    summary.seconds.setup = read;
+    summary.seconds.wrote(began, writing);
+    let notes = summary.notes.lines().collect();
+    summary.write(files)?;
+    Ok(CommandOutput {
+        is_solved: is_solved(&found),
+        result: format!("{}\n{text}\n{}", status.replace('_', " "), folder.display()),
+        notes,
+    })
+}
+
+/// Returns true if the constants are found and explain what was held out.
+fn is_solved(found: &Identified) -> bool {
+    matches!(status(found), "identified" | "explained")
+}
+
+fn refused(request: &CommandInput, error: &IdentifyError) -> CommandError {
+    if let (IdentifyError::Stopped, Some(status)) = (error, interrupt::stop()) {
+        return CommandError::Stopped(status);
+    }
+    let place = match error {
+        IdentifyError::NotSought(_) | IdentifyError::Unread { .. } => "identify.free",
+        _ => "identify.recordings",
+    };
+    CommandError::Problem {
+        file: request.input.clone(),
+        place: place.to_owned(),
+        reason: error.to_string(),
+    }
+}

@@ -1,0 +1,448 @@
+//! Constants that were identified, in `summary.json`, in words and as a table.
+
+use serde::Serialize;
+
+use crate::control::problem;
+use crate::identify::{Ended, Experiment, HeldOut, Identified, Undetermined, Whiteness};
+use crate::math::significant;
+use crate::model::{Parameter, SiUnit, System};
+use crate::workflow::Remarks;
+
+/// Result of an identification.
+#[derive(Debug, Serialize)]
+pub(super) struct Identification {
+    /// The constants.
+    constants: Vec<Found>,
+    /// Correlations of all pairs of constants, in their order; none of those without an interval.
+    correlation: Vec<Vec<Option<f64>>>,
+    /// Combinations that the data do not determine.
+    undetermined: Vec<Combination>,
+    readings: usize,
+    unknowns: usize,
+    /// Σ of the squared residuals in standard deviations over the degrees of freedom.
+    reduced_chi_square: f64,
+    /// Probability of so large residuals, where the standard deviations are known.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    p: Option<f64>,
+    grid: GridBias,
+    fitted: Vec<Residuals>,
+    held_out: Vec<Prediction>,
+    #[serde(skip_serializing_if = "Vec::is_empty")]
+    next_experiments: Vec<Candidate>,
+}
+
+/// A constant.
+#[derive(Debug, Serialize)]
+struct Found {
+    name: String,
+    unit: &'static str,
+    /// Absent where the data do not determine it.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    value: Option<f64>,
+    #[serde(skip_serializing_if = "Option::is_none")]
+    standard_error: Option<f64>,
+    /// Interval of 95 %.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    interval: Option<[f64; 2]>,
+    at_bound: bool,
+}
+
+/// A combination of constants that is not determined.
+#[derive(Debug, Serialize)]
+struct Combination {
+    /// In words.
+    text: String,
+    /// Powers by which the constants change together.
+    powers: Vec<Power>,
+    /// The product that is determined.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    determined: Option<Determined>,
+}
+
+#[derive(Debug, Serialize)]
+struct Power {
+    name: String,
+    power: f64,
+}
+
+#[derive(Debug, Serialize)]
+struct Determined {
+    product: String,
+    /// In SI units.
+    value: f64,
+    standard_error: f64,
+}
+
+/// Grid of the last fit.
+#[derive(Debug, Serialize)]
+struct GridBias {
+    intervals: Vec<usize>,
+    halvings: usize,
+    /// Largest change of a constant by the last halving, in standard errors; absent where there was none.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    largest_change: Option<f64>,
+    confirmed: bool,
+}
+
+/// Residuals of a quantity of a recording.
+#[derive(Debug, Serialize)]
+struct Residuals {
+    recording: String,
+    quantity: String,
+    readings: usize,
+    /// Root of the mean squared residual, in SI units.
+    rms: f64,
+    #[serde(skip_serializing_if = "Option::is_none")]
+    whiteness: Option<Test>,
+}
+
+/// A test of whiteness.
+#[derive(Debug, Serialize)]
+struct Test {
+    ljung_box: f64,
+    lags: usize,
+    p: f64,
+    neighbours: f64,
+}
+
+/// A recording that was held out.
+#[derive(Debug, Serialize)]
+struct Prediction {
+    recording: String,
+    /// `explained` or `not explained`.
+    verdict: &'static str,
+    reduced_chi_square: f64,
+    /// The value that it exceeds with a probability of 1 %.
+    quantile: f64,
+    p: f64,
+    residuals: Vec<Residuals>,
+}
+
+/// A candidate for the next experiment.
+#[derive(Debug, Serialize)]
+struct Candidate {
+    name: String,
+    /// Standard errors of the constants after it, in SI units; absent of those that are not determined then.
+    standard_errors: Vec<Option<f64>>,
+    undetermined: usize,
+}
+
+fn unit(system: &System, parameter: &Parameter) -> SiUnit {
+    parameter.unit(system)
+}
+
+/// Powers of constants as a product, such as `a / b^2`.
+pub(super) fn product(task: &problem::Identification, powers: &[(usize, f64)]) -> String {
+    let factor = |&(j, power): &(usize, f64)| {
+        let name = &task.parameters[j].name;
+        match (power * 1e3).round() / 1e3 {
+            1.0 => name.clone(),
+            power => format!("{name}^{power}"),
+        }
+    };
+    let list: Vec<String> = powers.iter().map(factor).collect();
+    list.join(" · ")
+}
+
+fn words(task: &problem::Identification, one: &Undetermined) -> String {
+    let names: Vec<&str> = one
+        .powers
+        .iter()
+        .map(|&(j, _)| task.parameters[j].name.as_str())
+        .collect();
+    match &one.determined {
+        Some((powers, ..)) => format!(
+            "the data determine {} alone, and not {}",
+            product(task, powers),
+            names.join(" and ")
+        ),
+        None if names.len() == 1 => format!("the data do not determine {}", names[0]),
+        None => format!(
+            "the data do not determine {}: nothing tells changes apart in which they grow as {}",
+            names.join(", "),
+            product(task, &one.powers)
+        ),
+    }
+}
+
+impl From<&Whiteness> for Test {
+    fn from(test: &Whiteness) -> Self {
+        Self {
+            ljung_box: test.statistic,
+            lags: test.lags,
+            p: test.p,
+            neighbours: test.neighbours,
+        }
+    }
+}
+
+fn residuals(
+    task: &problem::Identification,
+    series: &[crate::identify::Series],
+    whiteness: &[Option<Whiteness>],
+) -> Vec<Residuals> {
+    let of = |(one, test): (&crate::identify::Series, &Option<Whiteness>)| {
+        let recording = &task.recordings[one.recording];
+        let channel = &recording.channels[one.channel];
+        let pairs = one.measured.iter().zip(&one.predicted);
+        let sum: f64 = pairs.map(|(m, p)| (m - p).powi(2)).sum();
+        Residuals {
+            recording: recording.name.clone(),
+            quantity: channel.name.clone(),
+            readings: one.times.len(),
+            rms: channel.unit.1 * (sum / one.times.len() as f64).sqrt(),
+            whiteness: test.as_ref().map(Test::from),
+        }
+    };
+    series.iter().zip(whiteness).map(of).collect()
+}
+
+impl Identification {
+    /// Of a fit and its assessment.
+    pub(super) fn new(system: &System, task: &problem::Identification, found: &Identified) -> Self {
+        let information = &found.information;
+        let units: Vec<SiUnit> = task.parameters.iter().map(|p| unit(system, p)).collect();
+        let values = found.fit.of_constants();
+        let has_interval = |j: usize| information.is_determined[j] && !found.fit.is_at_bound[j];
+        let constant = |(j, parameter): (usize, &Parameter)| {
+            let factor = units[j].factor;
+            let value = factor * values[j];
+            let half = has_interval(j).then(|| factor * information.half(j));
+            Found {
+                name: parameter.name.clone(),
+                unit: units[j].symbol,
+                value: information.is_determined[j].then_some(value),
+                standard_error: half.map(|half| half / information.factor),
+                interval: half.map(|half| [value - half, value + half]),
+                at_bound: found.fit.is_at_bound[j],
+            }
+        };
+        let count = task.parameters.len();
+        let pair =
+            |i, j| (has_interval(i) && has_interval(j)).then(|| information.correlation(i, j));
+        let rows = (0..count).map(|i| (0..count).map(|j| pair(i, j)).collect());
+        let combination = |one: &Undetermined| Combination {
+            text: words(task, one),
+            powers: (one.powers.iter())
+                .map(|&(j, power)| Power {
+                    name: task.parameters[j].name.clone(),
+                    power,
+                })
+                .collect(),
+            determined: one.determined.as_ref().map(|(powers, value, deviation)| {
+                let si = powers.iter().map(|&(j, power)| units[j].factor.powf(power));
+                let value = value * si.product::<f64>();
+                Determined {
+                    product: product(task, powers),
+                    value,
+                    standard_error: (value * deviation).abs(),
+                }
+            }),
+        };
+        let largest = found.bias.largest();
+        Self {
+            constants: task.parameters.iter().enumerate().map(constant).collect(),
+            correlation: rows.collect(),
+            undetermined: information.undetermined.iter().map(combination).collect(),
+            readings: found.fit.residuals().len(),
+            unknowns: found.fit.free(),
+            reduced_chi_square: found.fit.sum() / found.fit.freedom().max(1) as f64,
+            p: found.p,
+            grid: GridBias {
+                intervals: found
+                    .fitted
+                    .iter()
+                    .map(|&r| 2 * found.grid.intervals[r])
+                    .collect(),
+                halvings: found.bias.halvings,
+                largest_change: largest.is_finite().then_some(largest),
+                confirmed: found.bias.is_confirmed,
+            },
+            fitted: residuals(task, &found.series, &found.whiteness),
+            held_out: found
+                .held_out
+                .iter()
+                .map(|one| Prediction::new(task, one))
+                .collect(),
+            next_experiments: (found.experiments.iter())
+                .map(|one| Candidate::new(task, one, &units))
+                .collect(),
+        }
+    }
+
+    /// In words, a line for each constant and verdict.
+    pub(super) fn text(&self) -> String {
+        let mut lines = Vec::new();
+        for one in &self.constants {
+            let text = match (one.value, one.interval) {
+                (Some(value), Some([low, high])) => format!(
+                    "{} = {} {} (95 %: {} to {})",
+                    one.name,
+                    significant(value, 6),
+                    one.unit,
+                    significant(low, 6),
+                    significant(high, 6)
+                ),
+                (Some(value), None) => {
+                    format!(
+                        "{} = {} {}, at its bound",
+                        one.name,
+                        significant(value, 6),
+                        one.unit
+                    )
+                }
+                _ => format!("{} is not determined", one.name),
+            };
+            lines.push(text);
+        }
+        for one in &self.undetermined {
+            lines.push(one.text.clone());
+            if let Some(product) = &one.determined {
+                lines.push(format!(
+                    "{} = {} ± {} in SI units (one standard error)",
+                    product.product,
+                    significant(product.value, 6),
+                    significant(product.standard_error, 2)
+                ));
+            }
+        }
+        for one in &self.held_out {
+            lines.push(format!(
+                "{}: {} (reduced χ² {}, 1 % beyond {})",
+                one.recording,
+                one.verdict,
+                significant(one.reduced_chi_square, 3),
+                significant(one.quantile, 3)
+            ));
+        }
+        if let Some(best) = self.next_experiments.first() {
+            lines.push(format!("next experiment: {}", best.name));
+        }
+        lines.join("\n")
+    }
+}
+
+impl Prediction {
+    fn new(task: &problem::Identification, one: &HeldOut) -> Self {
+        Self {
+            recording: task.recordings[one.recording].name.clone(),
+            verdict: match one.is_explained() {
+                true => "explained",
+                false => "not explained",
+            },
+            reduced_chi_square: one.reduced,
+            quantile: one.quantile,
+            p: one.p,
+            residuals: residuals(task, &one.series, &one.whiteness),
+        }
+    }
+}
+
+impl Candidate {
+    fn new(task: &problem::Identification, one: &Experiment, units: &[SiUnit]) -> Self {
+        let information = &one.information;
+        let error = |j: usize| {
+            let variance = information.covariance[(j, j)];
+            (information.is_determined[j]).then(|| units[j].factor * variance.sqrt())
+        };
+        Self {
+            name: task.candidates[one.candidate].name.clone(),
+            standard_errors: (0..units.len()).map(error).collect(),
+            undetermined: information.undetermined.len(),
+        }
+    }
+}
+
+/// Status of a result, in one word.
+pub(super) fn status(found: &Identified) -> &'static str {
+    let is_explained = found.held_out.iter().all(HeldOut::is_explained);
+    match () {
+        () if found.fit.ended == Ended::Unfinished => "not_converged",
+        () if !found.information.undetermined.is_empty() => "not_determined",
+        () if !is_explained => "not_explained",
+        () if !found.bias.is_confirmed => "bias_not_confirmed",
+        () if found.held_out.is_empty() => "identified",
+        () => "explained",
+    }
+}
+
+/// What has to be said of a result.
+pub(super) fn remarks(task: &problem::Identification, found: &Identified) -> Remarks {
+    let mut remarks = Remarks::default();
+    let at_bound = task.parameters.iter().zip(&found.fit.is_at_bound);
+    let at_bound = at_bound.filter(|(_, held)| **held);
+    remarks.warn(
+        "at_bound",
+        at_bound.map(|(p, _)| format!("{} lies at its bound: the fit would go on", p.name)),
+    );
+    let open = found.information.undetermined.iter();
+    remarks.warn("not_determined", open.map(|one| words(task, one)));
+    if !found.is_white() {
+        let text = "the residuals are not white (Ljung-Box, 1 %): the model misses part of the motion, or errors of neighbouring readings are alike, and intervals are too short";
+        remarks.warn("not_white", [text.to_owned()]);
+    }
+    if let Some(p) = found.p.filter(|p| *p < 0.01) {
+        let text = format!(
+            "the residuals are larger than the standard deviations of the readings say (p = {p:.1e})"
+        );
+        remarks.warn("large_residuals", [text]);
+    }
+    let largest = found.bias.largest();
+    match found.bias.is_confirmed {
+        true => remarks.note(
+            "grid",
+            [format!(
+                "the last halving of the steps changes no constant by more than {} standard errors",
+                significant(largest, 2)
+            )],
+        ),
+        false => remarks.warn(
+            "bias_not_confirmed",
+            [format!(
+                "the last halving of the steps changes a constant by {} standard errors: the grid biases the result",
+                significant(largest, 2)
+            )],
+        ),
+    }
+    if found.held_out.is_empty() {
+        let text = "no recording is held out: nothing checks the prediction";
+        remarks.note("nothing_held_out", [text.to_owned()]);
+    }
+    remarks
+}
+
+/// All readings with their predictions as rows of cells, in SI units.
+pub(super) fn table(task: &problem::Identification, found: &Identified) -> Vec<Vec<String>> {
+    let header = [
+        "recording",
+        "quantity",
+        "unit",
+        "time [s]",
+        "measured",
+        "predicted",
+        "residual",
+        "standard deviation",
+        "held out",
+    ];
+    let mut rows = vec![header.map(str::to_owned).to_vec()];
+    let held_out = found.held_out.iter().flat_map(|one| &one.series);
+    for one in found.series.iter().chain(held_out) {
+        let recording = &task.recordings[one.recording];
+        let channel = &recording.channels[one.channel];
+        let (symbol, factor) = channel.unit;
+        for k in 0..one.times.len() {
+            let (measured, predicted) = (one.measured[k], one.predicted[k]);
+            let numbers = [measured, predicted, measured - predicted, one.deviations[k]];
+            let mut row = vec![
+                recording.name.clone(),
+                channel.name.clone(),
+                symbol.to_owned(),
+                format!("{}", one.times[k] / 1e3),
+            ];
+            row.extend(numbers.map(|number| format!("{}", factor * number)));
+            row.push(recording.is_held_out.to_string());
+            rows.push(row);
+        }
+    }
+    rows
+}

@@ -1,0 +1,104 @@
+//! Identification: constants of a system that recordings of its motions are to determine. Units g, mm, ms, N, V.
+
+use crate::control::boundary_state::BoundaryState;
+use crate::control::inputs::Voltages;
+use crate::model::{Coordinates, Parameter, Quantity};
+
+/// Sought constants, and the recordings that tell of them.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Identification {
+    /// The constants.
+    pub parameters: Vec<Parameter>,
+    /// What was measured.
+    pub recordings: Vec<Recording>,
+    /// Experiments that could be done next: their readings have times and no values.
+    pub candidates: Vec<Recording>,
+    /// Length in ms of the steps of the first grid; `None`: by the times of the readings.
+    pub step: Option<f64>,
+    /// `None`: reduced where the joints form a tree.
+    pub coordinates: Option<Coordinates>,
+}
+
+/// A motion, or states of rest, under given voltages and loads, with what was measured.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Recording {
+    /// Name for messages and files.
+    pub name: String,
+    /// Motion or states of rest.
+    pub regime: Regime,
+    /// Voltages and loads over time.
+    pub voltages: Voltages,
+    /// State at time zero.
+    pub start: BoundaryState,
+    /// What of that state is unknown.
+    pub sought_start: SoughtStart,
+    /// True if no constant is fitted to it: it checks their prediction.
+    pub is_held_out: bool,
+    /// What was measured.
+    pub channels: Vec<Channel>,
+}
+
+/// Course of a recording.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Regime {
+    /// A motion from time zero on.
+    Motion,
+    /// A state of rest at each time, under the voltages of that time.
+    Rest,
+}
+
+/// Unknowns of the state at the start of a recording.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum SoughtStart {
+    /// None.
+    #[default]
+    Nothing,
+    /// Its coordinates; it is at rest or has the momenta that are given.
+    Coordinates,
+    /// Its coordinates and momenta.
+    State,
+}
+
+/// A measured quantity: a linear combination of quantities of the model.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Channel {
+    /// Name for messages and files.
+    pub name: String,
+    /// Its parts, each with its factor: the components of a place along a direction.
+    pub parts: Vec<(f64, Quantity)>,
+    /// Symbol and factor of the SI unit of its values.
+    pub unit: (&'static str, f64),
+    /// True if the standard deviations of its readings are known; otherwise they are relative, and the residuals tell their size.
+    pub is_deviation_known: bool,
+    /// The readings, in the order of time.
+    pub readings: Vec<Reading>,
+}
+
+/// A measured value.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Reading {
+    /// Time in ms.
+    pub time: f64,
+    /// Value.
+    pub value: f64,
+    /// Standard deviation.
+    pub deviation: f64,
+}
+
+impl Recording {
+    /// Time of the last reading in ms.
+    pub fn duration(&self) -> f64 {
+        let last = self.channels.iter().filter_map(|one| one.readings.last());
+        last.map(|reading| reading.time).fold(0.0, f64::max)
+    }
+
+    /// Number of readings.
+    pub fn count(&self) -> usize {
+        self.channels.iter().map(|one| one.readings.len()).sum()
+    }
+
+    /// All readings, channel by channel.
+    pub fn readings(&self) -> impl Iterator<Item = &Reading> {
+        self.channels.iter().flat_map(|one| &one.readings)
+    }
+}

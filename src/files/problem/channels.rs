@@ -1,0 +1,216 @@
+//! Measured quantities of recordings, and their readings out of columns of a CSV file.
+
+use crate::control::problem::{Channel, Reading};
+use crate::files::columns::Columns;
+use crate::files::json::error::SceneError;
+use crate::files::json::scope::Scope;
+use crate::files::problem::spec_identify::{MeasuredSize, MeasuredSpec};
+use crate::files::problem::state::{joint_with_coordinate, moving_marker};
+use crate::files::units::quantity::{
+    Angle, AngularVelocity, Kind, Length, Quantity as Written, Ratio, Velocity,
+};
+use crate::model::system::System;
+use crate::model::{Quantity, joint_unit};
+
+/// A quantity that is measured.
+#[derive(Debug)]
+pub(super) struct Measured {
+    name: String,
+    column: String,
+    parts: Vec<(f64, Quantity)>,
+    kind: Kind,
+    unit: (&'static str, f64),
+}
+
+/// Columns, and the times of their rows.
+pub(super) struct Source<'a> {
+    pub(super) columns: &'a Columns,
+    pub(super) times: &'a [f64],
+}
+
+impl Measured {
+    /// The quantity that is written.
+    pub(super) fn new(
+        spec: &MeasuredSpec,
+        system: &System,
+        scope: &Scope<'_>,
+    ) -> Result<Self, SceneError> {
+        type Build<'a> = Box<dyn FnOnce() -> Result<Measured, SceneError> + 'a>;
+        let column = |name: &String| spec.column.clone().unwrap_or_else(|| name.clone());
+        let column = &column;
+        let joint = spec.joint.as_ref().map(|name| -> Build<'_> {
+            Box::new(move || {
+                let joint = joint_with_coordinate(name, system, &scope.key("joint"))?;
+                let (kind, unit) = match joint_unit(system, joint) {
+                    "mm" => (Length::kind(), ("m", 1e-3)),
+                    _ => (Angle::kind(), ("rad", 1.0)),
+                };
+                Ok(Self {
+                    name: name.clone(),
+                    column: column(name),
+                    parts: vec![(1.0, Quantity::Joint { joint, near: 0.0 })],
+                    kind,
+                    unit,
+                })
+            })
+        });
+        let rate = spec.joint_rate.as_ref().map(|name| -> Build<'_> {
+            Box::new(move || {
+                let joint = joint_with_coordinate(name, system, &scope.key("joint_rate"))?;
+                let (kind, unit) = match joint_unit(system, joint) {
+                    "mm" => (Velocity::kind(), ("m/s", 1.0)),
+                    _ => (AngularVelocity::kind(), ("rad/s", 1e3)),
+                };
+                Ok(Self {
+                    name: format!("rate of {name}"),
+                    column: column(name),
+                    parts: vec![(1.0, Quantity::joint_rate(joint))],
+                    kind,
+                    unit,
+                })
+            })
+        });
+        let marker = spec.marker.as_ref().map(|name| -> Build<'_> {
+            Box::new(move || {
+                let marker = moving_marker(name, system, &scope.key("marker"))?;
+                let place = scope.key("along");
+                let Some(along) = spec.along else {
+                    let expected = "a direction, such as [1, 0, 0]";
+                    return Err(place.wrong("no direction", expected));
+                };
+                let length = along.iter().map(|a| a * a).sum::<f64>().sqrt();
+                if !(length > 0.0 && length.is_finite()) {
+                    return Err(place.wrong(format!("{along:?}"), "a direction of some length"));
+                }
+                let part =
+                    |(axis, a): (usize, f64)| (a / length, Quantity::MarkerPlace { marker, axis });
+                let along = along.into_iter().enumerate().filter(|(_, a)| *a != 0.0);
+                Ok(Self {
+                    name: name.clone(),
+                    column: column(name),
+                    parts: along.map(part).collect(),
+                    kind: Length::kind(),
+                    unit: ("m", 1e-3),
+                })
+            })
+        });
+        let quantities = [("joint", joint), ("joint_rate", rate), ("marker", marker)];
+        let build = scope.exactly_one(quantities)?;
+        if spec.along.is_some() && spec.marker.is_none() {
+            let expected = "a direction of a \"marker\" alone";
+            return Err(scope.key("along").wrong("a direction", expected));
+        }
+        let mut out = build()?;
+        if let Some(column) = &spec.column {
+            out.name.clone_from(column);
+        }
+        Ok(out)
+    }
+
+    /// The standard deviation that is written for all readings.
+    pub(super) fn deviation(
+        &self,
+        spec: &MeasuredSpec,
+        scope: &Scope<'_>,
+    ) -> Result<Option<f64>, SceneError> {
+        let Some(written) = &spec.standard_deviation else {
+            return Ok(None);
+        };
+        let place = scope.key("standard_deviation");
+        let value = written.value_as(&self.kind);
+        let value = value.map_err(|found| place.wrong(found, self.kind.expected()))?;
+        match value > 0.0 {
+            true => Ok(Some(value)),
+            false => Err(place.wrong(written.to_string(), "a positive one")),
+        }
+    }
+
+    /// The channel with readings.
+    pub(super) fn with(&self, readings: Vec<Reading>, is_deviation_known: bool) -> Channel {
+        Channel {
+            name: self.name.clone(),
+            parts: self.parts.clone(),
+            unit: self.unit,
+            is_deviation_known,
+            readings,
+        }
+    }
+
+    /// The channel with the readings of its columns.
+    pub(super) fn channel(
+        &self,
+        spec: &MeasuredSpec,
+        source: &Source<'_>,
+        scope: &Scope<'_>,
+    ) -> Result<Channel, SceneError> {
+        let given = [
+            ("standard_deviation", spec.standard_deviation.is_some()),
+            ("deviations", spec.deviations.is_some()),
+            ("weights", spec.weights.is_some()),
+        ];
+        let mut given = given.into_iter().filter(|(_, is_given)| *is_given);
+        if let (Some((first, _)), Some((second, _))) = (given.next(), given.next()) {
+            let expected = format!("one of both, not \"{first}\" too");
+            return Err(scope.key(second).wrong("a second one", expected));
+        }
+        let values = self.values(&self.column, source, &scope.key("column"))?;
+        let of_all = self.deviation(spec, scope)?;
+        let deviations = match (&spec.deviations, &spec.weights) {
+            (Some(header), _) => self.values(header, source, &scope.key("deviations"))?,
+            (_, Some(header)) => weights(header, source, &scope.key("weights"))?,
+            _ => vec![Some(of_all.unwrap_or(1.0)); values.len()],
+        };
+        let mut readings = Vec::new();
+        for (k, value) in values.iter().enumerate() {
+            let (Some(value), Some(deviation)) = (*value, deviations[k]) else {
+                continue;
+            };
+            if deviation <= 0.0 || deviation.is_nan() {
+                let key = match spec.deviations {
+                    Some(_) => "deviations",
+                    None => "weights",
+                };
+                let found = format!("a value that is not positive, in row {}", k + 1);
+                return Err(scope.key(key).wrong(found, "positive values"));
+            }
+            readings.push(Reading {
+                time: source.times[k],
+                value,
+                deviation,
+            });
+        }
+        if readings.is_empty() {
+            let found = format!("{:?}, a column of gaps alone", self.column);
+            return Err(scope.key("column").wrong(found, "one reading or more"));
+        }
+        let is_known = of_all.is_some() || spec.deviations.is_some();
+        Ok(self.with(readings, is_known))
+    }
+
+    /// Values of a column in the units inside; none of a gap.
+    fn values(
+        &self,
+        header: &str,
+        source: &Source<'_>,
+        scope: &Scope<'_>,
+    ) -> Result<Vec<Option<f64>>, SceneError> {
+        let column = source.columns.with_gaps::<MeasuredSize>(header, scope)?;
+        let value = |written: Option<Written<MeasuredSize>>| {
+            let read = written.map(|written| written.value_as(&self.kind));
+            let read = read.transpose();
+            read.map_err(|found| scope.wrong(found, self.kind.expected()))
+        };
+        column.into_iter().map(value).collect()
+    }
+}
+
+/// Relative deviations of weights.
+fn weights(
+    header: &str,
+    source: &Source<'_>,
+    scope: &Scope<'_>,
+) -> Result<Vec<Option<f64>>, SceneError> {
+    let column = source.columns.with_gaps::<Ratio>(header, scope)?;
+    let deviation = |weight: Option<Written<Ratio>>| Some(weight?.value().sqrt().recip());
+    Ok(column.into_iter().map(deviation).collect())
+}

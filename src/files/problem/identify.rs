@@ -1,0 +1,221 @@
+//! Conversion of an identification in a problem file to its task.
+
+use crate::control::problem::{
+    BoundaryState, Identification, Reading, Recording, Regime, SoughtStart,
+};
+use crate::files::columns::Columns;
+use crate::files::json::error::SceneError;
+use crate::files::json::scope::Scope;
+use crate::files::problem::channels::{Measured, Source};
+use crate::files::problem::coordinates::{coordinates, count};
+use crate::files::problem::free::parameters;
+use crate::files::problem::loads::{load, with_loads};
+use crate::files::problem::spec_identify::{
+    CandidateSpec, ExperimentSpec, IdentifySpec, MeasuredSpec, RecordingSpec, SoughtStartSpec,
+};
+use crate::files::problem::state::start_state;
+use crate::files::problem::voltages::over_time;
+use crate::files::scene::spec::SceneSpec;
+use crate::files::units::quantity::{Quantity, Time};
+use crate::model::system::System;
+use std::collections::BTreeMap;
+
+/// Most readings of a candidate.
+const MOST_READINGS: usize = 100_000;
+
+/// The task of an identification.
+pub(crate) fn identification(
+    spec: &IdentifySpec,
+    (written, system): (&SceneSpec, &System),
+    scope: &Scope<'_>,
+) -> Result<Identification, SceneError> {
+    let place = scope.key("free");
+    if spec.free.is_empty() {
+        return Err(place.wrong("no constant", "one or more"));
+    }
+    let parameters = parameters(&spec.free, written, system, &place)?;
+    let place = scope.key("recordings");
+    let mut names = Vec::new();
+    let mut recordings = Vec::new();
+    for (index, one) in spec.recordings.iter().enumerate() {
+        let scope = place.index(index);
+        unique(&one.name, &mut names, &scope)?;
+        recordings.push(recording(one, system, &scope)?);
+    }
+    if recordings.iter().all(|one: &Recording| one.is_held_out) {
+        let found = match recordings.is_empty() {
+            true => "no recordings",
+            false => "recordings that are all held out",
+        };
+        return Err(place.wrong(found, "one or more to which constants are fitted"));
+    }
+    let place = scope.key("candidates");
+    let mut candidates = Vec::new();
+    for (index, one) in spec.candidates.iter().enumerate() {
+        let scope = place.index(index);
+        unique(&one.name, &mut names, &scope)?;
+        candidates.push(candidate(one, system, &scope)?);
+    }
+    let step = spec.step.as_ref();
+    let step = step.map(|step| scope.key("step").positive(step));
+    Ok(Identification {
+        parameters,
+        recordings,
+        candidates,
+        step: step.transpose()?,
+        coordinates: coordinates(spec.coordinates, system, scope)?,
+    })
+}
+
+/// Refuses a name that stands already.
+fn unique(name: &str, names: &mut Vec<String>, scope: &Scope<'_>) -> Result<(), SceneError> {
+    if names.iter().any(|other| other == name) {
+        let expected = "a name that no other recording or candidate has";
+        return Err(scope.key("name").wrong(format!("{name:?}"), expected));
+    }
+    names.push(name.to_owned());
+    Ok(())
+}
+
+/// A recording without its readings.
+fn experiment(
+    name: &str,
+    spec: &ExperimentSpec,
+    system: &System,
+    scope: &Scope<'_>,
+) -> Result<Recording, SceneError> {
+    let mut start = match &spec.start {
+        Some(start) => start_state(start, system, &scope.key("start"))?,
+        None => BoundaryState::JointAngles {
+            angles: BTreeMap::new(),
+            rates: BTreeMap::new(),
+            velocities: Default::default(),
+        },
+    };
+    let voltages = over_time(&spec.voltages, system, &scope.key("voltages"))?;
+    let (voltages, loads) = with_loads(voltages, &spec.loads, system, &scope.key("loads"))?;
+    load(&mut start, &loads, 0.0);
+    let sought_start = match spec.sought_start {
+        SoughtStartSpec::Nothing => SoughtStart::Nothing,
+        SoughtStartSpec::Coordinates => SoughtStart::Coordinates,
+        SoughtStartSpec::State => SoughtStart::State,
+    };
+    if spec.at_rest && (sought_start != SoughtStart::Nothing || spec.start.is_some()) {
+        let key = match spec.start {
+            Some(_) => "start",
+            None => "sought_start",
+        };
+        let expected = "none beside \"at_rest\": states of rest follow from voltages and loads";
+        return Err(scope.key(key).wrong("a start", expected));
+    }
+    Ok(Recording {
+        name: name.to_owned(),
+        regime: match spec.at_rest {
+            true => Regime::Rest,
+            false => Regime::Motion,
+        },
+        voltages,
+        start,
+        sought_start,
+        is_held_out: false,
+        channels: Vec::new(),
+    })
+}
+
+/// All that is measured, with what it is called.
+fn measured(
+    list: &[MeasuredSpec],
+    system: &System,
+    scope: &Scope<'_>,
+) -> Result<Vec<Measured>, SceneError> {
+    let scope = scope.key("measured");
+    if list.is_empty() {
+        return Err(scope.wrong("nothing that is measured", "one or more quantities"));
+    }
+    let all = list.iter().enumerate();
+    all.map(|(index, spec)| Measured::new(spec, system, &scope.index(index)))
+        .collect()
+}
+
+fn recording(
+    spec: &RecordingSpec,
+    system: &System,
+    scope: &Scope<'_>,
+) -> Result<Recording, SceneError> {
+    let place = scope.key("experiment");
+    let mut out = experiment(&spec.name, &spec.experiment, system, &place)?;
+    out.is_held_out = spec.held_out;
+    let columns = Columns::read(&spec.file, &scope.key("file"))?;
+    let times = times(&columns, spec, scope)?;
+    let all = measured(&spec.measured, system, scope)?;
+    for (index, (one, spec)) in all.iter().zip(&spec.measured).enumerate() {
+        let scope = scope.key("measured").index(index);
+        let source = Source {
+            columns: &columns,
+            times: &times,
+        };
+        out.channels.push(one.channel(spec, &source, &scope)?);
+    }
+    if out.regime == Regime::Motion && out.duration() <= 0.0 {
+        let found = "a recording that is too short: no reading after time 0";
+        return Err(scope.key("file").wrong(found, "readings at later times"));
+    }
+    Ok(out)
+}
+
+/// Times in ms of all rows.
+fn times(
+    columns: &Columns,
+    spec: &RecordingSpec,
+    scope: &Scope<'_>,
+) -> Result<Vec<f64>, SceneError> {
+    let place = scope.key("time");
+    let written = columns.column::<Time>(&spec.time, &place)?;
+    let times: Vec<f64> = written.iter().map(Quantity::value).collect();
+    if times.is_empty() {
+        let expected = "one line or more below the headers";
+        return Err(scope.key("file").wrong("no readings", expected));
+    }
+    if let Some(k) = times.windows(2).position(|pair| pair[0] >= pair[1]) {
+        let found = format!("{} after {}", written[k + 1], written[k]);
+        return Err(place.wrong(found, "increasing times"));
+    }
+    match times[0] < 0.0 {
+        true => Err(place.wrong(written[0].to_string(), "times from 0 on")),
+        false => Ok(times),
+    }
+}
+
+fn candidate(
+    spec: &CandidateSpec,
+    system: &System,
+    scope: &Scope<'_>,
+) -> Result<Recording, SceneError> {
+    let mut out = experiment(
+        &spec.name,
+        &spec.experiment,
+        system,
+        &scope.key("experiment"),
+    )?;
+    let duration = scope.key("duration").positive(&spec.duration)?;
+    count(
+        spec.readings,
+        "reading",
+        MOST_READINGS,
+        &scope.key("readings"),
+    )?;
+    let time = |k: usize| duration * (k + 1) as f64 / spec.readings as f64;
+    let all = measured(&spec.measured, system, scope)?;
+    for (index, (one, spec_of)) in all.iter().zip(&spec.measured).enumerate() {
+        let scope = scope.key("measured").index(index);
+        let deviation = one.deviation(spec_of, &scope)?;
+        let reading = |k| Reading {
+            time: time(k),
+            value: 0.0,
+            deviation: deviation.unwrap_or(1.0),
+        };
+        let readings = (0..spec.readings).map(reading).collect();
+        out.channels.push(one.with(readings, deviation.is_some()));
+    }
+    Ok(out)
+}

@@ -1,0 +1,156 @@
+//! An identification as it is written: sought constants, recordings, and candidates for the next experiment.
+
+use crate::files::problem::loads::LoadMap;
+use crate::files::problem::spec_coordinates::CoordinatesSpec;
+use crate::files::problem::spec_free::FreeMap;
+use crate::files::problem::spec_states::StartSpec;
+use crate::files::problem::spec_voltages::VoltagesSpec;
+use crate::files::units::quantity::{Angle, AngularVelocity, Kind, Length, Velocity};
+use crate::files::units::quantity::{PhysicalQuantity, Quantity, Time};
+use schemars::JsonSchema;
+use serde::Deserialize;
+
+/// Constants that are fitted to recordings, with what the data say of them.
+#[derive(Clone, Debug, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct IdentifySpec {
+    /// Sought constants by their paths in the scene, such as `"materials.silicone.shear_modulus"`, each between bounds.
+    pub free: FreeMap,
+    /// Recordings: those that constants are fitted to, and those that are held out to check their prediction.
+    pub recordings: Vec<RecordingSpec>,
+    /// Experiments that could be done next; the result ranks them by the variance that they leave.
+    #[serde(default)]
+    pub candidates: Vec<CandidateSpec>,
+    /// Step of the first grid, SI unit s, which is halved until its bias is below a tenth of the standard errors; by the number of readings
+    /// where not written.
+    #[serde(default)]
+    pub step: Option<Quantity<Time>>,
+    /// Coordinates.
+    #[serde(default)]
+    pub coordinates: Option<CoordinatesSpec>,
+}
+
+/// Readings of a motion or of states of rest under given voltages and loads.
+#[derive(Clone, Debug, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct RecordingSpec {
+    /// Unique name.
+    pub name: String,
+    /// Path of the CSV file, relative to the problem or to the current folder: one line of headers such as `tip [mm]`, SI units where a header
+    /// has none; lines that begin with `#` are comments, empty cells are gaps.
+    pub file: String,
+    /// Header of the times, which begin with the motion at 0; `time` where not written.
+    #[serde(default = "time")]
+    pub time: String,
+    /// What the columns measure.
+    pub measured: Vec<MeasuredSpec>,
+    /// What acts, and the start.
+    #[serde(default)]
+    pub experiment: ExperimentSpec,
+    /// True if no constant is fitted to it: the result says whether the fitted constants explain it.
+    #[serde(default)]
+    pub held_out: bool,
+}
+
+/// An experiment that could be done.
+#[derive(Clone, Debug, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct CandidateSpec {
+    /// Unique name.
+    pub name: String,
+    /// Length, SI unit s.
+    pub duration: Quantity<Time>,
+    /// Number of readings of each quantity, at equal distances.
+    pub readings: usize,
+    /// What is measured; its columns are not read.
+    pub measured: Vec<MeasuredSpec>,
+    /// What acts, and the start.
+    #[serde(default)]
+    pub experiment: ExperimentSpec,
+}
+
+/// Voltages, loads and start of a recording.
+#[derive(Clone, Debug, Default, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct ExperimentSpec {
+    /// Constant voltages, those of a solution, a table, or functions of time such as columns of a CSV file; 0 where not written.
+    #[serde(default)]
+    pub voltages: VoltagesSpec,
+    /// Loads by name, constant or functions of time, SI units N, N m, Pa, N/m³ and C/m²; 0 where not named.
+    #[serde(default)]
+    pub loads: LoadMap,
+    /// Start of the motion; the reference configuration at rest where not written.
+    #[serde(default)]
+    pub start: Option<StartSpec>,
+    /// Part of the start that is unknown, and fitted with the constants; nothing where not written.
+    #[serde(default)]
+    pub sought_start: SoughtStartSpec,
+    /// True if each reading is one of a state of rest under the voltages and loads of its time.
+    #[serde(default)]
+    pub at_rest: bool,
+}
+
+/// Unknown part of a start.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Deserialize, JsonSchema)]
+#[serde(rename_all = "snake_case")]
+pub enum SoughtStartSpec {
+    /// All is given.
+    #[default]
+    Nothing,
+    /// The coordinates.
+    Coordinates,
+    /// The coordinates and the momenta.
+    State,
+}
+
+/// A measured quantity: exactly one of `joint`, `joint_rate` and `marker`.
+#[derive(Clone, Debug, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct MeasuredSpec {
+    /// Coordinate of a revolute or prismatic joint.
+    #[serde(default)]
+    pub joint: Option<String>,
+    /// Rate of the coordinate of a revolute or prismatic joint.
+    #[serde(default)]
+    pub joint_rate: Option<String>,
+    /// Place of a marker along a direction.
+    #[serde(default)]
+    pub marker: Option<String>,
+    /// The direction, in the ground frame; its length does not matter.
+    #[serde(default)]
+    pub along: Option<[f64; 3]>,
+    /// Header of the column, with or without its unit; the name of the joint or marker where not written.
+    #[serde(default)]
+    pub column: Option<String>,
+    /// Standard deviation of the readings, in a unit of the quantity; where neither it nor `deviations` is written, the residuals tell it.
+    #[serde(default)]
+    pub standard_deviation: Option<Quantity<MeasuredSize>>,
+    /// Header of a column with a standard deviation of each reading.
+    #[serde(default)]
+    pub deviations: Option<String>,
+    /// Header of a column with a weight of each reading: the variance of a reading is in inverse proportion to it.
+    #[serde(default)]
+    pub weights: Option<String>,
+}
+
+/// The usual header of times.
+fn time() -> String {
+    "time".to_owned()
+}
+
+/// Size of a measured quantity, whose kind the quantity says.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct MeasuredSize;
+
+impl PhysicalQuantity for MeasuredSize {
+    const NAME: &'static str = "MeasuredSize";
+
+    fn kinds() -> Vec<Kind> {
+        vec![
+            Length::kind(),
+            Angle::kind(),
+            Velocity::kind(),
+            AngularVelocity::kind(),
+        ]
+    }
+}

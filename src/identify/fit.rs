@@ -1,0 +1,268 @@
+//! Fit by weighted least squares: the method of Levenberg and Marquardt with bounds of the constants.
+//!
+//! A step d minimises `‖r − J d‖² + λ ‖D d‖²` over the unknowns that no bound holds, with residuals r and derivatives J in standard
+//! deviations and the norms D of the columns of J; constants that leave their bounds are put on them.
+
+use crate::control::problem::Identification;
+use crate::identify::error::IdentifyError;
+use crate::identify::prediction::{Grid, Prediction, predict};
+use crate::identify::residuals::Data;
+use crate::identify::unknowns::Unknowns;
+use crate::model::System;
+use nalgebra::{DMatrix, DVector};
+
+/// A step that is smaller than this part of the standard errors is the last one.
+const SMALL: f64 = 1e-3;
+/// A step that changes unknowns by less, relative to their sizes, is the last one.
+const ROUNDING: f64 = 1e-8;
+/// Most steps.
+const MOST: usize = 100;
+/// Damping λ of the first step, and where there is no descent.
+const DAMPING: [f64; 2] = [1e-3, 1e10];
+/// Most estimates of deviations that are not known, and the change that ends them.
+const ESTIMATES: usize = 8;
+
+/// Way in which a fit ended.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Ended {
+    /// At a minimum.
+    Converged,
+    /// After the most steps.
+    Unfinished,
+}
+
+/// Constants and starts that fit recordings best.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Fit {
+    /// The unknowns.
+    pub unknowns: Unknowns,
+    /// Readings that they predict, with derivatives.
+    pub prediction: Prediction,
+    /// Way in which it ended.
+    pub ended: Ended,
+    /// Number of steps.
+    pub steps: usize,
+    /// True for constants that a bound holds.
+    pub is_at_bound: Vec<bool>,
+    pub(super) data: Data,
+}
+
+impl Fit {
+    /// Residuals in standard deviations.
+    pub fn residuals(&self) -> DVector<f64> {
+        (&self.data.values - &self.prediction.values).component_div(&self.data.deviations)
+    }
+
+    /// The constants.
+    pub fn of_constants(&self) -> &[f64] {
+        self.unknowns.of_constants()
+    }
+
+    /// Derivatives in standard deviations.
+    pub(super) fn weighted(&self) -> DMatrix<f64> {
+        weighted(&self.prediction.derivatives, &self.data)
+    }
+
+    /// Σ of the squared residuals.
+    pub fn sum(&self) -> f64 {
+        self.residuals().norm_squared()
+    }
+
+    /// Number of unknowns that no bound holds.
+    pub fn free(&self) -> usize {
+        self.unknowns.values.len() - self.is_at_bound.iter().filter(|held| **held).count()
+    }
+
+    /// Readings more than unknowns.
+    pub fn freedom(&self) -> usize {
+        self.data.values.len().saturating_sub(self.free())
+    }
+}
+
+fn weighted(derivatives: &DMatrix<f64>, data: &Data) -> DMatrix<f64> {
+    let mut out = derivatives.clone();
+    for (mut row, deviation) in out.row_iter_mut().zip(data.deviations.iter()) {
+        row /= *deviation;
+    }
+    out
+}
+
+/// A fit that is under way.
+struct Search<'a> {
+    system: &'a System,
+    task: &'a Identification,
+    which: &'a [usize],
+    grid: &'a Grid,
+    /// Number of constants that stay as they are.
+    held: usize,
+}
+
+/// Fits constants and starts to the recordings `which`, from the unknowns on; the first `held` constants stay.
+///
+/// # Errors
+/// The recordings cannot be simulated at the unknowns.
+pub fn fit(
+    (system, task): (&System, &Identification),
+    which: &[usize],
+    (unknowns, held): (Unknowns, usize),
+    grid: &Grid,
+) -> Result<Fit, IdentifyError> {
+    let search = Search {
+        system,
+        task,
+        which,
+        grid,
+        held,
+    };
+    let mut data = Data::new(task, which);
+    let mut found = search.minimise(unknowns, data.clone())?;
+    if data.is_known() {
+        return Ok(found);
+    }
+    data.estimate(&found.prediction.values, found.free());
+    for _ in 1..ESTIMATES {
+        if data.groups() == 1 {
+            break;
+        }
+        let before = data.deviations.clone();
+        found = search.minimise(found.unknowns, data.clone())?;
+        data.estimate(&found.prediction.values, found.free());
+        let change = (&data.deviations - &before).component_div(&before).amax();
+        if change < SMALL {
+            break;
+        }
+    }
+    found.data = data;
+    Ok(found)
+}
+
+impl Search<'_> {
+    fn minimise(&self, mut unknowns: Unknowns, data: Data) -> Result<Fit, IdentifyError> {
+        let of = (self.system, self.task);
+        let at = |unknowns: &Unknowns| predict(of, self.which, unknowns, self.grid);
+        let mut prediction = at(&unknowns)?;
+        let cost = |prediction: &Prediction| {
+            let difference = &data.values - &prediction.values;
+            difference.component_div(&data.deviations).norm_squared()
+        };
+        let mut best = cost(&prediction);
+        let [mut damping, none] = DAMPING;
+        let (mut ended, mut steps) = (Ended::Unfinished, 0);
+        'steps: while steps < MOST {
+            steps += 1;
+            let jacobian = weighted(&prediction.derivatives, &data);
+            let difference = &data.values - &prediction.values;
+            let residuals = difference.component_div(&data.deviations);
+            let free = self.free(&unknowns, &(jacobian.transpose() * &residuals));
+            loop {
+                let step = damped(&jacobian, &residuals, &free, damping);
+                let next = self.moved(&unknowns, &step);
+                let change = &jacobian
+                    * DVector::from_iterator(
+                        step.len(),
+                        next.values.iter().zip(&unknowns.values).map(|(a, b)| a - b),
+                    );
+                let freedom = data.values.len().saturating_sub(free.len()).max(1);
+                let scatter = match data.is_known() {
+                    true => 1.0,
+                    false => (best / freedom as f64).sqrt(),
+                };
+                let is_last =
+                    change.norm() <= SMALL * scatter || self.is_rounding(&unknowns, &next);
+                let tried = at(&next).ok().filter(|tried| cost(tried) < best);
+                let is_better = tried.is_some();
+                if let Some(better) = tried {
+                    (unknowns, prediction) = (next, better);
+                    best = cost(&prediction);
+                    damping = (damping * 0.1).max(1e-12);
+                }
+                if is_last || (!is_better && damping > none) {
+                    ended = Ended::Converged;
+                    break 'steps;
+                }
+                if is_better {
+                    break;
+                }
+                damping *= 8.0;
+            }
+        }
+        Ok(Fit {
+            is_at_bound: self.at_bounds(&unknowns),
+            unknowns,
+            prediction,
+            ended,
+            steps,
+            data,
+        })
+    }
+
+    /// Unknowns that no bound holds, where the squares fall along `descent`.
+    fn free(&self, unknowns: &Unknowns, descent: &DVector<f64>) -> Vec<usize> {
+        let is_free = |&j: &usize| match self.task.parameters.get(j) {
+            Some(parameter) => {
+                let value = unknowns.values[j];
+                let at_lower = value <= parameter.lower && descent[j] < 0.0;
+                let at_upper = value >= parameter.upper && descent[j] > 0.0;
+                j >= self.held && !at_lower && !at_upper
+            }
+            None => true,
+        };
+        (0..unknowns.values.len()).filter(is_free).collect()
+    }
+
+    fn moved(&self, unknowns: &Unknowns, step: &DVector<f64>) -> Unknowns {
+        let mut next = unknowns.clone();
+        for (j, value) in next.values.iter_mut().enumerate() {
+            *value += step[j];
+            if let Some(parameter) = self.task.parameters.get(j) {
+                *value = value.clamp(parameter.lower, parameter.upper);
+            }
+        }
+        next
+    }
+
+    fn is_rounding(&self, unknowns: &Unknowns, next: &Unknowns) -> bool {
+        let mut pairs = unknowns.values.iter().zip(&next.values).enumerate();
+        pairs.all(|(j, (a, b))| {
+            let size = self.task.parameters.get(j).map_or(0.0, |p| p.size());
+            (a - b).abs() <= ROUNDING * a.abs().max(1e-3 * size)
+        })
+    }
+
+    fn at_bounds(&self, unknowns: &Unknowns) -> Vec<bool> {
+        let all = self.task.parameters.iter().zip(&unknowns.values);
+        all.enumerate()
+            .map(|(j, (p, &value))| j >= self.held && (value <= p.lower || value >= p.upper))
+            .collect()
+    }
+}
+
+/// The damped step over the free unknowns.
+fn damped(
+    jacobian: &DMatrix<f64>,
+    residuals: &DVector<f64>,
+    free: &[usize],
+    damping: f64,
+) -> DVector<f64> {
+    let (rows, count) = (jacobian.nrows(), free.len());
+    let mut matrix = DMatrix::zeros(rows + count, count);
+    let mut right = DVector::zeros(rows + count);
+    right.rows_mut(0, rows).copy_from(residuals);
+    for (column, &j) in free.iter().enumerate() {
+        let of = jacobian.column(j);
+        matrix.view_mut((0, column), (rows, 1)).copy_from(&of);
+        matrix[(rows + column, column)] = damping.sqrt() * of.norm().max(f64::MIN_POSITIVE);
+    }
+    let qr = matrix.qr();
+    qr.q_tr_mul(&mut right);
+    let solved = qr
+        .r()
+        .solve_upper_triangular(&right.rows(0, count).clone_owned());
+    let mut step = DVector::zeros(jacobian.ncols());
+    if let Some(solved) = solved {
+        for (&j, value) in free.iter().zip(solved.iter()) {
+            step[j] = *value;
+        }
+    }
+    step
+}

@@ -1,0 +1,158 @@
+//! Prediction of recordings that no constant was fitted to.
+//!
+//! The differences r of n readings from their prediction have the covariance `Σ + S C Sᵀ`: that of the readings, and that of the
+//! constants. Where the model explains them, `rᵀ (Σ + S C Sᵀ)⁻¹ r` has the χ² distribution of n degrees of freedom; where Σ is
+//! estimated from the fit, a part n of it has that of Fisher and Snedecor. Unknown starts are fitted, and take their number from n.
+
+use crate::control::problem::Identification;
+use crate::identify::error::IdentifyError;
+use crate::identify::fit::{Fit, fit};
+use crate::identify::information::Information;
+use crate::identify::prediction::{Grid, count_of_start};
+use crate::identify::residuals::{Data, Series};
+use crate::identify::unknowns::Unknowns;
+use crate::identify::whiteness::{Whiteness, ljung_box};
+use crate::model::System;
+use nalgebra::{DMatrix, DVector};
+use statrs::distribution::{ChiSquared, ContinuousCDF, FisherSnedecor};
+
+/// Probability below which a prediction does not explain a recording.
+pub(super) const LEVEL: f64 = 0.01;
+
+/// Root of the mean squared change by halved steps, in standard deviations, below which predictions have no bias by the grid.
+const CHANGE: f64 = 0.1;
+/// Most halvings of the steps for it.
+const HALVINGS: usize = 6;
+
+/// A recording that was held out, and its prediction.
+#[derive(Clone, Debug, PartialEq)]
+pub struct HeldOut {
+    /// Index of the recording.
+    pub recording: usize,
+    /// Its residuals.
+    pub series: Vec<Series>,
+    /// Σ of the squared residuals in standard deviations over their number: 1 where all is as expected.
+    pub reduced: f64,
+    /// The value that it exceeds with a probability of 1 %.
+    pub quantile: f64,
+    /// Probability of so large differences.
+    pub p: f64,
+    /// Whiteness of the residuals of each channel.
+    pub whiteness: Vec<Option<Whiteness>>,
+}
+
+impl HeldOut {
+    /// Returns true if its readings do not differ from the prediction by more than chance.
+    pub fn is_explained(&self) -> bool {
+        let tests = self.whiteness.iter().flatten();
+        let count = tests.clone().count().max(1) as f64;
+        self.p >= LEVEL && tests.into_iter().all(|test| test.p >= LEVEL / count)
+    }
+
+    /// The prediction of a recording by a fit.
+    pub(super) fn new(
+        (system, task): (&System, &Identification),
+        recording: usize,
+        (of, information): (&Fit, &Information),
+        grid: &Grid,
+    ) -> Result<Self, IdentifyError> {
+        let mut unknowns = Unknowns::new(task, |_| 0);
+        let constants = of.unknowns.of_constants();
+        unknowns.values[..constants.len()].copy_from_slice(constants);
+        let first = unknowns.values.len();
+        let count = count_of_start(system, task, &task.recordings[recording])?;
+        unknowns.values.resize(first + count, 0.0);
+        unknowns.starts[recording] = first..first + count;
+        let which = [recording];
+        let mut data = Data::new(task, &which);
+        data.take(&of.data);
+        let on = |grid: &Grid| {
+            let unknowns = unknowns.clone();
+            fit((system, task), &which, (unknowns, constants.len()), grid)
+        };
+        let (mut grid, mut found) = (grid.clone(), on(grid)?);
+        // Its own steps may have to be shorter than those of the fit.
+        for _ in 0..HALVINGS {
+            grid = grid.halved();
+            let finer = on(&grid)?;
+            let change = &finer.prediction.values - &found.prediction.values;
+            let change = change.component_div(&data.deviations).norm();
+            found = finer;
+            if change < CHANGE * (data.values.len() as f64).sqrt() {
+                break;
+            }
+        }
+        let whole = weighted(&found.prediction.derivatives, &data.deviations);
+        let residuals = &data.values - &found.prediction.values;
+        let mut residuals = residuals.component_div(&data.deviations);
+        let n = residuals.len().saturating_sub(count).max(1) as f64;
+        let series = data.series(task, &which, &found.prediction.values);
+        let reduced = residuals.norm_squared() / n;
+        let mut by = whole.columns(0, constants.len()).into_owned();
+        remove(
+            &whole.columns(constants.len(), count).into_owned(),
+            &mut by,
+            &mut residuals,
+        );
+        let sum = along(&by, &information.covariance, &residuals);
+        let (p, quantile) = match of.data.is_known() {
+            true => {
+                let chi = ChiSquared::new(n).expect("a positive number");
+                (chi.sf(sum), chi.inverse_cdf(1.0 - LEVEL) / n)
+            }
+            false => {
+                let freedom = of.freedom().max(1) as f64;
+                let f = FisherSnedecor::new(n, freedom).expect("positive numbers");
+                (f.sf(sum / n), f.inverse_cdf(1.0 - LEVEL))
+            }
+        };
+        Ok(Self {
+            recording,
+            whiteness: series
+                .iter()
+                .map(|one| ljung_box(&one.standardised()))
+                .collect(),
+            series,
+            reduced,
+            quantile,
+            p,
+        })
+    }
+}
+
+fn weighted(derivatives: &DMatrix<f64>, deviations: &DVector<f64>) -> DMatrix<f64> {
+    let mut out = derivatives.clone();
+    for (mut row, deviation) in out.row_iter_mut().zip(deviations.iter()) {
+        row /= *deviation;
+    }
+    out
+}
+
+/// Removes what changes of the start make up for.
+fn remove(starts: &DMatrix<f64>, by: &mut DMatrix<f64>, residuals: &mut DVector<f64>) {
+    if starts.ncols() == 0 {
+        return;
+    }
+    let q = starts.clone().qr().q();
+    *by -= &q * (q.transpose() * &*by);
+    *residuals -= &q * (q.transpose() * &*residuals);
+}
+
+/// `rᵀ (1 + S C Sᵀ)⁻¹ r`, by the root of C: the inverse is `1 − B (1 + BᵀB)⁻¹ Bᵀ` with `B = S C^½`.
+fn along(by: &DMatrix<f64>, covariance: &DMatrix<f64>, residuals: &DVector<f64>) -> f64 {
+    // In units in which the variances are 1.
+    let sizes = covariance
+        .diagonal()
+        .map(|v| if v > 0.0 { v.sqrt() } else { 1.0 });
+    let scaled = DMatrix::from_fn(sizes.len(), sizes.len(), |i, j| {
+        covariance[(i, j)] / (sizes[i] * sizes[j])
+    });
+    let eigen = scaled.symmetric_eigen();
+    let roots = eigen.eigenvalues.map(|value| value.max(0.0).sqrt());
+    let root = DMatrix::from_diagonal(&sizes) * eigen.eigenvectors * DMatrix::from_diagonal(&roots);
+    let b = by * root;
+    let projected = b.transpose() * residuals;
+    let inner = DMatrix::identity(b.ncols(), b.ncols()) + b.transpose() * &b;
+    let solved = inner.cholesky().map(|factor| factor.solve(&projected));
+    residuals.norm_squared() - solved.map_or(0.0, |solved| projected.dot(&solved))
+}

@@ -1,0 +1,232 @@
+//! The whole identification: grids are refined until their bias is far below the standard errors, then all is assessed.
+
+use crate::control::problem::{Identification, Regime};
+use crate::identify::error::IdentifyError;
+use crate::identify::experiments::Experiment;
+use crate::identify::fit::{Fit, fit};
+use crate::identify::held_out::{HeldOut, LEVEL};
+use crate::identify::information::Information;
+use crate::identify::prediction::{Grid, count_of_start};
+use crate::identify::residuals::Series;
+use crate::identify::setup::Setup;
+use crate::identify::unknowns::Unknowns;
+use crate::identify::whiteness::{Whiteness, ljung_box};
+use crate::ipopt::interrupt;
+use crate::model::{Model, System, check_parameters};
+use statrs::distribution::{ChiSquared, ContinuousCDF};
+
+/// Greatest bias of a constant by the grid, in standard errors.
+const BIAS: f64 = 0.1;
+/// A relative change of all constants below this is none, however small the standard errors.
+const NONE: f64 = 1e-8;
+/// Most halvings of the steps, and most intervals of a recording.
+const HALVINGS: usize = 10;
+const MOST: usize = 200_000;
+
+/// Bias of the constants by the grid.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Bias {
+    /// Change of each constant from the grid before to the last one, in standard errors: more than what is left.
+    pub changes: Vec<f64>,
+    /// True if all are below a tenth.
+    pub is_confirmed: bool,
+    /// Number of halvings of the first steps.
+    pub halvings: usize,
+}
+
+impl Bias {
+    /// The largest change.
+    pub fn largest(&self) -> f64 {
+        self.changes.iter().copied().fold(0.0, f64::max)
+    }
+}
+
+/// Constants with all that the recordings say of them.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Identified {
+    /// The fit on the last grid.
+    pub fit: Fit,
+    /// Recordings that it is fitted to.
+    pub fitted: Vec<usize>,
+    /// Its information on the constants.
+    pub information: Information,
+    /// The last grid.
+    pub grid: Grid,
+    /// Bias by the grid.
+    pub bias: Bias,
+    /// Residuals of the fitted recordings.
+    pub series: Vec<Series>,
+    /// Their whiteness.
+    pub whiteness: Vec<Option<Whiteness>>,
+    /// Probability of so large residuals, where the standard deviations are known.
+    pub p: Option<f64>,
+    /// Predictions of recordings that were held out.
+    pub held_out: Vec<HeldOut>,
+    /// Candidates for the next experiment, the best one first.
+    pub experiments: Vec<Experiment>,
+}
+
+impl Identified {
+    /// Returns true if no series of residuals of the fit has correlations beyond chance.
+    pub fn is_white(&self) -> bool {
+        let tests = self.whiteness.iter().flatten();
+        let count = tests.clone().count().max(1) as f64;
+        tests.into_iter().all(|test| test.p >= LEVEL / count)
+    }
+}
+
+/// Fits the constants of a task to its recordings and assesses them; `told` hears of each fit.
+///
+/// # Errors
+/// The data do not allow it, or a recording cannot be simulated.
+pub fn identify(
+    system: &System,
+    task: &Identification,
+    told: &mut dyn FnMut(&Fit, &Grid),
+) -> Result<Identified, IdentifyError> {
+    check_parameters(system, &task.parameters).map_err(IdentifyError::NotSought)?;
+    let fitted: Vec<usize> = (0..task.recordings.len())
+        .filter(|&r| !task.recordings[r].is_held_out)
+        .collect();
+    let unknowns = begin(system, task, &fitted)?;
+    let (found, information, grid, bias) = refined((system, task), &fitted, unknowns, told)?;
+    let held_out = (0..task.recordings.len()).filter(|r| !fitted.contains(r));
+    let predicted =
+        held_out.map(|r| HeldOut::new((system, task), r, (&found, &information), &grid));
+    let held_out = predicted.collect::<Result<_, _>>()?;
+    let experiments = Experiment::all((system, task), (&found, bias.halvings))?;
+    let series = found.data.series(task, &fitted, &found.prediction.values);
+    let p = found.data.is_known().then(|| {
+        let freedom = found.freedom().max(1) as f64;
+        ChiSquared::new(freedom)
+            .expect("a positive number")
+            .sf(found.sum())
+    });
+    Ok(Identified {
+        whiteness: series
+            .iter()
+            .map(|one| ljung_box(&one.standardised()))
+            .collect(),
+        series,
+        p,
+        fit: found,
+        fitted,
+        information,
+        grid,
+        bias,
+        held_out,
+        experiments,
+    })
+}
+
+/// The model of the first recording, with constants at their guesses.
+///
+/// # Errors
+/// It does not exist.
+pub fn first_model(system: &System, task: &Identification) -> Result<Model, IdentifyError> {
+    check_parameters(system, &task.parameters).map_err(IdentifyError::NotSought)?;
+    let guesses: Vec<f64> = task.parameters.iter().map(|p| p.guess).collect();
+    let recording = &task.recordings[0];
+    let grid = [recording.duration().max(1.0), 4.0];
+    Ok(Setup::new(system, task, recording, &guesses, grid)?.model)
+}
+
+/// The first unknowns, of data that can tell them.
+fn begin(
+    system: &System,
+    task: &Identification,
+    fitted: &[usize],
+) -> Result<Unknowns, IdentifyError> {
+    let count = |&r: &usize| count_of_start(system, task, &task.recordings[r]);
+    let counts: Vec<usize> = fitted.iter().map(count).collect::<Result<_, _>>()?;
+    let mut next = counts.into_iter();
+    let unknowns = Unknowns::new(task, |_| next.next().expect("one of each that is fitted"));
+    let readings: usize = fitted.iter().map(|&r| task.recordings[r].count()).sum();
+    if readings <= unknowns.values.len() {
+        return Err(IdentifyError::TooFew {
+            readings,
+            unknowns: unknowns.values.len(),
+        });
+    }
+    let is_still = |&r: &usize| {
+        let recording = &task.recordings[r];
+        let mut channels = recording.channels.iter();
+        let same = |pair: &[crate::control::problem::Reading]| pair[0].value == pair[1].value;
+        recording.regime == Regime::Motion
+            && channels.all(|channel| channel.readings.windows(2).all(same))
+    };
+    match fitted.iter().all(is_still) {
+        true => Err(IdentifyError::NothingMoves),
+        false => Ok(unknowns),
+    }
+}
+
+/// Fits on grids of halved steps until constants change by less than a tenth of their standard errors.
+fn refined(
+    (system, task): (&System, &Identification),
+    fitted: &[usize],
+    unknowns: Unknowns,
+    told: &mut dyn FnMut(&Fit, &Grid),
+) -> Result<(Fit, Information, Grid, Bias), IdentifyError> {
+    let mut grid = Grid::first(task, &task.recordings);
+    let mut found = fit((system, task), fitted, (unknowns, 0), &grid)?;
+    unread(task, &found)?;
+    let mut information = Information::of_fit(task, &found);
+    told(&found, &grid);
+    let mut bias = Bias {
+        changes: vec![f64::INFINITY; task.parameters.len()],
+        is_confirmed: fitted
+            .iter()
+            .all(|&r| task.recordings[r].regime == Regime::Rest),
+        halvings: 0,
+    };
+    if bias.is_confirmed {
+        bias.changes.fill(0.0);
+    }
+    while !bias.is_confirmed && bias.halvings < HALVINGS {
+        if interrupt::stop().is_some() {
+            break;
+        }
+        let finer = grid.halved();
+        if finer.intervals.iter().any(|&n| n > MOST) {
+            break;
+        }
+        let before = found.unknowns.clone();
+        found = fit((system, task), fitted, (before.clone(), 0), &finer)?;
+        grid = finer;
+        told(&found, &grid);
+        information = Information::of_fit(task, &found);
+        bias.halvings += 1;
+        bias.compare(&before, &found.unknowns, &information);
+    }
+    Ok((found, information, grid, bias))
+}
+
+impl Bias {
+    fn compare(&mut self, before: &Unknowns, after: &Unknowns, information: &Information) {
+        let mut is_none = true;
+        let pairs = before.of_constants().iter().zip(after.of_constants());
+        for (j, (a, b)) in pairs.enumerate() {
+            let error = information.covariance[(j, j)].sqrt();
+            // What is not determined has no bias.
+            self.changes[j] = match error > 0.0 {
+                true => (a - b).abs() / error,
+                false => 0.0,
+            };
+            is_none &= !information.is_determined[j] || (a - b).abs() <= NONE * b.abs();
+        }
+        self.is_confirmed = is_none || self.largest() < BIAS;
+    }
+}
+
+/// Refuses constants on which no reading depends.
+fn unread(task: &Identification, found: &Fit) -> Result<(), IdentifyError> {
+    let columns = found.prediction.derivatives.column_iter();
+    for (parameter, column) in task.parameters.iter().zip(columns) {
+        if column.iter().all(|value| *value == 0.0) {
+            let name = parameter.name.clone();
+            return Err(IdentifyError::Unread { name });
+        }
+    }
+    Ok(())
+}

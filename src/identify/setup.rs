@@ -1,0 +1,180 @@
+//! The model of a recording at values of the constants, with its start.
+
+use crate::control::problem::{
+    BoundaryState, Control, Duration, Guess, Hold, Identification, Objective, Recording, Regime,
+    Solver, SoughtHold, SoughtStart, Voltages,
+};
+use crate::control::{
+    BoundaryConditions, BoundaryError, Limits, Rests, TerminalState, resolve_start,
+};
+use crate::dynamics::Start;
+use crate::identify::error::IdentifyError;
+use crate::model::{Analysis, Coordinates, Model, Parameter, System, with_parameters};
+use std::collections::BTreeMap;
+
+/// The model of a recording on a grid.
+#[derive(Debug)]
+pub(super) struct Setup<'a> {
+    pub(super) recording: &'a Recording,
+    pub(super) control: Control,
+    pub(super) model: Model,
+}
+
+impl<'a> Setup<'a> {
+    /// The model at values of the constants, with steps of `h` ms.
+    pub(super) fn new(
+        system: &System,
+        task: &Identification,
+        recording: &'a Recording,
+        constants: &[f64],
+        [duration, intervals]: [f64; 2],
+    ) -> Result<Self, IdentifyError> {
+        let at = |(parameter, &value): (&Parameter, &f64)| Parameter {
+            guess: value,
+            ..parameter.clone()
+        };
+        let parameters: Vec<_> = task.parameters.iter().zip(constants).map(at).collect();
+        let system = with_parameters(system, &parameters, constants);
+        let control = Control {
+            parameters,
+            coordinates: task.coordinates,
+            ..control(recording, duration, intervals as usize)
+        };
+        let mut analysis = Analysis {
+            quantities: recording.quantities().collect(),
+            ..control.analysis(&system, duration / intervals)
+        };
+        if recording.sought_start != SoughtStart::Nothing {
+            analysis.initially_moving = None;
+        }
+        let model = Model::for_analysis(system, analysis);
+        let setup = Self {
+            model: model.map_err(|error| recording.wrong(error.into()))?,
+            control,
+            recording,
+        };
+        setup.check()?;
+        Ok(setup)
+    }
+
+    /// Refuses what derivatives by the start are not offered for.
+    fn check(&self) -> Result<(), IdentifyError> {
+        let is_tree = self.model.coordinates == Coordinates::Reduced;
+        let is_of_rest = matches!(self.recording.start, BoundaryState::RestAtVoltages(..));
+        let what = match (self.recording.sought_start, self.recording.regime) {
+            (SoughtStart::Nothing, Regime::Motion) if !is_of_rest => return Ok(()),
+            (SoughtStart::Nothing, _) => "states of rest are",
+            _ => "an unknown start is",
+        };
+        match is_tree {
+            true => Ok(()),
+            false => Err(IdentifyError::Refused {
+                recording: self.recording.name.clone(),
+                reason: format!(
+                    "{what} offered in joint coordinates alone, of joints that form a tree"
+                ),
+            }),
+        }
+    }
+
+    /// The start with changes of its coordinates and momenta.
+    pub(super) fn start(&self, changes: &[f64]) -> Result<Start, IdentifyError> {
+        let found = resolve_start(&self.model, &self.recording.start, "start");
+        let mut start = found.map_err(|error| self.recording.wrong(error))?;
+        let (coordinates, momenta) = self.sought();
+        let (of_coordinates, of_momenta) = changes.split_at(coordinates.len().min(changes.len()));
+        for (&i, change) in coordinates.iter().zip(of_coordinates) {
+            start.z[i] += change;
+        }
+        for (&i, change) in momenta.iter().zip(of_momenta) {
+            start.momentum[i] += change;
+            start.rates = None;
+        }
+        Ok(start)
+    }
+
+    /// Coordinates, and coordinates whose momenta, of the start are unknowns.
+    pub(super) fn sought(&self) -> (Vec<usize>, Vec<usize>) {
+        let open = |i: &usize| !self.model.prescribed.iter().any(|one| one.coordinate == *i);
+        let all = || (0..self.model.coordinate_count()).filter(open);
+        let momenta = || all().filter(|&i| !self.model.is_memory(i)).collect();
+        match self.recording.sought_start {
+            SoughtStart::Nothing => (Vec::new(), Vec::new()),
+            SoughtStart::Coordinates => (all().collect(), Vec::new()),
+            SoughtStart::State => (all().collect(), momenta()),
+        }
+    }
+
+    /// The equilibrium under the voltages of a time in ms.
+    pub(super) fn rest(&self, time: f64) -> Result<Start, IdentifyError> {
+        let voltages = self.recording.voltages.at(time).to_vec();
+        let state = BoundaryState::RestAtVoltages(voltages, Default::default());
+        let found = resolve_start(&self.model, &state, "rest");
+        found.map_err(|error| self.recording.wrong(error))
+    }
+
+    /// Start and open end of the transcription.
+    pub(super) fn boundary(&self, start: Start) -> BoundaryConditions {
+        BoundaryConditions {
+            start,
+            goal: TerminalState {
+                coordinates: vec![None; self.model.coordinate_count()],
+                rests: Rests::Nothing,
+                rest: None,
+            },
+            rest: [None, None],
+            limits: Limits::default(),
+            notes: Vec::new(),
+        }
+    }
+
+    /// The problem whose transcription has the derivatives by the start too.
+    pub(super) fn open(&self, voltages: Voltages, intervals: usize, h: f64) -> Control {
+        Control {
+            start: BoundaryState::Free,
+            course: Some(voltages),
+            duration: Duration::Given(h * intervals as f64),
+            intervals,
+            ..self.control.clone()
+        }
+    }
+}
+
+impl Recording {
+    /// All quantities, channel by channel.
+    pub(super) fn quantities(&self) -> impl Iterator<Item = crate::model::Quantity> {
+        let parts = self.channels.iter().flat_map(|channel| &channel.parts);
+        parts.map(|(_, quantity)| *quantity)
+    }
+
+    pub(super) fn wrong(&self, source: BoundaryError) -> IdentifyError {
+        IdentifyError::Boundary {
+            recording: self.name.clone(),
+            source,
+        }
+    }
+}
+
+/// The motion of a recording as a problem without a choice.
+fn control(recording: &Recording, duration: f64, intervals: usize) -> Control {
+    Control {
+        duration: Duration::Given(duration),
+        intervals,
+        is_refined: false,
+        start: recording.start.clone(),
+        goal: BoundaryState::Free,
+        voltage_bounds: [f64::NEG_INFINITY, f64::INFINITY],
+        load_bounds: BTreeMap::new(),
+        given: BTreeMap::new(),
+        course: Some(recording.voltages.clone()),
+        parameters: Vec::new(),
+        sought_hold: SoughtHold::Never,
+        hold: Hold::Reported,
+        objective: Objective::default(),
+        limits: Vec::new(),
+        waypoints: Vec::new(),
+        coordinates: None,
+        guess: Guess::Interpolate,
+        solver: Solver::default(),
+    }
+}

@@ -1,0 +1,12 @@
+//! Identification: constants recovered from recordings, what the data say of them, and what not.
+
+#[path = "../common/mod.rs"]
+mod common;
+
+mod assessed;
+mod derivatives;
+mod oscillator;
+mod recovered;
+mod refused;
+mod rest;
+mod statistics;

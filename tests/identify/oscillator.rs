@@ -1,0 +1,128 @@
+//! A damped oscillator on a slide, its motion in closed form, and recordings of it.
+
+use proboscis::control::problem::{
+    BoundaryState, Channel, Identification, Reading, Recording, Regime, SoughtStart, Voltages,
+};
+use proboscis::math::Random;
+use proboscis::model::{Constant, Follower, Parameter, Quantity};
+use proboscis::prelude::{Body, GROUND, Joint, Spring, System, X, g, mm, n_per_m};
+use std::collections::BTreeMap;
+
+/// Mass in g, stiffness in N/mm and damping in N ms/mm.
+pub(crate) const MASS: f64 = 50.0;
+pub(crate) const STIFFNESS: f64 = 0.2;
+pub(crate) const DAMPING: f64 = 0.6;
+
+/// A cart on a damped slide, held by a spring.
+pub(crate) fn system() -> System {
+    let mut system = System::new("oscillator");
+    let cart = system.add(Body::sphere(mm(10.0)).mass(g(MASS)));
+    system.add(Joint::prismatic(X).between(GROUND, cart));
+    let spring = Spring::between((GROUND, -X * mm(50.0)), (cart, X * mm(0.0)));
+    system.add(spring.stiffness(n_per_m(1e3 * STIFFNESS)));
+    system.joints[0].damping = Some(DAMPING);
+    system
+}
+
+/// Place in mm at a time in ms after a start from rest or with a velocity in mm/ms.
+pub(crate) fn place(time: f64, [stiffness, damping]: [f64; 2], [x, v]: [f64; 2]) -> f64 {
+    let decay = 0.5 * damping / MASS;
+    let omega = (stiffness / MASS - decay * decay).sqrt();
+    let sine = (v + decay * x) / omega;
+    (-decay * time).exp() * (x * (omega * time).cos() + sine * (omega * time).sin())
+}
+
+pub(crate) fn parameter(name: &str, constant: Constant, guess: f64) -> Parameter {
+    Parameter {
+        name: name.into(),
+        constants: vec![Follower::from(constant)],
+        lower: 0.02 * guess,
+        upper: 20.0 * guess,
+        guess,
+    }
+}
+
+/// Stiffness and damping from twice and half their values.
+pub(crate) fn parameters() -> Vec<Parameter> {
+    vec![
+        parameter("stiffness", Constant::SpringStiffness(0), 2.0 * STIFFNESS),
+        parameter("damping", Constant::JointDamping(0), 0.5 * DAMPING),
+    ]
+}
+
+/// Equidistant times from zero on.
+pub(crate) fn times(count: usize, last: f64) -> Vec<f64> {
+    let part = |k: usize| k as f64 / (count - 1) as f64;
+    (0..count).map(|k| last * part(k)).collect()
+}
+
+pub(crate) fn joint(x: f64, v: f64) -> BoundaryState {
+    BoundaryState::JointAngles {
+        angles: BTreeMap::from([(0, x)]),
+        rates: BTreeMap::from([(0, v)]),
+        velocities: BTreeMap::new(),
+    }
+}
+
+pub(crate) fn slide(readings: Vec<Reading>, is_deviation_known: bool) -> Channel {
+    Channel {
+        name: "x".into(),
+        parts: vec![(
+            1.0,
+            Quantity::Joint {
+                joint: 0,
+                near: 0.0,
+            },
+        )],
+        unit: ("m", 1e-3),
+        is_deviation_known,
+        readings,
+    }
+}
+
+/// A recording of the closed form with errors of a known deviation.
+pub(crate) fn recording(
+    name: &str,
+    start: [f64; 2],
+    (count, last): (usize, f64),
+    mut noise: Option<(f64, &mut Random)>,
+) -> Recording {
+    let deviation = noise.as_ref().map_or(1.0, |(deviation, _)| *deviation);
+    let reading = |time: f64| {
+        let error = noise
+            .as_mut()
+            .map_or(0.0, |(deviation, random)| *deviation * normal(random));
+        Reading {
+            time,
+            value: place(time, [STIFFNESS, DAMPING], start) + error,
+            deviation,
+        }
+    };
+    let readings = times(count, last).into_iter().map(reading).collect();
+    let is_known = deviation != 1.0;
+    Recording {
+        name: name.into(),
+        regime: Regime::Motion,
+        voltages: Voltages::Constant(Vec::new()),
+        start: joint(start[0], start[1]),
+        sought_start: SoughtStart::Nothing,
+        is_held_out: false,
+        channels: vec![slide(readings, is_known)],
+    }
+}
+
+/// A number of the normal distribution, by the method of Box and Muller.
+pub(crate) fn normal(random: &mut Random) -> f64 {
+    let [a, b] = [random.between(0.0, 1.0), random.between(0.0, 1.0)];
+    (-2.0 * (1.0 - a).ln()).sqrt() * (std::f64::consts::TAU * b).cos()
+}
+
+pub(crate) fn task(recordings: Vec<Recording>) -> Identification {
+    Identification {
+        parameters: parameters(),
+        recordings,
+        candidates: Vec::new(),
+        step: None,
+        coordinates: None,
+    }
+}

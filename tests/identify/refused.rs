@@ -1,0 +1,54 @@
+//! Data that do not allow an identification, and verdicts that say so.
+
+use crate::oscillator::{DAMPING, parameter, recording, system, task};
+use proboscis::identify::{IdentifyError, identify};
+use proboscis::math::Random;
+use proboscis::model::Constant;
+use proboscis::prelude::{GROUND, Spring, X, mm, n_per_m};
+
+fn refusal(task: &proboscis::control::problem::Identification) -> IdentifyError {
+    identify(&system(), task, &mut |_, _| {}).unwrap_err()
+}
+
+#[test]
+fn data_that_tell_nothing_are_refused() {
+    let still = |count| recording("still", [0.0, 0.0], (count, 100.0), None);
+    assert_eq!(refusal(&task(vec![still(9)])), IdentifyError::NothingMoves);
+    let few = task(vec![recording("few", [5.0, 0.0], (2, 100.0), None)]);
+    let expected = IdentifyError::TooFew {
+        readings: 2,
+        unknowns: 2,
+    };
+    assert_eq!(refusal(&few), expected);
+}
+
+#[test]
+fn a_constant_that_no_recording_depends_on_is_refused() {
+    let mut system = system();
+    let spring = Spring::between((GROUND, -X * mm(50.0)), (GROUND, X * mm(20.0)));
+    system.add(spring.stiffness(n_per_m(10.0)));
+    let mut task = task(vec![recording("free", [5.0, 0.0], (9, 100.0), None)]);
+    task.parameters
+        .push(parameter("idle", Constant::SpringStiffness(1), 0.01));
+    let error = identify(&system, &task, &mut |_, _| {}).unwrap_err();
+    assert!(
+        matches!(&error, IdentifyError::Unread { name } if name == "idle"),
+        "{error}"
+    );
+}
+
+#[test]
+fn a_constant_at_its_bound_is_said() {
+    let noise = &mut Random::new(4);
+    let mut task = task(vec![recording(
+        "free",
+        [5.0, 0.0],
+        (31, 150.0),
+        Some((0.05, noise)),
+    )]);
+    task.parameters[1].upper = 0.8 * DAMPING;
+    let found = identify(&system(), &task, &mut |_, _| {}).unwrap();
+    assert_eq!(found.fit.is_at_bound, [false, true]);
+    assert!((found.fit.of_constants()[1] - 0.8 * DAMPING).abs() < 1e-12);
+    assert!(found.p.unwrap() < 0.01 || !found.is_white());
+}

@@ -1,0 +1,131 @@
+//! States of rest of a free muscle, which determine a ratio of its constants.
+
+use crate::oscillator::{joint, parameter, slide, times};
+use proboscis::Signal;
+use proboscis::control::problem::{
+    Identification, Reading, Recording, Regime, SoughtStart, Voltages,
+};
+use proboscis::identify::{Grid, Unknowns, identify, predict};
+use proboscis::math::Random;
+use proboscis::model::components::{Load, LoadPlace};
+use proboscis::model::{Constant, DielectricLaw, System};
+use proboscis::prelude::{Body, GROUND, Joint, Material, Muscle, X, g, kpa, mm, um};
+
+const TRUE: [f64; 2] = [3.0, 0.1];
+
+/// A cart between a muscle and a force along the slide.
+fn system() -> System {
+    let material = Material::elastomer(kpa(1e3 * TRUE[1])).relative_permittivity(TRUE[0]);
+    let mut system = System::new("free");
+    let cart = system.add(Body::sphere(mm(10.0)).mass(g(50.0)));
+    system.add(Joint::prismatic(X).between(GROUND, cart));
+    let muscle = Muscle::of(&material)
+        .section(mm(10.0), mm(10.0))
+        .layer(um(50.0));
+    system.add(muscle.from(GROUND, -X * mm(40.0)).to(cart, X * mm(0.0)));
+    system.components.loads.push(Load {
+        name: "force".into(),
+        on: LoadPlace::Joint(0),
+    });
+    system
+}
+
+fn recording(name: &str, [from, to]: [f64; 2], force: f64) -> Recording {
+    let reading = |time: f64| Reading {
+        time,
+        value: 0.0,
+        deviation: 0.001,
+    };
+    Recording {
+        name: name.into(),
+        regime: Regime::Rest,
+        voltages: Voltages::Signals(vec![
+            Signal::ramp(from, to, 1000.0),
+            Signal::Constant(force),
+        ]),
+        start: joint(0.0, 0.0),
+        sought_start: SoughtStart::Nothing,
+        is_held_out: false,
+        channels: vec![slide(
+            times(8, 1000.0).into_iter().map(reading).collect(),
+            true,
+        )],
+    }
+}
+
+fn task(recordings: Vec<Recording>) -> Identification {
+    let permittivity = Constant::Permittivity(0, DielectricLaw::Ideal);
+    let mut task = Identification {
+        parameters: vec![
+            parameter("permittivity", permittivity, TRUE[0]),
+            parameter("modulus", Constant::ShearModulus(0), TRUE[1]),
+        ],
+        recordings,
+        candidates: Vec::new(),
+        step: None,
+        coordinates: None,
+    };
+    let unknowns = Unknowns {
+        values: TRUE.to_vec(),
+        constants: 2,
+        starts: task.recordings.iter().map(|_| 2..2).collect(),
+    };
+    let grid = Grid::first(&task, &task.recordings);
+    let random = &mut Random::new(2);
+    for r in 0..task.recordings.len() {
+        let truth = predict((&system(), &task), &[r], &unknowns, &grid)
+            .unwrap()
+            .values;
+        for (reading, value) in task.recordings[r].channels[0]
+            .readings
+            .iter_mut()
+            .zip(truth.iter())
+        {
+            reading.value = value + reading.deviation * crate::oscillator::normal(random);
+        }
+    }
+    for parameter in &mut task.parameters {
+        parameter.guess *= 1.3;
+    }
+    task.parameters[1].guess *= 0.5;
+    task
+}
+
+#[test]
+fn a_free_muscle_at_rest_determines_a_ratio_and_a_force_both() {
+    let free = recording("free", [300.0, 1200.0], 0.0);
+    let found = identify(&system(), &task(vec![free.clone()]), &mut |_, _| {}).unwrap();
+    let [only] = &found.information.undetermined[..] else {
+        panic!("{:?}", found.information.undetermined);
+    };
+    println!("{only:?}");
+    // Both in proportion change nothing.
+    assert_eq!(only.powers.len(), 2);
+    assert!(
+        only.powers
+            .iter()
+            .all(|(_, power)| (power - 1.0).abs() < 1e-4)
+    );
+    assert!(only.deviation.is_infinite());
+    assert_eq!(found.information.is_determined, [false, false]);
+    let (powers, ratio, deviation) = only.determined.clone().unwrap();
+    assert!((powers[1].1 / powers[0].1 + 1.0).abs() < 1e-4);
+    let truth = TRUE[0] / TRUE[1];
+    let ratio = if powers[0].0 == 0 {
+        ratio
+    } else {
+        ratio.recip()
+    };
+    assert!(
+        deviation < 0.01 && (ratio / truth - 1.0).abs() < 4.0 * deviation,
+        "{ratio} {truth} {deviation}"
+    );
+    let loaded = recording("loaded", [0.0, 800.0], 0.5);
+    let found = identify(&system(), &task(vec![free, loaded]), &mut |_, _| {}).unwrap();
+    assert!(found.information.undetermined.is_empty());
+    for j in 0..2 {
+        let error = found.information.covariance[(j, j)].sqrt();
+        assert!(error < 0.02 * TRUE[j]);
+        assert!((found.fit.of_constants()[j] - TRUE[j]).abs() < 3.5 * error);
+    }
+}
