@@ -14,7 +14,7 @@ use crate::report::style;
 
 /// Look of the page.
 const STYLE: &str = "body{font-family:Helvetica,Arial,'Liberation Sans',sans-serif;color:#22262b;max-width:60rem;margin:2rem auto;padding:0 1rem}\
-table{border-collapse:collapse;margin:1rem 0}td,th{border:1px solid #e6e8eb;padding:.3rem .6rem;text-align:left}\
+table{border-collapse:collapse;margin:1rem 0;display:block;overflow-x:auto}th{overflow-wrap:anywhere}td,th{border:1px solid #e6e8eb;padding:.3rem .6rem;text-align:left}\
 svg{max-width:100%;height:auto}pre{background:#f6f7f8;padding:1rem;overflow:auto}";
 
 /// The page; `asked` are the texts of problem and scene.
@@ -175,9 +175,9 @@ fn section(task: &Identification, one: &Series, origin: &Origin) -> String {
         false => "",
     };
     format!(
-        "<h2>{} of {}{held_out}</h2><div>{}</div><div>{}</div>",
-        escape(&channel.name),
+        "<h2>{}: {}{held_out}</h2><div>{}</div><div>{}</div>",
         escape(&recording.name),
+        escape(&channel.name),
         above.svg(origin),
         below.svg(origin)
     )

@@ -1,12 +1,12 @@
-//! Constants that were identified, in `summary.json`, in words and as a table.
+//! Constants that were identified, in `summary.json` and in words.
 
 use serde::Serialize;
 
+use crate::app::identification_verdict::{product, words};
 use crate::control::problem;
-use crate::identify::{Ended, Experiment, HeldOut, Identified, Undetermined, Whiteness};
+use crate::identify::{Experiment, HeldOut, Identified, Undetermined, Whiteness};
 use crate::math::significant;
 use crate::model::{Parameter, SiUnit, System};
-use crate::workflow::Remarks;
 
 /// Result of an identification.
 #[derive(Debug, Serialize)]
@@ -131,40 +131,6 @@ fn unit(system: &System, parameter: &Parameter) -> SiUnit {
     parameter.unit(system)
 }
 
-/// Powers of constants as a product, such as `a / b^2`.
-pub(super) fn product(task: &problem::Identification, powers: &[(usize, f64)]) -> String {
-    let factor = |&(j, power): &(usize, f64)| {
-        let name = &task.parameters[j].name;
-        match (power * 1e3).round() / 1e3 {
-            1.0 => name.clone(),
-            power => format!("{name}^{power}"),
-        }
-    };
-    let list: Vec<String> = powers.iter().map(factor).collect();
-    list.join(" · ")
-}
-
-fn words(task: &problem::Identification, one: &Undetermined) -> String {
-    let names: Vec<&str> = one
-        .powers
-        .iter()
-        .map(|&(j, _)| task.parameters[j].name.as_str())
-        .collect();
-    match &one.determined {
-        Some((powers, ..)) => format!(
-            "the data determine {} alone, and not {}",
-            product(task, powers),
-            names.join(" and ")
-        ),
-        None if names.len() == 1 => format!("the data do not determine {}", names[0]),
-        None => format!(
-            "the data do not determine {}: nothing tells changes apart in which they grow as {}",
-            names.join(", "),
-            product(task, &one.powers)
-        ),
-    }
-}
-
 impl From<&Whiteness> for Test {
     fn from(test: &Whiteness) -> Self {
         Self {
@@ -229,13 +195,14 @@ impl Identification {
                     power,
                 })
                 .collect(),
-            determined: one.determined.as_ref().map(|(powers, value, deviation)| {
-                let si = powers.iter().map(|&(j, power)| units[j].factor.powf(power));
-                let value = value * si.product::<f64>();
+            determined: one.determined.as_ref().map(|known| {
+                let powers = known.powers.iter();
+                let si = powers.map(|&(j, power)| units[j].factor.powf(power));
+                let value = known.value * si.product::<f64>();
                 Determined {
-                    product: product(task, powers),
+                    product: product(task, &known.powers),
                     value,
-                    standard_error: (value * deviation).abs(),
+                    standard_error: (value * known.deviation).abs(),
                 }
             }),
         };
@@ -351,98 +318,4 @@ impl Candidate {
             undetermined: information.undetermined.len(),
         }
     }
-}
-
-/// Status of a result, in one word.
-pub(super) fn status(found: &Identified) -> &'static str {
-    let is_explained = found.held_out.iter().all(HeldOut::is_explained);
-    match () {
-        () if found.fit.ended == Ended::Unfinished => "not_converged",
-        () if !found.information.undetermined.is_empty() => "not_determined",
-        () if !is_explained => "not_explained",
-        () if !found.bias.is_confirmed => "bias_not_confirmed",
-        () if found.held_out.is_empty() => "identified",
-        () => "explained",
-    }
-}
-
-/// What has to be said of a result.
-pub(super) fn remarks(task: &problem::Identification, found: &Identified) -> Remarks {
-    let mut remarks = Remarks::default();
-    let at_bound = task.parameters.iter().zip(&found.fit.is_at_bound);
-    let at_bound = at_bound.filter(|(_, held)| **held);
-    remarks.warn(
-        "at_bound",
-        at_bound.map(|(p, _)| format!("{} lies at its bound: the fit would go on", p.name)),
-    );
-    let open = found.information.undetermined.iter();
-    remarks.warn("not_determined", open.map(|one| words(task, one)));
-    if !found.is_white() {
-        let text = "the residuals are not white (Ljung-Box, 1 %): the model misses part of the motion, or errors of neighbouring readings are alike, and intervals are too short";
-        remarks.warn("not_white", [text.to_owned()]);
-    }
-    if let Some(p) = found.p.filter(|p| *p < 0.01) {
-        let text = format!(
-            "the residuals are larger than the standard deviations of the readings say (p = {p:.1e})"
-        );
-        remarks.warn("large_residuals", [text]);
-    }
-    let largest = found.bias.largest();
-    match found.bias.is_confirmed {
-        true => remarks.note(
-            "grid",
-            [format!(
-                "the last halving of the steps changes no constant by more than {} standard errors",
-                significant(largest, 2)
-            )],
-        ),
-        false => remarks.warn(
-            "bias_not_confirmed",
-            [format!(
-                "the last halving of the steps changes a constant by {} standard errors: the grid biases the result",
-                significant(largest, 2)
-            )],
-        ),
-    }
-    if found.held_out.is_empty() {
-        let text = "no recording is held out: nothing checks the prediction";
-        remarks.note("nothing_held_out", [text.to_owned()]);
-    }
-    remarks
-}
-
-/// All readings with their predictions as rows of cells, in SI units.
-pub(super) fn table(task: &problem::Identification, found: &Identified) -> Vec<Vec<String>> {
-    let header = [
-        "recording",
-        "quantity",
-        "unit",
-        "time [s]",
-        "measured",
-        "predicted",
-        "residual",
-        "standard deviation",
-        "held out",
-    ];
-    let mut rows = vec![header.map(str::to_owned).to_vec()];
-    let held_out = found.held_out.iter().flat_map(|one| &one.series);
-    for one in found.series.iter().chain(held_out) {
-        let recording = &task.recordings[one.recording];
-        let channel = &recording.channels[one.channel];
-        let (symbol, factor) = channel.unit;
-        for k in 0..one.times.len() {
-            let (measured, predicted) = (one.measured[k], one.predicted[k]);
-            let numbers = [measured, predicted, measured - predicted, one.deviations[k]];
-            let mut row = vec![
-                recording.name.clone(),
-                channel.name.clone(),
-                symbol.to_owned(),
-                format!("{}", one.times[k] / 1e3),
-            ];
-            row.extend(numbers.map(|number| format!("{}", factor * number)));
-            row.push(recording.is_held_out.to_string());
-            rows.push(row);
-        }
-    }
-    rows
 }

@@ -29,6 +29,8 @@ mod foreign;
 mod identification;
 mod identification_page;
 mod identification_summary;
+mod identification_table;
+mod identification_verdict;
 mod identity;
 mod inspect;
 mod left_out;

@@ -121,14 +121,14 @@ pub fn fit(
     }
     data.estimate(&found.prediction.values, found.free());
     for _ in 1..ESTIMATES {
-        if data.groups() == 1 {
+        if data.is_scaled_alike() {
             break;
         }
         let before = data.deviations.clone();
         found = search.minimise(found.unknowns, data.clone())?;
         data.estimate(&found.prediction.values, found.free());
         let change = (&data.deviations - &before).component_div(&before).amax();
-        if change < SMALL {
+        if change < 10.0 * SMALL {
             break;
         }
     }

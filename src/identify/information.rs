@@ -1,4 +1,4 @@
-//! What data say of the constants: covariance, intervals, correlations, and combinations that they do not determine.
+//! Information of data on the constants: covariance, intervals, correlations, and combinations that are not determined.
 //!
 //! Unknown starts are eliminated: the derivatives by constants lose their parts that changes of starts make up for. The singular values s
 //! of what remains, by relative changes of the constants, are the reciprocal standard deviations of combinations of their logarithms.
@@ -22,9 +22,19 @@ pub struct Undetermined {
     pub powers: Vec<(usize, f64)>,
     /// Relative standard deviation of a change along it; infinite where nothing changes at all.
     pub deviation: f64,
-    /// Powers of the product that is determined, its value, and its relative standard deviation; where only one combination of these
-    /// constants is undetermined.
-    pub determined: Option<(Vec<(usize, f64)>, f64, f64)>,
+    /// The product that is determined, where only one combination of these constants is not.
+    pub determined: Option<Product>,
+}
+
+/// A product of powers of constants that the data determine.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Product {
+    /// Powers of the constants.
+    pub powers: Vec<(usize, f64)>,
+    /// Its value, by the units of the constants.
+    pub value: f64,
+    /// Its relative standard deviation.
+    pub deviation: f64,
 }
 
 /// Information of a fit on the constants.
@@ -126,7 +136,7 @@ impl Information {
 }
 
 impl Fit {
-    /// What it says of the constants.
+    /// Returns its information on the constants.
     pub fn information(&self, task: &Identification) -> Information {
         Information::of_fit(task, self)
     }
@@ -218,7 +228,7 @@ fn product(
     (free, values): (&[usize], &[f64]),
     (directions, known): (&DMatrix<f64>, &[usize]),
     deviation: impl Fn(usize) -> f64,
-) -> Option<(Vec<(usize, f64)>, f64, f64)> {
+) -> Option<Product> {
     let [(a, p), (b, q)] = open.powers[..] else {
         return None;
     };
@@ -235,5 +245,9 @@ fn product(
         (change * deviation(k)).powi(2)
     };
     let variance: f64 = known.iter().map(of).sum();
-    Some((powers, value, variance.sqrt()))
+    Some(Product {
+        powers,
+        value,
+        deviation: variance.sqrt(),
+    })
 }

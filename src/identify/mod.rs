@@ -26,7 +26,7 @@ pub use error::IdentifyError;
 pub use experiments::Experiment;
 pub use fit::{Ended, Fit, fit};
 pub use held_out::HeldOut;
-pub use information::{Information, Undetermined};
+pub use information::{Information, Product, Undetermined};
 pub use prediction::{Grid, Prediction, predict};
 pub use refine::{Bias, Identified, first_model, identify};
 pub use residuals::Series;

@@ -28,6 +28,8 @@ const MOST: usize = 200_000;
 pub struct Bias {
     /// Change of each constant from the grid before to the last one, in standard errors: more than what is left.
     pub changes: Vec<f64>,
+    /// Root of the mean squared change of the predictions, in standard deviations.
+    pub readings: f64,
     /// True if all are below a tenth.
     pub is_confirmed: bool,
     /// Number of halvings of the first steps.
@@ -178,6 +180,7 @@ fn refined(
         is_confirmed: fitted
             .iter()
             .all(|&r| task.recordings[r].regime == Regime::Rest),
+        readings: 0.0,
         halvings: 0,
     };
     if bias.is_confirmed {
@@ -191,31 +194,34 @@ fn refined(
         if finer.intervals.iter().any(|&n| n > MOST) {
             break;
         }
-        let before = found.unknowns.clone();
-        found = fit((system, task), fitted, (before.clone(), 0), &finer)?;
+        let before = found.clone();
+        found = fit((system, task), fitted, (before.unknowns.clone(), 0), &finer)?;
         grid = finer;
         told(&found, &grid);
         information = Information::of_fit(task, &found);
         bias.halvings += 1;
-        bias.compare(&before, &found.unknowns, &information);
+        bias.compare(&before, &found, &information);
     }
     Ok((found, information, grid, bias))
 }
 
 impl Bias {
-    fn compare(&mut self, before: &Unknowns, after: &Unknowns, information: &Information) {
+    fn compare(&mut self, before: &Fit, after: &Fit, information: &Information) {
         let mut is_none = true;
         let pairs = before.of_constants().iter().zip(after.of_constants());
         for (j, (a, b)) in pairs.enumerate() {
             let error = information.covariance[(j, j)].sqrt();
-            // What is not determined has no bias.
+            // A constant that is not determined has no bias.
             self.changes[j] = match error > 0.0 {
                 true => (a - b).abs() / error,
                 false => 0.0,
             };
             is_none &= !information.is_determined[j] || (a - b).abs() <= NONE * b.abs();
         }
-        self.is_confirmed = is_none || self.largest() < BIAS;
+        let change = &after.prediction.values - &before.prediction.values;
+        let change = change.component_div(&after.data.deviations);
+        self.readings = change.norm() / (change.len() as f64).sqrt();
+        self.is_confirmed = is_none || self.largest().max(self.readings) < BIAS;
     }
 }
 

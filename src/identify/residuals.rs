@@ -116,9 +116,9 @@ impl Data {
         self.ranges.is_empty()
     }
 
-    /// Number of groups whose deviations are estimated.
-    pub(super) fn groups(&self) -> usize {
-        self.ranges.len()
+    /// Returns true if one estimated deviation scales all readings, so that it does not change the fit.
+    pub(super) fn is_scaled_alike(&self) -> bool {
+        self.ranges.len() == 1 && self.groups.iter().all(Option::is_some)
     }
 
     fn set(&mut self, of_groups: Vec<f64>) {

@@ -33,6 +33,21 @@ impl Unknowns {
         }
     }
 
+    /// Values of the constants, and of the unknowns of the start of each recording.
+    pub fn of_values(constants: &[f64], starts: &[&[f64]]) -> Self {
+        let mut values = constants.to_vec();
+        let range = |start: &&[f64]| {
+            let first = values.len();
+            values.extend_from_slice(start);
+            first..values.len()
+        };
+        Self {
+            starts: starts.iter().map(range).collect(),
+            constants: constants.len(),
+            values,
+        }
+    }
+
     /// The constants.
     pub fn of_constants(&self) -> &[f64] {
         &self.values[..self.constants]

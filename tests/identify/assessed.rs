@@ -65,11 +65,8 @@ fn under(name: &str, voltage: Signal, count: usize) -> Recording {
 
 /// Fills a task with readings of another system, with errors.
 fn measure(task: &mut Identification, system: &System, seed: u64) {
-    let unknowns = Unknowns {
-        values: task.parameters.iter().map(|p| p.guess).collect(),
-        constants: task.parameters.len(),
-        starts: task.recordings.iter().map(|_| 0..0).collect(),
-    };
+    let values: Vec<f64> = task.parameters.iter().map(|p| p.guess).collect();
+    let unknowns = Unknowns::of_values(&values, &vec![&[][..]; task.recordings.len()]);
     let random = &mut Random::new(seed);
     let grid = Grid {
         intervals: task.recordings.iter().map(|_| 390).collect(),

@@ -69,11 +69,7 @@ fn an_oscillator_with_an_unknown_start_moves_as_its_derivatives_say() {
         .channels
         .push(channel(vec![(2.0, rate)], readings(7, 150.0)));
     let task = oscillator::task(vec![recording]);
-    let unknowns = Unknowns {
-        values: vec![0.23, 0.5, 0.3, -0.8],
-        constants: 2,
-        starts: vec![2..4],
-    };
+    let unknowns = Unknowns::of_values(&[0.23, 0.5], &[&[0.3, -0.8]]);
     let largest = compare(&system, &task, &unknowns);
     assert!(largest.iter().all(|size| *size > 0.01), "{largest:?}");
 }
@@ -148,14 +144,8 @@ fn pair(
 
 fn of_pair(start: BoundaryState, sought: SoughtStart, regime: Regime, of_start: &[f64]) {
     let (system, task) = pair(start, sought, regime);
-    let mut values: Vec<f64> = task.parameters.iter().map(|p| 1.1 * p.guess).collect();
-    let constants = values.len();
-    values.extend(of_start);
-    let unknowns = Unknowns {
-        starts: vec![constants..values.len()],
-        constants,
-        values,
-    };
+    let values: Vec<f64> = task.parameters.iter().map(|p| 1.1 * p.guess).collect();
+    let unknowns = Unknowns::of_values(&values, &[of_start]);
     let largest = compare(&system, &task, &unknowns);
     println!("{largest:?}");
     assert!(largest.iter().all(|size| *size > 1e-3), "{largest:?}");

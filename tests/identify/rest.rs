@@ -5,7 +5,7 @@ use proboscis::Signal;
 use proboscis::control::problem::{
     Identification, Reading, Recording, Regime, SoughtStart, Voltages,
 };
-use proboscis::identify::{Grid, Unknowns, identify, predict};
+use proboscis::identify::{Grid, Product, Unknowns, identify, predict};
 use proboscis::math::Random;
 use proboscis::model::components::{Load, LoadPlace};
 use proboscis::model::{Constant, DielectricLaw, System};
@@ -65,11 +65,7 @@ fn task(recordings: Vec<Recording>) -> Identification {
         step: None,
         coordinates: None,
     };
-    let unknowns = Unknowns {
-        values: TRUE.to_vec(),
-        constants: 2,
-        starts: task.recordings.iter().map(|_| 2..2).collect(),
-    };
+    let unknowns = Unknowns::of_values(&TRUE, &vec![&[][..]; task.recordings.len()]);
     let grid = Grid::first(&task, &task.recordings);
     let random = &mut Random::new(2);
     for r in 0..task.recordings.len() {
@@ -108,7 +104,11 @@ fn a_free_muscle_at_rest_determines_a_ratio_and_a_force_both() {
     );
     assert!(only.deviation.is_infinite());
     assert_eq!(found.information.is_determined, [false, false]);
-    let (powers, ratio, deviation) = only.determined.clone().unwrap();
+    let Product {
+        powers,
+        value: ratio,
+        deviation,
+    } = only.determined.clone().unwrap();
     assert!((powers[1].1 / powers[0].1 + 1.0).abs() < 1e-4);
     let truth = TRUE[0] / TRUE[1];
     let ratio = if powers[0].0 == 0 {
@@ -123,9 +123,9 @@ fn a_free_muscle_at_rest_determines_a_ratio_and_a_force_both() {
     let loaded = recording("loaded", [0.0, 800.0], 0.5);
     let found = identify(&system(), &task(vec![free, loaded]), &mut |_, _| {}).unwrap();
     assert!(found.information.undetermined.is_empty());
-    for j in 0..2 {
+    for (j, truth) in TRUE.into_iter().enumerate() {
         let error = found.information.covariance[(j, j)].sqrt();
-        assert!(error < 0.02 * TRUE[j]);
-        assert!((found.fit.of_constants()[j] - TRUE[j]).abs() < 3.5 * error);
+        assert!(error < 0.02 * truth);
+        assert!((found.fit.of_constants()[j] - truth).abs() < 3.5 * error);
     }
 }

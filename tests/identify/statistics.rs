@@ -99,11 +99,7 @@ fn ellipsoids_of_95_percent_hold_the_truth_in_95_percent_of_all_recordings() {
 fn holds_truth(seed: u64) -> bool {
     let noise = Some((0.2, &mut Random::new(seed)));
     let task = task(vec![recording("free", [5.0, 0.0], (21, 100.0), noise)]);
-    let begin = Unknowns {
-        values: vec![STIFFNESS, DAMPING],
-        constants: 2,
-        starts: vec![2..2],
-    };
+    let begin = Unknowns::of_values(&[STIFFNESS, DAMPING], &[&[]]);
     let grid = Grid {
         intervals: vec![10],
     };

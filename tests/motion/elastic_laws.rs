@@ -302,7 +302,7 @@ fn refusal(task: &str) -> Option<String> {
             let resolved = BoundaryConditions::resolve(&loaded.system, control, 1.0);
             resolved.err().map(|error| error.to_string())
         }
-        Task::Motions(_) | Task::Equilibrium(_) => panic!("a motion"),
+        Task::Motions(_) | Task::Equilibrium(_) | Task::Identify(_) => panic!("a motion"),
     }
 }
 

@@ -15,6 +15,7 @@ mod fe_control;
 mod fields;
 mod first_hour;
 mod gltf;
+mod identify;
 mod kept;
 mod killed;
 mod loops;

@@ -1,0 +1,99 @@
+//! Verdicts on an identification: its status, and remarks in words.
+
+use crate::control::problem::Identification;
+use crate::identify::{Ended, HeldOut, Identified, Undetermined};
+use crate::math::significant;
+use crate::workflow::Remarks;
+
+/// Powers of constants as a product, such as `a / b^2`.
+pub(super) fn product(task: &Identification, powers: &[(usize, f64)]) -> String {
+    let factor = |&(j, power): &(usize, f64)| {
+        let name = &task.parameters[j].name;
+        match (power * 1e3).round() / 1e3 {
+            1.0 => name.clone(),
+            power => format!("{name}^{power}"),
+        }
+    };
+    let list: Vec<String> = powers.iter().map(factor).collect();
+    list.join(" · ")
+}
+
+/// Constants that are not determined, and what is.
+pub(super) fn words(task: &Identification, one: &Undetermined) -> String {
+    let names: Vec<&str> = one
+        .powers
+        .iter()
+        .map(|&(j, _)| task.parameters[j].name.as_str())
+        .collect();
+    match &one.determined {
+        Some(known) => format!(
+            "the data determine {} alone, and not {}",
+            product(task, &known.powers),
+            names.join(" and ")
+        ),
+        None if names.len() == 1 => format!("the data do not determine {}", names[0]),
+        None => format!(
+            "the data do not determine {}: nothing tells changes apart in which they grow as {}",
+            names.join(", "),
+            product(task, &one.powers)
+        ),
+    }
+}
+
+/// Status of a result, in one word.
+pub(super) fn status(found: &Identified) -> &'static str {
+    let is_explained = found.held_out.iter().all(HeldOut::is_explained);
+    match () {
+        () if found.fit.ended == Ended::Unfinished => "not_converged",
+        () if !found.information.undetermined.is_empty() => "not_determined",
+        () if !is_explained => "not_explained",
+        () if !found.bias.is_confirmed => "bias_not_confirmed",
+        () if found.held_out.is_empty() => "identified",
+        () => "explained",
+    }
+}
+
+/// What has to be said of a result.
+pub(super) fn remarks(task: &Identification, found: &Identified) -> Remarks {
+    let mut remarks = Remarks::default();
+    let at_bound = task.parameters.iter().zip(&found.fit.is_at_bound);
+    let at_bound = at_bound.filter(|(_, held)| **held);
+    remarks.warn(
+        "at_bound",
+        at_bound.map(|(p, _)| format!("{} lies at its bound: the fit would go on", p.name)),
+    );
+    let open = found.information.undetermined.iter();
+    remarks.warn("not_determined", open.map(|one| words(task, one)));
+    if !found.is_white() {
+        let text = "the residuals are not white (Ljung-Box, 1 %): the model misses part of the motion, or errors of neighbouring readings are alike, and intervals are too short";
+        remarks.warn("not_white", [text.to_owned()]);
+    }
+    if let Some(p) = found.p.filter(|p| *p < 0.01) {
+        let text = format!(
+            "the residuals are larger than the standard deviations of the readings say (p = {p:.1e})"
+        );
+        remarks.warn("large_residuals", [text]);
+    }
+    let largest = found.bias.largest();
+    match found.bias.is_confirmed {
+        true => remarks.note(
+            "grid",
+            [format!(
+                "the last halving of the steps changes no constant by more than {} standard errors",
+                significant(largest, 2)
+            )],
+        ),
+        false => remarks.warn(
+            "bias_not_confirmed",
+            [format!(
+                "the last halving of the steps changes a constant by {} standard errors: the grid biases the result",
+                significant(largest, 2)
+            )],
+        ),
+    }
+    if found.held_out.is_empty() {
+        let text = "no recording is held out: nothing checks the prediction";
+        remarks.note("nothing_held_out", [text.to_owned()]);
+    }
+    remarks
+}
