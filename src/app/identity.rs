@@ -68,7 +68,7 @@ fn earlier(task: &Task) -> Vec<String> {
     let controls: Vec<&Control> = match task {
         Task::Control(control) => vec![control],
         Task::Motions(motions) => motions.list.iter().map(|one| &one.control).collect(),
-        Task::Simulate(_) | Task::Equilibrium(_) => Vec::new(),
+        Task::Simulate(_) | Task::Equilibrium(_) | Task::Identify(_) => Vec::new(),
     };
     controls.into_iter().flat_map(of_guess).collect()
 }

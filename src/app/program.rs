@@ -70,7 +70,7 @@ pub fn with_program<R>(
             let each = each.map(|one| (&*one.name, &one.system, &one.control));
             (each.collect(), &*motions.shared_inputs)
         }
-        Task::Simulate(_) | Task::Equilibrium(_) => {
+        Task::Simulate(_) | Task::Equilibrium(_) | Task::Identify(_) => {
             return Err(CommandError::Problem {
                 file: input.to_owned(),
                 place: key(&loaded.task).to_owned(),

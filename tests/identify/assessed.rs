@@ -7,7 +7,7 @@ use proboscis::control::problem::{
 };
 use proboscis::identify::{Grid, Unknowns, identify, ljung_box, predict};
 use proboscis::math::Random;
-use proboscis::model::{Constant, MaxwellBranch, MaxwellBranches, System};
+use proboscis::model::{MaterialConstant, MaxwellBranch, MaxwellBranches, System};
 use proboscis::prelude::{Body, GROUND, Joint, Material, Muscle, X, g, kpa, mm, um};
 
 #[test]
@@ -86,8 +86,8 @@ fn measure(task: &mut Identification, system: &System, seed: u64) {
 fn held_out(truth: &[(f64, f64)]) -> proboscis::identify::Identified {
     let mut task = Identification {
         parameters: vec![
-            parameter("modulus", Constant::ShearModulus(0), 0.1),
-            parameter("viscosity", Constant::Viscosity(0), 0.5),
+            parameter("modulus", MaterialConstant::ShearModulus.of_muscle(0), 0.1),
+            parameter("viscosity", MaterialConstant::Viscosity.of_muscle(0), 0.5),
         ],
         recordings: vec![
             under("ramp", Signal::ramp(0.0, 2500.0, 60.0), 40),

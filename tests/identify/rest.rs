@@ -8,7 +8,8 @@ use proboscis::control::problem::{
 use proboscis::identify::{Grid, Product, Unknowns, identify, predict};
 use proboscis::math::Random;
 use proboscis::model::components::{Load, LoadPlace};
-use proboscis::model::{Constant, DielectricLaw, System};
+use proboscis::model::system::VACUUM_PERMITTIVITY;
+use proboscis::model::{Follower, MaterialConstant, Parameter, System};
 use proboscis::prelude::{Body, GROUND, Joint, Material, Muscle, X, g, kpa, mm, um};
 
 const TRUE: [f64; 2] = [3.0, 0.1];
@@ -54,11 +55,19 @@ fn recording(name: &str, [from, to]: [f64; 2], force: f64) -> Recording {
 }
 
 fn task(recordings: Vec<Recording>) -> Identification {
-    let permittivity = Constant::Permittivity(0, DielectricLaw::Ideal);
+    let of = |constant: MaterialConstant| constant.of_muscle(0);
+    let permittivity = Parameter {
+        constants: vec![Follower {
+            constant: of(MaterialConstant::Permittivity),
+            factor: VACUUM_PERMITTIVITY,
+            offset: 0.0,
+        }],
+        ..parameter("permittivity", of(MaterialConstant::Permittivity), TRUE[0])
+    };
     let mut task = Identification {
         parameters: vec![
-            parameter("permittivity", permittivity, TRUE[0]),
-            parameter("modulus", Constant::ShearModulus(0), TRUE[1]),
+            permittivity,
+            parameter("modulus", of(MaterialConstant::ShearModulus), TRUE[1]),
         ],
         recordings,
         candidates: Vec::new(),

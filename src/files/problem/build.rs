@@ -74,7 +74,7 @@ pub(crate) fn build_problem(
     });
     let identify = problem.identify.as_ref().map(|spec| -> Build<'_> {
         Box::new(|| {
-            let task = identification(spec, (scene, system), &scope.key("identify"))?;
+            let task = identification(spec, scene, &scope.key("identify"))?;
             Ok(Task::Identify(Box::new(task)))
         })
     });

@@ -15,7 +15,7 @@ use crate::files::problem::spec_identify::{
 };
 use crate::files::problem::state::start_state;
 use crate::files::problem::voltages::over_time;
-use crate::files::scene::spec::SceneSpec;
+use crate::files::scene::constants::WrittenScene;
 use crate::files::units::quantity::{Quantity, Time};
 use crate::model::system::System;
 use std::collections::BTreeMap;
@@ -26,14 +26,15 @@ const MOST_READINGS: usize = 100_000;
 /// The task of an identification.
 pub(crate) fn identification(
     spec: &IdentifySpec,
-    (written, system): (&SceneSpec, &System),
+    scene: &WrittenScene<'_>,
     scope: &Scope<'_>,
 ) -> Result<Identification, SceneError> {
+    let system = scene.system;
     let place = scope.key("free");
     if spec.free.is_empty() {
         return Err(place.wrong("no constant", "one or more"));
     }
-    let parameters = parameters(&spec.free, written, system, &place)?;
+    let parameters = parameters(&spec.free, scene, &place)?;
     let place = scope.key("recordings");
     let mut names = Vec::new();
     let mut recordings = Vec::new();
