@@ -9,7 +9,7 @@ use common::systems::blocks;
 use common::trunk;
 use nalgebra::Vector3;
 use proboscis::control::problem::Control;
-use proboscis::control::{BoundaryConditions, Transcription, guess};
+use proboscis::control::{BoundaryConditions, Motion, Motions, Transcription, guess};
 use proboscis::dynamics::{Start, simulate};
 use proboscis::mesh::grid::Grid;
 use proboscis::model::Model;
@@ -17,6 +17,7 @@ use proboscis::model::system::{Potential, System};
 use proboscis::nlp::Nlp;
 use proboscis::sparse::{Backend, Direct, Symmetry};
 use proboscis::workflow::parallel_map::{cores, parallel_map};
+use proboscis::workflow::{Iterate, Optimum, SolveLimits, optimise_together};
 use serde_json::json;
 use std::collections::BTreeSet;
 use std::ops::ControlFlow;
@@ -178,6 +179,38 @@ fn random_goals_in_four_threads_are_solved_to_the_same_bits() {
     for ((one, other), goal) in alone.iter().zip(&together).zip(&goals) {
         assert!(other.as_ref() == Ok(one), "{goal:?}");
     }
+}
+
+/// The point, multipliers and costates of five motions that were optimised together.
+fn of_motions() -> Vec<u64> {
+    let system = trunk(1);
+    let motion = |k: usize| Motion {
+        name: format!("motion{k}"),
+        system: system.clone(),
+        control: rest_to_rest(1, 20 + k, 200.0),
+    };
+    let motions = Motions {
+        list: (0..5).map(motion).collect(),
+        shared_inputs: Vec::new(),
+    };
+    let go_on = &mut |_: usize, _: &Iterate<'_>| ControlFlow::Continue(());
+    let found = optimise_together(&motions, 0.01, SolveLimits::default(), go_on).unwrap();
+    let of = |one: &Optimum| {
+        assert!(one.solution.status.is_solved());
+        let costates = &one.solution.costates.constraints;
+        [&one.solution.x[..], costates, &[one.solution.objective]].concat()
+    };
+    let numbers: Vec<f64> = found.optima.iter().flat_map(of).collect();
+    numbers.into_iter().map(f64::to_bits).collect()
+}
+
+#[test]
+fn several_motions_have_the_same_bits_on_one_thread_and_two() {
+    let pair = thread::spawn(of_motions).join().unwrap();
+    let alone = rayon::ThreadPoolBuilder::new().num_threads(1);
+    let alone = alone.build().unwrap().install(of_motions);
+    assert!(pair.len() > 100);
+    assert_eq!(pair, alone);
 }
 
 #[test]

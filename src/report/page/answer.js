@@ -22,7 +22,7 @@ function again(data, holder) {
 
 /** Results side by side: how each ended, and what differs between them. */
 function compared(data, holder) {
-  const page = (text, i) => data.pages?.[i] ? element("a", { href: encodeURI(data.pages[i]) }, text) : text;
+  const page = (text, i) => data.pages?.[i] ? element("a", { href: encodeURI(data.pages[i]), style: "color:inherit" }, text) : text;
   const name = (text, i) => element("th", { scope: "col" }, element("span", { class: "dot", style: `--c:${readable(data.colours[i])}` }), page(text, i));
   const head = element("tr", {}, element("th", { scope: "col" }, "result"), ...data.names.map(name));
   const ends = data.answers.map((text, i) => element("td", { class: data.solved[i] ? "good" : "bad" }, data.solved[i] ? "✓ " : "✗ ", ...worded(text)));
