@@ -18,7 +18,7 @@ pub(super) struct Data {
     groups: Vec<Option<usize>>,
     /// Range of the values of each group.
     ranges: Vec<f64>,
-    /// What each group measures.
+    /// The measured quantity of each group.
     kinds: Vec<Parts>,
     /// Deviation of each group.
     of_groups: Vec<f64>,
