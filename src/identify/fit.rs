@@ -153,7 +153,7 @@ impl Search<'_> {
             let jacobian = weighted(&prediction.derivatives, &data);
             let difference = &data.values - &prediction.values;
             let residuals = difference.component_div(&data.deviations);
-            let free = self.free(&unknowns, &(jacobian.transpose() * &residuals));
+            let free = self.free(&unknowns, &jacobian, &(jacobian.transpose() * &residuals));
             loop {
                 let step = damped(&jacobian, &residuals, &free, damping);
                 let next = self.moved(&unknowns, &step);
@@ -196,8 +196,13 @@ impl Search<'_> {
         })
     }
 
-    /// Unknowns that no bound holds, where the squares fall along `descent`.
-    fn free(&self, unknowns: &Unknowns, descent: &DVector<f64>) -> Vec<usize> {
+    /// Unknowns on which a reading depends and that no bound holds, where the squares fall along `descent`.
+    fn free(
+        &self,
+        unknowns: &Unknowns,
+        jacobian: &DMatrix<f64>,
+        descent: &DVector<f64>,
+    ) -> Vec<usize> {
         let is_free = |&j: &usize| match self.task.parameters.get(j) {
             Some(parameter) => {
                 let value = unknowns.values[j];
@@ -207,7 +212,8 @@ impl Search<'_> {
             }
             None => true,
         };
-        (0..unknowns.values.len()).filter(is_free).collect()
+        let all = (0..unknowns.values.len()).filter(|&j| jacobian.column(j).amax() > 0.0);
+        all.filter(is_free).collect()
     }
 
     fn moved(&self, unknowns: &Unknowns, step: &DVector<f64>) -> Unknowns {
@@ -251,7 +257,7 @@ fn damped(
     for (column, &j) in free.iter().enumerate() {
         let of = jacobian.column(j);
         matrix.view_mut((0, column), (rows, 1)).copy_from(&of);
-        matrix[(rows + column, column)] = damping.sqrt() * of.norm().max(f64::MIN_POSITIVE);
+        matrix[(rows + column, column)] = damping.sqrt() * of.norm();
     }
     let qr = matrix.qr();
     qr.q_tr_mul(&mut right);

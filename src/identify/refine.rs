@@ -1,6 +1,6 @@
 //! The whole identification: grids are refined until their bias is far below the standard errors, then all is assessed.
 
-use crate::control::problem::{Identification, Regime};
+use crate::control::problem::{BoundaryState, Identification, Recording, Regime};
 use crate::identify::error::IdentifyError;
 use crate::identify::experiments::Experiment;
 use crate::identify::fit::{Fit, fit};
@@ -19,6 +19,8 @@ use statrs::distribution::{ChiSquared, ContinuousCDF};
 const BIAS: f64 = 0.1;
 /// A relative change of all constants below this is none, however small the standard errors.
 const NONE: f64 = 1e-8;
+/// Relative change of a start below which it is the same.
+const SAME: f64 = 1e-9;
 /// Most halvings of the steps, and most intervals of a recording.
 const HALVINGS: usize = 10;
 const MOST: usize = 200_000;
@@ -121,6 +123,49 @@ pub fn identify(
     })
 }
 
+/// Refuses starts that depend on a constant otherwise than by a state of rest, whose derivatives are known: momenta of given rates that read
+/// a mass, memories of given coordinates that read a length.
+fn fixed_starts(
+    system: &System,
+    task: &Identification,
+    recording: &Recording,
+) -> Result<(), IdentifyError> {
+    if matches!(recording.start, BoundaryState::RestAtVoltages(..))
+        || recording.regime == Regime::Rest
+    {
+        return Ok(());
+    }
+    let guesses: Vec<f64> = task.parameters.iter().map(|p| p.guess).collect();
+    let grid = [recording.duration(), 4.0];
+    let at = |values: &[f64]| Setup::new(system, task, recording, values, grid)?.start(&[]);
+    let start = at(&guesses)?;
+    for (j, parameter) in task.parameters.iter().enumerate() {
+        let mut values = guesses.clone();
+        values[j] = match parameter.guess < parameter.upper {
+            true => {
+                0.5 * (parameter.guess + parameter.upper.min(2.0 * parameter.guess.abs() + 1.0))
+            }
+            false => parameter.lower,
+        };
+        let other = at(&values)?;
+        let pairs =
+            (start.z.iter().zip(&other.z)).chain(start.momentum.iter().zip(&other.momentum));
+        if pairs
+            .into_iter()
+            .any(|(a, b)| (a - b).abs() > SAME * a.abs().max(b.abs()))
+        {
+            let name = &parameter.name;
+            return Err(IdentifyError::Refused {
+                recording: recording.name.clone(),
+                reason: format!(
+                    "its start depends on {name}; expected a start at rest, with \"sought_start\": \"state\" where it moves"
+                ),
+            });
+        }
+    }
+    Ok(())
+}
+
 /// The model of the first recording, with constants at their guesses.
 ///
 /// # Errors
@@ -139,6 +184,9 @@ fn begin(
     task: &Identification,
     fitted: &[usize],
 ) -> Result<Unknowns, IdentifyError> {
+    for recording in task.recordings.iter().chain(&task.candidates) {
+        fixed_starts(system, task, recording)?;
+    }
     let count = |&r: &usize| count_of_start(system, task, &task.recordings[r]);
     let counts: Vec<usize> = fitted.iter().map(count).collect::<Result<_, _>>()?;
     let mut next = counts.into_iter();

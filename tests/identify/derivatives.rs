@@ -7,8 +7,8 @@ use proboscis::control::problem::{
     BoundaryState, Channel, Identification, Reading, Recording, Regime, SoughtStart, Voltages,
 };
 use proboscis::identify::{Grid, Unknowns, predict};
-use proboscis::model::system::VACUUM_PERMITTIVITY;
-use proboscis::model::{Constant, Follower, MaterialConstant, Parameter, Quantity, System};
+use proboscis::model::system::ElectricConstants;
+use proboscis::model::{Follower, MaterialConstant, Parameter, Quantity, System};
 
 fn readings(count: usize, last: f64) -> Vec<Reading> {
     let reading = |time| Reading {
@@ -75,10 +75,12 @@ fn an_oscillator_with_an_unknown_start_moves_as_its_derivatives_say() {
     assert!(largest.iter().all(|size| *size > 0.01), "{largest:?}");
 }
 
-fn all(name: &str, constant: impl Fn(usize) -> Constant, count: usize, guess: f64) -> Parameter {
+fn all(name: &str, constant: MaterialConstant, count: usize, guess: f64) -> Parameter {
     Parameter {
-        constants: (0..count).map(|m| Follower::from(constant(m))).collect(),
-        ..oscillator::parameter(name, constant(0), guess)
+        constants: (0..count)
+            .map(|m| Follower::from(constant.of_muscle(m)))
+            .collect(),
+        ..oscillator::parameter(name, constant.of_muscle(0), guess)
     }
 }
 
@@ -93,33 +95,12 @@ fn pair(
         muscle.material.density = None;
     }
     let count = system.muscles.len();
-    let of = |constant: MaterialConstant| move |m: usize| constant.of_muscle(m);
-    let mut permittivity = all("permittivity", of(MaterialConstant::C1), count, 3.2);
-    // A relative permittivity to first order: c₁ = −(ε_r − 1) ε₀, c₂ = (ε_r − 1) ε₀/2.
-    permittivity.constants = (0..count)
-        .flat_map(|m| {
-            [
-                (MaterialConstant::C1, m, -1.0),
-                (MaterialConstant::C2, m, 0.5),
-            ]
-        })
-        .map(|(constant, m, factor)| Follower {
-            constant: constant.of_muscle(m),
-            factor: factor * VACUUM_PERMITTIVITY,
-            offset: -factor * VACUUM_PERMITTIVITY,
-        })
-        .collect();
     let mut parameters = vec![
-        all("modulus", of(MaterialConstant::ShearModulus), count, 0.1),
-        permittivity,
+        all("modulus", MaterialConstant::ShearModulus, count, 0.1),
+        oscillator::permittivity(count, ElectricConstants::first_order, 3.2),
     ];
     if regime == Regime::Motion {
-        parameters.push(all(
-            "viscosity",
-            of(MaterialConstant::Viscosity),
-            count,
-            0.8,
-        ));
+        parameters.push(all("viscosity", MaterialConstant::Viscosity, count, 0.8));
     }
     let sine = |mean: f64| Signal::Sine {
         mean,

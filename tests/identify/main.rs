@@ -6,6 +6,7 @@ mod common;
 mod assessed;
 mod derivatives;
 mod oscillator;
+mod ratio;
 mod recovered;
 mod refused;
 mod rest;

@@ -4,7 +4,8 @@ use proboscis::control::problem::{
     BoundaryState, Channel, Identification, Reading, Recording, Regime, SoughtStart, Voltages,
 };
 use proboscis::math::Random;
-use proboscis::model::{Constant, Follower, Parameter, Quantity};
+use proboscis::model::system::ElectricConstants;
+use proboscis::model::{Constant, Follower, MaterialConstant, Parameter, Quantity};
 use proboscis::prelude::{Body, GROUND, Joint, Spring, System, X, g, mm, n_per_m};
 use std::collections::BTreeMap;
 
@@ -125,4 +126,28 @@ pub(crate) fn task(recordings: Vec<Recording>) -> Identification {
         step: None,
         coordinates: None,
     }
+}
+
+/// Relative permittivity of some muscles.
+pub(crate) fn permittivity(
+    muscles: usize,
+    of: fn(f64) -> ElectricConstants,
+    guess: f64,
+) -> Parameter {
+    use MaterialConstant::{C1, C2, Permittivity};
+    let [none, one] = [of(0.0), of(1.0)].map(|e| [e.c1, e.c2, e.permittivity]);
+    let mut out = parameter("permittivity", Permittivity.of_muscle(0), guess);
+    out.constants.clear();
+    for muscle in 0..muscles {
+        for (i, constant) in [C1, C2, Permittivity].into_iter().enumerate() {
+            if one[i] != none[i] {
+                out.constants.push(Follower {
+                    constant: constant.of_muscle(muscle),
+                    factor: one[i] - none[i],
+                    offset: none[i],
+                });
+            }
+        }
+    }
+    out
 }

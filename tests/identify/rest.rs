@@ -1,6 +1,6 @@
 //! States of rest of a free muscle, which determine a ratio of its constants.
 
-use crate::oscillator::{joint, parameter, slide, times};
+use crate::oscillator::{joint, parameter, permittivity, slide, times};
 use proboscis::Signal;
 use proboscis::control::problem::{
     Identification, Reading, Recording, Regime, SoughtStart, Voltages,
@@ -8,15 +8,15 @@ use proboscis::control::problem::{
 use proboscis::identify::{Grid, Product, Unknowns, identify, predict};
 use proboscis::math::Random;
 use proboscis::model::components::{Load, LoadPlace};
-use proboscis::model::system::VACUUM_PERMITTIVITY;
-use proboscis::model::{Follower, MaterialConstant, Parameter, System};
+use proboscis::model::system::ElectricConstants;
+use proboscis::model::{MaterialConstant, System};
 use proboscis::prelude::{Body, GROUND, Joint, Material, Muscle, X, g, kpa, mm, um};
 
 const TRUE: [f64; 2] = [3.0, 0.1];
 
 /// A cart between a muscle and a force along the slide.
 fn system() -> System {
-    let material = Material::elastomer(kpa(1e3 * TRUE[1])).ideal_dielectric(TRUE[0]);
+    let material = Material::elastomer(kpa(1e3 * TRUE[1])).relative_permittivity(TRUE[0]);
     let mut system = System::new("free");
     let cart = system.add(Body::sphere(mm(10.0)).mass(g(50.0)));
     system.add(Joint::prismatic(X).between(GROUND, cart));
@@ -24,6 +24,7 @@ fn system() -> System {
         .section(mm(10.0), mm(10.0))
         .layer(um(50.0));
     system.add(muscle.from(GROUND, -X * mm(40.0)).to(cart, X * mm(0.0)));
+    system.muscles[0].material.electric = Some(ElectricConstants::ideal(TRUE[0]));
     system.components.loads.push(Load {
         name: "force".into(),
         on: LoadPlace::Joint(0),
@@ -55,19 +56,14 @@ fn recording(name: &str, [from, to]: [f64; 2], force: f64) -> Recording {
 }
 
 fn task(recordings: Vec<Recording>) -> Identification {
-    let of = |constant: MaterialConstant| constant.of_muscle(0);
-    let permittivity = Parameter {
-        constants: vec![Follower {
-            constant: of(MaterialConstant::Permittivity),
-            factor: VACUUM_PERMITTIVITY,
-            offset: 0.0,
-        }],
-        ..parameter("permittivity", of(MaterialConstant::Permittivity), TRUE[0])
-    };
     let mut task = Identification {
         parameters: vec![
-            permittivity,
-            parameter("modulus", of(MaterialConstant::ShearModulus), TRUE[1]),
+            permittivity(1, ElectricConstants::ideal, TRUE[0]),
+            parameter(
+                "modulus",
+                MaterialConstant::ShearModulus.of_muscle(0),
+                TRUE[1],
+            ),
         ],
         recordings,
         candidates: Vec::new(),
