@@ -53,7 +53,7 @@ pub(super) fn status(found: &Identified) -> &'static str {
     }
 }
 
-/// What has to be said of a result.
+/// Warnings and notes on a result.
 pub(super) fn remarks(task: &Identification, found: &Identified) -> Remarks {
     let mut remarks = Remarks::default();
     let at_bound = task.parameters.iter().zip(&found.fit.is_at_bound);

@@ -211,19 +211,7 @@ fn alone(mut document: Document, of_scene: &[Override]) -> Result<Loaded, SceneE
         document: apart.as_ref().unwrap_or(&document),
     };
     let task = build_problem(&problem, &of_scene, &scope)?;
-    let place = scope.key("output");
-    let output = match (&problem.output, &task) {
-        (None, _) => Output::default(),
-        (Some(_), Task::Equilibrium(_)) => {
-            let expected = "none beside an equilibrium, which has no times";
-            return Err(place.wrong("an \"output\"", expected));
-        }
-        (Some(_), Task::Identify(_)) => {
-            let expected = "none beside an identification, which shows its readings";
-            return Err(place.wrong("an \"output\"", expected));
-        }
-        (Some(spec), _) => output(spec, &system, &place)?,
-    };
+    let output = shown(&problem, &task, &system, &scope)?;
     Ok(Loaded {
         task,
         output,
@@ -232,6 +220,23 @@ fn alone(mut document: Document, of_scene: &[Override]) -> Result<Loaded, SceneE
         scene,
         problem: document.text().to_owned(),
     })
+}
+
+/// Part of the result of a task that is shown.
+fn shown(
+    problem: &ProblemSpec,
+    task: &Task,
+    system: &System,
+    scope: &Scope<'_>,
+) -> Result<Output, SceneError> {
+    let place = scope.key("output");
+    let expected = match (&problem.output, task) {
+        (None, _) => return Ok(Output::default()),
+        (Some(_), Task::Equilibrium(_)) => "none beside an equilibrium, which has no times",
+        (Some(_), Task::Identify(_)) => "none beside an identification, which shows its readings",
+        (Some(spec), _) => return output(spec, system, &place),
+    };
+    Err(place.wrong("an \"output\"", expected))
 }
 
 /// Reads a scene file.

@@ -18,13 +18,13 @@ pub(super) struct Data {
     groups: Vec<Option<usize>>,
     /// Range of the values of each group.
     ranges: Vec<f64>,
-    /// The measured quantity of each group.
+    /// Quantity of each group.
     kinds: Vec<Parts>,
     /// Deviation of each group.
     of_groups: Vec<f64>,
 }
 
-/// What a channel measures.
+/// Quantity of a channel.
 type Parts = Vec<(f64, Quantity)>;
 
 /// Residuals of a channel of a recording in the order of time.

@@ -16,7 +16,7 @@ const TRUE: [f64; 2] = [3.0, 0.1];
 
 /// A cart between a muscle and a force along the slide.
 fn system() -> System {
-    let material = Material::elastomer(kpa(1e3 * TRUE[1])).relative_permittivity(TRUE[0]);
+    let material = Material::elastomer(kpa(1e3 * TRUE[1])).ideal_dielectric(TRUE[0]);
     let mut system = System::new("free");
     let cart = system.add(Body::sphere(mm(10.0)).mass(g(50.0)));
     system.add(Joint::prismatic(X).between(GROUND, cart));
