@@ -9,7 +9,7 @@ use crate::model::{Coordinates, Parameter, Quantity};
 pub struct Identification {
     /// The constants.
     pub parameters: Vec<Parameter>,
-    /// What was measured.
+    /// The recordings.
     pub recordings: Vec<Recording>,
     /// Experiments that could be done next: their readings have times and no values.
     pub candidates: Vec<Recording>,
@@ -30,11 +30,11 @@ pub struct Recording {
     pub voltages: Voltages,
     /// State at time zero.
     pub start: BoundaryState,
-    /// What of that state is unknown.
+    /// Unknown part of that state.
     pub sought_start: SoughtStart,
     /// True if no constant is fitted to it: it checks their prediction.
     pub is_held_out: bool,
-    /// What was measured.
+    /// Measured quantities with their readings.
     pub channels: Vec<Channel>,
 }
 

@@ -84,7 +84,7 @@ fn mistakes_of_problems_and_recordings_are_told() {
     let cases: &[(&str, &str, &str, &str)] = &[
         (crossed, STARTED, RIGHT, "larger than \"min\""),
         (negative, STARTED, RIGHT, "positive"),
-        (spare, STARTED, RIGHT, "no muscle is made of"),
+        (spare, STARTED, RIGHT, "on which nothing depends"),
         (FREE, marker, RIGHT, "the name of a marker"),
         (FREE, direction, RIGHT, "a direction"),
         (FREE, STARTED, "time [ms],x [V]\n0,5\n10,4\n", "a voltage"),

@@ -42,9 +42,9 @@ pub struct RecordingSpec {
     /// Header of the times, which begin with the motion at 0; `time` where not written.
     #[serde(default = "time")]
     pub time: String,
-    /// What the columns measure.
+    /// Quantities that the columns measure.
     pub measured: Vec<MeasuredSpec>,
-    /// What acts, and the start.
+    /// Voltages, loads and start.
     #[serde(default)]
     pub experiment: ExperimentSpec,
     /// True if no constant is fitted to it: the result says whether the fitted constants explain it.
@@ -62,9 +62,9 @@ pub struct CandidateSpec {
     pub duration: Quantity<Time>,
     /// Number of readings of each quantity, at equal distances.
     pub readings: usize,
-    /// What is measured; its columns are not read.
+    /// Measured quantities; their columns are not read.
     pub measured: Vec<MeasuredSpec>,
-    /// What acts, and the start.
+    /// Voltages, loads and start.
     #[serde(default)]
     pub experiment: ExperimentSpec,
 }
