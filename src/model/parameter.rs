@@ -82,16 +82,17 @@ impl Parameter {
         }
     }
 
-    /// Its unit in the International System.
+    /// Its unit in the International System: that of its first constant, where that is the parameter itself.
     pub fn unit(&self, system: &System) -> SiUnit {
-        let first = self.constants.first();
-        first.map_or(
-            SiUnit {
-                symbol: "",
-                factor: 1.0,
-            },
-            |first| first.constant.unit(system),
-        )
+        let first = self
+            .constants
+            .first()
+            .filter(|first| first.factor.abs() == 1.0);
+        let other = SiUnit {
+            symbol: "",
+            factor: 1.0,
+        };
+        first.map_or(other, |first| first.constant.unit(system))
     }
 
     /// Returns the result for the parameter at a value.

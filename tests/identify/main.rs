@@ -10,4 +10,5 @@ mod ratio;
 mod recovered;
 mod refused;
 mod rest;
+mod solids;
 mod statistics;

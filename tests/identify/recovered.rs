@@ -1,8 +1,9 @@
 //! Constants of an oscillator, recovered from motions in closed form.
 
-use crate::oscillator::{DAMPING, STIFFNESS, recording, system, task};
+use crate::oscillator::{DAMPING, STIFFNESS, parameter, recording, system, task};
 use proboscis::identify::{Ended, identify};
 use proboscis::math::Random;
+use proboscis::model::Constant;
 
 const TRUE: [f64; 2] = [STIFFNESS, DAMPING];
 
@@ -17,6 +18,19 @@ fn stiffness_and_damping_are_recovered_from_twice_and_half_their_values() {
         assert!((value / truth - 1.0).abs() < 1e-6, "{value} {truth}");
     }
     assert!(found.information.undetermined.is_empty());
+}
+
+/// The test of another program: a mass on a spring that starts from twice its value.
+#[test]
+fn a_mass_is_recovered_from_twice_its_value() {
+    let mut task = task(vec![recording("free", [5.0, 0.0], (21, 150.0), None)]);
+    let system = system();
+    let mass = system.bodies[0].mass;
+    task.parameters = vec![parameter("mass", Constant::Mass(0), 2.0 * mass)];
+    let found = identify(&system, &task, &mut |_, _| {}).unwrap();
+    assert_eq!(found.fit.ended, Ended::Converged);
+    let value = found.fit.of_constants()[0];
+    assert!((value / mass - 1.0).abs() < 1e-6, "{value} {mass}");
 }
 
 #[test]

@@ -1,0 +1,129 @@
+//! Constants of finite elements, recovered from the motion of a marker.
+
+use crate::common::solid;
+use crate::oscillator::parameter;
+use nalgebra::Vector3;
+use proboscis::Signal;
+use proboscis::control::problem::{
+    BoundaryState, Channel, Identification, Reading, Recording, Regime, SoughtStart, Voltages,
+};
+use proboscis::identify::{Ended, Grid, Unknowns, identify, predict};
+use proboscis::mesh::grid::Grid as Boxes;
+use proboscis::model::system::{Attachment, ElectricConstants, Marker, Material, System};
+use proboscis::model::{MaterialConstant, Quantity, with_parameters};
+
+/// Shear modulus in MPa and viscosity in MPa ms.
+const TRUE: [f64; 2] = [0.12, 0.9];
+
+/// A block of two layers between electrodes that shortens under a voltage.
+fn block() -> System {
+    let size = Vector3::new(10.0, 10.0, 4.0);
+    let mesh = Boxes::uniform(Vector3::zeros(), size, [1, 1, 2]).mesh();
+    let material = Material {
+        density: Some(1e-3),
+        shear_modulus: 0.1,
+        lame_lambda: Some(0.5),
+        viscosity: Some(1.0),
+        electric: Some(ElectricConstants::ideal(3.0)),
+        ..Material::default()
+    };
+    let mut solid = solid::block(mesh, material);
+    let ground = proboscis::model::system::Potential::Given(0.0);
+    solid.supports = vec![solid::held(&solid.mesh, "z_min", [true; 3])];
+    solid.electrodes = vec![
+        solid::electrode(&solid.mesh, "low", 0.0, ground),
+        solid::electrode(&solid.mesh, "high", 4.0, solid::DRIVEN),
+    ];
+    let mut system = solid::system(vec![solid]);
+    system.markers.push(Marker {
+        name: "top".into(),
+        point: Attachment {
+            body: None,
+            at: Vector3::new(10.0, 10.0, 4.0),
+        },
+        solid: Some(0),
+    });
+    system
+}
+
+fn recording() -> Recording {
+    let reading = |k: usize| Reading {
+        time: 2.0 * k as f64,
+        value: 0.0,
+        deviation: 1e-5,
+    };
+    let start = BoundaryState::JointAngles {
+        angles: [].into(),
+        rates: [].into(),
+        velocities: [].into(),
+    };
+    Recording {
+        name: "step".into(),
+        regime: Regime::Motion,
+        voltages: Voltages::Signals(vec![Signal::ramp(0.0, 60e3, 6.0)]),
+        start,
+        sought_start: SoughtStart::Nothing,
+        is_held_out: false,
+        channels: vec![Channel {
+            name: "top".into(),
+            parts: vec![(1.0, Quantity::MarkerPlace { marker: 0, axis: 2 })],
+            unit: ("m", 1e-3),
+            is_deviation_known: true,
+            readings: (0..16).map(reading).collect(),
+        }],
+    }
+}
+
+#[test]
+fn modulus_and_viscosity_of_a_block_are_recovered_from_a_marker() {
+    let system = block();
+    let mut task = Identification {
+        parameters: vec![
+            parameter(
+                "modulus",
+                MaterialConstant::ShearModulus.of_block(0, 0),
+                0.2,
+            ),
+            parameter("viscosity", MaterialConstant::Viscosity.of_block(0, 0), 0.4),
+        ],
+        recordings: vec![recording()],
+        candidates: Vec::new(),
+        step: Some(1.0),
+        coordinates: None,
+    };
+    // Readings of the block of the true constants, which is built without sought ones, in steps 8 times as short.
+    let truth = with_parameters(&system, &task.parameters, &TRUE);
+    let nothing = Identification {
+        parameters: Vec::new(),
+        ..task.clone()
+    };
+    let unknowns = Unknowns::of_values(&[], &[&[][..]]);
+    let values = predict(
+        (&truth, &nothing),
+        &[0],
+        &unknowns,
+        &Grid {
+            intervals: vec![240],
+        },
+    );
+    let values = values.unwrap().values;
+    let way = values
+        .iter()
+        .fold(0.0_f64, |way, z| way.max((z - 4.0).abs()));
+    assert!(way > 0.02, "the block moves by {way} mm");
+    let readings = &mut task.recordings[0].channels[0].readings;
+    for (reading, value) in readings.iter_mut().zip(values.iter()) {
+        reading.value = *value;
+    }
+    let found = identify(&system, &task, &mut |_, _| {}).unwrap();
+    assert_eq!(found.fit.ended, Ended::Converged);
+    println!(
+        "{:?} after {} steps",
+        found.fit.of_constants(),
+        found.fit.steps
+    );
+    for (value, truth) in found.fit.of_constants().iter().zip(TRUE) {
+        assert!((value / truth - 1.0).abs() < 1e-4, "{value} {truth}");
+    }
+    assert!(found.fit.steps <= 10, "{} steps", found.fit.steps);
+}
