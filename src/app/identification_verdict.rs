@@ -5,6 +5,9 @@ use crate::identify::{Ended, HeldOut, Identified, Undetermined};
 use crate::math::significant;
 use crate::workflow::Remarks;
 
+/// Probability of residuals of the fit below which its model does not explain them, whatever else it predicts.
+const BEYOND_CHANCE: f64 = 1e-6;
+
 /// Powers of constants as a product, such as `a / b^2`.
 pub(super) fn product(task: &Identification, powers: &[(usize, f64)]) -> String {
     let factor = |&(j, power): &(usize, f64)| {
@@ -46,7 +49,7 @@ pub(super) fn status(found: &Identified) -> &'static str {
     match () {
         () if found.fit.ended == Ended::Unfinished => "not_converged",
         () if !found.information.undetermined.is_empty() => "not_determined",
-        () if !is_explained => "not_explained",
+        () if !is_explained || found.p.is_some_and(|p| p < BEYOND_CHANCE) => "not_explained",
         () if !found.bias.is_confirmed => "bias_not_confirmed",
         () if found.held_out.is_empty() => "identified",
         () => "explained",

@@ -1,7 +1,9 @@
 //! Fit by weighted least squares: the method of Levenberg and Marquardt with bounds of the constants.
 //!
 //! A step d minimises `‖r − J d‖² + λ ‖D d‖²` over the unknowns that no bound holds, with residuals r and derivatives J in standard
-//! deviations and the norms D of the columns of J; constants that leave their bounds are put on them.
+//! deviations and the norms D of the columns of J; constants that leave their bounds are put on them. A constant on which hardly anything
+//! depends is damped as one with a hundredth of the largest effect of a relative change, so that a step does not throw it away. The end is
+//! a minimum where the squares fall along no unknown by more than a hundredth of its standard error.
 
 use crate::control::problem::Identification;
 use crate::identify::error::IdentifyError;
@@ -17,6 +19,12 @@ const SMALL: f64 = 1e-3;
 const ROUNDING: f64 = 1e-8;
 /// Most steps.
 const MOST: usize = 100;
+/// Part of the largest effect of a relative change of a constant that each is damped with at least.
+const LEAST_EFFECT: f64 = 1e-2;
+/// Slope by an unknown in its standard error, in units of the scatter, below which a point is a minimum.
+const LEVEL: f64 = 1e-2;
+/// Damping below which a step is that of least squares.
+const UNDAMPED: f64 = 1e-2;
 /// Damping λ of the first step, and where there is no descent.
 const DAMPING: [f64; 2] = [1e-3, 1e10];
 /// Most estimates of deviations that are not known, and the change that ends them.
@@ -155,7 +163,12 @@ impl Search<'_> {
             let residuals = difference.component_div(&data.deviations);
             let free = self.free(&unknowns, &jacobian, &(jacobian.transpose() * &residuals));
             loop {
-                let step = damped(&jacobian, &residuals, &free, damping);
+                let step = damped(
+                    &jacobian,
+                    &residuals,
+                    &self.damping(&jacobian, &free),
+                    damping,
+                );
                 let next = self.moved(&unknowns, &step);
                 let change = &jacobian
                     * DVector::from_iterator(
@@ -176,8 +189,11 @@ impl Search<'_> {
                     best = cost(&prediction);
                     damping = (damping * 0.1).max(1e-12);
                 }
-                if is_last || (!is_better && damping > none) {
+                if is_last && damping <= UNDAMPED {
                     ended = Ended::Converged;
+                    break 'steps;
+                }
+                if !is_better && damping > none {
                     break 'steps;
                 }
                 if is_better {
@@ -185,6 +201,9 @@ impl Search<'_> {
                 }
                 damping *= 8.0;
             }
+        }
+        if self.is_minimum(&unknowns, &prediction, &data) {
+            ended = Ended::Converged;
         }
         Ok(Fit {
             is_at_bound: self.at_bounds(&unknowns),
@@ -194,6 +213,42 @@ impl Search<'_> {
             steps,
             data,
         })
+    }
+
+    /// Returns true if the squares fall along no unknown by more than a part of its standard error.
+    fn is_minimum(&self, unknowns: &Unknowns, prediction: &Prediction, data: &Data) -> bool {
+        let jacobian = weighted(&prediction.derivatives, data);
+        let residuals = (&data.values - &prediction.values).component_div(&data.deviations);
+        let descent = jacobian.transpose() * &residuals;
+        let free = self.free(unknowns, &jacobian, &descent);
+        let scatter = match data.is_known() {
+            true => 1.0,
+            false => {
+                let freedom = data.values.len().saturating_sub(free.len()).max(1);
+                residuals.norm() / (freedom as f64).sqrt()
+            }
+        };
+        let mut slopes = free
+            .iter()
+            .map(|&j| descent[j].abs() / jacobian.column(j).norm());
+        slopes.all(|slope| slope <= LEVEL * scatter)
+    }
+
+    /// Free unknowns with the norms D by which they are damped.
+    fn damping(&self, jacobian: &DMatrix<f64>, free: &[usize]) -> Vec<(usize, f64)> {
+        let norm = |j: usize| jacobian.column(j).norm();
+        let size = |j: usize| {
+            self.task
+                .parameters
+                .get(j)
+                .map(crate::model::Parameter::size)
+        };
+        let effects = free
+            .iter()
+            .filter_map(|&j| size(j).map(|size| norm(j) * size));
+        let least = LEAST_EFFECT * effects.fold(0.0, f64::max);
+        let of = |&j: &usize| (j, norm(j).max(size(j).map_or(0.0, |size| least / size)));
+        free.iter().map(of).collect()
     }
 
     /// Unknowns on which a reading depends and that no bound holds, where the squares fall along `descent`.
@@ -243,21 +298,21 @@ impl Search<'_> {
     }
 }
 
-/// The damped step over the free unknowns.
+/// The damped step over free unknowns with their norms D.
 fn damped(
     jacobian: &DMatrix<f64>,
     residuals: &DVector<f64>,
-    free: &[usize],
+    free: &[(usize, f64)],
     damping: f64,
 ) -> DVector<f64> {
     let (rows, count) = (jacobian.nrows(), free.len());
     let mut matrix = DMatrix::zeros(rows + count, count);
     let mut right = DVector::zeros(rows + count);
     right.rows_mut(0, rows).copy_from(residuals);
-    for (column, &j) in free.iter().enumerate() {
+    for (column, &(j, norm)) in free.iter().enumerate() {
         let of = jacobian.column(j);
         matrix.view_mut((0, column), (rows, 1)).copy_from(&of);
-        matrix[(rows + column, column)] = damping.sqrt() * of.norm();
+        matrix[(rows + column, column)] = damping.sqrt() * norm;
     }
     let qr = matrix.qr();
     qr.q_tr_mul(&mut right);
@@ -266,7 +321,7 @@ fn damped(
         .solve_upper_triangular(&right.rows(0, count).clone_owned());
     let mut step = DVector::zeros(jacobian.ncols());
     if let Some(solved) = solved {
-        for (&j, value) in free.iter().zip(solved.iter()) {
+        for (&(j, _), value) in free.iter().zip(solved.iter()) {
             step[j] = *value;
         }
     }

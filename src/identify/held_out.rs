@@ -65,6 +65,19 @@ impl HeldOut {
         unknowns.starts[recording] = first..first + count;
         let which = [recording];
         let mut data = Data::new(task, &which);
+        let channels = &task.recordings[recording].channels;
+        if let Some(channel) = channels
+            .iter()
+            .find(|c| of.data.deviation(c, 1.0).is_none())
+        {
+            return Err(IdentifyError::Refused {
+                recording: task.recordings[recording].name.clone(),
+                reason: format!(
+                    "nothing tells the standard deviation of {}, which no recording measures that constants are fitted to; expected one",
+                    channel.name
+                ),
+            });
+        }
         data.take(&of.data);
         let on = |grid: &Grid| {
             let unknowns = unknowns.clone();
@@ -94,7 +107,8 @@ impl HeldOut {
             &mut by,
             &mut residuals,
         );
-        let sum = along(&by, &information.covariance, &residuals);
+        let residuals = whitened(&by, &information.covariance, &residuals);
+        let sum = residuals.norm_squared();
         let (p, quantile) = match of.data.is_known() {
             true => {
                 let chi = ChiSquared::new(n).expect("a positive number");
@@ -108,10 +122,7 @@ impl HeldOut {
         };
         Ok(Self {
             recording,
-            whiteness: series
-                .iter()
-                .map(|one| ljung_box(&one.standardised()))
-                .collect(),
+            whiteness: whiteness(&series, &residuals),
             series,
             reduced,
             quantile,
@@ -138,8 +149,24 @@ fn remove(starts: &DMatrix<f64>, by: &mut DMatrix<f64>, residuals: &mut DVector<
     *residuals -= &q * (q.transpose() * &*residuals);
 }
 
-/// `rᵀ (1 + S C Sᵀ)⁻¹ r`, by the root of C: the inverse is `1 − B (1 + BᵀB)⁻¹ Bᵀ` with `B = S C^½`.
-fn along(by: &DMatrix<f64>, covariance: &DMatrix<f64>, residuals: &DVector<f64>) -> f64 {
+/// Whiteness of residuals that follow one another as their series do.
+fn whiteness(series: &[Series], residuals: &DVector<f64>) -> Vec<Option<Whiteness>> {
+    let mut first = 0;
+    let of = |one: &Series| {
+        let rows = residuals.rows(first, one.times.len());
+        first += one.times.len();
+        ljung_box(rows.as_slice())
+    };
+    series.iter().map(of).collect()
+}
+
+/// `(1 + S C Sᵀ)^−½ r`, which are independent where the model explains the readings, by the root of C: with the singular values σ and left
+/// vectors U of `B = S C^½` it is `r − U (1 − 1/√(1 + σ²)) Uᵀ r`.
+fn whitened(
+    by: &DMatrix<f64>,
+    covariance: &DMatrix<f64>,
+    residuals: &DVector<f64>,
+) -> DVector<f64> {
     // In units in which the variances are 1.
     let sizes = covariance
         .diagonal()
@@ -150,9 +177,10 @@ fn along(by: &DMatrix<f64>, covariance: &DMatrix<f64>, residuals: &DVector<f64>)
     let eigen = scaled.symmetric_eigen();
     let roots = eigen.eigenvalues.map(|value| value.max(0.0).sqrt());
     let root = DMatrix::from_diagonal(&sizes) * eigen.eigenvectors * DMatrix::from_diagonal(&roots);
-    let b = by * root;
-    let projected = b.transpose() * residuals;
-    let inner = DMatrix::identity(b.ncols(), b.ncols()) + b.transpose() * &b;
-    let solved = inner.cholesky().map(|factor| factor.solve(&projected));
-    residuals.norm_squared() - solved.map_or(0.0, |solved| projected.dot(&solved))
+    let svd = (by * root).svd(true, false);
+    let u = svd.u.expect("asked for");
+    let parts = u.transpose() * residuals;
+    let part = |(part, sigma): (&f64, &f64)| part * (1.0 - (1.0 + sigma * sigma).sqrt().recip());
+    let parts = parts.iter().zip(svd.singular_values.iter()).map(part);
+    residuals - &u * DVector::from_iterator(u.ncols(), parts)
 }

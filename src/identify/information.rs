@@ -82,13 +82,15 @@ impl Information {
     ) -> Self {
         let constants = values.len();
         let scales = scales(task, values);
-        let free: Vec<usize> = (0..constants).filter(|&j| !is_held[j]).collect();
+        // A bound tells nothing of the data: what they determine is asked of all constants.
+        let free: Vec<usize> = (0..constants).collect();
+        let inside = is_held.iter().filter(|held| !**held).count();
         let mut own = DMatrix::zeros(weighted.nrows(), free.len());
         for (column, &j) in free.iter().enumerate() {
             own.set_column(column, &(weighted.column(j) * scales[j]));
         }
         let starts = weighted.columns(constants, weighted.ncols() - constants);
-        let (factor, ellipsoid) = quantiles(free.len(), freedom);
+        let (factor, ellipsoid) = quantiles(inside, freedom);
         let [singular, directions] = without(own, &starts.into_owned());
         let largest = singular.amax();
         let deviation = |k: usize| match singular[k] <= ROUND_OFF * largest {
@@ -112,7 +114,8 @@ impl Information {
         }
         for (a, &i) in free.iter().enumerate() {
             for (b, &j) in free.iter().enumerate() {
-                if out.is_determined[i] && out.is_determined[j] {
+                let is_inside = !is_held[i] && !is_held[j];
+                if is_inside && out.is_determined[i] && out.is_determined[j] {
                     let of = |&k: &usize| part(a, k) * part(b, k) * deviation(k).powi(2);
                     let sum: f64 = is_known.iter().map(of).sum();
                     out.covariance[(i, j)] = sum * scales[i] * scales[j];

@@ -125,6 +125,10 @@ fn what_cannot_be_sought_is_refused() {
         ("\"guess\"", "\"gues\"", "control.free.materials.soft.viscosity.gues", "the key \"gues\"", "\"guess\"", "\"gues\""),
     ];
     check(cases, &base, |problem| mistake(CHAIN, problem, &[]));
+    // An end of a spring without a rest length of its own changes that too, which is not linear: also where a bound is the value of the scene.
+    let ends = r#"{ "springs.stay.to.at[0]": { "min": "30 mm", "max": "50 mm" } }"#;
+    let error = mistake(CHAIN, &problem(ends), &[]);
+    assert!(error.found().contains("not linear"), "{error}");
     // A value of the scene outside the bounds is no guess.
     let text = base
         .replace(", \"guess\": \"900 Pa s\"", "")

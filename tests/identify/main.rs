@@ -12,3 +12,4 @@ mod refused;
 mod rest;
 mod solids;
 mod statistics;
+mod verdicts;

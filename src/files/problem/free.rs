@@ -57,7 +57,10 @@ fn parameter(
                  found, expected, ..
              }| place.wrong(found, expected),
         )?;
-        let unit = |followers: &[Follower]| followers[0].constant.unit(scene.system).symbol;
+        let unit = |followers: &[Follower]| match followers[0].factor.abs() == 1.0 {
+            true => followers[0].constant.unit(scene.system).symbol,
+            false => "",
+        };
         let [own, others] = [&followers, &other.followers].map(|list| unit(list));
         if own != others {
             let found = format!("a number in {others:?}");

@@ -55,6 +55,8 @@ const OFFERED: &str = "the path of a number of the scene, such as \"materials.NA
      \"chain.muscles.arm\", \"springs.NAME.stiffness\", \"joints.NAME.damping\", \"bodies.NAME.mass\"";
 /// Numbers that differ by less, relative to their size, are the same.
 const SAME: f64 = 1e-9;
+/// Part of the way between the bounds at which constants are linear too: the lesser part of the golden section.
+const BETWEEN: f64 = 0.381_966_011_250_105_1;
 /// A factor that differs by less from one is one.
 const ONE: f64 = 1e-12;
 
@@ -148,6 +150,22 @@ impl WrittenScene<'_> {
             values.push((given, a, b));
         }
         self.check_rest(base, &followers, &values, &high)?;
+        // Beside bounds and scene, two of which may coincide, at a place that nothing singles out.
+        let between = lower + BETWEEN * (upper - lower);
+        let mut other = self.with(&place, &Value::from(between))?;
+        let is_between = |follower: &Follower| {
+            let expected = follower.offset + follower.factor * between;
+            let found = follower.constant.value(&mut other).unwrap_or(f64::NAN);
+            let size = (follower.factor * (upper - lower))
+                .abs()
+                .max(expected.abs());
+            (found - expected).abs() <= SAME * size
+        };
+        let mut lies_between = followers.iter().map(is_between);
+        if !lies_between.all(|lies| lies) {
+            let found = "a number of the scene in which a constant is not linear";
+            return Err(NoConstant::of_path(found, OFFERED));
+        }
         let value = |follower: &Follower, given: f64| (given - follower.offset) / follower.factor;
         let si = value(&followers[0], values[0].0);
         let is_linear = |(follower, &(given, ..)): (&Follower, &(f64, f64, f64))| {
