@@ -79,6 +79,7 @@ fn mistakes_of_problems_and_recordings_are_told() {
     let spare = r#""materials.spare.shear_modulus": { "min": "50 kPa", "max": "900 kPa" }"#;
     let marker = r#""measured": [ { "marker": "top", "along": [1, 0, 0], "column": "x" } ]"#;
     let direction = r#""measured": [ { "marker": "tip", "column": "x" } ]"#;
+    let twice = r#""measured": [ { "joint": "slide", "column": "x" }, { "joint": "slide", "column": "x" } ]"#;
     let two =
         format!(r#"{FREE}, "joints.slide.damping": {{ "min": "0.1 N s/m", "max": "2 N s/m" }}"#);
     let cases: &[(&str, &str, &str, &str)] = &[
@@ -87,6 +88,7 @@ fn mistakes_of_problems_and_recordings_are_told() {
         (spare, STARTED, RIGHT, "on which nothing depends"),
         (FREE, marker, RIGHT, "the name of a marker"),
         (FREE, direction, RIGHT, "a direction"),
+        (FREE, twice, RIGHT, "measured already"),
         (FREE, STARTED, "time [ms],x [V]\n0,5\n10,4\n", "a voltage"),
         (FREE, STARTED, "time [mm],x [mm]\n0,5\n10,4\n", "a time"),
         (

@@ -16,7 +16,7 @@ use crate::model::{Quantity, joint_unit};
 #[derive(Debug)]
 pub(super) struct Measured {
     name: String,
-    column: String,
+    pub(super) column: String,
     parts: Vec<(f64, Quantity)>,
     kind: Kind,
     unit: (&'static str, f64),

@@ -149,13 +149,19 @@ fn recording(
     let columns = Columns::read(&spec.file, &scope.key("file"))?;
     let times = times(&columns, spec, scope)?;
     let all = measured(&spec.measured, system, scope)?;
-    for (index, (one, spec)) in all.iter().zip(&spec.measured).enumerate() {
+    for (index, (one, spec_of)) in all.iter().zip(&spec.measured).enumerate() {
         let scope = scope.key("measured").index(index);
+        let column = &one.column;
+        if all[..index].iter().any(|other| other.column == *column) {
+            let found = format!("{column:?}, which is measured already");
+            let expected = "each column once, as twice the readings would be twice the data";
+            return Err(scope.key("column").wrong(found, expected));
+        }
         let source = Source {
             columns: &columns,
             times: &times,
         };
-        out.channels.push(one.channel(spec, &source, &scope)?);
+        out.channels.push(one.channel(spec_of, &source, &scope)?);
     }
     if out.regime == Regime::Motion && out.duration() <= 0.0 {
         let found = "a recording that is too short: no reading after time 0";
