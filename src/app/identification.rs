@@ -32,8 +32,8 @@ pub(super) fn run(
     let found = identify(&loaded.system, task, &mut |fit, grid| {
         tracing::debug!(intervals = ?grid.intervals, sum = fit.sum(), "fitted");
     });
-    drop(watch);
     let found = found.map_err(|error| refused(request, &error))?;
+    drop(watch);
     let folder = make_folder_of(request)?;
     let writing = Instant::now();
     let origin = request.origin(false);
@@ -70,7 +70,8 @@ fn is_solved(found: &Identified) -> bool {
 }
 
 fn refused(request: &CommandInput, error: &IdentifyError) -> CommandError {
-    if let (IdentifyError::Stopped, Some(status)) = (error, interrupt::stop()) {
+    // What is interrupted may end in other errors too.
+    if let Some(status) = interrupt::stop() {
         return CommandError::Stopped(status);
     }
     let place = match error {
