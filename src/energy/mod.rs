@@ -80,7 +80,7 @@ pub trait Energy<const M: usize, T: Number = f64>: Clone + Send + Sync {
         true
     }
 
-    /// Storage of its derivatives up to an order: a [`Jet`], or fewer numbers.
+    /// Storage of its derivatives up to an order: a [`Jet`](crate::math::Jet), or fewer numbers.
     type Local<const ORDER: usize>: Local<T>;
 
     /// Its derivatives at `p` up to `ORDER`, with rates along `w` when that is 3.

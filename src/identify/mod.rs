@@ -1,10 +1,10 @@
 //! Identification: constants fitted to recordings by least squares, with what the data say of them and what not.
 //!
-//! A recording is simulated on a grid by the midpoint rule ([`setup`], [`course`]). The transcription of the same grid, with all inputs
+//! A recording is simulated on a grid by the midpoint rule (`setup`, `course`). The transcription of the same grid, with all inputs
 //! given, has the exact derivatives of its discrete equations `c(y, p) = 0` by motion and constants, so that the motion changes by
-//! `S = −(∂c/∂y)⁻¹ ∂c/∂p` ([`sensitivity`]). Readings are interpolated between instants ([`interpolation`], [`readout`]), and predictions of
-//! two grids are extrapolated to steps of zero length ([`prediction`]). [`fit`] is the method of Levenberg and Marquardt, [`information`]
-//! the covariance and what is not determined, [`whiteness`] and [`held_out`] the checks, [`experiments`] what to measure next.
+//! `S = −(∂c/∂y)⁻¹ ∂c/∂p` (`sensitivity`). Readings are interpolated between instants (`interpolation`, `readout`), and predictions of
+//! two grids are extrapolated to steps of zero length (`prediction`). `fit` is the method of Levenberg and Marquardt, `information`
+//! the covariance and what is not determined, `whiteness` and `held_out` the checks, `experiments` what to measure next.
 
 mod course;
 mod error;

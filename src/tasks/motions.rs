@@ -36,7 +36,7 @@ pub struct MotionsResult {
 /// and every iterate.
 ///
 /// # Errors
-/// As of [`solve`](crate::tasks::solve).
+/// As of `solve` of one motion.
 pub fn solve_motions(
     motions: &Motions,
     request: SolveRequest,
