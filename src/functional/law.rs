@@ -4,8 +4,10 @@ use crate::energy::Energy;
 use crate::functional::{Element, VectorArg};
 use crate::math::Number;
 
-/// Most parameters that one element reads.
-pub const MOST_PARAMETERS: usize = 12;
+/// Most parameters that one element reads: as many as a law has constants, each of which follows one or is given. A muscle under voltage by a
+/// law of two terms has six components of its ends, a prestretch, two sides, a layer, a modulus, three constants of the law and three of the
+/// field.
+pub const MOST_PARAMETERS: usize = 17;
 
 /// A formula of `M` arguments whose constants are functions of parameters.
 pub trait Law<const M: usize>: Clone + Send + Sync + 'static {

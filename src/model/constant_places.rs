@@ -276,12 +276,12 @@ impl Constant {
     }
 
     /// Returns true if the part that it is of names it.
-    pub(super) fn is_named(self, system: &System) -> bool {
+    pub(super) fn is_named(self, system: &mut System) -> bool {
         match self {
             // A length is named with the stiffness of its spring.
             Self::SpringLength(s) => system.components.springs[s].stiffness.is_some(),
             Self::PeakVoltage => true,
-            other => other.value(&mut system.clone()).is_some(),
+            other => other.value(system).is_some(),
         }
     }
 }

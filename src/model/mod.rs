@@ -88,7 +88,7 @@ pub use maxwell::{MOST_BRANCHES, MaxwellBranch, MaxwellBranches, NO_BRANCHES, Re
 pub use model::Model;
 pub use muscle_state::{MuscleReading, SourceFlow};
 pub use named::Freedom;
-pub use parameter::{NotSought, check as check_parameters, with_parameters};
+pub use parameter::{NotSought, check as check_parameters, unit as unit_of, with_parameters};
 pub use plan::{LeftOut, Present};
 pub use presolved::{BodyLocation, Presolved};
 pub use quantity::{FieldPlace, Quantity, Reaction, Region, joint_unit};

@@ -28,7 +28,7 @@ impl MaterialConstant {
 
 impl Constant {
     /// Returns the reason why it cannot be sought, if there is one.
-    fn obstacle(self, system: &System) -> Option<String> {
+    fn obstacle(self, system: &mut System) -> Option<String> {
         if let Some(missing) = self.missing(system) {
             return Some(missing);
         }
@@ -82,17 +82,9 @@ impl Parameter {
         }
     }
 
-    /// Its unit in the International System: that of its first constant, where that is the parameter itself.
+    /// Its unit in the International System.
     pub fn unit(&self, system: &System) -> SiUnit {
-        let first = self
-            .constants
-            .first()
-            .filter(|first| first.factor.abs() == 1.0);
-        let other = SiUnit {
-            symbol: "",
-            factor: 1.0,
-        };
-        first.map_or(other, |first| first.constant.unit(system))
+        unit(&self.constants, system)
     }
 
     /// Returns the result for the parameter at a value.
@@ -105,6 +97,16 @@ impl Parameter {
             is_at_bound: near(self.lower) || near(self.upper),
         }
     }
+}
+
+/// Unit in the International System of what constants follow: that of the first one, where it is that constant itself.
+pub fn unit(followers: &[Follower], system: &System) -> SiUnit {
+    let first = followers.first().filter(|first| first.factor.abs() == 1.0);
+    let other = SiUnit {
+        symbol: "",
+        factor: 1.0,
+    };
+    first.map_or(other, |first| first.constant.unit(system))
 }
 
 /// The system with values of parameters put in.
@@ -137,6 +139,11 @@ impl fmt::Display for NotSought {
 /// # Errors
 /// A constant cannot be sought, follows two parameters, loses its meaning within the bounds, or the guess lies outside them.
 pub fn check(system: &System, parameters: &[Parameter]) -> Result<(), NotSought> {
+    if parameters.is_empty() {
+        return Ok(());
+    }
+    // Places of constants are those of a system that can be changed.
+    let system = &mut system.clone();
     for (index, parameter) in parameters.iter().enumerate() {
         let not = |reason: String| {
             Err(NotSought {

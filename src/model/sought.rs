@@ -71,11 +71,6 @@ impl Read {
         self.scalars.is_empty()
     }
 
-    /// Returns true if a constant is sought.
-    pub fn is_sought(&self, constant: Constant) -> bool {
-        self.sought.is_sought(constant)
-    }
-
     /// A constant as a function of parameters: its `value`, or what follows from one.
     pub fn constant(&mut self, constant: Constant, value: f64) -> Affine {
         let Some((parameter, follower)) = self.sought.find(constant) else {

@@ -13,7 +13,7 @@ use crate::files::json::locate::JsonPath;
 use crate::files::json::scope::Scope;
 use crate::files::problem::spec_free::{FreeMap, FreeSpec};
 use crate::files::scene::constants::{NoConstant, SceneConstant, WrittenScene};
-use crate::model::{Constant, Follower, NotSought, Parameter, check_parameters};
+use crate::model::{Constant, Follower, NotSought, Parameter, check_parameters, unit_of};
 
 /// The parameters of a problem.
 pub(crate) fn parameters(
@@ -52,16 +52,10 @@ fn parameter(
         .map_err(|reason| refused(reason, scope))?;
     for (path, &factor) in &spec.also {
         let place = scope.key("also").key(path);
-        let other = also(path, (factor, [lower, upper]), scene).map_err(
-            |NoConstant {
-                 found, expected, ..
-             }| place.wrong(found, expected),
-        )?;
-        let unit = |followers: &[Follower]| match followers[0].factor.abs() == 1.0 {
-            true => followers[0].constant.unit(scene.system).symbol,
-            false => "",
-        };
-        let [own, others] = [&followers, &other.followers].map(|list| unit(list));
+        let other = also(path, (factor, [lower, upper]), scene)
+            .map_err(|reason| place.wrong(reason.found, reason.expected))?;
+        let lists = [&followers, &other.followers];
+        let [own, others] = lists.map(|list| unit_of(list, scene.system).symbol);
         if own != others {
             let found = format!("a number in {others:?}");
             let expected = format!("one in {own:?}, as the number that it follows");
@@ -89,11 +83,9 @@ fn parameter(
     if let Some(guess) = &spec.guess {
         let text = serde_json::to_value(guess).unwrap_or_default();
         let place = JsonPath::parse(path).unwrap_or_default();
-        scene.with(&place, &text).map_err(
-            |NoConstant {
-                 found, expected, ..
-             }| scope.key("guess").wrong(found, expected),
-        )?;
+        scene
+            .with(&place, &text)
+            .map_err(|reason| scope.key("guess").wrong(reason.found, reason.expected))?;
     }
     Ok(Parameter {
         name: path.to_owned(),
@@ -118,14 +110,14 @@ fn also(
 /// The error of a bound, or of the path.
 fn refused(reason: NoConstant, scope: &Scope<'_>) -> SceneError {
     let NoConstant {
-        is_value,
+        value,
         found,
         expected,
     } = reason;
-    match is_value {
-        true => scope.key("min").wrong(found, expected),
-        false => scope.wrong(found, expected),
-    }
+    let bound = value.map(|bound| scope.key(["min", "max"][bound]));
+    bound
+        .unwrap_or_else(|| scope.clone())
+        .wrong(found, expected)
 }
 
 /// Entries that are read of a solution: values that were found, in SI units, by paths in the scene.
@@ -150,11 +142,9 @@ pub(crate) fn check_solution(
     let constants = parameters.iter().filter(|(name, _)| *name != PEAK_VOLTAGE);
     for (name, &found) in constants {
         let place = JsonPath::parse(name).unwrap_or_default();
-        let mut other = scene.with(&place, &Value::from(found)).map_err(
-            |NoConstant {
-                 found, expected, ..
-             }| { scope.wrong(format!("{name:?}: {found}"), expected) },
-        )?;
+        let mut other = scene.with(&place, &Value::from(found)).map_err(|reason| {
+            scope.wrong(format!("{name:?}: {}", reason.found), reason.expected)
+        })?;
         let mut system = scene.system.clone();
         let differs = |constant: &Constant| {
             let of_solution = constant.value(&mut other);

@@ -42,8 +42,8 @@ pub(crate) struct SceneConstant {
 /// Reason why a path names no number that can be sought.
 #[derive(Debug)]
 pub(crate) struct NoConstant {
-    /// True if it is a value that is wrong, and not the path.
-    pub(crate) is_value: bool,
+    /// The bound, 0 or 1, that is wrong; none where it is the path.
+    pub(crate) value: Option<usize>,
     /// Value or path that was found.
     pub(crate) found: String,
     /// Value or path that is expected.
@@ -63,7 +63,7 @@ const ONE: f64 = 1e-12;
 impl NoConstant {
     fn of_path(found: impl Into<String>, expected: impl Into<String>) -> Self {
         Self {
-            is_value: false,
+            value: None,
             found: found.into(),
             expected: expected.into(),
         }
@@ -71,9 +71,16 @@ impl NoConstant {
 
     fn of_value(error: &SceneError) -> Self {
         Self {
-            is_value: true,
-            found: error.found().to_owned(),
-            expected: error.expected().to_owned(),
+            value: Some(0),
+            ..Self::of_path(error.found(), error.expected())
+        }
+    }
+
+    /// The same, where it is the upper bound that is wrong.
+    fn of_upper(self) -> Self {
+        Self {
+            value: self.value.map(|_| 1),
+            ..self
         }
     }
 }
@@ -125,7 +132,8 @@ impl WrittenScene<'_> {
         })?;
         let [mut low, mut high] = [
             self.with(&place, written[0])?,
-            self.with(&place, written[1])?,
+            self.with(&place, written[1])
+                .map_err(NoConstant::of_upper)?,
         ];
         let mut base = self.system.clone();
         let mut followers = Vec::new();
@@ -150,26 +158,18 @@ impl WrittenScene<'_> {
             values.push((given, a, b));
         }
         self.check_rest(base, &followers, &values, &high)?;
+        let si = (values[0].0 - followers[0].offset) / followers[0].factor;
         // Beside bounds and scene, two of which may coincide, at a place that nothing singles out.
         let between = lower + BETWEEN * (upper - lower);
         let mut other = self.with(&place, &Value::from(between))?;
-        let is_between = |follower: &Follower| {
-            let expected = follower.offset + follower.factor * between;
-            let found = follower.constant.value(&mut other).unwrap_or(f64::NAN);
-            let size = (follower.factor * (upper - lower))
-                .abs()
-                .max(expected.abs());
-            (found - expected).abs() <= SAME * size
-        };
-        let mut lies_between = followers.iter().map(is_between);
-        if !lies_between.all(|lies| lies) {
-            let found = "a number of the scene in which a constant is not linear";
-            return Err(NoConstant::of_path(found, OFFERED));
-        }
-        let value = |follower: &Follower, given: f64| (given - follower.offset) / follower.factor;
-        let si = value(&followers[0], values[0].0);
         let is_linear = |(follower, &(given, ..)): (&Follower, &(f64, f64, f64))| {
-            (value(follower, given) - si).abs() <= SAME * (upper - lower).abs().max(si.abs())
+            let between_them = follower.constant.value(&mut other);
+            let pairs = [(si, given), (between, between_them.unwrap_or(f64::NAN))];
+            let is_on_line = |(number, found): (f64, f64)| {
+                let at = (found - follower.offset) / follower.factor;
+                (at - number).abs() <= SAME * (upper - lower).abs().max(si.abs())
+            };
+            pairs.into_iter().all(is_on_line)
         };
         if !followers.iter().zip(&values).all(is_linear) {
             let found = "a number of the scene in which a constant is not linear";
