@@ -33,6 +33,7 @@ mod identification_table;
 mod identification_verdict;
 mod identity;
 mod inspect;
+mod iterates;
 mod left_out;
 mod length_unit_check;
 mod linear_systems;

@@ -9,20 +9,17 @@ use crate::app::folder::{make_folder, make_folder_of};
 use crate::app::left_out::{EARLIER, STOPPED};
 use crate::app::messages::counted;
 use crate::app::motions_summary::MotionsSummary;
-use crate::app::progress::{Progress, Reached};
+use crate::app::progress::Reached;
 use crate::app::request::{CommandInput, CommandOutput, PageWanted};
 use crate::app::side_by_side;
 use crate::app::solve::{MIGHT_GO_ON, write_result};
 use crate::app::solve_page::describe;
 use crate::app::summary::Summary;
-use crate::app::unfinished::{self, Unfinished};
-use crate::app::{fields, resume_file, solution_file};
+use crate::app::{fields, iterates, resume_file, solution_file, unfinished};
 use crate::control::Motions;
 use crate::files::Loaded;
 use crate::report::file_set::FileSet;
-use crate::tasks::{MotionsResult, SolveRequest, solve_motions};
-use crate::workflow::Iterate;
-use crate::workflow::optimum::SolveLimits;
+use crate::tasks::{MotionsResult, solve_motions};
 
 /// Solves for several motions and writes their folders, solved or not.
 pub(super) fn motions(
@@ -33,7 +30,21 @@ pub(super) fn motions(
     observer: &mut dyn FnMut(Reached<'_>),
 ) -> Result<CommandOutput, CommandError> {
     let read = began.elapsed().as_secs_f64();
-    let (result, folder) = solve(request, motions, read, observer)?;
+    let results = request.folder();
+    let (result, folder) = iterates::solve(
+        request,
+        read,
+        observer,
+        |_, models, found| {
+            let mut each = motions.list.iter().zip(models).enumerate();
+            each.try_for_each(|(number, (motion, model))| {
+                let own = results.join(&motion.name);
+                make_folder(&own)?;
+                solution_file::replace(&own.join(solution_file::UNFINISHED), model, &found(number))
+            })
+        },
+        |asked, observe| solve_motions(motions, asked, observe),
+    )?;
     let mut each = Vec::new();
     for (motion, one) in motions.list.iter().zip(&result.list) {
         let own = CommandInput {
@@ -64,48 +75,6 @@ pub(super) fn motions(
             .extend(resume_file::command(request, &loaded.task));
     }
     Ok(output)
-}
-
-/// Solves for motions whose files were `read` in some seconds, and keeps their iterates in their folders until that has ended.
-fn solve(
-    request: &CommandInput,
-    motions: &Motions,
-    read: f64,
-    observer: &mut dyn FnMut(Reached<'_>),
-) -> Result<(MotionsResult, PathBuf), CommandError> {
-    let mut unfinished = Unfinished::new(request, solution_file::UNFINISHED);
-    let limits = SolveLimits {
-        iterations: request.max_iterations,
-        seconds: request.max_seconds.map(|s| (s - read).max(0.0)),
-    };
-    let progress = Progress::of_solve(request.progress);
-    let folder = request.folder();
-    let mut observe = |intervals: usize, iterate: &Iterate<'_>| {
-        let Iterate { report, models, .. } = *iterate;
-        progress.iteration(intervals, report);
-        observer(Reached::Iteration(intervals, report));
-        if report.iteration == 0 {
-            unfinished.begin();
-        }
-        let (kept, found) = iterate.before.unwrap_or((report, iterate.motions));
-        unfinished.consider(kept.primal_infeasibility, |_| {
-            let mut each = motions.list.iter().zip(models).enumerate();
-            each.try_for_each(|(number, (motion, model))| {
-                let own = folder.join(&motion.name);
-                make_folder(&own)?;
-                solution_file::replace(&own.join(solution_file::UNFINISHED), model, &found(number))
-            })
-        });
-        unfinished.flow()
-    };
-    let asked = SolveRequest {
-        wanted: request.wanted,
-        limits,
-    };
-    let found = solve_motions(motions, asked, &mut observe)
-        .map_err(CommandError::in_file(&request.input))?;
-    drop(progress);
-    Ok((found, unfinished.made()?))
 }
 
 /// Writes what the motions have in common: the page of all side by side, and the summary last.

@@ -1,6 +1,6 @@
 //! A control problem from file to folder: solved, re-simulated, and reported.
 
-use std::path::{Path, PathBuf};
+use std::path::Path;
 use std::time::Instant;
 
 use crate::app::blocks::BlockSizes;
@@ -8,16 +8,17 @@ use crate::app::displayed_motion::{DisplayedMotion, Motion};
 use crate::app::energy_summary::EnergySummary;
 use crate::app::error::CommandError;
 use crate::app::fields;
+use crate::app::iterates;
 use crate::app::left_out::{leave_out, time_to_write};
 use crate::app::page;
-use crate::app::progress::{Progress, Reached};
+use crate::app::progress::Reached;
 use crate::app::request::{CommandInput, CommandOutput};
 use crate::app::resume_file;
 use crate::app::solution_file;
 use crate::app::solve_page::{convergence, goal, rows, targets, waypoints};
 use crate::app::solve_summary::{command_output, program, seconds};
 use crate::app::summary::{MEASURED, Summary};
-use crate::app::unfinished::{self, Unfinished};
+use crate::app::unfinished;
 use crate::control::problem::Control;
 use crate::dynamics::observations;
 use crate::files::Loaded;
@@ -28,11 +29,10 @@ use crate::report::atomic::WriteError;
 use crate::report::file_set::FileSet;
 use crate::report::origin::Origin;
 use crate::report::{Run, write_run};
-use crate::tasks::{self, SolveRequest, SolveResult};
-use crate::workflow::Iterate;
+use crate::tasks::{self, SolveResult};
 use crate::workflow::effects::Plan;
 use crate::workflow::motion::{solved, trajectory};
-use crate::workflow::optimum::{Optimum, SolveLimits};
+use crate::workflow::optimum::Optimum;
 use crate::workflow::resimulate::under_constant_voltages;
 
 /// Length of the motion under constant voltages that is drawn next to the optimal one, in durations.
@@ -50,7 +50,13 @@ pub(super) fn control(
 ) -> Result<CommandOutput, CommandError> {
     let read = began.elapsed().as_secs_f64();
     let system = &loaded.system;
-    let (result, folder) = solve(request, system, control, read, observer)?;
+    let (result, folder) = iterates::solve(
+        request,
+        read,
+        observer,
+        |path, models, found| solution_file::replace(path, models[0], &found(0)),
+        |asked, observe| tasks::solve(system, control, asked, observe),
+    )?;
     let shown = (system, control, &loaded.output);
     let summary = write_result((request, asked), shown, &result, (&folder, read), began)?;
     unfinished::done(&folder);
@@ -98,41 +104,6 @@ pub(super) fn write_result(
     summary.seconds.wrote(began, writing);
     summary.write(files)?;
     Ok(summary)
-}
-
-/// Solves a control problem whose files were `read` in some seconds, and keeps its iterates in the folder of the results until it has ended.
-fn solve(
-    request: &CommandInput,
-    system: &System,
-    control: &Control,
-    read: f64,
-    observer: &mut dyn FnMut(Reached<'_>),
-) -> Result<(SolveResult, PathBuf), CommandError> {
-    let mut unfinished = Unfinished::new(request, solution_file::UNFINISHED);
-    let limits = SolveLimits {
-        iterations: request.max_iterations,
-        seconds: request.max_seconds.map(|s| (s - read).max(0.0)),
-    };
-    let progress = Progress::of_solve(request.progress);
-    let mut observe = |intervals: usize, iterate: &Iterate<'_>| {
-        let Iterate { report, models, .. } = *iterate;
-        progress.iteration(intervals, report);
-        observer(Reached::Iteration(intervals, report));
-        if report.iteration == 0 {
-            unfinished.begin();
-        }
-        let (kept, motions) = iterate.before.unwrap_or((report, iterate.motions));
-        unfinished.consider(kept.primal_infeasibility, |path| {
-            solution_file::replace(path, models[0], &motions(0))
-        });
-        unfinished.flow()
-    };
-    let wanted = request.wanted;
-    let asked = SolveRequest { wanted, limits };
-    let found = tasks::solve(system, control, asked, &mut observe)
-        .map_err(CommandError::in_file(&request.input))?;
-    drop(progress);
-    Ok((found, unfinished.made()?))
 }
 
 /// Adds to the summary what was observed of an optimal motion.

@@ -4,6 +4,7 @@ use super::cases::{control, joints};
 use super::systems::{blocks, branched, tied};
 use nalgebra::Vector3;
 use proboscis::control::problem::{Control, Duration, Guess, Voltages};
+use proboscis::functional::MOST_PARAMETERS;
 use proboscis::model::system::{
     Attachment, Circuit, ElasticLaw, JointSpring, Material, MaxwellBranch, MaxwellBranches, System,
 };
@@ -48,6 +49,22 @@ pub fn parameter(name: &str, constants: &[(Constant, f64)], guess: f64) -> Param
             .collect(),
         lower: lower.min(upper),
         upper: upper.max(lower),
+        guess,
+    }
+}
+
+/// A constant of the material of all muscles, from a guess between bounds.
+pub fn of_all_muscles(
+    system: &System,
+    (name, constant): (&str, MaterialConstant),
+    [lower, guess, upper]: [f64; 3],
+) -> Parameter {
+    let all = 0..system.muscles.len();
+    Parameter {
+        name: name.into(),
+        constants: all.map(|m| Follower::from(constant.of_muscle(m))).collect(),
+        lower,
+        upper,
         guess,
     }
 }
@@ -202,5 +219,40 @@ pub fn wired() -> (System, Vec<Parameter>) {
         parameter("leak", &[(Constant::Leakage(1), 1.0)], 9e7),
         parameter("prestretch", &[(Constant::Prestretch(2), 1.0)], 1.2),
     ];
+    (system, parameters)
+}
+
+/// The robot without branches, of one muscle of which all constants of one law are sought: as many as an element has room for.
+pub fn crowded() -> (System, Vec<Parameter>) {
+    use Constant as C;
+    use MaterialConstant as M;
+    let mut system = robot();
+    let muscle = &mut system.muscles[0];
+    muscle.material.maxwell = MaxwellBranches::default();
+    muscle.material.law = Some(ElasticLaw::Ogden {
+        exponents: [2.0, -2.5],
+        share: 0.2,
+    });
+    muscle.prestretch = Some(1.1);
+    let ends = (0..6).map(|i| C::End(0, i / 3, i % 3));
+    let material = [
+        M::ShearModulus,
+        M::C1,
+        M::C2,
+        M::Permittivity,
+        M::Law("exponents[0]"),
+        M::Law("exponents[1]"),
+        M::Law("share"),
+    ];
+    let others = [C::Prestretch(0), C::Side(0, 0), C::Side(0, 1), C::Layer(0)];
+    let all = ends.chain(material.map(|c| c.of_muscle(0))).chain(others);
+    let parameters = all.map(|constant| {
+        let value = constant
+            .value(&mut system)
+            .expect("a constant of the muscle");
+        parameter(&format!("{constant:?}"), &[(constant, 1.0)], value)
+    });
+    let parameters: Vec<Parameter> = parameters.collect();
+    assert_eq!(parameters.len(), MOST_PARAMETERS);
     (system, parameters)
 }

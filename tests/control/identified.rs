@@ -1,6 +1,7 @@
 //! Constants of a material are recovered from a motion: all joints are tracked, all voltages are given.
 
 use crate::common::cases::control;
+use crate::common::sought::of_all_muscles;
 use crate::common::trunk;
 use crate::optimality::solve;
 use proboscis::Signal;
@@ -11,7 +12,7 @@ use proboscis::control::problem::{
 use proboscis::dynamics::{Start as Initial, simulate};
 use proboscis::ipopt::Start;
 use proboscis::model::{
-    Follower, MaterialConstant, Model, Parameter, Quantity, Role, System, with_parameters,
+    MaterialConstant, Model, Parameter, Quantity, Role, System, with_parameters,
 };
 use std::ops::ControlFlow;
 
@@ -22,23 +23,11 @@ const TRUE: [f64; 2] = [0.137, 0.71];
 
 /// Shear modulus and viscosity of all muscles.
 fn material(system: &System) -> Vec<Parameter> {
-    let of = |name: &str, constant: MaterialConstant, [lower, guess, upper]: [f64; 3]| {
-        let all = 0..system.muscles.len();
-        Parameter {
-            name: name.into(),
-            constants: all.map(|m| Follower::from(constant.of_muscle(m))).collect(),
-            lower,
-            upper,
-            guess,
-        }
-    };
+    let modulus = ("shear modulus", MaterialConstant::ShearModulus);
+    let viscosity = ("viscosity", MaterialConstant::Viscosity);
     vec![
-        of(
-            "shear modulus",
-            MaterialConstant::ShearModulus,
-            [0.05, 0.1, 0.5],
-        ),
-        of("viscosity", MaterialConstant::Viscosity, [0.1, 1.0, 5.0]),
+        of_all_muscles(system, modulus, [0.05, 0.1, 0.5]),
+        of_all_muscles(system, viscosity, [0.1, 1.0, 5.0]),
     ]
 }
 

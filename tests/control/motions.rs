@@ -1,6 +1,7 @@
 //! Several motions in one optimisation: copies of one, derivatives, growth with their number, constants and inputs in common.
 
 use crate::common::cases::{control, joints};
+use crate::common::sought::of_all_muscles;
 use crate::common::trunk;
 use proboscis::Signal;
 use proboscis::control::problem::{
@@ -10,9 +11,7 @@ use proboscis::control::problem::{
 use proboscis::control::{BoundaryConditions, Motion, Motions, Transcription, guess};
 use proboscis::dynamics::{Start as Initial, simulate};
 use proboscis::kkt::{Plan, Unknown};
-use proboscis::model::{
-    Follower, MaterialConstant, Model, Parameter, Quantity, System, with_parameters,
-};
+use proboscis::model::{MaterialConstant, Model, Parameter, Quantity, System, with_parameters};
 use proboscis::nlp::joined::{Joined, SharedVariable};
 use proboscis::nlp::{Nlp, Stage, differences};
 use proboscis::workflow::{Iterate, SolveLimits, Together, optimise, optimise_together};
@@ -24,27 +23,11 @@ const TRUE: [f64; 2] = [0.137, 0.71];
 
 /// Shear modulus and viscosity of all muscles, with these upper bounds.
 fn material(system: &System, upper: [f64; 2]) -> Vec<Parameter> {
-    let of = |name: &str, constant: MaterialConstant, [lower, guess, upper]: [f64; 3]| {
-        let all = 0..system.muscles.len();
-        Parameter {
-            name: name.into(),
-            constants: all.map(|m| Follower::from(constant.of_muscle(m))).collect(),
-            lower,
-            upper,
-            guess,
-        }
-    };
+    let modulus = ("shear modulus", MaterialConstant::ShearModulus);
+    let viscosity = ("viscosity", MaterialConstant::Viscosity);
     vec![
-        of(
-            "shear modulus",
-            MaterialConstant::ShearModulus,
-            [0.05, 0.1, upper[0]],
-        ),
-        of(
-            "viscosity",
-            MaterialConstant::Viscosity,
-            [0.1, 0.5, upper[1]],
-        ),
+        of_all_muscles(system, modulus, [0.05, 0.1, upper[0]]),
+        of_all_muscles(system, viscosity, [0.1, 0.5, upper[1]]),
     ]
 }
 

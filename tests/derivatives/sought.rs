@@ -4,7 +4,7 @@
 use crate::action::not_trivial;
 use crate::common::cases::joints;
 use crate::common::random::Random;
-use crate::common::sought::{elements, problem, robot, wired};
+use crate::common::sought::{crowded, elements, problem, robot, wired};
 use proboscis::control::problem::{BoundaryState, Control, Voltages};
 use proboscis::control::{BoundaryConditions, Column, InitialGuess, Transcription, guess};
 use proboscis::model::{Coordinates, Model, Role, System, with_parameters};
@@ -40,7 +40,14 @@ fn variants() -> Vec<(System, Control)> {
         ..problem(&system, is_free, None)
     });
     let of_circuits = of_circuits.map(|control| (system.clone(), control));
-    let others = of_elements.into_iter().chain(of_circuits);
+    let (system, parameters) = crowded();
+    let crowded = Control {
+        parameters,
+        goal: BoundaryState::Free,
+        ..problem(&system, false, None)
+    };
+    let crowded = [(system, crowded)];
+    let others = of_elements.into_iter().chain(of_circuits).chain(crowded);
     cases.map(of).chain(others).collect()
 }
 

@@ -1,6 +1,8 @@
 //! Verdicts: whiteness, recordings that are held out, and the next experiment.
 
-use crate::oscillator::{DAMPING, STIFFNESS, joint, parameter, recording, slide, system, task};
+use crate::oscillator::{
+    DAMPING, STIFFNESS, joint, parameter, pulled_cart, recording, slide, system, task,
+};
 use proboscis::Signal;
 use proboscis::control::problem::{
     Identification, Reading, Recording, Regime, SoughtStart, Voltages,
@@ -8,7 +10,7 @@ use proboscis::control::problem::{
 use proboscis::identify::{Grid, Unknowns, identify, ljung_box, predict};
 use proboscis::math::Random;
 use proboscis::model::{MaterialConstant, MaxwellBranch, MaxwellBranches, System};
-use proboscis::prelude::{Body, GROUND, Joint, Material, Muscle, X, g, kpa, mm, um};
+use proboscis::prelude::{Material, kpa};
 
 #[test]
 fn white_noise_passes_and_a_slow_wave_does_not() {
@@ -36,14 +38,7 @@ fn creeping(branches: &[(f64, f64)]) -> System {
     let mut material = Material::elastomer(kpa(100.0)).relative_permittivity(3.0);
     material.viscosity = Some(0.5);
     material.maxwell = MaxwellBranches::new(&branches).unwrap();
-    let mut system = System::new("creep");
-    let cart = system.add(Body::sphere(mm(10.0)).mass(g(50.0)));
-    system.add(Joint::prismatic(X).between(GROUND, cart));
-    let muscle = Muscle::of(&material)
-        .section(mm(10.0), mm(10.0))
-        .layer(um(50.0));
-    system.add(muscle.from(GROUND, -X * mm(40.0)).to(cart, X * mm(0.0)));
-    system
+    pulled_cart("creep", &material)
 }
 
 fn under(name: &str, voltage: Signal, count: usize) -> Recording {

@@ -6,7 +6,9 @@ use proboscis::control::problem::{
 use proboscis::math::Random;
 use proboscis::model::system::ElectricConstants;
 use proboscis::model::{Constant, Follower, MaterialConstant, Parameter, Quantity};
-use proboscis::prelude::{Body, GROUND, Joint, Spring, System, X, g, mm, n_per_m};
+use proboscis::prelude::{
+    Body, GROUND, Joint, Material, Muscle, Spring, System, X, g, mm, n_per_m, um,
+};
 use std::collections::BTreeMap;
 
 /// Mass in g, stiffness in N/mm and damping in N ms/mm.
@@ -22,6 +24,18 @@ pub(crate) fn system() -> System {
     let spring = Spring::between((GROUND, -X * mm(50.0)), (cart, X * mm(0.0)));
     system.add(spring.stiffness(n_per_m(1e3 * STIFFNESS)));
     system.joints[0].damping = Some(DAMPING);
+    system
+}
+
+/// A cart on a slide that a muscle of a material pulls.
+pub(crate) fn pulled_cart(name: &str, material: &Material) -> System {
+    let mut system = System::new(name);
+    let cart = system.add(Body::sphere(mm(10.0)).mass(g(50.0)));
+    system.add(Joint::prismatic(X).between(GROUND, cart));
+    let muscle = Muscle::of(material)
+        .section(mm(10.0), mm(10.0))
+        .layer(um(50.0));
+    system.add(muscle.from(GROUND, -X * mm(40.0)).to(cart, X * mm(0.0)));
     system
 }
 

@@ -1,6 +1,6 @@
 //! States of rest of a free muscle, which determine a ratio of its constants.
 
-use crate::oscillator::{joint, parameter, permittivity, slide, times};
+use crate::oscillator::{joint, parameter, permittivity, pulled_cart, slide, times};
 use proboscis::Signal;
 use proboscis::control::problem::{
     Identification, Reading, Recording, Regime, SoughtStart, Voltages,
@@ -10,21 +10,14 @@ use proboscis::math::Random;
 use proboscis::model::components::{Load, LoadPlace};
 use proboscis::model::system::ElectricConstants;
 use proboscis::model::{MaterialConstant, System};
-use proboscis::prelude::{Body, GROUND, Joint, Material, Muscle, X, g, kpa, mm, um};
+use proboscis::prelude::{Material, kpa};
 
 const TRUE: [f64; 2] = [3.0, 0.1];
 
 /// A cart between a muscle and a force along the slide.
 fn system() -> System {
     let material = Material::elastomer(kpa(1e3 * TRUE[1])).ideal_dielectric(TRUE[0]);
-    let mut system = System::new("free");
-    let cart = system.add(Body::sphere(mm(10.0)).mass(g(50.0)));
-    system.add(Joint::prismatic(X).between(GROUND, cart));
-    let muscle = Muscle::of(&material)
-        .section(mm(10.0), mm(10.0))
-        .layer(um(50.0));
-    system.add(muscle.from(GROUND, -X * mm(40.0)).to(cart, X * mm(0.0)));
-    system.muscles[0].material.electric = Some(ElectricConstants::ideal(TRUE[0]));
+    let mut system = pulled_cart("free", &material);
     system.components.loads.push(Load {
         name: "force".into(),
         on: LoadPlace::Joint(0),

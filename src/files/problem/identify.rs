@@ -1,24 +1,19 @@
 //! Conversion of an identification in a problem file to its task.
 
-use crate::control::problem::{
-    BoundaryState, Identification, Reading, Recording, Regime, SoughtStart,
-};
+use crate::control::problem::{Identification, Reading, Recording, Regime, SoughtStart};
 use crate::files::columns::Columns;
 use crate::files::json::error::SceneError;
 use crate::files::json::scope::Scope;
 use crate::files::problem::channels::{Measured, Source};
 use crate::files::problem::coordinates::{coordinates, count};
+use crate::files::problem::driven::driven;
 use crate::files::problem::free::parameters;
-use crate::files::problem::loads::{load, with_loads};
 use crate::files::problem::spec_identify::{
     CandidateSpec, ExperimentSpec, IdentifySpec, MeasuredSpec, RecordingSpec, SoughtStartSpec,
 };
-use crate::files::problem::state::start_state;
-use crate::files::problem::voltages::over_time;
 use crate::files::scene::constants::WrittenScene;
 use crate::files::units::quantity::{Quantity, Time};
 use crate::model::system::System;
-use std::collections::BTreeMap;
 
 /// Most readings of a candidate.
 const MOST_READINGS: usize = 100_000;
@@ -85,17 +80,12 @@ fn experiment(
     system: &System,
     scope: &Scope<'_>,
 ) -> Result<Recording, SceneError> {
-    let mut start = match &spec.start {
-        Some(start) => start_state(start, system, &scope.key("start"))?,
-        None => BoundaryState::JointAngles {
-            angles: BTreeMap::new(),
-            rates: BTreeMap::new(),
-            velocities: Default::default(),
-        },
-    };
-    let voltages = over_time(&spec.voltages, system, &scope.key("voltages"))?;
-    let (voltages, loads) = with_loads(voltages, &spec.loads, system, &scope.key("loads"))?;
-    load(&mut start, &loads, 0.0);
+    let (start, voltages) = driven(
+        spec.start.as_ref(),
+        (&spec.voltages, &spec.loads),
+        system,
+        scope,
+    )?;
     let sought_start = match spec.sought_start {
         SoughtStartSpec::Nothing => SoughtStart::Nothing,
         SoughtStartSpec::Coordinates => SoughtStart::Coordinates,

@@ -1,17 +1,14 @@
 //! Conversion of the simulation entry of a problem file to its task.
 
-use crate::control::problem::{BoundaryState, Simulation};
+use crate::control::problem::Simulation;
 use crate::dynamics::{Integrator, Newton, Solving};
 use crate::files::json::error::SceneError;
 use crate::files::json::scope::Scope;
 use crate::files::problem::coordinates::coordinates;
-use crate::files::problem::loads::{load, with_loads};
+use crate::files::problem::driven::driven;
 use crate::files::problem::spec_integrator::integrator;
 use crate::files::problem::spec_simulate::{SimulateSpec, StepSpec};
-use crate::files::problem::state::start_state;
-use crate::files::problem::voltages::over_time;
 use crate::model::system::System;
-use std::collections::BTreeMap;
 
 /// Tolerances below this ask for more than rounding allows.
 pub(crate) const LEAST_TOLERANCE: f64 = 1e-9;
@@ -27,18 +24,12 @@ pub(crate) fn simulation(
     let duration = scope.key("duration").positive(&spec.duration)?;
     let method = integrator(spec.integrator.as_ref(), system, &scope.key("integrator"))?;
     let (step, tolerance) = step(spec, duration, method, scope)?;
-    let mut start = match &spec.start {
-        Some(start) => start_state(start, system, &scope.key("start"))?,
-        None => BoundaryState::JointAngles {
-            angles: BTreeMap::new(),
-            rates: BTreeMap::new(),
-            velocities: Default::default(),
-        },
-    };
-    let place = scope.key("voltages");
-    let voltages = over_time(&spec.voltages, system, &place)?;
-    let (voltages, loads) = with_loads(voltages, &spec.loads, system, &scope.key("loads"))?;
-    load(&mut start, &loads, 0.0);
+    let (start, voltages) = driven(
+        spec.start.as_ref(),
+        (&spec.voltages, &spec.loads),
+        system,
+        scope,
+    )?;
     Ok(Simulation {
         duration,
         step,
