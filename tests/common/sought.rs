@@ -246,11 +246,17 @@ pub fn crowded() -> (System, Vec<Parameter>) {
     ];
     let others = [C::Prestretch(0), C::Side(0, 0), C::Side(0, 1), C::Layer(0)];
     let all = ends.chain(material.map(|c| c.of_muscle(0))).chain(others);
+    let c1 = M::C1.of_muscle(0);
+    let stiffness = C::SpringStiffness(0).value(&mut system).expect("a spring");
     let parameters = all.map(|constant| {
         let value = constant
             .value(&mut system)
             .expect("a constant of the muscle");
-        parameter(&format!("{constant:?}"), &[(constant, 1.0)], value)
+        // A voltage pulls by c₁ not at all: its parameter is the stiffness of a spring too.
+        let other = (C::SpringStiffness(0), stiffness / value);
+        let constants = [(constant, 1.0), other];
+        let count = 1 + usize::from(constant == c1);
+        parameter(&format!("{constant:?}"), &constants[..count], value)
     });
     let parameters: Vec<Parameter> = parameters.collect();
     assert_eq!(parameters.len(), MOST_PARAMETERS);
