@@ -159,6 +159,7 @@ fn limits_with_goal(system: &System, control: &Control, redundant: bool) -> Limi
             limits.add_equality(at.0, Quantity::Joint { joint, near }, near, name);
         }
     }
+    sought::in_intervals(&mut limits, control);
     limits
 }
 

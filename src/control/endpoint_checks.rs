@@ -16,7 +16,7 @@ use crate::dynamics::BeyondLaw;
 use crate::energy::{Energy, OutsideBox, SquaredDistance};
 use crate::functional::Sample;
 use crate::math::{Local, significant};
-use crate::model::{Coordinates, Model, Quantity, Region, Time};
+use crate::model::{Coordinates, Model, Quantity, Region, Role, Time, Variable};
 
 /// Refuses limits that contradict each other, and a start or goal of which it is known that it breaks a limit. `scalars` are voltages and potentials of states of
 /// rest at start and goal.
@@ -140,14 +140,14 @@ impl<'a> End<'a> {
             model,
             instant,
             known: coordinates[..count].iter().map(Option::is_some).collect(),
-            scalars: match scalars {
-                Some(scalars) => scalars.into_iter().map(Some).collect(),
-                None => {
-                    let variables = model.variables.of(Time::Interval).iter();
-                    variables
-                        .map(|variable| control.given(variable, time))
-                        .collect()
-                }
+            scalars: {
+                let variables = model.variables.of(Time::Interval).iter();
+                let known = |(s, variable): (usize, &Variable)| match (&scalars, variable.role) {
+                    (_, Role::Parameter) => None,
+                    (Some(scalars), _) => Some(scalars[s]),
+                    (None, _) => control.given(variable, time),
+                };
+                variables.enumerate().map(known).collect()
             },
             is_at_rest: false,
             angles: BTreeMap::new(),

@@ -73,7 +73,7 @@ impl Limits {
             }
             PathConstraint::Stretch { muscle, min, max } => {
                 let name = format!("stretch of {}", system.muscles[muscle].name);
-                let quantity = Quantity::SquaredStretch { muscle };
+                let quantity = Quantity::SquaredStretch { muscle, at: None };
                 out.add(quantity, [min * min, max * max], name);
             }
             PathConstraint::Tension { muscle, min, max } => {
@@ -142,7 +142,8 @@ impl Limits {
         let name = format!("electric field of {}", of.name);
         match of.is_behind_resistor() {
             true => {
-                let quantity = Quantity::ChargedField { muscle, limit };
+                let at = None;
+                let quantity = Quantity::ChargedField { muscle, limit, at };
                 self.add(quantity, [f64::NEG_INFINITY, 1.0], name);
             }
             false => self.add_field(FieldPlace::Muscle(muscle), limit, &name),

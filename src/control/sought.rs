@@ -1,12 +1,14 @@
 //! Sought parameters where they may not act: states of rest, and limits.
 
+use crate::control::bounded_quantity::{BoundedQuantity, When};
 use crate::control::error::BoundaryError;
+use crate::control::limits::Limits;
 use crate::control::problem::{BoundaryState, Control};
 use crate::control::rest::rest_with;
 use crate::dynamics::Start;
-use crate::functional::{Term, TermKind};
+use crate::functional::{Stencil, Term, TermKind};
 use crate::model::{
-    Constant, FieldPlace, MaterialConstant, Model, NotSought, Parameter, Quantity, Role, System,
+    Constant, MaterialConstant, Model, NotSought, Parameter, Quantity, Role, System,
     check_parameters, with_parameters,
 };
 
@@ -31,7 +33,7 @@ pub(super) fn at_guess(system: &System, control: &Control) -> Result<System, Bou
     Ok(with_parameters(system, parameters, &guesses))
 }
 
-/// Returns true if a quantity is a function of a parameter.
+/// Returns true if a quantity is a function of a parameter, but for laws of the intervals, which read it.
 fn reads(quantity: &Quantity, parameter: &Parameter) -> bool {
     let follows = |muscle: usize, is_read: fn(Constant) -> bool| {
         let mut constants = parameter.constants.iter().map(|c| c.constant);
@@ -39,46 +41,47 @@ fn reads(quantity: &Quantity, parameter: &Parameter) -> bool {
     };
     let is_length = |c: Constant| matches!(c, Constant::End(..) | Constant::Prestretch(_));
     match *quantity {
-        Quantity::SquaredStretch { muscle } => follows(muscle, is_length),
-        Quantity::SquaredField {
-            place: FieldPlace::Muscle(muscle),
-            ..
-        } => {
-            let is_layer = |c: Constant| matches!(c, Constant::Layer(_));
-            follows(muscle, is_length) || follows(muscle, is_layer)
+        Quantity::SquaredStretch { muscle, at: None } => follows(muscle, is_length),
+        Quantity::ChargedField {
+            muscle, at: None, ..
         }
-        Quantity::Tension { muscle, .. } => follows(muscle, |_| true),
-        Quantity::SourceCurrent { muscle, .. } | Quantity::SourcePower { muscle, .. }
-            if parameter
-                .constants
-                .iter()
-                .any(|c| c.constant == Constant::Resistance(muscle)) =>
-        {
-            true
-        }
-        Quantity::ChargedField { muscle, .. }
-        | Quantity::SourceCurrent { muscle, .. }
-        | Quantity::SourcePower { muscle, .. }
-        | Quantity::Capacitance { muscle }
-        | Quantity::ChargeStep { muscle, .. }
-        | Quantity::EnergyStep { muscle, .. } => follows(muscle, |c| {
+        | Quantity::Capacitance { muscle } => follows(muscle, |c| {
             use MaterialConstant::{C1, C2, Permittivity};
             let is_electric = matches!(c, Constant::Material(_, C1 | C2 | Permittivity));
             c.is_shape() || is_electric || matches!(c, Constant::Layer(_))
         }),
         Quantity::ReactionStep { .. } => true,
-        // Fields of finite elements follow from places and voltages; peaks read the parameter itself, which no constant follows.
-        Quantity::SquaredField { .. }
-        | Quantity::PeakVoltage { .. }
-        | Quantity::PeakExcess { .. }
-        | Quantity::VoltageStep { .. }
-        | Quantity::Joint { .. }
-        | Quantity::JointStep { .. }
-        | Quantity::MarkerPlace { .. }
-        | Quantity::MarkerStep { .. }
-        | Quantity::SquaredSpeed { .. }
-        | Quantity::MarkerRegion { .. }
-        | Quantity::Direction { .. } => false,
+        _ => false,
+    }
+}
+
+/// Puts limits of the instants that read a parameter in the place of the starts of intervals and the end of the last one: parameters belong to
+/// intervals.
+pub(super) fn in_intervals(limits: &mut Limits, control: &Control) {
+    let is_read = |quantity: &Quantity| control.parameters.iter().any(|p| reads(quantity, p));
+    let list = std::mem::take(&mut limits.list);
+    for bounded in list {
+        match bounded.quantity.in_intervals(Stencil::Here) {
+            Some(start) if is_read(&bounded.quantity) => {
+                let end = bounded.quantity.in_intervals(Stencil::Next);
+                let is_closed = control.goal == BoundaryState::Periodic;
+                let of_end = end.filter(|_| !is_closed || bounded.when.is_single());
+                let (at_start, at_end) = match bounded.when {
+                    When::Everywhere => (Some(start), When::At(1.0)),
+                    single => (None, single),
+                };
+                limits.list.extend(at_start.map(|quantity| BoundedQuantity {
+                    quantity,
+                    ..bounded.clone()
+                }));
+                limits.list.extend(of_end.map(|quantity| BoundedQuantity {
+                    quantity,
+                    when: at_end,
+                    ..bounded.clone()
+                }));
+            }
+            _ => limits.list.push(bounded),
+        }
     }
 }
 

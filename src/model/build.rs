@@ -19,6 +19,7 @@ use crate::model::plan::{LeftOut, Present};
 use crate::model::presolved::Presolved;
 use crate::model::quantity::Quantity;
 use crate::model::solids::{Circuits, Solids};
+use crate::model::sought::Sought;
 use crate::model::system::{Attachment, Body, Marker, Muscle, System};
 use crate::model::term_order::rank;
 use crate::model::terms::{Carriers, Terms};
@@ -334,7 +335,9 @@ impl Construction<'_> {
         (terms, present): (&[Arc<dyn Term>], &[Present]),
         vectors: &mut Vectors,
     ) -> Measures {
+        let first = variables.range(Role::Parameter).start;
         let known = measures::Known {
+            sought: &Sought::new(&self.analysis.parameters, first),
             system: self.system,
             presolved: self.presolved,
             internals: self.internals,

@@ -1,18 +1,23 @@
 //! Measures of charges and sources: behind resistors the field of the charge, current and power; otherwise charge and energy under the voltage.
 
-use crate::energy::{
-    Capacitance, FlowingChargeField, GivenChargeField, MeanCharge, SourceCurrent, SourcePower,
-    StoredEnergy,
-};
-use crate::functional::{Measure, Stencil};
+use crate::functional::{Law, Measure, Stencil, VectorArg};
 use crate::kinematics::Vectors;
 use crate::model::components::capacitance;
+use crate::model::components::measured_laws::{
+    Current, FlowingField, GivenField, Mean, Power, Stored,
+};
+use crate::model::components::muscle_constants::MuscleConstants;
+use crate::model::components::muscle_laws::{Flowing, OfCapacitance};
 use crate::model::internal::InternalKind;
-use crate::model::measures::{Known, Shape, instant, interval};
+use crate::model::measures::{Known, Shape, instant, read};
 use crate::model::quantity::Quantity;
 
-/// Vectors of span and charge, and the scalar of the voltage.
-type Read = ([(usize, Stencil); 2], [usize; 1]);
+/// A muscle behind a resistor: its constants, the electric energy of its charge, and the vectors of its span and of its charge.
+struct Charged<'a> {
+    of: MuscleConstants<'a>,
+    energy: Flowing,
+    read: [usize; 2],
+}
 
 impl Known<'_> {
     /// The measure of a quantity of a muscle and its source.
@@ -23,68 +28,86 @@ impl Known<'_> {
         vectors: &mut Vectors,
     ) -> Option<Box<dyn Measure>> {
         Some(match *quantity {
-            Quantity::ChargedField { muscle, limit } => {
-                let (capacitance, read) = self.charged(muscle, vectors)?;
-                let voltage = self.presolved.system.muscles[muscle].layer_thickness * limit;
-                let field = GivenChargeField {
-                    capacitance,
-                    voltage,
-                };
-                let unit = capacitance.unit_of_charge();
-                instant(shape, FlowingChargeField { field, unit }, read)
+            Quantity::ChargedField { muscle, limit, at } => {
+                let Charged {
+                    of,
+                    energy: Flowing { capacitance, unit },
+                    read: [span, charge],
+                } = self.charged(muscle, vectors)?;
+                let field = GivenField { capacitance, limit };
+                let field = FlowingField { field, unit };
+                match at {
+                    None => instant(shape, field.formula(&[]), [span, charge]),
+                    Some(at) => {
+                        shape.law(of.element(field, [read(span, at), read(charge, at)], []))
+                    }
+                }
             }
             Quantity::SourceCurrent { muscle, unit } => {
-                let (current, (read, scalars)) = self.source_current(muscle, unit, vectors)?;
-                interval::<_, 7, 2, 1>(shape, current, read, scalars)
+                let (of, current, read, voltage) = self.source_current(muscle, unit, vectors)?;
+                shape.law(of.element(current, read, [voltage]))
             }
             Quantity::SourcePower { muscle, unit } => {
-                let (current, (read, scalars)) = self.source_current(muscle, unit, vectors)?;
-                interval::<_, 7, 2, 1>(shape, SourcePower(current), read, scalars)
+                let (of, current, read, voltage) = self.source_current(muscle, unit, vectors)?;
+                shape.law(of.element(Power(current), read, [voltage]))
             }
             Quantity::ChargeStep { muscle, .. } => {
-                let (capacitance, span, voltage) = self.direct(muscle, vectors)?;
-                let ends = [(span, Stencil::Here), (span, Stencil::Next)];
-                interval::<_, 7, 2, 1>(shape, MeanCharge(capacitance), ends, [voltage])
+                let (of, capacitance, span, voltage) = self.direct(muscle, vectors)?;
+                let ends = [Stencil::Here, Stencil::Next].map(|at| read(span, at));
+                shape.law(of.element(Mean(capacitance), ends, [voltage]))
             }
             Quantity::EnergyStep { muscle, at, .. } => {
-                let (capacitance, span, voltage) = self.direct(muscle, vectors)?;
-                interval::<_, 4, 1, 1>(shape, StoredEnergy(capacitance), [(span, at)], [voltage])
+                let (of, capacitance, span, voltage) = self.direct(muscle, vectors)?;
+                shape.law(of.element(Stored(capacitance), [read(span, at)], [voltage]))
             }
             _ => return None,
         })
     }
 
-    /// Capacitance of a muscle without a resistor, the vector of its span, and the scalar of its voltage.
-    fn direct(&self, muscle: usize, vectors: &mut Vectors) -> Option<(Capacitance, usize, usize)> {
+    /// A muscle without a resistor: its constants and capacitance, the vector of its span, and the scalar of its voltage.
+    fn direct(
+        &self,
+        muscle: usize,
+        vectors: &mut Vectors,
+    ) -> Option<(MuscleConstants<'_>, OfCapacitance, usize, usize)> {
         let voltage = self.variables.input(muscle)?;
-        let capacitance = capacitance(&self.presolved.system.muscles[muscle])?;
-        Some((capacitance, self.span(muscle, vectors), voltage))
+        let mut of = self.muscle(muscle, vectors);
+        let capacitance = of.capacitance()?;
+        Some((of, capacitance, self.span(muscle, vectors), voltage))
     }
 
-    /// Capacitance of a muscle behind a resistor, with the vectors of its span and of its charge.
-    fn charged(&self, muscle: usize, vectors: &mut Vectors) -> Option<(Capacitance, [usize; 2])> {
+    /// A muscle behind a resistor.
+    fn charged(&self, muscle: usize, vectors: &mut Vectors) -> Option<Charged<'_>> {
         let charge = self.internals.vector(InternalKind::Charge(muscle))?;
-        let capacitance = capacitance(&self.presolved.system.muscles[muscle])?;
-        let read = [self.span(muscle, vectors), vectors.index(charge)];
-        Some((capacitance, read))
+        let unit = capacitance(&self.presolved.system.muscles[muscle])?.unit_of_charge();
+        let mut of = self.muscle(muscle, vectors);
+        let capacitance = of.capacitance()?;
+        Some(Charged {
+            of,
+            energy: Flowing { capacitance, unit },
+            read: [self.span(muscle, vectors), vectors.index(charge)],
+        })
     }
 
-    /// Current of the source of a muscle behind a resistor in a unit, with what it reads.
+    /// The current of the source of a muscle behind a resistor in a unit, its vectors and the scalar of its voltage.
     fn source_current(
         &self,
         muscle: usize,
         unit: f64,
         vectors: &mut Vectors,
-    ) -> Option<(SourceCurrent, Read)> {
+    ) -> Option<(MuscleConstants<'_>, Current, [VectorArg; 2], usize)> {
         let voltage = self.variables.input(muscle)?;
-        let (capacitance, read) = self.charged(muscle, vectors)?;
-        let circuit = self.presolved.system.muscles[muscle].circuit?;
-        let current = SourceCurrent {
-            capacitance,
-            unit_of_charge: capacitance.unit_of_charge(),
-            resistance: circuit.resistance?,
+        let Charged {
+            mut of,
+            energy,
+            read: vectors,
+        } = self.charged(muscle, vectors)?;
+        let current = Current {
+            of: energy,
+            resistance: of.resistance()?,
             unit,
         };
-        Some((current, (read.map(|v| (v, Stencil::Mid)), [voltage])))
+        let vectors = vectors.map(|vector| read(vector, Stencil::Mid));
+        Some((of, current, vectors, voltage))
     }
 }

@@ -27,7 +27,11 @@ impl Quantity {
     pub fn squared_field(muscle: usize, is_behind_resistor: bool) -> Self {
         let limit = MEGAVOLT_PER_METRE;
         match is_behind_resistor {
-            true => Self::ChargedField { muscle, limit },
+            true => Self::ChargedField {
+                muscle,
+                limit,
+                at: None,
+            },
             false => Self::SquaredField {
                 place: FieldPlace::Muscle(muscle),
                 limit,

@@ -2,12 +2,12 @@
 
 use crate::element::FieldPoint;
 use crate::energy::{
-    Angle, AngleStep, Energy, GivenChargeField, Multiple, OutsideBox, PeakExcess,
-    PositionComponent, Projection, ProjectionStep, SquaredDistance, SquaredField,
+    Angle, AngleStep, Energy, Multiple, OutsideBox, PeakExcess, PositionComponent, Projection,
+    ProjectionStep, SquaredDistance,
 };
 use crate::functional::{
-    Curved, Element, ElementField, ElementFields, Formulas, Group, Kernel, Measure, Stencil, Term,
-    VectorArg,
+    Curved, Element, ElementField, ElementFields, Formulas, Group, Kernel, Law, LawElement, Laws,
+    Measure, Stencil, Term, VectorArg,
 };
 use crate::kinematics::{MaterialVector, Pose, Vectors};
 use crate::math::Vector;
@@ -18,6 +18,7 @@ use crate::model::joints::{JointCoordinate, JointReading};
 use crate::model::presolved::Presolved;
 use crate::model::quantity::{FieldPlace, Quantity, Region};
 use crate::model::solid_block::SolidBlock;
+use crate::model::sought::Sought;
 use crate::model::system::System;
 use crate::model::variables::{Role, Variables};
 use std::sync::Arc;
@@ -42,6 +43,7 @@ pub(super) struct Known<'a> {
     pub(super) internals: &'a Internals,
     pub(super) reference: &'a [Pose],
     pub(super) variables: &'a Variables,
+    pub(super) sought: &'a Sought,
     /// Vector of each marker.
     pub(super) markers: &'a [usize],
     pub(super) blocks: &'a [SolidBlock],
@@ -83,13 +85,7 @@ impl Known<'_> {
         Some(match *quantity {
             Quantity::Joint { joint, near } => return self.joint(joint, near, shape, vectors),
             Quantity::JointStep { joint, .. } => return self.joint_step(joint, shape, vectors),
-            Quantity::SquaredStretch { muscle } => {
-                let energy = SquaredDistance {
-                    centre: origin,
-                    scale: self.presolved.system.muscles[muscle].length(),
-                };
-                instant(shape, energy, [self.span(muscle, vectors)])
-            }
+            Quantity::SquaredStretch { muscle, at } => self.stretch(muscle, at, shape, vectors),
             Quantity::Capacitance { muscle } => {
                 self.variables.input(muscle)?;
                 let energy = capacitance(&self.presolved.system.muscles[muscle])?;
@@ -242,34 +238,6 @@ impl Known<'_> {
         }
     }
 
-    /// Squared field of a lumped muscle over the one of its `limit`.
-    fn muscle_field(
-        &self,
-        muscle: usize,
-        (limit, at): (f64, Stencil),
-        shape: Shape,
-        vectors: &mut Vectors,
-    ) -> Option<Box<dyn Measure>> {
-        let of = &self.presolved.system.muscles[muscle];
-        let voltage = of.layer_thickness * limit;
-        let span = [(self.span(muscle, vectors), at)];
-        if let Some(source) = self.system.charge_of(muscle) {
-            let charge = [self.variables.input(source)?];
-            let capacitance = capacitance(of)?;
-            let energy = GivenChargeField {
-                capacitance,
-                voltage,
-            };
-            return Some(interval::<_, 4, 1, 1>(shape, energy, span, charge));
-        }
-        let scalar = self.variables.input(muscle)?;
-        let energy = SquaredField {
-            length: of.length(),
-            voltage,
-        };
-        Some(interval::<_, 4, 1, 1>(shape, energy, span, [scalar]))
-    }
-
     /// Squared field of an element of a block, at its centre or at a Gauss point, over the one of its `limit`.
     fn element_field(
         &self,
@@ -292,14 +260,6 @@ impl Known<'_> {
             terminals: block.terminals(element),
             at,
         }))
-    }
-
-    /// Vector of the span of a muscle.
-    pub(super) fn span(&self, muscle: usize, vectors: &mut Vectors) -> usize {
-        let muscle = &self.presolved.system.muscles[muscle];
-        let [from, to] = [&muscle.from, &muscle.to]
-            .map(|a| MaterialVector::point(a.body, &a.at, self.reference));
-        vectors.index(MaterialVector::span(&from, &to))
     }
 }
 
@@ -325,6 +285,26 @@ pub(super) enum Shape {
 }
 
 impl Shape {
+    /// Measure of a law of an interval.
+    pub(super) fn law<L: Law<M>, const M: usize, const NV: usize, const NS: usize>(
+        self,
+        element: LawElement<L, NV, NS>,
+    ) -> Box<dyn Measure> {
+        self.scaled_law(1.0, element)
+    }
+
+    /// Measure of a law of an interval times a factor.
+    pub(super) fn scaled_law<L: Law<M>, const M: usize, const NV: usize, const NS: usize>(
+        self,
+        scale: f64,
+        element: LawElement<L, NV, NS>,
+    ) -> Box<dyn Measure> {
+        match element.given() {
+            Some(given) => self.scaled::<Formulas<L::Formula<f64>, M, NV, NS>>(scale, given),
+            None => self.scaled::<Laws<L, M, NV, NS>>(scale, element),
+        }
+    }
+
     fn instants<K: Kernel>(self, element: K::Element) -> Box<dyn Measure> {
         let elements = vec![element];
         match self {
@@ -334,12 +314,21 @@ impl Shape {
     }
 
     fn intervals<K: Kernel>(self, element: K::Element) -> Box<dyn Measure> {
+        self.scaled::<K>(1.0, element)
+    }
+
+    fn scaled<K: Kernel>(self, scale: f64, element: K::Element) -> Box<dyn Measure> {
         let elements = vec![element];
         match self {
-            Self::Linear => Box::new(Group::<K>::intervals("measure", 1.0, elements)),
-            Self::Curved => Box::new(Group::<Curved<K>>::intervals("measure", 1.0, elements)),
+            Self::Linear => Box::new(Group::<K>::intervals("measure", scale, elements)),
+            Self::Curved => Box::new(Group::<Curved<K>>::intervals("measure", scale, elements)),
         }
     }
+}
+
+/// A vector as an element of an interval reads it.
+pub(super) fn read(vector: usize, stencil: Stencil) -> VectorArg {
+    VectorArg { vector, stencil }
 }
 
 /// Measure of a formula of vectors of an instant.
@@ -350,10 +339,7 @@ pub(super) fn instant<E: Energy<M> + 'static, const M: usize, const NV: usize>(
 ) -> Box<dyn Measure> {
     shape.instants::<Formulas<E, M, NV, 0>>(Element {
         energy,
-        vectors: vectors.map(|vector| VectorArg {
-            vector,
-            stencil: Stencil::Here,
-        }),
+        vectors: vectors.map(|vector| read(vector, Stencil::Here)),
         scalars: [],
     })
 }
@@ -367,7 +353,7 @@ pub(super) fn interval<E: Energy<M> + 'static, const M: usize, const NV: usize, 
 ) -> Box<dyn Measure> {
     shape.intervals::<Formulas<E, M, NV, NS>>(Element {
         energy,
-        vectors: vectors.map(|(vector, stencil)| VectorArg { vector, stencil }),
+        vectors: vectors.map(|(vector, stencil)| read(vector, stencil)),
         scalars,
     })
 }

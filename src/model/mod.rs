@@ -44,6 +44,7 @@ mod measures;
 mod members;
 #[expect(clippy::module_inception, reason = "the file of the type of that name")]
 mod model;
+mod muscle_measures;
 mod muscle_state;
 mod named;
 mod parameter;

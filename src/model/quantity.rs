@@ -71,6 +71,8 @@ pub enum Quantity {
     SquaredStretch {
         /// Muscle index.
         muscle: usize,
+        /// Start or end of the intervals, `Here` or `Next`, for one that reads a sought constant, which belongs to intervals.
+        at: Option<Stencil>,
     },
     /// Capacitance of a lumped muscle in mC/V at the instants.
     Capacitance {
@@ -92,6 +94,8 @@ pub enum Quantity {
         muscle: usize,
         /// E in V/mm.
         limit: f64,
+        /// As of a stretch.
+        at: Option<Stencil>,
     },
     /// Current of the source of a muscle behind a resistor in the middle of the intervals.
     SourceCurrent {
@@ -222,7 +226,9 @@ impl Quantity {
     pub fn is_of_intervals(&self) -> bool {
         matches!(
             self,
-            Self::SquaredField { .. }
+            Self::SquaredStretch { at: Some(_), .. }
+                | Self::ChargedField { at: Some(_), .. }
+                | Self::SquaredField { .. }
                 | Self::MarkerStep { .. }
                 | Self::SquaredSpeed { .. }
                 | Self::JointStep { .. }
@@ -238,6 +244,19 @@ impl Quantity {
         )
     }
 
+    /// The same quantity of the instants, measured at the start or end of the intervals, where it may read sought constants; none of one that
+    /// is not offered there.
+    pub fn in_intervals(&self, at: Stencil) -> Option<Self> {
+        let at = Some(at);
+        match *self {
+            Self::SquaredStretch { muscle, .. } => Some(Self::SquaredStretch { muscle, at }),
+            Self::ChargedField { muscle, limit, .. } => {
+                Some(Self::ChargedField { muscle, limit, at })
+            }
+            _ => None,
+        }
+    }
+
     /// Returns the noun of its time, in front of the number of the instant or interval.
     pub fn when(&self) -> &'static str {
         match self {
@@ -245,6 +264,10 @@ impl Quantity {
                 Stencil::Here => "at the start of interval",
                 Stencil::Next => "at the end of interval",
                 _ => "in the middle of interval",
+            },
+            Self::SquaredStretch { at, .. } | Self::ChargedField { at, .. } => match at {
+                Some(Stencil::Next) => "at the end of interval",
+                _ => "at instant",
             },
             Self::MarkerStep { .. }
             | Self::SquaredSpeed { .. }

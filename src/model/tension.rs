@@ -1,16 +1,15 @@
 //! Measure of the tension of a lumped muscle: the sum of the forces of all its energies along its span, and of its viscosity.
 
-use crate::energy::{Energy, FlowingCharge, GivenCharge, NeoHooke, ViscousTension};
-use crate::functional::{
-    CurvedSum, Element, Formulas, Group, Kernel, Law, Measure, SpanForces, Stencil, Sum, VectorArg,
-};
+use crate::energy::NeoHooke;
+use crate::functional::{CurvedSum, Law, LawElement, Measure, Stencil, Sum, VectorArg};
 use crate::kinematics::Vectors;
 use crate::model::components::capacitance;
+use crate::model::components::measured_laws::{Tension, ViscousForce};
 use crate::model::components::muscle_constants::MuscleConstants;
-use crate::model::components::muscle_laws::ElasticConstants;
+use crate::model::components::muscle_laws::{ElasticConstants, Flowing, Given};
 use crate::model::internal::InternalKind;
-use crate::model::measures::{Known, Shape};
-use crate::model::system::{Fidelity, Muscle};
+use crate::model::measures::{Known, Shape, read};
+use crate::model::system::Fidelity;
 
 /// The parts of a tension in a unit in N.
 struct Parts {
@@ -19,45 +18,33 @@ struct Parts {
 }
 
 impl Parts {
-    fn add<K: Kernel>(&mut self, element: K::Element) {
-        let group = Group::<K>::intervals("tension", 1.0 / self.unit, vec![element]);
-        self.list.push(Box::new(group));
-    }
-
-    /// Adds the force of an energy along its first vector, in the middle of the interval.
-    fn add_energy<E: Energy<M> + 'static, const M: usize, const NV: usize, const NS: usize>(
+    fn add<L: Law<M>, const M: usize, const NV: usize, const NS: usize>(
         &mut self,
-        energy: E,
-        vectors: [usize; NV],
-        scalars: [usize; NS],
+        element: LawElement<L, NV, NS>,
     ) {
-        self.add::<SpanForces<E, M, NV, NS>>(Element {
-            energy,
-            vectors: vectors.map(|vector| read(vector, Stencil::Mid)),
-            scalars,
-        });
+        let part = Shape::Linear.scaled_law(1.0 / self.unit, element);
+        self.list.push(part);
     }
 
     /// Adds the force of elasticity, with that of a voltage, by a law of elasticity.
     fn add_cell<L: ElasticConstants>(
         &mut self,
-        (muscle, law): (&Muscle, L),
-        span: usize,
+        mut of: MuscleConstants<'_>,
+        law: L,
+        span: VectorArg,
         voltage: Option<usize>,
     ) {
-        let mut of = MuscleConstants::given(muscle);
-        match (muscle.material.electric, voltage) {
+        match (of.muscle().material.electric, voltage) {
             (Some(electric), Some(voltage)) => {
-                let energy = of.driven(electric, law).formula(&[]);
-                self.add_energy::<_, 4, 1, 1>(energy, [span], [voltage]);
+                let energy = Tension(of.driven(electric, law));
+                self.add::<_, 4, 1, 1>(of.element(energy, [span], [voltage]));
             }
-            _ => self.add_energy::<_, 3, 1, 0>(of.elastic(law).formula(&[]), [span], []),
+            _ => {
+                let energy = Tension(of.elastic(law));
+                self.add::<_, 3, 1, 0>(of.element(energy, [span], []));
+            }
         }
     }
-}
-
-fn read(vector: usize, stencil: Stencil) -> VectorArg {
-    VectorArg { vector, stencil }
 }
 
 impl Known<'_> {
@@ -77,25 +64,35 @@ impl Known<'_> {
         if muscle.fidelity != Fidelity::Lumped || !(is_changed || self.presolved.moves(muscle)) {
             return None;
         }
+        let of = self.muscle(index, vectors);
         let span = self.span(index, vectors);
+        let [middle, rate] = [Stencil::Mid, Stencil::Rate].map(|stencil| read(span, stencil));
         let mut parts = Parts {
             unit,
             list: Vec::new(),
         };
-        let mut of = MuscleConstants::given(muscle);
         match muscle.material.law {
-            None => parts.add_cell((muscle, NeoHooke), span, voltage),
-            Some(law) => parts.add_cell((muscle, of.law(law)), span, voltage),
+            None => parts.add_cell(of.clone(), NeoHooke, middle, voltage),
+            Some(law) => {
+                let mut of = of.clone();
+                let law = of.law(law);
+                parts.add_cell(of, law, middle, voltage);
+            }
         }
-        if let Some((charge, capacitance)) = charge.zip(capacitance(muscle)) {
-            let energy = FlowingCharge {
-                capacitance,
-                unit: capacitance.unit_of_charge(),
-            };
-            parts.add_energy::<_, 6, 2, 0>(energy, [span, vectors.index(charge)], []);
+        let mut electric = of.clone();
+        if let Some((charge, law)) = charge.zip(electric.capacitance()) {
+            let unit = capacitance(muscle)?.unit_of_charge();
+            let energy = Tension(Flowing {
+                capacitance: law,
+                unit,
+            });
+            let vectors = [middle, read(vectors.index(charge), Stencil::Mid)];
+            parts.add::<_, 6, 2, 0>(electric.element(energy, vectors, []));
         }
-        if let Some((charge, capacitance)) = given.zip(capacitance(muscle)) {
-            parts.add_energy(GivenCharge { capacitance }, [span], [charge]);
+        let mut electric = of.clone();
+        if let Some((charge, capacitance)) = given.zip(electric.capacitance()) {
+            let energy = Tension(Given(capacitance));
+            parts.add::<_, 4, 1, 1>(electric.element(energy, [middle], [charge]));
         }
         for (branch, constants) in muscle.material.maxwell.list().iter().enumerate() {
             let kind = InternalKind::Branch {
@@ -103,16 +100,16 @@ impl Known<'_> {
                 branch,
             };
             if let Some(viscous) = self.internals.vector(kind) {
-                let energy = of.branch_spring(branch, constants).formula(&[]);
-                parts.add_energy::<_, 6, 2, 0>(energy, [span, vectors.index(viscous)], []);
+                let mut of = of.clone();
+                let energy = Tension(of.branch_spring(branch, constants));
+                let vectors = [middle, read(vectors.index(viscous), Stencil::Mid)];
+                parts.add::<_, 6, 2, 0>(of.element(energy, vectors, []));
             }
         }
         if let Some(viscosity) = muscle.material.viscosity {
-            parts.add::<Formulas<ViscousTension, 6, 2, 0>>(Element {
-                energy: ViscousTension(of.viscous(viscosity).formula(&[])),
-                vectors: [Stencil::Mid, Stencil::Rate].map(|stencil| read(span, stencil)),
-                scalars: [],
-            });
+            let mut of = of;
+            let force = ViscousForce(of.viscous(viscosity));
+            parts.add::<_, 6, 2, 0>(of.element(force, [middle, rate], []));
         }
         Some(match shape {
             Shape::Linear => Box::new(Sum::new(parts.list)),

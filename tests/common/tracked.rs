@@ -113,7 +113,11 @@ pub fn measured(
 pub fn measured_source(muscle: usize) -> Vec<QuantityCost> {
     let current = Quantity::SourceCurrent { muscle, unit: 2e-5 };
     let power = Quantity::SourcePower { muscle, unit: 0.03 };
-    let field = Quantity::ChargedField { muscle, limit: 4e4 };
+    let field = Quantity::ChargedField {
+        muscle,
+        limit: 4e4,
+        at: None,
+    };
     let mut end = square(power, 1.0, Signal::Constant(0.2));
     end.during = During::End;
     vec![

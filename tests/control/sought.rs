@@ -112,6 +112,56 @@ fn a_free_arm_lowers_the_effort_and_meets_the_conditions() {
     assert!(held.solution.objective > least && held.conditions.iter().all(|c| *c < 1e-7));
 }
 
+/// Squared distance of the ends of a muscle of a trunk of one body at an angle about z, over that at rest.
+fn stretch(system: &System, muscle: usize, angle: f64) -> f64 {
+    let of = &system.muscles[muscle];
+    let hinge = system.joints[0].at;
+    let turn = nalgebra::Rotation3::from_axis_angle(&nalgebra::Vector3::z_axis(), angle);
+    assert!(of.from.body.is_none() && of.to.body == Some(0));
+    let end = hinge + turn * (of.to.at - hinge);
+    (end - of.from.at).norm() / (of.to.at - of.from.at).norm()
+}
+
+/// The stretch follows from the arm: where it is limited, the arm is shorter than the best one.
+#[test]
+fn a_free_arm_keeps_a_limit_of_a_stretch_that_it_changes() {
+    let system = pair();
+    let free = Control {
+        parameters: vec![arm([4.0, 60.0], 15.0)],
+        ..turn(&system)
+    };
+    let largest = |found: &Optimum| {
+        let scalars = found.model.variables.range(Role::Parameter);
+        let arm_length = found.discrete.scalars[0][scalars.start];
+        let anew = with_parameters(&system, &free.parameters, &[arm_length]);
+        let angles = found.discrete.z.iter().map(|z| z[0]);
+        let stretches = angles.flat_map(|angle| [0, 1].map(|m| stretch(&anew, m, angle)));
+        (arm_length, stretches.fold(0.0, f64::max))
+    };
+    let best = solve(&system, &free, None, Start::Cold);
+    let (longer, without) = largest(&best);
+    let max = 1.0 + 0.7 * (without - 1.0);
+    let limit = |muscle| PathConstraint::Stretch {
+        muscle,
+        min: 0.2,
+        max,
+    };
+    let limited = Control {
+        limits: vec![limit(0), limit(1)],
+        ..free.clone()
+    };
+    let found = solve(&system, &limited, None, Start::Cold);
+    assert!(best.solution.status.is_solved() && found.solution.status.is_solved());
+    let (shorter, with) = largest(&found);
+    println!("arm {longer} with {without}, {shorter} with {with}, at most {max}");
+    assert!(without > 1.02 && shorter < 0.95 * longer);
+    assert!((with - max).abs() < 1e-6);
+    assert!(found.solution.objective > best.solution.objective);
+    // Rows are no equations alone.
+    let [stationarity, _, products, signs] = found.conditions;
+    assert!([stationarity, products, signs].iter().all(|c| *c < 1e-7));
+}
+
 fn refusal(system: &System, control: &Control) -> String {
     match BoundaryConditions::resolve(system, control, 10.0) {
         Err(error @ BoundaryError::Parameter { .. }) => error.to_string(),
@@ -184,24 +234,6 @@ fn parameters_are_refused_where_they_may_not_act() {
         ..with(vec![modulus()])
     };
     says(at_rest, "state of rest at the start depends on it");
-    // Limits that depend on a parameter.
-    let limited = |limit| Control {
-        limits: vec![limit],
-        ..with(vec![arm([4.0, 60.0], 15.0)])
-    };
-    let (muscle, max) = (0, 1.4);
-    says(
-        limited(PathConstraint::Stretch {
-            muscle,
-            min: 0.5,
-            max,
-        }),
-        "limit",
-    );
-    says(
-        limited(PathConstraint::ElectricField { muscle, max }),
-        "limit",
-    );
     // Energies of a muscle whose capacitance depends on one; not on its modulus, nor that of another muscle.
     let paid = |source: usize, parameter: Parameter| {
         let mut control = with(vec![parameter]);

@@ -7,7 +7,7 @@ use crate::control::transcription::step::Step;
 use crate::control::waypoint::instant_at;
 use crate::coordinates::{CoordinateMap, Reduced};
 use crate::functional::{Functional, Measure, Outer};
-use crate::model::{Model, Quantity};
+use crate::model::{Model, Quantity, Role, Time};
 use std::ops::Range;
 
 /// Mark of a scalar among the entries of a gradient.
@@ -81,7 +81,9 @@ pub(super) fn limit_rows(
         if has_length && unknowns.horizon().is_some() {
             entries.push((DURATION, 0));
         }
-        let reads_inputs = !reads.scalars().is_empty();
+        let scalars = model.variables.of(Time::Interval);
+        let is_input = |&s: &usize| scalars[s].role != Role::Parameter;
+        let reads_inputs = reads.scalars().iter().any(is_input);
         let single = sites((bounded.when, site), span, reads_inputs);
         let mut at = match &step {
             Some(step) => {

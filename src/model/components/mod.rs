@@ -5,6 +5,7 @@ pub(super) mod circuit;
 pub(super) mod electrode_circuit;
 mod kind;
 pub(super) mod load;
+pub(super) mod measured_laws;
 pub(super) mod muscle;
 pub(super) mod muscle_constants;
 pub(super) mod muscle_laws;

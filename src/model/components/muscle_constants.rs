@@ -3,6 +3,7 @@
 use crate::energy::{Affine, ElasticLaw, NeoHooke};
 use crate::functional::{LawElement, VectorArg};
 use crate::math::Vector;
+use crate::model::components::measured_laws::{Field, Stretch};
 use crate::model::components::muscle_laws::{
     BranchDamper, BranchSpring, Driven, Elastic, OfCapacitance, PointMass, Section, Shape,
     UnrelaxedSpring, Viscous, Weight,
@@ -137,6 +138,26 @@ impl<'a> MuscleConstants<'a> {
     pub(in crate::model) fn capacitance(&mut self) -> Option<OfCapacitance> {
         let electric = self.muscle.material.electric?;
         Some(OfCapacitance(self.driven(electric, NeoHooke)))
+    }
+
+    /// Squared stretch.
+    pub(in crate::model) fn stretch(&self) -> Stretch {
+        Stretch(self.shape.clone())
+    }
+
+    /// Squared ratio of the field of a voltage to a limit in V/mm.
+    pub(in crate::model) fn field(&mut self, limit: f64) -> Field {
+        Field {
+            shape: self.shape.clone(),
+            layer: self.layer(),
+            limit,
+        }
+    }
+
+    /// Resistance in Ω of its circuit, in series.
+    pub(in crate::model) fn resistance(&mut self) -> Option<Affine> {
+        let value = self.muscle.circuit?.resistance?;
+        Some(self.read.constant(Constant::Resistance(self.index), value))
     }
 
     /// Viscosity of a value.

@@ -55,7 +55,7 @@ impl Shape {
     }
 
     /// Rest length L₀ in mm.
-    fn length<T: Number>(&self, parameters: &[T]) -> T {
+    pub(super) fn length<T: Number>(&self, parameters: &[T]) -> T {
         let distance = self.distance(parameters);
         match &self.prestretch {
             None => distance,
