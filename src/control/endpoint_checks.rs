@@ -188,13 +188,13 @@ impl<'a> End<'a> {
             // Limits of the path are checked by themselves, whatever the coordinates.
             Quantity::Joint { .. } if bounded.when == When::Everywhere => return None,
             Quantity::Joint { joint, .. } => return self.joint_coordinate(joint),
-            Quantity::MarkerPlace { marker, axis } => {
+            Quantity::MarkerPlace { marker, axis, .. } => {
                 let given = self.places.get(&marker).and_then(|place| place.0[axis]);
                 if given.is_some() {
                     return given;
                 }
             }
-            Quantity::MarkerRegion { marker, region } => {
+            Quantity::MarkerRegion { marker, region, .. } => {
                 if let Some(place) = self.places.get(&marker).and_then(Place::whole) {
                     return Some(region_value(&region, &place));
                 }

@@ -31,7 +31,7 @@ pub(super) fn add_places(
         let is_free = |axis: usize| !system.holds_marker(marker, axis);
         for (axis, value) in place.given().filter(|(axis, _)| is_free(*axis)) {
             let name = format!("{at} {} of marker {name}", AXES[axis]);
-            let quantity = Quantity::MarkerPlace { marker, axis };
+            let quantity = Quantity::marker_place(marker, axis);
             limits.add_equality(when, quantity, value, name);
         }
     }

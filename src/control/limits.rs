@@ -318,12 +318,13 @@ impl Limits {
     /// Adds the limits that keep a marker inside or outside a region.
     fn add_region(&mut self, marker: usize, region: Region, side: Side, system: &System) {
         let name = &system.markers[marker].name;
-        let in_region = Quantity::MarkerRegion { marker, region };
+        let at = None;
+        let in_region = Quantity::MarkerRegion { marker, region, at };
         match (region, side) {
             (Region::Box { min, max }, Side::Inside) => {
                 for (axis, letter) in ["x", "y", "z"].into_iter().enumerate() {
                     let name = format!("{letter} of marker {name} inside its box");
-                    let quantity = Quantity::MarkerPlace { marker, axis };
+                    let quantity = Quantity::marker_place(marker, axis);
                     self.add(quantity, [min[axis], max[axis]], name);
                 }
             }

@@ -8,7 +8,7 @@ use crate::control::rest::rest_with;
 use crate::dynamics::Start;
 use crate::functional::{Stencil, Term, TermKind};
 use crate::model::{
-    Constant, MaterialConstant, Model, NotSought, Parameter, Quantity, Role, System,
+    Constant, Coordinates, MaterialConstant, Model, NotSought, Parameter, Quantity, Role, System,
     check_parameters, with_parameters,
 };
 
@@ -50,6 +50,9 @@ fn reads(quantity: &Quantity, parameter: &Parameter) -> bool {
             let is_electric = matches!(c, Constant::Material(_, C1 | C2 | Permittivity));
             c.is_shape() || is_electric || matches!(c, Constant::Layer(_))
         }),
+        Quantity::MarkerPlace { at: None, .. } | Quantity::MarkerRegion { at: None, .. } => {
+            parameter.constants.iter().any(|c| c.constant.is_place())
+        }
         Quantity::ReactionStep { .. } => true,
         _ => false,
     }
@@ -102,6 +105,14 @@ pub(super) fn check(
             return Err(BoundaryError::Parameter {
                 name: parameter.name.clone(),
                 reason: "nothing that moves reads it".to_owned(),
+            });
+        }
+        let mut constants = parameter.constants.iter();
+        if model.coordinates == Coordinates::Redundant && constants.any(|c| c.constant.is_place()) {
+            return Err(BoundaryError::Parameter {
+                name: parameter.name.clone(),
+                reason: "a place of a body, joint or marker depends on it, which is offered in joint coordinates alone"
+                    .to_owned(),
             });
         }
         let terms = &model.action.intervals.terms;

@@ -34,7 +34,7 @@ impl Waypoint {
         };
         let places = self.places.iter().flat_map(|(&marker, place)| {
             let given = place.given();
-            given.map(move |(axis, value)| (Quantity::MarkerPlace { marker, axis }, value))
+            given.map(move |(axis, value)| (Quantity::marker_place(marker, axis), value))
         });
         let angles = self.angles.iter();
         let angles = angles.map(|(&joint, &value)| (Quantity::Joint { joint, near: 0.0 }, value));

@@ -2,20 +2,22 @@
 
 use crate::math::Number;
 
-/// A constant of a formula as a function of sought parameters π: `value + Σ factor · π`.
+/// A constant of a formula as a function of sought parameters π: `value + Σ (factor · π + a π² + b π³)`.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Affine {
     /// The part that no parameter changes.
     pub value: f64,
     /// Places of parameters among those of the element, and their factors.
     pub slopes: Vec<(usize, f64)>,
+    /// Places of parameters, and the factors a and b of their squares and cubes.
+    pub higher: Vec<(usize, [f64; 2])>,
 }
 
 impl From<f64> for Affine {
     fn from(value: f64) -> Self {
         Self {
             value,
-            slopes: Vec::new(),
+            ..Self::default()
         }
     }
 }
@@ -24,11 +26,7 @@ impl Affine {
     /// `factor · self + value`.
     #[must_use]
     pub fn scaled(&self, factor: f64, value: f64) -> Self {
-        let slopes = self.slopes.iter().map(|&(i, slope)| (i, factor * slope));
-        Self {
-            value: factor * self.value + value,
-            slopes: slopes.collect(),
-        }
+        Self::from(value).plus(factor, self)
     }
 
     /// `self + factor · other`.
@@ -37,7 +35,15 @@ impl Affine {
         self.value += factor * other.value;
         let slopes = other.slopes.iter().map(|&(i, slope)| (i, factor * slope));
         self.slopes.extend(slopes);
+        let higher = other.higher.iter();
+        self.higher
+            .extend(higher.map(|&(i, powers)| (i, powers.map(|p| factor * p))));
         self
+    }
+
+    /// Returns true if no parameter changes it.
+    pub fn is_given(&self) -> bool {
+        self.slopes.is_empty() && self.higher.is_empty()
     }
 
     /// Its value at parameters.
@@ -46,6 +52,10 @@ impl Affine {
         let mut sum = T::of(self.value);
         for &(place, factor) in &self.slopes {
             sum += parameters[place].scaled(factor);
+        }
+        for &(place, [a, b]) in &self.higher {
+            let square = parameters[place] * parameters[place];
+            sum += square * parameters[place].scaled(b).shifted(a);
         }
         sum
     }

@@ -13,15 +13,16 @@ pub struct PositionComponent {
     pub normal: Vector,
 }
 
-impl Energy<3> for PositionComponent {
-    type Local<const ORDER: usize> = Jet<3, ORDER>;
+impl<T: Number> Energy<3, T> for PositionComponent {
+    type Local<const ORDER: usize> = Jet<3, ORDER, T>;
 
     const DEGREE: usize = 1;
 
-    fn at<const ORDER: usize>(&self, p: &SVector<f64, 3>, w: &SVector<f64, 3>) -> Jet<3, ORDER> {
-        let mut jet = Jet::constant((p - self.origin).dot(&self.normal));
-        jet.gradient = self.normal;
-        jet.value_w = self.normal.dot(w);
+    fn at<const ORDER: usize>(&self, p: &SVector<T, 3>, w: &SVector<T, 3>) -> Jet<3, ORDER, T> {
+        let normal = self.normal.map(T::of);
+        let mut jet = Jet::constant((p - self.origin.map(T::of)).dot(&normal));
+        jet.gradient = normal;
+        jet.value_w = normal.dot(w);
         jet
     }
 }
@@ -63,12 +64,12 @@ pub struct OutsideBox {
     pub half: Vector,
 }
 
-impl Energy<3> for OutsideBox {
-    type Local<const ORDER: usize> = Jet<3, ORDER>;
+impl<T: Number> Energy<3, T> for OutsideBox {
+    type Local<const ORDER: usize> = Jet<3, ORDER, T>;
 
-    fn at<const ORDER: usize>(&self, p: &SVector<f64, 3>, w: &SVector<f64, 3>) -> Jet<3, ORDER> {
+    fn at<const ORDER: usize>(&self, p: &SVector<T, 3>, w: &SVector<T, 3>) -> Jet<3, ORDER, T> {
         let axis = |i: usize| {
-            let x = (Jet::argument(i, p, w) + -self.centre[i]) * (1.0 / self.half[i]);
+            let x = (Jet::argument(i, p, w) + T::of(-self.centre[i])) * T::of(1.0 / self.half[i]);
             x.powi(16)
         };
         axis(0) + axis(1) + axis(2)

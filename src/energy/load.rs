@@ -32,8 +32,8 @@ impl<T: Number> Energy<4, T> for DeadLoad<T> {
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct FollowingForce;
 
-impl Energy<13> for FollowingForce {
-    type Local<const ORDER: usize> = Jet<13, ORDER>;
+impl<T: Number> Energy<13, T> for FollowingForce {
+    type Local<const ORDER: usize> = Jet<13, ORDER, T>;
 
     const DEGREE: usize = 3;
     const VIRTUAL: usize = 2;
@@ -44,7 +44,7 @@ impl Energy<13> for FollowingForce {
         matches!((i, j), (0, 3) | (3, 0))
     }
 
-    fn at<const ORDER: usize>(&self, p: &SVector<f64, 13>, w: &SVector<f64, 13>) -> Jet<13, ORDER> {
+    fn at<const ORDER: usize>(&self, p: &SVector<T, 13>, w: &SVector<T, 13>) -> Jet<13, ORDER, T> {
         Jet::dot(0, 9, p, w) * Jet::argument(12, p, w)
     }
 }

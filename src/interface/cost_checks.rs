@@ -18,7 +18,7 @@ pub(super) fn check_costs(
                 let joint = system.joints.get(joint);
                 joint.is_some_and(Joint::has_coordinate)
             }
-            Quantity::MarkerPlace { marker, axis } => marker < system.markers.len() && axis < 3,
+            Quantity::MarkerPlace { marker, axis, .. } => marker < system.markers.len() && axis < 3,
             Quantity::SquaredSpeed { marker, .. } => marker < system.markers.len(),
             Quantity::Tension { muscle, .. } => {
                 let muscle = system.muscles.get(muscle);

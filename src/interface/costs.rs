@@ -63,7 +63,7 @@ impl Control {
     ) -> Self {
         let marker = marker.index();
         for (axis, reference) in along.into_iter().enumerate() {
-            let quantity = Quantity::MarkerPlace { marker, axis };
+            let quantity = Quantity::marker_place(marker, axis);
             self = self.square(quantity, reference, During::Motion, weight);
         }
         self
@@ -132,7 +132,7 @@ impl Control {
     pub fn end_near(mut self, marker: Handle<Marker>, place: Vector3<f64>, weight: f64) -> Self {
         let marker = marker.index();
         for (axis, &at) in place.iter().enumerate() {
-            let quantity = Quantity::MarkerPlace { marker, axis };
+            let quantity = Quantity::marker_place(marker, axis);
             self = self.square(quantity, Some(at.into()), During::End, weight);
         }
         self

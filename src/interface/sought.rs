@@ -93,6 +93,11 @@ impl Handle<Joint> {
         Constant::JointStiffness(self.index())
     }
 
+    /// A component, 0 to 2, of its place in mm.
+    pub fn place(self, axis: usize) -> Constant {
+        Constant::JointPlace(self.index(), axis)
+    }
+
     /// Its coordinate without force of its spring in rad or mm.
     pub fn rest(self) -> Constant {
         Constant::JointRest(self.index())
@@ -108,6 +113,11 @@ impl Handle<Body> {
     /// A principal moment of inertia, 0 to 2, in g mm².
     pub fn inertia(self, axis: usize) -> Constant {
         Constant::Inertia(self.index(), axis)
+    }
+
+    /// A component, 0 to 2, of its place in mm.
+    pub fn place(self, axis: usize) -> Constant {
+        Constant::BodyPlace(self.index(), axis)
     }
 }
 
@@ -154,6 +164,7 @@ impl Parameter {
             constant,
             factor,
             offset,
+            higher: [0.0; 2],
         });
         self
     }

@@ -50,6 +50,18 @@ pub enum Shape {
     None,
 }
 
+impl Shape {
+    /// Its sizes in mm: length and radius of a cylinder, edges of a box, radius of a sphere.
+    pub(super) fn size_mut(&mut self, index: usize) -> Option<&mut f64> {
+        match (self, index) {
+            (Self::Cylinder { length, .. }, 0) => Some(length),
+            (Self::Cylinder { radius, .. }, 1) | (Self::Sphere { radius }, 0) => Some(radius),
+            (Self::Box { size }, _) => size.get_mut(index),
+            _ => None,
+        }
+    }
+}
+
 impl Body {
     /// Pose in the reference configuration.
     pub fn pose(&self) -> Pose {

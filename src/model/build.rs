@@ -25,7 +25,7 @@ use crate::model::term_order::rank;
 use crate::model::terms::{Carriers, Terms};
 use crate::model::variables::{Role, Size, Time, Variable, Variables};
 use crate::model::{
-    blocks, constraints, dampers, field_extent, joint_springs, loads, plan, prescribed,
+    blocks, constraints, dampers, field_extent, joint_springs, loads, plan, prescribed, tree_drifts,
 };
 use std::collections::BTreeSet;
 use std::sync::Arc;
@@ -100,6 +100,7 @@ impl Model {
             blocks: &blocks,
             internals: &internals,
             loops: &loops,
+            graph: &graph,
         };
         let spans = construction.spans(&mut vectors);
         let (intervals, made) = construction.sums(&spans, &variables, &mut vectors);
@@ -110,12 +111,11 @@ impl Model {
         );
         let measures = construction.measures(read, balance, &mut vectors);
         let list = vectors.list();
-        let multipliers = made.multipliers.len();
-        let map = construction.coordinate_map(&graph, list, multipliers);
+        let map = construction.coordinate_map(list, made.multipliers.len());
         let scalars = variables.of(Time::Interval).len();
         let intervals = Functional::new(intervals, measures.intervals, list.len(), scalars);
         let instants = Functional::new(made.terms, measures.instants, list.len(), multipliers);
-        construction.name_unknowns(&graph, &map, made.multipliers, &mut variables);
+        construction.name_unknowns(&map, made.multipliers, &mut variables);
         Ok(Self {
             coordinates,
             action: Reduced::new(map, intervals, instants),
@@ -218,9 +218,18 @@ struct Construction<'a> {
     blocks: &'a Solids,
     internals: &'a Internals,
     loops: &'a Loops,
+    graph: &'a Graph,
 }
 
 impl Construction<'_> {
+    /// The sought parameters.
+    fn sought(&self, variables: &Variables) -> Sought {
+        let parameters = &self.analysis.parameters;
+        let of = (self.system, self.presolved);
+        let drifts = tree_drifts::of_tree(parameters, of, self.graph, self.reference);
+        Sought::new(parameters, variables.range(Role::Parameter).start, drifts)
+    }
+
     /// Carriers of the bodies of the scene.
     fn carriers(&self) -> Carriers<'_> {
         let bodies = 0..self.system.bodies.len();
@@ -273,7 +282,7 @@ impl Construction<'_> {
         let called = (
             analysis.of_motion,
             analysis.response,
-            &analysis.parameters[..],
+            self.sought(variables),
         );
         let mut terms = Terms::new(self.carriers(), gravity, called, variables, vectors);
         body::build(&self.presolved.system.bodies, self.reference, &mut terms);
@@ -335,9 +344,8 @@ impl Construction<'_> {
         (terms, present): (&[Arc<dyn Term>], &[Present]),
         vectors: &mut Vectors,
     ) -> Measures {
-        let first = variables.range(Role::Parameter).start;
         let known = measures::Known {
-            sought: &Sought::new(&self.analysis.parameters, first),
+            sought: &self.sought(variables),
             system: self.system,
             presolved: self.presolved,
             internals: self.internals,
@@ -352,17 +360,12 @@ impl Construction<'_> {
     }
 
     /// The map from coordinates to material vectors.
-    fn coordinate_map(
-        &self,
-        graph: &Graph,
-        vectors: &[MaterialVector],
-        multipliers: usize,
-    ) -> CoordinateMap {
+    fn coordinate_map(&self, vectors: &[MaterialVector], multipliers: usize) -> CoordinateMap {
         let (rest, nodes) = (&self.presolved.system, &self.blocks.nodes);
         let internal = self.internals.list.len();
         match self.coordinates {
             Coordinates::Reduced => {
-                let tree = graph.tree(rest, self.reference, vectors);
+                let tree = self.graph.tree(rest, self.reference, vectors);
                 CoordinateMap::articulated(tree, vectors, nodes, internal, multipliers)
             }
             Coordinates::Redundant => {
@@ -374,7 +377,6 @@ impl Construction<'_> {
     /// Adds the unknowns of an instant to the variables: coordinates, then multipliers.
     fn name_unknowns(
         &self,
-        graph: &Graph,
         map: &CoordinateMap,
         multipliers: Vec<String>,
         variables: &mut Variables,
@@ -382,7 +384,7 @@ impl Construction<'_> {
         let named = Named {
             coordinates: self.coordinates,
             system: &self.presolved.system,
-            graph,
+            graph: self.graph,
             map,
             nodes: &self.blocks.names,
             solids: &self.blocks.list,

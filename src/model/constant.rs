@@ -73,6 +73,14 @@ pub enum Constant {
     Mass(usize),
     /// A principal moment of inertia, 0 to 2, of a body in g mm².
     Inertia(usize, usize),
+    /// A component, 0 to 2, of the place of a body in mm.
+    BodyPlace(usize, usize),
+    /// A size of the shape of a body in mm, which is drawn: length and radius of a cylinder, edges of a box, radius of a sphere.
+    BodySize(usize, usize),
+    /// A component, 0 to 2, of the place of a joint in mm.
+    JointPlace(usize, usize),
+    /// A component, 0 to 2, of the place of a marker in mm.
+    MarkerPlace(usize, usize),
     /// A component, 0 to 2, of gravity in mm/ms².
     Gravity(usize),
     /// No constant of a component: the largest voltage in V of sources that are sought, which quantities read.
@@ -88,7 +96,7 @@ pub struct SiUnit {
     pub factor: f64,
 }
 
-/// A constant that follows a parameter π: `offset + factor · π`.
+/// A constant that follows a parameter π: `offset + factor · π + a π² + b π³`.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Follower {
     /// The constant.
@@ -97,6 +105,8 @@ pub struct Follower {
     pub factor: f64,
     /// Offset, in the unit of the constant.
     pub offset: f64,
+    /// Factors a and b of the square and of the cube.
+    pub higher: [f64; 2],
 }
 
 impl From<Constant> for Follower {
@@ -106,6 +116,7 @@ impl From<Constant> for Follower {
             constant,
             factor: 1.0,
             offset: 0.0,
+            higher: [0.0; 2],
         }
     }
 }
@@ -163,11 +174,53 @@ impl Constant {
             Self::End(..)
                 | Self::SpringEnd(..)
                 | Self::JointRest(_)
+                | Self::BodyPlace(..)
+                | Self::JointPlace(..)
+                | Self::MarkerPlace(..)
                 | Self::Inertia(..)
                 | Self::Gravity(_)
                 | Self::PeakVoltage
                 | Self::Material(_, Law(_) | LameLambda | C1 | C2 | Permittivity)
         )
+    }
+}
+
+impl Follower {
+    /// The constant at a value of the parameter.
+    pub fn at(&self, value: f64) -> f64 {
+        let [a, b] = self.higher;
+        self.offset + self.factor * value + value * value * (a + b * value)
+    }
+
+    /// Returns true if it is a straight line.
+    pub fn is_linear(&self) -> bool {
+        self.higher == [0.0; 2]
+    }
+
+    /// The same of a parameter of which the old one is `c` times the value.
+    #[must_use]
+    pub fn of_multiple(self, c: f64) -> Self {
+        let [a, b] = self.higher;
+        Self {
+            factor: c * self.factor,
+            higher: [c * c * a, c * c * c * b],
+            ..self
+        }
+    }
+}
+
+impl Constant {
+    /// Returns true if it is a place of which others in the tree of joints follow, or a place that they move.
+    pub fn is_place(self) -> bool {
+        matches!(
+            self,
+            Self::BodyPlace(..) | Self::JointPlace(..) | Self::MarkerPlace(..)
+        )
+    }
+
+    /// Returns true if formulas read it as a vector alone, which moves along a straight line.
+    pub fn is_point(self) -> bool {
+        self.is_place() || matches!(self, Self::End(..) | Self::SpringEnd(..))
     }
 }
 

@@ -132,6 +132,10 @@ impl Constant {
             }
             Self::Mass(b) => Some(&mut system.bodies.get_mut(b)?.mass),
             Self::Inertia(b, axis) => system.bodies.get_mut(b)?.inertia.get_mut(axis),
+            Self::BodyPlace(b, axis) => system.bodies.get_mut(b)?.centre.get_mut(axis),
+            Self::BodySize(b, size) => system.bodies.get_mut(b)?.shape.size_mut(size),
+            Self::JointPlace(j, axis) => system.joints.get_mut(j)?.at.get_mut(axis),
+            Self::MarkerPlace(m, axis) => system.markers.get_mut(m)?.point.at.get_mut(axis),
             Self::Gravity(axis) => system.gravity.as_mut()?.get_mut(axis),
             Self::PeakVoltage | Self::Material(..) | Self::Resistance(_) | Self::Leakage(_) => None,
         }
@@ -184,10 +188,15 @@ impl Constant {
                 Self::JointStiffness(j),
                 Self::JointRest(j),
             ]);
+            all.extend((0..3).map(|axis| Self::JointPlace(j, axis)));
         }
         for b in 0..system.bodies.len() {
             all.push(Self::Mass(b));
             all.extend((0..3).map(|axis| Self::Inertia(b, axis)));
+            all.extend((0..3).flat_map(|i| [Self::BodySize(b, i), Self::BodyPlace(b, i)]));
+        }
+        for m in 0..system.markers.len() {
+            all.extend((0..3).map(|axis| Self::MarkerPlace(m, axis)));
         }
         all
     }
@@ -202,6 +211,10 @@ impl Constant {
             | Self::End(..)
             | Self::SpringLength(_)
             | Self::SpringEnd(..)
+            | Self::BodyPlace(..)
+            | Self::BodySize(..)
+            | Self::JointPlace(..)
+            | Self::MarkerPlace(..)
             | Self::TendonLength(_) => ("m", 1e-3),
             Self::PeakVoltage => ("V", 1.0),
             Self::SpringStiffness(_) | Self::TendonStiffness(_) => ("N/m", 1e3),
@@ -229,6 +242,9 @@ impl Constant {
             Self::End(.., axis)
             | Self::SpringEnd(.., axis)
             | Self::Inertia(_, axis)
+            | Self::BodyPlace(_, axis)
+            | Self::JointPlace(_, axis)
+            | Self::MarkerPlace(_, axis)
             | Self::Gravity(axis)
                 if axis >= 3 =>
             {
@@ -241,10 +257,14 @@ impl Constant {
             Self::TendonStiffness(t) | Self::TendonLength(t) => {
                 ("tendon", t, system.components.tendons.len())
             }
-            Self::JointDamping(j) | Self::JointStiffness(j) | Self::JointRest(j) => {
-                ("joint", j, system.joints.len())
+            Self::JointDamping(j)
+            | Self::JointStiffness(j)
+            | Self::JointRest(j)
+            | Self::JointPlace(j, _) => ("joint", j, system.joints.len()),
+            Self::Mass(b) | Self::Inertia(b, _) | Self::BodyPlace(b, _) | Self::BodySize(b, _) => {
+                ("body", b, system.bodies.len())
             }
-            Self::Mass(b) | Self::Inertia(b, _) => ("body", b, system.bodies.len()),
+            Self::MarkerPlace(m, _) => ("marker", m, system.markers.len()),
             Self::Material(MaterialOf::Block(b, _), _) => ("block", b, system.solids.len()),
             Self::Material(MaterialOf::Muscle(m), _)
             | Self::Side(m, _)

@@ -106,6 +106,20 @@ impl Graph {
         (floating, turning)
     }
 
+    /// Joints of the tree, those nearer to the ground first, with the bodies on this side and on the other.
+    pub(super) fn outwards<'a>(
+        &'a self,
+        system: &'a System,
+    ) -> impl Iterator<Item = (usize, Option<usize>, usize)> + 'a {
+        self.tree.iter().map(|&(j, direction)| {
+            let joint = &system.joints[j];
+            match (direction, joint.parent) {
+                (Direction::Backward, Some(parent)) => (j, Some(joint.child), parent),
+                _ => (j, joint.parent, joint.child),
+            }
+        })
+    }
+
     /// Joints that close loops.
     pub(super) fn loops(&self) -> &[usize] {
         &self.loops

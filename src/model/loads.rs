@@ -1,8 +1,8 @@
 //! Terms of loads: forces on points of bodies, on coordinates of joints and on nodes of blocks, charges on nodes.
 
 use crate::energy::{DeadLoad, FollowingForce, SurfaceCharge};
-use crate::functional::{Element, PressureFace};
-use crate::math::Vector;
+use crate::functional::{Element, Law, PressureFace};
+use crate::math::{Number, Vector};
 use crate::model::components::muscle::{CHARGES as MUSCLE_CHARGES, constants};
 use crate::model::components::muscle_laws::Given;
 use crate::model::components::{BlockLoad, Load, LoadPlace};
@@ -10,8 +10,34 @@ use crate::model::internal::Internals;
 use crate::model::presolved::Presolved;
 use crate::model::solid_block::SolidBlock;
 use crate::model::solids::Solids;
-use crate::model::system::{Muscle, System};
+use crate::model::sought::{MovedPoint, Read};
+use crate::model::system::{Attachment, Muscle, System};
 use crate::model::terms::{Terms, mid};
+
+/// A force w for a load of one, on a point that parameters may move.
+#[derive(Clone)]
+struct Pull(Vector);
+
+impl Law<4> for Pull {
+    type Formula<T: Number> = DeadLoad<T>;
+
+    fn formula<T: Number>(&self, _: &[T]) -> DeadLoad<T> {
+        let force = self.0.map(T::of);
+        DeadLoad { force }
+    }
+}
+
+/// A force that follows its body.
+#[derive(Clone)]
+struct Follow;
+
+impl Law<13> for Follow {
+    type Formula<T: Number> = FollowingForce;
+
+    fn formula<T: Number>(&self, _: &[T]) -> FollowingForce {
+        FollowingForce
+    }
+}
 
 /// Term of the loads whose forces have a potential.
 pub(super) const LOADS: &str = "loads";
@@ -56,12 +82,13 @@ pub(super) fn build(
             } => {
                 let point = on.terms.point(at);
                 let point = on.terms.vector(point);
+                let read = on.moved(at);
                 match follows {
-                    false => on.pull(point, *direction),
+                    false => on.pull(point, *direction, read),
                     true => {
                         let along = on.terms.direction(at, direction);
                         let along = on.terms.vector(along);
-                        on.follow([point, along]);
+                        on.follow([point, along], read);
                     }
                 }
             }
@@ -70,7 +97,7 @@ pub(super) fn build(
                 let coordinate = kept.and_then(|kept| internals.joint(kept));
                 let coordinate = coordinate.expect("a loaded joint has its coordinate");
                 let coordinate = on.terms.vector(coordinate);
-                on.pull(coordinate, Vector::x());
+                on.pull(coordinate, Vector::x(), Read::nothing());
             }
             LoadPlace::Muscle(muscle) => {
                 on.charge_muscle((&system.muscles[*muscle], *muscle), spans[*muscle]);
@@ -96,27 +123,32 @@ struct Loaded<'l, 't> {
 }
 
 impl Loaded<'_, '_> {
-    /// A force w on a vector for a load of one.
-    fn pull(&mut self, vector: usize, force: Vector) {
-        let element = Element {
-            energy: DeadLoad { force },
-            vectors: [mid(vector)],
-            scalars: [self.size],
+    /// The parameters that move a point, whose place itself is given.
+    fn moved(&mut self, at: &Attachment) -> Read {
+        let mut read = self.terms.sought().read();
+        let point = MovedPoint {
+            weight: 1.0,
+            body: self.terms.carrier(at),
+            place: None,
         };
-        self.terms
-            .add::<_, 4, 1, 1>(LOADS, "the force of", self.name, element);
+        read.moves(0, [point], |vector| self.terms.vector(vector));
+        read
+    }
+
+    /// A force w on a vector for a load of one.
+    fn pull(&mut self, vector: usize, force: Vector, read: Read) {
+        let element = read.element(Pull(force), [mid(vector)], [self.size]);
+        let term = (LOADS, "the force of");
+        self.terms.add_law::<_, 4, 1, 1>(term, self.name, element);
     }
 
     /// A force on a point along a direction of its body.
-    fn follow(&mut self, [point, direction]: [usize; 2]) {
-        let vectors = [mid(point), mid(direction)];
-        let element = Element {
-            energy: FollowingForce,
-            vectors: [vectors, vectors].as_flattened().try_into().expect("four"),
-            scalars: [self.size],
-        };
-        self.terms
-            .add::<_, 13, 4, 1>(FOLLOWING, "the force of", self.name, element);
+    fn follow(&mut self, [point, direction]: [usize; 2], read: Read) {
+        let [point, direction] = [mid(point), mid(direction)];
+        let vectors = [point, direction, point, direction];
+        let element = read.element(Follow, vectors, [self.size]);
+        let term = (FOLLOWING, "the force of");
+        self.terms.add_law::<_, 13, 4, 1>(term, self.name, element);
     }
 
     /// A charge on the electrodes of a muscle.
@@ -180,7 +212,7 @@ impl Loaded<'_, '_> {
         for (node, force) in forces {
             let vector = block.vectors[node];
             if self.terms.moves(vector) {
-                self.pull(vector, force);
+                self.pull(vector, force, Read::nothing());
             }
         }
     }

@@ -2,8 +2,7 @@
 
 use crate::element::FieldPoint;
 use crate::energy::{
-    Angle, AngleStep, Energy, Multiple, OutsideBox, PeakExcess, PositionComponent, Projection,
-    ProjectionStep, SquaredDistance,
+    Angle, AngleStep, Energy, Multiple, PeakExcess, PositionComponent, Projection, ProjectionStep,
 };
 use crate::functional::{
     Curved, Element, ElementField, ElementFields, Formulas, Group, Kernel, Law, LawElement, Laws,
@@ -16,7 +15,7 @@ use crate::model::components::capacitance;
 use crate::model::internal::Internals;
 use crate::model::joints::{JointCoordinate, JointReading};
 use crate::model::presolved::Presolved;
-use crate::model::quantity::{FieldPlace, Quantity, Region};
+use crate::model::quantity::{FieldPlace, Quantity};
 use crate::model::solid_block::SolidBlock;
 use crate::model::sought::Sought;
 use crate::model::system::System;
@@ -94,7 +93,7 @@ impl Known<'_> {
             Quantity::MarkerPlace { .. }
             | Quantity::MarkerRegion { .. }
             | Quantity::MarkerStep { .. }
-            | Quantity::SquaredSpeed { .. } => return self.of_marker(quantity, shape),
+            | Quantity::SquaredSpeed { .. } => return self.of_marker(quantity, shape, vectors),
             Quantity::Direction { body, axis, along } => {
                 let body = self.presolved.carrier(Some(body));
                 let direction = MaterialVector::direction(body, &axis, self.reference);
@@ -143,38 +142,6 @@ impl Known<'_> {
                     point,
                 } => return self.element_field(block, (element, point), (limit, at), shape),
             },
-        })
-    }
-
-    /// Place or velocity of a marker.
-    fn of_marker(&self, quantity: &Quantity, shape: Shape) -> Option<Box<dyn Measure>> {
-        let origin = Vector::zeros();
-        Some(match *quantity {
-            Quantity::MarkerPlace { marker, axis } => {
-                let normal = Vector::ith(axis, 1.0);
-                instant(
-                    shape,
-                    PositionComponent { origin, normal },
-                    [self.markers[marker]],
-                )
-            }
-            Quantity::MarkerRegion { marker, region } => {
-                region_measure(region, self.markers[marker], shape)
-            }
-            Quantity::MarkerStep { marker, axis } => {
-                let normal = Vector::ith(axis, 1.0);
-                let marker = (self.markers[marker], Stencil::Difference);
-                interval::<_, 3, 1, 0>(shape, PositionComponent { origin, normal }, [marker], [])
-            }
-            Quantity::SquaredSpeed { marker, limit } => {
-                let energy = SquaredDistance {
-                    centre: origin,
-                    scale: limit,
-                };
-                let marker = (self.markers[marker], Stencil::Rate);
-                interval::<_, 3, 1, 0>(shape, energy, [marker], [])
-            }
-            _ => return None,
         })
     }
 
@@ -260,20 +227,6 @@ impl Known<'_> {
             terminals: block.terminals(element),
             at,
         }))
-    }
-}
-
-/// Place of a marker in a region: at most one inside a sphere, at least three only outside a box.
-fn region_measure(region: Region, marker: usize, shape: Shape) -> Box<dyn Measure> {
-    match region {
-        Region::Sphere { centre, radius } => {
-            let scale = radius;
-            instant(shape, SquaredDistance { centre, scale }, [marker])
-        }
-        Region::Box { min, max } => {
-            let (centre, half) = ((min + max) * 0.5, (max - min) * 0.5);
-            instant(shape, OutsideBox { centre, half }, [marker])
-        }
     }
 }
 

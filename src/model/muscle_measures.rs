@@ -54,12 +54,9 @@ impl Known<'_> {
     pub(super) fn muscle(&self, index: usize, vectors: &mut Vectors) -> MuscleConstants<'_> {
         let muscle = &self.presolved.system.muscles[index];
         let read = self.sought.read();
-        MuscleConstants::new((muscle, index), read, |directions| {
-            let ends = [(&muscle.from, directions[0]), (&muscle.to, directions[1])];
-            let [from, to] = ends.map(|(end, direction)| {
-                MaterialVector::direction(end.body, &direction, self.reference)
-            });
-            vectors.index(MaterialVector::span(&from, &to))
+        let bodies = [muscle.from.body, muscle.to.body];
+        MuscleConstants::new((muscle, index), (read, [-1.0, 1.0]), bodies, |moved| {
+            vectors.index(moved)
         })
     }
 

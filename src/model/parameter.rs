@@ -3,7 +3,8 @@
 use crate::model::constant::{
     Constant, Follower, FoundParameter, MaterialConstant, MaterialOf, Parameter, SiUnit,
 };
-use crate::model::system::{Fidelity, Material, System};
+use crate::model::graph::Graph;
+use crate::model::system::{Fidelity, Material, Muscle, System};
 use std::fmt;
 
 /// A value this near to a bound, relative to the size of the parameter, lies at it.
@@ -26,6 +27,27 @@ impl MaterialConstant {
     }
 }
 
+/// Parts of a system that read places of bodies otherwise than as points that a parameter can move, in words.
+fn moved_otherwise(system: &System) -> Option<&'static str> {
+    let of_elements = |muscle: &Muscle| muscle.fidelity != Fidelity::Lumped;
+    let components = &system.components;
+    let list = [
+        (!system.solids.is_empty(), "elastic blocks"),
+        (
+            system.muscles.iter().any(of_elements),
+            "muscles of finite elements",
+        ),
+        (!components.tendons.is_empty(), "tendons"),
+        (!components.others.is_empty(), "components of other kinds"),
+        (
+            Graph::new(system).obstacle(system).is_some(),
+            "joints that close a loop",
+        ),
+    ];
+    list.into_iter()
+        .find_map(|(is_there, what)| is_there.then_some(what))
+}
+
 impl Constant {
     /// Returns the reason why it cannot be sought, if there is one.
     fn obstacle(self, system: &mut System) -> Option<String> {
@@ -34,6 +56,13 @@ impl Constant {
         }
         if !self.is_named(system) {
             return Some(format!("{}, which the scene has to name", self.lacking()));
+        }
+        if self.is_place()
+            && let Some(other) = moved_otherwise(system)
+        {
+            return Some(format!(
+                "sought places of bodies, joints and markers are not offered beside {other}"
+            ));
         }
         if let Self::End(m, ..) | Self::Prestretch(m) = self
             && !system.muscles[m].material.maxwell.list().is_empty()
@@ -77,8 +106,7 @@ impl Parameter {
     /// Puts a value of the parameter in the place of its constants.
     pub fn put(&self, value: f64, system: &mut System) {
         for follower in &self.constants {
-            let value = follower.offset + follower.factor * value;
-            follower.constant.set(value, system);
+            follower.constant.set(follower.at(value), system);
         }
     }
 
@@ -101,7 +129,8 @@ impl Parameter {
 
 /// Unit in the International System of what constants follow: that of the first one, where it is that constant itself.
 pub fn unit(followers: &[Follower], system: &System) -> SiUnit {
-    let first = followers.first().filter(|first| first.factor.abs() == 1.0);
+    let is_itself = |first: &&Follower| first.factor.abs() == 1.0 && first.is_linear();
+    let first = followers.first().filter(is_itself);
     let other = SiUnit {
         symbol: "",
         factor: 1.0,
@@ -174,15 +203,14 @@ pub fn check(system: &System, parameters: &[Parameter]) -> Result<(), NotSought>
             return not("another parameter has the same name".to_owned());
         }
         for (place, follower) in constants.iter().enumerate() {
-            let Follower {
-                constant,
-                factor,
-                offset,
-            } = *follower;
+            let constant = follower.constant;
             if let Some(reason) = constant.obstacle(system) {
                 return not(reason);
             }
-            let least = offset + (factor * lower).min(factor * upper);
+            if constant.is_point() && !follower.is_linear() {
+                return not("a place that is not linear in it depends on it".to_owned());
+            }
+            let least = follower.at(*lower).min(follower.at(*upper));
             if constant.is_positive() && (least <= 0.0 || least.is_nan()) {
                 return not("its bounds have to be positive".to_owned());
             }

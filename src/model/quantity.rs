@@ -2,53 +2,10 @@
 
 use crate::functional::Stencil;
 use crate::math::Vector;
+pub use crate::model::quantity_parts::{FieldPlace, Reaction, Region};
 use crate::model::system::{JointKind, System};
 use crate::model::variables::Size;
 use std::f64::consts::TAU;
-
-/// A region of space in mm.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub enum Region {
-    /// Box between two corners.
-    Box {
-        /// Lower corner.
-        min: Vector,
-        /// Upper corner.
-        max: Vector,
-    },
-    /// Ball.
-    Sphere {
-        /// Centre.
-        centre: Vector,
-        /// Radius.
-        radius: f64,
-    },
-}
-
-/// Place where a true electric field is read.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum FieldPlace {
-    /// In a lumped muscle.
-    Muscle(usize),
-    /// At a point of a finite element.
-    Element {
-        /// Block: those of the scene, then those of the muscles of finite elements.
-        block: usize,
-        /// Element of its mesh.
-        element: usize,
-        /// Gauss point; the centre where there is none.
-        point: Option<usize>,
-    },
-}
-
-/// Force or torque that a joint transmits along a direction.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Reaction {
-    /// Force in N.
-    Force,
-    /// Torque in N mm about the point of the joint.
-    Torque,
-}
 
 /// Something to measure.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -171,6 +128,8 @@ pub enum Quantity {
         marker: usize,
         /// Component 0, 1 or 2.
         axis: usize,
+        /// As of a stretch.
+        at: Option<Stencil>,
     },
     /// Step of a component of the place of a marker in an interval, in mm.
     MarkerStep {
@@ -215,6 +174,8 @@ pub enum Quantity {
         marker: usize,
         /// The region.
         region: Region,
+        /// As of a stretch.
+        at: Option<Stencil>,
     },
 }
 
@@ -222,12 +183,20 @@ pub enum Quantity {
 pub(super) const MEGAVOLT_PER_METRE: f64 = 1e3;
 
 impl Quantity {
+    /// A component of the place of a marker in mm at the instants.
+    pub fn marker_place(marker: usize, axis: usize) -> Self {
+        let at = None;
+        Self::MarkerPlace { marker, axis, at }
+    }
+
     /// Returns true if it is measured in the intervals rather than at the instants.
     pub fn is_of_intervals(&self) -> bool {
         matches!(
             self,
             Self::SquaredStretch { at: Some(_), .. }
                 | Self::ChargedField { at: Some(_), .. }
+                | Self::MarkerPlace { at: Some(_), .. }
+                | Self::MarkerRegion { at: Some(_), .. }
                 | Self::SquaredField { .. }
                 | Self::MarkerStep { .. }
                 | Self::SquaredSpeed { .. }
@@ -253,6 +222,10 @@ impl Quantity {
             Self::ChargedField { muscle, limit, .. } => {
                 Some(Self::ChargedField { muscle, limit, at })
             }
+            Self::MarkerPlace { marker, axis, .. } => Some(Self::MarkerPlace { marker, axis, at }),
+            Self::MarkerRegion { marker, region, .. } => {
+                Some(Self::MarkerRegion { marker, region, at })
+            }
             _ => None,
         }
     }
@@ -265,7 +238,10 @@ impl Quantity {
                 Stencil::Next => "at the end of interval",
                 _ => "in the middle of interval",
             },
-            Self::SquaredStretch { at, .. } | Self::ChargedField { at, .. } => match at {
+            Self::SquaredStretch { at, .. }
+            | Self::ChargedField { at, .. }
+            | Self::MarkerPlace { at, .. }
+            | Self::MarkerRegion { at, .. } => match at {
                 Some(Stencil::Next) => "at the end of interval",
                 _ => "at instant",
             },

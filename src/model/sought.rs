@@ -2,8 +2,10 @@
 
 use crate::energy::Affine;
 use crate::functional::{LawElement, Move, VectorArg};
+use crate::kinematics::MaterialVector;
 use crate::math::Vector;
 use crate::model::constant::{Constant, Follower, Parameter};
+use crate::model::drift::{Drifts, pruned};
 use std::sync::Arc;
 
 /// The sought parameters of a model.
@@ -12,13 +14,25 @@ pub struct Sought {
     parameters: Arc<[Parameter]>,
     /// Scalar of the first one in an interval.
     first: usize,
+    drifts: Arc<Drifts>,
+}
+
+/// A point of which an element reads a part.
+pub(super) struct MovedPoint<'a> {
+    /// The part.
+    pub(super) weight: f64,
+    /// The body of the presolved system that carries it; none is the ground.
+    pub(super) body: Option<usize>,
+    /// The constants that are the components of its place, where they can be sought.
+    pub(super) place: Option<&'a dyn Fn(usize) -> Constant>,
 }
 
 impl Sought {
-    pub(super) fn new(parameters: &[Parameter], first: usize) -> Self {
+    pub(super) fn new(parameters: &[Parameter], first: usize, drifts: Drifts) -> Self {
         Self {
             parameters: parameters.into(),
             first,
+            drifts: drifts.into(),
         }
     }
 
@@ -58,7 +72,7 @@ pub struct Read {
 impl Read {
     /// A list where nothing is sought.
     pub fn nothing() -> Self {
-        Sought::new(&[], 0).read()
+        Sought::new(&[], 0, Drifts::default()).read()
     }
 
     /// The parameters that were read, scalars of the interval.
@@ -79,6 +93,10 @@ impl Read {
         Affine {
             value: follower.offset,
             slopes: vec![(self.place(parameter), follower.factor)],
+            higher: match follower.is_linear() {
+                true => Vec::new(),
+                false => vec![(self.place(parameter), follower.higher)],
+            },
         }
     }
 
@@ -92,35 +110,42 @@ impl Read {
         })
     }
 
-    /// Notes the parameters that move two ends between which vector `of` of the element lies: `end` is a component of the place of an end,
-    /// and `vector` the material vector of directions at both ends. Returns the parameters, their values without a move, and the directions.
-    pub fn moves(
+    /// Notes the parameters that move points of which the weighted sum is vector `of` of the element; `index` gives a material vector its
+    /// place. Returns the parameters, their values without a move, and the moves of the places themselves.
+    pub(super) fn moves<const N: usize>(
         &mut self,
         of: usize,
-        end: impl Fn(usize, usize) -> Constant,
-        mut vector: impl FnMut([Vector; 2]) -> usize,
-    ) -> Vec<(usize, f64, [Vector; 2])> {
+        points: [MovedPoint<'_>; N],
+        mut index: impl FnMut(MaterialVector) -> usize,
+    ) -> Vec<(usize, f64, [Vector; N])> {
         let mut moves = Vec::new();
-        let parameters = self.sought.parameters.clone();
-        for (p, parameter) in parameters.iter().enumerate() {
-            let mut ends = [Vector::zeros(); 2];
-            for follower in &parameter.constants {
-                for (e, axis) in (0..6).map(|i| (i / 3, i % 3)) {
-                    if follower.constant == end(e, axis) {
-                        ends[e][axis] += follower.factor;
-                    }
-                }
+        let sought = self.sought.clone();
+        for (p, parameter) in sought.parameters.iter().enumerate() {
+            let own = points.each_ref().map(|point| match point.place {
+                Some(place) => parameter.moves(place),
+                None => Vector::zeros(),
+            });
+            let mut sum = MaterialVector::default();
+            for (point, own) in points.iter().zip(&own) {
+                let drift = sought.drifts.of_point(p, point.body, own);
+                sum = MaterialVector::combine(1.0, &sum, point.weight, &drift);
             }
-            if ends != [Vector::zeros(); 2] {
-                let (parameter, at) = (self.place(p), parameter.guess);
+            let is_changed = own.iter().any(|own| *own != Vector::zeros());
+            let vector = pruned(&sum);
+            if !is_changed && vector.is_none() {
+                continue;
+            }
+            let (parameter, at) = (self.place(p), parameter.guess);
+            if let Some(vector) = vector {
+                let vector = index(vector);
                 self.moves.push(Move {
                     of,
-                    vector: vector(ends),
+                    vector,
                     parameter,
                     at,
                 });
-                moves.push((parameter, at, ends));
             }
+            moves.push((parameter, at, own));
         }
         moves
     }

@@ -6,12 +6,12 @@ use crate::functional::{Element, Law, LawElement, Path, ScaledElement, Stencil, 
 use crate::kinematics::{Carrier, MaterialVector, Pose, Vectors};
 use crate::math::Vector;
 use crate::model::attachment::Attachment;
-use crate::model::constant::{Constant, Parameter};
+use crate::model::constant::Constant;
 use crate::model::maxwell::Response;
 use crate::model::members::{Formula, Member, OfKind};
 use crate::model::plan::{self, LeftOut, Present};
 use crate::model::sought::{Read, Sought};
-use crate::model::variables::{Role, Variables};
+use crate::model::variables::Variables;
 use crate::model::weight::Weight;
 use std::any::Any;
 use std::fmt;
@@ -70,11 +70,10 @@ impl<'a> Terms<'a> {
     pub(super) fn new(
         bodies: Carriers<'a>,
         gravity: Option<Vector>,
-        (of_motion, response, parameters): (bool, Response, &[Parameter]),
+        (of_motion, response, sought): (bool, Response, Sought),
         variables: &'a Variables,
         vectors: &'a mut Vectors,
     ) -> Self {
-        let first = variables.range(Role::Parameter).start;
         Self {
             bodies,
             gravity,
@@ -82,7 +81,7 @@ impl<'a> Terms<'a> {
             variables,
             of_motion,
             response,
-            sought: Sought::new(parameters, first),
+            sought,
             collected: Vec::new(),
             present: Vec::new(),
             left_out: Vec::new(),
@@ -119,6 +118,11 @@ impl<'a> Terms<'a> {
         self.bodies.point(point)
     }
 
+    /// The body of the presolved system that carries a point; none is the ground.
+    pub(super) fn carrier(&self, point: &Attachment) -> Option<usize> {
+        self.bodies.carrier(point.body)
+    }
+
     /// Returns true if nothing moves the points.
     pub fn is_immobile(&self, points: &[Attachment]) -> bool {
         let mut carriers = points.iter().map(|p| self.bodies.carrier(p.body));
@@ -129,12 +133,6 @@ impl<'a> Terms<'a> {
     pub fn direction(&self, point: &Attachment, direction: &Vector) -> MaterialVector {
         let body = self.bodies.carrier(point.body);
         MaterialVector::direction(body, direction, self.bodies.reference)
-    }
-
-    /// Index of the vector between directions that are fixed in the bodies of two points.
-    pub fn moved_span(&mut self, points: [&Attachment; 2], directions: [Vector; 2]) -> usize {
-        let [from, to] = [0, 1].map(|end| self.direction(points[end], &directions[end]));
-        self.vectors.index(MaterialVector::span(&from, &to))
     }
 
     /// The sought parameters.

@@ -7,6 +7,7 @@ use crate::control::problem::Control;
 use crate::control::{BoundaryConditions, Carried, Costates, Solution, Transcription};
 use crate::dynamics::{DiscreteTrajectory, reversed_muscle};
 use crate::ipopt::{Options, Solver, SolverResult, interrupt};
+use crate::kinematics::Pose;
 use crate::model::{Model, System};
 use crate::nlp::Nlp;
 use crate::nlp::joined::{Joined, Places};
@@ -157,6 +158,14 @@ fn verified_optimum(
         system, control, ..
     } = asked;
     let (model, mut boundary, sought) = of_motion(system, control, resolved, &motion)?;
+    let motion = match &sought {
+        None => motion,
+        // Places of joints may be sought.
+        Some(_) => Solution {
+            poses: motion.z.iter().map(|z| poses(&model, z)).collect(),
+            ..motion
+        },
+    };
     let verified = match solution.status.is_solved() {
         true => Verification::new(&model, &mut boundary, control, (&discrete, &motion)),
         false => Verification::default(),
@@ -284,6 +293,11 @@ fn of_motion(
     }
     let (found, boundary) = with_found(system, control, &model, motion)?;
     Ok((found, boundary, Some(model)))
+}
+
+/// Poses of the bodies at coordinates.
+fn poses(model: &Model, z: &[f64]) -> Vec<Pose> {
+    model.poses(&model.action.map.placed(z))
 }
 
 /// The point of a program at which its last solve ended.

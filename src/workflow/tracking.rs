@@ -155,7 +155,7 @@ pub(crate) fn path(
         return None;
     };
     let (name, axis, value): (String, Option<usize>, Vec<f64>) = match cost.quantity {
-        Quantity::MarkerPlace { marker, axis } => {
+        Quantity::MarkerPlace { marker, axis, .. } => {
             let name = format!("{}_{}", system.markers[marker].name, ["x", "y", "z"][axis]);
             let marks = motion.marks.iter().map(|places| places[marker][axis]);
             (name, Some(axis), marks.collect())

@@ -5,8 +5,10 @@ use super::systems::{blocks, branched, tied};
 use nalgebra::Vector3;
 use proboscis::control::problem::{Control, Duration, Guess, Voltages};
 use proboscis::functional::MOST_PARAMETERS;
+use proboscis::model::components::{Load, LoadPlace};
 use proboscis::model::system::{
-    Attachment, Circuit, ElasticLaw, JointSpring, Material, MaxwellBranch, MaxwellBranches, System,
+    Attachment, Circuit, ElasticLaw, JointSpring, Marker, Material, MaxwellBranch, MaxwellBranches,
+    System,
 };
 use proboscis::model::{Constant, Follower, MaterialConstant, Parameter};
 
@@ -45,6 +47,7 @@ pub fn parameter(name: &str, constants: &[(Constant, f64)], guess: f64) -> Param
                 constant,
                 factor,
                 offset: 0.0,
+                higher: [0.0; 2],
             })
             .collect(),
         lower: lower.min(upper),
@@ -261,4 +264,80 @@ pub fn crowded() -> (System, Vec<Parameter>) {
     let parameters: Vec<Parameter> = parameters.collect();
     assert_eq!(parameters.len(), MOST_PARAMETERS);
     (system, parameters)
+}
+
+/// The robot without tendon, with a floating body, forces and a marker, and parameters that move joints, bodies and all that is on them; a
+/// moment of inertia goes with the square and the cube of one.
+pub fn lengthened() -> (System, Vec<Parameter>) {
+    use Constant as C;
+    let mut system = robot();
+    system.components.tendons.clear();
+    system.muscles[0].section_inertia = true;
+    system.muscles[3].material.maxwell = MaxwellBranches::default();
+    let mut free = system.bodies[1].clone();
+    free.name = "kite".into();
+    free.centre = Vector3::new(30.0, 90.0, -5.0);
+    system.bodies.push(free);
+    let kite = system.bodies.len() - 1;
+    let end = |body, at: [f64; 3]| Attachment {
+        body,
+        at: Vector3::from(at),
+    };
+    let mut string = system.components.springs[0].clone();
+    string.name = "string".into();
+    string.from = end(Some(2), [1.0, 70.0, 2.0]);
+    string.to = end(Some(kite), [28.0, 85.0, 0.0]);
+    system.components.springs.push(string);
+    let load = |name: &str, body, follows| Load {
+        name: name.into(),
+        on: LoadPlace::Point {
+            at: end(Some(body), [4.0, 60.0, 3.0]),
+            direction: Vector3::new(0.6, 0.0, 0.8),
+            follows,
+        },
+    };
+    system.components.loads = vec![load("dead", 2, false), load("following", 1, true)];
+    system.markers = vec![Marker {
+        name: "tip".into(),
+        point: end(Some(2), [2.0, 95.0, 1.0]),
+        solid: None,
+    }];
+    let of = |constants: &[(C, f64)], guess: f64| parameter("", constants, guess);
+    let places = |list: &[(C, f64)], system: &mut System, name: &str| {
+        // At the guess each constant is what it is in the system.
+        let mut made = of(list, 50.0);
+        made.name = name.into();
+        for one in &mut made.constants {
+            one.offset = one.constant.value(system).unwrap() - 50.0 * one.factor;
+        }
+        made
+    };
+    let stem = [
+        (C::BodyPlace(0, 1), 0.5),
+        (C::JointPlace(1, 1), 1.0),
+        (C::JointPlace(2, 1), 1.0),
+        (C::BodyPlace(1, 1), 1.2),
+        (C::End(0, 1, 1), 1.0),
+        (C::SpringEnd(0, 1, 0), 0.7),
+        (C::MarkerPlace(0, 1), 1.5),
+    ];
+    let mut stem = places(&stem, &mut system, "stem");
+    let inertia = C::Inertia(0, 1);
+    let given = inertia.value(&mut system).unwrap();
+    stem.constants.push(Follower {
+        constant: inertia,
+        factor: 0.0,
+        offset: 0.5 * given,
+        higher: [0.3 * given / 2500.0, 0.2 * given / 125_000.0],
+    });
+    let aside = [
+        (C::JointPlace(0, 2), 0.3),
+        (C::JointPlace(2, 0), -0.4),
+        (C::BodyPlace(2, 2), 0.6),
+        (C::BodyPlace(kite, 0), 1.0),
+        (C::MarkerPlace(0, 2), 0.9),
+    ];
+    let aside = places(&aside, &mut system, "aside");
+    let mass = parameter("mass", &[(C::Mass(0), 1.0)], 20.0);
+    (system, vec![stem, aside, mass])
 }

@@ -46,7 +46,7 @@ pub fn tracked(markers: &[usize], joints: &[(usize, bool)]) -> Objective {
     for &marker in markers {
         let along = signals(5.0, 8.0);
         for (axis, reference) in along.into_iter().skip(1).enumerate() {
-            let quantity = Quantity::MarkerPlace { marker, axis };
+            let quantity = Quantity::marker_place(marker, axis);
             quantities.push(square(quantity, 0.3 + axis as f64, reference));
         }
     }

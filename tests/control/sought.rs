@@ -32,6 +32,7 @@ fn arm(bounds: [f64; 2], guess: f64) -> Parameter {
         constant: Constant::End(muscle, end, 0),
         factor,
         offset: 0.0,
+        higher: [0.0; 2],
     };
     Parameter {
         name: "arm".into(),

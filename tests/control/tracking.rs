@@ -105,7 +105,7 @@ fn a_greater_weight_follows_more_closely() {
         frequency,
         phase: 0.0,
     };
-    let place = |axis| Quantity::MarkerPlace { marker: 0, axis };
+    let place = |axis| Quantity::marker_place(0, axis);
     let error = |weight: f64| {
         let mut problem = free(&system, 40);
         problem.duration = Duration::Given(800.0);

@@ -55,9 +55,9 @@ fn deviation(system: &System, model: &Model, z: &[f64], cost: &QuantityCost, t: 
         unreachable!("not squared here");
     };
     match cost.quantity {
-        Quantity::MarkerPlace { marker: m, axis } => {
-            marker(system, model, z, m)[axis] - follow(reference, t)
-        }
+        Quantity::MarkerPlace {
+            marker: m, axis, ..
+        } => marker(system, model, z, m)[axis] - follow(reference, t),
         Quantity::Joint { joint, .. } => {
             let instant = model.action.map.placed(z);
             let value = model.joints(&instant, &vec![0.0; model.joint_readings.len()])[joint];

@@ -23,3 +23,4 @@ mod naive_formulas;
 mod naive_hexahedron;
 mod naive_sources;
 mod sought;
+mod sought_limits;

@@ -4,17 +4,14 @@
 use crate::action::not_trivial;
 use crate::common::cases::joints;
 use crate::common::random::Random;
-use crate::common::sought::{crowded, elements, problem, robot, wired};
-use proboscis::control::problem::{
-    BoundaryState, Control, CostFunction, During, PathConstraint, QuantityCost, Voltages,
-};
-use proboscis::control::{BoundaryConditions, Column, InitialGuess, Row, Transcription, guess};
-use proboscis::math::Signal;
-use proboscis::model::{Constant, Coordinates, Model, Quantity, Role, System, with_parameters};
+use crate::common::sought::{crowded, elements, lengthened, problem, robot, wired};
+use proboscis::control::problem::{BoundaryState, Control, Voltages};
+use proboscis::control::{BoundaryConditions, Column, InitialGuess, Transcription, guess};
+use proboscis::model::{Coordinates, Model, Role, System, with_parameters};
 use proboscis::nlp::{Nlp, differences};
 use std::collections::HashMap;
 
-const H: f64 = 10.0;
+pub(crate) const H: f64 = 10.0;
 
 /// Systems with sought constants, of bodies and of finite elements, in both coordinates, with and without a free duration.
 fn variants() -> Vec<(System, Control)> {
@@ -50,7 +47,16 @@ fn variants() -> Vec<(System, Control)> {
         ..problem(&system, false, None)
     };
     let crowded = [(system, crowded)];
-    let others = of_elements.into_iter().chain(of_circuits).chain(crowded);
+    let (system, parameters) = lengthened();
+    let of_lengths = [false, true].map(|is_free| Control {
+        parameters: parameters.clone(),
+        goal: BoundaryState::Free,
+        coordinates: Some(Coordinates::Reduced),
+        ..problem(&system, is_free, None)
+    });
+    let of_lengths = of_lengths.map(|control| (system.clone(), control));
+    let others = of_elements.into_iter().chain(of_circuits);
+    let others = others.chain(crowded).chain(of_lengths);
     cases.map(of).chain(others).collect()
 }
 
@@ -69,7 +75,7 @@ fn for_each_program(
     }
 }
 
-fn noisy(program: &Transcription<'_>, start: Vec<f64>, size: f64) -> Vec<f64> {
+pub(crate) fn noisy(program: &Transcription<'_>, start: Vec<f64>, size: f64) -> Vec<f64> {
     let mut random = Random(17);
     let noise = |x: f64| x + size * random.unit();
     assert!(start.len() == program.unknowns().columns.len());
@@ -246,136 +252,4 @@ fn a_parameter_is_one_column_and_given_ones_leave_none() {
     assert_eq!([parameters, voltages], [sought.parameters.len(), 0]);
     let [none, voltages, others] = columns(&given);
     assert_eq!([none, voltages, others + parameters], [0, 0, all]);
-}
-
-/// Limits and costs of quantities that read constants: stretches, fields, tensions, charges and what sources give.
-fn bounded() -> (System, Control) {
-    let (mut system, mut parameters) = wired();
-    system.muscles[3].circuit = None;
-    parameters.extend(crate::common::sought::parameters(&system));
-    let far = [f64::NEG_INFINITY, 1e3];
-    let [min, max] = far;
-    let flows = (0..2).flat_map(|muscle| {
-        [
-            PathConstraint::Current { muscle, min, max },
-            PathConstraint::Power { muscle, min, max },
-        ]
-    });
-    let of_muscles = (0..4).flat_map(|muscle| {
-        [
-            PathConstraint::Stretch {
-                muscle,
-                min: 0.2,
-                max: 5.0,
-            },
-            PathConstraint::ElectricField { muscle, max: 2e5 },
-            PathConstraint::Tension { muscle, min, max },
-        ]
-    });
-    let mut control = Control {
-        parameters,
-        goal: BoundaryState::Free,
-        ..problem(&system, false, None)
-    };
-    control.limits = of_muscles.chain(flows).collect();
-    control.objective.quantities = [
-        (Quantity::tension(0), square(0.1)),
-        (Quantity::tension(1), square(0.0)),
-        (Quantity::squared_field(2, false), CostFunction::Itself),
-        (Quantity::current(1), square(0.02)),
-    ]
-    .map(|(quantity, function)| QuantityCost {
-        quantity,
-        weight: 0.3,
-        function,
-        during: During::Motion,
-    })
-    .to_vec();
-    (system, control)
-}
-
-fn square(reference: f64) -> CostFunction {
-    CostFunction::Square {
-        reference: Signal::Constant(reference),
-    }
-}
-
-/// Values of the limits of a program, unscaled, in order of size, and the objective.
-fn limits(program: &mut Transcription<'_>, x: &[f64]) -> (Vec<f64>, f64) {
-    let mut values = vec![0.0; program.constraints().lower.len()];
-    program.constraint(x, &mut values);
-    let rows = program.unknowns().rows.iter().enumerate();
-    let of_limits = rows.filter(|(_, row)| matches!(row, Row::Limit { .. }));
-    let mut limits: Vec<f64> = of_limits
-        .map(|(r, _)| values[r] / program.row_scale(r))
-        .collect();
-    limits.sort_by(f64::total_cmp);
-    (limits, program.objective(x))
-}
-
-/// Number of entries of limits by parameters that are not zero.
-fn read_constants(program: &mut Transcription<'_>, model: &Model, x: &[f64]) -> usize {
-    let places = program.jacobian_structure();
-    let mut values = vec![0.0; places.rows.len()];
-    program.jacobian(x, &mut values);
-    let unknowns = program.unknowns();
-    let is_meant = |row: u32, col: u32| {
-        let column = unknowns.columns[col as usize].of(&model.variables);
-        matches!(unknowns.rows[row as usize], Row::Limit { .. }) && column.role == Role::Parameter
-    };
-    let entries = places.rows.iter().zip(&places.cols).zip(&values);
-    let entries = entries.filter(|((row, col), value)| **value != 0.0 && is_meant(**row, **col));
-    entries.count()
-}
-
-#[test]
-fn limits_and_costs_read_constants() {
-    let (system, control) = bounded();
-    let (model, boundary) = BoundaryConditions::resolve(&system, &control, H).unwrap();
-    let initial = guess(&model, &boundary, &control, H, None);
-    let mut program = Transcription::new(&model, &boundary, &control, &initial).unwrap();
-    let x = noisy(&program, program.start(&initial).x, 0.05);
-    let report = differences::check(&mut program, &x, 5);
-    assert!(report.is_consistent(), "{report}");
-    assert!(read_constants(&mut program, &model, &x) > 100);
-}
-
-#[test]
-fn limits_and_costs_are_those_of_the_system_made_with_their_values() {
-    let (system, mut control) = bounded();
-    // The unit of the charge behind the resistor is that of the guess: no parameter changes it.
-    for parameter in &mut control.parameters {
-        let is_other = |c: Constant| c.muscle() != Some(1);
-        parameter.constants.retain(|one| is_other(one.constant));
-    }
-    control.parameters.retain(|p| !p.constants.is_empty());
-    let (model, boundary) = BoundaryConditions::resolve(&system, &control, H).unwrap();
-    let initial = guess(&model, &boundary, &control, H, None);
-    let mut program = Transcription::new(&model, &boundary, &control, &initial).unwrap();
-    let x = noisy(&program, program.start(&initial).x, 0.05);
-    assert!(read_constants(&mut program, &model, &x) > 100);
-    let mut discrete = program.decode(&x);
-    let range = model.variables.range(Role::Parameter);
-    let values = discrete.scalars[0][range.clone()].to_vec();
-    let anew = with_parameters(&system, &control.parameters, &values);
-    let given = Control {
-        parameters: Vec::new(),
-        ..control.clone()
-    };
-    let (other, boundary) = BoundaryConditions::resolve(&anew, &given, H).unwrap();
-    let mut plain = Transcription::new(&other, &boundary, &given, &initial).unwrap();
-    for row in &mut discrete.scalars {
-        row.drain(range.clone());
-    }
-    let y = plain.encode(&discrete, discrete.times[1]);
-    let (found, objective) = limits(&mut program, &x);
-    let (expected, expected_objective) = limits(&mut plain, &y);
-    assert!(objective.abs() > 1e-3);
-    assert!((objective - expected_objective).abs() < 1e-12 * objective.abs());
-    // At the start coordinates are given, so that constants alone open rows there.
-    assert!(expected.len() > 30 && found.len() >= expected.len());
-    for value in expected {
-        let is_same = |other: &f64| (other - value).abs() < 1e-11 * value.abs().max(1e-3);
-        assert!(found.iter().any(is_same), "{value} is not in {found:?}");
-    }
 }

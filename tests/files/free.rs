@@ -3,7 +3,7 @@
 use crate::scene::{Case, check, folder, mistake};
 use proboscis::control::problem::{Control, Task};
 use proboscis::files::read_problem;
-use proboscis::model::{Constant, Follower, MaterialConstant};
+use proboscis::model::{Constant, Follower, MaterialConstant, with_parameters};
 
 /// A chain without masses of muscles, and its own names beside.
 const CHAIN: &str = r#"{
@@ -41,6 +41,7 @@ fn follower(constant: Constant, factor: f64, offset: f64) -> Follower {
         constant,
         factor,
         offset,
+        higher: [0.0; 2],
     }
 }
 
@@ -99,6 +100,40 @@ fn constants_are_named_by_their_paths() {
     assert_eq!(layer.constants, both);
 }
 
+/// Joints, bodies, muscles and moments of inertia follow the length of the segments, as in a scene with that length.
+#[test]
+fn a_length_is_that_of_the_scene_with_it() {
+    let free = r#"{ "chain.length": { "min": "40 mm", "max": "65 mm" } }"#;
+    let of = |length: &str| {
+        let scene = CHAIN.replace("\"50 mm\"", length);
+        let (_folder, path) = folder(&scene, &problem(free));
+        let read = read_problem(&path, &[]).expect("a problem");
+        match read.task {
+            Task::Control(control) => (read.system, control.parameters),
+            other => panic!("{other:?}"),
+        }
+    };
+    let ((system, parameters), (other, _)) = (of("\"50 mm\""), of("\"58 mm\""));
+    assert_eq!(parameters[0].guess, 50.0);
+    assert_eq!(parameters[0].unit(&system).symbol, "m");
+    let found = &mut with_parameters(&system, &parameters, &[58.0]);
+    let (mut system, mut other) = (system, other);
+    let mut changed = 0;
+    for constant in Constant::all(&other) {
+        let values = [&mut system, &mut *found, &mut other].map(|one| constant.value(one));
+        let [Some(before), Some(value), Some(expected)] = values else {
+            continue;
+        };
+        let name = format!("{constant:?}: {value} {expected}");
+        assert!((value - expected).abs() <= 1e-10 * expected.abs(), "{name}");
+        changed += usize::from(before != expected);
+        constant.set(expected, found);
+    }
+    // Two lengths, two places of bodies, one of a joint, four ends of muscles, and two moments of each body.
+    assert_eq!(changed, 2 + 2 + 1 + 4 + 4);
+    assert!(*found == other);
+}
+
 #[test]
 fn what_cannot_be_sought_is_refused() {
     const FREE: &str = r#"{ "materials.soft.viscosity": { "min": "500 Pa s", "max": "2000 Pa s", "guess": "900 Pa s" } }"#;
@@ -128,7 +163,7 @@ fn what_cannot_be_sought_is_refused() {
     // An end of a spring without a rest length of its own changes that too, which is not linear: also where a bound is the value of the scene.
     let ends = r#"{ "springs.stay.to.at[0]": { "min": "30 mm", "max": "50 mm" } }"#;
     let error = mistake(CHAIN, &problem(ends), &[]);
-    assert!(error.found().contains("not linear"), "{error}");
+    assert!(error.found().contains("no polynomial"), "{error}");
     // A value of the scene outside the bounds is no guess.
     let text = base
         .replace(", \"guess\": \"900 Pa s\"", "")

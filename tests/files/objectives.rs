@@ -45,7 +45,7 @@ fn markers_and_joints_may_follow_functions_of_time() {
         { "joints": { "solution": "solution.json", "weight": 10 } } ] }"#;
     let found = read(objective).objective;
     assert_eq!([found.effort, found.rate, found.duration], [0.0; 3]);
-    let axis = |axis| Quantity::MarkerPlace { marker: 0, axis };
+    let axis = |axis| Quantity::marker_place(0, axis);
     let joint = |joint| Quantity::Joint { joint, near: 0.0 };
     let right = std::f64::consts::FRAC_PI_2;
     let table = |times: &[f64], values: &[f64]| Signal::Table {
@@ -204,7 +204,7 @@ fn an_end_may_be_drawn_near_and_free() {
         during: During::End,
         ..square(quantity, weight, Signal::Constant(at))
     };
-    let place = Quantity::MarkerPlace { marker: 0, axis: 1 };
+    let place = Quantity::marker_place(0, 1);
     let joint = Quantity::Joint {
         joint: 1,
         near: 0.0,

@@ -119,7 +119,7 @@ fn pair(
         readings(9, 120.0),
     )];
     if !system.markers.is_empty() {
-        let place = |axis| Quantity::MarkerPlace { marker: 0, axis };
+        let place = |axis| Quantity::marker_place(0, axis);
         channels.push(channel(
             vec![(0.6, place(0)), (0.8, place(1))],
             readings(5, 110.0),

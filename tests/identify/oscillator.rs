@@ -159,6 +159,7 @@ pub(crate) fn permittivity(
                     constant: constant.of_muscle(muscle),
                     factor: one[i] - none[i],
                     offset: none[i],
+                    higher: [0.0; 2],
                 });
             }
         }

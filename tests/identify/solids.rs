@@ -66,7 +66,7 @@ fn recording() -> Recording {
         is_held_out: false,
         channels: vec![Channel {
             name: "top".into(),
-            parts: vec![(1.0, Quantity::MarkerPlace { marker: 0, axis: 2 })],
+            parts: vec![(1.0, Quantity::marker_place(0, 2))],
             unit: ("m", 1e-3),
             is_deviation_known: true,
             readings: (0..16).map(reading).collect(),

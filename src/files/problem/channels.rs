@@ -83,7 +83,7 @@ impl Measured {
                     return Err(place.wrong(format!("{along:?}"), "a direction of some length"));
                 }
                 let part =
-                    |(axis, a): (usize, f64)| (a / length, Quantity::MarkerPlace { marker, axis });
+                    |(axis, a): (usize, f64)| (a / length, Quantity::marker_place(marker, axis));
                 let along = along.into_iter().enumerate().filter(|(_, a)| *a != 0.0);
                 Ok(Self {
                     name: name.clone(),

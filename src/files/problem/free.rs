@@ -13,7 +13,7 @@ use crate::files::json::locate::JsonPath;
 use crate::files::json::scope::Scope;
 use crate::files::problem::spec_free::{FreeMap, FreeSpec};
 use crate::files::scene::constants::{NoConstant, SceneConstant, WrittenScene};
-use crate::model::{Constant, Follower, NotSought, Parameter, check_parameters, unit_of};
+use crate::model::{Constant, NotSought, Parameter, check_parameters, unit_of};
 
 /// The parameters of a problem.
 pub(crate) fn parameters(
@@ -61,10 +61,8 @@ fn parameter(
             let expected = format!("one in {own:?}, as the number that it follows");
             return Err(place.wrong(found, expected));
         }
-        followers.extend(other.followers.into_iter().map(|follower| Follower {
-            factor: factor * follower.factor * other.from_si / from_si,
-            ..follower
-        }));
+        let multiple = factor * other.from_si / from_si;
+        followers.extend(other.followers.into_iter().map(|f| f.of_multiple(multiple)));
     }
     let guess = spec.guess.as_ref().map(|guess| guess.si() * from_si);
     let guess_or_value = guess.unwrap_or(value);

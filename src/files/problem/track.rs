@@ -78,7 +78,7 @@ fn of_marker(
     for (axis, (key, along)) in axes.into_iter().enumerate() {
         if let Some(along) = along {
             let reference = signal(along, &Length::kind(), &place.key(key))?;
-            let quantity = Quantity::MarkerPlace { marker, axis };
+            let quantity = Quantity::marker_place(marker, axis);
             costs.push(square(quantity, reference, weight, During::Motion));
         }
     }
@@ -173,7 +173,7 @@ fn marker_at_end(
     let given = spec.at.iter().enumerate();
     let given = given.filter_map(|(axis, at)| Some((axis, at.as_ref()?)));
     let costs = given.map(|(axis, at)| {
-        let quantity = Quantity::MarkerPlace { marker, axis };
+        let quantity = Quantity::marker_place(marker, axis);
         square(quantity, Signal::Constant(at.value()), weight, During::End)
     });
     let costs: Vec<QuantityCost> = costs.collect();

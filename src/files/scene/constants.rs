@@ -1,7 +1,7 @@
 //! Numbers of a scene by their paths, as an optimisation may seek them: the constants of components that follow each.
 //!
-//! A number is put in its place, and what it changes of the system is compared: constants that are linear in it follow it. So every number
-//! of a scene can be sought on which nothing but such constants depends, whatever it is written as.
+//! A number is put in its place, and what it changes of the system is compared: constants that are polynomials of third degree in it follow it, as
+//! moments of inertia do. So every number of a scene can be sought on which nothing but such constants depends, whatever it is written as.
 
 use serde_json::Value;
 
@@ -57,6 +57,8 @@ const OFFERED: &str = "the path of a number of the scene, such as \"materials.NA
 const SAME: f64 = 1e-9;
 /// Part of the way between the bounds at which constants are linear too: the lesser part of the golden section.
 const BETWEEN: f64 = 0.381_966_011_250_105_1;
+/// Part of the way at which polynomials are compared once more.
+const APART: f64 = 0.79;
 /// A factor that differs by less from one is one.
 const ONE: f64 = 1e-12;
 
@@ -136,8 +138,8 @@ impl WrittenScene<'_> {
                 .map_err(NoConstant::of_upper)?,
         ];
         let mut base = self.system.clone();
-        let mut followers = Vec::new();
-        let mut values = Vec::new();
+        let inner = [BETWEEN, 1.0 - BETWEEN].map(|t| lower + t * (upper - lower));
+        let mut changes = Vec::new();
         for constant in Constant::all(&high) {
             let [a, b] = [constant.value(&mut low), constant.value(&mut high)];
             let (Some(a), Some(b)) = (a, b) else { continue };
@@ -148,53 +150,70 @@ impl WrittenScene<'_> {
                 let found = format!("{}, which the scene has to name", constant.lacking());
                 NoConstant::of_path(found, OFFERED)
             })?;
-            let factor = (b - a) / (upper - lower);
-            let offset = a - factor * lower;
-            followers.push(Follower {
+            changes.push(Change {
                 constant,
-                factor,
-                offset,
+                given,
+                ends: [a, b],
             });
-            values.push((given, a, b));
         }
-        self.check_rest(base, &followers, &values, &high)?;
-        let si = (values[0].0 - followers[0].offset) / followers[0].factor;
-        // Beside bounds and scene, two of which may coincide, at a place that nothing singles out.
-        let between = lower + BETWEEN * (upper - lower);
-        let mut other = self.with(&place, &Value::from(between))?;
-        let is_linear = |(follower, &(given, ..)): (&Follower, &(f64, f64, f64))| {
-            let between_them = follower.constant.value(&mut other);
-            let pairs = [(si, given), (between, between_them.unwrap_or(f64::NAN))];
-            let is_on_line = |(number, found): (f64, f64)| {
-                let at = (found - follower.offset) / follower.factor;
-                (at - number).abs() <= SAME * (upper - lower).abs().max(si.abs())
+        self.check_rest(base, &changes, &high)?;
+        // Beside bounds and scene, two of which may coincide, at places that nothing singles out.
+        let mut others = [
+            self.with(&place, &Value::from(inner[0]))?,
+            self.with(&place, &Value::from(inner[1]))?,
+        ];
+        let mut followers: Vec<(Follower, f64)> = Vec::new();
+        for change in &changes {
+            let inside = others.each_mut().map(|other| change.constant.value(other));
+            let inside = inside.map(|value| value.unwrap_or(f64::NAN));
+            followers.push((change.follower([lower, upper], inner, inside), change.given));
+        }
+        let found =
+            match self.are_polynomials(&place, &followers, lower + APART * (upper - lower))? {
+                true => in_own_units(followers, (lower, upper), self.system),
+                false => None,
             };
-            pairs.into_iter().all(is_on_line)
-        };
-        if !followers.iter().zip(&values).all(is_linear) {
-            let found = "a number of the scene in which a constant is not linear";
-            return Err(NoConstant::of_path(found, OFFERED));
+        found.ok_or_else(|| {
+            let found =
+                "a number of the scene of which a constant is no polynomial of third degree";
+            NoConstant::of_path(found, OFFERED)
+        })
+    }
+
+    /// Returns true if the polynomials meet the constants at another value too; straight lines are known to.
+    fn are_polynomials(
+        &self,
+        place: &JsonPath,
+        followers: &[(Follower, f64)],
+        at: f64,
+    ) -> Result<bool, NoConstant> {
+        if followers.iter().all(|(one, _)| one.is_linear()) {
+            return Ok(true);
         }
-        Ok(in_own_units(followers, values[0], si, self.system))
+        let mut other = self.with(place, &Value::from(at))?;
+        let mut curved = followers.iter().filter(|(one, _)| !one.is_linear());
+        Ok(curved.all(|(one, given)| {
+            let value = one.constant.value(&mut other).unwrap_or(f64::NAN);
+            (one.at(at) - value).abs() <= SAME * value.abs().max(given.abs())
+        }))
     }
 
     /// That nothing of the system depends on the number but the followers.
     fn check_rest(
         &self,
         mut base: System,
-        followers: &[Follower],
-        values: &[(f64, f64, f64)],
+        changes: &[Change],
         high: &System,
     ) -> Result<(), NoConstant> {
-        if followers.is_empty() {
+        if changes.is_empty() {
             let found = match base == *high {
                 true => "a number of the scene on which nothing depends",
                 false => "no number of the scene that can be sought",
             };
             return Err(NoConstant::of_path(found, OFFERED));
         }
-        for (follower, &(_, _, b)) in followers.iter().zip(values) {
-            follower.constant.set(b, &mut base);
+        for change in changes {
+            change.constant.set(change.ends[1], &mut base);
         }
         match base == *high {
             true => Ok(()),
@@ -207,31 +226,101 @@ impl WrittenScene<'_> {
     }
 }
 
-/// Followers and value in the units of the first follower, where that is the number itself.
-fn in_own_units(
-    mut followers: Vec<Follower>,
-    (given, low, high): (f64, f64, f64),
-    si: f64,
-    system: &System,
-) -> SceneConstant {
-    let first = followers[0];
-    let from_si = 1.0 / first.constant.unit(system).factor;
-    let is_itself = (first.factor.abs() / from_si - 1.0).abs() <= ONE;
-    let from_si = if is_itself { from_si } else { 1.0 };
-    for follower in &mut followers {
-        follower.factor /= from_si;
-        let nearest = follower.factor.round();
-        if (follower.factor - nearest).abs() <= ONE * nearest.abs() {
-            follower.factor = nearest;
+/// A constant that the bounds of a number change.
+struct Change {
+    constant: Constant,
+    /// Its value in the scene.
+    given: f64,
+    /// Its values at the bounds.
+    ends: [f64; 2],
+}
+
+impl Change {
+    /// The straight line through its values at the bounds, or where it is none the polynomial of third degree through those at two places
+    /// between them too.
+    fn follower(&self, [lower, upper]: [f64; 2], at: [f64; 2], inside: [f64; 2]) -> Follower {
+        let [a, b] = self.ends;
+        let width = upper - lower;
+        let factor = (b - a) / width;
+        let line = Follower {
+            constant: self.constant,
+            factor,
+            offset: a - factor * lower,
+            higher: [0.0; 2],
+        };
+        let size = a.abs().max(b.abs());
+        let is_on = |(x, value): (&f64, &f64)| {
+            (line.at(*x) - value).abs() <= SAME * (b - a).abs().max(ONE * size)
+        };
+        if at.iter().zip(&inside).all(is_on) {
+            return line;
         }
-        if follower.offset.abs() <= ONE * (low.abs() + high.abs()) {
-            follower.offset = 0.0;
+        // Of what the values between have more than the line: t (1 − t) (p + q t) of t = (π − lower)/width.
+        let t = at.map(|x| (x - lower) / width);
+        let more = [0, 1].map(|i| (inside[i] - line.at(at[i])) / (t[i] * (1.0 - t[i])));
+        let q = (more[1] - more[0]) / (t[1] - t[0]);
+        let p = more[0] - q * t[0];
+        let q = if q.abs() <= SAME * p.abs() { 0.0 } else { q };
+        // p t + (q − p) t² − q t³ in powers of π.
+        let [c1, c2, c3] = [p / width, (q - p) / (width * width), -q / width.powi(3)];
+        Follower {
+            offset: line.offset - lower * (c1 - lower * (c2 - lower * c3)),
+            factor: line.factor + c1 - lower * (2.0 * c2 - 3.0 * lower * c3),
+            higher: [c2 - 3.0 * lower * c3, c3],
+            ..line
         }
     }
+}
+
+/// Followers and value in the units of a follower that is the number itself, which comes first, where there is one; none where no follower
+/// is linear, or one misses its value in the scene.
+fn in_own_units(
+    mut followers: Vec<(Follower, f64)>,
+    (lower, upper): (f64, f64),
+    system: &System,
+) -> Option<SceneConstant> {
+    let is_itself = |one: &Follower| {
+        let factor = one.factor.abs() * one.constant.unit(system).factor;
+        one.is_linear() && (factor - 1.0).abs() <= ONE
+    };
+    followers.sort_by_key(|(one, _)| (!is_itself(one), !one.is_linear()));
+    let &(first, given) = followers.first().filter(|(one, _)| one.is_linear())?;
+    let si = (given - first.offset) / first.factor;
+    let is_met = |(one, value): &(Follower, f64)| {
+        let slope = one.factor + si * (2.0 * one.higher[0] + 3.0 * si * one.higher[1]);
+        let size = (upper - lower).abs().max(si.abs());
+        (one.at(si) - value).abs() <= SAME * (slope.abs() * size).max(ONE * value.abs())
+    };
+    if !followers.iter().all(is_met) {
+        return None;
+    }
+    let from_si = if is_itself(&first) {
+        1.0 / first.constant.unit(system).factor
+    } else {
+        1.0
+    };
+    let ends = [lower, upper].map(|bound| first.at(bound).abs());
+    let followers = followers.into_iter().map(|(one, _)| {
+        let mut one = one.of_multiple(1.0 / from_si);
+        let nearest = one.factor.round();
+        if (one.factor - nearest).abs() <= ONE * nearest.abs() {
+            one.factor = nearest;
+        }
+        let size = if one.is_linear() {
+            ends[0] + ends[1]
+        } else {
+            0.0
+        };
+        if one.offset.abs() <= ONE * size {
+            one.offset = 0.0;
+        }
+        one
+    });
+    let followers: Vec<Follower> = followers.collect();
     let is_same = followers[0].factor == 1.0 && followers[0].offset == 0.0;
-    SceneConstant {
+    Some(SceneConstant {
         followers,
         from_si,
         value: if is_same { given } else { si * from_si },
-    }
+    })
 }

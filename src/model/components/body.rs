@@ -6,7 +6,7 @@ use crate::kinematics::{MaterialVector, Pose};
 use crate::math::Vector;
 use crate::model::constant::Constant;
 use crate::model::plan::GRAVITY;
-use crate::model::sought::Read;
+use crate::model::sought::{MovedPoint, Read};
 use crate::model::system::{Attachment, Body};
 use crate::model::terms::{Terms, mid, rate};
 use crate::model::weight::{Moving, Weight};
@@ -44,52 +44,78 @@ pub(in crate::model) fn build(bodies: &[Body], reference: &[Pose], terms: &mut T
     }
 }
 
-/// Inertia and weight by which bodies of the scene whose masses are sought differ from what they are given as: linear in the masses, so that
-/// bodies that are welded to others need no other treatment.
+/// Inertia and weight by which bodies of the scene whose masses or places are sought differ from what they are given as: sums over them, so
+/// that bodies that are welded to others need no other treatment.
 pub(in crate::model) fn build_sought(bodies: &[Body], terms: &mut Terms<'_>) {
     for (b, body) in bodies.iter().enumerate() {
         let place = Attachment {
             body: Some(b),
             at: body.centre,
         };
-        let is_given = Sought::new(b, body, &mut terms.sought().read()).is_given();
-        if is_given || terms.is_immobile(&[place]) {
+        if terms.is_immobile(&[place]) {
             continue;
         }
-        let centre = terms.vector(terms.point(&place));
-        let mut read = terms.sought().read();
-        let Sought { mass, .. } = Sought::new(b, body, &mut read);
-        let is_heavier = !mass.slopes.is_empty();
-        if let Some(gravity) = terms.gravity(&mut read).filter(|_| is_heavier) {
-            let weight = Weight {
-                mass: mass.clone(),
-                gravity,
-            };
-            let element = read.element(weight, [mid(centre)], []);
-            terms.add_law((GRAVITY, "gravity of"), "the scene", element);
+        let mut moved = terms.sought().read();
+        let centre = MovedPoint {
+            weight: 1.0,
+            body: terms.carrier(&place),
+            place: Some(&|axis| Constant::BodyPlace(b, axis)),
+        };
+        moved.moves(0, [centre], |vector| terms.vector(vector));
+        let still = terms.sought().read();
+        let more = |read: &mut Read| Sought::new(b, body, read).mass;
+        if !moved.is_empty() {
+            point_mass((body, &place), still, |_| (-body.mass).into(), terms);
+            let whole = |read: &mut Read| more(read).scaled(1.0, body.mass);
+            point_mass((body, &place), moved, whole, terms);
+        } else if !more(&mut still.clone()).is_given() {
+            point_mass((body, &place), still, more, terms);
         }
-        if !terms.is_of_motion() {
+        if terms.is_of_motion() {
+            turning((b, body), &place, terms);
+        }
+    }
+}
+
+/// Weight and kinetic energy of a mass at the centre of a body.
+fn point_mass(
+    (body, place): (&Body, &Attachment),
+    read: Read,
+    mass: impl Fn(&mut Read) -> Affine,
+    terms: &mut Terms<'_>,
+) {
+    let centre = terms.vector(terms.point(place));
+    let mut of_weight = read.clone();
+    let weight = mass(&mut of_weight);
+    if let Some(gravity) = terms.gravity(&mut of_weight) {
+        let weight = Weight {
+            mass: weight,
+            gravity,
+        };
+        let element = of_weight.element(weight, [mid(centre)], []);
+        terms.add_law((GRAVITY, "gravity of"), "the scene", element);
+    }
+    if terms.is_of_motion() {
+        let mut read = read;
+        let law = Moving(mass(&mut read));
+        let element = read.element(law, [rate(centre)], []);
+        terms.add_kinetic_law((INERTIA, "mass of"), &body.name, element);
+    }
+}
+
+/// Kinetic energies of the directors of a body whose moments of inertia are sought.
+fn turning((b, body): (usize, &Body), place: &Attachment, terms: &mut Terms<'_>) {
+    for i in 0..3 {
+        let mut read = terms.sought().read();
+        let Sought { euler, .. } = Sought::new(b, body, &mut read);
+        if euler[i].is_given() {
             continue;
         }
-        let named = (INERTIA, "mass of");
-        let mut read = terms.sought().read();
-        let Sought { mass, .. } = Sought::new(b, body, &mut read);
-        if is_heavier {
-            let element = read.element(Moving(mass), [rate(centre)], []);
-            terms.add_kinetic_law(named, &body.name, element);
-        }
-        for i in 0..3 {
-            let mut read = terms.sought().read();
-            let Sought { euler, .. } = Sought::new(b, body, &mut read);
-            if euler[i].slopes.is_empty() {
-                continue;
-            }
-            let axis: Vector = body.directors.column(i).into();
-            let director = terms.direction(&place, &axis);
-            let law = Moving(euler[i].clone());
-            let element = read.element(law, [rate(terms.vector(director))], []);
-            terms.add_kinetic_law(named, &body.name, element);
-        }
+        let axis: Vector = body.directors.column(i).into();
+        let director = terms.direction(place, &axis);
+        let law = Moving(euler[i].clone());
+        let element = read.element(law, [rate(terms.vector(director))], []);
+        terms.add_kinetic_law((INERTIA, "mass of"), &body.name, element);
     }
 }
 
@@ -112,12 +138,5 @@ impl Sought {
             sum.scaled(0.5, 0.0)
         });
         Self { mass, euler }
-    }
-
-    fn is_given(&self) -> bool {
-        let [a, b, c] = &self.euler;
-        [&self.mass, a, b, c]
-            .into_iter()
-            .all(|one| one.slopes.is_empty())
     }
 }

@@ -25,6 +25,8 @@ const VISCOSITY: &str = "muscle viscosity";
 const MAXWELL_ELASTICITY: &str = "maxwell elasticity";
 const MAXWELL_VISCOSITY: &str = "maxwell viscosity";
 const OF_MASS: &str = "density of";
+/// Parts of the ends of a muscle of which its middle is the sum.
+const MIDDLE: [f64; 2] = [0.5; 2];
 /// Electric energy of muscles whose charge is given, or flows through a circuit.
 pub(in crate::model) const CHARGES: &str = "muscle charges";
 
@@ -97,10 +99,19 @@ pub(in crate::model) fn constants<'a>(
     (muscle, index): (&'a Muscle, usize),
     terms: &mut Terms<'_>,
 ) -> MuscleConstants<'a> {
+    by_parts((muscle, index), [-1.0, 1.0], terms)
+}
+
+/// The constants of a muscle whose elements read the sum of its ends by parts.
+fn by_parts<'a>(
+    (muscle, index): (&'a Muscle, usize),
+    parts: [f64; 2],
+    terms: &mut Terms<'_>,
+) -> MuscleConstants<'a> {
     let read = terms.sought().read();
-    let ends = [&muscle.from, &muscle.to];
-    MuscleConstants::new((muscle, index), read, |directions| {
-        terms.moved_span(ends, directions)
+    let bodies = [&muscle.from, &muscle.to].map(|end| terms.carrier(end));
+    MuscleConstants::new((muscle, index), (read, parts), bodies, |moved| {
+        terms.vector(moved)
     })
 }
 
@@ -131,7 +142,7 @@ fn inertia((muscle, index): (&Muscle, usize), span: usize, terms: &mut Terms<'_>
         terms.collect(INERTIA, OF_MASS, name, Mass::point(middle, mass));
         terms.collect(INERTIA, OF_MASS, name, Mass::point(span, mass / 12.0));
     } else {
-        let constants = of_middle((muscle, index), terms);
+        let constants = by_parts((muscle, index), MIDDLE, terms);
         for (mut constants, vector, factor) in [
             (constants, middle, 1.0),
             (of_span.clone(), span, 1.0 / 12.0),
@@ -151,22 +162,9 @@ fn inertia((muscle, index): (&Muscle, usize), span: usize, terms: &mut Terms<'_>
     }
 }
 
-/// The constants of a muscle whose elements read the vector of its middle.
-fn of_middle<'a>(
-    (muscle, index): (&'a Muscle, usize),
-    terms: &mut Terms<'_>,
-) -> MuscleConstants<'a> {
-    let read = terms.sought().read();
-    MuscleConstants::new((muscle, index), read, |[from, to]| {
-        let from = terms.direction(&muscle.from, &from);
-        let to = terms.direction(&muscle.to, &to);
-        terms.vector(MaterialVector::combine(0.5, &from, 0.5, &to))
-    })
-}
-
 /// Adds the weight of a muscle whose mass is sought, or whose ends are, where there is gravity.
 fn sought_weight(of: (&Muscle, usize), middle: &MaterialVector, terms: &mut Terms<'_>) {
-    let mut constants = of_middle(of, terms);
+    let mut constants = by_parts(of, MIDDLE, terms);
     if let Some(weight) = constants.weight(terms) {
         let middle = terms.vector(middle.clone());
         let element = constants.element(weight, [mid(middle)], []);

@@ -2,7 +2,7 @@
 
 use crate::energy::{Affine, ElasticLaw, NeoHooke};
 use crate::functional::{LawElement, VectorArg};
-use crate::math::Vector;
+use crate::kinematics::MaterialVector;
 use crate::model::components::measured_laws::{Field, Stretch};
 use crate::model::components::muscle_laws::{
     BranchDamper, BranchSpring, Driven, Elastic, OfCapacitance, PointMass, Section, Shape,
@@ -10,7 +10,7 @@ use crate::model::components::muscle_laws::{
 };
 use crate::model::constant::{Constant, MaterialConstant};
 use crate::model::maxwell::MaxwellBranch;
-use crate::model::sought::Read;
+use crate::model::sought::{MovedPoint, Read};
 use crate::model::system::{ElectricConstants, Muscle};
 use crate::model::terms::Terms;
 
@@ -26,20 +26,33 @@ pub(in crate::model) struct MuscleConstants<'a> {
 impl<'a> MuscleConstants<'a> {
     /// Those of a muscle that are given.
     pub(in crate::model) fn given(muscle: &'a Muscle) -> Self {
-        Self::new((muscle, 0), Read::nothing(), |_| 0)
+        Self::new(
+            (muscle, 0),
+            (Read::nothing(), [-1.0, 1.0]),
+            [None; 2],
+            |_| 0,
+        )
     }
 
-    /// Those of the muscle of an index, whose span is the first vector of its elements; `vector` is the material vector between directions
-    /// at both ends.
+    /// Those of the muscle of an index, of whose elements the first vector is the sum of its ends by their parts, the span by −1 and 1;
+    /// `bodies` of the presolved system carry the ends, and `vector` gives a material vector its place.
     pub(in crate::model) fn new(
         (muscle, index): (&'a Muscle, usize),
-        mut read: Read,
-        vector: impl FnMut([Vector; 2]) -> usize,
+        (mut read, parts): (Read, [f64; 2]),
+        bodies: [Option<usize>; 2],
+        vector: impl FnMut(MaterialVector) -> usize,
     ) -> Self {
         let at_rest = muscle.to.at - muscle.from.at;
         let mut span = [at_rest.x, at_rest.y, at_rest.z].map(Affine::from);
-        let end = |end, axis| Constant::End(index, end, axis);
-        for (place, at, [from, to]) in read.moves(0, end, vector) {
+        let from = |axis| Constant::End(index, 0, axis);
+        let to = |axis| Constant::End(index, 1, axis);
+        let point = |end: usize, place| MovedPoint {
+            weight: parts[end],
+            body: bodies[end],
+            place: Some(place),
+        };
+        let ends = [point(0, &from as &dyn Fn(usize) -> Constant), point(1, &to)];
+        for (place, at, [from, to]) in read.moves(0, ends, vector) {
             for (component, &slope) in span.iter_mut().zip((to - from).iter()) {
                 if slope != 0.0 {
                     component.value -= slope * at;

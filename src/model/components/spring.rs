@@ -7,7 +7,7 @@ use crate::model::attachment::Attachment;
 use crate::model::component::Component;
 use crate::model::components::kind::Kind;
 use crate::model::constant::Constant;
-use crate::model::sought::Read;
+use crate::model::sought::{MovedPoint, Read};
 use crate::model::system_error::{SystemError, positive, require};
 use crate::model::terms::{Terms, mid, rate};
 use nalgebra::Vector3;
@@ -82,10 +82,21 @@ impl Spring {
             None => Read::nothing(),
         };
         let index = index.unwrap_or_default();
-        let end = |end, axis| Constant::SpringEnd(index, end, axis);
-        nothing.moves(0, end, |ends| {
-            terms.moved_span([&self.from, &self.to], ends)
-        });
+        let from = |axis| Constant::SpringEnd(index, 0, axis);
+        let to = |axis| Constant::SpringEnd(index, 1, axis);
+        let ends = [
+            MovedPoint {
+                weight: -1.0,
+                body: terms.carrier(&self.from),
+                place: Some(&from),
+            },
+            MovedPoint {
+                weight: 1.0,
+                body: terms.carrier(&self.to),
+                place: Some(&to),
+            },
+        ];
+        nothing.moves(0, ends, |moved| terms.vector(moved));
         let name = &self.name;
         match self.stiffness {
             Some(stiffness) => {

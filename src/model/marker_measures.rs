@@ -1,0 +1,124 @@
+//! Measures of markers: places, regions and velocities.
+
+use crate::energy::{OutsideBox, PositionComponent, SquaredDistance};
+use crate::functional::{Law, Measure, Stencil};
+use crate::kinematics::Vectors;
+use crate::math::{Number, Vector};
+use crate::model::constant::Constant;
+use crate::model::measures::{Known, Shape, instant, read};
+use crate::model::quantity::{Quantity, Region};
+use crate::model::sought::{MovedPoint, Read};
+
+/// A component of a place.
+#[derive(Clone)]
+struct Component(PositionComponent);
+
+impl Law<3> for Component {
+    type Formula<T: Number> = PositionComponent;
+
+    fn formula<T: Number>(&self, _: &[T]) -> PositionComponent {
+        self.0
+    }
+}
+
+/// Squared distance from a centre over that of a scale in mm.
+#[derive(Clone)]
+struct Distance(Vector, f64);
+
+impl Law<3> for Distance {
+    type Formula<T: Number> = SquaredDistance<T>;
+
+    fn formula<T: Number>(&self, _: &[T]) -> SquaredDistance<T> {
+        SquaredDistance {
+            centre: self.0,
+            scale: T::of(self.1),
+        }
+    }
+}
+
+/// Place in a box.
+#[derive(Clone)]
+struct Boxed(OutsideBox);
+
+impl Law<3> for Boxed {
+    type Formula<T: Number> = OutsideBox;
+
+    fn formula<T: Number>(&self, _: &[T]) -> OutsideBox {
+        self.0
+    }
+}
+
+/// Times at which a marker is read: the instants, or a place of the intervals with the parameters that move it.
+struct Places {
+    marker: usize,
+    at: Option<(Stencil, Read)>,
+    shape: Shape,
+}
+
+impl Places {
+    fn of<L: Law<3>>(self, law: L) -> Box<dyn Measure> {
+        match self.at {
+            None => instant(self.shape, law.formula(&[]), [self.marker]),
+            Some((at, moved)) => {
+                let element = moved.element(law, [read(self.marker, at)], []);
+                self.shape.law::<_, 3, 1, 0>(element)
+            }
+        }
+    }
+}
+
+impl Known<'_> {
+    /// Place or velocity of a marker.
+    pub(super) fn of_marker(
+        &self,
+        quantity: &Quantity,
+        shape: Shape,
+        vectors: &mut Vectors,
+    ) -> Option<Box<dyn Measure>> {
+        let origin = Vector::zeros();
+        let component = |axis| {
+            let normal = Vector::ith(axis, 1.0);
+            Component(PositionComponent { origin, normal })
+        };
+        let mut places = |marker: usize, at: Option<Stencil>| Places {
+            marker: self.markers[marker],
+            at: at.map(|at| (at, self.moved_marker(marker, vectors))),
+            shape,
+        };
+        Some(match *quantity {
+            Quantity::MarkerPlace { marker, axis, at } => places(marker, at).of(component(axis)),
+            // At most one inside a sphere, at least three only outside a box.
+            Quantity::MarkerRegion { marker, region, at } => match region {
+                Region::Sphere { centre, radius } => {
+                    places(marker, at).of(Distance(centre, radius))
+                }
+                Region::Box { min, max } => {
+                    let (centre, half) = ((min + max) * 0.5, (max - min) * 0.5);
+                    places(marker, at).of(Boxed(OutsideBox { centre, half }))
+                }
+            },
+            Quantity::MarkerStep { marker, axis } => {
+                places(marker, Some(Stencil::Difference)).of(component(axis))
+            }
+            Quantity::SquaredSpeed { marker, limit } => {
+                places(marker, Some(Stencil::Rate)).of(Distance(origin, limit))
+            }
+            _ => return None,
+        })
+    }
+
+    /// The parameters that move a marker.
+    fn moved_marker(&self, marker: usize, vectors: &mut Vectors) -> Read {
+        let mut moved = self.sought.read();
+        let of = &self.presolved.system.markers[marker];
+        let point = MovedPoint {
+            weight: 1.0,
+            body: of.point.body,
+            place: Some(&|axis| Constant::MarkerPlace(marker, axis)),
+        };
+        if of.solid.is_none() {
+            moved.moves(0, [point], |vector| vectors.index(vector));
+        }
+        moved
+    }
+}
