@@ -105,16 +105,14 @@ impl Model {
         let spans = construction.spans(&mut vectors);
         let (intervals, made) = construction.sums(&spans, &variables, &mut vectors);
         let markers = construction.markers(&mut vectors);
-        let (read, balance) = (
-            (&variables, &markers[..]),
-            (&intervals[..], &made.present[..]),
-        );
-        let measures = construction.measures(read, balance, &mut vectors);
+        let balance = (&intervals[..], &made.present[..]);
+        let measures = construction.measures((&variables, &markers), balance, &mut vectors);
         let list = vectors.list();
         let map = construction.coordinate_map(list, made.multipliers.len());
         let scalars = variables.of(Time::Interval).len();
         let intervals = Functional::new(intervals, measures.intervals, list.len(), scalars);
-        let instants = Functional::new(made.terms, measures.instants, list.len(), multipliers);
+        let count = made.multipliers.len();
+        let instants = Functional::new(made.terms, measures.instants, list.len(), count);
         construction.name_unknowns(&map, made.multipliers, &mut variables);
         Ok(Self {
             coordinates,
