@@ -8,6 +8,7 @@ use common::solid::{DRIVEN, electrode, held};
 use common::systems::blocks;
 use common::trunk;
 use nalgebra::Vector3;
+use proboscis::control::problem::Combined;
 use proboscis::control::problem::Control;
 use proboscis::control::{BoundaryConditions, Motion, Motions, Transcription, guess};
 use proboscis::dynamics::{Start, simulate};
@@ -192,6 +193,7 @@ fn of_motions() -> Vec<u64> {
     let motions = Motions {
         list: (0..5).map(motion).collect(),
         shared_inputs: Vec::new(),
+        combined: Combined::Sum,
     };
     let go_on = &mut |_: usize, _: &Iterate<'_>| ControlFlow::Continue(());
     let found = optimise_together(&motions, 0.01, SolveLimits::default(), go_on).unwrap();

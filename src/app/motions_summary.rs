@@ -22,7 +22,7 @@ pub(super) struct MotionsSummary {
     /// Warnings and notes on all of them.
     #[serde(skip_serializing_if = "Remarks::is_empty")]
     pub(super) notes: Remarks,
-    /// The sum of their objectives.
+    /// The sum of their objectives, or the greatest one.
     pub(super) objective: f64,
     objective_units: Vec<String>,
     pub(super) iterations: usize,
@@ -52,8 +52,11 @@ pub(super) struct MotionEntry {
     /// Its folder, in that of the results.
     pub(super) folder: String,
     status: String,
-    /// Its part of the objective.
+    /// Its part of the objective, or its objective beside the greatest one.
     objective: f64,
+    /// The weight of its objective at the optimum, where the greatest one is minimised: 0 below it.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    weight: Option<f64>,
     intervals: usize,
     /// Final time in s.
     duration: f64,
@@ -83,14 +86,16 @@ impl MotionsSummary {
         } = result;
         let constants = list[0].optimum.motion.parameters.iter();
         let constants = constants.filter(|found| found.name != PEAK_VOLTAGE);
-        let entries = motions.list.iter().zip(list).zip(each);
-        let entries = entries.map(|((motion, result), summary)| {
+        let weight = |number: usize| whole.weights.as_ref().map(|all| all[number]);
+        let entries = motions.list.iter().zip(list).zip(each).enumerate();
+        let entries = entries.map(|(number, ((motion, result), summary))| {
             let found = &result.optimum.motion;
             MotionEntry {
                 name: motion.name.clone(),
                 folder: motion.name.clone(),
                 status: summary.status.clone(),
                 objective: result.optimum.solution.objective,
+                weight: weight(number),
                 intervals: found.intervals(),
                 duration: found.times[found.intervals()] / 1e3,
             }

@@ -7,7 +7,7 @@ use serde_json::Value;
 use crate::app::error::CommandError;
 use crate::app::messages::key;
 use crate::app::task::read;
-use crate::control::problem::Task;
+use crate::control::problem::{InCommon, Task};
 use crate::nlp::Nlp;
 use crate::workflow::prepare::Counted;
 use crate::workflow::prepare_together::{
@@ -63,12 +63,14 @@ pub fn with_program<R>(
     read_program: impl FnOnce(&mut dyn Nlp, &[f64]) -> R,
 ) -> Result<R, CommandError> {
     let loaded = read(input, Some(text), &[])?;
-    let (asked, shared_inputs) = match &loaded.task {
-        Task::Control(control) => (vec![("", &loaded.system, &**control)], &[][..]),
+    let once;
+    let (asked, in_common) = match &loaded.task {
+        Task::Control(control) => (vec![("", &loaded.system, &**control)], InCommon::default()),
         Task::Motions(motions) => {
-            let each = motions.list.iter();
+            once = motions.with_limits_once();
+            let each = once.list.iter();
             let each = each.map(|one| (&*one.name, &one.system, &one.control));
-            (each.collect(), &*motions.shared_inputs)
+            (each.collect(), motions.in_common())
         }
         Task::Simulate(_) | Task::Equilibrium(_) | Task::Identify(_) => {
             return Err(CommandError::Problem {
@@ -91,7 +93,7 @@ pub fn with_program<R>(
     let motions = program_motions(&asked, &resolved);
     let PreparedTogether {
         mut program, point, ..
-    } = prepare_together(&motions, &asked, shared_inputs, Counted::Yes)
+    } = prepare_together(&motions, &asked, in_common, Counted::Yes)
         .map_err(CommandError::in_file(input))?;
     Ok(read_program(&mut program, &point.x))
 }

@@ -129,8 +129,8 @@ pub(super) fn targets(control: &Control, motion: &Trajectory) -> Vec<(usize, Vec
         let CostFunction::Square { reference } = &cost.function else {
             continue;
         };
-        if let (Quantity::MarkerPlace { marker, axis, .. }, During::End) =
-            (cost.quantity, cost.during)
+        if let (&Quantity::MarkerPlace { marker, axis, .. }, During::End) =
+            (&cost.quantity, cost.during)
         {
             let place = &mut places.entry(marker).or_default().0[axis];
             place.get_or_insert_with(|| reference.at(motion.times[last]));
@@ -156,8 +156,8 @@ pub(super) fn waypoints(control: &Control, motion: &Trajectory) -> Vec<(usize, V
         let CostFunction::Square { reference } = &cost.function else {
             continue;
         };
-        if let (Quantity::MarkerPlace { marker, axis, .. }, During::At(part)) =
-            (cost.quantity, cost.during)
+        if let (&Quantity::MarkerPlace { marker, axis, .. }, During::At(part)) =
+            (&cost.quantity, cost.during)
         {
             let k = instant(part);
             let place = &mut places.entry((k, marker)).or_default().0[axis];

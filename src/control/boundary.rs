@@ -173,7 +173,7 @@ fn with_quantities(
     let paid = &control.objective.quantities;
     let curved = paid.iter().enumerate().filter(|(_, c)| c.is_curved());
     let curved = curved.map(|(i, _)| quantities.len() + i).collect();
-    quantities.extend(paid.iter().map(|cost| cost.quantity));
+    quantities.extend(paid.iter().map(|cost| cost.quantity.clone()));
     let energies = &control.objective.energies;
     quantities.extend(resisted(energies, system).map(EnergyCost::power));
     let charged = sources(energies, system).into_iter();

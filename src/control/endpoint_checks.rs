@@ -4,6 +4,7 @@ use std::collections::BTreeMap;
 
 use nalgebra::Vector3;
 
+use crate::control::amounts::given_amounts;
 use crate::control::boundary_conditions::BoundaryConditions;
 use crate::control::bounded_quantity::{BoundedQuantity, When};
 use crate::control::error::BoundaryError;
@@ -34,6 +35,7 @@ pub(super) fn check(
         let place = "limits";
         return Err(BoundaryError::Limit { place, reason });
     }
+    given_amounts(model, boundary, control)?;
     let is_known = control.goal != BoundaryState::Periodic;
     let start = boundary.start.z.iter().copied();
     let start: Vec<_> = start.map(|value| is_known.then_some(value)).collect();

@@ -106,7 +106,7 @@ pub enum BoundaryError {
     /// Known values of the start or the goal break a limit.
     #[error("{place}: {reason}")]
     Limit {
-        /// `start` or `goal`, or `limits` that contradict each other.
+        /// `start` or `goal`, `limits` that contradict each other or that nothing can keep, or the `objective`.
         place: &'static str,
         /// The limit, the value and the bound.
         reason: String,

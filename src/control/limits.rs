@@ -119,6 +119,7 @@ impl Limits {
                 };
                 out.add(quantity, [f64::NEG_INFINITY, 0.0], name);
             }
+            PathConstraint::OfMuscles { .. } => out.add_amount(limit, system),
             PathConstraint::Marker {
                 marker,
                 region,
@@ -233,7 +234,7 @@ impl Limits {
         let sides = [[0.0, f64::INFINITY], [f64::NEG_INFINITY, 0.0]];
         for (bound, side) in bounds.into_iter().zip(sides) {
             if bound.is_finite() {
-                self.add(quantity, side, name.clone());
+                self.add(quantity.clone(), side, name.clone());
                 let added = self.list.last_mut().expect("it was added");
                 added.rate = Some(bound / unit);
             }
@@ -369,14 +370,14 @@ impl Limits {
 
     /// Returns the quantities, in order, then those that are subtracted in the intervals before where they are others.
     pub fn quantities(&self) -> Vec<Quantity> {
-        let own = self.list.iter().map(|bounded| bounded.quantity);
+        let own = self.list.iter().map(|bounded| bounded.quantity.clone());
         own.chain(self.list.iter().filter_map(BoundedQuantity::other_before))
             .collect()
     }
 }
 
 /// The largest finite bound by its size; none where there is none but zero.
-fn largest(bounds: [f64; 2]) -> Option<f64> {
+pub(super) fn largest(bounds: [f64; 2]) -> Option<f64> {
     let sizes = bounds.map(f64::abs).into_iter();
     let finite = sizes.filter(|size| *size > 0.0 && size.is_finite());
     finite.reduce(f64::max)

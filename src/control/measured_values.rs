@@ -10,12 +10,12 @@ use crate::model::{Model, Quantity};
 /// does not measure it.
 pub fn measured_value(
     (model, boundary): (&Model, &BoundaryConditions),
-    (index, quantity): (usize, Quantity),
+    (index, quantity): (usize, &Quantity),
     motion: &DiscreteTrajectory,
     k: usize,
 ) -> Option<(f64, &'static str)> {
     let place = boundary.limits.quantities().len() + index;
-    let site = Site::from_quantity(&quantity);
+    let site = Site::from_quantity(quantity);
     let measure = site.measure(model, (*model.measured.get(place)?)?);
     let first = k.checked_sub(site.sides() - 1)?;
     let [before, here] = [first, k].map(|k| model.action.map.placed(&motion.z[k]));
@@ -30,5 +30,10 @@ pub fn measured_value(
         ..Sample::of_instant(&before.x, scalars)
     };
     let value = measure.value(&sample);
-    Some(quantity.with_interval(h).plain(value, &model.system))
+    Some(
+        quantity
+            .clone()
+            .with_interval(h)
+            .plain(value, &model.system),
+    )
 }

@@ -1,7 +1,9 @@
 //! Path limits of a problem: bounds of quantities along the motion, or at a single time.
 
 use crate::math::Vector;
-use crate::model::{Reaction, Region};
+use crate::model::system::Muscle;
+use crate::model::{Amount, Reaction, Region, System};
+use std::sync::Arc;
 
 /// An inequality that holds at every instant or in every interval.
 #[derive(Clone, Debug, PartialEq)]
@@ -120,6 +122,17 @@ pub enum PathConstraint {
         /// Unit of voltages in V.
         unit: f64,
     },
+    /// Volume in mm³ or mass in g of lumped muscles at rest, together.
+    OfMuscles {
+        /// Muscle indices.
+        muscles: Arc<[usize]>,
+        /// Volume or mass.
+        amount: Amount,
+        /// Lower bound or −∞.
+        min: f64,
+        /// Upper bound or ∞.
+        max: f64,
+    },
     /// Another one at a single time: at the instant nearest to a part of the duration, or in the interval before it.
     Once {
         /// Part of the duration, above 0 and at most 1, the end.
@@ -152,6 +165,20 @@ impl PathConstraint {
             Self::Once { part, limit } => (limit, Some(*part)),
             limit => (limit, None),
         }
+    }
+
+    /// Returns true if it bounds what is the same constant in two systems that differ: the amount of muscles of one shape and density.
+    pub(super) fn is_as_in(&self, one: &System, other: &System) -> bool {
+        let shape = |muscle: &Muscle| {
+            let of = (muscle.from, muscle.to, muscle.cross_section);
+            (of, muscle.prestretch, muscle.material.density)
+        };
+        let Self::OfMuscles { muscles, .. } = self else {
+            return false;
+        };
+        let of = |system: &System, m: usize| system.muscles.get(m).map(shape);
+        let mut muscles = muscles.iter();
+        muscles.all(|&m| of(one, m) == of(other, m))
     }
 
     /// The source of whose current or power it is a limit.

@@ -16,6 +16,7 @@ use crate::ipopt::{LinearSolver, OptionValue};
 use crate::math::Signal;
 use crate::model::system::{ElectricConstants, InputKind, Muscle};
 use crate::model::{Coordinates, Parameter, Response, Role, System, Variable};
+use std::borrow::Cow;
 use std::collections::BTreeMap;
 
 /// A task with everything resolved: one voltage per muscle, indices for names.
@@ -244,9 +245,58 @@ pub struct Motions {
     pub list: Vec<Motion>,
     /// Names of the sources whose inputs are sought once for all motions.
     pub shared_inputs: Vec<String>,
+    /// The objective of all of them.
+    pub combined: Combined,
+}
+
+/// Objective of several motions.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum Combined {
+    /// The sum of their objectives.
+    #[default]
+    Sum,
+    /// The greatest of their objectives.
+    Worst,
+}
+
+/// Properties of several motions but their constants: inputs that are the same in all, and their objective.
+#[derive(Clone, Copy, Debug, Default)]
+pub struct InCommon<'a> {
+    /// Names of the sources whose inputs are sought once for all motions.
+    pub shared_inputs: &'a [String],
+    /// The objective of all of them.
+    pub combined: Combined,
 }
 
 impl Motions {
+    /// Their common inputs and objective.
+    pub fn in_common(&self) -> InCommon<'_> {
+        InCommon {
+            shared_inputs: &self.shared_inputs,
+            combined: self.combined,
+        }
+    }
+
+    /// The motions without limits of amounts of muscles that an earlier one has: with the same constants they are one.
+    #[must_use]
+    pub fn with_limits_once(&self) -> Cow<'_, Self> {
+        let mut out = Cow::Borrowed(self);
+        for (number, motion) in self.list.iter().enumerate() {
+            let is_known = |limit: &PathConstraint| {
+                let mut before = self.list[..number].iter();
+                before.any(|one| {
+                    one.control.limits.contains(limit)
+                        && limit.is_as_in(&motion.system, &one.system)
+                })
+            };
+            if motion.control.limits.iter().any(is_known) {
+                let own = &mut out.to_mut().list[number];
+                own.control.limits.retain(|limit| !is_known(limit));
+            }
+        }
+        out
+    }
+
     /// The first motion whose instants are not those of the first one, or not given: no input can be the same in both.
     pub fn other_grid(&self) -> Option<&Motion> {
         let grid = |motion: &Motion| match motion.control.duration {

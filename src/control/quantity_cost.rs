@@ -92,6 +92,9 @@ impl Objective {
 impl QuantityCost {
     /// Unit of the cost, without the weight.
     fn unit(&self, system: &System) -> String {
+        if let Quantity::OfMuscles { amount, .. } = self.quantity {
+            return amount.unit().0.to_owned();
+        }
         let squared = match self.quantity.plain(0.0, system).1 {
             "" => String::new(),
             unit if unit.contains('/') => format!("({unit})²"),

@@ -183,6 +183,7 @@ impl<'a> Named<'a> {
             PathConstraint::ElectricField { .. }
             | PathConstraint::BlockField { .. }
             | PathConstraint::PeakVoltage { .. }
+            | PathConstraint::OfMuscles { .. }
             | PathConstraint::VoltageRate { .. }
             | PathConstraint::Current { .. }
             | PathConstraint::Power { .. } => {}

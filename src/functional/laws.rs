@@ -269,7 +269,7 @@ impl<L: Law<M>, const M: usize, const NV: usize, const NS: usize> Kernel for Law
     const ISOTROPIC: bool = Plain::<L, M>::ISOTROPIC;
 
     fn virtuals(element: &Self::Element) -> usize {
-        Self::VIRTUAL / Self::BASE * Self::vectors(element)
+        Self::VIRTUAL.checked_div(Self::BASE).unwrap_or(0) * Self::vectors(element)
     }
 
     fn vectors(element: &Self::Element) -> usize {

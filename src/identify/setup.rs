@@ -144,7 +144,7 @@ impl Recording {
     /// All quantities, channel by channel.
     pub(super) fn quantities(&self) -> impl Iterator<Item = crate::model::Quantity> {
         let parts = self.channels.iter().flat_map(|channel| &channel.parts);
-        parts.map(|(_, quantity)| *quantity)
+        parts.map(|(_, quantity)| quantity.clone())
     }
 
     pub(super) fn wrong(&self, source: BoundaryError) -> IdentifyError {

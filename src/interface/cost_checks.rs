@@ -28,7 +28,8 @@ pub(super) fn check_costs(
                 let muscle = system.muscles.get(muscle);
                 muscle.is_some_and(Muscle::is_behind_resistor)
             }
-            quantity if quantity.before().is_some() => false,
+            Quantity::OfMuscles { ref muscles, .. } => are_lumped(muscles, system),
+            ref quantity if quantity.before().is_some() => false,
             _ => true,
         };
         let is_followed = match &cost.function {
@@ -45,6 +46,15 @@ pub(super) fn check_costs(
         require(exists && is_sound, "cost", found, expected)?;
     }
     Ok(())
+}
+
+/// Returns true if these are lumped muscles, one or more.
+fn are_lumped(muscles: &[usize], system: &System) -> bool {
+    let is_lumped = |&m: &usize| {
+        let muscle = system.muscles.get(m);
+        muscle.is_some_and(|muscle| muscle.fidelity == Fidelity::Lumped)
+    };
+    !muscles.is_empty() && muscles.iter().all(is_lumped)
 }
 
 /// Refuses energies of parts that are no lumped muscles, and weights that are not positive.
@@ -97,6 +107,12 @@ pub(super) fn check_limits(limits: &[PathConstraint], system: &System) -> Result
                 let muscle = system.muscles.get(muscle);
                 muscle.is_some_and(|m| m.fidelity == Fidelity::Lumped) && min <= max
             }
+            PathConstraint::OfMuscles {
+                ref muscles,
+                min,
+                max,
+                ..
+            } => are_lumped(muscles, system) && min <= max,
             PathConstraint::Stretch { muscle, min, max } => {
                 muscle < system.muscles.len() && min <= max
             }

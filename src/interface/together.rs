@@ -1,5 +1,6 @@
 //! Several motions in one optimisation.
 
+use crate::control::problem::Combined;
 use crate::control::{self, Motions};
 use crate::interface::control::Control;
 use crate::interface::error::{Result, require};
@@ -10,11 +11,12 @@ use crate::tasks::{self, SolveRequest};
 use crate::workflow::Iterate;
 use std::ops::ControlFlow;
 
-/// Motions that are optimised together: parameters of the same names are one, and the objective is the sum of theirs.
+/// Motions that are optimised together: parameters of the same names are one, and the objective is the sum of theirs, or the [greatest](Self::worst).
 #[derive(Clone, Debug, Default)]
 pub struct Together<'a> {
     motions: Vec<(&'a System, &'a Control)>,
     shared: Vec<Input>,
+    combined: Combined,
 }
 
 impl<'a> Together<'a> {
@@ -33,6 +35,12 @@ impl<'a> Together<'a> {
     pub fn shared_input(mut self, input: impl Into<Input>) -> Self {
         self.shared.push(input.into());
         self
+    }
+
+    /// Minimises the greatest of the objectives in place of their sum.
+    pub fn worst(self) -> Self {
+        let combined = Combined::Worst;
+        Self { combined, ..self }
     }
 
     /// Solves; each motion is verified as one by itself, and solved again on a finer grid where a simulation under its inputs does not reproduce it.
@@ -64,6 +72,7 @@ impl<'a> Together<'a> {
         let motions = Motions {
             list,
             shared_inputs,
+            combined: self.combined,
         };
         let go_on = &mut |_: usize, _: &Iterate<'_>| ControlFlow::Continue(());
         let found = tasks::solve_motions(&motions, SolveRequest::default(), go_on)?;

@@ -343,7 +343,6 @@ impl Construction<'_> {
         vectors: &mut Vectors,
     ) -> Measures {
         let known = measures::Known {
-            sought: &self.sought(variables),
             system: self.system,
             presolved: self.presolved,
             internals: self.internals,
@@ -352,6 +351,7 @@ impl Construction<'_> {
             markers,
             blocks: &self.blocks.list,
             terms,
+            sought: self.sought(variables),
             is_glued: present.iter().any(|one| one.term == constraints::GLUE),
         };
         Measures::new(self.analysis, &known, vectors)

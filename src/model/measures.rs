@@ -14,6 +14,7 @@ use crate::model::analysis::Analysis;
 use crate::model::components::capacitance;
 use crate::model::internal::Internals;
 use crate::model::joints::{JointCoordinate, JointReading};
+use crate::model::muscle_amount::amount_measure;
 use crate::model::presolved::Presolved;
 use crate::model::quantity::{FieldPlace, Quantity};
 use crate::model::solid_block::SolidBlock;
@@ -35,19 +36,20 @@ pub(super) struct Measures {
 }
 
 /// Data on which quantities are measured.
-#[derive(Clone, Copy, Debug)]
+#[derive(Clone, Debug)]
 pub(super) struct Known<'a> {
     pub(super) system: &'a System,
     pub(super) presolved: &'a Presolved,
     pub(super) internals: &'a Internals,
     pub(super) reference: &'a [Pose],
     pub(super) variables: &'a Variables,
-    pub(super) sought: &'a Sought,
     /// Vector of each marker.
     pub(super) markers: &'a [usize],
     pub(super) blocks: &'a [SolidBlock],
     /// Terms of the intervals.
     pub(super) terms: &'a [Arc<dyn Term>],
+    /// The sought parameters.
+    pub(super) sought: Sought,
     /// True if constraints glue blocks to bodies, so that terms do not tell the forces on bodies.
     pub(super) is_glued: bool,
 }
@@ -116,6 +118,9 @@ impl Known<'_> {
             } => {
                 let scalars = [self.variables.input(source)?, self.parameter(parameter)?];
                 interval::<_, 2, 0, 2>(shape, PeakExcess { unit }, [], scalars)
+            }
+            Quantity::OfMuscles { .. } => {
+                return amount_measure(quantity, (self.system, &self.sought));
             }
             Quantity::ChargedField { .. }
             | Quantity::SourceCurrent { .. }

@@ -1,5 +1,6 @@
 //! The model: from a checked system to sums of terms over its coordinates, where physics meets indices.
 
+mod amount;
 mod analysis;
 mod attachment;
 mod block_terms;
@@ -46,6 +47,7 @@ mod measures;
 mod members;
 #[expect(clippy::module_inception, reason = "the file of the type of that name")]
 mod model;
+mod muscle_amount;
 mod muscle_measures;
 mod muscle_state;
 mod named;
@@ -74,6 +76,7 @@ mod unknown_positions;
 mod variables;
 mod weight;
 
+pub use amount::Amount;
 pub use analysis::{Analysis, Coordinates, InitiallyMoving};
 pub use check::{NO_CHARGE, NO_MUSCLE_CHARGE};
 pub use component::Component;

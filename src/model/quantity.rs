@@ -2,13 +2,15 @@
 
 use crate::functional::Stencil;
 use crate::math::Vector;
+use crate::model::amount::Amount;
 pub use crate::model::quantity_parts::{FieldPlace, Reaction, Region};
 use crate::model::system::{JointKind, System};
 use crate::model::variables::Size;
 use std::f64::consts::TAU;
+use std::sync::Arc;
 
 /// Something to measure.
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Debug, PartialEq)]
 pub enum Quantity {
     /// Coordinate of a revolute joint (rad, in the branch nearest to `near`) or prismatic joint (mm), at the instants.
     Joint {
@@ -168,6 +170,15 @@ pub enum Quantity {
         /// u in V.
         unit: f64,
     },
+    /// Volume or mass of lumped muscles at rest, together, which follows from constants alone.
+    OfMuscles {
+        /// Muscle indices.
+        muscles: Arc<[usize]>,
+        /// Volume or mass.
+        amount: Amount,
+        /// Unit in mm³ or g.
+        unit: f64,
+    },
     /// (|x − c|/r)² of a marker for a ball, Σ ((x − c)_i/a_i)¹⁶ for a box, at the instants.
     MarkerRegion {
         /// Marker index.
@@ -203,6 +214,7 @@ impl Quantity {
                 | Self::JointStep { .. }
                 | Self::PeakVoltage { .. }
                 | Self::PeakExcess { .. }
+                | Self::OfMuscles { .. }
                 | Self::SourceCurrent { .. }
                 | Self::SourcePower { .. }
                 | Self::Tension { .. }
@@ -250,6 +262,7 @@ impl Quantity {
             | Self::JointStep { .. }
             | Self::PeakVoltage { .. }
             | Self::PeakExcess { .. }
+            | Self::OfMuscles { .. }
             | Self::SourceCurrent { .. }
             | Self::SourcePower { .. }
             | Self::Tension { .. } => "in interval",
@@ -282,6 +295,7 @@ impl Quantity {
             | Self::PeakExcess { .. }
             | Self::Direction { .. }
             | Self::MarkerRegion { .. } => "",
+            Self::OfMuscles { amount, .. } => amount.unit().0,
         }
     }
 
@@ -326,6 +340,10 @@ impl Quantity {
                 Reaction::Force => (value * unit / h, "N"),
                 Reaction::Torque => (value * unit / h, "N mm"),
             },
+            Self::OfMuscles { amount, unit, .. } => {
+                let (name, size) = amount.unit();
+                (value * unit / size, name)
+            }
             Self::MarkerRegion { region, .. } => match region {
                 Region::Sphere { radius, .. } => (value.sqrt() * radius, "mm from its centre"),
                 Region::Box { .. } => (value.powf(1.0 / 16.0), "half edges from its centre"),

@@ -8,7 +8,7 @@ impl Quantity {
     /// The quantity that is subtracted in the interval before, where steps between intervals are limited.
     pub fn before(&self) -> Option<Self> {
         match *self {
-            Self::VoltageStep { .. } | Self::ChargeStep { .. } => Some(*self),
+            Self::VoltageStep { .. } | Self::ChargeStep { .. } => Some(self.clone()),
             Self::EnergyStep {
                 muscle, unit, h, ..
             } => Some(Self::EnergyStep {

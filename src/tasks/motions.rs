@@ -142,6 +142,7 @@ fn solve_and_hold<'a>(
     let again = Motions {
         list: again.collect(),
         shared_inputs: motions.shared_inputs.clone(),
+        combined: motions.combined,
     };
     let limits = SolveLimits { seconds, ..limits };
     match optimise_together(&again, accuracy, limits, observer) {

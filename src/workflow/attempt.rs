@@ -3,7 +3,7 @@
 use std::ops::ControlFlow;
 use std::time::Instant;
 
-use crate::control::problem::Control;
+use crate::control::problem::{Control, InCommon};
 use crate::control::{BoundaryConditions, Carried, Costates, Solution, Transcription};
 use crate::dynamics::{DiscreteTrajectory, reversed_muscle};
 use crate::ipopt::{Options, Solver, SolverResult, interrupt};
@@ -66,7 +66,7 @@ pub(crate) fn attempt(
         control,
         earlier,
     };
-    let mut found = attempt_together(&[alone], &[], allowed, observer)?;
+    let mut found = attempt_together(&[alone], InCommon::default(), allowed, observer)?;
     Ok(found.optima.remove(0))
 }
 
@@ -80,7 +80,7 @@ pub(crate) fn attempt(
 /// If there is no motion.
 pub(crate) fn attempt_together(
     asked: &[MotionAsked<'_>],
-    shared_inputs: &[String],
+    in_common: InCommon<'_>,
     allowed: SolveLimits,
     observer: &mut dyn FnMut(&Iterate<'_>) -> ControlFlow<()>,
 ) -> Result<FoundTogether, WorkflowError> {
@@ -96,7 +96,7 @@ pub(crate) fn attempt_together(
         point,
         start,
         carried,
-    } = prepare_together(&motions, asked, shared_inputs, Counted::Yes)?;
+    } = prepare_together(&motions, asked, in_common, Counted::Yes)?;
     let setup = began.elapsed().as_secs_f64();
     let first = motions[0];
     let options = Options {
@@ -109,6 +109,7 @@ pub(crate) fn attempt_together(
     let mut solves = Solves {
         motions: &motions,
         shared: &shared,
+        combined: in_common.combined,
         solver: Solver::new(program, options.clone()),
         options,
         began,
@@ -221,8 +222,10 @@ fn part_of(
 /// The program of several motions in numbers, with its result.
 #[derive(Clone, Debug)]
 pub struct WholeProgram {
-    /// The sum of the objectives.
+    /// The sum of the objectives, or the greatest one.
     pub objective: f64,
+    /// Weights of the objectives at the optimum, where the greatest one is minimised.
+    pub weights: Option<Vec<f64>>,
     /// Number of variables.
     pub variables: usize,
     /// Number of equations and limits.
@@ -231,7 +234,7 @@ pub struct WholeProgram {
     pub jacobian_nonzeros: usize,
     /// Nonzeros of the lower triangle of the Hessian, those of shared variables motion by motion.
     pub hessian_nonzeros: usize,
-    /// Duality gap of the sum, in its unit.
+    /// Duality gap of the objective, in its unit.
     pub gap: f64,
     /// A warning that it is large compared with the sum.
     pub(crate) wide: Option<String>,
@@ -242,6 +245,7 @@ impl WholeProgram {
         let gap = gap::gap(program, solution);
         Self {
             objective: solution.objective,
+            weights: program.weights(&solution.costates.constraints),
             variables: solution.x.len(),
             constraints: solution.constraints.len(),
             jacobian_nonzeros: program.jacobian_structure().rows.len(),

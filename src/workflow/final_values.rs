@@ -59,7 +59,7 @@ fn value(
     let time = waypoint.map(|k| motion.times[k] / 1e3);
     if let Some(name) = cost.quantity.column(system) {
         let of = (&optimum.model, &optimum.boundary);
-        let (reached, unit) = measured_value(of, (index, cost.quantity), discrete, k)?;
+        let (reached, unit) = measured_value(of, (index, &cost.quantity), discrete, k)?;
         let asked = match &cost.function {
             CostFunction::Square { reference } => reference.at(motion.times[k]),
             CostFunction::Itself => 0.0,

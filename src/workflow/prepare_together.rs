@@ -1,6 +1,6 @@
 //! The program of several motions as one, and the point and the kind of start of its solver.
 
-use crate::control::problem::Control;
+use crate::control::problem::{Control, InCommon};
 use crate::control::{BoundaryConditions, Carried, Solution, Transcription};
 use crate::ipopt::{Start, StartingPoint};
 use crate::model::{Model, System};
@@ -9,7 +9,7 @@ use crate::workflow::error::WorkflowError;
 use crate::workflow::prepare::{Counted, Prepared, RESAMPLED, prepare};
 use crate::workflow::resolve::resolve;
 use crate::workflow::shared_variables::shared_variables;
-use crate::workflow::solves::{ProgramMotion, joined_point};
+use crate::workflow::solves::{ProgramMotion, joined};
 
 /// A motion that is asked for, alone or with others.
 #[derive(Clone, Copy, Debug)]
@@ -67,7 +67,7 @@ pub(crate) fn program_motions<'m>(
 pub(crate) fn prepare_together<'m>(
     motions: &[ProgramMotion<'m>],
     asked: &[MotionAsked<'_>],
-    shared_inputs: &[String],
+    in_common: InCommon<'_>,
     counted: Counted,
 ) -> Result<PreparedTogether<'m>, WorkflowError> {
     let (mut programs, mut points) = (Vec::new(), Vec::new());
@@ -93,10 +93,10 @@ pub(crate) fn prepare_together<'m>(
         carried.push(of_earlier);
     }
     let list: Vec<&Transcription<'_>> = programs.iter().map(|(_, program)| program).collect();
-    let shared = shared_variables(&list, shared_inputs)?;
-    let program = Joined::new(programs, &shared);
+    let shared = shared_variables(&list, in_common.shared_inputs)?;
+    let (program, point) = joined((programs, points), &shared, in_common.combined);
     Ok(PreparedTogether {
-        point: joined_point(program.places(), &points),
+        point,
         start: common(&starts),
         program,
         shared,

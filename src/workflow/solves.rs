@@ -3,7 +3,7 @@
 use std::ops::ControlFlow;
 use std::time::Instant;
 
-use crate::control::problem::Control;
+use crate::control::problem::{Combined, Control};
 use crate::control::{
     BoundaryConditions, BoundaryError, Carried, InitialGuess, Solution, Transcription,
 };
@@ -40,6 +40,7 @@ pub(crate) struct ProgramMotion<'m> {
 pub(super) struct Solves<'a, 'm> {
     pub(super) motions: &'m [ProgramMotion<'m>],
     pub(super) shared: &'a [SharedVariable],
+    pub(super) combined: Combined,
     /// Options of the first solve.
     pub(super) options: Options,
     /// The time from which on seconds count, and how many there are.
@@ -123,8 +124,7 @@ impl Solves<'_, '_> {
             let each = programs.iter().zip(&initial);
             let points = each.map(|((_, program), initial)| program.start(initial));
             let points: Vec<StartingPoint> = points.collect();
-            let program = Joined::new(programs, self.shared);
-            let point = joined_point(program.places(), &points);
+            let (program, point) = joined((programs, points), self.shared, self.combined);
             self.solver = Solver::new(program, options);
             solution = self.solve(&point)?;
         }
@@ -197,8 +197,25 @@ pub(super) fn multipliers_of(places: &Places, number: usize, whole: &Multipliers
     }
 }
 
+/// Programs as one, and the point of all of them.
+pub(super) fn joined<'m>(
+    (programs, points): (Vec<(String, Transcription<'m>)>, Vec<StartingPoint>),
+    shared: &[SharedVariable],
+    combined: Combined,
+) -> (Joined<Transcription<'m>>, StartingPoint) {
+    let program = Joined::new(programs, shared);
+    let mut program = match combined {
+        Combined::Sum => program,
+        Combined::Worst => program.with_worst(),
+    };
+    let mut point = joined_point(program.places(), &points);
+    let StartingPoint { x, costates } = &mut point;
+    program.complete(x, costates.as_mut().map(|all| &mut all.constraints));
+    (program, point)
+}
+
 /// The point of several programs as one; with multipliers where all of them have some.
-pub(super) fn joined_point(places: &Places, points: &[StartingPoint]) -> StartingPoint {
+fn joined_point(places: &Places, points: &[StartingPoint]) -> StartingPoint {
     let x: Vec<&[f64]> = points.iter().map(|point| &*point.x).collect();
     let all = points.iter().map(|point| point.costates.as_ref());
     let all: Option<Vec<&Multipliers>> = all.collect();

@@ -56,6 +56,7 @@ pub fn optimise_together(
             ),
         });
     }
+    let motions = &motions.with_limits_once();
     let mut solves = Solves {
         motions,
         allowed,
@@ -170,12 +171,9 @@ impl Solves<'_> {
         let asked: Vec<MotionAsked<'_>> = asked.collect();
         let intervals = controls.iter().map(|control| control.intervals).sum();
         let observer = &mut self.observer;
-        let found = attempt_together(
-            &asked,
-            &self.motions.shared_inputs,
-            limits,
-            &mut |iterate| observer(intervals, iterate),
-        )?;
+        let found = attempt_together(&asked, self.motions.in_common(), limits, &mut |iterate| {
+            observer(intervals, iterate)
+        })?;
         let solution = &found.optima[0].solution;
         self.iterations += solution.iterations.len().saturating_sub(1);
         Ok(found)

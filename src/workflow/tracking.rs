@@ -105,9 +105,9 @@ pub fn tracked(
             .filter_map(|c| path(system, c, motion))
             .collect();
         let deviation = deviations(&paths);
-        let (kind, name, unit) = match (of_marker(group[0]), group[0].quantity) {
+        let (kind, name, unit) = match (of_marker(group[0]), &group[0].quantity) {
             (Some(m), _) => ("marker", &system.markers[m].name, "m"),
-            (None, Quantity::Joint { joint, .. }) => {
+            (None, &Quantity::Joint { joint, .. }) => {
                 let unit = if joint_unit(system, joint) == "mm" {
                     "m"
                 } else {

@@ -118,7 +118,7 @@ pub fn measured_source(muscle: usize) -> Vec<QuantityCost> {
         limit: 4e4,
         at: None,
     };
-    let mut end = square(power, 1.0, Signal::Constant(0.2));
+    let mut end = square(power.clone(), 1.0, Signal::Constant(0.2));
     end.during = During::End;
     vec![
         square(current, 0.7, signals(0.1, 0.4)[2].clone()),

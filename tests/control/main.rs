@@ -4,7 +4,9 @@
 mod common;
 
 mod accuracy;
+mod amount_limits;
 mod closed_form;
+mod codesign;
 mod creep;
 mod direct_sources;
 mod drivers;
@@ -48,3 +50,4 @@ mod tracking;
 mod unreached;
 mod verdicts;
 mod waypoints;
+mod worst;

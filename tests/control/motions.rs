@@ -5,8 +5,8 @@ use crate::common::sought::of_all_muscles;
 use crate::common::trunk;
 use proboscis::Signal;
 use proboscis::control::problem::{
-    BoundaryState, Control, CostFunction, Duration, During, Guess, Objective, QuantityCost,
-    Voltages,
+    BoundaryState, Combined, Control, CostFunction, Duration, During, Guess, Objective,
+    QuantityCost, Voltages,
 };
 use proboscis::control::{BoundaryConditions, Motion, Motions, Transcription, guess};
 use proboscis::dynamics::{Start as Initial, simulate};
@@ -98,10 +98,19 @@ pub(crate) fn motion(name: &str, system: &System, control: Control) -> Motion {
 }
 
 pub(crate) fn together(list: Vec<Motion>, shared_inputs: &[&str]) -> Together {
+    together_by(list, shared_inputs, Combined::Sum)
+}
+
+pub(crate) fn together_by(
+    list: Vec<Motion>,
+    shared_inputs: &[&str],
+    combined: Combined,
+) -> Together {
     let shared_inputs = shared_inputs.iter().map(|name| name.to_string()).collect();
     let motions = Motions {
         list,
         shared_inputs,
+        combined,
     };
     let go_on = &mut |_: usize, _: &Iterate<'_>| ControlFlow::Continue(());
     let limits = SolveLimits::default();
@@ -109,7 +118,7 @@ pub(crate) fn together(list: Vec<Motion>, shared_inputs: &[&str]) -> Together {
 }
 
 /// Does something with the programs of motions.
-fn with_programs<R>(
+pub(crate) fn with_programs<R>(
     list: &[Motion],
     work: impl FnOnce(Vec<(String, Transcription<'_>)>, Vec<Vec<f64>>) -> R,
 ) -> R {
@@ -132,7 +141,7 @@ fn with_programs<R>(
 }
 
 /// The last variables of each program, as constants of the scene are, are shared.
-fn last(count: usize, programs: &[(String, Transcription<'_>)]) -> Vec<SharedVariable> {
+pub(crate) fn last(count: usize, programs: &[(String, Transcription<'_>)]) -> Vec<SharedVariable> {
     let place = |k: usize| {
         let of = |(_, program): &(String, Transcription<'_>)| {
             (program.variables().lower.len() - count + k, 1.0)

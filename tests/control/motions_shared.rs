@@ -17,15 +17,15 @@ use proboscis::{Handle, State, Together};
 use std::ops::ControlFlow;
 use std::path::Path;
 
-const INPUTS: [&str; 2] = ["muscle1", "muscle2"];
+pub(crate) const INPUTS: [&str; 2] = ["muscle1", "muscle2"];
 
-fn alone(system: &System, control: &Control) -> Optimum {
+pub(crate) fn alone(system: &System, control: &Control) -> Optimum {
     let go_on = &mut |_: &Iterate<'_>| ControlFlow::Continue(());
     optimise(system, control, None, SolveLimits::default(), go_on).expect("a right problem")
 }
 
 /// A robot that ends near an angle, with little effort.
-fn steered(system: &System) -> Control {
+pub(crate) fn steered(system: &System) -> Control {
     Control {
         duration: Duration::Given(200.0),
         goal: BoundaryState::Free,
@@ -49,7 +49,7 @@ fn steered(system: &System) -> Control {
 }
 
 /// A segment whose muscles are stiffer by a factor.
-fn stiffer(factor: f64) -> System {
+pub(crate) fn stiffer(factor: f64) -> System {
     let mut system = trunk(1);
     for muscle in &mut system.muscles {
         muscle.material.shear_modulus *= factor;

@@ -15,7 +15,7 @@ use proboscis::prelude::{
 };
 
 /// A heavy body on one joint between two muscles without mass.
-fn pair() -> System {
+pub(crate) fn pair() -> System {
     let mut system = trunk(1);
     let body = &mut system.bodies[0];
     body.mass *= 15.0;
@@ -27,7 +27,7 @@ fn pair() -> System {
 }
 
 /// The distance of both muscles from the axis, as one parameter.
-fn arm(bounds: [f64; 2], guess: f64) -> Parameter {
+pub(crate) fn arm(bounds: [f64; 2], guess: f64) -> Parameter {
     let end = |muscle: usize, end: usize, factor: f64| Follower {
         constant: Constant::End(muscle, end, 0),
         factor,
@@ -49,7 +49,7 @@ fn arm(bounds: [f64; 2], guess: f64) -> Parameter {
 }
 
 /// Least effort from rest to rest at an angle.
-fn turn(system: &System) -> Control {
+pub(crate) fn turn(system: &System) -> Control {
     Control {
         duration: Duration::Given(100.0),
         goal: joints(&[(0, 0.2)]),

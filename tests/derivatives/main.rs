@@ -4,6 +4,7 @@
 mod common;
 
 mod action;
+mod amounts;
 mod arithmetic;
 mod costs;
 mod differences;

@@ -1,5 +1,6 @@
 //! Scene and problem files, as written and as mistaken.
 
+mod amounts;
 mod arbitrary;
 mod body_mesh_mistakes;
 mod body_meshes;

@@ -123,7 +123,8 @@ fn properties(node: &Value) -> BTreeMap<String, (Value, bool)> {
     let mut all = BTreeMap::new();
     let variants = node["oneOf"].as_array().into_iter().flatten();
     for one in [node].into_iter().chain(variants) {
-        let required = one["required"].as_array();
+        let required = [&one["required"], &one["then"]["required"]];
+        let required = required.into_iter().find_map(Value::as_array);
         let empty = Map::new();
         for (key, value) in one["properties"].as_object().unwrap_or(&empty) {
             let is_required = required.is_some_and(|list| list.iter().any(|name| name == key));

@@ -77,7 +77,7 @@ pub(super) fn cost_rows(
             CostFunction::Square { reference } => Function::Square(reference.clone()),
             CostFunction::Itself => Function::Itself,
         };
-        (cost.quantity, cost.weight, function, cost.during)
+        (cost.quantity.clone(), cost.weight, function, cost.during)
     });
     let powers = resisted(energies, &model.system)
         .map(|cost| (cost.power(), cost.weight, Function::Itself, During::Motion));

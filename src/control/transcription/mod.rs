@@ -163,8 +163,8 @@ impl<'m> Transcription<'m> {
     pub fn plain(&self, index: usize, value: f64) -> (f64, &'static str) {
         let BoundedQuantity { quantity, rate, .. } = self.limit(index);
         let quantity = match rate {
-            Some(_) => quantity.with_interval(self.workspace.h),
-            None => *quantity,
+            Some(_) => quantity.clone().with_interval(self.workspace.h),
+            None => quantity.clone(),
         };
         quantity.plain(value, &self.model.system)
     }

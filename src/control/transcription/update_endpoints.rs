@@ -96,7 +96,7 @@ impl Transcription<'_> {
         let mut others = measured(self.model, boundary);
         for LimitRow { bounded, .. } in &self.layout.limits {
             let is_same = others.next().is_some_and(|one| {
-                (one.quantity, one.when) == (bounded.quantity, bounded.when)
+                (&one.quantity, one.when) == (&bounded.quantity, bounded.when)
                     && is_equation(one) == is_equation(bounded)
             });
             if !is_same {

@@ -5,6 +5,7 @@ use crate::control::problem::{
 };
 use crate::files::json::error::SceneError;
 use crate::files::json::scope::Scope;
+use crate::files::problem::amount_limits::amount_costs;
 use crate::files::problem::coordinates::{coordinates, count};
 use crate::files::problem::energies::energies;
 use crate::files::problem::free::parameters;
@@ -12,6 +13,7 @@ use crate::files::problem::goal::goal_state;
 use crate::files::problem::guess::{guess, unwritten};
 use crate::files::problem::limits::limits;
 use crate::files::problem::loads::{check_end, load, load_bounds, loads};
+use crate::files::problem::motions::check_alone;
 use crate::files::problem::spec_control::{
     ControlSolverSpec, ControlSpec, DurationSpec, IntervalsSpec, IntervalsWord, ObjectiveSpec,
     OptionSpec, SolverSpec,
@@ -44,10 +46,7 @@ pub(crate) fn control(
     scope: &Scope<'_>,
 ) -> Result<Control, SceneError> {
     let system = scene.system;
-    if !spec.shared_inputs.is_empty() {
-        let place = scope.key("shared_inputs");
-        return Err(place.wrong("inputs in common", "none without \"motions\""));
-    }
+    check_alone(spec, scope)?;
     let duration = duration(&spec.duration, &scope.key("duration"))?;
     let intervals = match spec.intervals {
         Some(IntervalsSpec::Given(intervals)) => {
@@ -302,6 +301,8 @@ pub(crate) fn objective(
         ("rate", spec.rate),
         ("duration", spec.duration),
         ("peak_voltage", spec.peak_voltage),
+        ("muscle_volume", spec.muscle_volume),
+        ("muscle_mass", spec.muscle_mass),
     ];
     for (key, weight) in weights {
         scope.key(key).weight(weight)?;
@@ -313,6 +314,7 @@ pub(crate) fn objective(
     for (index, spec) in spec.at_the_end.iter().enumerate() {
         quantities.extend(at_the_end(spec, system, &scope.key("final").index(index))?);
     }
+    quantities.extend(amount_costs(spec, system, scope)?);
     let mut of_sources = Vec::new();
     for (key, energy, weight) in [
         (
@@ -330,7 +332,7 @@ pub(crate) fn objective(
     }
     let is_any = !quantities.is_empty() || !of_sources.is_empty();
     if !is_any && weights.iter().all(|(_, weight)| *weight == 0.0) {
-        let expected = "a positive weight of \"effort\", \"rate\", \"duration\", \"peak_voltage\", \"electrical_energy\" or \"mechanical_work\", or something to \"track\" or a \"final\" place";
+        let expected = "a positive weight of \"effort\", \"rate\", \"duration\", \"peak_voltage\", \"muscle_volume\", \"muscle_mass\", \"electrical_energy\" or \"mechanical_work\", or something to \"track\" or a \"final\" place";
         return Err(scope.wrong("no weight", expected));
     }
     Ok(Objective {

@@ -3,6 +3,7 @@
 use crate::control::problem::{PathConstraint, Side};
 use crate::files::json::error::SceneError;
 use crate::files::json::scope::Scope;
+use crate::files::problem::amount_limits::amount_limit;
 use crate::files::problem::bounds::check_bounds;
 use crate::files::problem::reaction_limits::{reaction_force, reaction_torque};
 use crate::files::problem::source_limits::{bounds, source_limits};
@@ -22,6 +23,13 @@ use crate::files::units::quantity::{
 use crate::model::Region;
 use crate::model::system::{Fidelity, System};
 
+/// Keys of an entry, each with itself where it is written.
+macro_rules! written {
+    ($spec:ident: $($key:ident),* $(,)?) => {
+        [$((stringify!($key), $spec.$key.as_ref().map(|_| stringify!($key)))),*]
+    };
+}
+
 /// The limits of a list of entries.
 pub(crate) fn limits(
     list: &[LimitSpec],
@@ -34,6 +42,10 @@ pub(crate) fn limits(
         let own = limit(spec, system, &scope)?.into_iter();
         match spec.part {
             None => limits.extend(own),
+            Some(part) if is_timeless(spec) => {
+                let expected = "no part: constants are the same at all times";
+                return Err(scope.key("part").wrong(part.to_string(), expected));
+            }
             Some(part) if part > 0.0 && part <= 1.0 => {
                 limits.extend(own.map(|limit| limit.at_part(part)));
             }
@@ -46,46 +58,24 @@ pub(crate) fn limits(
     Ok(limits)
 }
 
+/// True if it bounds what follows from constants alone.
+fn is_timeless(spec: &LimitSpec) -> bool {
+    spec.muscle_volume.is_some() || spec.muscle_mass.is_some()
+}
+
 /// The limits that one entry stands for.
 fn limit(
     spec: &LimitSpec,
     system: &System,
     scope: &Scope<'_>,
 ) -> Result<Vec<PathConstraint>, SceneError> {
-    let key = scope.exactly_one([
-        (
-            "joint_angle",
-            spec.joint_angle.as_ref().map(|_| "joint_angle"),
-        ),
-        ("joint_rate", spec.joint_rate.as_ref().map(|_| "joint_rate")),
-        ("stretch", spec.stretch.as_ref().map(|_| "stretch")),
-        ("tension", spec.tension.as_ref().map(|_| "tension")),
-        (
-            "electric_field",
-            spec.electric_field.as_ref().map(|_| "electric_field"),
-        ),
-        ("marker", spec.marker.as_ref().map(|_| "marker")),
-        (
-            "reaction_force",
-            spec.reaction_force.as_ref().map(|_| "reaction_force"),
-        ),
-        (
-            "reaction_torque",
-            spec.reaction_torque.as_ref().map(|_| "reaction_torque"),
-        ),
-        (
-            "marker_speed",
-            spec.marker_speed.as_ref().map(|_| "marker_speed"),
-        ),
-        ("current", spec.current.as_ref().map(|_| "current")),
-        ("power", spec.power.as_ref().map(|_| "power")),
-        (
-            "voltage_rate",
-            spec.voltage_rate.as_ref().map(|_| "voltage_rate"),
-        ),
+    let key = scope.exactly_one(written![
+        spec: joint_angle, joint_rate, stretch, tension, electric_field, marker, reaction_force, reaction_torque,
+        marker_speed, current, power, voltage_rate, muscle_volume, muscle_mass,
     ])?;
     let scope = scope.key(key);
     let mut limits = source_limits(spec, system, &scope)?;
+    limits.extend(amount_limit(spec, system, &scope)?);
     if let Some(spec) = &spec.joint_angle {
         let kinds = [Angle::kind(), Length::kind()];
         let bounds = [spec.min.as_ref(), spec.max.as_ref()];

@@ -6,6 +6,7 @@
 //!   `solution_joints`, `solution_document`:
 //!   what is read of an earlier solution.
 
+mod amount_limits;
 mod bounds;
 pub(crate) mod build;
 mod channels;
@@ -30,6 +31,7 @@ pub(crate) mod solution_joints;
 pub(crate) mod solution_voltages;
 mod source_limits;
 pub mod spec;
+pub mod spec_amount_limits;
 pub mod spec_control;
 pub mod spec_coordinates;
 pub mod spec_energies;

@@ -4,6 +4,7 @@ use std::collections::BTreeSet;
 
 use serde_json::Value;
 
+use crate::control::problem::Combined;
 use crate::control::{Motion, Motions};
 use crate::files::changes::Changes;
 use crate::files::json::document::Document;
@@ -11,12 +12,12 @@ use crate::files::json::error::SceneError;
 use crate::files::json::locate::JsonPath;
 use crate::files::json::scan::{Entry, Scanner, string};
 use crate::files::json::scope::Scope;
-use crate::files::problem::spec_control::COMMON;
+use crate::files::problem::spec_control::{COMMON, ControlSpec};
 
 /// Keys of a motion that are none of a control problem.
 const OWN: [&str; 2] = ["name", "set"];
 /// Keys of a control problem with motions that no motion has.
-const OF_ALL: [&str; 2] = ["motions", "shared_inputs"];
+const OF_ALL: [&str; 3] = ["combine", "motions", "shared_inputs"];
 
 /// A motion as a problem of its own.
 pub(crate) struct MotionDocument<'a> {
@@ -160,14 +161,47 @@ fn changes<'a>(written: Option<Value>, scope: &Scope<'a>) -> Result<Changes<'a>,
     Ok(changes)
 }
 
+/// Refuses keys of several motions in a problem of one.
+pub(super) fn check_alone(spec: &ControlSpec, scope: &Scope<'_>) -> Result<(), SceneError> {
+    let keys = [
+        (
+            !spec.shared_inputs.is_empty(),
+            "shared_inputs",
+            "inputs in common",
+        ),
+        (
+            spec.combine.is_some(),
+            "combine",
+            "an objective of several motions",
+        ),
+    ];
+    match keys.into_iter().find(|(is_written, ..)| *is_written) {
+        None => Ok(()),
+        Some((_, key, found)) => Err(scope.key(key).wrong(found, "none without \"motions\"")),
+    }
+}
+
+/// The objective of all motions, the sum where none is written.
+fn combined(written: Option<&str>, scope: &Scope<'_>) -> Result<Combined, SceneError> {
+    match written {
+        None | Some("\"sum\"" | "null") => Ok(Combined::Sum),
+        Some("\"worst\"") => Ok(Combined::Worst),
+        Some(other) => Err(scope.wrong(other, "\"sum\" or \"worst\"")),
+    }
+}
+
 /// The motions, if what they are to share can be shared.
 pub(crate) fn together(list: Vec<Motion>, document: &Document) -> Result<Motions, SceneError> {
-    let scope = Scope::of(document).key("control").key("shared_inputs");
+    let of_all = Scope::of(document).key("control");
+    let scope = of_all.key("shared_inputs");
     let text = document.text();
     let control = Scanner::of(text).entry("control");
-    let written =
-        control.and_then(|entry| Scanner::from(text, entry.value.start).entry("shared_inputs"));
-    let shared_inputs: Vec<String> = match written.map(|entry| &text[entry.value]) {
+    let key = |key: &str| {
+        let control = control.as_ref()?;
+        let entry = Scanner::from(text, control.value.start).entry(key)?;
+        Some(&text[entry.value])
+    };
+    let shared_inputs: Vec<String> = match key("shared_inputs") {
         None => Vec::new(),
         Some(written) => serde_json::from_str(written).map_err(|_| {
             scope.wrong(
@@ -179,6 +213,7 @@ pub(crate) fn together(list: Vec<Motion>, document: &Document) -> Result<Motions
     let motions = Motions {
         list,
         shared_inputs,
+        combined: combined(key("combine"), &of_all.key("combine"))?,
     };
     scope.unique(&motions.shared_inputs, &[], |index| scope.index(index))?;
     for (index, name) in motions.shared_inputs.iter().enumerate() {

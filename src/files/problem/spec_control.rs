@@ -24,6 +24,7 @@ use std::marker::PhantomData;
 /// An optimal control problem.
 #[derive(Clone, Debug, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
+#[schemars(transform = needed_without_motions)]
 pub struct ControlSpec {
     /// Final time, SI unit s, or its bounds and a guess.
     pub duration: DurationSpec,
@@ -83,10 +84,33 @@ pub struct ControlSpec {
     /// given duration and one number of intervals.
     #[serde(default)]
     pub shared_inputs: Vec<String>,
+    /// The objective of several motions: the `sum` of theirs (where not written), or that of the `worst`, the greatest one.
+    #[serde(default)]
+    pub combine: Option<CombinedSpec>,
+}
+
+/// The objective of several motions.
+#[derive(Clone, Copy, Debug, Deserialize, JsonSchema)]
+#[serde(rename_all = "snake_case")]
+pub enum CombinedSpec {
+    /// The sum of their objectives.
+    Sum,
+    /// The greatest of their objectives.
+    Worst,
+}
+
+/// Keys that are needed, but where each motion may have its own.
+fn needed_without_motions(schema: &mut Schema) {
+    if let Some(needed) = schema.remove("required") {
+        let no_motions = json_schema!({ "not": { "required": ["motions"] } });
+        schema.insert("if".into(), no_motions.to_value());
+        let needed = json_schema!({ "required": needed });
+        schema.insert("then".into(), needed.to_value());
+    }
 }
 
 /// Keys of a control problem that all of its motions have in common.
-pub(crate) const COMMON: [&str; 4] = ["free", "motions", "shared_inputs", "solver"];
+pub(crate) const COMMON: [&str; 5] = ["combine", "free", "motions", "shared_inputs", "solver"];
 
 /// One of several motions: the keys of a control problem that are other ones in it. It is read with those that it shares with the others.
 #[derive(Clone, Debug, Deserialize)]
@@ -108,7 +132,8 @@ impl JsonSchema for MotionSpec {
             "Constants of the scene that are other ones in this motion, by their places, such as `scene.materials.silicone.shear_modulus`.".into(),
         );
         let mut schema = ControlSpec::json_schema(generator);
-        schema.remove("required");
+        schema.remove("if");
+        schema.remove("then");
         if let Some(Value::Object(keys)) = schema.get_mut("properties") {
             keys.retain(|key, _| !COMMON.contains(&&**key));
             keys.insert("name".into(), name.into());
@@ -211,6 +236,12 @@ pub struct ObjectiveSpec {
     /// Weight per J of the mechanical work of the electrical forces of lumped muscles, of all sources or of named ones.
     #[serde(default)]
     pub mechanical_work: EnergySpec,
+    /// Weight per cm³ of the volume of all lumped muscles at rest, which follows from sought constants.
+    #[serde(default)]
+    pub muscle_volume: f64,
+    /// Weight per g of the mass of all lumped muscles with a density, which follows from sought constants.
+    #[serde(default)]
+    pub muscle_mass: f64,
     /// References of markers and joints in time.
     #[serde(default)]
     pub track: Vec<TrackSpec>,

@@ -3,6 +3,7 @@
 use schemars::JsonSchema;
 use serde::Deserialize;
 
+use crate::files::problem::spec_amount_limits::{MuscleMassLimitSpec, MuscleVolumeLimitSpec};
 use crate::files::problem::spec_source_limits::{
     All, CurrentLimitSpec, PowerLimitSpec, VoltageRateLimitSpec,
 };
@@ -55,6 +56,12 @@ pub struct LimitSpec {
     /// Limits of the rate of the voltage of sources.
     #[serde(default)]
     pub voltage_rate: Option<VoltageRateLimitSpec>,
+    /// Limits of the volume of muscles.
+    #[serde(default)]
+    pub muscle_volume: Option<MuscleVolumeLimitSpec>,
+    /// Limits of the mass of muscles.
+    #[serde(default)]
+    pub muscle_mass: Option<MuscleMassLimitSpec>,
 }
 
 /// Limits of a joint coordinate: `min`, `max` or both.

@@ -115,6 +115,8 @@ measures! {
     Ratio: si::ratio::Dimension, [0], "a plain number", "3.2";
     /// Force: N.
     Force: si::force::Dimension, [0], "a force", "\"1 N\"";
+    /// Volume: m³, mm³ inside.
+    Volume: si::volume::Dimension, [0], "a volume", "\"48 cm^3\"";
     /// Area, for messages.
     Area: si::area::Dimension, [0], "an area", "\"1 mm^2\"";
     /// Energy, for messages.

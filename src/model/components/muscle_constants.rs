@@ -5,8 +5,8 @@ use crate::functional::{LawElement, VectorArg};
 use crate::kinematics::MaterialVector;
 use crate::model::components::measured_laws::{Field, Stretch};
 use crate::model::components::muscle_laws::{
-    BranchDamper, BranchSpring, Driven, Elastic, OfCapacitance, PointMass, Section, Shape,
-    UnrelaxedSpring, Viscous, Weight,
+    BranchDamper, BranchSpring, Driven, Elastic, OfCapacitance, PointMass, RestVolume, Section,
+    Shape, UnrelaxedSpring, Viscous, Weight,
 };
 use crate::model::constant::{Constant, MaterialConstant};
 use crate::model::maxwell::MaxwellBranch;
@@ -224,6 +224,11 @@ impl<'a> MuscleConstants<'a> {
             density: self.material(MaterialConstant::Density, density),
             factor,
         })
+    }
+
+    /// Volume at rest.
+    pub(in crate::model) fn volume(&self) -> RestVolume {
+        RestVolume(self.shape.clone())
     }
 
     /// Weight under the gravity of terms, where the muscle has a density.

@@ -70,6 +70,17 @@ impl Shape {
     }
 }
 
+/// Volume at rest.
+#[derive(Clone)]
+pub(in crate::model) struct RestVolume(pub(super) Shape);
+
+impl RestVolume {
+    /// Volume in mm³.
+    pub(in crate::model) fn volume<T: Number>(&self, parameters: &[T]) -> T {
+        self.0.volume(parameters)
+    }
+}
+
 /// Elasticity.
 #[derive(Clone)]
 pub(in crate::model) struct Elastic<L> {
@@ -249,7 +260,8 @@ pub(in crate::model) struct PointMass {
 }
 
 impl PointMass {
-    fn mass<T: Number>(&self, parameters: &[T]) -> T {
+    /// Mass in g.
+    pub(in crate::model) fn mass<T: Number>(&self, parameters: &[T]) -> T {
         let mass = self.density.at(parameters) * self.shape.volume(parameters);
         mass.scaled(self.factor)
     }

@@ -1,34 +1,21 @@
 //! Several programs as one: variables that they share are unknowns once, all others and all constraints stand side by side, objectives are added.
 //!
+//! In place of their sum the greatest objective may be minimised, by a bound of all of them that is one more variable.
+//!
 //! Variables and constraints come program by program, those that are shared behind all others. Stages of a program lie behind those of the one
 //! before, so that the linear systems stay one chain that falls into pieces but for the border; where programs share variables of stages,
 //! such as the inputs of one interval, equal stages are one. One program alone keeps its numbers, bit by bit.
 
+mod part;
 mod places;
+mod worst;
 
 use std::fmt;
-use std::ops::Range;
-use std::sync::Arc;
 
-use crate::math::join_if;
 use crate::nlp::{Bounds, Entries, Nlp, Stage};
+use part::{Part, each};
 pub use places::{Places, SharedVariable};
-
-/// A program and its part of the whole.
-struct Part<N> {
-    program: N,
-    name: String,
-    /// Variable of the whole that each of its variables is, and the factor by which its value is larger.
-    columns: Arc<[(usize, f64)]>,
-    rows: Range<usize>,
-    /// Numbers of entries of Jacobian and Hessian.
-    entries: [usize; 2],
-    /// Entries of Jacobian and Hessian whose value is larger in the whole, and the factors.
-    scaled: [Vec<(usize, f64)>; 2],
-    x: Vec<f64>,
-    objective: f64,
-    gradient: Vec<f64>,
-}
+use worst::Worst;
 
 /// Several programs as one.
 pub struct Joined<N> {
@@ -38,6 +25,8 @@ pub struct Joined<N> {
     constraints: Bounds,
     jacobian: Entries,
     hessian: Entries,
+    /// The bound of all objectives, where the greatest of them is minimised.
+    worst: Option<Worst>,
 }
 
 impl<N> fmt::Debug for Joined<N> {
@@ -71,6 +60,7 @@ impl<N: Nlp> Joined<N> {
             constraints: Bounds::default(),
             jacobian: Entries::default(),
             hessian: Entries::default(),
+            worst: None,
         };
         for (name, program) in programs {
             out.add(name, program);
@@ -114,6 +104,7 @@ impl<N: Nlp> Joined<N> {
             x: vec![f64::NAN; columns.len()],
             gradient: vec![0.0; columns.len()],
             objective: 0.0,
+            weight: 1.0,
             program,
             name,
             columns,
@@ -158,6 +149,50 @@ impl<N: Nlp> Joined<N> {
     }
 }
 
+impl<N: Nlp + Send> Joined<N> {
+    /// The program whose objective is the greatest one of several programs, in place of their sum.
+    #[must_use]
+    pub fn with_worst(mut self) -> Self {
+        if self.parts.len() < 2 {
+            return self;
+        }
+        let (column, first_row) = (self.places.count, self.places.constraints());
+        self.worst = Some(Worst {
+            column,
+            first_row,
+            scale: self.objective_scale(),
+        });
+        self.places.count += 1;
+        self.variables.lower.push(f64::NEG_INFINITY);
+        self.variables.upper.push(f64::INFINITY);
+        for (number, part) in self.parts.iter().enumerate() {
+            let own = part.columns.iter().map(|&(to, _)| to);
+            for to in own.chain([column]) {
+                self.jacobian.rows.push((first_row + number) as u32);
+                self.jacobian.cols.push(to as u32);
+            }
+            self.constraints.lower.push(f64::NEG_INFINITY);
+            self.constraints.upper.push(0.0);
+        }
+        self
+    }
+
+    /// Completes a point of the variables of programs, and multipliers of their rows, by what the greatest objective adds to them.
+    pub fn complete(&mut self, x: &mut [f64], multipliers: Option<&mut Vec<f64>>) {
+        if let Some(worst) = &self.worst {
+            worst.complete(&mut self.parts, x, multipliers);
+        }
+    }
+
+    /// Weights of the objectives at an optimum with these multipliers of rows, where the greatest one is minimised.
+    #[must_use]
+    pub fn weights(&self, costates: &[f64]) -> Option<Vec<f64>> {
+        let worst = self.worst.as_ref()?;
+        let all = 0..self.parts.len();
+        Some(all.map(|number| worst.weight(number, costates)).collect())
+    }
+}
+
 impl<N: Nlp + Send> Nlp for Joined<N> {
     fn variables(&self) -> &Bounds {
         &self.variables
@@ -176,9 +211,11 @@ impl<N: Nlp + Send> Nlp for Joined<N> {
     }
 
     fn objective(&mut self, x: &[f64]) -> f64 {
+        if let Some(worst) = &self.worst {
+            return worst.objective(x);
+        }
         each(&mut self.parts, &mut [], &|_| 0, &|part, _| {
-            part.read(x);
-            part.objective = part.program.objective(&part.x);
+            part.evaluate(x)
         });
         // −0 + f is f, bit by bit.
         let values = self.parts.iter().map(|part| part.objective);
@@ -186,9 +223,11 @@ impl<N: Nlp + Send> Nlp for Joined<N> {
     }
 
     fn gradient(&mut self, x: &[f64], grad: &mut [f64]) {
+        if let Some(worst) = &self.worst {
+            return worst.gradient(grad);
+        }
         each(&mut self.parts, &mut [], &|_| 0, &|part, _| {
-            part.read(x);
-            part.program.gradient(&part.x, &mut part.gradient);
+            part.differentiate(x)
         });
         grad.fill(-0.0);
         for part in &self.parts {
@@ -199,25 +238,41 @@ impl<N: Nlp + Send> Nlp for Joined<N> {
     }
 
     fn constraint(&mut self, x: &[f64], g: &mut [f64]) {
+        let own = self.places.constraints();
+        let (g, of_worst) = g.split_at_mut(own);
         each(&mut self.parts, g, &|part| part.rows.len(), &|part, g| {
             part.read(x);
             part.program.constraint(&part.x, g);
         });
+        if let Some(worst) = &self.worst {
+            worst.rows(&mut self.parts, x, of_worst);
+        }
     }
 
     fn jacobian(&mut self, x: &[f64], values: &mut [f64]) {
+        let own = self.parts.iter().map(|part| part.entries[0]).sum();
+        let (values, of_worst) = values.split_at_mut(own);
         each(&mut self.parts, values, &|p| p.entries[0], &|part, own| {
             part.read(x);
             part.program.jacobian(&part.x, own);
             part.scale(0, own);
         });
+        if let Some(worst) = &self.worst {
+            worst.entries(&mut self.parts, x, of_worst);
+        }
     }
 
     fn hessian(&mut self, x: &[f64], sigma: f64, costates: &[f64], values: &mut [f64]) {
+        for (number, part) in self.parts.iter_mut().enumerate() {
+            part.weight = match &self.worst {
+                Some(worst) => worst.weight(number, costates),
+                None => sigma,
+            };
+        }
         each(&mut self.parts, values, &|p| p.entries[1], &|part, own| {
             part.read(x);
             let y = &costates[part.rows.clone()];
-            part.program.hessian(&part.x, sigma, y, own);
+            part.program.hessian(&part.x, part.weight, y, own);
             part.scale(1, own);
         });
     }
@@ -273,6 +328,9 @@ impl<N: Nlp + Send> Nlp for Joined<N> {
     }
 
     fn variable_name(&self, i: usize) -> String {
+        if self.worst.as_ref().is_some_and(|worst| worst.column == i) {
+            return "the greatest objective".to_owned();
+        }
         let place = |part: &Part<N>| part.columns.iter().position(|&(to, _)| to == i);
         let mut found = self.parts.iter().filter_map(|p| Some((p, place(p)?)));
         let (part, own) = found.next().expect("a variable of a program");
@@ -283,52 +341,12 @@ impl<N: Nlp + Send> Nlp for Joined<N> {
     }
 
     fn constraint_name(&self, i: usize) -> String {
+        if let Some(number) = i.checked_sub(self.places.constraints()) {
+            return self.parts[number].named("its objective, below the greatest one".to_owned());
+        }
         let mut parts = self.parts.iter();
         let part = parts.find(|part| part.rows.contains(&i));
         let part = part.expect("a constraint of a program");
         part.named(part.program.constraint_name(i - part.rows.start))
-    }
-}
-
-impl<N> Part<N> {
-    /// Reads its variables of a point.
-    fn read(&mut self, x: &[f64]) {
-        for (value, &(from, factor)) in self.x.iter_mut().zip(self.columns.iter()) {
-            *value = factor * x[from];
-        }
-    }
-
-    /// Scales entries of Jacobian or Hessian as the whole reads them.
-    fn scale(&self, kind: usize, values: &mut [f64]) {
-        for &(entry, factor) in &self.scaled[kind] {
-            values[entry] *= factor;
-        }
-    }
-
-    fn named(&self, name: String) -> String {
-        match self.name.is_empty() {
-            true => name,
-            false => format!("{}: {name}", self.name),
-        }
-    }
-}
-
-/// Does work on each part and its share of some values, the halves of a list at once: what is computed does not depend on threads.
-fn each<N: Send>(
-    parts: &mut [Part<N>],
-    values: &mut [f64],
-    count: &(dyn Fn(&Part<N>) -> usize + Sync),
-    work: &(dyn Fn(&mut Part<N>, &mut [f64]) + Sync),
-) {
-    match parts {
-        [part] => work(part, values),
-        _ => {
-            let (first, second) = parts.split_at_mut(parts.len() / 2);
-            let (a, b) = values.split_at_mut(first.iter().map(count).sum());
-            let halves = [(first, a), (second, b)]
-                .map(|(parts, values)| move || each(parts, values, count, work));
-            let [first, second] = halves;
-            join_if(true, first, second);
-        }
     }
 }

@@ -55,6 +55,11 @@ impl Places {
         self.rows.len()
     }
 
+    /// Number of rows of all programs.
+    pub(super) fn constraints(&self) -> usize {
+        self.rows.last().map_or(0, |rows| rows.end)
+    }
+
     /// The rows of a program.
     #[must_use]
     pub fn rows(&self, number: usize) -> Range<usize> {
