@@ -106,6 +106,7 @@ studies: build
 	@$(CARGO) bench --locked --bench effects -- --write
 	@$(CARGO) bench --locked --bench goals -- --write
 	@$(CARGO) bench --locked --bench warm -- --write
+	@$(CARGO) bench --locked --bench design -- --write
 	@benches/peers/run.sh
 
 install-deps:

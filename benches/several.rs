@@ -2,16 +2,19 @@
 //!
 //! `cargo bench --bench several -- [GOALS]`: goals in one thread and in two, in turn, and how many more two solve in the same time.
 //! `cargo bench --bench several -- --again`: a goal that moves, by a solver that keeps its program.
+//! `cargo bench --bench several -- --copies`: copies of one motion in one program, against one of them.
+//! `cargo bench --bench several -- --constants`: one motion with ten sought constants of several kinds, against the same without.
 //! `cargo bench --bench several -- --minutes 10`: goals in four threads against one thread, bit by bit, with the memory of the process.
 
 #[path = "../tests/common/random_goals.rs"]
 mod random_goals;
 
-use proboscis::control::problem::{BoundaryState, Control, Task};
-use proboscis::control::{BoundaryConditions, Transcription, guess};
+use proboscis::control::problem::{BoundaryState, Combined, Control, Task};
+use proboscis::control::{BoundaryConditions, Motion, Motions, Transcription, guess};
 use proboscis::files::read_problem;
 use proboscis::ipopt::{Options, Solver, Start};
 use proboscis::workflow::parallel_map::parallel_map;
+use proboscis::workflow::{ACCURACY, Iterate, SolveLimits, optimise_together};
 use random_goals::{Goals, Kind, Solved, solved, trunk};
 use std::fs;
 use std::ops::ControlFlow;
@@ -35,9 +38,13 @@ fn main() {
             again();
         }
         ["--again"] => again(),
+        ["--copies"] => copies(),
+        ["--constants"] => constants(),
         [count] => throughput(&mut goals, count.parse().expect("a number of goals")),
         ["--minutes", length] => compare(&mut goals, length.parse().expect("minutes")),
-        _ => panic!("expected a number of goals, --again, or --minutes and their number"),
+        _ => panic!(
+            "expected a number of goals, --again, --copies, --constants, or --minutes and their number"
+        ),
     }
 }
 
@@ -245,4 +252,122 @@ fn follow(intervals: usize, step: f64, start: Start) -> [f64; 5] {
         median(whole),
         median(each),
     ]
+}
+
+/// Least seconds of a few solves of motions together, and their iterations.
+fn together(motions: &Motions, runs: usize) -> [f64; 2] {
+    let mut least = [f64::INFINITY; 2];
+    for _ in 0..runs {
+        let began = Instant::now();
+        let go_on = &mut |_: usize, _: &Iterate<'_>| ControlFlow::Continue(());
+        let found = optimise_together(motions, ACCURACY, SolveLimits::default(), go_on);
+        let found = found.expect("a right problem");
+        assert!(
+            found
+                .optima
+                .iter()
+                .all(|one| one.solution.status.is_solved())
+        );
+        let seconds = began.elapsed().as_secs_f64();
+        if seconds < least[0] {
+            least = [seconds, found.iterations as f64];
+        }
+    }
+    least
+}
+
+/// The trunk with other constants, inputs or goals, as one motion.
+fn motion(changes: &[String]) -> Motion {
+    let loaded = read_problem(&trunk(), changes).expect("a kept problem");
+    let Task::Control(control) = loaded.task else {
+        panic!("a problem of control");
+    };
+    Motion {
+        name: "trunk".to_owned(),
+        system: loaded.system,
+        control: *control,
+    }
+}
+
+fn of(list: Vec<Motion>) -> Motions {
+    Motions {
+        list,
+        shared_inputs: Vec::new(),
+        combined: Combined::Sum,
+    }
+}
+
+/// Copies of one motion in one program, which share a constant: seconds of all over those of as many single ones.
+fn copies() {
+    let free =
+        r#"control.free={"materials.silicone.viscosity":{"min":"900 Pa s","max":"1100 Pa s"}}"#;
+    let goal = r#"control.goal={"joint_angles":{"joint1":0.2,"joint3":0.1},"hold":"none"}"#;
+    let one = motion(&[free.to_owned(), goal.to_owned()]);
+    println!(
+        "| copies | seconds | iterations | over as many single ones | an iteration over one of a single one |\n|--:|--:|--:|--:|--:|"
+    );
+    let [single, first] = together(&of(vec![one.clone()]), 5);
+    for count in [1, 2, 4, 8, 16] {
+        let copy = |k: usize| Motion {
+            name: format!("copy{k}"),
+            ..one.clone()
+        };
+        let [seconds, iterations] = together(&of((0..count).map(copy).collect()), 5);
+        let times = seconds / (count as f64 * single);
+        let each = times * first / iterations;
+        println!("| {count} | {seconds:.3} | {iterations:.0} | {times:.2} | {each:.2} |");
+    }
+}
+
+/// Ten constants of a kind, each with its bounds.
+fn ten(path: impl Fn(usize) -> String, [min, max]: [&str; 2]) -> String {
+    let entry = |k| format!(r#""{}":{{"min":"{min}","max":"{max}"}}"#, path(k));
+    let entries: Vec<String> = (1..=10).map(entry).collect();
+    format!("control.free={{{}}}", entries.join(","))
+}
+
+/// The arms of ten muscles at their lower ends: along x or z, on one side or the other.
+fn arms() -> String {
+    let entry = |k: usize| {
+        let axis = if (k - 1) / 2 % 2 == 0 { 0 } else { 2 };
+        let [min, max] = if k % 2 == 1 {
+            ["14 mm", "16 mm"]
+        } else {
+            ["-16 mm", "-14 mm"]
+        };
+        format!(r#""muscles.muscle{k}.from.at[{axis}]":{{"min":"{min}","max":"{max}"}}"#)
+    };
+    let entries: Vec<String> = (1..=10).map(entry).collect();
+    format!("control.free={{{}}}", entries.join(","))
+}
+
+/// Ten sought constants, each of one muscle, against the same motion without.
+fn constants() {
+    let goal = r#"control.goal={"joint_angles":{"joint1":0.2,"joint3":0.1},"hold":"none"}"#;
+    let of_muscle = |what: &'static str| move |k: usize| format!("muscles.muscle{k}.{what}");
+    let cases = [
+        ("none", "control.free={}".to_owned()),
+        (
+            "layers of ten muscles",
+            ten(of_muscle("layer_thickness"), ["48 um", "52 um"]),
+        ),
+        (
+            "widths of ten muscles",
+            ten(of_muscle("cross_section[0]"), ["9.5 mm", "10.5 mm"]),
+        ),
+        ("arms of ten muscles", arms()),
+    ];
+    println!(
+        "| constants | iterations | seconds | over none | an iteration over none |\n|:--|--:|--:|--:|--:|"
+    );
+    let mut without = [0.0; 2];
+    for (name, free) in cases {
+        let [seconds, iterations] = together(&of(vec![motion(&[goal.to_owned(), free])]), 9);
+        if name == "none" {
+            without = [seconds, iterations];
+        }
+        let times = seconds / without[0];
+        let each = times * without[1] / iterations;
+        println!("| {name} | {iterations:.0} | {seconds:.3} | {times:.2} | {each:.2} |");
+    }
 }
