@@ -9,10 +9,12 @@ use crate::app::error::CommandError;
 use crate::app::folder::make_folder;
 use crate::app::length_unit_check;
 use crate::app::messages::key;
+use crate::app::program::joined;
 use crate::app::request::{CommandInput, CommandOutput};
 use crate::app::sparsity;
 use crate::app::task::read;
 use crate::control::problem::{Control, Task};
+use crate::control::{Motion, Motions};
 use crate::identify;
 use crate::model::system::{Body, Shape};
 use crate::model::{Loops, Model, Role, System};
@@ -58,6 +60,9 @@ pub struct Inspected {
     /// Closing constraints of loops that are left out, as they follow from the others.
     #[serde(skip_serializing_if = "Vec::is_empty")]
     pub left_out: Vec<String>,
+    /// Several motions by their names, each by itself; the sizes beside them are those of the program of all.
+    #[serde(skip_serializing_if = "BTreeMap::is_empty")]
+    pub motions: BTreeMap<String, Inspected>,
     /// All of it in words.
     #[serde(skip)]
     words: String,
@@ -78,11 +83,7 @@ pub fn inspected(request: &CommandInput, text: Option<&str>) -> Result<Inspected
     };
     let mut found = match &loaded.task {
         Task::Control(control) => of_control(request, system, control),
-        Task::Motions(_) => Err(CommandError::Problem {
-            file: request.input.clone(),
-            place: "control.motions".to_owned(),
-            reason: "found several motions, of which each has terms and sizes of its own; expected a problem of one motion".to_owned(),
-        }),
+        Task::Motions(motions) => of_motions(request, motions),
         Task::Simulate(task) => {
             let model = Model::for_analysis(system.clone(), task.analysis(system, task.step))
                 .map_err(|error| wrong(error.into()))?;
@@ -164,6 +165,7 @@ fn of_model(model: &Model, control: Option<&Control>) -> Inspected {
         plan,
         sizes: sizes.into_iter().collect(),
         left_out: model.loops.left_out().map(str::to_owned).collect(),
+        motions: BTreeMap::new(),
         words,
         notes: Vec::new(),
     }
@@ -270,31 +272,14 @@ fn of_control(
     let Prepared { program, start, .. } = prepare(&model, &boundary, control, None, Counted::Yes)
         .map_err(CommandError::in_file(&request.input))?;
     let (jacobian, hessian) = (program.jacobian_structure(), program.hessian_structure());
-    let rows = program.constraints();
-    let equalities = rows.lower.iter().zip(&rows.upper).filter(|(l, u)| l == u);
-    let (variables, constraints) = (program.variables().lower.len(), rows.lower.len());
-    let equalities = equalities.count();
-    let sizes = [
-        (
-            match control.is_refined {
-                true => "intervals of the first grid",
-                false => "intervals",
-            },
-            control.intervals,
-        ),
-        ("variables", variables),
-        ("constraints", constraints),
-        ("of them inequalities", constraints - equalities),
-        (
-            "degrees of freedom left",
-            variables.saturating_sub(equalities),
-        ),
-        ("nonzeros of the Jacobian", jacobian.rows.len()),
-        (
-            "nonzeros of the Hessian (lower triangle)",
-            hessian.rows.len(),
-        ),
-    ];
+    let [variables, constraints] =
+        [program.variables(), program.constraints()].map(|bounds| bounds.lower.len());
+    let intervals = match control.is_refined {
+        true => "intervals of the first grid",
+        false => "intervals",
+    };
+    let mut sizes = vec![(intervals, control.intervals)];
+    sizes.extend(program_sizes(&program));
     let mut found = of_model(&model, Some(control));
     found.words.push_str(&format!(
         "\n{}start of the solver: {start:?}\n",
@@ -321,6 +306,72 @@ fn of_control(
         }
     }
     Ok(found)
+}
+
+/// Sizes of a nonlinear program.
+fn program_sizes(program: &dyn Nlp) -> [(&'static str, usize); 6] {
+    let rows = program.constraints();
+    let equalities = rows.lower.iter().zip(&rows.upper).filter(|(l, u)| l == u);
+    let (variables, constraints) = (program.variables().lower.len(), rows.lower.len());
+    let equalities = equalities.count();
+    [
+        ("variables", variables),
+        ("constraints", constraints),
+        ("of them inequalities", constraints - equalities),
+        (
+            "degrees of freedom left",
+            variables.saturating_sub(equalities),
+        ),
+        (
+            "nonzeros of the Jacobian",
+            program.jacobian_structure().rows.len(),
+        ),
+        (
+            "nonzeros of the Hessian (lower triangle)",
+            program.hessian_structure().rows.len(),
+        ),
+    ]
+}
+
+/// Each motion by itself, and the program of all; pictures go to folders of their names.
+fn of_motions(request: &CommandInput, motions: &Motions) -> Result<Inspected, CommandError> {
+    let motions = &motions.with_limits_once();
+    let (mut each, mut words) = (BTreeMap::new(), String::new());
+    for Motion {
+        name,
+        system,
+        control,
+    } in &motions.list
+    {
+        let own = CommandInput {
+            output: request.output.as_ref().map(|folder| folder.join(name)),
+            ..request.clone()
+        };
+        let found = of_control(&own, system, control)?;
+        words.push_str(&format!("motion \"{name}\": {}\n", found.words));
+        each.insert(name.clone(), found);
+    }
+    let asked = motions.list.iter();
+    let asked = asked.map(|one| (&*one.name, &one.system, &one.control));
+    let asked: Vec<_> = asked.collect();
+    let whole = joined(
+        &request.input,
+        (&asked, motions.in_common()),
+        |program, _| program_sizes(program),
+    )?;
+    let mut sizes = vec![("motions", motions.list.len())];
+    sizes.extend(whole);
+    let first = &each[&motions.list[0].name];
+    Ok(Inspected {
+        system: first.system.clone(),
+        coordinates: first.coordinates,
+        plan: Plan::default(),
+        left_out: Vec::new(),
+        words: format!("{words}all motions as one program\n{}", numbers(&sizes)),
+        sizes: sizes.into_iter().collect(),
+        motions: each,
+        notes: Vec::new(),
+    })
 }
 
 fn numbers(sizes: &[(&str, usize)]) -> String {

@@ -7,7 +7,8 @@ use serde_json::Value;
 use crate::app::error::CommandError;
 use crate::app::messages::key;
 use crate::app::task::read;
-use crate::control::problem::{InCommon, Task};
+use crate::control::problem::{Control, InCommon, Task};
+use crate::model::System;
 use crate::nlp::Nlp;
 use crate::workflow::prepare::Counted;
 use crate::workflow::prepare_together::{
@@ -80,14 +81,23 @@ pub fn with_program<R>(
             });
         }
     };
-    let asked = asked
-        .into_iter()
-        .map(|(name, system, control)| MotionAsked {
-            name,
-            system,
-            control,
-            earlier: None,
-        });
+    joined(input, (&asked, in_common), |program, x| {
+        read_program(program, x)
+    })
+}
+
+/// Hands the program of motions by their names to `read_program`, with the point where the solver would start.
+pub(super) fn joined<R>(
+    input: &Path,
+    (asked, in_common): (&[(&str, &System, &Control)], InCommon<'_>),
+    read_program: impl FnOnce(&mut dyn Nlp, &[f64]) -> R,
+) -> Result<R, CommandError> {
+    let asked = asked.iter().map(|&(name, system, control)| MotionAsked {
+        name,
+        system,
+        control,
+        earlier: None,
+    });
     let asked: Vec<MotionAsked<'_>> = asked.collect();
     let resolved = resolve_each(&asked).map_err(CommandError::in_file(input))?;
     let motions = program_motions(&asked, &resolved);

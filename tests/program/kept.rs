@@ -27,10 +27,6 @@ fn every_kept_problem_has_right_derivatives() {
         }
         let (status, out, err) = run(folder.path(), &["check", path.to_str().unwrap()]);
         assert_eq!(status, 0, "{name}: {out}{err}");
-        // Several motions are programs of their own.
-        if fs::read_to_string(&path).unwrap().contains("\"motions\"") {
-            continue;
-        }
         let (status, out, err) = run(folder.path(), &["inspect", path.to_str().unwrap()]);
         assert!(
             status == 0 && out.contains("muscle electroelasticity"),

@@ -128,11 +128,7 @@ fn each_motion_is_checked_and_what_cannot_be_done_is_refused() {
             .all(|name| out.contains(&format!("motion \"{name}\": derivatives agree"))),
         "{out}"
     );
-    let refusals: [(&[&str], &str); 7] = [
-        (
-            &["inspect", PROBLEM],
-            "control.motions: found several motions",
-        ),
+    let refusals: [(&[&str], &str); 6] = [
         (&["solve", PROBLEM, "--accuracy", "0.01"], "--accuracy"),
         (&["solve", PROBLEM, "--estimate-error"], "--estimate-error"),
         (&["solve", PROBLEM, "--starts", "2"], "several motions"),
@@ -219,4 +215,36 @@ fn motions_that_share_inputs_refine_one_grid() {
     for (a, b) in numbers("soft").into_iter().zip(numbers("stiff")) {
         assert!((a - b).abs() <= 1e-12 * a.abs(), "{a} {b}");
     }
+}
+
+#[test]
+fn each_motion_is_inspected_and_the_program_of_all() {
+    let folder = workshop();
+    let here = folder.path();
+    let (status, out, err) = run(here, &["inspect", PROBLEM, "-o", "shape"]);
+    assert_eq!(status, 0, "{out}{err}");
+    let number = |text: &str, name: &str| -> usize {
+        let line = text.lines().find(|line| line.starts_with(name));
+        let line = line.unwrap_or_else(|| panic!("{name}: {text}"));
+        line.split_whitespace().last().unwrap().parse().unwrap()
+    };
+    let (of_each, of_all) = out.split_once("all motions as one program").unwrap();
+    let mut variables = 0;
+    for name in NAMES {
+        let (_, own) = of_each.split_once(&format!("motion \"{name}\": ")).unwrap();
+        assert!(own.contains("muscle electroelasticity"), "{own}");
+        variables += number(own, "variables");
+        assert!(here.join("shape").join(name).join("jacobian.svg").is_file());
+    }
+    assert_eq!(number(of_all, "motions"), 3);
+    // Both constants are unknowns once.
+    assert_eq!(number(of_all, "variables"), variables - 2 * 2);
+    let (status, worst, err) = run(here, &["inspect", "problems/robust_pair_worst.json"]);
+    let (_, sum, _) = run(here, &["inspect", "problems/robust_pair.json"]);
+    assert_eq!(status, 0, "{worst}{err}");
+    let inequalities = |text: &str| {
+        let (_, of_all) = text.split_once("all motions as one program").unwrap();
+        number(of_all, "of them inequalities")
+    };
+    assert_eq!(inequalities(&worst), inequalities(&sum) + 3);
 }
