@@ -65,12 +65,39 @@ pub fn solve_motions(
     let list: Vec<SolveResult> = list.collect();
     let mut remarks = Remarks::default();
     remarks.warn("optimality_gap", whole.wide.clone());
+    remarks.warn("shared_inputs", held_apart(&motions, &list));
     Ok(MotionsResult {
         verdict: verdict(&motions.list, &list),
         list,
         whole,
         iterations,
         remarks,
+    })
+}
+
+/// Inputs that differ by less, relative to the largest, are the same.
+const SAME: f64 = 1e-6;
+
+/// That inputs which are the same in all motions are different ones after the end, where goals are held.
+fn held_apart(motions: &Motions, list: &[SolveResult]) -> Option<String> {
+    let apart = motions.shared_inputs.iter().filter(|name| {
+        let each = motions.list.iter().zip(list);
+        let held = each.filter_map(|(motion, result)| {
+            let sources = motion.system.sources();
+            let source = sources.iter().position(|source| source.name == **name)?;
+            result.optimum.motion.hold.as_ref()?.get(source).copied()
+        });
+        let held: Vec<f64> = held.collect();
+        let largest = held.iter().fold(0.0_f64, |a, b| a.max(b.abs()));
+        let differ = |value: &f64| (value - held[0]).abs() > SAME * largest;
+        held.iter().any(differ)
+    });
+    let apart: Vec<&str> = apart.map(String::as_str).collect();
+    (!apart.is_empty()).then(|| {
+        format!(
+            "the inputs of {} are the same in all motions up to the end; after it each motion is held by other ones, which one history cannot be",
+            apart.join(", ")
+        )
     })
 }
 

@@ -3,10 +3,14 @@
 use crate::loads::cart;
 use crate::motions::{last, motion, together_by, with_programs};
 use crate::motions_shared::{INPUTS, alone, steered, stiffer};
-use proboscis::control::problem::{Combined, Control};
+use proboscis::control::problem::{Combined, Control, Task};
+use proboscis::files::read_problem;
 use proboscis::nlp::joined::Joined;
 use proboscis::nlp::{Nlp, differences};
-use proboscis::workflow::{Optimum, Together};
+use proboscis::tasks::{SolveRequest, solve_motions};
+use proboscis::workflow::{Iterate, Optimum, Together};
+use std::ops::ControlFlow;
+use std::path::Path;
 
 /// The steered robot, whose objective counts by a weight.
 fn weighted(system: &proboscis::System, weight: f64) -> Control {
@@ -142,4 +146,42 @@ fn one_history_leaves_each_sampled_robot_at_rest_with_the_least_effort_of_the_cl
             assert!((limit / exact - 1.0).abs() < 1e-4, "{limit} {exact}");
         }
     }
+}
+
+/// Three stiffnesses come to rest at one angle by one history, and are held there by three pairs of voltages.
+#[test]
+fn inputs_that_part_after_the_end_are_told() {
+    let found = |changes: &[&str]| {
+        let path = Path::new(env!("CARGO_MANIFEST_DIR")).join("problems/robust_pair.json");
+        let set = ["control.intervals=30"].iter().chain(changes);
+        let set: Vec<String> = set.map(|one| one.to_string()).collect();
+        let Task::Motions(motions) = read_problem(&path, &set).unwrap().task else {
+            panic!("several motions");
+        };
+        let go_on = &mut |_: usize, _: &Iterate<'_>| ControlFlow::Continue(());
+        solve_motions(&motions, SolveRequest::default(), go_on).unwrap()
+    };
+    let held = found(&[
+        r#"control.goal={"joint_angles":{"joint1":0.05},"hold":"find"}"#,
+        r#"control.objective={"effort":1}"#,
+    ]);
+    let voltages = held
+        .list
+        .iter()
+        .map(|one| one.optimum.motion.hold.clone().unwrap());
+    let voltages: Vec<Vec<f64>> = voltages.collect();
+    assert!(
+        (voltages[0][1] - voltages[2][1]).abs() > 50.0,
+        "{voltages:?}"
+    );
+    let told = |result: &proboscis::tasks::MotionsResult| -> String {
+        result.remarks.lines().collect::<Vec<_>>().join("\n")
+    };
+    let words = told(&held);
+    assert!(
+        words.contains("inputs of muscle") && words.contains("after it"),
+        "{words}"
+    );
+    let free = found(&[]);
+    assert!(!told(&free).contains("after it"), "{}", told(&free));
 }
