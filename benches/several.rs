@@ -329,7 +329,7 @@ fn ten(path: impl Fn(usize) -> String, [min, max]: [&str; 2]) -> String {
 /// The arms of ten muscles at their lower ends: along x or z, on one side or the other.
 fn arms() -> String {
     let entry = |k: usize| {
-        let axis = if (k - 1) / 2 % 2 == 0 { 0 } else { 2 };
+        let axis = [0, 2][(k - 1) / 2 % 2];
         let [min, max] = if k % 2 == 1 {
             ["14 mm", "16 mm"]
         } else {

@@ -62,7 +62,7 @@ pub struct Inspected {
     pub left_out: Vec<String>,
     /// Several motions by their names, each by itself; the sizes beside them are those of the program of all.
     #[serde(skip_serializing_if = "BTreeMap::is_empty")]
-    pub motions: BTreeMap<String, Inspected>,
+    pub motions: BTreeMap<String, Self>,
     /// All of it in words.
     #[serde(skip)]
     words: String,

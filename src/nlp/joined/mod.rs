@@ -215,7 +215,7 @@ impl<N: Nlp + Send> Nlp for Joined<N> {
             return worst.objective(x);
         }
         each(&mut self.parts, &mut [], &|_| 0, &|part, _| {
-            part.evaluate(x)
+            part.evaluate(x);
         });
         // −0 + f is f, bit by bit.
         let values = self.parts.iter().map(|part| part.objective);
@@ -227,7 +227,7 @@ impl<N: Nlp + Send> Nlp for Joined<N> {
             return worst.gradient(grad);
         }
         each(&mut self.parts, &mut [], &|_| 0, &|part, _| {
-            part.differentiate(x)
+            part.differentiate(x);
         });
         grad.fill(-0.0);
         for part in &self.parts {
