@@ -53,7 +53,7 @@ fn reads(quantity: &Quantity, parameter: &Parameter) -> bool {
         Quantity::MarkerPlace { at: None, .. } | Quantity::MarkerRegion { at: None, .. } => {
             parameter.constants.iter().any(|c| c.constant.is_place())
         }
-        Quantity::ReactionStep { .. } => true,
+        Quantity::ReactionStep { .. } | Quantity::PullStep(_) | Quantity::Charge { .. } => true,
         _ => false,
     }
 }

@@ -61,6 +61,41 @@ impl<T: Number> Energy<7, T> for SourceCurrent<T> {
     }
 }
 
+/// `(V − u φ)/R`, arguments: voltage V of the source, potential φ in its unit u. The current from a source through a resistor to electrodes.
+#[derive(Clone, Copy, Debug)]
+pub struct PotentialDrop<T = f64> {
+    /// Unit u of the potential in V.
+    pub unit: T,
+    /// Resistance R in Ω.
+    pub resistance: T,
+}
+
+impl<T: Number> Energy<2, T> for PotentialDrop<T> {
+    type Local<const ORDER: usize> = Jet<2, ORDER, T>;
+
+    fn at<const ORDER: usize>(&self, p: &SVector<T, 2>, w: &SVector<T, 2>) -> Jet<2, ORDER, T> {
+        let across = Jet::argument(1, p, w) * self.unit;
+        (Jet::argument(0, p, w) - across) * self.resistance.recip()
+    }
+}
+
+/// `Q/C`, arguments: span r, the charge Q in its unit in the first component of a vector. The voltage of electrodes behind a resistor.
+#[derive(Clone, Copy, Debug)]
+pub struct VoltageAcross<T = f64> {
+    /// Capacitance of the muscle.
+    pub capacitance: Capacitance<T>,
+    /// Unit of the charge in mC.
+    pub unit: T,
+}
+
+impl<T: Number> Energy<6, T> for VoltageAcross<T> {
+    type Local<const ORDER: usize> = Jet<6, ORDER, T>;
+
+    fn at<const ORDER: usize>(&self, p: &SVector<T, 6>, w: &SVector<T, 6>) -> Jet<6, ORDER, T> {
+        self.capacitance.inverse(p, w) * (Jet::argument(3, p, w) * self.unit)
+    }
+}
+
 /// V times the current, arguments as of the current. The power of a source through a resistor; the unit is one of power, W.
 #[derive(Clone, Copy, Debug)]
 pub struct SourcePower<T = f64>(pub SourceCurrent<T>);

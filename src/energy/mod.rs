@@ -29,7 +29,8 @@ pub use along_span::AlongSpan;
 pub use capacitance::Capacitance;
 pub use charge::{FlowingCharge, GivenCharge};
 pub use charge_limit::{
-    FlowingChargeField, GivenChargeField, MeanCharge, SourceCurrent, SourcePower, StoredEnergy,
+    FlowingChargeField, GivenChargeField, MeanCharge, PotentialDrop, SourceCurrent, SourcePower,
+    StoredEnergy, VoltageAcross,
 };
 pub use constraint::{Coincidence, Orthogonality};
 pub use damper::{AngularDamper, CoordinateDamper, LinearDamper};

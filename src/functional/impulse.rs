@@ -3,12 +3,16 @@
 //! With the part S of the action in an interval and a displacement w of the vectors of one instant it is `m = ∇S·w`. For a constant w
 //! `∇m = ∇(∇S·w)` and `∇²m = ∇²(∇S·w)` are what terms give contracted with the direction w, virtual works included. For a turn
 //! `w_i = c e × x_j` with `f = ∇S` the sum has `∂m/∂x_j = c f_i × e` too, and `∂²m/∂x_j∂y = −c e × ∂f_i/∂y` for all y that x_i couples with.
+//!
+//! A span r, read in the middle of the interval, is shortened by `w = −c r/|r|` at both ends. Its force f is along it, so that `f·∂w = 0`: the sum
+//! has the derivatives of a constant w, and `∂²m/∂r∂r = (m/|r|²) (1 − r rᵀ/|r|²)` too.
 
 use crate::functional::{
     BlockMask, Blocks, Couplings, Functional, Horizon, Measure, Order, Outer, Output, Sample,
     SumDerivatives, Term,
 };
 use crate::math::{Matrix, Vector};
+use std::ops::Range;
 use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
 
 /// A displacement of the vectors of an instant.
@@ -22,6 +26,13 @@ pub enum Displacement {
         axis: Vector,
         /// The turns.
         turns: Vec<Turn>,
+    },
+    /// A span of which both ends come closer in both instants.
+    Shortening {
+        /// Its vector.
+        span: usize,
+        /// Factor c.
+        factor: f64,
     },
 }
 
@@ -47,8 +58,10 @@ pub struct Impulse {
     turned: [Vec<(usize, usize)>; 3],
     still: Vec<Vector>,
     scalars_still: Vec<f64>,
-    /// The end of the interval, 0 or 1.
+    /// The end of the interval, 0 or 1, where it is displaced at one.
     side: usize,
+    /// The vector of a span that is shortened at both ends, and the factor.
+    shortened: Option<(usize, f64)>,
     /// Vectors and scalars that the derivatives of the impulse belong to, each once.
     vectors: Vec<usize>,
     scalars: Vec<usize>,
@@ -72,12 +85,18 @@ impl Impulse {
         side: usize,
     ) -> Self {
         let still = vec![Vector::zeros(); vectors];
-        let (along, axis, turns) = match displacement {
-            Displacement::Shift(along) => (along, Vector::zeros(), Vec::new()),
-            Displacement::Turn { axis, turns } => (still.clone(), axis, turns),
-        };
+        let (mut along, mut axis, mut turns) = (still.clone(), Vector::zeros(), Vec::new());
+        let mut shortened = None;
+        match displacement {
+            Displacement::Shift(shift) => along = shift,
+            Displacement::Turn { axis: e, turns: t } => (axis, turns) = (e, t),
+            Displacement::Shortening { span, factor } => shortened = Some((span, factor)),
+        }
         let is_turned = |vector: usize| turns.iter().any(|turn| turn.of == vector);
-        let is_moved = |vector: usize| along[vector] != Vector::zeros() || is_turned(vector);
+        let is_moved = |vector: usize| {
+            let is_span = shortened.is_some_and(|(span, _)| span == vector);
+            along[vector] != Vector::zeros() || is_turned(vector) || is_span
+        };
         let terms = terms.iter().filter_map(|term| term.reading(&is_moved));
         let functional = Functional::new(terms.collect(), Vec::new(), vectors, scalars);
         let Couplings {
@@ -118,7 +137,23 @@ impl Impulse {
             turns,
             still,
             side,
+            shortened,
         }
+    }
+
+    /// Ends of the interval that are displaced.
+    fn sides(&self) -> Range<usize> {
+        match self.shortened {
+            Some(_) => 0..2,
+            None => self.side..self.side + 1,
+        }
+    }
+
+    /// The shortened span in the middle of the interval.
+    fn span(&self, sample: &Sample<'_>) -> Option<(usize, Vector, f64)> {
+        let (span, factor) = self.shortened?;
+        let [a, b] = sample.vectors.map(|vectors| vectors[span]);
+        Some((span, (a + b) * 0.5, factor))
     }
 
     /// The derivatives of the terms up to an order, those contracted with the displacement included.
@@ -133,8 +168,11 @@ impl Impulse {
             let x = sample.vectors[self.side][turn.by];
             along[turn.of] += self.axis.cross(&x) * turn.factor;
         }
+        if let Some((span, r, factor)) = self.span(sample) {
+            along[span] = r * (-factor / r.norm());
+        }
         let mut both = [&self.still[..], &self.still];
-        both[self.side] = along;
+        both[self.sides()].fill(along);
         let sample = Sample {
             along: both,
             scalars_along: &self.scalars_still,
@@ -146,9 +184,10 @@ impl Impulse {
         evaluation
     }
 
-    /// The product of forces at its end with the displacement.
+    /// The product of forces at its ends with the displacement.
     fn product(&self, along: &[Vector], forces: &[Vec<Vector>; 2]) -> f64 {
-        let pairs = forces[self.side].iter().zip(along);
+        let sides = forces[self.sides()].iter();
+        let pairs = sides.flat_map(|forces| forces.iter().zip(along));
         pairs.map(|(force, along)| force.dot(along)).sum()
     }
 
@@ -234,6 +273,9 @@ impl Measure for Impulse {
         }
         for &(t, pair) in mixed {
             add(couplings.add_mixed(self.turns[t].by, own.mixed[pair].1));
+        }
+        if let Some((span, _)) = self.shortened {
+            add(couplings.add_full(span, span));
         }
     }
 
@@ -322,6 +364,15 @@ impl Measure for Impulse {
             part.blocks.scalars[slot] += from * c;
         }
         self.add_turned_blocks(c, &plain.blocks, (&mut slots, mask), &mut part.blocks);
+        if let Some(((_, r, _), slot)) = self.span(sample).zip(slots.next()) {
+            let m = self.product(&evaluation.along, &plain.forces);
+            let across = Matrix::identity() - r * r.transpose() / r.norm_squared();
+            let block = across * (0.25 * c * m / r.norm_squared());
+            let to = &mut part.blocks.full[slot];
+            (0..4)
+                .filter(|&side| mask[side])
+                .for_each(|side| to[side] += block);
+        }
         if sample.horizon == Horizon::Free {
             self.add_turned(c, &plain.horizon_forces, &mut part.horizon_forces);
             for (to, from) in part.horizon_forces.iter_mut().zip(&own.horizon_forces) {

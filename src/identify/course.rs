@@ -4,7 +4,7 @@ use crate::control::problem::{BoundaryState, Identification, Recording, Regime, 
 use crate::dynamics::{DiscreteTrajectory, Start, simulate};
 use crate::identify::error::IdentifyError;
 use crate::identify::readout::{Course, Values};
-use crate::identify::sensitivity::{StartDerivatives, derivatives};
+use crate::identify::sensitivity::{CourseDerivatives, StartDerivatives, derivatives};
 use crate::identify::setup::Setup;
 use crate::model::System;
 use nalgebra::DMatrix;
@@ -67,10 +67,14 @@ fn in_motion(
     let by_start = by_start(setup, point)?;
     let inputs = (&recording.voltages, Regime::Motion);
     let by = derivatives(setup, (&start, &by_start), &discrete, inputs)?;
+    let corners = recording.voltages.switches();
+    let inside = |corner: &&f64| **corner < recording.duration();
     let course = Course {
         model,
         discrete: &discrete,
         derivatives: &by,
+        corners: corners.iter().filter(inside).copied().collect(),
+        is_still: false,
     };
     Ok(course.read(&recording.channels, point.count()))
 }
@@ -87,7 +91,8 @@ fn by_start(setup: &Setup<'_>, point: Point<'_>) -> Result<StartDerivatives, Ide
         let start = setup.start(&[])?;
         let voltages = Voltages::Constant(voltages.clone());
         let by = of_rest(setup, &start, &voltages, constants)?.1;
-        out.coordinates.columns_mut(0, constants).copy_from(&by[0]);
+        let by = &by.instants[0];
+        out.coordinates.columns_mut(0, constants).copy_from(by);
     }
     for (j, &i) in coordinates.iter().enumerate() {
         out.coordinates[(i, constants + j)] = 1.0;
@@ -98,13 +103,13 @@ fn by_start(setup: &Setup<'_>, point: Point<'_>) -> Result<StartDerivatives, Ide
     Ok(out)
 }
 
-/// A state of rest as a motion of one interval, and its derivatives by the constants.
+/// A state of rest as a motion of two intervals, and its derivatives by the constants.
 fn of_rest(
     setup: &Setup<'_>,
     state: &Start,
     voltages: &Voltages,
     constants: usize,
-) -> Result<(DiscreteTrajectory, Vec<DMatrix<f64>>), IdentifyError> {
+) -> Result<(DiscreteTrajectory, CourseDerivatives), IdentifyError> {
     let model = &setup.model;
     let none = DMatrix::zeros(model.coordinate_count(), constants);
     let by_start = StartDerivatives {
@@ -112,21 +117,17 @@ fn of_rest(
         momenta: none,
     };
     let scalars = model.scalars(&voltages.at(0.0));
-    let discrete = DiscreteTrajectory {
-        times: vec![0.0, 1.0],
-        z: vec![state.z.clone(); 2],
-        scalars: vec![model.variables.scalars(&scalars)],
+    let scalars = model.variables.scalars(&scalars);
+    let lasting = |intervals: usize| DiscreteTrajectory {
+        times: (0..=intervals).map(|k| k as f64).collect(),
+        z: vec![state.z.clone(); intervals + 1],
+        scalars: vec![scalars.clone(); intervals],
         ..DiscreteTrajectory::default()
     };
-    let by = derivatives(
-        setup,
-        (state, &by_start),
-        &discrete,
-        (voltages, Regime::Rest),
-    )?;
-    // Both instants move alike.
-    let by = vec![by[1].clone(); 2];
-    Ok((discrete, by))
+    let inputs = (voltages, Regime::Rest);
+    let by = derivatives(setup, (state, &by_start), &lasting(1), inputs)?;
+    // What a joint transmits is read between two intervals.
+    Ok((lasting(2), by.lasting(2)))
 }
 
 /// States of rest, one for each time of a reading.
@@ -147,6 +148,8 @@ fn at_rest(setup: &Setup<'_>, point: Point<'_>) -> Result<Values, IdentifyError>
             model: &setup.model,
             discrete: &discrete,
             derivatives: &by,
+            corners: Vec::new(),
+            is_still: true,
         };
         let read = course.read(&recording.channels, point.count());
         for (row, reading) in recording.readings().enumerate() {

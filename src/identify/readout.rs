@@ -4,16 +4,21 @@ use crate::control::problem::{Channel, Reading};
 use crate::coordinates::Configuration;
 use crate::dynamics::DiscreteTrajectory;
 use crate::functional::{Measure, Sample, SumDerivatives};
-use crate::identify::interpolation::weights;
+use crate::identify::interpolation::{piece, weights};
+use crate::identify::sensitivity::CourseDerivatives;
 use crate::model::{Model, Quantity};
 use nalgebra::{DMatrix, DVector, RowDVector};
 
 /// A motion with its derivatives by the unknowns at each instant.
-#[derive(Clone, Copy, Debug)]
+#[derive(Clone, Debug)]
 pub(super) struct Course<'a> {
     pub(super) model: &'a Model,
     pub(super) discrete: &'a DiscreteTrajectory,
-    pub(super) derivatives: &'a [DMatrix<f64>],
+    pub(super) derivatives: &'a CourseDerivatives,
+    /// Times in ms at which inputs have corners or jumps.
+    pub(super) corners: Vec<f64>,
+    /// True of a state of rest, of which all times are the same.
+    pub(super) is_still: bool,
 }
 
 /// Values and derivatives of readings.
@@ -24,6 +29,9 @@ pub(super) struct Values {
     /// Row of derivatives of each reading.
     pub derivatives: DMatrix<f64>,
 }
+
+/// Values at times of a grid, and their derivatives.
+type Nodes = (Vec<f64>, Vec<RowDVector<f64>>);
 
 /// Storage of the evaluation of measures.
 struct Scratch {
@@ -40,11 +48,10 @@ impl Course<'_> {
             derivatives: DMatrix::zeros(count, columns),
         };
         let instants: Vec<Configuration> = self.placed();
-        let (mut row, mut index) = (0, 0);
+        let mut row = 0;
         for channel in channels {
             for (factor, quantity) in &channel.parts {
-                let nodes = self.nodes(&instants, (index, quantity), columns);
-                index += 1;
+                let nodes = self.nodes(&instants, quantity, columns);
                 let readings = channel.readings.iter().enumerate();
                 readings.for_each(|(k, reading)| {
                     self.interpolate(quantity, &nodes, reading, (*factor, row + k), &mut out);
@@ -60,24 +67,34 @@ impl Course<'_> {
         self.discrete.z.iter().map(|z| map.placed(z)).collect()
     }
 
-    /// Times from which and between which values are known.
+    /// Times from which and between which values are known: instants, middles of intervals, or instants between two intervals.
     fn grid(&self, quantity: &Quantity) -> [f64; 2] {
         let h = self.discrete.times[1] - self.discrete.times[0];
-        match quantity.is_of_intervals() {
-            true => [0.5 * h, h],
-            false => [0.0, h],
+        match (quantity.before(), quantity.is_of_intervals()) {
+            (Some(_), _) => [h, h],
+            (None, true) => [0.5 * h, h],
+            (None, false) => [0.0, h],
         }
     }
 
     fn interpolate(
         &self,
         quantity: &Quantity,
-        (values, derivatives): &(Vec<f64>, Vec<RowDVector<f64>>),
+        (values, derivatives): &Nodes,
         reading: &Reading,
         (factor, row): (f64, usize),
         out: &mut Values,
     ) {
-        let (begin, weights) = weights(reading.time, self.grid(quantity), values.len());
+        let grid = self.grid(quantity);
+        let jumps = quantity.before().is_some();
+        let (begin, weights) = match self.is_still {
+            true => (0, vec![1.0]),
+            false => {
+                let points = (grid, values.len());
+                let piece = piece(reading.time, &self.corners, points, jumps);
+                weights(reading.time, grid, piece)
+            }
+        };
         for (j, weight) in weights.iter().enumerate() {
             out.values[row] += factor * weight * values[begin + j];
             let mut into = out.derivatives.row_mut(row);
@@ -85,16 +102,35 @@ impl Course<'_> {
         }
     }
 
+    /// Values of a quantity at all instants or in all intervals, and their derivatives; of one that is a step between intervals its rates.
+    fn nodes(&self, instants: &[Configuration], quantity: &Quantity, columns: usize) -> Nodes {
+        let [_, h] = self.grid(quantity);
+        let (mut values, mut derivatives) = self.all(instants, quantity, columns);
+        if let Some(before) = quantity.before() {
+            let (of_before, by_before) = self.all(instants, &before, columns);
+            let count = values.len() - 1;
+            return (0..count)
+                .map(|k| {
+                    let step = values[k + 1] - of_before[k];
+                    (step / h, (&derivatives[k + 1] - &by_before[k]) / h)
+                })
+                .unzip();
+        }
+        if quantity.is_step() {
+            values.iter_mut().for_each(|value| *value /= h);
+            derivatives.iter_mut().for_each(|row| *row /= h);
+        }
+        if let Some(period) = quantity.period(&self.model.system) {
+            unwrap(&mut values, period);
+        }
+        (values, derivatives)
+    }
+
     /// Values of a quantity at all instants or in all intervals, and their derivatives.
-    fn nodes(
-        &self,
-        instants: &[Configuration],
-        (index, quantity): (usize, &Quantity),
-        columns: usize,
-    ) -> (Vec<f64>, Vec<RowDVector<f64>>) {
+    fn all(&self, instants: &[Configuration], quantity: &Quantity, columns: usize) -> Nodes {
         let sides = 1 + usize::from(quantity.is_of_intervals());
         let count = instants.len() + 1 - sides;
-        let Some(place) = self.model.measured[index] else {
+        let Some(place) = self.model.place_of(quantity) else {
             return (vec![0.0; count], vec![RowDVector::zeros(columns); count]);
         };
         let sum = match sides {
@@ -102,8 +138,6 @@ impl Course<'_> {
             _ => &self.model.action.intervals,
         };
         let measure = sum.measures[place].as_ref();
-        let [_, h] = self.grid(quantity);
-        let factor = if sides == 1 { 1.0 } else { 1.0 / h };
         let map = &self.model.action.map;
         let mut scratch = Scratch {
             part: SumDerivatives::new(
@@ -113,24 +147,19 @@ impl Course<'_> {
             ),
             rows: vec![0.0; map.unknowns()],
         };
-        let (mut values, mut derivatives) = (Vec::new(), Vec::new());
-        for k in 0..count {
+        let of = |k: usize| {
             let here = [&instants[k], &instants[k + sides - 1]];
             let scalars = self.discrete.scalars.get(k).map_or(&[][..], Vec::as_slice);
             let sample = Sample {
                 vectors: here.map(|instant| &instant.x[..]),
-                h,
+                h: self.discrete.times[1] - self.discrete.times[0],
                 ..Sample::of_instant(&here[0].x, scalars)
             };
-            values.push(factor * measure.value(&sample));
             let mut row = RowDVector::zeros(columns);
             self.differentiate(measure, (&sample, here), k, (&mut scratch, &mut row));
-            derivatives.push(row * factor);
-        }
-        if let Some(period) = quantity.period(&self.model.system) {
-            unwrap(&mut values, period);
-        }
-        (values, derivatives)
+            (measure.value(&sample), row)
+        };
+        (0..count).map(of).unzip()
     }
 
     /// Adds the derivatives of a measure at instant or interval k.
@@ -153,11 +182,16 @@ impl Course<'_> {
                 let force = std::mem::take(&mut part.forces[side][vector]);
                 map.pull_back_one(vector, &here[side].columns, &force, &mut scratch.rows);
             }
-            let by = &self.derivatives[k + side];
+            let by = &self.derivatives.instants[k + side];
             for (i, force) in scratch.rows[..by.nrows()].iter().enumerate() {
                 if *force != 0.0 {
                     *out += by.row(i) * *force;
                 }
+            }
+        }
+        for (row, &scalar) in self.derivatives.read.iter().enumerate() {
+            if part.rows[scalar] != 0.0 {
+                *out += self.derivatives.intervals[k].row(row) * part.rows[scalar];
             }
         }
         part.rows.fill(0.0);

@@ -20,6 +20,15 @@ pub(super) struct StartDerivatives {
     pub(super) momenta: DMatrix<f64>,
 }
 
+/// Derivatives of a motion by unknowns: of the coordinates of each instant, and of scalars that are read in each interval.
+#[derive(Clone, Debug)]
+pub(super) struct CourseDerivatives {
+    pub(super) instants: Vec<DMatrix<f64>>,
+    /// Scalars that are read, in order.
+    pub(super) read: Vec<usize>,
+    pub(super) intervals: Vec<DMatrix<f64>>,
+}
+
 /// Linear equations of the derivatives of a motion.
 struct Equations {
     /// Row of each row of the program.
@@ -40,13 +49,13 @@ enum Meaning {
     Constant(usize),
 }
 
-/// Derivatives of the coordinates of all instants by the unknowns, one matrix an instant.
+/// Derivatives of a motion by the unknowns.
 pub(super) fn derivatives(
     setup: &Setup<'_>,
     (start, by_start): (&Start, &StartDerivatives),
     discrete: &DiscreteTrajectory,
     (voltages, regime): (&Voltages, Regime),
-) -> Result<Vec<DMatrix<f64>>, IdentifyError> {
+) -> Result<CourseDerivatives, IdentifyError> {
     let (model, intervals) = (&setup.model, discrete.intervals());
     let h = discrete.times[1] - discrete.times[0];
     let control = setup.open(voltages.clone(), intervals, h);
@@ -103,10 +112,11 @@ pub(super) fn derivatives(
     for mut column in right.column_iter_mut() {
         solver.solve(column.as_mut_slice());
     }
-    Ok(by_instant(
-        &program,
-        &equations,
-        (&right, by_start),
+    let solved = (&right, by_start);
+    Ok(CourseDerivatives::new(
+        setup,
+        (&program, &equations),
+        solved,
         intervals,
     ))
 }
@@ -155,23 +165,58 @@ impl Equations {
     }
 }
 
-/// The coordinates of all instants out of the unknowns.
-fn by_instant(
-    program: &Transcription<'_>,
-    equations: &Equations,
-    (solved, by_start): (&DMatrix<f64>, &StartDerivatives),
-    intervals: usize,
-) -> Vec<DMatrix<f64>> {
-    let zero = DMatrix::zeros(by_start.coordinates.nrows(), by_start.coordinates.ncols());
-    let mut out = vec![zero; intervals + 1];
-    out[0].clone_from(&by_start.coordinates);
-    let columns = program.unknowns().columns.iter().zip(&equations.columns);
-    for (column, meaning) in columns {
-        if let (Column::Instant { k, i }, Meaning::Unknown(unknown)) = (*column, *meaning)
-            && i < out[k].nrows()
-        {
-            out[k].set_row(i, &solved.row(unknown));
+impl CourseDerivatives {
+    /// Those of all instants and intervals out of the unknowns.
+    fn new(
+        setup: &Setup<'_>,
+        (program, equations): (&Transcription<'_>, &Equations),
+        (solved, by_start): (&DMatrix<f64>, &StartDerivatives),
+        intervals: usize,
+    ) -> Self {
+        let (n, count) = by_start.coordinates.shape();
+        let measures = setup.model.action.intervals.measures.iter();
+        let mut read: Vec<usize> = measures.flat_map(|one| one.scalars()).collect();
+        read.sort_unstable();
+        read.dedup();
+        let parameters = setup.model.variables.range(Role::Parameter);
+        // A sought constant is a scalar of all intervals.
+        let by_itself = DMatrix::from_fn(read.len(), count, |row, column| {
+            let is_own = parameters.contains(&read[row]) && read[row] - parameters.start == column;
+            f64::from(u8::from(is_own))
+        });
+        let mut out = Self {
+            instants: vec![DMatrix::zeros(n, count); intervals + 1],
+            intervals: vec![by_itself; intervals],
+            read,
+        };
+        out.instants[0].clone_from(&by_start.coordinates);
+        let columns = program.unknowns().columns.iter().zip(&equations.columns);
+        for (column, meaning) in columns {
+            let Meaning::Unknown(unknown) = *meaning else {
+                continue;
+            };
+            match *column {
+                Column::Instant { k, i } if i < n => {
+                    out.instants[k].set_row(i, &solved.row(unknown));
+                }
+                Column::Interval { k, s } => {
+                    if let Ok(row) = out.read.binary_search(&s) {
+                        out.intervals[k].set_row(row, &solved.row(unknown));
+                    }
+                }
+                _ => {}
+            }
+        }
+        out
+    }
+
+    /// The same of a state of rest that lasts over some intervals.
+    pub(super) fn lasting(&self, intervals: usize) -> Self {
+        let last = self.instants.last().expect("one instant or more");
+        Self {
+            instants: vec![last.clone(); intervals + 1],
+            read: self.read.clone(),
+            intervals: vec![self.intervals[0].clone(); intervals],
         }
     }
-    out
 }

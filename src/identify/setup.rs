@@ -9,7 +9,7 @@ use crate::control::{
 };
 use crate::dynamics::Start;
 use crate::identify::error::IdentifyError;
-use crate::model::{Analysis, Coordinates, Model, Parameter, System, with_parameters};
+use crate::model::{Analysis, Coordinates, Model, Parameter, Quantity, System, with_parameters};
 use std::collections::BTreeMap;
 
 /// The model of a recording on a grid.
@@ -44,8 +44,13 @@ impl<'a> Setup<'a> {
             quantities: recording.quantities().collect(),
             ..control.analysis(&system, duration / intervals)
         };
-        if recording.sought_start != SoughtStart::Nothing {
+        // Forces and charges are there where nothing moves too.
+        let is_force = |quantity: Quantity| lasts(&quantity);
+        if recording.sought_start != SoughtStart::Nothing || recording.quantities().any(is_force) {
             analysis.initially_moving = None;
+        }
+        for source in recording.quantities().filter_map(|q| q.source()) {
+            analysis.zero_inputs.remove(&source);
         }
         let model = Model::for_analysis(system, analysis);
         let setup = Self {
@@ -59,6 +64,16 @@ impl<'a> Setup<'a> {
 
     /// Refuses what derivatives by the start are not offered for.
     fn check(&self) -> Result<(), IdentifyError> {
+        for channel in &self.recording.channels {
+            let parts = channel.parts.iter().map(|(_, quantity)| quantity);
+            let mut silent = parts.filter(|q| lasts(q) && self.model.place_of(q).is_none());
+            if silent.next().is_some() {
+                return Err(self.refused(format!(
+                    "nothing of the model tells {}: of a joint that is fixed, in a loop, or where blocks are glued, of a part between points that do not move, or of a source that drives nothing",
+                    channel.name
+                )));
+            }
+        }
         let is_tree = self.model.coordinates == Coordinates::Reduced;
         let is_of_rest = matches!(self.recording.start, BoundaryState::RestAtVoltages(..));
         let what = match (self.recording.sought_start, self.recording.regime) {
@@ -68,12 +83,16 @@ impl<'a> Setup<'a> {
         };
         match is_tree {
             true => Ok(()),
-            false => Err(IdentifyError::Refused {
-                recording: self.recording.name.clone(),
-                reason: format!(
-                    "{what} offered in joint coordinates alone, of joints that form a tree"
-                ),
-            }),
+            false => Err(self.refused(format!(
+                "{what} offered in joint coordinates alone, of joints that form a tree"
+            ))),
+        }
+    }
+
+    fn refused(&self, reason: String) -> IdentifyError {
+        IdentifyError::Refused {
+            recording: self.recording.name.clone(),
+            reason,
         }
     }
 
@@ -141,10 +160,10 @@ impl<'a> Setup<'a> {
 }
 
 impl Recording {
-    /// All quantities, channel by channel.
-    pub(super) fn quantities(&self) -> impl Iterator<Item = crate::model::Quantity> {
+    /// All quantities, channel by channel, with those that are subtracted in the intervals before.
+    pub(super) fn quantities(&self) -> impl Iterator<Item = Quantity> {
         let parts = self.channels.iter().flat_map(|channel| &channel.parts);
-        parts.map(|(_, quantity)| quantity.clone())
+        parts.flat_map(|(_, quantity)| [quantity.clone()].into_iter().chain(quantity.before()))
     }
 
     pub(super) fn wrong(&self, source: BoundaryError) -> IdentifyError {
@@ -153,6 +172,20 @@ impl Recording {
             source,
         }
     }
+}
+
+/// Returns true of forces, charges, currents and voltages, which are none where they have no measure.
+fn lasts(quantity: &Quantity) -> bool {
+    matches!(
+        quantity,
+        Quantity::PullStep(_)
+            | Quantity::ReactionStep { .. }
+            | Quantity::Charge { .. }
+            | Quantity::MeanCharge { .. }
+            | Quantity::ElectrodeVoltage { .. }
+            | Quantity::SourceCurrent { .. }
+            | Quantity::ChargeStep { .. }
+    )
 }
 
 /// The motion of a recording as a problem without a choice.

@@ -228,19 +228,9 @@ impl Construction<'_> {
         Sought::new(parameters, variables.range(Role::Parameter).start, drifts)
     }
 
-    /// Carriers of the bodies of the scene.
-    fn carriers(&self) -> Carriers<'_> {
-        let bodies = 0..self.system.bodies.len();
-        let carriers = bodies.map(|body| self.presolved.carrier(Some(body)));
-        Carriers {
-            of: carriers.collect(),
-            reference: self.reference,
-        }
-    }
-
     /// Vector of the span of each muscle.
     fn spans(&self, vectors: &mut Vectors) -> Vec<usize> {
-        let carriers = self.carriers();
+        let carriers = Carriers::new((self.system, self.presolved, self.reference));
         let span = |m: &Muscle| {
             let [from, to] = [&m.from, &m.to].map(|end| carriers.point(end));
             vectors.index(MaterialVector::span(&from, &to))
@@ -276,13 +266,9 @@ impl Construction<'_> {
         vectors: &mut Vectors,
     ) -> (Vec<Box<dyn Term>>, Vec<Present>, Vec<LeftOut>) {
         let system = self.system;
-        let (analysis, gravity) = (self.analysis, system.gravity);
-        let called = (
-            analysis.of_motion,
-            analysis.response,
-            self.sought(variables),
-        );
-        let mut terms = Terms::new(self.carriers(), gravity, called, variables, vectors);
+        let of = (system, self.presolved, self.reference);
+        let called = (self.analysis, self.sought(variables));
+        let mut terms = Terms::new(of, called, variables, vectors);
         body::build(&self.presolved.system.bodies, self.reference, &mut terms);
         body::build_sought(&system.bodies, &mut terms);
         muscle::build(&system.muscles, spans, self.internals, &mut terms);
@@ -344,12 +330,14 @@ impl Construction<'_> {
     ) -> Measures {
         let known = measures::Known {
             system: self.system,
+            analysis: self.analysis,
             presolved: self.presolved,
             internals: self.internals,
             reference: self.reference,
             variables,
             markers,
             blocks: &self.blocks.list,
+            circuits: &self.blocks.circuits,
             terms,
             sought: self.sought(variables),
             is_glued: present.iter().any(|one| one.term == constraints::GLUE),

@@ -1,15 +1,20 @@
-//! Measures of charges and sources: behind resistors the field of the charge, current and power; otherwise charge and energy under the voltage.
+//! Measures of charges and sources: behind resistors the charge, its voltage and field, current and power; otherwise charge and energy under the
+//! voltage.
 
+use crate::energy::{Multiple, PositionComponent};
 use crate::functional::{Law, Measure, Stencil, VectorArg};
 use crate::kinematics::Vectors;
+use crate::math::Vector;
 use crate::model::components::capacitance;
 use crate::model::components::measured_laws::{
-    Current, FlowingField, GivenField, Mean, Power, Stored,
+    Across, Current, Drop, FlowingField, GivenField, Mean, Power, Stored,
 };
 use crate::model::components::muscle_constants::MuscleConstants;
 use crate::model::components::muscle_laws::{Flowing, OfCapacitance};
+use crate::model::constant::Constant;
+use crate::model::electrode_circuits::ElectrodeCircuit;
 use crate::model::internal::InternalKind;
-use crate::model::measures::{Known, Shape, instant, read};
+use crate::model::measures::{Known, Shape, instant, interval, read};
 use crate::model::quantity::Quantity;
 
 /// A muscle behind a resistor: its constants, the electric energy of its charge, and the vectors of its span and of its charge.
@@ -43,7 +48,12 @@ impl Known<'_> {
                     }
                 }
             }
+            Quantity::Charge { source } => return self.charge(source, shape, vectors),
+            Quantity::ElectrodeVoltage { source } => return self.across(source, shape, vectors),
             Quantity::SourceCurrent { muscle, unit } => {
+                if let Some(of) = self.electrodes(muscle) {
+                    return self.electrode_current((of, unit), shape);
+                }
                 let (of, current, read, voltage) = self.source_current(muscle, unit, vectors)?;
                 shape.law(of.element(current, read, [voltage]))
             }
@@ -51,7 +61,7 @@ impl Known<'_> {
                 let (of, current, read, voltage) = self.source_current(muscle, unit, vectors)?;
                 shape.law(of.element(Power(current), read, [voltage]))
             }
-            Quantity::ChargeStep { muscle, .. } => {
+            Quantity::MeanCharge { muscle } | Quantity::ChargeStep { muscle, .. } => {
                 let (of, capacitance, span, voltage) = self.direct(muscle, vectors)?;
                 let ends = [Stencil::Here, Stencil::Next].map(|at| read(span, at));
                 shape.law(of.element(Mean(capacitance), ends, [voltage]))
@@ -62,6 +72,67 @@ impl Known<'_> {
             }
             _ => return None,
         })
+    }
+
+    /// The electrodes behind a resistor that a source charges.
+    fn electrodes(&self, source: usize) -> Option<&ElectrodeCircuit> {
+        self.circuits.iter().find(|of| of.source == source)
+    }
+
+    /// Charge behind the resistor of a source in mC.
+    fn charge(
+        &self,
+        source: usize,
+        shape: Shape,
+        vectors: &mut Vectors,
+    ) -> Option<Box<dyn Measure>> {
+        let charge = self.internals.vector(InternalKind::Charge(source))?;
+        let unit = match self.electrodes(source) {
+            Some(of) => of.unit_of_charge,
+            None => capacitance(&self.system.muscles[source])?.unit_of_charge(),
+        };
+        let (origin, normal) = (Vector::zeros(), Vector::x() * unit);
+        let component = PositionComponent { origin, normal };
+        Some(instant(shape, component, [vectors.index(charge)]))
+    }
+
+    /// Voltage of the electrodes behind the resistor of a source.
+    fn across(
+        &self,
+        source: usize,
+        shape: Shape,
+        vectors: &mut Vectors,
+    ) -> Option<Box<dyn Measure>> {
+        if let Some(of) = self.electrodes(source) {
+            let (potential, volts) = of.potential;
+            let multiple = Multiple { unit: 1.0 / volts };
+            return Some(interval::<_, 1, 0, 1>(shape, multiple, [], [potential]));
+        }
+        let Charged {
+            of,
+            energy,
+            read: vectors,
+            ..
+        } = self.charged(source, vectors)?;
+        let vectors = vectors.map(|vector| read(vector, Stencil::Mid));
+        Some(shape.law::<_, 6, 2, 0>(of.element(Across(energy), vectors, [])))
+    }
+
+    /// Current of the source of electrodes behind a resistor in a unit.
+    fn electrode_current(
+        &self,
+        (of, unit): (&ElectrodeCircuit, f64),
+        shape: Shape,
+    ) -> Option<Box<dyn Measure>> {
+        let mut read = self.sought.read();
+        let (potential, volts) = of.potential;
+        let series = of.circuit.resistance?;
+        let law = Drop {
+            unit: volts,
+            resistance: read.constant(Constant::Resistance(of.source), series),
+            of_current: unit,
+        };
+        Some(shape.law::<_, 2, 0, 2>(read.element(law, [], [of.input, potential])))
     }
 
     /// A muscle without a resistor: its constants and capacitance, the vector of its span, and the scalar of its voltage.

@@ -12,6 +12,7 @@ use crate::kinematics::{MaterialVector, Pose, Vectors};
 use crate::math::Vector;
 use crate::model::analysis::Analysis;
 use crate::model::components::capacitance;
+use crate::model::electrode_circuits::ElectrodeCircuit;
 use crate::model::internal::Internals;
 use crate::model::joints::{JointCoordinate, JointReading};
 use crate::model::muscle_amount::amount_measure;
@@ -20,6 +21,7 @@ use crate::model::quantity::{FieldPlace, Quantity};
 use crate::model::solid_block::SolidBlock;
 use crate::model::sought::Sought;
 use crate::model::system::System;
+use crate::model::terms::Terms;
 use crate::model::variables::{Role, Variables};
 use std::sync::Arc;
 
@@ -39,6 +41,7 @@ pub(super) struct Measures {
 #[derive(Clone, Debug)]
 pub(super) struct Known<'a> {
     pub(super) system: &'a System,
+    pub(super) analysis: &'a Analysis,
     pub(super) presolved: &'a Presolved,
     pub(super) internals: &'a Internals,
     pub(super) reference: &'a [Pose],
@@ -46,6 +49,7 @@ pub(super) struct Known<'a> {
     /// Vector of each marker.
     pub(super) markers: &'a [usize],
     pub(super) blocks: &'a [SolidBlock],
+    pub(super) circuits: &'a [ElectrodeCircuit],
     /// Terms of the intervals.
     pub(super) terms: &'a [Arc<dyn Term>],
     /// The sought parameters.
@@ -76,6 +80,13 @@ impl Measures {
 }
 
 impl Known<'_> {
+    /// No terms, to which those of a part are added.
+    pub(super) fn no_terms<'v>(&'v self, vectors: &'v mut Vectors) -> Terms<'v> {
+        let of = (self.system, self.presolved, self.reference);
+        let called = (self.analysis, self.sought.clone());
+        Terms::new(of, called, self.variables, vectors)
+    }
+
     fn measure(
         &self,
         quantity: &Quantity,
@@ -126,7 +137,11 @@ impl Known<'_> {
             | Quantity::SourceCurrent { .. }
             | Quantity::SourcePower { .. }
             | Quantity::ChargeStep { .. }
+            | Quantity::Charge { .. }
+            | Quantity::MeanCharge { .. }
+            | Quantity::ElectrodeVoltage { .. }
             | Quantity::EnergyStep { .. } => return self.of_charge(quantity, shape, vectors),
+            Quantity::PullStep(part) => return self.pull(part, vectors),
             Quantity::ReactionStep {
                 joint,
                 of,

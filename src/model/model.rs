@@ -14,6 +14,7 @@ use crate::model::joints::{JointReading, Prescribed};
 use crate::model::loops::Loops;
 use crate::model::plan::{LeftOut, Present};
 use crate::model::presolved::Presolved;
+use crate::model::quantity::Quantity;
 use crate::model::solid_block::SolidBlock;
 use crate::model::system::{InputKind, Source, System};
 use crate::model::variables::{Size, Variable, Variables};
@@ -331,6 +332,12 @@ impl Model {
     pub fn condensed_poses(&self, instant: &Configuration) -> Vec<Pose> {
         let bodies = self.presolved.system.bodies.len();
         self.action.map.poses(instant, bodies)
+    }
+
+    /// Index of a quantity of the analysis among the measures of its site; none where nothing of the model can change it.
+    pub fn place_of(&self, quantity: &Quantity) -> Option<usize> {
+        let mut all = self.analysis.quantities.iter().zip(&self.measured);
+        all.find(|(one, _)| *one == quantity)?.1.to_owned()
     }
 
     /// Inputs of an interval from one voltage a source; sought parameters are at their guesses.

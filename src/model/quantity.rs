@@ -3,7 +3,7 @@
 use crate::functional::Stencil;
 use crate::math::Vector;
 use crate::model::amount::Amount;
-pub use crate::model::quantity_parts::{FieldPlace, Reaction, Region};
+pub use crate::model::quantity_parts::{FieldPlace, Pulling, Reaction, Region};
 use crate::model::system::{JointKind, System};
 use crate::model::variables::Size;
 use std::f64::consts::TAU;
@@ -56,9 +56,9 @@ pub enum Quantity {
         /// As of a stretch.
         at: Option<Stencil>,
     },
-    /// Current of the source of a muscle behind a resistor in the middle of the intervals.
+    /// Current of the source of a muscle, or of electrodes, behind a resistor in the middle of the intervals.
     SourceCurrent {
-        /// Muscle index.
+        /// Index of the muscle or source.
         muscle: usize,
         /// Unit in A.
         unit: f64,
@@ -76,6 +76,23 @@ pub enum Quantity {
         muscle: usize,
         /// Unit in N.
         unit: f64,
+    },
+    /// Impulse in N ms with which a part pulls its ends together in an interval.
+    PullStep(Pulling),
+    /// Charge in mC of a muscle or of electrodes behind the resistor of a source, at the instants.
+    Charge {
+        /// Source index.
+        source: usize,
+    },
+    /// Mean charge `½ (C_k + C_{k+1}) V` in mC of a lumped muscle under the voltage of its source in the intervals.
+    MeanCharge {
+        /// Muscle index.
+        muscle: usize,
+    },
+    /// Voltage in V of the electrodes behind the resistor of a source, in the middle of the intervals.
+    ElectrodeVoltage {
+        /// Source index.
+        source: usize,
     },
     /// Voltage of a source in V in the intervals, of which the steps between them are limited.
     VoltageStep {
@@ -222,6 +239,17 @@ impl Quantity {
                 | Self::ChargeStep { .. }
                 | Self::EnergyStep { .. }
                 | Self::ReactionStep { .. }
+                | Self::PullStep(_)
+                | Self::MeanCharge { .. }
+                | Self::ElectrodeVoltage { .. }
+        )
+    }
+
+    /// Returns true if its values are steps within intervals, whose rates they are over the length of the interval.
+    pub fn is_step(&self) -> bool {
+        matches!(
+            self,
+            Self::JointStep { .. } | Self::MarkerStep { .. } | Self::PullStep(_)
         )
     }
 
@@ -265,7 +293,10 @@ impl Quantity {
             | Self::OfMuscles { .. }
             | Self::SourceCurrent { .. }
             | Self::SourcePower { .. }
-            | Self::Tension { .. } => "in interval",
+            | Self::Tension { .. }
+            | Self::PullStep(_)
+            | Self::MeanCharge { .. }
+            | Self::ElectrodeVoltage { .. } => "in interval",
             Self::VoltageStep { .. }
             | Self::ChargeStep { .. }
             | Self::EnergyStep { .. }
@@ -281,6 +312,9 @@ impl Quantity {
             Self::Capacitance { .. } => "mF",
             Self::MarkerPlace { .. } | Self::MarkerStep { .. } => "mm",
             Self::PeakVoltage { .. } => "kV",
+            Self::PullStep(_) => "N ms",
+            Self::Charge { .. } | Self::MeanCharge { .. } => "mC",
+            Self::ElectrodeVoltage { .. } => "V",
             Self::SquaredStretch { .. }
             | Self::SquaredField { .. }
             | Self::SquaredSpeed { .. }
@@ -353,6 +387,10 @@ impl Quantity {
             | Self::Direction { .. }
             | Self::PeakVoltage { .. }
             | Self::PeakExcess { .. }
+            | Self::PullStep(_)
+            | Self::Charge { .. }
+            | Self::MeanCharge { .. }
+            | Self::ElectrodeVoltage { .. }
             | Self::MarkerPlace { .. }
             | Self::MarkerStep { .. } => (value, self.unit(system)),
         }

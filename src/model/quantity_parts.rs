@@ -45,3 +45,14 @@ pub enum Reaction {
     /// Torque in N mm about the point of the joint.
     Torque,
 }
+
+/// A part of a scene that pulls its ends together.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Pulling {
+    /// A lumped muscle.
+    Muscle(usize),
+    /// A spring with its damper.
+    Spring(usize),
+    /// A tendon.
+    Tendon(usize),
+}

@@ -5,6 +5,7 @@ mod common;
 
 mod assessed;
 mod derivatives;
+mod forces;
 mod oscillator;
 mod ratio;
 mod recovered;

@@ -4,13 +4,11 @@ use crate::control::problem::{Channel, Reading};
 use crate::files::columns::Columns;
 use crate::files::json::error::SceneError;
 use crate::files::json::scope::Scope;
+use crate::files::problem::channel_quantities::What;
 use crate::files::problem::spec_identify::{MeasuredSize, MeasuredSpec};
-use crate::files::problem::state::{joint_with_coordinate, moving_marker};
-use crate::files::units::quantity::{
-    Angle, AngularVelocity, Kind, Length, Quantity as Written, Ratio, Velocity,
-};
+use crate::files::units::quantity::{Kind, Quantity as Written, Ratio};
+use crate::model::Quantity;
 use crate::model::system::System;
-use crate::model::{Quantity, joint_unit};
 
 /// A quantity that is measured.
 #[derive(Debug)]
@@ -35,76 +33,15 @@ impl Measured {
         system: &System,
         scope: &Scope<'_>,
     ) -> Result<Self, SceneError> {
-        type Build<'a> = Box<dyn FnOnce() -> Result<Measured, SceneError> + 'a>;
-        let column = |name: &String| spec.column.clone().unwrap_or_else(|| name.clone());
-        let column = &column;
-        let joint = spec.joint.as_ref().map(|name| -> Build<'_> {
-            Box::new(move || {
-                let joint = joint_with_coordinate(name, system, &scope.key("joint"))?;
-                let (kind, unit) = match joint_unit(system, joint) {
-                    "mm" => (Length::kind(), ("m", 1e-3)),
-                    _ => (Angle::kind(), ("rad", 1.0)),
-                };
-                Ok(Self {
-                    name: name.clone(),
-                    column: column(name),
-                    parts: vec![(1.0, Quantity::Joint { joint, near: 0.0 })],
-                    kind,
-                    unit,
-                })
-            })
-        });
-        let rate = spec.joint_rate.as_ref().map(|name| -> Build<'_> {
-            Box::new(move || {
-                let joint = joint_with_coordinate(name, system, &scope.key("joint_rate"))?;
-                let (kind, unit) = match joint_unit(system, joint) {
-                    "mm" => (Velocity::kind(), ("m/s", 1.0)),
-                    _ => (AngularVelocity::kind(), ("rad/s", 1e3)),
-                };
-                Ok(Self {
-                    name: format!("rate of {name}"),
-                    column: column(name),
-                    parts: vec![(1.0, Quantity::joint_rate(joint))],
-                    kind,
-                    unit,
-                })
-            })
-        });
-        let marker = spec.marker.as_ref().map(|name| -> Build<'_> {
-            Box::new(move || {
-                let marker = moving_marker(name, system, &scope.key("marker"))?;
-                let place = scope.key("along");
-                let Some(along) = spec.along else {
-                    let expected = "a direction, such as [1, 0, 0]";
-                    return Err(place.wrong("no direction", expected));
-                };
-                let length = along.iter().map(|a| a * a).sum::<f64>().sqrt();
-                if !(length > 0.0 && length.is_finite()) {
-                    return Err(place.wrong(format!("{along:?}"), "a direction of some length"));
-                }
-                let part =
-                    |(axis, a): (usize, f64)| (a / length, Quantity::marker_place(marker, axis));
-                let along = along.into_iter().enumerate().filter(|(_, a)| *a != 0.0);
-                Ok(Self {
-                    name: name.clone(),
-                    column: column(name),
-                    parts: along.map(part).collect(),
-                    kind: Length::kind(),
-                    unit: ("m", 1e-3),
-                })
-            })
-        });
-        let quantities = [("joint", joint), ("joint_rate", rate), ("marker", marker)];
-        let build = scope.exactly_one(quantities)?;
-        if spec.along.is_some() && spec.marker.is_none() {
-            let expected = "a direction of a \"marker\" alone";
-            return Err(scope.key("along").wrong("a direction", expected));
-        }
-        let mut out = build()?;
-        if let Some(column) = &spec.column {
-            out.name.clone_from(column);
-        }
-        Ok(out)
+        let what = What::new(spec, system, scope)?;
+        let column = spec.column.as_ref();
+        Ok(Self {
+            column: column.unwrap_or(&what.of).clone(),
+            name: column.unwrap_or(&what.name).clone(),
+            parts: what.parts,
+            kind: what.kind,
+            unit: what.unit,
+        })
     }
 
     /// The standard deviation that is written for all readings.

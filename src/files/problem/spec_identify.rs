@@ -6,6 +6,7 @@ use crate::files::problem::spec_free::FreeMap;
 use crate::files::problem::spec_states::StartSpec;
 use crate::files::problem::spec_voltages::VoltagesSpec;
 use crate::files::units::quantity::{Angle, AngularVelocity, Kind, Length, Velocity};
+use crate::files::units::quantity::{Charge, Current, Force, Torque, Voltage};
 use crate::files::units::quantity::{PhysicalQuantity, Quantity, Time};
 use schemars::JsonSchema;
 use serde::Deserialize;
@@ -103,7 +104,8 @@ pub enum SoughtStartSpec {
     State,
 }
 
-/// A measured quantity: exactly one of `joint`, `joint_rate` and `marker`.
+/// A measured quantity: exactly one of `joint`, `joint_rate`, `marker`, `tension`, `charge`, `current`, `voltage`, `reaction_force` and
+/// `reaction_torque`.
 #[derive(Clone, Debug, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct MeasuredSpec {
@@ -116,10 +118,31 @@ pub struct MeasuredSpec {
     /// Place of a marker along a direction.
     #[serde(default)]
     pub marker: Option<String>,
-    /// The direction, in the ground frame; its length does not matter.
+    /// Force with which a lumped muscle, a spring or a tendon pulls its ends together, of all its laws, voltage and viscosity.
+    #[serde(default)]
+    pub tension: Option<String>,
+    /// Charge that a source has brought to a lumped muscle, or to electrodes behind a resistor.
+    #[serde(default)]
+    pub charge: Option<String>,
+    /// Current of a source: of a lumped muscle that does not leak, or of anything behind a resistor.
+    #[serde(default)]
+    pub current: Option<String>,
+    /// Voltage of the electrodes behind the resistor of a source.
+    #[serde(default)]
+    pub voltage: Option<String>,
+    /// Force from the parent of a joint on its child along a direction, as in limits; of joints in no loop.
+    #[serde(default)]
+    pub reaction_force: Option<String>,
+    /// Torque from the parent of a joint on its child about a direction, about the point of the joint.
+    #[serde(default)]
+    pub reaction_torque: Option<String>,
+    /// The direction of a place or a force, in the ground frame; its length does not matter.
     #[serde(default)]
     pub along: Option<[f64; 3]>,
-    /// Header of the column, with or without its unit; the name of the joint or marker where not written.
+    /// The direction of a torque, in the ground frame; its length does not matter.
+    #[serde(default)]
+    pub about: Option<[f64; 3]>,
+    /// Header of the column, with or without its unit; the name of the joint, marker, part or source where not written.
     #[serde(default)]
     pub column: Option<String>,
     /// Standard deviation of the readings, in a unit of the quantity; where neither it nor `deviations` is written, the residuals tell it.
@@ -151,6 +174,11 @@ impl PhysicalQuantity for MeasuredSize {
             Angle::kind(),
             Velocity::kind(),
             AngularVelocity::kind(),
+            Force::kind(),
+            Torque::kind(),
+            Charge::kind(),
+            Current::kind(),
+            Voltage::kind(),
         ]
     }
 }

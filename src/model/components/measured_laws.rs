@@ -1,8 +1,9 @@
 //! Laws of quantities of lumped muscles and their sources that limits and costs read.
 
 use crate::energy::{
-    Affine, FlowingCharge, FlowingChargeField, GivenChargeField, MeanCharge, SourceCurrent,
-    SourcePower, SpanTension, SquaredDistance, SquaredField, StoredEnergy, ViscousTension,
+    Affine, FlowingCharge, FlowingChargeField, GivenChargeField, MeanCharge, PotentialDrop,
+    SourceCurrent, SourcePower, SpanTension, SquaredDistance, SquaredField, StoredEnergy,
+    ViscousTension, VoltageAcross,
 };
 use crate::functional::Law;
 use crate::math::Number;
@@ -102,6 +103,39 @@ impl Law<7> for Current {
             unit_of_charge: unit,
             resistance: self.resistance.at(parameters),
             unit: T::of(self.unit),
+        }
+    }
+}
+
+/// Voltage of a charge behind a resistor.
+#[derive(Clone)]
+pub(in crate::model) struct Across(pub(in crate::model) Flowing);
+
+impl Law<6> for Across {
+    type Formula<T: Number> = VoltageAcross<T>;
+
+    fn formula<T: Number>(&self, parameters: &[T]) -> VoltageAcross<T> {
+        let FlowingCharge { capacitance, unit } = self.0.formula(parameters);
+        VoltageAcross { capacitance, unit }
+    }
+}
+
+/// Current through a resistor to electrodes with a potential, in a unit in A.
+#[derive(Clone)]
+pub(in crate::model) struct Drop {
+    /// Unit of the potential in V.
+    pub(in crate::model) unit: f64,
+    pub(in crate::model) resistance: Affine,
+    pub(in crate::model) of_current: f64,
+}
+
+impl Law<2> for Drop {
+    type Formula<T: Number> = PotentialDrop<T>;
+
+    fn formula<T: Number>(&self, parameters: &[T]) -> PotentialDrop<T> {
+        PotentialDrop {
+            unit: T::of(self.unit),
+            resistance: self.resistance.at(parameters).scaled(self.of_current),
         }
     }
 }
