@@ -13,7 +13,7 @@ use crate::app::request::{CommandInput, CommandOutput, PageWanted};
 use crate::app::summary::Summary;
 use crate::control::problem;
 use crate::files::Loaded;
-use crate::identify::{Identified, IdentifyError, identify};
+use crate::identify::{Identified, IdentifyError, found_starts, identify};
 use crate::ipopt::interrupt;
 use crate::report::file_set::FileSet;
 use crate::report::table::cells_csv;
@@ -33,6 +33,8 @@ pub(super) fn run(
         tracing::debug!(intervals = ?grid.intervals, sum = fit.sum(), "fitted");
     });
     let found = found.map_err(|error| refused(request, &error))?;
+    let starts = found_starts(&loaded.system, task, &found);
+    let starts = starts.map_err(|error| refused(request, &error))?;
     drop(watch);
     let folder = make_folder_of(request)?;
     let writing = Instant::now();
@@ -40,7 +42,7 @@ pub(super) fn run(
     let status = status(&found);
     let mut summary = Summary::new(request, status, None);
     summary.notes = remarks(task, &found);
-    let identification = Identification::new(&loaded.system, task, &found);
+    let identification = Identification::new(&loaded.system, task, (&found, &starts));
     let text = identification.text();
     summary.identification = Some(identification);
     let mut files = FileSet::in_folder(&folder);

@@ -4,7 +4,7 @@ use serde::Serialize;
 
 use crate::app::identification_verdict::{product, words};
 use crate::control::problem;
-use crate::identify::{Experiment, HeldOut, Identified, Undetermined, Whiteness};
+use crate::identify::{Experiment, FoundStart, HeldOut, Identified, Undetermined, Whiteness};
 use crate::math::significant;
 use crate::model::{Parameter, SiUnit, System};
 
@@ -25,6 +25,9 @@ pub(super) struct Identification {
     #[serde(skip_serializing_if = "Option::is_none")]
     p: Option<f64>,
     grid: GridBias,
+    /// Starts that were sought.
+    #[serde(skip_serializing_if = "Vec::is_empty")]
+    starts: Vec<Start>,
     fitted: Vec<Residuals>,
     held_out: Vec<Prediction>,
     #[serde(skip_serializing_if = "Vec::is_empty")]
@@ -82,6 +85,23 @@ struct GridBias {
     #[serde(skip_serializing_if = "Option::is_none")]
     largest_change: Option<f64>,
     confirmed: bool,
+}
+
+/// The start of a recording that was sought.
+#[derive(Debug, Serialize)]
+struct Start {
+    recording: String,
+    joints: Vec<StartJoint>,
+}
+
+/// Coordinate of a joint at a start.
+#[derive(Debug, Serialize)]
+struct StartJoint {
+    name: String,
+    /// Unit of the coordinate; that of its rate is this one over s.
+    unit: &'static str,
+    value: f64,
+    rate: f64,
 }
 
 /// Residuals of a quantity of a recording.
@@ -165,7 +185,11 @@ fn residuals(
 
 impl Identification {
     /// Of a fit and its assessment.
-    pub(super) fn new(system: &System, task: &problem::Identification, found: &Identified) -> Self {
+    pub(super) fn new(
+        system: &System,
+        task: &problem::Identification,
+        (found, starts): (&Identified, &[FoundStart]),
+    ) -> Self {
         let information = &found.information;
         let units: Vec<SiUnit> = task.parameters.iter().map(|p| unit(system, p)).collect();
         let values = found.fit.of_constants();
@@ -225,6 +249,10 @@ impl Identification {
                 largest_change: largest.is_finite().then_some(largest),
                 confirmed: found.bias.is_confirmed,
             },
+            starts: starts
+                .iter()
+                .map(|one| Start::new(system, task, one))
+                .collect(),
             fitted: residuals(task, &found.series, &found.whiteness),
             held_out: found
                 .held_out
@@ -286,6 +314,22 @@ impl Identification {
             lines.push(format!("next experiment: {}", best.name));
         }
         lines.join("\n")
+    }
+}
+
+impl Start {
+    fn new(system: &System, task: &problem::Identification, one: &FoundStart) -> Self {
+        let joints = one.in_si(system);
+        let joints = joints.map(|(name, unit, value, rate)| StartJoint {
+            name: name.to_owned(),
+            unit,
+            value,
+            rate,
+        });
+        Self {
+            recording: task.recordings[one.recording].name.clone(),
+            joints: joints.collect(),
+        }
     }
 }
 

@@ -1,6 +1,6 @@
 //! Verdicts on an identification: its status, and remarks in words.
 
-use crate::control::problem::Identification;
+use crate::control::problem::{Identification, Recording};
 use crate::identify::{Ended, HeldOut, Identified, Undetermined};
 use crate::math::significant;
 use crate::workflow::Remarks;
@@ -56,6 +56,21 @@ pub(super) fn status(found: &Identified) -> &'static str {
     }
 }
 
+/// A recording of which a table of voltages or loads ends before its last reading.
+fn beyond(recording: &Recording) -> Option<String> {
+    let last = recording.readings().map(|reading| reading.time);
+    let last = last.fold(0.0, f64::max);
+    let end = recording.voltages.last_known()?;
+    (end < last).then(|| {
+        format!(
+            "recording \"{}\": a table of its voltages or loads ends at {} s, before the last reading at {} s; its last values go on",
+            recording.name,
+            significant(1e-3 * end, 4),
+            significant(1e-3 * last, 4)
+        )
+    })
+}
+
 /// Warnings and notes on a result.
 pub(super) fn remarks(task: &Identification, found: &Identified) -> Remarks {
     let mut remarks = Remarks::default();
@@ -94,6 +109,7 @@ pub(super) fn remarks(task: &Identification, found: &Identified) -> Remarks {
             )],
         ),
     }
+    remarks.note("inputs_end", task.recordings.iter().filter_map(beyond));
     if found.held_out.is_empty() {
         let text = "no recording is held out: nothing checks the prediction";
         remarks.note("nothing_held_out", [text.to_owned()]);

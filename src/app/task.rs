@@ -173,6 +173,7 @@ fn refuse_unused(request: &CommandInput, task: &Task) -> Result<(), CommandError
         }
         _ if request.from.is_some() && (!is_simulation || request.wanted.is_some()) => "--from",
         _ if request.max_iterations.is_some() => "--max-iterations",
+        (Task::Identify(_), None) if request.figures.gltf || request.figures.parts => "--export",
         _ => return Ok(()),
     };
     let asks = match task {
@@ -191,6 +192,9 @@ fn refuse_unused(request: &CommandInput, task: &Task) -> Result<(), CommandError
         Task::Identify(_) if option == "--from" => "an identification, which goes on from nothing",
         Task::Identify(_) if request.wanted.is_some() => {
             "an identification, whose steps are halved until their bias is small"
+        }
+        Task::Identify(_) if option == "--export" => {
+            "an identification, whose motions are those of its recordings"
         }
         Task::Identify(_) => "an identification, for which no solver of programs iterates",
         _ => "a simulation, for which no solver of programs iterates",

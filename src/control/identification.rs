@@ -2,7 +2,7 @@
 
 use crate::control::boundary_state::BoundaryState;
 use crate::control::inputs::Voltages;
-use crate::model::{Coordinates, Parameter, Quantity};
+use crate::model::{Coordinates, Parameter, Quantity, System};
 
 /// Sought constants, and the recordings that tell of them.
 #[derive(Clone, Debug, PartialEq)]
@@ -24,6 +24,8 @@ pub struct Identification {
 pub struct Recording {
     /// Name for messages and files.
     pub name: String,
+    /// What is another thing in its scene; `None`: nothing.
+    pub scene: Option<Box<ChangedScene>>,
     /// Motion or states of rest.
     pub regime: Regime,
     /// Voltages and loads over time.
@@ -36,6 +38,15 @@ pub struct Recording {
     pub is_held_out: bool,
     /// Measured quantities with their readings.
     pub channels: Vec<Channel>,
+}
+
+/// A scene that is another one in a recording, such as that of a robot with a payload.
+#[derive(Clone, Debug, PartialEq)]
+pub struct ChangedScene {
+    /// Its system.
+    pub system: System,
+    /// The sought constants in it, in the order of the others.
+    pub parameters: Vec<Parameter>,
 }
 
 /// Course of a recording.
@@ -86,6 +97,17 @@ pub struct Reading {
 }
 
 impl Recording {
+    /// Its system and the constants that are sought of it.
+    pub fn of<'a>(
+        &'a self,
+        (system, parameters): (&'a System, &'a [Parameter]),
+    ) -> (&'a System, &'a [Parameter]) {
+        match &self.scene {
+            Some(own) => (&own.system, &own.parameters),
+            None => (system, parameters),
+        }
+    }
+
     /// Time of the last reading in ms.
     pub fn duration(&self) -> f64 {
         let last = self.channels.iter().filter_map(|one| one.readings.last());

@@ -106,6 +106,26 @@ impl Voltages {
         }
     }
 
+    /// The earliest time in ms after which a table among them says nothing more.
+    pub fn last_known(&self) -> Option<f64> {
+        let first = |ends: &mut dyn Iterator<Item = f64>| ends.reduce(f64::min);
+        match self {
+            Self::Constant(_) => None,
+            Self::Sampled {
+                ends,
+                afterwards,
+                others,
+                ..
+            } => {
+                let own = ends.last().copied();
+                let own = own.filter(|_| *afterwards == Afterwards::OfLastInterval);
+                let others = others.values().filter_map(Signal::last_known);
+                first(&mut own.into_iter().chain(others))
+            }
+            Self::Signals(signals) => first(&mut signals.iter().filter_map(Signal::last_known)),
+        }
+    }
+
     /// Times in ms at which they may switch, or have a corner.
     pub fn switches(&self) -> Cow<'_, [f64]> {
         match self {

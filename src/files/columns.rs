@@ -1,16 +1,17 @@
-//! Columns of a CSV file, with the units of their headers: `muscle1 [kV]`.
+//! Columns of a CSV file or of a problem, with the units of their headers: `muscle1 [kV]`.
 
 use csv::{ReaderBuilder, StringRecord, Trim};
 
 use crate::files::json::error::SceneError;
 use crate::files::json::scope::Scope;
 use crate::files::units::quantity::{PhysicalQuantity, Quantity};
+use std::collections::BTreeMap;
 use std::fs::File;
-use std::path::PathBuf;
 
-/// A CSV file with one line of headers; lines that begin with `#` are comments.
+/// Columns; of a CSV file those of one line of headers, in which lines that begin with `#` are comments.
 pub(crate) struct Columns {
-    path: PathBuf,
+    /// Where they stand, for messages.
+    place: String,
     headers: StringRecord,
     rows: Vec<StringRecord>,
 }
@@ -57,7 +58,29 @@ impl Columns {
         Ok(Self {
             rows: rows.map_err(|cause| mistake(&cause))?,
             headers,
-            path,
+            place: path.display().to_string(),
+        })
+    }
+
+    /// Columns that stand in the problem itself, by their headers; what is not finite is a gap.
+    pub(crate) fn inside(
+        columns: &BTreeMap<String, Vec<Option<f64>>>,
+        scope: &Scope<'_>,
+    ) -> Result<Self, SceneError> {
+        let count = columns.values().next().map_or(0, Vec::len);
+        for (header, values) in columns {
+            if values.len() != count {
+                let found = format!("{} values beside {count}", values.len());
+                let expected = "columns that are as long as each other";
+                return Err(scope.key(header).wrong(found, expected));
+            }
+        }
+        let cell = |value: Option<f64>| value.map_or_else(String::new, |v| v.to_string());
+        let row = |k: usize| columns.values().map(|values| cell(values[k])).collect();
+        Ok(Self {
+            headers: columns.keys().collect(),
+            rows: (0..count).map(row).collect(),
+            place: "\"columns\"".to_owned(),
         })
     }
 
@@ -103,15 +126,11 @@ impl Columns {
             columns = at(&|header| parts(header).0 == name);
         }
         if columns.len() > 1 {
-            let found = format!(
-                "{} columns {name:?} in {}",
-                columns.len(),
-                self.path.display()
-            );
+            let found = format!("{} columns {name:?} in {}", columns.len(), self.place);
             return Err(scope.wrong(found, "one column of this name"));
         }
         let Some(&at) = columns.first() else {
-            let file = self.path.display();
+            let file = &self.place;
             let candidates = self.headers.iter().map(|header| parts(header).0);
             let listed: Vec<&str> = self.headers.iter().take(20).collect();
             let expected = format!("a column of {file}, such as {}", listed.join(", "));
@@ -139,8 +158,8 @@ impl Columns {
             },
         };
         quantity.map_err(|found| {
-            let line = row.position().map_or(0, csv::Position::line);
-            let place = format!("{found}, in line {line} of {}", self.path.display());
+            let line = row.position().map(|at| format!("line {} of ", at.line()));
+            let place = format!("{found}, in {}{}", line.unwrap_or_default(), self.place);
             scope.wrong(place, Quantity::<M>::expected())
         })
     }

@@ -45,6 +45,7 @@ use crate::control::problem::Task;
 use crate::files::json::scan::{Entry, Scanner, string};
 use crate::files::json::set::Override;
 use crate::files::problem::build::build_problem;
+use crate::files::problem::changed_scenes::changed_scenes;
 use crate::files::problem::motions::{MotionDocument, motions, together};
 use crate::files::problem::output::{Output, output};
 use crate::files::problem::spec::{ProblemSpec, SceneSource};
@@ -52,7 +53,7 @@ use crate::files::scene::build::build_scene;
 use crate::files::scene::constants::WrittenScene;
 use crate::files::scene::expand::{add_named, expanded};
 use crate::files::scene::spec::SceneSpec;
-use crate::files::study::StudySpec;
+use crate::files::study::{ChangesSpec, StudySpec};
 use crate::files::sweep::SweepSpec;
 use crate::model::system::System;
 
@@ -131,7 +132,7 @@ fn problem_of(
         change.apply(&mut document)?;
     }
     let Some(list) = motions(&document)? else {
-        return alone(document, &of_scene);
+        return with_changed_scenes(&document, &of_scene);
     };
     let mut first: Option<Loaded> = None;
     let mut each = Vec::new();
@@ -144,7 +145,7 @@ fn problem_of(
         let own = changes.words.iter().map(|written| Override::parse(written));
         let own: Vec<Override> = own.collect::<Result<_, _>>()?;
         let all: Vec<Override> = of_scene.iter().cloned().chain(own).collect();
-        let loaded = alone(of_motion, &all);
+        let loaded = alone(of_motion, &all, &ChangesSpec::default());
         let loaded = loaded.map_err(|error| changes.at_fault(error, &document.path))?;
         let Task::Control(control) = &loaded.task else {
             unreachable!("an entry \"control\" is that task");
@@ -164,8 +165,28 @@ fn problem_of(
     })
 }
 
-/// A problem of one motion, or of another task.
-fn alone(mut document: Document, of_scene: &[Override]) -> Result<Loaded, SceneError> {
+/// A problem without a list of motions, whose recordings may have scenes of their own.
+fn with_changed_scenes(document: &Document, of_scene: &[Override]) -> Result<Loaded, SceneError> {
+    let scenes = changed_scenes(document)?;
+    let mut loaded = alone(document.clone(), of_scene, &ChangesSpec::default())?;
+    for of in scenes {
+        let own = of.changes.words.iter();
+        let own = own.map(|written| Override::parse(written));
+        let own: Vec<Override> = own.collect::<Result<_, _>>()?;
+        let all: Vec<Override> = of_scene.iter().cloned().chain(own).collect();
+        let changed = alone(document.clone(), &all, &of.set);
+        let changed = changed.map_err(|error| of.changes.at_fault(error, &document.path))?;
+        of.add(&mut loaded.task, (changed.system, changed.task), document)?;
+    }
+    Ok(loaded)
+}
+
+/// A problem of one motion, or of another task; of an identification the recordings whose scene has these changes.
+fn alone(
+    mut document: Document,
+    of_scene: &[Override],
+    changes: &ChangesSpec,
+) -> Result<Loaded, SceneError> {
     let scene_apart = document
         .entry("scene")
         .is_some_and(|scene| scene.starts_with('"'));
@@ -209,6 +230,7 @@ fn alone(mut document: Document, of_scene: &[Override]) -> Result<Loaded, SceneE
         spec: &written,
         system: &system,
         document: apart.as_ref().unwrap_or(&document),
+        changes,
     };
     let task = build_problem(&problem, &of_scene, &scope)?;
     let output = shown(&problem, &task, &system, &scope)?;

@@ -206,7 +206,7 @@ impl Search<'_> {
             ended = Ended::Converged;
         }
         Ok(Fit {
-            is_at_bound: self.at_bounds(&unknowns),
+            is_at_bound: self.at_bounds(&unknowns, &weighted(&prediction.derivatives, &data)),
             unknowns,
             prediction,
             ended,
@@ -290,11 +290,15 @@ impl Search<'_> {
         })
     }
 
-    fn at_bounds(&self, unknowns: &Unknowns) -> Vec<bool> {
+    /// Constants at a bound, or nearer to one than a hundredth of the standard error that each would have alone.
+    fn at_bounds(&self, unknowns: &Unknowns, jacobian: &DMatrix<f64>) -> Vec<bool> {
         let all = self.task.parameters.iter().zip(&unknowns.values);
-        all.enumerate()
-            .map(|(j, (p, &value))| j >= self.held && (value <= p.lower || value >= p.upper))
-            .collect()
+        let is_at = |(j, (p, &value)): (usize, (&crate::model::Parameter, &f64))| {
+            let near = LEVEL / jacobian.column(j).norm();
+            let near = if near.is_finite() { near } else { 0.0 };
+            j >= self.held && (value <= p.lower + near || value >= p.upper - near)
+        };
+        all.enumerate().map(is_at).collect()
     }
 }
 

@@ -4,7 +4,8 @@
 //! given, has the exact derivatives of its discrete equations `c(y, p) = 0` by motion and constants, so that the motion changes by
 //! `S = −(∂c/∂y)⁻¹ ∂c/∂p` (`sensitivity`). Readings are interpolated between instants (`interpolation`, `readout`), and predictions of
 //! two grids are extrapolated to steps of zero length (`prediction`). `fit` is the method of Levenberg and Marquardt, `information`
-//! the covariance and what is not determined, `whiteness` and `held_out` the checks, `experiments` what to measure next.
+//! the covariance and what is not determined, `whiteness` and `held_out` the checks, `experiments` what to measure next, `starts` the
+//! states at starts that were sought.
 
 mod course;
 mod error;
@@ -19,6 +20,7 @@ mod refine;
 mod residuals;
 mod sensitivity;
 mod setup;
+mod starts;
 mod unknowns;
 mod whiteness;
 
@@ -30,5 +32,6 @@ pub use information::{Information, Product, Undetermined};
 pub use prediction::{Grid, Prediction, predict};
 pub use refine::{Bias, Identified, first_model, identify};
 pub use residuals::Series;
+pub use starts::{FoundStart, found_starts};
 pub use unknowns::Unknowns;
 pub use whiteness::{Whiteness, ljung_box};

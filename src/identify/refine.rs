@@ -88,7 +88,7 @@ pub fn identify(
     task: &Identification,
     told: &mut dyn FnMut(&Fit, &Grid),
 ) -> Result<Identified, IdentifyError> {
-    check_parameters(system, &task.parameters).map_err(IdentifyError::NotSought)?;
+    check(system, task)?;
     let fitted: Vec<usize> = (0..task.recordings.len())
         .filter(|&r| !task.recordings[r].is_held_out)
         .collect();
@@ -120,6 +120,16 @@ pub fn identify(
         bias,
         held_out,
         experiments,
+    })
+}
+
+/// Refuses constants that cannot be sought, in the scene of any recording.
+fn check(system: &System, task: &Identification) -> Result<(), IdentifyError> {
+    check_parameters(system, &task.parameters).map_err(IdentifyError::NotSought)?;
+    let recordings = task.recordings.iter().chain(&task.candidates);
+    let mut scenes = recordings.filter_map(|one| one.scene.as_ref());
+    scenes.try_for_each(|own| {
+        check_parameters(&own.system, &own.parameters).map_err(IdentifyError::NotSought)
     })
 }
 
@@ -171,7 +181,7 @@ fn fixed_starts(
 /// # Errors
 /// It does not exist.
 pub fn first_model(system: &System, task: &Identification) -> Result<Model, IdentifyError> {
-    check_parameters(system, &task.parameters).map_err(IdentifyError::NotSought)?;
+    check(system, task)?;
     let guesses: Vec<f64> = task.parameters.iter().map(|p| p.guess).collect();
     let recording = &task.recordings[0];
     let grid = [recording.duration().max(1.0), 4.0];

@@ -33,7 +33,8 @@ impl<'a> Setup<'a> {
             guess: value,
             ..parameter.clone()
         };
-        let parameters: Vec<_> = task.parameters.iter().zip(constants).map(at).collect();
+        let (system, parameters) = recording.of((system, &task.parameters));
+        let parameters: Vec<_> = parameters.iter().zip(constants).map(at).collect();
         let system = with_parameters(system, &parameters, constants);
         let control = Control {
             parameters,

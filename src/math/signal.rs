@@ -49,6 +49,14 @@ impl Signal {
         }
     }
 
+    /// Time in ms after which a table says nothing more.
+    pub fn last_known(&self) -> Option<f64> {
+        match self {
+            Self::Table { times, .. } if times.len() > 1 => times.last().copied(),
+            _ => None,
+        }
+    }
+
     /// The value, where it is the same all the time.
     pub fn constant(&self) -> Option<f64> {
         match self {

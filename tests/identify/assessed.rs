@@ -49,6 +49,7 @@ fn under(name: &str, voltage: Signal, count: usize) -> Recording {
     };
     Recording {
         name: name.into(),
+        scene: None,
         regime: Regime::Motion,
         voltages: Voltages::Signals(vec![voltage]),
         start: joint(0.0, 0.0),

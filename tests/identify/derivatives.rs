@@ -136,6 +136,7 @@ fn pair(
     }
     let recording = Recording {
         name: "pair".into(),
+        scene: None,
         regime,
         voltages: Voltages::Signals(vec![sine(900.0), sine(300.0)]),
         start,

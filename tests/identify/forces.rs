@@ -107,6 +107,7 @@ fn recording(channels: Vec<Channel>, regime: Regime) -> Recording {
     let signals = [&signals[..], &[sine(2e-4, 0.7)]].concat();
     Recording {
         name: "two segments".into(),
+        scene: None,
         regime,
         voltages: Voltages::Signals(signals),
         start: joint(if regime == Regime::Rest { 0.0 } else { 0.1 }, 0.0),

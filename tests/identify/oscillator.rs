@@ -117,6 +117,7 @@ pub(crate) fn recording(
     let is_known = deviation != 1.0;
     Recording {
         name: name.into(),
+        scene: None,
         regime: Regime::Motion,
         voltages: Voltages::Constant(Vec::new()),
         start: joint(start[0], start[1]),

@@ -42,6 +42,7 @@ fn recording(name: &str, velocity: f64, force: f64, random: &mut Random) -> Reco
     let readings = times(31, 1500.0).into_iter().map(reading).collect();
     Recording {
         name: name.into(),
+        scene: None,
         regime: Regime::Motion,
         voltages: Voltages::Constant(vec![force]),
         start: joint(0.0, 0.0),

@@ -33,6 +33,7 @@ fn recording(name: &str, [from, to]: [f64; 2], force: f64) -> Recording {
     };
     Recording {
         name: name.into(),
+        scene: None,
         regime: Regime::Rest,
         voltages: Voltages::Signals(vec![
             Signal::ramp(from, to, 1000.0),

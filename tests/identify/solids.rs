@@ -59,6 +59,7 @@ fn recording() -> Recording {
     };
     Recording {
         name: "step".into(),
+        scene: None,
         regime: Regime::Motion,
         voltages: Voltages::Signals(vec![Signal::ramp(0.0, 60e3, 6.0)]),
         start,

@@ -112,9 +112,8 @@ fn check_number(starts: usize) -> Result<(), CommandError> {
 fn check_problem(request: &CommandInput, loaded: &Loaded) -> Result<(), CommandError> {
     let Task::Control(control) = &loaded.task else {
         let asks = match &loaded.task {
-            Task::Motions(_) => "for several motions: only one by itself",
-            task if key(task) == "simulate" => "to simulate: only \"control\"",
-            _ => "to equilibrium: only \"control\"",
+            Task::Motions(_) => "for several motions: only one by itself".to_owned(),
+            task => format!("to {}: only \"control\"", key(task)),
         };
         return Err(wrong_option(format!(
             "{} asks {asks} has starting points",

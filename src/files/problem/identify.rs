@@ -18,7 +18,7 @@ use crate::model::system::System;
 /// Most readings of a candidate.
 const MOST_READINGS: usize = 100_000;
 
-/// The task of an identification.
+/// The task of an identification, with the recordings of one scene alone.
 pub(crate) fn identification(
     spec: &IdentifySpec,
     scene: &WrittenScene<'_>,
@@ -30,34 +30,35 @@ pub(crate) fn identification(
         return Err(place.wrong("no constant", "one or more"));
     }
     let parameters = parameters(&spec.free, scene, &place)?;
-    let place = scope.key("recordings");
+    let [of_recordings, of_candidates] = ["recordings", "candidates"].map(|key| scope.key(key));
     let mut names = Vec::new();
-    let mut recordings = Vec::new();
     for (index, one) in spec.recordings.iter().enumerate() {
-        let scope = place.index(index);
-        unique(&one.name, &mut names, &scope)?;
-        recordings.push(recording(one, system, &scope)?);
+        unique(&one.name, &mut names, &of_recordings.index(index))?;
     }
-    if recordings.iter().all(|one: &Recording| one.is_held_out) {
-        let found = match recordings.is_empty() {
+    for (index, one) in spec.candidates.iter().enumerate() {
+        unique(&one.name, &mut names, &of_candidates.index(index))?;
+    }
+    if spec.recordings.iter().all(|one| one.held_out) {
+        let found = match spec.recordings.is_empty() {
             true => "no recordings",
             false => "recordings that are all held out",
         };
-        return Err(place.wrong(found, "one or more to which constants are fitted"));
+        return Err(of_recordings.wrong(found, "one or more to which constants are fitted"));
     }
-    let place = scope.key("candidates");
-    let mut candidates = Vec::new();
-    for (index, one) in spec.candidates.iter().enumerate() {
-        let scope = place.index(index);
-        unique(&one.name, &mut names, &scope)?;
-        candidates.push(candidate(one, system, &scope)?);
-    }
+    let recordings = spec.recordings.iter().enumerate();
+    let recordings = recordings.filter(|(_, one)| one.set == *scene.changes);
+    let recordings =
+        recordings.map(|(index, one)| recording(one, system, &of_recordings.index(index)));
+    let candidates = spec.candidates.iter().enumerate();
+    let candidates = candidates.filter(|(_, one)| one.set == *scene.changes);
+    let candidates =
+        candidates.map(|(index, one)| candidate(one, system, &of_candidates.index(index)));
     let step = spec.step.as_ref();
     let step = step.map(|step| scope.key("step").positive(step));
     Ok(Identification {
         parameters,
-        recordings,
-        candidates,
+        recordings: recordings.collect::<Result<_, _>>()?,
+        candidates: candidates.collect::<Result<_, _>>()?,
         step: step.transpose()?,
         coordinates: coordinates(spec.coordinates, system, scope)?,
     })
@@ -101,6 +102,7 @@ fn experiment(
     }
     Ok(Recording {
         name: name.to_owned(),
+        scene: None,
         regime: match spec.at_rest {
             true => Regime::Rest,
             false => Regime::Motion,
@@ -136,8 +138,8 @@ fn recording(
     let place = scope.key("experiment");
     let mut out = experiment(&spec.name, &spec.experiment, system, &place)?;
     out.is_held_out = spec.held_out;
-    let columns = Columns::read(&spec.file, &scope.key("file"))?;
-    let times = times(&columns, spec, scope)?;
+    let (from, columns) = columns(spec, scope)?;
+    let times = times((from, &columns), spec, scope)?;
     let all = measured(&spec.measured, system, scope)?;
     for (index, (one, spec_of)) in all.iter().zip(&spec.measured).enumerate() {
         let scope = scope.key("measured").index(index);
@@ -155,14 +157,29 @@ fn recording(
     }
     if out.regime == Regime::Motion && out.duration() <= 0.0 {
         let found = "a recording that is too short: no reading after time 0";
-        return Err(scope.key("file").wrong(found, "readings at later times"));
+        return Err(scope.key(from).wrong(found, "readings at later times"));
     }
     Ok(out)
 }
 
+/// The columns of a recording, with the key at which they stand.
+fn columns(spec: &RecordingSpec, scope: &Scope<'_>) -> Result<(&'static str, Columns), SceneError> {
+    type Read<'a> = Box<dyn FnOnce() -> Result<Columns, SceneError> + 'a>;
+    let file = spec.file.as_ref().map(|path| -> (_, Read<'_>) {
+        let read = || Columns::read(path, &scope.key("file"));
+        ("file", Box::new(read))
+    });
+    let inside = spec.columns.as_ref().map(|columns| -> (_, Read<'_>) {
+        let read = || Columns::inside(columns, &scope.key("columns"));
+        ("columns", Box::new(read))
+    });
+    let (from, read) = scope.exactly_one([("file", file), ("columns", inside)])?;
+    Ok((from, read()?))
+}
+
 /// Times in ms of all rows.
 fn times(
-    columns: &Columns,
+    (from, columns): (&str, &Columns),
     spec: &RecordingSpec,
     scope: &Scope<'_>,
 ) -> Result<Vec<f64>, SceneError> {
@@ -171,7 +188,7 @@ fn times(
     let times: Vec<f64> = written.iter().map(Quantity::value).collect();
     if times.is_empty() {
         let expected = "one line or more below the headers";
-        return Err(scope.key("file").wrong("no readings", expected));
+        return Err(scope.key(from).wrong("no readings", expected));
     }
     if let Some(k) = times.windows(2).position(|pair| pair[0] >= pair[1]) {
         let found = format!("{} after {}", written[k + 1], written[k]);

@@ -1,7 +1,7 @@
 //! The problem file: its types as written (`spec`, `spec_*`) and their conversion to a [`Task`](crate::control::problem::Task).
 //!
 //! - `motions`: several motions of one problem, each as a problem of its own.
-//! - `build`: the problem; `control`, `simulation`, `identify`: its longer tasks; `channels`, `channel_quantities`: what recordings measure; `driven`: start and inputs of both motions.
+//! - `build`: the problem; `control`, `simulation`, `identify`: its longer tasks; `channels`, `channel_quantities`: what recordings measure; `changed_scenes`: scenes of some of them; `driven`: start and inputs of both motions.
 //! - `state`, `end_of`, `goal`, `limits`, `source_limits`, `free`, `guess`, `voltages`, `track`, `measured`, `energies`, `coordinates`: their parts; `output`: what is written of a motion; `solution_voltages`,
 //!   `solution_joints`, `solution_document`:
 //!   what is read of an earlier solution.
@@ -9,6 +9,7 @@
 mod amount_limits;
 mod bounds;
 pub(crate) mod build;
+pub(crate) mod changed_scenes;
 mod channel_quantities;
 mod channels;
 pub(crate) mod control;

@@ -5,11 +5,13 @@ use crate::files::problem::spec_coordinates::CoordinatesSpec;
 use crate::files::problem::spec_free::FreeMap;
 use crate::files::problem::spec_states::StartSpec;
 use crate::files::problem::spec_voltages::VoltagesSpec;
+use crate::files::study::ChangesSpec;
 use crate::files::units::quantity::{Angle, AngularVelocity, Kind, Length, Velocity};
 use crate::files::units::quantity::{Charge, Current, Force, Torque, Voltage};
 use crate::files::units::quantity::{PhysicalQuantity, Quantity, Time};
 use schemars::JsonSchema;
 use serde::Deserialize;
+use std::collections::BTreeMap;
 
 /// Constants that are fitted to recordings, with what the data say of them.
 #[derive(Clone, Debug, Deserialize, JsonSchema)]
@@ -39,7 +41,11 @@ pub struct RecordingSpec {
     pub name: String,
     /// Path of the CSV file, relative to the problem or to the current folder: one line of headers such as `tip [mm]`, SI units where a header
     /// has none; lines that begin with `#` are comments, empty cells are gaps.
-    pub file: String,
+    #[serde(default)]
+    pub file: Option<String>,
+    /// Columns of numbers by such headers in place of a file; `null` is a gap.
+    #[serde(default)]
+    pub columns: Option<BTreeMap<String, Vec<Option<f64>>>>,
     /// Header of the times, which begin with the motion at 0; `time` where not written.
     #[serde(default = "time")]
     pub time: String,
@@ -48,6 +54,9 @@ pub struct RecordingSpec {
     /// Voltages, loads and start.
     #[serde(default)]
     pub experiment: ExperimentSpec,
+    /// Values that are other ones in the scene of this recording, by their places, such as `"scene.bodies.payload.mass": "1 kg"`.
+    #[serde(default)]
+    pub set: ChangesSpec,
     /// True if no constant is fitted to it: the result says whether the fitted constants explain it.
     #[serde(default)]
     pub held_out: bool,
@@ -68,6 +77,9 @@ pub struct CandidateSpec {
     /// Voltages, loads and start.
     #[serde(default)]
     pub experiment: ExperimentSpec,
+    /// Values that are other ones in the scene of this experiment, by their places.
+    #[serde(default)]
+    pub set: ChangesSpec,
 }
 
 /// Voltages, loads and start of a recording.

@@ -14,6 +14,7 @@ use crate::files::scene::build::build_scene;
 use crate::files::scene::expand::{add_named, expanded};
 use crate::files::scene::named_materials::named_material;
 use crate::files::scene::spec::SceneSpec;
+use crate::files::study::ChangesSpec;
 use crate::model::system::System;
 use crate::model::{Constant, Follower};
 
@@ -26,6 +27,8 @@ pub(crate) struct WrittenScene<'a> {
     pub(crate) system: &'a System,
     /// The document in which it stands, beside which its files are.
     pub(crate) document: &'a Document,
+    /// What is another thing in it for some recordings, of which it is the scene; of the others where there is nothing.
+    pub(crate) changes: &'a ChangesSpec,
 }
 
 /// A number of a scene.
