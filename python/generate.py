@@ -33,6 +33,7 @@ QUESTIONS = {
     "control": "Returns the optimal control problem with these entries of `control` in a problem file.",
     "simulate": "Simulates with these entries of `simulate` in a problem file; the others are those of `Problem.simulate`.",
     "equilibrium": "Finds the state of rest with these entries of `equilibrium` in a problem file; the others are those of `Problem.equilibrium`.",
+    "identify": "Fits constants with these entries of `identify` in a problem file; the others are those of `Problem.identify`.",
 }
 
 Schema = dict[str, Any]
@@ -320,6 +321,11 @@ def questions(types: Types, schema: Schema) -> str:
             ["output: str | PathLike[str] | None = None", "max_seconds: float | None = None"],
             "Result",
             "{}.equilibrium(output=output, max_seconds=max_seconds)",
+        ),
+        "identify": (
+            ["output: str | PathLike[str] | None = None", "max_seconds: float | None = None"],
+            "Result",
+            "{}.identify(output=output, max_seconds=max_seconds)",
         ),
     }
     for task, told in QUESTIONS.items():

@@ -122,8 +122,8 @@ class Trunk:
             total += muscle["volume"] * (elastic + electric * square / muscle["layer"] ** 2)
         return total
 
-    def interval(self):
-        """Rows that an interval adds to its two instants, as functions of both angles and of squares of its voltages in V²."""
+    def interval(self, constants=()):
+        """Rows that an interval adds to its two instants, as functions of both angles, of squares of its voltages in V² and of sought constants."""
         n, m = len(self.joints), len(self.muscles)
         a, b, squares, h = ca.SX.sym("a", n), ca.SX.sym("b", n), ca.SX.sym("squares", m), ca.SX.sym("h")
         xa, xb = self.vectors(a), self.vectors(b)
@@ -142,7 +142,7 @@ class Trunk:
             force = -1.5 * muscle["viscosity"] * muscle["volume"] * ca.dot(r, rate) / ca.dot(r, r) ** 2 * r
             rows[0] += ca.jtimes(ra, a, h / 2 * force, True)
             rows[1] += ca.jtimes(rb, b, h / 2 * force, True)
-        return ca.Function("interval", [a, b, squares, h], rows)
+        return ca.Function("interval", [a, b, squares, h, *constants], rows)
 
     def equilibrium(self, voltages):
         """Joint angles at rest under voltages in V, by Newton from the straight trunk."""

@@ -1,6 +1,6 @@
 """Simulation and optimal control of robots driven by dielectric elastomer muscles.
 
-A `System` of parts is asked to `simulate`, for an `equilibrium`, or for a `control` problem, which is then solved; a `Problem` does what a
+A `System` of parts is asked to `simulate`, for an `equilibrium`, for a `control` problem, which is then solved, or to `identify` constants; a `Problem` does what a
 problem file asks. Entries are those of the JSON files; numbers are in SI units, texts have a unit. What comes back is a `Result`: numpy arrays in SI units
 and the files of the command line. All mistakes are one exception, `Error`, with the path of the wrong entry. `sweep`, `study`, `starts`, `inspect` and `check` are the commands of these names.
 """
@@ -15,6 +15,7 @@ from proboscis._ending import Interrupted
 from proboscis._error import Error
 from proboscis._table import Table
 from proboscis.commands import Starts, Study, Sweep, check, inspect, starts, study, sweep
+from proboscis.identification import Identification
 from proboscis.nlp import Nlp
 from proboscis.parts import GROUND, Body, Joint, Load, Marker, Material, Muscle, Part, Solid, Spring, Tendon
 from proboscis.problem import Iteration, Problem, Step
@@ -28,6 +29,7 @@ __all__ = [
     "Body",
     "Error",
     "Figure",
+    "Identification",
     "Interrupted",
     "Iteration",
     "Joint",

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import copy
 import json
+import math
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass
 from os import PathLike
@@ -51,8 +52,8 @@ class Step:
 class Problem:
     """A problem: the content of a problem file.
 
-    `scene` is a `System`, a dict, or the path of a scene file; of `control`, `simulate` and `equilibrium` exactly one is given, as in the
-    file. It is checked at once; `Error` has the path of the wrong entry.
+    `scene` is a `System`, a dict, or the path of a scene file; of `control`, `simulate`, `equilibrium` and `identify` exactly one is given, as
+    in the file. It is checked at once; `Error` has the path of the wrong entry.
     """
 
     name: str
@@ -60,7 +61,7 @@ class Problem:
     folder: Path
     """Where files that the problem names are looked for."""
     task: str
-    """What it asks for: `control`, `simulate` or `equilibrium`."""
+    """What it asks for: `control`, `simulate`, `equilibrium` or `identify`."""
 
     def __init__(
         self,
@@ -69,10 +70,11 @@ class Problem:
         control: entries.Control | None = None,
         simulate: entries.Simulate | None = None,
         equilibrium: entries.Equilibrium | None = None,
+        identify: entries.Identify | None = None,
         output: entries.Output | None = None,
         folder: str | PathLike[str] = ".",
     ) -> None:
-        given = {"control": control, "simulate": simulate, "equilibrium": equilibrium, "output": output}
+        given = {"control": control, "simulate": simulate, "equilibrium": equilibrium, "identify": identify, "output": output}
         self._take({"scene": scene, **{key: value for key, value in given.items() if value is not None}}, Path(folder), "problem.json")
 
     @classmethod
@@ -81,6 +83,7 @@ class Problem:
 
     def _take(self, content: Mapping[str, Any], folder: Path, name: str) -> None:
         self._content = {str(key): plain(value, str(key)) for key, value in content.items()}
+        _leave_gaps(self._content.get("identify"))
         self.folder = folder
         self.name = name
         self.task = ended(_proboscis.task(self._input, self._text), _answer)
@@ -188,6 +191,19 @@ class Problem:
         self._asks("equilibrium")
         return self._run("equilibrium", None, None, max_seconds, None, None, False, output)
 
+    def identify(
+        self,
+        *,
+        max_seconds: float | None = None,
+        output: str | PathLike[str] | None = None,
+    ) -> Result:
+        """Fits constants to recordings; as `solve`, of a problem that asks to `identify`. `identification` of the result has what was found.
+
+        Recordings are CSV files (`"file": "step.csv"`) or arrays (`"columns": {"time [s]": times, "tip [mm]": places}`), in which NaN is a gap.
+        """
+        self._asks("identify")
+        return self._run("identify", None, None, max_seconds, None, None, False, output)
+
     def nlp(self) -> Nlp:
         """Returns the nonlinear program of a control problem, for a solver of one's own."""
         from proboscis.nlp import Nlp
@@ -251,6 +267,16 @@ class Problem:
         scene = self._content.get("scene")
         name = scene.get("name") if isinstance(scene, dict) else scene
         return f"<Problem: {self.task} {name!r}>"
+
+
+def _leave_gaps(asked: Any) -> None:
+    """Takes numbers that are NaN out of the columns of recordings."""
+    recordings = asked.get("recordings") if isinstance(asked, dict) else None
+    for recording in recordings if isinstance(recordings, list) else []:
+        columns = recording.get("columns") if isinstance(recording, dict) else None
+        for header, values in columns.items() if isinstance(columns, dict) else []:
+            if isinstance(values, list):
+                columns[header] = [None if isinstance(one, float) and math.isnan(one) else one for one in values]
 
 
 def _state(path: Path) -> tuple[int, int] | None:

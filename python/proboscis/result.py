@@ -18,12 +18,13 @@ from proboscis._error import Error
 from proboscis._error import told as _told
 from proboscis._plain import plain
 from proboscis._table import Array, Table
+from proboscis.identification import Identification
 
 if TYPE_CHECKING:
     import pandas
 
 _TABLES = ("trajectory.csv", "path.csv", "equilibrium.csv")
-_SOLVED = ("solved", "acceptable", "feasible_point", "simulated", "at_rest", "path_followed")
+_SOLVED = ("solved", "acceptable", "feasible_point", "simulated", "at_rest", "path_followed", "identified", "explained")
 
 
 class Result:
@@ -91,6 +92,11 @@ class Result:
     def iterations(self) -> int:
         """Iterations of the solver of a control problem."""
         return int(self._of_summary("iterations"))
+
+    @cached_property
+    def identification(self) -> Identification:
+        """Constants that were fitted to recordings, with what the data say of them."""
+        return Identification(self.summary, self.folder)
 
     @cached_property
     def motions(self) -> dict[str, Result]:
