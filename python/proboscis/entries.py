@@ -500,6 +500,28 @@ class BodyVelocity(TypedDict):
     """Velocity of the centre of mass, SI unit m/s; 0 where not written. On a spherical joint it follows from `angular`."""
 
 
+class Candidate(TypedDict):
+    """An experiment that could be done."""
+
+    duration: Quantity
+    """Length, SI unit s."""
+
+    experiment: NotRequired[Experiment]
+    """Voltages, loads and start."""
+
+    measured: Sequence[Measured]
+    """Measured quantities; their columns are not read."""
+
+    name: Text
+    """Unique name."""
+
+    readings: int
+    """Number of readings of each quantity, at equal distances."""
+
+    set: NotRequired[Mapping[str, Any]]
+    """Values that are other ones in the scene of this experiment, by their places."""
+
+
 ControlSolver: TypeAlias = "Literal['auto', 'stages', 'mumps']"
 """Solver of the linear systems of a control problem."""
 
@@ -576,6 +598,25 @@ class ElectricFieldLimit(TypedDict):
 
 Energy: TypeAlias = "float | SourceEnergy"
 """The weight of an energy of all sources, or of those that are named."""
+
+
+class Experiment(TypedDict):
+    """Voltages, loads and start of a recording."""
+
+    at_rest: NotRequired[bool]
+    """True if each reading is one of a state of rest under the voltages and loads of its time."""
+
+    loads: NotRequired[Mapping[Any, Signal]]
+    """Loads by name, constant or functions of time, SI units N, N m, Pa, N/m³ and C/m²; 0 where not named."""
+
+    sought_start: NotRequired[SoughtStart]
+    """Part of the start that is unknown, and fitted with the constants; nothing where not written."""
+
+    start: NotRequired[Start]
+    """Start of the motion; the reference configuration at rest where not written."""
+
+    voltages: NotRequired[Voltages]
+    """Constant voltages, those of a solution, a table, or functions of time such as columns of a CSV file; 0 where not written."""
 
 
 class FieldCost(TypedDict):
@@ -874,6 +915,57 @@ class MarkerSpeedLimit(TypedDict):
     """Lower bound, SI unit m/s."""
 
 
+class Measured(TypedDict):
+    """A measured quantity: exactly one of `joint`, `joint_rate`, `marker`, `tension`, `charge`, `current`, `voltage`, `reaction_force` and
+    `reaction_torque`.
+    """
+
+    about: NotRequired[Sequence[float] | Numbers]
+    """The direction of a torque, in the ground frame; its length does not matter."""
+
+    along: NotRequired[Sequence[float] | Numbers]
+    """The direction of a place or a force, in the ground frame; its length does not matter."""
+
+    charge: NotRequired[Text]
+    """Charge that a source has brought to a lumped muscle, or to electrodes behind a resistor."""
+
+    column: NotRequired[Text]
+    """Header of the column, with or without its unit; the name of the joint, marker, part or source where not written."""
+
+    current: NotRequired[Text]
+    """Current of a source: of a lumped muscle that does not leak, or of anything behind a resistor."""
+
+    deviations: NotRequired[Text]
+    """Header of a column with a standard deviation of each reading."""
+
+    joint: NotRequired[Text]
+    """Coordinate of a revolute or prismatic joint."""
+
+    joint_rate: NotRequired[Text]
+    """Rate of the coordinate of a revolute or prismatic joint."""
+
+    marker: NotRequired[Text]
+    """Place of a marker along a direction."""
+
+    reaction_force: NotRequired[Text]
+    """Force from the parent of a joint on its child along a direction, as in limits; of joints in no loop."""
+
+    reaction_torque: NotRequired[Text]
+    """Torque from the parent of a joint on its child about a direction, about the point of the joint."""
+
+    standard_deviation: NotRequired[Quantity]
+    """Standard deviation of the readings, in a unit of the quantity; where neither it nor `deviations` is written, the residuals tell it."""
+
+    tension: NotRequired[Text]
+    """Force with which a lumped muscle, a spring or a tendon pulls its ends together, of all its laws, voltage and viscosity."""
+
+    voltage: NotRequired[Text]
+    """Voltage of the electrodes behind the resistor of a source."""
+
+    weights: NotRequired[Text]
+    """Header of a column with a weight of each reading: the variance of a reading is in inverse proportion to it."""
+
+
 class Motion(TypedDict):
     """One of several motions: the keys of a control problem that are other ones in it; those that it does not name are those of `control`."""
 
@@ -1081,6 +1173,36 @@ class ReactionTorqueLimit(TypedDict):
     """Lower bound, SI unit N m."""
 
 
+class Recording(TypedDict):
+    """Readings of a motion or of states of rest under given voltages and loads."""
+
+    columns: NotRequired[Mapping[Any, Sequence[float | None] | Numbers]]
+    """Columns of numbers by such headers in place of a file; `null` is a gap."""
+
+    experiment: NotRequired[Experiment]
+    """Voltages, loads and start."""
+
+    file: NotRequired[Text]
+    """Path of the CSV file, relative to the problem or to the current folder: one line of headers such as `tip [mm]`, SI units where a header has
+    none; lines that begin with `#` are comments, empty cells are gaps.
+    """
+
+    held_out: NotRequired[bool]
+    """True if no constant is fitted to it: the result says whether the fitted constants explain it."""
+
+    measured: Sequence[Measured]
+    """Quantities that the columns measure."""
+
+    name: Text
+    """Unique name."""
+
+    set: NotRequired[Mapping[str, Any]]
+    """Values that are other ones in the scene of this recording, by their places, such as `"scene.bodies.payload.mass": "1 kg"`."""
+
+    time: NotRequired[Text]
+    """Header of the times, which begin with the motion at 0; `time` where not written."""
+
+
 class Region(TypedDict):
     """A region: exactly one of the two."""
 
@@ -1149,6 +1271,10 @@ class Solver(TypedDict):
 
     tolerance: NotRequired[float]
     """Relative tolerance, 1e-10 where not written."""
+
+
+SoughtStart: TypeAlias = "Literal['nothing', 'coordinates', 'state']"
+"""Unknown part of a start."""
 
 
 class SourceEnergy(TypedDict):
@@ -1498,6 +1624,27 @@ class Equilibrium(TypedDict):
 
     voltages: NotRequired[Mapping[Any, Quantity]]
     """Voltages by the names of muscles and driven electrodes (`block.electrode`), SI unit V; 0 where not named."""
+
+
+class Identify(TypedDict):
+    """Constants that are fitted to recordings, with what the data say of them."""
+
+    candidates: NotRequired[Sequence[Candidate]]
+    """Experiments that could be done next; the result ranks them by the variance that they leave."""
+
+    coordinates: NotRequired[Coordinates]
+    """Coordinates."""
+
+    free: Mapping[Any, Free]
+    """Sought constants by their paths in the scene, such as `"materials.silicone.shear_modulus"`, each between bounds."""
+
+    recordings: Sequence[Recording]
+    """Recordings: those that constants are fitted to, and those that are held out to check their prediction."""
+
+    step: NotRequired[Quantity]
+    """Step of the first grid, SI unit s, which is halved until its bias is below a tenth of the standard errors; by the number of readings where
+    not written.
+    """
 
 
 class Chain(TypedDict):

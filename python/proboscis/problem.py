@@ -273,7 +273,7 @@ def _leave_gaps(asked: Any) -> None:
     """Takes numbers that are NaN out of the columns of recordings."""
     recordings = asked.get("recordings") if isinstance(asked, dict) else None
     for recording in recordings if isinstance(recordings, list) else []:
-        columns = recording.get("columns") if isinstance(recording, dict) else None
+        columns: Any = recording.get("columns") if isinstance(recording, dict) else None
         for header, values in columns.items() if isinstance(columns, dict) else []:
             if isinstance(values, list):
                 columns[header] = [None if isinstance(one, float) and math.isnan(one) else one for one in values]
