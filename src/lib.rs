@@ -19,7 +19,7 @@
 //!
 //! [`Simulation`] and [`Control`] are asked of a [`System`] of parts: [`Body`], [`Joint`], [`Muscle`], [`Solid`], [`Spring`], [`Tendon`],
 //! [`Marker`], and whatever implements [`Component`]. [`units`] are written as functions; all else is in g, mm, ms, N, V. A [`Motion`] and an
-//! [`Optimum`] are what comes back; [`Nlp`] is the transcription for a solver of one's own.
+//! [`Optimum`] are what comes back; an [`Identification`] fits constants to recordings. [`Nlp`] is the transcription for a solver of one's own.
 //!
 //! # How it works
 //!
@@ -103,9 +103,10 @@ pub use control::{EarlierSolution, Orientation, Solution};
 pub use dynamics::Integrator;
 pub use energy::Energy;
 pub use functional::Element;
+pub use identify::{Identified, IdentifyError};
 pub use interface::{
-    Carrier, Control, Equilibrium, Error, GROUND, Handle, Input, Motion, Optimum, Part, Result,
-    Simulation, State, Together,
+    Carrier, Control, Equilibrium, Error, GROUND, Handle, Identification, Input, Motion, Optimum,
+    Part, Recording, Result, Simulation, State, Together,
 };
 pub use kinematics::Pose;
 pub use math::{Jet, Signal};
@@ -128,9 +129,9 @@ pub mod prelude {
     pub use crate::units::*;
     pub use crate::{
         Attachment, Body, Carrier, Component, Control, ElasticLaw, Equilibrium, Error, GROUND,
-        Grid, Handle, Input, Integrator, Joint, JointKind, Load, Marker, Material, Motion, Muscle,
-        Optimum, Orientation, Parameter, Part, Potential, Result, Signal, Simulation, Solid,
-        Spring, State, System, Tendon, Together, X, Y, Z,
+        Grid, Handle, Identification, Input, Integrator, Joint, JointKind, Load, Marker, Material,
+        Motion, Muscle, Optimum, Orientation, Parameter, Part, Potential, Recording, Result,
+        Signal, Simulation, Solid, Spring, State, System, Tendon, Together, X, Y, Z,
     };
 }
 

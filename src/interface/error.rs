@@ -1,6 +1,7 @@
 //! Errors of the interface for Rust.
 
 use crate::dynamics::{EquilibriumError, StepError};
+use crate::identify::IdentifyError;
 use crate::interface::input::Input;
 use crate::interface::motion::Motion;
 use crate::model::{System, SystemError};
@@ -26,6 +27,9 @@ pub enum Error {
     /// The problem asks for something that does not exist, or the run was interrupted before there was a result.
     #[error(transparent)]
     Workflow(#[from] WorkflowError),
+    /// Recordings determine no constants, or cannot be simulated.
+    #[error(transparent)]
+    Identify(#[from] IdentifyError),
     /// There is no equilibrium.
     #[error(transparent)]
     NoEquilibrium(EquilibriumError),

@@ -1,7 +1,7 @@
 //! The library as a program uses it: systems built part by part, simulated and steered in memory.
 //!
 //! - `handle`, `parts`, `components`, `material`: systems and their parts, with defaults; checked when they are used.
-//! - `input`, `state`, `sought`, `equilibrium`, `simulation`, `control`, `limits`, `costs`, `cost_checks`: the tasks of a system.
+//! - `input`, `state`, `sought`, `equilibrium`, `simulation`, `control`, `limits`, `costs`, `cost_checks`, `identification`: the tasks of a system.
 //! - `motion`, `optimum`, `error`: what comes back.
 
 mod components;
@@ -12,6 +12,7 @@ mod electrodes;
 mod equilibrium;
 mod error;
 mod handle;
+mod identification;
 mod input;
 mod limits;
 mod material;
@@ -28,6 +29,7 @@ pub use control::Control;
 pub use equilibrium::Equilibrium;
 pub use error::{Error, Result};
 pub use handle::{Carrier, GROUND, Handle, Part};
+pub use identification::{Identification, Recording};
 pub use input::Input;
 pub use motion::Motion;
 pub use optimum::Optimum;

@@ -6,6 +6,7 @@ mod common;
 mod assessed;
 mod derivatives;
 mod forces;
+mod front;
 mod oscillator;
 mod ratio;
 mod recovered;

@@ -1,0 +1,296 @@
+//! Identification: constants fitted to recordings.
+
+use crate::control::problem::{
+    self, ChangedScene, Channel, Reading, Regime, SoughtStart, Voltages,
+};
+use crate::identify::{Identified, identify};
+use crate::interface::error::{Result, require, source};
+use crate::interface::handle::Handle;
+use crate::interface::input::Input;
+use crate::interface::state::State;
+use crate::math::{Signal, Vector};
+use crate::model::components::{Load, Spring, Tendon};
+use crate::model::system::{Joint, Marker, Muscle};
+use crate::model::{Parameter, Pulling, Quantity, System};
+
+/// Constants that are fitted to recordings.
+#[derive(Clone, Debug)]
+pub struct Identification {
+    parameters: Vec<Parameter>,
+    recordings: Vec<Recording>,
+    step: Option<f64>,
+}
+
+/// Readings of a motion from the reference configuration at rest without voltages, or of another one, or of states of rest.
+#[derive(Clone, Debug)]
+pub struct Recording {
+    name: String,
+    scene: Option<System>,
+    regime: Regime,
+    start: State,
+    sought_start: SoughtStart,
+    is_held_out: bool,
+    inputs: Vec<(Input, Signal)>,
+    channels: Vec<Channel>,
+}
+
+impl From<Handle<Muscle>> for Pulling {
+    fn from(muscle: Handle<Muscle>) -> Self {
+        Self::Muscle(muscle.index())
+    }
+}
+
+impl From<Handle<Spring>> for Pulling {
+    fn from(spring: Handle<Spring>) -> Self {
+        Self::Spring(spring.index())
+    }
+}
+
+impl From<Handle<Tendon>> for Pulling {
+    fn from(tendon: Handle<Tendon>) -> Self {
+        Self::Tendon(tendon.index())
+    }
+}
+
+impl Recording {
+    /// A recording without readings; the name is for messages.
+    pub fn new(name: impl Into<String>) -> Self {
+        Self {
+            name: name.into(),
+            scene: None,
+            regime: Regime::Motion,
+            start: State::Reference,
+            sought_start: SoughtStart::Nothing,
+            is_held_out: false,
+            inputs: Vec::new(),
+            channels: Vec::new(),
+        }
+    }
+
+    /// Another system than that of the identification, with the same parts and more, such as a payload.
+    pub fn of(self, system: System) -> Self {
+        let scene = Some(system);
+        Self { scene, ..self }
+    }
+
+    /// Another start.
+    pub fn start(self, start: State) -> Self {
+        Self { start, ..self }
+    }
+
+    /// The part of the start that is unknown, and fitted too.
+    pub fn sought_start(self, sought_start: SoughtStart) -> Self {
+        Self {
+            sought_start,
+            ..self
+        }
+    }
+
+    /// Each reading is one of the state of rest under the voltages of its time.
+    pub fn at_rest(self) -> Self {
+        let regime = Regime::Rest;
+        Self { regime, ..self }
+    }
+
+    /// No constant is fitted to it: it checks the prediction.
+    pub fn held_out(self) -> Self {
+        let is_held_out = true;
+        Self {
+            is_held_out,
+            ..self
+        }
+    }
+
+    /// The voltage of a muscle or electrode: a constant in V or a [`Signal`].
+    pub fn voltage(mut self, input: impl Into<Input>, signal: impl Into<Signal>) -> Self {
+        self.inputs.push((input.into(), signal.into()));
+        self
+    }
+
+    /// The size of a load in N, or N mm of a torque: a constant or a [`Signal`].
+    pub fn load(self, load: Handle<Load>, size: impl Into<Signal>) -> Self {
+        self.voltage(load, size)
+    }
+
+    /// Readings of a coordinate of a joint in rad or mm at times in ms, with their standard deviation; `None`: the residuals tell it.
+    pub fn joint(
+        self,
+        joint: Handle<Joint>,
+        readings: impl IntoIterator<Item = (f64, f64)>,
+        deviation: impl Into<Option<f64>>,
+    ) -> Self {
+        let joint = joint.index();
+        let quantity = Quantity::Joint { joint, near: 0.0 };
+        self.measured(vec![(1.0, quantity)], readings, deviation)
+    }
+
+    /// Readings of the place of a marker along a direction in mm at times in ms, with their standard deviation.
+    pub fn marker(
+        self,
+        (marker, along): (Handle<Marker>, Vector),
+        readings: impl IntoIterator<Item = (f64, f64)>,
+        deviation: impl Into<Option<f64>>,
+    ) -> Self {
+        let marker = marker.index();
+        let along = along.normalize();
+        let part = |axis: usize| (along[axis], Quantity::MarkerPlace { marker, axis });
+        self.measured((0..3).map(part).collect(), readings, deviation)
+    }
+
+    /// Readings of the force in N with which a muscle, a spring or a tendon pulls its ends together.
+    pub fn tension(
+        self,
+        part: impl Into<Pulling>,
+        readings: impl IntoIterator<Item = (f64, f64)>,
+        deviation: impl Into<Option<f64>>,
+    ) -> Self {
+        let quantity = Quantity::PullStep(part.into());
+        self.measured(vec![(1.0, quantity)], readings, deviation)
+    }
+
+    /// Readings of a linear combination of quantities of the model, in its units.
+    pub fn measured(
+        mut self,
+        parts: Vec<(f64, Quantity)>,
+        readings: impl IntoIterator<Item = (f64, f64)>,
+        deviation: impl Into<Option<f64>>,
+    ) -> Self {
+        let deviation = deviation.into();
+        let reading = |(time, value)| Reading {
+            time,
+            value,
+            deviation: deviation.unwrap_or(1.0),
+        };
+        self.channels.push(Channel {
+            name: format!("quantity {}", self.channels.len() + 1),
+            parts,
+            unit: ("", 1.0),
+            is_deviation_known: deviation.is_some(),
+            readings: readings.into_iter().map(reading).collect(),
+        });
+        self
+    }
+
+    fn resolve(&self, system: &System, parameters: &[Parameter]) -> Result<problem::Recording> {
+        let scene = self.scene.as_ref().map(System::checked).transpose()?;
+        let system = scene.as_ref().unwrap_or(system);
+        let sources = system.sources().len();
+        let mut signals = vec![Signal::Constant(0.0); sources];
+        for (input, signal) in &self.inputs {
+            let found = || format!("{signal:?} of {input:?}");
+            let expected = "finite numbers, and times that grow";
+            require(signal.is_sound(), "recording", found, expected)?;
+            signals[source(input, system)?] = signal.clone();
+        }
+        let all = self.channels.iter().flat_map(|one| &one.readings);
+        for reading in all {
+            let numbers = [reading.time, reading.value];
+            let holds = numbers.iter().all(|x| x.is_finite()) && reading.time >= 0.0;
+            let found = || format!("{} at {} ms", reading.value, reading.time);
+            let expected = "finite readings at times from 0 on";
+            require(
+                holds && reading.deviation > 0.0,
+                "recording",
+                found,
+                expected,
+            )?;
+        }
+        Ok(problem::Recording {
+            name: self.name.clone(),
+            start: self.start.resolve(system, sources)?,
+            regime: self.regime,
+            sought_start: self.sought_start,
+            is_held_out: self.is_held_out,
+            voltages: Voltages::Signals(signals),
+            channels: self.channels.clone(),
+            scene: scene.map(|system| {
+                Box::new(ChangedScene {
+                    system,
+                    parameters: parameters.to_vec(),
+                })
+            }),
+        })
+    }
+}
+
+impl Identification {
+    /// Of constants that are sought within their bounds; they have names, bounds and guesses as in a [`Control`](crate::Control).
+    pub fn of(parameters: impl IntoIterator<Item = Parameter>) -> Self {
+        Self {
+            parameters: parameters.into_iter().collect(),
+            recordings: Vec::new(),
+            step: None,
+        }
+    }
+
+    /// A recording more.
+    pub fn recording(mut self, recording: Recording) -> Self {
+        self.recordings.push(recording);
+        self
+    }
+
+    /// Step of the first grid in ms, which is halved until its bias is small; by the number of readings where there is none.
+    pub fn step(self, step: f64) -> Self {
+        let step = Some(step);
+        Self { step, ..self }
+    }
+
+    /// Fits the constants, and says how well the recordings determine them.
+    ///
+    /// ```
+    /// use proboscis::prelude::*;
+    ///
+    /// # fn main() -> Result<()> {
+    /// let mut system = System::new("oscillator");
+    /// let cart = system.add(Body::sphere(mm(10.0)).mass(g(50.0)));
+    /// let slide = system.add(Joint::prismatic(X).between(GROUND, cart));
+    /// let spring = Spring::between((GROUND, -X * mm(50.0)), (cart, X * mm(0.0)));
+    /// let spring = system.add(spring.stiffness(n_per_m(120.0)));
+    /// // Places in mm at times in ms of a twin of 200 N/m.
+    /// let place = |t: f64| 5.0 * (t * (0.2_f64 / 50.0).sqrt()).cos();
+    /// let readings = (0..30).map(|k| 5.0 * f64::from(k)).map(|t| (t, place(t)));
+    /// let recording = Recording::new("released")
+    ///     .start(State::Joints(vec![(slide, mm(5.0))]))
+    ///     .joint(slide, readings, mm(0.01));
+    /// let stiffness = Parameter::new("stiffness", 0.05..=0.9, 0.12).is(spring.stiffness());
+    /// let found = Identification::of([stiffness]).recording(recording).run(&system)?;
+    /// assert!((found.fit.of_constants()[0] - 0.2).abs() < 1e-5);
+    /// assert!(found.information.half(0) < 1e-3 && found.information.undetermined.is_empty());
+    /// # Ok(())
+    /// # }
+    /// ```
+    ///
+    /// # Errors
+    /// System, recordings or constants make no sense, or a motion cannot be simulated.
+    pub fn run(&self, system: &System) -> Result<Identified> {
+        let system = &system.checked()?;
+        for parameter in &self.parameters {
+            let [lower, guess, upper] = [parameter.lower, parameter.guess, parameter.upper];
+            let found = || format!("{:?}, {guess} in {lower}..={upper}", parameter.name);
+            let holds = lower < upper && (lower..=upper).contains(&guess) && guess.is_finite();
+            let expected = "a finite guess within bounds";
+            require(holds, "identification", found, expected)?;
+        }
+        let resolved = |one: &Recording| one.resolve(system, &self.parameters);
+        let recordings: Vec<_> = self
+            .recordings
+            .iter()
+            .map(resolved)
+            .collect::<Result<_>>()?;
+        let has_fitted = recordings.iter().any(|one| !one.is_held_out);
+        let found = || format!("{} recordings", recordings.len());
+        let expected = "one or more to which constants are fitted";
+        require(has_fitted, "identification", found, expected)?;
+        let step = self.step.is_none_or(|step| step > 0.0 && step.is_finite());
+        let found = || format!("{:?}", self.step);
+        require(step, "identification", found, "a positive step")?;
+        let task = problem::Identification {
+            parameters: self.parameters.clone(),
+            recordings,
+            candidates: Vec::new(),
+            step: self.step,
+            coordinates: None,
+        };
+        Ok(identify(system, &task, &mut |_, _| {})?)
+    }
+}
