@@ -24,7 +24,7 @@ pub struct Identification {
 pub struct Recording {
     /// Name for messages and files.
     pub name: String,
-    /// What is another thing in its scene; `None`: nothing.
+    /// Its scene where that is another one.
     pub scene: Option<Box<ChangedScene>>,
     /// Motion or states of rest.
     pub regime: Regime,

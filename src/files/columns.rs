@@ -10,7 +10,7 @@ use std::fs::File;
 
 /// Columns; of a CSV file those of one line of headers, in which lines that begin with `#` are comments.
 pub(crate) struct Columns {
-    /// Where they stand, for messages.
+    /// File or key, for messages.
     place: String,
     headers: StringRecord,
     rows: Vec<StringRecord>,

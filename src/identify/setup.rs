@@ -65,6 +65,13 @@ impl<'a> Setup<'a> {
 
     /// Refuses what derivatives by the start are not offered for.
     fn check(&self) -> Result<(), IdentifyError> {
+        let parameters = self.control.parameters.iter();
+        let mut constants = parameters.flat_map(|parameter| &parameter.constants);
+        if constants.any(|one| one.constant.is_place()) {
+            return Err(self.refused(
+                "places of bodies, joints and markers are not sought from recordings".to_owned(),
+            ));
+        }
         for channel in &self.recording.channels {
             let parts = channel.parts.iter().map(|(_, quantity)| quantity);
             let mut silent = parts.filter(|q| lasts(q) && self.model.place_of(q).is_none());

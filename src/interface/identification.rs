@@ -133,7 +133,7 @@ impl Recording {
     ) -> Self {
         let marker = marker.index();
         let along = along.normalize();
-        let part = |axis: usize| (along[axis], Quantity::MarkerPlace { marker, axis });
+        let part = |axis: usize| (along[axis], Quantity::marker_place(marker, axis));
         self.measured((0..3).map(part).collect(), readings, deviation)
     }
 

@@ -15,6 +15,7 @@ use crate::model::loops::Loops;
 use crate::model::measures::{self, Measures};
 use crate::model::model::{Model, length};
 use crate::model::named::Named;
+use crate::model::no_terms::{carriers, no_terms};
 use crate::model::plan::{LeftOut, Present};
 use crate::model::presolved::Presolved;
 use crate::model::quantity::Quantity;
@@ -22,7 +23,6 @@ use crate::model::solids::{Circuits, Solids};
 use crate::model::sought::Sought;
 use crate::model::system::{Attachment, Body, Marker, Muscle, System};
 use crate::model::term_order::rank;
-use crate::model::terms::{Carriers, Terms};
 use crate::model::variables::{Role, Size, Time, Variable, Variables};
 use crate::model::{
     blocks, constraints, dampers, field_extent, joint_springs, loads, plan, prescribed, tree_drifts,
@@ -230,7 +230,7 @@ impl Construction<'_> {
 
     /// Vector of the span of each muscle.
     fn spans(&self, vectors: &mut Vectors) -> Vec<usize> {
-        let carriers = Carriers::new((self.system, self.presolved, self.reference));
+        let carriers = carriers((self.system, self.presolved, self.reference));
         let span = |m: &Muscle| {
             let [from, to] = [&m.from, &m.to].map(|end| carriers.point(end));
             vectors.index(MaterialVector::span(&from, &to))
@@ -268,7 +268,7 @@ impl Construction<'_> {
         let system = self.system;
         let of = (system, self.presolved, self.reference);
         let called = (self.analysis, self.sought(variables));
-        let mut terms = Terms::new(of, called, variables, vectors);
+        let mut terms = no_terms(of, called, variables, vectors);
         body::build(&self.presolved.system.bodies, self.reference, &mut terms);
         body::build_sought(&system.bodies, &mut terms);
         muscle::build(&system.muscles, spans, self.internals, &mut terms);

@@ -16,6 +16,7 @@ use crate::model::electrode_circuits::ElectrodeCircuit;
 use crate::model::internal::Internals;
 use crate::model::joints::{JointCoordinate, JointReading};
 use crate::model::muscle_amount::amount_measure;
+use crate::model::no_terms::no_terms;
 use crate::model::presolved::Presolved;
 use crate::model::quantity::{FieldPlace, Quantity};
 use crate::model::solid_block::SolidBlock;
@@ -84,7 +85,7 @@ impl Known<'_> {
     pub(super) fn no_terms<'v>(&'v self, vectors: &'v mut Vectors) -> Terms<'v> {
         let of = (self.system, self.presolved, self.reference);
         let called = (self.analysis, self.sought.clone());
-        Terms::new(of, called, self.variables, vectors)
+        no_terms(of, called, self.variables, vectors)
     }
 
     fn measure(

@@ -51,6 +51,7 @@ mod muscle_amount;
 mod muscle_measures;
 mod muscle_state;
 mod named;
+mod no_terms;
 mod parameter;
 pub mod plan;
 mod prescribed;

@@ -5,15 +5,12 @@ use crate::energy::{Affine, Energy};
 use crate::functional::{Element, Law, LawElement, Path, ScaledElement, Stencil, Term, VectorArg};
 use crate::kinematics::{Carrier, MaterialVector, Pose, Vectors};
 use crate::math::Vector;
-use crate::model::analysis::Analysis;
 use crate::model::attachment::Attachment;
 use crate::model::constant::Constant;
 use crate::model::maxwell::Response;
 use crate::model::members::{Formula, Member, OfKind};
 use crate::model::plan::{self, LeftOut, Present};
-use crate::model::presolved::Presolved;
 use crate::model::sought::{Read, Sought};
-use crate::model::system::System;
 use crate::model::variables::Variables;
 use crate::model::weight::Weight;
 use std::any::Any;
@@ -25,22 +22,12 @@ pub(super) const UNRELAXED: &str = "unrelaxed Maxwell branches of";
 /// The bodies of the presolved system that carry those of the scene.
 pub(super) struct Carriers<'a> {
     /// The presolved body of each body of the scene; `None` is the ground.
-    of: Vec<Option<usize>>,
+    pub(super) of: Vec<Option<usize>>,
     /// Poses of the presolved bodies in the reference configuration.
-    reference: &'a [Pose],
+    pub(super) reference: &'a [Pose],
 }
 
-impl<'a> Carriers<'a> {
-    /// Those of a scene and its presolved system.
-    pub(super) fn new((system, presolved, reference): (&System, &Presolved, &'a [Pose])) -> Self {
-        let bodies = 0..system.bodies.len();
-        let carriers = bodies.map(|body| presolved.carrier(Some(body)));
-        Self {
-            of: carriers.collect(),
-            reference,
-        }
-    }
-
+impl Carriers<'_> {
     fn carrier(&self, body: Option<usize>) -> Option<usize> {
         self.of[body?]
     }
@@ -80,20 +67,20 @@ struct Collected {
 }
 
 impl<'a> Terms<'a> {
-    /// None yet, of a scene and its presolved system, whose bodies have reference poses.
     pub(super) fn new(
-        of @ (system, ..): (&System, &Presolved, &'a [Pose]),
-        (analysis, sought): (&Analysis, Sought),
+        bodies: Carriers<'a>,
+        gravity: Option<Vector>,
+        (of_motion, response, sought): (bool, Response, Sought),
         variables: &'a Variables,
         vectors: &'a mut Vectors,
     ) -> Self {
         Self {
-            bodies: Carriers::new(of),
-            gravity: system.gravity,
+            bodies,
+            gravity,
             vectors,
             variables,
-            of_motion: analysis.of_motion,
-            response: analysis.response,
+            of_motion,
+            response,
             sought,
             collected: Vec::new(),
             present: Vec::new(),

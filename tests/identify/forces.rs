@@ -182,7 +182,7 @@ fn forces_and_charges_are_those_of_tables() {
     let (system, all) = (system(), quantities());
     let channels = all
         .iter()
-        .map(|(quantity, _)| channel(vec![(1.0, *quantity)], readings(9, 80.0)));
+        .map(|(quantity, _)| channel(vec![(1.0, quantity.clone())], readings(9, 80.0)));
     let mut task = task(recording(channels.collect(), Regime::Motion), true);
     task.parameters.clear();
     let grid = Grid {
@@ -255,7 +255,7 @@ fn constants_come_back_from_forces_and_from_circuits() {
 fn recovered(quantities: &[Quantity], names: &[&str]) {
     let system = system();
     let channels = quantities.iter();
-    let channels = channels.map(|q| channel(vec![(1.0, *q)], readings(20, 76.0)));
+    let channels = channels.map(|q| channel(vec![(1.0, q.clone())], readings(20, 76.0)));
     let mut task = task(recording(channels.collect(), Regime::Motion), true);
     task.parameters.retain(|p| names.contains(&p.name.as_str()));
     assert_eq!(task.parameters.len(), names.len());

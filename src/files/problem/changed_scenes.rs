@@ -11,7 +11,7 @@ use crate::files::study::ChangesSpec;
 use crate::model::Parameter;
 use crate::model::system::System;
 
-/// What is another thing in the scene of some recordings.
+/// Changes of the scene for some recordings.
 pub(crate) struct SceneChanges<'a> {
     pub(crate) set: ChangesSpec,
     pub(crate) changes: Changes<'a>,

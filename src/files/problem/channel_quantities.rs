@@ -197,7 +197,7 @@ impl Charging {
     }
 }
 
-/// What finite elements need, for messages.
+/// Needs of finite elements, for messages.
 const OF_ELEMENTS: [&str; 2] = [
     "which drives finite elements without a resistor",
     "a lumped muscle, or electrodes with a \"resistance\" in their \"circuit\"",

@@ -27,7 +27,7 @@ pub(crate) struct WrittenScene<'a> {
     pub(crate) system: &'a System,
     /// The document in which it stands, beside which its files are.
     pub(crate) document: &'a Document,
-    /// What is another thing in it for some recordings, of which it is the scene; of the others where there is nothing.
+    /// Changes for some recordings, of which it is the scene; of the others where there are none.
     pub(crate) changes: &'a ChangesSpec,
 }
 
