@@ -61,6 +61,7 @@ mod pull;
 mod quantity;
 mod quantity_parts;
 mod quantity_rates;
+mod quantity_sites;
 mod reaction_measure;
 mod redundancy;
 mod solid_block;
