@@ -53,10 +53,9 @@ class Questions:
     def control(
         self,
         *,
-        duration: entries.Duration,
-        objective: entries.Objective,
-        start: entries.Start,
+        combine: entries.Combined | None = None,
         coordinates: entries.Coordinates | None = None,
+        duration: entries.Duration | None = None,
         free: Mapping[Any, entries.Free] | None = None,
         goal: entries.Goal | None = None,
         guess: entries.Guess | None = None,
@@ -66,18 +65,19 @@ class Questions:
         load_bounds: Mapping[Any, Sequence[Quantity] | Numbers] | None = None,
         loads: Mapping[Any, entries.Signal] | None = None,
         motions: Sequence[entries.Motion] | None = None,
+        objective: entries.Objective | None = None,
         shared_inputs: Sequence[Text] | None = None,
         solver: entries.Solver | None = None,
+        start: entries.Start | None = None,
         voltage_bounds: Sequence[Quantity] | Numbers | None = None,
         voltages: entries.Voltages | None = None,
         waypoints: Sequence[entries.Waypoint] | None = None,
     ) -> Problem:
         """Returns the optimal control problem with these entries of `control` in a problem file.
 
-        * `duration`: Final time, SI unit s, or its bounds and a guess.
-        * `objective`: Objective that is minimised.
-        * `start`: Initial state; of a periodic motion, whose start is sought, the state where the solver begins.
+        * `combine`: The objective of several motions: the `sum` of theirs (where not written), or that of the `worst`, the greatest one.
         * `coordinates`: Coordinates.
+        * `duration`: Final time, SI unit s, or its bounds and a guess.
         * `free`: Constants of the scene that are sought, by their paths, such as `materials.silicone.shear_modulus`.
         * `goal`: Final state; may be left out where the objective names something to `track` or where to end (`final`), and is free then.
         * `guess`: Initial guess of the solver; where not written, of elastic blocks whose goal has `hold`, the motion under these voltages,
@@ -92,9 +92,11 @@ class Questions:
           sought.
         * `motions`: Several motions in one optimisation: what `free` seeks is the same in all of them, and the objective is the sum of
           theirs. Each names the keys that are other ones in it.
+        * `objective`: Objective that is minimised.
         * `shared_inputs`: Names of muscles, driven electrodes (`block.electrode`) and loads whose inputs are sought once for all motions;
           these have one given duration and one number of intervals.
         * `solver`: Options of the solver.
+        * `start`: Initial state; of a periodic motion, whose start is sought, the state where the solver begins.
         * `voltage_bounds`: Lower and upper bound of every voltage that is sought, SI unit V; not needed where none is.
         * `voltages`: Voltages that are given, by the names of muscles and driven electrodes (`block.electrode`), SI unit V: they are no
           unknowns, and one of 0 for all the time leaves no electric term at all. Functions of time, a table and those of a solution give all
@@ -104,10 +106,9 @@ class Questions:
         problem = self._problem(
             "control",
             {
-                "duration": duration,
-                "objective": objective,
-                "start": start,
+                "combine": combine,
                 "coordinates": coordinates,
+                "duration": duration,
                 "free": free,
                 "goal": goal,
                 "guess": guess,
@@ -117,8 +118,10 @@ class Questions:
                 "load_bounds": load_bounds,
                 "loads": loads,
                 "motions": motions,
+                "objective": objective,
                 "shared_inputs": shared_inputs,
                 "solver": solver,
+                "start": start,
                 "voltage_bounds": voltage_bounds,
                 "voltages": voltages,
                 "waypoints": waypoints,

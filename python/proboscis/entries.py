@@ -522,6 +522,10 @@ class Candidate(TypedDict):
     """Values that are other ones in the scene of this experiment, by their places."""
 
 
+Combined: TypeAlias = "Literal['sum', 'worst']"
+"""The objective of several motions."""
+
+
 ControlSolver: TypeAlias = "Literal['auto', 'stages', 'mumps']"
 """Solver of the linear systems of a control problem."""
 
@@ -851,6 +855,12 @@ class Limit(TypedDict):
     marker_speed: NotRequired[MarkerSpeedLimit]
     """Limits of the speed of a marker."""
 
+    muscle_mass: NotRequired[MuscleMassLimit]
+    """Limits of the mass of muscles."""
+
+    muscle_volume: NotRequired[MuscleVolumeLimit]
+    """Limits of the volume of muscles."""
+
     part: NotRequired[float]
     """Part of the duration, above 0 and at most 1, at which alone the limit holds: at the instant nearest to it, or in the interval before that
     instant; 1 is the end. Where not written it holds from start to end.
@@ -1027,6 +1037,32 @@ class Motion(TypedDict):
     """Places, orientations and joint coordinates that the motion reaches on its way."""
 
 
+class MuscleMassLimit(TypedDict):
+    """Limits of the mass of lumped muscles with a density, together, which follows from sought constants: `min`, `max` or both."""
+
+    max: NotRequired[Quantity]
+    """Upper bound, SI unit kg."""
+
+    min: NotRequired[Quantity]
+    """Lower bound, SI unit kg."""
+
+    muscles: NotRequired[Sequence[Text]]
+    """Names of lumped muscles; all of them where not written."""
+
+
+class MuscleVolumeLimit(TypedDict):
+    """Limits of the volume of lumped muscles at rest, together, which follows from sought constants: `min`, `max` or both."""
+
+    max: NotRequired[Quantity]
+    """Upper bound, SI unit m^3."""
+
+    min: NotRequired[Quantity]
+    """Lower bound, SI unit m^3."""
+
+    muscles: NotRequired[Sequence[Text]]
+    """Names of lumped muscles; all of them where not written."""
+
+
 Newton: TypeAlias = "Literal['full', 'modified', 'reused']"
 """Occasions at which the tangent of a step is factorised."""
 
@@ -1048,6 +1084,12 @@ class Objective(TypedDict):
 
     mechanical_work: NotRequired[Energy]
     """Weight per J of the mechanical work of the electrical forces of lumped muscles, of all sources or of named ones."""
+
+    muscle_mass: NotRequired[float]
+    """Weight per g of the mass of all lumped muscles with a density, which follows from sought constants."""
+
+    muscle_volume: NotRequired[float]
+    """Weight per cm³ of the volume of all lumped muscles at rest, which follows from sought constants."""
 
     peak_voltage: NotRequired[float]
     """Weight of the square of the peak voltage in kV: of the largest voltage of all sources that are sought, in all intervals."""
@@ -1503,10 +1545,13 @@ class Waypoint(TypedDict):
 class Control(TypedDict):
     """An optimal control problem."""
 
+    combine: NotRequired[Combined]
+    """The objective of several motions: the `sum` of theirs (where not written), or that of the `worst`, the greatest one."""
+
     coordinates: NotRequired[Coordinates]
     """Coordinates."""
 
-    duration: Duration
+    duration: NotRequired[Duration]
     """Final time, SI unit s, or its bounds and a guess."""
 
     free: NotRequired[Mapping[Any, Free]]
@@ -1544,7 +1589,7 @@ class Control(TypedDict):
     keys that are other ones in it.
     """
 
-    objective: Objective
+    objective: NotRequired[Objective]
     """Objective that is minimised."""
 
     shared_inputs: NotRequired[Sequence[Text]]
@@ -1555,7 +1600,7 @@ class Control(TypedDict):
     solver: NotRequired[Solver]
     """Options of the solver."""
 
-    start: Start
+    start: NotRequired[Start]
     """Initial state; of a periodic motion, whose start is sought, the state where the solver begins."""
 
     voltage_bounds: NotRequired[Sequence[Quantity] | Numbers]
