@@ -146,6 +146,8 @@ fn unknowns<K: Kernel>(element: &K::Element) -> Range<usize> {
 }
 
 impl<K: Kernel> Scatter for Action<'_, K> {
+    const OF_PARAMETERS: bool = false;
+
     #[inline(always)]
     fn plain<D: Derivatives>(&mut self, d: &D) {
         let part = &mut self.out.plain;

@@ -6,6 +6,10 @@ use std::fmt::Debug;
 
 /// Receives the derivatives of one element.
 pub trait Scatter {
+    /// False if derivatives by parameters alone are not asked for: a sum has no equation of a parameter, so that of the derivatives that are
+    /// not contracted it takes those by a vector and a parameter only.
+    const OF_PARAMETERS: bool = true;
+
     /// Those of its scalar.
     fn plain<D: Derivatives>(&mut self, plain: &D);
 

@@ -175,10 +175,10 @@ impl<L: Law<M>, const M: usize, const NV: usize, const NS: usize> Laws<L, M, NV,
         }
     }
 
-    /// Fills all derivatives by parameters.
+    /// Fills all derivatives by parameters, those by two of them where `pairs` are asked for.
     fn by_parameters(
         element: &LawElement<L, NV, NS>,
-        (order, sample): (Order, &Sample<'_>),
+        (order, sample, pairs): (Order, &Sample<'_>, bool),
         values: &Values<f64>,
         plain: &mut ByParameters<NV, NS>,
         mut along: Option<&mut ByParameters<NV, NS>>,
@@ -189,7 +189,7 @@ impl<L: Law<M>, const M: usize, const NV: usize, const NS: usize> Laws<L, M, NV,
         for a in 0..count {
             let mut seeded = constants;
             seeded[a].a = 1.0;
-            for b in (0..a).filter(|_| order > Order::Gradient) {
+            for b in (0..a).filter(|_| pairs) {
                 seeded[b].b = 1.0;
                 Self::second(
                     element,
@@ -224,11 +224,11 @@ impl<L: Law<M>, const M: usize, const NV: usize, const NS: usize> Laws<L, M, NV,
         }
     }
 
-    fn hand<const ORDER: usize>(
+    fn hand<const ORDER: usize, S: Scatter>(
         element: &LawElement<L, NV, NS>,
         order: Order,
         sample: &Sample<'_>,
-        to: &mut impl Scatter,
+        to: &mut S,
     ) {
         let values = Self::values(element, sample);
         let parameters = &values[..element.parameters.len()];
@@ -243,8 +243,15 @@ impl<L: Law<M>, const M: usize, const NV: usize, const NS: usize> Laws<L, M, NV,
         if is_contracted {
             by_along = Some(ByParameters::default());
         }
-        let at = (order, sample);
-        Self::by_parameters(element, at, &values, &mut by, by_along.as_mut());
+        if S::OF_PARAMETERS || order > Order::Gradient {
+            let pairs = match order {
+                Order::Gradient => false,
+                Order::Hessian => S::OF_PARAMETERS,
+                Order::Third => true,
+            };
+            let at = (order, sample, pairs);
+            Self::by_parameters(element, at, &values, &mut by, by_along.as_mut());
+        }
         let plain = Self::of_element((element, &values), local.plain::<NV>(), &by);
         to.plain(&plain);
         match &by_along {
@@ -323,9 +330,9 @@ impl<L: Law<M>, const M: usize, const NV: usize, const NS: usize> Kernel for Law
         to: &mut S,
     ) {
         match (order, Self::VIRTUAL) {
-            (Order::Gradient, _) => Self::hand::<1>(element, order, sample, to),
-            (Order::Third, 0) => Self::hand::<3>(element, order, sample, to),
-            _ => Self::hand::<2>(element, order, sample, to),
+            (Order::Gradient, _) => Self::hand::<1, S>(element, order, sample, to),
+            (Order::Third, 0) => Self::hand::<3, S>(element, order, sample, to),
+            _ => Self::hand::<2, S>(element, order, sample, to),
         }
     }
 }

@@ -136,6 +136,8 @@ impl<K: Kernel, S> WithFactor<'_, K, S> {
 }
 
 impl<K: Kernel, S: Scatter> Scatter for WithFactor<'_, K, S> {
+    const OF_PARAMETERS: bool = S::OF_PARAMETERS;
+
     fn plain<D: Derivatives>(&mut self, plain: &D) {
         self.to
             .plain(&Times::new::<K>(self.element, self.sample, plain, 0.0));
