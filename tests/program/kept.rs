@@ -25,7 +25,12 @@ fn every_kept_problem_has_right_derivatives() {
         if path.is_dir() || name.contains("schema") || has_elements(&name) {
             continue;
         }
-        let (status, out, err) = run(folder.path(), &["check", path.to_str().unwrap()]);
+        let mut arguments = vec!["check", path.to_str().unwrap()];
+        if name == "codesign_trunk.json" {
+            // Three motions with eight constants: each column of a constant changes all rows.
+            arguments.extend(["--set", "control.intervals=8"]);
+        }
+        let (status, out, err) = run(folder.path(), &arguments);
         assert_eq!(status, 0, "{name}: {out}{err}");
         let (status, out, err) = run(folder.path(), &["inspect", path.to_str().unwrap()]);
         assert!(
