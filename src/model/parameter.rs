@@ -57,13 +57,6 @@ impl Constant {
         if !self.is_named(system) {
             return Some(format!("{}, which the scene has to name", self.lacking()));
         }
-        if self.is_place()
-            && let Some(other) = moved_otherwise(system)
-        {
-            return Some(format!(
-                "sought places of bodies, joints and markers are not offered beside {other}"
-            ));
-        }
         if let Self::End(m, ..) | Self::Prestretch(m) = self
             && !system.muscles[m].material.maxwell.list().is_empty()
         {
@@ -201,6 +194,12 @@ pub fn check(system: &System, parameters: &[Parameter]) -> Result<(), NotSought>
             .any(|other| other.name == parameter.name)
         {
             return not("another parameter has the same name".to_owned());
+        }
+        let moves_places = constants.iter().any(|one| one.constant.is_place());
+        if let Some(other) = moves_places.then(|| moved_otherwise(system)).flatten() {
+            return not(format!(
+                "sought places of bodies, joints and markers are not offered beside {other}"
+            ));
         }
         for (place, follower) in constants.iter().enumerate() {
             let constant = follower.constant;

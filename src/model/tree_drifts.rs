@@ -18,13 +18,16 @@ use crate::model::graph::Graph;
 use crate::model::presolved::{BodyLocation, Presolved};
 use crate::model::system::System;
 
-/// Drifts of the bodies of a scene and its presolved system.
+/// Drifts of the bodies of a scene and its presolved system; nothing where nothing is sought.
 pub(super) fn of_tree(
     parameters: &[Parameter],
     of: (&System, &Presolved),
     graph: &Graph,
     reference: &[Pose],
 ) -> Drifts {
+    if parameters.is_empty() {
+        return Drifts::default();
+    }
     let of = |parameter: &Parameter| drifts(parameter, of, graph, reference);
     let is_place = |parameter: &Parameter| {
         let mut constants = parameter.constants.iter();

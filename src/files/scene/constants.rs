@@ -141,7 +141,6 @@ impl WrittenScene<'_> {
                 .map_err(NoConstant::of_upper)?,
         ];
         let mut base = self.system.clone();
-        let inner = [BETWEEN, 1.0 - BETWEEN].map(|t| lower + t * (upper - lower));
         let mut changes = Vec::new();
         for constant in Constant::all(&high) {
             let [a, b] = [constant.value(&mut low), constant.value(&mut high)];
@@ -160,17 +159,7 @@ impl WrittenScene<'_> {
             });
         }
         self.check_rest(base, &changes, &high)?;
-        // Beside bounds and scene, two of which may coincide, at places that nothing singles out.
-        let mut others = [
-            self.with(&place, &Value::from(inner[0]))?,
-            self.with(&place, &Value::from(inner[1]))?,
-        ];
-        let mut followers: Vec<(Follower, f64)> = Vec::new();
-        for change in &changes {
-            let inside = others.each_mut().map(|other| change.constant.value(other));
-            let inside = inside.map(|value| value.unwrap_or(f64::NAN));
-            followers.push((change.follower([lower, upper], inner, inside), change.given));
-        }
+        let followers = self.followers(&place, &changes, [lower, upper])?;
         let found =
             match self.are_polynomials(&place, &followers, lower + APART * (upper - lower))? {
                 true => in_own_units(followers, (lower, upper), self.system),
@@ -181,6 +170,39 @@ impl WrittenScene<'_> {
                 "a number of the scene of which a constant is no polynomial of third degree";
             NoConstant::of_path(found, OFFERED)
         })
+    }
+
+    /// The straight lines through the values of constants at both bounds; where one is none, polynomials of third degree. Each with the value
+    /// of its constant in the scene.
+    fn followers(
+        &self,
+        place: &JsonPath,
+        changes: &[Change],
+        [lower, upper]: [f64; 2],
+    ) -> Result<Vec<(Follower, f64)>, NoConstant> {
+        // Beside bounds and scene, two of which may coincide, at places that nothing singles out.
+        let at = [BETWEEN, 1.0 - BETWEEN].map(|t| lower + t * (upper - lower));
+        let inside = |at: f64| -> Result<Vec<f64>, NoConstant> {
+            let mut system = self.with(place, &Value::from(at))?;
+            let value = |change: &Change| change.constant.value(&mut system);
+            let values = changes.iter().map(value);
+            Ok(values.map(|value| value.unwrap_or(f64::NAN)).collect())
+        };
+        let lines = changes.iter().map(|change| change.line([lower, upper]));
+        let lines: Vec<Follower> = lines.collect();
+        let first = inside(at[0])?;
+        let mut all = changes.iter().zip(&lines).zip(&first);
+        let second = match all.all(|((change, line), &value)| change.is_on(line, at[0], value)) {
+            true => None,
+            false => Some(inside(at[1])?),
+        };
+        let follower = |(i, change): (usize, &Change)| {
+            let line = lines[i];
+            let curved = second.as_ref().map(|second| [first[i], second[i]]);
+            let curved = curved.map(|inside| change.polynomial(line, [lower, upper], at, inside));
+            (curved.unwrap_or(line), change.given)
+        };
+        Ok(changes.iter().enumerate().map(follower).collect())
     }
 
     /// Returns true if the polynomials meet the constants at another value too; straight lines are known to.
@@ -239,25 +261,37 @@ struct Change {
 }
 
 impl Change {
-    /// The straight line through its values at the bounds, or where it is none the polynomial of third degree through those at two places
-    /// between them too.
-    fn follower(&self, [lower, upper]: [f64; 2], at: [f64; 2], inside: [f64; 2]) -> Follower {
+    /// The straight line through its values at the bounds.
+    fn line(&self, [lower, upper]: [f64; 2]) -> Follower {
         let [a, b] = self.ends;
-        let width = upper - lower;
-        let factor = (b - a) / width;
-        let line = Follower {
+        let factor = (b - a) / (upper - lower);
+        Follower {
             constant: self.constant,
             factor,
             offset: a - factor * lower,
             higher: [0.0; 2],
-        };
+        }
+    }
+
+    /// Returns true if a value at a place is that of its straight line.
+    fn is_on(&self, line: &Follower, at: f64, value: f64) -> bool {
+        let [a, b] = self.ends;
         let size = a.abs().max(b.abs());
-        let is_on = |(x, value): (&f64, &f64)| {
-            (line.at(*x) - value).abs() <= SAME * (b - a).abs().max(ONE * size)
-        };
-        if at.iter().zip(&inside).all(is_on) {
+        (line.at(at) - value).abs() <= SAME * (b - a).abs().max(ONE * size)
+    }
+
+    /// The polynomial of third degree through its values at the bounds and at two places between them; its straight line where it is one.
+    fn polynomial(
+        &self,
+        line: Follower,
+        [lower, upper]: [f64; 2],
+        at: [f64; 2],
+        inside: [f64; 2],
+    ) -> Follower {
+        if (0..2).all(|i| self.is_on(&line, at[i], inside[i])) {
             return line;
         }
+        let width = upper - lower;
         // Of what the values between have more than the line: t (1 − t) (p + q t) of t = (π − lower)/width.
         let t = at.map(|x| (x - lower) / width);
         let more = [0, 1].map(|i| (inside[i] - line.at(at[i])) / (t[i] * (1.0 - t[i])));

@@ -25,7 +25,7 @@ pub(in crate::model) fn build(
     terms: &mut Terms<'_>,
 ) {
     for (m, (muscle, &span)) in muscles.iter().zip(spans).enumerate() {
-        build_one((muscle, m), span, internals, terms);
+        circuit(muscle, m, span, internals, terms);
     }
     let none = match terms.is_of_motion() {
         true => "no muscle or electrode names a circuit with a resistor",
@@ -37,8 +37,9 @@ pub(in crate::model) fn build(
 }
 
 /// The electric energy of a charge, which is an internal coordinate, the source, and the resistor as its damper.
-pub(in crate::model) fn build_one(
-    (muscle, index): (&Muscle, usize),
+fn circuit(
+    muscle: &Muscle,
+    index: usize,
     span: usize,
     internals: &Internals,
     terms: &mut Terms<'_>,
