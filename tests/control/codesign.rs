@@ -1,7 +1,7 @@
 //! The trunk of `problems/codesign_trunk.json`: one design for three goals costs less than that of the scene with the same mass, is verified, and meets the
 //! conditions of Karush, Kuhn and Tucker, summed over the programs of the motions by hand.
 
-use crate::optimality::guessed_step;
+use crate::optimality::{guessed_step, stationarity as slopes};
 use proboscis::control::problem::Task;
 use proboscis::control::{BoundaryConditions, Column, Motions, Transcription, guess};
 use proboscis::files::read_problem;
@@ -44,17 +44,8 @@ fn stationarity(motions: &Motions, found: &Together) -> [f64; 3] {
             BoundaryConditions::resolve(&motion.system, &motion.control, h).unwrap();
         let initial = guess(&model, &boundary, &motion.control, h, None);
         let mut program = Transcription::new(&model, &boundary, &motion.control, &initial).unwrap();
-        let (x, y) = (&optimum.solution.x, &optimum.solution.costates);
-        let mut gradient = vec![0.0; x.len()];
-        program.gradient(x, &mut gradient);
-        let entries = program.jacobian_structure();
-        let mut values = vec![0.0; entries.rows.len()];
-        program.jacobian(x, &mut values);
-        for ((&row, &col), value) in entries.rows.iter().zip(&entries.cols).zip(&values) {
-            gradient[col as usize] += y.constraints[row as usize] * value;
-        }
-        for (i, slope) in gradient.into_iter().enumerate() {
-            let rest = slope - y.lower[i] + y.upper[i];
+        let slopes = slopes(&mut program, &optimum.solution);
+        for (i, rest) in slopes.into_iter().enumerate() {
             match program.unknowns().columns[i] {
                 Column::Parameter { .. } => {
                     summand = summand.max(rest.abs());

@@ -83,13 +83,9 @@ pub(crate) fn solve(
     }
 }
 
-/// ∇f + ∇cᵀy − z_L + z_U, c, products of multipliers and distances, and multipliers of the wrong sign.
-fn karush_kuhn_tucker(
-    program: &mut Transcription<'_>,
-    solution: &SolverResult,
-) -> ([f64; 4], [f64; 2]) {
-    let x = &solution.x;
-    let y = &solution.costates;
+/// ∇f + ∇cᵀy − z_L + z_U at the end of a solve.
+pub(crate) fn stationarity(program: &mut Transcription<'_>, solution: &SolverResult) -> Vec<f64> {
+    let (x, y) = (&solution.x, &solution.costates);
     let mut gradient = vec![0.0; x.len()];
     program.gradient(x, &mut gradient);
     let entries = program.jacobian_structure();
@@ -98,11 +94,25 @@ fn karush_kuhn_tucker(
     for ((&row, &col), value) in entries.rows.iter().zip(&entries.cols).zip(&values) {
         gradient[col as usize] += y.constraints[row as usize] * value;
     }
+    let bounds = y.lower.iter().zip(&y.upper);
+    let slopes = gradient.iter().zip(bounds);
+    slopes
+        .map(|(slope, (lower, upper))| slope - lower + upper)
+        .collect()
+}
+
+/// ∇f + ∇cᵀy − z_L + z_U, c, products of multipliers and distances, and multipliers of the wrong sign.
+fn karush_kuhn_tucker(
+    program: &mut Transcription<'_>,
+    solution: &SolverResult,
+) -> ([f64; 4], [f64; 2]) {
+    let x = &solution.x;
+    let y = &solution.costates;
+    let slopes = stationarity(program, solution);
     let bounds = program.variables().clone();
     let mut worst = [0.0_f64; 4];
     for i in 0..x.len() {
-        let stationarity = gradient[i] - y.lower[i] + y.upper[i];
-        worst[0] = worst[0].max(stationarity.abs());
+        worst[0] = worst[0].max(slopes[i].abs());
         for (z, distance) in [
             (y.lower[i], x[i] - bounds.lower[i]),
             (y.upper[i], bounds.upper[i] - x[i]),
