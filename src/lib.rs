@@ -106,7 +106,7 @@ pub use functional::Element;
 pub use identify::{Identified, IdentifyError};
 pub use interface::{
     Carrier, Control, Equilibrium, Error, GROUND, Handle, Identification, Input, Motion, Optimum,
-    Part, Recording, Result, Simulation, State, Together,
+    Part, Recording, Result, Simulation, State, Tension, Together,
 };
 pub use kinematics::Pose;
 pub use math::{Jet, Signal};

@@ -186,7 +186,8 @@ impl Recording {
 fn lasts(quantity: &Quantity) -> bool {
     matches!(
         quantity,
-        Quantity::PullStep(_)
+        Quantity::Tension { .. }
+            | Quantity::PullStep(_)
             | Quantity::ReactionStep { .. }
             | Quantity::Charge { .. }
             | Quantity::MeanCharge { .. }

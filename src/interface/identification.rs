@@ -34,21 +34,25 @@ pub struct Recording {
     channels: Vec<Channel>,
 }
 
-impl From<Handle<Muscle>> for Pulling {
+/// The force in N with which a muscle, a spring or a tendon pulls its ends together.
+#[derive(Clone, Debug)]
+pub struct Tension(Quantity);
+
+impl From<Handle<Muscle>> for Tension {
     fn from(muscle: Handle<Muscle>) -> Self {
-        Self::Muscle(muscle.index())
+        Self(Quantity::tension(muscle.index()))
     }
 }
 
-impl From<Handle<Spring>> for Pulling {
+impl From<Handle<Spring>> for Tension {
     fn from(spring: Handle<Spring>) -> Self {
-        Self::Spring(spring.index())
+        Self(Quantity::PullStep(Pulling::Spring(spring.index())))
     }
 }
 
-impl From<Handle<Tendon>> for Pulling {
+impl From<Handle<Tendon>> for Tension {
     fn from(tendon: Handle<Tendon>) -> Self {
-        Self::Tendon(tendon.index())
+        Self(Quantity::PullStep(Pulling::Tendon(tendon.index())))
     }
 }
 
@@ -140,11 +144,11 @@ impl Recording {
     /// Readings of the force in N with which a muscle, a spring or a tendon pulls its ends together.
     pub fn tension(
         self,
-        part: impl Into<Pulling>,
+        part: impl Into<Tension>,
         readings: impl IntoIterator<Item = (f64, f64)>,
         deviation: impl Into<Option<f64>>,
     ) -> Self {
-        let quantity = Quantity::PullStep(part.into());
+        let Tension(quantity) = part.into();
         self.measured(vec![(1.0, quantity)], readings, deviation)
     }
 

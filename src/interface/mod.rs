@@ -29,7 +29,7 @@ pub use control::Control;
 pub use equilibrium::Equilibrium;
 pub use error::{Error, Result};
 pub use handle::{Carrier, GROUND, Handle, Part};
-pub use identification::{Identification, Recording};
+pub use identification::{Identification, Recording, Tension};
 pub use input::Input;
 pub use motion::Motion;
 pub use optimum::Optimum;

@@ -100,8 +100,7 @@ pub(super) fn build(
                 on.pull(coordinate, Vector::x(), Read::nothing());
             }
             LoadPlace::Muscle(muscle) => {
-                let of = (&system.muscles[*muscle], *muscle);
-                charge_muscle(on.name, of, (spans[*muscle], on.size), on.terms);
+                on.charge_muscle((&system.muscles[*muscle], *muscle), spans[*muscle]);
             }
             LoadPlace::Block { block, load } => on.block(&blocks.list[*block], load),
         }
@@ -113,20 +112,6 @@ pub(super) fn build(
         MUSCLE_CHARGES,
         "no charge of a lumped muscle is given, or flows through a resistor",
     );
-}
-
-/// A charge on the electrodes of a muscle, of which the load of a name is the scalar `size`.
-pub(super) fn charge_muscle(
-    name: &str,
-    muscle: (&Muscle, usize),
-    (span, size): (usize, usize),
-    terms: &mut Terms<'_>,
-) {
-    let mut constants = constants(muscle, terms);
-    if let Some(capacitance) = constants.capacitance() {
-        let element = constants.element(Given(capacitance), [mid(span)], [size]);
-        terms.add_law((MUSCLE_CHARGES, "the charge of"), name, element);
-    }
 }
 
 /// A load whose terms are added.
@@ -164,6 +149,16 @@ impl Loaded<'_, '_> {
         let element = read.element(Follow, vectors, [self.size]);
         let term = (FOLLOWING, "the force of");
         self.terms.add_law::<_, 13, 4, 1>(term, self.name, element);
+    }
+
+    /// A charge on the electrodes of a muscle.
+    fn charge_muscle(&mut self, muscle: (&Muscle, usize), span: usize) {
+        let mut constants = constants(muscle, self.terms);
+        if let Some(capacitance) = constants.capacitance() {
+            let element = constants.element(Given(capacitance), [mid(span)], [self.size]);
+            let term = (MUSCLE_CHARGES, "the charge of");
+            self.terms.add_law(term, self.name, element);
+        }
     }
 
     /// A load of a block.

@@ -1,9 +1,8 @@
-//! Measure of the force with which a part pulls its ends together: the forces of its own terms along its span.
+//! Measure of the force with which a spring or a tendon pulls its ends together: the forces of its own terms along its span.
 
 use crate::functional::{Displacement, Impulse, Measure, Term, TermKind};
-use crate::kinematics::{MaterialVector, Vectors};
-use crate::model::components::{Kind, circuit, muscle};
-use crate::model::loads::charge_muscle;
+use crate::kinematics::Vectors;
+use crate::model::components::Kind;
 use crate::model::measures::Known;
 use crate::model::quantity::Pulling;
 use crate::model::term_order::rank;
@@ -11,23 +10,11 @@ use crate::model::variables::Time;
 use std::sync::Arc;
 
 impl Known<'_> {
-    /// Impulse of the forces of a part along its span in an interval; none where nothing changes its length and nothing drives it.
+    /// Impulse of the forces of a part along its span in an interval; none where nothing changes its length.
     pub(super) fn pull(&self, part: Pulling, vectors: &mut Vectors) -> Option<Box<dyn Measure>> {
         let mut terms = self.no_terms(vectors);
         let components = &self.system.components;
         let (span, factor) = match part {
-            Pulling::Muscle(index) => {
-                let of = (&self.system.muscles[index], index);
-                let [from, to] = [&of.0.from, &of.0.to].map(|end| terms.point(end));
-                let span = terms.vector(MaterialVector::span(&from, &to));
-                muscle::build_one(of, span, self.internals, &mut terms);
-                circuit::build_one(of, span, self.internals, &mut terms);
-                let given = self.system.charge_of(index);
-                if let Some(charge) = given.and_then(|source| self.variables.input(source)) {
-                    charge_muscle("", of, (span, charge), &mut terms);
-                }
-                (span, 1.0)
-            }
             Pulling::Spring(index) => {
                 let spring = &components.springs[index];
                 let span = terms.span(&spring.from, &spring.to)?;

@@ -46,11 +46,9 @@ pub enum Reaction {
     Torque,
 }
 
-/// A part of a scene that pulls its ends together.
+/// A part between points that pulls its ends together; a lumped muscle has a quantity of its own.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Pulling {
-    /// A lumped muscle.
-    Muscle(usize),
     /// A spring with its damper.
     Spring(usize),
     /// A tendon.

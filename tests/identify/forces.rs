@@ -49,7 +49,7 @@ fn reaction(joint: usize, of: Reaction) -> Quantity {
 
 /// Every quantity, with its column in tables and the factor of the column.
 fn quantities() -> Vec<(Quantity, Vec<(&'static str, f64)>)> {
-    let pull = |part, column| (Quantity::PullStep(part), vec![(column, 1.0)]);
+    let tension = |muscle, column| (Quantity::tension(muscle), vec![(column, 1.0)]);
     let step = Quantity::ChargeStep {
         muscle: 2,
         unit: 1.0,
@@ -60,11 +60,14 @@ fn quantities() -> Vec<(Quantity, Vec<(&'static str, f64)>)> {
         unit: 1.0,
     };
     vec![
-        pull(Pulling::Muscle(0), "muscle1_tension"),
-        pull(Pulling::Muscle(1), "muscle2_tension"),
-        pull(Pulling::Muscle(2), "muscle3_tension"),
-        pull(Pulling::Muscle(3), "muscle4_tension"),
-        pull(Pulling::Tendon(0), "cord_tension"),
+        tension(0, "muscle1_tension"),
+        tension(1, "muscle2_tension"),
+        tension(2, "muscle3_tension"),
+        tension(3, "muscle4_tension"),
+        (
+            Quantity::PullStep(Pulling::Tendon(0)),
+            vec![("cord_tension", 1.0)],
+        ),
         (
             Quantity::MeanCharge { muscle: 2 },
             vec![("muscle3_charge", 1.0)],
@@ -227,8 +230,11 @@ fn forces_and_charges_are_those_of_tables() {
 /// Recordings of a twin with other constants give them back: of forces alone, and of a circuit alone.
 #[test]
 fn constants_come_back_from_forces_and_from_circuits() {
-    let pulls = [Pulling::Muscle(0), Pulling::Spring(0), Pulling::Tendon(0)];
-    let pulls = pulls.map(Quantity::PullStep);
+    let pulls = [
+        Quantity::tension(0),
+        Quantity::PullStep(Pulling::Spring(0)),
+        Quantity::PullStep(Pulling::Tendon(0)),
+    ];
     let circuit = [
         Quantity::SourceCurrent {
             muscle: 1,

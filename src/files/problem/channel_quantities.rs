@@ -10,6 +10,7 @@ use crate::files::units::quantity::{
     Angle, AngularVelocity, Charge, Current, Force, Kind, Length, Torque, Velocity, Voltage,
 };
 use crate::functional::Stencil;
+use crate::math::Vector;
 use crate::model::system::{Fidelity, System};
 use crate::model::{Pulling, Quantity, Reaction, joint_unit};
 
@@ -118,12 +119,7 @@ fn marker(
     [place, scope]: [&Scope<'_>; 2],
 ) -> Result<What, SceneError> {
     let marker = moving_marker(name, system, place)?;
-    let place = scope.key("along");
-    let Some(along) = spec.along else {
-        let expected = "a direction, such as [1, 0, 0]";
-        return Err(place.wrong("no direction", expected));
-    };
-    let along = unit_axis(&along, &place)?;
+    let along = written_direction(spec.along, &scope.key("along"))?;
     let part = |(axis, a): (usize, &f64)| (*a, Quantity::marker_place(marker, axis));
     let along = along.iter().enumerate().filter(|(_, a)| **a != 0.0);
     Ok(What {
@@ -144,34 +140,31 @@ fn tension(
 ) -> Result<What, SceneError> {
     const EXPECTED: &str = "the name of a lumped muscle, a spring or a tendon";
     let components = &system.components;
-    let muscles = (0..system.muscles.len()).map(Pulling::Muscle);
-    let springs = (0..components.springs.len()).map(Pulling::Spring);
-    let tendons = (0..components.tendons.len()).map(Pulling::Tendon);
-    let parts: Vec<Pulling> = muscles.chain(springs).chain(tendons).collect();
-    let name_of = |part: &Pulling| match *part {
-        Pulling::Muscle(index) => system.muscles[index].name.clone(),
-        Pulling::Spring(index) => components.springs[index].name.clone(),
-        Pulling::Tendon(index) => components.tendons[index].name.clone(),
-    };
-    let names: Vec<String> = parts.iter().map(name_of).collect();
-    let part = parts[place.find(name, &names, EXPECTED)?];
-    let without = match part {
-        Pulling::Muscle(index) if system.muscles[index].fidelity != Fidelity::Lumped => {
-            Some("a muscle of finite elements, whose forces act on faces")
-        }
-        Pulling::Spring(index) => {
-            let spring = &components.springs[index];
-            let is_slack = spring.stiffness.is_none() && spring.damping.is_none();
-            is_slack.then_some("a spring without stiffness and damping")
-        }
-        _ => None,
-    };
+    let muscles = system.muscles.iter().enumerate().map(|(m, muscle)| {
+        let is_meshed = muscle.fidelity != Fidelity::Lumped;
+        let without = is_meshed.then_some("a muscle of finite elements, whose forces act on faces");
+        (&muscle.name, Quantity::tension(m), without)
+    });
+    let springs = components.springs.iter().enumerate().map(|(s, spring)| {
+        let is_slack = spring.stiffness.is_none() && spring.damping.is_none();
+        let without = is_slack.then_some("a spring without stiffness and damping");
+        (
+            &spring.name,
+            Quantity::PullStep(Pulling::Spring(s)),
+            without,
+        )
+    });
+    let tendons = components.tendons.iter().enumerate();
+    let tendons = tendons.map(|(t, one)| (&one.name, Quantity::PullStep(Pulling::Tendon(t)), None));
+    let mut parts: Vec<_> = muscles.chain(springs).chain(tendons).collect();
+    let names: Vec<String> = parts.iter().map(|(name, ..)| (*name).clone()).collect();
+    let (_, quantity, without) = parts.swap_remove(place.find(name, &names, EXPECTED)?);
     if let Some(without) = without {
         return Err(place.wrong(format!("{name:?}, {without}"), EXPECTED));
     }
     let unit = (Force::kind(), ("N", 1.0));
     let title = format!("tension of {name}");
-    Ok(What::plain(name, title, Quantity::PullStep(part), unit))
+    Ok(What::plain(name, title, quantity, unit))
 }
 
 /// A source, whether it charges a lumped muscle, and whether a resistor lies between.
@@ -280,59 +273,59 @@ fn reaction_force(
     name: &str,
     spec: &MeasuredSpec,
     system: &System,
-    [place, scope]: [&Scope<'_>; 2],
+    scopes: [&Scope<'_>; 2],
 ) -> Result<What, SceneError> {
-    let quantity = reaction(
-        (name, Reaction::Force),
-        ("along", spec.along),
-        system,
-        [place, scope],
-    )?;
     let unit = (Force::kind(), ("N", 1.0));
-    let title = format!("force of {name}");
-    Ok(What::plain(name, title, quantity, unit))
+    let of = (Reaction::Force, "force", unit);
+    reaction((name, of), ("along", spec.along), system, scopes)
 }
 
 fn reaction_torque(
     name: &str,
     spec: &MeasuredSpec,
     system: &System,
-    [place, scope]: [&Scope<'_>; 2],
+    scopes: [&Scope<'_>; 2],
 ) -> Result<What, SceneError> {
-    let quantity = reaction(
-        (name, Reaction::Torque),
-        ("about", spec.about),
-        system,
-        [place, scope],
-    )?;
     let unit = (Torque::kind(), ("N m", 1e-3));
-    let title = format!("torque of {name}");
-    Ok(What::plain(name, title, quantity, unit))
+    let of = (Reaction::Torque, "torque", unit);
+    reaction((name, of), ("about", spec.about), system, scopes)
 }
 
-/// Force or torque that a joint transmits along a direction.
+/// Force or torque, by its word, that a joint transmits along a direction.
 fn reaction(
-    (name, of): (&str, Reaction),
+    (name, (of, word, unit)): (&str, (Reaction, &str, (Kind, SiUnit))),
     (key, direction): (&str, Option<[f64; 3]>),
     system: &System,
     [place, scope]: [&Scope<'_>; 2],
-) -> Result<Quantity, SceneError> {
+) -> Result<What, SceneError> {
     let joints = names(&system.joints, |joint| &joint.name);
     let joint = place.find(name, &joints, "the name of a joint")?;
     if of == Reaction::Torque && !system.joints[joint].has_torque() {
         let found = format!("{name:?}, a spherical joint");
         return Err(place.wrong(found, "a joint that transmits a torque"));
     }
-    let Some(direction) = direction else {
-        let expected = "a direction, such as [1, 0, 0]";
-        return Err(scope.key(key).wrong("no direction", expected));
-    };
-    Ok(Quantity::ReactionStep {
+    let place = scope.key(key);
+    let quantity = Quantity::ReactionStep {
         joint,
         of,
-        along: unit_axis(&direction, &scope.key(key))?,
+        along: written_direction(direction, &place)?,
         at: Stencil::Here,
         unit: 1.0,
         h: 1.0,
-    })
+    };
+    Ok(What::plain(
+        name,
+        format!("{word} of {name}"),
+        quantity,
+        unit,
+    ))
+}
+
+/// The unit vector of a direction that has to be written.
+fn written_direction(direction: Option<[f64; 3]>, place: &Scope<'_>) -> Result<Vector, SceneError> {
+    let Some(direction) = direction else {
+        let expected = "a direction, such as [1, 0, 0]";
+        return Err(place.wrong("no direction", expected));
+    };
+    unit_axis(&direction, place)
 }

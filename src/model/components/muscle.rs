@@ -38,7 +38,16 @@ pub(in crate::model) fn build(
     terms: &mut Terms<'_>,
 ) {
     for (m, (muscle, &span)) in muscles.iter().zip(spans).enumerate() {
-        build_one((muscle, m), span, internals, terms);
+        if muscle.fidelity == Fidelity::Lumped {
+            match terms.is_of_motion() {
+                true => lumped(muscle, m, span, terms),
+                false => lumped(&muscle.at_rest(), m, span, terms),
+            }
+            match terms.is_instantaneous() {
+                true => unrelaxed(muscle, m, span, terms),
+                false => relaxation(muscle, m, span, internals, terms),
+            }
+        }
     }
     terms.without_branches(
         [MAXWELL_ELASTICITY, MAXWELL_VISCOSITY],
@@ -50,25 +59,6 @@ pub(in crate::model) fn build(
     // What no muscle has said.
     for term in [INERTIA, SECTION, ELASTICITY, ELECTROELASTICITY, VISCOSITY] {
         terms.without(term, "no lumped muscle");
-    }
-}
-
-/// Terms of one of them, by its index.
-pub(in crate::model) fn build_one(
-    (muscle, m): (&Muscle, usize),
-    span: usize,
-    internals: &Internals,
-    terms: &mut Terms<'_>,
-) {
-    if muscle.fidelity == Fidelity::Lumped {
-        match terms.is_of_motion() {
-            true => lumped(muscle, m, span, terms),
-            false => lumped(&muscle.at_rest(), m, span, terms),
-        }
-        match terms.is_instantaneous() {
-            true => unrelaxed(muscle, m, span, terms),
-            false => relaxation(muscle, m, span, internals, terms),
-        }
     }
 }
 
