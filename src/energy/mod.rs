@@ -1,6 +1,5 @@
 //! Energies and virtual works: pure formulas, without index, mesh or time.
 
-mod affine;
 mod along_span;
 mod capacitance;
 mod charge;
@@ -19,12 +18,12 @@ mod maxwell_damper;
 mod muscle;
 mod of_square;
 mod one_sided;
+mod polynomial;
 mod span_tension;
 mod spring;
 mod tendon;
 mod viscosity;
 
-pub use affine::Affine;
 pub use along_span::AlongSpan;
 pub use capacitance::Capacitance;
 pub use charge::{FlowingCharge, GivenCharge};
@@ -48,6 +47,7 @@ pub use maxwell::MaxwellCell;
 pub use maxwell_damper::{DamperDerivatives, MaxwellDamper};
 pub use muscle::{DielectricCell, ElasticCell, SectionInertia};
 pub use of_square::OfSquare;
+pub use polynomial::Polynomial;
 pub use span_tension::SpanTension;
 pub use spring::{LinearSpring, SpanDamper};
 pub use tendon::Cable;

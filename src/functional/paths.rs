@@ -12,7 +12,7 @@
 //! (∂²W)˙ᵢⱼ = W‴ L_w uᵢ uⱼᵀ + W″ (u̇ᵢ uⱼᵀ + uᵢ u̇ⱼᵀ) + δᵢⱼ (W″ L_w Kᵢ + W′ K̇ᵢ).
 //! ```
 
-use crate::energy::{Affine, Cable};
+use crate::energy::{Cable, Polynomial};
 use crate::functional::{Kernel, Order, Sample, Scatter, Stencil, VectorArg};
 use crate::math::{Derivatives, HyperDual, Matrix, Number, Vector};
 use std::cell::Cell;
@@ -21,7 +21,7 @@ use std::cell::Cell;
 #[derive(Clone, Debug)]
 pub struct Path {
     /// Constants of the energy.
-    pub energy: Cable<Affine>,
+    pub energy: Cable<Polynomial>,
     /// Vectors of the spans, one after the other.
     pub spans: Vec<usize>,
     /// Parameters that the constants follow, scalars of the interval.
@@ -84,7 +84,7 @@ impl Span {
 impl Path {
     /// The energy, with seeds at one or two parameters where derivatives by them are asked for.
     fn cable<T: Number>(&self, sample: &Sample<'_>, seeded: impl Fn(usize, f64) -> T) -> Cable<T> {
-        let at = |constant: &Affine| {
+        let at = |constant: &Polynomial| {
             let mut sum = T::of(constant.value);
             for &(place, factor) in &constant.slopes {
                 let value = sample.scalars[self.parameters[place]];

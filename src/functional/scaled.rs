@@ -2,7 +2,7 @@
 //!
 //! A constant in which an energy is linear needs no number that carries derivatives: `∂/∂π_a` is `s_a E`, of the element with the constant one.
 
-use crate::energy::Affine;
+use crate::energy::Polynomial;
 use crate::functional::{Kernel, Order, Sample, Scatter, VectorArg};
 use crate::math::{Derivatives, Matrix, Vector};
 use std::fmt;
@@ -14,7 +14,7 @@ pub struct ScaledElement<E> {
     /// The element E.
     pub of: E,
     /// The constant c.
-    pub factor: Affine,
+    pub factor: Polynomial,
     /// Parameters that it follows, scalars of the interval.
     pub parameters: Vec<usize>,
 }

@@ -1,7 +1,7 @@
 //! Terms of elastic blocks: elements by kind, masses, weights.
 
 use crate::element::{Elastomer, ElementLaw, MaxwellSpring, Viscosity};
-use crate::energy::{Affine, MaxwellDamper, NeoHooke};
+use crate::energy::{MaxwellDamper, NeoHooke, Polynomial};
 use crate::functional::{Element, FiniteElement, Mass, MaxwellElement, POINTS, ViscousElement};
 use crate::kinematics::MaterialVector;
 use crate::model::constant::MaterialConstant;
@@ -303,7 +303,7 @@ fn add_sought_element(c: &SolidBlock, e: usize, terms: &mut Terms<'_>) {
 fn add_part(
     c: &SolidBlock,
     e: usize,
-    (constants, sought): ([f64; 5], Option<(Affine, Read)>),
+    (constants, sought): ([f64; 5], Option<(Polynomial, Read)>),
     terms: &mut Terms<'_>,
 ) {
     let (shape, nodes) = (c.shapes[e].clone(), c.nodes(e));

@@ -1,6 +1,6 @@
 //! Terms of joint dampers: on the coordinate of the joint where it is one, on vectors of its bodies otherwise.
 
-use crate::energy::{Affine, AngularDamper, CoordinateDamper, LinearDamper};
+use crate::energy::{AngularDamper, CoordinateDamper, LinearDamper, Polynomial};
 use crate::functional::{Law, VectorArg};
 use crate::kinematics::{MaterialVector, Pose};
 use crate::math::Number;
@@ -48,7 +48,7 @@ pub(super) fn build(
 macro_rules! laws {
     ($($law:ident: $formula:ident of $arguments:literal;)*) => { $(
         #[derive(Clone)]
-        struct $law(Affine);
+        struct $law(Polynomial);
 
         impl Law<$arguments> for $law {
             type Formula<T: Number> = $formula<T>;
@@ -80,7 +80,7 @@ impl Damper<'_> {
     /// Adds the term of a law of the coefficient.
     fn add<L: Law<M>, const M: usize, const NV: usize>(
         &self,
-        law: fn(Affine) -> L,
+        law: fn(Polynomial) -> L,
         vectors: [VectorArg; NV],
         terms: &mut Terms<'_>,
     ) {

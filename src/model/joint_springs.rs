@@ -1,6 +1,6 @@
 //! Terms of springs and stops of joints: on the coordinate of the joint, which in redundant coordinates is an internal one.
 
-use crate::energy::{Affine, CoordinateSpring, CoordinateStops};
+use crate::energy::{CoordinateSpring, CoordinateStops, Polynomial};
 use crate::functional::{Element, Law};
 use crate::math::Number;
 use crate::model::constant::Constant;
@@ -15,8 +15,8 @@ const STOPS: &str = "joint stops";
 /// Elasticity of a joint.
 #[derive(Clone)]
 struct Elasticity {
-    stiffness: Affine,
-    rest: Affine,
+    stiffness: Polynomial,
+    rest: Polynomial,
 }
 
 impl Law<3> for Elasticity {

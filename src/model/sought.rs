@@ -1,6 +1,6 @@
 //! Sought parameters as components read them.
 
-use crate::energy::Affine;
+use crate::energy::Polynomial;
 use crate::functional::{LawElement, Move, VectorArg};
 use crate::kinematics::MaterialVector;
 use crate::math::Vector;
@@ -86,11 +86,11 @@ impl Read {
     }
 
     /// A constant as a function of parameters: its `value`, or what follows from one.
-    pub fn constant(&mut self, constant: Constant, value: f64) -> Affine {
+    pub fn constant(&mut self, constant: Constant, value: f64) -> Polynomial {
         let Some((parameter, follower)) = self.sought.find(constant) else {
             return value.into();
         };
-        Affine {
+        Polynomial {
             value: follower.offset,
             slopes: vec![(self.place(parameter), follower.factor)],
             higher: match follower.is_linear() {

@@ -1,7 +1,7 @@
 //! Collection of the terms of components: elements of one kind make one term, those that read nothing that moves are left out, and the
 //! reasons are recorded.
 
-use crate::energy::{Affine, Energy};
+use crate::energy::{Energy, Polynomial};
 use crate::functional::{Element, Law, LawElement, Path, ScaledElement, Stencil, Term, VectorArg};
 use crate::kinematics::{Carrier, MaterialVector, Pose, Vectors};
 use crate::math::Vector;
@@ -227,7 +227,7 @@ impl<'a> Terms<'a> {
         term: &'static str,
         why: &'static str,
         of: &str,
-        (element, factor, read): (E, Affine, Read),
+        (element, factor, read): (E, Polynomial, Read),
     ) {
         let element = ScaledElement {
             of: element,
@@ -256,7 +256,7 @@ impl<'a> Terms<'a> {
     }
 
     /// Gravity in mm/ms² as an element reads it, where there is any.
-    pub(super) fn gravity(&self, read: &mut Read) -> Option<[Affine; 3]> {
+    pub(super) fn gravity(&self, read: &mut Read) -> Option<[Polynomial; 3]> {
         let g = self.gravity?;
         Some([0, 1, 2].map(|axis| read.constant(Constant::Gravity(axis), g[axis])))
     }

@@ -1,6 +1,6 @@
 //! Weights and kinetic energies of masses, some of which are sought.
 
-use crate::energy::{Affine, Gravity, KineticEnergy};
+use crate::energy::{Gravity, KineticEnergy, Polynomial};
 use crate::functional::Law;
 use crate::math::Number;
 use nalgebra::Vector3;
@@ -8,8 +8,8 @@ use nalgebra::Vector3;
 /// Weight of a mass m in g under a gravity g in mm/ms².
 #[derive(Clone)]
 pub(super) struct Weight {
-    pub(super) mass: Affine,
-    pub(super) gravity: [Affine; 3],
+    pub(super) mass: Polynomial,
+    pub(super) gravity: [Polynomial; 3],
 }
 
 impl Law<3> for Weight {
@@ -26,7 +26,7 @@ impl Law<3> for Weight {
 
 /// Kinetic energy of a mass in g.
 #[derive(Clone)]
-pub(super) struct Moving(pub(super) Affine);
+pub(super) struct Moving(pub(super) Polynomial);
 
 impl Law<3> for Moving {
     type Formula<T: Number> = KineticEnergy<T>;

@@ -1,6 +1,6 @@
 //! Terms of rigid bodies.
 
-use crate::energy::Affine;
+use crate::energy::Polynomial;
 use crate::functional::Mass;
 use crate::kinematics::{MaterialVector, Pose};
 use crate::math::Vector;
@@ -81,7 +81,7 @@ pub(in crate::model) fn build_sought(bodies: &[Body], terms: &mut Terms<'_>) {
 fn point_mass(
     (body, place): (&Body, &Attachment),
     read: Read,
-    mass: impl Fn(&mut Read) -> Affine,
+    mass: impl Fn(&mut Read) -> Polynomial,
     terms: &mut Terms<'_>,
 ) {
     let centre = terms.vector(terms.point(place));
@@ -121,8 +121,8 @@ fn turning((b, body): (usize, &Body), place: &Attachment, terms: &mut Terms<'_>)
 
 /// Differences of the mass of a body in g, and of half the Euler inertias of its directors in g mm², from what they are given as.
 struct Sought {
-    mass: Affine,
-    euler: [Affine; 3],
+    mass: Polynomial,
+    euler: [Polynomial; 3],
 }
 
 impl Sought {

@@ -1,6 +1,6 @@
 //! Terms of circuits: a charge that flows through a resistor, which with a leak is that of the equivalent source.
 
-use crate::energy::{Affine, CoordinateDamper, DeadLoad};
+use crate::energy::{CoordinateDamper, DeadLoad, Polynomial};
 use crate::functional::{Element, Law};
 use crate::math::{Number, Vector};
 use crate::model::components::muscle::{CHARGES, capacitance, constants};
@@ -98,8 +98,8 @@ impl Wires {
 /// The resistances in Ω.
 #[derive(Clone)]
 struct Resistances {
-    series: Affine,
-    leakage: Option<Affine>,
+    series: Polynomial,
+    leakage: Option<Polynomial>,
     unit: f64,
 }
 

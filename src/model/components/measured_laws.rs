@@ -1,7 +1,7 @@
 //! Laws of quantities of lumped muscles and their sources that limits and costs read.
 
 use crate::energy::{
-    Affine, FlowingCharge, FlowingChargeField, GivenChargeField, MeanCharge, PotentialDrop,
+    FlowingCharge, FlowingChargeField, GivenChargeField, MeanCharge, Polynomial, PotentialDrop,
     SourceCurrent, SourcePower, SpanTension, SquaredDistance, SquaredField, StoredEnergy,
     ViscousTension, VoltageAcross,
 };
@@ -30,7 +30,7 @@ impl Law<3> for Stretch {
 pub(in crate::model) struct Field {
     pub(in crate::model) shape: Shape,
     /// Thickness of a layer in mm.
-    pub(in crate::model) layer: Affine,
+    pub(in crate::model) layer: Polynomial,
     pub(in crate::model) limit: f64,
 }
 
@@ -89,7 +89,7 @@ impl Law<6> for FlowingField {
 pub(in crate::model) struct Current {
     pub(in crate::model) of: Flowing,
     /// Resistance in Ω.
-    pub(in crate::model) resistance: Affine,
+    pub(in crate::model) resistance: Polynomial,
     pub(in crate::model) unit: f64,
 }
 
@@ -125,7 +125,7 @@ impl Law<6> for Across {
 pub(in crate::model) struct Drop {
     /// Unit of the potential in V.
     pub(in crate::model) unit: f64,
-    pub(in crate::model) resistance: Affine,
+    pub(in crate::model) resistance: Polynomial,
     pub(in crate::model) of_current: f64,
 }
 

@@ -1,6 +1,6 @@
 //! Constants of lumped muscles as laws read them: given, or following from sought parameters.
 
-use crate::energy::{Affine, ElasticLaw, NeoHooke};
+use crate::energy::{ElasticLaw, NeoHooke, Polynomial};
 use crate::functional::{LawElement, VectorArg};
 use crate::kinematics::MaterialVector;
 use crate::model::components::measured_laws::{Field, Stretch};
@@ -43,7 +43,7 @@ impl<'a> MuscleConstants<'a> {
         vector: impl FnMut(MaterialVector) -> usize,
     ) -> Self {
         let at_rest = muscle.to.at - muscle.from.at;
-        let mut span = [at_rest.x, at_rest.y, at_rest.z].map(Affine::from);
+        let mut span = [at_rest.x, at_rest.y, at_rest.z].map(Polynomial::from);
         let from = |axis| Constant::End(index, 0, axis);
         let to = |axis| Constant::End(index, 1, axis);
         let point = |end: usize, place| MovedPoint {
@@ -116,12 +116,12 @@ impl<'a> MuscleConstants<'a> {
     }
 
     /// The law of elasticity other than the neo-Hookean one.
-    pub(in crate::model) fn law(&mut self, law: ElasticLaw) -> ElasticLaw<Affine> {
+    pub(in crate::model) fn law(&mut self, law: ElasticLaw) -> ElasticLaw<Polynomial> {
         law.map(|name, &value| self.material(MaterialConstant::Law(name), value))
     }
 
     /// A constant of its material.
-    fn material(&mut self, constant: MaterialConstant, value: f64) -> Affine {
+    fn material(&mut self, constant: MaterialConstant, value: f64) -> Polynomial {
         self.read.constant(constant.of_muscle(self.index), value)
     }
 
@@ -134,12 +134,12 @@ impl<'a> MuscleConstants<'a> {
         }
     }
 
-    fn layer(&mut self) -> Affine {
+    fn layer(&mut self) -> Polynomial {
         let layer = Constant::Layer(self.index);
         self.read.constant(layer, self.muscle.layer_thickness)
     }
 
-    fn electric(&mut self, electric: ElectricConstants) -> [Affine; 3] {
+    fn electric(&mut self, electric: ElectricConstants) -> [Polynomial; 3] {
         [
             self.material(MaterialConstant::C1, electric.c1),
             self.material(MaterialConstant::C2, electric.c2),
@@ -168,7 +168,7 @@ impl<'a> MuscleConstants<'a> {
     }
 
     /// Resistance in Ω of its circuit, in series.
-    pub(in crate::model) fn resistance(&mut self) -> Option<Affine> {
+    pub(in crate::model) fn resistance(&mut self) -> Option<Polynomial> {
         let value = self.muscle.circuit?.resistance?;
         Some(self.read.constant(Constant::Resistance(self.index), value))
     }

@@ -1,9 +1,9 @@
 //! Laws of lumped muscles: formulas whose constants follow from geometry and material, and with them from sought parameters.
 
 use crate::energy::{
-    Affine, Capacitance, CoordinateDamper, DielectricCell, ElasticCell, ElasticLaw, Elasticity,
-    FlowingCharge, GivenCharge, Gravity, KineticEnergy, MaxwellCell, NeoHooke, SectionInertia,
-    ViscousCell,
+    Capacitance, CoordinateDamper, DielectricCell, ElasticCell, ElasticLaw, Elasticity,
+    FlowingCharge, GivenCharge, Gravity, KineticEnergy, MaxwellCell, NeoHooke, Polynomial,
+    SectionInertia, ViscousCell,
 };
 use crate::functional::Law;
 use crate::math::Number;
@@ -28,7 +28,7 @@ impl ElasticConstants for NeoHooke {
     }
 }
 
-impl ElasticConstants for ElasticLaw<Affine> {
+impl ElasticConstants for ElasticLaw<Polynomial> {
     type Over<T: Number> = ElasticLaw<T>;
 
     fn over<T: Number>(&self, parameters: &[T]) -> ElasticLaw<T> {
@@ -40,11 +40,11 @@ impl ElasticConstants for ElasticLaw<Affine> {
 #[derive(Clone)]
 pub(in crate::model) struct Shape {
     /// Components of the span in the reference configuration in mm.
-    pub(super) span: [Affine; 3],
+    pub(super) span: [Polynomial; 3],
     /// Stretch of the span.
-    pub(super) prestretch: Option<Affine>,
+    pub(super) prestretch: Option<Polynomial>,
     /// Sides of the cross-section in mm.
-    pub(super) sides: [Affine; 2],
+    pub(super) sides: [Polynomial; 2],
 }
 
 impl Shape {
@@ -85,7 +85,7 @@ impl RestVolume {
 #[derive(Clone)]
 pub(in crate::model) struct Elastic<L> {
     pub(super) shape: Shape,
-    pub(super) shear_modulus: Affine,
+    pub(super) shear_modulus: Polynomial,
     pub(super) law: L,
 }
 
@@ -107,9 +107,9 @@ impl<L: ElasticConstants> Law<3> for Elastic<L> {
 pub(in crate::model) struct Driven<L> {
     pub(super) elastic: Elastic<L>,
     /// c₁, c₂ and ε in N/V².
-    pub(super) electric: [Affine; 3],
+    pub(super) electric: [Polynomial; 3],
     /// Thickness of a layer in mm.
-    pub(super) layer: Affine,
+    pub(super) layer: Polynomial,
 }
 
 impl<L: ElasticConstants> Law<4> for Driven<L> {
@@ -177,7 +177,7 @@ impl Law<4> for Given {
 #[derive(Clone)]
 pub(in crate::model) struct Viscous {
     pub(super) shape: Shape,
-    pub(super) viscosity: Affine,
+    pub(super) viscosity: Polynomial,
 }
 
 impl Law<9> for Viscous {
@@ -195,7 +195,7 @@ impl Law<9> for Viscous {
 #[derive(Clone)]
 pub(in crate::model) struct BranchSpring {
     pub(super) shape: Shape,
-    pub(super) shear_modulus: Affine,
+    pub(super) shear_modulus: Polynomial,
 }
 
 impl Law<6> for BranchSpring {
@@ -236,7 +236,7 @@ impl Law<3> for UnrelaxedSpring {
 #[derive(Clone)]
 pub(in crate::model) struct BranchDamper {
     pub(super) spring: BranchSpring,
-    pub(super) relaxation_time: Affine,
+    pub(super) relaxation_time: Polynomial,
 }
 
 impl Law<6> for BranchDamper {
@@ -255,7 +255,7 @@ impl Law<6> for BranchDamper {
 #[derive(Clone)]
 pub(in crate::model) struct PointMass {
     pub(super) shape: Shape,
-    pub(super) density: Affine,
+    pub(super) density: Polynomial,
     pub(super) factor: f64,
 }
 
@@ -281,7 +281,7 @@ impl Law<3> for PointMass {
 #[derive(Clone)]
 pub(in crate::model) struct Weight {
     pub(super) mass: PointMass,
-    pub(super) gravity: [Affine; 3],
+    pub(super) gravity: [Polynomial; 3],
 }
 
 impl Law<3> for Weight {

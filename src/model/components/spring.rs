@@ -1,6 +1,6 @@
 //! A spring with or without a damper between two points.
 
-use crate::energy::{Affine, LinearSpring, SpanDamper};
+use crate::energy::{LinearSpring, Polynomial, SpanDamper};
 use crate::functional::Law;
 use crate::math::Number;
 use crate::model::attachment::Attachment;
@@ -35,8 +35,8 @@ const DAMPING: &str = "spring damping";
 /// Elasticity of a spring.
 #[derive(Clone)]
 struct Elasticity {
-    stiffness: Affine,
-    length: Affine,
+    stiffness: Polynomial,
+    length: Polynomial,
 }
 
 impl Law<3> for Elasticity {
@@ -52,7 +52,7 @@ impl Law<3> for Elasticity {
 
 /// Damping of a spring.
 #[derive(Clone)]
-struct Damping(Affine);
+struct Damping(Polynomial);
 
 impl Law<9> for Damping {
     type Formula<T: Number> = SpanDamper<T>;

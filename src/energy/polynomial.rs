@@ -4,7 +4,7 @@ use crate::math::Number;
 
 /// A constant of a formula as a function of sought parameters π: `value + Σ (factor · π + a π² + b π³)`.
 #[derive(Clone, Debug, Default, PartialEq)]
-pub struct Affine {
+pub struct Polynomial {
     /// The part that no parameter changes.
     pub value: f64,
     /// Places of parameters among those of the element, and their factors.
@@ -13,7 +13,7 @@ pub struct Affine {
     pub higher: Vec<(usize, [f64; 2])>,
 }
 
-impl From<f64> for Affine {
+impl From<f64> for Polynomial {
     fn from(value: f64) -> Self {
         Self {
             value,
@@ -22,7 +22,7 @@ impl From<f64> for Affine {
     }
 }
 
-impl Affine {
+impl Polynomial {
     /// `factor · self + value`.
     #[must_use]
     pub fn scaled(&self, factor: f64, value: f64) -> Self {
