@@ -48,6 +48,16 @@ struct Found {
     #[serde(skip_serializing_if = "Option::is_none")]
     interval: Option<[f64; 2]>,
     at_bound: bool,
+    /// Known beside the recordings.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    prior: Option<Known>,
+}
+
+/// A normal distribution of a constant.
+#[derive(Debug, Serialize)]
+struct Known {
+    value: f64,
+    standard_deviation: f64,
 }
 
 /// A combination of constants that is not determined.
@@ -194,6 +204,7 @@ impl Identification {
         let units: Vec<SiUnit> = task.parameters.iter().map(|p| unit(system, p)).collect();
         let values = found.fit.of_constants();
         let has_interval = |j: usize| information.is_determined[j] && !found.fit.is_at_bound[j];
+        let prior = |j: usize| task.priors.iter().find(|one| one.constant == j);
         let constant = |(j, parameter): (usize, &Parameter)| {
             let factor = units[j].factor;
             let value = factor * values[j];
@@ -205,6 +216,10 @@ impl Identification {
                 standard_error: half.map(|half| half / information.factor),
                 interval: half.map(|half| [value - half, value + half]),
                 at_bound: found.fit.is_at_bound[j],
+                prior: prior(j).map(|known| Known {
+                    value: factor * known.value,
+                    standard_deviation: factor * known.deviation,
+                }),
             }
         };
         let count = task.parameters.len();

@@ -8,6 +8,9 @@ use crate::workflow::Remarks;
 /// Probability of residuals of the fit below which its model does not explain them, whatever else it predicts.
 const BEYOND_CHANCE: f64 = 1e-6;
 
+/// Standard deviations of a prior beyond which, with a probability of 1 %, a constant lies.
+const APART: f64 = 2.576;
+
 /// Powers of constants as a product, such as `a / b^2`.
 pub(super) fn product(task: &Identification, powers: &[(usize, f64)]) -> String {
     let factor = |&(j, power): &(usize, f64)| {
@@ -109,6 +112,22 @@ pub(super) fn remarks(task: &Identification, found: &Identified) -> Remarks {
             )],
         ),
     }
+    let differences = found.fit.of_priors(task);
+    let apart = task
+        .priors
+        .iter()
+        .zip(differences)
+        .filter(|(_, z)| z.abs() > APART);
+    remarks.warn(
+        "prior_contradicted",
+        apart.map(|(prior, z)| {
+            format!(
+                "the recordings pull {} {} standard deviations away from its prior: one of them is wrong",
+                task.parameters[prior.constant].name,
+                significant(z.abs(), 2)
+            )
+        }),
+    );
     remarks.note("inputs_end", task.recordings.iter().filter_map(beyond));
     if found.held_out.is_empty() {
         let text = "no recording is held out: nothing checks the prediction";

@@ -9,6 +9,8 @@ use crate::model::{Coordinates, Parameter, Quantity, System};
 pub struct Identification {
     /// The constants.
     pub parameters: Vec<Parameter>,
+    /// What is known of the constants beside the recordings.
+    pub priors: Vec<Prior>,
     /// The recordings.
     pub recordings: Vec<Recording>,
     /// Experiments that could be done next: their readings have times and no values.
@@ -17,6 +19,17 @@ pub struct Identification {
     pub step: Option<f64>,
     /// `None`: reduced where the joints form a tree.
     pub coordinates: Option<Coordinates>,
+}
+
+/// A normal distribution of a constant that is known beside the recordings, such as that of a data sheet.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Prior {
+    /// Index of the constant.
+    pub constant: usize,
+    /// Its mean.
+    pub value: f64,
+    /// Its standard deviation.
+    pub deviation: f64,
 }
 
 /// A motion, or states of rest, under given voltages and loads, with what was measured.

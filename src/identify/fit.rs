@@ -5,7 +5,7 @@
 //! depends is damped as one with a hundredth of the largest effect of a relative change, so that a step does not throw it away. The end is
 //! a minimum where the squares fall along no unknown by more than a hundredth of its standard error.
 
-use crate::control::problem::Identification;
+use crate::control::problem::{Identification, Prior};
 use crate::identify::error::IdentifyError;
 use crate::identify::prediction::{Grid, Prediction, predict};
 use crate::identify::residuals::Data;
@@ -66,6 +66,13 @@ impl Fit {
         self.unknowns.of_constants()
     }
 
+    /// Differences of the priors from the constants in standard deviations, in their order.
+    pub fn of_priors(&self, task: &Identification) -> Vec<f64> {
+        let all = self.residuals();
+        let first = all.len() - task.priors.len();
+        all.rows(first, task.priors.len()).iter().copied().collect()
+    }
+
     /// Derivatives in standard deviations.
     pub(super) fn weighted(&self) -> DMatrix<f64> {
         weighted(&self.prediction.derivatives, &self.data)
@@ -101,6 +108,8 @@ struct Search<'a> {
     task: &'a Identification,
     which: &'a [usize],
     grid: &'a Grid,
+    /// Constants that are known beside the recordings; none where constants stay.
+    priors: &'a [Prior],
     /// Number of constants that stay as they are.
     held: usize,
 }
@@ -120,9 +129,10 @@ pub fn fit(
         task,
         which,
         grid,
+        priors: if held == 0 { &task.priors } else { &[] },
         held,
     };
-    let mut data = Data::new(task, which);
+    let mut data = Data::new(task, which).with_priors(search.priors);
     let mut found = search.minimise(unknowns, data.clone())?;
     if data.is_known() {
         return Ok(found);
@@ -147,7 +157,10 @@ pub fn fit(
 impl Search<'_> {
     fn minimise(&self, mut unknowns: Unknowns, data: Data) -> Result<Fit, IdentifyError> {
         let of = (self.system, self.task);
-        let at = |unknowns: &Unknowns| predict(of, self.which, unknowns, self.grid);
+        let at = |unknowns: &Unknowns| -> Result<Prediction, IdentifyError> {
+            let of_recordings = predict(of, self.which, unknowns, self.grid)?;
+            Ok(of_recordings.with_priors(self.priors, unknowns.of_constants()))
+        };
         let mut prediction = at(&unknowns)?;
         let cost = |prediction: &Prediction| {
             let difference = &data.values - &prediction.values;

@@ -3,7 +3,7 @@
 //! The error of the midpoint rule is an even function of the step h, `y(h) = y + a h² + O(h⁴)`, so that `(4 y(h/2) − y(h))/3` is of
 //! fourth order, and so are its derivatives.
 
-use crate::control::problem::{Identification, Recording, Regime, SoughtStart};
+use crate::control::problem::{Identification, Prior, Recording, Regime, SoughtStart};
 use crate::identify::course::{Point, readings};
 use crate::identify::error::IdentifyError;
 use crate::identify::readout::Values;
@@ -83,6 +83,24 @@ pub struct Prediction {
     pub values: DVector<f64>,
     /// Derivatives.
     pub derivatives: DMatrix<f64>,
+}
+
+impl Prediction {
+    /// The same with constants that are known beside the recordings, as readings behind all others.
+    #[must_use]
+    pub(super) fn with_priors(self, priors: &[Prior], constants: &[f64]) -> Self {
+        let (count, columns) = self.derivatives.shape();
+        let rows = count + priors.len();
+        let mut out = Self {
+            values: self.values.resize_vertically(rows, 0.0),
+            derivatives: self.derivatives.resize(rows, columns, 0.0),
+        };
+        for (row, prior) in (count..).zip(priors) {
+            out.values[row] = constants[prior.constant];
+            out.derivatives[(row, prior.constant)] = 1.0;
+        }
+        out
+    }
 }
 
 /// Number of unknowns of the start of a recording.

@@ -202,6 +202,7 @@ fn begin(
     let mut next = counts.into_iter();
     let unknowns = Unknowns::new(task, |_| next.next().expect("one of each that is fitted"));
     let readings: usize = fitted.iter().map(|&r| task.recordings[r].count()).sum();
+    let readings = readings + task.priors.len();
     if readings <= unknowns.values.len() {
         return Err(IdentifyError::TooFew {
             readings,
@@ -285,7 +286,9 @@ impl Bias {
 
 /// Refuses constants on which no reading depends.
 fn unread(task: &Identification, found: &Fit) -> Result<(), IdentifyError> {
-    let columns = found.prediction.derivatives.column_iter();
+    let derivatives = &found.prediction.derivatives;
+    let of_recordings = derivatives.rows(0, derivatives.nrows() - task.priors.len());
+    let columns = of_recordings.column_iter();
     for (parameter, column) in task.parameters.iter().zip(columns) {
         if column.iter().all(|value| *value == 0.0) {
             let name = parameter.name.clone();

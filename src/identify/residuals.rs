@@ -1,6 +1,6 @@
 //! Readings beside their predictions: deviations, and series of residuals in time.
 
-use crate::control::problem::{Channel, Identification};
+use crate::control::problem::{Channel, Identification, Prior};
 use crate::model::Quantity;
 use nalgebra::DVector;
 
@@ -90,6 +90,23 @@ impl Data {
         };
         out.set(out.ranges.clone());
         out
+    }
+
+    /// The same with constants that are known beside them, as readings behind all others.
+    pub(super) fn with_priors(mut self, priors: &[Prior]) -> Self {
+        let count = self.values.len();
+        let rows = count + priors.len();
+        let behind = |vector: DVector<f64>, of: fn(&Prior) -> f64| {
+            let mut vector = vector.resize_vertically(rows, 0.0);
+            let places = vector.rows_mut(count, priors.len());
+            (places.into_iter().zip(priors)).for_each(|(place, prior)| *place = of(prior));
+            vector
+        };
+        self.values = behind(self.values, |prior| prior.value);
+        self.relative = behind(self.relative, |prior| prior.deviation);
+        self.deviations = behind(self.deviations, |prior| prior.deviation);
+        self.groups.resize(rows, None);
+        self
     }
 
     /// The deviation of a channel whose readings have this relative one; none where nothing tells it.

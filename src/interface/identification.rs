@@ -1,7 +1,7 @@
 //! Identification: constants fitted to recordings.
 
 use crate::control::problem::{
-    self, ChangedScene, Channel, Reading, Regime, SoughtStart, Voltages,
+    self, ChangedScene, Channel, Prior, Reading, Regime, SoughtStart, Voltages,
 };
 use crate::identify::{Identified, identify};
 use crate::interface::error::{Result, require, source};
@@ -17,6 +17,7 @@ use crate::model::{Parameter, Pulling, Quantity, System};
 #[derive(Clone, Debug)]
 pub struct Identification {
     parameters: Vec<Parameter>,
+    priors: Vec<(String, [f64; 2])>,
     recordings: Vec<Recording>,
     step: Option<f64>,
 }
@@ -222,9 +223,16 @@ impl Identification {
     pub fn of(parameters: impl IntoIterator<Item = Parameter>) -> Self {
         Self {
             parameters: parameters.into_iter().collect(),
+            priors: Vec::new(),
             recordings: Vec::new(),
             step: None,
         }
+    }
+
+    /// A constant that is known beside the recordings: its mean and standard deviation, in its units; it counts as one reading more.
+    pub fn prior(mut self, name: impl Into<String>, value: f64, deviation: f64) -> Self {
+        self.priors.push((name.into(), [value, deviation]));
+        self
     }
 
     /// A recording more.
@@ -288,8 +296,22 @@ impl Identification {
         let step = self.step.is_none_or(|step| step > 0.0 && step.is_finite());
         let found = || format!("{:?}", self.step);
         require(step, "identification", found, "a positive step")?;
+        let prior = |(name, [value, deviation]): &(String, [f64; 2])| {
+            let constant = self.parameters.iter().position(|one| one.name == *name);
+            let found = || format!("the prior {value} ± {deviation} of {name:?}");
+            let holds = constant.is_some() && value.is_finite();
+            let holds = holds && *deviation > 0.0 && deviation.is_finite();
+            let expected = "a finite value and a positive deviation of a sought constant";
+            require(holds, "identification", found, expected)?;
+            Ok(Prior {
+                constant: constant.unwrap_or_default(),
+                value: *value,
+                deviation: *deviation,
+            })
+        };
         let task = problem::Identification {
             parameters: self.parameters.clone(),
+            priors: self.priors.iter().map(prior).collect::<Result<_>>()?,
             recordings,
             candidates: Vec::new(),
             step: self.step,

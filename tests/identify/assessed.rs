@@ -98,6 +98,7 @@ fn held_out(truth: &[(f64, f64)]) -> proboscis::identify::Identified {
                 40,
             ),
         ],
+        priors: Vec::new(),
         candidates: Vec::new(),
         step: Some(10.0),
         coordinates: None,

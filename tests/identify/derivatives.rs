@@ -147,6 +147,7 @@ fn pair(
     let task = Identification {
         parameters,
         recordings: vec![recording],
+        priors: Vec::new(),
         candidates: Vec::new(),
         step: Some(6.0),
         coordinates: None,

@@ -148,6 +148,7 @@ fn task(recording: Recording, is_of_motion: bool) -> Identification {
     Identification {
         parameters,
         recordings: vec![recording],
+        priors: Vec::new(),
         candidates: Vec::new(),
         step: Some(5.0),
         coordinates: None,

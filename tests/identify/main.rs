@@ -8,6 +8,7 @@ mod derivatives;
 mod forces;
 mod front;
 mod oscillator;
+mod priors;
 mod ratio;
 mod recovered;
 mod refused;

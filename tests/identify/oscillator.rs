@@ -137,6 +137,7 @@ pub(crate) fn task(recordings: Vec<Recording>) -> Identification {
     Identification {
         parameters: parameters(),
         recordings,
+        priors: Vec::new(),
         candidates: Vec::new(),
         step: None,
         coordinates: None,

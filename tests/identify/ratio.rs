@@ -59,6 +59,7 @@ fn task(recordings: Vec<Recording>) -> Identification {
             parameter("mass", Constant::Mass(0), 0.9 * MASS),
         ],
         recordings,
+        priors: Vec::new(),
         candidates: Vec::new(),
         step: None,
         coordinates: None,

@@ -12,10 +12,10 @@ use proboscis::model::system::ElectricConstants;
 use proboscis::model::{MaterialConstant, System};
 use proboscis::prelude::{Material, kpa};
 
-const TRUE: [f64; 2] = [3.0, 0.1];
+pub(crate) const TRUE: [f64; 2] = [3.0, 0.1];
 
 /// A cart between a muscle and a force along the slide.
-fn system() -> System {
+pub(crate) fn system() -> System {
     let material = Material::elastomer(kpa(1e3 * TRUE[1])).ideal_dielectric(TRUE[0]);
     let mut system = pulled_cart("free", &material);
     system.components.loads.push(Load {
@@ -25,7 +25,7 @@ fn system() -> System {
     system
 }
 
-fn recording(name: &str, [from, to]: [f64; 2], force: f64) -> Recording {
+pub(crate) fn recording(name: &str, [from, to]: [f64; 2], force: f64) -> Recording {
     let reading = |time: f64| Reading {
         time,
         value: 0.0,
@@ -49,7 +49,7 @@ fn recording(name: &str, [from, to]: [f64; 2], force: f64) -> Recording {
     }
 }
 
-fn task(recordings: Vec<Recording>) -> Identification {
+pub(crate) fn task(recordings: Vec<Recording>) -> Identification {
     let mut task = Identification {
         parameters: vec![
             permittivity(1, ElectricConstants::ideal, TRUE[0]),
@@ -60,6 +60,7 @@ fn task(recordings: Vec<Recording>) -> Identification {
             ),
         ],
         recordings,
+        priors: Vec::new(),
         candidates: Vec::new(),
         step: None,
         coordinates: None,

@@ -88,6 +88,7 @@ fn modulus_and_viscosity_of_a_block_are_recovered_from_a_marker() {
             parameter("viscosity", MaterialConstant::Viscosity.of_block(0, 0), 0.4),
         ],
         recordings: vec![recording()],
+        priors: Vec::new(),
         candidates: Vec::new(),
         step: Some(1.0),
         coordinates: None,

@@ -8,6 +8,7 @@ use crate::files::problem::channels::{Measured, Source};
 use crate::files::problem::coordinates::{coordinates, count};
 use crate::files::problem::driven::driven;
 use crate::files::problem::free::parameters;
+use crate::files::problem::priors::priors;
 use crate::files::problem::spec_identify::{
     CandidateSpec, ExperimentSpec, IdentifySpec, MeasuredSpec, RecordingSpec, SoughtStartSpec,
 };
@@ -56,6 +57,12 @@ pub(crate) fn identification(
     let step = spec.step.as_ref();
     let step = step.map(|step| scope.key("step").positive(step));
     Ok(Identification {
+        priors: priors(
+            &spec.priors,
+            (&parameters, &spec.free),
+            scene,
+            &scope.key("priors"),
+        )?,
         parameters,
         recordings: recordings.collect::<Result<_, _>>()?,
         candidates: candidates.collect::<Result<_, _>>()?,

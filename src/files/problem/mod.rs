@@ -26,6 +26,7 @@ mod loads;
 mod measured;
 pub(crate) mod motions;
 pub mod output;
+mod priors;
 mod reaction_limits;
 pub(crate) mod simulation;
 pub(crate) mod solution_document;

@@ -8,7 +8,7 @@ use crate::files::problem::spec_voltages::VoltagesSpec;
 use crate::files::study::ChangesSpec;
 use crate::files::units::quantity::{Angle, AngularVelocity, Kind, Length, Velocity};
 use crate::files::units::quantity::{Charge, Current, Force, Torque, Voltage};
-use crate::files::units::quantity::{PhysicalQuantity, Quantity, Time};
+use crate::files::units::quantity::{PhysicalQuantity, Quantity, SoughtConstant, Time};
 use schemars::JsonSchema;
 use serde::Deserialize;
 use std::collections::BTreeMap;
@@ -19,6 +19,9 @@ use std::collections::BTreeMap;
 pub struct IdentifySpec {
     /// Sought constants by their paths in the scene, such as `"materials.silicone.shear_modulus"`, each between bounds.
     pub free: FreeMap,
+    /// Constants of `free` that are known beside the recordings, by their paths: each counts as one reading more.
+    #[serde(default)]
+    pub priors: BTreeMap<String, PriorSpec>,
     /// Recordings: those that constants are fitted to, and those that are held out to check their prediction.
     pub recordings: Vec<RecordingSpec>,
     /// Experiments that could be done next; the result ranks them by the variance that they leave.
@@ -31,6 +34,16 @@ pub struct IdentifySpec {
     /// Coordinates.
     #[serde(default)]
     pub coordinates: Option<CoordinatesSpec>,
+}
+
+/// A normal distribution of a constant, such as that of a data sheet.
+#[derive(Clone, Debug, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct PriorSpec {
+    /// Mean, in the unit of the constant.
+    pub value: Quantity<SoughtConstant>,
+    /// Standard deviation.
+    pub standard_deviation: Quantity<SoughtConstant>,
 }
 
 /// Readings of a motion or of states of rest under given voltages and loads.

@@ -279,6 +279,12 @@ impl<M: PhysicalQuantity> Quantity<M> {
         }
     }
 
+    /// Dimension of its unit, where it is written with one.
+    pub(crate) fn dimension(&self) -> Option<Dimension> {
+        let (_, unit) = self.written.parts();
+        unit.map(|unit| unit.dimension)
+    }
+
     /// Kinds and examples, for messages.
     pub(crate) fn expected() -> String {
         let kinds: Vec<String> = M::kinds().iter().map(Kind::expected).collect();
