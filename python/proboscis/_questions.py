@@ -213,30 +213,36 @@ class Questions:
     def identify(
         self,
         *,
-        free: Mapping[Any, entries.Free],
         recordings: Sequence[entries.Recording],
         candidates: Sequence[entries.Candidate] | None = None,
         coordinates: entries.Coordinates | None = None,
+        free: Mapping[Any, entries.Free] | None = None,
+        inputs: entries.InputConstants | None = None,
+        priors: Mapping[Any, entries.Prior] | None = None,
         step: Quantity | None = None,
         output: str | PathLike[str] | None = None,
         max_seconds: float | None = None,
     ) -> Result:
         """Fits constants with these entries of `identify` in a problem file; the others are those of `Problem.identify`.
 
-        * `free`: Sought constants by their paths in the scene, such as `"materials.silicone.shear_modulus"`, each between bounds.
         * `recordings`: Recordings: those that constants are fitted to, and those that are held out to check their prediction.
         * `candidates`: Experiments that could be done next; the result ranks them by the variance that they leave.
         * `coordinates`: Coordinates.
+        * `free`: Sought constants by their paths in the scene, such as `"materials.silicone.shear_modulus"`, each between bounds.
+        * `inputs`: Constants of the inputs that are sought: gains of sources, and their delay.
+        * `priors`: Constants of `free` that are known beside the recordings, by their paths: each counts as one reading more.
         * `step`: Step of the first grid, SI unit s, which is halved until its bias is below a tenth of the standard errors; by the number of
           readings where not written.
         """
         problem = self._problem(
             "identify",
             {
-                "free": free,
                 "recordings": recordings,
                 "candidates": candidates,
                 "coordinates": coordinates,
+                "free": free,
+                "inputs": inputs,
+                "priors": priors,
                 "step": step,
             },
         )

@@ -769,6 +769,16 @@ Hold: TypeAlias = "Literal['reported', 'required']"
 """Treatment of a goal that cannot be kept."""
 
 
+class InputConstants(TypedDict):
+    """Constants of the inputs of all recordings."""
+
+    delay: NotRequired[Range]
+    """Time by which all voltages and loads act later than recordings say, SI unit s."""
+
+    gains: NotRequired[Mapping[Any, Range]]
+    """Factors between the voltages and loads that recordings say and those that act, by the names of muscles, electrodes and loads."""
+
+
 class IntegratorObject(TypedDict):
     """A method with its parameter: exactly one of the two."""
 
@@ -1169,11 +1179,34 @@ class PowerLimit(TypedDict):
     """All sources."""
 
 
+class Prior(TypedDict):
+    """A normal distribution of a constant, such as that of a data sheet."""
+
+    standard_deviation: Quantity
+    """Standard deviation."""
+
+    value: Quantity
+    """Mean, in the unit of the constant."""
+
+
 class RandomGuess(TypedDict):
     """A random guess."""
 
     seed: int
     """Equal seeds give equal guesses."""
+
+
+class Range(TypedDict):
+    """Bounds of a constant."""
+
+    guess: NotRequired[Quantity]
+    """Value at which the fit starts; 1 of a gain, the lower bound of a delay where not written."""
+
+    max: Quantity
+    """Upper bound."""
+
+    min: Quantity
+    """Lower bound."""
 
 
 class ReactionForceLimit(TypedDict):
@@ -1680,8 +1713,14 @@ class Identify(TypedDict):
     coordinates: NotRequired[Coordinates]
     """Coordinates."""
 
-    free: Mapping[Any, Free]
+    free: NotRequired[Mapping[Any, Free]]
     """Sought constants by their paths in the scene, such as `"materials.silicone.shear_modulus"`, each between bounds."""
+
+    inputs: NotRequired[InputConstants]
+    """Constants of the inputs that are sought: gains of sources, and their delay."""
+
+    priors: NotRequired[Mapping[Any, Prior]]
+    """Constants of `free` that are known beside the recordings, by their paths: each counts as one reading more."""
 
     recordings: Sequence[Recording]
     """Recordings: those that constants are fitted to, and those that are held out to check their prediction."""

@@ -94,6 +94,31 @@ impl Voltages {
         Self::of_signals(signals)
     }
 
+    /// The same with a factor of each source.
+    #[must_use]
+    pub fn scaled(&self, factor: impl Fn(usize) -> f64) -> Self {
+        let mut out = self.clone();
+        let scale = |row: &mut Vec<f64>| {
+            let values = row.iter_mut().enumerate();
+            values.for_each(|(source, value)| *value *= factor(source));
+        };
+        match &mut out {
+            Self::Constant(row) => scale(row),
+            Self::Sampled { rows, others, .. } => {
+                rows.iter_mut().for_each(scale);
+                for (&source, signal) in others {
+                    *signal = signal.scaled(factor(source));
+                }
+            }
+            Self::Signals(signals) => {
+                for (source, signal) in signals.iter_mut().enumerate() {
+                    *signal = signal.scaled(factor(source));
+                }
+            }
+        }
+        out
+    }
+
     /// Returns true if the voltage of a source is ever other than zero.
     pub fn drive(&self, source: usize) -> bool {
         match self {

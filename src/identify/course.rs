@@ -51,7 +51,7 @@ fn in_motion(
     let (model, recording) = (&setup.model, setup.recording);
     let h = recording.duration() / intervals as f64;
     let start = setup.start(point.start)?;
-    let scalars = |from: f64, to: f64| model.scalars(&recording.voltages.at(0.5 * (from + to)));
+    let scalars = |from: f64, to: f64| model.scalars(&setup.voltages.at(0.5 * (from + to)));
     let (discrete, failure) = simulate(model, &start, h, intervals, scalars, |_| {
         ControlFlow::Continue(())
     });
@@ -65,9 +65,9 @@ fn in_motion(
         return Err(IdentifyError::Stopped);
     }
     let by_start = by_start(setup, point)?;
-    let inputs = (&recording.voltages, Regime::Motion);
+    let inputs = (&*setup.voltages, Regime::Motion);
     let by = derivatives(setup, (&start, &by_start), &discrete, inputs)?;
-    let corners = recording.voltages.switches();
+    let corners = setup.voltages.switches();
     let inside = |corner: &&f64| **corner < recording.duration();
     let course = Course {
         model,
@@ -75,6 +75,7 @@ fn in_motion(
         derivatives: &by,
         corners: corners.iter().filter(inside).copied().collect(),
         is_still: false,
+        delay: setup.drive.delay,
     };
     Ok(course.read(&recording.channels, point.count()))
 }
@@ -87,7 +88,7 @@ fn by_start(setup: &Setup<'_>, point: Point<'_>) -> Result<StartDerivatives, Ide
         coordinates: DMatrix::zeros(n, point.count()),
         momenta: DMatrix::zeros(n, point.count()),
     };
-    if let BoundaryState::RestAtVoltages(voltages, _) = &setup.recording.start {
+    if let BoundaryState::RestAtVoltages(voltages, _) = &setup.control.start {
         let start = setup.start(&[])?;
         let voltages = Voltages::Constant(voltages.clone());
         let by = of_rest(setup, &start, &voltages, constants)?.1;
@@ -142,7 +143,7 @@ fn at_rest(setup: &Setup<'_>, point: Point<'_>) -> Result<Values, IdentifyError>
     times.dedup();
     for time in times {
         let state = setup.rest(time)?;
-        let voltages = Voltages::Constant(recording.voltages.at(time).to_vec());
+        let voltages = Voltages::Constant(setup.voltages.at(time).to_vec());
         let (discrete, by) = of_rest(setup, &state, &voltages, point.constants.len())?;
         let course = Course {
             model: &setup.model,
@@ -150,6 +151,7 @@ fn at_rest(setup: &Setup<'_>, point: Point<'_>) -> Result<Values, IdentifyError>
             derivatives: &by,
             corners: Vec::new(),
             is_still: true,
+            delay: None,
         };
         let read = course.read(&recording.channels, point.count());
         for (row, reading) in recording.readings().enumerate() {

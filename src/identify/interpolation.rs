@@ -28,17 +28,37 @@ pub(super) fn piece(
     }
 }
 
-/// First of the points of a piece that a value at a time follows from, and their weights; the error is of fourth order in `h`.
-pub(super) fn weights(time: f64, [first, h]: [f64; 2], points: Range<usize>) -> (usize, Vec<f64>) {
+/// First of the points of a piece that a value at a time follows from, their number, and the time after it in steps.
+fn local(time: f64, [first, h]: [f64; 2], points: Range<usize>) -> (usize, usize, f64) {
     let count = points.len().min(4);
     let place = (time - first) / h;
     let last = (points.end - count) as f64;
     let begin = (place.floor() - 1.0).clamp(points.start as f64, last) as usize;
-    let s = place - begin as f64;
+    (begin, count, place - begin as f64)
+}
+
+/// First of the points of a piece that a value at a time follows from, and their weights; the error is of fourth order in `h`.
+pub(super) fn weights(time: f64, grid: [f64; 2], points: Range<usize>) -> (usize, Vec<f64>) {
+    let (begin, count, s) = local(time, grid, points);
     let weight = |j: usize| {
         let others = (0..count).filter(|&i| i != j);
         let factor = |i: usize| (s - i as f64) / (j as f64 - i as f64);
         others.map(factor).product()
     };
     (begin, (0..count).map(weight).collect())
+}
+
+/// The same for the derivative by the time.
+pub(super) fn slopes(time: f64, grid: [f64; 2], points: Range<usize>) -> (usize, Vec<f64>) {
+    let (begin, count, s) = local(time, grid, points);
+    let slope = |j: usize| {
+        let others = || (0..count).filter(move |&i| i != j);
+        let factor = |i: usize| (s - i as f64) / (j as f64 - i as f64);
+        let without = |k: usize| -> f64 {
+            let product: f64 = others().filter(|&i| i != k).map(factor).product();
+            product / (j as f64 - k as f64)
+        };
+        others().map(without).sum::<f64>() / grid[1]
+    };
+    (begin, (0..count).map(slope).collect())
 }

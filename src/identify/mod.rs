@@ -8,6 +8,7 @@
 //! states at starts that were sought.
 
 mod course;
+mod drive;
 mod error;
 mod experiments;
 mod fit;

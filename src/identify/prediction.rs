@@ -18,6 +18,8 @@ use rayon::prelude::*;
 const LEAST: usize = 16;
 /// Part of an interval by which a time may miss an instant.
 const OFF: f64 = 1e-6;
+/// Part of an interval by which corners may differ that count as one.
+const NEAR: f64 = 1e-3;
 /// Most intervals of the first grid where the problem gives no step.
 const MOST: usize = 400;
 
@@ -26,6 +28,8 @@ const MOST: usize = 400;
 pub struct Grid {
     /// Intervals of the coarser one of the two grids of each recording.
     pub intervals: Vec<usize>,
+    /// Recordings of which the instants lie at all corners of voltages.
+    pub meets_corners: Vec<bool>,
 }
 
 impl Grid {
@@ -33,7 +37,7 @@ impl Grid {
     /// corners of voltages lie at its instants then.
     pub fn first(task: &Identification, recordings: &[Recording]) -> Self {
         let of = |recording: &Recording| match (recording.regime, task.step) {
-            (Regime::Rest, _) => 1,
+            (Regime::Rest, _) => (1, true),
             (_, Some(step)) => {
                 let least = (recording.duration() / step - 1e-9).ceil().max(4.0);
                 meeting(recording, least as usize)
@@ -43,26 +47,38 @@ impl Grid {
                 meeting(recording, lengths.max().unwrap_or(0).clamp(LEAST, MOST))
             }
         };
+        let (intervals, meets_corners) = recordings.iter().map(of).unzip();
         Self {
-            intervals: recordings.iter().map(of).collect(),
+            intervals,
+            meets_corners,
         }
     }
 
-    /// The grid of half the steps.
+    /// The grid of half the steps; of a little less where instants miss a corner, which would lie in the same part of an interval again,
+    /// with the same error.
     #[must_use]
     pub fn halved(&self) -> Self {
         Self {
-            intervals: self.intervals.iter().map(|n| 2 * n).collect(),
+            intervals: self
+                .intervals
+                .iter()
+                .zip(&self.meets_corners)
+                .map(|(n, meets)| 2 * n + usize::from(!meets))
+                .collect(),
+            meets_corners: self.meets_corners.clone(),
         }
     }
 }
 
 /// The least number of intervals at whose instants all readings and corners of voltages lie, or all corners, or some number where there is
-/// none near it: interpolation is exact at instants, and between corners the motion is smooth.
-fn meeting(recording: &Recording, least: usize) -> usize {
+/// none near it: interpolation is exact at instants, and between corners the motion is smooth. Corners that hardly differ count as one.
+/// Returns true if instants lie at all corners.
+fn meeting(recording: &Recording, least: usize) -> (usize, bool) {
     let duration = recording.duration();
     let corners: Vec<f64> = recording.voltages.switches().to_vec();
-    let corners: Vec<f64> = corners.into_iter().filter(|t| *t < duration).collect();
+    let mut corners: Vec<f64> = corners.into_iter().filter(|t| *t < duration).collect();
+    let near = NEAR * duration / least as f64;
+    corners.dedup_by(|next, before| *next - *before < near);
     let readings = recording.readings().map(|reading| reading.time);
     let all: Vec<f64> = readings.chain(corners.iter().copied()).collect();
     let meets = |times: &[f64]| {
@@ -73,7 +89,8 @@ fn meeting(recording: &Recording, least: usize) -> usize {
         };
         (least..=4 * least).find(is_met)
     };
-    meets(&all).or_else(|| meets(&corners)).unwrap_or(least)
+    let found = meets(&all).or_else(|| meets(&corners));
+    (found.unwrap_or(least), found.is_some())
 }
 
 /// Values and derivatives of all readings of some recordings by all unknowns.

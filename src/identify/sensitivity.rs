@@ -8,7 +8,7 @@ use crate::control::{Column, InitialGuess, Row, Transcription};
 use crate::dynamics::{DiscreteTrajectory, Start};
 use crate::identify::error::IdentifyError;
 use crate::identify::setup::Setup;
-use crate::model::Role;
+use crate::model::{Role, Time};
 use crate::nlp::Nlp;
 use crate::sparse::Direct;
 use nalgebra::DMatrix;
@@ -47,6 +47,8 @@ enum Meaning {
     Start(usize),
     /// Sought constant.
     Constant(usize),
+    /// Input with this derivative by its gain, a constant.
+    Input(usize, f64),
 }
 
 /// Derivatives of a motion by the unknowns.
@@ -72,7 +74,7 @@ pub(super) fn derivatives(
     let entries = program.jacobian_structure();
     let mut values = vec![0.0; entries.rows.len()];
     program.jacobian(&x, &mut values);
-    let equations = Equations::new(setup, &program, regime);
+    let equations = Equations::new(setup, (&program, discrete), regime);
     let count = by_start.coordinates.ncols();
     let mut right = DMatrix::zeros(equations.size, count);
     let (mut places, mut left) = (Vec::new(), Vec::new());
@@ -92,6 +94,7 @@ pub(super) fn derivatives(
                 }
             }
             Meaning::Constant(p) => right[(row, p)] -= value / scale,
+            Meaning::Input(gain, slope) => right[(row, gain)] -= value / scale * slope,
         }
     }
     for (r, row) in program.unknowns().rows.iter().enumerate() {
@@ -122,8 +125,16 @@ pub(super) fn derivatives(
 }
 
 impl Equations {
-    fn new(setup: &Setup<'_>, program: &Transcription<'_>, regime: Regime) -> Self {
+    fn new(
+        setup: &Setup<'_>,
+        (program, discrete): (&Transcription<'_>, &DiscreteTrajectory),
+        regime: Regime,
+    ) -> Self {
         let variables = &setup.model.variables;
+        let gain = |s: usize| {
+            let source = variables.of(Time::Interval)[s].source?;
+            setup.drive.of_source(source)
+        };
         let n = setup.model.coordinate_count();
         let first = variables.range(Role::Parameter).start;
         let mut size = 0;
@@ -138,6 +149,10 @@ impl Equations {
                 Meaning::Unknown(*of_rest[i].get_or_insert_with(&mut next))
             }
             Column::Parameter { s } => Meaning::Constant(s - first),
+            Column::Interval { k, s } => match gain(s) {
+                Some(gain) => Meaning::Input(gain.constant, discrete.scalars[k][s] / gain.value),
+                None => Meaning::Unknown(next()),
+            },
             _ => Meaning::Unknown(next()),
         };
         let columns = program
@@ -192,8 +207,15 @@ impl CourseDerivatives {
         out.instants[0].clone_from(&by_start.coordinates);
         let columns = program.unknowns().columns.iter().zip(&equations.columns);
         for (column, meaning) in columns {
-            let Meaning::Unknown(unknown) = *meaning else {
-                continue;
+            let unknown = match (*column, *meaning) {
+                (_, Meaning::Unknown(unknown)) => unknown,
+                (Column::Interval { k, s }, Meaning::Input(gain, slope)) => {
+                    if let Ok(row) = out.read.binary_search(&s) {
+                        out.intervals[k][(row, gain)] = slope;
+                    }
+                    continue;
+                }
+                _ => continue,
             };
             match *column {
                 Column::Instant { k, i } if i < n => {

@@ -8,14 +8,21 @@ use crate::control::{
     BoundaryConditions, BoundaryError, Limits, Rests, TerminalState, resolve_start,
 };
 use crate::dynamics::Start;
+use crate::identify::drive::Drive;
 use crate::identify::error::IdentifyError;
 use crate::model::{Analysis, Coordinates, Model, Parameter, Quantity, System, with_parameters};
+use std::borrow::Cow;
 use std::collections::BTreeMap;
 
 /// The model of a recording on a grid.
 #[derive(Debug)]
 pub(super) struct Setup<'a> {
     pub(super) recording: &'a Recording,
+    /// Gains and delay of the inputs.
+    pub(super) drive: Drive,
+    /// Voltages and loads with their gains.
+    pub(super) voltages: Cow<'a, Voltages>,
+    start: Cow<'a, BoundaryState>,
     pub(super) control: Control,
     pub(super) model: Model,
 }
@@ -36,10 +43,15 @@ impl<'a> Setup<'a> {
         let (system, parameters) = recording.of((system, &task.parameters));
         let parameters: Vec<_> = parameters.iter().zip(constants).map(at).collect();
         let system = with_parameters(system, &parameters, constants);
+        let drive = Drive::new(&parameters, constants);
+        let (voltages, start) = (
+            drive.voltages(&recording.voltages),
+            drive.start(&recording.start),
+        );
         let control = Control {
             parameters,
             coordinates: task.coordinates,
-            ..control(recording, duration, intervals as usize)
+            ..control((&start, &voltages), duration, intervals as usize)
         };
         let mut analysis = Analysis {
             quantities: recording.quantities().collect(),
@@ -58,6 +70,9 @@ impl<'a> Setup<'a> {
             model: model.map_err(|error| recording.wrong(error.into()))?,
             control,
             recording,
+            drive,
+            voltages,
+            start,
         };
         setup.check()?;
         Ok(setup)
@@ -71,6 +86,9 @@ impl<'a> Setup<'a> {
             return Err(self.refused(
                 "places of bodies, joints and markers are not sought from recordings".to_owned(),
             ));
+        }
+        if self.drive.delay.is_some() && self.recording.regime == Regime::Motion {
+            self.check_delay()?;
         }
         for channel in &self.recording.channels {
             let parts = channel.parts.iter().map(|(_, quantity)| quantity);
@@ -97,6 +115,22 @@ impl<'a> Setup<'a> {
         }
     }
 
+    /// Refuses recordings of which a delay of the inputs is no shift in time.
+    fn check_delay(&self) -> Result<(), IdentifyError> {
+        let parts = self.recording.channels.iter().flat_map(|one| &one.parts);
+        let mut later = parts.filter(|(_, quantity)| quantity.is_of_intervals());
+        let what = match () {
+            () if !matches!(*self.start, BoundaryState::RestAtVoltages(..)) => {
+                "a start with \"rest_at_voltages\": what rests until its inputs begin moves later by it"
+            }
+            () if self.recording.sought_start != SoughtStart::Nothing => "a start that is given",
+            () if !self.model.prescribed.is_empty() => "joints without prescribed motions",
+            () if later.next().is_some() => "readings of joints and places of markers alone",
+            () => return Ok(()),
+        };
+        Err(self.refused(format!("a delay of the inputs is sought; expected {what}")))
+    }
+
     fn refused(&self, reason: String) -> IdentifyError {
         IdentifyError::Refused {
             recording: self.recording.name.clone(),
@@ -106,7 +140,7 @@ impl<'a> Setup<'a> {
 
     /// The start with changes of its coordinates and momenta.
     pub(super) fn start(&self, changes: &[f64]) -> Result<Start, IdentifyError> {
-        let found = resolve_start(&self.model, &self.recording.start, "start");
+        let found = resolve_start(&self.model, &self.start, "start");
         let mut start = found.map_err(|error| self.recording.wrong(error))?;
         let (coordinates, momenta) = self.sought();
         let (of_coordinates, of_momenta) = changes.split_at(coordinates.len().min(changes.len()));
@@ -134,7 +168,7 @@ impl<'a> Setup<'a> {
 
     /// The equilibrium under the voltages of a time in ms.
     pub(super) fn rest(&self, time: f64) -> Result<Start, IdentifyError> {
-        let voltages = self.recording.voltages.at(time).to_vec();
+        let voltages = self.voltages.at(time).to_vec();
         let state = BoundaryState::RestAtVoltages(voltages, Default::default());
         let found = resolve_start(&self.model, &state, "rest");
         found.map_err(|error| self.recording.wrong(error))
@@ -157,8 +191,11 @@ impl<'a> Setup<'a> {
 
     /// The problem whose transcription has the derivatives by the start too.
     pub(super) fn open(&self, voltages: Voltages, intervals: usize, h: f64) -> Control {
+        let any = [f64::NEG_INFINITY, f64::INFINITY];
         Control {
             start: BoundaryState::Free,
+            // Inputs with gains have columns.
+            load_bounds: self.drive.sources().map(|source| (source, any)).collect(),
             course: Some(voltages),
             duration: Duration::Given(h * intervals as f64),
             intervals,
@@ -198,17 +235,21 @@ fn lasts(quantity: &Quantity) -> bool {
 }
 
 /// The motion of a recording as a problem without a choice.
-fn control(recording: &Recording, duration: f64, intervals: usize) -> Control {
+fn control(
+    (start, voltages): (&BoundaryState, &Voltages),
+    duration: f64,
+    intervals: usize,
+) -> Control {
     Control {
         duration: Duration::Given(duration),
         intervals,
         is_refined: false,
-        start: recording.start.clone(),
+        start: start.clone(),
         goal: BoundaryState::Free,
         voltage_bounds: [f64::NEG_INFINITY, f64::INFINITY],
         load_bounds: BTreeMap::new(),
         given: BTreeMap::new(),
-        course: Some(recording.voltages.clone()),
+        course: Some(voltages.clone()),
         parameters: Vec::new(),
         sought_hold: SoughtHold::Never,
         hold: Hold::Reported,

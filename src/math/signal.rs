@@ -57,6 +57,21 @@ impl Signal {
         }
     }
 
+    /// The same function times a factor.
+    #[must_use]
+    pub fn scaled(&self, factor: f64) -> Self {
+        let mut out = self.clone();
+        match &mut out {
+            Self::Constant(value) => *value *= factor,
+            Self::Ramp { from, to, .. } => [from, to].into_iter().for_each(|x| *x *= factor),
+            Self::Sine {
+                mean, amplitude, ..
+            } => [mean, amplitude].into_iter().for_each(|x| *x *= factor),
+            Self::Table { values, .. } => values.iter_mut().for_each(|x| *x *= factor),
+        }
+        out
+    }
+
     /// The value, where it is the same all the time.
     pub fn constant(&self) -> Option<f64> {
         match self {

@@ -85,6 +85,10 @@ pub enum Constant {
     Gravity(usize),
     /// No constant of a component: the largest voltage in V of sources that are sought, which quantities read.
     PeakVoltage,
+    /// No constant of a component: the factor between the input that a recording says of a source and that which acts.
+    Gain(usize),
+    /// No constant of a component: the time in ms by which inputs act later than a recording says.
+    Delay,
 }
 
 /// A unit of the International System: its symbol, and the factor from the unit of a constant.
@@ -180,6 +184,7 @@ impl Constant {
                 | Self::Inertia(..)
                 | Self::Gravity(_)
                 | Self::PeakVoltage
+                | Self::Delay
                 | Self::Material(_, Law(_) | LameLambda | C1 | C2 | Permittivity)
         )
     }

@@ -137,7 +137,12 @@ impl Constant {
             Self::JointPlace(j, axis) => system.joints.get_mut(j)?.at.get_mut(axis),
             Self::MarkerPlace(m, axis) => system.markers.get_mut(m)?.point.at.get_mut(axis),
             Self::Gravity(axis) => system.gravity.as_mut()?.get_mut(axis),
-            Self::PeakVoltage | Self::Material(..) | Self::Resistance(_) | Self::Leakage(_) => None,
+            Self::PeakVoltage
+            | Self::Gain(_)
+            | Self::Delay
+            | Self::Material(..)
+            | Self::Resistance(_)
+            | Self::Leakage(_) => None,
         }
     }
 
@@ -217,6 +222,8 @@ impl Constant {
             | Self::MarkerPlace(..)
             | Self::TendonLength(_) => ("m", 1e-3),
             Self::PeakVoltage => ("V", 1.0),
+            Self::Gain(_) => ("", 1.0),
+            Self::Delay => ("s", 1e-3),
             Self::SpringStiffness(_) | Self::TendonStiffness(_) => ("N/m", 1e3),
             Self::Prestretch(_) => ("", 1.0),
             Self::Resistance(_) | Self::Leakage(_) => ("Ohm", 1.0),
@@ -271,8 +278,10 @@ impl Constant {
             | Self::Layer(m)
             | Self::Prestretch(m)
             | Self::End(m, ..) => ("muscle", m, system.muscles.len()),
-            Self::Resistance(s) | Self::Leakage(s) => ("source", s, system.sources().len()),
-            Self::Gravity(_) | Self::PeakVoltage => return None,
+            Self::Resistance(s) | Self::Leakage(s) | Self::Gain(s) => {
+                ("source", s, system.sources().len())
+            }
+            Self::Gravity(_) | Self::PeakVoltage | Self::Delay => return None,
         };
         (index >= count).then(|| format!("there is no {what} {index}, only {count}"))
     }
@@ -300,7 +309,7 @@ impl Constant {
         match self {
             // A length is named with the stiffness of its spring.
             Self::SpringLength(s) => system.components.springs[s].stiffness.is_some(),
-            Self::PeakVoltage => true,
+            Self::PeakVoltage | Self::Gain(_) | Self::Delay => true,
             other => other.value(system).is_some(),
         }
     }

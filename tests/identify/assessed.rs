@@ -66,6 +66,7 @@ fn measure(task: &mut Identification, system: &System, seed: u64) {
     let random = &mut Random::new(seed);
     let grid = Grid {
         intervals: task.recordings.iter().map(|_| 390).collect(),
+        meets_corners: vec![true; 8],
     };
     for r in 0..task.recordings.len() {
         let truth = predict((system, task), &[r], &unknowns, &grid)

@@ -8,7 +8,7 @@ use proboscis::control::problem::{
 };
 use proboscis::identify::{Grid, Unknowns, predict};
 use proboscis::model::system::ElectricConstants;
-use proboscis::model::{Follower, MaterialConstant, Parameter, Quantity, System};
+use proboscis::model::{Constant, Follower, MaterialConstant, Parameter, Quantity, System};
 
 pub(crate) fn readings(count: usize, last: f64) -> Vec<Reading> {
     let reading = |time| Reading {
@@ -108,6 +108,7 @@ fn pair(
         all("modulus", MaterialConstant::ShearModulus, count, 0.1),
         oscillator::permittivity(count, ElectricConstants::first_order, 3.2),
     ];
+    parameters.push(oscillator::parameter("gain", Constant::Gain(0), 0.9));
     if regime == Regime::Motion {
         parameters.push(all("viscosity", MaterialConstant::Viscosity, count, 0.8));
     }

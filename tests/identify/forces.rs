@@ -107,7 +107,7 @@ fn recording(channels: Vec<Channel>, regime: Regime) -> Recording {
     };
     let voltages = [(900.0, 0.3), (1200.0, 1.0), (1100.0, 2.0), (600.0, 0.0)];
     let signals = voltages.map(|(mean, phase)| sine(mean, phase)).to_vec();
-    let signals = [&signals[..], &[sine(2e-4, 0.7)]].concat();
+    let signals = [&signals[..], &[sine(2e-3, 0.7)]].concat();
     Recording {
         name: "two segments".into(),
         scene: None,
@@ -134,6 +134,10 @@ fn task(recording: Recording, is_of_motion: bool) -> Identification {
         parameter("end", Constant::SpringEnd(0, 1, 1), 80.0),
         parameter("cord", Constant::TendonStiffness(0), 0.01),
         parameter("slack", Constant::TendonLength(0), 80.0),
+        parameter("first gain", Constant::Gain(0), 1.1),
+        parameter("gain behind a resistor", Constant::Gain(1), 0.9),
+        parameter("third gain", Constant::Gain(2), 0.95),
+        parameter("gain of the charge", Constant::Gain(4), 1.05),
     ];
     if is_of_motion {
         parameters.extend([
@@ -191,6 +195,7 @@ fn forces_and_charges_are_those_of_tables() {
     task.parameters.clear();
     let grid = Grid {
         intervals: vec![160],
+        meets_corners: vec![true; 8],
     };
     let unknowns = Unknowns::of_values(&[], &[&[]]);
     let found = predict((&system, &task), &[0], &unknowns, &grid).unwrap();
@@ -273,6 +278,7 @@ fn recovered(quantities: &[Quantity], names: &[&str]) {
     };
     let grid = Grid {
         intervals: vec![304],
+        meets_corners: vec![true; 8],
     };
     let unknowns = Unknowns::of_values(&[], &[&[]]);
     let values = predict((&twin, &alone), &[0], &unknowns, &grid)
@@ -290,6 +296,7 @@ fn recovered(quantities: &[Quantity], names: &[&str]) {
     let begin = (Unknowns::of_values(&guesses, &[&[]]), 0);
     let grid = Grid {
         intervals: vec![76],
+        meets_corners: vec![true; 8],
     };
     let found = fit((&system, &task), &[0], begin, &grid).unwrap();
     assert_eq!(found.ended, Ended::Converged);

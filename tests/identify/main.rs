@@ -7,6 +7,7 @@ mod assessed;
 mod derivatives;
 mod forces;
 mod front;
+mod inputs;
 mod oscillator;
 mod priors;
 mod ratio;

@@ -106,6 +106,7 @@ fn modulus_and_viscosity_of_a_block_are_recovered_from_a_marker() {
         &unknowns,
         &Grid {
             intervals: vec![240],
+            meets_corners: vec![true; 8],
         },
     );
     let values = values.unwrap().values;

@@ -102,6 +102,7 @@ fn holds_truth(seed: u64) -> bool {
     let begin = Unknowns::of_values(&[STIFFNESS, DAMPING], &[&[]]);
     let grid = Grid {
         intervals: vec![10],
+        meets_corners: vec![true; 8],
     };
     let found = fit((&system(), &task), &[0], (begin, 0), &grid).unwrap();
     let information = found.information(&task);

@@ -16,6 +16,7 @@ mod fields;
 mod first_hour;
 mod gltf;
 mod identify;
+mod identify_inputs;
 mod identify_scenes;
 mod kept;
 mod killed;

@@ -8,6 +8,7 @@ use crate::files::problem::channels::{Measured, Source};
 use crate::files::problem::coordinates::{coordinates, count};
 use crate::files::problem::driven::driven;
 use crate::files::problem::free::parameters;
+use crate::files::problem::input_constants::input_constants;
 use crate::files::problem::priors::priors;
 use crate::files::problem::spec_identify::{
     CandidateSpec, ExperimentSpec, IdentifySpec, MeasuredSpec, RecordingSpec, SoughtStartSpec,
@@ -27,10 +28,12 @@ pub(crate) fn identification(
 ) -> Result<Identification, SceneError> {
     let system = scene.system;
     let place = scope.key("free");
-    if spec.free.is_empty() {
+    let of_inputs = input_constants(&spec.inputs, system, &scope.key("inputs"))?;
+    if spec.free.is_empty() && of_inputs.is_empty() {
         return Err(place.wrong("no constant", "one or more"));
     }
-    let parameters = parameters(&spec.free, scene, &place)?;
+    let mut parameters = parameters(&spec.free, scene, &place)?;
+    parameters.extend(of_inputs);
     let [of_recordings, of_candidates] = ["recordings", "candidates"].map(|key| scope.key(key));
     let mut names = Vec::new();
     for (index, one) in spec.recordings.iter().enumerate() {

@@ -21,6 +21,7 @@ pub(crate) mod free;
 pub(crate) mod goal;
 pub(crate) mod guess;
 pub(crate) mod identify;
+mod input_constants;
 pub(crate) mod limits;
 mod loads;
 mod measured;

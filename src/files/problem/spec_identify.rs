@@ -8,7 +8,7 @@ use crate::files::problem::spec_voltages::VoltagesSpec;
 use crate::files::study::ChangesSpec;
 use crate::files::units::quantity::{Angle, AngularVelocity, Kind, Length, Velocity};
 use crate::files::units::quantity::{Charge, Current, Force, Torque, Voltage};
-use crate::files::units::quantity::{PhysicalQuantity, Quantity, SoughtConstant, Time};
+use crate::files::units::quantity::{PhysicalQuantity, Quantity, Ratio, SoughtConstant, Time};
 use schemars::JsonSchema;
 use serde::Deserialize;
 use std::collections::BTreeMap;
@@ -18,7 +18,11 @@ use std::collections::BTreeMap;
 #[serde(deny_unknown_fields)]
 pub struct IdentifySpec {
     /// Sought constants by their paths in the scene, such as `"materials.silicone.shear_modulus"`, each between bounds.
+    #[serde(default)]
     pub free: FreeMap,
+    /// Constants of the inputs that are sought: gains of sources, and their delay.
+    #[serde(default)]
+    pub inputs: InputConstantsSpec,
     /// Constants of `free` that are known beside the recordings, by their paths: each counts as one reading more.
     #[serde(default)]
     pub priors: BTreeMap<String, PriorSpec>,
@@ -34,6 +38,32 @@ pub struct IdentifySpec {
     /// Coordinates.
     #[serde(default)]
     pub coordinates: Option<CoordinatesSpec>,
+}
+
+/// Constants of the inputs of all recordings.
+#[derive(Clone, Debug, Default, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct InputConstantsSpec {
+    /// Factors between the voltages and loads that recordings say and those that act, by the names of muscles, electrodes and loads.
+    #[serde(default)]
+    pub gains: BTreeMap<String, RangeSpec<Ratio>>,
+    /// Time by which all voltages and loads act later than recordings say, SI unit s.
+    #[serde(default)]
+    pub delay: Option<RangeSpec<Time>>,
+}
+
+/// Bounds of a constant.
+#[derive(Clone, Debug, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields, bound(deserialize = ""))]
+#[schemars(bound = "M: PhysicalQuantity")]
+pub struct RangeSpec<M: PhysicalQuantity> {
+    /// Lower bound.
+    pub min: Quantity<M>,
+    /// Upper bound.
+    pub max: Quantity<M>,
+    /// Value at which the fit starts; 1 of a gain, the lower bound of a delay where not written.
+    #[serde(default)]
+    pub guess: Option<Quantity<M>>,
 }
 
 /// A normal distribution of a constant, such as that of a data sheet.

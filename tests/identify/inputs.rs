@@ -1,0 +1,150 @@
+//! Gains and delay of the inputs of recordings, of an oscillator under a force that is switched on.
+
+use crate::derivatives::compare;
+use crate::oscillator::{
+    DAMPING, STIFFNESS, joint, normal, parameter, parameters, place, slide, system, task, times,
+};
+use proboscis::Signal;
+use proboscis::control::problem::{
+    BoundaryState, Identification, Reading, Recording, Regime, SoughtStart, Voltages,
+};
+use proboscis::identify::{IdentifyError, Unknowns, identify};
+use proboscis::math::Random;
+use proboscis::model::components::{Load, LoadPlace};
+use proboscis::model::{Constant, Parameter, Quantity, System};
+
+/// Force in N that recordings say, and the time in ms at which it sets in.
+const FORCE: f64 = 1.5;
+const ONSET: f64 = 10.0;
+/// A time at which no grid has an instant.
+const OFF_GRID: f64 = 10.314_159;
+/// True gain and delay in ms.
+const GAIN: f64 = 1.2;
+const DELAY: f64 = 7.3;
+
+fn pulled() -> System {
+    let mut system = system();
+    system.components.loads.push(Load {
+        name: "force".into(),
+        on: LoadPlace::Joint(0),
+    });
+    system
+}
+
+fn at_rest() -> BoundaryState {
+    BoundaryState::RestAtVoltages(vec![0.0], Default::default())
+}
+
+fn step(onset: f64, deviation: f64, random: &mut Random) -> Recording {
+    let force = Signal::Ramp {
+        from: 0.0,
+        to: FORCE,
+        start: onset,
+        duration: 0.0,
+    };
+    let still = GAIN * FORCE / STIFFNESS;
+    let reading = |time: f64| {
+        let since = time - onset - DELAY;
+        let moved = match since > 0.0 {
+            true => still + place(since, [STIFFNESS, DAMPING], [-still, 0.0]),
+            false => 0.0,
+        };
+        Reading {
+            time,
+            value: moved + deviation * normal(random),
+            deviation,
+        }
+    };
+    Recording {
+        name: "step".into(),
+        scene: None,
+        regime: Regime::Motion,
+        voltages: Voltages::Signals(vec![force]),
+        start: at_rest(),
+        sought_start: SoughtStart::Nothing,
+        is_held_out: false,
+        channels: vec![slide(
+            times(81, 200.0).into_iter().map(reading).collect(),
+            true,
+        )],
+    }
+}
+
+fn sought(recording: Recording) -> Identification {
+    let delay = Parameter {
+        lower: 0.0,
+        upper: 40.0,
+        ..parameter("delay", Constant::Delay, 1.0)
+    };
+    Identification {
+        parameters: [
+            parameters(),
+            vec![parameter("gain", Constant::Gain(0), 1.0), delay],
+        ]
+        .concat(),
+        ..task(vec![recording])
+    }
+}
+
+#[test]
+fn a_shifted_motion_depends_on_gain_and_delay_as_derivatives_say() {
+    let mut recording = step(ONSET, 1.0, &mut Random::new(1));
+    recording.voltages = Voltages::Signals(vec![Signal::ramp(0.3, FORCE, 90.0)]);
+    recording.start = BoundaryState::RestAtVoltages(vec![0.3], Default::default());
+    let unknowns = Unknowns::of_values(&[0.22, 0.5, 1.1, 6.17], &[&[]]);
+    let largest = compare(&pulled(), &sought(recording), &unknowns);
+    assert!(largest.iter().all(|size| *size > 0.1), "{largest:?}");
+}
+
+#[test]
+fn gain_and_delay_of_a_force_are_recovered_with_stiffness_and_damping() {
+    let recording = step(ONSET, 0.02, &mut Random::new(3));
+    let found = identify(&pulled(), &sought(recording), &mut |_, _| {}).unwrap();
+    let truth = [STIFFNESS, DAMPING, GAIN, DELAY];
+    for (j, truth) in truth.into_iter().enumerate() {
+        let error = found.information.covariance[(j, j)].sqrt();
+        let value = found.fit.of_constants()[j];
+        println!("{j}: {value} ± {error} of {truth}");
+        assert!(error > 0.0 && error < 0.02 * truth, "{j}: {error}");
+        assert!((value - truth).abs() < 3.5 * error, "{j}: {value} {truth}");
+    }
+    assert!(found.is_white() && found.bias.is_confirmed);
+}
+
+#[test]
+fn a_force_that_sets_in_between_instants_leaves_no_bias_unseen() {
+    let recording = step(OFF_GRID, 0.8, &mut Random::new(5));
+    let found = identify(&pulled(), &sought(recording), &mut |_, _| {}).unwrap();
+    let error = found.information.covariance[(3, 3)].sqrt();
+    let value = found.fit.of_constants()[3];
+    println!("{value} ± {error}, {:?}", found.bias);
+    assert!(error < 0.2 * DELAY);
+    assert!(found.bias.is_confirmed && (value - DELAY).abs() < 3.5 * error);
+    // A grid whose steps are halved alone has the corner in the same part of an interval each time.
+    let intervals = &found.grid.intervals;
+    assert!(intervals.iter().all(|n| n % 2 == 1), "{intervals:?}");
+}
+
+#[test]
+fn a_delay_that_is_no_shift_in_time_is_refused() {
+    let base = || step(ONSET, 1.0, &mut Random::new(1));
+    let moving = Recording {
+        start: joint(0.0, 0.01),
+        ..base()
+    };
+    let mut open = base();
+    open.sought_start = SoughtStart::State;
+    let mut rates = base();
+    rates.channels[0].parts = vec![(1.0, Quantity::JointStep { joint: 0, h: 1.0 })];
+    for (recording, expected) in [
+        (moving, "rest_at_voltages"),
+        (open, "a start that is given"),
+        (rates, "readings of joints and places"),
+    ] {
+        let error = identify(&pulled(), &sought(recording), &mut |_, _| {}).unwrap_err();
+        let IdentifyError::Refused { reason, .. } = &error else {
+            panic!("{error}");
+        };
+        assert!(reason.contains(expected), "{reason}");
+    }
+}
