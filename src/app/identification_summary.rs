@@ -204,7 +204,6 @@ impl Identification {
         let units: Vec<SiUnit> = task.parameters.iter().map(|p| unit(system, p)).collect();
         let values = found.fit.of_constants();
         let has_interval = |j: usize| information.is_determined[j] && !found.fit.is_at_bound[j];
-        let prior = |j: usize| task.priors.iter().find(|one| one.constant == j);
         let constant = |(j, parameter): (usize, &Parameter)| {
             let factor = units[j].factor;
             let value = factor * values[j];
@@ -216,10 +215,7 @@ impl Identification {
                 standard_error: half.map(|half| half / information.factor),
                 interval: half.map(|half| [value - half, value + half]),
                 at_bound: found.fit.is_at_bound[j],
-                prior: prior(j).map(|known| Known {
-                    value: factor * known.value,
-                    standard_deviation: factor * known.deviation,
-                }),
+                prior: Known::new(task, j, factor),
             }
         };
         let count = task.parameters.len();
@@ -329,6 +325,17 @@ impl Identification {
             lines.push(format!("next experiment: {}", best.name));
         }
         lines.join("\n")
+    }
+}
+
+impl Known {
+    /// The prior of a constant in its SI unit, where it has one.
+    fn new(task: &problem::Identification, constant: usize, factor: f64) -> Option<Self> {
+        let known = task.priors.iter().find(|one| one.constant == constant)?;
+        Some(Self {
+            value: factor * known.value,
+            standard_deviation: factor * known.deviation,
+        })
     }
 }
 

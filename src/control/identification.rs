@@ -9,7 +9,7 @@ use crate::model::{Coordinates, Parameter, Quantity, System};
 pub struct Identification {
     /// The constants.
     pub parameters: Vec<Parameter>,
-    /// What is known of the constants beside the recordings.
+    /// Constants that are known beside the recordings.
     pub priors: Vec<Prior>,
     /// The recordings.
     pub recordings: Vec<Recording>,
