@@ -96,7 +96,7 @@ impl BoundaryConditions {
             BoundaryState::Periodic => [None; 2],
             _ => [&control.start, &control.goal].map(BoundaryState::voltages),
         };
-        let boundary = Self {
+        let mut boundary = Self {
             start,
             goal: TerminalState {
                 coordinates: given,
@@ -104,6 +104,7 @@ impl BoundaryConditions {
                 rest: of_goal,
             },
             rest: rest.map(|voltages| voltages.map(<[f64]>::to_vec)),
+            sought_rest: [false; 2],
             notes: [off_grid(control), without_steps(control, &limits)].concat(),
             limits,
         };
@@ -111,7 +112,10 @@ impl BoundaryConditions {
         let is_known = control.goal != BoundaryState::Periodic;
         let start = is_known.then_some(&boundary.start.z[..]);
         let ends = [start, rest.map(|rest| &rest.z[..])];
-        sought::check(&model, control, &boundary.start, ends)?;
+        boundary.sought_rest = sought::check(&model, control, &boundary, ends)?;
+        if boundary.sought_rest[1] {
+            boundary.goal.coordinates.fill(None);
+        }
         endpoint_checks::check(&model, &boundary, control, scalars)?;
         given_rates::check(system, control, &boundary.rest)?;
         Ok((model, boundary))

@@ -12,6 +12,8 @@ pub struct BoundaryConditions {
     pub goal: TerminalState,
     /// Voltages at rest before the start and after the goal (V, one per muscle), where known.
     pub rest: [Option<Vec<f64>>; 2],
+    /// True of the start, and of the goal, where it is a state of rest that depends on sought constants: its coordinates are unknowns.
+    pub sought_rest: [bool; 2],
     /// Limits and goal equations.
     pub limits: Limits,
     /// Notes on both.

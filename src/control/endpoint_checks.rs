@@ -37,11 +37,13 @@ pub(super) fn check(
     }
     given_amounts(model, boundary, control)?;
     let is_known = control.goal != BoundaryState::Periodic;
+    let is_start_known = is_known && !boundary.sought_rest[0];
     let start = boundary.start.z.iter().copied();
-    let start: Vec<_> = start.map(|value| is_known.then_some(value)).collect();
+    let start: Vec<_> = start.map(|value| is_start_known.then_some(value)).collect();
     let goal = &boundary.goal.coordinates;
     let [at_start, at_goal] = scalars;
-    let at_start = at_start.filter(|_| is_known);
+    let at_start = at_start.filter(|_| is_start_known);
+    let at_goal = at_goal.filter(|_| !boundary.sought_rest[1]);
     let first = model.action.map.unknowns();
     let charts = [&boundary.start.z[first..], boundary.goal.charts(first)];
     let ends = [

@@ -1,11 +1,11 @@
-//! Sought parameters where they may not act: states of rest, and limits.
+//! Sought parameters where they may not act, and states of rest that depend on one.
 
+use crate::control::boundary_conditions::{BoundaryConditions, Rests};
 use crate::control::bounded_quantity::{BoundedQuantity, When};
 use crate::control::error::BoundaryError;
 use crate::control::limits::Limits;
 use crate::control::problem::{BoundaryState, Control};
 use crate::control::rest::rest_with;
-use crate::dynamics::Start;
 use crate::functional::{Stencil, Term, TermKind};
 use crate::model::{
     Constant, Coordinates, MaterialConstant, Model, NotSought, Parameter, Quantity, Role, System,
@@ -88,14 +88,15 @@ pub(super) fn in_intervals(limits: &mut Limits, control: &Control) {
     }
 }
 
-/// Refuses parameters that nothing of the model reads, and states of rest, limits and costs that depend on one.
+/// Refuses parameters that nothing of the model reads, and limits and costs that depend on one. Returns true of the start, and of the goal,
+/// where it is a state of rest that depends on one.
 pub(super) fn check(
     model: &Model,
     control: &Control,
-    start: &Start,
+    boundary: &BoundaryConditions,
     rest: [Option<&[f64]>; 2],
-) -> Result<(), BoundaryError> {
-    let moves = start.momentum.iter().any(|p| *p != 0.0);
+) -> Result<[bool; 2], BoundaryError> {
+    let moves = boundary.start.momentum.iter().any(|p| *p != 0.0);
     let layout = model.action.layout();
     let scalars = model.variables.range(Role::Parameter);
     for (s, parameter) in scalars.zip(&control.parameters) {
@@ -140,38 +141,57 @@ pub(super) fn check(
         (("start", 0.0), &control.start),
         (("goal", control.duration.first()), &control.goal),
     ];
-    for ((at, state), z) in ends.into_iter().zip(rest) {
-        if let (BoundaryState::RestAtVoltages(voltages, _), Some(z)) = (state, z) {
-            for index in 0..control.parameters.len() {
-                check_rest(model, (at, voltages, z), index)?;
+    let mut depends = [false; 2];
+    for ((depends, (at, state)), z) in depends.iter_mut().zip(ends).zip(rest) {
+        let (BoundaryState::RestAtVoltages(voltages, _), Some(z)) = (state, z) else {
+            continue;
+        };
+        for (index, parameter) in control.parameters.iter().enumerate() {
+            if depends_on(model, (at, voltages, z), index) {
+                *depends = true;
+                if let Some(reason) = not_sought(model, boundary, at.0) {
+                    return Err(BoundaryError::Parameter {
+                        name: parameter.name.clone(),
+                        reason,
+                    });
+                }
             }
         }
     }
-    Ok(())
+    Ok(depends)
 }
 
-/// Refuses a state of rest that is another one where a parameter takes other values.
-fn check_rest(
+/// The reason why a state of rest cannot be an unknown, if there is one.
+fn not_sought(model: &Model, boundary: &BoundaryConditions, place: &str) -> Option<String> {
+    let is_part = place == "goal" && boundary.goal.rests != Rests::Everything;
+    let what = match () {
+        () if !model.variables.range(Role::Multiplier).is_empty() => {
+            "in joint coordinates, without constraints, alone"
+        }
+        () if !model.prescribed.is_empty() => "without prescribed motions of joints alone",
+        () if is_part => "where everything rests alone",
+        () => return None,
+    };
+    Some(format!(
+        "the state of rest at the {place} depends on it, which is offered {what}; give its joint coordinates (\"joint_angles\")"
+    ))
+}
+
+/// Returns true if a state of rest is another one, or none, where a parameter takes other values.
+fn depends_on(
     model: &Model,
     (at, voltages, z): ((&'static str, f64), &[f64], &[f64]),
     index: usize,
-) -> Result<(), BoundaryError> {
+) -> bool {
     let parameters = &model.analysis.parameters;
     let Parameter {
-        name,
         lower,
         upper,
         guess,
         ..
     } = &parameters[index];
-    let refused = |why: &str| BoundaryError::Parameter {
-        name: name.clone(),
-        reason: format!(
-            "the state of rest at the {} {why}; give its joint coordinates (\"joint_angles\")",
-            at.0
-        ),
-    };
-    for (bound, probe) in [lower, upper].into_iter().zip(PROBES) {
+    let mut pairs = [lower, upper].into_iter().zip(PROBES);
+    pairs.any(|(bound, probe)| {
         let value = if bound.is_finite() {
             *bound
         } else {
@@ -179,16 +199,14 @@ fn check_rest(
         };
         let mut values: Vec<f64> = parameters.iter().map(|p| p.guess).collect();
         values[index] = value;
-        let found = rest_with(model, voltages, &values, at)
-            .map_err(|_| refused("does not exist for all values of it"))?;
+        let Ok(found) = rest_with(model, voltages, &values, at) else {
+            return true;
+        };
         let size = model.length();
         let sizes = model.sizes();
         let count = model.coordinate_count();
         let mut moved = z[..count].iter().zip(&found.z).zip(sizes);
         let is_same = |((a, b), s): ((&f64, &f64), f64)| (a - b).abs() <= SAME * s.min(size);
-        if !moved.all(is_same) {
-            return Err(refused("depends on it"));
-        }
-    }
-    Ok(())
+        !moved.all(is_same)
+    })
 }

@@ -1,8 +1,7 @@
 //! The model of a recording at values of the constants, with its start.
 
 use crate::control::problem::{
-    BoundaryState, Control, Duration, Guess, Hold, Identification, Objective, Recording, Regime,
-    Solver, SoughtHold, SoughtStart, Voltages,
+    BoundaryState, Control, Duration, Identification, Recording, Regime, SoughtStart, Voltages,
 };
 use crate::control::{
     BoundaryConditions, BoundaryError, Limits, Rests, TerminalState, resolve_start,
@@ -12,7 +11,6 @@ use crate::identify::drive::Drive;
 use crate::identify::error::IdentifyError;
 use crate::model::{Analysis, Coordinates, Model, Parameter, Quantity, System, with_parameters};
 use std::borrow::Cow;
-use std::collections::BTreeMap;
 
 /// The model of a recording on a grid.
 #[derive(Debug)]
@@ -51,7 +49,7 @@ impl<'a> Setup<'a> {
         let control = Control {
             parameters,
             coordinates: task.coordinates,
-            ..control((&start, &voltages), duration, intervals as usize)
+            ..Control::of_course(&start, &voltages, duration, intervals as usize)
         };
         let mut analysis = Analysis {
             quantities: recording.quantities().collect(),
@@ -184,6 +182,7 @@ impl<'a> Setup<'a> {
                 rest: None,
             },
             rest: [None, None],
+            sought_rest: [false; 2],
             limits: Limits::default(),
             notes: Vec::new(),
         }
@@ -232,32 +231,4 @@ fn lasts(quantity: &Quantity) -> bool {
             | Quantity::SourceCurrent { .. }
             | Quantity::ChargeStep { .. }
     )
-}
-
-/// The motion of a recording as a problem without a choice.
-fn control(
-    (start, voltages): (&BoundaryState, &Voltages),
-    duration: f64,
-    intervals: usize,
-) -> Control {
-    Control {
-        duration: Duration::Given(duration),
-        intervals,
-        is_refined: false,
-        start: start.clone(),
-        goal: BoundaryState::Free,
-        voltage_bounds: [f64::NEG_INFINITY, f64::INFINITY],
-        load_bounds: BTreeMap::new(),
-        given: BTreeMap::new(),
-        course: Some(voltages.clone()),
-        parameters: Vec::new(),
-        sought_hold: SoughtHold::Never,
-        hold: Hold::Reported,
-        objective: Objective::default(),
-        limits: Vec::new(),
-        waypoints: Vec::new(),
-        coordinates: None,
-        guess: Guess::Interpolate,
-        solver: Solver::default(),
-    }
 }

@@ -1,7 +1,8 @@
 //! Optimal control problems.
 
 use crate::control::problem::{
-    self, Duration, Guess, Hold, Objective, PathConstraint, QuantityCost, Solver, SoughtHold,
+    self, Duration, Guess, Hold, InCommon, Objective, PathConstraint, QuantityCost, Solver,
+    SoughtHold,
 };
 use crate::control::{Earlier, EarlierSolution};
 use crate::interface::cost_checks::{check_costs, check_energies, check_limits, check_waypoints};
@@ -19,7 +20,10 @@ use crate::tasks::{self, SolveRequest};
 use crate::workflow::Iterate;
 use crate::workflow::memory;
 use crate::workflow::optimum::SolveLimits;
-use crate::workflow::prepare::{Counted, Prepared, prepare};
+use crate::workflow::prepare::Counted;
+use crate::workflow::prepare_together::{
+    MotionAsked, PreparedTogether, prepare_together, program_motions,
+};
 use crate::workflow::resolve::resolve;
 use std::collections::BTreeMap;
 use std::ops::ControlFlow;
@@ -213,9 +217,17 @@ impl Control {
         memory::of_elements(system, true)?;
         let control = self.resolve(system)?;
         let (model, boundary) = resolve(system, &control)?;
-        let Prepared {
+        let asked = [MotionAsked {
+            name: "",
+            system,
+            control: &control,
+            earlier: None,
+        }];
+        let resolved = [(model, boundary)];
+        let motions = program_motions(&asked, &resolved);
+        let PreparedTogether {
             mut program, point, ..
-        } = prepare(&model, &boundary, &control, None, Counted::Yes)?;
+        } = prepare_together(&motions, &asked, InCommon::default(), Counted::Yes)?;
         Ok(read(&mut program, &point.x))
     }
 

@@ -48,6 +48,7 @@ pub(crate) mod period;
 pub(crate) mod phase;
 pub(crate) mod prepare;
 pub(crate) mod prepare_together;
+mod program_motion;
 pub(crate) mod reasons;
 mod recentre;
 pub(crate) mod refine_until_reproduced;

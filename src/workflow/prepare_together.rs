@@ -7,9 +7,10 @@ use crate::model::{Model, System};
 use crate::nlp::joined::{Joined, SharedVariable};
 use crate::workflow::error::WorkflowError;
 use crate::workflow::prepare::{Counted, Prepared, RESAMPLED, prepare};
+use crate::workflow::program_motion::{ProgramMotion, states_of_rest};
 use crate::workflow::resolve::resolve;
-use crate::workflow::shared_variables::shared_variables;
-use crate::workflow::solves::{ProgramMotion, joined};
+use crate::workflow::shared_variables::{Beside, shared_variables};
+use crate::workflow::solves::joined;
 
 /// A motion that is asked for, alone or with others.
 #[derive(Clone, Copy, Debug)]
@@ -92,9 +93,18 @@ pub(crate) fn prepare_together<'m>(
         starts.push(start);
         carried.push(of_earlier);
     }
-    let list: Vec<&Transcription<'_>> = programs.iter().map(|(_, program)| program).collect();
-    let shared = shared_variables(&list, in_common.shared_inputs)?;
-    let (program, point) = joined((programs, points), &shared, in_common.combined);
+    let rest = states_of_rest(motions, &programs)
+        .map_err(|error| WorkflowError::boundary("control", &error))?;
+    let list = programs.iter().map(|(_, program)| program);
+    let list: Vec<&Transcription<'_>> = list.chain(rest.iter().map(|one| &one.1.program)).collect();
+    let beside = rest.iter().map(|(motion, one)| Beside {
+        motion: *motion,
+        shared: &one.shared,
+    });
+    let beside: Vec<Beside<'_>> = beside.collect();
+    let shared = shared_variables(&list, &beside, in_common.shared_inputs)?;
+    let whole = (programs, points, rest);
+    let (program, point) = joined(whole, &shared, in_common.combined);
     Ok(PreparedTogether {
         point,
         start: common(&starts),

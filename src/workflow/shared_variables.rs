@@ -1,25 +1,39 @@
-//! Variables that the programs of several motions share: sought constants of the scene, and inputs that are the same in all of them.
+//! Variables that the programs of several motions and of their states of rest share: sought constants of the scene, inputs that are the same in
+//! all motions, and coordinates of states of rest.
 
 use crate::control::{Column, PEAK_VOLTAGE, Transcription};
 use crate::model::Parameter;
 use crate::nlp::joined::SharedVariable;
 use crate::workflow::error::WorkflowError;
 
-/// The shared variables of programs, none of a single one: intervals of the named inputs, then constants.
+/// A program beside those of the motions: of a state of rest of one of them.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Beside<'a> {
+    /// The motion.
+    pub(super) motion: usize,
+    /// Variables of the motion and of this program that are one.
+    pub(super) shared: &'a [[usize; 2]],
+}
+
+/// The shared variables of programs, none of a single one: intervals of the named inputs, then constants, then coordinates of states of
+/// rest, whose programs come last.
 ///
 /// # Errors
 /// A constant is not sought alike in all motions, or an input not at the same instants.
 pub(super) fn shared_variables(
     programs: &[&Transcription<'_>],
+    beside: &[Beside<'_>],
     inputs: &[String],
 ) -> Result<Vec<SharedVariable>, WorkflowError> {
     let [first, _, ..] = programs else {
         return Ok(Vec::new());
     };
+    let motions = programs.len() - beside.len();
     let mut shared = Vec::new();
     for name in inputs {
         for k in 0..first.intervals() {
-            let places = programs.iter().map(|program| input(program, name, k));
+            let places = programs[..motions].iter();
+            let places = places.map(|program| input(program, name, k));
             let places = places.collect::<Option<Vec<usize>>>();
             shared.push(places.ok_or_else(|| WorkflowError::Problem {
                 place: "control.shared_inputs".to_owned(),
@@ -52,12 +66,26 @@ pub(super) fn shared_variables(
     let variable = |places: Vec<usize>| {
         let scale = of_first(&places);
         let each = places.iter().zip(programs);
-        SharedVariable(
-            each.map(|(&place, program)| (place, scale / program.variable_scale(place)))
-                .collect(),
-        )
+        let of = |(&place, program): (&usize, &&Transcription<'_>)| {
+            (place, scale / program.variable_scale(place))
+        };
+        let mut all: Vec<_> = each.map(of).map(Some).collect();
+        all.resize(programs.len(), None);
+        SharedVariable(all)
     };
-    Ok(shared.into_iter().map(variable).collect())
+    let mut all: Vec<SharedVariable> = shared.into_iter().map(variable).collect();
+    for (number, one) in (motions..).zip(beside) {
+        let scale = |program: usize, place: usize| programs[program].variable_scale(place);
+        let coordinate = |&[of_motion, own]: &[usize; 2]| {
+            let mut places = vec![None; programs.len()];
+            let factor = scale(one.motion, of_motion) / scale(number, own);
+            places[one.motion] = Some((of_motion, 1.0));
+            places[number] = Some((own, factor));
+            SharedVariable(places)
+        };
+        all.extend(one.shared.iter().map(coordinate));
+    }
+    Ok(all)
 }
 
 /// Column of an input in an interval of the motion.

@@ -3,10 +3,8 @@
 use std::ops::ControlFlow;
 use std::time::Instant;
 
-use crate::control::problem::{Combined, Control};
-use crate::control::{
-    BoundaryConditions, BoundaryError, Carried, InitialGuess, Solution, Transcription,
-};
+use crate::control::problem::Combined;
+use crate::control::{BoundaryError, Carried, InitialGuess, RestProgram, Solution, Transcription};
 use crate::ipopt::{
     Iteration, Multipliers, Options, Reached, Solver, SolverResult, Start, StartingPoint, interrupt,
 };
@@ -19,6 +17,7 @@ use crate::workflow::iterate::Iterate;
 use crate::workflow::motion::solved;
 use crate::workflow::optimum::seconds_left;
 use crate::workflow::phase::phase;
+use crate::workflow::program_motion::{ProgramMotion, states_of_rest};
 use crate::workflow::recentre::recentred;
 
 /// Maximum numbers of repeated solves with other charts of its rotations, and to a smaller tolerance.
@@ -26,15 +25,6 @@ const CHARTS: usize = 4;
 const TIGHTENED: usize = 3;
 /// Iterations of a solve to a smaller tolerance.
 const AGAIN: usize = 100;
-
-/// A motion of a program.
-#[derive(Clone, Copy)]
-pub(crate) struct ProgramMotion<'m> {
-    pub(crate) name: &'m str,
-    pub(crate) model: &'m Model,
-    pub(crate) boundary: &'m BoundaryConditions,
-    pub(crate) control: &'m Control,
-}
 
 /// The program of one or several motions in a solver.
 pub(super) struct Solves<'a, 'm> {
@@ -116,6 +106,9 @@ impl Solves<'_, '_> {
             let Ok(programs) = program.collect::<Result<Vec<_>, _>>() else {
                 break;
             };
+            let Ok(rest) = states_of_rest(self.motions, &programs) else {
+                break;
+            };
             let options = Options {
                 max_seconds: self.left(),
                 start: Start::PRIMAL,
@@ -124,7 +117,8 @@ impl Solves<'_, '_> {
             let each = programs.iter().zip(&initial);
             let points = each.map(|((_, program), initial)| program.start(initial));
             let points: Vec<StartingPoint> = points.collect();
-            let (program, point) = joined((programs, points), self.shared, self.combined);
+            let whole = (programs, points, rest);
+            let (program, point) = joined(whole, self.shared, self.combined);
             self.solver = Solver::new(program, options);
             solution = self.solve(&point)?;
         }
@@ -197,13 +191,28 @@ pub(super) fn multipliers_of(places: &Places, number: usize, whole: &Multipliers
     }
 }
 
+/// Programs of motions with their points, and their states of rest.
+type Programs<'m> = (
+    Vec<(String, Transcription<'m>)>,
+    Vec<StartingPoint>,
+    Vec<(usize, RestProgram<'m>)>,
+);
+
 /// Programs as one, and the point of all of them.
 pub(super) fn joined<'m>(
-    (programs, points): (Vec<(String, Transcription<'m>)>, Vec<StartingPoint>),
+    (mut programs, mut points, rest): Programs<'m>,
     shared: &[SharedVariable],
     combined: Combined,
 ) -> (Joined<Transcription<'m>>, StartingPoint) {
-    let program = Joined::new(programs, shared);
+    let motions = programs.len();
+    for (number, one) in rest {
+        let name = &programs[number].0;
+        let of = if name.is_empty() { "" } else { ": " };
+        let name = format!("{name}{of}state of rest at the {}", one.end);
+        programs.push((name, one.program));
+        points.push(one.point);
+    }
+    let program = Joined::new(programs, shared).with_objectives_of(motions);
     let mut program = match combined {
         Combined::Sum => program,
         Combined::Worst => program.with_worst(),

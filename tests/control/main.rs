@@ -43,6 +43,7 @@ mod resisted_energies;
 mod single_times;
 mod sought;
 mod sought_hold;
+mod sought_rest;
 mod squares;
 mod tension_limits;
 mod timed;

@@ -146,7 +146,7 @@ pub(crate) fn last(count: usize, programs: &[(String, Transcription<'_>)]) -> Ve
         let of = |(_, program): &(String, Transcription<'_>)| {
             (program.variables().lower.len() - count + k, 1.0)
         };
-        SharedVariable(programs.iter().map(of).collect())
+        SharedVariable::of_all(programs.iter().map(of))
     };
     (0..count).map(place).collect()
 }
@@ -209,7 +209,7 @@ fn derivatives_of_several_programs_agree_with_differences() {
     with_programs(&list, |programs, points| {
         // A factor of two stands for programs in which a shared variable has another scale.
         let mut shared = last(2, &programs);
-        shared[1].0[1].1 = 2.0;
+        shared[1].0[1].as_mut().unwrap().1 = 2.0;
         let mut joined = Joined::new(programs, &shared);
         let x = joined
             .places()

@@ -140,7 +140,7 @@ fn work_with_shared_inputs_grows_in_proportion_to_the_intervals() {
                     .unknowns()
                     .scalar(k, s)
                     .expect("an input that is sought");
-                SharedVariable(programs.iter().map(|_| (place, 1.0)).collect())
+                SharedVariable::of_all(programs.iter().map(|_| (place, 1.0)))
             });
             shared.collect()
         })

@@ -9,7 +9,7 @@ use proboscis::control::problem::{BoundaryState, Control, Duration, PathConstrai
 use proboscis::control::{BoundaryConditions, BoundaryError};
 use proboscis::ipopt::Start;
 use proboscis::model::system::System;
-use proboscis::model::{Constant, Follower, MaterialConstant, Role, with_parameters};
+use proboscis::model::{Constant, Coordinates, Follower, MaterialConstant, Role, with_parameters};
 use proboscis::prelude::{
     Body, GROUND, Joint, Material, Muscle, Parameter, X, g, kpa, kv, mm, ms, um,
 };
@@ -232,6 +232,7 @@ fn parameters_are_refused_where_they_may_not_act() {
     // Equilibria under voltage depend on the modulus; without voltage they do not.
     let at_rest = Control {
         start: BoundaryState::RestAtVoltages(vec![0.0, 900.0], Rest::Everything),
+        coordinates: Some(Coordinates::Redundant),
         ..with(vec![modulus()])
     };
     says(at_rest, "state of rest at the start depends on it");

@@ -42,7 +42,7 @@ fn derivatives_of_the_greatest_objective_are_differences() {
     with_programs(&list, |programs, points| {
         // Any variables may be shared: here the last ones, one of them by another scale.
         let mut shared = last(2, &programs);
-        shared[1].0[1].1 = 2.0;
+        shared[1].0[1].as_mut().unwrap().1 = 2.0;
         let mut sum = Joined::new(programs, &shared);
         let points: Vec<&[f64]> = points.iter().map(|x| &**x).collect();
         let mut x = sum.places().values(&points);

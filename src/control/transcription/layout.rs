@@ -170,7 +170,7 @@ fn is_given(
     let is_followed = || control.followed(model, column).is_some();
     match (column, variable.role) {
         (Column::Instant { k, i }, Role::Coordinate) => {
-            let is_sought = control.start == BoundaryState::Free;
+            let is_sought = control.start == BoundaryState::Free || boundary.sought_rest[0];
             let is_start = k == 0 && !is_sought && control.goal != BoundaryState::Periodic;
             is_start
                 || (k == end && boundary.goal.coordinates[i].is_some())

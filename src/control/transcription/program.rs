@@ -142,7 +142,9 @@ impl Nlp for Transcription<'_> {
                 Stage::Multiplier(2 * k as u32 + 2)
             }
             // A motion that comes back couples its ends.
-            Column::Instant { k: 0, .. } => Stage::Border,
+            Column::Instant { k: 0, .. } if self.layout.is_closed() && self.layout.end > 1 => {
+                Stage::Border
+            }
             Column::Instant { k, .. } => Stage::Of(2 * k as u32),
             Column::Interval { k, .. } if role(column).has_equation() => {
                 Stage::Of(2 * k as u32 + 2)

@@ -65,6 +65,9 @@ impl Transcription<'_> {
     fn check_ends(&self, boundary: &BoundaryConditions) -> Result<(), BoundaryError> {
         let other = |reason: String| Err(BoundaryError::OtherProgram { reason });
         let BoundaryConditions { start, goal, .. } = boundary;
+        if boundary.sought_rest != [false; 2] {
+            return other("a state of rest depends on a sought constant".to_owned());
+        }
         if start.z.len() != self.workspace.instants[0].z.len()
             || start.momentum.len() != self.momentum.len()
         {

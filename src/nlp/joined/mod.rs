@@ -3,8 +3,8 @@
 //! In place of their sum the greatest objective may be minimised, by a bound of all of them that is one more variable.
 //!
 //! Variables and constraints come program by program, those that are shared behind all others. Stages of a program lie behind those of the one
-//! before, so that the linear systems stay one chain that falls into pieces but for the border; where programs share variables of stages,
-//! such as the inputs of one interval, equal stages are one. One program alone keeps its numbers, bit by bit.
+//! before, so that the linear systems stay one chain that falls into pieces but for the border; where programs share a variable of a stage,
+//! such as the input of an interval, it is one stage. One program alone keeps its numbers, bit by bit.
 
 mod part;
 mod places;
@@ -20,6 +20,8 @@ use worst::Worst;
 /// Several programs as one.
 pub struct Joined<N> {
     parts: Vec<Part<N>>,
+    /// Number of programs, the first ones, whose objectives count: the others are equations alone.
+    counted: usize,
     places: Places,
     variables: Bounds,
     constraints: Bounds,
@@ -41,13 +43,16 @@ impl<N: Nlp> Joined<N> {
     ///
     /// # Panics
     ///
-    /// If there is no program, or a shared variable is not one of each.
+    /// If there is no program, or a shared variable does not say of each whether it has it.
     #[must_use]
     pub fn new(programs: Vec<(String, N)>, shared: &[SharedVariable]) -> Self {
         assert!(!programs.is_empty(), "a program");
         let count = programs.len();
         let is_whole = |one: &SharedVariable| one.0.len() == count;
-        assert!(shared.iter().all(is_whole), "a variable of each program");
+        assert!(
+            shared.iter().all(is_whole),
+            "a place or none in each program"
+        );
         let size = |(_, program): &(String, N)| {
             let bounds = [program.variables(), program.constraints()];
             bounds.map(|bounds| bounds.lower.len())
@@ -55,6 +60,7 @@ impl<N: Nlp> Joined<N> {
         let sizes: Vec<[usize; 2]> = programs.iter().map(size).collect();
         let mut out = Self {
             parts: Vec::with_capacity(count),
+            counted: count,
             places: Places::new(&sizes, shared),
             variables: Bounds::default(),
             constraints: Bounds::default(),
@@ -131,6 +137,13 @@ impl<N: Nlp> Joined<N> {
         bounds
     }
 
+    /// The same where the first programs alone have an objective.
+    #[must_use]
+    pub fn with_objectives_of(mut self, count: usize) -> Self {
+        self.counted = count;
+        self
+    }
+
     /// Places of the variables and constraints of the programs.
     #[must_use]
     pub const fn places(&self) -> &Places {
@@ -153,7 +166,7 @@ impl<N: Nlp + Send> Joined<N> {
     /// The program whose objective is the greatest one of several programs, in place of their sum.
     #[must_use]
     pub fn with_worst(mut self) -> Self {
-        if self.parts.len() < 2 {
+        if self.counted < 2 {
             return self;
         }
         let (column, first_row) = (self.places.count, self.places.constraints());
@@ -165,7 +178,7 @@ impl<N: Nlp + Send> Joined<N> {
         self.places.count += 1;
         self.variables.lower.push(f64::NEG_INFINITY);
         self.variables.upper.push(f64::INFINITY);
-        for (number, part) in self.parts.iter().enumerate() {
+        for (number, part) in self.parts[..self.counted].iter().enumerate() {
             let own = part.columns.iter().map(|&(to, _)| to);
             for to in own.chain([column]) {
                 self.jacobian.rows.push((first_row + number) as u32);
@@ -180,7 +193,7 @@ impl<N: Nlp + Send> Joined<N> {
     /// Completes a point of the variables of programs, and multipliers of their rows, by what the greatest objective adds to them.
     pub fn complete(&mut self, x: &mut [f64], multipliers: Option<&mut Vec<f64>>) {
         if let Some(worst) = &self.worst {
-            worst.complete(&mut self.parts, x, multipliers);
+            worst.complete(&mut self.parts[..self.counted], x, multipliers);
         }
     }
 
@@ -188,7 +201,7 @@ impl<N: Nlp + Send> Joined<N> {
     #[must_use]
     pub fn weights(&self, costates: &[f64]) -> Option<Vec<f64>> {
         let worst = self.worst.as_ref()?;
-        let all = 0..self.parts.len();
+        let all = 0..self.counted;
         Some(all.map(|number| worst.weight(number, costates)).collect())
     }
 }
@@ -214,11 +227,10 @@ impl<N: Nlp + Send> Nlp for Joined<N> {
         if let Some(worst) = &self.worst {
             return worst.objective(x);
         }
-        each(&mut self.parts, &mut [], &|_| 0, &|part, _| {
-            part.evaluate(x);
-        });
+        let parts = &mut self.parts[..self.counted];
+        each(parts, &mut [], &|_| 0, &|part, _| part.evaluate(x));
         // −0 + f is f, bit by bit.
-        let values = self.parts.iter().map(|part| part.objective);
+        let values = parts.iter().map(|part| part.objective);
         values.fold(-0.0, |sum, value| sum + value)
     }
 
@@ -226,11 +238,10 @@ impl<N: Nlp + Send> Nlp for Joined<N> {
         if let Some(worst) = &self.worst {
             return worst.gradient(grad);
         }
-        each(&mut self.parts, &mut [], &|_| 0, &|part, _| {
-            part.differentiate(x);
-        });
+        let parts = &mut self.parts[..self.counted];
+        each(parts, &mut [], &|_| 0, &|part, _| part.differentiate(x));
         grad.fill(-0.0);
-        for part in &self.parts {
+        for part in parts {
             for (&(to, factor), value) in part.columns.iter().zip(&part.gradient) {
                 grad[to] += factor * value;
             }
@@ -245,7 +256,7 @@ impl<N: Nlp + Send> Nlp for Joined<N> {
             part.program.constraint(&part.x, g);
         });
         if let Some(worst) = &self.worst {
-            worst.rows(&mut self.parts, x, of_worst);
+            worst.rows(&mut self.parts[..self.counted], x, of_worst);
         }
     }
 
@@ -258,13 +269,14 @@ impl<N: Nlp + Send> Nlp for Joined<N> {
             part.scale(0, own);
         });
         if let Some(worst) = &self.worst {
-            worst.entries(&mut self.parts, x, of_worst);
+            worst.entries(&mut self.parts[..self.counted], x, of_worst);
         }
     }
 
     fn hessian(&mut self, x: &[f64], sigma: f64, costates: &[f64], values: &mut [f64]) {
         for (number, part) in self.parts.iter_mut().enumerate() {
             part.weight = match &self.worst {
+                _ if number >= self.counted => 0.0,
                 Some(worst) => worst.weight(number, costates),
                 None => sigma,
             };
@@ -278,7 +290,8 @@ impl<N: Nlp + Send> Nlp for Joined<N> {
     }
 
     fn objective_scale(&self) -> f64 {
-        let scales = self.parts.iter().map(|part| part.program.objective_scale());
+        let parts = self.parts[..self.counted].iter();
+        let scales = parts.map(|part| part.program.objective_scale());
         scales.fold(f64::INFINITY, f64::min)
     }
 
@@ -289,25 +302,32 @@ impl<N: Nlp + Send> Nlp for Joined<N> {
             Stage::Of(stage) | Stage::Multiplier(stage) => Some(*stage),
             Stage::Border => None,
         };
-        let is_shared = |number: usize| number >= self.places.first_shared;
-        let shared = self.parts[0].columns.iter().zip(&of_parts[0]);
-        let are_one = shared
-            .filter(|((to, _), _)| is_shared(*to))
-            .any(|(_, stage)| in_stage(stage).is_some());
+        // A variable that is one of the border in a program is one of that of the whole.
+        let mut is_of_border = vec![false; self.variables.lower.len()];
+        for (part, stages) in self.parts.iter().zip(&of_parts) {
+            for (&(to, _), stage) in part.columns.iter().zip(stages) {
+                is_of_border[to] |= *stage == Stage::Border;
+            }
+        }
         let mut all = vec![Stage::Border; self.variables.lower.len()];
         let mut behind = 0;
         for (part, stages) in self.parts.iter().zip(&of_parts) {
+            let mut own = part.columns.iter().zip(stages);
+            let shared = own.find_map(|(&(to, _), stage)| {
+                let placed = in_stage(&all[to]).filter(|_| !is_of_border[to])?;
+                placed.checked_sub(in_stage(stage)?)
+            });
+            let first = shared.unwrap_or(behind);
             for (&(to, _), stage) in part.columns.iter().zip(stages) {
                 all[to] = match *stage {
-                    Stage::Of(stage) => Stage::Of(behind + stage),
-                    Stage::Multiplier(stage) => Stage::Multiplier(behind + stage),
+                    _ if is_of_border[to] => Stage::Border,
+                    Stage::Of(stage) => Stage::Of(first + stage),
+                    Stage::Multiplier(stage) => Stage::Multiplier(first + stage),
                     Stage::Border => Stage::Border,
                 };
             }
             let last = stages.iter().filter_map(in_stage).max();
-            if !are_one {
-                behind += last.map_or(0, |last| last + 1);
-            }
+            behind = behind.max(last.map_or(0, |last| first + last + 1));
         }
         Some(all)
     }
@@ -318,13 +338,9 @@ impl<N: Nlp + Send> Nlp for Joined<N> {
             let squares = part.program.squares().into_iter();
             squares.for_each(|own| times[part.columns[own].0] += 1);
         }
-        let needed = |i: usize| match i >= self.places.first_shared {
-            true => self.parts.len(),
-            false => 1,
-        };
-        (0..times.len())
-            .filter(|&i| times[i] == needed(i))
-            .collect()
+        let count = self.places.count.min(times.len());
+        let all = (0..count).filter(|&i| times[i] == self.places.programs_of(i));
+        all.collect()
     }
 
     fn variable_name(&self, i: usize) -> String {

@@ -3,9 +3,22 @@
 use std::ops::Range;
 use std::sync::Arc;
 
-/// A variable of several programs that has one value: for each program its number there, and the factor by which its value there is larger.
+/// A variable of several programs that has one value: for each program that has it its number there, and the factor by which its value
+/// there is larger.
 #[derive(Clone, Debug, PartialEq)]
-pub struct SharedVariable(pub Vec<(usize, f64)>);
+pub struct SharedVariable(pub Vec<Option<(usize, f64)>>);
+
+impl SharedVariable {
+    /// A variable of all programs.
+    pub fn of_all(places: impl IntoIterator<Item = (usize, f64)>) -> Self {
+        Self(places.into_iter().map(Some).collect())
+    }
+
+    /// The first program that has it.
+    fn first(&self) -> Option<usize> {
+        self.0.iter().position(Option::is_some)
+    }
+}
 
 /// Places of the variables and constraints of each program.
 #[derive(Clone, Debug)]
@@ -16,24 +29,34 @@ pub struct Places {
     /// Number of variables, and the first one that is shared.
     pub(super) count: usize,
     pub(super) first_shared: usize,
+    /// For each shared variable the first program that has it, and the number of those that do.
+    shared: Vec<[usize; 2]>,
 }
 
 impl Places {
     /// Of programs of these numbers of variables and constraints.
     pub(super) fn new(sizes: &[[usize; 2]], shared: &[SharedVariable]) -> Self {
-        let variables: usize = sizes.iter().map(|[n, _]| n - shared.len()).sum();
+        let has = |number: usize| shared.iter().filter(move |one| one.0[number].is_some());
+        let own = sizes.iter().enumerate();
+        let variables: usize = own.map(|(number, [n, _])| n - has(number).count()).sum();
+        let owner = |one: &SharedVariable| {
+            let first = one.first().expect("a variable of a program");
+            [first, one.0.iter().flatten().count()]
+        };
         let (mut next, mut first) = (0, 0);
         let mut out = Self {
             columns: Vec::with_capacity(sizes.len()),
             rows: Vec::with_capacity(sizes.len()),
             count: variables + shared.len(),
             first_shared: variables,
+            shared: shared.iter().map(owner).collect(),
         };
         for (number, &[n, m]) in sizes.iter().enumerate() {
             let mut columns = vec![None; n];
             for (place, one) in shared.iter().enumerate() {
-                let (own, factor) = one.0[number];
-                columns[own] = Some((variables + place, factor));
+                if let Some((own, factor)) = one.0[number] {
+                    columns[own] = Some((variables + place, factor));
+                }
             }
             let mut own = || {
                 next += 1;
@@ -85,12 +108,22 @@ impl Places {
         x
     }
 
-    /// Multipliers of the bounds of the variables of a program; the first one has those of shared variables.
+    /// Number of programs that have a variable of the whole.
+    pub(super) fn programs_of(&self, variable: usize) -> usize {
+        let shared = variable.checked_sub(self.first_shared);
+        let shared = shared.and_then(|place| self.shared.get(place));
+        shared.map_or(1, |[_, count]| *count)
+    }
+
+    /// Multipliers of the bounds of the variables of a program; of a shared variable the first one that has it.
     #[must_use]
     pub fn multipliers_of(&self, number: usize, multipliers: &[f64]) -> Vec<f64> {
-        let own = |&(from, factor): &(usize, f64)| match number > 0 && from >= self.first_shared {
-            true => 0.0,
-            false => multipliers[from] / factor,
+        let own = |&(from, factor): &(usize, f64)| {
+            let shared = from.checked_sub(self.first_shared);
+            match shared.is_none_or(|place| self.shared[place][0] == number) {
+                true => multipliers[from] / factor,
+                false => 0.0,
+            }
         };
         self.columns[number].iter().map(own).collect()
     }

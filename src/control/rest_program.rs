@@ -1,0 +1,145 @@
+//! A state of rest that depends on sought constants, as a program of its own: its coordinates q are unknowns, which the motion that starts
+//! or ends there shares.
+//!
+//! It has one interval whose ends are one instant, under given inputs u. Nothing moves in it, and the one balance of both ends says that
+//! q is an equilibrium:
+//!
+//! ```text
+//! D₂L_d(q, q; u) + D₁L_d(q, q; u) = −h ∂V/∂q(q, u) = 0.
+//! ```
+
+use crate::control::boundary_conditions::{BoundaryConditions, Rests, TerminalState};
+use crate::control::error::BoundaryError;
+use crate::control::guess::{Carried, InitialGuess};
+use crate::control::inputs::Voltages;
+use crate::control::limits::Limits;
+use crate::control::peak_voltage::PEAK_VOLTAGE;
+use crate::control::problem::{BoundaryState, Control};
+use crate::control::transcription::Transcription;
+use crate::dynamics::{DiscreteTrajectory, Start};
+use crate::ipopt::{Multipliers, StartingPoint};
+use crate::model::{Model, Role};
+use crate::nlp::Nlp;
+
+/// A state of rest whose coordinates are unknowns.
+#[derive(Debug)]
+pub struct RestProgram<'m> {
+    /// Its equations.
+    pub program: Transcription<'m>,
+    /// The equilibrium at the guesses of the constants.
+    pub point: StartingPoint,
+    /// Variables of the motion and of this program that are one.
+    pub shared: Vec<[usize; 2]>,
+    /// The end of the motion: `start` or `goal`.
+    pub end: &'static str,
+}
+
+/// The states of rest at start and goal of a motion that depend on sought constants; `motion` is the program of the motion.
+///
+/// # Errors
+/// It is time to stop.
+pub fn rest_programs<'m>(
+    motion: &Transcription<'_>,
+    (model, boundary): (&'m Model, &BoundaryConditions),
+    control: &Control,
+) -> Result<Vec<RestProgram<'m>>, BoundaryError> {
+    let at_start = Some((0, "start", &boundary.start.z[..]));
+    let rest = boundary.goal.rest.as_ref();
+    let at_goal = rest.map(|rest| (motion.intervals(), "goal", &rest.z[..]));
+    let mut out = Vec::new();
+    for (at, (end, voltages)) in [at_start, at_goal]
+        .into_iter()
+        .zip(boundary.rest.iter().enumerate())
+    {
+        let (Some((k, name, z)), true, Some(voltages)) = (at, boundary.sought_rest[end], voltages)
+        else {
+            continue;
+        };
+        let h = control.duration.first() / control.intervals as f64;
+        let (program, point) = equations(model, control, (z, voltages), h)?;
+        let own = |i: usize| {
+            Some([
+                motion.unknowns().unknown(k, i)?,
+                program.unknowns().unknown(0, i)?,
+            ])
+        };
+        // The peak of the voltages is none of this program, but a parameter of its model.
+        let is_peak = |p: &usize| control.parameters[*p].name == PEAK_VOLTAGE;
+        let first = model.variables.range(Role::Parameter).start;
+        let peak = (0..control.parameters.len()).filter(is_peak);
+        let of_peak = |p: usize| {
+            let column = |program: &Transcription<'_>| program.unknowns().scalar(0, first + p);
+            Some([column(motion)?, column(&program)?])
+        };
+        let coordinates = model.variables.range(Role::Coordinate).filter_map(own);
+        out.push(RestProgram {
+            shared: coordinates.chain(peak.filter_map(of_peak)).collect(),
+            program,
+            point,
+            end: name,
+        });
+    }
+    Ok(out)
+}
+
+/// The equations of an equilibrium near coordinates under voltages, with steps of `h` ms, and the point of these coordinates.
+fn equations<'m>(
+    model: &'m Model,
+    control: &Control,
+    (z, voltages): (&[f64], &[f64]),
+    h: f64,
+) -> Result<(Transcription<'m>, StartingPoint), BoundaryError> {
+    let inputs = Voltages::Constant(voltages.to_vec());
+    let rest = Control {
+        goal: BoundaryState::Periodic,
+        parameters: control.parameters.clone(),
+        coordinates: control.coordinates,
+        ..Control::of_course(&control.start, &inputs, h, 1)
+    };
+    let start = Start::moving(model, z.to_vec(), vec![0.0; model.coordinate_count()]);
+    let boundary = BoundaryConditions {
+        start,
+        goal: TerminalState {
+            coordinates: vec![None; model.coordinate_count()],
+            rests: Rests::Nothing,
+            rest: None,
+        },
+        rest: [None, None],
+        sought_rest: [false; 2],
+        limits: Limits::default(),
+        notes: Vec::new(),
+    };
+    let mut scalars = model.scalars(voltages);
+    scalars = model.variables.scalars(&scalars);
+    for (s, parameter) in model
+        .variables
+        .range(Role::Parameter)
+        .zip(&control.parameters)
+    {
+        scalars[s] = parameter.guess;
+    }
+    let initial = InitialGuess {
+        discrete: DiscreteTrajectory {
+            times: vec![0.0, h],
+            z: vec![z.to_vec(); 2],
+            scalars: vec![scalars],
+            ..DiscreteTrajectory::default()
+        },
+        h,
+        costates: None,
+        carried: Carried::default(),
+    };
+    let program = Transcription::of_any(model, &boundary, &rest, &initial)?;
+    let point = program.start(&initial);
+    let [rows, columns] = [program.constraints(), program.variables()].map(|one| one.lower.len());
+    let point = StartingPoint {
+        // Nothing is known of them.
+        costates: Some(Multipliers {
+            constraints: vec![0.0; rows],
+            lower: vec![0.0; columns],
+            upper: vec![0.0; columns],
+        }),
+        ..point
+    };
+    Ok((program, point))
+}
