@@ -37,13 +37,12 @@ pub(super) fn check(
     }
     given_amounts(model, boundary, control)?;
     let is_known = control.goal != BoundaryState::Periodic;
-    let is_start_known = is_known && !boundary.sought_rest[0];
-    let start = boundary.start.z.iter().copied();
-    let start: Vec<_> = start.map(|value| is_start_known.then_some(value)).collect();
+    let [is_start, is_goal] = boundary.sought_rest.map(|is_sought| is_known && !is_sought);
+    let start = boundary.start.z.iter();
+    let start: Vec<_> = start.map(|value| is_start.then_some(*value)).collect();
     let goal = &boundary.goal.coordinates;
     let [at_start, at_goal] = scalars;
-    let at_start = at_start.filter(|_| is_start_known);
-    let at_goal = at_goal.filter(|_| !boundary.sought_rest[1]);
+    let (at_start, at_goal) = (at_start.filter(|_| is_start), at_goal.filter(|_| is_goal));
     let first = model.action.map.unknowns();
     let charts = [&boundary.start.z[first..], boundary.goal.charts(first)];
     let ends = [

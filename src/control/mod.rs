@@ -5,6 +5,7 @@ mod boundary;
 mod boundary_conditions;
 mod boundary_state;
 mod bounded_quantity;
+mod course;
 mod earlier;
 mod end_state;
 mod endpoint_checks;

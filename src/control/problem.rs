@@ -143,35 +143,6 @@ pub struct Control {
 }
 
 impl Control {
-    /// The motion from a start under given inputs over `duration` ms, as a problem without a choice.
-    pub fn of_course(
-        start: &BoundaryState,
-        inputs: &Voltages,
-        duration: f64,
-        intervals: usize,
-    ) -> Self {
-        Self {
-            duration: Duration::Given(duration),
-            intervals,
-            is_refined: false,
-            start: start.clone(),
-            goal: BoundaryState::Free,
-            voltage_bounds: [f64::NEG_INFINITY, f64::INFINITY],
-            load_bounds: BTreeMap::new(),
-            given: BTreeMap::new(),
-            course: Some(inputs.clone()),
-            parameters: Vec::new(),
-            sought_hold: SoughtHold::Never,
-            hold: Hold::Reported,
-            objective: Objective::default(),
-            limits: Vec::new(),
-            waypoints: Vec::new(),
-            coordinates: None,
-            guess: Guess::Interpolate,
-            solver: Solver::default(),
-        }
-    }
-
     /// The value of a variable of the intervals that is given at a time in ms, in its unit; `None` where the time is an unknown on which it
     /// depends.
     pub fn given(&self, variable: &Variable, time: f64) -> Option<f64> {
