@@ -47,6 +47,9 @@ blocks: build
 gallery: build
 	@for problem in elephant_trunk elephant_trunk_effort elephant_trunk_figure_eight bending_actuator pull_in fe_bending_control fe_trunk_control; do $(PROGRAM) solve problems/$$problem.json -o $(GALLERY)/$$problem || exit; done
 	@for problem in elephant_trunk_constant fe_trunk; do $(PROGRAM) simulate problems/$$problem.json -o $(GALLERY)/$$problem || exit; done
+	@$(PROGRAM) solve problems/codesign_trunk.json --set 'control.free={}' --set 'control.limits=[]' -o target/design/given
+	@$(PROGRAM) solve problems/codesign_trunk.json -o target/design/found
+	@for design in given found; do cp target/design/$$design/right/snapshots.svg $(GALLERY)/codesign_trunk/$$design.svg || exit; done
 
 build: install-deps
 	@[ -x $(PROGRAM) ] || echo 'building (a few minutes the first time)'
