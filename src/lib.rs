@@ -86,6 +86,8 @@ pub mod nlp;
 #[cfg_attr(not(internals), doc(hidden))]
 pub mod report;
 #[cfg_attr(not(internals), doc(hidden))]
+pub mod sensitivity;
+#[cfg_attr(not(internals), doc(hidden))]
 pub mod sparse;
 #[cfg(feature = "cli")]
 #[cfg_attr(not(internals), doc(hidden))]

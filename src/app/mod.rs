@@ -10,6 +10,7 @@
 //! - `side_by_side`: several results on one page.
 //! - `accuracy_table`, `blocks`, `comparison`, `energy_summary`, `length_unit_check`: texts about a result.
 //! - `other_task`: messages where a problem asks for another command; `no_equilibrium`: the summary where there is no state of rest.
+//! - `sensitivity_summary`: sensitivities of an optimum.
 //! - `page`, `simulation_page`, `solve_page`: texts of the page; `solve_summary`, `equilibrium_summary`, `messages`, `folder`, `foreign`, `progress`, `ticker`, `request`, `error`: common parts of commands.
 
 mod accuracy_table;
@@ -52,6 +53,7 @@ mod progress;
 mod record;
 mod request;
 mod resume_file;
+mod sensitivity_summary;
 mod side_by_side;
 mod simulation;
 mod simulation_page;

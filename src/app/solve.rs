@@ -14,6 +14,7 @@ use crate::app::page;
 use crate::app::progress::Reached;
 use crate::app::request::{CommandInput, CommandOutput};
 use crate::app::resume_file;
+use crate::app::sensitivity_summary::SensitivitySummary;
 use crate::app::solution_file;
 use crate::app::solve_page::{convergence, goal, rows, targets, waypoints};
 use crate::app::solve_summary::{command_output, program, seconds};
@@ -28,7 +29,7 @@ use crate::model::System;
 use crate::report::atomic::WriteError;
 use crate::report::file_set::FileSet;
 use crate::report::origin::Origin;
-use crate::report::{Run, write_run};
+use crate::report::{Run, sensitivities, write_run};
 use crate::tasks::{self, SolveResult};
 use crate::workflow::effects::Plan;
 use crate::workflow::motion::{solved, trajectory};
@@ -114,6 +115,11 @@ fn add_observed(summary: &mut Summary, result: &SolveResult) {
     summary.waypoint_values.clone_from(&result.waypoint_values);
     summary.final_values.clone_from(&result.final_values);
     summary.notes.clone_from(&result.remarks);
+    let system = &result.optimum.model.system;
+    summary.sensitivities = SensitivitySummary::all(system, result);
+    let warnings = summary.sensitivities.iter();
+    let warnings: Vec<String> = warnings.filter_map(SensitivitySummary::warning).collect();
+    summary.notes.warn("tolerance", warnings);
 }
 
 /// Writes the fields of the motion, tables, figures and page, and adds what they hold to the summary.
@@ -135,6 +141,11 @@ fn write_files(
     let written = fields::write(files, model, discrete, &origin)?;
     summary.blocks = BlockSizes::from_model(model).map(|b| b.after(model, &observed, written));
     observed.columns.extend(result.exchange.columns());
+    if !result.sensitivities.is_empty() {
+        let list = &result.sensitivities;
+        let text = sensitivities::table(&model.system, trajectory, list, &origin);
+        files.add("sensitivities.csv", text.as_bytes())?;
+    }
     let motion = Motion {
         model,
         discrete,

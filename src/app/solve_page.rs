@@ -1,6 +1,7 @@
 //! Texts of the page of a control problem: rows of its table, the convergence of the solver, the goal.
 
 use crate::app::energy_summary::EnergySummary;
+use crate::app::sensitivity_summary::SensitivitySummary;
 use crate::app::summary::{Program, Summary};
 use crate::control::BoundaryConditions;
 use crate::control::problem::{BoundaryState, Control, CostFunction, During, Place, instant_at};
@@ -53,6 +54,9 @@ pub(super) fn rows(summary: &Summary) -> Vec<(String, String)> {
             }
         }
         for (key, value) in summary.tracking.iter().map(tracking_row) {
+            row(&key, value);
+        }
+        for (key, value) in summary.sensitivities.iter().map(SensitivitySummary::row) {
             row(&key, value);
         }
         for violation in &program.violations {

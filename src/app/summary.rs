@@ -15,6 +15,7 @@ use crate::app::identification_summary::Identification;
 use crate::app::linear_systems::LinearSystems;
 use crate::app::path_summary::PathSummary;
 use crate::app::request::CommandInput;
+use crate::app::sensitivity_summary::SensitivitySummary;
 use crate::control::problem;
 use crate::dynamics::{DiscreteTrajectory, LocalError};
 use crate::files::lay_out;
@@ -67,6 +68,9 @@ pub(super) struct Summary {
     /// Values at its end for which final costs ask.
     #[serde(skip_serializing_if = "Vec::is_empty")]
     pub(super) final_values: Vec<FinalValue>,
+    /// Derivatives of the optimum by numbers that the problem names.
+    #[serde(skip_serializing_if = "Vec::is_empty")]
+    pub(super) sensitivities: Vec<SensitivitySummary>,
     /// Electrical energy and mechanical work of a motion.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub(super) energies: Option<EnergySummary>,
@@ -363,6 +367,7 @@ impl Summary {
             tracking: Vec::new(),
             waypoint_values: Vec::new(),
             final_values: Vec::new(),
+            sensitivities: Vec::new(),
             energies: None,
             comparison: None,
             rest: None,

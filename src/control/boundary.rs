@@ -63,11 +63,34 @@ impl BoundaryConditions {
         Ok((model, boundary))
     }
 
+    /// Resolves like [`resolve`](Self::resolve) for parameters that keep their guesses: states of rest may depend on them. What rests at the goal is
+    /// what the goal says.
+    ///
+    /// # Errors
+    /// As of [`resolve`](Self::resolve).
+    pub fn resolve_held(
+        system: &System,
+        control: &Control,
+        h0: f64,
+    ) -> Result<(Model, Self), BoundaryError> {
+        Self::with_parameters(system, control, h0, true)
+    }
+
     /// The same, where everything rests unless the goal says otherwise.
     fn of_goal(
         system: &System,
         control: &Control,
         h0: f64,
+    ) -> Result<(Model, Self), BoundaryError> {
+        Self::with_parameters(system, control, h0, false)
+    }
+
+    /// Model and boundary; parameters are held at their guesses where `are_held`.
+    fn with_parameters(
+        system: &System,
+        control: &Control,
+        h0: f64,
+        are_held: bool,
     ) -> Result<(Model, Self), BoundaryError> {
         let system = &sought::at_guess(system, control)?;
         let analysis = control.analysis(system, h0);
@@ -111,7 +134,10 @@ impl BoundaryConditions {
         let rest = boundary.goal.rest.as_ref();
         let is_known = control.goal != BoundaryState::Periodic;
         let start = is_known.then_some(&boundary.start.z[..]);
-        let ends = [start, rest.map(|rest| &rest.z[..])];
+        let ends = match are_held {
+            true => [None; 2],
+            false => [start, rest.map(|rest| &rest.z[..])],
+        };
         boundary.sought_rest = sought::check(&model, control, &boundary, ends)?;
         if boundary.sought_rest[1] {
             boundary.goal.coordinates.fill(None);

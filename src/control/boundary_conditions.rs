@@ -20,6 +20,24 @@ pub struct BoundaryConditions {
     pub notes: Vec<String>,
 }
 
+impl BoundaryConditions {
+    /// A start in a number of coordinates, and an open end.
+    pub fn without_goal(start: Start, coordinates: usize) -> Self {
+        Self {
+            start,
+            goal: TerminalState {
+                coordinates: vec![None; coordinates],
+                rests: Rests::Nothing,
+                rest: None,
+            },
+            rest: [None, None],
+            sought_rest: [false; 2],
+            limits: Limits::default(),
+            notes: Vec::new(),
+        }
+    }
+}
+
 /// Part of the system that comes to rest at the end.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Rests {

@@ -18,6 +18,7 @@ impl Control {
             duration: Duration::Given(duration),
             intervals,
             is_refined: false,
+            varied: Vec::new(),
             start: start.clone(),
             goal: BoundaryState::Free,
             voltage_bounds: [f64::NEG_INFINITY, f64::INFINITY],

@@ -40,6 +40,7 @@ mod sought_hold;
 mod span;
 mod transcription;
 mod uniform_grid;
+mod varied;
 mod waypoint;
 
 pub use boundary::resolve_start;
@@ -56,8 +57,9 @@ pub use numbering::{Column, Numbering, Row};
 pub use objective::Cost;
 pub use peak_voltage::PEAK_VOLTAGE;
 pub use problem::{Motion, Motions};
+pub use rest::rest_at;
 pub use rest_program::{RestProgram, rest_programs};
 pub use solution::{Costates, Solution};
 pub(crate) use sought_hold::obstacle as hold_obstacle;
 pub use span::Span;
-pub use transcription::Transcription;
+pub use transcription::{Outline, Transcription};

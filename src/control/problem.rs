@@ -10,6 +10,7 @@ pub use crate::control::identification::{
 pub use crate::control::inputs::{Afterwards, Voltages, absent_loads};
 pub use crate::control::path_constraint::{PathConstraint, Side};
 pub use crate::control::quantity_cost::{CostFunction, During, Objective, QuantityCost};
+pub use crate::control::varied::{Varied, VariedOf, WeightOf};
 pub use crate::control::waypoint::{Waypoint, instant_at};
 use crate::dynamics::Solving;
 use crate::ipopt::{LinearSolver, OptionValue};
@@ -124,6 +125,8 @@ pub struct Control {
     pub course: Option<Voltages>,
     /// Constants of the system that are sought.
     pub parameters: Vec<Parameter>,
+    /// Numbers by which the optimum is differentiated.
+    pub varied: Vec<Varied>,
     /// Search for the inputs that hold the goal.
     pub sought_hold: SoughtHold,
     /// Treatment of a goal that cannot be kept.

@@ -5,7 +5,10 @@ use crate::dynamics::{Equilibrium, stable_equilibrium};
 use crate::model::{Analysis, Model, Presolved, Role, with_parameters};
 
 /// The equilibrium under voltages (V, one per muscle), with sought parameters at their guesses and prescribed coordinates at a time in ms.
-pub(super) fn rest_at(
+///
+/// # Errors
+/// There is none.
+pub fn rest_at(
     model: &Model,
     voltages: &[f64],
     (place, time): (&'static str, f64),

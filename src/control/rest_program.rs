@@ -8,11 +8,10 @@
 //! D₂L_d(q, q; u) + D₁L_d(q, q; u) = −h ∂V/∂q(q, u) = 0.
 //! ```
 
-use crate::control::boundary_conditions::{BoundaryConditions, Rests, TerminalState};
+use crate::control::boundary_conditions::BoundaryConditions;
 use crate::control::error::BoundaryError;
 use crate::control::guess::{Carried, InitialGuess};
 use crate::control::inputs::Voltages;
-use crate::control::limits::Limits;
 use crate::control::peak_voltage::PEAK_VOLTAGE;
 use crate::control::problem::{BoundaryState, Control};
 use crate::control::transcription::Transcription;
@@ -97,18 +96,7 @@ fn equations<'m>(
         ..Control::of_course(&control.start, &inputs, h, 1)
     };
     let start = Start::moving(model, z.to_vec(), vec![0.0; model.coordinate_count()]);
-    let boundary = BoundaryConditions {
-        start,
-        goal: TerminalState {
-            coordinates: vec![None; model.coordinate_count()],
-            rests: Rests::Nothing,
-            rest: None,
-        },
-        rest: [None, None],
-        sought_rest: [false; 2],
-        limits: Limits::default(),
-        notes: Vec::new(),
-    };
+    let boundary = BoundaryConditions::without_goal(start, model.coordinate_count());
     let mut scalars = model.scalars(voltages);
     scalars = model.variables.scalars(&scalars);
     for (s, parameter) in model

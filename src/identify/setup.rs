@@ -3,9 +3,7 @@
 use crate::control::problem::{
     BoundaryState, Control, Duration, Identification, Recording, Regime, SoughtStart, Voltages,
 };
-use crate::control::{
-    BoundaryConditions, BoundaryError, Limits, Rests, TerminalState, resolve_start,
-};
+use crate::control::{BoundaryConditions, BoundaryError, resolve_start};
 use crate::dynamics::Start;
 use crate::identify::drive::Drive;
 use crate::identify::error::IdentifyError;
@@ -174,18 +172,7 @@ impl<'a> Setup<'a> {
 
     /// Start and open end of the transcription.
     pub(super) fn boundary(&self, start: Start) -> BoundaryConditions {
-        BoundaryConditions {
-            start,
-            goal: TerminalState {
-                coordinates: vec![None; self.model.coordinate_count()],
-                rests: Rests::Nothing,
-                rest: None,
-            },
-            rest: [None, None],
-            sought_rest: [false; 2],
-            limits: Limits::default(),
-            notes: Vec::new(),
-        }
+        BoundaryConditions::without_goal(start, self.model.coordinate_count())
     }
 
     /// The problem whose transcription has the derivatives by the start too.

@@ -279,6 +279,7 @@ impl Control {
             duration: self.duration,
             intervals: self.intervals,
             is_refined: false,
+            varied: Vec::new(),
             start: self.start.resolve(system, sources.len())?,
             goal: self.goal.resolve(system, sources.len())?,
             voltage_bounds: self.voltage_bounds,

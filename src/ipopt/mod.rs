@@ -41,6 +41,7 @@ pub use option_value::OptionValue;
 pub use options::{MUMPS_ORDERING, Options, Start};
 pub use solution::{Evaluations, Iteration, Multipliers, Seconds, SolverResult, StartingPoint};
 pub use solver::Solver;
+pub(crate) use squares::{InSquares, Squares};
 pub use status::Status;
 
 /// Solves `nlp` from `start`, once: see [`Solver::solve`].

@@ -19,34 +19,39 @@ const LEAST: f64 = 1e-18;
 
 /// Variables that are squares, with the conversions between the two.
 #[derive(Clone, Debug, Default)]
-pub(super) struct Squares {
+pub(crate) struct Squares {
     /// Variable and its u.
     list: Vec<(usize, f64)>,
 }
 
 impl Squares {
-    /// Those of a program; u is the upper bound where there is one.
+    /// Those of a program.
     pub(super) fn from_program(program: &impl Nlp) -> Self {
+        Self::of(program, program.squares())
+    }
+
+    /// These variables of a program; u is the upper bound where there is one.
+    pub(crate) fn of(program: &impl Nlp, variables: Vec<usize>) -> Self {
         let upper = &program.variables().upper;
         let unit = |i: usize| match upper[i].is_finite() && upper[i] > 0.0 {
             true => upper[i],
             false => 1.0,
         };
-        let list = program.squares().into_iter().map(|i| (i, unit(i)));
+        let list = variables.into_iter().map(|i| (i, unit(i)));
         Self {
             list: list.collect(),
         }
     }
 
     /// Converts x to the unknowns.
-    pub(super) fn square(&self, x: &mut [f64]) {
+    pub(crate) fn square(&self, x: &mut [f64]) {
         for &(i, u) in &self.list {
             x[i] *= x[i] / u;
         }
     }
 
     /// Converts the unknowns to x.
-    pub(super) fn root(&self, w: &mut [f64]) {
+    pub(crate) fn root(&self, w: &mut [f64]) {
         for &(i, u) in &self.list {
             w[i] = (u * w[i].max(0.0)).sqrt();
         }
@@ -64,11 +69,26 @@ impl Squares {
     }
 
     /// Multipliers of the bounds of x become those of the unknowns.
-    pub(super) fn of_squares(&self, x: &[f64], multipliers: &mut Multipliers) {
+    pub(crate) fn of_squares(&self, x: &[f64], multipliers: &mut Multipliers) {
         for &(i, u) in &self.list {
             let s = slope(x[i], u);
             multipliers.lower[i] *= s;
             multipliers.upper[i] *= s;
+        }
+    }
+
+    /// ∂w/∂x of a variable at a value; one where it is no square.
+    pub(crate) fn rate(&self, variable: usize, x: f64) -> f64 {
+        let of = |&&(i, _): &&(usize, f64)| i == variable;
+        self.list.iter().find(of).map_or(1.0, |&(_, u)| 2.0 * x / u)
+    }
+
+    /// Changes of the unknowns become those of x.
+    pub(crate) fn of_changes(&self, x: &[f64], changes: &mut [f64]) {
+        for &(i, u) in &self.list {
+            if changes[i] != 0.0 {
+                changes[i] *= slope(x[i], u);
+            }
         }
     }
 
@@ -89,8 +109,8 @@ fn slope(x: f64, u: f64) -> f64 {
 
 /// A program in squares of some of its variables.
 #[derive(Debug)]
-pub(super) struct InSquares<N> {
-    pub(super) program: N,
+pub(crate) struct InSquares<N> {
+    pub(crate) program: N,
     squares: Squares,
     bounds: Bounds,
     /// Entries of the Jacobian in the column of a square, with the column.
@@ -104,7 +124,7 @@ pub(super) struct InSquares<N> {
 
 impl<N: Nlp> InSquares<N> {
     /// A program, of which Jacobian and Hessian have these entries.
-    pub(super) fn new(program: N, squares: Squares, jacobian: &Entries, hessian: &Entries) -> Self {
+    pub(crate) fn new(program: N, squares: Squares, jacobian: &Entries, hessian: &Entries) -> Self {
         let mut is_square = vec![false; program.variables().lower.len()];
         for &(i, _) in &squares.list {
             is_square[i] = true;

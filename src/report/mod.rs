@@ -22,6 +22,7 @@ mod parts;
 pub mod pose;
 mod run;
 pub mod sampled;
+pub mod sensitivities;
 pub mod shell;
 mod silhouette;
 pub mod skin;

@@ -284,6 +284,7 @@ fn as_control(task: Task, system: &System) -> Control {
         duration: Duration::Given(step * INTERVALS as f64),
         intervals: INTERVALS,
         is_refined: false,
+        varied: Vec::new(),
         start,
         // A joint that goes on does not rest.
         goal: match system.joints.iter().any(|joint| joint.motion.is_some()) {

@@ -7,6 +7,7 @@ use crate::control::problem::Control;
 use crate::dynamics::trajectory::Trajectory;
 use crate::dynamics::{DiscreteTrajectory, EnergyExchange, out_of_domain, out_of_range};
 use crate::model::System;
+use crate::sensitivity::{self, NoSensitivity, Sensitivity, sensitivities};
 use crate::tasks::grid::{Found, SolveRequest};
 use crate::tasks::held_goal::{HeldGoal, solve_and_hold};
 use crate::tasks::moved_markers::moved_markers;
@@ -55,6 +56,8 @@ pub struct SolveResult {
     pub waypoint_values: Vec<FinalValue>,
     /// Values at the end for which final costs ask.
     pub final_values: Vec<FinalValue>,
+    /// Derivatives of the optimum by the numbers that the problem names; none where they do not exist, which a remark says.
+    pub sensitivities: Vec<Sensitivity>,
     /// Muscles and blocks outside the domain of their material.
     pub outside: Vec<Outside>,
     /// Warnings and notes.
@@ -74,6 +77,10 @@ pub fn solve(
     observer: &mut dyn FnMut(usize, &Iterate<'_>) -> ControlFlow<()>,
 ) -> Result<SolveResult, WorkflowError> {
     memory::of_elements(system, true)?;
+    sensitivity::check(system, control).map_err(|(name, reason)| WorkflowError::Problem {
+        place: format!("control.sensitivity.{name}"),
+        reason,
+    })?;
     let HeldGoal {
         found,
         control,
@@ -108,6 +115,7 @@ pub(super) fn assessed(
         tracking: followed(&optimum, control, &trajectory),
         waypoint_values,
         final_values,
+        sensitivities: Vec::new(),
         outside: domain::records(&out_of_domain(model, &discrete)),
         remarks: Remarks::default(),
         optimum,
@@ -121,7 +129,26 @@ pub(super) fn assessed(
     let can_seek = not_found.is_none() && hold_obstacle(&result.optimum.model, control).is_none();
     result.remarks = remarks(system, control, &result, (note, not_kept, can_seek));
     result.remarks.note("hold", not_found);
+    add_sensitivities(system, control, &mut result);
     result
+}
+
+/// Adds derivatives of an optimum, or the reason why there are none.
+fn add_sensitivities(system: &System, control: &Control, result: &mut SolveResult) {
+    if control.varied.is_empty() {
+        return;
+    }
+    let found = match result.optimum.meets_equations() {
+        true => sensitivities(system, control, &result.optimum.motion),
+        false => Err(NoSensitivity::Refused("no optimum was found".to_owned())),
+    };
+    match found {
+        Ok(list) => result.sensitivities = list,
+        Err(error) => {
+            let text = format!("no sensitivities: {error}");
+            result.remarks.warn("no_sensitivities", [text]);
+        }
+    }
 }
 
 /// All that is to be known of a result: `refined` is the reason for another grid than that of the problem, `not_kept` the reason why the end

@@ -48,6 +48,7 @@ pub fn control(system: &System, intervals: usize) -> Control {
         duration: Duration::Given(10.0 * intervals as f64),
         intervals,
         is_refined: false,
+        varied: Vec::new(),
         start: BoundaryState::RestAtVoltages(vec![0.0; system.sources().len()], Rest::Everything),
         goal: joints(&[]),
         voltage_bounds: [0.0, 3000.0],

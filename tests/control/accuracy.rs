@@ -53,6 +53,7 @@ fn double_integrator(intervals: usize) -> Attempt<usize> {
         duration: Duration::Given(TIME),
         intervals,
         is_refined: false,
+        varied: Vec::new(),
         start: rest_at(0.0),
         goal: rest_at(GOAL),
         voltage_bounds: [f64::NEG_INFINITY, f64::INFINITY],

@@ -17,6 +17,7 @@ mod quantities;
 mod reference;
 mod scene;
 mod schema_walk;
+mod sensitivity;
 mod slips;
 mod solids;
 mod tasks;

@@ -13,7 +13,7 @@ const FLOORS: [&[&str]; 15] = [
     &["model"],
     &["dynamics"],
     &["control"],
-    &["identify"],
+    &["identify", "sensitivity"],
     &["workflow", "files"],
     &["tasks"],
     &["report", "interface"],

@@ -23,6 +23,7 @@ pub(super) mod layout;
 mod limit_rows;
 mod limit_values;
 mod objective;
+mod outline;
 mod point;
 mod program;
 mod scaling;
@@ -48,6 +49,7 @@ use count::overdetermined;
 use layout::Layout;
 pub(super) use limit_rows::Site;
 use objective::Objective;
+pub use outline::Outline;
 use structure::Structure;
 use workspace::Workspace;
 

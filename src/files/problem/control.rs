@@ -14,6 +14,7 @@ use crate::files::problem::guess::{guess, unwritten};
 use crate::files::problem::limits::limits;
 use crate::files::problem::loads::{check_end, load, load_bounds, loads};
 use crate::files::problem::motions::check_alone;
+use crate::files::problem::sensitivity::with_varied;
 use crate::files::problem::spec_control::{
     ControlSolverSpec, ControlSpec, DurationSpec, IntervalsSpec, IntervalsWord, ObjectiveSpec,
     OptionSpec, SolverSpec,
@@ -98,6 +99,7 @@ pub(crate) fn control(
         duration,
         intervals: intervals.unwrap_or(FIRST_INTERVALS),
         is_refined: intervals.is_none(),
+        varied: Vec::new(),
         start,
         goal,
         voltage_bounds,
@@ -115,7 +117,8 @@ pub(crate) fn control(
         solver: solver(&spec.solver, &scope.key("solver"))?,
     };
     let place = scope.key("objective").key("peak_voltage");
-    with_peak(control, spec.objective.peak_voltage, system, &place)
+    let control = with_peak(control, spec.objective.peak_voltage, system, &place)?;
+    with_varied(control, &spec.sensitivity, scene, &scope.key("sensitivity"))
 }
 
 /// The goal; free where none is written and the objective names what to follow or where to end.

@@ -40,6 +40,11 @@ pub(crate) fn motions(document: &Document) -> Result<Option<Vec<MotionDocument<'
     let Some(list) = inside.entry("motions") else {
         return Ok(None);
     };
+    if inside.entry("sensitivity").is_some() {
+        let scope = Scope::of(document).key("control").key("sensitivity");
+        let found = "sensitivities of several motions";
+        return Err(scope.wrong(found, "a problem of one motion"));
+    }
     let scope = Scope::of(document).key("control").key("motions");
     let written = Scanner::from(text, list.value.start);
     if written.peek() != Some(b'[') {

@@ -6,6 +6,7 @@ use crate::files::problem::spec_coordinates::CoordinatesSpec;
 use crate::files::problem::spec_energies::EnergySpec;
 use crate::files::problem::spec_free::FreeMap;
 use crate::files::problem::spec_limits::LimitSpec;
+use crate::files::problem::spec_sensitivity::SensitivityMap;
 use crate::files::problem::spec_states::{GoalSpec, HoldSpec, StartSpec};
 use crate::files::problem::spec_track::{FinalSpec, TrackSpec};
 use crate::files::problem::spec_voltages::VoltagesSpec;
@@ -54,6 +55,12 @@ pub struct ControlSpec {
     /// Constants of the scene that are sought, by their paths, such as `materials.silicone.shear_modulus`.
     #[serde(default)]
     pub free: FreeMap,
+    /// Numbers by which the optimum is differentiated, by their paths: constants of the scene, such as `materials.silicone.shear_modulus`, and
+    /// `duration`, `goal.joint_angles.NAME`, `goal.markers.NAME[0]`, `goal.rest_at_voltages.NAME`, `start.joint_angles.NAME`,
+    /// `start.joint_rates.NAME`, `start.rest_at_voltages.NAME`, `voltage_bounds[1]`, `load_bounds.NAME[1]`, `objective.effort`, `objective.rate`,
+    /// `objective.duration`.
+    #[serde(default)]
+    pub sensitivity: SensitivityMap,
     /// Treatment of a goal that cannot be kept, because it is unstable or its voltages are beyond their bounds: it is
     /// `reported` (where not written), or refused where holding it is `required`.
     #[serde(default)]
@@ -110,7 +117,14 @@ fn needed_without_motions(schema: &mut Schema) {
 }
 
 /// Keys of a control problem that all of its motions have in common.
-pub(crate) const COMMON: [&str; 5] = ["combine", "free", "motions", "shared_inputs", "solver"];
+pub(crate) const COMMON: [&str; 6] = [
+    "combine",
+    "free",
+    "motions",
+    "sensitivity",
+    "shared_inputs",
+    "solver",
+];
 
 /// One of several motions: the keys of a control problem that are other ones in it. It is read with those that it shares with the others.
 #[derive(Clone, Debug, Deserialize)]

@@ -91,8 +91,8 @@ impl NoConstant {
 }
 
 impl WrittenScene<'_> {
-    /// The system of the scene with a value in the place of a path.
-    pub(crate) fn with(&self, path: &JsonPath, value: &Value) -> Result<System, NoConstant> {
+    /// The scene as it is written, with all that a path may name.
+    fn spec_for(&self, path: &JsonPath) -> Result<SceneSpec, NoConstant> {
         let mut spec = self.spec.clone();
         add_named(&mut spec);
         let is_of_chain = matches!(path.0.first(), Some(Step::Key(key)) if key == "chain");
@@ -106,10 +106,25 @@ impl WrittenScene<'_> {
             })?;
             spec.materials.insert(name.clone(), material);
         }
-        let spec = match is_of_chain {
+        Ok(match is_of_chain {
             true => spec,
             false => expanded(spec),
+        })
+    }
+
+    /// The value at a path as it is written; none where nothing is.
+    pub(crate) fn written(&self, path: &JsonPath) -> Option<Value> {
+        let spec = serde_json::to_value(self.spec_for(path).ok()?).ok()?;
+        let step = |value: Value, step: &Step| match step {
+            Step::Key(key) => value.get(key).or_else(|| named(&value, key)).cloned(),
+            Step::Index(index) => value.get(index).cloned(),
         };
+        path.0.iter().try_fold(spec, step)
+    }
+
+    /// The system of the scene with a value in the place of a path.
+    pub(crate) fn with(&self, path: &JsonPath, value: &Value) -> Result<System, NoConstant> {
+        let spec = self.spec_for(path)?;
         let text = serde_json::to_string(&spec).expect("a scene is JSON");
         let mut document = Document::of_text(&self.document.path, text)
             .map_err(|error| NoConstant::of_value(&error))?;
@@ -249,6 +264,13 @@ impl WrittenScene<'_> {
             }
         }
     }
+}
+
+/// The entry of a list that has a name.
+fn named<'v>(list: &'v Value, name: &str) -> Option<&'v Value> {
+    let entries = list.as_array()?.iter();
+    let is_it = |entry: &&Value| entry.get("name").and_then(Value::as_str) == Some(name);
+    entries.clone().find(is_it)
 }
 
 /// A constant that the bounds of a number change.

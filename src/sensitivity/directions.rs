@@ -1,0 +1,298 @@
+//! Changes of an opened program with each number by which its optimum is differentiated.
+
+use crate::control::problem::{BoundaryState, Control, Objective, Varied, VariedOf, WeightOf};
+use crate::control::{BoundedQuantity, Column, Row, Transcription, When, resolve_start};
+use crate::model::{Model, Quantity, Role};
+use crate::nlp::Nlp;
+use crate::sensitivity::direction::{Direction, Held, Side};
+use crate::sensitivity::error::NoSensitivity;
+use crate::sensitivity::opened::Opened;
+use crate::sensitivity::rest::rest_derivatives;
+use nalgebra::DMatrix;
+use std::collections::BTreeMap;
+
+/// A root of a square that is zero, as a part of its bound.
+const BESIDE: f64 = 1e-9;
+
+/// Makes directions.
+pub(super) struct Directions<'a> {
+    opened: &'a Opened,
+    program: &'a Transcription<'a>,
+    held: &'a Held,
+    /// The optimum.
+    point: &'a [f64],
+    /// The start as the problem gives it.
+    start: &'a BoundaryState,
+    /// Derivatives of the states of rest at start and goal by parameters of the model, then by sources.
+    rests: [Option<DMatrix<f64>>; 2],
+    sources: [Vec<usize>; 2],
+}
+
+impl<'a> Directions<'a> {
+    pub(super) fn new(
+        opened: &'a Opened,
+        (program, held, point): (&'a Transcription<'a>, &'a Held, &'a [f64]),
+        start: &'a BoundaryState,
+    ) -> Result<Self, NoSensitivity> {
+        let sources = [0, 1].map(|end| {
+            let of = |one: &Varied| match one.of {
+                VariedOf::StartVoltage(source) if end == 0 => Some(source),
+                VariedOf::GoalVoltage(source) if end == 1 => Some(source),
+                _ => None,
+            };
+            opened
+                .control
+                .varied
+                .iter()
+                .filter_map(of)
+                .collect::<Vec<_>>()
+        });
+        let is_any = opened.control.parameters.len() > opened.sought;
+        let of = |end: usize| {
+            let Some((state, voltages)) = &opened.rests[end] else {
+                return Ok(None);
+            };
+            if !is_any && sources[end].is_empty() {
+                return Ok(None);
+            }
+            let state = (state, &voltages[..]);
+            rest_derivatives(&opened.model, &opened.control, state, &sources[end]).map(Some)
+        };
+        Ok(Self {
+            rests: [of(0)?, of(1)?],
+            opened,
+            program,
+            held,
+            point,
+            start,
+            sources,
+        })
+    }
+
+    /// The direction of a number, by its unit inside.
+    pub(super) fn of(&self, varied: &Varied) -> Result<Direction, NoSensitivity> {
+        let not_offered =
+            |what: &str| Err(NoSensitivity::Refused(format!("{}: {what}", varied.name)));
+        match varied.of {
+            VariedOf::Constants(_) => Ok(self.of_constants(varied)),
+            VariedOf::Duration => match self.program.unknowns().horizon() {
+                Some(column) => {
+                    let part = 1.0 / self.program.intervals() as f64;
+                    Ok(self.of_held([(column, part)]))
+                }
+                None => not_offered("the duration is no constant"),
+            },
+            VariedOf::GoalJoint(joint) => self.of_goal_joint(joint).map_or_else(
+                || not_offered("a goal of all joints is no variable in redundant coordinates"),
+                Ok,
+            ),
+            VariedOf::GoalPlace { marker, axis } => Ok(self.of_goal_row(|bounded| {
+                matches!(bounded.quantity, Quantity::MarkerPlace { marker: m, axis: a, .. } if (m, a) == (marker, axis))
+            })),
+            VariedOf::GoalVoltage(source) => self.of_rest_voltage(1, source),
+            VariedOf::StartVoltage(source) => self.of_rest_voltage(0, source),
+            VariedOf::StartJoint(joint) => self.of_start_joint(joint).map_or_else(
+                || not_offered("a start of joint coordinates is offered in reduced coordinates and at rest alone"),
+                Ok,
+            ),
+            VariedOf::StartRate(joint) => self.of_start_rate(joint),
+            VariedOf::VoltageBound(side) => Ok(self.of_input_bounds(side, |_| true, Role::Voltage)),
+            VariedOf::LoadBound(source, side) => {
+                Ok(self.of_input_bounds(side, |s| s == Some(source), Role::Load))
+            }
+            VariedOf::Weight(weight) => self.of_weight(weight),
+        }
+    }
+
+    fn model(&self) -> &Model {
+        &self.opened.model
+    }
+
+    /// Derivatives of values of columns, in the units of the program.
+    fn of_held(&self, list: impl IntoIterator<Item = (usize, f64)>) -> Direction {
+        let scaled = list.into_iter();
+        let scaled =
+            scaled.map(|(column, value)| (column, value / self.program.column_scale(column)));
+        Direction {
+            held: scaled.filter(|(_, value)| *value != 0.0).collect(),
+            ..Direction::default()
+        }
+    }
+
+    /// Columns of coordinates of the start or the goal that are held.
+    fn of_end(&self, end: usize) -> impl Iterator<Item = (usize, usize)> + '_ {
+        let at = [0, self.program.intervals()][end];
+        let n = self.model().coordinate_count();
+        let columns = self.program.unknowns().columns.iter().enumerate();
+        columns.filter_map(move |(number, column)| match *column {
+            Column::Instant { k, i } if k == at && i < n && self.held.variables[number] => {
+                Some((number, i))
+            }
+            _ => None,
+        })
+    }
+
+    fn of_constants(&self, varied: &Varied) -> Direction {
+        let parameters = &self.model().analysis.parameters;
+        let is_it = |one: &crate::model::Parameter| one.name == varied.name;
+        let place = parameters
+            .iter()
+            .position(is_it)
+            .expect("a parameter of the model");
+        let s = self.model().variables.range(Role::Parameter).nth(place);
+        let columns = &self.program.unknowns().columns;
+        let is_own = |one: &Column| matches!(*one, Column::Parameter { s: own } if Some(own) == s);
+        let own = columns.iter().position(is_own);
+        let own = own.into_iter().map(|column| (column, 1.0));
+        let ends = (0..2).flat_map(|end| self.by_rest(end, place));
+        self.of_held(own.chain(ends).collect::<Vec<_>>())
+    }
+
+    /// Derivatives of the coordinates of a state of rest by one of the columns of its derivatives.
+    fn by_rest(&self, end: usize, column: usize) -> Vec<(usize, f64)> {
+        match &self.rests[end] {
+            Some(by) => self
+                .of_end(end)
+                .map(|(number, i)| (number, by[(i, column)]))
+                .collect(),
+            None => Vec::new(),
+        }
+    }
+
+    fn of_rest_voltage(&self, end: usize, source: usize) -> Result<Direction, NoSensitivity> {
+        let objective = &self.opened.control.objective;
+        if objective.rate != 0.0 || !objective.energies.is_empty() {
+            let reason = "a voltage at rest is offered where the objective counts neither rates nor energies";
+            return Err(NoSensitivity::Refused(reason.to_owned()));
+        }
+        let place = self.sources[end].iter().position(|one| *one == source);
+        let place = place.expect("a source that is open");
+        let parameters = self.opened.control.parameters.len();
+        Ok(self.of_held(self.by_rest(end, parameters + place)))
+    }
+
+    fn of_goal_joint(&self, joint: usize) -> Option<Direction> {
+        if let Some(c) = self.model().joint_readings[joint].coordinate {
+            let column = self.of_end(1).find(|(_, i)| *i == c)?;
+            return Some(self.of_held([(column.0, 1.0)]));
+        }
+        let is_goal = |bounded: &BoundedQuantity| matches!(bounded.quantity, Quantity::Joint { joint: j, .. } if j == joint);
+        let found = self.of_goal_row(is_goal);
+        (!found.constraint_bounds.is_empty()).then_some(found)
+    }
+
+    /// The direction of the value of goals that are equations.
+    fn of_goal_row(&self, is_goal: impl Fn(&BoundedQuantity) -> bool) -> Direction {
+        let mut out = Direction::default();
+        for (row, of) in self.program.unknowns().rows.iter().enumerate() {
+            let Row::Limit { limit, .. } = *of else {
+                continue;
+            };
+            let bounded = self.program.limit(limit);
+            if bounded.when == When::Goal && is_goal(bounded) {
+                let scale = self.program.row_scale(row);
+                let sides = [Side::Lower, Side::Upper];
+                out.constraint_bounds
+                    .extend(sides.map(|side| (row, side, scale)));
+            }
+        }
+        out
+    }
+
+    fn of_start_joint(&self, joint: usize) -> Option<Direction> {
+        let is_moving = self
+            .opened
+            .boundary
+            .start
+            .momentum
+            .iter()
+            .any(|p| *p != 0.0);
+        let c = self.model().joint_readings[joint]
+            .coordinate
+            .filter(|_| !is_moving)?;
+        let column = self.of_end(0).find(|(_, i)| *i == c)?;
+        Some(self.of_held([(column.0, 1.0)]))
+    }
+
+    /// Momenta are linear in rates.
+    fn of_start_rate(&self, joint: usize) -> Result<Direction, NoSensitivity> {
+        let BoundaryState::JointAngles { angles, .. } = self.start else {
+            let reason = "the start has no rates".to_owned();
+            return Err(NoSensitivity::Refused(reason));
+        };
+        let unit = BoundaryState::JointAngles {
+            angles: angles.clone(),
+            rates: BTreeMap::from([(joint, 1.0)]),
+            velocities: BTreeMap::new(),
+        };
+        let start = resolve_start(self.model(), &unit, "start");
+        let start = start.map_err(|error| NoSensitivity::Refused(error.to_string()))?;
+        let rows = self.program.unknowns().rows.iter().enumerate();
+        let of = |(row, of): (usize, &Row)| match *of {
+            Row::Instant { k: 0, i } => {
+                let momentum = start.momentum.get(i).copied()?;
+                Some((row, self.program.row_scale(row) * momentum))
+            }
+            _ => None,
+        };
+        Ok(Direction {
+            constraints: rows.filter_map(of).collect(),
+            ..Direction::default()
+        })
+    }
+
+    fn of_input_bounds(
+        &self,
+        side: usize,
+        is_one: impl Fn(Option<usize>) -> bool,
+        role: Role,
+    ) -> Direction {
+        let variables = &self.model().variables;
+        let side = [Side::Lower, Side::Upper][side];
+        let columns = self.program.unknowns().columns.iter().enumerate();
+        let of = |(number, column): (usize, &Column)| {
+            let variable = column.of(variables);
+            let is_one = variable.role == role && is_one(variable.source);
+            is_one.then(|| (number, side, 1.0 / self.program.column_scale(number)))
+        };
+        Direction {
+            bounds: columns.filter_map(of).collect(),
+            ..Direction::default()
+        }
+    }
+
+    /// The objective is linear in its weights: its derivative is that with this weight alone.
+    fn of_weight(&self, weight: WeightOf) -> Result<Direction, NoSensitivity> {
+        let one = |of: WeightOf| f64::from(u8::from(of == weight));
+        let control = Control {
+            objective: Objective {
+                effort: one(WeightOf::Effort),
+                rate: one(WeightOf::Rate),
+                duration: one(WeightOf::Duration),
+                ..Objective::default()
+            },
+            ..self.opened.control.clone()
+        };
+        let Opened {
+            model,
+            boundary,
+            initial,
+            ..
+        } = self.opened;
+        let program = Transcription::of_any(model, boundary, &control, initial);
+        let mut program = program.map_err(|error| NoSensitivity::Refused(error.to_string()))?;
+        let mut x = self.point.to_vec();
+        // Where a square is zero its root has no slope: the slope by the square is that beside zero.
+        for &square in self.held.squares.iter().flatten() {
+            x[square] = x[square].max(BESIDE * program.variables().upper[square]);
+        }
+        let mut gradient = vec![0.0; x.len()];
+        program.gradient(&x, &mut gradient);
+        let gradient = gradient.into_iter().enumerate();
+        Ok(Direction {
+            gradient: gradient.filter(|(_, value)| *value != 0.0).collect(),
+            objective: program.objective(&x),
+            ..Direction::default()
+        })
+    }
+}

@@ -1,0 +1,296 @@
+//! Derivatives of an optimum of any program by columns that are held in it, by bounds, and by what a caller differentiates himself.
+
+use crate::ipopt::Multipliers;
+use crate::nlp::Nlp;
+use crate::sensitivity::active_set::{Place, of_constraints, of_variables};
+use crate::sensitivity::conditions::Conditions;
+use crate::sensitivity::direction::{Direction, Held, Side};
+use crate::sensitivity::error::NoSensitivity;
+use crate::sensitivity::linear::Linear;
+use crate::sensitivity::margins::{At, Changes};
+use crate::sensitivity::range::Range;
+
+/// Most steps of Newton's method to the optimum.
+const STEPS: usize = 6;
+/// A step that is so small ends them.
+const SMALL: f64 = 1e-9;
+/// Conditions hold that are met up to this.
+const MET: f64 = 1e-8;
+/// A bound whose distance and multiplier are both smaller is reached weakly.
+const WEAK: f64 = 1e-6;
+/// Two derivatives of the objective that differ by less, relative to their terms, are one.
+const SAME: f64 = 1e-6;
+
+/// Derivatives of an optimum.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Derivative {
+    /// Of all variables, those that are held included.
+    pub variables: Vec<f64>,
+    /// Of the multipliers of constraints, by the unscaled objective.
+    pub multipliers: Vec<f64>,
+    /// Of the objective.
+    pub objective: f64,
+    /// Changes of p for which the same bounds are reached, to first order.
+    pub range: Range,
+    /// Bounds that are reached or left with p at once: the derivatives hold to one side alone.
+    pub weak: Vec<String>,
+}
+
+/// An optimum with the factors of its conditions.
+#[derive(Debug)]
+pub struct Kernel<N> {
+    conditions: Conditions<N>,
+    linear: Linear,
+    columns: Vec<Place>,
+    rows: Vec<Place>,
+    /// ∇f + Jᵀy.
+    slopes: Vec<f64>,
+    moved: f64,
+}
+
+impl<N: Nlp> Kernel<N> {
+    /// An optimum x of a program with its multipliers. Newton's method moves it to where the conditions hold with the bounds that it has reached.
+    ///
+    /// # Errors
+    /// The conditions do not hold, or derivatives do not exist.
+    ///
+    /// # Panics
+    /// If lengths contradict each other.
+    pub fn new(
+        program: N,
+        (x, multipliers): (&[f64], &Multipliers),
+        held: &Held,
+    ) -> Result<Self, NoSensitivity> {
+        let mut multipliers = multipliers.clone();
+        let mut conditions =
+            Conditions::new(program, (x, &mut multipliers), held.squares.as_deref());
+        let Multipliers {
+            constraints,
+            lower,
+            upper,
+        } = &multipliers;
+        let columns = of_variables(
+            (&conditions.x, &conditions.bounds),
+            [lower, upper],
+            &held.variables,
+        );
+        let rows = of_constraints(
+            (&conditions.g, &conditions.row_bounds),
+            constraints,
+            &held.constraints,
+        );
+        for (i, place) in columns.iter().enumerate() {
+            match place {
+                Place::Lower => conditions.x[i] = conditions.bounds.lower[i],
+                Place::Upper => conditions.x[i] = conditions.bounds.upper[i],
+                // Where a bound is reached without a multiplier nothing of what follows is to be rounding.
+                Place::Free => conditions.round(i, WEAK),
+                _ => {}
+            }
+        }
+        for (i, place) in rows.iter().enumerate() {
+            if matches!(place, Place::Free | Place::Held) {
+                conditions.y[i] = 0.0;
+            }
+        }
+        conditions.evaluate();
+        let linear = Linear::new(
+            [&columns, &rows],
+            [&conditions.hessian, &conditions.jacobian],
+            conditions.stages().as_deref(),
+        )?;
+        let mut out = Self {
+            slopes: Vec::new(),
+            moved: 0.0,
+            conditions,
+            linear,
+            columns,
+            rows,
+        };
+        out.approach()?;
+        out.slopes = out.conditions.slopes();
+        out.check_bounds()?;
+        Ok(out)
+    }
+
+    /// Newton's method for the conditions.
+    fn approach(&mut self) -> Result<(), NoSensitivity> {
+        for _ in 0..STEPS {
+            self.conditions.evaluate_hessian();
+            let Conditions {
+                hessian_values,
+                jacobian_values,
+                ..
+            } = &self.conditions;
+            self.linear.factor(hessian_values, jacobian_values)?;
+            let [mut dx, mut dy] = self.residuals();
+            dx.iter_mut()
+                .chain(&mut dy)
+                .for_each(|value| *value = -*value);
+            self.linear.solve(&mut dx, &mut dy)?;
+            let Conditions { x, y, .. } = &mut self.conditions;
+            let size = largest(y).max(1.0);
+            x.iter_mut().zip(&dx).for_each(|(x, dx)| *x += dx);
+            y.iter_mut().zip(&dy).for_each(|(y, dy)| *y += dy);
+            self.conditions.evaluate();
+            let step = largest(&dx).max(largest(&dy) / size);
+            self.moved = self.moved.max(step);
+            if step <= SMALL {
+                break;
+            }
+        }
+        let [of_x, of_y] = self.residuals();
+        let size = largest(&self.conditions.gradient).max(1.0);
+        let error = largest(&of_y).max(largest(&of_x) / size);
+        match error <= MET {
+            true => Ok(()),
+            false => Err(NoSensitivity::NotOptimal(error)),
+        }
+    }
+
+    /// Residuals of the conditions of unknowns and of equations; zero of all others.
+    fn residuals(&self) -> [Vec<f64>; 2] {
+        let Conditions { g, row_bounds, .. } = &self.conditions;
+        let mut of_x = self.conditions.slopes();
+        for (value, place) in of_x.iter_mut().zip(&self.columns) {
+            if *place != Place::Free {
+                *value = 0.0;
+            }
+        }
+        let of_row = |(i, place): (usize, &Place)| match place {
+            Place::Lower | Place::Equation => g[i] - row_bounds.lower[i],
+            Place::Upper => g[i] - row_bounds.upper[i],
+            Place::Free | Place::Held => 0.0,
+        };
+        [of_x, self.rows.iter().enumerate().map(of_row).collect()]
+    }
+
+    fn at(&self) -> At<'_, N> {
+        At {
+            conditions: &self.conditions,
+            columns: &self.columns,
+            rows: &self.rows,
+            slopes: &self.slopes,
+        }
+    }
+
+    /// Checks that bounds push the right way and are kept.
+    fn check_bounds(&self) -> Result<(), NoSensitivity> {
+        let [columns, rows] = [&self.columns, &self.rows].map(|list| vec![0.0; list.len()]);
+        let margins = self.at().margins(Changes {
+            x: &columns,
+            y: &rows,
+            slopes: &columns,
+            constraints: &rows,
+            direction: &Direction::default(),
+        });
+        match margins.iter().find(|margin| margin.distance < -WEAK) {
+            Some(margin) => Err(NoSensitivity::Undecided(self.at().words(margin.of))),
+            None => Ok(()),
+        }
+    }
+
+    /// Greatest step of Newton's method to the optimum, in the scales of the program.
+    pub fn moved(&self) -> f64 {
+        self.moved
+    }
+
+    /// The variables at the optimum.
+    pub fn point(&self) -> Vec<f64> {
+        self.conditions.point()
+    }
+
+    /// The program.
+    pub fn program(&self) -> &N {
+        self.conditions.program()
+    }
+
+    /// Derivatives along a direction.
+    ///
+    /// # Errors
+    /// The linear system is not solved exactly, or what follows from it is contradictory.
+    pub fn along(&mut self, direction: &Direction) -> Result<Derivative, NoSensitivity> {
+        let conditions = &self.conditions;
+        let (columns, rows) = (self.columns.len(), self.rows.len());
+        let x = conditions.point();
+        let rate = |i: usize| conditions.squares.rate(i, x[i]);
+        let mut given = vec![0.0; columns];
+        for &(i, value) in &direction.held {
+            given[i] += rate(i) * value;
+        }
+        for &(i, side, value) in &direction.bounds {
+            if self.columns[i] == side.place() {
+                given[i] += rate(i) * value;
+            }
+        }
+        let mut explicit = vec![0.0; columns];
+        for &(i, value) in &direction.gradient {
+            explicit[i] += conditions.scale * value;
+        }
+        conditions.squares.of_changes(&x, &mut explicit);
+        let mut of_rows = vec![0.0; rows];
+        for &(i, value) in &direction.constraints {
+            of_rows[i] += value;
+        }
+        // Inequalities that are not reached move by that which is no change of a bound.
+        let values = of_rows.clone();
+        for &(i, side, value) in &direction.constraint_bounds {
+            let is_one = self.rows[i] == side.place();
+            if is_one || (self.rows[i] == Place::Equation && side == Side::Lower) {
+                of_rows[i] -= value;
+            }
+        }
+        let envelope = dot(&self.slopes, &given) + dot(&conditions.y, &of_rows);
+        let mut of_x = explicit.clone();
+        conditions.add_curved(&given, &mut of_x);
+        conditions.add_times(&given, &mut of_rows);
+        let [mut dx, mut dy] =
+            [of_x, of_rows].map(|list| list.iter().map(|v| -v).collect::<Vec<f64>>());
+        self.linear.solve(&mut dx, &mut dy)?;
+        dx.iter_mut().zip(&given).for_each(|(x, given)| *x += given);
+        let conditions = &self.conditions;
+        let along = dot(&conditions.gradient, &dx);
+        let terms = conditions
+            .gradient
+            .iter()
+            .zip(&dx)
+            .map(|(g, x)| (g * x).abs());
+        let size = terms.sum::<f64>() + envelope.abs();
+        if !((envelope - along).abs() <= SAME * size) {
+            let [a, b] = [envelope, along].map(|v| v / conditions.scale + direction.objective);
+            return Err(NoSensitivity::Contradicts(a, b));
+        }
+        let at = self.at();
+        let margins = at.margins(Changes {
+            x: &dx,
+            y: &dy,
+            slopes: &explicit,
+            constraints: &values,
+            direction,
+        });
+        let words = |of| at.words(of);
+        let range = Range::new(&margins, words);
+        let weak = Range::ends_at_once(&margins, WEAK).map(words).collect();
+        let scale = self.conditions.scale;
+        self.conditions.squares.of_changes(&x, &mut dx);
+        Ok(Derivative {
+            variables: dx,
+            multipliers: dy.iter().map(|value| value / scale).collect(),
+            objective: envelope / scale + direction.objective,
+            range,
+            weak,
+        })
+    }
+}
+
+fn dot(a: &[f64], b: &[f64]) -> f64 {
+    a.iter().zip(b).map(|(a, b)| a * b).sum()
+}
+
+fn largest(list: &[f64]) -> f64 {
+    list.iter()
+        .fold(0.0, |largest: f64, value| match value.is_nan() {
+            true => f64::INFINITY,
+            false => largest.max(value.abs()),
+        })
+}

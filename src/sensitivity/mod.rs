@@ -1,0 +1,38 @@
+//! Sensitivities of optima: exact first derivatives of an optimum by constants, goals, starts and bounds that are held in it.
+//!
+//! An optimum x with multipliers y of its equations meets `F(x, y; p) = (∇ₓL, c) = 0` with the bounds that it has reached as equations. Its
+//! derivatives by p follow from the matrix of Newton's method for F at the optimum,
+//!
+//! ```text
+//! ⎡ ∇²L  Jᵀ ⎤ ⎡ dx/dp ⎤     ⎡ ∂∇ₓL/∂p ⎤
+//! ⎣ J    0  ⎦ ⎣ dy/dp ⎦ = − ⎣ ∂c/∂p   ⎦,      df/dp = ∂L/∂p,
+//! ```
+//!
+//! factorised once, with one back-substitution for each p. The matrix has to have as many negative eigenvalues as equations and none that is zero:
+//! then the optimum is strict, and its derivatives exist (Fiacco, 1983). They hold as long as the same bounds are reached: `range` tells how far,
+//! to first order.
+//!
+//! `kernel` knows any [`Nlp`](crate::nlp::Nlp), `conditions` what holds at its optimum, `linear` its linear system, `active_set` the bounds that are
+//! reached. `optimum` is the front for control problems: `opened` their program in which constants, start and goal are columns that are held,
+//! `rest` how states of rest depend on constants, `directions` what changes with each number. `check` refuses numbers before the solve.
+
+mod active_set;
+mod check;
+mod conditions;
+mod direction;
+mod directions;
+mod error;
+mod kernel;
+mod linear;
+mod margins;
+mod opened;
+mod optimum;
+mod range;
+mod rest;
+
+pub use check::check;
+pub use direction::{Direction, Held, Side};
+pub use error::NoSensitivity;
+pub use kernel::{Derivative, Kernel};
+pub use optimum::{Sensitivity, sensitivities};
+pub use range::{End, Range};

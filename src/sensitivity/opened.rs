@@ -1,0 +1,288 @@
+//! The program of an optimum in which constants of the system, start and goal are columns too, held at their values.
+
+use crate::control::problem::{BoundaryState, Control, Duration, Rest, Varied, VariedOf};
+use crate::control::{
+    BoundaryConditions, BoundedQuantity, Column, InitialGuess, Numbering, Outline, Rests, Row,
+    Solution, Transcription, guess, rest_at,
+};
+use crate::dynamics::Equilibrium;
+use crate::ipopt::Multipliers;
+use crate::model::{Model, Parameter, Role, System};
+use crate::nlp::Nlp;
+use crate::sensitivity::direction::Held;
+use crate::sensitivity::error::NoSensitivity;
+
+/// An optimum with all that its program with more columns is made of.
+pub(super) struct Opened {
+    /// The problem, with the constants as parameters and an open start.
+    pub(super) control: Control,
+    pub(super) model: Model,
+    pub(super) boundary: BoundaryConditions,
+    pub(super) initial: InitialGuess,
+    /// Columns and rows of the program that was solved.
+    pub(super) solved: Outline,
+    /// Those of its columns that enter by their squares alone.
+    squares: Vec<Column>,
+    /// States of rest at the start and at the goal, with their voltages.
+    pub(super) rests: [Option<(Equilibrium, Vec<f64>)>; 2],
+    /// Number of parameters that are sought.
+    pub(super) sought: usize,
+}
+
+/// Columns and rows of the program that was solved among those of the opened one.
+pub(super) struct Mapped {
+    pub(super) held: Held,
+    pub(super) multipliers: Multipliers,
+    /// Row of each row of the solved program.
+    pub(super) rows: Vec<usize>,
+}
+
+impl Opened {
+    /// Opens the problem of an optimum.
+    pub(super) fn new(
+        system: &System,
+        control: &Control,
+        motion: &Solution,
+    ) -> Result<Self, NoSensitivity> {
+        let control = &Control {
+            intervals: motion.intervals(),
+            is_refined: false,
+            parameters: found(&control.parameters, motion),
+            ..control.clone()
+        };
+        let h0 = control.duration.first() / control.intervals as f64;
+        let (model, boundary) =
+            BoundaryConditions::resolve(system, control, h0).map_err(refused)?;
+        if boundary.sought_rest != [false; 2] {
+            let reason = "a state of rest depends on a sought constant, which is not offered";
+            return Err(NoSensitivity::Refused(reason.to_owned()));
+        }
+        let solved = Outline::new(&model, &boundary, control);
+        let squares = squares((&model, &boundary), control, motion)?;
+        let counts = (model.coordinate_count(), model.action.map.unknowns());
+        let mut control = eased(control, &boundary);
+        let constants = control.varied.iter().filter_map(Varied::parameter).cloned();
+        let sought = control.parameters.len();
+        control.parameters.extend(constants.collect::<Vec<_>>());
+        let resolved = BoundaryConditions::resolve_held(system, &control, h0);
+        let (model, mut boundary) = resolved.map_err(refused)?;
+        if counts != (model.coordinate_count(), model.action.map.unknowns()) {
+            let reason = "with these constants as variables other parts of the system move";
+            return Err(NoSensitivity::Refused(reason.to_owned()));
+        }
+        let rests = rests(&model, &boundary, &control)?;
+        let initial = guess(&model, &boundary, &control, h0, Some(motion));
+        if control.goal != BoundaryState::Periodic {
+            control.start = BoundaryState::Free;
+            boundary.goal.coordinates.fill(None);
+        }
+        if control
+            .varied
+            .iter()
+            .any(|one| one.of == VariedOf::Duration)
+        {
+            control.duration = match control.duration {
+                Duration::Given(given) => Duration::Free {
+                    min: given,
+                    max: given,
+                    guess: given,
+                },
+                free => free,
+            };
+        }
+        Ok(Self {
+            control,
+            model,
+            boundary,
+            initial,
+            solved,
+            squares,
+            rests,
+            sought,
+        })
+    }
+
+    /// The program with all columns.
+    pub(super) fn program(&self) -> Result<Transcription<'_>, NoSensitivity> {
+        Transcription::of_any(&self.model, &self.boundary, &self.control, &self.initial)
+            .map_err(refused)
+    }
+
+    /// Finds the solved program in the opened one.
+    pub(super) fn map(
+        &self,
+        program: &Transcription<'_>,
+        motion: &Solution,
+    ) -> Result<Mapped, NoSensitivity> {
+        let all = program.unknowns();
+        let Numbering { columns, rows, .. } = &self.solved.unknowns;
+        let missing =
+            || NoSensitivity::Refused("the optimum has no multipliers of this problem".to_owned());
+        let costates = motion.costates.as_ref().ok_or_else(missing)?;
+        let counts = (
+            costates.rows.len(),
+            costates.lower.len(),
+            costates.upper.len(),
+        );
+        if counts != (rows.len(), columns.len(), columns.len()) {
+            return Err(missing());
+        }
+        let mut out = Mapped {
+            held: Held {
+                variables: vec![true; all.columns.len()],
+                constraints: vec![true; all.rows.len()],
+                squares: Some(Vec::new()),
+            },
+            multipliers: Multipliers {
+                constraints: vec![0.0; all.rows.len()],
+                lower: vec![0.0; all.columns.len()],
+                upper: vec![0.0; all.columns.len()],
+            },
+            rows: Vec::new(),
+        };
+        let mut places = all.columns.iter().enumerate();
+        for (number, column) in columns.iter().enumerate() {
+            let column = self.shifted(*column);
+            let place = places.find(|(_, one)| **one == column);
+            let (place, _) = place.ok_or_else(missing)?;
+            let scale = program.column_scale(place);
+            out.held.variables[place] = false;
+            if self.squares.contains(&columns[number]) {
+                out.held
+                    .squares
+                    .iter_mut()
+                    .for_each(|list| list.push(place));
+            }
+            out.multipliers.lower[place] = costates.lower[number] * scale;
+            out.multipliers.upper[place] = costates.upper[number] * scale;
+        }
+        let mut places = all.rows.iter().enumerate();
+        for (number, row) in rows.iter().enumerate() {
+            let is_row = |one: &Row| self.is_same_row((row, one), program);
+            let place = places.find(|(_, one)| is_row(one));
+            let (place, _) = place.ok_or_else(|| self.unknown_row(row))?;
+            out.held.constraints[place] = false;
+            out.multipliers.constraints[place] = costates.rows[number] / program.row_scale(place);
+            out.rows.push(place);
+        }
+        Ok(out)
+    }
+
+    /// A column of the solved program as one of the opened one: parameters stand before potentials.
+    fn shifted(&self, column: Column) -> Column {
+        let mut constants = self
+            .model
+            .variables
+            .range(Role::Parameter)
+            .skip(self.sought);
+        let (first, more) = (constants.next(), constants.count() + 1);
+        match (column, first) {
+            (Column::Interval { k, s }, Some(first)) if s >= first => {
+                Column::Interval { k, s: s + more }
+            }
+            (other, _) => other,
+        }
+    }
+
+    fn is_same_row(&self, (solved, opened): (&Row, &Row), program: &Transcription<'_>) -> bool {
+        match (*solved, *opened) {
+            (Row::Interval { k, s }, Row::Interval { .. }) => {
+                let Column::Interval { k, s } = self.shifted(Column::Interval { k, s }) else {
+                    return false;
+                };
+                *opened == Row::Interval { k, s }
+            }
+            (
+                Row::Limit { limit, k },
+                Row::Limit {
+                    limit: other,
+                    k: at,
+                },
+            ) => {
+                let known: &BoundedQuantity = &self.solved.limits[limit];
+                k == at && known == program.limit(other)
+            }
+            (solved, opened) => solved == opened,
+        }
+    }
+
+    fn unknown_row(&self, row: &Row) -> NoSensitivity {
+        let of = match *row {
+            Row::Limit { limit, .. } => format!(
+                "{:?} reads one of the constants",
+                self.solved.limits[limit].name
+            ),
+            _ => "an equation reads one of the constants".to_owned(),
+        };
+        NoSensitivity::Refused(format!("{of}, which is not offered"))
+    }
+}
+
+fn refused(error: crate::control::BoundaryError) -> NoSensitivity {
+    NoSensitivity::Refused(error.to_string())
+}
+
+/// Columns of the solved program that enter by their squares alone.
+fn squares(
+    (model, boundary): (&Model, &BoundaryConditions),
+    control: &Control,
+    motion: &Solution,
+) -> Result<Vec<Column>, NoSensitivity> {
+    if control.objective.rate != 0.0 || !control.objective.energies.is_empty() {
+        return Ok(Vec::new());
+    }
+    let h0 = control.duration.first() / control.intervals as f64;
+    let initial = guess(model, boundary, control, h0, Some(motion));
+    let program = Transcription::of_any(model, boundary, control, &initial).map_err(refused)?;
+    let columns = &program.unknowns().columns;
+    Ok(program.squares().into_iter().map(|i| columns[i]).collect())
+}
+
+/// Sought parameters at the values that were found.
+fn found(parameters: &[Parameter], motion: &Solution) -> Vec<Parameter> {
+    let at = |parameter: &Parameter| {
+        let mut found = motion.parameters.iter();
+        let value = found.find(|one| one.name == parameter.name);
+        Parameter {
+            guess: value.map_or(parameter.guess, |one| {
+                one.value.clamp(parameter.lower, parameter.upper)
+            }),
+            ..parameter.clone()
+        }
+    };
+    parameters.iter().map(at).collect()
+}
+
+/// The problem with a goal at which rests what rests at that of the boundary.
+fn eased(control: &Control, boundary: &BoundaryConditions) -> Control {
+    let goal = match boundary.goal.rests {
+        Rests::Bodies => control.goal.resting(Rest::Bodies),
+        _ => None,
+    };
+    Control {
+        goal: goal.unwrap_or_else(|| control.goal.clone()),
+        ..control.clone()
+    }
+}
+
+/// States of rest at start and goal.
+fn rests(
+    model: &Model,
+    boundary: &BoundaryConditions,
+    control: &Control,
+) -> Result<[Option<(Equilibrium, Vec<f64>)>; 2], NoSensitivity> {
+    let start = match &control.start {
+        BoundaryState::RestAtVoltages(voltages, _) if control.goal != BoundaryState::Periodic => {
+            let rest = rest_at(model, voltages, ("start", 0.0)).map_err(refused)?;
+            Some((rest, voltages.clone()))
+        }
+        _ => None,
+    };
+    let goal = match (&control.goal, &boundary.goal.rest) {
+        (BoundaryState::RestAtVoltages(voltages, _), Some(rest)) => {
+            Some((rest.clone(), voltages.clone()))
+        }
+        _ => None,
+    };
+    Ok([start, goal])
+}

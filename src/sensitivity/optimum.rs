@@ -1,0 +1,172 @@
+//! Sensitivities of the optimum of a control problem.
+
+use crate::control::problem::{Control, Varied};
+use crate::control::{Column, Solution, Transcription};
+use crate::model::{Coordinates, Model, Role, System, Time};
+use crate::sensitivity::directions::Directions;
+use crate::sensitivity::error::NoSensitivity;
+use crate::sensitivity::kernel::{Derivative, Kernel};
+use crate::sensitivity::opened::Opened;
+use crate::sensitivity::range::Range;
+use nalgebra::Vector3;
+
+/// Derivatives of an optimum by one number of its problem, by the unit inside.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Sensitivity {
+    /// The number.
+    pub varied: Varied,
+    /// Of the objective.
+    pub objective: f64,
+    /// Of the duration in ms.
+    pub duration: f64,
+    /// Of the constants that were sought, in the order of the problem.
+    pub parameters: Vec<f64>,
+    /// Of the voltages and loads, by interval and source.
+    pub voltages: Vec<Vec<f64>>,
+    /// Of the coordinates of the model, by instant.
+    pub coordinates: Vec<Vec<f64>>,
+    /// Of the joint coordinates, by instant and joint with a coordinate; none in redundant coordinates.
+    pub joints: Vec<Vec<f64>>,
+    /// Of the places of markers, by instant and marker; none where the number is a place on which they depend.
+    pub markers: Vec<Vec<Vector3<f64>>>,
+    /// Of the multipliers of equations and limits, in the order of the program.
+    pub multipliers: Vec<f64>,
+    /// Changes for which the same bounds are reached, to first order.
+    pub range: Range,
+    /// Bounds that are reached or left at once: the derivatives hold to one side alone.
+    pub weak: Vec<String>,
+}
+
+/// Derivatives of the optimum of a problem by the numbers that it names.
+///
+/// # Errors
+/// The derivatives do not exist, or are not known to be right.
+pub fn sensitivities(
+    system: &System,
+    control: &Control,
+    motion: &Solution,
+) -> Result<Vec<Sensitivity>, NoSensitivity> {
+    let opened = Opened::new(system, control, motion)?;
+    let program = opened.program()?;
+    let mapped = opened.map(&program, motion)?;
+    let x = program.encode(&opened.initial.discrete, opened.initial.h);
+    let mut kernel = Kernel::new(program, (&x, &mapped.multipliers), &mapped.held)?;
+    let all = {
+        let point = kernel.point();
+        let at = (kernel.program(), &mapped.held, &point[..]);
+        let directions = Directions::new(&opened, at, &control.start)?;
+        let all = opened.control.varied.iter();
+        let all = all.map(|varied| directions.of(varied));
+        all.collect::<Result<Vec<_>, _>>()?
+    };
+    let mut list = Vec::new();
+    for (varied, direction) in opened.control.varied.iter().zip(&all) {
+        let derivative = kernel.along(direction)?;
+        list.push(sensitivity(
+            varied,
+            &derivative,
+            (&opened, kernel.program(), &mapped.rows),
+        ));
+    }
+    Ok(list)
+}
+
+fn sensitivity(
+    varied: &Varied,
+    derivative: &Derivative,
+    (opened, program, rows): (&Opened, &Transcription<'_>, &[usize]),
+) -> Sensitivity {
+    let model = &opened.model;
+    let intervals = program.intervals();
+    let mut coordinates = vec![vec![0.0; model.coordinate_count()]; intervals + 1];
+    let mut voltages = vec![vec![0.0; model.sources.len()]; intervals];
+    let (mut parameters, mut duration) = (vec![0.0; opened.sought], 0.0);
+    let sought = model.variables.range(Role::Parameter).take(opened.sought);
+    let columns = program.unknowns().columns.iter().zip(&derivative.variables);
+    for (number, (column, change)) in columns.enumerate() {
+        let value = change * program.column_scale(number);
+        match *column {
+            Column::Instant { k, i } if k <= intervals && i < model.coordinate_count() => {
+                coordinates[k][i] = value
+            }
+            Column::Interval { k, s } if k < intervals => {
+                if let Some(source) = model.variables.of(Time::Interval)[s].source {
+                    voltages[k][source] = value;
+                }
+            }
+            Column::Parameter { s } => {
+                let place = sought.clone().position(|one| one == s);
+                place
+                    .into_iter()
+                    .for_each(|place| parameters[place] = value);
+            }
+            Column::Horizon => duration = value * intervals as f64,
+            _ => {}
+        }
+    }
+    let is_place = varied.parameter().is_some_and(|parameter| {
+        let mut constants = parameter.constants.iter();
+        constants.any(|one| one.constant.is_place())
+    });
+    Sensitivity {
+        objective: derivative.objective,
+        joints: joints(model, &coordinates),
+        markers: match is_place {
+            true => Vec::new(),
+            false => markers(model, &opened.initial.discrete.z, &coordinates),
+        },
+        multipliers: rows
+            .iter()
+            .map(|&row| derivative.multipliers[row] * program.row_scale(row))
+            .collect(),
+        varied: varied.clone(),
+        range: derivative.range.clone(),
+        weak: derivative.weak.clone(),
+        duration,
+        parameters,
+        voltages,
+        coordinates,
+    }
+}
+
+/// Derivatives of the joint coordinates.
+fn joints(model: &Model, coordinates: &[Vec<f64>]) -> Vec<Vec<f64>> {
+    if model.coordinates != Coordinates::Reduced {
+        return Vec::new();
+    }
+    let of = |row: &Vec<f64>| {
+        let joints = model.joint_readings.iter().zip(&model.system.joints);
+        let joints = joints.filter(|(_, joint)| joint.has_coordinate());
+        joints
+            .map(|(reading, _)| reading.coordinate.map_or(0.0, |c| row[c]))
+            .collect()
+    };
+    coordinates.iter().map(of).collect()
+}
+
+/// Derivatives of the places of the markers.
+fn markers(model: &Model, z: &[Vec<f64>], coordinates: &[Vec<f64>]) -> Vec<Vec<Vector3<f64>>> {
+    let map = &model.action.map;
+    let mut rows = vec![0.0; map.unknowns()];
+    let mut at = |(z, changes): (&Vec<f64>, &Vec<f64>)| {
+        let mut instant = map.placed(z);
+        map.tangent(&mut instant);
+        let place = |&vector: &usize| {
+            let mut out = Vector3::zeros();
+            for axis in 0..3 {
+                let mut along = Vector3::zeros();
+                along[axis] = 1.0;
+                rows.fill(0.0);
+                map.pull_back_one(vector, &instant.columns, &along, &mut rows);
+                out[axis] = rows
+                    .iter()
+                    .zip(changes)
+                    .map(|(row, change)| row * change)
+                    .sum();
+            }
+            out
+        };
+        model.markers.iter().map(place).collect()
+    };
+    z.iter().zip(coordinates).map(&mut at).collect()
+}

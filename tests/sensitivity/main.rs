@@ -1,0 +1,4 @@
+//! Sensitivities of optima: against closed forms, and against differences of optima that are found anew.
+
+mod parametric;
+mod resolved;
