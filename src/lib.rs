@@ -101,6 +101,7 @@ pub mod units;
 #[cfg_attr(not(internals), doc(hidden))]
 pub mod workflow;
 
+pub use control::problem::{Varied, VariedOf, WeightOf};
 pub use control::{EarlierSolution, Orientation, Solution};
 pub use dynamics::Integrator;
 pub use energy::Energy;
@@ -124,6 +125,7 @@ pub use model::{
     mid,
 };
 pub use nlp::Nlp;
+pub use sensitivity::Sensitivity;
 pub use workflow::{Remark, Severity, Tracked, TrackingError};
 
 /// All that a program needs: `use proboscis::prelude::*;`.

@@ -38,6 +38,12 @@ use crate::workflow::resimulate::under_constant_voltages;
 
 /// Length of the motion under constant voltages that is drawn next to the optimal one, in durations.
 const COMPARED: usize = 3;
+/// Tables and figures of sensitivities.
+const SENSITIVITIES: [&str; 3] = [
+    "sensitivities.csv",
+    "sensitivities.svg",
+    "voltages_tolerances.svg",
+];
 /// Statuses of a solve that might have gone on.
 pub(super) const MIGHT_GO_ON: [&str; 3] = ["interrupted", "time_limit", "iteration_limit"];
 
@@ -141,11 +147,7 @@ fn write_files(
     let written = fields::write(files, model, discrete, &origin)?;
     summary.blocks = BlockSizes::from_model(model).map(|b| b.after(model, &observed, written));
     observed.columns.extend(result.exchange.columns());
-    if !result.sensitivities.is_empty() {
-        let list = &result.sensitivities;
-        let text = sensitivities::table(&model.system, trajectory, list, &origin);
-        files.add("sensitivities.csv", text.as_bytes())?;
-    }
+    write_sensitivities(result, files, &origin)?;
     let motion = Motion {
         model,
         discrete,
@@ -157,7 +159,7 @@ fn write_files(
     summary.shown = shown.part;
     write_pictures(
         (request, asked),
-        (control, optimum),
+        (control, result),
         summary,
         (motion, &shown),
         files,
@@ -165,15 +167,39 @@ fn write_files(
     )
 }
 
+/// Writes tables and figures of sensitivities, where there are any.
+fn write_sensitivities(
+    result: &SolveResult,
+    files: &mut FileSet,
+    origin: &Origin,
+) -> Result<(), WriteError> {
+    let (list, system) = (&result.sensitivities, &result.optimum.model.system);
+    if list.is_empty() {
+        // Those of an earlier run do not stay next to other results.
+        SENSITIVITIES.iter().for_each(|name| files.remove(name));
+        return Ok(());
+    }
+    let text = sensitivities::table(system, &result.trajectory, list, origin);
+    files.add("sensitivities.csv", text.as_bytes())?;
+    if let Some(svg) = sensitivities::svg(list, origin) {
+        files.add("sensitivities.svg", svg.as_bytes())?;
+    }
+    if let Some(plot) = sensitivities::voltages(system, &result.trajectory, list) {
+        files.add("voltages_tolerances.svg", plot.svg(origin).as_bytes())?;
+    }
+    Ok(())
+}
+
 /// Writes tables, figures and page, next to the motion under the voltages of the goal alone.
 fn write_pictures(
     (request, asked): (&CommandInput, &[(String, String)]),
-    (control, optimum): (&Control, &Optimum),
+    (control, result): (&Control, &SolveResult),
     summary: &Summary,
     (motion, shown): (Motion<'_>, &DisplayedMotion),
     files: &mut FileSet,
     origin: &Origin,
 ) -> Result<(), WriteError> {
+    let optimum = &result.optimum;
     let Optimum {
         model, boundary, ..
     } = optimum;
@@ -189,6 +215,14 @@ fn write_pictures(
     content
         .plots
         .push(convergence(&optimum.solution.iterations));
+    let list = &result.sensitivities;
+    let bars = sensitivities::bars_of_page(list).map(|plot| ("Sensitivities", plot));
+    let voltages = sensitivities::voltages(&model.system, &result.trajectory, list);
+    let voltages = voltages.map(|plot| ("Voltages with tolerances", plot));
+    let plots = bars.into_iter().chain(voltages);
+    content
+        .plots
+        .extend(plots.map(|(title, plot)| (title.to_owned(), plot)));
     let run = Run {
         name: match summary.status.as_str() {
             _ if is_solved => "optimal voltages",

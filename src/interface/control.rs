@@ -2,7 +2,7 @@
 
 use crate::control::problem::{
     self, Duration, Guess, Hold, InCommon, Objective, PathConstraint, QuantityCost, Solver,
-    SoughtHold,
+    SoughtHold, Varied,
 };
 use crate::control::{Earlier, EarlierSolution};
 use crate::interface::cost_checks::{check_costs, check_energies, check_limits, check_waypoints};
@@ -44,6 +44,7 @@ pub struct Control {
     pub(super) waypoints: Vec<problem::Waypoint>,
     voltages: Vec<(Input, Signal)>,
     parameters: Vec<Parameter>,
+    varied: Vec<Varied>,
     pub(super) peak_voltage: f64,
     guess: Guess,
     max_seconds: Option<f64>,
@@ -65,6 +66,7 @@ impl Control {
             waypoints: Vec::new(),
             voltages: Vec::new(),
             parameters: Vec::new(),
+            varied: Vec::new(),
             peak_voltage: 0.0,
             guess: Guess::Interpolate,
             max_seconds: None,
@@ -164,6 +166,12 @@ impl Control {
     /// Seeks constants of the system within bounds; see [`Optimum::parameters`].
     pub fn seek(mut self, parameter: Parameter) -> Self {
         self.parameters.push(parameter);
+        self
+    }
+
+    /// Differentiates the optimum by a number of the problem; see [`Optimum::sensitivities`](crate::interface::Optimum::sensitivities).
+    pub fn sensitivity(mut self, varied: Varied) -> Self {
+        self.varied.push(varied);
         self
     }
 
@@ -279,7 +287,7 @@ impl Control {
             duration: self.duration,
             intervals: self.intervals,
             is_refined: false,
-            varied: Vec::new(),
+            varied: self.varied.clone(),
             start: self.start.resolve(system, sources.len())?,
             goal: self.goal.resolve(system, sources.len())?,
             voltage_bounds: self.voltage_bounds,

@@ -3,6 +3,7 @@
 use crate::control::Solution;
 use crate::interface::motion::Motion;
 use crate::model::FoundParameter;
+use crate::sensitivity::Sensitivity;
 use crate::tasks::SolveResult;
 use crate::workflow::{Afterwards, FinalValue, Repeated, Tracked};
 use std::sync::Arc;
@@ -33,6 +34,9 @@ pub struct Optimum {
     pub repeated: Option<Repeated>,
     /// Parameters that were sought.
     pub parameters: Vec<FoundParameter>,
+    /// Derivatives of the optimum by the numbers that [`Control::sensitivity`](crate::interface::Control::sensitivity) names; none where they do not
+    /// exist, which a remark of the motion says.
+    pub sensitivities: Vec<Sensitivity>,
     pub(super) is_solved: bool,
     /// All that a later solve can start from, see [`Control::starting_from`](crate::interface::Control::starting_from).
     pub solution: Solution,
@@ -57,6 +61,7 @@ impl Optimum {
                 remarks: result.remarks.0,
             },
             parameters: optimum.motion.parameters.clone(),
+            sensitivities: result.sensitivities,
             tracking: result.tracking,
             waypoint_values: result.waypoint_values,
             final_values: result.final_values,

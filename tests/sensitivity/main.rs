@@ -2,3 +2,4 @@
 
 mod parametric;
 mod resolved;
+mod written;
