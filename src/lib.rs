@@ -59,6 +59,8 @@ pub mod dynamics;
 pub mod element;
 #[cfg_attr(not(internals), doc(hidden))]
 pub mod energy;
+#[cfg_attr(not(internals), doc(hidden))]
+pub mod feedback;
 #[cfg(feature = "files")]
 #[cfg_attr(not(internals), doc(hidden))]
 pub mod files;

@@ -282,6 +282,25 @@ impl CoordinateMap {
         }
     }
 
+    /// Columns of articulated vectors, such as the derivatives of P along a direction, times rates of the coordinates.
+    pub fn times(&self, columns: &[f64], rates: &[f64]) -> Vec<Vector> {
+        let of_vector = |dependence: &Dependence| match dependence {
+            Dependence::Linear { .. } => Vector::zeros(),
+            Dependence::Articulated(packed) => {
+                let moves = |row: &[f64]| {
+                    packed
+                        .support
+                        .iter()
+                        .zip(row)
+                        .map(|(&i, c)| c * rates[i])
+                        .sum()
+                };
+                Vector::from_iterator(packed.rows(columns).into_iter().map(moves))
+            }
+        };
+        self.vectors.iter().map(of_vector).collect()
+    }
+
     /// Coordinates that move a vector.
     pub fn support(&self, vector: usize) -> Vec<usize> {
         match &self.vectors[vector] {

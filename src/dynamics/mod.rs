@@ -8,6 +8,7 @@
 //! - `resolution`, `singular_configurations`: which steps are refused; `local_error`: what those neglect that are not.
 //! - `simulate`, `discrete_trajectory`, `observe`, `pieces`, `part_columns`, `reactions`, `to_instants`, `at_instant`, `interval_energies`, `kinetic`: step after step,
 //!   recorded and observed.
+//! - `state_space`: steps linearised by state and inputs.
 //! - `loop_rates`: rates of the joints of closed loops, completed from those that are named.
 //! - `exchange`: electrical energy from the sources and mechanical work of their muscles.
 //! - `statics`, `weights`: the rows of rest; `growing`: these by loads; `ramp`, `growth`, `load_path`: paths of rest under growing loads; `minimum`: minima
@@ -41,6 +42,7 @@ mod simulate;
 mod singular_configurations;
 mod solving;
 mod start;
+mod state_space;
 mod step_report;
 mod step_state;
 mod stepper;
@@ -74,6 +76,9 @@ pub use singular_configurations::{
 };
 pub use solving::{Integrator, Newton, Solving};
 pub use start::Start;
+pub use state_space::{
+    LinearStep, Linearisation, NoState, StepInput, momentum_derivatives, step_inputs,
+};
 pub use step_report::StepperReport;
 pub use step_state::{StepState, TangentState};
 pub use stepper::Steps;

@@ -62,6 +62,22 @@ where
         (p, w)
     }
 
+    /// Arguments with vectors and rates, of a kinetic energy.
+    fn moving(element: &Element<E, NV, NS>, [x, v]: [&[Vector]; 2]) -> SVector<f64, M> {
+        let mut p = SVector::<f64, M>::zeros();
+        for (i, arg) in element.vectors.iter().enumerate() {
+            let read = if arg.stencil == Stencil::Rate { v } else { x };
+            p.fixed_rows_mut::<3>(3 * i).copy_from(&read[arg.vector]);
+        }
+        p
+    }
+
+    /// The arguments that are rates.
+    fn rates(element: &Element<E, NV, NS>) -> impl Iterator<Item = (usize, &VectorArg)> {
+        let all = element.vectors.iter().enumerate();
+        all.filter(|(_, arg)| arg.stencil == Stencil::Rate)
+    }
+
     #[inline(always)]
     fn hand<const ORDER: usize>(
         element: &Element<E, NV, NS>,
@@ -142,18 +158,26 @@ where
         v: &[Vector],
         out: &mut [Vector],
     ) {
-        let mut p = SVector::<f64, M>::zeros();
-        let is_rate = |arg: &VectorArg| arg.stencil == Stencil::Rate;
-        for (i, arg) in element.vectors.iter().enumerate() {
-            let value = if is_rate(arg) { v } else { x }[arg.vector];
-            p.fixed_rows_mut::<3>(3 * i).copy_from(&value);
-        }
+        let p = Self::moving(element, [x, v]);
         let local = element.energy.at::<1>(&p, &SVector::zeros());
         let gradient = local.plain::<NV>();
-        for (i, arg) in element.vectors.iter().enumerate() {
-            if is_rate(arg) {
-                out[arg.vector] += gradient.force(i) * scale;
-            }
+        for (i, arg) in Self::rates(element) {
+            out[arg.vector] += gradient.force(i) * scale;
+        }
+    }
+
+    fn momentum_along(
+        element: &Self::Element,
+        scale: f64,
+        at: [&[Vector]; 2],
+        by: [&[Vector]; 2],
+        out: &mut [Vector],
+    ) {
+        let [p, w] = [at, by].map(|of| Self::moving(element, of));
+        let local = element.energy.at::<3>(&p, &w);
+        let change = local.along::<NV>();
+        for (i, arg) in Self::rates(element) {
+            out[arg.vector] += change.force(i) * scale;
         }
     }
 

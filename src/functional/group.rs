@@ -280,6 +280,14 @@ impl<K: Kernel> Term for Group<K> {
         }
     }
 
+    fn momentum_along(&self, at: [&[Vector]; 2], by: [&[Vector]; 2], out: &mut [Vector]) {
+        if self.kind() == TermKind::Kinetic {
+            for element in &self.elements {
+                K::momentum_along(element, self.scale, at, by, out);
+            }
+        }
+    }
+
     fn evaluate(&self, order: Order, sample: &Sample<'_>, slots: &[u32], out: &mut Output) {
         let c = match self.site {
             Site::Intervals => self.scale * sample.h,

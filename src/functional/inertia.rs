@@ -118,6 +118,10 @@ impl Term for Inertia {
         }
     }
 
+    fn momentum_along(&self, _at: [&[Vector]; 2], by: [&[Vector]; 2], out: &mut [Vector]) {
+        self.momentum(by[0], by[1], out);
+    }
+
     fn evaluate(&self, order: Order, sample: &Sample<'_>, slots: &[u32], out: &mut Output) {
         let r = 1.0 / sample.h;
         let is_free = sample.horizon == Horizon::Free;

@@ -89,6 +89,16 @@ pub trait Kernel: Debug + Send + Sync + 'static {
     /// Adds the momenta ∂E/∂ẋ times `scale` at vectors x with rates v, where E is a kinetic energy.
     fn momentum(_: &Self::Element, _scale: f64, _x: &[Vector], _v: &[Vector], _: &mut [Vector]) {}
 
+    /// Adds the derivatives of the momenta along changes `by` of vectors and rates.
+    fn momentum_along(
+        _: &Self::Element,
+        _scale: f64,
+        _at: [&[Vector]; 2],
+        _by: [&[Vector]; 2],
+        _: &mut [Vector],
+    ) {
+    }
+
     /// Computes what takes time: many elements are prepared on all cores, before derivatives are handed over in their order.
     fn prepare(_: &Self::Element, _: Order, _: &Sample<'_>, _storage: &mut Self::Storage) {}
 

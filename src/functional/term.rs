@@ -141,6 +141,9 @@ pub trait Term: Debug + Send + Sync {
     /// Adds the momenta ∂T/∂ẋ at vectors x with rates v.
     fn momentum(&self, x: &[Vector], v: &[Vector], out: &mut [Vector]);
 
+    /// Adds the derivatives of the momenta at vectors and rates along changes `by` of both.
+    fn momentum_along(&self, at: [&[Vector]; 2], by: [&[Vector]; 2], out: &mut [Vector]);
+
     /// Adds the derivatives; `slots` are those of its couplings.
     fn evaluate(&self, order: Order, sample: &Sample<'_>, slots: &[u32], out: &mut Output);
 }

@@ -40,6 +40,7 @@ mod reaction_torques;
 mod reference;
 mod resample;
 mod resisted_energies;
+mod riccati;
 mod single_times;
 mod sought;
 mod sought_hold;

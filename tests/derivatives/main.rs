@@ -20,6 +20,7 @@ mod hexahedron_states;
 mod hexahedron_viscosity;
 mod horizon;
 mod kernel;
+mod linear_steps;
 mod naive_formulas;
 mod naive_hexahedron;
 mod naive_sources;

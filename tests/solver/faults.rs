@@ -310,6 +310,10 @@ impl Term for Failing {
         self.effect.energy(frame)
     }
 
+    fn momentum_along(&self, at: [&[Vector]; 2], by: [&[Vector]; 2], out: &mut [Vector]) {
+        self.effect.momentum_along(at, by, out);
+    }
+
     fn momentum(&self, x: &[Vector], v: &[Vector], out: &mut [Vector]) {
         self.effect.momentum(x, v, out);
     }

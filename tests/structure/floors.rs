@@ -5,7 +5,7 @@ use crate::sources::sources;
 /// Floors from the ground up; folders of one line do not know each other.
 const FLOORS: [&[&str]; 15] = [
     &["math"],
-    &["mesh", "sparse", "kkt", "nlp"],
+    &["mesh", "sparse", "kkt", "nlp", "feedback"],
     &["energy", "ipopt"],
     &["kinematics", "element"],
     &["functional"],

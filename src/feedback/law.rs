@@ -1,0 +1,97 @@
+//! A control law: a motion with its inputs, and gains that bring the system back to it.
+//!
+//! `u = u₀ − K (x − x₀)` with the inputs u₀ and the state x₀ of the motion: coordinates, their rates, and time integrals of deviations.
+//! An input that acts by its square is u = V². Gains hold over an interval of the motion, or for the time after its end.
+
+use nalgebra::DMatrix;
+
+/// A quantity that is measured: a coordinate or the rate of one.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Measured {
+    /// Name of the coordinate.
+    pub name: String,
+    /// True for the rate.
+    pub is_rate: bool,
+    /// True for a length in mm, false for an angle in rad or a number.
+    pub is_length: bool,
+}
+
+/// An input that the law gives.
+#[derive(Clone, Debug, PartialEq)]
+pub struct LawInput {
+    /// Name of the source.
+    pub name: String,
+    /// True if it acts by its square.
+    pub is_squared: bool,
+    /// Bounds of the input itself: V, N, N mm.
+    pub bounds: [f64; 2],
+}
+
+/// The law in an interval, or after the end.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Point {
+    /// Measured quantities of the motion at the start of the interval: rad, mm, rad/ms, mm/ms.
+    pub state: Vec<f64>,
+    /// Inputs of the motion in the interval: V, N, N mm.
+    pub inputs: Vec<f64>,
+    /// K: by input, over the measured quantities and then the integrals.
+    pub gain: DMatrix<f64>,
+}
+
+/// Deviations whose integrals over time are fed back: they vanish where the system comes to rest.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct Integral {
+    /// Their places among the measured quantities.
+    pub of: Vec<usize>,
+}
+
+/// A control law along a motion.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Law {
+    /// Measured quantities.
+    pub measured: Vec<Measured>,
+    /// Inputs that follow from them.
+    pub inputs: Vec<LawInput>,
+    /// Deviations that are integrated.
+    pub integral: Integral,
+    /// Length of the intervals in ms.
+    pub h: f64,
+    /// One for each interval, in order.
+    pub points: Vec<Point>,
+    /// The state at the end of the motion and what holds it, where it is held.
+    pub held: Option<Point>,
+}
+
+impl Law {
+    /// Length of the motion in ms.
+    pub fn duration(&self) -> f64 {
+        self.h * self.points.len() as f64
+    }
+
+    /// The law at a time in ms; the last one where the end is not held.
+    pub fn at(&self, time: f64) -> &Point {
+        let k = self.interval(time);
+        let last = self.held.as_ref().or(self.points.last());
+        self.points.get(k).or(last).expect("a law has an interval")
+    }
+
+    /// The interval of a time in ms; a time at its end, up to rounding, belongs to the next.
+    fn interval(&self, time: f64) -> usize {
+        (time / self.h + 1e-9).max(0.0) as usize
+    }
+
+    /// A measured quantity of the motion at a time in ms.
+    pub fn reference(&self, time: f64, place: usize) -> f64 {
+        let k = self.interval(time);
+        let here = self.at(time).state[place];
+        let part = time / self.h - k as f64;
+        let next = match k < self.points.len() {
+            true => self.at(self.h * (k + 1) as f64).state[place],
+            false => here,
+        };
+        match part > 1e-9 {
+            true => here + part * (next - here),
+            false => here,
+        }
+    }
+}
