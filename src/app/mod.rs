@@ -24,6 +24,7 @@ mod energy_summary;
 mod equilibrium;
 mod equilibrium_summary;
 mod error;
+mod feedback_files;
 mod fields;
 mod folder;
 mod foreign;

@@ -55,7 +55,7 @@ pub(super) fn motions(
         let shown = (&motion.system, &motion.control, &loaded.output);
         each.push(write_result(
             (&own, asked),
-            shown,
+            (shown, None),
             one,
             (&folder, read),
             began,

@@ -54,7 +54,8 @@ pub(super) fn simulation(
         task,
         began,
         // Steps that are halved begin anew: what is kept of them is no motion to go on with.
-        resumable: request.wanted.is_none().then_some(&*problem),
+        // Of a controller neither is.
+        resumable: (request.wanted.is_none() && task.controller.is_none()).then_some(&*problem),
     };
     let from = request.from.as_ref();
     let begun = from.map(|from| resume_file::begun(from, &problem, task));
@@ -266,6 +267,7 @@ fn summarise(
     summary.blocks.clone_from(&observed.blocks);
     summary.energies = EnergySummary::new(&assessment.exchange);
     summary.notes.clone_from(&assessment.remarks);
+    summary.closed_loop.clone_from(&ended.closed_loop);
 }
 
 /// Writes tables, figures and page, next to the solution that the voltages come from, and adds what they show to the summary.
@@ -303,9 +305,18 @@ fn write_pictures(
     let mut content = page::content("Simulation", summary, asked);
     content.rows = rows(summary, task, (model, discrete), assessment.neglected);
     let earlier = earlier.map(|earlier| shown.beside(earlier));
+    let closed = ended.closed_loop.as_ref();
+    let open = closed.and_then(|closed| closed.open_loop.clone());
+    let open = open.map(|open| shown.beside(open));
+    let tracked = shown.tracked(closed.map_or(&[], |closed| &closed.tracked));
+    let earlier = earlier.as_ref().map(|e| ("the solution", e));
     let pictures = report::Run {
-        name: "simulation",
-        comparison: earlier.as_ref().map(|e| ("the solution", e)),
+        name: match closed {
+            Some(_) => "with feedback",
+            None => "simulation",
+        },
+        comparison: open.as_ref().map(|o| ("without feedback", o)).or(earlier),
+        tracked: &tracked,
         held: held(task, ended.reached()),
         figures: request.figures,
         page: request.page.of(&content),

@@ -7,6 +7,7 @@ use crate::app::blocks::BlockSizes;
 use crate::app::displayed_motion::{DisplayedMotion, Motion};
 use crate::app::energy_summary::EnergySummary;
 use crate::app::error::CommandError;
+use crate::app::feedback_files;
 use crate::app::fields;
 use crate::app::iterates;
 use crate::app::left_out::{leave_out, time_to_write};
@@ -20,7 +21,7 @@ use crate::app::solve_page::{convergence, goal, rows, targets, waypoints};
 use crate::app::solve_summary::{command_output, program, seconds};
 use crate::app::summary::{MEASURED, Summary};
 use crate::app::unfinished;
-use crate::control::problem::Control;
+use crate::control::problem::{Control, Regulator};
 use crate::dynamics::observations;
 use crate::files::Loaded;
 use crate::files::problem::output::Output;
@@ -65,7 +66,14 @@ pub(super) fn control(
         |asked, observe| tasks::solve(system, control, asked, observe),
     )?;
     let shown = (system, control, &loaded.output);
-    let summary = write_result((request, asked), shown, &result, (&folder, read), began)?;
+    let feedback = loaded.feedback.as_ref();
+    let summary = write_result(
+        (request, asked),
+        (shown, feedback),
+        &result,
+        (&folder, read),
+        began,
+    )?;
     unfinished::done(&folder);
     let violated = &result.optimum.violated;
     let mut output = command_output(&summary, control.is_refined, violated, &folder);
@@ -77,10 +85,19 @@ pub(super) fn control(
     Ok(output)
 }
 
+/// A system, its problem, and the part of a motion that is shown.
+type Asked<'a> = (&'a System, &'a Control, &'a Output);
+/// A problem with the feedback along its optimum, its result, and the part of the motion that is shown.
+type Solved<'a> = (
+    (&'a Control, Option<&'a Regulator>),
+    &'a SolveResult,
+    &'a Output,
+);
+
 /// Writes the files of a result to a folder that exists, and its summary.
 pub(super) fn write_result(
     (request, asked): (&CommandInput, &[(String, String)]),
-    (system, control, output): (&System, &Control, &Output),
+    ((system, control, output), feedback): (Asked<'_>, Option<&Regulator>),
     result: &SolveResult,
     (folder, read): (&Path, f64),
     began: Instant,
@@ -102,7 +119,7 @@ pub(super) fn write_result(
     let (limit, kept) = (time_to_write(request, began), files.count());
     files.limit(&limit);
     let watch = interrupt::watch_by(limit.clone());
-    let shown = (control, result, output);
+    let shown = ((control, feedback), result, output);
     if let Err(error) = write_files((request, asked), shown, &mut summary, &mut files) {
         let status = limit.reached().ok_or(error)?;
         leave_out(&mut summary, status, &mut files, kept);
@@ -131,7 +148,7 @@ fn add_observed(summary: &mut Summary, result: &SolveResult) {
 /// Writes the fields of the motion, tables, figures and page, and adds what they hold to the summary.
 fn write_files(
     (request, asked): (&CommandInput, &[(String, String)]),
-    (control, result, output): (&Control, &SolveResult, &Output),
+    ((control, feedback), result, output): Solved<'_>,
     summary: &mut Summary,
     files: &mut FileSet,
 ) -> Result<(), WriteError> {
@@ -144,6 +161,7 @@ fn write_files(
     let model = &optimum.model;
     let mut observed = observations(model, discrete);
     let origin = request.origin(true);
+    feedback_files::add((control, feedback), result, (summary, files), &origin)?;
     let written = fields::write(files, model, discrete, &origin)?;
     summary.blocks = BlockSizes::from_model(model).map(|b| b.after(model, &observed, written));
     observed.columns.extend(result.exchange.columns());

@@ -26,10 +26,12 @@ use crate::report::atomic::WriteError;
 use crate::report::file_set::FileSet;
 use crate::workflow::accuracy::Accuracy;
 use crate::workflow::afterwards::Afterwards;
+use crate::workflow::closed_loop::ClosedLoop;
 use crate::workflow::domain::Outside;
 use crate::workflow::effects::Plan;
 use crate::workflow::final_values::FinalValue;
 use crate::workflow::period::Repeated;
+use crate::workflow::regulator::RegulatorReport;
 use crate::workflow::resimulate::Resimulation;
 use crate::workflow::violations::Violation;
 use crate::workflow::{EstimatedError, Remarks, Tracked};
@@ -54,6 +56,12 @@ pub(super) struct Summary {
     pub(super) program: Option<Program>,
     #[serde(flatten)]
     pub(super) simulation: Option<Simulation>,
+    /// The regulator along an optimum.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub(super) feedback: Option<RegulatorReport>,
+    /// The motion under a controller.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub(super) closed_loop: Option<ClosedLoop>,
     /// Number of instants that tables, figures and page show, where not all.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub(super) shown: Option<ShownPart>,
@@ -362,6 +370,8 @@ impl Summary {
             notes: Remarks::default(),
             program: None,
             simulation: None,
+            feedback: None,
+            closed_loop: None,
             shown: None,
             accuracy: None,
             tracking: Vec::new(),

@@ -30,6 +30,7 @@ mod periodic;
 mod prescribed;
 pub mod problem;
 mod quantity_cost;
+mod regulator;
 mod required_analysis;
 mod resample;
 mod rest;

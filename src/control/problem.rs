@@ -10,6 +10,7 @@ pub use crate::control::identification::{
 pub use crate::control::inputs::{Afterwards, Voltages, absent_loads};
 pub use crate::control::path_constraint::{PathConstraint, Side};
 pub use crate::control::quantity_cost::{CostFunction, During, Objective, QuantityCost};
+pub use crate::control::regulator::{FeedbackControl, Noise, Regulator};
 pub use crate::control::varied::{Varied, VariedOf, WeightOf};
 pub use crate::control::waypoint::{Waypoint, instant_at};
 use crate::dynamics::Solving;
@@ -66,6 +67,8 @@ pub struct Simulation {
     pub coordinates: Option<Coordinates>,
     /// Solution of the equations of a step.
     pub solving: Solving,
+    /// A controller that gives the inputs of its law.
+    pub controller: Option<FeedbackControl>,
 }
 
 /// Final time of a control problem in ms.

@@ -8,13 +8,19 @@ use std::collections::{BTreeMap, BTreeSet};
 use crate::control::problem::{
     AtRest, BoundaryState, Control, Orientation, PathConstraint, Place, Simulation,
 };
+use crate::feedback::Law;
 use crate::model::system::{Attachment, Muscle, System};
 use crate::model::{Analysis, InitiallyMoving};
 
 impl Simulation {
     /// The analysis of a motion in steps of `step` ms.
     pub fn analysis(&self, system: &System, step: f64) -> Analysis {
-        let is_driven = |s: usize| self.voltages.drive(s);
+        let is_driven = |s: usize| {
+            let name = system.sources()[s].name.clone();
+            let is_own = |law: &Law| law.inputs.iter().any(|input| input.name == name);
+            let controller = self.controller.as_ref();
+            self.voltages.drive(s) || controller.is_some_and(|one| is_own(&one.law))
+        };
         let mut named = Named::new(system);
         named.of_start(&self.start);
         Analysis {

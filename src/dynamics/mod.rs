@@ -67,7 +67,7 @@ pub use interval_energies::{Energies, Work, energies};
 pub use local_error::{LocalError, distance_between, local_error, local_error_of};
 pub use loop_rates::rates_in_loops;
 pub use midpoint::{Midpoint, Stepper};
-pub use momenta::last_momentum;
+pub use momenta::{last_momentum, rates_of_momentum};
 pub use observe::{observations, observed};
 pub use resolution::Balance;
 pub use simulate::{Lengths, StepControl, TimeGrid, go_on, simulate, simulate_by, simulate_within};

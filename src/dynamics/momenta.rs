@@ -23,22 +23,52 @@ pub(super) fn rates(
     time: f64,
     momentum: &[f64],
 ) -> Vec<f64> {
+    rates_by(model, instant, (time, momentum), DECOMPOSED)
+}
+
+/// The same, with a mass matrix that is decomposed up to a number of coordinates.
+fn rates_by(
+    model: &Model,
+    instant: &mut Configuration,
+    (time, momentum): (f64, &[f64]),
+    decomposed: usize,
+) -> Vec<f64> {
     if model.prescribed.is_empty() {
-        return free_rates(model, instant, momentum);
+        return free_rates(model, instant, momentum, decomposed);
     }
     let mut rates = vec![0.0; momentum.len()];
     model.prescribe_rates(time, &mut rates);
     let carried = model.action.momentum(instant, &rates);
     let mut left: Vec<f64> = momentum.iter().zip(carried).map(|(p, c)| p - c).collect();
     model.hold(&mut left);
-    for (rate, free) in rates.iter_mut().zip(free_rates(model, instant, &left)) {
+    for (rate, free) in rates
+        .iter_mut()
+        .zip(free_rates(model, instant, &left, decomposed))
+    {
         *rate += free;
     }
     rates
 }
 
+/// Rates of the coordinates z with given momenta, those of prescribed ones at a time in ms; with nodes iterated for, as it is asked for
+/// often.
+pub fn rates_of_momentum(model: &Model, z: &[f64], time: f64, momentum: &[f64]) -> Vec<f64> {
+    let map = &model.action.map;
+    let decomposed = if map.of_nodes.is_empty() {
+        DECOMPOSED
+    } else {
+        0
+    };
+    rates_by(model, &mut map.placed(z), (time, momentum), decomposed)
+}
+
 /// The same where what is prescribed rests and has no momentum.
-fn free_rates(model: &Model, instant: &mut Configuration, momentum: &[f64]) -> Vec<f64> {
+fn free_rates(
+    model: &Model,
+    instant: &mut Configuration,
+    momentum: &[f64],
+    decomposed: usize,
+) -> Vec<f64> {
     let n = momentum.len();
     if momentum.iter().all(|&p| p == 0.0) {
         return vec![0.0; n];
@@ -50,7 +80,7 @@ fn free_rates(model: &Model, instant: &mut Configuration, momentum: &[f64]) -> V
         (is_free[i], momentum[i]) = (false, 0.0);
         inert -= 1;
     }
-    if inert > DECOMPOSED {
+    if inert > decomposed {
         return iterated(model, instant, &momentum);
     }
     let free: Vec<usize> = (0..n).filter(|&i| is_free[i]).collect();

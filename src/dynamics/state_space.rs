@@ -51,6 +51,8 @@ pub struct LinearStep {
     pub by_state: DMatrix<f64>,
     /// B.
     pub by_inputs: DMatrix<f64>,
+    /// Momentum of each coordinate after the step.
+    pub momentum: Vec<f64>,
 }
 
 /// Linearises steps of a model.
@@ -74,6 +76,8 @@ struct Blocks {
     mixed: [DMatrix<f64>; 2],
     /// Of the rows of the scalars by the scalars.
     scalars: DMatrix<f64>,
+    /// Momentum after the interval.
+    momentum: Vec<f64>,
 }
 
 /// The voltages and loads of a model, each with whether it acts by its square alone.
@@ -196,6 +200,7 @@ impl<'m> Linearisation<'m> {
         is_finite.then(|| LinearStep {
             by_state: next.columns(0, n + m).into_owned(),
             by_inputs: next.columns(n + m, u).into_owned(),
+            momentum: blocks.momentum,
         })
     }
 
@@ -256,7 +261,12 @@ impl<'m> Linearisation<'m> {
             by: [[square(), square()], [square(), square()]],
             mixed: [DMatrix::zeros(n, count), DMatrix::zeros(n, count)],
             scalars: DMatrix::zeros(count, count),
+            momentum: vec![0.0; n],
         };
+        let next = &self.ends[1];
+        action
+            .map
+            .pull_back(&next.columns, &next.forces, &mut out.momentum);
         for (slot, (row, col)) in layout.same.entries().enumerate() {
             out.by[0][0][(row, col)] = values[layout.same_at(0) + slot];
             out.by[1][1][(row, col)] = values[layout.same_at(1) + slot];

@@ -11,7 +11,7 @@ pub struct Controller<'l> {
     law: &'l Law,
     /// Delay in ms between a sample and its effect.
     delay: f64,
-    /// Deviations of the last sample: measured quantities, then integrals.
+    /// Deviations of the last sample: measured quantities, then integrals, then the corrections that will act before the next one does.
     deviation: Vec<f64>,
     /// Time in ms of the last sample.
     sampled: Option<f64>,
@@ -23,27 +23,31 @@ pub struct Controller<'l> {
     /// The correction that acts.
     correction: Vec<f64>,
     samples: usize,
-    saturated: usize,
-    is_saturated: bool,
+    /// Samples whose time had an input at its lower, and at its upper bound.
+    saturated: [usize; 2],
+    is_saturated: [bool; 2],
 }
 
 impl<'l> Controller<'l> {
     /// A controller with samples at this distance or more, and a delay, in ms.
     pub fn new(law: &'l Law, sample: f64, delay: f64) -> Self {
-        let inputs = law.inputs.len();
+        let width = law.width();
         let waiting = (delay / sample).ceil() as usize + 2;
         Self {
             law,
             delay,
-            deviation: vec![0.0; law.measured.len() + law.integral.of.len()],
+            deviation: vec![
+                0.0;
+                law.measured.len() + law.integral.of.len() + law.delay * law.width()
+            ],
             sampled: None,
-            waiting: vec![(0.0, vec![0.0; inputs]); waiting],
+            waiting: vec![(0.0, vec![0.0; width]); waiting],
             first: 0,
             count: 0,
-            correction: vec![0.0; inputs],
+            correction: vec![0.0; width],
             samples: 0,
-            saturated: 0,
-            is_saturated: false,
+            saturated: [0; 2],
+            is_saturated: [false; 2],
         }
     }
 
@@ -60,6 +64,7 @@ impl<'l> Controller<'l> {
         for (place, value) in measured.iter().enumerate() {
             self.deviation[place] = value - law.reference(time, place);
         }
+        self.predict(time);
         let slots = self.waiting.len();
         let slot = (self.first + self.count) % slots;
         match self.count < slots {
@@ -76,34 +81,52 @@ impl<'l> Controller<'l> {
                 .sum::<f64>();
         }
         self.samples += 1;
-        self.is_saturated = false;
+        self.is_saturated = [false; 2];
     }
 
-    /// Writes the inputs that act from a time in ms on, by input of the law.
-    pub fn inputs(&mut self, time: f64, out: &mut [f64]) {
-        while self.count > 0 && self.waiting[self.first].0 <= time + 1e-9 * (1.0 + time.abs()) {
+    /// Takes in the corrections that act in the intervals of the delay from a time in ms on, as bounds leave them.
+    fn predict(&mut self, time: f64) {
+        let law = self.law;
+        let first = law.measured.len() + law.integral.of.len();
+        for k in 0..law.delay {
+            let middle = time + (k as f64 + 0.5) * law.h;
+            let mut acting = &self.correction;
+            for place in 0..self.count {
+                let (from, correction) = &self.waiting[(self.first + place) % self.waiting.len()];
+                if *from <= middle {
+                    acting = correction;
+                }
+            }
+            let given = &law.at(middle).inputs;
+            for (i, input) in law.inputs.iter().enumerate() {
+                let (wanted, [least, most], given) = input.wanted(given[i], acting[i]);
+                self.deviation[first + k * law.width() + i] = wanted.clamp(least, most) - given;
+            }
+        }
+    }
+
+    /// Writes the inputs that act at a time in ms, with the corrections that act from another one on, by input of the law.
+    pub fn inputs(&mut self, from: f64, time: f64, out: &mut [f64]) {
+        while self.count > 0 && self.waiting[self.first].0 <= from + 1e-9 * (1.0 + from.abs()) {
             self.correction.copy_from_slice(&self.waiting[self.first].1);
             self.first = (self.first + 1) % self.waiting.len();
             self.count -= 1;
         }
         let point = self.law.at(time);
-        let mut is_beyond = false;
+        let mut is_beyond = [false; 2];
         for (i, input) in self.law.inputs.iter().enumerate() {
-            let [low, high] = input.bounds;
-            let given = point.inputs[i];
-            let wanted = match input.is_squared {
-                true => (given * given + self.correction[i]).max(0.0).sqrt(),
-                false => given + self.correction[i],
-            };
-            let square = given * given + self.correction[i];
-            let below_zero = input.is_squared && square < -1e-9 * high * high;
-            out[i] = wanted.clamp(low, high);
-            let slack = 1e-9 * (high - low).abs();
-            is_beyond |= below_zero || wanted < low - slack || wanted > high + slack;
+            let (wanted, [least, most], _) = input.wanted(point.inputs[i], self.correction[i]);
+            let slack = 1e-9 * (most - least);
+            is_beyond[0] |= wanted < least - slack;
+            is_beyond[1] |= wanted > most + slack;
+            let kept = wanted.clamp(least, most);
+            out[i] = if input.is_squared { kept.sqrt() } else { kept };
         }
-        if is_beyond && !self.is_saturated {
-            self.saturated += 1;
-            self.is_saturated = true;
+        for (side, is_beyond) in is_beyond.into_iter().enumerate() {
+            if is_beyond && !self.is_saturated[side] {
+                self.saturated[side] += 1;
+                self.is_saturated[side] = true;
+            }
         }
     }
 
@@ -112,8 +135,8 @@ impl<'l> Controller<'l> {
         self.samples
     }
 
-    /// Number of samples whose time had an input at a bound, beyond which it was wanted.
-    pub fn saturated(&self) -> usize {
+    /// Numbers of samples whose time had an input at its lower, and at its upper bound, beyond which it was wanted.
+    pub fn saturated(&self) -> [usize; 2] {
         self.saturated
     }
 }

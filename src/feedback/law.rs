@@ -14,6 +14,8 @@ pub struct Measured {
     pub is_rate: bool,
     /// True for a length in mm, false for an angle in rad or a number.
     pub is_length: bool,
+    /// True for what is remembered, as the viscous stretch of a muscle: another system need not have it.
+    pub is_memory: bool,
 }
 
 /// An input that the law gives.
@@ -27,6 +29,20 @@ pub struct LawInput {
     pub bounds: [f64; 2],
 }
 
+impl LawInput {
+    /// An input with a correction, its bounds, and the input itself, all in the unit in which it acts: squares where it does by them.
+    pub(super) fn wanted(&self, given: f64, correction: f64) -> (f64, [f64; 2], f64) {
+        let [low, high] = self.bounds;
+        match self.is_squared {
+            true => {
+                let square = given * given;
+                (square + correction, [low * low, high * high], square)
+            }
+            false => (given + correction, [low, high], given),
+        }
+    }
+}
+
 /// The law in an interval, or after the end.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Point {
@@ -34,7 +50,7 @@ pub struct Point {
     pub state: Vec<f64>,
     /// Inputs of the motion in the interval: V, N, N mm.
     pub inputs: Vec<f64>,
-    /// K: by input, over the measured quantities and then the integrals.
+    /// K: by input, over the measured quantities, then the integrals, then, interval by interval of the delay, the corrections of the inputs.
     pub gain: DMatrix<f64>,
 }
 
@@ -56,13 +72,22 @@ pub struct Law {
     pub integral: Integral,
     /// Length of the intervals in ms.
     pub h: f64,
+    /// Intervals from a measurement to its effect, over which the gains predict.
+    pub delay: usize,
     /// One for each interval, in order.
     pub points: Vec<Point>,
     /// The state at the end of the motion and what holds it, where it is held.
     pub held: Option<Point>,
+    /// Places of markers in mm at the instants of the motion, by name.
+    pub markers: Vec<(String, Vec<[f64; 3]>)>,
 }
 
 impl Law {
+    /// Number of inputs.
+    pub fn width(&self) -> usize {
+        self.inputs.len()
+    }
+
     /// Length of the motion in ms.
     pub fn duration(&self) -> f64 {
         self.h * self.points.len() as f64
@@ -78,6 +103,24 @@ impl Law {
     /// The interval of a time in ms; a time at its end, up to rounding, belongs to the next.
     fn interval(&self, time: f64) -> usize {
         (time / self.h + 1e-9).max(0.0) as usize
+    }
+
+    /// A place of a marker at a time in ms, between instants on the line between them.
+    pub fn place(&self, places: &[[f64; 3]], time: f64) -> [f64; 3] {
+        let last = places.len() - 1;
+        let k = self.interval(time).min(last);
+        let part = (time / self.h - k as f64).clamp(0.0, 1.0);
+        let next = &places[(k + 1).min(last)];
+        std::array::from_fn(|axis| places[k][axis] + part * (next[axis] - places[k][axis]))
+    }
+
+    /// The same motion without corrections.
+    #[must_use]
+    pub fn open(&self) -> Self {
+        let mut out = self.clone();
+        let points = out.points.iter_mut().chain(&mut out.held);
+        points.for_each(|point| point.gain.fill(0.0));
+        out
     }
 
     /// A measured quantity of the motion at a time in ms.

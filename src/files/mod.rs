@@ -4,12 +4,14 @@
 //! - [`scene`], [`problem`]: types of the two files, and their conversion to [`System`] and [`Task`].
 //! - `signal`: functions of time.
 //! - [`study`], [`sweep`]: types of a study of variants of a problem, or a sweep of them; `changes`: their overrides.
+//! - [`feedback`]: laws of controllers.
 //! - [`solution`]: motions that later runs start from; [`npz`]: arrays of long ones; [`continuation`]: motions that go on.
 //! - [`urdf`]: robots of ROS; [`stl`]: surfaces; `columns`: columns of CSV files; `typed`: scenes and voltages named on the command line.
 
 pub(crate) mod changes;
 mod columns;
 pub mod continuation;
+pub mod feedback;
 pub mod json;
 pub mod npz;
 pub mod problem;
@@ -41,11 +43,12 @@ use serde_json::Value;
 use std::path::{Path, PathBuf};
 
 use crate::control::Motion;
-use crate::control::problem::Task;
+use crate::control::problem::{Regulator, Task};
 use crate::files::json::scan::{Entry, Scanner, string};
 use crate::files::json::set::Override;
 use crate::files::problem::build::build_problem;
 use crate::files::problem::changed_scenes::changed_scenes;
+use crate::files::problem::feedback::regulator;
 use crate::files::problem::motions::{MotionDocument, motions, together};
 use crate::files::problem::output::{Output, output};
 use crate::files::problem::spec::{ProblemSpec, SceneSource};
@@ -66,6 +69,8 @@ pub struct Loaded {
     pub task: Task,
     /// Part of a motion that is shown.
     pub output: Output,
+    /// Costs of deviations of which the gains of a controller are the least.
+    pub feedback: Option<Regulator>,
     /// File of the scene; `None` where the problem holds the scene itself.
     pub scene_path: Option<PathBuf>,
     /// The JSON text of the scene as written, overrides applied.
@@ -158,6 +163,11 @@ fn problem_of(
         first.get_or_insert(loaded);
     }
     let first = first.expect("a list has a motion");
+    if first.feedback.is_some() {
+        let place = Scope::of(&document);
+        let expected = "none beside a list of motions: each has an optimum of its own";
+        return Err(place.key("feedback").wrong("a \"feedback\"", expected));
+    }
     Ok(Loaded {
         task: Task::Motions(Box::new(together(each, &document)?)),
         problem: document.text().to_owned(),
@@ -234,9 +244,11 @@ fn alone(
     };
     let task = build_problem(&problem, &of_scene, &scope)?;
     let output = shown(&problem, &task, &system, &scope)?;
+    let feedback = feedback(&problem, &task, &system, &scope)?;
     Ok(Loaded {
         task,
         output,
+        feedback,
         system,
         scene_path,
         scene,
@@ -259,6 +271,26 @@ fn shown(
         (Some(spec), _) => return output(spec, system, &place),
     };
     Err(place.wrong("an \"output\"", expected))
+}
+
+/// Feedback along an optimum.
+fn feedback(
+    problem: &ProblemSpec,
+    task: &Task,
+    system: &System,
+    scope: &Scope<'_>,
+) -> Result<Option<Regulator>, SceneError> {
+    let Some(spec) = &problem.feedback else {
+        return Ok(None);
+    };
+    let place = scope.key("feedback");
+    match task {
+        Task::Control(_) => regulator(spec, system, &place).map(Some),
+        _ => Err(place.wrong(
+            "a \"feedback\"",
+            "none but beside \"control\", along whose optimum it is",
+        )),
+    }
 }
 
 /// Reads a scene file.

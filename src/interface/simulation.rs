@@ -153,6 +153,7 @@ impl Simulation {
                 newton: Newton::for_system(system),
                 backend: None,
             },
+            controller: None,
         })
     }
 }

@@ -1,8 +1,9 @@
 //! A simulation: its motion, and the assessment of it.
 
 use std::ops::ControlFlow;
+use std::sync::Arc;
 
-use crate::control::problem::Simulation;
+use crate::control::problem::{FeedbackControl, Simulation};
 use crate::dynamics::trajectory::Trajectory;
 use crate::dynamics::{
     DiscreteTrajectory, EnergyExchange, LocalError, local_error_of, out_of_domain, out_of_range,
@@ -13,6 +14,7 @@ use crate::tasks::moved_markers::moved_markers;
 use crate::tasks::simulation_messages::afterwards;
 use crate::workflow::WorkflowError;
 use crate::workflow::accuracy::{Accuracy, AccuracyTarget};
+use crate::workflow::closed_loop::ClosedLoop;
 use crate::workflow::domain::{self, Outside};
 use crate::workflow::grids::integrate_to;
 use crate::workflow::integrate::{Simulated, grid, integrate_on};
@@ -43,6 +45,8 @@ pub struct SimulationResult {
     pub stopped: Option<Status>,
     /// Estimated errors, where an accuracy was wanted.
     pub accuracy: Option<Accuracy>,
+    /// Deviations from the motion of a controller.
+    pub closed_loop: Option<ClosedLoop>,
 }
 
 /// Energies, errors and remarks of a simulation.
@@ -101,6 +105,11 @@ impl SimulationResult {
         remarks.note("moved_marker", moved_markers(system));
         remarks.warn("singular_loops", model.loops.warning.clone());
         remarks.note("voltages_end", afterwards(task));
+        if let Some(closed) = &self.closed_loop {
+            remarks.note("feedback", closed.notes());
+            remarks.note("at_lower_bound", closed.at_lower_bound());
+            remarks.warn("at_upper_bound", closed.at_upper_bound());
+        }
         remarks.note("step_divided", steps::divided(task));
         remarks.warn("outside_domain", domain::note(&outside, true));
         let beyond = out_of_range(model, discrete);
@@ -153,10 +162,42 @@ pub fn simulate(
     let reached = simulated.discrete.times[simulated.discrete.intervals()];
     let is_early = reached < task.duration * (1.0 - 1e-12);
     let stopped = interrupt::stop().filter(|_| is_early);
+    let closed_loop = match stopped {
+        None => closed_loop(system, task, &simulated)?,
+        Some(_) => None,
+    };
     drop(watch);
     Ok(SimulationResult {
+        closed_loop,
         simulated,
         stopped,
         accuracy,
     })
+}
+
+/// The deviations of a motion under a controller from that of its law, next to those of the motion without corrections.
+fn closed_loop(
+    system: &System,
+    task: &Simulation,
+    simulated: &Simulated,
+) -> Result<Option<ClosedLoop>, WorkflowError> {
+    let (Some(controller), Some(samples)) = (&task.controller, simulated.samples) else {
+        return Ok(None);
+    };
+    let open = Simulation {
+        controller: Some(FeedbackControl {
+            law: Arc::new(controller.law.open()),
+            ..controller.clone()
+        }),
+        ..task.clone()
+    };
+    let open = integrate_on(system, &open, None, |_, _| match interrupt::stop() {
+        Some(_) => ControlFlow::Break(()),
+        None => ControlFlow::Continue(()),
+    })?;
+    let failure = open.failure.map(|failure| failure.to_string());
+    let open = (open.discrete, failure);
+    let law = &controller.law;
+    let (model, discrete) = (&simulated.model, &simulated.discrete);
+    Ok(Some(ClosedLoop::new(model, law, samples, discrete, open)))
 }

@@ -11,6 +11,7 @@ use crate::dynamics::{
 use crate::ipopt::interrupt;
 use crate::math::in_order;
 use crate::model::{Model, System};
+use crate::workflow::closed_loop::Loop;
 use crate::workflow::confirmed::EstimatedError;
 use crate::workflow::error::WorkflowError;
 use crate::workflow::memory;
@@ -28,6 +29,8 @@ pub struct Simulated {
     pub failure: Option<StepError>,
     /// Its error, where a tolerance controls its steps and it came to its end.
     pub error: Option<EstimatedError>,
+    /// Counts of the samples of a controller, and of those at a lower and upper bound.
+    pub(crate) samples: Option<[usize; 3]>,
     /// Seconds before the first step.
     pub setup: f64,
     /// Seconds in the steps.
@@ -82,24 +85,19 @@ pub fn integrate_on(
         return Err(WorkflowError::Stopped(status));
     }
     phase("finding the start");
-    let of = StepState::equations_hash(&model, task.solving);
-    let mut begun = match begun {
-        Some(begun) => begun,
-        None => {
-            let start = resolve_start(&model, &task.start, "start").map_err(wrong)?;
-            let mut begun = DiscreteTrajectory::at(&start);
-            if let BoundaryState::EndOf(end) = &task.start
-                && end.method.of == of
-            {
-                begun.end = end.method.clone();
-            }
-            begun
-        }
-    };
-    begun.end.of = of;
+    let begun = begin(&model, task, begun)?;
     let setup = began.elapsed().as_secs_f64();
     phase("ordering and first factorisation");
-    let observer = |discrete: &DiscreteTrajectory| observer(&model, discrete);
+    let controlled = Loop::new(&model, task)?;
+    if let Some(controlled) = &controlled {
+        controlled.observe(&begun);
+    }
+    let observer = |discrete: &DiscreteTrajectory| {
+        if let Some(controlled) = &controlled {
+            controlled.observe(discrete);
+        }
+        observer(&model, discrete)
+    };
     let drive = Driven {
         model: &model,
         voltages: &task.voltages,
@@ -120,12 +118,21 @@ pub fn integrate_on(
         .run(begun, observer),
         None => {
             let lengths = Lengths::Equal(TimeGrid { h, steps });
-            let (discrete, failure) = go_on(task.solving, &model, begun, lengths, drive, observer);
+            let (discrete, failure) = match &controlled {
+                Some(controlled) => {
+                    let solving = task.solving;
+                    let drive = |from: f64, to: f64| controlled.at([from, to], 0.5);
+                    go_on(solving, &model, begun, lengths, drive, observer)
+                }
+                None => go_on(task.solving, &model, begun, lengths, drive, observer),
+            };
             (discrete, failure, None)
         }
     };
     let seconds = began.elapsed().as_secs_f64() - setup;
+    let samples = controlled.map(|controlled| controlled.counts());
     Ok(Simulated {
+        samples,
         model,
         discrete,
         failure,
@@ -133,6 +140,31 @@ pub fn integrate_on(
         setup,
         seconds,
     })
+}
+
+/// The motion that has begun, or its start.
+fn begin(
+    model: &Model,
+    task: &Simulation,
+    begun: Option<DiscreteTrajectory>,
+) -> Result<DiscreteTrajectory, WorkflowError> {
+    let wrong = |error| WorkflowError::boundary("simulate", &error);
+    let of = StepState::equations_hash(model, task.solving);
+    let mut begun = match begun {
+        Some(begun) => begun,
+        None => {
+            let start = resolve_start(model, &task.start, "start").map_err(wrong)?;
+            let mut begun = DiscreteTrajectory::at(&start);
+            if let BoundaryState::EndOf(end) = &task.start
+                && end.method.of == of
+            {
+                begun.end = end.method.clone();
+            }
+            begun
+        }
+    };
+    begun.end.of = of;
+    Ok(begun)
 }
 
 /// Times in ms, in order, at which inputs or prescribed motions are not smooth.

@@ -11,6 +11,7 @@
 //! - `effects`, `reasons`, `stopwatch`: terms of a model, their reasons and times; `memory`: a refusal of more than the machine has.
 //! - `steps`, `domain`: warnings of a motion: steps that do not resolve it, muscles outside the domain of their material; `longer_steps`: the error of
 //!   methods of high order.
+//! - `regulator`: feedback along an optimum; `closed_loop`: a simulation under it.
 //! - `tracking`: deviations of a motion from the references of its objective.
 //! - `motion`: conversion between unknowns and a trajectory; `parallel_map`: pieces of work in several threads.
 
@@ -19,6 +20,7 @@ pub(crate) mod active;
 pub(crate) mod afterwards;
 pub(crate) mod attempt;
 pub(crate) mod cause;
+pub mod closed_loop;
 pub(crate) mod combined;
 pub(crate) mod confirmed;
 pub(crate) mod distance;
@@ -52,6 +54,7 @@ mod program_motion;
 pub(crate) mod reasons;
 mod recentre;
 pub(crate) mod refine_until_reproduced;
+pub mod regulator;
 pub(crate) mod remark;
 pub(crate) mod repeat;
 pub(crate) mod resimulate;

@@ -138,6 +138,41 @@ pub fn tracked(
     groups.into_iter().filter_map(of).collect()
 }
 
+impl Tracked {
+    /// A marker of a motion and its places in mm in another one, at each instant.
+    pub(crate) fn marker(
+        name: &str,
+        marker: usize,
+        motion: &Trajectory,
+        reference: &[[f64; 3]],
+    ) -> Self {
+        let of_axis = |axis: usize| {
+            let value = motion.marks.iter().map(|places| places[marker][axis]);
+            let value: Vec<f64> = value.collect();
+            let reference: Vec<f64> = reference.iter().map(|place| place[axis]).collect();
+            let pairs = value.iter().zip(&reference);
+            TrackedPath {
+                name: format!("{name}_{}", ["x", "y", "z"][axis]),
+                axis: Some(axis),
+                difference: pairs.map(|(value, reference)| value - reference).collect(),
+                value,
+                reference,
+            }
+        };
+        let paths: Vec<TrackedPath> = (0..3).map(of_axis).collect();
+        let deviation = deviations(&paths);
+        Self {
+            kind: "marker",
+            name: name.to_owned(),
+            unit: "m",
+            error: TrackingError::from_deviations(&motion.times, &deviation, 1e-3),
+            simulated: None,
+            paths,
+            deviation,
+        }
+    }
+}
+
 fn of_marker(cost: &QuantityCost) -> Option<usize> {
     match cost.quantity {
         Quantity::MarkerPlace { marker, .. } => Some(marker),

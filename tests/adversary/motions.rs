@@ -48,6 +48,7 @@ fn task(signals: &[Signal], duration: f64, tolerance: Option<f64>) -> Simulation
         voltages: Voltages::Signals(signals.to_vec()),
         coordinates: None,
         solving: Solving::default(),
+        controller: None,
     }
 }
 

@@ -292,6 +292,7 @@ fn swing(step: f64) -> Simulation {
         voltages: Voltages::Constant(Vec::new()),
         coordinates: None,
         solving: Solving::default(),
+        controller: None,
     }
 }
 

@@ -75,8 +75,12 @@ impl State {
 fn both(model: &Model, state: &State) -> [LinearStep; 2] {
     let inputs = step_inputs(model);
     let mut linearisation = Linearisation::new(model, &inputs).unwrap();
-    let [z, _, scalars] = state.after(model);
+    let [z, momentum, scalars] = state.after(model);
     let exact = linearisation.step([&state.z, &z], &scalars, STEP).unwrap();
+    let greatest = momentum.iter().fold(0.0_f64, |a, p| a.max(p.abs()));
+    for (own, simulated) in exact.momentum.iter().zip(&momentum) {
+        assert!((own - simulated).abs() < 1e-9 * greatest);
+    }
     let (coordinates, momenta) = (
         linearisation.coordinates().to_vec(),
         linearisation.momenta().to_vec(),
@@ -131,6 +135,7 @@ fn both(model: &Model, state: &State) -> [LinearStep; 2] {
     let differences = LinearStep {
         by_state,
         by_inputs,
+        momentum: exact.momentum.clone(),
     };
     [exact, differences]
 }

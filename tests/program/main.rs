@@ -12,6 +12,7 @@ mod end_of;
 mod end_of_refused;
 mod engine;
 mod fe_control;
+mod feedback;
 mod fields;
 mod first_hour;
 mod gltf;

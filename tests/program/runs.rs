@@ -16,7 +16,7 @@ use tempfile::TempDir;
 pub(crate) fn workshop() -> TempDir {
     let folder = tempfile::tempdir().unwrap();
     let problems = Path::new(env!("CARGO_MANIFEST_DIR")).join("problems");
-    for part in ["", "scenes", "meshes", "measured"] {
+    for part in ["", "scenes", "meshes", "measured", "feedback"] {
         fs::create_dir_all(folder.path().join("problems").join(part)).unwrap();
         for entry in fs::read_dir(problems.join(part)).unwrap() {
             let path = entry.unwrap().path();

@@ -33,6 +33,7 @@ pub(crate) fn under(voltages: Vec<f64>, coordinates: Coordinates) -> Simulation 
         voltages: Voltages::Constant(voltages),
         coordinates: Some(coordinates),
         solving: Solving::default(),
+        controller: None,
     }
 }
 

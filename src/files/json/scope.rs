@@ -84,6 +84,18 @@ impl<'a> Scope<'a> {
         file.ok_or_else(|| self.missing(path, "solution.json", expected))
     }
 
+    /// The `feedback.json` that a path names, or that is in the folder that it names; in the same places.
+    pub(crate) fn feedback_file(&self, path: &str) -> Result<PathBuf, SceneError> {
+        let named = |place: PathBuf| match place.is_dir() {
+            true => place.join("feedback.json"),
+            false => place,
+        };
+        let mut files = self.near(path).into_iter().map(named);
+        let file = files.find(|file| file.is_file());
+        let expected = "the path of the feedback.json of an optimum, or of its folder";
+        file.ok_or_else(|| self.missing(path, "feedback.json", expected))
+    }
+
     /// Beside the document, and in the current folder.
     fn near(&self, path: &str) -> [PathBuf; 2] {
         [self.document.beside(path), PathBuf::from(path)]

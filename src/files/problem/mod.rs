@@ -2,6 +2,7 @@
 //!
 //! - `motions`: several motions of one problem, each as a problem of its own.
 //! - `build`: the problem; `control`, `simulation`, `identify`: its longer tasks; `channels`, `channel_quantities`: what recordings measure; `changed_scenes`: scenes of some of them; `driven`: start and inputs of both motions.
+//! - `feedback`: gains along an optimum, and a controller that reads them.
 //! - `state`, `end_of`, `goal`, `limits`, `source_limits`, `free`, `guess`, `voltages`, `track`, `measured`, `energies`, `coordinates`: their parts; `output`: what is written of a motion; `solution_voltages`,
 //!   `solution_joints`, `solution_document`:
 //!   what is read of an earlier solution.
@@ -17,6 +18,7 @@ pub(crate) mod coordinates;
 pub(crate) mod driven;
 mod end_of;
 pub(crate) mod energies;
+pub(crate) mod feedback;
 pub(crate) mod free;
 pub(crate) mod goal;
 pub(crate) mod guess;
@@ -40,6 +42,7 @@ pub mod spec_amount_limits;
 pub mod spec_control;
 pub mod spec_coordinates;
 pub mod spec_energies;
+pub mod spec_feedback;
 pub mod spec_free;
 pub mod spec_identify;
 pub mod spec_integrator;

@@ -6,6 +6,7 @@ use crate::files::json::error::SceneError;
 use crate::files::json::scope::Scope;
 use crate::files::problem::coordinates::coordinates;
 use crate::files::problem::driven::driven;
+use crate::files::problem::feedback::controller;
 use crate::files::problem::spec_integrator::integrator;
 use crate::files::problem::spec_simulate::{SimulateSpec, StepSpec};
 use crate::model::system::System;
@@ -43,6 +44,20 @@ pub(crate) fn simulation(
                 .newton
                 .map_or_else(|| Newton::for_system(system), Into::into),
             backend: spec.linear_solver.map(Into::into),
+        },
+        controller: match &spec.controller {
+            Some(written) => {
+                // The steps that are taken, which divide the duration.
+                let equal = duration / (duration / step - 1e-9).ceil().max(1.0);
+                let equal = tolerance.is_none().then_some(equal);
+                Some(controller(
+                    written,
+                    equal,
+                    system,
+                    &scope.key("controller"),
+                )?)
+            }
+            None => None,
         },
     })
 }

@@ -8,6 +8,7 @@ use std::marker::PhantomData;
 use crate::files::json::either::{Either, ScalarOrObject, scalar_or_object};
 use crate::files::problem::spec_control::ControlSpec;
 use crate::files::problem::spec_coordinates::CoordinatesSpec;
+use crate::files::problem::spec_feedback::FeedbackSpec;
 use crate::files::problem::spec_identify::IdentifySpec;
 use crate::files::problem::spec_output::OutputSpec;
 use crate::files::problem::spec_simulate::SimulateSpec;
@@ -38,6 +39,9 @@ pub struct ProblemSpec {
     /// Constants fitted to recordings.
     #[serde(default)]
     pub identify: Option<IdentifySpec>,
+    /// Gains of a controller that keeps the optimal motion.
+    #[serde(default)]
+    pub feedback: Option<FeedbackSpec>,
     /// Part of a motion that tables, figures and page show.
     #[serde(default)]
     pub output: Option<OutputSpec>,

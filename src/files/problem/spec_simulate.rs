@@ -3,6 +3,7 @@
 use crate::dynamics::Newton;
 use crate::files::problem::loads::LoadMap;
 use crate::files::problem::spec_coordinates::CoordinatesSpec;
+use crate::files::problem::spec_feedback::ControllerSpec;
 use crate::files::problem::spec_integrator::IntegratorSpec;
 use crate::files::problem::spec_states::StartSpec;
 use crate::files::problem::spec_voltages::VoltagesSpec;
@@ -32,6 +33,9 @@ pub struct SimulateSpec {
     /// Loads by name, constant or functions of time, SI units N, N m, Pa, N/m³ and C/m²; 0 where not named.
     #[serde(default)]
     pub loads: LoadMap,
+    /// A controller that gives the voltages which it has gains for.
+    #[serde(default)]
+    pub controller: Option<ControllerSpec>,
     /// Start of the motion; the reference configuration at rest where not written.
     #[serde(default)]
     pub start: Option<StartSpec>,

@@ -1,0 +1,109 @@
+//! The files of a regulator along an optimum: `feedback.json`, `feedback.csv` and `feedback.npz`.
+
+use std::io;
+
+use nalgebra::DMatrix;
+
+use crate::app::summary::Summary;
+use crate::control::problem::{Control, Regulator};
+use crate::files::feedback::{law_csv, law_json};
+use crate::files::npz::NpzWriter;
+use crate::report::atomic::WriteError;
+use crate::report::file_set::FileSet;
+use crate::report::origin::Origin;
+use crate::tasks::SolveResult;
+use crate::workflow::regulator::{Regulated, RegulatedStep, regulator};
+
+const JSON: &str = "feedback.json";
+const TABLE: &str = "feedback.csv";
+const ARRAYS: &str = "feedback.npz";
+
+/// Finds the regulator that is asked for and adds its files and remarks; one of an earlier result goes.
+///
+/// # Errors
+/// A file cannot be written.
+pub(super) fn add(
+    (control, task): (&Control, Option<&Regulator>),
+    result: &SolveResult,
+    (summary, files): (&mut Summary, &mut FileSet),
+    origin: &Origin,
+) -> Result<(), WriteError> {
+    let found = task.map(|task| {
+        let optimum = &result.optimum;
+        if !result.verdict.is_solved {
+            return Err("the motion is no optimum".to_owned());
+        }
+        let (model, boundary) = (&optimum.model, &optimum.boundary);
+        let rest = optimum
+            .motion
+            .hold
+            .as_deref()
+            .or(boundary.rest[1].as_deref());
+        let momentum = &boundary.start.momentum;
+        regulator((model, control, task), &result.discrete, momentum, rest)
+            .map_err(|reason| reason.to_string())
+    });
+    match found {
+        None => {}
+        Some(Err(reason)) => {
+            let text = format!("no gains of \"feedback\" were written: {reason}");
+            summary.notes.warn("feedback", [text]);
+        }
+        Some(Ok(found)) => {
+            let system = &result.optimum.model.system;
+            summary.notes.note("feedback", found.notes());
+            summary.notes.warn("feedback", found.warnings());
+            summary.feedback = Some(found.report());
+            files.add(JSON, law_json(&found.law, system).as_bytes())?;
+            files.add(
+                TABLE,
+                law_csv(&found.law, system, &origin.line()).as_bytes(),
+            )?;
+            let arrays = arrays(&found).map_err(|cause| WriteError {
+                path: files.folder().join(ARRAYS),
+                cause,
+            })?;
+            return files.add(ARRAYS, &arrays);
+        }
+    }
+    for name in [JSON, TABLE, ARRAYS] {
+        files.remove(name);
+    }
+    Ok(())
+}
+
+/// Matrices of all steps in rad, mm, ms, g, V: of the state of coordinates, momenta and integrals.
+fn arrays(found: &Regulated) -> io::Result<Vec<u8>> {
+    let mut arrays = NpzWriter::default();
+    type Matrix = fn(&RegulatedStep) -> &DMatrix<f64>;
+    let of: [(&str, Matrix); 5] = [
+        ("A", |step| &step.by_state),
+        ("B", |step| &step.by_inputs),
+        ("Q", |step| &step.costs.state),
+        ("R", |step| &step.costs.inputs),
+        ("K", |step| &step.gain),
+    ];
+    for (name, matrix) in of {
+        let first = matrix(&found.steps[0]);
+        let shape = [found.steps.len(), first.nrows(), first.ncols()];
+        let all = found.steps.iter().flat_map(|step| rows(matrix(step)));
+        arrays.array(name, &shape, all);
+        if let Some((step, _)) = &found.held {
+            let matrix = matrix(step);
+            let shape = [matrix.nrows(), matrix.ncols()];
+            arrays.array(&format!("{name}_held"), &shape, rows(matrix));
+        }
+    }
+    let end = &found.end_cost;
+    arrays.array("S_end", &[end.nrows(), end.ncols()], rows(end));
+    if let Some((_, held)) = &found.held {
+        let cost = &held.cost;
+        arrays.array("S_held", &[cost.nrows(), cost.ncols()], rows(cost));
+    }
+    Ok(arrays.finish()?.0)
+}
+
+fn rows(matrix: &DMatrix<f64>) -> impl Iterator<Item = f64> + '_ {
+    let entries = (0..matrix.nrows()).flat_map(|i| (0..matrix.ncols()).map(move |j| (i, j)));
+    entries.map(|at| matrix[at])
+}

@@ -1,0 +1,81 @@
+//! A regulator along an optimal motion: the costs of deviations, of which its gains are the least; and its use in a simulation.
+
+use crate::feedback::Law;
+use std::path::PathBuf;
+use std::sync::Arc;
+
+/// Costs of deviations from a motion. Each is the factor of a sum of squares: of deviations in degrees or mm, of rates in 100 degrees/s or
+/// 100 mm/s, of inputs as parts of their ranges, and of integrals over 0.1 s of the first.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Regulator {
+    /// Of coordinates.
+    pub coordinates: f64,
+    /// Of their rates.
+    pub rates: f64,
+    /// Of the places of markers, by marker.
+    pub markers: Vec<(usize, f64)>,
+    /// Of inputs; positive.
+    pub inputs: f64,
+    /// Of the integrals of deviations of joint coordinates; zero: none are formed.
+    pub integral: f64,
+    /// Greatest length in ms of the steps that are linearised.
+    pub step: f64,
+    /// Time in ms from a measurement to its effect, which is predicted; whole intervals count, upwards.
+    pub delay: f64,
+    /// Factor of the costs at the end: of holding the goal for ever, or of the deviations there where it is not held.
+    pub terminal: f64,
+}
+
+impl Default for Regulator {
+    fn default() -> Self {
+        Self {
+            coordinates: 1.0,
+            rates: 0.0,
+            markers: Vec::new(),
+            inputs: 0.01,
+            integral: 0.0,
+            step: 1.0,
+            delay: 0.0,
+            terminal: 1.0,
+        }
+    }
+}
+
+impl Regulator {
+    /// Deviation of an angle that costs as much as one of a mm, in rad.
+    pub const DEGREE: f64 = std::f64::consts::PI / 180.0;
+    /// Time in ms in which a rate makes that deviation.
+    pub const RATE_TIME: f64 = 10.0;
+    /// Time in ms of an integral.
+    pub const INTEGRAL_TIME: f64 = 100.0;
+}
+
+/// A controller in a simulation.
+#[derive(Clone, Debug, PartialEq)]
+pub struct FeedbackControl {
+    /// The law.
+    pub law: Arc<Law>,
+    /// The file that it was read from.
+    pub path: PathBuf,
+    /// Time in ms between samples.
+    pub sample: f64,
+    /// Time in ms from a sample to its effect.
+    pub delay: f64,
+    /// Noise of what is measured.
+    pub noise: Noise,
+}
+
+/// Standard deviations of the noise of measured quantities; zero: none.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct Noise {
+    /// Of angles in rad.
+    pub angle: f64,
+    /// Of lengths in mm.
+    pub length: f64,
+    /// Of rates of angles in rad/ms.
+    pub angular_velocity: f64,
+    /// Of rates of lengths in mm/ms.
+    pub velocity: f64,
+    /// Seed of the numbers that are drawn.
+    pub seed: u64,
+}

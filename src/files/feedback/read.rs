@@ -1,0 +1,210 @@
+//! Reader of `feedback.json`, for a system with joints and sources of the same names.
+
+use crate::feedback::{Integral, Law, LawInput, Measured, Point};
+use crate::files::feedback::record::{
+    InputRecord, LawRecord, MeasuredRecord, PointRecord, integrated, unit_of, unit_of_input,
+};
+use crate::files::json::document::Document;
+use crate::files::json::error::SceneError;
+use crate::files::json::scope::Scope;
+use crate::files::problem::state::driven;
+use crate::files::scene::names::names;
+use crate::model::system::{Source, System};
+use nalgebra::DMatrix;
+use std::path::Path;
+
+/// Most intervals of a delay.
+const MOST_DELAYED: usize = 10_000;
+
+/// The law of a file.
+///
+/// # Errors
+/// It cannot be read, lacks something, or is one of another robot.
+pub(crate) fn read_law(path: &Path, system: &System) -> Result<Law, SceneError> {
+    let document = Document::read(path)?;
+    let record: LawRecord = document.parse()?;
+    let scope = Scope::of(&document);
+    if !(record.interval > 0.0 && record.interval.is_finite()) {
+        let found = record.interval.to_string();
+        return Err(scope.key("interval").wrong(found, "a positive time in s"));
+    }
+    let measured = record.measured.iter().enumerate();
+    let measured = measured.map(|(i, one)| of_measured(one, &scope.key("measured").index(i)));
+    let measured: Vec<Measured> = measured.collect::<Result<_, _>>()?;
+    let sources = system.sources();
+    let inputs = record.inputs.iter().enumerate();
+    let inputs = inputs.map(|(i, one)| of_input(one, &sources, &scope.key("inputs").index(i)));
+    let (inputs, of_inputs): (Vec<LawInput>, Vec<f64>) =
+        inputs.collect::<Result<Vec<_>, _>>()?.into_iter().unzip();
+    let (read, acting) = factors((&measured, &inputs, &of_inputs), &record, &scope)?;
+    let point = |record: &PointRecord, place: &Scope<'_>| {
+        let measured = &read[..measured.len()];
+        Ok::<Point, SceneError>(Point {
+            state: list(&record.state, measured, &place.key("state"))?,
+            inputs: list(&record.inputs, &of_inputs, &place.key("inputs"))?,
+            gain: gain(&record.gain, (&acting, &read), &place.key("gain"))?,
+        })
+    };
+    let place = scope.key("intervals");
+    if record.intervals.is_empty() {
+        return Err(place.wrong("none", "one interval or more"));
+    }
+    let points = record.intervals.iter().enumerate();
+    let points = points.map(|(k, one)| point(one, &place.index(k)));
+    let points: Vec<Point> = points.collect::<Result<_, _>>()?;
+    let held = record.held.as_ref();
+    let held = held.map(|one| point(one, &scope.key("held"))).transpose()?;
+    let markers = markers(&record, points.len() + 1, system);
+    Ok(Law {
+        measured,
+        inputs,
+        integral: Integral {
+            of: record.integrals,
+        },
+        h: 1e3 * record.interval,
+        delay: record.delay_intervals,
+        points,
+        held,
+        markers,
+    })
+}
+
+/// Factors of the units of all columns of a gain, and of the inputs in the units in which they act.
+fn factors(
+    (measured, inputs, of_inputs): (&[Measured], &[LawInput], &[f64]),
+    record: &LawRecord,
+    scope: &Scope<'_>,
+) -> Result<(Vec<f64>, Vec<f64>), SceneError> {
+    let place = scope.key("integrals");
+    for (i, &of) in record.integrals.iter().enumerate() {
+        if of >= measured.len() {
+            let expected = format!("a place below {}", measured.len());
+            return Err(place.index(i).wrong(of.to_string(), expected));
+        }
+    }
+    let mut read: Vec<f64> = measured.iter().map(|one| unit_of(one).1).collect();
+    read.extend(
+        record
+            .integrals
+            .iter()
+            .map(|&of| integrated(read[of]))
+            .collect::<Vec<_>>(),
+    );
+    let acting = inputs.iter().zip(of_inputs);
+    let acting = acting.map(|(input, unit)| match input.is_squared {
+        true => unit * unit,
+        false => *unit,
+    });
+    let acting: Vec<f64> = acting.collect();
+    if record.delay_intervals > MOST_DELAYED {
+        let found = record.delay_intervals.to_string();
+        let expected = format!("no more than {MOST_DELAYED}");
+        return Err(scope.key("delay_intervals").wrong(found, expected));
+    }
+    (0..record.delay_intervals).for_each(|_| read.extend(&acting));
+    Ok((read, acting))
+}
+
+/// Places in mm of markers that the system has, at a number of instants.
+fn markers(record: &LawRecord, instants: usize, system: &System) -> Vec<(String, Vec<[f64; 3]>)> {
+    let mut markers = Vec::new();
+    let known = names(&system.markers, |marker| &marker.name);
+    for (name, path) in &record.markers {
+        // A marker that this robot does not have is not compared.
+        if known.contains(name) && path.len() == instants {
+            let path = path.iter().map(|place| place.map(|x| 1e3 * x));
+            markers.push((name.clone(), path.collect()));
+        }
+    }
+    markers
+}
+
+fn of_measured(record: &MeasuredRecord, place: &Scope<'_>) -> Result<Measured, SceneError> {
+    let kinds = [(false, false), (false, true), (true, false), (true, true)];
+    let all = kinds.map(|(is_length, is_rate)| Measured {
+        name: record.name.clone(),
+        is_rate,
+        is_length,
+        is_memory: record.is_memory,
+    });
+    let mut own = all.into_iter().filter(|one| unit_of(one).0 == record.unit);
+    let wrong = || {
+        place
+            .key("unit")
+            .wrong(format!("{:?}", record.unit), "rad, m, rad/s or m/s")
+    };
+    own.next().ok_or_else(wrong)
+}
+
+/// An input, and the factor of its unit.
+fn of_input(
+    record: &InputRecord,
+    sources: &[Source],
+    place: &Scope<'_>,
+) -> Result<(LawInput, f64), SceneError> {
+    let load = sources
+        .iter()
+        .find(|source| source.is_load() && source.name == record.name);
+    let source = match load {
+        Some(load) => load,
+        None => &sources[driven(&record.name, sources, &place.key("name"))?],
+    };
+    let (unit, factor) = unit_of_input(source);
+    if unit != record.unit {
+        let expected = format!("{unit:?}, the unit of {}", source.name);
+        return Err(place
+            .key("unit")
+            .wrong(format!("{:?}", record.unit), expected));
+    }
+    let [low, high] = record.bounds;
+    let is_root = !record.is_squared || low >= 0.0;
+    if !(low <= high && is_root) {
+        let found = format!("[{low}, {high}]");
+        let expected = "a lower and an upper bound, of a squared voltage none below zero";
+        return Err(place.key("bounds").wrong(found, expected));
+    }
+    let input = LawInput {
+        name: record.name.clone(),
+        is_squared: record.is_squared,
+        bounds: record.bounds.map(|bound| bound / factor),
+    };
+    Ok((input, factor))
+}
+
+/// Finite numbers, as many as there are factors, in the units inside.
+fn list(values: &[f64], factors: &[f64], place: &Scope<'_>) -> Result<Vec<f64>, SceneError> {
+    if values.len() != factors.len() {
+        let found = format!("{} numbers", values.len());
+        return Err(place.wrong(found, factors.len().to_string()));
+    }
+    if let Some(i) = values.iter().position(|value| !value.is_finite()) {
+        return Err(place
+            .index(i)
+            .wrong(values[i].to_string(), "a finite number"));
+    }
+    Ok(values
+        .iter()
+        .zip(factors)
+        .map(|(value, factor)| value / factor)
+        .collect())
+}
+
+fn gain(
+    rows: &[Vec<f64>],
+    (acting, read): (&[f64], &[f64]),
+    place: &Scope<'_>,
+) -> Result<DMatrix<f64>, SceneError> {
+    if rows.len() != acting.len() {
+        let found = format!("{} rows", rows.len());
+        return Err(place.wrong(found, format!("{}, one for each input", acting.len())));
+    }
+    let mut out = DMatrix::zeros(acting.len(), read.len());
+    for (i, (row, acting)) in rows.iter().zip(acting).enumerate() {
+        let inverse: Vec<f64> = read.iter().map(|read| acting / read).collect();
+        let row = list(row, &inverse, &place.index(i))?;
+        row.iter()
+            .enumerate()
+            .for_each(|(j, value)| out[(i, j)] = *value);
+    }
+    Ok(out)
+}

@@ -1,0 +1,82 @@
+//! The types of `feedback.json`, and the factors of its units.
+
+use crate::feedback::Measured;
+use crate::model::system::Source;
+use serde::{Deserialize, Serialize};
+use std::collections::BTreeMap;
+
+/// The file.
+#[derive(Debug, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub(super) struct LawRecord {
+    /// Name of the scene.
+    pub(super) scene: String,
+    /// Length of the intervals in s.
+    pub(super) interval: f64,
+    /// Intervals from a measurement to its effect, over which gains predict.
+    #[serde(default)]
+    pub(super) delay_intervals: usize,
+    pub(super) measured: Vec<MeasuredRecord>,
+    pub(super) inputs: Vec<InputRecord>,
+    /// Places among what is measured of deviations that are integrated over time.
+    pub(super) integrals: Vec<usize>,
+    /// One for each interval.
+    pub(super) intervals: Vec<PointRecord>,
+    /// After the end, where the goal is held.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub(super) held: Option<PointRecord>,
+    /// Places of markers in m at the instants.
+    pub(super) markers: BTreeMap<String, Vec<[f64; 3]>>,
+}
+
+/// A coordinate or its rate: rad, m, rad/s, m/s.
+#[derive(Debug, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub(super) struct MeasuredRecord {
+    pub(super) name: String,
+    pub(super) unit: String,
+    #[serde(default, skip_serializing_if = "std::ops::Not::not")]
+    pub(super) is_memory: bool,
+}
+
+/// A voltage or a load: V, or the unit of the load.
+#[derive(Debug, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub(super) struct InputRecord {
+    pub(super) name: String,
+    pub(super) unit: String,
+    /// True if gains are for the square of the voltage.
+    pub(super) is_squared: bool,
+    pub(super) bounds: [f64; 2],
+}
+
+/// The law in an interval.
+#[derive(Debug, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub(super) struct PointRecord {
+    pub(super) state: Vec<f64>,
+    pub(super) inputs: Vec<f64>,
+    /// A row for each input, over what is measured, then the integrals, then the corrections of the inputs in each interval of the delay.
+    pub(super) gain: Vec<Vec<f64>>,
+}
+
+/// Unit of a measured quantity, and its factor from the units inside.
+pub(super) fn unit_of(measured: &Measured) -> (&'static str, f64) {
+    match (measured.is_length, measured.is_rate) {
+        (false, false) => ("rad", 1.0),
+        (false, true) => ("rad/s", 1e3),
+        (true, false) => ("m", 1e-3),
+        (true, true) => ("m/s", 1.0),
+    }
+}
+
+/// Factor of an integral over time of a quantity with a factor.
+pub(super) fn integrated(factor: f64) -> f64 {
+    factor * 1e-3
+}
+
+/// Unit of an input, and its factor from the units inside.
+pub(super) fn unit_of_input(source: &Source) -> (&'static str, f64) {
+    let (unit, size) = source.kind.si();
+    (unit, 1.0 / size)
+}

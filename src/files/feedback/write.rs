@@ -1,0 +1,162 @@
+//! Writer of `feedback.json` and of the table of gains.
+
+use crate::feedback::{Law, Point};
+use crate::files::feedback::record::{
+    InputRecord, LawRecord, MeasuredRecord, PointRecord, integrated, unit_of, unit_of_input,
+};
+use crate::files::lay_out;
+use crate::model::System;
+use std::fmt::Write;
+
+/// Factors of the units of a law: of what is measured and integrated, of inputs, and of inputs or their squares.
+struct Factors {
+    read: Vec<f64>,
+    inputs: Vec<f64>,
+    acting: Vec<f64>,
+}
+
+impl Factors {
+    fn new(law: &Law, system: &System) -> Self {
+        let measured = law.measured.iter().map(|one| unit_of(one).1);
+        let integrals = law.integral.of.iter();
+        let integrals = integrals.map(|&of| integrated(unit_of(&law.measured[of]).1));
+        let inputs: Vec<f64> = units(law, system).map(|(_, factor)| factor).collect();
+        let acting = law.inputs.iter().zip(&inputs);
+        let acting: Vec<f64> = acting
+            .map(|(input, factor)| match input.is_squared {
+                true => factor * factor,
+                false => *factor,
+            })
+            .collect();
+        let corrections = (0..law.delay).flat_map(|_| acting.iter().copied());
+        Self {
+            read: measured.chain(integrals).chain(corrections).collect(),
+            acting,
+            inputs,
+        }
+    }
+
+    fn gain(&self, point: &Point) -> Vec<Vec<f64>> {
+        let row = |(i, acting): (usize, &f64)| {
+            let all = self.read.iter().enumerate();
+            all.map(|(j, read)| point.gain[(i, j)] * acting / read)
+                .collect()
+        };
+        self.acting.iter().enumerate().map(row).collect()
+    }
+
+    fn point(&self, point: &Point) -> PointRecord {
+        let scaled = |values: &[f64], factors: &[f64]| {
+            values
+                .iter()
+                .zip(factors)
+                .map(|(value, factor)| value * factor)
+                .collect()
+        };
+        PointRecord {
+            state: scaled(&point.state, &self.read),
+            inputs: scaled(&point.inputs, &self.inputs),
+            gain: self.gain(point),
+        }
+    }
+}
+
+/// Units and factors of the inputs.
+fn units<'l>(law: &'l Law, system: &System) -> impl Iterator<Item = (&'static str, f64)> + 'l {
+    let sources = system.sources();
+    law.inputs.iter().map(move |input| {
+        let source = sources.iter().find(|source| source.name == input.name);
+        source.map_or(("V", 1.0), unit_of_input)
+    })
+}
+
+/// The text of `feedback.json`.
+pub fn law_json(law: &Law, system: &System) -> String {
+    let factors = Factors::new(law, system);
+    let measured = law.measured.iter().map(|one| MeasuredRecord {
+        name: one.name.clone(),
+        unit: unit_of(one).0.to_owned(),
+        is_memory: one.is_memory,
+    });
+    let inputs = law.inputs.iter().zip(units(law, system));
+    let places = |places: &[[f64; 3]]| places.iter().map(|place| place.map(|x| x / 1e3)).collect();
+    let record = LawRecord {
+        scene: system.name.clone(),
+        interval: law.h / 1e3,
+        delay_intervals: law.delay,
+        measured: measured.collect(),
+        inputs: inputs
+            .map(|(input, (unit, factor))| InputRecord {
+                name: input.name.clone(),
+                unit: unit.to_owned(),
+                is_squared: input.is_squared,
+                bounds: input.bounds.map(|bound| bound * factor),
+            })
+            .collect(),
+        integrals: law.integral.of.clone(),
+        intervals: law
+            .points
+            .iter()
+            .map(|point| factors.point(point))
+            .collect(),
+        held: law.held.as_ref().map(|point| factors.point(point)),
+        markers: law
+            .markers
+            .iter()
+            .map(|(name, path)| (name.clone(), places(path)))
+            .collect(),
+    };
+    lay_out(&serde_json::to_string(&record).expect("numbers and names are JSON"))
+}
+
+/// The table of gains: a row for the start of each interval, and one for the time after the end where the goal is held.
+pub fn law_csv(law: &Law, system: &System, head: &str) -> String {
+    let factors = Factors::new(law, system);
+    let mut out = format!("# {head}\ntime [s]");
+    let names: Vec<(String, &str)> = law
+        .measured
+        .iter()
+        .map(|one| match one.is_rate {
+            true => (format!("rate of {}", one.name), unit_of(one).0),
+            false => (one.name.clone(), unit_of(one).0),
+        })
+        .collect();
+    let integrals = law.integral.of.iter().map(|&of| {
+        let (name, unit) = &names[of];
+        (format!("integral of {name}"), format!("{unit} s"))
+    });
+    let read: Vec<(String, String)> = names
+        .iter()
+        .map(|(name, unit)| (name.clone(), (*unit).to_owned()))
+        .chain(integrals)
+        .collect();
+    let mut read = read;
+    for k in 0..law.delay {
+        for (input, (unit, _)) in law.inputs.iter().zip(units(law, system)) {
+            let square = if input.is_squared { "^2" } else { "" };
+            let name = format!("correction of {}{square} in interval {}", input.name, k + 1);
+            read.push((name, format!("{unit}{square}")));
+        }
+    }
+    for (input, (unit, _)) in law.inputs.iter().zip(units(law, system)) {
+        let square = if input.is_squared { "^2" } else { "" };
+        for (name, of) in &read {
+            write!(
+                out,
+                ",{}{square} by {name} [{unit}{square}/({of})]",
+                input.name
+            )
+            .expect("text takes everything");
+        }
+    }
+    let points = law.points.iter().enumerate().map(|(k, point)| (k, point));
+    let held = law.held.iter().map(|point| (law.points.len(), point));
+    for (k, point) in points.chain(held) {
+        write!(out, "\n{}", law.h * k as f64 / 1e3).expect("text takes everything");
+        for value in factors.gain(point).iter().flatten() {
+            write!(out, ",{value}").expect("text takes everything");
+        }
+    }
+    out.push('\n');
+    out
+}

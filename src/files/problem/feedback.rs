@@ -1,0 +1,141 @@
+//! Conversion of the feedback of a problem file to costs of deviations, and to a controller.
+
+use crate::control::problem::{FeedbackControl, Noise, Regulator};
+use crate::files::feedback::read_law;
+use crate::files::json::error::SceneError;
+use crate::files::json::scope::Scope;
+use crate::files::problem::spec_feedback::{ControllerSpec, FeedbackSpec};
+use crate::files::scene::names::names;
+use crate::files::units::quantity::{PhysicalQuantity, Quantity};
+use crate::math::shortest;
+use crate::model::system::System;
+use std::sync::Arc;
+
+/// Part of a step by which a sample or delay may differ from a multiple of it.
+const ROUNDING: f64 = 1e-6;
+
+pub(crate) fn regulator(
+    spec: &FeedbackSpec,
+    system: &System,
+    scope: &Scope<'_>,
+) -> Result<Regulator, SceneError> {
+    let place = scope.key("weights");
+    let weight = |key: &str, written: Option<f64>, unwritten: f64| match written {
+        Some(weight) => finite(weight, &place.key(key)),
+        None => Ok(unwritten),
+    };
+    let usual = Regulator::default();
+    let weights = &spec.weights;
+    let known = names(&system.markers, |marker| &marker.name);
+    let mut markers = Vec::new();
+    for (name, &weight) in &weights.markers {
+        let place = place.key("markers").key(name);
+        let marker = place.find(name, &known, "the name of a marker")?;
+        let weight = finite(weight, &place)?;
+        markers.extend((weight > 0.0).then_some((marker, weight)));
+    }
+    let inputs = weight("voltages", weights.voltages, usual.inputs)?;
+    if inputs == 0.0 {
+        let expected = "a positive weight: without one the voltages are not bounded";
+        return Err(place.key("voltages").wrong("0", expected));
+    }
+    let out = Regulator {
+        coordinates: weight("joints", weights.joints, usual.coordinates)?,
+        rates: weight("rates", weights.rates, usual.rates)?,
+        markers,
+        inputs,
+        integral: weight("integral", weights.integral, usual.integral)?,
+        step: match &spec.step {
+            Some(step) => scope.key("step").positive(step)?,
+            None => usual.step,
+        },
+        delay: scope
+            .key("delay")
+            .absent_or_positive(spec.delay.as_ref())?
+            .unwrap_or(0.0),
+        terminal: match spec.terminal {
+            Some(terminal) => finite(terminal, &scope.key("terminal"))?,
+            None => usual.terminal,
+        },
+    };
+    let costs = [out.coordinates, out.rates, out.integral];
+    if costs.iter().all(|cost| *cost == 0.0) && out.markers.is_empty() {
+        return Err(place.wrong("no positive weight of a deviation", "one or more"));
+    }
+    Ok(out)
+}
+
+fn finite(weight: f64, place: &Scope<'_>) -> Result<f64, SceneError> {
+    match weight.is_finite() {
+        true => place.weight(weight),
+        false => Err(place.wrong(weight.to_string(), "a finite number")),
+    }
+}
+
+/// A controller of a simulation in steps of a length in ms; `None`: their length follows a tolerance.
+pub(crate) fn controller(
+    spec: &ControllerSpec,
+    step: Option<f64>,
+    system: &System,
+    scope: &Scope<'_>,
+) -> Result<FeedbackControl, SceneError> {
+    let Some(step) = step else {
+        let expected = "a \"step\" of the simulation: samples are multiples of it";
+        return Err(scope.wrong("steps of no given length", expected));
+    };
+    let place = scope.key("feedback");
+    let path = place.feedback_file(&spec.feedback)?;
+    let law = read_law(&path, system)?;
+    let sample = match &spec.sample {
+        Some(sample) => multiple(sample, step, &scope.key("sample"))?,
+        None => (law.h / step - 1e-6).ceil().max(1.0) * step,
+    };
+    let delay = match &spec.delay {
+        Some(delay) if delay.value() != 0.0 => multiple(delay, step, &scope.key("delay"))?,
+        Some(_) => 0.0,
+        None => (law.delay as f64 * law.h / step - 1e-6).ceil() * step,
+    };
+    let noise = scope.key("noise");
+    let of = &spec.noise;
+    Ok(FeedbackControl {
+        law: Arc::new(law),
+        path,
+        sample,
+        delay,
+        noise: Noise {
+            angle: deviation(of.angle.as_ref(), &noise.key("angle"))?,
+            length: deviation(of.length.as_ref(), &noise.key("length"))?,
+            angular_velocity: deviation(
+                of.angular_velocity.as_ref(),
+                &noise.key("angular_velocity"),
+            )?,
+            velocity: deviation(of.velocity.as_ref(), &noise.key("velocity"))?,
+            seed: of.seed,
+        },
+    })
+}
+
+fn deviation<M: PhysicalQuantity>(
+    written: Option<&Quantity<M>>,
+    place: &Scope<'_>,
+) -> Result<f64, SceneError> {
+    Ok(place.absent_or_positive(written)?.unwrap_or(0.0))
+}
+
+/// A positive multiple of the step in ms.
+fn multiple<M: PhysicalQuantity>(
+    written: &Quantity<M>,
+    step: f64,
+    place: &Scope<'_>,
+) -> Result<f64, SceneError> {
+    let time = place.positive(written)?;
+    let steps = (time / step).round();
+    match steps >= 1.0 && (time / step - steps).abs() <= ROUNDING * steps {
+        true => Ok(steps * step),
+        false => {
+            let step = shortest(step, 9);
+            let expected = format!("a multiple of the step {step} ms");
+            Err(place.wrong(written.to_string(), expected))
+        }
+    }
+}

@@ -1,0 +1,86 @@
+//! Feedback of a problem as it is written: costs of deviations along an optimum, and a controller in a simulation.
+
+use crate::files::units::quantity::{Angle, AngularVelocity, Length, Quantity, Time, Velocity};
+use schemars::JsonSchema;
+use serde::Deserialize;
+use std::collections::BTreeMap;
+
+/// A linear-quadratic regulator along the optimum; its gains are written to `feedback.json`, `feedback.csv` and `feedback.npz`.
+#[derive(Clone, Debug, Default, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct FeedbackSpec {
+    /// Costs of deviations.
+    #[serde(default)]
+    pub weights: WeightsSpec,
+    /// Greatest length of the steps that are linearised, SI unit s; 1 ms where not written. Gains act over the intervals of the optimum.
+    #[serde(default)]
+    pub step: Option<Quantity<Time>>,
+    /// Time from a measurement to its effect, over which the state is predicted, SI unit s, upwards to whole intervals; 0 where not written.
+    #[serde(default)]
+    pub delay: Option<Quantity<Time>>,
+    /// Factor of the costs at the end: of holding the goal for ever, or, where its voltages are not known, of the deviations there; 1 where
+    /// not written.
+    #[serde(default)]
+    pub terminal: Option<f64>,
+}
+
+/// Factors of sums of squares of deviations.
+#[derive(Clone, Debug, Default, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct WeightsSpec {
+    /// Of coordinates of joints and nodes in degrees or mm; 1 where not written.
+    #[serde(default)]
+    pub joints: Option<f64>,
+    /// Of their rates in 100 degrees/s or 100 mm/s; 0 where not written.
+    #[serde(default)]
+    pub rates: Option<f64>,
+    /// Of places of markers in mm, by name; 0 where not named.
+    #[serde(default)]
+    pub markers: BTreeMap<String, f64>,
+    /// Of voltages and loads as parts of their ranges, of voltages of lumped muscles by their squares; positive, 0.01 where not written.
+    #[serde(default)]
+    pub voltages: Option<f64>,
+    /// Of integrals over time of the deviations of joint coordinates, in degrees or mm times 0.1 s; 0 where not written, and then none are formed.
+    /// They take deviations at rest to zero, where there are inputs enough.
+    #[serde(default)]
+    pub integral: Option<f64>,
+}
+
+/// A controller that follows a motion by the gains of `feedback.json`.
+#[derive(Clone, Debug, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct ControllerSpec {
+    /// Path of a `feedback.json` or of the folder that holds it, relative to this file or to the current folder. It gives the inputs that were sought
+    /// in its problem; the robot here has joints of the same names, and may be another one otherwise.
+    pub feedback: String,
+    /// Time between samples, a multiple of the step, SI unit s; the interval of the gains, for which they are, where not written.
+    #[serde(default)]
+    pub sample: Option<Quantity<Time>>,
+    /// Time from a sample to its effect, a multiple of the step, SI unit s; that which the gains predict where not written.
+    #[serde(default)]
+    pub delay: Option<Quantity<Time>>,
+    /// Noise of what is measured.
+    #[serde(default)]
+    pub noise: NoiseSpec,
+}
+
+/// Standard deviations of what is measured; 0 where not written.
+#[derive(Clone, Debug, Default, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct NoiseSpec {
+    /// Of angles, SI unit rad.
+    #[serde(default)]
+    pub angle: Option<Quantity<Angle>>,
+    /// Of lengths, SI unit m.
+    #[serde(default)]
+    pub length: Option<Quantity<Length>>,
+    /// Of rates of angles, SI unit rad/s.
+    #[serde(default)]
+    pub angular_velocity: Option<Quantity<AngularVelocity>>,
+    /// Of rates of lengths, SI unit m/s.
+    #[serde(default)]
+    pub velocity: Option<Quantity<Velocity>>,
+    /// Seed of the numbers that are drawn; 0 where not written.
+    #[serde(default)]
+    pub seed: u64,
+}

@@ -1,0 +1,256 @@
+//! The design of a regulator: linearised steps with integrals, and the costs of deviations.
+
+use crate::control::problem::{Control, Regulator};
+use crate::dynamics::{
+    DiscreteTrajectory, LinearStep, Linearisation, StepError, StepInput, Stepper,
+    momentum_derivatives, rates_of_momentum, step_inputs,
+};
+use crate::feedback::Costs;
+use crate::math::Vector;
+use crate::model::{Model, Time};
+use crate::workflow::regulator::regulated::{MOST, NoRegulator, RegulatedStep};
+use nalgebra::DMatrix;
+
+/// Coordinates and momenta at an instant.
+pub(super) struct State {
+    pub(super) z: Vec<f64>,
+    pub(super) momentum: Vec<f64>,
+}
+
+/// The design of a regulator.
+pub(super) struct Design<'a> {
+    pub(super) model: &'a Model,
+    pub(super) task: &'a Regulator,
+    pub(super) discrete: &'a DiscreteTrajectory,
+    pub(super) inputs: Vec<StepInput>,
+    pub(super) bounds: Vec<[f64; 2]>,
+    /// Range of each input, or of its square.
+    pub(super) ranges: Vec<f64>,
+    pub(super) coordinates: Vec<usize>,
+    pub(super) momenta: Vec<usize>,
+    /// Places of the coordinates that are integrated.
+    pub(super) integrated: Vec<usize>,
+    pub(super) h: f64,
+}
+
+impl<'a> Design<'a> {
+    pub(super) fn new(
+        model: &'a Model,
+        control: &Control,
+        task: &'a Regulator,
+        discrete: &'a DiscreteTrajectory,
+    ) -> Result<Self, NoRegulator> {
+        let scalars = model.variables.of(Time::Interval);
+        let mut inputs = step_inputs(model);
+        inputs.retain(|input| {
+            let source = scalars[input.scalar].source;
+            source.is_some_and(|source| !control.is_given(source))
+        });
+        let bounds: Vec<[f64; 2]> = inputs
+            .iter()
+            .map(|input| control.bounds(&scalars[input.scalar]))
+            .collect();
+        let mut ranges = Vec::new();
+        for (input, [low, high]) in inputs.iter_mut().zip(&bounds) {
+            input.is_squared &= *low >= 0.0 && high.is_finite();
+            let range = match input.is_squared {
+                true => high * high - low * low,
+                false => high - low,
+            };
+            let scale = control.scale(&scalars[input.scalar], &model.system);
+            let is_range = range.is_finite() && range > 0.0;
+            ranges.push(if is_range { range } else { scale });
+        }
+        if inputs.is_empty() {
+            return Err(NoRegulator::NoInput);
+        }
+        let linearisation = Linearisation::new(model, &inputs).map_err(NoRegulator::State)?;
+        if linearisation.size() > MOST {
+            return Err(NoRegulator::Large(linearisation.size()));
+        }
+        let coordinates = linearisation.coordinates().to_vec();
+        let of_joints = |place: &usize| coordinates[*place] < model.action.map.of_bodies;
+        let places = (0..coordinates.len()).filter(of_joints);
+        Ok(Self {
+            model,
+            task,
+            discrete,
+            bounds,
+            ranges,
+            momenta: linearisation.momenta().to_vec(),
+            integrated: places.filter(|_| task.integral > 0.0).collect(),
+            inputs,
+            coordinates,
+            h: discrete.times[1] - discrete.times[0],
+        })
+    }
+
+    /// The motion from a momentum under the inputs of the optimum, in short steps: its states at the instants.
+    pub(super) fn motion(&self, momentum: &[f64]) -> Result<Vec<State>, NoRegulator> {
+        let mut states = vec![State {
+            z: self.discrete.z[0].clone(),
+            momentum: momentum.to_vec(),
+        }];
+        for scalars in &self.discrete.scalars {
+            let inputs = self.model.variables.split(scalars)[0];
+            let last = states.last().expect("the start");
+            let next = self.after(last, inputs);
+            states.push(next.map_err(|error| NoRegulator::Step(error.to_string()))?);
+        }
+        Ok(states)
+    }
+
+    /// The state at rest at the end of the optimum.
+    pub(super) fn goal(&self) -> State {
+        State {
+            z: self.discrete.z.last().expect("an instant").clone(),
+            momentum: vec![0.0; self.model.coordinate_count()],
+        }
+    }
+
+    /// Number of the short steps of an interval.
+    fn parts(&self) -> usize {
+        (self.h / self.task.step - 1e-9).ceil().max(1.0) as usize
+    }
+
+    /// The state after an interval under inputs.
+    pub(super) fn after(&self, state: &State, inputs: &[f64]) -> Result<State, StepError> {
+        let State { z, momentum } = state;
+        let mut stepper = Stepper::new(self.model, z, momentum, Default::default());
+        let parts = self.parts();
+        for _ in 0..parts {
+            stepper.step(self.h / parts as f64, inputs)?;
+        }
+        Ok(State {
+            z: stepper.coordinates().to_vec(),
+            momentum: stepper.momentum().to_vec(),
+        })
+    }
+
+    /// The linearised interval from a state under inputs: the product of its short steps.
+    pub(super) fn linearised(
+        &self,
+        linearisation: &mut Linearisation<'_>,
+        state: &State,
+        inputs: &[f64],
+    ) -> Option<LinearStep> {
+        let State { z, momentum } = state;
+        let mut stepper = Stepper::new(self.model, z, momentum, Default::default());
+        let parts = self.parts();
+        let h = self.h / parts as f64;
+        let mut whole: Option<LinearStep> = None;
+        for _ in 0..parts {
+            let before = stepper.coordinates().to_vec();
+            stepper.step(h, inputs).ok()?;
+            let ends = [&*before, stepper.coordinates()];
+            let step = linearisation.step(ends, stepper.scalars(), h)?;
+            whole = Some(match whole {
+                None => step,
+                Some(done) => LinearStep {
+                    by_state: &step.by_state * done.by_state,
+                    by_inputs: &step.by_state * done.by_inputs + step.by_inputs,
+                    momentum: step.momentum,
+                },
+            });
+        }
+        whole
+    }
+
+    /// A step with integrals and costs at its start, without a gain.
+    pub(super) fn augmented(&self, step: &LinearStep, at: &State) -> RegulatedStep {
+        let (n, u) = (step.by_state.nrows(), self.inputs.len());
+        let size = n + self.integrated.len();
+        let mut by_state = DMatrix::identity(size, size);
+        by_state.view_mut((0, 0), (n, n)).copy_from(&step.by_state);
+        let mut by_inputs = DMatrix::zeros(size, u);
+        by_inputs
+            .view_mut((0, 0), (n, u))
+            .copy_from(&step.by_inputs);
+        for (i, &place) in self.integrated.iter().enumerate() {
+            by_state[(n + i, place)] = self.h;
+        }
+        let input = |i: usize| self.task.inputs / (self.ranges[i] * self.ranges[i]);
+        RegulatedStep {
+            by_state,
+            by_inputs,
+            costs: Costs {
+                state: self.state_costs(at),
+                inputs: DMatrix::from_fn(u, u, |i, j| if i == j { input(i) } else { 0.0 }),
+            },
+            gain: DMatrix::zeros(u, size),
+        }
+    }
+
+    /// Q at an instant.
+    pub(super) fn state_costs(&self, at: &State) -> DMatrix<f64> {
+        let (n, m) = (self.coordinates.len(), self.momenta.len());
+        let size = n + m + self.integrated.len();
+        let mut costs = DMatrix::zeros(size, size);
+        let unit = |i: usize| match self.model.is_length(i) {
+            true => 1.0,
+            false => Regulator::DEGREE,
+        };
+        for (place, &i) in self.coordinates.iter().enumerate() {
+            if !self.model.is_memory(i) {
+                costs[(place, place)] += self.task.coordinates / unit(i).powi(2);
+            }
+        }
+        for (place, &of) in self.integrated.iter().enumerate() {
+            let unit = unit(self.coordinates[of]) * Regulator::INTEGRAL_TIME;
+            costs[(n + m + place, n + m + place)] = self.task.integral / unit.powi(2);
+        }
+        let map = &self.model.action.map;
+        let instant = map.placed(&at.z);
+        for &(marker, weight) in &self.task.markers {
+            let mut place = DMatrix::zeros(3, size);
+            for axis in 0..3 {
+                let mut row = vec![0.0; self.model.coordinate_count()];
+                let mut unit = Vector::zeros();
+                unit[axis] = 1.0;
+                let vector = self.model.markers[marker];
+                map.pull_back_one(vector, &instant.columns, &unit, &mut row);
+                for (c, &i) in self.coordinates.iter().enumerate() {
+                    place[(axis, c)] = row[i];
+                }
+            }
+            costs += weight * place.transpose() * place;
+        }
+        if self.task.rates > 0.0 {
+            costs += self.rate_costs(at, size);
+        }
+        costs
+    }
+
+    /// The costs of rates: δq̇ = M⁻¹ (δp − ∂p/∂q δq).
+    pub(super) fn rate_costs(&self, at: &State, size: usize) -> DMatrix<f64> {
+        let n = self.coordinates.len();
+        let [mass, by] = self.of_momenta(at);
+        let m = self.momenta.len();
+        let mut right = DMatrix::zeros(m, size);
+        right.columns_mut(0, n).copy_from(&-by);
+        right.columns_mut(n, m).fill_with_identity();
+        let Some(mut rates) = mass.lu().solve(&right) else {
+            return DMatrix::zeros(size, size);
+        };
+        for (row, &i) in self.momenta.iter().enumerate() {
+            let unit = match self.model.is_length(i) {
+                true => 1.0,
+                false => Regulator::DEGREE,
+            };
+            rates.row_mut(row).scale_mut(Regulator::RATE_TIME / unit);
+        }
+        self.task.rates * rates.transpose() * rates
+    }
+
+    /// Derivatives of the momenta of the state by rates and by coordinates.
+    pub(super) fn of_momenta(&self, State { z, momentum }: &State) -> [DMatrix<f64>; 2] {
+        let rates = rates_of_momentum(self.model, z, 0.0, momentum);
+        let [mass, by] = momentum_derivatives(self.model, z, &rates);
+        [
+            mass.select_rows(&self.momenta)
+                .select_columns(&self.momenta),
+            by.select_rows(&self.momenta)
+                .select_columns(&self.coordinates),
+        ]
+    }
+}

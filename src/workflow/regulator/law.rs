@@ -1,0 +1,131 @@
+//! The law of a regulator: its gains read rates in place of momenta, as `δp = ∂p/∂q δq + M δq̇` at each instant of the motion.
+
+use crate::dynamics::rates_of_momentum;
+use crate::feedback::{HeldGain, Integral, Law, LawInput, Measured, Point};
+use crate::model::Time;
+use crate::workflow::regulator::design::{Design, State};
+use crate::workflow::regulator::regulated::RegulatedStep;
+use nalgebra::DMatrix;
+
+impl Design<'_> {
+    /// Intervals of the delay.
+    fn delayed(&self) -> usize {
+        (self.task.delay / self.h - 1e-9).ceil().max(0.0) as usize
+    }
+
+    pub(super) fn law(
+        &self,
+        steps: &[RegulatedStep],
+        motion: &[State],
+        (rest, held): (Option<&[f64]>, Option<&(RegulatedStep, HeldGain)>),
+    ) -> Law {
+        let scalars = self.model.variables.of(Time::Interval);
+        let coordinate = |&i: &usize, is_rate: bool| Measured {
+            name: self.model.variables.unknown(i).to_string(),
+            is_rate,
+            is_length: self.model.is_length(i),
+            is_memory: self.model.is_memory(i),
+        };
+        let coordinates = self.coordinates.iter().map(|i| coordinate(i, false));
+        let rates = self.momenta.iter().map(|i| coordinate(i, true));
+        let inputs = self.inputs.iter().zip(&self.bounds);
+        let given = |scalars: &[f64]| -> Vec<f64> {
+            let all = self.inputs.iter();
+            all.map(|input| scalars[input.scalar]).collect()
+        };
+        let delay = self.delayed();
+        let last = held.map(|(step, _)| step).or(steps.last()).expect("a step");
+        let ahead = |k: usize| steps.get(k).unwrap_or(last);
+        let points = steps.iter().enumerate().map(|(k, _)| {
+            let inputs = given(&self.discrete.scalars[k]);
+            let gain = predicted((k..k + delay).map(ahead), ahead(k + delay));
+            self.point(&motion[k], &gain, inputs)
+        });
+        let is_held = held.is_some();
+        let held = rest.zip(held).map(|(rest, (step, _))| {
+            let inputs = given(&self.model.scalars(rest));
+            let gain = predicted((0..delay).map(|_| step), step);
+            self.point(&self.goal(), &gain, inputs)
+        });
+        Law {
+            measured: coordinates.chain(rates).collect(),
+            inputs: inputs
+                .map(|(input, &bounds)| LawInput {
+                    name: scalars[input.scalar].name.clone(),
+                    is_squared: input.is_squared,
+                    bounds,
+                })
+                .collect(),
+            integral: Integral {
+                of: self.integrated.clone(),
+            },
+            h: self.h,
+            delay,
+            points: points.collect(),
+            held,
+            markers: self.markers(motion, is_held),
+        }
+    }
+
+    /// The places of markers that can move.
+    fn markers(&self, motion: &[State], is_held: bool) -> Vec<(String, Vec<[f64; 3]>)> {
+        let map = &self.model.action.map;
+        // The end is the goal, where that is held.
+        let goal = is_held.then(|| self.goal());
+        let motion = motion[..motion.len() - usize::from(is_held)].iter();
+        let instants: Vec<_> = motion.chain(&goal).map(|at| map.placed(&at.z)).collect();
+        let moving = self.model.moving_markers().into_iter();
+        let path = |(marker, vector): (usize, usize)| {
+            let name = self.model.system.markers[marker].name.clone();
+            let places = instants.iter().map(|instant| instant.x[vector].into());
+            (name, places.collect())
+        };
+        moving.map(path).collect()
+    }
+
+    /// A point of the law, whose gain reads rates in place of momenta.
+    fn point(&self, at: &State, gain: &DMatrix<f64>, inputs: Vec<f64>) -> Point {
+        let State { z, momentum } = at;
+        let (n, m) = (self.coordinates.len(), self.momenta.len());
+        let [mass, by] = self.of_momenta(at);
+        let rates = rates_of_momentum(self.model, z, 0.0, momentum);
+        let of_momenta = gain.columns(n, m).into_owned();
+        let mut read = gain.clone();
+        let mut coordinates = read.columns_mut(0, n);
+        coordinates += &of_momenta * by;
+        read.columns_mut(n, m).copy_from(&(of_momenta * mass));
+        let state = self.coordinates.iter().map(|&i| z[i]);
+        Point {
+            state: state
+                .chain(self.momenta.iter().map(|&i| rates[i]))
+                .collect(),
+            inputs,
+            gain: read,
+        }
+    }
+}
+
+/// The gain K over the state some intervals before it acts, and over what the inputs are corrected by in each of these intervals: the
+/// state in which it acts is predicted, `x₊ = A x + B u`.
+fn predicted<'s>(
+    intervals: impl Iterator<Item = &'s RegulatedStep>,
+    acting: &RegulatedStep,
+) -> DMatrix<f64> {
+    let size = acting.by_state.nrows();
+    // The state, by the state before and by the corrections.
+    let mut by = vec![DMatrix::identity(size, size)];
+    for step in intervals {
+        by.iter_mut()
+            .for_each(|block| *block = &step.by_state * &*block);
+        by.push(step.by_inputs.clone());
+    }
+    let columns = by.iter().map(DMatrix::ncols).sum();
+    let mut gain = DMatrix::zeros(acting.gain.nrows(), columns);
+    let mut at = 0;
+    for block in &by {
+        gain.columns_mut(at, block.ncols())
+            .copy_from(&(&acting.gain * block));
+        at += block.ncols();
+    }
+    gain
+}

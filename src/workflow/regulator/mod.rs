@@ -1,0 +1,170 @@
+//! The gains of a linear-quadratic regulator along an optimal motion, and after its end.
+//!
+//! The state of the recursion is that of the discrete equations, coordinates and momenta, with the integrals that are asked for.
+
+mod check;
+mod design;
+mod law;
+mod regulated;
+
+use crate::control::problem::{Control, Regulator};
+use crate::dynamics::{DiscreteTrajectory, Linearisation};
+use crate::feedback::{Costs, HeldGain, NotHeld, held_gain, riccati_step};
+use crate::model::Model;
+use crate::workflow::regulator::check::reproduced;
+use crate::workflow::regulator::design::Design;
+use nalgebra::DMatrix;
+pub use regulated::{NoRegulator, Regulated, RegulatedStep, RegulatorReport, Reproduced};
+
+/// The regulator of a motion with a momentum at its start, whose goal is held by `rest` voltages, by source, where it is.
+///
+/// # Errors
+/// There is none.
+pub fn regulator(
+    (model, control, task): (&Model, &Control, &Regulator),
+    discrete: &DiscreteTrajectory,
+    momentum: &[f64],
+    rest: Option<&[f64]>,
+) -> Result<Regulated, NoRegulator> {
+    let of = Design::new(model, control, task, discrete)?;
+    of.regulated(momentum, rest)
+}
+
+impl Design<'_> {
+    fn regulated(&self, momentum: &[f64], rest: Option<&[f64]>) -> Result<Regulated, NoRegulator> {
+        let mut linearisation =
+            Linearisation::new(self.model, &self.inputs).map_err(NoRegulator::State)?;
+        let motion = self.motion(momentum)?;
+        let mut steps = Vec::new();
+        for (k, part) in motion.windows(2).enumerate() {
+            let inputs = self.model.variables.split(&self.discrete.scalars[k])[0];
+            let step = self.linearised(&mut linearisation, &part[0], inputs);
+            let step = step.ok_or(NoRegulator::Singular(k))?;
+            steps.push(self.augmented(&step, &part[0]));
+        }
+        let end = motion.last().expect("an instant");
+        let (mut held, mut not_held) = (None, None);
+        if let Some(rest) = rest {
+            match self.held(&mut linearisation, rest) {
+                Ok(found) => held = Some(found),
+                Err(reason) => not_held = Some(reason),
+            }
+        }
+        let mut cost = match &held {
+            Some((_, held)) => &held.cost * self.task.terminal,
+            None => self.state_costs(end) * self.task.terminal,
+        };
+        let end_cost = cost.clone();
+        let mut residual = held.as_ref().map_or(0.0, |(_, held)| held.residual);
+        for (k, step) in steps.iter_mut().enumerate().rev() {
+            let found = riccati_step([&step.by_state, &step.by_inputs], &step.costs, &cost);
+            let found = found.ok_or(NoRegulator::Recursion(k))?;
+            residual = residual.max(left(step, &cost, &found.gain));
+            step.gain = found.gain;
+            cost = found.cost;
+        }
+        let law = self.law(&steps, &motion, (rest, held.as_ref()));
+        let mut out = Regulated {
+            law,
+            steps,
+            held,
+            end_cost,
+            not_held,
+            residual,
+            reproduced: Vec::new(),
+        };
+        out.reproduced = reproduced(self, &linearisation, &out.steps, &motion);
+        Ok(out)
+    }
+
+    /// The step at the goal under the inputs that hold it, with its gain.
+    fn held(
+        &self,
+        linearisation: &mut Linearisation<'_>,
+        rest: &[f64],
+    ) -> Result<(RegulatedStep, HeldGain), String> {
+        let model = self.model;
+        let rest = model.scalars(rest);
+        let goal = self.goal();
+        let step = self.linearised(linearisation, &goal, &rest);
+        let step = step.ok_or("the linearised step there has no result")?;
+        let mut step = self.augmented(&step, &goal);
+        let (scales, scaled) = self.scaled(&step);
+        let mut held = held_gain([&scaled.by_state, &scaled.by_inputs], &scaled.costs)
+            .map_err(|reason| self.reason(reason))?;
+        // Back to rad, mm, V.
+        held.gain = DMatrix::from_fn(held.gain.nrows(), held.gain.ncols(), |i, j| {
+            held.gain[(i, j)] * self.ranges[i] / scales[j]
+        });
+        held.cost = DMatrix::from_fn(scales.len(), scales.len(), |i, j| {
+            held.cost[(i, j)] / (scales[i] * scales[j])
+        });
+        step.gain.clone_from(&held.gain);
+        Ok((step, held))
+    }
+
+    fn reason(&self, reason: NotHeld) -> String {
+        let reason = match reason {
+            NotHeld::Unsolved => "its Riccati equation has no solution".to_owned(),
+            NotHeld::Unstable(radius) => {
+                format!("the spectral radius of the closed loop is {radius:.6}, not below 1")
+            }
+        };
+        match self.integrated.len() {
+            0 => format!("{reason}: some motion can not be steered by the inputs"),
+            count => format!(
+                "{reason}: {} inputs can not take {count} integrals to zero; expected no \"integral\", or more inputs",
+                self.inputs.len()
+            ),
+        }
+    }
+
+    /// The same step with entries of the state near one, inputs as parts of their ranges, and the scales of the state.
+    fn scaled(&self, step: &RegulatedStep) -> (Vec<f64>, RegulatedStep) {
+        let n = step.by_state.nrows();
+        let q = &step.costs.state;
+        let scale = |i: usize| match q[(i, i)] {
+            cost if cost > 0.0 => 1.0 / cost.sqrt(),
+            _ => 1.0,
+        };
+        let mut scales: Vec<f64> = (0..n).map(scale).collect();
+        // A momentum is as large as the coordinate makes it in a step or so.
+        for (place, &i) in self.momenta.iter().enumerate() {
+            let own = self.coordinates.iter().position(|&j| j == i);
+            let own = own.expect("a momentum belongs to a coordinate");
+            let row = self.coordinates.len() + place;
+            let by = step.by_state[(own, row)].abs();
+            scales[row] = if by > 0.0 { scales[own] / by } else { 1.0 };
+        }
+        let square = |m: &DMatrix<f64>, power: i32| {
+            DMatrix::from_fn(n, n, |i, j| m[(i, j)] * scales[j] * scales[i].powi(power))
+        };
+        let inputs = &step.costs.inputs;
+        let scaled = RegulatedStep {
+            by_state: square(&step.by_state, -1),
+            by_inputs: DMatrix::from_fn(n, self.inputs.len(), |i, j| {
+                step.by_inputs[(i, j)] * self.ranges[j] / scales[i]
+            }),
+            costs: Costs {
+                state: square(q, 1),
+                inputs: DMatrix::from_fn(inputs.nrows(), inputs.ncols(), |i, j| {
+                    inputs[(i, j)] * self.ranges[i] * self.ranges[j]
+                }),
+            },
+            gain: step.gain.clone(),
+        };
+        (scales, scaled)
+    }
+}
+
+/// Relative residual of (R + BᵀSB) K = BᵀSA, computed once more.
+fn left(step: &RegulatedStep, cost: &DMatrix<f64>, gain: &DMatrix<f64>) -> f64 {
+    let toward = step.by_inputs.transpose() * cost;
+    let right = &toward * &step.by_state;
+    let inner = &step.costs.inputs + &toward * &step.by_inputs;
+    let size = (inner.norm() * gain.norm()).max(right.norm());
+    match size > 0.0 {
+        true => (inner * gain - right).norm() / size,
+        false => 0.0,
+    }
+}

@@ -1,0 +1,172 @@
+//! A regulator that was found, or the reason why there is none.
+
+use crate::dynamics::NoState;
+use crate::feedback::{Costs, HeldGain, Law};
+use nalgebra::DMatrix;
+use serde::Serialize;
+use std::fmt;
+
+/// Most entries of a state.
+pub(super) const MOST: usize = 1500;
+/// A relative difference from which on the closed loop is not reproduced.
+const ALLOWED: f64 = 1e-2;
+
+/// The deviation after a step from a state off the motion: by the equations of motion against that of the linear closed loop.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Reproduced {
+    /// The interval.
+    pub interval: usize,
+    /// Relative difference; NaN where a step fails.
+    pub difference: f64,
+}
+
+impl Reproduced {
+    /// Returns true if the linear closed loop is a good one of small deviations.
+    pub fn is_small(&self) -> bool {
+        self.difference <= ALLOWED
+    }
+}
+
+/// A regulator that was found.
+#[derive(Clone, Debug)]
+pub struct Regulated {
+    /// The law that a controller reads.
+    pub law: Law,
+    /// Linearised steps with the gains of their states.
+    pub steps: Vec<RegulatedStep>,
+    /// The step at the goal, and the proof that it is held.
+    pub held: Option<(RegulatedStep, HeldGain)>,
+    /// Cost of the state at the end of the motion.
+    pub end_cost: DMatrix<f64>,
+    /// Reason why the goal is not held.
+    pub not_held: Option<String>,
+    /// Greatest relative residual of the equations of the gains.
+    pub residual: f64,
+    /// Comparison with the equations of motion.
+    pub reproduced: Vec<Reproduced>,
+}
+
+/// A linearised step with integrals, its costs, and its gain.
+#[derive(Clone, Debug)]
+pub struct RegulatedStep {
+    /// A.
+    pub by_state: DMatrix<f64>,
+    /// B.
+    pub by_inputs: DMatrix<f64>,
+    /// Q and R.
+    pub costs: Costs,
+    /// K, over the state.
+    pub gain: DMatrix<f64>,
+}
+
+/// Reason why there is no regulator.
+#[derive(Clone, Debug, PartialEq)]
+pub enum NoRegulator {
+    /// The model has no state of this kind.
+    State(NoState),
+    /// No input is sought.
+    NoInput,
+    /// The state is too large.
+    Large(usize),
+    /// A step is singular.
+    Singular(usize),
+    /// A step of the motion fails.
+    Step(String),
+    /// The recursion fails at a step.
+    Recursion(usize),
+}
+
+impl fmt::Display for NoRegulator {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            Self::State(reason) => write!(f, "{reason}"),
+            Self::NoInput => f.write_str("no voltage or load is sought that could be fed back"),
+            Self::Large(size) => write!(f, "its state has {size} entries, more than {MOST}"),
+            Self::Singular(k) => write!(f, "the linearised step {} is singular", k + 1),
+            Self::Step(error) => f.write_str(error),
+            Self::Recursion(k) => {
+                write!(f, "the Riccati recursion has no result at step {}", k + 1)
+            }
+        }
+    }
+}
+
+/// A residual of the Riccati equations from which on gains are doubtful.
+const DOUBTFUL: f64 = 1e-8;
+
+/// Numbers of a regulator for a summary.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize)]
+pub struct RegulatorReport {
+    /// Entries of the state: coordinates, momenta and integrals.
+    pub state: usize,
+    /// Inputs that are fed back.
+    pub inputs: usize,
+    /// Spectral radius of a step at the held goal, without feedback; absent where it is not held.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub open_radius: Option<f64>,
+    /// The same with feedback.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub radius: Option<f64>,
+    /// Greatest relative residual of the Riccati equations.
+    pub residual: f64,
+    /// Greatest relative difference of a step of the linear closed loop from one of the equations of motion.
+    pub difference: f64,
+}
+
+impl Regulated {
+    /// Numbers for a summary.
+    pub fn report(&self) -> RegulatorReport {
+        let held = self.held.as_ref().map(|(_, held)| held);
+        let differences = self.reproduced.iter().map(|one| one.difference);
+        RegulatorReport {
+            state: self.steps[0].by_state.nrows(),
+            inputs: self.steps[0].by_inputs.ncols(),
+            open_radius: held.map(|held| held.open_radius),
+            radius: held.map(|held| held.radius),
+            residual: self.residual,
+            // Not a number is worse than any.
+            difference: differences.fold(0.0, |a, b| if b > a || b.is_nan() { b } else { a }),
+        }
+    }
+
+    /// That the goal is held, with its proof.
+    pub fn notes(&self) -> Option<String> {
+        let (_, held) = self.held.as_ref()?;
+        let h = self.law.h;
+        let time = |radius: f64| -h / radius.ln() / 1e3;
+        let open = match held.open_radius < 1.0 {
+            true => format!("without it in {:.3} s", time(held.open_radius)),
+            false => format!("without it the spectral radius is {:.4}", held.open_radius),
+        };
+        Some(format!(
+            "feedback holds the goal: the spectral radius of the closed loop is {:.4}, deviations fall to 1/e in {:.3} s or less, {open}",
+            held.radius,
+            time(held.radius)
+        ))
+    }
+
+    /// Doubts about the gains.
+    pub fn warnings(&self) -> Vec<String> {
+        let mut out: Vec<String> = Vec::new();
+        out.extend(
+            self.not_held
+                .as_ref()
+                .map(|reason| format!("feedback does not hold the goal after the end: {reason}")),
+        );
+        if !(self.residual <= DOUBTFUL) {
+            out.push(format!(
+                "the gains of feedback meet their Riccati equations up to {:.1e} only",
+                self.residual
+            ));
+        }
+        let worst = self.reproduced.iter().find(|one| !one.is_small());
+        out.extend(worst.map(|one| {
+            format!(
+                "in interval {} a step of the motion from a state off it differs from that of the linear closed loop by {:.1} %: shorter intervals are needed for feedback",
+                one.interval + 1,
+                100.0 * one.difference
+            )
+        }));
+        out
+    }
+}
