@@ -11,7 +11,13 @@ fn kept_files_are_read() {
         let files = kept(folder);
         assert!(files.len() > 5, "{files:?}");
         for (name, text) in files {
-            let mut others = ["\"solution\"", "\"csv\"", "\"recordings\""].into_iter();
+            let mut others = [
+                "\"solution\"",
+                "\"csv\"",
+                "\"recordings\"",
+                "\"controller\"",
+            ]
+            .into_iter();
             let needs_another = others.any(|key| text.contains(key));
             assert_eq!(
                 is_refused(text.as_bytes(), is_scene),
