@@ -144,6 +144,7 @@ fn simulation(voltages: &[f64], coordinates: Coordinates) -> Simulation {
         voltages: Voltages::Constant(voltages.to_vec()),
         coordinates: Some(coordinates),
         solving: Solving::default(),
+        controller: None,
     }
 }
 

@@ -23,6 +23,7 @@ use std::collections::BTreeMap;
 
 /// A task with everything resolved: one voltage per muscle, indices for names.
 #[derive(Clone, Debug, PartialEq)]
+#[expect(clippy::large_enum_variant, reason = "a problem has one task")]
 pub enum Task {
     /// Integrate forward in time.
     Simulate(Simulation),
@@ -68,7 +69,7 @@ pub struct Simulation {
     /// Solution of the equations of a step.
     pub solving: Solving,
     /// A controller that gives the inputs of its law.
-    pub controller: Option<FeedbackControl>,
+    pub controller: Option<Box<FeedbackControl>>,
 }
 
 /// Final time of a control problem in ms.

@@ -62,7 +62,7 @@ pub fn held_gain([a, b]: [&DMatrix<f64>; 2], costs: &Costs) -> Result<HeldGain, 
     let gain = gain.filter(|_| residual < RESIDUAL);
     let gain = gain.ok_or(NotHeld::Unsolved)?;
     let radius = spectral_radius(&(a - b * &gain));
-    if !(radius < 1.0) {
+    if radius.is_nan() || radius >= 1.0 {
         return Err(NotHeld::Unstable(radius));
     }
     Ok(HeldGain {

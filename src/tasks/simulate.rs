@@ -185,10 +185,10 @@ fn closed_loop(
         return Ok(None);
     };
     let open = Simulation {
-        controller: Some(FeedbackControl {
+        controller: Some(Box::new(FeedbackControl {
             law: Arc::new(controller.law.open()),
-            ..controller.clone()
-        }),
+            ..controller.as_ref().clone()
+        })),
         ..task.clone()
     };
     let open = integrate_on(system, &open, None, |_, _| match interrupt::stop() {

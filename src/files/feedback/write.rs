@@ -149,7 +149,7 @@ pub fn law_csv(law: &Law, system: &System, head: &str) -> String {
             .expect("text takes everything");
         }
     }
-    let points = law.points.iter().enumerate().map(|(k, point)| (k, point));
+    let points = law.points.iter().enumerate();
     let held = law.held.iter().map(|point| (law.points.len(), point));
     for (k, point) in points.chain(held) {
         write!(out, "\n{}", law.h * k as f64 / 1e3).expect("text takes everything");

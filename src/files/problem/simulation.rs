@@ -50,12 +50,9 @@ pub(crate) fn simulation(
                 // The steps that are taken, which divide the duration.
                 let equal = duration / (duration / step - 1e-9).ceil().max(1.0);
                 let equal = tolerance.is_none().then_some(equal);
-                Some(controller(
-                    written,
-                    equal,
-                    system,
-                    &scope.key("controller"),
-                )?)
+                let place = scope.key("controller");
+                let controller = controller(written, equal, system, &place)?;
+                Some(Box::new(controller))
             }
             None => None,
         },

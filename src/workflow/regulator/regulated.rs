@@ -153,7 +153,7 @@ impl Regulated {
                 .as_ref()
                 .map(|reason| format!("feedback does not hold the goal after the end: {reason}")),
         );
-        if !(self.residual <= DOUBTFUL) {
+        if self.residual.is_nan() || self.residual > DOUBTFUL {
             out.push(format!(
                 "the gains of feedback meet their Riccati equations up to {:.1e} only",
                 self.residual
