@@ -84,6 +84,7 @@ fn task(load: &Signal, step: f64, coordinates: Coordinates) -> Simulation {
         voltages: Voltages::Signals(vec![load.clone()]),
         coordinates: Some(coordinates),
         solving: Solving::default(),
+        controller: None,
     }
 }
 
@@ -170,6 +171,7 @@ fn a_force_turns_a_hinge_like_weight_of_its_size() {
             voltages: none,
             coordinates: Some(coordinates),
             solving: Solving::default(),
+            controller: None,
         };
         let go_on = |_: &Model, _: &_| ControlFlow::Continue(());
         let done = integrate(&heavy, &task, go_on).unwrap();
