@@ -109,7 +109,7 @@ pub fn svg(list: &[Sensitivity], origin: &Origin) -> Option<String> {
     let height = ROW * bars.len() as f64 + 6.0;
     let size = [left + FRAME + MARGIN[2], MARGIN[0] + height + MARGIN[1]];
     Some(canvas::svg(size, origin, |canvas| {
-        draw(canvas, &bars, (left, height))
+        draw(canvas, &bars, (left, height));
     }))
 }
 

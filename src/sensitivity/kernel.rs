@@ -256,7 +256,8 @@ impl<N: Nlp> Kernel<N> {
             .zip(&dx)
             .map(|(g, x)| (g * x).abs());
         let size = terms.sum::<f64>() + envelope.abs();
-        if !((envelope - along).abs() <= SAME * size) {
+        let difference = (envelope - along).abs();
+        if difference.is_nan() || difference > SAME * size {
             let [a, b] = [envelope, along].map(|v| v / conditions.scale + direction.objective);
             return Err(NoSensitivity::Contradicts(a, b));
         }

@@ -139,8 +139,7 @@ impl Linear {
                 break;
             }
         }
-        // A number that is none is no solution either.
-        if !(error <= EXACT) {
+        if error > EXACT {
             return Err(NoSensitivity::Inexact(error));
         }
         let all = self.columns.iter().zip(x).chain(self.rows.iter().zip(y));

@@ -12,6 +12,9 @@ use crate::nlp::Nlp;
 use crate::sensitivity::direction::Held;
 use crate::sensitivity::error::NoSensitivity;
 
+/// A state of rest with its voltages.
+type AtRest = (Equilibrium, Vec<f64>);
+
 /// An optimum with all that its program with more columns is made of.
 pub(super) struct Opened {
     /// The problem, with the constants as parameters and an open start.
@@ -24,7 +27,7 @@ pub(super) struct Opened {
     /// Those of its columns that enter by their squares alone.
     squares: Vec<Column>,
     /// States of rest at the start and at the goal, with their voltages.
-    pub(super) rests: [Option<(Equilibrium, Vec<f64>)>; 2],
+    pub(super) rests: [Option<AtRest>; 2],
     /// Number of parameters that are sought.
     pub(super) sought: usize,
 }
@@ -270,7 +273,7 @@ fn rests(
     model: &Model,
     boundary: &BoundaryConditions,
     control: &Control,
-) -> Result<[Option<(Equilibrium, Vec<f64>)>; 2], NoSensitivity> {
+) -> Result<[Option<AtRest>; 2], NoSensitivity> {
     let start = match &control.start {
         BoundaryState::RestAtVoltages(voltages, _) if control.goal != BoundaryState::Periodic => {
             let rest = rest_at(model, voltages, ("start", 0.0)).map_err(refused)?;

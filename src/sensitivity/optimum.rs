@@ -87,7 +87,7 @@ fn sensitivity(
         let value = change * program.column_scale(number);
         match *column {
             Column::Instant { k, i } if k <= intervals && i < model.coordinate_count() => {
-                coordinates[k][i] = value
+                coordinates[k][i] = value;
             }
             Column::Interval { k, s } if k < intervals => {
                 if let Some(source) = model.variables.of(Time::Interval)[s].source {

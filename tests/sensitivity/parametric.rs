@@ -65,7 +65,10 @@ impl Nlp for Parametric {
     }
 }
 
-fn solved(p: [f64; 2]) -> (Vec<f64>, Multipliers) {
+/// An optimum with its multipliers.
+type Solved = (Vec<f64>, Multipliers);
+
+fn solved(p: [f64; 2]) -> Solved {
     let start = StartingPoint {
         x: vec![0.5, 0.5, 0.5, p[0], p[1]],
         costates: None,
@@ -139,9 +142,8 @@ fn derivatives_are_those_of_optima_found_anew() {
             at[p] += change;
             solved(at)
         });
-        let slope = |value: &dyn Fn(&(Vec<f64>, Multipliers)) -> f64| {
-            (value(&beside[1]) - value(&beside[0])) / (2.0 * step)
-        };
+        let slope =
+            |value: &dyn Fn(&Solved) -> f64| (value(&beside[1]) - value(&beside[0])) / (2.0 * step);
         for i in 0..3 {
             let expected = slope(&|one| one.0[i]);
             assert!(expected.abs() > 1e-3);

@@ -2,7 +2,7 @@
 
 use proboscis::app::{CommandInput, ProgressDisplay, run};
 use proboscis::prelude::*;
-use proboscis::{Constant, MaterialConstant, Varied};
+use proboscis::{MaterialConstant, Varied};
 use serde_json::Value;
 use std::fs;
 use std::path::{Path, PathBuf};
@@ -112,7 +112,6 @@ fn the_library_differentiates_too() {
         arm.add(Joint::revolute(Z).between(GROUND, link));
         let right = [X, -X].map(|side| {
             let end = |y: f64| side * mm(15.0) + Y * mm(y);
-            let silicone = silicone.clone();
             let silicone = Material {
                 shear_modulus: modulus,
                 ..silicone
@@ -127,7 +126,7 @@ fn the_library_differentiates_too() {
         let parameter = Parameter {
             name: "modulus".to_owned(),
             constants: (0..2)
-                .map(|m| Constant::from(MaterialConstant::ShearModulus.of_muscle(m)).into())
+                .map(|m| MaterialConstant::ShearModulus.of_muscle(m).into())
                 .collect(),
             lower: 0.9 * modulus,
             upper: 1.1 * modulus,

@@ -1,0 +1,76 @@
+//! Time of sensitivities as a part of that of the solve: the elephant trunk, with one number and with five, interleaved.
+//!
+//! `cargo bench --bench sensitivity`
+
+use proboscis::control::problem::{Control, Task};
+use proboscis::files::read_problem;
+use proboscis::model::System;
+use proboscis::sensitivity::sensitivities;
+use proboscis::workflow::{Iterate, Optimum, SolveLimits, optimise};
+use std::hint::black_box;
+use std::ops::ControlFlow;
+use std::path::Path;
+use std::time::Instant;
+
+/// Rounds; medians count.
+const ROUNDS: usize = 15;
+const NUMBERS: [&str; 5] = [
+    "materials.silicone.shear_modulus",
+    "materials.silicone.viscosity",
+    "materials.silicone.relative_permittivity",
+    "chain.mass",
+    "duration",
+];
+
+fn problem(count: usize) -> (System, Control) {
+    let path = Path::new(env!("CARGO_MANIFEST_DIR")).join("problems/elephant_trunk.json");
+    let list: Vec<String> = NUMBERS[..count]
+        .iter()
+        .map(|name| format!("{name:?}: {{}}"))
+        .collect();
+    let change = format!("control.sensitivity={{{}}}", list.join(", "));
+    let loaded = read_problem(&path, &[change]).expect("a kept problem");
+    match loaded.task {
+        Task::Control(control) => (loaded.system, *control),
+        _ => unreachable!("a control problem"),
+    }
+}
+
+fn solved((system, control): &(System, Control)) -> Optimum {
+    let mut go_on = |_: &Iterate<'_>| ControlFlow::Continue(());
+    optimise(system, control, None, SolveLimits::default(), &mut go_on).expect("an optimum")
+}
+
+fn median(mut list: Vec<f64>) -> f64 {
+    list.sort_by(f64::total_cmp);
+    list[list.len() / 2]
+}
+
+fn main() {
+    let asked = [1, NUMBERS.len()].map(problem);
+    let optimum = solved(&asked[0]);
+    let (mut solves, mut one, mut all) = (Vec::new(), Vec::new(), Vec::new());
+    for _ in 0..ROUNDS {
+        let found = solved(&asked[0]);
+        solves.push(found.solution.seconds.total + found.setup);
+        for (problem, times) in asked.iter().zip([&mut one, &mut all]) {
+            let began = Instant::now();
+            black_box(sensitivities(&problem.0, &problem.1, &optimum.motion))
+                .expect("sensitivities");
+            times.push(began.elapsed().as_secs_f64());
+        }
+    }
+    let [solve, one, all] = [solves, one, all].map(median);
+    let each = (all - one) / (NUMBERS.len() - 1) as f64;
+    println!(
+        "solve {:.1} ms, sensitivities to one number {:.1} ms, to each further one {:.2} ms",
+        1e3 * solve,
+        1e3 * one,
+        1e3 * each
+    );
+    println!(
+        "parts of the solve: {:.1} % for the first number, {:.2} % for each further one",
+        100.0 * one / solve,
+        100.0 * each / solve
+    );
+}
