@@ -66,6 +66,7 @@ class Questions:
         loads: Mapping[Any, entries.Signal] | None = None,
         motions: Sequence[entries.Motion] | None = None,
         objective: entries.Objective | None = None,
+        sensitivity: Mapping[Any, entries.Sensitivity] | None = None,
         shared_inputs: Sequence[Text] | None = None,
         solver: entries.Solver | None = None,
         start: entries.Start | None = None,
@@ -93,6 +94,10 @@ class Questions:
         * `motions`: Several motions in one optimisation: what `free` seeks is the same in all of them, and the objective is the sum of
           theirs. Each names the keys that are other ones in it.
         * `objective`: Objective that is minimised.
+        * `sensitivity`: Numbers by which the optimum is differentiated, by their paths: constants of the scene, such as
+          `materials.silicone.shear_modulus`, and `duration`, `goal.joint_angles.NAME`, `goal.markers.NAME[0]`, `goal.rest_at_voltages.NAME`,
+          `start.joint_angles.NAME`, `start.joint_rates.NAME`, `start.rest_at_voltages.NAME`, `voltage_bounds[1]`, `load_bounds.NAME[1]`,
+          `objective.effort`, `objective.rate`, `objective.duration`.
         * `shared_inputs`: Names of muscles, driven electrodes (`block.electrode`) and loads whose inputs are sought once for all motions;
           these have one given duration and one number of intervals.
         * `solver`: Options of the solver.
@@ -119,6 +124,7 @@ class Questions:
                 "loads": loads,
                 "motions": motions,
                 "objective": objective,
+                "sensitivity": sensitivity,
                 "shared_inputs": shared_inputs,
                 "solver": solver,
                 "start": start,
@@ -133,6 +139,7 @@ class Questions:
         self,
         *,
         duration: Quantity,
+        controller: entries.Controller | None = None,
         coordinates: entries.Coordinates | None = None,
         integrator: entries.Integrator | None = None,
         linear_solver: entries.LinearSolver | None = None,
@@ -149,6 +156,7 @@ class Questions:
         """Simulates with these entries of `simulate` in a problem file; the others are those of `Problem.simulate`.
 
         * `duration`: Length, SI unit s.
+        * `controller`: A controller that gives the voltages which it has gains for.
         * `coordinates`: Coordinates.
         * `integrator`: The method; the midpoint variational integrator where not written.
         * `linear_solver`: Method of its factorisation; the one that is fastest as a rule where not written.
@@ -165,6 +173,7 @@ class Questions:
             "simulate",
             {
                 "duration": duration,
+                "controller": controller,
                 "coordinates": coordinates,
                 "integrator": integrator,
                 "linear_solver": linear_solver,

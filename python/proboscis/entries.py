@@ -530,6 +530,24 @@ ControlSolver: TypeAlias = "Literal['auto', 'stages', 'mumps']"
 """Solver of the linear systems of a control problem."""
 
 
+class Controller(TypedDict):
+    """A controller that follows a motion by the gains of `feedback.json`."""
+
+    delay: NotRequired[Quantity]
+    """Time from a sample to its effect, a multiple of the step, SI unit s; that which the gains predict where not written."""
+
+    feedback: Text
+    """Path of a `feedback.json` or of the folder that holds it, relative to this file or to the current folder. It gives the inputs that were
+    sought in its problem; the robot here has joints of the same names, and may be another one otherwise.
+    """
+
+    noise: NotRequired[Noise]
+    """Noise of what is measured."""
+
+    sample: NotRequired[Quantity]
+    """Time between samples, a multiple of the step, SI unit s; the interval of the gains, for which they are, where not written."""
+
+
 Coordinates: TypeAlias = "Literal['reduced', 'redundant']"
 """Coordinates in which a problem is solved; reduced where the joints form a tree, unless written."""
 
@@ -1077,6 +1095,25 @@ Newton: TypeAlias = "Literal['full', 'modified', 'reused']"
 """Occasions at which the tangent of a step is factorised."""
 
 
+class Noise(TypedDict):
+    """Standard deviations of what is measured; 0 where not written."""
+
+    angle: NotRequired[Quantity]
+    """Of angles, SI unit rad."""
+
+    angular_velocity: NotRequired[Quantity]
+    """Of rates of angles, SI unit rad/s."""
+
+    length: NotRequired[Quantity]
+    """Of lengths, SI unit m."""
+
+    seed: NotRequired[int]
+    """Seed of the numbers that are drawn; 0 where not written."""
+
+    velocity: NotRequired[Quantity]
+    """Of rates of lengths, SI unit m/s."""
+
+
 class Objective(TypedDict):
     """Weights of the objective."""
 
@@ -1323,6 +1360,16 @@ class RestGoal(TypedDict):
 
 Rest: TypeAlias = "Literal['everything', 'bodies', 'markers']"
 """Part that comes to rest at a goal."""
+
+
+class Sensitivity(TypedDict):
+    """A number by which the optimum is differentiated."""
+
+    also: NotRequired[Mapping[Any, float]]
+    """Other constants of the scene by their paths that are this one times a number."""
+
+    tolerance: NotRequired[Quantity]
+    """Tolerance of the number, which may be so much smaller or larger: a part of it such as `"5 %"`, or a size in its unit such as `"1 mm"`."""
 
 
 class Solution(TypedDict):
@@ -1625,6 +1672,13 @@ class Control(TypedDict):
     objective: NotRequired[Objective]
     """Objective that is minimised."""
 
+    sensitivity: NotRequired[Mapping[Any, Sensitivity]]
+    """Numbers by which the optimum is differentiated, by their paths: constants of the scene, such as `materials.silicone.shear_modulus`, and
+    `duration`, `goal.joint_angles.NAME`, `goal.markers.NAME[0]`, `goal.rest_at_voltages.NAME`, `start.joint_angles.NAME`,
+    `start.joint_rates.NAME`, `start.rest_at_voltages.NAME`, `voltage_bounds[1]`, `load_bounds.NAME[1]`, `objective.effort`, `objective.rate`,
+    `objective.duration`.
+    """
+
     shared_inputs: NotRequired[Sequence[Text]]
     """Names of muscles, driven electrodes (`block.electrode`) and loads whose inputs are sought once for all motions; these have one given
     duration and one number of intervals.
@@ -1651,6 +1705,9 @@ class Control(TypedDict):
 
 class Simulate(TypedDict):
     """A forward simulation."""
+
+    controller: NotRequired[Controller]
+    """A controller that gives the voltages which it has gains for."""
 
     coordinates: NotRequired[Coordinates]
     """Coordinates."""

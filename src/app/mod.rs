@@ -54,6 +54,7 @@ mod progress;
 mod record;
 mod request;
 mod resume_file;
+mod seconds;
 mod sensitivity_summary;
 mod side_by_side;
 mod simulation;

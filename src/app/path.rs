@@ -13,7 +13,8 @@ use crate::app::no_equilibrium::refused;
 use crate::app::page;
 use crate::app::path_summary::PathSummary;
 use crate::app::request::{CommandInput, CommandOutput};
-use crate::app::summary::{MEASURED, Seconds, Summary};
+use crate::app::seconds::Seconds;
+use crate::app::summary::{MEASURED, Summary};
 use crate::control::problem::AtRest;
 use crate::dynamics::trajectory::{Column, Observations, Trajectory};
 use crate::dynamics::{

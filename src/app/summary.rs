@@ -1,7 +1,6 @@
 //! `summary.json`: the problem, its status, its size and its times.
 
 use std::fs;
-use std::time::Instant;
 
 use serde::Serialize;
 
@@ -15,6 +14,7 @@ use crate::app::identification_summary::Identification;
 use crate::app::linear_systems::LinearSystems;
 use crate::app::path_summary::PathSummary;
 use crate::app::request::CommandInput;
+use crate::app::seconds::Seconds;
 use crate::app::sensitivity_summary::SensitivitySummary;
 use crate::control::problem;
 use crate::dynamics::{DiscreteTrajectory, LocalError};
@@ -297,32 +297,6 @@ impl Simulation {
             factorisation_seconds: report.factorisation,
             solution_seconds: report.solution,
         }
-    }
-}
-
-/// Wall time in s.
-#[derive(Clone, Copy, Debug, Default, Serialize)]
-pub(super) struct Seconds {
-    /// Seconds from reading to the last file but the summary.
-    pub(super) total: f64,
-    /// Seconds of these for output: tables, figures, page.
-    pub(super) writing: f64,
-    /// Before the solver or the first step.
-    pub(super) setup: f64,
-    /// In Ipopt without the callbacks, or in the steps of a simulation.
-    pub(super) solver: f64,
-    pub(super) objective: f64,
-    pub(super) gradient: f64,
-    pub(super) constraints: f64,
-    pub(super) jacobian: f64,
-    pub(super) hessian: f64,
-}
-
-impl Seconds {
-    /// The files are written, since `writing`; the run began at `began`.
-    pub(super) fn wrote(&mut self, began: Instant, writing: Instant) {
-        self.total = began.elapsed().as_secs_f64();
-        self.writing = writing.elapsed().as_secs_f64();
     }
 }
 
