@@ -362,7 +362,8 @@ def files(scene: Schema, problem: Schema) -> dict[str, str]:
     for key in QUESTIONS:
         SPECS[key] = reference(problem["properties"][key])
     APART["chain"] = reference(scene["properties"]["chain"])
-    APART["output"] = reference(problem["properties"]["output"])
+    for key in ("output", "feedback"):
+        APART[key] = reference(problem["properties"][key])
     types = Types({"$defs": {**scene["$defs"], **problem["$defs"]}})
     return {"entries.py": entries(types, problem), "parts.py": parts(types, scene), "_questions.py": questions(types, problem)}
 

@@ -20,6 +20,7 @@ from proboscis.nlp import Nlp
 from proboscis.parts import GROUND, Body, Joint, Load, Marker, Material, Muscle, Part, Solid, Spring, Tendon
 from proboscis.problem import Iteration, Problem, Step
 from proboscis.result import Figure, Result
+from proboscis.sensitivity import Sensitivity
 from proboscis.system import System
 
 __version__ = _proboscis.version
@@ -41,6 +42,7 @@ __all__ = [
     "Part",
     "Problem",
     "Result",
+    "Sensitivity",
     "Solid",
     "Spring",
     "Starts",

@@ -1622,6 +1622,27 @@ class Waypoint(TypedDict):
     """
 
 
+class Weights(TypedDict):
+    """Factors of sums of squares of deviations."""
+
+    integral: NotRequired[float]
+    """Of integrals over time of the deviations of joint coordinates, in degrees or mm times 0.1 s; 0 where not written, and then none are formed.
+    They take deviations at rest to zero, where there are inputs enough.
+    """
+
+    joints: NotRequired[float]
+    """Of coordinates of joints and nodes in degrees or mm; 1 where not written."""
+
+    markers: NotRequired[Mapping[Any, float]]
+    """Of places of markers in mm, by name; 0 where not named."""
+
+    rates: NotRequired[float]
+    """Of their rates in 100 degrees/s or 100 mm/s; 0 where not written."""
+
+    voltages: NotRequired[float]
+    """Of voltages and loads as parts of their ranges, of voltages of lumped muscles by their squares; positive, 0.01 where not written."""
+
+
 class Control(TypedDict):
     """An optimal control problem."""
 
@@ -1833,3 +1854,21 @@ class Output(TypedDict):
     `powers`, `energies`, `momenta`, `constraint_violation`, or all of a joint, marker, muscle, block, spring, tendon or load by its name. All
     where not written.
     """
+
+
+class Feedback(TypedDict):
+    """A linear-quadratic regulator along the optimum; its gains are written to `feedback.json`, `feedback.csv` and `feedback.npz`."""
+
+    delay: NotRequired[Quantity]
+    """Time from a measurement to its effect, over which the state is predicted, SI unit s, upwards to whole intervals; 0 where not written."""
+
+    step: NotRequired[Quantity]
+    """Greatest length of the steps that are linearised, SI unit s; 1 ms where not written. Gains act over the intervals of the optimum."""
+
+    terminal: NotRequired[float]
+    """Factor of the costs at the end: of holding the goal for ever, or, where its voltages are not known, of the deviations there; 1 where not
+    written.
+    """
+
+    weights: NotRequired[Weights]
+    """Costs of deviations."""

@@ -53,7 +53,7 @@ class Problem:
     """A problem: the content of a problem file.
 
     `scene` is a `System`, a dict, or the path of a scene file; of `control`, `simulate`, `equilibrium` and `identify` exactly one is given, as
-    in the file. It is checked at once; `Error` has the path of the wrong entry.
+    in the file; `feedback` stands beside a `control`. It is checked at once; `Error` has the path of the wrong entry.
     """
 
     name: str
@@ -72,9 +72,17 @@ class Problem:
         equilibrium: entries.Equilibrium | None = None,
         identify: entries.Identify | None = None,
         output: entries.Output | None = None,
+        feedback: entries.Feedback | None = None,
         folder: str | PathLike[str] = ".",
     ) -> None:
-        given = {"control": control, "simulate": simulate, "equilibrium": equilibrium, "identify": identify, "output": output}
+        given = {
+            "control": control,
+            "simulate": simulate,
+            "equilibrium": equilibrium,
+            "identify": identify,
+            "output": output,
+            "feedback": feedback,
+        }
         self._take({"scene": scene, **{key: value for key, value in given.items() if value is not None}}, Path(folder), "problem.json")
 
     @classmethod

@@ -19,6 +19,7 @@ from proboscis._error import told as _told
 from proboscis._plain import plain
 from proboscis._table import Array, Table
 from proboscis.identification import Identification
+from proboscis.sensitivity import Sensitivity, sensitivities
 
 if TYPE_CHECKING:
     import pandas
@@ -97,6 +98,24 @@ class Result:
     def identification(self) -> Identification:
         """Constants that were fitted to recordings, with what the data say of them."""
         return Identification(self.summary, self.folder)
+
+    @cached_property
+    def sensitivities(self) -> dict[str, Sensitivity]:
+        """How the optimum changes with the numbers that `sensitivity` of its problem names, by these names."""
+        return sensitivities(self.summary, self.folder)
+
+    @cached_property
+    def feedback(self) -> dict[str, Array]:
+        """Arrays of the regulator that `feedback` of a problem asks for, by step: `A`, `B`, `Q`, `R`, `K` of the deviations
+        `x[k + 1] = A[k] x[k] + B[k] u[k]`, `u = -K x`, of coordinates, momenta and integrals in rad, mm, ms, g, and of inputs in V (V² of
+        lumped muscles) and N; those at the held goal end with `_held`, `S_end` is the cost at the end.
+        """
+        path = self.folder / "feedback.npz"
+        try:
+            with np.load(path) as arrays:
+                return {name: arrays[name] for name in arrays}
+        except (OSError, ValueError) as error:
+            raise Error(f"feedback: found no readable arrays ({error}), expected the optimum of a problem with `feedback`") from error
 
     @cached_property
     def motions(self) -> dict[str, Result]:

@@ -11,7 +11,7 @@ use crate::dynamics::{
 use crate::ipopt::{Status, interrupt};
 use crate::model::{Model, System};
 use crate::tasks::moved_markers::moved_markers;
-use crate::tasks::simulation_messages::afterwards;
+use crate::tasks::simulation_messages::{afterwards, timing};
 use crate::workflow::WorkflowError;
 use crate::workflow::accuracy::{Accuracy, AccuracyTarget};
 use crate::workflow::closed_loop::ClosedLoop;
@@ -107,6 +107,7 @@ impl SimulationResult {
         remarks.note("voltages_end", afterwards(task));
         if let Some(closed) = &self.closed_loop {
             remarks.note("feedback", closed.notes());
+            remarks.warn("feedback_timing", timing(task));
             remarks.note("at_lower_bound", closed.at_lower_bound());
             remarks.warn("at_upper_bound", closed.at_upper_bound());
         }

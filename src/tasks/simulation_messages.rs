@@ -1,6 +1,7 @@
 //! Messages about a simulation.
 
 use crate::control::problem::{Afterwards, Simulation, Voltages};
+use crate::math::significant;
 
 /// Notes the voltages after the end of the solution from which a simulation takes them, where it goes on for longer.
 pub(super) fn afterwards(task: &Simulation) -> Option<String> {
@@ -31,4 +32,29 @@ pub(super) fn afterwards(task: &Simulation) -> Option<String> {
             end / 1e3
         ),
     })
+}
+
+/// Warnings that a controller samples or acts in other times than those for which its gains are.
+pub(super) fn timing(task: &Simulation) -> Vec<String> {
+    let Some(controller) = &task.controller else {
+        return Vec::new();
+    };
+    let law = &controller.law;
+    let predicted = law.delay as f64 * law.h;
+    let of = |what: &str, time: f64, of_gains: f64| {
+        let seconds = |ms: f64| significant(1e-3 * ms, 4);
+        let differs = (time - of_gains).abs() > 1e-9 * law.h;
+        differs.then(|| {
+            format!(
+                "the {what} of the controller is {} s, and that of its gains {} s: nothing says that the loop is stable",
+                seconds(time),
+                seconds(of_gains)
+            )
+        })
+    };
+    let both = [
+        of("time between samples", controller.sample, law.h),
+        of("delay", controller.delay, predicted),
+    ];
+    both.into_iter().flatten().collect()
 }

@@ -157,7 +157,11 @@ impl<'a> Design<'a> {
     }
 
     /// A step with integrals and costs at its start, without a gain.
-    pub(super) fn augmented(&self, step: &LinearStep, at: &State) -> RegulatedStep {
+    pub(super) fn augmented(
+        &self,
+        step: &LinearStep,
+        at: &State,
+    ) -> Result<RegulatedStep, NoRegulator> {
         let (n, u) = (step.by_state.nrows(), self.inputs.len());
         let size = n + self.integrated.len();
         let mut by_state = DMatrix::identity(size, size);
@@ -170,19 +174,19 @@ impl<'a> Design<'a> {
             by_state[(n + i, place)] = self.h;
         }
         let input = |i: usize| self.task.inputs / (self.ranges[i] * self.ranges[i]);
-        RegulatedStep {
+        Ok(RegulatedStep {
             by_state,
             by_inputs,
             costs: Costs {
-                state: self.state_costs(at),
+                state: self.state_costs(at)?,
                 inputs: DMatrix::from_fn(u, u, |i, j| if i == j { input(i) } else { 0.0 }),
             },
             gain: DMatrix::zeros(u, size),
-        }
+        })
     }
 
     /// Q at an instant.
-    pub(super) fn state_costs(&self, at: &State) -> DMatrix<f64> {
+    pub(super) fn state_costs(&self, at: &State) -> Result<DMatrix<f64>, NoRegulator> {
         let (n, m) = (self.coordinates.len(), self.momenta.len());
         let size = n + m + self.integrated.len();
         let mut costs = DMatrix::zeros(size, size);
@@ -216,22 +220,20 @@ impl<'a> Design<'a> {
             costs += weight * place.transpose() * place;
         }
         if self.task.rates > 0.0 {
-            costs += self.rate_costs(at, size);
+            costs += self.rate_costs(at, size)?;
         }
-        costs
+        Ok(costs)
     }
 
     /// The costs of rates: δq̇ = M⁻¹ (δp − ∂p/∂q δq).
-    pub(super) fn rate_costs(&self, at: &State, size: usize) -> DMatrix<f64> {
+    fn rate_costs(&self, at: &State, size: usize) -> Result<DMatrix<f64>, NoRegulator> {
         let n = self.coordinates.len();
         let [mass, by] = self.of_momenta(at);
         let m = self.momenta.len();
         let mut right = DMatrix::zeros(m, size);
         right.columns_mut(0, n).copy_from(&-by);
         right.columns_mut(n, m).fill_with_identity();
-        let Some(mut rates) = mass.lu().solve(&right) else {
-            return DMatrix::zeros(size, size);
-        };
+        let mut rates = mass.lu().solve(&right).ok_or(NoRegulator::Rates)?;
         for (row, &i) in self.momenta.iter().enumerate() {
             let unit = match self.model.is_length(i) {
                 true => 1.0,
@@ -239,7 +241,7 @@ impl<'a> Design<'a> {
             };
             rates.row_mut(row).scale_mut(Regulator::RATE_TIME / unit);
         }
-        self.task.rates * rates.transpose() * rates
+        Ok(self.task.rates * rates.transpose() * rates)
     }
 
     /// Derivatives of the momenta of the state by rates and by coordinates.

@@ -10,6 +10,7 @@ mod regulated;
 use crate::control::problem::{Control, Regulator};
 use crate::dynamics::{DiscreteTrajectory, Linearisation};
 use crate::feedback::{Costs, HeldGain, NotHeld, held_gain, riccati_step};
+use crate::ipopt::interrupt;
 use crate::model::Model;
 use crate::workflow::regulator::check::reproduced;
 use crate::workflow::regulator::design::Design;
@@ -40,7 +41,10 @@ impl Design<'_> {
             let inputs = self.model.variables.split(&self.discrete.scalars[k])[0];
             let step = self.linearised(&mut linearisation, &part[0], inputs);
             let step = step.ok_or(NoRegulator::Singular(k))?;
-            steps.push(self.augmented(&step, &part[0]));
+            steps.push(self.augmented(&step, &part[0])?);
+            if interrupt::stop().is_some() {
+                return Err(NoRegulator::Stopped);
+            }
         }
         let end = motion.last().expect("an instant");
         let (mut held, mut not_held) = (None, None);
@@ -52,7 +56,7 @@ impl Design<'_> {
         }
         let mut cost = match &held {
             Some((_, held)) => &held.cost * self.task.terminal,
-            None => self.state_costs(end) * self.task.terminal,
+            None => self.state_costs(end)? * self.task.terminal,
         };
         let end_cost = cost.clone();
         let mut residual = held.as_ref().map_or(0.0, |(_, held)| held.residual);
@@ -88,7 +92,8 @@ impl Design<'_> {
         let goal = self.goal();
         let step = self.linearised(linearisation, &goal, &rest);
         let step = step.ok_or("the linearised step there has no result")?;
-        let mut step = self.augmented(&step, &goal);
+        let step = self.augmented(&step, &goal);
+        let mut step = step.map_err(|reason| reason.to_string())?;
         let (scales, scaled) = self.scaled(&step);
         let mut held = held_gain([&scaled.by_state, &scaled.by_inputs], &scaled.costs)
             .map_err(|reason| self.reason(reason))?;

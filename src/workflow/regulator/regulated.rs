@@ -74,6 +74,10 @@ pub enum NoRegulator {
     Step(String),
     /// The recursion fails at a step.
     Recursion(usize),
+    /// A momentum does not tell its rate, which has a cost.
+    Rates,
+    /// It was time to stop.
+    Stopped,
 }
 
 impl fmt::Display for NoRegulator {
@@ -84,6 +88,10 @@ impl fmt::Display for NoRegulator {
             Self::Large(size) => write!(f, "its state has {size} entries, more than {MOST}"),
             Self::Singular(k) => write!(f, "the linearised step {} is singular", k + 1),
             Self::Step(error) => f.write_str(error),
+            Self::Rates => f.write_str(
+                "a part without mass has no rate that momenta tell; expected no weight of \"rates\"",
+            ),
+            Self::Stopped => f.write_str("the run was stopped before"),
             Self::Recursion(k) => {
                 write!(f, "the Riccati recursion has no result at step {}", k + 1)
             }
