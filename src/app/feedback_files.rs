@@ -1,4 +1,4 @@
-//! The files of a regulator along an optimum: `feedback.json`, `feedback.csv` and `feedback.npz`.
+//! The files of a regulator along an optimum: `feedback.json`, `feedback.csv`, `feedback.c` and `feedback.npz`.
 
 use std::io;
 
@@ -6,7 +6,7 @@ use nalgebra::DMatrix;
 
 use crate::app::summary::Summary;
 use crate::control::problem::{Control, Regulator};
-use crate::files::feedback::{law_csv, law_json};
+use crate::files::feedback::{law_c, law_csv, law_json};
 use crate::files::npz::NpzWriter;
 use crate::report::atomic::WriteError;
 use crate::report::file_set::FileSet;
@@ -17,6 +17,7 @@ use crate::workflow::regulator::{Regulated, RegulatedStep, regulator};
 const JSON: &str = "feedback.json";
 const TABLE: &str = "feedback.csv";
 const ARRAYS: &str = "feedback.npz";
+const CODE: &str = "feedback.c";
 
 /// Finds the regulator that is asked for and adds its files and remarks; one of an earlier result goes.
 ///
@@ -59,6 +60,8 @@ pub(super) fn add(
                 TABLE,
                 law_csv(&found.law, system, &origin.line()).as_bytes(),
             )?;
+            let code = law_c(&found.law, system, &origin.line());
+            files.add(CODE, code.as_bytes())?;
             let arrays = arrays(&found).map_err(|cause| WriteError {
                 path: files.folder().join(ARRAYS),
                 cause,
@@ -66,7 +69,7 @@ pub(super) fn add(
             return files.add(ARRAYS, &arrays);
         }
     }
-    for name in [JSON, TABLE, ARRAYS] {
+    for name in [JSON, TABLE, CODE, ARRAYS] {
         files.remove(name);
     }
     Ok(())

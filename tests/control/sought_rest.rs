@@ -87,7 +87,8 @@ fn an_arm_is_sought_between_states_of_rest_that_it_moves() {
         ..between_states_of_rest(system)
     };
     // To an angle, and to a state of rest that a short arm brings near.
-    let problems: [(&dyn Fn(&System) -> Control, [f64; 2]); 2] = [
+    type Problem<'a> = (&'a dyn Fn(&System) -> Control, [f64; 2]);
+    let problems: [Problem<'_>; 2] = [
         (&to_angle, [4.0, 60.0]),
         (&between_states_of_rest, [8.0, 22.0]),
     ];

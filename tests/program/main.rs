@@ -13,6 +13,7 @@ mod end_of_refused;
 mod engine;
 mod fe_control;
 mod feedback;
+mod feedback_c;
 mod fields;
 mod first_hour;
 mod gltf;

@@ -1,8 +1,10 @@
-//! `feedback.json`: the law of a controller in SI units.
+//! The law of a controller in SI units: `feedback.json`, a table, a C file.
 
 mod read;
 mod record;
 mod write;
+mod write_c;
 
 pub(crate) use read::read_law;
 pub use write::{law_csv, law_json};
+pub use write_c::law_c;

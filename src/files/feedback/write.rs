@@ -72,6 +72,12 @@ fn units<'l>(law: &'l Law, system: &System) -> impl Iterator<Item = (&'static st
 
 /// The text of `feedback.json`.
 pub fn law_json(law: &Law, system: &System) -> String {
+    let record = record(law, system);
+    lay_out(&serde_json::to_string(&record).expect("numbers and names are JSON"))
+}
+
+/// A law in SI units.
+pub(super) fn record(law: &Law, system: &System) -> LawRecord {
     let factors = Factors::new(law, system);
     let measured = law.measured.iter().map(|one| MeasuredRecord {
         name: one.name.clone(),
@@ -80,7 +86,7 @@ pub fn law_json(law: &Law, system: &System) -> String {
     });
     let inputs = law.inputs.iter().zip(units(law, system));
     let places = |places: &[[f64; 3]]| places.iter().map(|place| place.map(|x| x / 1e3)).collect();
-    let record = LawRecord {
+    LawRecord {
         scene: system.name.clone(),
         interval: law.h / 1e3,
         delay_intervals: law.delay,
@@ -105,8 +111,7 @@ pub fn law_json(law: &Law, system: &System) -> String {
             .iter()
             .map(|(name, path)| (name.clone(), places(path)))
             .collect(),
-    };
-    lay_out(&serde_json::to_string(&record).expect("numbers and names are JSON"))
+    }
 }
 
 /// The table of gains: a row for the start of each interval, and one for the time after the end where the goal is held.

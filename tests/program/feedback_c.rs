@@ -1,0 +1,148 @@
+//! The law of a controller in C, compiled and called beside that of the library.
+
+use crate::runs::{run, workshop};
+use proboscis::control::problem::Task;
+use proboscis::feedback::{Controller, Law};
+use proboscis::files::read_problem;
+use proboscis::math::Random;
+use std::fs;
+use std::path::Path;
+use std::process::Command;
+
+/// Reads what is measured, a line for each step, and writes the inputs.
+const MAIN: &str = r#"
+#include <stdio.h>
+#include "feedback.c"
+int main(void) {
+  feedback_state_t state;
+  double measured[FEEDBACK_STATES], inputs[FEEDBACK_INPUTS];
+  int i;
+  long k;
+  feedback_start(&state);
+  for (k = 0; k < FEEDBACK_DELAY; k++) {
+    feedback_planned(k, inputs);
+    for (i = 0; i < FEEDBACK_INPUTS; i++) printf("%.17g ", inputs[i]);
+  }
+  for (;;) {
+    for (i = 0; i < FEEDBACK_STATES; i++)
+      if (scanf("%lf", &measured[i]) != 1) return 0;
+    feedback_step(&state, measured, inputs);
+    for (i = 0; i < FEEDBACK_INPUTS; i++) printf("%.17g ", inputs[i]);
+  }
+}
+"#;
+
+/// Intervals that are compared: those of the motion, and more after its end.
+const STEPS: usize = 30;
+
+/// Deviations in rad and rad/ms about the motion.
+fn measured(law: &Law, random: &mut Random, time: f64) -> Vec<f64> {
+    let all = law.measured.iter().enumerate();
+    all.map(|(place, of)| {
+        let size = if of.is_rate { 6e-3 } else { 0.6 };
+        law.reference(time, place) + random.between(-size, size)
+    })
+    .collect()
+}
+
+/// Inputs of all intervals by the library, and what it measured in SI units.
+fn by_library(law: &Law) -> (Vec<f64>, String) {
+    let mut controller = Controller::new(law, law.h, law.h * law.delay as f64);
+    let random = &mut Random::new(4);
+    let (mut all, mut text) = (Vec::new(), String::new());
+    for k in 0..STEPS + law.delay {
+        let time = law.h * k as f64;
+        if k < STEPS {
+            let values = measured(law, random, time);
+            for (value, of) in values.iter().zip(&law.measured) {
+                let si = if of.is_rate { 1e3 * value } else { *value };
+                text.push_str(&format!("{si:?} "));
+            }
+            text.push('\n');
+            controller.sample(time, &values);
+        }
+        let mut inputs = vec![0.0; law.inputs.len()];
+        controller.inputs(time, time + 0.5 * law.h, &mut inputs);
+        all.extend(inputs);
+    }
+    (all, text)
+}
+
+/// Inputs of all intervals by the C file.
+fn by_c(folder: &Path, measured: &str) -> Vec<f64> {
+    fs::write(folder.join("main.c"), MAIN).unwrap();
+    let arguments = [
+        "-std=c99",
+        "-pedantic",
+        "-Wall",
+        "-Wextra",
+        "-Werror",
+        "-O2",
+    ];
+    let made = Command::new("cc")
+        .args(arguments)
+        .args(["main.c", "-o", "board", "-lm"])
+        .current_dir(folder)
+        .output()
+        .unwrap();
+    assert!(
+        made.status.success(),
+        "{}",
+        String::from_utf8_lossy(&made.stderr)
+    );
+    fs::write(folder.join("measured"), measured).unwrap();
+    let out = Command::new(folder.join("board"))
+        .stdin(fs::File::open(folder.join("measured")).unwrap())
+        .output()
+        .unwrap();
+    let text = String::from_utf8(out.stdout).unwrap();
+    text.split_whitespace()
+        .map(|one| one.parse().unwrap())
+        .collect()
+}
+
+#[test]
+fn a_compiled_controller_gives_the_inputs_of_the_library() {
+    let folder = workshop();
+    let here = folder.path();
+    for (to, delay) in [("at_once", "0 ms"), ("late", "21 ms")] {
+        let bounds = "control.voltage_bounds=[\"0 V\", \"2.2 kV\"]";
+        let delay = format!("feedback.delay=\"{delay}\"");
+        let arguments = [
+            "solve",
+            "problems/pair_feedback.json",
+            "-o",
+            to,
+            "--no-report",
+            "--set",
+            &delay,
+            "--set",
+            bounds,
+        ];
+        let (status, out, err) = run(here, &arguments);
+        assert_eq!(status, 0, "{out}{err}");
+        let law = format!(
+            "simulate.controller.feedback=\"{}\"",
+            here.join(to).display()
+        );
+        let problem = here.join("problems/pair_closed_loop.json");
+        let Task::Simulate(task) = read_problem(&problem, &[law]).unwrap().task else {
+            panic!("a simulation");
+        };
+        let law = task.controller.unwrap().law;
+        assert_eq!(law.delay, if to == "late" { 3 } else { 0 });
+        let (expected, text) = by_library(&law);
+        let found = by_c(&here.join(to), &text);
+        assert_eq!(found.len(), expected.len());
+        let (least, most) = (0.0, 2200.0);
+        let within = expected
+            .iter()
+            .filter(|v| **v > least + 1.0 && **v < most - 1.0);
+        assert!(within.count() > STEPS / 3, "{expected:?}");
+        let [low, high] = [least, most].map(|bound| expected.iter().any(|v| *v == bound));
+        assert!(low && high, "{expected:?}");
+        for (k, (a, b)) in found.iter().zip(&expected).enumerate() {
+            assert!((a - b).abs() < 1e-6 * b.abs().max(1.0), "{to} {k}: {a} {b}");
+        }
+    }
+}
