@@ -110,6 +110,7 @@ studies: build
 	@$(CARGO) bench --locked --bench goals -- --write
 	@$(CARGO) bench --locked --bench warm -- --write
 	@$(CARGO) bench --locked --bench design -- --write
+	@$(CARGO) bench --locked --bench feedback -- --write
 	@benches/peers/run.sh
 
 install-deps:
