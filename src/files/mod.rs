@@ -4,7 +4,7 @@
 //! - [`scene`], [`problem`]: types of the two files, and their conversion to [`System`] and [`Task`].
 //! - `signal`: functions of time.
 //! - [`study`], [`sweep`]: types of a study of variants of a problem, or a sweep of them; `changes`: their overrides.
-//! - [`feedback`]: laws of controllers.
+//! - `feedback`: laws of controllers.
 //! - [`solution`]: motions that later runs start from; [`npz`]: arrays of long ones; [`continuation`]: motions that go on.
 //! - [`urdf`]: robots of ROS; [`stl`]: surfaces; `columns`: columns of CSV files; `typed`: scenes and voltages named on the command line.
 
