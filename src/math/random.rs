@@ -1,5 +1,7 @@
 //! Numbers drawn at random, the same on every machine.
 
+use std::f64::consts::TAU;
+
 /// A generator that begins with a seed: `splitmix64` of S. Vigna (public domain).
 #[derive(Clone, Debug)]
 pub struct Random(u64);
@@ -19,5 +21,11 @@ impl Random {
         z ^= z >> 31;
         let unit = (z >> 11) as f64 / (1_u64 << 53) as f64;
         low + (high - low) * unit
+    }
+
+    /// A number of the normal distribution of mean 0 and deviation 1, by the method of Box and Muller.
+    pub fn normal(&mut self) -> f64 {
+        let [a, b] = [self.between(0.0, 1.0), self.between(0.0, 1.0)];
+        (-2.0 * (1.0 - a).ln()).sqrt() * (TAU * b).cos()
     }
 }

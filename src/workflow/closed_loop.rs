@@ -11,7 +11,6 @@ use crate::workflow::tracking::Tracked;
 use serde::Serialize;
 use std::cell::RefCell;
 use std::collections::BTreeMap;
-use std::f64::consts::TAU;
 
 /// A controller at work on a model.
 pub(crate) struct Loop<'a> {
@@ -123,7 +122,7 @@ impl<'a> Loop<'a> {
             };
             let noise = self.task.noise.of(of);
             if noise > 0.0 {
-                state.values[place] += noise * normal(&mut state.random);
+                state.values[place] += noise * state.random.normal();
             }
         }
         state.controller.sample(time, &state.values);
@@ -165,12 +164,6 @@ impl Noise {
             (true, true) => self.velocity,
         }
     }
-}
-
-/// A number of the normal distribution, by Box and Muller.
-fn normal(random: &mut Random) -> f64 {
-    let radius = (-2.0 * (1.0 - random.between(0.0, 1.0)).ln()).sqrt();
-    radius * (TAU * random.between(0.0, 1.0)).cos()
 }
 
 /// The motion under a controller, and without its corrections, compared with that of the law.

@@ -15,9 +15,7 @@ use proboscis::prelude::{Material, kpa};
 #[test]
 fn white_noise_passes_and_a_slow_wave_does_not() {
     let random = &mut Random::new(3);
-    let noise: Vec<f64> = (0..200)
-        .map(|_| crate::oscillator::normal(random))
-        .collect();
+    let noise: Vec<f64> = (0..200).map(|_| random.normal()).collect();
     let white = ljung_box(&noise).unwrap();
     assert!(white.p > 0.01 && white.neighbours.abs() < 0.3, "{white:?}");
     let wave = noise
@@ -74,7 +72,7 @@ fn measure(task: &mut Identification, system: &System, seed: u64) {
             .values;
         let readings = &mut task.recordings[r].channels[0].readings;
         for (reading, value) in readings.iter_mut().zip(truth.iter()) {
-            reading.value = value + reading.deviation * crate::oscillator::normal(random);
+            reading.value = value + reading.deviation * random.normal();
         }
     }
 }

@@ -2,7 +2,7 @@
 
 use crate::derivatives::compare;
 use crate::oscillator::{
-    DAMPING, STIFFNESS, joint, normal, parameter, parameters, place, slide, system, task, times,
+    DAMPING, STIFFNESS, joint, parameter, parameters, place, slide, system, task, times,
 };
 use proboscis::Signal;
 use proboscis::control::problem::{
@@ -51,7 +51,7 @@ fn step(onset: f64, deviation: f64, random: &mut Random) -> Recording {
         };
         Reading {
             time,
-            value: moved + deviation * normal(random),
+            value: moved + deviation * random.normal(),
             deviation,
         }
     };

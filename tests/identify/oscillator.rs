@@ -106,7 +106,7 @@ pub(crate) fn recording(
     let reading = |time: f64| {
         let error = noise
             .as_mut()
-            .map_or(0.0, |(deviation, random)| *deviation * normal(random));
+            .map_or(0.0, |(deviation, random)| *deviation * random.normal());
         Reading {
             time,
             value: place(time, [STIFFNESS, DAMPING], start) + error,
@@ -125,12 +125,6 @@ pub(crate) fn recording(
         is_held_out: false,
         channels: vec![slide(readings, is_known)],
     }
-}
-
-/// A number of the normal distribution, by the method of Box and Muller.
-pub(crate) fn normal(random: &mut Random) -> f64 {
-    let [a, b] = [random.between(0.0, 1.0), random.between(0.0, 1.0)];
-    (-2.0 * (1.0 - a).ln()).sqrt() * (std::f64::consts::TAU * b).cos()
 }
 
 pub(crate) fn task(recordings: Vec<Recording>) -> Identification {

@@ -1,6 +1,6 @@
 //! A cart that its damper stops: a free motion determines damping over mass, a pushed one both.
 
-use crate::oscillator::{joint, normal, parameter, slide, times};
+use crate::oscillator::{joint, parameter, slide, times};
 use proboscis::control::problem::{
     Identification, Reading, Recording, Regime, SoughtStart, Voltages,
 };
@@ -35,7 +35,7 @@ fn recording(name: &str, velocity: f64, force: f64, random: &mut Random) -> Reco
         let place = velocity * decay + force / DAMPING * (time - decay);
         Reading {
             time,
-            value: place + DEVIATION * normal(random),
+            value: place + DEVIATION * random.normal(),
             deviation: DEVIATION,
         }
     };

@@ -77,7 +77,7 @@ pub(crate) fn task(recordings: Vec<Recording>) -> Identification {
             .iter_mut()
             .zip(truth.iter())
         {
-            reading.value = value + reading.deviation * crate::oscillator::normal(random);
+            reading.value = value + reading.deviation * random.normal();
         }
     }
     for parameter in &mut task.parameters {
