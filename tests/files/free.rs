@@ -1,6 +1,6 @@
 //! Sought constants as a problem names them, and its mistakes.
 
-use crate::scene::{Case, check, folder, mistake};
+use crate::scene::{Case, check, control, folder, mistake};
 use proboscis::control::problem::{Control, Task};
 use proboscis::files::read_problem;
 use proboscis::model::{Constant, Follower, MaterialConstant, with_parameters};
@@ -29,11 +29,7 @@ fn problem(free: &str) -> String {
 }
 
 fn read(free: &str) -> Control {
-    let (_folder, path) = folder(CHAIN, &problem(free));
-    match read_problem(&path, &[]).expect("a problem").task {
-        Task::Control(control) => *control,
-        other => panic!("{other:?}"),
-    }
+    control(CHAIN, &problem(free))
 }
 
 fn follower(constant: Constant, factor: f64, offset: f64) -> Follower {

@@ -1,6 +1,6 @@
 //! Scene and problem files: every mistake is answered with its place, what was found and what is expected.
 
-use proboscis::control::problem::{Duration, PathConstraint, Task};
+use proboscis::control::problem::{Control, Duration, PathConstraint, Task};
 use proboscis::files::{SceneError, new_trunk, read_problem, schema};
 use proboscis::ipopt::LinearSolver;
 use proboscis::model::system::{Discretisation, ElementKind, Fidelity};
@@ -54,6 +54,15 @@ pub(crate) fn folder(scene: &str, problem: &str) -> (TempDir, PathBuf) {
     let path = folder.path().join("problem.json");
     fs::write(&path, problem).expect("a written problem");
     (folder, path)
+}
+
+/// The optimal control of a problem with a scene.
+pub(crate) fn control(scene: &str, problem: &str) -> Control {
+    let (_folder, path) = folder(scene, problem);
+    match read_problem(&path, &[]).expect("a problem").task {
+        Task::Control(control) => *control,
+        other => panic!("{other:?}"),
+    }
 }
 
 pub(crate) fn mistake(scene: &str, problem: &str, overrides: &[&str]) -> SceneError {

@@ -1,8 +1,7 @@
 //! Numbers by which an optimum is differentiated, as a problem names them, and its mistakes.
 
-use crate::scene::{Case, check, folder, mistake};
-use proboscis::control::problem::{Control, Task, VariedOf, WeightOf};
-use proboscis::files::read_problem;
+use crate::scene::{Case, check, control, mistake};
+use proboscis::control::problem::{Control, VariedOf, WeightOf};
 
 const CHAIN: &str = r#"{
   "name": "chain",
@@ -29,11 +28,7 @@ fn problem(asked: &str) -> String {
 }
 
 fn read(asked: &str) -> Control {
-    let (_folder, path) = folder(CHAIN, &problem(asked));
-    match read_problem(&path, &[]).expect("a problem").task {
-        Task::Control(control) => *control,
-        other => panic!("{other:?}"),
-    }
+    control(CHAIN, &problem(asked))
 }
 
 #[test]
