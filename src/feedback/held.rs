@@ -1,6 +1,6 @@
 //! The gain that holds a state for ever: the discrete algebraic Riccati equation, by structure-preserving doubling.
 //!
-//! From `A, G = B R⁻¹ Bᵀ, H = Q` each doubling leads to the same equation over twice as many steps,
+//! Each doubling of `A, G = B R⁻¹ Bᵀ, H = Q` leads to the same equation over twice as many steps,
 //!
 //! ```text
 //! A ← A W A,     G ← G + A W G Aᵀ,     H ← H + Aᵀ H W A,     W = (1 + G H)⁻¹

@@ -1,6 +1,6 @@
 //! Constants of the inputs of recordings: gains of sources, and the delay with which all of them act.
 //!
-//! Where a recording says V(t) of a source, its input is `g V(t − τ)`. What rests until its inputs begin and reads no other function of
+//! The input of a source is `g V(t − τ)`, of which a recording says V(t). A robot that rests until its inputs begin and reads no other function of
 //! time moves τ later with all of them: a reading at t is that of the motion without delay at t − τ, and before that one of the start.
 
 use std::borrow::Cow;
