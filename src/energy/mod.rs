@@ -37,7 +37,7 @@ pub use elastic_law::{ElasticLaw, Elasticity, Fault, NeoHooke};
 pub use gravity::Gravity;
 pub use joint_spring::{CoordinateSpring, JointAngle, JointDisplacement};
 pub use joint_stops::CoordinateStops;
-pub use kinetic::KineticEnergy;
+pub use kinetic::{KineticCoupling, KineticEnergy};
 pub use limit::{
     Angle, AngleStep, Multiple, OutsideBox, PeakExcess, PositionComponent, Projection,
     ProjectionStep, SquaredDistance, SquaredField,

@@ -1,38 +1,74 @@
-//! Elements of any kind times a constant that follows from sought parameters: `c(π) E` with `c = c₀ + Σ s_a π_a`.
+//! Elements of any kind times constants that follow from sought parameters: `c(π) E` with a product `c` of constants.
 //!
-//! A constant in which an energy is linear needs no number that carries derivatives: `∂/∂π_a` is `s_a E`, of the element with the constant one.
+//! A constant in which an energy is linear needs no formula of numbers that carry derivatives: `∂/∂π_a` is `∂c/∂π_a E`, of the element with
+//! the constant one.
 
 use crate::energy::Polynomial;
 use crate::functional::{Kernel, Order, Sample, Scatter, VectorArg};
-use crate::math::{Derivatives, Matrix, Vector};
+use crate::math::{Derivatives, HyperDual, Matrix, Number, Vector};
 use std::fmt;
 use std::marker::PhantomData;
+
+/// Most parameters that one element follows: a viscous one of a Maxwell branch follows its modulus and its relaxation time.
+const MOST: usize = 2;
 
 /// One element.
 #[derive(Clone, Debug)]
 pub struct ScaledElement<E> {
     /// The element E.
     pub of: E,
-    /// The constant c.
-    pub factor: Polynomial,
-    /// Parameters that it follows, scalars of the interval.
+    /// Constants whose product is c.
+    pub factors: Vec<Polynomial>,
+    /// Parameters that they follow, scalars of the interval, two at most.
     pub parameters: Vec<usize>,
 }
 
+/// The constant c of an element with its derivatives by its parameters.
+#[derive(Clone, Copy)]
+struct Factor {
+    value: f64,
+    slopes: [f64; MOST],
+    curvatures: [[f64; MOST]; MOST],
+}
+
 impl<E> ScaledElement<E> {
-    fn factor(&self, sample: &Sample<'_>) -> f64 {
-        let slopes = self.factor.slopes.iter();
-        let parts = slopes.map(|&(place, s)| s * sample.scalars[self.parameters[place]]);
-        self.factor.value + parts.sum::<f64>()
+    /// The constant at numbers in place of the parameters.
+    fn constant<T: Number>(&self, at: [T; MOST]) -> T {
+        let factors = self.factors.iter();
+        factors.fold(T::of(1.0), |product, factor| product * factor.at(&at))
     }
 
-    /// ∂c/∂π of the parameter at a place.
-    fn slope(&self, place: usize) -> f64 {
-        let slopes = self.factor.slopes.iter();
-        slopes
-            .filter(|(own, _)| *own == place)
-            .map(|(_, s)| s)
-            .sum()
+    fn parameters(&self, sample: &Sample<'_>) -> [f64; MOST] {
+        let mut values = [0.0; MOST];
+        for (value, &scalar) in values.iter_mut().zip(&self.parameters) {
+            *value = sample.scalars[scalar];
+        }
+        values
+    }
+
+    fn value(&self, sample: &Sample<'_>) -> f64 {
+        self.constant(self.parameters(sample))
+    }
+
+    fn factor(&self, sample: &Sample<'_>) -> Factor {
+        let values = self.parameters(sample);
+        let mut factor = Factor {
+            value: self.constant(values),
+            slopes: [0.0; MOST],
+            curvatures: [[0.0; MOST]; MOST],
+        };
+        for i in 0..self.parameters.len() {
+            for j in 0..=i {
+                let mut numbers = values.map(HyperDual::of);
+                numbers[i].a = 1.0;
+                numbers[j].b = 1.0;
+                let HyperDual { a, ab, .. } = self.constant(numbers);
+                factor.slopes[i] = a;
+                factor.curvatures[i][j] = ab;
+                factor.curvatures[j][i] = ab;
+            }
+        }
+        factor
     }
 }
 
@@ -46,9 +82,8 @@ impl<K> fmt::Debug for Scaled<K> {
 }
 
 /// Derivatives of c E from those of E, or of its contraction from those of the contraction of E.
-struct Times<'a, E, D> {
-    element: &'a ScaledElement<E>,
-    factor: f64,
+struct Times<'a, D> {
+    factor: Factor,
     /// Number of scalars of E.
     base: usize,
     of: &'a D,
@@ -56,52 +91,40 @@ struct Times<'a, E, D> {
     value: f64,
 }
 
-impl<'a, E, D> Times<'a, E, D> {
-    fn new<K: Kernel<Element = E>>(
-        element: &'a ScaledElement<E>,
-        sample: &Sample<'_>,
-        of: &'a D,
-        value: f64,
-    ) -> Self {
-        Self {
-            element,
-            factor: element.factor(sample),
-            base: K::scalars(&element.of),
-            of,
-            value,
-        }
-    }
-}
-
-impl<E, D: Derivatives> Derivatives for Times<'_, E, D> {
+impl<D: Derivatives> Derivatives for Times<'_, D> {
     fn force(&self, i: usize) -> Vector {
-        self.of.force(i) * self.factor
+        self.of.force(i) * self.factor.value
     }
 
     fn row(&self, s: usize) -> f64 {
         match s.checked_sub(self.base) {
-            None => self.of.row(s) * self.factor,
-            Some(place) => self.element.slope(place) * self.value,
+            None => self.of.row(s) * self.factor.value,
+            Some(place) => self.factor.slopes[place] * self.value,
         }
     }
 
     fn block(&self, i: usize, j: usize) -> Matrix {
-        self.of.block(i, j) * self.factor
+        self.of.block(i, j) * self.factor.value
     }
 
     fn column(&self, i: usize, s: usize) -> Vector {
         match s.checked_sub(self.base) {
-            None => self.of.column(i, s) * self.factor,
-            Some(place) => self.of.force(i) * self.element.slope(place),
+            None => self.of.column(i, s) * self.factor.value,
+            Some(place) => self.of.force(i) * self.factor.slopes[place],
         }
     }
 
     fn entry(&self, s: usize, t: usize) -> f64 {
+        let Factor {
+            value,
+            slopes,
+            curvatures,
+        } = &self.factor;
         match (s.checked_sub(self.base), t.checked_sub(self.base)) {
-            (None, None) => self.of.entry(s, t) * self.factor,
-            (Some(place), None) => self.of.row(t) * self.element.slope(place),
-            (None, Some(place)) => self.of.row(s) * self.element.slope(place),
-            (Some(_), Some(_)) => 0.0,
+            (None, None) => self.of.entry(s, t) * value,
+            (Some(place), None) => self.of.row(t) * slopes[place],
+            (None, Some(place)) => self.of.row(s) * slopes[place],
+            (Some(one), Some(other)) => curvatures[one][other] * self.value,
         }
     }
 }
@@ -109,11 +132,22 @@ impl<E, D: Derivatives> Derivatives for Times<'_, E, D> {
 /// Hands the derivatives of an element of the kind `K` on with its constant.
 struct WithFactor<'a, K: Kernel, S> {
     element: &'a ScaledElement<K::Element>,
+    factor: Factor,
     sample: &'a Sample<'a>,
     to: &'a mut S,
 }
 
 impl<K: Kernel, S> WithFactor<'_, K, S> {
+    /// Derivatives of c E from those of E, or of a contraction with its value.
+    fn times<'d, D>(&self, of: &'d D, value: f64) -> Times<'d, D> {
+        Times {
+            factor: self.factor,
+            base: K::scalars(&self.element.of),
+            of,
+            value,
+        }
+    }
+
     /// The contraction ∇E·w; of a virtual work its value at the direction.
     fn contraction<D: Derivatives>(&self, d: &D) -> f64 {
         let (element, sample) = (&self.element.of, self.sample);
@@ -139,15 +173,13 @@ impl<K: Kernel, S: Scatter> Scatter for WithFactor<'_, K, S> {
     const OF_PARAMETERS: bool = S::OF_PARAMETERS;
 
     fn plain<D: Derivatives>(&mut self, plain: &D) {
-        self.to
-            .plain(&Times::new::<K>(self.element, self.sample, plain, 0.0));
+        let plain = self.times(plain, 0.0);
+        self.to.plain(&plain);
     }
 
     fn along<D: Derivatives, W: Derivatives>(&mut self, plain: &D, along: &W) {
         let value = self.contraction(plain);
-        let (element, sample) = (self.element, self.sample);
-        let plain = Times::new::<K>(element, sample, plain, 0.0);
-        let along = Times::new::<K>(element, sample, along, value);
+        let (plain, along) = (self.times(plain, 0.0), self.times(along, value));
         self.to.along(&plain, &along);
     }
 }
@@ -191,11 +223,11 @@ impl<K: Kernel> Kernel for Scaled<K> {
     }
 
     fn energy(element: &Self::Element, sample: &Sample<'_>) -> f64 {
-        element.factor(sample) * K::energy(&element.of, sample)
+        element.value(sample) * K::energy(&element.of, sample)
     }
 
     fn first_part(element: &Self::Element, sample: &Sample<'_>) -> f64 {
-        element.factor(sample) * K::first_part(&element.of, sample)
+        element.value(sample) * K::first_part(&element.of, sample)
     }
 
     fn prepare(
@@ -216,6 +248,7 @@ impl<K: Kernel> Kernel for Scaled<K> {
     ) {
         let mut with_factor = WithFactor::<K, S> {
             element,
+            factor: element.factor(sample),
             sample,
             to,
         };

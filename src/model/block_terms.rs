@@ -1,17 +1,15 @@
-//! Terms of elastic blocks: elements by kind, masses, weights.
+//! Terms of elastic blocks: elements by kind.
 
-use crate::element::{Elastomer, ElementLaw, MaxwellSpring, Viscosity};
-use crate::energy::{MaxwellDamper, NeoHooke, Polynomial};
-use crate::functional::{Element, FiniteElement, Mass, MaxwellElement, POINTS, ViscousElement};
-use crate::kinematics::MaterialVector;
+use crate::element::{Elastomer, ElementLaw, Viscosity};
+use crate::energy::{NeoHooke, Polynomial};
+use crate::functional::{FiniteElement, ViscousElement};
 use crate::model::constant::MaterialConstant;
 use crate::model::internal::Internals;
-use crate::model::maxwell::MaxwellBranch;
+use crate::model::members::{Member, OfKind};
 use crate::model::solid_block::SolidBlock;
 use crate::model::solids::Solids;
 use crate::model::sought::Read;
-use crate::model::terms::{Terms, UNRELAXED, mid, rate};
-use std::collections::BTreeMap;
+use crate::model::terms::Terms;
 
 const INERTIA: &str = "block inertia";
 const ELASTICITY: &str = "block elasticity";
@@ -22,16 +20,15 @@ const GENERAL: [&str; 2] = [
     "general block electroelasticity",
 ];
 const VISCOSITY: &str = "block viscosity";
-const MAXWELL: [&str; 2] = ["block maxwell elasticity", "block maxwell viscosity"];
 
 impl Solids {
     /// Elements of all blocks of which anything is unknown, as pairs of block and element.
-    fn elements(&self) -> impl Iterator<Item = (&SolidBlock, usize)> + '_ {
+    pub(super) fn elements(&self) -> impl Iterator<Item = (&SolidBlock, usize)> + '_ {
         self.numbered().map(|(_, block, e)| (block, e))
     }
 
     /// The same, with the number of the block.
-    fn numbered(&self) -> impl Iterator<Item = (usize, &SolidBlock, usize)> + '_ {
+    pub(super) fn numbered(&self) -> impl Iterator<Item = (usize, &SolidBlock, usize)> + '_ {
         let blocks = self.list.iter().enumerate();
         blocks
             .filter(|(_, block)| !block.is_immobile)
@@ -53,32 +50,6 @@ impl Solids {
                     false => "no elastic block that moves",
                 },
             );
-        }
-    }
-
-    /// Consistent masses, and the weight at each node.
-    fn add_inertia(&self, terms: &mut Terms<'_>) {
-        let moving = || self.list.iter().filter(|block| !block.is_immobile);
-        let is_heavy = |c: &&SolidBlock| c.solid.materials.iter().any(|m| m.density.is_some());
-        for (vector, mass) in self.loads() {
-            terms.weigh_vector(vector, mass);
-        }
-        if moving().next().is_none() {
-            return;
-        }
-        if !terms.is_of_motion() {
-            return terms.without(INERTIA, "a state of rest has no inertia");
-        }
-        for mass in self.masses() {
-            terms.push(INERTIA, mass);
-        }
-        match moving().any(|c| is_heavy(&c)) {
-            true => {
-                for block in moving().filter(is_heavy) {
-                    terms.note(INERTIA, "density of", &block.solid.name);
-                }
-            }
-            false => terms.without(INERTIA, "no elastic block names a density"),
         }
     }
 
@@ -122,102 +93,24 @@ impl Solids {
             };
             let mut read = terms.sought().read();
             let factor = read.constant(c.constant(e, MaterialConstant::Viscosity), viscosity);
-            let (why, name) = ("viscosity of", &c.solid.name);
-            match read.is_empty() {
-                true => terms.collect(VISCOSITY, why, name, element(viscosity)),
-                false => terms.add_scaled(VISCOSITY, why, name, (element(1.0), factor, read)),
-            }
+            let of = (VISCOSITY, "viscosity of", c.solid.name.as_str());
+            let pair = (element(viscosity), element(1.0));
+            add_times::<(), _>(of, pair, (vec![factor], read), terms);
         }
-    }
-
-    /// Springs and dampers of Maxwell branches.
-    fn add_branches(&self, internals: &Internals, terms: &mut Terms<'_>) {
-        for (b, c, e) in self.numbered() {
-            for (branch, constants) in c.material(e).maxwell.list().iter().enumerate() {
-                if let Some(strains) = internals.strains(b, e, branch) {
-                    add_branch((c, e), constants, strains, terms);
-                } else if terms.is_instantaneous() {
-                    let element = FiniteElement {
-                        shape: c.reference_shape(e),
-                        law: c.unrelaxed(constants.shear_modulus),
-                        nodes: c.nodes(e),
-                        terminals: (),
-                    };
-                    terms.collect(MAXWELL[0], UNRELAXED, &c.solid.name, element);
-                }
-            }
-        }
-        terms.without_branches(
-            MAXWELL,
-            "no elastic block that moves names a Maxwell branch",
-        );
-    }
-
-    /// The consistent mass matrix of all blocks.
-    fn masses(&self) -> Vec<Mass> {
-        let mut sums: BTreeMap<[usize; 2], f64> = BTreeMap::new();
-        for (c, e) in self.elements() {
-            let Some(density) = c.material(e).density else {
-                continue;
-            };
-            let (nodes, mass) = (c.nodes(e), c.shapes[e].mass(density));
-            for (i, &a) in nodes.iter().enumerate() {
-                for (j, &b) in nodes.iter().enumerate().filter(|&(_, &b)| a <= b) {
-                    *sums.entry([a, b]).or_default() += mass[i][j];
-                }
-            }
-        }
-        sums.into_iter()
-            .map(|(vectors, mass)| Mass { vectors, mass })
-            .collect()
-    }
-
-    /// Mass at each vector, as gravity sees it.
-    fn loads(&self) -> Vec<(usize, f64)> {
-        let moving = self.list.iter().filter(|block| !block.is_immobile);
-        let masses = |block: &SolidBlock| {
-            let masses = block.integrals(|material| material.density).into_iter();
-            masses
-                .map(|(node, mass)| (block.vectors[node], mass))
-                .collect::<Vec<_>>()
-        };
-        moving.flat_map(masses).collect()
     }
 }
 
-/// One branch of an element: its spring, and the damper of each Gauss point.
-fn add_branch(
-    (c, e): (&SolidBlock, usize),
-    &MaxwellBranch {
-        shear_modulus,
-        relaxation_time,
-    }: &MaxwellBranch,
-    strains: [[MaterialVector; 2]; POINTS],
+/// An element as it is given, or that of the constant one times constants some of which are sought.
+pub(super) fn add_times<Kind, E: OfKind + Member<Kind>>(
+    (term, why, of): (&'static str, &'static str, &str),
+    (given, unit): (E, E),
+    (factors, read): (Vec<Polynomial>, Read),
     terms: &mut Terms<'_>,
 ) {
-    let ([elasticity, viscosity], why) = (MAXWELL, "Maxwell branches of");
-    let strains = strains.map(|parts| parts.map(|part| terms.new_vector(part)));
-    let shape = c.shapes[e].clone();
-    for ([stretches, shears], volume) in strains.into_iter().zip(shape.weights()) {
-        let damper = MaxwellDamper {
-            coefficient: relaxation_time * shear_modulus * volume,
-        };
-        let (stretched, sheared) = (mid(stretches), mid(shears));
-        let rates = [rate(stretches), rate(shears)];
-        let element = Element {
-            energy: damper,
-            vectors: [stretched, sheared, stretched, sheared, rates[0], rates[1]],
-            scalars: [],
-        };
-        terms.add::<_, 18, 6, 0>(viscosity, why, &c.solid.name, element);
+    match read.is_empty() {
+        true => terms.collect::<Kind, _>(term, why, of, given),
+        false => terms.add_scaled(term, why, of, (unit, factors, read)),
     }
-    let element = MaxwellElement {
-        shape,
-        law: MaxwellSpring { shear_modulus },
-        nodes: c.nodes(e),
-        strains,
-    };
-    terms.collect(elasticity, why, &c.solid.name, element);
 }
 
 /// One elastic or dielectric element, in one of two terms.
@@ -292,18 +185,18 @@ fn add_sought_element(c: &SolidBlock, e: usize, terms: &mut Terms<'_>) {
         rest[i] = 0.0;
         let mut unit = [0.0; 5];
         unit[i] = 1.0;
-        add_part(c, e, (unit, Some((factor, read))), terms);
+        add_part(c, e, (unit, (vec![factor], read)), terms);
     }
     if rest != [0.0; 5] {
-        add_part(c, e, (rest, None), terms);
+        add_part(c, e, (rest, (Vec::new(), terms.sought().read())), terms);
     }
 }
 
-/// An element of these constants, times one that is sought.
+/// An element of these constants, times others that are sought, if there are any.
 fn add_part(
     c: &SolidBlock,
     e: usize,
-    (constants, sought): ([f64; 5], Option<(Polynomial, Read)>),
+    (constants, sought): ([f64; 5], (Vec<Polynomial>, Read)),
     terms: &mut Terms<'_>,
 ) {
     let (shape, nodes) = (c.shapes[e].clone(), c.nodes(e));
@@ -315,13 +208,8 @@ fn add_part(
             nodes,
             terminals: c.terminals(e),
         };
-        let why = "elements in a field of";
-        match sought {
-            None => terms.collect(ELECTROELASTICITY, why, name, element),
-            Some((factor, read)) => {
-                terms.add_scaled(ELECTROELASTICITY, why, name, (element, factor, read));
-            }
-        }
+        let of = (ELECTROELASTICITY, "elements in a field of", name.as_str());
+        add_times::<(), _>(of, (element.clone(), element), sought, terms);
         return;
     }
     let law = Elastomer {
@@ -335,9 +223,6 @@ fn add_part(
         nodes,
         terminals: (),
     };
-    let why = "elements without a field of";
-    match sought {
-        None => terms.collect(ELASTICITY, why, name, element),
-        Some((factor, read)) => terms.add_scaled(ELASTICITY, why, name, (element, factor, read)),
-    }
+    let of = (ELASTICITY, "elements without a field of", name.as_str());
+    add_times::<(), _>(of, (element.clone(), element), sought, terms);
 }

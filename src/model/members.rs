@@ -1,7 +1,7 @@
 //! Elements that make one term together with all of their type.
 
 use crate::element::ElementLaw;
-use crate::energy::Energy;
+use crate::energy::{Energy, MaxwellDamper};
 use crate::functional::{
     Electrical, Element, FiniteElement, FiniteElements, Formulas, Group, Inertia, Kernel, Law,
     LawElement, Laws, Mass, MaxwellElement, MaxwellElements, Path, Paths, PressureFace,
@@ -43,7 +43,7 @@ impl Member for PressureFace {
     }
 }
 
-/// An element that is no formula, and its kind.
+/// An element that is no formula of constants, and its kind.
 pub(super) trait OfKind: Clone + Send + Sync + 'static {
     type Kind: Kernel<Element = Self>;
 }
@@ -54,6 +54,14 @@ impl<F: Electrical, L: ElementLaw> OfKind for FiniteElement<F, L> {
 
 impl OfKind for ViscousElement {
     type Kind = ViscousElements;
+}
+
+impl OfKind for MaxwellElement {
+    type Kind = MaxwellElements;
+}
+
+impl OfKind for Element<MaxwellDamper, 6, 0> {
+    type Kind = Formulas<MaxwellDamper, 18, 6, 0>;
 }
 
 impl<E: OfKind> Member for ScaledElement<E> {

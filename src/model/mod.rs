@@ -3,10 +3,12 @@
 mod amount;
 mod analysis;
 mod attachment;
+mod block_inertia;
 mod block_terms;
 mod blocks;
 mod bodies;
 mod branch_stress;
+mod branch_terms;
 mod build;
 mod charge_measures;
 mod charged;

@@ -14,10 +14,8 @@ impl MaterialConstant {
     /// Reason why it cannot be sought where finite elements read it, if there is one.
     fn obstacle_of_elements(self, material: &Material) -> Option<&'static str> {
         match self {
-            Self::Viscosity => None,
-            Self::Density => Some("sought densities of finite elements are not offered"),
-            Self::BranchModulus(_) | Self::RelaxationTime(_) => {
-                Some("sought Maxwell branches of finite elements are not offered")
+            Self::Density | Self::Viscosity | Self::BranchModulus(_) | Self::RelaxationTime(_) => {
+                None
             }
             _ if material.law.is_some() => Some(
                 "of laws of elasticity of finite elements, the neo-Hookean one alone can have sought constants",

@@ -57,19 +57,21 @@ impl SolidBlock {
         &self.solid.materials[self.solid.mesh.regions[element]]
     }
 
+    /// Returns true if one of its materials has a density.
+    pub(super) fn is_heavy(&self) -> bool {
+        self.solid.materials.iter().any(|m| m.density.is_some())
+    }
+
     /// Vectors of the nodes of an element.
     pub fn nodes(&self, element: usize) -> [usize; 8] {
         self.solid.mesh.hexahedra[element].map(|node| self.vectors[node])
     }
 
-    /// The integral of the shape function of each node in mm³ times a density of the material, over elements that have one.
-    pub(super) fn integrals(
-        &self,
-        density: impl Fn(&Material) -> Option<f64>,
-    ) -> BTreeMap<usize, f64> {
+    /// The integral of the shape function of each node in mm³ times a density of the element, over elements that have one.
+    pub(super) fn integrals(&self, density: impl Fn(usize) -> Option<f64>) -> BTreeMap<usize, f64> {
         let mut sums = BTreeMap::new();
         for (e, nodes) in self.solid.mesh.hexahedra.iter().enumerate() {
-            let Some(density) = density(self.material(e)) else {
+            let Some(density) = density(e) else {
                 continue;
             };
             for (&node, part) in nodes.iter().zip(self.shapes[e].loads()) {

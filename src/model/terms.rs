@@ -221,17 +221,17 @@ impl<'a> Terms<'a> {
         }
     }
 
-    /// Adds an element, of those that are no formulas, times a constant that is sought.
+    /// Adds an element, of those that are no formulas of constants, times constants some of which are sought.
     pub(super) fn add_scaled<E: OfKind>(
         &mut self,
         term: &'static str,
         why: &'static str,
         of: &str,
-        (element, factor, read): (E, Polynomial, Read),
+        (element, factors, read): (E, Vec<Polynomial>, Read),
     ) {
         let element = ScaledElement {
             of: element,
-            factor,
+            factors,
             parameters: read.scalars(),
         };
         self.collect::<(), _>(term, why, of, element);

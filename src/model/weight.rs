@@ -1,6 +1,6 @@
 //! Weights and kinetic energies of masses, some of which are sought.
 
-use crate::energy::{Gravity, KineticEnergy, Polynomial};
+use crate::energy::{Gravity, KineticCoupling, KineticEnergy, Polynomial};
 use crate::functional::Law;
 use crate::math::Number;
 use nalgebra::Vector3;
@@ -33,6 +33,20 @@ impl Law<3> for Moving {
 
     fn formula<T: Number>(&self, parameters: &[T]) -> KineticEnergy<T> {
         KineticEnergy {
+            mass: self.0.at(parameters),
+        }
+    }
+}
+
+/// Kinetic energy of an entry of a mass matrix in g between two points.
+#[derive(Clone)]
+pub(super) struct MovingTogether(pub(super) Polynomial);
+
+impl Law<6> for MovingTogether {
+    type Formula<T: Number> = KineticCoupling<T>;
+
+    fn formula<T: Number>(&self, parameters: &[T]) -> KineticCoupling<T> {
+        KineticCoupling {
             mass: self.0.at(parameters),
         }
     }

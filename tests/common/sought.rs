@@ -2,13 +2,14 @@
 
 use super::cases::{control, joints};
 use super::systems::{blocks, branched, tied};
+use super::trunk;
 use nalgebra::Vector3;
 use proboscis::control::problem::{Control, Duration, Guess, Voltages};
 use proboscis::functional::MOST_PARAMETERS;
 use proboscis::model::components::{Load, LoadPlace};
 use proboscis::model::system::{
-    Attachment, Circuit, ElasticLaw, JointSpring, Marker, Material, MaxwellBranch, MaxwellBranches,
-    System,
+    Attachment, Circuit, Discretisation, ElasticLaw, ElementKind, Fidelity, JointSpring, Marker,
+    Material, MaxwellBranch, MaxwellBranches, System,
 };
 use proboscis::model::{Constant, Follower, MaterialConstant, Parameter};
 
@@ -179,10 +180,11 @@ pub fn problem(system: &System, is_free: bool, course: Option<Voltages>) -> Cont
     control
 }
 
-/// A muscle and a block of finite elements, and constants of both in which their energies and viscous works are linear.
+/// A muscle and a block of finite elements under gravity, and constants of both in which their energies and viscous works are linear.
 pub fn elements() -> (System, Vec<Parameter>) {
     use MaterialConstant as M;
     let mut system = blocks();
+    system.gravity = Some(Vector3::new(1e-3, -9.81e-3, 2e-3));
     // The unit of potentials is that of the stiffest material: one that nothing is made of, so that no parameter changes it.
     let solid = &mut system.solids[0];
     let stiff = Material {
@@ -204,7 +206,42 @@ pub fn elements() -> (System, Vec<Parameter>) {
             ],
             20.0,
         ),
-        parameter("viscosity", &of_both(M::Viscosity), 0.9),
+        Parameter {
+            constants: vec![
+                M::Viscosity.of_muscle(0).into(),
+                Follower {
+                    higher: [0.2, 0.1],
+                    ..M::Viscosity.of_block(0, 0).into()
+                },
+            ],
+            ..parameter("viscosity", &[], 0.9)
+        },
+        parameter("density", &of_both(M::Density), 1.2e-3),
+    ];
+    (system, parameters)
+}
+
+/// A segment of a trunk, one muscle of which is a finite element with a Maxwell branch, and the constants of the branch.
+pub fn relaxing() -> (System, Vec<Parameter>) {
+    use MaterialConstant as M;
+    let mut system = trunk(1);
+    system.muscles.truncate(1);
+    let muscle = &mut system.muscles[0];
+    muscle.fidelity = Fidelity::FiniteElements(Discretisation {
+        first_side: None,
+        elements: [1, 1, 1],
+        layers: 1,
+        element: ElementKind::Hex8,
+    });
+    let branch = MaxwellBranch {
+        shear_modulus: 0.03,
+        relaxation_time: 9.0,
+    };
+    muscle.material.lame_lambda = Some(0.4);
+    muscle.material.maxwell = MaxwellBranches::new(&[branch]).unwrap();
+    let parameters = vec![
+        parameter("branch", &[(M::BranchModulus(0).of_muscle(0), 1.0)], 0.04),
+        parameter("time", &[(M::RelaxationTime(0).of_muscle(0), 1.0)], 12.0),
     ];
     (system, parameters)
 }

@@ -4,7 +4,7 @@
 use crate::action::not_trivial;
 use crate::common::cases::joints;
 use crate::common::random::Random;
-use crate::common::sought::{crowded, elements, lengthened, problem, robot, wired};
+use crate::common::sought::{crowded, elements, lengthened, problem, relaxing, robot, wired};
 use proboscis::control::problem::{BoundaryState, Control, Voltages};
 use proboscis::control::{BoundaryConditions, Column, InitialGuess, Transcription, guess};
 use proboscis::model::{Coordinates, Model, Role, System, with_parameters};
@@ -25,14 +25,19 @@ fn variants() -> Vec<(System, Control)> {
         };
         (system, control)
     };
-    let (system, parameters) = elements();
-    let of_elements = [false, true].map(|is_free| Control {
-        parameters: parameters.clone(),
-        start: joints(&[(0, 0.05)]),
-        goal: BoundaryState::Free,
-        ..problem(&system, is_free, None)
-    });
-    let of_elements = of_elements.map(|control| (system.clone(), control));
+    let of_elements = [elements(), relaxing()]
+        .into_iter()
+        .flat_map(|(system, parameters)| {
+            [false, true].map(|is_free| {
+                let control = Control {
+                    parameters: parameters.clone(),
+                    start: joints(&[(0, 0.05)]),
+                    goal: BoundaryState::Free,
+                    ..problem(&system, is_free, None)
+                };
+                (system.clone(), control)
+            })
+        });
     let (system, parameters) = wired();
     let of_circuits = [false, true].map(|is_free| Control {
         parameters: parameters.clone(),
@@ -55,7 +60,7 @@ fn variants() -> Vec<(System, Control)> {
         ..problem(&system, is_free, None)
     });
     let of_lengths = of_lengths.map(|control| (system.clone(), control));
-    let others = of_elements.into_iter().chain(of_circuits);
+    let others = of_elements.chain(of_circuits);
     let others = others.chain(crowded).chain(of_lengths);
     cases.map(of).chain(others).collect()
 }
