@@ -4,11 +4,12 @@ mod common;
 
 use common::cases::{all_limits, control, hold, rest_to_rest};
 use common::counting::{ASKED, BEGUN, Counting, IS_OURS, KEPT, MOST};
+use common::receding;
 use common::sought;
 use common::systems::branched;
 use common::tracked::{energies, tracked};
 use common::trunk;
-use proboscis::control::problem::{BoundaryState, Control, Duration, Objective, Rest};
+use proboscis::control::problem::{BoundaryState, Control, Duration, Objective, Regulator, Rest};
 use proboscis::control::{BoundaryConditions, Transcription, guess};
 use proboscis::ipopt::{self, Options, Start};
 use proboscis::kkt::{Plan, Solver, Unknown};
@@ -16,6 +17,7 @@ use proboscis::model::Coordinates;
 use proboscis::model::system::System;
 use proboscis::nlp::Nlp;
 use proboscis::workflow::parallel_map;
+use proboscis::workflow::receding::{RecedingHorizon, Source};
 use std::ops::ControlFlow;
 use std::sync::atomic::Ordering;
 use std::{fs, iter, thread, time};
@@ -208,6 +210,53 @@ fn allocations_of_solves() -> usize {
     fewest
 }
 
+/// Most allocations of a step of a receding horizon with its preparation, of states that are measured, missing and wrong.
+fn allocations_of_a_controller() -> usize {
+    let task = Regulator {
+        step: 5.0,
+        ..Regulator::default()
+    };
+    let horizon = receding::horizon(&receding::problem("pair.json", &[]), &task, 6);
+    let law = horizon.law();
+    let mut controller = RecedingHorizon::new(&horizon);
+    let states: Vec<Vec<f64>> = (0..80)
+        .map(|k| {
+            let at = &law.at(law.h * k as f64).state;
+            at.iter()
+                .enumerate()
+                .map(|(i, x)| x + 1e-2 * number(2 * k + i))
+                .collect()
+        })
+        .collect();
+    let mut sources = Vec::with_capacity(states.len());
+    let mut most = 0;
+    for (k, state) in states.iter().enumerate() {
+        let before = ASKED.load(Ordering::Relaxed);
+        let measured = match k {
+            30 => None,
+            31 | 60..70 => Some(&[10.0, 0.0][..]),
+            40 => Some(&[f64::NAN; 2][..]),
+            _ => Some(&state[..]),
+        };
+        sources.push(controller.step(law.h * k as f64, measured).source);
+        controller.prepare();
+        if k > 10 {
+            most = most.max(ASKED.load(Ordering::Relaxed) - before);
+        }
+    }
+    let all = [
+        Source::Plan,
+        Source::Late,
+        Source::Unusable,
+        Source::Regulator,
+    ];
+    assert!(
+        all.iter().all(|source| sources.contains(source)),
+        "{sources:?}"
+    );
+    most
+}
+
 /// Threads of this process, where the system tells; none elsewhere.
 fn threads() -> usize {
     fs::read_dir("/proc/self/task").map_or(0, Iterator::count)
@@ -245,6 +294,7 @@ fn evaluations_allocate_nothing() {
     assert_eq!(allocations_of_factors(horizon()), (0, 0), "factors");
     assert_eq!(allocations_of_factors(constrained()), (0, 20), "condensed");
     assert_eq!(allocations_of_solves(), 0, "solves of a kept program");
+    assert_eq!(allocations_of_a_controller(), 0, "steps of a controller");
     let before = ASKED.load(Ordering::Relaxed);
     drop(std::hint::black_box(vec![0_u8; 100]));
     assert!(

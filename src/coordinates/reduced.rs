@@ -315,16 +315,29 @@ impl Reduced {
 
     /// Momentum Pᵀ ∂T/∂ẋ of each coordinate of a placed instant with rates `rates` of the coordinates.
     pub fn momentum(&self, instant: &mut Configuration, rates: &[f64]) -> Vec<f64> {
+        let mut momenta = vec![Vector::zeros(); instant.x.len()];
+        let mut rows = vec![0.0; self.map.coordinates];
+        self.momentum_into(instant, rates, &mut momenta, &mut rows);
+        rows
+    }
+
+    /// The same, written to rows; `momenta` is room for those of the vectors.
+    pub fn momentum_into(
+        &self,
+        instant: &mut Configuration,
+        rates: &[f64],
+        momenta: &mut [Vector],
+        rows: &mut [f64],
+    ) {
         instant.l.fill(0.0);
         instant.l[..rates.len()].copy_from_slice(rates);
         self.map.along(instant);
-        let mut momenta = vec![Vector::zeros(); instant.x.len()];
+        momenta.fill(Vector::zeros());
         for term in &self.intervals.terms {
-            term.momentum(&instant.x, &instant.w, &mut momenta);
+            term.momentum(&instant.x, &instant.w, momenta);
         }
-        let mut rows = vec![0.0; self.map.coordinates];
-        self.map.pull_back(&instant.columns, &momenta, &mut rows);
-        rows
+        rows.fill(0.0);
+        self.map.pull_back(&instant.columns, momenta, rows);
     }
 
     /// Adds Pᵀ R to the first rows and the rows of the multipliers to the others.

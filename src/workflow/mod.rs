@@ -11,7 +11,7 @@
 //! - `effects`, `reasons`, `stopwatch`: terms of a model, their reasons and times; `memory`: a refusal of more than the machine has.
 //! - `steps`, `domain`: warnings of a motion: steps that do not resolve it, muscles outside the domain of their material; `longer_steps`: the error of
 //!   methods of high order.
-//! - `regulator`: feedback along an optimum; `closed_loop`: a simulation under it.
+//! - `regulator`: feedback along an optimum; `receding`: a controller that plans anew; `closed_loop`: a simulation under feedback.
 //! - `tracking`: deviations of a motion from the references of its objective.
 //! - `motion`: conversion between unknowns and a trajectory; `parallel_map`: pieces of work in several threads.
 
@@ -52,6 +52,7 @@ pub(crate) mod prepare;
 pub(crate) mod prepare_together;
 mod program_motion;
 pub(crate) mod reasons;
+pub mod receding;
 mod recentre;
 pub(crate) mod refine_until_reproduced;
 pub mod regulator;

@@ -13,6 +13,7 @@ pub mod pairs;
 pub mod programs;
 pub mod random;
 pub mod random_goals;
+pub mod receding;
 pub mod remembering;
 pub mod signals;
 pub mod solid;

@@ -37,6 +37,7 @@ mod prescribed;
 mod rate_limits;
 mod reaction_limits;
 mod reaction_torques;
+mod receding;
 mod reference;
 mod resample;
 mod resisted_energies;

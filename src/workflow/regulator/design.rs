@@ -174,6 +174,7 @@ impl<'a> Design<'a> {
             by_state[(n + i, place)] = self.h;
         }
         let input = |i: usize| self.task.inputs / (self.ranges[i] * self.ranges[i]);
+        let coordinates = self.coordinates.len();
         Ok(RegulatedStep {
             by_state,
             by_inputs,
@@ -181,6 +182,10 @@ impl<'a> Design<'a> {
                 state: self.state_costs(at)?,
                 inputs: DMatrix::from_fn(u, u, |i, j| if i == j { input(i) } else { 0.0 }),
             },
+            places: self
+                .place_costs(at)
+                .view((0, 0), (coordinates, coordinates))
+                .into_owned(),
             gain: DMatrix::zeros(u, size),
         })
     }
@@ -188,20 +193,33 @@ impl<'a> Design<'a> {
     /// Q at an instant.
     pub(super) fn state_costs(&self, at: &State) -> Result<DMatrix<f64>, NoRegulator> {
         let (n, m) = (self.coordinates.len(), self.momenta.len());
-        let size = n + m + self.integrated.len();
-        let mut costs = DMatrix::zeros(size, size);
-        let unit = |i: usize| match self.model.is_length(i) {
+        let mut costs = self.place_costs(at);
+        for (place, &of) in self.integrated.iter().enumerate() {
+            let unit = self.unit(self.coordinates[of]) * Regulator::INTEGRAL_TIME;
+            costs[(n + m + place, n + m + place)] = self.task.integral / unit.powi(2);
+        }
+        if self.task.rates > 0.0 {
+            costs += self.rate_costs(at, costs.nrows())?;
+        }
+        Ok(costs)
+    }
+
+    /// Deviation of a coordinate that costs as much as one of a mm.
+    fn unit(&self, i: usize) -> f64 {
+        match self.model.is_length(i) {
             true => 1.0,
             false => Regulator::DEGREE,
-        };
+        }
+    }
+
+    /// The part of Q that is of coordinates and markers.
+    fn place_costs(&self, at: &State) -> DMatrix<f64> {
+        let size = self.coordinates.len() + self.momenta.len() + self.integrated.len();
+        let mut costs = DMatrix::zeros(size, size);
         for (place, &i) in self.coordinates.iter().enumerate() {
             if !self.model.is_memory(i) {
-                costs[(place, place)] += self.task.coordinates / unit(i).powi(2);
+                costs[(place, place)] += self.task.coordinates / self.unit(i).powi(2);
             }
-        }
-        for (place, &of) in self.integrated.iter().enumerate() {
-            let unit = unit(self.coordinates[of]) * Regulator::INTEGRAL_TIME;
-            costs[(n + m + place, n + m + place)] = self.task.integral / unit.powi(2);
         }
         let map = &self.model.action.map;
         let instant = map.placed(&at.z);
@@ -219,10 +237,7 @@ impl<'a> Design<'a> {
             }
             costs += weight * place.transpose() * place;
         }
-        if self.task.rates > 0.0 {
-            costs += self.rate_costs(at, size)?;
-        }
-        Ok(costs)
+        costs
     }
 
     /// The costs of rates: δq̇ = M⁻¹ (δp − ∂p/∂q δq).
@@ -235,11 +250,9 @@ impl<'a> Design<'a> {
         right.columns_mut(n, m).fill_with_identity();
         let mut rates = mass.lu().solve(&right).ok_or(NoRegulator::Rates)?;
         for (row, &i) in self.momenta.iter().enumerate() {
-            let unit = match self.model.is_length(i) {
-                true => 1.0,
-                false => Regulator::DEGREE,
-            };
-            rates.row_mut(row).scale_mut(Regulator::RATE_TIME / unit);
+            rates
+                .row_mut(row)
+                .scale_mut(Regulator::RATE_TIME / self.unit(i));
         }
         Ok(self.task.rates * rates.transpose() * rates)
     }

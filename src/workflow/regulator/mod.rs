@@ -156,6 +156,7 @@ impl Design<'_> {
                     inputs[(i, j)] * self.ranges[i] * self.ranges[j]
                 }),
             },
+            places: step.places.clone(),
             gain: step.gain.clone(),
         };
         (scales, scaled)

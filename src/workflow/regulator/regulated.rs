@@ -55,6 +55,8 @@ pub struct RegulatedStep {
     pub by_inputs: DMatrix<f64>,
     /// Q and R.
     pub costs: Costs,
+    /// The part of Q that is of coordinates and markers, over the coordinates.
+    pub places: DMatrix<f64>,
     /// K, over the state.
     pub gain: DMatrix<f64>,
 }

@@ -1,0 +1,349 @@
+//! The controller of a receding horizon: inputs of each interval from what is measured at its start.
+//!
+//! A step has two parts. [`RecedingHorizon::prepare`] shifts the plan by an interval, evaluates and factorises; it is called when the inputs went
+//! out. [`RecedingHorizon::step`] enters what is measured and takes the iteration that was prepared; it prepares first where that was not done.
+//! Every step gives inputs, and says where they come from:
+//!
+//! ```text
+//! measured, plan prepared                        → the iteration                 Source::Plan
+//! nothing measured in time                       → the plan as it was            Source::Late
+//! no finite numbers, or too far from the plan    → the plan as it was            Source::Unusable
+//! no factors, or no step                         → the plan as it was            Source::Kept
+//! the same again and again                       → the law of the regulator      Source::Regulator, and a new plan
+//! ```
+//!
+//! A step does a bounded amount of work and allocates nothing.
+
+use crate::coordinates::Configuration;
+use crate::feedback::Controller;
+use crate::math::Vector;
+use crate::nlp::Nlp;
+use crate::workflow::receding::horizon::Horizon;
+use crate::workflow::receding::iteration::{Iteration, Residual};
+use crate::workflow::receding::program::Program;
+use crate::workflow::receding::shift::Shift;
+
+/// The barrier parameter, as a part of the weight of inputs.
+const BARRIER: f64 = 1e-7;
+/// Steps that fail one after the other before the law of the regulator takes over.
+const PATIENCE: usize = 3;
+/// Deviation from the predicted state that is taken for an error of the measurement, in rad, and as a part of the length of the system.
+const ABSURD: f64 = 1.0;
+/// Residual of the equations from which on a plan that does not improve has failed.
+const FAR: f64 = 1.0;
+/// Iterations of the first plan, and the residual at which they end.
+const FIRST: usize = 100;
+const SMALL: f64 = 1e-9;
+
+/// Origin of the inputs of a step.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Source {
+    /// The plan, with what was measured.
+    Plan,
+    /// The plan as it was: nothing was measured in time.
+    Late,
+    /// The plan as it was: what was measured is no state of the system.
+    Unusable,
+    /// The plan as it was: its iteration failed.
+    Kept,
+    /// The law of the regulator: the plan has failed, and begins anew.
+    Regulator,
+}
+
+impl Source {
+    /// All of them.
+    pub const ALL: [Self; 5] = [
+        Self::Plan,
+        Self::Late,
+        Self::Unusable,
+        Self::Kept,
+        Self::Regulator,
+    ];
+
+    /// Its name in a word.
+    pub fn word(self) -> &'static str {
+        match self {
+            Self::Plan => "plan",
+            Self::Late => "late",
+            Self::Unusable => "unusable",
+            Self::Kept => "kept",
+            Self::Regulator => "regulator",
+        }
+    }
+}
+
+/// Inputs of an interval.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Answer<'a> {
+    /// Their origin.
+    pub source: Source,
+    /// In the order of the law: V, N, N mm; within their bounds.
+    pub inputs: &'a [f64],
+}
+
+/// The controller.
+#[derive(Debug)]
+pub struct RecedingHorizon<'h> {
+    of: &'h Horizon,
+    iteration: Iteration<Program<'h>>,
+    shift: Shift,
+    regulator: Controller<'h>,
+    /// True of the inputs that act by their squares.
+    is_squared: Vec<bool>,
+    /// Interval of the plan.
+    interval: usize,
+    /// True if the plan has factors; none before it was prepared.
+    prepared: Option<bool>,
+    /// Interval of the last answer, and its origin.
+    answered: Option<(usize, Source)>,
+    /// Steps without an iteration one after the other, and implausible measurements.
+    failures: usize,
+    implausible: usize,
+    residual: Residual,
+    inputs: Vec<f64>,
+    /// Places of the state that is measured.
+    instant: Configuration,
+    moving: Vec<Vector>,
+    rates: Vec<f64>,
+    momenta: Vec<f64>,
+    /// Changes of the state at the start, and of its rows.
+    changes: Vec<(usize, f64)>,
+    rows: Vec<(usize, f64)>,
+    /// Room for points.
+    points: [Vec<f64>; 2],
+}
+
+impl<'h> RecedingHorizon<'h> {
+    /// A controller that begins at the start of the motion.
+    pub fn new(of: &'h Horizon) -> Self {
+        let program = of.program();
+        let columns = program.variables().lower.len();
+        let width = of.coordinates().len();
+        let mut is_held = vec![false; columns];
+        let start = &program.layout.coordinates[..width];
+        start.iter().for_each(|&(i, _)| is_held[i] = true);
+        let shift = Shift::new(&program);
+        let law = of.law();
+        let model = of.model();
+        let (changes, rows) = (
+            vec![(0, 0.0); width],
+            vec![(0, 0.0); program.momentum.len()],
+        );
+        let x = vec![0.0; columns];
+        let mut out = Self {
+            iteration: Iteration::new(program, &x, &is_held, BARRIER * of.weight()),
+            shift,
+            regulator: Controller::new(law, law.h, 0.0),
+            is_squared: of.squared(),
+            interval: 0,
+            prepared: None,
+            answered: None,
+            failures: 0,
+            implausible: 0,
+            residual: Residual::default(),
+            inputs: vec![0.0; law.inputs.len()],
+            instant: model.action.map.placed(&model.reference_coordinates()),
+            moving: vec![Vector::zeros(); model.action.map.vectors.len()],
+            rates: vec![0.0; model.coordinate_count()],
+            momenta: vec![0.0; model.coordinate_count()],
+            changes,
+            rows,
+            points: [vec![0.0; columns], vec![0.0; columns]],
+            of,
+        };
+        out.follow(0);
+        out.converge();
+        out
+    }
+
+    /// Takes the motion that is followed for the plan from an interval on.
+    fn follow(&mut self, interval: usize) {
+        let Iteration { program, x, .. } = &mut self.iteration;
+        program.begin = interval;
+        program.refer_all(x);
+        self.iteration.begin();
+        self.interval = interval;
+        self.prepared = None;
+        self.failures = 0;
+    }
+
+    /// Iterates for the plan from the state at its start.
+    fn converge(&mut self) {
+        self.changes
+            .iter_mut()
+            .for_each(|(_, change)| *change = 0.0);
+        self.rows.iter_mut().for_each(|(_, change)| *change = 0.0);
+        for _ in 0..FIRST {
+            self.factor();
+            let Residual {
+                equations,
+                gradient,
+            } = self.residual;
+            let is_met = equations < SMALL && gradient < SMALL;
+            if self.prepared != Some(true) || is_met {
+                break;
+            }
+            self.iteration
+                .advance(&self.changes, &self.rows, &mut self.points[0]);
+        }
+    }
+
+    /// Prepares the step of the next interval: once, after its inputs went out.
+    pub fn prepare(&mut self) {
+        if self
+            .answered
+            .is_some_and(|(interval, _)| interval == self.interval)
+        {
+            self.go_on();
+        }
+        if self.prepared.is_none() {
+            self.predict();
+            self.factor();
+        }
+    }
+
+    /// Shifts the plan by an interval.
+    fn go_on(&mut self) {
+        let [before, after] = &mut self.points;
+        self.shift.apply(&mut self.iteration, before, after);
+        self.interval += 1;
+        self.prepared = None;
+    }
+
+    /// The momenta of the plan at its start.
+    fn predict(&mut self) {
+        self.iteration.program.momentum.fill(0.0);
+        self.iteration.evaluate_rows();
+        let Iteration { program, g, .. } = &mut self.iteration;
+        let rows = program.layout.momenta[0].iter();
+        for (momentum, &(row, scale)) in program.momentum.iter_mut().zip(rows) {
+            *momentum = -g[row] / scale;
+        }
+    }
+
+    fn factor(&mut self) {
+        let before = self.residual.equations;
+        let has_factors = self.iteration.prepare();
+        self.residual = self.iteration.residual();
+        let equations = self.residual.equations;
+        // Not a number is worse than any.
+        let is_near = equations <= FAR || equations <= 0.5 * before;
+        self.prepared = Some(has_factors && is_near);
+    }
+
+    /// The inputs that act from a time in ms on, with the state measured there, in the order of the law: rad, mm, rad/ms, mm/ms; none where it did
+    /// not come in time. Called again within an interval, it gives the same inputs.
+    pub fn step(&mut self, time: f64, measured: Option<&[f64]>) -> Answer<'_> {
+        let interval = (time / self.of.law().h + 1e-6).max(0.0) as usize;
+        match self.answered {
+            Some((last, source)) if interval <= last => {
+                return Answer {
+                    source,
+                    inputs: &self.inputs,
+                };
+            }
+            _ => {}
+        }
+        if interval > self.interval + self.of.intervals() {
+            self.follow(interval);
+        }
+        while self.interval < interval {
+            self.go_on();
+        }
+        self.prepare();
+        let source = self.decide(time, measured);
+        self.answered = Some((interval, source));
+        Answer {
+            source,
+            inputs: &self.inputs,
+        }
+    }
+
+    fn decide(&mut self, time: f64, measured: Option<&[f64]>) -> Source {
+        let Some(measured) = measured else {
+            return self.keep(Source::Late);
+        };
+        if !measured.iter().all(|value| value.is_finite()) {
+            return self.keep(Source::Unusable);
+        }
+        let is_far = self.take(measured);
+        self.implausible = if is_far { self.implausible + 1 } else { 0 };
+        if is_far && self.implausible <= PATIENCE {
+            return self.keep(Source::Unusable);
+        }
+        if self.prepared == Some(true) && !is_far {
+            let full = &mut self.points[0];
+            if self.iteration.advance(&self.changes, &self.rows, full) {
+                self.failures = 0;
+                self.read(0);
+                return Source::Plan;
+            }
+        }
+        self.failures += 1;
+        if self.failures <= PATIENCE && !is_far {
+            return self.keep(Source::Kept);
+        }
+        self.regulator.sample(time, measured);
+        self.regulator.inputs(time, time, &mut self.inputs);
+        self.follow(self.interval);
+        Source::Regulator
+    }
+
+    /// The inputs of the plan as it is.
+    fn keep(&mut self, source: Source) -> Source {
+        let x = &self.iteration.x[..self.iteration.columns];
+        self.points[0].copy_from_slice(x);
+        self.read(0);
+        source
+    }
+
+    /// Reads the inputs of the first interval of a point, within their bounds.
+    fn read(&mut self, point: usize) {
+        let program = &self.iteration.program;
+        program.first_inputs(&self.points[point], &mut self.inputs, &self.is_squared);
+        for (value, input) in self.inputs.iter_mut().zip(&self.of.law().inputs) {
+            let [low, high] = input.bounds;
+            *value = value.max(low).min(high);
+        }
+    }
+
+    /// Enters a state as changes of that of the plan; true if it is too far from it.
+    fn take(&mut self, measured: &[f64]) -> bool {
+        let (coordinates, model) = (self.of.coordinates(), self.of.model());
+        let (places, rates) = measured.split_at(coordinates.len());
+        let Iteration { program, x, .. } = &self.iteration;
+        let layout = &program.layout;
+        self.rates.fill(0.0);
+        let mut is_far = false;
+        for (c, value) in places.iter().enumerate() {
+            let (column, scale) = layout.coordinates[c];
+            let change = value - scale * x[column];
+            let unit = if model.is_length(coordinates[c]) {
+                model.length()
+            } else {
+                1.0
+            };
+            is_far |= change.abs() > ABSURD * unit;
+            self.changes[c] = (column, change / scale);
+            self.instant.z[coordinates[c]] = *value;
+        }
+        for (&c, rate) in layout.inert.iter().zip(rates) {
+            self.rates[coordinates[c]] = *rate;
+        }
+        let action = &model.action;
+        action.map.place(&mut self.instant);
+        let (moving, momenta) = (&mut self.moving, &mut self.momenta);
+        action.momentum_into(&mut self.instant, &self.rates, moving, momenta);
+        for (place, &c) in layout.inert.iter().enumerate() {
+            let (row, scale) = layout.momenta[0][place];
+            let change = self.momenta[coordinates[c]] - program.momentum[place];
+            self.rows[place] = (row, scale * change);
+        }
+        is_far
+    }
+
+    /// Residual of the plan when it was prepared last.
+    pub fn residual(&self) -> Residual {
+        self.residual
+    }
+}

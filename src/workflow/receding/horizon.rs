@@ -1,0 +1,325 @@
+//! All that the controllers of a receding horizon share: model, motion to follow with its costs, and the law that they fall back to.
+
+use crate::control::problem::{
+    BoundaryState, Control, Duration, Guess, Objective, PathConstraint, Regulator, Rest, SoughtHold,
+};
+use crate::control::{
+    BoundaryConditions, BoundaryError, Carried, InitialGuess, Rests, Transcription,
+};
+use crate::dynamics::{DiscreteTrajectory, Linearisation, NoState, Start, step_inputs};
+use crate::feedback::Law;
+use crate::ipopt::{IpoptError, Options, StartingPoint, Status, solve};
+use crate::model::{Model, System, Time};
+use crate::nlp::Nlp;
+use crate::workflow::receding::program::Program;
+use crate::workflow::receding::reference::Reference;
+use crate::workflow::regulator::{NoRegulator, regulator};
+use std::fmt;
+use std::ops::ControlFlow;
+
+/// Reason why there is no controller with a receding horizon.
+#[derive(Clone, Debug, PartialEq)]
+pub enum NoHorizon {
+    /// There is no regulator of the motion, whose costs it takes.
+    Regulator(NoRegulator),
+    /// Nothing holds the goal after the end.
+    NotHeld(String),
+    /// The program of the horizon does not exist.
+    Program(String),
+    /// Something of the problem is not offered.
+    NotOffered(&'static str),
+}
+
+impl fmt::Display for NoHorizon {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            Self::Regulator(reason) => reason.fmt(f),
+            Self::NotHeld(reason) => write!(f, "the goal is not held after the end: {reason}"),
+            Self::Program(reason) => f.write_str(reason),
+            Self::NotOffered(what) => {
+                write!(f, "{what}, which a receding horizon does not take in")
+            }
+        }
+    }
+}
+
+impl std::error::Error for NoHorizon {}
+
+/// A motion to follow, with all that its controllers share.
+#[derive(Debug)]
+pub struct Horizon {
+    model: Model,
+    boundary: BoundaryConditions,
+    /// The problem in short steps, and the number of them in an interval.
+    control: Control,
+    parts: usize,
+    reference: Reference,
+    law: Law,
+    /// Coordinates of the state, and places of those with momenta among them.
+    coordinates: Vec<usize>,
+    inert: Vec<usize>,
+    /// Scalars of the inputs, with those that act by their squares.
+    inputs: Vec<(usize, bool)>,
+    /// Weights of the rates for differences of a step.
+    rates: Vec<f64>,
+    /// Weight of inputs as parts of their ranges.
+    of_inputs: f64,
+}
+
+impl Horizon {
+    /// Of an optimal motion of a problem with a momentum at its start, whose goal is held by `rest` voltages, by source: the horizon has a number of
+    /// intervals, each as long as those of the motion. The delay and the integrals of the regulator are not taken in.
+    ///
+    /// # Errors
+    /// There is none.
+    ///
+    /// # Panics
+    /// If there is no interval.
+    pub fn new(
+        (system, control, task): (&System, &Control, &Regulator),
+        intervals: usize,
+        (model, discrete): (&Model, &DiscreteTrajectory),
+        (momentum, rest): (&[f64], Option<&[f64]>),
+    ) -> Result<Self, NoHorizon> {
+        assert!(intervals > 0, "an interval or more");
+        offered(model, control)?;
+        let task = &Regulator {
+            delay: 0.0,
+            integral: 0.0,
+            ..task.clone()
+        };
+        let found = regulator((model, control, task), discrete, momentum, rest);
+        let found = found.map_err(NoHorizon::Regulator)?;
+        let not_held = || {
+            let reason = found.not_held.clone();
+            NoHorizon::NotHeld(
+                reason.unwrap_or_else(|| "no inputs that hold it are known".to_owned()),
+            )
+        };
+        let rest = rest.ok_or_else(not_held)?;
+        let h = found.law.h;
+        let parts = (h / task.step - 1e-9).ceil().max(1.0) as usize;
+        let control = ahead(control, rest, intervals * parts, h / parts as f64);
+        let refused = |error: BoundaryError| NoHorizon::Program(error.to_string());
+        let (model, mut boundary) =
+            BoundaryConditions::resolve(system, &control, h / parts as f64).map_err(refused)?;
+        if boundary.goal.rests != Rests::Everything {
+            return Err(NoHorizon::NotOffered("a goal at which only bodies rest"));
+        }
+        boundary.goal.coordinates.fill(None);
+        boundary.start.momentum.fill(0.0);
+        let squared = step_inputs(&model).into_iter().filter(|input| {
+            let source = model.variables.of(Time::Interval)[input.scalar].source;
+            source.is_some_and(|source| !control.is_given(source))
+        });
+        let inputs = squared.zip(&found.law.inputs);
+        let inputs = inputs
+            .map(|(input, of)| (input.scalar, of.is_squared))
+            .collect();
+        let state = |error: NoState| NoHorizon::Regulator(NoRegulator::State(error));
+        let linearisation = Linearisation::new(&model, &[]).map_err(state)?;
+        let coordinates = linearisation.coordinates().to_vec();
+        let inert: Vec<usize> = linearisation.momenta().to_vec();
+        let inert: Vec<usize> = (0..coordinates.len())
+            .filter(|&c| inert.contains(&coordinates[c]))
+            .collect();
+        drop(linearisation);
+        let momenta = |state: &[f64]| momenta(&model, (&coordinates, &inert), state);
+        let reference = Reference::new(&found, momenta).ok_or_else(not_held)?;
+        Ok(Self {
+            of_inputs: task.inputs,
+            parts,
+            rates: rates(&model, task, (&coordinates, &inert), h),
+            control: Control {
+                start: BoundaryState::Free,
+                ..control
+            },
+            law: found.law,
+            reference,
+            boundary,
+            model,
+            coordinates,
+            inert,
+            inputs,
+        })
+    }
+
+    /// The law to which controllers fall back: names of all that is measured and of the inputs, bounds, length of the intervals.
+    pub fn law(&self) -> &Law {
+        &self.law
+    }
+
+    /// Number of intervals of the horizon.
+    pub fn intervals(&self) -> usize {
+        self.control.intervals / self.parts
+    }
+
+    /// The inputs of the first interval of the optimum from a state, in the order of the law, and the status of the solver: iterated to the end, whereas
+    /// a controller takes one iteration.
+    ///
+    /// # Errors
+    /// The solver refuses the program.
+    pub fn optimum(
+        &self,
+        interval: usize,
+        state: &[f64],
+    ) -> Result<(Vec<f64>, Status), IpoptError> {
+        let mut program = self.program();
+        program.begin = interval;
+        let start = program.layout.coordinates.iter().zip(state);
+        let values: Vec<f64> = start
+            .take(self.coordinates.len())
+            .map(|((_, scale), v)| v / scale)
+            .collect();
+        let momenta = momenta(&self.model, (&self.coordinates, &self.inert), state);
+        program.hold_start(&values, &momenta);
+        let mut x = vec![0.0; program.variables().lower.len()];
+        program.refer_all(&mut x);
+        let start = StartingPoint { x, costates: None };
+        let found = solve(&mut program, &start, &Options::default(), &mut |_, _| {
+            ControlFlow::Continue(())
+        })?;
+        let mut inputs = vec![0.0; self.law.inputs.len()];
+        program.first_inputs(&found.x, &mut inputs, &self.squared());
+        Ok((inputs, found.status))
+    }
+
+    /// True of the inputs that act by their squares.
+    pub(super) fn squared(&self) -> Vec<bool> {
+        self.law
+            .inputs
+            .iter()
+            .map(|input| input.is_squared)
+            .collect()
+    }
+
+    pub(super) fn model(&self) -> &Model {
+        &self.model
+    }
+
+    /// Weight of inputs as parts of their ranges, the unit of the barrier.
+    pub(super) fn weight(&self) -> f64 {
+        self.of_inputs
+    }
+
+    pub(super) fn coordinates(&self) -> &[usize] {
+        &self.coordinates
+    }
+
+    /// The program of the horizon at the start of the motion.
+    pub(super) fn program(&self) -> Program<'_> {
+        let guess = self.guess();
+        let program = Transcription::of_any(&self.model, &self.boundary, &self.control, &guess);
+        // Nothing stops it, and nothing else is an error.
+        let program = program.expect("a program whose equations are not counted");
+        let state = (&*self.coordinates, &*self.inert);
+        let inputs = (&*self.inputs, self.rates.clone());
+        Program::new(program, &self.reference, self.parts, state, inputs)
+    }
+
+    /// The motion to follow over the first horizon.
+    fn guess(&self) -> InitialGuess {
+        let steps = self.control.intervals;
+        let h = self.law.h / self.parts as f64;
+        let mut z = vec![self.boundary.start.z.clone(); steps + 1];
+        for (k, z) in z.iter_mut().enumerate() {
+            let state = &self.reference.at(k / self.parts).state;
+            self.coordinates
+                .iter()
+                .zip(state)
+                .for_each(|(&i, value)| z[i] = *value);
+        }
+        let count = self.model.variables.of(Time::Interval).len();
+        let mut scalars = vec![vec![0.0; count]; steps];
+        for (k, scalars) in scalars.iter_mut().enumerate() {
+            let inputs = &self.reference.at(k / self.parts).inputs;
+            for (&(scalar, is_squared), value) in self.inputs.iter().zip(inputs) {
+                scalars[scalar] = if is_squared { value.sqrt() } else { *value };
+            }
+        }
+        InitialGuess {
+            discrete: DiscreteTrajectory {
+                times: (0..=steps).map(|k| k as f64 * h).collect(),
+                z,
+                scalars,
+                ..DiscreteTrajectory::default()
+            },
+            h,
+            costates: None,
+            carried: Carried::default(),
+        }
+    }
+}
+
+/// Returns an error for what the horizon can not see ahead.
+fn offered(model: &Model, control: &Control) -> Result<(), NoHorizon> {
+    let not = |what| Err(NoHorizon::NotOffered(what));
+    if !model.prescribed.is_empty() {
+        return not("a prescribed joint");
+    }
+    if !control.given.is_empty() || control.course.is_some() {
+        return not("a given input");
+    }
+    if !control.parameters.is_empty() {
+        return not("a sought constant");
+    }
+    if control.goal == BoundaryState::Periodic {
+        return not("a periodic motion");
+    }
+    let is_of_steps = |limit: &PathConstraint| {
+        matches!(
+            limit,
+            PathConstraint::VoltageRate { .. }
+                | PathConstraint::Current { .. }
+                | PathConstraint::Power { .. }
+                | PathConstraint::Reaction { .. }
+                | PathConstraint::Once { .. }
+        )
+    };
+    match control.limits.iter().any(is_of_steps) {
+        true => not("a limit of rates, currents, powers or reactions, or at a single time"),
+        false => Ok(()),
+    }
+}
+
+/// The problem of a horizon of intervals of h ms: it ends in the state that is held, without costs of its own.
+fn ahead(control: &Control, rest: &[f64], intervals: usize, h: f64) -> Control {
+    Control {
+        duration: Duration::Given(intervals as f64 * h),
+        intervals,
+        is_refined: false,
+        goal: BoundaryState::RestAtVoltages(rest.to_vec(), Rest::Everything),
+        sought_hold: SoughtHold::Never,
+        objective: Objective::default(),
+        varied: Vec::new(),
+        waypoints: Vec::new(),
+        guess: Guess::Interpolate,
+        ..control.clone()
+    }
+}
+
+/// Momenta of a state of coordinates and rates.
+fn momenta(model: &Model, (of, inert): (&[usize], &[usize]), state: &[f64]) -> Vec<f64> {
+    let mut z = model.reference_coordinates();
+    let mut rates = vec![0.0; model.coordinate_count()];
+    of.iter().zip(state).for_each(|(&i, value)| z[i] = *value);
+    let of_rates = inert.iter().zip(&state[of.len()..]);
+    of_rates.for_each(|(&c, rate)| rates[of[c]] = *rate);
+    let start = Start::with_rates(model, z, &rates);
+    inert.iter().map(|&c| start.momentum[of[c]]).collect()
+}
+
+/// Weight of the rate of each coordinate, for its differences over a step.
+fn rates(model: &Model, task: &Regulator, (of, inert): (&[usize], &[usize]), h: f64) -> Vec<f64> {
+    let weight = |c: usize| {
+        let unit = match model.is_length(of[c]) {
+            true => 1.0,
+            false => Regulator::DEGREE,
+        };
+        match inert.contains(&c) {
+            true => task.rates * (Regulator::RATE_TIME / (unit * h)).powi(2),
+            false => 0.0,
+        }
+    };
+    (0..of.len()).map(weight).collect()
+}

@@ -1,0 +1,277 @@
+//! One iteration of a primal-dual interior-point method with a fixed barrier, in two parts: one before what is measured is known, one after.
+//!
+//! With the unknowns x of a program and slacks s of its inequalities, bounds l ≤ (x, s) ≤ u and multipliers y, z, Newton's method for
+//!
+//! ```text
+//! ∇f + Jᵀy − z_l + z_u = 0,     g(x) = 0 or s,     z_l (x − l) = μ,     z_u (u − x) = μ
+//! ```
+//!
+//! solves in each iteration (Σ = z_l/(x − l) + z_u/(u − x))
+//!
+//! ```text
+//! ⎡ ∇²L + Σ   Jᵀ ⎤ ⎡ Δx ⎤     ⎡ ∇f + Jᵀy − μ/(x − l) + μ/(u − x) ⎤
+//! ⎣ J         0  ⎦ ⎣ Δy ⎦ = − ⎣ g                                 ⎦
+//! ```
+//!
+//! The preparation evaluates and factorises; variables that are held, as the state that will be measured, enter the right side alone, so that the
+//! rest is one substitution. If the matrix has not as many negative eigenvalues as there are equations, the curvature of the equations is left out,
+//! and that once: the work is bounded.
+
+use crate::kkt::{Plan, Solver};
+use crate::nlp::{Bounds, Entries, Nlp};
+use crate::workflow::receding::matrix::{Matrix, held, kinds};
+
+/// A point starts no nearer to its bounds than this part of their distance, or of one.
+const INSIDE: f64 = 1e-4;
+
+/// Conditions that a point does not meet yet.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct Residual {
+    /// Greatest residual of the scaled equations.
+    pub equations: f64,
+    /// Greatest residual of the gradient of the Lagrangian.
+    pub gradient: f64,
+}
+
+/// A point with the factors of its next iteration.
+#[derive(Debug)]
+pub(super) struct Iteration<N> {
+    pub(super) program: N,
+    pub(super) barrier: f64,
+    /// Variables, then the slack of each inequality; multipliers of rows; those of lower and upper bounds.
+    pub(super) x: Vec<f64>,
+    pub(super) y: Vec<f64>,
+    pub(super) z: [Vec<f64>; 2],
+    pub(super) bounds: [Vec<f64>; 2],
+    /// Number of variables of the program.
+    pub(super) columns: usize,
+    /// Slack of each row.
+    slacks: Vec<Option<usize>>,
+    /// Unknown of each variable and slack, and of each row; none of what is held.
+    pub(super) unknowns: Vec<Option<usize>>,
+    pub(super) rows: Vec<Option<usize>>,
+    jacobian: Entries,
+    /// Entries of the Hessian and of the Jacobian in the matrix.
+    kept: [Vec<usize>; 2],
+    /// Entries by held variables: unknown of the row, variable, entry.
+    pub(super) held: [Vec<(usize, usize, usize)>; 2],
+    gradient: Vec<f64>,
+    /// Values of the rows where they were evaluated last.
+    pub(super) g: Vec<f64>,
+    pub(super) jacobian_values: Vec<f64>,
+    pub(super) hessian_values: Vec<f64>,
+    zeros: Vec<f64>,
+    values: Vec<f64>,
+    pub(super) right: Vec<f64>,
+    /// Σ of each variable and slack.
+    weights: Vec<f64>,
+    pub(super) solution: Vec<f64>,
+    pub(super) step: Vec<f64>,
+    pub(super) solver: Solver,
+}
+
+impl<N: Nlp> Iteration<N> {
+    /// The iteration of a program in which some variables are held; rows without another variable are left out.
+    pub(super) fn new(program: N, x: &[f64], is_held: &[bool], barrier: f64) -> Self {
+        let [jacobian, hessian] = [program.jacobian_structure(), program.hessian_structure()];
+        let columns = x.len();
+        let row_bounds = program.constraints();
+        let count = row_bounds.lower.len();
+        let mut has_unknown = vec![false; count];
+        for (&row, &col) in jacobian.rows.iter().zip(&jacobian.cols) {
+            has_unknown[row as usize] |= !is_held[col as usize];
+        }
+        let Bounds { lower, upper } = program.variables().clone();
+        let mut bounds = [lower, upper];
+        let mut slacks = vec![None; count];
+        for row in 0..count {
+            let (low, high) = (row_bounds.lower[row], row_bounds.upper[row]);
+            if has_unknown[row] && low < high {
+                slacks[row] = Some(bounds[0].len());
+                bounds[0].push(low);
+                bounds[1].push(high);
+            }
+        }
+        let mut order = 0;
+        let mut number = |is_one: bool| {
+            is_one.then(|| {
+                order += 1;
+                order - 1
+            })
+        };
+        let all = bounds[0].len();
+        let unknowns: Vec<_> = (0..all)
+            .map(|i| number(i >= columns || !is_held[i]))
+            .collect();
+        let rows: Vec<_> = has_unknown.iter().map(|one| number(*one)).collect();
+        let kinds = kinds(&program, (&unknowns, &rows), &slacks, columns);
+        let mut matrix = Matrix::default();
+        let kept = [
+            matrix.add(&hessian, (&unknowns, &unknowns)),
+            matrix.add(&jacobian, (&rows, &unknowns)),
+        ];
+        unknowns.iter().flatten().for_each(|&i| matrix.push(i, i));
+        for (row, slack) in slacks.iter().enumerate() {
+            if let (Some(row), Some(slack)) = (rows[row], slack) {
+                matrix.push(row, unknowns[*slack].expect("a slack is no held variable"));
+            }
+        }
+        let plan = Plan::new(order, &matrix.rows, &matrix.cols, kinds.as_deref());
+        let zeros = |length: usize| vec![0.0; length];
+        let mut out = Self {
+            held: [
+                held(&hessian, (&unknowns, &unknowns), true),
+                held(&jacobian, (&rows, &unknowns), false),
+            ],
+            solver: Solver::new(plan),
+            x: x.to_vec(),
+            y: zeros(count),
+            z: [zeros(all), zeros(all)],
+            gradient: zeros(columns),
+            g: zeros(count),
+            jacobian_values: zeros(jacobian.rows.len()),
+            hessian_values: zeros(hessian.rows.len()),
+            zeros: zeros(count),
+            values: zeros(matrix.rows.len()),
+            right: zeros(order),
+            solution: zeros(order),
+            weights: zeros(all),
+            step: zeros(all),
+            program,
+            barrier,
+            bounds,
+            columns,
+            slacks,
+            unknowns,
+            rows,
+            jacobian,
+            kept,
+        };
+        out.x.resize(all, 0.0);
+        out.begin();
+        out
+    }
+
+    /// Begins anew at the variables that are set: slacks of their values, no multipliers of rows.
+    pub(super) fn begin(&mut self) {
+        self.y.fill(0.0);
+        (0..self.columns).for_each(|i| self.centre(i));
+        self.program
+            .constraint(&self.x[..self.columns], &mut self.g);
+        for row in 0..self.slacks.len() {
+            if let Some(slack) = self.slacks[row] {
+                self.x[slack] = self.g[row];
+                self.centre(slack);
+            }
+        }
+    }
+
+    /// Puts a variable inside its bounds, with the multipliers of its place.
+    pub(super) fn centre(&mut self, i: usize) {
+        if self.unknowns[i].is_none() {
+            return;
+        }
+        let [low, high] = [self.bounds[0][i], self.bounds[1][i]];
+        let range = if (high - low).is_finite() {
+            high - low
+        } else {
+            1.0
+        };
+        let margin = INSIDE * range;
+        self.x[i] = self.x[i].max(low + margin).min(high - margin);
+        self.z[0][i] = self.barrier / (self.x[i] - low);
+        self.z[1][i] = self.barrier / (high - self.x[i]);
+    }
+
+    /// Evaluates and factorises at the point; false if there are no factors of a minimum.
+    pub(super) fn prepare(&mut self) -> bool {
+        let (x, y) = (&self.x[..self.columns], &self.y);
+        self.program.gradient(x, &mut self.gradient);
+        self.program.constraint(x, &mut self.g);
+        self.program.jacobian(x, &mut self.jacobian_values);
+        self.program.hessian(x, 1.0, y, &mut self.hessian_values);
+        self.set_right();
+        if !self.right.iter().all(|value| value.is_finite()) {
+            return false;
+        }
+        if self.factor() {
+            return true;
+        }
+        let x = &self.x[..self.columns];
+        self.program
+            .hessian(x, 1.0, &self.zeros, &mut self.hessian_values);
+        self.factor()
+    }
+
+    fn factor(&mut self) -> bool {
+        let hessian = self.kept[0].iter().map(|&entry| self.hessian_values[entry]);
+        let jacobian = self.kept[1]
+            .iter()
+            .map(|&entry| self.jacobian_values[entry]);
+        let weights = self.unknowns.iter().zip(&self.weights);
+        let weights = weights.filter_map(|(number, weight)| number.map(|_| *weight));
+        let slacks = self.slacks.iter().flatten().map(|_| -1.0);
+        let all = hessian.chain(jacobian).chain(weights).chain(slacks);
+        self.values
+            .iter_mut()
+            .zip(all)
+            .for_each(|(to, value)| *to = value);
+        let found = self.solver.factor(&self.values);
+        let equations = self.rows.iter().flatten().count();
+        found.zero == 0 && found.negative == equations
+    }
+
+    /// Residuals of the conditions, with the barrier, as a right side; Σ.
+    fn set_right(&mut self) {
+        self.right.fill(0.0);
+        for (i, number) in self.unknowns.iter().enumerate() {
+            let Some(number) = *number else { continue };
+            let below = self.x[i] - self.bounds[0][i];
+            let above = self.bounds[1][i] - self.x[i];
+            self.weights[i] = self.z[0][i] / below + self.z[1][i] / above;
+            let gradient = self.gradient.get(i).copied().unwrap_or(0.0);
+            self.right[number] = -gradient + self.barrier / below - self.barrier / above;
+        }
+        let entries = self.jacobian.rows.iter().zip(&self.jacobian.cols);
+        for ((&row, &col), value) in entries.zip(&self.jacobian_values) {
+            if let Some(number) = self.unknowns[col as usize] {
+                self.right[number] -= value * self.y[row as usize];
+            }
+        }
+        let target = &self.program.constraints().lower;
+        for (row, number) in self.rows.iter().enumerate() {
+            let Some(number) = *number else { continue };
+            self.right[number] = match self.slacks[row] {
+                None => target[row] - self.g[row],
+                Some(slack) => {
+                    let place = self.unknowns[slack].expect("a slack is no held variable");
+                    self.right[place] += self.y[row];
+                    self.x[slack] - self.g[row]
+                }
+            };
+        }
+    }
+
+    /// Conditions of the point that was prepared.
+    pub(super) fn residual(&self) -> Residual {
+        let largest = |numbers: &[Option<usize>]| {
+            let all = numbers.iter().flatten().map(|&i| self.right[i].abs());
+            all.fold(0.0, |a: f64, b| if b > a || b.is_nan() { b } else { a })
+        };
+        Residual {
+            equations: largest(&self.rows),
+            gradient: largest(&self.unknowns),
+        }
+    }
+
+    /// The slack of a row.
+    pub(super) fn slack(&self, row: usize) -> Option<usize> {
+        self.slacks[row]
+    }
+
+    /// Evaluates the rows of the program at the point.
+    pub(super) fn evaluate_rows(&mut self) {
+        self.program
+            .constraint(&self.x[..self.columns], &mut self.g);
+    }
+}

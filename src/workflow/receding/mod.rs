@@ -1,0 +1,21 @@
+//! A controller that plans anew in each interval: nonlinear model predictive control by real-time iterations.
+//!
+//! - `horizon`: all that controllers share, from an optimal motion and the costs of its regulator; `reference`: the motion that is followed.
+//! - `program`: the nonlinear program of the next intervals, with its `layout` and `costs`.
+//! - `iteration`, `advance`: one iteration of it, in two parts, with its `matrix`; `shift`: the plan one interval later.
+//! - `controller`: inputs from what is measured, step by step, and what stands in where a step fails.
+
+mod advance;
+mod controller;
+mod costs;
+mod horizon;
+mod iteration;
+mod layout;
+mod matrix;
+mod program;
+mod reference;
+mod shift;
+
+pub use controller::{Answer, RecedingHorizon, Source};
+pub use horizon::{Horizon, NoHorizon};
+pub use iteration::Residual;

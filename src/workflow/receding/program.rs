@@ -1,0 +1,277 @@
+//! The program of a receding horizon: the discrete equations of the next intervals, with the costs of deviations from a motion.
+//!
+//! ```text
+//! minimise  ½ Σ_{k=1..N−1} δq_kᵀ Q_k δq_k + ½ r Σ_{k=0..N−1} |δq_{k+1} − δq_k|²/h² + ½ Σ_{k=0..N−1} δu_kᵀ R δu_k + ½ (δq_N, δp_N)ᵀ S_N (δq_N, δp_N)
+//! ```
+//!
+//! with the costs of the regulator (`workflow::regulator`): S_N counts all that follows. The equations are those of the transcription with the
+//! state q_0, p_0 at their start. Their last row, which says that the motion comes to rest, has the momentum p_N as an unknown here. The motion is that
+//! of the regulator in short steps, a number of them in each interval, under the same inputs: these are one column.
+
+use crate::control::{Column, Row, Transcription};
+use crate::ipopt::{InSquares, Squares};
+use crate::nlp::{Bounds, Entries, Nlp, Stage};
+use crate::workflow::receding::layout::{Between, Layout, between, held_over_parts};
+use crate::workflow::receding::reference::Reference;
+
+/// The program.
+#[derive(Debug)]
+pub(super) struct Program<'m> {
+    motion: InSquares<Transcription<'m>>,
+    pub(super) reference: &'m Reference,
+    pub(super) layout: Layout,
+    bounds: Bounds,
+    row_bounds: Bounds,
+    jacobian: Entries,
+    hessian: Entries,
+    /// Numbers of entries of the motion alone.
+    counts: [usize; 2],
+    /// Column here of each one of the transcription, and their values there.
+    own: Vec<usize>,
+    point: Vec<f64>,
+    /// Columns and rows of the motion.
+    of_columns: Vec<Column>,
+    of_rows: Vec<Row>,
+    /// Columns of coordinates within an interval, with those at both of its ends, and the part of it that has passed there.
+    pub(super) between: Vec<Between>,
+    /// Number of columns of the motion.
+    pub(super) columns: usize,
+    /// Instant of the reference at which the horizon begins.
+    pub(super) begin: usize,
+    /// Momenta at the start, in the order of the state.
+    pub(super) momentum: Vec<f64>,
+    /// Deviations of the state at the end, and of coordinates, for one evaluation.
+    pub(super) deviation: Vec<f64>,
+}
+
+impl<'m> Program<'m> {
+    /// The program of a transcription with an open start without momenta, and an end at rest with no coordinate given, in a number of steps for each
+    /// interval. `state` are the coordinates of the state with the places of those that have momenta, `inputs` the scalars with those that act by their
+    /// squares, `rates` the weights of rates.
+    pub(super) fn new(
+        motion: Transcription<'m>,
+        reference: &'m Reference,
+        parts: usize,
+        (state, inert): (&[usize], &[usize]),
+        (inputs, rates): (&[(usize, bool)], Vec<f64>),
+    ) -> Self {
+        let unknowns = motion.unknowns();
+        let intervals = motion.intervals() / parts;
+        let scalars: Vec<usize> = inputs.iter().map(|&(s, _)| s).collect();
+        let (own, of_columns) = held_over_parts(&unknowns.columns, &scalars, parts);
+        let of_rows = unknowns.rows.clone();
+        let columns = of_columns.len();
+        let squares = motion.squares();
+        let of_squares = Squares::of(&motion, squares.clone());
+        let layout = Layout::new(
+            (&motion, &own),
+            (intervals, parts),
+            (state, inert),
+            (inputs, rates),
+        );
+        let [jacobian, hessian] = [motion.jacobian_structure(), motion.hessian_structure()];
+        let mut given = motion.variables().clone();
+        of_squares.square(&mut given.lower);
+        of_squares.square(&mut given.upper);
+        let size = columns + inert.len();
+        let mut bounds = Bounds {
+            lower: vec![f64::NEG_INFINITY; size],
+            upper: vec![f64::INFINITY; size],
+        };
+        for (column, &own) in own.iter().enumerate() {
+            bounds.lower[own] = given.lower[column];
+            bounds.upper[own] = given.upper[column];
+        }
+        let mut out = Self {
+            row_bounds: motion.constraints().clone(),
+            counts: [jacobian.rows.len(), hessian.rows.len()],
+            motion: InSquares::new(motion, of_squares, &jacobian, &hessian),
+            point: vec![0.0; own.len()],
+            reference,
+            deviation: vec![0.0; state.len() + inert.len()],
+            momentum: vec![0.0; inert.len()],
+            layout,
+            bounds,
+            jacobian,
+            hessian,
+            own,
+            between: between(&of_columns, parts),
+            of_columns,
+            of_rows,
+            columns,
+            begin: 0,
+        };
+        out.take_structure();
+        out
+    }
+
+    /// Columns of the entries become those of this program.
+    fn take_structure(&mut self) {
+        for column in &mut self.jacobian.cols {
+            *column = self.own[*column as usize] as u32;
+        }
+        let Entries { rows, cols } = &mut self.hessian;
+        for (row, col) in rows.iter_mut().zip(cols) {
+            let [a, b] = [*row, *col].map(|column| self.own[column as usize] as u32);
+            (*row, *col) = (a.max(b), a.min(b));
+        }
+        self.add_structure();
+    }
+
+    /// Adds the entries of the momenta at the end, and of the costs.
+    fn add_structure(&mut self) {
+        for (place, &(row, _)) in self.layout.momenta[1].iter().enumerate() {
+            self.jacobian.rows.push(row as u32);
+            self.jacobian.cols.push((self.columns + place) as u32);
+        }
+        let (n, last) = (self.layout.width(), self.layout.intervals);
+        let column = |k: usize, c: usize| self.layout.coordinates[k * n + c].0;
+        let mut add = |a: usize, b: usize| {
+            self.hessian.rows.push(a.max(b) as u32);
+            self.hessian.cols.push(a.min(b) as u32);
+        };
+        for k in 0..last {
+            for a in 0..n {
+                (0..=a).for_each(|b| add(column(k, a), column(k, b)));
+            }
+            for c in 0..n {
+                add(column(k + 1, c), column(k, c));
+            }
+        }
+        let size = n + self.layout.inert.len();
+        let of_end = |c: usize| match c < n {
+            true => column(last, c),
+            false => self.columns + c - n,
+        };
+        for a in 0..size {
+            (0..=a).for_each(|b| add(of_end(a), of_end(b)));
+        }
+        for input in self.layout.driven.iter().flatten() {
+            add(input.column, input.column);
+        }
+    }
+
+    /// Inputs of the first interval: V, N, N mm.
+    pub(super) fn first_inputs(&self, x: &[f64], out: &mut [f64], is_squared: &[bool]) {
+        for ((value, input), is_squared) in
+            out.iter_mut().zip(&self.layout.driven[0]).zip(is_squared)
+        {
+            let [acting, ..] = input.reading(x[input.column]);
+            *value = if *is_squared {
+                acting.max(0.0).sqrt()
+            } else {
+                acting
+            };
+        }
+    }
+
+    /// The state of the reference at an instant of the horizon, and its inputs, as values of the columns.
+    pub(super) fn refer(&self, k: usize, x: &mut [f64]) {
+        let n = self.layout.width();
+        let point = self.reference.at(self.begin + k);
+        for c in 0..n {
+            let (column, scale) = self.layout.coordinates[k * n + c];
+            x[column] = point.state[c] / scale;
+        }
+        if k == self.layout.intervals {
+            for (place, &(_, scale)) in self.layout.momenta[1].iter().enumerate() {
+                x[self.columns + place] = point.momentum[place] * scale;
+            }
+            return;
+        }
+        for (input, value) in self.layout.driven[k].iter().zip(&point.inputs) {
+            let value = if input.is_root { value.sqrt() } else { *value };
+            x[input.column] = value / input.scale;
+        }
+    }
+
+    /// The motion that is followed as values of the columns, on straight lines between its instants.
+    pub(super) fn refer_all(&self, x: &mut [f64]) {
+        (0..=self.layout.intervals).for_each(|k| self.refer(k, x));
+        for &(i, [from, to], part) in &self.between {
+            x[i] = x[from] + part * (x[to] - x[from]);
+        }
+    }
+
+    /// Columns and rows of the motion.
+    pub(super) fn numbers(&self) -> (&[Column], &[Row]) {
+        (&self.of_columns, &self.of_rows)
+    }
+
+    /// Values of the columns of the transcription.
+    fn spread(&mut self, x: &[f64]) {
+        for (value, &own) in self.point.iter_mut().zip(&self.own) {
+            *value = x[own];
+        }
+    }
+
+    /// Holds the state at the start: values of its columns, and its momenta.
+    pub(super) fn hold_start(&mut self, values: &[f64], momenta: &[f64]) {
+        for (&(column, _), value) in self.layout.coordinates.iter().zip(values) {
+            self.bounds.lower[column] = *value;
+            self.bounds.upper[column] = *value;
+        }
+        self.momentum.copy_from_slice(momenta);
+    }
+}
+
+impl Nlp for Program<'_> {
+    fn variables(&self) -> &Bounds {
+        &self.bounds
+    }
+
+    fn constraints(&self) -> &Bounds {
+        &self.row_bounds
+    }
+
+    fn jacobian_structure(&self) -> Entries {
+        self.jacobian.clone()
+    }
+
+    fn hessian_structure(&self) -> Entries {
+        self.hessian.clone()
+    }
+
+    fn objective(&mut self, x: &[f64]) -> f64 {
+        self.costs(x)
+    }
+
+    fn gradient(&mut self, x: &[f64], grad: &mut [f64]) {
+        self.slopes(x, grad);
+    }
+
+    fn constraint(&mut self, x: &[f64], g: &mut [f64]) {
+        self.spread(x);
+        self.motion.constraint(&self.point, g);
+        for (&(row, scale), momentum) in self.layout.momenta[0].iter().zip(&self.momentum) {
+            g[row] += scale * momentum;
+        }
+        for (&(row, _), momentum) in self.layout.momenta[1].iter().zip(&x[self.columns..]) {
+            g[row] -= momentum;
+        }
+    }
+
+    fn jacobian(&mut self, x: &[f64], values: &mut [f64]) {
+        let (motion, momenta) = values.split_at_mut(self.counts[0]);
+        self.spread(x);
+        self.motion.jacobian(&self.point, motion);
+        momenta.fill(-1.0);
+    }
+
+    fn hessian(&mut self, x: &[f64], sigma: f64, costates: &[f64], values: &mut [f64]) {
+        let (motion, costs) = values.split_at_mut(self.counts[1]);
+        self.spread(x);
+        self.motion.hessian(&self.point, sigma, costates, motion);
+        self.curvatures(x, sigma, costs);
+    }
+
+    fn stages(&self) -> Option<Vec<Stage>> {
+        let given = self.motion.stages()?;
+        let last = Stage::Of(2 * (self.layout.intervals * self.layout.parts) as u32);
+        let mut stages = vec![last; self.columns + self.layout.inert.len()];
+        for (stage, &own) in given.into_iter().zip(&self.own).rev() {
+            stages[own] = stage;
+        }
+        Some(stages)
+    }
+}

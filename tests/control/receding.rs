@@ -1,0 +1,244 @@
+//! The controller of a receding horizon against the gains of the regulator and optima found to the end, and under faults.
+
+use crate::common::receding::{horizon, problem};
+use proboscis::control::problem::Regulator;
+use proboscis::dynamics::{Stepper, rates_of_momentum};
+use proboscis::feedback::{Controller, Law};
+use proboscis::model::Model;
+use proboscis::workflow::receding::{RecedingHorizon, Source};
+
+/// A robot in short steps.
+struct Robot<'m> {
+    model: &'m Model,
+    z: Vec<f64>,
+    momentum: Vec<f64>,
+    parts: usize,
+}
+
+impl Robot<'_> {
+    fn measure(&self) -> Vec<f64> {
+        let rates = rates_of_momentum(self.model, &self.z, 0.0, &self.momentum);
+        let n = self.model.coordinate_count();
+        self.z[..n].iter().chain(&rates).copied().collect()
+    }
+
+    fn go(&mut self, h: f64, voltages: &[f64]) {
+        let mut stepper = Stepper::new(self.model, &self.z, &self.momentum, Default::default());
+        for _ in 0..self.parts {
+            stepper
+                .step(h / self.parts as f64, &self.model.scalars(voltages))
+                .unwrap();
+        }
+        self.z = stepper.coordinates().to_vec();
+        self.momentum = stepper.momentum().to_vec();
+    }
+}
+
+/// The robot of a horizon at the start of its motion, in steps of a tenth of an interval.
+fn robot<'m>(model: &'m Model) -> Robot<'m> {
+    Robot {
+        model,
+        z: model.reference_coordinates(),
+        momentum: vec![0.0; model.coordinate_count()],
+        parts: 10,
+    }
+}
+
+/// Both muscles of the pair hold its goal between their bounds, so that no bound is near.
+const BETWEEN: [&str; 3] = [
+    "control.start={\"rest_at_voltages\": {\"muscle1\": \"1.2 kV\", \"muscle2\": \"1.9 kV\"}}",
+    "control.goal={\"rest_at_voltages\": {\"muscle1\": \"1.2 kV\", \"muscle2\": \"1.9 kV\"}}",
+    "control.objective={\"rate\": 1.0}",
+];
+
+/// Without bounds the plan is that of the linear-quadratic regulator, whatever the length of the horizon: its cost at the end is that of all time.
+#[test]
+fn gains_of_the_regulator_for_small_deviations() {
+    let pair = problem("pair.json", &BETWEEN);
+    for (n, step) in [(1, 1.0), (6, 2.5)] {
+        let task = Regulator {
+            step,
+            ..Regulator::default()
+        };
+        let horizon = horizon(&pair, &task, n);
+        let law = horizon.law();
+        let point = law.at(0.0);
+        assert!(point.inputs.iter().all(|voltage| *voltage > 1100.0));
+        for (angle, rate) in [(1e-3, 0.0), (0.0, 1e-4)] {
+            let mut state = point.state.clone();
+            state[0] += angle;
+            state[1] += rate;
+            let mut controller = RecedingHorizon::new(&horizon);
+            let answer = controller.step(0.0, Some(&state));
+            assert_eq!(answer.source, Source::Plan);
+            for (i, (found, given)) in answer.inputs.iter().zip(&point.inputs).enumerate() {
+                let found = found * found - given * given;
+                let wanted = -point.gain[(i, 0)] * angle - point.gain[(i, 1)] * rate;
+                println!("{n} {i}: {found} V² against {wanted} V²");
+                assert!(wanted.abs() > 1000.0);
+                assert!(
+                    (found - wanted).abs() < 1e-3 * wanted.abs(),
+                    "{found} {wanted}"
+                );
+            }
+        }
+    }
+}
+
+/// One iteration a step comes to the optima from the states that are measured, which Ipopt finds to the end.
+#[test]
+fn iterations_approach_the_optimum() {
+    let pair = problem("pair.json", &[]);
+    let horizon = horizon(&pair, &Regulator::default(), 8);
+    let law = horizon.law();
+    let model = Model::new(pair.0, None, law.h, &[]).unwrap();
+    let mut robot = robot(&model);
+    let mut controller = RecedingHorizon::new(&horizon);
+    let (push, range) = (22, 3000.0_f64.powi(2));
+    let mut differences = Vec::new();
+    for k in 0..push + 8 {
+        let state = robot.measure();
+        let answer = controller.step(law.h * k as f64, Some(&state));
+        assert_eq!(answer.source, Source::Plan);
+        let inputs = answer.inputs.to_vec();
+        controller.prepare();
+        let (best, status) = horizon.optimum(k, &state).unwrap();
+        assert!(status.is_solved());
+        let squares = inputs
+            .iter()
+            .zip(&best)
+            .map(|(a, b)| (a * a - b * b).abs() / range);
+        differences.push(squares.fold(0.0, f64::max));
+        robot.go(law.h, &inputs);
+        if k + 1 == push {
+            robot.momentum[0] += 600.0;
+        }
+    }
+    println!("{differences:.6?}");
+    // The barrier keeps squares of inputs away from zero by the root of 1e-7.
+    let (before, after) = differences.split_at(push);
+    assert!(before.iter().all(|one| *one < 1e-3));
+    assert!(
+        after[0] > 2e-2,
+        "the push asks for another set of active bounds"
+    );
+    assert!(after[4..].iter().all(|one| *one < 1e-3));
+}
+
+/// Distances in mm of the tip of the trunk from the motion that it follows, interval by interval, under pushes.
+fn pushed(
+    model: &Model,
+    law: &Law,
+    controller: &mut dyn FnMut(f64, &[f64]) -> Vec<f64>,
+) -> Vec<f64> {
+    let mut robot = robot(model);
+    let mut distances = Vec::new();
+    for k in 0..75 {
+        let time = law.h * k as f64;
+        let place = law.place(&law.markers[0].1, time);
+        let there = model.action.map.placed(&robot.z).x[model.markers[0]];
+        distances.push((there - nalgebra::Vector3::from(place)).norm());
+        let inputs = controller(time, &robot.measure());
+        assert!(inputs.iter().all(|v| (0.0..=3000.0).contains(v)));
+        robot.go(law.h, &inputs);
+        if k == 15 || k == 45 {
+            let kick = [4.0, -3.0, 2.0, 2.0, -1.0, 1.0];
+            let all = robot.momentum.iter_mut().zip(kick);
+            all.for_each(|(p, kick)| *p += 1000.0 * kick);
+        }
+    }
+    distances
+}
+
+/// The trunk comes back from pushes on its way and at its goal, no farther off than under the law of the regulator.
+#[test]
+fn trunk_under_pushes() {
+    let trunk = problem("elephant_trunk.json", &["control.intervals=40"]);
+    let task = Regulator {
+        step: 4.0,
+        ..Regulator::default()
+    };
+    let horizon = horizon(&trunk, &task, 20);
+    let law = horizon.law();
+    let model = Model::new(trunk.0, None, law.h, &[]).unwrap();
+    let mut receding = RecedingHorizon::new(&horizon);
+    let distances = pushed(&model, law, &mut |time, state| {
+        let answer = receding.step(time, Some(state));
+        assert_eq!(answer.source, Source::Plan, "{time}");
+        let inputs = answer.inputs.to_vec();
+        receding.prepare();
+        inputs
+    });
+    let mut regulator = Controller::new(law, law.h, 0.0);
+    let regulated = pushed(&model, law, &mut |time, state| {
+        let mut inputs = vec![0.0; law.inputs.len()];
+        regulator.sample(time, state);
+        regulator.inputs(time, time, &mut inputs);
+        inputs
+    });
+    println!("{distances:.2?}\n{regulated:.2?}");
+    let greatest = |part: &[f64]| part.iter().copied().fold(0.0, f64::max);
+    assert!(greatest(&distances[16..20]) > 3.0 && greatest(&distances[46..50]) > 3.0);
+    assert!(greatest(&distances[36..45]) < 0.3 && greatest(&distances[66..]) < 0.1);
+    let [own, other] = [&distances, &regulated].map(|list| list.iter().map(|d| d * d).sum::<f64>());
+    assert!(own < other, "{own} {other}");
+}
+
+/// Every step has an answer within bounds, and says where it comes from.
+#[test]
+fn faults() {
+    let pair = problem("pair.json", &[]);
+    let horizon = horizon(&pair, &Regulator::default(), 5);
+    let law = horizon.law();
+    let model = Model::new(pair.0, None, law.h, &[]).unwrap();
+    let mut robot = robot(&model);
+    let mut controller = RecedingHorizon::new(&horizon);
+    let mut sources = Vec::new();
+    let mut step = |time: f64, measured: Option<&[f64]>| {
+        let answer = controller.step(time, measured);
+        assert!(answer.inputs.iter().all(|v| (0.0..=3000.0).contains(v)));
+        let out = (answer.source, answer.inputs.to_vec());
+        controller.prepare();
+        out
+    };
+    for k in 0..60 {
+        let state = robot.measure();
+        let time = law.h * k as f64;
+        let (source, inputs) = match k {
+            5 => step(time, Some(&[f64::NAN, 0.0])),
+            8 => step(time, Some(&[state[0], f64::INFINITY])),
+            11..=13 => step(time, None),
+            16 => step(time, Some(&[state[0] + 2.0, state[1]])),
+            _ => step(time, Some(&state)),
+        };
+        // Asked again in the same interval, it gives the same inputs.
+        assert_eq!(
+            step(time + 0.4 * law.h, Some(&state)),
+            (source, inputs.clone())
+        );
+        sources.push(source);
+        robot.go(law.h, &inputs);
+        let off = robot.z[0] - law.at(law.h * (k + 1) as f64).state[0];
+        assert!(off.abs() < 5e-3, "{k}: {off}");
+    }
+    for (k, source) in sources.iter().enumerate() {
+        let expected = match k {
+            5 | 8 | 16 => Source::Unusable,
+            11..=13 => Source::Late,
+            _ => Source::Plan,
+        };
+        assert_eq!(*source, expected, "{k}");
+    }
+    // A robot that is held elsewhere: measurements that no plan predicts are believed after a while.
+    let mut far = law.at(600.0).state.clone();
+    far[0] += 2.0;
+    let sources: Vec<Source> = (60..70)
+        .map(|k| step(law.h * k as f64, Some(&far)).0)
+        .collect();
+    println!("{sources:?}");
+    assert_eq!(sources[..3], [Source::Unusable; 3]);
+    assert!(sources.contains(&Source::Regulator));
+    // Steps that were left out altogether.
+    let (source, _) = step(law.h * 1000.0, Some(&law.at(1e4).state));
+    assert_eq!(source, Source::Plan);
+}
