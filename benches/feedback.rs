@@ -113,6 +113,7 @@ fn closed_loop(system: &System, start: BoundaryState, law: &Arc<Law>) -> ClosedL
             sample: law.h,
             delay: 0.0,
             noise: Noise::default(),
+            ahead: None,
         })),
     };
     let go_on = &mut |_: usize, _: &_, _: &_| ControlFlow::Continue(());

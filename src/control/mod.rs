@@ -6,6 +6,7 @@ mod boundary_conditions;
 mod boundary_state;
 mod bounded_quantity;
 mod course;
+mod duration;
 mod earlier;
 mod end_state;
 mod endpoint_checks;

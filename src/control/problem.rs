@@ -2,6 +2,7 @@
 
 use crate::control::Earlier;
 pub use crate::control::boundary_state::{BoundaryState, Hold, Rest, SoughtHold};
+pub use crate::control::duration::Duration;
 pub use crate::control::energy_cost::{EnergyCost, SourceEnergy};
 pub use crate::control::goal::{Orientation, Place};
 pub use crate::control::identification::{
@@ -10,16 +11,19 @@ pub use crate::control::identification::{
 pub use crate::control::inputs::{Afterwards, Voltages, absent_loads};
 pub use crate::control::path_constraint::{PathConstraint, Side};
 pub use crate::control::quantity_cost::{CostFunction, During, Objective, QuantityCost};
-pub use crate::control::regulator::{FeedbackControl, Noise, Regulator};
+pub use crate::control::regulator::{Noise, Regulator};
 pub use crate::control::varied::{Varied, VariedOf, WeightOf};
 pub use crate::control::waypoint::{Waypoint, instant_at};
 use crate::dynamics::Solving;
+use crate::feedback::Law;
 use crate::ipopt::{LinearSolver, OptionValue};
 use crate::math::Signal;
 use crate::model::system::{ElectricConstants, InputKind, Muscle};
 use crate::model::{Coordinates, Parameter, Response, Role, System, Variable};
 use std::borrow::Cow;
 use std::collections::BTreeMap;
+use std::path::PathBuf;
+use std::sync::Arc;
 
 /// A task with everything resolved: one voltage per muscle, indices for names.
 #[derive(Clone, Debug, PartialEq)]
@@ -72,38 +76,34 @@ pub struct Simulation {
     pub controller: Option<Box<FeedbackControl>>,
 }
 
-/// Final time of a control problem in ms.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub enum Duration {
-    /// Given.
-    Given(f64),
-    /// Free between bounds.
-    Free {
-        /// Lower bound.
-        min: f64,
-        /// Upper bound.
-        max: f64,
-        /// Value at which the solver starts.
-        guess: f64,
-    },
+/// A controller in a simulation.
+#[derive(Clone, Debug, PartialEq)]
+pub struct FeedbackControl {
+    /// The law; of a controller that plans anew its inputs alone.
+    pub law: Arc<Law>,
+    /// The file that it was read from.
+    pub path: PathBuf,
+    /// Time in ms between samples.
+    pub sample: f64,
+    /// Time in ms from a sample to its effect.
+    pub delay: f64,
+    /// Noise of what is measured.
+    pub noise: Noise,
+    /// The plans of a controller that plans anew in each interval, in place of the law.
+    pub ahead: Option<Box<Ahead>>,
 }
 
-impl Duration {
-    /// Returns the value at which the solver starts.
-    pub fn first(self) -> f64 {
-        match self {
-            Self::Given(duration) => duration,
-            Self::Free { guess, .. } => guess,
-        }
-    }
-
-    /// The duration allowed that is nearest to `other`.
-    pub fn nearest(self, other: f64) -> f64 {
-        match self {
-            Self::Given(duration) => duration,
-            Self::Free { min, max, .. } => other.clamp(min, max),
-        }
-    }
+/// A motion that a controller plans anew over a receding horizon.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Ahead {
+    /// The system of which it knows.
+    pub system: System,
+    /// The problem whose optimum it follows.
+    pub control: Control,
+    /// Costs of deviations.
+    pub regulator: Regulator,
+    /// Number of intervals of the horizon.
+    pub intervals: usize,
 }
 
 /// An optimal control problem.

@@ -1,8 +1,4 @@
-//! A regulator along an optimal motion: the costs of deviations, of which its gains are the least; and its use in a simulation.
-
-use crate::feedback::Law;
-use std::path::PathBuf;
-use std::sync::Arc;
+//! A regulator along an optimal motion: the costs of deviations, of which its gains are the least; and the noise of what it measures.
 
 /// Costs of deviations from a motion. Each is the factor of a sum of squares: of deviations in degrees or mm, of rates in 100 degrees/s or
 /// 100 mm/s, of inputs as parts of their ranges, and of integrals over 0.1 s of the first.
@@ -48,21 +44,6 @@ impl Regulator {
     pub const RATE_TIME: f64 = 10.0;
     /// Time in ms of an integral.
     pub const INTEGRAL_TIME: f64 = 100.0;
-}
-
-/// A controller in a simulation.
-#[derive(Clone, Debug, PartialEq)]
-pub struct FeedbackControl {
-    /// The law.
-    pub law: Arc<Law>,
-    /// The file that it was read from.
-    pub path: PathBuf,
-    /// Time in ms between samples.
-    pub sample: f64,
-    /// Time in ms from a sample to its effect.
-    pub delay: f64,
-    /// Noise of what is measured.
-    pub noise: Noise,
 }
 
 /// Standard deviations of the noise of measured quantities; zero: none.

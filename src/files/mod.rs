@@ -46,6 +46,7 @@ use crate::control::Motion;
 use crate::control::problem::{Regulator, Task};
 use crate::files::json::scan::{Entry, Scanner, string};
 use crate::files::json::set::Override;
+use crate::files::problem::ahead::add_plan;
 use crate::files::problem::build::build_problem;
 use crate::files::problem::changed_scenes::changed_scenes;
 use crate::files::problem::feedback::regulator;
@@ -242,7 +243,16 @@ fn alone(
         document: apart.as_ref().unwrap_or(&document),
         changes,
     };
-    let task = build_problem(&problem, &of_scene, &scope)?;
+    let mut task = build_problem(&problem, &of_scene, &scope)?;
+    add_plan(&mut task, &problem, &scope, |path| {
+        let Loaded {
+            system,
+            task,
+            feedback,
+            ..
+        } = read_problem(path, &[])?;
+        Ok((system, task, feedback))
+    })?;
     let output = shown(&problem, &task, &system, &scope)?;
     let feedback = feedback(&problem, &task, &system, &scope)?;
     Ok(Loaded {

@@ -108,6 +108,7 @@ impl SimulationResult {
         if let Some(closed) = &self.closed_loop {
             remarks.note("feedback", closed.notes());
             remarks.warn("feedback_timing", timing(task));
+            remarks.warn("plan_failed", closed.other_sources());
             remarks.note("at_lower_bound", closed.at_lower_bound());
             remarks.warn("at_upper_bound", closed.at_upper_bound());
         }
@@ -182,12 +183,13 @@ fn closed_loop(
     task: &Simulation,
     simulated: &Simulated,
 ) -> Result<Option<ClosedLoop>, WorkflowError> {
-    let (Some(controller), Some(samples)) = (&task.controller, simulated.samples) else {
+    let (Some(controller), Some(samples)) = (&task.controller, &simulated.samples) else {
         return Ok(None);
     };
     let open = Simulation {
         controller: Some(Box::new(FeedbackControl {
-            law: Arc::new(controller.law.open()),
+            law: Arc::new(samples.law.open()),
+            ahead: None,
             ..controller.as_ref().clone()
         })),
         ..task.clone()
@@ -198,7 +200,7 @@ fn closed_loop(
     })?;
     let failure = open.failure.map(|failure| failure.to_string());
     let open = (open.discrete, failure);
-    let law = &controller.law;
     let (model, discrete) = (&simulated.model, &simulated.discrete);
-    Ok(Some(ClosedLoop::new(model, law, samples, discrete, open)))
+    let counts = samples.clone();
+    Ok(Some(ClosedLoop::new(model, counts, discrete, open)))
 }

@@ -36,7 +36,9 @@ pub(super) fn afterwards(task: &Simulation) -> Option<String> {
 
 /// Warnings that a controller samples or acts in other times than those for which its gains are.
 pub(super) fn timing(task: &Simulation) -> Vec<String> {
-    let Some(controller) = &task.controller else {
+    // What plans anew does so in its own times.
+    let controller = task.controller.as_ref();
+    let Some(controller) = controller.filter(|one| one.ahead.is_none()) else {
         return Vec::new();
     };
     let law = &controller.law;

@@ -1,170 +1,13 @@
-//! A simulation under a controller: it measures the state at samples, and gives the inputs of its law.
+//! The motion of a simulation under a controller, compared with that which the controller follows.
 
-use crate::control::problem::{FeedbackControl, Noise, Simulation, Voltages};
+use crate::dynamics::DiscreteTrajectory;
 use crate::dynamics::trajectory::Trajectory;
-use crate::dynamics::{DiscreteTrajectory, Drive, rates_of_momentum};
-use crate::feedback::{Controller, Law, LawInput, Measured};
-use crate::math::Random;
-use crate::model::{Coordinates, Model, Role};
-use crate::workflow::error::WorkflowError;
+use crate::model::Model;
+use crate::workflow::control_loop::{Counts, Plans};
+use crate::workflow::receding::Source;
 use crate::workflow::tracking::Tracked;
 use serde::Serialize;
-use std::cell::RefCell;
 use std::collections::BTreeMap;
-
-/// A controller at work on a model.
-pub(crate) struct Loop<'a> {
-    model: &'a Model,
-    task: &'a FeedbackControl,
-    voltages: &'a Voltages,
-    /// Coordinate of each measured quantity; `None` for what this system does not remember.
-    measured: Vec<Option<usize>>,
-    /// Scalar of each input; `None` for one that does nothing here.
-    scalars: Vec<Option<usize>>,
-    state: RefCell<State<'a>>,
-}
-
-struct State<'a> {
-    controller: Controller<'a>,
-    random: Random,
-    values: Vec<f64>,
-    inputs: Vec<f64>,
-    next: f64,
-}
-
-impl<'a> Loop<'a> {
-    /// The loop of a task with a controller; without one there is none.
-    ///
-    /// # Errors
-    /// The law is one of another robot.
-    pub(crate) fn new(
-        model: &'a Model,
-        task: &'a Simulation,
-    ) -> Result<Option<Self>, WorkflowError> {
-        let Some(controller) = &task.controller else {
-            return Ok(None);
-        };
-        let wrong = |reason: String| WorkflowError::Problem {
-            place: "simulate.controller.feedback".to_owned(),
-            reason: format!("{}: {reason}", controller.path.display()),
-        };
-        if model.coordinates == Coordinates::Redundant {
-            let reason = "it measures joint coordinates; expected \"coordinates\": \"reduced\"";
-            return Err(wrong(reason.to_owned()));
-        }
-        let law = &*controller.law;
-        let end = law.duration() * (1.0 + 1e-9);
-        if law.held.is_none() && task.duration > end {
-            let reason = "it does not hold its goal after its end, where this simulation goes on; expected a shorter \"duration\"";
-            return Err(wrong(reason.to_owned()));
-        }
-        let coordinates = model.variables.with(Role::Coordinate);
-        let place = |one: &Measured| {
-            let own = coordinates
-                .iter()
-                .position(|variable| variable.name == one.name);
-            let own = own.filter(|&i| model.is_length(i) == one.is_length);
-            match own {
-                None if !one.is_memory => Err(wrong(format!(
-                    "it measures {:?}, which this robot does not have; expected the feedback of a robot with the same joints",
-                    one.name
-                ))),
-                own => Ok(own),
-            }
-        };
-        let measured: Vec<Option<usize>> =
-            law.measured.iter().map(place).collect::<Result<_, _>>()?;
-        let sources = &model.sources;
-        let scalar = |input: &LawInput| {
-            let source = sources.iter().position(|source| source.name == input.name);
-            source.and_then(|source| model.variables.input(source))
-        };
-        let inputs = law.inputs.len();
-        Ok(Some(Self {
-            model,
-            task: controller,
-            voltages: &task.voltages,
-            scalars: law.inputs.iter().map(scalar).collect(),
-            state: RefCell::new(State {
-                controller: Controller::new(law, controller.sample, controller.delay),
-                random: Random::new(controller.noise.seed),
-                values: vec![0.0; measured.len()],
-                inputs: vec![0.0; inputs],
-                next: 0.0,
-            }),
-            measured,
-        }))
-    }
-
-    /// Measures the last instant of a motion, if it is time.
-    pub(crate) fn observe(&self, discrete: &DiscreteTrajectory) {
-        let last = discrete.intervals();
-        let time = discrete.times[last];
-        let state = &mut *self.state.borrow_mut();
-        if time < state.next - 1e-9 * (1.0 + time) {
-            return;
-        }
-        // The first multiple of the sample behind this time.
-        let sample = self.task.sample;
-        state.next = sample * ((time / sample + 1e-6).floor() + 1.0);
-        let rates = rates_of_momentum(
-            self.model,
-            &discrete.z[last],
-            discrete.begun + time,
-            &discrete.momenta[last],
-        );
-        let law = &*self.task.law;
-        for (place, (of, coordinate)) in law.measured.iter().zip(&self.measured).enumerate() {
-            state.values[place] = match (coordinate, of.is_rate) {
-                (Some(i), false) => discrete.z[last][*i],
-                (Some(i), true) => rates[*i],
-                (None, _) => law.reference(time, place),
-            };
-            let noise = self.task.noise.of(of);
-            if noise > 0.0 {
-                state.values[place] += noise * state.random.normal();
-            }
-        }
-        state.controller.sample(time, &state.values);
-    }
-
-    /// Numbers of samples, and of those with an input at its lower and upper bound.
-    pub(crate) fn counts(&self) -> [usize; 3] {
-        let controller = &self.state.borrow().controller;
-        let [lower, upper] = controller.saturated();
-        [controller.samples(), lower, upper]
-    }
-}
-
-impl Drive for Loop<'_> {
-    fn at(&self, [from, to]: [f64; 2], part: f64) -> Vec<f64> {
-        let time = from + part * (to - from);
-        let mut out = self.model.scalars(&self.voltages.at(time));
-        let State {
-            controller, inputs, ..
-        } = &mut *self.state.borrow_mut();
-        controller.inputs(from, time, inputs);
-        for (scalar, value) in self.scalars.iter().zip(inputs) {
-            if let Some(scalar) = scalar {
-                out[*scalar] = *value;
-            }
-        }
-        out
-    }
-}
-
-impl Noise {
-    /// The standard deviation of a measured quantity; what is remembered has none.
-    fn of(&self, measured: &Measured) -> f64 {
-        match (measured.is_length, measured.is_rate) {
-            _ if measured.is_memory => 0.0,
-            (false, false) => self.angle,
-            (false, true) => self.angular_velocity,
-            (true, false) => self.length,
-            (true, true) => self.velocity,
-        }
-    }
-}
 
 /// The motion under a controller, and without its corrections, compared with that of the law.
 #[derive(Clone, Debug, PartialEq, Serialize)]
@@ -175,6 +18,9 @@ pub struct ClosedLoop {
     pub samples_at_lower_bound: usize,
     /// Number of samples with an input at its upper bound, above which it was wanted.
     pub samples_at_upper_bound: usize,
+    /// Steps of a controller that plans anew.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub plans: Option<Plans>,
     /// Deviations of markers, by name.
     pub markers: BTreeMap<String, Deviations>,
     /// Reason why the motion without corrections ended early.
@@ -230,17 +76,22 @@ impl ClosedLoop {
     /// The comparison of a motion, and of one without corrections, with that of the law.
     pub(crate) fn new(
         model: &Model,
-        law: &Law,
-        [samples, samples_at_lower_bound, samples_at_upper_bound]: [usize; 3],
+        counts: Counts,
         discrete: &DiscreteTrajectory,
         open_loop: (DiscreteTrajectory, Option<String>),
     ) -> Self {
         let (open_loop, open_loop_failure) = open_loop;
+        let Counts {
+            samples: [samples, samples_at_lower_bound, samples_at_upper_bound],
+            plans,
+            law,
+        } = counts;
         let [motion, open] = [discrete, &open_loop].map(|of| Trajectory::from_discrete(model, of));
         let mut out = Self {
             samples,
             samples_at_lower_bound,
             samples_at_upper_bound,
+            plans,
             markers: BTreeMap::new(),
             tracked: Vec::new(),
             open_loop_failure,
@@ -293,6 +144,25 @@ impl ClosedLoop {
             format!("{name}: {}{open}", millimetres(&of.feedback))
         };
         self.markers.iter().map(line).collect()
+    }
+
+    /// That inputs of a controller that plans anew came from elsewhere than from its plan with what was measured.
+    pub fn other_sources(&self) -> Option<String> {
+        let plans = self.plans.as_ref()?;
+        let others = plans
+            .sources
+            .iter()
+            .filter(|(word, _)| **word != Source::Plan.word());
+        let others: Vec<String> = others
+            .map(|(word, count)| format!("{word:?} in {count}"))
+            .collect();
+        (!others.is_empty()).then(|| {
+            format!(
+                "the plan of the controller did not give the inputs of all {} samples: {}",
+                self.samples,
+                others.join(", ")
+            )
+        })
     }
 
     /// That inputs came to their lower bounds.

@@ -11,8 +11,8 @@ use crate::dynamics::{
 use crate::ipopt::interrupt;
 use crate::math::in_order;
 use crate::model::{Model, System};
-use crate::workflow::closed_loop::Loop;
 use crate::workflow::confirmed::EstimatedError;
+use crate::workflow::control_loop::{Counts, Loop, horizon};
 use crate::workflow::error::WorkflowError;
 use crate::workflow::memory;
 use crate::workflow::phase::phase;
@@ -29,8 +29,8 @@ pub struct Simulated {
     pub failure: Option<StepError>,
     /// Its error, where a tolerance controls its steps and it came to its end.
     pub error: Option<EstimatedError>,
-    /// Counts of the samples of a controller, and of those at a lower and upper bound.
-    pub(crate) samples: Option<[usize; 3]>,
+    /// Counts of the samples of a controller.
+    pub(crate) samples: Option<Counts>,
     /// Seconds before the first step.
     pub setup: f64,
     /// Seconds in the steps.
@@ -88,7 +88,8 @@ pub fn integrate_on(
     let begun = begin(&model, task, begun)?;
     let setup = began.elapsed().as_secs_f64();
     phase("ordering and first factorisation");
-    let controlled = Loop::new(&model, task)?;
+    let horizon = horizon(task)?;
+    let controlled = Loop::new(&model, task, horizon.as_ref())?;
     if let Some(controlled) = &controlled {
         controlled.observe(&begun);
     }

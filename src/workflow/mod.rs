@@ -11,7 +11,7 @@
 //! - `effects`, `reasons`, `stopwatch`: terms of a model, their reasons and times; `memory`: a refusal of more than the machine has.
 //! - `steps`, `domain`: warnings of a motion: steps that do not resolve it, muscles outside the domain of their material; `longer_steps`: the error of
 //!   methods of high order.
-//! - `regulator`: feedback along an optimum; `receding`: a controller that plans anew; `closed_loop`: a simulation under feedback.
+//! - `regulator`: feedback along an optimum; `receding`: a controller that plans anew; `control_loop`, `closed_loop`: a simulation under feedback.
 //! - `tracking`: deviations of a motion from the references of its objective.
 //! - `motion`: conversion between unknowns and a trajectory; `parallel_map`: pieces of work in several threads.
 
@@ -23,6 +23,7 @@ pub(crate) mod cause;
 pub mod closed_loop;
 pub(crate) mod combined;
 pub(crate) mod confirmed;
+pub(crate) mod control_loop;
 pub(crate) mod distance;
 pub(crate) mod domain;
 pub(crate) mod effects;

@@ -34,6 +34,7 @@ mod paraview;
 mod parts;
 mod path_rows;
 mod process;
+mod receding;
 mod refusals;
 mod report;
 mod resume;

@@ -1,18 +1,21 @@
 //! Conversion of the feedback of a problem file to costs of deviations, and to a controller.
 
 use crate::control::problem::{FeedbackControl, Noise, Regulator};
+use crate::feedback::{Integral, Law};
 use crate::files::feedback::read_law;
 use crate::files::json::error::SceneError;
 use crate::files::json::scope::Scope;
-use crate::files::problem::spec_feedback::{ControllerSpec, FeedbackSpec};
+use crate::files::problem::spec_feedback::{ControllerSpec, FeedbackSpec, HorizonSpec, NoiseSpec};
 use crate::files::scene::names::names;
 use crate::files::units::quantity::{PhysicalQuantity, Quantity};
 use crate::math::shortest;
 use crate::model::system::System;
 use std::sync::Arc;
 
+/// Words on the file of a problem that a controller plans anew.
+pub(crate) const CONTROL_FILE: &str = "the path of a problem file with a \"control\"";
 /// Part of a step by which a sample or delay may differ from a multiple of it.
-const ROUNDING: f64 = 1e-6;
+pub(crate) const ROUNDING: f64 = 1e-6;
 
 pub(crate) fn regulator(
     spec: &FeedbackSpec,
@@ -83,8 +86,17 @@ pub(crate) fn controller(
         let expected = "a \"step\" of the simulation: samples are multiples of it";
         return Err(scope.wrong("steps of no given length", expected));
     };
+    let path = match (&spec.feedback, &spec.horizon) {
+        (Some(path), None) => path,
+        (None, Some(horizon)) => return planning((spec, horizon), scope),
+        (both, _) => {
+            let found = if both.is_some() { "both" } else { "neither" };
+            let found = format!("{found} of \"feedback\" and \"horizon\"");
+            return Err(scope.wrong(found, "one of them"));
+        }
+    };
     let place = scope.key("feedback");
-    let path = place.feedback_file(&spec.feedback)?;
+    let path = place.feedback_file(path)?;
     let law = read_law(&path, system)?;
     let sample = match &spec.sample {
         Some(sample) => multiple(sample, step, &scope.key("sample"))?,
@@ -95,23 +107,59 @@ pub(crate) fn controller(
         Some(_) => 0.0,
         None => (law.delay as f64 * law.h / step - 1e-6).ceil() * step,
     };
-    let noise = scope.key("noise");
-    let of = &spec.noise;
     Ok(FeedbackControl {
         law: Arc::new(law),
         path,
         sample,
         delay,
-        noise: Noise {
-            angle: deviation(of.angle.as_ref(), &noise.key("angle"))?,
-            length: deviation(of.length.as_ref(), &noise.key("length"))?,
-            angular_velocity: deviation(
-                of.angular_velocity.as_ref(),
-                &noise.key("angular_velocity"),
-            )?,
-            velocity: deviation(of.velocity.as_ref(), &noise.key("velocity"))?,
-            seed: of.seed,
-        },
+        noise: noise(&spec.noise, &scope.key("noise"))?,
+        ahead: None,
+    })
+}
+
+fn noise(of: &NoiseSpec, place: &Scope<'_>) -> Result<Noise, SceneError> {
+    let angular = &place.key("angular_velocity");
+    Ok(Noise {
+        angle: deviation(of.angle.as_ref(), &place.key("angle"))?,
+        length: deviation(of.length.as_ref(), &place.key("length"))?,
+        angular_velocity: deviation(of.angular_velocity.as_ref(), angular)?,
+        velocity: deviation(of.velocity.as_ref(), &place.key("velocity"))?,
+        seed: of.seed,
+    })
+}
+
+/// A controller that plans anew in each interval of a problem, which is read later.
+fn planning(
+    (spec, horizon): (&ControllerSpec, &HorizonSpec),
+    scope: &Scope<'_>,
+) -> Result<FeedbackControl, SceneError> {
+    let (sample, delay) = (spec.sample.is_some(), spec.delay.is_some());
+    for (key, is_written) in [("sample", sample), ("delay", delay)] {
+        if is_written {
+            let expected =
+                "none beside \"horizon\", which plans anew in each interval of its problem";
+            return Err(scope.key(key).wrong(format!("a {key:?}"), expected));
+        }
+    }
+    Ok(FeedbackControl {
+        law: Arc::new(Law {
+            measured: Vec::new(),
+            inputs: Vec::new(),
+            integral: Integral::default(),
+            h: 0.0,
+            delay: 0,
+            points: Vec::new(),
+            held: None,
+            markers: Vec::new(),
+        }),
+        path: scope
+            .key("horizon")
+            .key("problem")
+            .file_or_result(&horizon.problem, CONTROL_FILE)?,
+        sample: 0.0,
+        delay: 0.0,
+        noise: noise(&spec.noise, &scope.key("noise"))?,
+        ahead: None,
     })
 }
 

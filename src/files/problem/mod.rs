@@ -2,11 +2,12 @@
 //!
 //! - `motions`: several motions of one problem, each as a problem of its own.
 //! - `build`: the problem; `control`, `simulation`, `identify`: its longer tasks; `channels`, `channel_quantities`: what recordings measure; `changed_scenes`: scenes of some of them; `driven`: start and inputs of both motions.
-//! - `feedback`: gains along an optimum, and a controller that reads them.
+//! - `feedback`: gains along an optimum, and a controller that reads them; `ahead`: a problem that it plans anew.
 //! - `state`, `end_of`, `goal`, `limits`, `source_limits`, `free`, `guess`, `voltages`, `track`, `measured`, `energies`, `coordinates`: their parts; `output`: what is written of a motion; `solution_voltages`,
 //!   `solution_joints`, `solution_document`:
 //!   what is read of an earlier solution.
 
+pub(crate) mod ahead;
 mod amount_limits;
 mod bounds;
 pub(crate) mod build;

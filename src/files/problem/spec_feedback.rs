@@ -46,13 +46,17 @@ pub struct WeightsSpec {
     pub integral: Option<f64>,
 }
 
-/// A controller that follows a motion by the gains of `feedback.json`.
+/// A controller that follows a motion by the gains of `feedback.json`, or plans anew over a receding horizon: one of `feedback` and `horizon`.
 #[derive(Clone, Debug, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct ControllerSpec {
     /// Path of a `feedback.json` or of the folder that holds it, relative to this file or to the current folder. It gives the inputs that were sought
     /// in its problem; the robot here has joints of the same names, and may be another one otherwise.
-    pub feedback: String,
+    #[serde(default)]
+    pub feedback: Option<String>,
+    /// Plans anew in each interval, without `sample` and `delay`.
+    #[serde(default)]
+    pub horizon: Option<HorizonSpec>,
     /// Time between samples, a multiple of the step, SI unit s; the interval of the gains, for which they are, where not written.
     #[serde(default)]
     pub sample: Option<Quantity<Time>>,
@@ -62,6 +66,18 @@ pub struct ControllerSpec {
     /// Noise of what is measured.
     #[serde(default)]
     pub noise: NoiseSpec,
+}
+
+/// A motion that is planned anew over a horizon in each interval of its problem, with its limits and bounds, by one iteration of an interior-point
+/// method.
+#[derive(Clone, Debug, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct HorizonSpec {
+    /// Path of a problem file with a `control`, relative to this file or to the current folder, whose optimum is followed. The costs of deviations are
+    /// those of its `feedback`, and their usual ones without it. The robot here has joints of the same names, and may be another one otherwise.
+    pub problem: String,
+    /// Number of its intervals in the horizon; what follows counts as the regulator of the same costs does.
+    pub intervals: usize,
 }
 
 /// Standard deviations of what is measured; 0 where not written.

@@ -1,7 +1,8 @@
 //! All that the controllers of a receding horizon share: model, motion to follow with its costs, and the law that they fall back to.
 
 use crate::control::problem::{
-    BoundaryState, Control, Duration, Guess, Objective, PathConstraint, Regulator, Rest, SoughtHold,
+    Ahead, BoundaryState, Control, Duration, Guess, Objective, PathConstraint, Regulator, Rest,
+    SoughtHold,
 };
 use crate::control::{
     BoundaryConditions, BoundaryError, Carried, InitialGuess, Rests, Transcription,
@@ -11,6 +12,10 @@ use crate::feedback::Law;
 use crate::ipopt::{IpoptError, Options, StartingPoint, Status, solve};
 use crate::model::{Model, System, Time};
 use crate::nlp::Nlp;
+use crate::workflow::iterate::Iterate;
+use crate::workflow::motion::discrete_trajectory;
+use crate::workflow::optimise::optimise;
+use crate::workflow::optimum::SolveLimits;
 use crate::workflow::receding::program::Program;
 use crate::workflow::receding::reference::Reference;
 use crate::workflow::regulator::{NoRegulator, regulator};
@@ -68,7 +73,7 @@ pub struct Horizon {
 
 impl Horizon {
     /// Of an optimal motion of a problem with a momentum at its start, whose goal is held by `rest` voltages, by source: the horizon has a number of
-    /// intervals, each as long as those of the motion. The delay and the integrals of the regulator are not taken in.
+    /// intervals, each as long as those of the motion. Delays and integrals are not offered.
     ///
     /// # Errors
     /// There is none.
@@ -83,11 +88,9 @@ impl Horizon {
     ) -> Result<Self, NoHorizon> {
         assert!(intervals > 0, "an interval or more");
         offered(model, control)?;
-        let task = &Regulator {
-            delay: 0.0,
-            integral: 0.0,
-            ..task.clone()
-        };
+        if task.delay > 0.0 || task.integral > 0.0 {
+            return Err(NoHorizon::NotOffered("a delay or an integral of feedback"));
+        }
         let found = regulator((model, control, task), discrete, momentum, rest);
         let found = found.map_err(NoHorizon::Regulator)?;
         let not_held = || {
@@ -142,6 +145,38 @@ impl Horizon {
             inert,
             inputs,
         })
+    }
+
+    /// The horizon of a problem that is solved for it.
+    ///
+    /// # Errors
+    /// There is none, in words.
+    pub fn solved(of: &Ahead) -> Result<Self, String> {
+        let Ahead {
+            system,
+            control,
+            regulator,
+            intervals,
+        } = of;
+        let limits = SolveLimits::default();
+        let go_on = &mut |_: &Iterate<'_>| ControlFlow::Continue(());
+        let optimum = optimise(system, control, None, limits, go_on);
+        let optimum = optimum.map_err(|error| error.to_string())?;
+        if !optimum.is_solved() {
+            return Err(format!("no optimum was found: {}", optimum.word()));
+        }
+        let discrete = discrete_trajectory(&optimum.model, &optimum.motion);
+        let momentum = &optimum.boundary.start.momentum;
+        let rest = optimum.motion.hold.as_deref();
+        let rest = rest.or(optimum.boundary.rest[1].as_deref());
+        let of = (&optimum.model, &discrete);
+        let found = Self::new(
+            (system, control, regulator),
+            *intervals,
+            of,
+            (momentum, rest),
+        );
+        found.map_err(|reason| reason.to_string())
     }
 
     /// The law to which controllers fall back: names of all that is measured and of the inputs, bounds, length of the intervals.

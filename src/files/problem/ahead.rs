@@ -1,0 +1,88 @@
+//! The problem that a controller plans anew in each of its intervals.
+
+use crate::control::problem::{Ahead, Duration, Regulator, Simulation, Task};
+use crate::feedback::{Law, LawInput};
+use crate::files::json::document::Document;
+use crate::files::json::error::SceneError;
+use crate::files::json::scope::Scope;
+use crate::files::problem::coordinates::count;
+use crate::files::problem::feedback::{CONTROL_FILE, ROUNDING};
+use crate::files::problem::spec::ProblemSpec;
+use crate::math::shortest;
+use crate::model::system::{Source, System};
+use std::path::Path;
+use std::sync::Arc;
+
+/// Most intervals of a horizon.
+const MOST: usize = 10_000;
+
+/// Reads the problem that the controller of a simulation plans anew, where there is one, by a reader of problem files.
+pub(crate) fn add_plan(
+    task: &mut Task,
+    spec: &ProblemSpec,
+    scope: &Scope<'_>,
+    read: impl Fn(&Path) -> Result<(System, Task, Option<Regulator>), SceneError>,
+) -> Result<(), SceneError> {
+    let written = spec
+        .simulate
+        .as_ref()
+        .and_then(|one| one.controller.as_ref());
+    let written = written.and_then(|one| one.horizon.as_ref());
+    let (Some(horizon), Task::Simulate(simulation)) = (written, task) else {
+        return Ok(());
+    };
+    let place = scope.key("simulate").key("controller").key("horizon");
+    count(horizon.intervals, "interval", MOST, &place.key("intervals"))?;
+    let Simulation {
+        duration,
+        step,
+        controller: Some(controller),
+        ..
+    } = simulation
+    else {
+        return Ok(());
+    };
+    let step = *duration / (*duration / *step - 1e-9).ceil().max(1.0);
+    let place = place.key("problem");
+    let of = &horizon.problem;
+    // A simulation could name itself.
+    let without = || place.wrong(format!("{of:?}, which has none"), CONTROL_FILE);
+    if Document::read(&controller.path)?.entry("control").is_none() {
+        return Err(without());
+    }
+    let (system, Task::Control(control), regulator) = read(&controller.path)? else {
+        return Err(without());
+    };
+    let Duration::Given(duration) = control.duration else {
+        let found = format!("{of:?}, whose duration is free");
+        return Err(place.wrong(found, "a given duration"));
+    };
+    let sample = duration / control.intervals as f64;
+    let steps = (sample / step).round();
+    if control.is_refined || steps < 1.0 || (sample / step - steps).abs() > ROUNDING * steps {
+        let [sample, step] = [sample, step].map(|time| shortest(time, 9));
+        let found = format!("{of:?} with intervals of {sample} ms");
+        let expected = format!("given intervals that are multiples of the step {step} ms");
+        return Err(place.wrong(found, expected));
+    }
+    let given = system.sources().into_iter().enumerate();
+    let inputs = given.filter(|(source, named)| named.acts() && !control.is_given(*source));
+    let input = |(_, named): (usize, Source)| LawInput {
+        name: named.name,
+        is_squared: false,
+        bounds: [f64::NEG_INFINITY, f64::INFINITY],
+    };
+    controller.law = Arc::new(Law {
+        inputs: inputs.map(input).collect(),
+        h: sample,
+        ..(*controller.law).clone()
+    });
+    controller.sample = sample;
+    controller.ahead = Some(Box::new(Ahead {
+        system,
+        control: *control,
+        regulator: regulator.unwrap_or_default(),
+        intervals: horizon.intervals,
+    }));
+    Ok(())
+}

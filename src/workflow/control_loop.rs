@@ -1,0 +1,279 @@
+//! A controller at work in a simulation: it measures the state at samples, and gives the inputs of its law or plan.
+
+use crate::control::problem::{FeedbackControl, Noise, Simulation, Voltages};
+use crate::dynamics::{DiscreteTrajectory, Drive, rates_of_momentum};
+use crate::feedback::{Controller, Law, LawInput, Measured};
+use crate::math::Random;
+use crate::model::{Coordinates, Model, Role};
+use crate::workflow::error::WorkflowError;
+use crate::workflow::receding::{Horizon, RecedingHorizon};
+use serde::Serialize;
+use std::cell::RefCell;
+use std::collections::BTreeMap;
+use std::sync::Arc;
+use std::time::Instant;
+
+/// A controller at work on a model.
+pub(crate) struct Loop<'a> {
+    model: &'a Model,
+    task: &'a FeedbackControl,
+    law: &'a Law,
+    voltages: &'a Voltages,
+    /// Coordinate of each measured quantity; `None` for what this system does not remember.
+    measured: Vec<Option<usize>>,
+    /// Scalar of each input; `None` for one that does nothing here.
+    scalars: Vec<Option<usize>>,
+    state: RefCell<State<'a>>,
+}
+
+struct State<'a> {
+    controller: Acting<'a>,
+    random: Random,
+    values: Vec<f64>,
+    inputs: Vec<f64>,
+    next: f64,
+}
+
+/// The law that acts, or the plan.
+enum Acting<'a> {
+    Law(Controller<'a>),
+    Plan(Box<Planning<'a>>),
+}
+
+/// A controller that plans anew.
+struct Planning<'a> {
+    controller: RecedingHorizon<'a>,
+    sources: BTreeMap<&'static str, usize>,
+    samples: usize,
+    /// The longest time of a step with its preparation, and without, in s.
+    longest: [f64; 2],
+}
+
+impl Planning<'_> {
+    /// The inputs of an interval with the state at its start; then the next step is prepared.
+    fn sample(&mut self, time: f64, measured: &[f64], inputs: &mut [f64]) {
+        let began = Instant::now();
+        let answer = self.controller.step(time, Some(measured));
+        inputs.copy_from_slice(answer.inputs);
+        *self.sources.entry(answer.source.word()).or_default() += 1;
+        self.samples += 1;
+        let answered = began.elapsed().as_secs_f64();
+        self.controller.prepare();
+        let [whole, step] = &mut self.longest;
+        *whole = whole.max(began.elapsed().as_secs_f64());
+        *step = step.max(answered);
+    }
+}
+
+/// Counts of a loop.
+#[derive(Clone, Debug)]
+pub(crate) struct Counts {
+    /// Samples, and those of them with an input wanted beyond its lower and its upper bound.
+    pub(crate) samples: [usize; 3],
+    pub(crate) plans: Option<Plans>,
+    /// The law that was followed.
+    pub(crate) law: Arc<Law>,
+}
+
+/// Steps of a controller that plans anew.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct Plans {
+    /// Numbers of steps by the origin of their inputs.
+    pub sources: BTreeMap<&'static str, usize>,
+    /// The longest time in s from a measurement to its inputs.
+    pub longest_step: f64,
+    /// The same with the preparation of the next step.
+    pub longest_with_preparation: f64,
+}
+
+/// A horizon of a task whose controller plans anew.
+///
+/// # Errors
+/// There is none.
+pub(crate) fn horizon(task: &Simulation) -> Result<Option<Horizon>, WorkflowError> {
+    let controller = task.controller.as_ref();
+    let Some((path, ahead)) = controller.and_then(|one| Some((&one.path, one.ahead.as_ref()?)))
+    else {
+        return Ok(None);
+    };
+    let refused = |reason: String| WorkflowError::Problem {
+        place: "simulate.controller.horizon".to_owned(),
+        reason: format!("{}: {reason}", path.display()),
+    };
+    Horizon::solved(ahead).map(Some).map_err(refused)
+}
+
+impl<'a> Loop<'a> {
+    /// The loop of a task with a controller; without one there is none.
+    ///
+    /// # Errors
+    /// The law is one of another robot.
+    pub(crate) fn new(
+        model: &'a Model,
+        task: &'a Simulation,
+        horizon: Option<&'a Horizon>,
+    ) -> Result<Option<Self>, WorkflowError> {
+        let Some(controller) = &task.controller else {
+            return Ok(None);
+        };
+        let kind = if horizon.is_some() {
+            "horizon"
+        } else {
+            "feedback"
+        };
+        let wrong = |reason: String| WorkflowError::Problem {
+            place: format!("simulate.controller.{kind}"),
+            reason: format!("{}: {reason}", controller.path.display()),
+        };
+        if model.coordinates == Coordinates::Redundant {
+            let reason = "it measures joint coordinates; expected \"coordinates\": \"reduced\"";
+            return Err(wrong(reason.to_owned()));
+        }
+        let law = horizon.map_or(&*controller.law, Horizon::law);
+        let end = law.duration() * (1.0 + 1e-9);
+        if law.held.is_none() && task.duration > end {
+            let reason = "it does not hold its goal after its end, where this simulation goes on; expected a shorter \"duration\"";
+            return Err(wrong(reason.to_owned()));
+        }
+        let coordinates = model.variables.with(Role::Coordinate);
+        let place = |one: &Measured| {
+            let own = coordinates
+                .iter()
+                .position(|variable| variable.name == one.name);
+            let own = own.filter(|&i| model.is_length(i) == one.is_length);
+            match own {
+                None if !one.is_memory => Err(wrong(format!(
+                    "it measures {:?}, which this robot does not have; expected the feedback of a robot with the same joints",
+                    one.name
+                ))),
+                own => Ok(own),
+            }
+        };
+        let measured: Vec<Option<usize>> =
+            law.measured.iter().map(place).collect::<Result<_, _>>()?;
+        let sources = &model.sources;
+        let scalar = |input: &LawInput| {
+            let source = sources.iter().position(|source| source.name == input.name);
+            source.and_then(|source| model.variables.input(source))
+        };
+        let inputs = law.inputs.len();
+        Ok(Some(Self {
+            model,
+            task: controller,
+            law,
+            voltages: &task.voltages,
+            scalars: law.inputs.iter().map(scalar).collect(),
+            state: RefCell::new(State {
+                controller: match horizon {
+                    Some(horizon) => Acting::Plan(Box::new(Planning {
+                        controller: RecedingHorizon::new(horizon),
+                        sources: BTreeMap::new(),
+                        samples: 0,
+                        longest: [0.0; 2],
+                    })),
+                    None => {
+                        let FeedbackControl { sample, delay, .. } = **controller;
+                        Acting::Law(Controller::new(law, sample, delay))
+                    }
+                },
+                random: Random::new(controller.noise.seed),
+                values: vec![0.0; measured.len()],
+                inputs: vec![0.0; inputs],
+                next: 0.0,
+            }),
+            measured,
+        }))
+    }
+
+    /// Measures the last instant of a motion, if it is time.
+    pub(crate) fn observe(&self, discrete: &DiscreteTrajectory) {
+        let last = discrete.intervals();
+        let time = discrete.times[last];
+        let state = &mut *self.state.borrow_mut();
+        if time < state.next - 1e-9 * (1.0 + time) {
+            return;
+        }
+        // The first multiple of the sample behind this time.
+        let sample = self.task.sample;
+        state.next = sample * ((time / sample + 1e-6).floor() + 1.0);
+        let rates = rates_of_momentum(
+            self.model,
+            &discrete.z[last],
+            discrete.begun + time,
+            &discrete.momenta[last],
+        );
+        let law = self.law;
+        for (place, (of, coordinate)) in law.measured.iter().zip(&self.measured).enumerate() {
+            state.values[place] = match (coordinate, of.is_rate) {
+                (Some(i), false) => discrete.z[last][*i],
+                (Some(i), true) => rates[*i],
+                (None, _) => law.reference(time, place),
+            };
+            let noise = self.task.noise.of(of);
+            if noise > 0.0 {
+                state.values[place] += noise * state.random.normal();
+            }
+        }
+        match &mut state.controller {
+            Acting::Law(controller) => controller.sample(time, &state.values),
+            Acting::Plan(controller) => controller.sample(time, &state.values, &mut state.inputs),
+        }
+    }
+
+    /// Counts of its samples.
+    pub(crate) fn counts(&self) -> Counts {
+        let (samples, plans) = match &self.state.borrow().controller {
+            Acting::Law(controller) => {
+                let [lower, upper] = controller.saturated();
+                ([controller.samples(), lower, upper], None)
+            }
+            Acting::Plan(of) => {
+                let [longest_with_preparation, longest_step] = of.longest;
+                let plans = Plans {
+                    sources: of.sources.clone(),
+                    longest_step,
+                    longest_with_preparation,
+                };
+                ([of.samples, 0, 0], Some(plans))
+            }
+        };
+        let law = Arc::new(self.law.clone());
+        Counts {
+            samples,
+            plans,
+            law,
+        }
+    }
+}
+
+impl Drive for Loop<'_> {
+    fn at(&self, [from, to]: [f64; 2], part: f64) -> Vec<f64> {
+        let time = from + part * (to - from);
+        let mut out = self.model.scalars(&self.voltages.at(time));
+        let State {
+            controller, inputs, ..
+        } = &mut *self.state.borrow_mut();
+        if let Acting::Law(controller) = controller {
+            controller.inputs(from, time, inputs);
+        }
+        for (scalar, value) in self.scalars.iter().zip(inputs) {
+            if let Some(scalar) = scalar {
+                out[*scalar] = *value;
+            }
+        }
+        out
+    }
+}
+
+impl Noise {
+    /// The standard deviation of a measured quantity; what is remembered has none.
+    fn of(&self, measured: &Measured) -> f64 {
+        match (measured.is_length, measured.is_rate) {
+            _ if measured.is_memory => 0.0,
+            (false, false) => self.angle,
+            (false, true) => self.angular_velocity,
+            (true, false) => self.length,
+            (true, true) => self.velocity,
+        }
+    }
+}
