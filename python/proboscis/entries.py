@@ -531,15 +531,18 @@ ControlSolver: TypeAlias = "Literal['auto', 'stages', 'mumps']"
 
 
 class Controller(TypedDict):
-    """A controller that follows a motion by the gains of `feedback.json`."""
+    """A controller that follows a motion by the gains of `feedback.json`, or plans anew over a receding horizon: one of `feedback` and `horizon`."""
 
     delay: NotRequired[Quantity]
     """Time from a sample to its effect, a multiple of the step, SI unit s; that which the gains predict where not written."""
 
-    feedback: Text
+    feedback: NotRequired[Text]
     """Path of a `feedback.json` or of the folder that holds it, relative to this file or to the current folder. It gives the inputs that were
     sought in its problem; the robot here has joints of the same names, and may be another one otherwise.
     """
+
+    horizon: NotRequired[Horizon]
+    """Plans anew in each interval, without `sample` and `delay`."""
 
     noise: NotRequired[Noise]
     """Noise of what is measured."""
@@ -785,6 +788,20 @@ HeldWord: TypeAlias = "Literal['find', 'none']"
 
 Hold: TypeAlias = "Literal['reported', 'required']"
 """Treatment of a goal that cannot be kept."""
+
+
+class Horizon(TypedDict):
+    """A motion that is planned anew over a horizon in each interval of its problem, with its limits and bounds, by one iteration of an interior-
+    point method.
+    """
+
+    intervals: int
+    """Number of its intervals in the horizon; what follows counts as the regulator of the same costs does."""
+
+    problem: Text
+    """Path of a problem file with a `control`, relative to this file or to the current folder, whose optimum is followed. The costs of deviations
+    are those of its `feedback`, and their usual ones without it. The robot here has joints of the same names, and may be another one otherwise.
+    """
 
 
 class InputConstants(TypedDict):
@@ -1146,6 +1163,22 @@ class Objective(TypedDict):
 
     track: NotRequired[Sequence[Track]]
     """References of markers and joints in time."""
+
+
+class Observer(TypedDict):
+    """Standard deviations of what is measured at the start of each interval, and of what disturbs the motion in it."""
+
+    joints: NotRequired[Mapping[Any, Quantity]]
+    """Of measured joint coordinates, by joint, SI unit rad or m."""
+
+    markers: NotRequired[Mapping[Any, Quantity]]
+    """Of each component of the places of measured markers, by marker, SI unit m."""
+
+    rates: NotRequired[float]
+    """Of the rates of all coordinates, in 100 degrees/s or 100 mm/s, 0.1 where not written: pushes."""
+
+    voltages: NotRequired[float]
+    """Of voltages and loads as parts of their ranges, of voltages of lumped muscles by their squares; 0.05 where not written."""
 
 
 Option: TypeAlias = "int | float | Text"
@@ -1861,6 +1894,9 @@ class Feedback(TypedDict):
 
     delay: NotRequired[Quantity]
     """Time from a measurement to its effect, over which the state is predicted, SI unit s, upwards to whole intervals; 0 where not written."""
+
+    observer: NotRequired[Observer]
+    """Measurements of the controller in place of the state, which a Kalman filter along the optimum then finds from them."""
 
     step: NotRequired[Quantity]
     """Greatest length of the steps that are linearised, SI unit s; 1 ms where not written. Gains act over the intervals of the optimum."""

@@ -11,7 +11,7 @@ pub use crate::control::identification::{
 pub use crate::control::inputs::{Afterwards, Voltages, absent_loads};
 pub use crate::control::path_constraint::{PathConstraint, Side};
 pub use crate::control::quantity_cost::{CostFunction, During, Objective, QuantityCost};
-pub use crate::control::regulator::{Noise, Regulator};
+pub use crate::control::regulator::{Noise, Observation, Regulator};
 pub use crate::control::varied::{Varied, VariedOf, WeightOf};
 pub use crate::control::waypoint::{Waypoint, instant_at};
 use crate::dynamics::Solving;

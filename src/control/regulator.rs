@@ -20,6 +20,26 @@ pub struct Regulator {
     pub delay: f64,
     /// Factor of the costs at the end: of holding the goal for ever, or of the deviations there where it is not held.
     pub terminal: f64,
+    /// Measurements in place of the state.
+    pub observer: Option<Observation>,
+}
+
+/// Measurements from which an observer finds the state, with their standard deviations, and those of what disturbs the motion in each interval.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Observation {
+    /// Joints whose coordinates are measured, in rad or mm.
+    pub joints: Vec<(usize, f64)>,
+    /// Markers whose places are measured, in mm.
+    pub markers: Vec<(usize, f64)>,
+    /// Of each input, or of its square, as a part of its range.
+    pub inputs: f64,
+    /// Of each rate, in 100 degrees/s or 100 mm/s.
+    pub rates: f64,
+}
+
+impl Observation {
+    /// Disturbances of inputs and of rates where none are given.
+    pub const USUAL: [f64; 2] = [0.05, 0.1];
 }
 
 impl Default for Regulator {
@@ -33,6 +53,7 @@ impl Default for Regulator {
             step: 1.0,
             delay: 0.0,
             terminal: 1.0,
+            observer: None,
         }
     }
 }

@@ -1,7 +1,7 @@
 //! The controller: inputs of a law from states that are measured at samples, delayed, and kept within bounds.
 //!
 //! A correction `−K (x − x₀)` is computed at each sample and acts, after the delay, until the next one does. Inputs of the motion are
-//! known beforehand and act at once. A step allocates nothing.
+//! known beforehand and act at once. An observer finds the state where it is not measured. A step allocates nothing.
 
 use crate::feedback::law::Law;
 
@@ -13,6 +13,10 @@ pub struct Controller<'l> {
     delay: f64,
     /// Deviations of the last sample: measured quantities, then integrals, then the corrections that will act before the next one does.
     deviation: Vec<f64>,
+    /// Deviations of the measured quantities that the observer expects at the next sample; its errors of readings, and deviations of inputs.
+    expected: Vec<f64>,
+    errors: Vec<f64>,
+    acting: Vec<f64>,
     /// Time in ms of the last sample.
     sampled: Option<f64>,
     /// Corrections that wait: the times in ms from which they act, and values by input.
@@ -33,6 +37,7 @@ impl<'l> Controller<'l> {
     pub fn new(law: &'l Law, sample: f64, delay: f64) -> Self {
         let width = law.width();
         let waiting = (delay / sample).ceil() as usize + 2;
+        let observed = law.observer.as_ref().map_or(0, |one| one.readings.len());
         Self {
             law,
             delay,
@@ -40,6 +45,9 @@ impl<'l> Controller<'l> {
                 0.0;
                 law.measured.len() + law.integral.of.len() + law.delay * law.width()
             ],
+            expected: vec![0.0; law.measured.len()],
+            errors: vec![0.0; observed],
+            acting: vec![0.0; width],
             sampled: None,
             waiting: vec![(0.0, vec![0.0; width]); waiting],
             first: 0,
@@ -51,18 +59,28 @@ impl<'l> Controller<'l> {
         }
     }
 
-    /// Takes the measured quantities at a time in ms.
+    /// Takes the measured quantities, or the readings of the observer, at a time in ms.
     pub fn sample(&mut self, time: f64, measured: &[f64]) {
         let law = self.law;
         let elapsed = self.sampled.map_or(0.0, |before| time - before);
         self.sampled = Some(time);
-        let m = measured.len();
+        let m = law.measured.len();
         // The deviation of the last sample lasted until now.
         for (place, &of) in law.integral.of.iter().enumerate() {
             self.deviation[m + place] += elapsed * self.deviation[of];
         }
-        for (place, value) in measured.iter().enumerate() {
-            self.deviation[place] = value - law.reference(time, place);
+        match &law.observer {
+            None => {
+                for (place, value) in measured.iter().enumerate() {
+                    self.deviation[place] = value - law.reference(time, place);
+                }
+            }
+            Some(observer) => {
+                let state = &mut self.deviation[..m];
+                state.copy_from_slice(&self.expected);
+                let filter = observer.at(law.interval(time));
+                filter.correct(measured, state, &mut self.errors);
+            }
         }
         self.predict(time);
         let slots = self.waiting.len();
@@ -82,6 +100,36 @@ impl<'l> Controller<'l> {
         }
         self.samples += 1;
         self.is_saturated = [false; 2];
+        self.expect(time);
+    }
+
+    /// Finds the state that the observer expects an interval after a time in ms.
+    fn expect(&mut self, time: f64) {
+        let law = self.law;
+        let Some(observer) = &law.observer else {
+            return;
+        };
+        let middle = time + 0.5 * law.h;
+        for i in 0..law.width() {
+            self.acting[i] = self.deviation_of_input(middle, i);
+        }
+        let state = &self.deviation[..law.measured.len()];
+        let filter = observer.at(law.interval(time));
+        filter.predict(state, &self.acting, &mut self.expected);
+    }
+
+    /// Deviation of an input from the motion at a time in ms, of its square where it acts by it, as bounds leave it.
+    fn deviation_of_input(&self, time: f64, i: usize) -> f64 {
+        let mut acting = &self.correction;
+        for place in 0..self.count {
+            let (from, correction) = &self.waiting[(self.first + place) % self.waiting.len()];
+            if *from <= time {
+                acting = correction;
+            }
+        }
+        let given = self.law.at(time).inputs[i];
+        let (wanted, [least, most], given) = self.law.inputs[i].wanted(given, acting[i]);
+        wanted.clamp(least, most) - given
     }
 
     /// Takes in the corrections that act in the intervals of the delay from a time in ms on, as bounds leave them.
@@ -90,17 +138,8 @@ impl<'l> Controller<'l> {
         let first = law.measured.len() + law.integral.of.len();
         for k in 0..law.delay {
             let middle = time + (k as f64 + 0.5) * law.h;
-            let mut acting = &self.correction;
-            for place in 0..self.count {
-                let (from, correction) = &self.waiting[(self.first + place) % self.waiting.len()];
-                if *from <= middle {
-                    acting = correction;
-                }
-            }
-            let given = &law.at(middle).inputs;
-            for (i, input) in law.inputs.iter().enumerate() {
-                let (wanted, [least, most], given) = input.wanted(given[i], acting[i]);
-                self.deviation[first + k * law.width() + i] = wanted.clamp(least, most) - given;
+            for i in 0..law.width() {
+                self.deviation[first + k * law.width() + i] = self.deviation_of_input(middle, i);
             }
         }
     }

@@ -3,6 +3,7 @@
 //! `u = u₀ − K (x − x₀)` with the inputs u₀ and the state x₀ of the motion: coordinates, their rates, and time integrals of deviations.
 //! An input that acts by its square is u = V². Gains hold over an interval of the motion, or for the time after its end.
 
+use crate::feedback::observer::Observer;
 use nalgebra::DMatrix;
 
 /// A quantity that is measured: a coordinate or the rate of one.
@@ -78,11 +79,19 @@ pub struct Law {
     pub points: Vec<Point>,
     /// The state at the end of the motion and what holds it, where it is held.
     pub held: Option<Point>,
+    /// The filter that finds the measured quantities from others, where they are not measured themselves.
+    pub observer: Option<Observer>,
     /// Places of markers in mm at the instants of the motion, by name.
     pub markers: Vec<(String, Vec<[f64; 3]>)>,
 }
 
 impl Law {
+    /// Number of quantities that are read at a sample: the measured ones, or those of the observer.
+    pub fn readings(&self) -> usize {
+        let own = self.measured.len();
+        self.observer.as_ref().map_or(own, |one| one.readings.len())
+    }
+
     /// Number of inputs.
     pub fn width(&self) -> usize {
         self.inputs.len()
@@ -101,7 +110,7 @@ impl Law {
     }
 
     /// The interval of a time in ms; a time at its end, up to rounding, belongs to the next.
-    fn interval(&self, time: f64) -> usize {
+    pub(super) fn interval(&self, time: f64) -> usize {
         (time / self.h + 1e-9).max(0.0) as usize
     }
 

@@ -2,7 +2,7 @@
 
 use crate::control::problem::{FeedbackControl, Noise, Simulation, Voltages};
 use crate::dynamics::{DiscreteTrajectory, Drive, rates_of_momentum};
-use crate::feedback::{Controller, Law, LawInput, Measured};
+use crate::feedback::{Controller, Law, LawInput, Measured, Reading};
 use crate::math::Random;
 use crate::model::{Coordinates, Model, Role};
 use crate::workflow::error::WorkflowError;
@@ -21,6 +21,8 @@ pub(crate) struct Loop<'a> {
     voltages: &'a Voltages,
     /// Coordinate of each measured quantity; `None` for what this system does not remember.
     measured: Vec<Option<usize>>,
+    /// Vector of each reading of an observer that is of a marker; empty without one.
+    markers: Vec<Option<usize>>,
     /// Scalar of each input; `None` for one that does nothing here.
     scalars: Vec<Option<usize>>,
     state: RefCell<State<'a>>,
@@ -135,22 +137,8 @@ impl<'a> Loop<'a> {
             let reason = "it does not hold its goal after its end, where this simulation goes on; expected a shorter \"duration\"";
             return Err(wrong(reason.to_owned()));
         }
-        let coordinates = model.variables.with(Role::Coordinate);
-        let place = |one: &Measured| {
-            let own = coordinates
-                .iter()
-                .position(|variable| variable.name == one.name);
-            let own = own.filter(|&i| model.is_length(i) == one.is_length);
-            match own {
-                None if !one.is_memory => Err(wrong(format!(
-                    "it measures {:?}, which this robot does not have; expected the feedback of a robot with the same joints",
-                    one.name
-                ))),
-                own => Ok(own),
-            }
-        };
-        let measured: Vec<Option<usize>> =
-            law.measured.iter().map(place).collect::<Result<_, _>>()?;
+        let measured = measured(model, law).map_err(wrong)?;
+        let markers = markers(model, law).map_err(wrong)?;
         let sources = &model.sources;
         let scalar = |input: &LawInput| {
             let source = sources.iter().position(|source| source.name == input.name);
@@ -177,11 +165,12 @@ impl<'a> Loop<'a> {
                     }
                 },
                 random: Random::new(controller.noise.seed),
-                values: vec![0.0; measured.len()],
+                values: vec![0.0; law.readings()],
                 inputs: vec![0.0; inputs],
                 next: 0.0,
             }),
             measured,
+            markers,
         }))
     }
 
@@ -202,17 +191,37 @@ impl<'a> Loop<'a> {
             discrete.begun + time,
             &discrete.momenta[last],
         );
-        let law = self.law;
-        for (place, (of, coordinate)) in law.measured.iter().zip(&self.measured).enumerate() {
-            state.values[place] = match (coordinate, of.is_rate) {
-                (Some(i), false) => discrete.z[last][*i],
-                (Some(i), true) => rates[*i],
+        let (law, z) = (self.law, &discrete.z[last]);
+        let of_state = |place: usize| {
+            let of = &law.measured[place];
+            let value = match (self.measured[place], of.is_rate) {
+                (Some(i), false) => z[i],
+                (Some(i), true) => rates[i],
                 (None, _) => law.reference(time, place),
             };
-            let noise = self.task.noise.of(of);
-            if noise > 0.0 {
-                state.values[place] += noise * state.random.normal();
-            }
+            (value, self.task.noise.of(of))
+        };
+        let instant = self
+            .markers
+            .first()
+            .map(|_| self.model.action.map.placed(z));
+        for place in 0..state.values.len() {
+            let reading = law.observer.as_ref().map(|one| &one.readings[place]);
+            let (value, noise) = match reading {
+                None => of_state(place),
+                Some(&Reading::State(place)) => of_state(place),
+                Some(&Reading::Marker(_, axis)) => {
+                    let vector = self.markers[place].expect("a reading of a marker");
+                    let instant = instant.as_ref().expect("a placed instant");
+                    (instant.x[vector][axis], self.task.noise.length)
+                }
+            };
+            let random = if noise > 0.0 {
+                state.random.normal()
+            } else {
+                0.0
+            };
+            state.values[place] = value + noise * random;
         }
         match &mut state.controller {
             Acting::Law(controller) => controller.sample(time, &state.values),
@@ -244,6 +253,42 @@ impl<'a> Loop<'a> {
             law,
         }
     }
+}
+
+/// Coordinate of each measured quantity of a law; `None` for what this system does not remember.
+fn measured(model: &Model, law: &Law) -> Result<Vec<Option<usize>>, String> {
+    let coordinates = model.variables.with(Role::Coordinate);
+    let place = |one: &Measured| {
+        let own = coordinates
+            .iter()
+            .position(|variable| variable.name == one.name);
+        let own = own.filter(|&i| model.is_length(i) == one.is_length);
+        match own {
+            None if !one.is_memory => Err(format!(
+                "it measures {:?}, which this robot does not have; expected the feedback of a robot with the same joints",
+                one.name
+            )),
+            own => Ok(own),
+        }
+    };
+    law.measured.iter().map(place).collect()
+}
+
+/// Vector of each reading of an observer that is of a marker; none without an observer.
+fn markers(model: &Model, law: &Law) -> Result<Vec<Option<usize>>, String> {
+    let readings = law.observer.iter().flat_map(|one| &one.readings);
+    let marker = |reading: &Reading| match reading {
+        Reading::State(_) => Ok(None),
+        Reading::Marker(name, _) => {
+            let mut markers = model.system.markers.iter();
+            let own = markers.position(|marker| marker.name == *name);
+            let own = own.ok_or_else(|| {
+                format!("its observer reads marker {name:?}, which this robot does not have")
+            })?;
+            Ok(Some(model.markers[own]))
+        }
+    };
+    readings.map(marker).collect()
 }
 
 impl Drive for Loop<'_> {

@@ -7,6 +7,7 @@ mod accuracy;
 mod amount_limits;
 mod closed_form;
 mod codesign;
+mod controller;
 mod creep;
 mod direct_sources;
 mod drivers;

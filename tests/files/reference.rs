@@ -210,7 +210,13 @@ fn default(value: &Value, said: &str) -> String {
         return String::new();
     };
     let before = said[..at].trim_end_matches([' ', '(', ',']);
-    let start = before.rfind([';', '.', ':']).map_or(0, |at| at + 1);
+    // A point within a number ends no sentence.
+    let is_end = |(at, sign): &(usize, char)| {
+        let next = before[at + 1..].chars().next();
+        matches!(sign, ';' | '.' | ':') && next.is_none_or(char::is_whitespace)
+    };
+    let start = before.char_indices().rev().find(is_end);
+    let start = start.map_or(0, |(at, _)| at + 1);
     let clause = before[start..].trim();
     let clause = clause.rsplit_once(", ").map_or(clause, |(_, last)| last);
     match clause.is_empty() {

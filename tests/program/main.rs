@@ -28,6 +28,7 @@ mod messages;
 mod motions;
 mod names;
 mod observed;
+mod observer;
 mod output;
 mod page;
 mod paraview;

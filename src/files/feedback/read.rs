@@ -1,8 +1,9 @@
 //! Reader of `feedback.json`, for a system with joints and sources of the same names.
 
-use crate::feedback::{Integral, Law, LawInput, Measured, Point};
+use crate::feedback::{Filter, Integral, Law, LawInput, Measured, Observer, Point, Reading};
 use crate::files::feedback::record::{
-    InputRecord, LawRecord, MeasuredRecord, PointRecord, integrated, unit_of, unit_of_input,
+    FilterRecord, InputRecord, LawRecord, MeasuredRecord, ObserverRecord, PointRecord,
+    ReadingRecord, factor_of, integrated, unit_of, unit_of_input,
 };
 use crate::files::json::document::Document;
 use crate::files::json::error::SceneError;
@@ -42,7 +43,7 @@ pub(crate) fn read_law(path: &Path, system: &System) -> Result<Law, SceneError> 
         Ok::<Point, SceneError>(Point {
             state: list(&record.state, measured, &place.key("state"))?,
             inputs: list(&record.inputs, &of_inputs, &place.key("inputs"))?,
-            gain: gain(&record.gain, (&acting, &read), &place.key("gain"))?,
+            gain: matrix(&record.gain, [&acting, &read], &place.key("gain"))?,
         })
     };
     let place = scope.key("intervals");
@@ -55,6 +56,19 @@ pub(crate) fn read_law(path: &Path, system: &System) -> Result<Law, SceneError> 
     let held = record.held.as_ref();
     let held = held.map(|one| point(one, &scope.key("held"))).transpose()?;
     let markers = markers(&record, points.len() + 1, system);
+    let of_observer = record.observer.as_ref().map(|one| {
+        let factors = [&read[..measured.len()], &acting];
+        let place = scope.key("observer");
+        observer(one, (&measured, points.len()), factors, &place)
+    });
+    let observer = of_observer.transpose()?;
+    if observer
+        .as_ref()
+        .is_some_and(|one| one.held.is_some() != held.is_some())
+    {
+        let place = scope.key("observer").key("held");
+        return Err(place.wrong("one of two", "a filter where the goal is held"));
+    }
     Ok(Law {
         measured,
         inputs,
@@ -65,6 +79,7 @@ pub(crate) fn read_law(path: &Path, system: &System) -> Result<Law, SceneError> 
         delay: record.delay_intervals,
         points,
         held,
+        observer,
         markers,
     })
 }
@@ -189,22 +204,76 @@ fn list(values: &[f64], factors: &[f64], place: &Scope<'_>) -> Result<Vec<f64>, 
         .collect())
 }
 
-fn gain(
+/// A matrix of finite numbers row by row, with the factors of what it gives and of what it is multiplied by.
+fn matrix(
     rows: &[Vec<f64>],
-    (acting, read): (&[f64], &[f64]),
+    [of_rows, columns]: [&[f64]; 2],
     place: &Scope<'_>,
 ) -> Result<DMatrix<f64>, SceneError> {
-    if rows.len() != acting.len() {
+    if rows.len() != of_rows.len() {
         let found = format!("{} rows", rows.len());
-        return Err(place.wrong(found, format!("{}, one for each input", acting.len())));
+        return Err(place.wrong(found, of_rows.len().to_string()));
     }
-    let mut out = DMatrix::zeros(acting.len(), read.len());
-    for (i, (row, acting)) in rows.iter().zip(acting).enumerate() {
-        let inverse: Vec<f64> = read.iter().map(|read| acting / read).collect();
-        let row = list(row, &inverse, &place.index(i))?;
+    let mut out = DMatrix::zeros(of_rows.len(), columns.len());
+    for (i, (row, of)) in rows.iter().zip(of_rows).enumerate() {
+        let factors: Vec<f64> = columns.iter().map(|column| of / column).collect();
+        let row = list(row, &factors, &place.index(i))?;
         row.iter()
             .enumerate()
             .for_each(|(j, value)| out[(i, j)] = *value);
     }
     Ok(out)
+}
+
+/// The observer of a law, over its measured quantities and inputs with these factors.
+fn observer(
+    record: &ObserverRecord,
+    (measured, intervals): (&[Measured], usize),
+    [state, acting]: [&[f64]; 2],
+    place: &Scope<'_>,
+) -> Result<Observer, SceneError> {
+    let reading = |(i, one): (usize, &ReadingRecord)| {
+        let place = place.key("readings").index(i);
+        match one {
+            ReadingRecord::Measured(own) if *own < measured.len() => Ok(Reading::State(*own)),
+            ReadingRecord::Measured(own) => {
+                Err(place.wrong(own.to_string(), format!("a place below {}", measured.len())))
+            }
+            ReadingRecord::Marker(name, axis) if *axis < 3 => {
+                Ok(Reading::Marker(name.clone(), *axis))
+            }
+            ReadingRecord::Marker(_, axis) => Err(place.wrong(axis.to_string(), "0, 1 or 2")),
+        }
+    };
+    let readings = record.readings.iter().enumerate().map(reading);
+    let readings: Vec<Reading> = readings.collect::<Result<_, _>>()?;
+    if readings.is_empty() {
+        return Err(place.key("readings").wrong("none", "one reading or more"));
+    }
+    let outputs = readings.iter().map(|one| factor_of(one, measured));
+    let outputs: Vec<f64> = outputs.collect();
+    let filter = |one: &FilterRecord, place: &Scope<'_>| {
+        Ok::<Filter, SceneError>(Filter {
+            readings: list(&one.readings, &outputs, &place.key("readings"))?,
+            by_state: matrix(&one.by_state, [state, state], &place.key("by_state"))?,
+            by_inputs: matrix(&one.by_inputs, [state, acting], &place.key("by_inputs"))?,
+            output: matrix(&one.output, [&outputs, state], &place.key("output"))?,
+            gain: matrix(&one.gain, [state, &outputs], &place.key("gain"))?,
+        })
+    };
+    let of_intervals = place.key("intervals");
+    if record.intervals.len() != intervals {
+        let found = record.intervals.len().to_string();
+        return Err(of_intervals.wrong(found, format!("{intervals}, one for each interval")));
+    }
+    let points = record.intervals.iter().enumerate();
+    let points = points.map(|(k, one)| filter(one, &of_intervals.index(k)));
+    let held = record.held.as_ref();
+    Ok(Observer {
+        points: points.collect::<Result<_, _>>()?,
+        held: held
+            .map(|one| filter(one, &place.key("held")))
+            .transpose()?,
+        readings,
+    })
 }

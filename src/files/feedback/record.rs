@@ -1,6 +1,6 @@
 //! The types of `feedback.json`, and the factors of its units.
 
-use crate::feedback::Measured;
+use crate::feedback::{Measured, Reading};
 use crate::model::system::Source;
 use serde::{Deserialize, Serialize};
 use std::collections::BTreeMap;
@@ -25,8 +25,42 @@ pub(super) struct LawRecord {
     /// After the end, where the goal is held.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub(super) held: Option<PointRecord>,
+    /// The filter that finds what is measured from other readings.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub(super) observer: Option<ObserverRecord>,
     /// Places of markers in m at the instants.
     pub(super) markers: BTreeMap<String, Vec<[f64; 3]>>,
+}
+
+/// An observer.
+#[derive(Debug, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub(super) struct ObserverRecord {
+    pub(super) readings: Vec<ReadingRecord>,
+    pub(super) intervals: Vec<FilterRecord>,
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub(super) held: Option<FilterRecord>,
+}
+
+/// A reading of an observer.
+#[derive(Debug, Serialize, Deserialize)]
+#[serde(rename_all = "snake_case", deny_unknown_fields)]
+pub(super) enum ReadingRecord {
+    /// A coordinate, by its place among what is measured.
+    Measured(usize),
+    /// A component of the place of a marker in m, by the name of the marker and the axis, 0 to 2.
+    Marker(String, usize),
+}
+
+/// The filter in an interval: readings, and the matrices A, B, C and M row by row.
+#[derive(Debug, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub(super) struct FilterRecord {
+    pub(super) readings: Vec<f64>,
+    pub(super) by_state: Vec<Vec<f64>>,
+    pub(super) by_inputs: Vec<Vec<f64>>,
+    pub(super) output: Vec<Vec<f64>>,
+    pub(super) gain: Vec<Vec<f64>>,
 }
 
 /// A coordinate or its rate: rad, m, rad/s, m/s.
@@ -79,4 +113,12 @@ pub(super) fn integrated(factor: f64) -> f64 {
 pub(super) fn unit_of_input(source: &Source) -> (&'static str, f64) {
     let (unit, size) = source.kind.si();
     (unit, 1.0 / size)
+}
+
+/// Factor of a reading from the units inside.
+pub(super) fn factor_of(reading: &Reading, measured: &[Measured]) -> f64 {
+    match reading {
+        Reading::State(place) => unit_of(&measured[*place]).1,
+        Reading::Marker(..) => 1e-3,
+    }
 }

@@ -1,11 +1,13 @@
 //! Writer of `feedback.json` and of the table of gains.
 
-use crate::feedback::{Law, Point};
+use crate::feedback::{Filter, Law, Point, Reading};
 use crate::files::feedback::record::{
-    InputRecord, LawRecord, MeasuredRecord, PointRecord, integrated, unit_of, unit_of_input,
+    FilterRecord, InputRecord, LawRecord, MeasuredRecord, ObserverRecord, PointRecord,
+    ReadingRecord, factor_of, integrated, unit_of, unit_of_input,
 };
 use crate::files::lay_out;
 use crate::model::System;
+use nalgebra::DMatrix;
 use std::fmt::Write;
 
 /// Factors of the units of a law: of what is measured and integrated, of inputs, and of inputs or their squares.
@@ -37,12 +39,36 @@ impl Factors {
     }
 
     fn gain(&self, point: &Point) -> Vec<Vec<f64>> {
-        let row = |(i, acting): (usize, &f64)| {
-            let all = self.read.iter().enumerate();
-            all.map(|(j, read)| point.gain[(i, j)] * acting / read)
-                .collect()
+        matrix(&point.gain, [&self.acting, &self.read])
+    }
+
+    fn filter(&self, filter: &Filter, outputs: &[f64]) -> FilterRecord {
+        let state = &self.read[..filter.by_state.nrows()];
+        let readings = filter.readings.iter().zip(outputs);
+        FilterRecord {
+            readings: readings.map(|(value, factor)| value * factor).collect(),
+            by_state: matrix(&filter.by_state, [state, state]),
+            by_inputs: matrix(&filter.by_inputs, [state, &self.acting]),
+            output: matrix(&filter.output, [outputs, state]),
+            gain: matrix(&filter.gain, [state, outputs]),
+        }
+    }
+
+    fn observer(&self, law: &Law) -> Option<ObserverRecord> {
+        let observer = law.observer.as_ref()?;
+        let readings = observer.readings.iter();
+        let outputs = readings.clone().map(|one| factor_of(one, &law.measured));
+        let outputs: Vec<f64> = outputs.collect();
+        let record = |reading: &Reading| match reading {
+            Reading::State(place) => ReadingRecord::Measured(*place),
+            Reading::Marker(name, axis) => ReadingRecord::Marker(name.clone(), *axis),
         };
-        self.acting.iter().enumerate().map(row).collect()
+        let filter = |one: &Filter| self.filter(one, &outputs);
+        Some(ObserverRecord {
+            readings: readings.map(record).collect(),
+            intervals: observer.points.iter().map(filter).collect(),
+            held: observer.held.as_ref().map(filter),
+        })
     }
 
     fn point(&self, point: &Point) -> PointRecord {
@@ -59,6 +85,15 @@ impl Factors {
             gain: self.gain(point),
         }
     }
+}
+
+/// A matrix row by row, with the factors of what it gives and of what it is multiplied by.
+fn matrix(of: &DMatrix<f64>, [rows, columns]: [&[f64]; 2]) -> Vec<Vec<f64>> {
+    let row = |(i, row): (usize, &f64)| {
+        let all = columns.iter().enumerate();
+        all.map(|(j, column)| of[(i, j)] * row / column).collect()
+    };
+    rows.iter().enumerate().map(row).collect()
 }
 
 /// Units and factors of the inputs.
@@ -106,6 +141,7 @@ pub(super) fn record(law: &Law, system: &System) -> LawRecord {
             .map(|point| factors.point(point))
             .collect(),
         held: law.held.as_ref().map(|point| factors.point(point)),
+        observer: factors.observer(law),
         markers: law
             .markers
             .iter()

@@ -81,7 +81,11 @@ pub(crate) fn add_plan(
     controller.ahead = Some(Box::new(Ahead {
         system,
         control: *control,
-        regulator: regulator.unwrap_or_default(),
+        // A plan begins at the whole state.
+        regulator: Regulator {
+            observer: None,
+            ..regulator.unwrap_or_default()
+        },
         intervals: horizon.intervals,
     }));
     Ok(())

@@ -1,13 +1,16 @@
 //! Conversion of the feedback of a problem file to costs of deviations, and to a controller.
 
-use crate::control::problem::{FeedbackControl, Noise, Regulator};
+use crate::control::problem::{FeedbackControl, Noise, Observation, Regulator};
 use crate::feedback::{Integral, Law};
 use crate::files::feedback::read_law;
 use crate::files::json::error::SceneError;
 use crate::files::json::scope::Scope;
-use crate::files::problem::spec_feedback::{ControllerSpec, FeedbackSpec, HorizonSpec, NoiseSpec};
+use crate::files::problem::spec_feedback::{
+    ControllerSpec, FeedbackSpec, HorizonSpec, NoiseSpec, ObserverSpec,
+};
+use crate::files::problem::state::{joint_value, joint_with_coordinate, moving_marker};
 use crate::files::scene::names::names;
-use crate::files::units::quantity::{PhysicalQuantity, Quantity};
+use crate::files::units::quantity::{Angle, Length, PhysicalQuantity, Quantity};
 use crate::math::shortest;
 use crate::model::system::System;
 use std::sync::Arc;
@@ -60,10 +63,60 @@ pub(crate) fn regulator(
             Some(terminal) => finite(terminal, &scope.key("terminal"))?,
             None => usual.terminal,
         },
+        observer: spec
+            .observer
+            .as_ref()
+            .map(|spec| observation(spec, system, &scope.key("observer")))
+            .transpose()?,
     };
     let costs = [out.coordinates, out.rates, out.integral];
     if costs.iter().all(|cost| *cost == 0.0) && out.markers.is_empty() {
         return Err(place.wrong("no positive weight of a deviation", "one or more"));
+    }
+    Ok(out)
+}
+
+fn observation(
+    spec: &ObserverSpec,
+    system: &System,
+    scope: &Scope<'_>,
+) -> Result<Observation, SceneError> {
+    let positive = |deviation: f64, place: &Scope<'_>| match deviation > 0.0 {
+        true => Ok(deviation),
+        false => Err(place.wrong(deviation.to_string(), "a positive standard deviation")),
+    };
+    let place = scope.key("joints");
+    let kinds = [Angle::kind(), Length::kind()];
+    let joints = spec.joints.iter().map(|(name, deviation)| {
+        let place = place.key(name);
+        let joint = joint_with_coordinate(name, system, &place)?;
+        let value = joint_value(deviation, &kinds, joint, system, &place)?;
+        Ok((joint, positive(value, &place)?))
+    });
+    let place = scope.key("markers");
+    let markers = spec.markers.iter().map(|(name, deviation)| {
+        let place = place.key(name);
+        Ok((
+            moving_marker(name, system, &place)?,
+            place.positive(deviation)?,
+        ))
+    });
+    let [inputs, rates] = Observation::USUAL;
+    let disturbance = |key: &str, written: Option<f64>, unwritten: f64| match written {
+        Some(part) => finite(part, &scope.key(key)),
+        None => Ok(unwritten),
+    };
+    let out = Observation {
+        joints: joints.collect::<Result<_, SceneError>>()?,
+        markers: markers.collect::<Result<_, SceneError>>()?,
+        inputs: disturbance("voltages", spec.voltages, inputs)?,
+        rates: disturbance("rates", spec.rates, rates)?,
+    };
+    if out.joints.is_empty() && out.markers.is_empty() {
+        return Err(scope.wrong(
+            "nothing that is measured",
+            "\"joints\", \"markers\" or both",
+        ));
     }
     Ok(out)
 }
@@ -102,6 +155,12 @@ pub(crate) fn controller(
         Some(sample) => multiple(sample, step, &scope.key("sample"))?,
         None => (law.h / step - 1e-6).ceil().max(1.0) * step,
     };
+    if law.observer.is_some() && (sample - law.h).abs() > ROUNDING * law.h {
+        let [sample, h] = [sample, law.h].map(|time| shortest(time, 9));
+        let expected =
+            format!("{h} ms, the interval of the observer, in steps of which it is a multiple");
+        return Err(scope.key("sample").wrong(format!("{sample} ms"), expected));
+    }
     let delay = match &spec.delay {
         Some(delay) if delay.value() != 0.0 => multiple(delay, step, &scope.key("delay"))?,
         Some(_) => 0.0,
@@ -150,6 +209,7 @@ fn planning(
             delay: 0,
             points: Vec::new(),
             held: None,
+            observer: None,
             markers: Vec::new(),
         }),
         path: scope

@@ -1,6 +1,8 @@
 //! Feedback of a problem as it is written: costs of deviations along an optimum, and a controller in a simulation.
 
-use crate::files::units::quantity::{Angle, AngularVelocity, Length, Quantity, Time, Velocity};
+use crate::files::units::quantity::{
+    Angle, AngularVelocity, JointCoordinate, Length, Quantity, Time, Velocity,
+};
 use schemars::JsonSchema;
 use serde::Deserialize;
 use std::collections::BTreeMap;
@@ -22,6 +24,27 @@ pub struct FeedbackSpec {
     /// not written.
     #[serde(default)]
     pub terminal: Option<f64>,
+    /// Measurements of the controller in place of the state, which a Kalman filter along the optimum then finds from them.
+    #[serde(default)]
+    pub observer: Option<ObserverSpec>,
+}
+
+/// Standard deviations of what is measured at the start of each interval, and of what disturbs the motion in it.
+#[derive(Clone, Debug, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct ObserverSpec {
+    /// Of measured joint coordinates, by joint, SI unit rad or m.
+    #[serde(default)]
+    pub joints: BTreeMap<String, Quantity<JointCoordinate>>,
+    /// Of each component of the places of measured markers, by marker, SI unit m.
+    #[serde(default)]
+    pub markers: BTreeMap<String, Quantity<Length>>,
+    /// Of voltages and loads as parts of their ranges, of voltages of lumped muscles by their squares; 0.05 where not written.
+    #[serde(default)]
+    pub voltages: Option<f64>,
+    /// Of the rates of all coordinates, in 100 degrees/s or 100 mm/s, 0.1 where not written: pushes.
+    #[serde(default)]
+    pub rates: Option<f64>,
 }
 
 /// Factors of sums of squares of deviations.

@@ -205,7 +205,7 @@ impl<'a> Design<'a> {
     }
 
     /// Deviation of a coordinate that costs as much as one of a mm.
-    fn unit(&self, i: usize) -> f64 {
+    pub(super) fn unit(&self, i: usize) -> f64 {
         match self.model.is_length(i) {
             true => 1.0,
             false => Regulator::DEGREE,
@@ -221,23 +221,31 @@ impl<'a> Design<'a> {
                 costs[(place, place)] += self.task.coordinates / self.unit(i).powi(2);
             }
         }
-        let map = &self.model.action.map;
-        let instant = map.placed(&at.z);
         for &(marker, weight) in &self.task.markers {
             let mut place = DMatrix::zeros(3, size);
-            for axis in 0..3 {
-                let mut row = vec![0.0; self.model.coordinate_count()];
-                let mut unit = Vector::zeros();
-                unit[axis] = 1.0;
-                let vector = self.model.markers[marker];
-                map.pull_back_one(vector, &instant.columns, &unit, &mut row);
-                for (c, &i) in self.coordinates.iter().enumerate() {
-                    place[(axis, c)] = row[i];
-                }
-            }
+            let rows = self.by_coordinates(marker, at);
+            place.columns_mut(0, rows.ncols()).copy_from(&rows);
             costs += weight * place.transpose() * place;
         }
         costs
+    }
+
+    /// Derivatives of the place of a marker by the coordinates of the state.
+    pub(super) fn by_coordinates(&self, marker: usize, at: &State) -> DMatrix<f64> {
+        let map = &self.model.action.map;
+        let instant = map.placed(&at.z);
+        let mut out = DMatrix::zeros(3, self.coordinates.len());
+        for axis in 0..3 {
+            let mut row = vec![0.0; self.model.coordinate_count()];
+            let mut unit = Vector::zeros();
+            unit[axis] = 1.0;
+            let vector = self.model.markers[marker];
+            map.pull_back_one(vector, &instant.columns, &unit, &mut row);
+            for (c, &i) in self.coordinates.iter().enumerate() {
+                out[(axis, c)] = row[i];
+            }
+        }
+        out
     }
 
     /// The costs of rates: δq̇ = M⁻¹ (δp − ∂p/∂q δq).
@@ -255,6 +263,16 @@ impl<'a> Design<'a> {
                 .scale_mut(Regulator::RATE_TIME / self.unit(i));
         }
         Ok(self.task.rates * rates.transpose() * rates)
+    }
+
+    /// Derivatives of coordinates and momenta by coordinates and rates.
+    pub(super) fn by_rates(&self, at: &State) -> DMatrix<f64> {
+        let (n, m) = (self.coordinates.len(), self.momenta.len());
+        let [mass, by] = self.of_momenta(at);
+        let mut out = DMatrix::identity(n + m, n + m);
+        out.view_mut((n, 0), (m, n)).copy_from(&by);
+        out.view_mut((n, n), (m, m)).copy_from(&mass);
+        out
     }
 
     /// Derivatives of the momenta of the state by rates and by coordinates.

@@ -63,6 +63,7 @@ impl Design<'_> {
             delay,
             points: points.collect(),
             held,
+            observer: None,
             markers: self.markers(motion, is_held),
         }
     }
@@ -86,14 +87,11 @@ impl Design<'_> {
     /// A point of the law, whose gain reads rates in place of momenta.
     fn point(&self, at: &State, gain: &DMatrix<f64>, inputs: Vec<f64>) -> Point {
         let State { z, momentum } = at;
-        let (n, m) = (self.coordinates.len(), self.momenta.len());
-        let [mass, by] = self.of_momenta(at);
         let rates = rates_of_momentum(self.model, z, 0.0, momentum);
-        let of_momenta = gain.columns(n, m).into_owned();
+        let by = self.by_rates(at);
         let mut read = gain.clone();
-        let mut coordinates = read.columns_mut(0, n);
-        coordinates += &of_momenta * by;
-        read.columns_mut(n, m).copy_from(&(of_momenta * mass));
+        let of_state = gain.columns(0, by.nrows()) * &by;
+        read.columns_mut(0, by.nrows()).copy_from(&of_state);
         let state = self.coordinates.iter().map(|&i| z[i]);
         Point {
             state: state

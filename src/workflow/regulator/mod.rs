@@ -5,6 +5,7 @@
 mod check;
 mod design;
 mod law;
+mod observer;
 mod regulated;
 
 use crate::control::problem::{Control, Regulator};
@@ -67,13 +68,19 @@ impl Design<'_> {
             step.gain = found.gain;
             cost = found.cost;
         }
-        let law = self.law(&steps, &motion, (rest, held.as_ref()));
+        let mut law = self.law(&steps, &motion, (rest, held.as_ref()));
+        let mut observer_radius = None;
+        if let Some(observation) = &self.task.observer {
+            let found = self.observer(observation, (&steps, &motion), held.as_ref())?;
+            (law.observer, observer_radius) = (Some(found.0), Some(found.1));
+        }
         let mut out = Regulated {
             law,
             steps,
             held,
             end_cost,
             not_held,
+            observer_radius,
             residual,
             reproduced: Vec::new(),
         };

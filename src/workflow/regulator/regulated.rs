@@ -40,6 +40,8 @@ pub struct Regulated {
     pub end_cost: DMatrix<f64>,
     /// Reason why the goal is not held.
     pub not_held: Option<String>,
+    /// Spectral radius of the errors of the observer, where there is one.
+    pub observer_radius: Option<f64>,
     /// Greatest relative residual of the equations of the gains.
     pub residual: f64,
     /// Comparison with the equations of motion.
@@ -78,6 +80,8 @@ pub enum NoRegulator {
     Recursion(usize),
     /// A momentum does not tell its rate, which has a cost.
     Rates,
+    /// The state does not follow from what is measured.
+    Observer(String),
     /// It was time to stop.
     Stopped,
 }
@@ -93,6 +97,7 @@ impl fmt::Display for NoRegulator {
             Self::Rates => f.write_str(
                 "a part without mass has no rate that momenta tell; expected no weight of \"rates\"",
             ),
+            Self::Observer(reason) => write!(f, "no observer: {reason}"),
             Self::Stopped => f.write_str("the run was stopped before"),
             Self::Recursion(k) => {
                 write!(f, "the Riccati recursion has no result at step {}", k + 1)
@@ -117,6 +122,9 @@ pub struct RegulatorReport {
     /// The same with feedback.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub radius: Option<f64>,
+    /// Spectral radius of a step of the errors of the observer, at the held goal, or at the start where that is not held.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub observer_radius: Option<f64>,
     /// Greatest relative residual of the Riccati equations.
     pub residual: f64,
     /// Greatest relative difference of a step of the linear closed loop from one of the equations of motion.
@@ -133,26 +141,35 @@ impl Regulated {
             inputs: self.steps[0].by_inputs.ncols(),
             open_radius: held.map(|held| held.open_radius),
             radius: held.map(|held| held.radius),
+            observer_radius: self.observer_radius,
             residual: self.residual,
             // Not a number is worse than any.
             difference: differences.fold(0.0, |a, b| if b > a || b.is_nan() { b } else { a }),
         }
     }
 
-    /// That the goal is held, with its proof.
-    pub fn notes(&self) -> Option<String> {
-        let (_, held) = self.held.as_ref()?;
+    /// That the goal is held, and that the observer finds the state, with their proofs.
+    pub fn notes(&self) -> Vec<String> {
         let h = self.law.h;
         let time = |radius: f64| -h / radius.ln() / 1e3;
-        let open = match held.open_radius < 1.0 {
-            true => format!("without it in {:.3} s", time(held.open_radius)),
-            false => format!("without it the spectral radius is {:.4}", held.open_radius),
-        };
-        Some(format!(
-            "feedback holds the goal: the spectral radius of the closed loop is {:.4}, deviations fall to 1/e in {:.3} s or less, {open}",
-            held.radius,
-            time(held.radius)
-        ))
+        let held = self.held.as_ref().map(|(_, held)| {
+            let open = match held.open_radius < 1.0 {
+                true => format!("without it in {:.3} s", time(held.open_radius)),
+                false => format!("without it the spectral radius is {:.4}", held.open_radius),
+            };
+            format!(
+                "feedback holds the goal: the spectral radius of the closed loop is {:.4}, deviations fall to 1/e in {:.3} s or less, {open}",
+                held.radius,
+                time(held.radius)
+            )
+        });
+        let observed = self.observer_radius.map(|radius| {
+            format!(
+                "the observer finds the state: the spectral radius of its errors is {radius:.4}, they fall to 1/e in {:.3} s or less",
+                time(radius)
+            )
+        });
+        held.into_iter().chain(observed).collect()
     }
 
     /// Doubts about the gains.

@@ -1,0 +1,84 @@
+//! An observer: the state of a system from quantities that do not tell all of it, by a Kalman filter about a motion.
+//!
+//! With deviations x of the state, y of what is measured and u of the inputs from the motion,
+//!
+//! ```text
+//! x̂ = x̂⁻ + M (y − C x̂⁻),     x̂⁻₊ = A x̂ + B u.
+//! ```
+
+use nalgebra::DMatrix;
+
+/// A quantity that an observer reads.
+#[derive(Clone, Debug, PartialEq)]
+pub enum Reading {
+    /// A quantity of the state, by its place in the law.
+    State(usize),
+    /// A component, 0 to 2, of the place of a marker in mm, by the name of the marker.
+    Marker(String, usize),
+}
+
+/// The filter in an interval, or after the end.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Filter {
+    /// Readings of the motion at the start of the interval: rad, mm.
+    pub readings: Vec<f64>,
+    /// A, over the measured quantities of the law.
+    pub by_state: DMatrix<f64>,
+    /// B, over the inputs, or their squares.
+    pub by_inputs: DMatrix<f64>,
+    /// C.
+    pub output: DMatrix<f64>,
+    /// M.
+    pub gain: DMatrix<f64>,
+}
+
+impl Filter {
+    /// Corrects a predicted state by readings.
+    pub(super) fn correct(&self, readings: &[f64], state: &mut [f64], errors: &mut [f64]) {
+        for (row, error) in errors.iter_mut().enumerate() {
+            let known = state.iter().enumerate();
+            let known = known.map(|(i, x)| self.output[(row, i)] * x).sum::<f64>();
+            *error = readings[row] - self.readings[row] - known;
+        }
+        for (i, x) in state.iter_mut().enumerate() {
+            let terms = errors.iter().enumerate();
+            *x += terms
+                .map(|(row, error)| self.gain[(i, row)] * error)
+                .sum::<f64>();
+        }
+    }
+
+    /// The state of the next interval.
+    pub(super) fn predict(&self, state: &[f64], inputs: &[f64], next: &mut [f64]) {
+        for (i, next) in next.iter_mut().enumerate() {
+            let by_state = state.iter().enumerate();
+            let by_inputs = inputs.iter().enumerate();
+            *next = by_state
+                .map(|(j, x)| self.by_state[(i, j)] * x)
+                .sum::<f64>()
+                + by_inputs
+                    .map(|(j, u)| self.by_inputs[(i, j)] * u)
+                    .sum::<f64>();
+        }
+    }
+}
+
+/// An observer along a motion.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Observer {
+    /// Its readings.
+    pub readings: Vec<Reading>,
+    /// One for each interval, in order.
+    pub points: Vec<Filter>,
+    /// That of the time after the end, where it is held.
+    pub held: Option<Filter>,
+}
+
+impl Observer {
+    /// The filter of an interval; the last one where the end is not held.
+    pub(super) fn at(&self, interval: usize) -> &Filter {
+        let last = self.held.as_ref().or(self.points.last());
+        let own = self.points.get(interval).or(last);
+        own.expect("an observer has an interval")
+    }
+}

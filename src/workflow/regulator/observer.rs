@@ -1,0 +1,211 @@
+//! The observer of a regulator: a Kalman filter along the motion, from the covariances of what is measured and of what disturbs.
+//!
+//! Its covariances P follow the Riccati recursion of `(Aᵀ, Cᵀ)` forward in time, from that of a robot which has done the first step for ever.
+
+use crate::control::problem::{Observation, Regulator};
+use crate::feedback::{Costs, Filter, HeldGain, Observer, Reading, held_gain, riccati_step};
+use crate::workflow::regulator::design::{Design, State};
+use crate::workflow::regulator::regulated::{NoRegulator, RegulatedStep};
+use nalgebra::{DMatrix, DVector};
+
+/// Scales: units of the state and standard deviations of the readings.
+struct Scales {
+    state: DVector<f64>,
+    readings: DVector<f64>,
+}
+
+/// A step over coordinates and rates, in which the units of the state and the deviations of the readings are one.
+struct Scaled {
+    /// Aᵀ, B and Cᵀ.
+    by_state: DMatrix<f64>,
+    by_inputs: DMatrix<f64>,
+    output: DMatrix<f64>,
+    noise: Costs,
+}
+
+/// Reason why a state cannot be found.
+const NOT_SEEN: &str =
+    "not all that moves follows from what is measured; expected more measured joints or markers";
+
+impl Design<'_> {
+    /// The observer of a motion and of its held goal, with the spectral radius of its errors.
+    pub(super) fn observer(
+        &self,
+        observation: &Observation,
+        (steps, motion): (&[RegulatedStep], &[State]),
+        held: Option<&(RegulatedStep, HeldGain)>,
+    ) -> Result<(Observer, f64), NoRegulator> {
+        let goal = self.goal();
+        let readings = self.readings(observation)?;
+        let scales = self.scales(observation);
+        let end = match held {
+            Some(_) => &goal,
+            None => motion.last().expect("an instant"),
+        };
+        let at_rest = |step: &Scaled| {
+            held_gain([&step.by_state, &step.output], &step.noise)
+                .map_err(|_| NoRegulator::Observer(NOT_SEEN.to_owned()))
+        };
+        let mut points = Vec::new();
+        let mut covariance: Option<DMatrix<f64>> = None;
+        let mut radius = 0.0;
+        for (k, step) in steps.iter().enumerate() {
+            let next = if k + 1 == steps.len() {
+                end
+            } else {
+                &motion[k + 1]
+            };
+            let scaled = self.scaled_step(observation, step, (&motion[k], next), &scales);
+            let before = match covariance.take() {
+                Some(known) => known,
+                None => {
+                    let first = at_rest(&scaled)?;
+                    radius = first.radius;
+                    first.cost
+                }
+            };
+            let pair = [&scaled.by_state, &scaled.output];
+            let after = riccati_step(pair, &scaled.noise, &before);
+            covariance = Some(after.ok_or(NoRegulator::Recursion(k))?.cost);
+            points.push(self.filter(&scaled, &before, (&readings, &motion[k]), &scales)?);
+        }
+        let held = held.map(|(step, _)| {
+            let scaled = self.scaled_step(observation, step, (&goal, &goal), &scales);
+            let of = at_rest(&scaled)?;
+            radius = of.radius;
+            self.filter(&scaled, &of.cost, (&readings, &goal), &scales)
+        });
+        let observer = Observer {
+            held: held.transpose()?,
+            readings,
+            points,
+        };
+        Ok((observer, radius))
+    }
+
+    /// The readings: measured joints, then the places of measured markers.
+    fn readings(&self, observation: &Observation) -> Result<Vec<Reading>, NoRegulator> {
+        let system = &self.model.system;
+        let mut out = Vec::new();
+        for &(joint, _) in &observation.joints {
+            let own = self.model.joint_readings[joint].coordinate;
+            let place = self.coordinates.iter().position(|&i| Some(i) == own);
+            let place = place.ok_or_else(|| {
+                let name = &system.joints[joint].name;
+                NoRegulator::Observer(format!("joint {name:?} does not move freely"))
+            })?;
+            out.push(Reading::State(place));
+        }
+        for &(marker, _) in &observation.markers {
+            let name = &system.markers[marker].name;
+            out.extend((0..3).map(|axis| Reading::Marker(name.clone(), axis)));
+        }
+        Ok(out)
+    }
+
+    fn scales(&self, observation: &Observation) -> Scales {
+        let coordinates = self.coordinates.iter().map(|&i| self.unit(i));
+        let rates = self.momenta.iter();
+        let rates = rates.map(|&i| self.unit(i) / Regulator::RATE_TIME);
+        let joints = observation.joints.iter().map(|(_, deviation)| *deviation);
+        let markers = observation.markers.iter();
+        let markers = markers.flat_map(|(_, deviation)| [*deviation; 3]);
+        Scales {
+            state: DVector::from_vec(coordinates.chain(rates).collect()),
+            readings: DVector::from_vec(joints.chain(markers).collect()),
+        }
+    }
+
+    /// A step over coordinates and rates from one state to the next, scaled.
+    fn scaled_step(
+        &self,
+        observation: &Observation,
+        step: &RegulatedStep,
+        (at, next): (&State, &State),
+        Scales { state, readings }: &Scales,
+    ) -> Scaled {
+        let n = state.len();
+        let to_rates = |right: DMatrix<f64>| {
+            let by = self.by_rates(next).lu().solve(&right);
+            let by = by.unwrap_or_else(|| DMatrix::from_element(n, right.ncols(), f64::NAN));
+            DMatrix::from_fn(n, by.ncols(), |i, j| by[(i, j)] / state[i])
+        };
+        let by_state = to_rates(step.by_state.view((0, 0), (n, n)) * self.by_rates(at));
+        let by_inputs = to_rates(step.by_inputs.rows(0, n).into_owned());
+        let output = self.output(observation, at);
+        let noise = |i: usize| observation.inputs * self.ranges[i];
+        let disturbed = DMatrix::from_fn(n, by_inputs.ncols(), |i, j| by_inputs[(i, j)] * noise(j));
+        let mut covariance = &disturbed * disturbed.transpose();
+        for i in self.coordinates.len()..n {
+            covariance[(i, i)] += observation.rates * observation.rates;
+        }
+        Scaled {
+            by_state: DMatrix::from_fn(n, n, |j, i| by_state[(i, j)] * state[j]),
+            output: DMatrix::from_fn(n, output.nrows(), |j, i| {
+                output[(i, j)] * state[j] / readings[i]
+            }),
+            noise: Costs {
+                state: covariance,
+                inputs: DMatrix::identity(output.nrows(), output.nrows()),
+            },
+            by_inputs,
+        }
+    }
+
+    /// C: readings by coordinates and rates.
+    fn output(&self, observation: &Observation, at: &State) -> DMatrix<f64> {
+        let joints = observation.joints.len();
+        let size = self.coordinates.len() + self.momenta.len();
+        let mut out = DMatrix::zeros(joints + 3 * observation.markers.len(), size);
+        for (row, &(joint, _)) in observation.joints.iter().enumerate() {
+            let own = self.model.joint_readings[joint].coordinate;
+            for (place, &i) in self.coordinates.iter().enumerate() {
+                out[(row, place)] = f64::from(u8::from(Some(i) == own));
+            }
+        }
+        for (number, &(marker, _)) in observation.markers.iter().enumerate() {
+            let rows = self.by_coordinates(marker, at);
+            out.view_mut((joints + 3 * number, 0), rows.shape())
+                .copy_from(&rows);
+        }
+        out
+    }
+
+    /// The filter of a step with the covariance P before its readings: `M = P Cᵀ (C P Cᵀ + R)⁻¹`.
+    fn filter(
+        &self,
+        scaled: &Scaled,
+        covariance: &DMatrix<f64>,
+        (readings, at): (&[Reading], &State),
+        Scales {
+            state,
+            readings: of,
+        }: &Scales,
+    ) -> Result<Filter, NoRegulator> {
+        let toward = scaled.output.transpose() * covariance;
+        let inner = &scaled.noise.inputs + &toward * &scaled.output;
+        let inner = inner.cholesky();
+        let inner = inner.ok_or_else(|| NoRegulator::Observer(NOT_SEEN.to_owned()))?;
+        let gain = inner.solve(&toward);
+        let (n, outputs) = (state.len(), of.len());
+        let instant = self.model.action.map.placed(&at.z);
+        let read = |reading: &Reading| match reading {
+            Reading::State(place) => at.z[self.coordinates[*place]],
+            Reading::Marker(name, axis) => {
+                let mut markers = self.model.system.markers.iter();
+                let marker = markers.position(|marker| marker.name == *name);
+                let marker = marker.expect("a marker of the system");
+                instant.x[self.model.markers[marker]][*axis]
+            }
+        };
+        Ok(Filter {
+            readings: readings.iter().map(read).collect(),
+            by_state: DMatrix::from_fn(n, n, |i, j| scaled.by_state[(j, i)] * state[i] / state[j]),
+            by_inputs: DMatrix::from_fn(n, self.inputs.len(), |i, j| {
+                scaled.by_inputs[(i, j)] * state[i]
+            }),
+            output: DMatrix::from_fn(outputs, n, |i, j| scaled.output[(j, i)] * of[i] / state[j]),
+            gain: DMatrix::from_fn(n, outputs, |i, j| gain[(j, i)] * state[i] / of[j]),
+        })
+    }
+}

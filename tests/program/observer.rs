@@ -1,0 +1,192 @@
+//! Feedback from measurements that do not tell the state: the filter of the file against a naive recursion, and a loop that closes over it.
+
+use crate::commands::summary;
+use crate::runs::{read, run, workshop};
+use nalgebra::DMatrix;
+use serde_json::Value;
+
+const OBSERVER: &str = "feedback.observer={\"markers\":{\"tip\":\"0.1 mm\"}}";
+
+fn matrix(value: &Value) -> DMatrix<f64> {
+    let rows: Vec<Vec<f64>> = serde_json::from_value(value.clone()).unwrap();
+    DMatrix::from_fn(rows.len(), rows[0].len(), |i, j| rows[i][j])
+}
+
+/// One step of `P₊ = A P Aᵀ + W − A P Cᵀ (C P Cᵀ + R)⁻¹ C P Aᵀ`, and `M = P Cᵀ (C P Cᵀ + R)⁻¹`.
+fn naive(filter: &Value, p: &DMatrix<f64>) -> [DMatrix<f64>; 2] {
+    let [a, b, c] = ["by_state", "by_inputs", "output"].map(|key| matrix(&filter[key]));
+    // 0.05 of the range of a square of 3 kV, 0.1 of 100 degrees/s, 0.1 mm.
+    let mut w = &b * b.transpose() * (0.05_f64 * 9e6).powi(2);
+    w[(1, 1)] += 10.0_f64.to_radians().powi(2);
+    let r = DMatrix::identity(3, 3) * 1e-4_f64.powi(2);
+    let toward = p * c.transpose();
+    let m = &toward * (&c * &toward + r).try_inverse().unwrap();
+    let next = &a * (p - &m * toward.transpose()) * a.transpose() + w;
+    [m, next]
+}
+
+fn is_near(found: &Value, expected: &DMatrix<f64>) {
+    let found = matrix(found);
+    let size = expected.amax();
+    assert!(size > 1.0);
+    let off = (found - expected).amax();
+    assert!(off < 1e-6 * size, "{off} of {size}");
+}
+
+#[test]
+fn the_filter_is_that_of_a_naive_recursion_and_closes_the_loop() {
+    let folder = workshop();
+    let here = folder.path();
+    let solve = [
+        "solve",
+        "problems/pair_feedback.json",
+        "-o",
+        "pair",
+        "--no-report",
+    ];
+    let (status, out, err) = run(here, &[&solve[..], &["--set", OBSERVER]].concat());
+    assert_eq!(status, 0, "{out}{err}");
+    assert!(err.contains("feedback.c is not written") && !here.join("pair/feedback.c").exists());
+    let radius = summary(here, "pair")["feedback"]["observer_radius"]
+        .as_f64()
+        .unwrap();
+    assert!(0.1 < radius && radius < 0.9, "{radius}");
+    let file = read(here.join("pair/feedback.json"));
+    let observer = &file["observer"];
+    assert_eq!(
+        observer["readings"][1],
+        serde_json::json!({ "marker": ["tip", 1] })
+    );
+    let steps = observer["intervals"].as_array().unwrap();
+    assert_eq!(steps.len(), 20);
+    let mut p = DMatrix::identity(2, 2);
+    let settle = |filter: &Value, p: &mut DMatrix<f64>| {
+        (0..400).for_each(|_| *p = naive(filter, p)[1].clone())
+    };
+    settle(&steps[0], &mut p);
+    for step in steps {
+        let [m, next] = naive(step, &p);
+        is_near(&step["gain"], &m);
+        p = next;
+    }
+    let held = &observer["held"];
+    settle(held, &mut p);
+    is_near(&held["gain"], &naive(held, &p)[0]);
+
+    let simulate = |name: &str, noise: &str| {
+        let controller =
+            format!("simulate.controller={{\"feedback\":\"../pair\",\"noise\":{noise}}}");
+        let stiffer = "scene.materials.silicone.shear_modulus=\"110 kPa\"";
+        let (status, out, err) = run(
+            here,
+            &[
+                "simulate",
+                "problems/pair_closed_loop.json",
+                "-o",
+                name,
+                "--set",
+                &controller,
+                "--set",
+                stiffer,
+            ],
+        );
+        assert_eq!(status, 0, "{out}{err}");
+        summary(here, name)["closed_loop"]["markers"]["tip"].clone()
+    };
+    let last = |tip: &Value, of: &str| tip[of]["last"].as_f64().unwrap();
+    let quiet = simulate("quiet", "{}");
+    assert!(last(&quiet, "open_loop") > 5e-4, "{quiet}");
+    assert!(
+        last(&quiet, "feedback") < 0.2 * last(&quiet, "open_loop"),
+        "{quiet}"
+    );
+    let [noisy, again, other] = ["1", "1", "2"].map(|seed| {
+        simulate(
+            "noisy",
+            &format!("{{\"length\":\"0.1 mm\",\"seed\":{seed}}}"),
+        )
+    });
+    assert_eq!(noisy, again);
+    assert!(noisy != other && noisy != quiet);
+    assert!(
+        last(&noisy, "feedback") < 0.4 * last(&noisy, "open_loop"),
+        "{noisy}"
+    );
+}
+
+#[test]
+fn wrong_observers_are_refused() {
+    let folder = workshop();
+    let here = folder.path();
+    let refused = |arguments: &[&str], told: &[&str]| {
+        let (status, out, err) = run(here, arguments);
+        assert_eq!(status, 2, "{arguments:?}: {out}{err}");
+        told.iter()
+            .for_each(|told| assert!(err.contains(told), "{told}: {err}"));
+    };
+    for (observer, told) in [
+        ("{}", &["feedback.observer", "joints"][..]),
+        (
+            "{\"markers\":{\"top\":\"1 mm\"}}",
+            &["markers.top", "marker"],
+        ),
+        ("{\"markers\":{\"tip\":\"0 mm\"}}", &["markers.tip"]),
+        (
+            "{\"joints\":{\"joint1\":\"-1 deg\"}}",
+            &["joints.joint1", "positive"],
+        ),
+        ("{\"joints\":{\"joint1\":\"1 mm\"}}", &["joints.joint1"]),
+        (
+            "{\"joints\":{\"joint1\":\"1 deg\"},\"rates\":-1}",
+            &["observer.rates"],
+        ),
+    ] {
+        let set = format!("feedback.observer={observer}");
+        refused(
+            &["solve", "problems/pair_feedback.json", "--set", &set],
+            told,
+        );
+    }
+    let solve = [
+        "solve",
+        "problems/pair_feedback.json",
+        "-o",
+        "pair",
+        "--no-report",
+    ];
+    let (status, out, err) = run(here, &[&solve[..], &["--set", OBSERVER]].concat());
+    assert_eq!(status, 0, "{out}{err}");
+    let text = std::fs::read_to_string(here.join("pair/feedback.json")).unwrap();
+    let simulate = |controller: &str, told: &[&str]| {
+        let set = format!("simulate.controller={controller}");
+        refused(
+            &["simulate", "problems/pair_closed_loop.json", "--set", &set],
+            told,
+        );
+    };
+    simulate(
+        "{\"feedback\":\"../pair\",\"sample\":\"5 ms\"}",
+        &["controller.sample", "10 ms", "observer"],
+    );
+    for (from, to, told) in [
+        (
+            "[\"tip\", 1]",
+            "[\"tip\", 3]",
+            &["readings", "0, 1 or 2"][..],
+        ),
+        (
+            "[\"tip\", 1]",
+            "[\"top\", 1]",
+            &["top", "this robot does not have"],
+        ),
+        (
+            "\"by_inputs\": [",
+            "\"by_inputs\": [[0.0], ",
+            &["by_inputs", "rows"],
+        ),
+    ] {
+        assert!(text.contains(from), "{from}");
+        std::fs::write(here.join("wrong.json"), text.replacen(from, to, 1)).unwrap();
+        simulate("{\"feedback\":\"../wrong.json\"}", told);
+    }
+}
