@@ -15,6 +15,7 @@ from proboscis._ending import Interrupted
 from proboscis._error import Error
 from proboscis._table import Table
 from proboscis.commands import Starts, Study, Sweep, check, inspect, starts, study, sweep
+from proboscis.controller import Controller
 from proboscis.identification import Identification
 from proboscis.nlp import Nlp
 from proboscis.parts import GROUND, Body, Joint, Load, Marker, Material, Muscle, Part, Solid, Spring, Tendon
@@ -28,6 +29,7 @@ __version__ = _proboscis.version
 __all__ = [
     "GROUND",
     "Body",
+    "Controller",
     "Error",
     "Figure",
     "Identification",

@@ -20,6 +20,7 @@ from proboscis.result import Result
 
 if TYPE_CHECKING:
     from proboscis import entries
+    from proboscis.controller import Controller
     from proboscis.nlp import Nlp
     from proboscis.system import System
 
@@ -217,6 +218,14 @@ class Problem:
         from proboscis.nlp import Nlp
 
         return Nlp(_proboscis.Program(self._input, self._text))
+
+    def controller(self, intervals: int) -> Controller:
+        """Solves the control problem, and returns a controller that plans anew over a horizon of a number of its intervals."""
+        from proboscis.controller import Controller
+
+        if intervals < 1:
+            raise Error(f"intervals: found {intervals}, expected 1 or more", "intervals")
+        return Controller(_proboscis.Controller(self._input, self._text, intervals))
 
     def _asks(self, task: str) -> None:
         if self.task != task:

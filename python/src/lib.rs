@@ -8,6 +8,7 @@ use pyo3::prelude::*;
 use serde::Serialize;
 
 mod background;
+mod controller;
 mod program;
 mod run;
 mod variants;
@@ -105,6 +106,7 @@ fn schema() -> (String, String) {
 #[pymodule]
 fn _proboscis(module: &Bound<'_, PyModule>) -> PyResult<()> {
     module.add("version", env!("CARGO_PKG_VERSION"))?;
+    module.add_class::<controller::Controller>()?;
     module.add_class::<program::Program>()?;
     module.add_class::<background::Ending>()?;
     module.add_function(wrap_pyfunction!(task, module)?)?;

@@ -60,7 +60,7 @@ impl Program {
 }
 
 /// Waits for a message of another thread; Ctrl-C ends the waiting.
-fn heard<T: Send>(py: Python<'_>, mut told: Receiver<T>) -> PyResult<T> {
+pub(crate) fn heard<T: Send>(py: Python<'_>, mut told: Receiver<T>) -> PyResult<T> {
     loop {
         let waiting = &mut told;
         let heard = py.detach(move || waiting.recv_timeout(PERIOD));
@@ -75,7 +75,11 @@ fn heard<T: Send>(py: Python<'_>, mut told: Receiver<T>) -> PyResult<T> {
 }
 
 /// The numbers of an array of this length.
-fn taken(array: &PyReadonlyArray1<'_, f64>, length: usize, of: &str) -> PyResult<Vec<f64>> {
+pub(crate) fn taken(
+    array: &PyReadonlyArray1<'_, f64>,
+    length: usize,
+    of: &str,
+) -> PyResult<Vec<f64>> {
     let values = array.as_array().to_vec();
     match values.len() == length {
         true => Ok(values),

@@ -10,7 +10,7 @@
 //! - `side_by_side`: several results on one page.
 //! - `accuracy_table`, `blocks`, `comparison`, `energy_summary`, `length_unit_check`: texts about a result.
 //! - `other_task`: messages where a problem asks for another command; `no_equilibrium`: the summary where there is no state of rest.
-//! - `sensitivity_summary`: sensitivities of an optimum.
+//! - `sensitivity_summary`: sensitivities of an optimum; `receding`: a controller for other languages.
 //! - `page`, `simulation_page`, `solve_page`: texts of the page; `solve_summary`, `equilibrium_summary`, `messages`, `folder`, `foreign`, `progress`, `ticker`, `request`, `error`: common parts of commands.
 
 mod accuracy_table;
@@ -51,6 +51,7 @@ mod path;
 mod path_summary;
 mod program;
 mod progress;
+mod receding;
 mod record;
 mod request;
 mod resume_file;
@@ -84,6 +85,7 @@ pub use once::run_once;
 pub use program::{changed_text, check_text, with_program};
 pub(crate) use progress::{Progress, progress_bar};
 pub use progress::{ProgressDisplay, Reached};
+pub use receding::{FileHorizon, SiController};
 pub(crate) use record::{FileRecords, Found, OF_VARIANT, is_unfinished};
 pub use request::{CommandInput, CommandOutput, PageWanted};
 pub use side_by_side::compare;

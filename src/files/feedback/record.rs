@@ -95,7 +95,7 @@ pub(super) struct PointRecord {
 }
 
 /// Unit of a measured quantity, and its factor from the units inside.
-pub(super) fn unit_of(measured: &Measured) -> (&'static str, f64) {
+pub(crate) fn unit_of(measured: &Measured) -> (&'static str, f64) {
     match (measured.is_length, measured.is_rate) {
         (false, false) => ("rad", 1.0),
         (false, true) => ("rad/s", 1e3),
