@@ -19,7 +19,8 @@
 //!
 //! [`Simulation`] and [`Control`] are asked of a [`System`] of parts: [`Body`], [`Joint`], [`Muscle`], [`Solid`], [`Spring`], [`Tendon`],
 //! [`Marker`], and whatever implements [`Component`]. [`units`] are written as functions; all else is in g, mm, ms, N, V. A [`Motion`] and an
-//! [`Optimum`] are what comes back; an [`Identification`] fits constants to recordings. [`Nlp`] is the transcription for a solver of one's own.
+//! [`Optimum`] are what comes back; an [`Identification`] fits constants to recordings; a [`receding::RecedingHorizon`] plans the motion of a
+//! robot anew while it moves. [`Nlp`] is the transcription for a solver of one's own.
 //!
 //! # How it works
 //!
@@ -128,6 +129,7 @@ pub use model::{
 };
 pub use nlp::Nlp;
 pub use sensitivity::Sensitivity;
+pub use workflow::receding;
 pub use workflow::{Remark, Severity, Tracked, TrackingError};
 
 /// All that a program needs: `use proboscis::prelude::*;`.

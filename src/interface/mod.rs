@@ -1,7 +1,7 @@
 //! The library as a program uses it: systems built part by part, simulated and steered in memory.
 //!
 //! - `handle`, `parts`, `components`, `material`: systems and their parts, with defaults; checked when they are used.
-//! - `input`, `state`, `sought`, `equilibrium`, `simulation`, `control`, `limits`, `costs`, `cost_checks`, `identification`: the tasks of a system.
+//! - `input`, `state`, `sought`, `equilibrium`, `simulation`, `control`, `limits`, `costs`, `cost_checks`, `identification`, `receding`: the tasks of a system.
 //! - `motion`, `optimum`, `error`: what comes back.
 
 mod components;
@@ -20,6 +20,7 @@ mod measured;
 mod motion;
 mod optimum;
 mod parts;
+mod receding;
 mod simulation;
 mod sought;
 mod state;

@@ -5,6 +5,7 @@ use proboscis::control::problem::Regulator;
 use proboscis::dynamics::{Stepper, rates_of_momentum};
 use proboscis::feedback::{Controller, Law};
 use proboscis::model::Model;
+use proboscis::prelude::*;
 use proboscis::workflow::receding::{RecedingHorizon, Source};
 
 /// A robot in short steps.
@@ -241,4 +242,38 @@ fn faults() {
     // Steps that were left out altogether.
     let (source, _) = step(law.h * 1000.0, Some(&law.at(1e4).state));
     assert_eq!(source, Source::Plan);
+}
+
+/// A robot built part by part is held at its goal.
+#[test]
+fn a_robot_of_parts() {
+    let silicone = Material::elastomer(kpa(100.0)).density(kg_per_m3(1000.0));
+    let silicone = silicone.relative_permittivity(3.0).viscosity(pa_s(1000.0));
+    let mut arm = System::new("arm");
+    let link = Body::cylinder(mm(50.0), mm(20.0)).mass(g(30.0));
+    let link = arm.add(link.at(Y * mm(25.0)).along(Y));
+    arm.add(Joint::revolute(Z).between(GROUND, link));
+    let [right, _] = [X, -X].map(|side| {
+        let end = |y: f64| side * mm(15.0) + Y * mm(y);
+        let muscle = Muscle::of(&silicone).section(mm(10.0), mm(10.0));
+        let muscle = muscle.layer(um(50.0)).from(GROUND, end(-20.0));
+        arm.add(muscle.to(link, end(20.0)))
+    });
+    let problem = Control::over(s(0.2), 20).goal(State::rest_at([(right, kv(1.5))]));
+    let problem = problem.voltage_bounds(0.0, kv(3.0)).effort(1.0);
+    let horizon = problem.horizon(&arm, 5).unwrap();
+    let mut controller = RecedingHorizon::new(&horizon);
+    let goal = horizon.law().at(1e4).state.clone();
+    assert!(goal[0] < -0.05, "{goal:?}");
+    let held = controller.step(1e4, Some(&goal));
+    assert_eq!(held.source, Source::Plan);
+    assert!((held.inputs[0] - 1500.0).abs() < 5.0 && held.inputs[1] < 100.0);
+    let none = problem.horizon(&arm, 0).unwrap_err().to_string();
+    assert!(none.contains("0 intervals"), "{none}");
+    let open = problem
+        .goal(State::Free)
+        .horizon(&arm, 5)
+        .unwrap_err()
+        .to_string();
+    assert!(open.contains("not held"), "{open}");
 }
