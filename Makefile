@@ -111,6 +111,7 @@ studies: build
 	@$(CARGO) bench --locked --bench warm -- --write
 	@$(CARGO) bench --locked --bench design -- --write
 	@$(CARGO) bench --locked --bench feedback -- --write
+	@$(CARGO) bench --locked --bench receding_horizon -- --write
 	@benches/peers/run.sh
 
 install-deps:

@@ -117,8 +117,8 @@ impl Program<'_> {
                     put(scale(k, a) * scale(k, b) * (places[(a, b)] + of_rates));
                 }
             }
-            for c in 0..n {
-                put(-scale(k, c) * scale(k + 1, c) * rates[c]);
+            for (c, rate) in rates.iter().enumerate() {
+                put(-scale(k, c) * scale(k + 1, c) * rate);
             }
         }
         let end = &self.reference.at(self.begin + last).end;

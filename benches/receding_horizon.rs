@@ -1,0 +1,206 @@
+//! Times of the steps of a receding horizon on the trunk, and its memory over many of them.
+//!
+//! `cargo bench --bench receding_horizon -- [--write]`: the trunk of `problems/elephant_trunk.json` is planned anew over 20 intervals in each of them,
+//! on its way and at its goal, under random pushes. With `--write` the page goes to `results/gallery/receding_horizon.md`.
+
+#[path = "../tests/common/random.rs"]
+#[expect(dead_code, unreachable_pub, reason = "tests draw vectors too")]
+mod random;
+
+use proboscis::control::problem::{Ahead, Regulator, Task};
+use proboscis::dynamics::{Stepper, rates_of_momentum};
+use proboscis::feedback::Controller;
+use proboscis::files::read_problem;
+use proboscis::model::Model;
+use proboscis::workflow::receding::{Horizon, RecedingHorizon, Source};
+use random::Random;
+use std::fs;
+use std::path::Path;
+use std::time::Instant;
+
+/// Intervals of the horizon.
+const INTERVALS: usize = 20;
+/// Steps that are timed under pushes, and after these the steps by which memory is compared.
+const STEPS: usize = 20_000;
+const MORE: usize = 100_000;
+/// Intervals between pushes, and their greatest size in g mm²/ms about each joint.
+const BETWEEN: usize = 60;
+const PUSH: f64 = 3000.0;
+const SEED: u64 = 35;
+
+fn main() {
+    let writes = std::env::args().any(|argument| argument == "--write");
+    let text = page();
+    println!("{text}");
+    if writes {
+        let file =
+            Path::new(env!("CARGO_MANIFEST_DIR")).join("results/gallery/receding_horizon.md");
+        fs::write(file, text).expect("a written file");
+    }
+}
+
+fn ahead(step: f64) -> Ahead {
+    let path = Path::new(env!("CARGO_MANIFEST_DIR")).join("problems/elephant_trunk.json");
+    let loaded = read_problem(&path, &[]).expect("a kept problem");
+    let Task::Control(control) = loaded.task else {
+        panic!("a problem of control");
+    };
+    Ahead {
+        system: loaded.system,
+        control: *control,
+        regulator: Regulator {
+            step,
+            ..Regulator::default()
+        },
+        intervals: INTERVALS,
+    }
+}
+
+/// The trunk, in short steps.
+struct Robot<'m> {
+    model: &'m Model,
+    z: Vec<f64>,
+    momentum: Vec<f64>,
+}
+
+impl Robot<'_> {
+    fn measure(&self) -> Vec<f64> {
+        let rates = rates_of_momentum(self.model, &self.z, 0.0, &self.momentum);
+        let n = self.model.coordinate_count();
+        self.z[..n].iter().chain(&rates).copied().collect()
+    }
+
+    fn go(&mut self, h: f64, voltages: &[f64]) {
+        let mut stepper = Stepper::new(self.model, &self.z, &self.momentum, Default::default());
+        let scalars = self.model.scalars(voltages);
+        for _ in 0..4 {
+            stepper.step(h / 4.0, &scalars).expect("a step");
+        }
+        self.z = stepper.coordinates().to_vec();
+        self.momentum = stepper.momentum().to_vec();
+    }
+
+    fn push(&mut self, random: &mut Random) {
+        let push = |p: &mut f64| *p += random.between(-PUSH, PUSH);
+        self.momentum.iter_mut().for_each(push);
+    }
+}
+
+/// Squared distances of joints from the motion in degrees², a mean over steps, under inputs by a controller.
+fn followed(
+    horizon: &Horizon,
+    model: &Model,
+    inputs: &mut dyn FnMut(f64, &[f64]) -> Vec<f64>,
+) -> f64 {
+    let law = horizon.law();
+    let mut robot = Robot {
+        model,
+        z: model.reference_coordinates(),
+        momentum: vec![0.0; model.coordinate_count()],
+    };
+    let mut random = Random(SEED);
+    let mut sum = 0.0;
+    for k in 0..STEPS {
+        let time = law.h * k as f64;
+        let state = robot.measure();
+        let reference = &law.at(time).state;
+        let joints = robot.z.iter().zip(reference);
+        sum += joints
+            .map(|(a, b)| (a - b).to_degrees().powi(2))
+            .sum::<f64>();
+        robot.go(law.h, &inputs(time, &state));
+        if k % BETWEEN == BETWEEN - 1 {
+            robot.push(&mut random);
+        }
+    }
+    sum / STEPS as f64
+}
+
+/// Resident memory in kB, where the system tells.
+fn memory() -> Option<f64> {
+    let text = fs::read_to_string("/proc/self/status").ok()?;
+    let line = text.lines().find(|line| line.starts_with("VmRSS"))?;
+    line.split_whitespace().nth(1)?.parse().ok()
+}
+
+fn page() -> String {
+    let mut text = format!(
+        "# Steps of a receding horizon\n\nWritten by `cargo bench --bench receding_horizon -- --write`.\n\n\
+         The trunk of [`elephant_trunk`](../../problems/elephant_trunk.json) is planned anew over {INTERVALS} of its intervals of 2.4 ms, \
+         at the start of each of {STEPS} of them; a random push of up to {PUSH} g mm²/ms about each joint comes every {BETWEEN} intervals. \
+         A step is what passes from a measurement to its inputs; then the next one is prepared. Where other work runs on the same core, the \
+         greatest times are those of the scheduler: these are of `chrt -f 50 taskset -c 1` on a shared machine of two cores, which pauses such a \
+         process for 50 ms now and then.\n\n\
+         | steps of an interval | part | median, ms | 99 % | 99.9 % | greatest |\n|--:|:--|--:|--:|--:|--:|\n"
+    );
+    let mut costs = String::new();
+    for step in [2.4, 1.2] {
+        let horizon = Horizon::solved(&ahead(step)).expect("a horizon");
+        let law = horizon.law();
+        let model = Model::new(ahead(step).system, None, law.h, &[]).expect("a model");
+        let mut controller = RecedingHorizon::new(&horizon);
+        let mut times = [Vec::new(), Vec::new(), Vec::new()];
+        let mut others = 0;
+        let planned = followed(&horizon, &model, &mut |time, state| {
+            let began = Instant::now();
+            let answer = controller.step(time, Some(state));
+            let answered = began.elapsed().as_secs_f64();
+            others += usize::from(answer.source != Source::Plan);
+            let inputs = answer.inputs.to_vec();
+            let began = Instant::now();
+            controller.prepare();
+            let prepared = began.elapsed().as_secs_f64();
+            for (list, time) in times
+                .iter_mut()
+                .zip([answered, prepared, answered + prepared])
+            {
+                list.push(1e3 * time);
+            }
+            inputs
+        });
+        let mut regulator = Controller::new(law, law.h, 0.0);
+        let regulated = followed(&horizon, &model, &mut |time, state| {
+            let mut inputs = vec![0.0; law.inputs.len()];
+            regulator.sample(time, state);
+            regulator.inputs(time, time, &mut inputs);
+            inputs
+        });
+        let parts = (law.h / step).round();
+        for (part, list) in ["step", "preparation", "both"].iter().zip(&mut times) {
+            list.sort_by(f64::total_cmp);
+            let at = |part: f64| list[(part * (list.len() - 1) as f64).round() as usize];
+            text.push_str(&format!(
+                "| {parts} | {part} | {:.3} | {:.3} | {:.3} | {:.3} |\n",
+                at(0.5),
+                at(0.99),
+                at(0.999),
+                at(1.0)
+            ));
+        }
+        costs.push_str(&format!(
+            "Steps of an interval {parts}: {others} of {STEPS} inputs are not those of the plan, and joints are {:.2} degrees from the motion in \
+             the mean square, {:.2} under the gains of the regulator. ",
+            planned.sqrt(),
+            regulated.sqrt()
+        ));
+        if step == 2.4 {
+            let before = memory();
+            let state = law.at(1e4).state.clone();
+            let mut state_off = state.clone();
+            for k in STEPS..STEPS + MORE {
+                state_off[k % 6] = state[k % 6] + 1e-3 * (k % 7) as f64;
+                controller.step(law.h * k as f64, Some(&state_off));
+                controller.prepare();
+            }
+            let grown = memory().zip(before).map(|(after, before)| after - before);
+            costs.push_str(&format!(
+                "After {MORE} more steps the memory of the process has grown by {} kB. ",
+                grown.map_or("an unknown number of".to_owned(), |size| size.to_string())
+            ));
+        }
+    }
+    text.push('\n');
+    text.push_str(costs.trim_end());
+    text.push('\n');
+    text
+}
