@@ -9,8 +9,10 @@ use common::sought;
 use common::systems::branched;
 use common::tracked::{energies, tracked};
 use common::trunk;
+use nalgebra::DMatrix;
 use proboscis::control::problem::{BoundaryState, Control, Duration, Objective, Regulator, Rest};
 use proboscis::control::{BoundaryConditions, Transcription, guess};
+use proboscis::feedback::{Controller, Filter, Law, Observer, Reading};
 use proboscis::ipopt::{self, Options, Start};
 use proboscis::kkt::{Plan, Solver, Unknown};
 use proboscis::model::Coordinates;
@@ -257,6 +259,43 @@ fn allocations_of_a_controller() -> usize {
     most
 }
 
+/// Allocations of samples of a law, of the whole state and with an observer.
+fn allocations_of_a_law() -> usize {
+    let task = Regulator {
+        step: 5.0,
+        ..Regulator::default()
+    };
+    let horizon = receding::horizon(&receding::problem("pair.json", &[]), &task, 6);
+    let mut observed = horizon.law().clone();
+    let filter = Filter {
+        readings: vec![0.0],
+        by_state: DMatrix::identity(2, 2) * 0.5,
+        by_inputs: DMatrix::zeros(2, 2),
+        output: DMatrix::identity(1, 2),
+        gain: DMatrix::from_element(2, 1, 0.5),
+    };
+    observed.observer = Some(Observer {
+        readings: vec![Reading::State(0)],
+        points: vec![filter],
+        held: None,
+    });
+    let laws = [(horizon.law(), 2), (&observed, 1)];
+    let of = |(law, readings): (&Law, usize)| {
+        let mut controller = Controller::new(law, law.h, 2.0 * law.h);
+        let mut inputs = [0.0; 2];
+        let before = ASKED.load(Ordering::Relaxed);
+        for k in 0..40 {
+            let time = law.h * f64::from(k);
+            controller.sample(time, &[0.01, 1e-4][..readings]);
+            controller.inputs(time, time + 0.5 * law.h, &mut inputs);
+        }
+        let open = law.at(0.0).inputs[1];
+        assert!(inputs[1] != open && inputs[1] > 0.0, "{inputs:?}");
+        ASKED.load(Ordering::Relaxed) - before
+    };
+    laws.into_iter().map(of).sum()
+}
+
 /// Threads of this process, where the system tells; none elsewhere.
 fn threads() -> usize {
     fs::read_dir("/proc/self/task").map_or(0, Iterator::count)
@@ -295,6 +334,7 @@ fn evaluations_allocate_nothing() {
     assert_eq!(allocations_of_factors(constrained()), (0, 20), "condensed");
     assert_eq!(allocations_of_solves(), 0, "solves of a kept program");
     assert_eq!(allocations_of_a_controller(), 0, "steps of a controller");
+    assert_eq!(allocations_of_a_law(), 0, "samples of a law");
     let before = ASKED.load(Ordering::Relaxed);
     drop(std::hint::black_box(vec![0_u8; 100]));
     assert!(

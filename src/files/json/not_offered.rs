@@ -123,7 +123,7 @@ const TABLE: &[NotOffered] = &[
             "young_modulus",
             "elastic_modulus",
         ],
-        said: "materials are neo-Hookean, given by \"shear_modulus\" with \"lame_lambda\" or \"poisson_ratio\", or follow a \"law\": \"gent\", \"mooney_rivlin\", \"yeoh\" or \"ogden\"; \"viscosity\" is of Kelvin–Voigt kind, and \"maxwell\" lists Maxwell branches of lumped muscles",
+        said: "materials are neo-Hookean, given by \"shear_modulus\" with \"lame_lambda\" or \"poisson_ratio\", or follow a \"law\": \"gent\", \"mooney_rivlin\", \"yeoh\" or \"ogden\"; \"viscosity\" is of Kelvin–Voigt kind, and \"maxwell\" lists Maxwell branches",
     },
     NotOffered {
         words: &[
@@ -145,7 +145,7 @@ const TABLE: &[NotOffered] = &[
             "observer",
             "disturbance",
         ],
-        said: "voltages are functions of time: there is no feedback, no sensor and no noise",
+        said: "gains and an observer follow from \"feedback\" beside \"control\"; the \"controller\" of \"simulate\" reads them, or plans anew over a \"horizon\", and has the \"noise\" of what it measures",
     },
     NotOffered {
         words: &[

@@ -81,11 +81,7 @@ pub(crate) fn add_plan(
     controller.ahead = Some(Box::new(Ahead {
         system,
         control: *control,
-        // A plan begins at the whole state.
-        regulator: Regulator {
-            observer: None,
-            ..regulator.unwrap_or_default()
-        },
+        regulator: regulator.unwrap_or_default(),
         intervals: horizon.intervals,
     }));
     Ok(())

@@ -73,7 +73,7 @@ pub struct Horizon {
 
 impl Horizon {
     /// Of an optimal motion of a problem with a momentum at its start, whose goal is held by `rest` voltages, by source: the horizon has a number of
-    /// intervals, each as long as those of the motion. Delays and integrals are not offered.
+    /// intervals, each as long as those of the motion. Delays, integrals and observers are not offered.
     ///
     /// # Errors
     /// There is none.
@@ -88,8 +88,9 @@ impl Horizon {
     ) -> Result<Self, NoHorizon> {
         assert!(intervals > 0, "an interval or more");
         offered(model, control)?;
-        if task.delay > 0.0 || task.integral > 0.0 {
-            return Err(NoHorizon::NotOffered("a delay or an integral of feedback"));
+        if task.delay > 0.0 || task.integral > 0.0 || task.observer.is_some() {
+            let what = "a delay, an integral or an observer of feedback";
+            return Err(NoHorizon::NotOffered(what));
         }
         let found = regulator((model, control, task), discrete, momentum, rest);
         let found = found.map_err(NoHorizon::Regulator)?;
