@@ -2,6 +2,7 @@
 
 mod common;
 
+use common::boxes;
 use common::cases::{all_limits, control, hold, rest_to_rest};
 use common::counting::{ASKED, BEGUN, Counting, IS_OURS, KEPT, MOST};
 use common::receding;
@@ -296,6 +297,35 @@ fn allocations_of_a_law() -> usize {
     laws.into_iter().map(of).sum()
 }
 
+/// Fewest allocations of a solution by multigrid with new grids, and of one with kept grids, after the first round.
+fn allocations_of_iterations() -> [usize; 2] {
+    let mut size = 0;
+    let grids = [boxes::grid([6, 5, 20], &mut size)];
+    let mut solver = boxes::solver(size as usize, &grids);
+    let mut rhs: Vec<f64> = (0..size).map(f64::from).collect();
+    let mut fewest = [usize::MAX; 2];
+    for round in 0..8 {
+        for (kept, fewest) in fewest.iter_mut().enumerate() {
+            solver.values_mut().fill(0.0);
+            for place in 0..size as usize {
+                let slot = solver.slot(place, place).unwrap();
+                solver.values_mut()[slot] = 1.0 + place as f64;
+            }
+            if kept == 0 {
+                solver.forget();
+            }
+            let before = ASKED.load(Ordering::Relaxed);
+            solver.take_values().unwrap();
+            solver.solve(&mut rhs, 1e-8, &|| false).unwrap().unwrap();
+            let asked = ASKED.load(Ordering::Relaxed) - before;
+            if round > 1 {
+                *fewest = asked.min(*fewest);
+            }
+        }
+    }
+    fewest
+}
+
 /// Threads of this process, where the system tells; none elsewhere.
 fn threads() -> usize {
     fs::read_dir("/proc/self/task").map_or(0, Iterator::count)
@@ -335,6 +365,7 @@ fn evaluations_allocate_nothing() {
     assert_eq!(allocations_of_solves(), 0, "solves of a kept program");
     assert_eq!(allocations_of_a_controller(), 0, "steps of a controller");
     assert_eq!(allocations_of_a_law(), 0, "samples of a law");
+    assert_eq!(allocations_of_iterations(), [0, 0], "multigrid");
     let before = ASKED.load(Ordering::Relaxed);
     drop(std::hint::black_box(vec![0_u8; 100]));
     assert!(

@@ -5,6 +5,7 @@ use std::path::Path;
 
 use serde::Serialize;
 
+use crate::app::multigrid_summary::MultigridCounts;
 use crate::dynamics::trajectory::{Column, Observations, Trajectory};
 use crate::dynamics::{
     DiscreteTrajectory, Equilibrium, Instability, Load, Route, Softening, StabilityLoss,
@@ -48,6 +49,9 @@ pub(super) struct Rest {
     lost: Option<Lost>,
     /// Newton iterations.
     newton_iterations: usize,
+    /// Counts of an iteration with multigrid, where one led there.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    multigrid: Option<MultigridCounts>,
     /// Unit of the stiffness in the text, and the factor to it from that of the list.
     #[serde(skip)]
     unit: (&'static str, f64),
@@ -161,6 +165,9 @@ pub(super) fn describe(
             fraction: loss.fraction,
             kind: status(loss),
         }),
+        multigrid: found
+            .on_grids
+            .and_then(|(report, fallbacks)| MultigridCounts::new(report, fallbacks)),
         newton_iterations: found.iterations,
         unit,
     }

@@ -42,6 +42,7 @@ mod linear_systems;
 mod messages;
 mod motions;
 mod motions_summary;
+mod multigrid_summary;
 mod multistart;
 mod no_equilibrium;
 mod once;

@@ -12,6 +12,7 @@ use crate::app::equilibrium_summary::Rest;
 use crate::app::error::CommandError;
 use crate::app::identification_summary::Identification;
 use crate::app::linear_systems::LinearSystems;
+use crate::app::multigrid_summary::MultigridCounts;
 use crate::app::path_summary::PathSummary;
 use crate::app::request::CommandInput;
 use crate::app::seconds::Seconds;
@@ -234,8 +235,11 @@ pub(super) struct Simulation {
     pub(super) newton_iterations: usize,
     /// Steps that had to be halved.
     pub(super) halved_steps: usize,
-    /// Method that factorised the tangents.
+    /// Method that solved the linear systems.
     pub(super) linear_solver: String,
+    /// Counts of an iteration with multigrid, where one solved.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub(super) multigrid: Option<MultigridCounts>,
     /// Factorisations of the tangent.
     pub(super) factorisations: usize,
     /// Seconds in rows and tangents.
@@ -292,6 +296,7 @@ impl Simulation {
             newton_iterations: report.iterations,
             halved_steps: report.halved,
             linear_solver: discrete.solver.clone(),
+            multigrid: MultigridCounts::new(report.multigrid, report.fallbacks),
             factorisations: report.factorisations,
             assembly_seconds: report.assembly,
             factorisation_seconds: report.factorisation,

@@ -64,6 +64,16 @@ impl Contraction {
             false => Verdict::Slow,
         }
     }
+
+    /// Judges an update by its relative size and the part of it that its linear system leaves: of the error there remain this part and what is quadratic.
+    pub(super) fn judge_inexact(&mut self, size: f64, left: f64) -> Verdict {
+        let quadratic = self.last.map_or(1.0, |last| (size / last.powi(2)).max(1.0));
+        self.last = Some(size);
+        match size * (left + quadratic * size) < LEFT {
+            true => Verdict::Converged,
+            false => Verdict::Slow,
+        }
+    }
 }
 
 #[cfg(test)]

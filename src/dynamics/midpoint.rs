@@ -11,14 +11,16 @@
 use crate::coordinates::{Configuration as Place, Interval, Scratch};
 use crate::dynamics::drive::Drive;
 use crate::dynamics::equations::Equations;
+use crate::dynamics::grid_tangent::{Blocks, GridTangent};
 use crate::dynamics::resolution::{Balance, typical_energy};
 use crate::dynamics::solving::{Newton, Solving};
+use crate::dynamics::step_matrix::StepMatrix;
 use crate::dynamics::stepper::Steps;
-use crate::dynamics::tangent::EntryList;
+use crate::dynamics::tangent::{EntryList, Tangent};
 use crate::functional::{BlockMask, Order};
 use crate::math::Vector;
 use crate::model::Model;
-use crate::sparse::DENSE;
+use crate::sparse::{Backend, DENSE};
 use std::slice;
 
 /// Steps of the midpoint rule.
@@ -58,21 +60,6 @@ impl<'m> Stepper<'m> {
     pub fn new(model: &'m Model, z: &[f64], momentum: &[f64], solving: Solving) -> Self {
         let map = &model.action.map;
         let (n, layout) = (map.coordinates, model.action.layout());
-        let mut entries = EntryList::default();
-        for (slot, entry) in layout.cross.entries().enumerate() {
-            entries.add(layout.upper_at(0) + slot, entry);
-        }
-        for (slot, (row, col)) in layout.same.entries().enumerate() {
-            if row < n && col >= n {
-                entries.add(layout.same_at(0) + slot, (row, col));
-            }
-            if row >= n && col < n {
-                entries.add(layout.same_at(1) + slot, (row, col));
-            }
-        }
-        entries.add_scalars(model, &[[0, 1]]);
-        let held = model.prescribed_coordinates();
-        entries.hold(&held, 1.0);
         let (sizes, algebraic) = (model.sizes(), model.variables.algebraic());
         let (mut here, next) = (map.instant(), map.instant());
         here.z.copy_from_slice(z);
@@ -95,13 +82,9 @@ impl<'m> Stepper<'m> {
             scalars: vec![0.0; layout.interval_scalars],
             saved: [map.multipliers, algebraic.len()].map(|count| vec![0.0; count]),
         };
-        let symmetry = model.step_symmetry();
-        let is_corrected = solving.newton == Newton::Modified && solving.backend.is_none();
-        let tangent = match is_corrected && map.multipliers == 0 && sizes.len() > DENSE {
-            true => entries.corrected_tangent(model, symmetry),
-            false => entries.tangent(sizes.len(), symmetry, solving.backend),
-        };
-        Self::by(equations, (tangent, held), sizes, solving.newton)
+        let held = model.prescribed_coordinates();
+        let matrix = step_matrix(model, solving);
+        Self::by(equations, (matrix, held), sizes, solving.newton)
     }
 
     /// Prescribed motions have come to this time in ms.
@@ -117,6 +100,50 @@ impl<'m> Stepper<'m> {
     /// The instant now.
     pub fn instant(&self) -> &Place {
         &self.equations().here
+    }
+}
+
+/// The matrix of a step: on box grids where these are wanted and hold all unknowns, otherwise factorised.
+fn step_matrix(model: &Model, solving: Solving) -> StepMatrix {
+    let layout = model.action.layout();
+    let blocks = Blocks {
+        same: &[],
+        cross: &[layout.upper_at(0)],
+        sides: [&[layout.mixed_at(0, 0)], &[layout.mixed_at(0, 1)]],
+        added: None,
+    };
+    let direct = |model: &Model| direct(model, Newton::Modified, None);
+    let is_wanted = solving.takes_grids(model.variables.unknown_count());
+    let grids = is_wanted.then(|| GridTangent::new(model, &blocks, direct));
+    match grids.flatten() {
+        Some(grids) => StepMatrix::Grids(Box::new(grids)),
+        None => StepMatrix::Direct(self::direct(model, solving.newton, solving.backend)),
+    }
+}
+
+/// The matrix of a step, factorised.
+fn direct(model: &Model, newton: Newton, backend: Option<Backend>) -> Tangent {
+    let map = &model.action.map;
+    let (n, layout) = (map.coordinates, model.action.layout());
+    let mut entries = EntryList::default();
+    for (slot, entry) in layout.cross.entries().enumerate() {
+        entries.add(layout.upper_at(0) + slot, entry);
+    }
+    for (slot, (row, col)) in layout.same.entries().enumerate() {
+        if row < n && col >= n {
+            entries.add(layout.same_at(0) + slot, (row, col));
+        }
+        if row >= n && col < n {
+            entries.add(layout.same_at(1) + slot, (row, col));
+        }
+    }
+    entries.add_scalars(model, &[[0, 1]]);
+    entries.hold(&model.prescribed_coordinates(), 1.0);
+    let (size, symmetry) = (model.variables.unknown_count(), model.step_symmetry());
+    let is_corrected = newton == Newton::Modified && backend.is_none();
+    match is_corrected && map.multipliers == 0 && size > DENSE {
+        true => entries.corrected_tangent(model, symmetry),
+        false => entries.tangent(size, symmetry, backend),
     }
 }
 

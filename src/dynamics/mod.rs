@@ -26,6 +26,7 @@ mod equilibrium;
 mod error;
 mod exchange;
 mod galerkin;
+mod grid_tangent;
 mod interval_energies;
 mod kinetic;
 mod local_error;
@@ -43,7 +44,9 @@ mod singular_configurations;
 mod solving;
 mod start;
 mod state_space;
+mod step_matrix;
 mod step_report;
+mod step_solution;
 mod step_state;
 mod stepper;
 mod stretch_range;
@@ -58,7 +61,7 @@ pub use drive::Drive;
 pub use equations::Equations;
 pub use equilibrium::{
     Continuation, Equilibrium, Instability, Load, Mode, Route, Softening, StabilityLoss,
-    continuation, equilibrium, stable_equilibrium,
+    continuation, equilibrium, stable_equilibrium, stable_equilibrium_by,
 };
 pub use error::{EquilibriumError, StepError};
 pub use exchange::{EnergyExchange, SourceEnergies};
@@ -74,7 +77,7 @@ pub use simulate::{Lengths, StepControl, TimeGrid, go_on, simulate, simulate_by,
 pub use singular_configurations::{
     BeyondLaw, muscle_without_length, part_beyond_law, reversed_muscle,
 };
-pub use solving::{Integrator, Newton, Solving};
+pub use solving::{Integrator, MultigridUse, Newton, Solving};
 pub use start::Start;
 pub use state_space::{
     LinearStep, Linearisation, NoState, StepInput, momentum_derivatives, step_inputs,

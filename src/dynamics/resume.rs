@@ -52,7 +52,7 @@ impl<E: Equations> Steps<E> {
         match &from.tangent {
             Some(tangent) => {
                 self.factored = tangent.step;
-                self.updates.take(tangent)
+                self.updates.take(self.equations.model(), tangent)
             }
             None => self.updates.newton() == Newton::Full,
         }

@@ -65,6 +65,31 @@ pub struct Solving {
     pub newton: Newton,
     /// Method of its factorisation; `None`: the one that is fastest as a rule.
     pub backend: Option<Backend>,
+    /// Solution of the linear systems of blocks on box grids by an iteration with multigrid.
+    pub multigrid: MultigridUse,
+}
+
+/// Use of an iteration with multigrid, where all unknowns are at nodes of box grids.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum MultigridUse {
+    /// For large systems for which no factorisation is named.
+    #[default]
+    WhereFaster,
+    /// For systems of any size.
+    Always,
+}
+
+/// Number of unknowns from which on the iteration is faster, as `benches/multigrid.rs` measures.
+const LARGE: usize = 20_000;
+
+impl Solving {
+    /// Returns true if so many unknowns on box grids are solved for by an iteration.
+    pub(super) fn takes_grids(&self, unknowns: usize) -> bool {
+        match self.multigrid {
+            MultigridUse::Always => true,
+            MultigridUse::WhereFaster => self.backend.is_none() && unknowns > LARGE,
+        }
+    }
 }
 
 impl Newton {

@@ -8,12 +8,12 @@ use crate::dynamics::interval_energies::Work;
 use crate::dynamics::resolution::{Balance, turned};
 use crate::dynamics::singular_configurations::{self, BeyondLaw};
 use crate::dynamics::solving::Newton;
+use crate::dynamics::step_matrix::StepMatrix;
 use crate::dynamics::step_report::StepperReport;
-use crate::dynamics::tangent::Tangent;
 use crate::dynamics::updates::Updates;
 use crate::functional::Order;
 use crate::ipopt::Status;
-use crate::ipopt::interrupt::{self, TimeLimit};
+use crate::ipopt::interrupt;
 use std::time::Instant;
 
 /// Limit of Newton iterations in one step.
@@ -32,7 +32,7 @@ pub struct Steps<E> {
     pub(super) factored: Option<f64>,
     /// True if the last attempt began with the tangent of a step before.
     pub(super) stale: bool,
-    residual: Vec<f64>,
+    pub(super) residual: Vec<f64>,
     /// Unknowns whose values are prescribed.
     held: Vec<usize>,
     /// Local error that is allowed per ms, and at least in a step; none of steps of given length.
@@ -45,10 +45,10 @@ pub struct Steps<E> {
 }
 
 impl<E: Equations> Steps<E> {
-    /// Steps by these equations, with a tangent and a scale for each unknown; `held` are those with prescribed values.
+    /// Steps by these equations, with a matrix and a scale for each unknown; `held` are those with prescribed values.
     pub(super) fn by(
         equations: E,
-        (tangent, held): (Tangent, Vec<usize>),
+        (matrix, held): (StepMatrix, Vec<usize>),
         scales: Vec<f64>,
         newton: Newton,
     ) -> Self {
@@ -58,7 +58,7 @@ impl<E: Equations> Steps<E> {
             factored: None,
             stale: false,
             residual: vec![0.0; scales.len()],
-            updates: Updates::new(tangent, scales, newton),
+            updates: Updates::new(matrix, scales, newton),
             allowed: None,
             used: 0.0,
             balance: None,
@@ -180,7 +180,7 @@ impl<E: Equations> Steps<E> {
         let mut reused = newton == Newton::Modified && self.factored == Some(h);
         self.stale = reused;
         let mut contraction = Contraction::new(newton);
-        self.updates.start();
+        self.updates.begin();
         let limit = match newton {
             Newton::Full => ITERATIONS,
             Newton::Modified => REUSED,
@@ -201,14 +201,16 @@ impl<E: Equations> Steps<E> {
             if !norm.is_finite() {
                 break;
             }
+            if residuals.len() == 1 && self.place_potentials(h)? {
+                continue;
+            }
             if !reused {
                 self.updates.start();
                 self.factor(h)?;
                 self.go_on(h)?;
             }
             let size = self.solve(h, !reused)?;
-            let is_approximate = self.updates.are_approximate();
-            let verdict = contraction.judge(size, reused, is_approximate);
+            let verdict = self.updates.judge(&mut contraction, size, reused);
             reused = verdict == Verdict::Shrinks;
             if verdict == Verdict::Astray {
                 residuals.pop();
@@ -242,7 +244,7 @@ impl<E: Equations> Steps<E> {
     }
 
     /// Evaluates the equations; those of prescribed unknowns hold.
-    fn evaluate(&mut self, order: Order, h: f64) {
+    pub(super) fn evaluate(&mut self, order: Order, h: f64) {
         self.equations.evaluate(order, h, &mut self.residual);
         for &unknown in &self.held {
             self.residual[unknown] = 0.0;
@@ -257,7 +259,7 @@ impl<E: Equations> Steps<E> {
         }
     }
 
-    fn stopped(&mut self, step: f64, status: Status) -> StepError {
+    pub(super) fn stopped(&mut self, step: f64, status: Status) -> StepError {
         self.equations.restore();
         let time = self.equations.time();
         StepError::Stopped { time, step, status }
@@ -351,50 +353,5 @@ impl<E: Equations> Steps<E> {
 
     fn muscle_name(&self, muscle: usize) -> String {
         self.equations.model().system.muscles[muscle].name.clone()
-    }
-
-    /// Factorises the tangent evaluated last.
-    fn factor(&mut self, h: f64) -> Result<(), StepError> {
-        let began = Instant::now();
-        let limit = interrupt::limit();
-        let reached = || limit.as_ref().and_then(TimeLimit::reached);
-        let values = self.equations.values();
-        let done = self.updates.factor_unless(values, &|| reached().is_some());
-        self.report.factorisation += began.elapsed().as_secs_f64();
-        self.factored = (done == Ok(Ok(()))).then_some(h);
-        let Ok(done) = done else {
-            return Err(self.stopped(h, reached().unwrap_or(Status::Interrupted)));
-        };
-        self.report.factorisations += 1;
-        done.map_err(|singular| {
-            self.equations.restore();
-            let [start, _] = self.equations.ends();
-            StepError::Singular {
-                time: self.equations.time(),
-                step: h,
-                name: self.equations.unknown_name(singular.column),
-                redundant: self.equations.model().redundant_constraints(&start.z),
-            }
-        })
-    }
-
-    /// Solves for an update, with the whole tangent where a new factor leaves out too much; returns its size relative to the
-    /// scales.
-    fn solve(&mut self, h: f64, is_fresh: bool) -> Result<f64, StepError> {
-        let size = self.solve_once();
-        if !(is_fresh && self.updates.leave_out_much(&self.residual, size)) {
-            return Ok(size);
-        }
-        self.evaluate(Order::Hessian, h);
-        self.updates.make_exact();
-        self.factor(h)?;
-        Ok(self.solve_once())
-    }
-
-    fn solve_once(&mut self) -> f64 {
-        let began = Instant::now();
-        let size = self.updates.solve(&mut self.residual);
-        self.report.solution += began.elapsed().as_secs_f64();
-        size
     }
 }

@@ -1,11 +1,15 @@
 //! Updates of a Newton iteration: the factors of its tangent, kept or made anew, and the parts that they leave out.
 
 use crate::dynamics::anderson::Anderson;
+use crate::dynamics::contraction::{Contraction, Verdict};
 use crate::dynamics::solving::Newton;
+use crate::dynamics::step_matrix::StepMatrix;
 use crate::dynamics::step_state::TangentState;
 use crate::dynamics::tangent::Tangent;
 use crate::math::{IsOver, Stopped};
+use crate::model::Model;
 use crate::sparse::Singular;
+use crate::sparse::multigrid::NoSolution;
 
 /// Part of an update that the factors of a symmetric part may leave out; beyond it the whole tangent is factorised.
 const LEFT_OUT: f64 = 0.3;
@@ -13,7 +17,7 @@ const LEFT_OUT: f64 = 0.3;
 /// Solves for updates.
 #[derive(Debug)]
 pub(super) struct Updates {
-    tangent: Tangent,
+    pub(super) matrix: StepMatrix,
     newton: Newton,
     anderson: Anderson,
     /// Size of each unknown; infinite where it says nothing about convergence.
@@ -21,10 +25,10 @@ pub(super) struct Updates {
 }
 
 impl Updates {
-    /// With a tangent and a scale for each unknown.
-    pub(super) fn new(tangent: Tangent, scales: Vec<f64>, newton: Newton) -> Self {
+    /// With a matrix and a scale for each unknown.
+    pub(super) fn new(matrix: StepMatrix, scales: Vec<f64>, newton: Newton) -> Self {
         Self {
-            tangent,
+            matrix,
             newton,
             anderson: Anderson::default(),
             scales,
@@ -36,9 +40,9 @@ impl Updates {
         self.newton
     }
 
-    /// The method that factorises.
+    /// The method that solves.
     pub(super) fn name(&self) -> String {
-        self.tangent.name()
+        self.matrix.name()
     }
 
     /// Writes the tangent that is kept, and the step that it belongs to.
@@ -46,12 +50,22 @@ impl Updates {
         let to = to.get_or_insert_default();
         // Newton's method makes a new one in every iteration.
         to.step = step.filter(|_| self.newton == Newton::Modified);
-        self.tangent.keep(to.step.is_some(), to);
+        self.matrix.keep(to.step.is_some(), to);
     }
 
     /// Restores a saved tangent. Returns false if it does not fit these equations.
-    pub(super) fn take(&mut self, from: &TangentState) -> bool {
-        self.tangent.take(from)
+    pub(super) fn take(&mut self, model: &Model, from: &TangentState) -> bool {
+        self.matrix.restore(model, from)
+    }
+
+    /// Begins an attempt of a step.
+    pub(super) fn begin(&mut self) {
+        self.start();
+        if let Some(grids) = self.matrix.grids_mut() {
+            grids.start();
+            // What follows from the state alone can be resumed with the same bits.
+            grids.forget();
+        }
     }
 
     /// Forgets earlier updates.
@@ -65,46 +79,61 @@ impl Updates {
         values: &[f64],
         is_over: IsOver<'_>,
     ) -> Result<Result<(), Singular>, Stopped> {
-        let done = self.tangent.factor_unless(values, is_over)?;
-        match done.is_err() && self.tangent.make_exact() {
-            true => self.tangent.factor_unless(values, is_over),
+        let done = self.matrix.factor_unless(values, is_over)?;
+        match done.is_err() && self.make_exact() {
+            true => self.matrix.factor_unless(values, is_over),
             false => Ok(done),
         }
     }
 
-    /// Returns true if the factors leave out a part of the tangent, or its last digits.
-    pub(super) fn are_approximate(&self) -> bool {
-        self.tangent.is_approximate()
+    /// Judges an update of this size by what its matrix leaves of it.
+    pub(super) fn judge(&self, contraction: &mut Contraction, size: f64, reused: bool) -> Verdict {
+        match &self.matrix {
+            StepMatrix::Direct(tangent) => {
+                contraction.judge(size, reused, tangent.is_approximate())
+            }
+            StepMatrix::Grids(grids) => contraction.judge_inexact(size, grids.asked()),
+        }
     }
 
     /// Makes factors in double precision from now on; returns true if they were not before.
     pub(super) fn make_double(&mut self) -> bool {
-        self.tangent.make_double()
+        self.matrix.direct_mut().is_some_and(Tangent::make_double)
     }
 
     /// Factorises the whole tangent, in double precision, from now on; returns true if it did not before.
     pub(super) fn make_exact(&mut self) -> bool {
-        self.tangent.make_exact()
+        self.matrix.direct_mut().is_some_and(Tangent::make_exact)
     }
 
-    /// Turns a residual into an update; returns its size relative to the scales.
-    pub(super) fn solve(&mut self, residual: &mut [f64]) -> f64 {
-        match self.newton {
-            Newton::Full => self.tangent.solve(residual),
-            Newton::Modified => self.tangent.solve_roughly(residual),
+    /// Turns a residual into an update; returns its size relative to the scales. An iteration that does not converge leaves the residual.
+    pub(super) fn solve(
+        &mut self,
+        residual: &mut [f64],
+        is_over: IsOver<'_>,
+    ) -> Result<Result<f64, NoSolution>, Stopped> {
+        match (&mut self.matrix, self.newton) {
+            (StepMatrix::Direct(tangent), Newton::Full) => tangent.solve(residual),
+            (StepMatrix::Direct(tangent), Newton::Modified) => tangent.solve_roughly(residual),
+            (StepMatrix::Grids(grids), _) => {
+                if let Err(none) = grids.solve_for_update(residual, is_over)? {
+                    return Ok(Err(none));
+                }
+            }
         }
-        self.size(residual)
+        Ok(Ok(self.size(residual)))
     }
 
     /// Returns true if the factors leave out so much of an update of this size that the iteration would be slow.
     pub(super) fn leave_out_much(&mut self, update: &[f64], size: f64) -> bool {
-        let left_out = self.tangent.left_out(update);
+        let tangent = self.matrix.direct_mut();
+        let left_out = tangent.and_then(|tangent| tangent.left_out(update));
         left_out.is_some_and(|rest| self.size(&rest) > LEFT_OUT * size)
     }
 
     /// Combines an update with earlier ones, where the tangent is kept.
     pub(super) fn accelerate(&mut self, update: &mut [f64]) {
-        if self.newton == Newton::Modified {
+        if self.newton == Newton::Modified && self.matrix.direct().is_some() {
             self.anderson.improve(update);
         }
     }

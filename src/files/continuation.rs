@@ -7,8 +7,10 @@ use std::io;
 use std::path::Path;
 
 use crate::dynamics::{DiscreteTrajectory, StepState, StepperReport, TangentState, Work};
+
 use crate::files::npz::{self, Array, Npz, NpzError, NpzWriter};
 use crate::sparse::MethodState;
+use crate::sparse::multigrid::MultigridReport;
 
 /// Name of the text of the problem.
 const PROBLEM: &str = "problem.json";
@@ -95,6 +97,14 @@ pub fn bytes(discrete: &DiscreteTrajectory, problem: &str) -> io::Result<Vec<u8>
     } = *report;
     arrays.list("report/seconds", &[assembly, factorisation, solution]);
     arrays.list("report/energies", &[made, exchanged]);
+    let MultigridReport {
+        iterations,
+        hierarchies,
+        levels,
+        bytes,
+    } = report.multigrid;
+    let counts = [report.fallbacks, iterations, hierarchies, levels, bytes];
+    arrays.list("report/multigrid", &counts.map(|count| count as f64));
     arrays.list("wanted", wanted.as_slice());
     arrays.list("tolerance", tolerance.as_slice());
     Ok(arrays.finish()?.0)
@@ -164,6 +174,8 @@ fn state(file: &mut Npz) -> Result<StepState, ContinuationError> {
     let [steps, iterations, halved, factorisations] = counts.map(|count| count as usize);
     let [assembly, factorisation, solution] = numbers(file, "report/seconds")?;
     let [made, exchanged] = numbers(file, "report/energies")?;
+    let counts = numbers::<5>(file, "report/multigrid")?;
+    let [fallbacks, krylov, hierarchies, levels, bytes] = counts.map(|count| count as usize);
     Ok(StepState {
         of: file.texts.remove(OF).unwrap_or_default(),
         lists: lists.collect(),
@@ -178,6 +190,13 @@ fn state(file: &mut Npz) -> Result<StepState, ContinuationError> {
             solution,
             made,
             exchanged,
+            fallbacks,
+            multigrid: MultigridReport {
+                iterations: krylov,
+                hierarchies,
+                levels,
+                bytes,
+            },
         },
         wanted: list(file, "wanted")?.first().copied(),
         tolerance: list(file, "tolerance")?.first().copied(),

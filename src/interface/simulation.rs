@@ -151,7 +151,7 @@ impl Simulation {
             solving: Solving {
                 integrator: self.integrator,
                 newton: Newton::for_system(system),
-                backend: None,
+                ..Solving::default()
             },
             controller: None,
         })

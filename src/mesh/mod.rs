@@ -3,6 +3,7 @@
 //! Meshes come from planes ([`grid`]) or from a file ([`gmsh`]); [`Mesh::check`] says whether elements can be integrated.
 //! [`triangulated`]: surfaces of triangles; [`enclosed`]: solids within them.
 
+mod box_grid;
 pub mod enclosed;
 pub mod error;
 mod geometry;

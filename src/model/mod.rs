@@ -54,6 +54,7 @@ mod muscle_measures;
 mod muscle_state;
 mod named;
 mod no_terms;
+mod node_grids;
 mod parameter;
 pub mod plan;
 mod prescribed;
@@ -101,6 +102,8 @@ pub use maxwell::{MOST_BRANCHES, MaxwellBranch, MaxwellBranches, NO_BRANCHES, Re
 pub use model::Model;
 pub use muscle_state::{MuscleReading, SourceFlow};
 pub use named::Freedom;
+pub use node_grids::NoGrids;
+pub(crate) use node_grids::has_boxes_alone;
 pub use parameter::{NotSought, check as check_parameters, unit as unit_of, with_parameters};
 pub use plan::{LeftOut, Present};
 pub use presolved::{BodyLocation, Presolved};

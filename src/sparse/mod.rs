@@ -10,6 +10,7 @@ mod factorisation;
 mod faer;
 mod fronts;
 mod method_state;
+pub mod multigrid;
 pub(crate) mod mumps;
 mod pattern;
 mod precision;

@@ -15,6 +15,7 @@ use crate::workflow::domain::{self, Outside};
 use crate::workflow::memory;
 use crate::workflow::phase::phase;
 use crate::workflow::remark::Remarks;
+use crate::workflow::stalled;
 use crate::workflow::stretch_range;
 use std::time::Instant;
 
@@ -88,6 +89,14 @@ pub fn equilibrium(
     remarks.warn("outside_domain", domain::note(&outside, false));
     let beyond = out_of_range(&model, &discrete);
     remarks.warn("outside_range", stretch_range::warning(&beyond, false));
+    if let Some((_, fallbacks)) = found.on_grids {
+        remarks.warn("multigrid_stalled", stalled::warning(fallbacks));
+        let is_unknown = found.is_stable().is_none();
+        remarks.warn(
+            "stability_not_examined",
+            is_unknown.then(stalled::unexamined),
+        );
+    }
     Ok(EquilibriumResult {
         trajectory: Trajectory::from_discrete(&model, &discrete),
         model,

@@ -21,6 +21,7 @@ use crate::workflow::integrate::{Simulated, grid, integrate_on};
 use crate::workflow::longer_steps;
 use crate::workflow::memory;
 use crate::workflow::remark::Remarks;
+use crate::workflow::stalled;
 use crate::workflow::steps;
 use crate::workflow::stops;
 use crate::workflow::stretch_range;
@@ -119,6 +120,10 @@ impl SimulationResult {
         remarks.note("stops", stops::notes(system, trajectory));
         remarks.warn("coarse_steps", steps::warning(neglected, discrete, task));
         remarks.warn("tolerance_exceeded", steps::beyond(*error, task));
+        remarks.warn(
+            "multigrid_stalled",
+            stalled::warning(discrete.report.fallbacks),
+        );
         remarks.warn("energy_balance", steps::unbalanced(discrete));
         remarks.warn("energy_balance", steps::unchecked(model, task));
         Assessment {

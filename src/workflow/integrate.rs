@@ -6,7 +6,8 @@ use std::time::Instant;
 use crate::control::problem::{BoundaryState, Simulation, Voltages};
 use crate::control::resolve_start;
 use crate::dynamics::{
-    DiscreteTrajectory, Drive, Lengths, StepControl, StepError, StepState, TimeGrid, go_on,
+    DiscreteTrajectory, Drive, Integrator, Lengths, MultigridUse, Solving, StepControl, StepError,
+    StepState, TimeGrid, go_on,
 };
 use crate::ipopt::interrupt;
 use crate::math::in_order;
@@ -81,6 +82,7 @@ pub fn integrate_on(
     if task.tolerance.is_none() {
         memory::of_motion(&model, steps)?;
     }
+    has_solver(&model, task.solving)?;
     if let Some(status) = interrupt::stop() {
         return Err(WorkflowError::Stopped(status));
     }
@@ -140,6 +142,24 @@ pub fn integrate_on(
         error,
         setup,
         seconds,
+    })
+}
+
+/// Refuses an iteration with multigrid where there are no grids.
+fn has_solver(model: &Model, solving: Solving) -> Result<(), WorkflowError> {
+    if solving.multigrid != MultigridUse::Always {
+        return Ok(());
+    }
+    let found = match solving.integrator {
+        Integrator::Midpoint => model.node_grids().err().map(|none| none.to_string()),
+        other => Some(format!("the integrator is {}", other.name())),
+    };
+    let expected = "\"auto\", \"faer\" or \"mumps\"; multigrid needs the midpoint rule and elastic blocks on boxes, beside which nothing moves";
+    found.map_or(Ok(()), |found| {
+        Err(WorkflowError::Problem {
+            place: "simulate.linear_solver".to_owned(),
+            reason: format!("found multigrid where {found}, expected {expected}"),
+        })
     })
 }
 

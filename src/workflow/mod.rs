@@ -65,6 +65,7 @@ pub(crate) mod retry_displaced;
 mod shared_variables;
 pub(crate) mod shortest;
 mod solves;
+pub(crate) mod stalled;
 pub(crate) mod steps;
 pub(crate) mod stops;
 mod stopwatch;

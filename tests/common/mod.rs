@@ -2,6 +2,7 @@
 #![allow(dead_code, reason = "each test binary uses a part")]
 #![allow(unreachable_pub, reason = "a module of several test binaries")]
 
+pub mod boxes;
 pub mod cases;
 pub mod counting;
 pub mod ends;

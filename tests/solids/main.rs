@@ -10,6 +10,7 @@ mod loads;
 mod maxwell;
 mod maxwell_limits;
 mod mesh;
+mod multigrid;
 mod physics;
 mod prestretch;
 mod refusals;

@@ -16,6 +16,7 @@ mod linear_solver;
 mod ma57_adapter;
 mod matrices;
 mod mpi;
+mod multigrid;
 mod one_mumps;
 mod precision;
 mod random_systems;

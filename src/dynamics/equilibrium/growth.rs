@@ -8,6 +8,7 @@ use crate::dynamics::equilibrium::rest_state::RestState;
 use crate::dynamics::equilibrium::result::{Equilibrium, Route, StabilityLoss};
 use crate::dynamics::equilibrium::statics::{NewtonOutcome, Statics, UpdateRange};
 use crate::dynamics::error::EquilibriumError;
+use crate::dynamics::solving::MultigridUse;
 use crate::model::{Floating, Model};
 
 /// Part of a load that is tried first, in V² for voltages.
@@ -28,16 +29,18 @@ pub fn equilibrium(
     start: &[f64],
     voltages: &[f64],
 ) -> Result<Equilibrium, EquilibriumError> {
-    let mut statics = begin(model, voltages)?;
+    let mut statics = begin(model, voltages, MultigridUse::WhereFaster)?;
     let mut state = unloaded(&mut statics, start, voltages)?;
     for load in [Load::Weight, Load::Voltages] {
         let ramp = Ramp { load, voltages };
         let grown = grow(&mut statics, state, ramp)?;
         if grown.fraction < 1.0 {
+            statics.fall_back();
             return Err(at_limit(&mut statics, &grown.state, ramp, grown.fraction));
         }
         state = grown.state;
     }
+    statics.examine();
     Ok(Equilibrium::new(
         &mut statics,
         &state,
@@ -47,10 +50,14 @@ pub fn equilibrium(
 }
 
 /// Rows of rest of a model whose blocks are held.
-pub(super) fn begin<'m>(model: &'m Model, inputs: &[f64]) -> Result<Statics<'m>, EquilibriumError> {
+pub(super) fn begin<'m>(
+    model: &'m Model,
+    inputs: &[f64],
+    multigrid: MultigridUse,
+) -> Result<Statics<'m>, EquilibriumError> {
     match model.floating() {
         Some(Floating { name, motion }) => Err(EquilibriumError::Floating { name, motion }),
-        None => Ok(Statics::new(model, inputs)),
+        None => Ok(Statics::by(model, inputs, Some(multigrid))),
     }
 }
 

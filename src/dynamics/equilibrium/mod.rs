@@ -1,6 +1,6 @@
 //! Static equilibria: under growing loads, along paths, and their stability.
 //!
-//! - `statics`: Newton on the rows of rest; `rest_state`, `states`: their unknowns; `settle`, `minimum`, `relaxation`: states that Newton's method does not reach.
+//! - `statics`: Newton on the rows of rest; `static_matrix`: their matrix; `rest_state`, `states`: their unknowns; `settle`, `minimum`, `relaxation`: states that Newton's method does not reach.
 //! - `instability`, `ramp`, `growth`: loads that grow; `arc_length`: the path of equilibria by arc length; `load_path`: its points.
 //! - `in_joints`: equilibria in redundant coordinates by way of joint coordinates.
 //! - `result`, `mode`, `softest_mode`, `stability`: a state of rest and its softest mode; `slowest_mode`: its slowest vibration; `stable`: the
@@ -24,6 +24,7 @@ mod softest_mode;
 mod stability;
 mod stable;
 mod states;
+mod static_matrix;
 mod statics;
 mod weights;
 
@@ -32,4 +33,4 @@ pub use instability::{Instability, Load};
 pub use load_path::{Continuation, continuation};
 pub use mode::{Mode, Softening};
 pub use result::{Equilibrium, Route, StabilityLoss};
-pub use stable::stable_equilibrium;
+pub use stable::{stable_equilibrium, stable_equilibrium_by};

@@ -2,6 +2,7 @@
 
 use crate::dynamics::equilibrium::instability::{Instability, Load};
 use crate::dynamics::equilibrium::mode::Mode;
+use crate::sparse::multigrid::MultigridReport;
 
 /// A state of rest.
 #[derive(Clone, Debug, PartialEq)]
@@ -22,6 +23,8 @@ pub struct Equilibrium {
     pub route: Route,
     /// Newton iterations over all loads.
     pub iterations: usize,
+    /// Counts of an iteration with multigrid, where one led there, and of the systems for which factors took over.
+    pub on_grids: Option<(MultigridReport, usize)>,
 }
 
 /// Route on which an equilibrium was found.

@@ -36,13 +36,10 @@ impl Statics<'_> {
         if map.multipliers > 0 {
             self.meet_constraints(state)?;
         }
-        if self.electric.is_some() {
+        if !self.model.variables.algebraic().is_empty() {
             let m = map.unknowns();
             self.evaluate(state, voltages);
-            let tangent = self.electric.as_mut()?;
-            tangent.factor(&self.values).ok()?;
-            let mut update = self.residual[m..].to_vec();
-            tangent.solve(&mut update);
+            let update = self.potentials()?;
             for (value, update) in state[m..].iter_mut().zip(&update) {
                 *value -= update;
             }
@@ -72,7 +69,8 @@ impl Statics<'_> {
             for (value, scale) in added.zip(self.scales[..n].iter().chain(&self.scales[m..])) {
                 *value = -1.0 / (scale * scale);
             }
-            let outcome = self.tangent.factor(&self.values);
+            let tangent = self.matrix.direct_mut()?;
+            let outcome = tangent.factor(&self.values);
             self.values[self.added..].fill(0.0);
             outcome.ok()?;
             let mut update = std::mem::take(&mut self.residual);

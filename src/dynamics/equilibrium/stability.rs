@@ -48,6 +48,7 @@ impl Equilibrium {
             softest: None,
             route,
             iterations: statics.iterations,
+            on_grids: statics.iterations_on_grids(),
         }
     }
 }

@@ -19,6 +19,7 @@ use crate::dynamics::equilibrium::result::{Equilibrium, Route, StabilityLoss};
 use crate::dynamics::equilibrium::softest_mode::softest_mode;
 use crate::dynamics::equilibrium::statics::{NewtonOutcome, Statics, UpdateRange};
 use crate::dynamics::error::EquilibriumError;
+use crate::dynamics::solving::MultigridUse;
 use crate::ipopt::interrupt;
 use crate::model::{Coordinates, Model};
 
@@ -41,7 +42,20 @@ pub fn stable_equilibrium(
     start: &[f64],
     voltages: &[f64],
 ) -> Result<Equilibrium, EquilibriumError> {
-    let mut statics = begin(model, voltages)?;
+    stable_equilibrium_by(model, start, voltages, MultigridUse::WhereFaster)
+}
+
+/// The same, with an iteration where it is wanted: its stability is examined up to a size.
+///
+/// # Errors
+/// As of [`stable_equilibrium`].
+pub fn stable_equilibrium_by(
+    model: &Model,
+    start: &[f64],
+    voltages: &[f64],
+    multigrid: MultigridUse,
+) -> Result<Equilibrium, EquilibriumError> {
+    let mut statics = begin(model, voltages, multigrid)?;
     if let Some(twin) = in_joints::twin(model) {
         let start = in_joints::carried(model, start, &twin);
         let found = stable_equilibrium(&twin, &start, voltages);
@@ -54,8 +68,8 @@ pub fn stable_equilibrium(
         }
     }
     let none = statics.without_voltages(voltages);
-    let weighed = under_weight(&mut statics, start, &none);
     let is_driven = statics.is_driven(voltages);
+    let weighed = under_weight(&mut statics, start, &none, !is_driven);
     match (weighed, is_driven) {
         (Err(error @ EquilibriumError::LimitPoint { .. }), true) => {
             // Under voltages there may be an equilibrium where there is none without.
@@ -85,7 +99,7 @@ pub fn stable_equilibrium(
                 voltages,
             };
             statics.weight = 1.0;
-            let (state, after) = under(&mut statics, rest, ramp)?;
+            let (state, after) = under(&mut statics, rest, ramp, true)?;
             let route = match after {
                 Route::Loads => route,
                 other => other,
@@ -101,16 +115,19 @@ fn under_weight(
     statics: &mut Statics<'_>,
     start: &[f64],
     none: &[f64],
+    is_last: bool,
 ) -> Result<(RestState, Route), EquilibriumError> {
     let ramp = Ramp {
         load: Load::Weight,
         voltages: none,
     };
     let begun = unloaded(statics, start, none);
-    let is_stable = begun.is_ok() && statics.unstable() == Some(0);
+    // Where an iteration leads, stability is examined under all loads.
+    let is_stable = begun.is_ok() && (statics.is_iterated() || statics.unstable() == Some(0));
     if is_stable || (begun.is_ok() && statics.weight < 1.0) {
-        return under(statics, begun?, ramp);
+        return under(statics, begun?, ramp, is_last);
     }
+    statics.fall_back();
     // Nothing but weights holds the system, or its reference is far from rest.
     let first = statics.state_without_field(start);
     let from = match &begun {
@@ -168,6 +185,7 @@ fn under(
     statics: &mut Statics<'_>,
     rest: RestState,
     ramp: Ramp<'_>,
+    is_last: bool,
 ) -> Result<(RestState, Route), EquilibriumError> {
     let Grown {
         state,
@@ -176,9 +194,13 @@ fn under(
     } = grow(statics, rest.clone(), ramp)?;
     let is_reached = fraction >= 1.0;
     let voltages = ramp.apply(statics, 1.0);
+    if is_reached && is_last {
+        statics.examine();
+    }
     if is_reached && is_stable(statics, &state, &voltages) != Some(false) {
         return Ok((state, Route::Loads));
     }
+    statics.fall_back();
     // Where it was lost: the limit point from the last stable state on.
     let (before, at) = last_stable.unwrap_or((state.clone(), fraction));
     let limit = match path_end(statics, &before, ramp, at) {

@@ -11,14 +11,16 @@
 
 use crate::coordinates::{Configuration, Interval, Scratch};
 use crate::dynamics::equilibrium::rest_state::RestState;
+use crate::dynamics::equilibrium::static_matrix::{Inertia, matrix, places};
 use crate::dynamics::equilibrium::weights::weights;
 use crate::dynamics::error::EquilibriumError;
-use crate::dynamics::tangent::{EntryList, Tangent};
-use crate::functional::{Order, TermKind};
+use crate::dynamics::solving::MultigridUse;
+use crate::dynamics::step_matrix::StepMatrix;
+use crate::functional::Order;
 use crate::ipopt::interrupt;
 use crate::math::Vector;
 use crate::model::{Model, OPEN, Role};
-use crate::sparse::{Singular, Symmetry};
+use crate::sparse::multigrid::MultigridReport;
 
 /// Limit of Newton iterations.
 pub(super) const ITERATIONS: usize = 30;
@@ -72,11 +74,11 @@ pub(super) struct Statics<'m> {
     pub(super) weight: f64,
     /// First place of the added stiffness in the values: one a coordinate, one a scalar with an equation.
     pub(super) added: usize,
-    pub(super) tangent: Tangent,
-    /// The symmetric part of the tangent where it has no symmetry.
-    symmetric_part: Option<Tangent>,
-    /// The own block of the scalars with an equation.
-    pub(super) electric: Option<Tangent>,
+    pub(super) matrix: StepMatrix,
+    pub(super) inertia: Inertia,
+    /// Counts of an iteration that solves, and of the systems for which factors took over.
+    pub(super) multigrid: MultigridReport,
+    pub(super) fallbacks: usize,
     /// Rows, then the Newton update.
     pub(super) residual: Vec<f64>,
     pub(super) scales: Vec<f64>,
@@ -90,52 +92,19 @@ pub(super) struct Statics<'m> {
 }
 
 impl<'m> Statics<'m> {
-    /// Rest of a model under inputs whose loads act with the weights.
+    /// Rest of a model under inputs whose loads act with the weights, by factors.
     pub(super) fn new(model: &'m Model, inputs: &[f64]) -> Self {
+        Self::by(model, inputs, None)
+    }
+
+    /// The same, by an iteration on box grids where that is possible and wanted.
+    pub(super) fn by(model: &'m Model, inputs: &[f64], multigrid: Option<MultigridUse>) -> Self {
         let map = &model.action.map;
         let layout = model.action.layout();
         let (n, m) = (map.coordinates, map.unknowns());
-        let mut entries = EntryList::default();
-        for (slot, entry) in layout.same.entries().enumerate() {
-            entries.add(layout.same_at(0) + slot, entry);
-            entries.add_to(layout.same_at(1) + slot, slot);
-        }
-        for (slot, (row, col)) in layout.cross.entries().enumerate() {
-            let same = layout.same.find(row, col);
-            let same = same.expect("what couples neighbouring instants couples within one");
-            entries.add_to(layout.lower_at(0) + slot, same);
-            entries.add_to(layout.upper_at(0) + slot, same);
-        }
-        entries.add_scalars(model, &[[0, 0], [1, 1]]);
-        let (size, algebraic) = (model.variables.unknown_count(), model.variables.algebraic());
-        let charts = map.charted();
-        let curved = layout.values(1);
-        for (place, [i, j, _]) in charts.iter().flat_map(turned_pairs).enumerate() {
-            for entry in [(i, j), (j, i)] {
-                let same = layout.same.find(entry.0, entry.1);
-                let same = same.expect("the turns of a joint are coupled");
-                entries.add_to(curved + place, same);
-            }
-        }
-        let added = curved + 3 * charts.len();
-        for (place, i) in (0..n).chain(m..size).enumerate() {
-            entries.add(added + place, (i, i));
-        }
-        // The tangent is negative where a state is stable.
-        let held = model.prescribed_coordinates();
-        entries.hold(&held, -1.0);
-        let mut terms = model.action.intervals.terms.iter();
-        let follows = terms.any(|term| term.kind() == TermKind::AppliedWork);
-        let symmetric_part = follows.then(|| entries.clone().symmetric_part(size));
-        let symmetry = match follows {
-            true => Symmetry::Unsymmetric,
-            false => Symmetry::Symmetric,
-        };
-        let electric = (!algebraic.is_empty()).then(|| {
-            let mut entries = EntryList::default();
-            entries.add_scalars(model, &[]);
-            entries.tangent_from(m, algebraic.len(), Symmetry::Symmetric, None)
-        });
+        let size = model.variables.unknown_count();
+        let [curved, added] = places(model);
+        let (matrix, inertia) = matrix(model, multigrid);
         Self {
             model,
             a: map.instant(),
@@ -149,12 +118,13 @@ impl<'m> Statics<'m> {
                 .inputs_where(inputs, |role| role == Role::Load),
             weight: 1.0,
             added,
-            tangent: entries.tangent(size, symmetry, None),
-            symmetric_part,
-            electric,
+            matrix,
+            inertia,
+            multigrid: MultigridReport::default(),
+            fallbacks: 0,
             residual: vec![0.0; size],
             scales: model.sizes(),
-            charted: charts,
+            charted: map.charted(),
             handedness: map.handedness(),
             curved,
             iterations: 0,
@@ -216,34 +186,6 @@ impl<'m> Statics<'m> {
         let rows = &scratch.interval.plain.rows[variables.algebraic()];
         residual[m..].copy_from_slice(rows);
         self.add_curvature();
-    }
-
-    /// Factorises the tangent of the state evaluated last.
-    pub(super) fn factor(&mut self) -> Result<(), Singular> {
-        if let Some(part) = &mut self.symmetric_part {
-            // Where it is singular, it gives no number of negative pivots.
-            let _ = part.factor(&self.values);
-        }
-        self.tangent.factor(&self.values)
-    }
-
-    /// Factorises the tangent of the state evaluated last with a stiffness σ in N mm for each rad, and each length of the
-    /// system.
-    pub(super) fn factor_with(&mut self, sigma: f64) -> Result<(), Singular> {
-        let n = self.model.action.map.coordinates;
-        let h = self.model.multiplier_time;
-        for (value, scale) in self.values[self.added..].iter_mut().zip(&self.scales[..n]) {
-            *value = -h * sigma / (scale * scale);
-        }
-        let outcome = self.factor();
-        self.values[self.added..].fill(0.0);
-        outcome
-    }
-
-    /// Solves with the last factorisation, in place; what is prescribed does not move.
-    pub(super) fn solve(&mut self, rhs: &mut [f64]) {
-        self.model.hold(rhs);
-        self.tangent.solve(rhs);
     }
 
     /// Largest stiffness on the diagonal, in N mm for each rad or length of the system; 1 where there is none.
@@ -311,6 +253,9 @@ impl<'m> Statics<'m> {
         reach: UpdateRange,
     ) -> Result<NewtonOutcome, EquilibriumError> {
         let (mut last, mut first) = (f64::INFINITY, 0.0);
+        if let Some(grids) = self.matrix.grids_mut() {
+            grids.start();
+        }
         for iteration in 0..ITERATIONS {
             if let Some(status) = interrupt::stop() {
                 return Err(EquilibriumError::Stopped(status));
@@ -327,7 +272,10 @@ impl<'m> Statics<'m> {
                 });
             }
             let mut update = std::mem::take(&mut self.residual);
-            self.solve(&mut update);
+            self.solve_for_update(&mut update);
+            if let Some(status) = interrupt::stop() {
+                return Err(EquilibriumError::Stopped(status));
+            }
             let size = self.size(&update);
             // Potentials follow from one update.
             let moved = self.size(&update[..self.scales().len()]);
@@ -360,26 +308,6 @@ impl<'m> Statics<'m> {
         Ok(NewtonOutcome::Failed)
     }
 
-    /// Number of directions in which the potential energy of the state evaluated and factorised last falls, potentials
-    /// following; `None` where the factorisation does not give them.
-    ///
-    /// The tangent is −h S with S the saddle of coordinates, multipliers and potentials: each multiplier has one negative
-    /// eigenvalue of S, potentials have those of their own block, what remains belongs to the coordinates.
-    pub(super) fn unstable(&mut self) -> Option<usize> {
-        let tangent = self.symmetric_part.as_ref().unwrap_or(&self.tangent);
-        let positive = tangent.negative_pivots()?;
-        let negative = self.residual.len() - positive;
-        let electric = match &mut self.electric {
-            Some(tangent) => {
-                tangent.factor(&self.values).ok()?;
-                let scalars = self.residual.len() - self.model.action.map.unknowns();
-                scalars - tangent.negative_pivots()?
-            }
-            None => 0,
-        };
-        negative.checked_sub(self.model.action.map.multipliers + electric)
-    }
-
     /// Scales of coordinates: 1 rad, and the length of the system.
     pub(super) fn scales(&self) -> &[f64] {
         &self.scales[..self.model.action.map.coordinates]
@@ -390,10 +318,5 @@ impl<'m> Statics<'m> {
         let count = self.scales.len() as f64;
         let weight = |scale: &f64| 1.0 / (scale * scale * count);
         self.scales.iter().map(weight).collect()
-    }
-
-    /// Entries of the tangent factorised last.
-    pub(super) fn entries(&self) -> impl Iterator<Item = ((usize, usize), f64)> + '_ {
-        self.tangent.entries()
     }
 }

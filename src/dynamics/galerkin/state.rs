@@ -12,6 +12,7 @@ use crate::dynamics::kinetic::masses;
 use crate::dynamics::momenta::{rates, vector_momenta};
 use crate::dynamics::solving::{Integrator, Solving};
 use crate::dynamics::start::Start;
+use crate::dynamics::step_matrix::StepMatrix;
 use crate::dynamics::stepper::Steps;
 use crate::functional::{BlockMask, Blocks, Horizon, Order, Output, Sample, SumDerivatives};
 use crate::math::Vector;
@@ -145,7 +146,8 @@ impl<'m> Steps<GalerkinEquations<'m>> {
         let mut scales = of_points.repeat(degree);
         scales.extend(of_samples.repeat(equations.samples.len()));
         let tangent = entries.tangent(scales.len(), Symmetry::Unsymmetric, solving.backend);
-        Self::by(equations, (tangent, held), scales, solving.newton)
+        let matrix = StepMatrix::Direct(tangent);
+        Self::by(equations, (matrix, held), scales, solving.newton)
     }
 }
 

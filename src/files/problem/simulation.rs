@@ -8,7 +8,7 @@ use crate::files::problem::coordinates::coordinates;
 use crate::files::problem::driven::driven;
 use crate::files::problem::feedback::controller;
 use crate::files::problem::spec_integrator::integrator;
-use crate::files::problem::spec_simulate::{SimulateSpec, StepSpec};
+use crate::files::problem::spec_simulate::{LinearSolverSpec, SimulateSpec, StepSpec};
 use crate::model::system::System;
 
 /// Tolerances below this ask for more than rounding allows.
@@ -31,6 +31,8 @@ pub(crate) fn simulation(
         system,
         scope,
     )?;
+    let named = spec.linear_solver.unwrap_or(LinearSolverSpec::Auto);
+    let (backend, multigrid) = named.taken();
     Ok(Simulation {
         duration,
         step,
@@ -43,7 +45,8 @@ pub(crate) fn simulation(
             newton: spec
                 .newton
                 .map_or_else(|| Newton::for_system(system), Into::into),
-            backend: spec.linear_solver.map(Into::into),
+            backend,
+            multigrid,
         },
         controller: match &spec.controller {
             Some(written) => {

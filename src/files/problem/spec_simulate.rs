@@ -1,6 +1,6 @@
 //! A simulation as it is written.
 
-use crate::dynamics::Newton;
+use crate::dynamics::{MultigridUse, Newton};
 use crate::files::problem::loads::LoadMap;
 use crate::files::problem::spec_coordinates::CoordinatesSpec;
 use crate::files::problem::spec_feedback::ControllerSpec;
@@ -48,7 +48,7 @@ pub struct SimulateSpec {
     /// Occasions at which the tangent of a step is factorised; where not written `modified` with finite elements, otherwise `full`.
     #[serde(default)]
     pub newton: Option<NewtonSpec>,
-    /// Method of its factorisation; the one that is fastest as a rule where not written.
+    /// Method by which its linear systems are solved; `auto` where not written.
     #[serde(default)]
     pub linear_solver: Option<LinearSolverSpec>,
 }
@@ -127,21 +127,28 @@ impl From<NewtonSpec> for Newton {
     }
 }
 
-/// Method of the factorisation of a tangent.
+/// Method by which linear systems with the tangent are solved.
 #[derive(Clone, Copy, Debug, Deserialize, JsonSchema)]
 #[serde(rename_all = "snake_case")]
 pub enum LinearSolverSpec {
+    /// The one that is fastest as a rule.
+    Auto,
     /// LDLᵀ or LU of faer.
     Faer,
     /// LDLᵀ or LU of MUMPS.
     Mumps,
+    /// GMRES with multigrid, for blocks on boxes beside which nothing moves.
+    Multigrid,
 }
 
-impl From<LinearSolverSpec> for Backend {
-    fn from(spec: LinearSolverSpec) -> Self {
-        match spec {
-            LinearSolverSpec::Faer => Self::Faer,
-            LinearSolverSpec::Mumps => Self::Mumps,
+impl LinearSolverSpec {
+    /// The factorisation that is named, and the use of multigrid.
+    pub(crate) fn taken(self) -> (Option<Backend>, MultigridUse) {
+        match self {
+            Self::Auto => (None, MultigridUse::WhereFaster),
+            Self::Faer => (Some(Backend::Faer), MultigridUse::WhereFaster),
+            Self::Mumps => (Some(Backend::Mumps), MultigridUse::WhereFaster),
+            Self::Multigrid => (None, MultigridUse::Always),
         }
     }
 }

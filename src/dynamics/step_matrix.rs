@@ -1,0 +1,89 @@
+//! The matrix of a step: factorised, or on box grids, where an iteration solves.
+
+use crate::dynamics::grid_tangent::GridTangent;
+use crate::dynamics::step_state::TangentState;
+use crate::dynamics::tangent::Tangent;
+use crate::math::{IsOver, Stopped};
+use crate::model::Model;
+use crate::sparse::Singular;
+
+/// A matrix of a step with its solver.
+#[derive(Debug)]
+pub(super) enum StepMatrix {
+    /// Factorised.
+    Direct(Tangent),
+    /// On box grids.
+    Grids(Box<GridTangent>),
+}
+
+impl StepMatrix {
+    /// The factorised one.
+    pub(super) fn direct(&self) -> Option<&Tangent> {
+        match self {
+            Self::Direct(tangent) => Some(tangent),
+            Self::Grids(_) => None,
+        }
+    }
+
+    /// The factorised one.
+    pub(super) fn direct_mut(&mut self) -> Option<&mut Tangent> {
+        match self {
+            Self::Direct(tangent) => Some(tangent),
+            Self::Grids(_) => None,
+        }
+    }
+
+    /// The one on grids.
+    pub(super) fn grids_mut(&mut self) -> Option<&mut GridTangent> {
+        match self {
+            Self::Grids(grids) => Some(grids),
+            Self::Direct(_) => None,
+        }
+    }
+
+    /// The method that solves.
+    pub(super) fn name(&self) -> String {
+        match self {
+            Self::Direct(tangent) => tangent.name(),
+            Self::Grids(_) => "GMRES with multigrid".to_owned(),
+        }
+    }
+
+    /// Takes the matrix of these values, unless it is time to stop.
+    pub(super) fn factor_unless(
+        &mut self,
+        values: &[f64],
+        is_over: IsOver<'_>,
+    ) -> Result<Result<(), Singular>, Stopped> {
+        match self {
+            Self::Direct(tangent) => tangent.factor_unless(values, is_over),
+            Self::Grids(grids) => Ok(grids.take(values)),
+        }
+    }
+
+    /// Writes how it is solved, and the matrix where its factors are used again; grids are made anew in every step.
+    pub(super) fn keep(&self, with_matrix: bool, to: &mut TangentState) {
+        match self {
+            Self::Direct(tangent) => tangent.keep(with_matrix, to),
+            Self::Grids(_) => *to = TangentState::default(),
+        }
+    }
+
+    /// Solves as it was done before; returns true if that is possible.
+    pub(super) fn restore(&mut self, model: &Model, from: &TangentState) -> bool {
+        if from.method.method.is_empty() {
+            return matches!(self, Self::Grids(_));
+        }
+        self.fall_back(model);
+        self.direct_mut().is_some_and(|tangent| tangent.take(from))
+    }
+
+    /// Factorises from now on; returns true if it did not before.
+    pub(super) fn fall_back(&mut self, model: &Model) -> bool {
+        let Self::Grids(grids) = self else {
+            return false;
+        };
+        *self = Self::Direct((grids.direct)(model));
+        true
+    }
+}

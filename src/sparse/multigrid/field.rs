@@ -1,0 +1,32 @@
+//! Values of the components at all nodes of a grid, between margins that neighbours beyond the grid may be read from.
+
+use crate::sparse::multigrid::node_grid::COMPONENTS;
+
+/// Values at the nodes in single precision.
+#[derive(Clone, Debug)]
+pub(super) struct Field {
+    pub(super) values: Vec<[f32; COMPONENTS]>,
+    pub(super) margin: usize,
+}
+
+impl Field {
+    /// Zero at all nodes of a grid.
+    pub(super) fn new([n_x, n_y, n_z]: [usize; 3]) -> Self {
+        let margin = n_x * n_y + n_x + 1;
+        Self {
+            values: vec![[0.0; COMPONENTS]; n_x * n_y * n_z + 2 * margin],
+            margin,
+        }
+    }
+
+    /// The nodes without the margins.
+    pub(super) fn nodes(&self) -> &[[f32; COMPONENTS]] {
+        &self.values[self.margin..self.values.len() - self.margin]
+    }
+
+    /// The nodes without the margins.
+    pub(super) fn nodes_mut(&mut self) -> &mut [[f32; COMPONENTS]] {
+        let end = self.values.len() - self.margin;
+        &mut self.values[self.margin..end]
+    }
+}

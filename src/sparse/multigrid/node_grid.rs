@@ -1,0 +1,56 @@
+//! A box grid of nodes with the unknowns at each node.
+
+/// Components of a node: three displacements and a potential.
+pub(super) const COMPONENTS: usize = 4;
+/// Neighbours of a node, itself included.
+pub(super) const NEIGHBOURS: usize = 27;
+/// The node itself among its neighbours.
+pub(super) const OWN: usize = 13;
+
+/// A box grid of nodes, which count along the first axis first.
+#[derive(Clone, Debug, PartialEq)]
+pub struct NodeGrid {
+    /// Places of the node planes along each axis in mm, ascending, two or more.
+    pub planes: [Vec<f64>; 3],
+    /// Unknowns of each node by component; `None` where the value is given.
+    pub unknowns: Vec<[Option<u32>; COMPONENTS]>,
+}
+
+impl NodeGrid {
+    /// Number of planes along each axis.
+    pub(super) fn counts(&self) -> [usize; 3] {
+        [0, 1, 2].map(|axis| self.planes[axis].len())
+    }
+}
+
+/// Axis indices of a node.
+pub(super) fn indices([n_x, n_y, _]: [usize; 3], node: usize) -> [usize; 3] {
+    [node % n_x, node / n_x % n_y, node / (n_x * n_y)]
+}
+
+/// Number of the node at axis indices.
+pub(super) fn node_at([n_x, n_y, _]: [usize; 3], [x, y, z]: [usize; 3]) -> usize {
+    x + n_x * (y + n_y * z)
+}
+
+/// Position among the neighbours of a node of the one at these indices; `None` where it is no neighbour.
+pub(super) fn neighbour(of: [usize; 3], other: [usize; 3]) -> Option<usize> {
+    let mut place = 0;
+    for axis in [2, 1, 0] {
+        let step = (other[axis] + 1).checked_sub(of[axis])?;
+        if step > 2 {
+            return None;
+        }
+        place = 3 * place + step;
+    }
+    Some(place)
+}
+
+/// Distance in the numbering of nodes to each neighbour.
+pub(super) fn offsets([n_x, n_y, _]: [usize; 3]) -> [isize; NEIGHBOURS] {
+    let (n_x, n_xy) = (n_x as isize, (n_x * n_y) as isize);
+    std::array::from_fn(|place| {
+        let step = |divisor: usize| (place / divisor % 3) as isize - 1;
+        step(1) + n_x * step(3) + n_xy * step(9)
+    })
+}

@@ -1,0 +1,14 @@
+//! Messages about iterations with multigrid.
+
+/// The warning where a direct solver took over from an iteration.
+pub(crate) fn warning(fallbacks: usize) -> Option<String> {
+    (fallbacks > 0).then(|| {
+        "the iteration with multigrid did not converge, and a direct solver took over: \"linear_solver\": \"faer\" takes it from the start"
+            .to_owned()
+    })
+}
+
+/// The warning where an equilibrium was found without factors, whose inertia would prove its stability.
+pub(crate) fn unexamined() -> String {
+    "stability was not examined: the matrix is too large to be factorised".to_owned()
+}
