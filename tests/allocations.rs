@@ -297,7 +297,7 @@ fn allocations_of_a_law() -> usize {
     laws.into_iter().map(of).sum()
 }
 
-/// Fewest allocations of a solution by multigrid with new grids, and of one with kept grids, after the first round.
+/// Fewest allocations of a solution by multigrid with new grids, the coarsest of which is factorised, and of one with kept grids, after the first round.
 fn allocations_of_iterations() -> [usize; 2] {
     let mut size = 0;
     let grids = [boxes::grid([6, 5, 20], &mut size)];
@@ -365,7 +365,8 @@ fn evaluations_allocate_nothing() {
     assert_eq!(allocations_of_solves(), 0, "solves of a kept program");
     assert_eq!(allocations_of_a_controller(), 0, "steps of a controller");
     assert_eq!(allocations_of_a_law(), 0, "samples of a law");
-    assert_eq!(allocations_of_iterations(), [0, 0], "multigrid");
+    let [new, kept] = allocations_of_iterations();
+    assert!(new < 10 && kept == 0, "multigrid: {new}, {kept}");
     let before = ASKED.load(Ordering::Relaxed);
     drop(std::hint::black_box(vec![0_u8; 100]));
     assert!(

@@ -5,13 +5,14 @@ use crate::coordinates::StepPattern;
 use crate::dynamics::tangent::Tangent;
 use crate::math::{IsOver, Stopped, compact_index};
 use crate::model::Model;
-use crate::sparse::Singular;
 use crate::sparse::multigrid::{Multigrid, MultigridReport, NoSolution};
 
 /// Least and largest residual of a linear system relative to that of no update.
 const FORCING: [f64; 2] = [1e-4, 1e-2];
-/// Part of the squared ratio of successive residuals that is asked for.
-const OF_SQUARE: f64 = 0.5;
+/// Part of the ratio of successive residuals, or of its square, that is asked for.
+const PART: f64 = 0.5;
+/// Most unknowns whose matrix is kept over steps, and stored with a motion that is to be resumed.
+const KEPT: usize = 250_000;
 /// Change of a potential over the shortest edge, in the unit of fields in which mechanics and electrostatics have one magnitude, above which
 /// potentials come to Gauss's law before anything moves.
 const STRONG: f64 = 0.1;
@@ -41,8 +42,12 @@ pub(super) struct GridTangent {
     edge: f64,
     /// Norm of the residual of the iteration before.
     before: Option<f64>,
-    /// Residual that was asked of the last solution.
-    asked: f64,
+    /// True where the matrices of all grids are regular.
+    is_regular: bool,
+    /// True before the first solution with this matrix.
+    is_new: bool,
+    /// Number of unknowns.
+    size: usize,
     /// Makes the direct solver that takes over.
     pub(super) direct: fn(&Model) -> Tangent,
 }
@@ -110,7 +115,9 @@ impl GridTangent {
             potentials: m,
             edge,
             before: None,
-            asked: FORCING[1],
+            is_regular: false,
+            is_new: true,
+            size,
             direct,
         })
     }
@@ -130,10 +137,33 @@ impl GridTangent {
         self.solver.forget();
     }
 
-    /// Takes the matrix of these values.
-    pub(super) fn take(&mut self, values: &[f64]) -> Result<(), Singular> {
+    /// Takes the matrix of these values; where a matrix of the grids is singular, nothing is solved.
+    pub(super) fn take(&mut self, values: &[f64]) {
         self.fill(0, values);
-        self.solver.take_values()
+        self.is_new = true;
+        self.is_regular = self.solver.take_values().is_ok();
+    }
+
+    /// Returns true if the matrix serves for several steps.
+    pub(super) fn is_kept(&self) -> bool {
+        self.size <= KEPT
+    }
+
+    /// Copies the matrix.
+    pub(super) fn copy(&mut self, to: &mut Vec<f64>) {
+        self.solver.copy_values(to);
+    }
+
+    /// Takes a matrix that was copied; returns true if it fits.
+    pub(super) fn take_copy(&mut self, from: &[f64]) -> bool {
+        let matrix = self.solver.values_mut();
+        if matrix.len() != from.len() {
+            return false;
+        }
+        matrix.copy_from_slice(from);
+        self.solver.forget();
+        self.is_regular = self.solver.take_values().is_ok();
+        self.is_regular
     }
 
     fn fill(&mut self, first: usize, values: &[f64]) {
@@ -150,11 +180,6 @@ impl GridTangent {
         }
     }
 
-    /// Residual that was asked of the last solution, relative to that of no update.
-    pub(super) fn asked(&self) -> f64 {
-        self.asked
-    }
-
     /// Solves for an update in place, as accurately as it deserves.
     pub(super) fn solve_for_update(
         &mut self,
@@ -163,12 +188,17 @@ impl GridTangent {
     ) -> Iterated {
         let norm = self.solver.size(residual);
         let [least, largest] = FORCING;
+        // A new matrix makes residuals shrink quadratically, one that is kept by a factor.
+        let power = if std::mem::take(&mut self.is_new) {
+            2
+        } else {
+            1
+        };
         let asked = match self.before.replace(norm) {
-            Some(before) => (OF_SQUARE * (norm / before).powi(2)).clamp(least, largest),
+            Some(before) => (PART * (norm / before).powi(power)).clamp(least, largest),
             None => largest,
         };
-        self.asked = asked;
-        self.solver.solve(residual, asked, is_over)
+        self.solve(residual, asked, is_over)
     }
 
     /// Solves in place to this residual, relative to that of zero.
@@ -178,7 +208,10 @@ impl GridTangent {
         tolerance: f64,
         is_over: IsOver<'_>,
     ) -> Iterated {
-        self.solver.solve(rhs, tolerance, is_over)
+        match self.is_regular {
+            true => self.solver.solve(rhs, tolerance, is_over),
+            false => Ok(Err(NoSolution)),
+        }
     }
 
     /// The update that brings potentials to Gauss's law where nothing moves; `None` where they are near it, or it is not found.

@@ -2,6 +2,7 @@
 
 use crate::dynamics::equations::Equations;
 use crate::dynamics::solving::Newton;
+use crate::dynamics::step_report::StepperReport;
 use crate::dynamics::step_state::StepState;
 use crate::dynamics::stepper::Steps;
 
@@ -23,7 +24,8 @@ impl<E: Equations> Steps<E> {
             index += 1;
         });
         to.lists.truncate(index);
-        let is_new = to.tangent.is_none() || self.report.factorisations != to.report.factorisations;
+        let made = |report: &StepperReport| [report.factorisations, report.multigrid.hierarchies];
+        let is_new = to.tangent.is_none() || made(&self.report) != made(&to.report);
         if is_new {
             self.updates.keep(self.factored, &mut to.tangent);
         }

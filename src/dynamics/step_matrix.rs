@@ -5,7 +5,7 @@ use crate::dynamics::step_state::TangentState;
 use crate::dynamics::tangent::Tangent;
 use crate::math::{IsOver, Stopped};
 use crate::model::Model;
-use crate::sparse::Singular;
+use crate::sparse::{MethodState, Singular};
 
 /// A matrix of a step with its solver.
 #[derive(Debug)]
@@ -57,22 +57,44 @@ impl StepMatrix {
     ) -> Result<Result<(), Singular>, Stopped> {
         match self {
             Self::Direct(tangent) => tangent.factor_unless(values, is_over),
-            Self::Grids(grids) => Ok(grids.take(values)),
+            Self::Grids(grids) => {
+                // What follows from the matrix alone can be resumed with the same bits.
+                grids.forget();
+                grids.take(values);
+                Ok(Ok(()))
+            }
         }
     }
 
-    /// Writes how it is solved, and the matrix where its factors are used again; grids are made anew in every step.
-    pub(super) fn keep(&self, with_matrix: bool, to: &mut TangentState) {
+    /// Writes how it is solved, and the matrix where it is used again.
+    pub(super) fn keep(&mut self, with_matrix: bool, to: &mut TangentState) {
         match self {
             Self::Direct(tangent) => tangent.keep(with_matrix, to),
-            Self::Grids(_) => *to = TangentState::default(),
+            Self::Grids(grids) => {
+                (to.is_approximate, to.method) = (false, MethodState::default());
+                to.matrix.clear();
+                if with_matrix {
+                    grids.copy(&mut to.matrix);
+                }
+            }
+        }
+    }
+
+    /// Returns true if the matrix serves for several steps.
+    pub(super) fn is_kept(&self) -> bool {
+        match self {
+            Self::Direct(_) => true,
+            Self::Grids(grids) => grids.is_kept(),
         }
     }
 
     /// Solves as it was done before; returns true if that is possible.
     pub(super) fn restore(&mut self, model: &Model, from: &TangentState) -> bool {
         if from.method.method.is_empty() {
-            return matches!(self, Self::Grids(_));
+            let Self::Grids(grids) = self else {
+                return false;
+            };
+            return from.step.is_none() || grids.take_copy(&from.matrix);
         }
         self.fall_back(model);
         self.direct_mut().is_some_and(|tangent| tangent.take(from))

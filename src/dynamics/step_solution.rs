@@ -39,7 +39,7 @@ impl<E: Equations> Steps<E> {
         let values = self.equations.values();
         let done = self.updates.factor_unless(values, &|| reached().is_some());
         self.report.factorisation += began.elapsed().as_secs_f64();
-        let is_kept = self.updates.matrix.direct().is_some() && done == Ok(Ok(()));
+        let is_kept = self.updates.matrix.is_kept() && done == Ok(Ok(()));
         self.factored = is_kept.then_some(h);
         let Ok(done) = done else {
             return Err(self.stopped(h, reached().unwrap_or(Status::Interrupted)));

@@ -1,6 +1,6 @@
 //! One step forward: Newton on the equations of a method, and halves of the step where it fails.
 
-use crate::dynamics::contraction::{Contraction, Verdict};
+use crate::dynamics::contraction::Verdict;
 use crate::dynamics::drive::Drive;
 use crate::dynamics::equations::Equations;
 use crate::dynamics::error::StepError;
@@ -179,7 +179,8 @@ impl<E: Equations> Steps<E> {
         let newton = self.updates.newton();
         let mut reused = newton == Newton::Modified && self.factored == Some(h);
         self.stale = reused;
-        let mut contraction = Contraction::new(newton);
+        let mut contraction = self.updates.contraction();
+        let mut are_placed = false;
         self.updates.begin();
         let limit = match newton {
             Newton::Full => ITERATIONS,
@@ -201,7 +202,7 @@ impl<E: Equations> Steps<E> {
             if !norm.is_finite() {
                 break;
             }
-            if residuals.len() == 1 && self.place_potentials(h)? {
+            if !reused && !std::mem::replace(&mut are_placed, true) && self.place_potentials(h)? {
                 continue;
             }
             if !reused {

@@ -46,7 +46,7 @@ impl Updates {
     }
 
     /// Writes the tangent that is kept, and the step that it belongs to.
-    pub(super) fn keep(&self, step: Option<f64>, to: &mut Option<TangentState>) {
+    pub(super) fn keep(&mut self, step: Option<f64>, to: &mut Option<TangentState>) {
         let to = to.get_or_insert_default();
         // Newton's method makes a new one in every iteration.
         to.step = step.filter(|_| self.newton == Newton::Modified);
@@ -63,8 +63,6 @@ impl Updates {
         self.start();
         if let Some(grids) = self.matrix.grids_mut() {
             grids.start();
-            // What follows from the state alone can be resumed with the same bits.
-            grids.forget();
         }
     }
 
@@ -86,14 +84,19 @@ impl Updates {
         }
     }
 
+    /// Before the first update of an attempt.
+    pub(super) fn contraction(&self) -> Contraction {
+        match &self.matrix {
+            StepMatrix::Direct(_) => Contraction::new(self.newton),
+            StepMatrix::Grids(_) => Contraction::of_cheap_tangents(self.newton),
+        }
+    }
+
     /// Judges an update of this size by what its matrix leaves of it.
     pub(super) fn judge(&self, contraction: &mut Contraction, size: f64, reused: bool) -> Verdict {
-        match &self.matrix {
-            StepMatrix::Direct(tangent) => {
-                contraction.judge(size, reused, tangent.is_approximate())
-            }
-            StepMatrix::Grids(grids) => contraction.judge_inexact(size, grids.asked()),
-        }
+        let is_approximate = |tangent: &Tangent| tangent.is_approximate();
+        let tangent = self.matrix.direct();
+        contraction.judge(size, reused, tangent.is_none_or(is_approximate))
     }
 
     /// Makes factors in double precision from now on; returns true if they were not before.

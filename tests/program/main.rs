@@ -26,6 +26,7 @@ mod loops;
 mod materials;
 mod messages;
 mod motions;
+mod multigrid;
 mod names;
 mod observed;
 mod observer;

@@ -4,8 +4,8 @@ use crate::common::random::Random;
 use crate::common::solid::{DRIVEN, block, electrode, held, system};
 use nalgebra::Vector3;
 use proboscis::dynamics::{
-    DiscreteTrajectory, MultigridUse, Newton, Solving, Start, simulate_by, stable_equilibrium,
-    stable_equilibrium_by,
+    DiscreteTrajectory, Lengths, MultigridUse, Newton, Solving, Start, TimeGrid, go_on,
+    simulate_by, stable_equilibrium, stable_equilibrium_by,
 };
 use proboscis::mesh::grid::Grid;
 use proboscis::model::system::{
@@ -186,7 +186,7 @@ fn iterations_do_not_grow_with_the_mesh() {
         });
         assert!(counts[0].2 < counts[2].2, "grids are added: {counts:?}");
         for (newton, krylov, _) in counts {
-            assert!(newton <= 8 && krylov <= 40, "{counts:?}");
+            assert!(newton <= 12 && krylov <= 40, "{counts:?}");
         }
     }
 }
@@ -205,6 +205,34 @@ fn a_direct_solver_takes_over_where_the_iteration_stalls() {
     assert!(iterated.report.factorisations > 0);
     assert!(apart(&direct.z[1], &direct.z[0]) > 1e-3);
     assert!(apart(&direct.z[1], &iterated.z[1]) < 1e-6);
+}
+
+/// Steps that go on from a motion that ended, with the tangent that was kept.
+#[test]
+fn a_resumed_motion_has_the_same_bits() {
+    let model = Model::new(
+        system(vec![cubes(3, rubber(0.4, Some(1.0)))]),
+        None,
+        0.5,
+        &[],
+    )
+    .unwrap();
+    let start = Start::at_rest(&model, model.coordinates_at(&[]));
+    let go = |begun: DiscreteTrajectory, steps: usize| {
+        let lengths = Lengths::Equal(TimeGrid { h: 0.5, steps });
+        let drive = |_: f64, _: f64| vec![3e5];
+        let observer = |_: &_| ControlFlow::Continue(());
+        let (discrete, failure) = go_on(MULTIGRID, &model, begun, lengths, drive, observer);
+        assert_eq!(failure, None);
+        discrete
+    };
+    let whole = go(DiscreteTrajectory::at(&start), 8);
+    let made = whole.report.multigrid.hierarchies;
+    assert!(made < 8, "tangents are kept over steps: {made}");
+    let resumed = go(go(DiscreteTrajectory::at(&start), 5), 8);
+    assert!(whole.z == resumed.z && whole.scalars == resumed.scalars);
+    let counts = [&whole, &resumed].map(|motion| motion.report.multigrid.iterations);
+    assert_eq!(counts[0], counts[1]);
 }
 
 /// Under weight and voltages, cubes and thin layers; the inertia proves stability.

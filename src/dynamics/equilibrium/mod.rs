@@ -1,6 +1,6 @@
 //! Static equilibria: under growing loads, along paths, and their stability.
 //!
-//! - `statics`: Newton on the rows of rest; `static_matrix`: their matrix; `rest_state`, `states`: their unknowns; `settle`, `minimum`, `relaxation`: states that Newton's method does not reach.
+//! - `statics`: Newton on the rows of rest; `static_matrix`, `static_solution`: their matrix and its solvers; `rest_state`, `states`: their unknowns; `settle`, `minimum`, `relaxation`: states that Newton's method does not reach.
 //! - `instability`, `ramp`, `growth`: loads that grow; `arc_length`: the path of equilibria by arc length; `load_path`: its points.
 //! - `in_joints`: equilibria in redundant coordinates by way of joint coordinates.
 //! - `result`, `mode`, `softest_mode`, `stability`: a state of rest and its softest mode; `slowest_mode`: its slowest vibration; `stable`: the
@@ -25,6 +25,7 @@ mod stability;
 mod stable;
 mod states;
 mod static_matrix;
+mod static_solution;
 mod statics;
 mod weights;
 

@@ -1,7 +1,8 @@
 //! States of rest of a model: made, moved, and seen from charts where their bodies are.
 
 use crate::dynamics::equilibrium::rest_state::RestState;
-use crate::dynamics::equilibrium::statics::{Statics, turned_pairs};
+use crate::dynamics::equilibrium::static_matrix::turned_pairs;
+use crate::dynamics::equilibrium::statics::Statics;
 
 impl Statics<'_> {
     /// The state at a configuration, potentials being zero.

@@ -11,7 +11,7 @@
 
 use crate::coordinates::{Configuration, Interval, Scratch};
 use crate::dynamics::equilibrium::rest_state::RestState;
-use crate::dynamics::equilibrium::static_matrix::{Inertia, matrix, places};
+use crate::dynamics::equilibrium::static_matrix::{Inertia, matrix, places, turned_pairs};
 use crate::dynamics::equilibrium::weights::weights;
 use crate::dynamics::error::EquilibriumError;
 use crate::dynamics::solving::MultigridUse;
@@ -50,11 +50,6 @@ pub(super) enum UpdateRange {
 pub(super) enum NewtonOutcome {
     Converged,
     Failed,
-}
-
-/// Pairs of the turns behind a chart, with the third one.
-pub(super) fn turned_pairs(&[a, b, c]: &[usize; 3]) -> [[usize; 3]; 3] {
-    [[a, b, c], [a, c, b], [b, c, a]]
 }
 
 /// Rows and tangent of rest.

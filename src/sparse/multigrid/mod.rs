@@ -6,6 +6,7 @@
 //! short edges only, so that thin layers do no harm (`docs/theory.md`, linear systems of finite elements).
 
 mod axis;
+mod boxes;
 mod field;
 mod galerkin;
 mod hierarchy;

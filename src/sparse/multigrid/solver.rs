@@ -3,21 +3,15 @@
 //! The matrix is held in double precision, by blocks; the grids of the preconditioner are those of an earlier matrix as long as they cost
 //! no iterations: they are made anew where a solution took more of them for each digit than the first one did.
 
-use crate::math::{IsOver, Stopped, join};
+use crate::math::{IsOver, Stopped};
 use crate::sparse::Singular;
-use crate::sparse::multigrid::field::Field;
+use crate::sparse::multigrid::boxes::{ENTRIES, Parts, products};
 use crate::sparse::multigrid::hierarchy::Hierarchy;
-use crate::sparse::multigrid::krylov::{Iterated, Krylov, Operator};
-use crate::sparse::multigrid::level::Block;
-use crate::sparse::multigrid::node_grid::{
-    COMPONENTS, NEIGHBOURS, NodeGrid, OWN, indices, neighbour, offsets,
-};
-use std::ops::Range;
+use crate::sparse::multigrid::krylov::{Iterated, Krylov, norm};
+use crate::sparse::multigrid::node_grid::{COMPONENTS, NEIGHBOURS, NodeGrid, indices, neighbour};
 
 /// Iterations for each digit, relative to those with fresh grids, above which grids are made anew.
 const SLOWER: f64 = 1.4;
-/// Entries of a block.
-const ENTRIES: usize = COMPONENTS * COMPONENTS;
 /// In place of an unknown.
 const NONE: u32 = u32::MAX;
 
@@ -63,18 +57,6 @@ pub struct Multigrid {
     fresh: Option<f64>,
     is_prepared: bool,
     report: MultigridReport,
-}
-
-/// The boxes and their matrix.
-#[derive(Debug)]
-struct Parts {
-    boxes: Vec<Hierarchy>,
-    /// First node of each box, and the number of all.
-    starts: Vec<usize>,
-    /// Blocks by node and neighbour, each by column.
-    matrix: Vec<[f64; ENTRIES]>,
-    /// Factors of rows and columns of a box by component.
-    scales: Vec<[f64; COMPONENTS]>,
 }
 
 impl Multigrid {
@@ -157,6 +139,23 @@ impl Multigrid {
         self.parts.matrix.as_flattened_mut()
     }
 
+    /// Copies the values as they were written.
+    pub fn copy_values(&self, to: &mut Vec<f64>) {
+        let Parts {
+            matrix,
+            starts,
+            scales,
+            ..
+        } = &self.parts;
+        to.clear();
+        for (part, factors) in scales.iter().enumerate() {
+            let products = products(factors).map(f64::recip);
+            for block in &matrix[NEIGHBOURS * starts[part]..NEIGHBOURS * starts[part + 1]] {
+                to.extend(block.iter().zip(&products).map(|(entry, by)| entry * by));
+            }
+        }
+    }
+
     /// Counts since the last call.
     pub fn counted(&mut self) -> MultigridReport {
         let counted = self.report;
@@ -193,7 +192,7 @@ impl Multigrid {
     /// Norm of a right-hand side as the iteration measures it.
     pub fn size(&mut self, rhs: &[f64]) -> f64 {
         self.load(rhs);
-        crate::sparse::multigrid::krylov::norm(&self.rhs)
+        norm(&self.rhs)
     }
 
     /// Solves in place to a residual relative to that of zero.
@@ -261,152 +260,3 @@ impl Multigrid {
         }
     }
 }
-
-impl Parts {
-    fn nodes(&self, part: usize) -> Range<usize> {
-        self.starts[part]..self.starts[part + 1]
-    }
-
-    fn scale_of(&self, place: usize) -> f64 {
-        let part = match self.boxes.len() {
-            1 => 0,
-            _ => {
-                self.starts
-                    .partition_point(|&start| start <= place / COMPONENTS)
-                    - 1
-            }
-        };
-        self.scales[part][place % COMPONENTS]
-    }
-
-    /// Finds scales that make the mean of the diagonal one: of all displacements of a box, and of its potentials.
-    fn find_scales(&mut self) {
-        for part in 0..self.boxes.len() {
-            let mut sums = [[0.0; 2]; COMPONENTS];
-            for node in self.nodes(part) {
-                let own = &self.matrix[NEIGHBOURS * node + OWN];
-                for (component, [sum, count]) in sums.iter_mut().enumerate() {
-                    let diagonal = own[(COMPONENTS + 1) * component].abs();
-                    *sum += diagonal;
-                    *count += f64::from(u8::from(diagonal > 0.0));
-                }
-            }
-            let scale = |parts: Range<usize>| {
-                let (sum, count) = sums[parts]
-                    .iter()
-                    .fold((0.0, 0.0), |(s, c), [sum, count]| (s + sum, c + count));
-                let mean: f64 = sum / count;
-                // A power of two rounds nothing.
-                if mean > 0.0 && mean.is_finite() {
-                    (-0.5 * mean.log2()).round().exp2()
-                } else {
-                    1.0
-                }
-            };
-            let displacement = scale(0..3);
-            self.scales[part] = [displacement, displacement, displacement, scale(3..4)];
-        }
-    }
-
-    /// Multiplies rows and columns by their factors.
-    fn scale(&mut self) {
-        for part in 0..self.boxes.len() {
-            let factors = self.scales[part];
-            let products: [f64; ENTRIES] = std::array::from_fn(|entry| {
-                factors[entry % COMPONENTS] * factors[entry / COMPONENTS]
-            });
-            let blocks = self.nodes(part);
-            let blocks = NEIGHBOURS * blocks.start..NEIGHBOURS * blocks.end;
-            for block in &mut self.matrix[blocks] {
-                for (entry, product) in block.iter_mut().zip(&products) {
-                    *entry *= product;
-                }
-            }
-        }
-    }
-
-    /// Makes the grids of the present matrix.
-    fn prepare(&mut self) -> Result<(), Singular> {
-        for part in 0..self.boxes.len() {
-            let nodes = self.nodes(part);
-            let blocks = &self.matrix[NEIGHBOURS * nodes.start..NEIGHBOURS * nodes.end];
-            let finest = &mut self.boxes[part].levels[0].matrix;
-            for (to, from) in finest.iter_mut().zip(blocks) {
-                for (to, from) in to.iter_mut().zip(from) {
-                    *to = *from as f32;
-                }
-            }
-            self.boxes[part].prepare()?;
-        }
-        Ok(())
-    }
-}
-
-impl Operator for Parts {
-    fn apply(&mut self, x: &[f32], product: &mut [f64]) {
-        for part in 0..self.boxes.len() {
-            let nodes = self.nodes(part);
-            let counts = self.boxes[part].levels[0].counts;
-            let field = &mut self.boxes[part].levels[0].x;
-            let own = COMPONENTS * nodes.start..COMPONENTS * nodes.end;
-            field
-                .nodes_mut()
-                .as_flattened_mut()
-                .copy_from_slice(&x[own.clone()]);
-            let blocks = &self.matrix[NEIGHBOURS * nodes.start..NEIGHBOURS * nodes.end];
-            let field = &self.boxes[part].levels[0].x;
-            let half = nodes.len() / 2;
-            let (lower, upper) = product[own].split_at_mut(COMPONENTS * half);
-            join(
-                || multiply(blocks, field, offsets(counts), 0, lower),
-                || multiply(blocks, field, offsets(counts), half, upper),
-            );
-        }
-    }
-
-    fn precondition(&mut self, r: &[f64], x: &mut [f32]) {
-        for part in 0..self.boxes.len() {
-            let nodes = self.nodes(part);
-            let finest = &mut self.boxes[part].levels[0];
-            let own = COMPONENTS * nodes.start..COMPONENTS * nodes.end;
-            let field = finest.rhs.nodes_mut().as_flattened_mut();
-            for (value, r) in field.iter_mut().zip(&r[own.clone()]) {
-                *value = *r as f32;
-            }
-            self.boxes[part].cycle();
-            let field = self.boxes[part].levels[0].x.nodes().as_flattened();
-            x[own].copy_from_slice(field);
-        }
-    }
-}
-
-/// Writes the products of the rows of nodes from one on.
-fn multiply(
-    blocks: &[[f64; ENTRIES]],
-    field: &Field,
-    offsets: [isize; NEIGHBOURS],
-    first: usize,
-    product: &mut [f64],
-) {
-    for (row, product) in product.chunks_exact_mut(COMPONENTS).enumerate() {
-        let node = first + row;
-        let at = (node + field.margin) as isize;
-        let mut sum = [0.0; COMPONENTS];
-        for (block, offset) in blocks[NEIGHBOURS * node..][..NEIGHBOURS]
-            .iter()
-            .zip(&offsets)
-        {
-            let there = &field.values[(at + offset) as usize];
-            for (column, value) in block.chunks_exact(COMPONENTS).zip(there) {
-                let value = f64::from(*value);
-                for (sum, entry) in sum.iter_mut().zip(column) {
-                    *sum += entry * value;
-                }
-            }
-        }
-        product.copy_from_slice(&sum);
-    }
-}
-
-// The finest grids are in the form in which products read them.
-const _: () = assert!(size_of::<Block>() == 64);

@@ -1,0 +1,178 @@
+//! Box grids side by side: their matrix in double precision, by blocks, with its product and its preconditioner.
+
+use crate::math::join;
+use crate::sparse::Singular;
+use crate::sparse::multigrid::field::Field;
+use crate::sparse::multigrid::hierarchy::Hierarchy;
+use crate::sparse::multigrid::krylov::Operator;
+use crate::sparse::multigrid::level::Block;
+use crate::sparse::multigrid::node_grid::{COMPONENTS, NEIGHBOURS, OWN, offsets};
+use std::ops::Range;
+
+/// Entries of a block.
+pub(super) const ENTRIES: usize = COMPONENTS * COMPONENTS;
+
+/// The boxes and their matrix.
+#[derive(Debug)]
+pub(super) struct Parts {
+    pub(super) boxes: Vec<Hierarchy>,
+    /// First node of each box, and the number of all.
+    pub(super) starts: Vec<usize>,
+    /// Blocks by node and neighbour, each by column.
+    pub(super) matrix: Vec<[f64; ENTRIES]>,
+    /// Factors of rows and columns of a box by component.
+    pub(super) scales: Vec<[f64; COMPONENTS]>,
+}
+
+impl Parts {
+    /// Nodes of a box.
+    fn nodes(&self, part: usize) -> Range<usize> {
+        self.starts[part]..self.starts[part + 1]
+    }
+
+    /// Factor of the row and column at a place.
+    pub(super) fn scale_of(&self, place: usize) -> f64 {
+        let part = match self.boxes.len() {
+            1 => 0,
+            _ => {
+                self.starts
+                    .partition_point(|&start| start <= place / COMPONENTS)
+                    - 1
+            }
+        };
+        self.scales[part][place % COMPONENTS]
+    }
+
+    /// Finds scales that make the mean of the diagonal one: of all displacements of a box, and of its potentials.
+    pub(super) fn find_scales(&mut self) {
+        for part in 0..self.boxes.len() {
+            let mut sums = [[0.0; 2]; COMPONENTS];
+            for node in self.nodes(part) {
+                let own = &self.matrix[NEIGHBOURS * node + OWN];
+                for (component, [sum, count]) in sums.iter_mut().enumerate() {
+                    let diagonal = own[(COMPONENTS + 1) * component].abs();
+                    *sum += diagonal;
+                    *count += f64::from(u8::from(diagonal > 0.0));
+                }
+            }
+            let scale = |parts: Range<usize>| {
+                let (sum, count) = sums[parts]
+                    .iter()
+                    .fold((0.0, 0.0), |(s, c), [sum, count]| (s + sum, c + count));
+                let mean: f64 = sum / count;
+                // A power of two rounds nothing.
+                if mean > 0.0 && mean.is_finite() {
+                    (-0.5 * mean.log2()).round().exp2()
+                } else {
+                    1.0
+                }
+            };
+            let displacement = scale(0..3);
+            self.scales[part] = [displacement, displacement, displacement, scale(3..4)];
+        }
+    }
+
+    /// Multiplies rows and columns by their factors.
+    pub(super) fn scale(&mut self) {
+        for part in 0..self.boxes.len() {
+            let products = products(&self.scales[part]);
+            let blocks = self.nodes(part);
+            let blocks = NEIGHBOURS * blocks.start..NEIGHBOURS * blocks.end;
+            for block in &mut self.matrix[blocks] {
+                for (entry, product) in block.iter_mut().zip(&products) {
+                    *entry *= product;
+                }
+            }
+        }
+    }
+
+    /// Makes the grids of the present matrix.
+    pub(super) fn prepare(&mut self) -> Result<(), Singular> {
+        for part in 0..self.boxes.len() {
+            let nodes = self.nodes(part);
+            let blocks = &self.matrix[NEIGHBOURS * nodes.start..NEIGHBOURS * nodes.end];
+            let finest = &mut self.boxes[part].levels[0].matrix;
+            for (to, from) in finest.iter_mut().zip(blocks) {
+                for (to, from) in to.iter_mut().zip(from) {
+                    *to = *from as f32;
+                }
+            }
+            self.boxes[part].prepare()?;
+        }
+        Ok(())
+    }
+}
+
+impl Operator for Parts {
+    fn apply(&mut self, x: &[f32], product: &mut [f64]) {
+        for part in 0..self.boxes.len() {
+            let nodes = self.nodes(part);
+            let counts = self.boxes[part].levels[0].counts;
+            let field = &mut self.boxes[part].levels[0].x;
+            let own = COMPONENTS * nodes.start..COMPONENTS * nodes.end;
+            field
+                .nodes_mut()
+                .as_flattened_mut()
+                .copy_from_slice(&x[own.clone()]);
+            let blocks = &self.matrix[NEIGHBOURS * nodes.start..NEIGHBOURS * nodes.end];
+            let field = &self.boxes[part].levels[0].x;
+            let half = nodes.len() / 2;
+            let (lower, upper) = product[own].split_at_mut(COMPONENTS * half);
+            join(
+                || multiply(blocks, field, offsets(counts), 0, lower),
+                || multiply(blocks, field, offsets(counts), half, upper),
+            );
+        }
+    }
+
+    fn precondition(&mut self, r: &[f64], x: &mut [f32]) {
+        for part in 0..self.boxes.len() {
+            let nodes = self.nodes(part);
+            let finest = &mut self.boxes[part].levels[0];
+            let own = COMPONENTS * nodes.start..COMPONENTS * nodes.end;
+            let field = finest.rhs.nodes_mut().as_flattened_mut();
+            for (value, r) in field.iter_mut().zip(&r[own.clone()]) {
+                *value = *r as f32;
+            }
+            self.boxes[part].cycle();
+            let field = self.boxes[part].levels[0].x.nodes().as_flattened();
+            x[own].copy_from_slice(field);
+        }
+    }
+}
+
+/// Factors of the entries of a block.
+pub(super) fn products(factors: &[f64; COMPONENTS]) -> [f64; ENTRIES] {
+    std::array::from_fn(|entry| factors[entry % COMPONENTS] * factors[entry / COMPONENTS])
+}
+
+/// Writes the products of the rows of nodes from one on.
+fn multiply(
+    blocks: &[[f64; ENTRIES]],
+    field: &Field,
+    offsets: [isize; NEIGHBOURS],
+    first: usize,
+    product: &mut [f64],
+) {
+    for (row, product) in product.chunks_exact_mut(COMPONENTS).enumerate() {
+        let node = first + row;
+        let at = (node + field.margin) as isize;
+        let mut sum = [0.0; COMPONENTS];
+        for (block, offset) in blocks[NEIGHBOURS * node..][..NEIGHBOURS]
+            .iter()
+            .zip(&offsets)
+        {
+            let there = &field.values[(at + offset) as usize];
+            for (column, value) in block.chunks_exact(COMPONENTS).zip(there) {
+                let value = f64::from(*value);
+                for (sum, entry) in sum.iter_mut().zip(column) {
+                    *sum += entry * value;
+                }
+            }
+        }
+        product.copy_from_slice(&sum);
+    }
+}
+
+// The finest grids are in the form in which products read them.
+const _: () = assert!(size_of::<Block>() == 64);
