@@ -8,7 +8,7 @@ use proboscis::model::system::{
 };
 
 /// A block of n × n × 4n elements of 10 × 10 × 40 mm with four layers, fixed below.
-pub fn block(n: usize, viscosity: Option<f64>) -> System {
+pub(crate) fn block(n: usize, viscosity: Option<f64>) -> System {
     let mesh = Grid::uniform(
         Vector3::zeros(),
         Vector3::new(10.0, 10.0, 40.0),

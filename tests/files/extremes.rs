@@ -189,7 +189,7 @@ fn what_the_memory_cannot_hold_is_refused_before_it_is_filled() {
         (
             "simulate",
             "clamped_stack_step",
-            "scene.solids[0].box.elements=[100,100,100]",
+            "scene.solids[0].box.elements=[160,160,160]",
             "scene.gravity=[0,0,0]",
         ),
     ];
