@@ -58,7 +58,7 @@ const WORDS: [Retired; 21] = [
             ("src/kkt/", "a system after static condensation"),
             ("src/app/linear_systems.rs", "such systems, counted"),
             ("tests/solver/", "such systems"),
-            ("tests/allocations.rs", "such systems, counted"),
+            ("tests/allocations/main.rs", "such systems, counted"),
         ],
     },
 ];
