@@ -159,7 +159,7 @@ class Questions:
         * `controller`: A controller that gives the voltages which it has gains for.
         * `coordinates`: Coordinates.
         * `integrator`: The method; the midpoint variational integrator where not written.
-        * `linear_solver`: Method of its factorisation; the one that is fastest as a rule where not written.
+        * `linear_solver`: Method by which its linear systems are solved; `auto` where not written.
         * `loads`: Loads by name, constant or functions of time, SI units N, N m, Pa, N/m³ and C/m²; 0 where not named.
         * `newton`: Occasions at which the tangent of a step is factorised; where not written `modified` with finite elements, otherwise
           `full`.

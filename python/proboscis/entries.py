@@ -930,8 +930,8 @@ class Limit(TypedDict):
     """Limits of the rate of the voltage of sources."""
 
 
-LinearSolver: TypeAlias = "Literal['faer', 'mumps']"
-"""Method of the factorisation of a tangent."""
+LinearSolver: TypeAlias = "Literal['auto', 'faer', 'mumps', 'multigrid']"
+"""Method by which linear systems with the tangent are solved."""
 
 
 class MarkerLimit(TypedDict):
@@ -1773,7 +1773,7 @@ class Simulate(TypedDict):
     """The method; the midpoint variational integrator where not written."""
 
     linear_solver: NotRequired[LinearSolver]
-    """Method of its factorisation; the one that is fastest as a rule where not written."""
+    """Method by which its linear systems are solved; `auto` where not written."""
 
     loads: NotRequired[Mapping[Any, Signal]]
     """Loads by name, constant or functions of time, SI units N, N m, Pa, N/m³ and C/m²; 0 where not named."""

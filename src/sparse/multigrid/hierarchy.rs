@@ -14,7 +14,7 @@ const COARSEST: usize = 100;
 /// Grids of one box.
 #[derive(Debug)]
 pub(super) struct Hierarchy {
-    /// From the finest to the coarsest.
+    /// Ordered, the finest first.
     pub(super) levels: Vec<Level>,
     coarsest: Direct,
     values: Vec<f64>,
