@@ -117,7 +117,11 @@ fn step_matrix(model: &Model, solving: Solving) -> StepMatrix {
     let grids = is_wanted.then(|| GridTangent::new(model, &blocks, direct));
     match grids.flatten() {
         Some(grids) => StepMatrix::Grids(Box::new(grids)),
-        None => StepMatrix::Direct(self::direct(model, solving.newton, solving.backend)),
+        None => StepMatrix::Direct(Box::new(self::direct(
+            model,
+            solving.newton,
+            solving.backend,
+        ))),
     }
 }
 

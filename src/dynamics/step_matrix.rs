@@ -11,7 +11,7 @@ use crate::sparse::{MethodState, Singular};
 #[derive(Debug)]
 pub(super) enum StepMatrix {
     /// Factorised.
-    Direct(Tangent),
+    Direct(Box<Tangent>),
     /// On box grids.
     Grids(Box<GridTangent>),
 }
@@ -105,7 +105,7 @@ impl StepMatrix {
         let Self::Grids(grids) = self else {
             return false;
         };
-        *self = Self::Direct((grids.direct)(model));
+        *self = Self::Direct(Box::new((grids.direct)(model)));
         true
     }
 }

@@ -22,7 +22,6 @@ pub use join::cores;
 pub(crate) use join::join_if;
 pub use number::{HyperDual, Number};
 pub(crate) use pool::has_pool;
-#[cfg(feature = "report")]
 pub(crate) use pool::join;
 pub use random::Random;
 pub use sets::DisjointSets;

@@ -11,7 +11,8 @@ impl Mesh {
         let [Some(1), Some(n_x), Some(n_xy)] = steps else {
             return None;
         };
-        let whole = |all: usize, part: usize| (part > 0 && all % part == 0).then(|| all / part);
+        let whole =
+            |all: usize, part: usize| (part > 0 && all.is_multiple_of(part)).then(|| all / part);
         let counts = [n_x, whole(n_xy, n_x)?, whole(self.nodes.len(), n_xy)?];
         let cells: usize = counts.iter().map(|count| count.saturating_sub(1)).product();
         if origin != 0 || cells != self.hexahedra.len() {

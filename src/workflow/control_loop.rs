@@ -38,7 +38,7 @@ struct State<'a> {
 
 /// The law that acts, or the plan.
 enum Acting<'a> {
-    Law(Controller<'a>),
+    Law(Box<Controller<'a>>),
     Plan(Box<Planning<'a>>),
 }
 
@@ -161,7 +161,7 @@ impl<'a> Loop<'a> {
                     })),
                     None => {
                         let FeedbackControl { sample, delay, .. } = **controller;
-                        Acting::Law(Controller::new(law, sample, delay))
+                        Acting::Law(Box::new(Controller::new(law, sample, delay)))
                     }
                 },
                 random: Random::new(controller.noise.seed),

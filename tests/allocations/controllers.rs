@@ -10,7 +10,7 @@ use proboscis::workflow::receding::{RecedingHorizon, Source};
 use std::sync::atomic::Ordering;
 
 /// Most allocations of a step of a receding horizon with its preparation, of states that are measured, missing and wrong.
-pub fn allocations_of_a_controller() -> usize {
+pub(crate) fn allocations_of_a_controller() -> usize {
     let task = Regulator {
         step: 5.0,
         ..Regulator::default()
@@ -57,7 +57,7 @@ pub fn allocations_of_a_controller() -> usize {
 }
 
 /// Allocations of samples of a law, of the whole state and with an observer.
-pub fn allocations_of_a_law() -> usize {
+pub(crate) fn allocations_of_a_law() -> usize {
     let task = Regulator {
         step: 5.0,
         ..Regulator::default()

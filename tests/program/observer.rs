@@ -61,7 +61,7 @@ fn the_filter_is_that_of_a_naive_recursion_and_closes_the_loop() {
     assert_eq!(steps.len(), 20);
     let mut p = DMatrix::identity(2, 2);
     let settle = |filter: &Value, p: &mut DMatrix<f64>| {
-        (0..400).for_each(|_| *p = naive(filter, p)[1].clone())
+        (0..400).for_each(|_| *p = naive(filter, p)[1].clone());
     };
     settle(&steps[0], &mut p);
     for step in steps {

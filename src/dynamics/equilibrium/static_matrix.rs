@@ -116,6 +116,9 @@ pub(super) fn matrix(model: &Model, multigrid: Option<MultigridUse>) -> (StepMat
     });
     match grids {
         Some(grids) => (StepMatrix::Grids(Box::new(grids)), Inertia::default()),
-        None => (StepMatrix::Direct(direct(model)), Inertia::new(model)),
+        None => (
+            StepMatrix::Direct(Box::new(direct(model))),
+            Inertia::new(model),
+        ),
     }
 }

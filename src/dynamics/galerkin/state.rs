@@ -146,7 +146,7 @@ impl<'m> Steps<GalerkinEquations<'m>> {
         let mut scales = of_points.repeat(degree);
         scales.extend(of_samples.repeat(equations.samples.len()));
         let tangent = entries.tangent(scales.len(), Symmetry::Unsymmetric, solving.backend);
-        let matrix = StepMatrix::Direct(tangent);
+        let matrix = StepMatrix::Direct(Box::new(tangent));
         Self::by(equations, (matrix, held), scales, solving.newton)
     }
 }

@@ -211,7 +211,7 @@ impl Multigrid {
             iterated = self.iterate(rhs, tolerance, is_over)?;
         }
         // NaN is no solution either.
-        if !(iterated.residual <= tolerance) {
+        if iterated.residual.is_nan() || iterated.residual > tolerance {
             self.is_prepared = false;
             return Ok(Err(NoSolution));
         }
