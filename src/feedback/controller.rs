@@ -59,7 +59,8 @@ impl<'l> Controller<'l> {
         }
     }
 
-    /// Takes the measured quantities, or the readings of the observer, at a time in ms.
+    /// Takes the measured quantities, or the readings of the observer, at a time in ms. One that is no number was not measured: its deviation is
+    /// that of before, and that which the observer expects.
     pub fn sample(&mut self, time: f64, measured: &[f64]) {
         let law = self.law;
         let elapsed = self.sampled.map_or(0.0, |before| time - before);
@@ -72,7 +73,9 @@ impl<'l> Controller<'l> {
         match &law.observer {
             None => {
                 for (place, value) in measured.iter().enumerate() {
-                    self.deviation[place] = value - law.reference(time, place);
+                    if value.is_finite() {
+                        self.deviation[place] = value - law.reference(time, place);
+                    }
                 }
             }
             Some(observer) => {

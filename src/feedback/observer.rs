@@ -38,7 +38,8 @@ impl Filter {
         for (row, error) in errors.iter_mut().enumerate() {
             let known = state.iter().enumerate();
             let known = known.map(|(i, x)| self.output[(row, i)] * x).sum::<f64>();
-            *error = readings[row] - self.readings[row] - known;
+            let found = readings[row] - self.readings[row] - known;
+            *error = if found.is_finite() { found } else { 0.0 };
         }
         for (i, x) in state.iter_mut().enumerate() {
             let terms = errors.iter().enumerate();

@@ -98,6 +98,24 @@ fn a_predicted_delay_acts_like_none() {
     }
 }
 
+/// Inputs stay numbers, and are those of the state before where nothing was measured.
+#[test]
+fn a_measurement_that_is_no_number_is_not_taken_in() {
+    let k = DMatrix::from_row_slice(1, 2, &[0.9, 1.1]);
+    let law = law(k, 0, [-5.0, 5.0], None);
+    let mut controller = Controller::new(&law, H, 0.0);
+    let mut inputs = |time: f64, measured: [f64; 2]| {
+        controller.sample(time, &measured);
+        let mut input = [0.0];
+        controller.inputs(time, time + 0.5 * H, &mut input);
+        input[0]
+    };
+    assert!((inputs(0.0, [1.0, 2.0]) + 3.1).abs() < 1e-12);
+    assert!((inputs(H, [f64::NAN, 1.0]) + 2.0).abs() < 1e-12);
+    assert!((inputs(2.0 * H, [f64::INFINITY, f64::NAN]) + 2.0).abs() < 1e-12);
+    assert!(inputs(3.0 * H, [0.0, 0.0]).abs() < 1e-12);
+}
+
 /// The error of the estimate shrinks as (A − A M C) says, and the loop under it comes to rest.
 #[test]
 fn an_observer_finds_the_state_from_one_of_its_parts() {

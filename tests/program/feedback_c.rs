@@ -53,7 +53,10 @@ fn by_library(law: &Law) -> (Vec<f64>, String) {
     for k in 0..STEPS + law.delay {
         let time = law.h * k as f64;
         if k < STEPS {
-            let values = measured(law, random, time);
+            let mut values = measured(law, random, time);
+            if k == 7 {
+                values[0] = f64::NAN;
+            }
             for (value, of) in values.iter().zip(&law.measured) {
                 let si = if of.is_rate { 1e3 * value } else { *value };
                 text.push_str(&format!("{si:?} "));

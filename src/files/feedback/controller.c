@@ -37,8 +37,10 @@ void feedback_step(feedback_state_t *self, const double measured[FEEDBACK_STATES
   /* The deviation of the last step lasted until now. */
   for (i = 0; self->interval > 0 && i < FEEDBACK_INTEGRALS; i++)
     deviation[FEEDBACK_STATES + i] += feedback_interval[0] * deviation[feedback_integrated[i]];
+  /* What is no number was not measured: its deviation is that of before. */
   for (i = 0; i < FEEDBACK_STATES; i++)
-    deviation[i] = measured[i] - feedback_state[row][i];
+    if (isfinite(measured[i]))
+      deviation[i] = measured[i] - feedback_state[row][i];
   /* Corrections that act before this one. */
   for (k = 0; k < FEEDBACK_DELAY; k++)
     for (i = 0; i < FEEDBACK_INPUTS; i++) {
