@@ -188,8 +188,8 @@ fn what_the_memory_cannot_hold_is_refused_before_it_is_filled() {
         ),
         (
             "simulate",
-            "clamped_stack_step",
-            "scene.solids[0].box.elements=[160,160,160]",
+            "creeping_block",
+            "scene.solids[0].box.elements=[50,50,50]",
             "scene.gravity=[0,0,0]",
         ),
     ];
