@@ -191,6 +191,17 @@ pub(super) fn stopped() -> Option<Status> {
     CURRENT.with_borrow(|current| current.as_ref()?.report.stopped)
 }
 
+impl From<Stage> for Unknown {
+    /// The kind of a variable.
+    fn from(stage: Stage) -> Self {
+        match stage {
+            Stage::Of(stage) => Self::Variable(stage),
+            Stage::Multiplier(stage) => Self::Multiplier(stage),
+            Stage::Border => Self::Border,
+        }
+    }
+}
+
 /// The unknowns in the order of Ipopt: variables, slacks, multipliers of equalities, multipliers of inequalities.
 ///
 /// Fixed variables are left out, unless there would be more equations than variables.
@@ -201,11 +212,7 @@ fn layouts(variables: &Bounds, constraints: &Bounds, stages: &[Stage]) -> [Vec<U
     [false, true].map(|with_fixed| {
         let mut unknowns: Vec<Unknown> = (0..variables.lower.len())
             .filter(|&i| with_fixed || !is_equal(variables, i))
-            .map(|i| match stages[i] {
-                Stage::Of(stage) => Unknown::Variable(stage),
-                Stage::Multiplier(stage) => Unknown::Multiplier(stage),
-                Stage::Border => Unknown::Border,
-            })
+            .map(|i| stages[i].into())
             .collect();
         let counts = [
             (Unknown::Slack, rows - equalities),

@@ -63,12 +63,7 @@ impl Linear {
         }
         let kinds = stages.map(|stages| {
             let all = columns.iter().zip(stages).filter(|(c, _)| c.is_some());
-            let kind = |stage: &Stage| match *stage {
-                Stage::Of(stage) => Unknown::Variable(stage),
-                Stage::Multiplier(stage) => Unknown::Multiplier(stage),
-                Stage::Border => Unknown::Border,
-            };
-            let mut kinds: Vec<Unknown> = all.map(|(_, stage)| kind(stage)).collect();
+            let mut kinds: Vec<Unknown> = all.map(|(_, &stage)| stage.into()).collect();
             kinds.resize(order, Unknown::Equality);
             kinds
         });

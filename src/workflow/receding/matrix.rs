@@ -1,7 +1,7 @@
 //! The matrix of an iteration: entries by unknowns, and by variables that are held.
 
 use crate::kkt::Unknown;
-use crate::nlp::{Entries, Nlp, Stage};
+use crate::nlp::{Entries, Nlp};
 
 /// Rows and columns of the matrix.
 #[derive(Default)]
@@ -62,12 +62,8 @@ pub(super) fn kinds(
     let mut kinds = Vec::new();
     for (i, number) in unknowns.iter().enumerate() {
         if number.is_some() {
-            kinds.push(match stages.get(i).filter(|_| i < columns) {
-                None => Unknown::Slack,
-                Some(Stage::Of(stage)) => Unknown::Variable(*stage),
-                Some(Stage::Multiplier(stage)) => Unknown::Multiplier(*stage),
-                Some(Stage::Border) => Unknown::Border,
-            });
+            let stage = stages.get(i).filter(|_| i < columns);
+            kinds.push(stage.map_or(Unknown::Slack, |&stage| stage.into()));
         }
     }
     for (number, slack) in rows.iter().zip(slacks) {
