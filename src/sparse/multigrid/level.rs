@@ -88,47 +88,46 @@ impl Level {
         (node as isize + self.x.margin as isize + self.offsets[neighbour]) as usize
     }
 
+    /// Sum over neighbours of a node of their blocks times their unknowns.
+    #[inline(always)]
+    fn sum(&self, node: usize, neighbours: impl Iterator<Item = usize>) -> [f32; COMPONENTS] {
+        let blocks = &self.matrix[NEIGHBOURS * node..][..NEIGHBOURS];
+        let mut sum = [0.0; COMPONENTS];
+        for neighbour in neighbours {
+            let x = &self.x.values[self.place(node, neighbour)];
+            add(&mut sum, &blocks[neighbour], x);
+        }
+        sum
+    }
+
+    /// Solves the equations of a node, of which its neighbours have this sum.
+    #[inline(always)]
+    fn relax(&mut self, node: usize, sum: [f32; COMPONENTS]) {
+        let margin = self.x.margin;
+        let rhs = self.rhs.values[node + margin];
+        let left: [f32; COMPONENTS] = std::array::from_fn(|c| rhs[c] - sum[c]);
+        let mut solution = [0.0; COMPONENTS];
+        add(&mut solution, &self.inverse[node], &left);
+        self.x.values[node + margin] = solution;
+    }
+
     /// A forward sweep from zero, then what it leaves of the right-hand side: the neighbours behind have had no part in it.
     pub(super) fn sweep_down(&mut self) {
+        for node in 0..self.free.len() {
+            self.relax(node, self.sum(node, 0..OWN));
+        }
         let margin = self.x.margin;
         for node in 0..self.free.len() {
-            let blocks = &self.matrix[NEIGHBOURS * node..][..NEIGHBOURS];
-            let mut sum = [0.0; COMPONENTS];
-            for (neighbour, block) in blocks.iter().enumerate().take(OWN) {
-                add(&mut sum, block, &self.x.values[self.place(node, neighbour)]);
-            }
-            let rhs = self.rhs.values[node + margin];
-            let left: [f32; COMPONENTS] = std::array::from_fn(|c| rhs[c] - sum[c]);
-            let mut solution = [0.0; COMPONENTS];
-            add(&mut solution, &self.inverse[node], &left);
-            self.x.values[node + margin] = solution;
-        }
-        for node in 0..self.free.len() {
-            let blocks = &self.matrix[NEIGHBOURS * node..][..NEIGHBOURS];
-            let mut sum = [0.0; COMPONENTS];
-            for (neighbour, block) in blocks.iter().enumerate().skip(OWN + 1) {
-                add(&mut sum, block, &self.x.values[self.place(node, neighbour)]);
-            }
+            let sum = self.sum(node, OWN + 1..NEIGHBOURS);
             self.residual.values[node + margin] = sum.map(|s| -s);
         }
     }
 
     /// A backward sweep.
     pub(super) fn sweep_up(&mut self) {
-        let margin = self.x.margin;
         for node in (0..self.free.len()).rev() {
-            let blocks = &self.matrix[NEIGHBOURS * node..][..NEIGHBOURS];
-            let mut sum = [0.0; COMPONENTS];
-            for (neighbour, block) in blocks.iter().enumerate() {
-                if neighbour != OWN {
-                    add(&mut sum, block, &self.x.values[self.place(node, neighbour)]);
-                }
-            }
-            let rhs = self.rhs.values[node + margin];
-            let left: [f32; COMPONENTS] = std::array::from_fn(|c| rhs[c] - sum[c]);
-            let mut solution = [0.0; COMPONENTS];
-            add(&mut solution, &self.inverse[node], &left);
-            self.x.values[node + margin] = solution;
+            let others = (0..NEIGHBOURS).filter(|&neighbour| neighbour != OWN);
+            self.relax(node, self.sum(node, others));
         }
     }
 }
