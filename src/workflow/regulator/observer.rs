@@ -21,6 +21,8 @@ struct Scaled {
     by_inputs: DMatrix<f64>,
     output: DMatrix<f64>,
     noise: Costs,
+    /// Readings of the motion at its start.
+    readings: Vec<f64>,
 }
 
 /// Reason why a state cannot be found.
@@ -67,13 +69,13 @@ impl Design<'_> {
             let pair = [&scaled.by_state, &scaled.output];
             let after = riccati_step(pair, &scaled.noise, &before);
             covariance = Some(after.ok_or(NoRegulator::Recursion(k))?.cost);
-            points.push(self.filter(&scaled, &before, (&readings, &motion[k]), &scales)?);
+            points.push(self.filter(scaled, &before, &scales)?);
         }
         let held = held.map(|(step, _)| {
             let scaled = self.scaled_step(observation, step, (&goal, &goal), &scales);
             let of = at_rest(&scaled)?;
             radius = of.radius;
-            self.filter(&scaled, &of.cost, (&readings, &goal), &scales)
+            self.filter(scaled, &of.cost, &scales)
         });
         let observer = Observer {
             held: held.transpose()?,
@@ -132,7 +134,7 @@ impl Design<'_> {
         };
         let by_state = to_rates(step.by_state.view((0, 0), (n, n)) * self.by_rates(at));
         let by_inputs = to_rates(step.by_inputs.rows(0, n).into_owned());
-        let output = self.output(observation, at);
+        let (values, output) = self.read(observation, at);
         let noise = |i: usize| observation.inputs * self.ranges[i];
         let disturbed = DMatrix::from_fn(n, by_inputs.ncols(), |i, j| by_inputs[(i, j)] * noise(j));
         let mut covariance = &disturbed * disturbed.transpose();
@@ -149,34 +151,40 @@ impl Design<'_> {
                 inputs: DMatrix::identity(output.nrows(), output.nrows()),
             },
             by_inputs,
+            readings: values,
         }
     }
 
-    /// C: readings by coordinates and rates.
-    fn output(&self, observation: &Observation, at: &State) -> DMatrix<f64> {
+    /// The readings of a state, and C, their derivatives by coordinates and rates.
+    fn read(&self, observation: &Observation, at: &State) -> (Vec<f64>, DMatrix<f64>) {
         let joints = observation.joints.len();
         let size = self.coordinates.len() + self.momenta.len();
-        let mut out = DMatrix::zeros(joints + 3 * observation.markers.len(), size);
+        let mut by_state = DMatrix::zeros(joints + 3 * observation.markers.len(), size);
+        let mut readings = Vec::new();
         for (row, &(joint, _)) in observation.joints.iter().enumerate() {
             let own = self.model.joint_readings[joint].coordinate;
             for (place, &i) in self.coordinates.iter().enumerate() {
-                out[(row, place)] = f64::from(u8::from(Some(i) == own));
+                if Some(i) == own {
+                    readings.push(at.z[i]);
+                    by_state[(row, place)] = 1.0;
+                }
             }
         }
+        let instant = self.model.action.map.placed(&at.z);
         for (number, &(marker, _)) in observation.markers.iter().enumerate() {
+            readings.extend(&instant.x[self.model.markers[marker]]);
             let rows = self.by_coordinates(marker, at);
-            out.view_mut((joints + 3 * number, 0), rows.shape())
-                .copy_from(&rows);
+            let place = (joints + 3 * number, 0);
+            by_state.view_mut(place, rows.shape()).copy_from(&rows);
         }
-        out
+        (readings, by_state)
     }
 
     /// The filter of a step with the covariance P before its readings: `M = P Cᵀ (C P Cᵀ + R)⁻¹`.
     fn filter(
         &self,
-        scaled: &Scaled,
+        scaled: Scaled,
         covariance: &DMatrix<f64>,
-        (readings, at): (&[Reading], &State),
         Scales {
             state,
             readings: of,
@@ -188,18 +196,8 @@ impl Design<'_> {
         let inner = inner.ok_or_else(|| NoRegulator::Observer(NOT_SEEN.to_owned()))?;
         let gain = inner.solve(&toward);
         let (n, outputs) = (state.len(), of.len());
-        let instant = self.model.action.map.placed(&at.z);
-        let read = |reading: &Reading| match reading {
-            Reading::State(place) => at.z[self.coordinates[*place]],
-            Reading::Marker(name, axis) => {
-                let mut markers = self.model.system.markers.iter();
-                let marker = markers.position(|marker| marker.name == *name);
-                let marker = marker.expect("a marker of the system");
-                instant.x[self.model.markers[marker]][*axis]
-            }
-        };
         Ok(Filter {
-            readings: readings.iter().map(read).collect(),
+            readings: scaled.readings,
             by_state: DMatrix::from_fn(n, n, |i, j| scaled.by_state[(j, i)] * state[i] / state[j]),
             by_inputs: DMatrix::from_fn(n, self.inputs.len(), |i, j| {
                 scaled.by_inputs[(i, j)] * state[i]
