@@ -3,6 +3,7 @@
 //! `cargo bench --bench effects` prints the tables; `-- --write` puts them into `results/gallery/effects.md`. All variants of a scene
 //! are timed in turn, so that numbers of one run can be compared with each other.
 
+mod shared;
 mod trunk;
 
 use nalgebra::Vector3;
@@ -15,10 +16,8 @@ use proboscis::functional::{
     Element, Formulas, Functional, Group, Inertia, Mass, Stencil, Term, VectorArg,
 };
 use proboscis::kinematics::MaterialVector;
-use proboscis::mesh::grid::Grid;
 use proboscis::model::system::{
-    Body, Discretisation, ElectricConstants, Electrode, ElementKind, Fidelity, JointKind, Material,
-    Potential, Solid, Support, System, VACUUM_PERMITTIVITY,
+    Body, Discretisation, ElementKind, Fidelity, JointKind, Material, System,
 };
 use proboscis::model::{Coordinates, Model};
 use proboscis::sparse::Symmetry;
@@ -315,68 +314,24 @@ fn pairs_of_trunk(system: &System, volts: &[f64]) -> Vec<Pair> {
     rows
 }
 
-/// A clamped block of 2 × 2 × 8 elements in four layers.
+/// A clamped block of 2 × 2 × 8 elements in four layers under gravity, with a marker at a corner of its free end.
 fn block(driven: bool, change: impl Fn(&mut Material)) -> System {
-    let size = Vector3::new(10.0, 10.0, 40.0);
-    let mesh = Grid::uniform(Vector3::zeros(), size, [2, 2, 8]).mesh();
-    let electrode = |layer: usize| Electrode {
-        circuit: None,
-        name: format!("e{layer}"),
-        nodes: mesh.nodes_on_plane(2, 10.0 * layer as f64, 1e-9),
-        potential: match layer % 2 {
-            0 => Potential::Given(0.0),
-            _ => Potential::Driven {
-                source: 0,
-                factor: 1.0,
-            },
-        },
-    };
-    let mut material = Material {
-        density: Some(1e-3),
-        shear_modulus: 0.1,
-        lame_lambda: Some(0.4),
-        electric: Some(ElectricConstants {
-            c1: -2.0 * VACUUM_PERMITTIVITY,
-            c2: VACUUM_PERMITTIVITY,
-            permittivity: VACUUM_PERMITTIVITY,
-        }),
-        viscosity: Some(1.0),
-        ..Material::default()
-    };
-    change(&mut material);
-    System {
-        components: Default::default(),
-        name: "block".into(),
-        bodies: Vec::new(),
-        joints: Vec::new(),
-        muscles: Vec::new(),
-        markers: vec![proboscis::model::system::Marker {
-            name: "tip".into(),
-            point: proboscis::model::system::Attachment {
-                body: None,
-                at: size,
-            },
-            solid: Some(0),
-        }],
-        solids: vec![Solid {
-            name: "block".into(),
-            materials: vec![material],
-            element: ElementKind::Hex8,
-            electrodes: match driven {
-                true => (0..5).map(electrode).collect(),
-                false => Vec::new(),
-            },
-            supports: vec![Support {
-                nodes: mesh.sets["z_min"].clone(),
-                held: [true; 3],
-            }],
-            glued: Vec::new(),
-            velocities: Vec::new(),
-            prestretch: None,
-            mesh,
-        }],
-        gravity: Some(Vector3::new(2e-3, -9.61e-3, 0.0)),
+    let mut system = shared::block(2, Some(1.0));
+    let solid = &mut system.solids[0];
+    change(&mut solid.materials[0]);
+    if !driven {
+        solid.electrodes.clear();
     }
+    system.markers.push(proboscis::model::system::Marker {
+        name: "tip".into(),
+        point: proboscis::model::system::Attachment {
+            body: None,
+            at: Vector3::new(10.0, 10.0, 40.0),
+        },
+        solid: Some(0),
+    });
+    system.gravity = Some(Vector3::new(2e-3, -9.61e-3, 0.0));
+    system
 }
 
 /// Pairs of the block.

@@ -6,14 +6,17 @@
 #[path = "../tests/common/random.rs"]
 #[expect(dead_code, unreachable_pub, reason = "tests draw vectors too")]
 mod random;
+#[path = "../tests/common/robot.rs"]
+#[expect(unreachable_pub, reason = "tests share it")]
+mod robot;
 
 use proboscis::control::problem::{Ahead, Regulator, Task};
-use proboscis::dynamics::{Stepper, rates_of_momentum};
 use proboscis::feedback::Controller;
 use proboscis::files::read_problem;
 use proboscis::model::Model;
 use proboscis::workflow::receding::{Horizon, RecedingHorizon, Source};
 use random::Random;
+use robot::Robot;
 use std::fs;
 use std::path::Path;
 use std::time::Instant;
@@ -56,34 +59,9 @@ fn ahead(step: f64) -> Ahead {
     }
 }
 
-/// The trunk, in short steps.
-struct Robot<'m> {
-    model: &'m Model,
-    z: Vec<f64>,
-    momentum: Vec<f64>,
-}
-
-impl Robot<'_> {
-    fn measure(&self) -> Vec<f64> {
-        let rates = rates_of_momentum(self.model, &self.z, 0.0, &self.momentum);
-        let n = self.model.coordinate_count();
-        self.z[..n].iter().chain(&rates).copied().collect()
-    }
-
-    fn go(&mut self, h: f64, voltages: &[f64]) {
-        let mut stepper = Stepper::new(self.model, &self.z, &self.momentum, Default::default());
-        let scalars = self.model.scalars(voltages);
-        for _ in 0..4 {
-            stepper.step(h / 4.0, &scalars).expect("a step");
-        }
-        self.z = stepper.coordinates().to_vec();
-        self.momentum = stepper.momentum().to_vec();
-    }
-
-    fn push(&mut self, random: &mut Random) {
-        let push = |p: &mut f64| *p += random.between(-PUSH, PUSH);
-        self.momentum.iter_mut().for_each(push);
-    }
+fn push(robot: &mut Robot<'_>, random: &mut Random) {
+    let push = |p: &mut f64| *p += random.between(-PUSH, PUSH);
+    robot.momentum.iter_mut().for_each(push);
 }
 
 /// Squared distances of joints from the motion in degrees², a mean over steps, under inputs by a controller.
@@ -93,11 +71,7 @@ fn followed(
     inputs: &mut dyn FnMut(f64, &[f64]) -> Vec<f64>,
 ) -> f64 {
     let law = horizon.law();
-    let mut robot = Robot {
-        model,
-        z: model.reference_coordinates(),
-        momentum: vec![0.0; model.coordinate_count()],
-    };
+    let mut robot = Robot::new(model, 4);
     let mut random = Random(SEED);
     let mut sum = 0.0;
     for k in 0..STEPS {
@@ -110,7 +84,7 @@ fn followed(
             .sum::<f64>();
         robot.go(law.h, &inputs(time, &state));
         if k % BETWEEN == BETWEEN - 1 {
-            robot.push(&mut random);
+            push(&mut robot, &mut random);
         }
     }
     sum / STEPS as f64

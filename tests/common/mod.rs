@@ -16,6 +16,7 @@ pub mod random;
 pub mod random_goals;
 pub mod receding;
 pub mod remembering;
+pub mod robot;
 pub mod signals;
 pub mod solid;
 pub mod sought;

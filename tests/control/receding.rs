@@ -1,48 +1,16 @@
 //! The controller of a receding horizon against the gains of the regulator and optima found to the end, and under faults.
 
 use crate::common::receding::{horizon, problem};
+use crate::common::robot::Robot;
 use proboscis::control::problem::Regulator;
-use proboscis::dynamics::{Stepper, rates_of_momentum};
 use proboscis::feedback::{Controller, Law};
 use proboscis::model::Model;
 use proboscis::prelude::*;
 use proboscis::workflow::receding::{RecedingHorizon, Source};
 
-/// A robot in short steps.
-struct Robot<'m> {
-    model: &'m Model,
-    z: Vec<f64>,
-    momentum: Vec<f64>,
-    parts: usize,
-}
-
-impl Robot<'_> {
-    fn measure(&self) -> Vec<f64> {
-        let rates = rates_of_momentum(self.model, &self.z, 0.0, &self.momentum);
-        let n = self.model.coordinate_count();
-        self.z[..n].iter().chain(&rates).copied().collect()
-    }
-
-    fn go(&mut self, h: f64, voltages: &[f64]) {
-        let mut stepper = Stepper::new(self.model, &self.z, &self.momentum, Default::default());
-        for _ in 0..self.parts {
-            stepper
-                .step(h / self.parts as f64, &self.model.scalars(voltages))
-                .unwrap();
-        }
-        self.z = stepper.coordinates().to_vec();
-        self.momentum = stepper.momentum().to_vec();
-    }
-}
-
 /// The robot of a horizon at the start of its motion, in steps of a tenth of an interval.
-fn robot<'m>(model: &'m Model) -> Robot<'m> {
-    Robot {
-        model,
-        z: model.reference_coordinates(),
-        momentum: vec![0.0; model.coordinate_count()],
-        parts: 10,
-    }
+fn robot(model: &Model) -> Robot<'_> {
+    Robot::new(model, 10)
 }
 
 /// Both muscles of the pair hold its goal between their bounds, so that no bound is near.

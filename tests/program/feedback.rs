@@ -1,7 +1,7 @@
 //! Feedback along an optimum, and simulations under it, from files to files.
 
 use crate::commands::summary;
-use crate::runs::{read, run, workshop};
+use crate::runs::{read, refused, run, workshop};
 use serde_json::Value;
 use std::fs;
 use std::path::Path;
@@ -20,7 +20,7 @@ fn numbers(value: &Value) -> Vec<f64> {
     }
 }
 
-fn solved(here: &Path, problem: &str, to: &str, set: &[&str]) -> Value {
+pub(crate) fn solved(here: &Path, problem: &str, to: &str, set: &[&str]) -> Value {
     let mut arguments = vec!["solve", problem, "-o", to, "--no-report"];
     set.iter().for_each(|set| arguments.extend(["--set", set]));
     let (status, out, err) = run(here, &arguments);
@@ -129,14 +129,9 @@ fn nothing_is_corrected_where_nothing_deviates() {
 fn wrong_feedback_is_refused() {
     let folder = workshop();
     let here = folder.path();
-    let refused = |arguments: &[&str], told: &[&str]| {
-        let (status, out, err) = run(here, arguments);
-        assert_eq!(status, 2, "{arguments:?}: {out}{err}");
-        told.iter()
-            .for_each(|told| assert!(err.contains(told), "{told}: {err}"));
-    };
     let solve = |set: &str, told: &[&str]| {
         refused(
+            here,
             &["solve", "problems/pair_feedback.json", "--set", set],
             told,
         );
@@ -160,11 +155,12 @@ fn wrong_feedback_is_refused() {
     solve("feedback={\"terminal\":-2}", &["feedback.terminal"]);
     solve("feedback={\"gain\":1}", &["gain"]);
     refused(
+        here,
         &["solve", "problems/pull_in.json", "--set", "feedback={}"],
         &["feedback", "control"],
     );
     let simulate = |problem: &str, set: &str, told: &[&str]| {
-        refused(&["simulate", problem, "--set", set], told);
+        refused(here, &["simulate", problem, "--set", set], told);
     };
     let own = "problems/pair_closed_loop.json";
     simulate(

@@ -1,7 +1,8 @@
 //! Feedback from measurements that do not tell the state: the filter of the file against a naive recursion, and a loop that closes over it.
 
 use crate::commands::summary;
-use crate::runs::{read, run, workshop};
+use crate::feedback::solved;
+use crate::runs::{read, refused, run, workshop};
 use nalgebra::DMatrix;
 use serde_json::Value;
 
@@ -118,12 +119,6 @@ fn the_filter_is_that_of_a_naive_recursion_and_closes_the_loop() {
 fn wrong_observers_are_refused() {
     let folder = workshop();
     let here = folder.path();
-    let refused = |arguments: &[&str], told: &[&str]| {
-        let (status, out, err) = run(here, arguments);
-        assert_eq!(status, 2, "{arguments:?}: {out}{err}");
-        told.iter()
-            .for_each(|told| assert!(err.contains(told), "{told}: {err}"));
-    };
     for (observer, told) in [
         ("{}", &["feedback.observer", "joints"][..]),
         (
@@ -143,23 +138,17 @@ fn wrong_observers_are_refused() {
     ] {
         let set = format!("feedback.observer={observer}");
         refused(
+            here,
             &["solve", "problems/pair_feedback.json", "--set", &set],
             told,
         );
     }
-    let solve = [
-        "solve",
-        "problems/pair_feedback.json",
-        "-o",
-        "pair",
-        "--no-report",
-    ];
-    let (status, out, err) = run(here, &[&solve[..], &["--set", OBSERVER]].concat());
-    assert_eq!(status, 0, "{out}{err}");
+    solved(here, "problems/pair_feedback.json", "pair", &[OBSERVER]);
     let text = std::fs::read_to_string(here.join("pair/feedback.json")).unwrap();
     let simulate = |controller: &str, told: &[&str]| {
         let set = format!("simulate.controller={controller}");
         refused(
+            here,
             &["simulate", "problems/pair_closed_loop.json", "--set", &set],
             told,
         );

@@ -2,7 +2,7 @@
 
 use crate::commands::summary;
 use crate::feedback::number;
-use crate::runs::{run, workshop};
+use crate::runs::{refused, run, workshop};
 
 const PROBLEM: &str = "problems/pair_receding.json";
 
@@ -41,10 +41,7 @@ fn wrong_horizons_are_refused() {
     let here = folder.path();
     let refused = |set: &str, told: &[&str]| {
         let set = format!("simulate.controller{set}");
-        let (status, out, err) = run(here, &["simulate", PROBLEM, "--set", &set]);
-        assert_eq!(status, 2, "{set}: {out}{err}");
-        let each = told.iter();
-        each.for_each(|told| assert!(err.contains(told), "{told}: {err}"));
+        refused(here, &["simulate", PROBLEM, "--set", &set], told);
     };
     refused("={}", &["controller", "neither", "one of them"]);
     refused(".feedback=\"feedback/pair.json\"", &["both", "one of them"]);

@@ -46,6 +46,14 @@ pub(crate) fn run(folder: &Path, arguments: &[&str]) -> (i32, String, String) {
     run_with_input(folder, arguments, "")
 }
 
+/// Asserts that a run is refused with words.
+pub(crate) fn refused(folder: &Path, arguments: &[&str], told: &[&str]) {
+    let (status, out, err) = run(folder, arguments);
+    assert_eq!(status, 2, "{arguments:?}: {out}{err}");
+    told.iter()
+        .for_each(|told| assert!(err.contains(told), "{told}: {err}"));
+}
+
 /// A run with a text on standard input.
 pub(crate) fn run_with_input(
     folder: &Path,
