@@ -814,6 +814,16 @@ class InputConstants(TypedDict):
     """Factors between the voltages and loads that recordings say and those that act, by the names of muscles, electrodes and loads."""
 
 
+class InputPrior(TypedDict):
+    """A normal distribution of a constant of the inputs."""
+
+    standard_deviation: Quantity
+    """Standard deviation."""
+
+    value: Quantity
+    """Mean."""
+
+
 class IntegratorObject(TypedDict):
     """A method with its parameter: exactly one of the two."""
 
@@ -1277,6 +1287,9 @@ class Range(TypedDict):
 
     min: Quantity
     """Lower bound."""
+
+    prior: NotRequired[InputPrior]
+    """What is known of it beside the recordings; it counts as one reading more."""
 
 
 class ReactionForceLimit(TypedDict):

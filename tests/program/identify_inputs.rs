@@ -93,6 +93,40 @@ fn gain_and_delay_of_a_driver_are_told_with_their_units() {
     );
 }
 
+/// A prior counts as one reading more of its constant.
+#[test]
+fn gains_and_delays_have_priors_in_their_units() {
+    let mut known = problem();
+    let inputs = &mut known["identify"]["inputs"];
+    inputs["gains"]["pull"]["prior"] = json!({ "value": GAIN, "standard_deviation": 1e-3 });
+    inputs["delay"]["prior"] = json!({ "value": "7.3 ms", "standard_deviation": "20 us" });
+    let (status, text, folder) = solved(&known);
+    assert_eq!(status, 0, "{text}");
+    assert!(!text.contains("away from its prior"), "{text}");
+    let summary = read(folder.path().join("found/summary.json"));
+    let (gain, delay) = (&summary["constants"][2], &summary["constants"][3]);
+    assert_eq!(gain["prior"]["value"], GAIN);
+    assert_eq!(delay["prior"]["standard_deviation"], 2e-5);
+    let without = solved(&problem());
+    let without = read(without.2.path().join("found/summary.json"));
+    for (number, least) in [(2, 1e-3), (3, 2e-5)] {
+        let error = |summary: &Value| summary["constants"][number]["standard_error"].as_f64();
+        let (with, without) = (error(&summary).unwrap(), error(&without).unwrap());
+        // Information adds up; of both constants at once at least as much.
+        let sum = (without.powi(-2) + f64::powi(least, -2)).powf(-0.5);
+        assert!(
+            with < 0.9999 * without && with < sum * 1.001,
+            "{with} {without} {sum}"
+        );
+    }
+    known["identify"]["inputs"]["delay"]["prior"]["value"] = json!("8 ms");
+    let (_, text, _) = solved(&known);
+    assert!(
+        text.contains("delay") && text.contains("standard deviations away from its prior"),
+        "{text}"
+    );
+}
+
 #[test]
 fn mistakes_of_inputs_and_priors_are_told() {
     let cases: &[(&str, Value, &str)] = &[
@@ -115,6 +149,16 @@ fn mistakes_of_inputs_and_priors_are_told() {
             "/inputs/gains/pull",
             json!({ "min": 2, "max": 1 }),
             "larger than \"min\"",
+        ),
+        (
+            "/inputs/gains/pull",
+            json!({ "min": 0.5, "max": 2, "prior": { "value": 1, "standard_deviation": 0 } }),
+            "a positive value",
+        ),
+        (
+            "/inputs/delay",
+            json!({ "min": "0 s", "max": "2 ms", "prior": { "value": "1 V", "standard_deviation": "1 ms" } }),
+            "a time",
         ),
         (
             "/inputs/delay",

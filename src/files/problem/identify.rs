@@ -28,7 +28,8 @@ pub(crate) fn identification(
 ) -> Result<Identification, SceneError> {
     let system = scene.system;
     let place = scope.key("free");
-    let of_inputs = input_constants(&spec.inputs, system, &scope.key("inputs"))?;
+    let behind = (system, spec.free.len());
+    let (of_inputs, of_their_priors) = input_constants(&spec.inputs, behind, &scope.key("inputs"))?;
     if spec.free.is_empty() && of_inputs.is_empty() {
         return Err(place.wrong("no constant", "one or more"));
     }
@@ -59,13 +60,11 @@ pub(crate) fn identification(
         candidates.map(|(index, one)| candidate(one, system, &of_candidates.index(index)));
     let step = spec.step.as_ref();
     let step = step.map(|step| scope.key("step").positive(step));
+    let of_scene = (&parameters[..], &spec.free);
+    let mut priors = priors(&spec.priors, of_scene, scene, &scope.key("priors"))?;
+    priors.extend(of_their_priors);
     Ok(Identification {
-        priors: priors(
-            &spec.priors,
-            (&parameters, &spec.free),
-            scene,
-            &scope.key("priors"),
-        )?,
+        priors,
         parameters,
         recordings: recordings.collect::<Result<_, _>>()?,
         candidates: candidates.collect::<Result<_, _>>()?,

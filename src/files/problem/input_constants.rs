@@ -1,5 +1,6 @@
 //! Conversion of the sought constants of inputs: gains of sources, and their delay.
 
+use crate::control::problem::Prior;
 use crate::files::json::error::SceneError;
 use crate::files::json::scope::Scope;
 use crate::files::problem::spec_identify::{InputConstantsSpec, RangeSpec};
@@ -15,14 +16,14 @@ fn gain(source: &str) -> String {
     format!("gain of {source}")
 }
 
-/// The gains and the delay that are sought.
+/// The gains and the delay that are sought, behind `first` other constants, and what is known of them beside the recordings.
 pub(super) fn input_constants(
     spec: &InputConstantsSpec,
-    system: &System,
+    (system, first): (&System, usize),
     scope: &Scope<'_>,
-) -> Result<Vec<Parameter>, SceneError> {
+) -> Result<(Vec<Parameter>, Vec<Prior>), SceneError> {
     let sources: Vec<String> = system.sources().into_iter().map(|one| one.name).collect();
-    let mut out = Vec::new();
+    let (mut out, mut priors) = (Vec::new(), Vec::new());
     for (name, range) in &spec.gains {
         let place = scope.key("gains").key(name);
         let source = place.find(
@@ -31,20 +32,39 @@ pub(super) fn input_constants(
             "the name of a muscle, an electrode or a load",
         )?;
         let constant = Constant::Gain(source);
+        priors.extend(prior(range, first + out.len(), &place)?);
         out.push(parameter((gain(name), constant), range, 1.0, &place)?);
     }
     if let Some(range) = &spec.delay {
         let place = scope.key("delay");
         let delay = (DELAY.to_owned(), Constant::Delay);
-        let first = range.min.value();
-        if first < 0.0 {
+        let least = range.min.value();
+        if least < 0.0 {
             return Err(place
                 .key("min")
                 .wrong(range.min.to_string(), "no negative time"));
         }
-        out.push(parameter(delay, range, first, &place)?);
+        priors.extend(prior(range, first + out.len(), &place)?);
+        out.push(parameter(delay, range, least, &place)?);
     }
-    Ok(out)
+    Ok((out, priors))
+}
+
+/// The prior of a constant, if it has one.
+fn prior<M: PhysicalQuantity>(
+    range: &RangeSpec<M>,
+    constant: usize,
+    scope: &Scope<'_>,
+) -> Result<Option<Prior>, SceneError> {
+    let Some(spec) = &range.prior else {
+        return Ok(None);
+    };
+    let deviation = scope.key("prior").key("standard_deviation");
+    Ok(Some(Prior {
+        constant,
+        value: spec.value.value(),
+        deviation: deviation.positive(&spec.standard_deviation)?,
+    }))
 }
 
 /// A constant between bounds, from its guess on or from a `usual` value.

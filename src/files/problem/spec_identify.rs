@@ -64,6 +64,20 @@ pub struct RangeSpec<M: PhysicalQuantity> {
     /// Value at which the fit starts; 1 of a gain, the lower bound of a delay where not written.
     #[serde(default)]
     pub guess: Option<Quantity<M>>,
+    /// What is known of it beside the recordings; it counts as one reading more.
+    #[serde(default)]
+    pub prior: Option<InputPriorSpec<M>>,
+}
+
+/// A normal distribution of a constant of the inputs.
+#[derive(Clone, Debug, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields, bound(deserialize = ""))]
+#[schemars(bound = "M: PhysicalQuantity")]
+pub struct InputPriorSpec<M: PhysicalQuantity> {
+    /// Mean.
+    pub value: Quantity<M>,
+    /// Standard deviation.
+    pub standard_deviation: Quantity<M>,
 }
 
 /// A normal distribution of a constant, such as that of a data sheet.
