@@ -30,6 +30,8 @@ pub(super) struct MotionsSummary {
     constraints: usize,
     jacobian_nonzeros: usize,
     hessian_nonzeros: usize,
+    /// Greatest violation of an equation or limit of a motion.
+    infeasibility: f64,
     /// Constants that were sought.
     #[serde(skip_serializing_if = "Vec::is_empty")]
     pub(super) parameters: Vec<SoughtValue>,
@@ -122,6 +124,9 @@ impl MotionsSummary {
             hessian_nonzeros: whole.hessian_nonzeros,
             parameters: constants.map(SoughtValue::new).collect(),
             shared_inputs: motions.shared_inputs.clone(),
+            infeasibility: list
+                .iter()
+                .fold(0.0, |worst, one| one.optimum.infeasibility.max(worst)),
             gap: Some(whole.gap).filter(|gap| verdict.is_solved && gap.is_finite()),
             motions: entries.collect(),
             seconds: TotalSeconds::default(),

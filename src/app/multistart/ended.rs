@@ -9,7 +9,7 @@ use crate::workflow::remark::Remarks;
 use serde::{Deserialize, Serialize};
 use std::collections::BTreeMap;
 use std::fs::{self};
-use std::path::Path;
+use std::path::{Path, PathBuf};
 
 /// Relative difference of the objectives of one optimum.
 pub(super) const SAME_OBJECTIVE: f64 = 1e-6;
@@ -64,6 +64,30 @@ pub(super) struct Summary {
     pub(super) seconds: Seconds,
     #[serde(default)]
     pub(super) notes: Remarks,
+    /// Motions with summaries of their own.
+    #[serde(default)]
+    pub(super) motions: Vec<MotionFolder>,
+}
+
+/// The folder of one of several motions.
+#[derive(Deserialize)]
+pub(super) struct MotionFolder {
+    pub(super) name: String,
+    pub(super) folder: PathBuf,
+}
+
+impl Summary {
+    /// The folders of motions within that of the result, and this one's own where it is of one motion.
+    fn folders(&self, path: &Path) -> Vec<PathBuf> {
+        match self.motions.is_empty() {
+            true => vec![path.to_owned()],
+            false => self
+                .motions
+                .iter()
+                .map(|one| path.join(&one.folder))
+                .collect(),
+        }
+    }
 }
 
 #[derive(Deserialize)]
@@ -129,13 +153,16 @@ impl Ended {
         let Some(summary) = parsed::<Summary>(&path.join("summary.json")) else {
             return Ok(failed(message));
         };
-        let solution = match is_solved {
-            true => parsed::<SolutionRecord>(&path.join("solution.json")),
-            false => None,
-        };
-        let voltages = solution.map_or_else(Vec::new, |solution| {
-            solution.voltages.into_values().flatten().collect()
-        });
+        let folders = summary.folders(&path);
+        let mut remarks = vec![(None, summary.notes.clone())];
+        for (motion, own) in summary.motions.iter().zip(&folders) {
+            let own = parsed::<Summary>(&own.join("summary.json"));
+            remarks.extend(own.map(|own| (Some(motion.name.clone()), own.notes)));
+        }
+        let solutions = folders.iter().filter(|_| is_solved);
+        let solutions =
+            solutions.filter_map(|own| parsed::<SolutionRecord>(&own.join("solution.json")));
+        let voltages = solutions.flat_map(|one| one.voltages.into_values().flatten());
         Ok(Self {
             status: summary.status,
             objective: summary.objective,
@@ -143,13 +170,12 @@ impl Ended {
             infeasibility: summary.infeasibility,
             seconds: summary.seconds.total,
             is_solved,
-            is_held: !summary
-                .notes
-                .0
+            is_held: !remarks
                 .iter()
+                .flat_map(|(_, own)| &own.0)
                 .any(|one| LEAVES.contains(&&*one.code)),
-            voltages,
-            notes: summary.notes.lines().collect(),
+            voltages: voltages.collect(),
+            notes: remarks.iter().flat_map(told).collect(),
             ..Self::without_files(start, "", seconds)
         })
     }
@@ -180,6 +206,16 @@ impl Ended {
                 .zip(&other.voltages)
                 .all(|(a, b)| close(*a, *b, SAME_VOLTAGE * largest))
     }
+}
+
+/// Remarks in words, with the name of the motion that they are on.
+fn told((motion, remarks): &(Option<String>, Remarks)) -> Vec<String> {
+    let name = motion.as_ref().map(|name| format!("motion \"{name}\": "));
+    let name = name.unwrap_or_default();
+    remarks
+        .lines()
+        .map(|line| format!("{name}{line}"))
+        .collect()
 }
 
 pub(super) fn parsed<T: for<'de> Deserialize<'de>>(path: &Path) -> Option<T> {

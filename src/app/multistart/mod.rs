@@ -21,6 +21,7 @@ use crate::app::no_equilibrium;
 use crate::app::progress::Progress;
 use crate::app::request::{CommandInput, CommandOutput};
 use crate::app::task::{read, refuse_replacing};
+use crate::control::Motion;
 use crate::control::problem::Task;
 use crate::files::{Loaded, is_standard_input};
 use crate::workflow::resolve::resolve;
@@ -31,7 +32,7 @@ use start::{FOLDER, Start};
 /// Most starting points of one command; the seed of a start is that of the command times this number and its own.
 const MOST: usize = 1000;
 
-/// Solves a control problem from its own guess and from `starts − 1` random ones, as many at once as there are cores.
+/// Solves a control problem, of one motion or several, from its own guesses and from `starts − 1` random ones, as many at once as there are cores.
 ///
 /// The files of the best solution go to the folder itself, next to `starts.csv`.
 ///
@@ -61,7 +62,7 @@ pub fn solve_text_from_starts(
     let began = Instant::now();
     check_number(starts)?;
     let loaded = read(&request.input, text, &request.set)?;
-    check_problem(request, &loaded)?;
+    let places = check_problem(request, &loaded)?;
     let run_in = wanted.of_tasks(task_runs_at_once(&loaded.task));
     if run_in == RunIn::Processes && is_standard_input(&request.input) {
         return Err(wrong_option(
@@ -75,7 +76,7 @@ pub fn solve_text_from_starts(
     let plan = plan(starts, seed);
     let runs: Vec<CommandInput> = plan
         .iter()
-        .map(|start| start.run(request, &folder))
+        .map(|start| start.run(request, &folder, &places))
         .collect();
     let batch = Batch {
         runs: &runs,
@@ -108,22 +109,34 @@ fn check_number(starts: usize) -> Result<(), CommandError> {
     }
 }
 
-/// Checks that a problem has starting points, and that its start and goal exist.
-fn check_problem(request: &CommandInput, loaded: &Loaded) -> Result<(), CommandError> {
-    let Task::Control(control) = &loaded.task else {
-        let asks = match &loaded.task {
-            Task::Motions(_) => "for several motions: only one by itself".to_owned(),
-            task => format!("to {}: only \"control\"", key(task)),
-        };
-        return Err(wrong_option(format!(
-            "{} asks {asks} has starting points",
-            request.input.display()
-        )));
-    };
+/// Checks that a problem has starting points, and that its starts and goals exist; returns the places of its guesses.
+fn check_problem(request: &CommandInput, loaded: &Loaded) -> Result<Vec<String>, CommandError> {
     refuse_replacing(request, &loaded.task)?;
-    let ends = resolve(&loaded.system, control).map_err(CommandError::in_file(&request.input));
-    no_equilibrium::kept(request, ends)?;
-    Ok(())
+    let places = match &loaded.task {
+        Task::Control(control) => {
+            resolve(&loaded.system, control).map(|_| vec!["control.guess".to_owned()])
+        }
+        Task::Motions(motions) => {
+            let each = motions.list.iter().enumerate();
+            let place = |(number, motion): (usize, &Motion)| {
+                let ends = resolve(&motion.system, &motion.control);
+                ends.map_err(|error| error.of_motion(&motion.name))?;
+                Ok(format!("control.motions[{number}].guess"))
+            };
+            each.map(place).collect()
+        }
+        task => {
+            return Err(wrong_option(format!(
+                "{} asks to {}: only \"control\" has starting points",
+                request.input.display(),
+                key(task)
+            )));
+        }
+    };
+    no_equilibrium::kept(
+        request,
+        places.map_err(CommandError::in_file(&request.input)),
+    )
 }
 
 /// The starts: the guess of the problem, then random ones.

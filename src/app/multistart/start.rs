@@ -22,14 +22,23 @@ pub(super) struct Start {
 }
 
 impl Start {
-    /// Its solve.
-    pub(super) fn run(self, request: &CommandInput, folder: &Path) -> CommandInput {
-        let guess = |seed| format!("control.guess={{\"random\":{{\"seed\":{seed}}}}}");
+    /// Its solve, of a problem whose guesses stand at these `places`.
+    ///
+    /// All guesses have one seed, so that inputs which motions share begin alike.
+    pub(super) fn run(
+        self,
+        request: &CommandInput,
+        folder: &Path,
+        places: &[String],
+    ) -> CommandInput {
         let mut run = CommandInput {
             output: Some(folder_of(folder, self.number)),
             ..request.clone()
         };
-        run.set.extend(self.seed.map(guess));
+        if let Some(seed) = self.seed {
+            let guess = |place| format!("{place}={{\"random\":{{\"seed\":{seed}}}}}");
+            run.set.extend(places.iter().map(guess));
+        }
         run
     }
 }
