@@ -112,13 +112,13 @@ fn command_output(
     (summary, each): (&MotionsSummary, &[Summary]),
     folder: &Path,
 ) -> CommandOutput {
-    let is_solved = result.verdict.is_solved && !STOPPED.contains(&&*summary.status);
+    let mut is_solved = result.verdict.is_solved && !STOPPED.contains(&&*summary.status);
     let solved = if result.verdict.is_solved {
         "solved"
     } else {
         "not solved"
     };
-    let word = match summary.status.as_str() {
+    let mut word = match summary.status.as_str() {
         "solved" => solved.to_owned(),
         word => format!("{solved} ({})", word.replace('_', " ")),
     };
@@ -144,6 +144,10 @@ fn command_output(
     notes.extend(summary.notes.lines());
     let constants = summary.parameters.iter();
     notes.extend(constants.map(|found| format!("{}: {}", found.name, found.text())));
+    if let (true, Some(accuracy)) = (is_solved, &summary.accuracy) {
+        notes.extend(accuracy.notes());
+        (word, is_solved) = accuracy.outcome(&word);
+    }
     let objective = match summary.objective.abs() < 1e9 {
         true => format!("{:.7}", summary.objective),
         false => format!("{:.7e}", summary.objective),

@@ -8,6 +8,7 @@ use crate::control::{Motions, PEAK_VOLTAGE};
 use crate::files::lay_out;
 use crate::tasks::MotionsResult;
 use crate::workflow::Remarks;
+use crate::workflow::accuracy::Accuracy;
 
 /// The file.
 #[derive(Debug, Serialize)]
@@ -41,6 +42,9 @@ pub(super) struct MotionsSummary {
     /// Bound of the objective above its least value; absent without a solution.
     #[serde(skip_serializing_if = "Option::is_none")]
     gap: Option<f64>,
+    /// Estimated errors, the greatest of all motions.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub(super) accuracy: Option<Accuracy>,
     /// The motions in their order, with the summaries of their folders.
     pub(super) motions: Vec<MotionEntry>,
     pub(super) seconds: TotalSeconds,
@@ -83,6 +87,7 @@ impl MotionsSummary {
             list,
             whole,
             iterations,
+            accuracy,
             verdict,
             remarks,
         } = result;
@@ -128,6 +133,7 @@ impl MotionsSummary {
                 .iter()
                 .fold(0.0, |worst, one| one.optimum.infeasibility.max(worst)),
             gap: Some(whole.gap).filter(|gap| verdict.is_solved && gap.is_finite()),
+            accuracy: accuracy.clone(),
             motions: entries.collect(),
             seconds: TotalSeconds::default(),
             versions: Versions::new(),

@@ -17,6 +17,7 @@ use crate::app::resume_file;
 use crate::app::simulation;
 use crate::app::solve;
 use crate::control::Earlier;
+use crate::control::Motions;
 use crate::control::problem::{BoundaryState, Guess, Task};
 use crate::files::solution::SolutionFile;
 use crate::files::{Loaded, read_problem, read_problem_text};
@@ -160,11 +161,14 @@ fn refuse_unused(request: &CommandInput, task: &Task) -> Result<(), CommandError
     let is_simulation = matches!(task, Task::Simulate(_));
     let option = match (task, request.wanted) {
         (Task::Control(_), _) => return Ok(()),
-        (Task::Motions(_), Some(AccuracyTarget::Estimate)) => "--estimate-error",
-        (Task::Motions(motions), Some(AccuracyTarget::Below(_)))
-            if motions.list.iter().any(|one| !one.control.is_refined) =>
+        (Task::Motions(motions), Some(wanted)) if some_are_refined(motions) => match wanted {
+            AccuracyTarget::Below(_) => "--accuracy",
+            AccuracyTarget::Estimate => "--estimate-error",
+        },
+        (Task::Motions(motions), Some(AccuracyTarget::Estimate))
+            if motions.list[0].control.is_refined =>
         {
-            "--accuracy"
+            "--estimate-error"
         }
         (Task::Motions(_), _) => return Ok(()),
         (Task::Equilibrium(_) | Task::Identify(_), Some(AccuracyTarget::Below(_))) => "--accuracy",
@@ -177,10 +181,12 @@ fn refuse_unused(request: &CommandInput, task: &Task) -> Result<(), CommandError
         _ => return Ok(()),
     };
     let asks = match task {
-        Task::Motions(_) if option == "--accuracy" => {
-            "several motions, and names \"intervals\" of some; expected none, or \"auto\", of all"
+        Task::Motions(motions) if some_are_refined(motions) => {
+            "several motions, and names \"intervals\" of some; expected them, or \"auto\", of all"
         }
-        Task::Motions(_) => "several motions, of which no error is estimated on given grids",
+        Task::Motions(_) => {
+            "several motions on \"auto\" grids, which are refined until their errors are confirmed"
+        }
         Task::Equilibrium(_) if option == "--from" => "an equilibrium, which goes on from nothing",
         Task::Simulate(_) if option == "--from" => {
             "a simulation, whose steps --accuracy and --estimate-error halve from the start"
@@ -203,4 +209,11 @@ fn refuse_unused(request: &CommandInput, task: &Task) -> Result<(), CommandError
         option,
         reason: format!("{} asks for {asks}", request.input.display()),
     })
+}
+
+/// Returns true if the grids of some motions are chosen, and those of others given.
+fn some_are_refined(motions: &Motions) -> bool {
+    let mut each = motions.list.iter().map(|one| one.control.is_refined);
+    let first = each.next();
+    each.any(|other| Some(other) != first)
 }

@@ -9,12 +9,13 @@ use crate::tasks::grid::{Found, SolveRequest};
 use crate::tasks::held_goal::{NOT_FOUND, UNFINISHED, held, is_kept, is_left};
 use crate::tasks::solve::{SolveResult, assessed};
 use crate::tasks::verdict::Verdict;
-use crate::workflow::accuracy::AccuracyTarget;
+use crate::workflow::accuracy::{Accuracy, AccuracyTarget};
 use crate::workflow::further::stopped;
 use crate::workflow::memory;
 use crate::workflow::optimum::{SolveLimits, seconds_left};
 use crate::workflow::{
     ACCURACY, Iterate, Remarks, Together, WholeProgram, WorkflowError, optimise_together,
+    optimise_together_to,
 };
 
 /// Motions that were optimised together.
@@ -26,6 +27,8 @@ pub struct MotionsResult {
     pub whole: WholeProgram,
     /// Iterations on all grids.
     pub iterations: usize,
+    /// Estimated errors, the greatest of all motions, where an accuracy was wanted of motions that name their intervals.
+    pub accuracy: Option<Accuracy>,
     /// The verdict on all of them: solved where each is.
     pub verdict: Verdict,
     /// Warnings and notes on all of them.
@@ -45,7 +48,7 @@ pub fn solve_motions(
     for motion in &motions.list {
         memory::of_elements(&motion.system, true)?;
     }
-    let (found, motions, notes) = solve_and_hold(motions, request, observer)?;
+    let ((found, accuracy), motions, notes) = solve_and_hold(motions, request, observer)?;
     let Together {
         optima,
         whole,
@@ -71,6 +74,7 @@ pub fn solve_motions(
         list,
         whole,
         iterations,
+        accuracy,
         remarks,
     })
 }
@@ -128,21 +132,41 @@ fn verdict(motions: &[Motion], list: &[SolveResult]) -> Verdict {
     }
 }
 
-/// Motions, the problems that they solve, and for each a note where no inputs that hold its goal were found.
-type HeldGoals<'a> = (Together, Cow<'a, Motions>, Vec<Option<String>>);
+/// Motions with their estimated errors, where an accuracy is wanted of motions that name their intervals.
+type FoundMotions = (Together, Option<Accuracy>);
 
-/// Solves, and again with the inputs that hold the goals that are left as unknowns; for each motion a note where none were found.
-fn solve_and_hold<'a>(
-    motions: &'a Motions,
+/// Solves on the grids of the problems, or on finer ones where an accuracy is wanted.
+fn find(
+    motions: &Motions,
     SolveRequest { wanted, limits }: SolveRequest,
     observer: &mut dyn FnMut(usize, &Iterate<'_>) -> ControlFlow<()>,
-) -> Result<HeldGoals<'a>, WorkflowError> {
-    let began = Instant::now();
+) -> Result<FoundMotions, WorkflowError> {
+    let are_given = motions.list.iter().all(|one| !one.control.is_refined);
+    if let (true, Some(wanted)) = (are_given, wanted) {
+        let found = optimise_together_to(motions, wanted, limits, observer);
+        return found.map(|(found, accuracy)| (found, Some(accuracy)));
+    }
     let accuracy = match wanted {
         Some(AccuracyTarget::Below(part)) => part,
         _ => ACCURACY,
     };
-    let mut found = optimise_together(motions, accuracy, limits, observer)?;
+    Ok((
+        optimise_together(motions, accuracy, limits, observer)?,
+        None,
+    ))
+}
+
+/// Motions, the problems that they solve, and for each a note where no inputs that hold its goal were found.
+type HeldGoals<'a> = (FoundMotions, Cow<'a, Motions>, Vec<Option<String>>);
+
+/// Solves, and again with the inputs that hold the goals that are left as unknowns; for each motion a note where none were found.
+fn solve_and_hold<'a>(
+    motions: &'a Motions,
+    request: SolveRequest,
+    observer: &mut dyn FnMut(usize, &Iterate<'_>) -> ControlFlow<()>,
+) -> Result<HeldGoals<'a>, WorkflowError> {
+    let began = Instant::now();
+    let (mut found, accuracy) = find(motions, request, observer)?;
     hold(&mut found, motions);
     let each = motions.list.iter().zip(&found.optima);
     let left: Vec<bool> = each
@@ -155,11 +179,11 @@ fn solve_and_hold<'a>(
     };
     let none = left.iter().map(|_| None).collect();
     if !left.contains(&true) {
-        return Ok((found, Cow::Borrowed(motions), none));
+        return Ok(((found, accuracy), Cow::Borrowed(motions), none));
     }
-    let seconds = seconds_left(limits.seconds, began);
+    let seconds = seconds_left(request.limits.seconds, began);
     if stopped(seconds).is_some() {
-        return Ok((found, Cow::Borrowed(motions), told(UNFINISHED)));
+        return Ok(((found, accuracy), Cow::Borrowed(motions), told(UNFINISHED)));
     }
     let each = motions.list.iter().zip(&found.optima).zip(&left);
     let again = each.map(|((motion, optimum), is_left)| Motion {
@@ -171,9 +195,12 @@ fn solve_and_hold<'a>(
         shared_inputs: motions.shared_inputs.clone(),
         combined: motions.combined,
     };
-    let limits = SolveLimits { seconds, ..limits };
-    match optimise_together(&again, accuracy, limits, observer) {
-        Ok(mut second) => {
+    let limits = SolveLimits {
+        seconds,
+        ..request.limits
+    };
+    match find(&again, SolveRequest { limits, ..request }, observer) {
+        Ok((mut second, of_second)) => {
             hold(&mut second, &again);
             second.iterations += found.iterations;
             let mut each = again.list.iter().zip(&second.optima).zip(&left);
@@ -183,13 +210,13 @@ fn solve_and_hold<'a>(
                 for (new, old) in second.optima.iter_mut().zip(&found.optima) {
                     new.carried = old.carried;
                 }
-                return Ok((second, Cow::Owned(again), none));
+                return Ok(((second, of_second), Cow::Owned(again), none));
             }
             found.iterations = second.iterations;
         }
         Err(error) => tracing::debug!(%error, "the inputs that hold the goals are not sought"),
     }
-    Ok((found, Cow::Borrowed(motions), told(NOT_FOUND)))
+    Ok(((found, accuracy), Cow::Borrowed(motions), told(NOT_FOUND)))
 }
 
 /// Holds the voltages of the goals after the ends.

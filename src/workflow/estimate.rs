@@ -37,6 +37,8 @@ pub struct ErrorSample {
     pub end: Vec<f64>,
     /// Greatest deviation from the motion under the same voltages with half the step; infinite where there is no such motion.
     pub response: Option<f64>,
+    /// Those of further motions of one program.
+    pub further: Vec<Self>,
 }
 
 impl ErrorSample {
@@ -98,7 +100,13 @@ impl ErrorSample {
         ]
     }
 
-    /// Differences from a finer grid, of objective and duration relative to them.
+    /// Greatest response of all motions.
+    fn responses(&self) -> Option<f64> {
+        let of_others = self.further.iter().filter_map(Self::responses);
+        of_others.chain(self.response).reduce(f64::max)
+    }
+
+    /// Differences from a finer grid, of objective and duration relative to them; the greatest of all motions.
     pub fn differences(&self, fine: &Self) -> Measures {
         let mut out = Measures::new();
         let relative = |pair: (f64, f64)| match (pair.0 - pair.1).abs() {
@@ -111,6 +119,12 @@ impl ErrorSample {
         out.extend(objective.map(|value| ("objective", value)));
         out.extend(duration.map(|value| ("duration", value)));
         out.extend([("path", path), ("end", end)]);
+        for (own, fine) in self.further.iter().zip(&fine.further) {
+            for (name, value) in own.differences(fine) {
+                let most = out.entry(name).or_insert(value);
+                *most = most.max(value);
+            }
+        }
         out
     }
 
@@ -121,7 +135,7 @@ impl ErrorSample {
             *error += left.get(name).copied().unwrap_or_default();
         }
         // Half the step leaves a quarter of an error of second order.
-        errors.extend(self.response.map(|value| (RESPONSE, 4.0 / 3.0 * value)));
+        errors.extend(self.responses().map(|value| (RESPONSE, 4.0 / 3.0 * value)));
         errors
     }
 
@@ -154,7 +168,7 @@ impl Convergence {
         let mut new = coarse
             .map(|coarse| coarse.differences(fine))
             .unwrap_or_default();
-        new.extend(fine.response.map(|value| (RESPONSE, value)));
+        new.extend(fine.responses().map(|value| (RESPONSE, value)));
         for (name, value) in new {
             let list = self.differences.entry(name).or_default();
             let least = list.last().map_or(0.0, |before| before.believed / 4.0);

@@ -18,9 +18,9 @@ use crate::workflow::optimise::optimise;
 use crate::workflow::optimum::{Optimum, SolveLimits, seconds_left};
 
 /// The solver's tolerance as a part of the accuracy asked for, where the problem names no smaller one.
-const SOLVER: f64 = 1e-2;
+pub(super) const SOLVER: f64 = 1e-2;
 /// Order of optimal voltages until three grids show it: switches and the cost of the first and last jump may make it one.
-const OF_CONTROL: f64 = 1.0;
+pub(super) const OF_CONTROL: f64 = 1.0;
 /// Order of the midpoint rule under voltages that are constant over its steps.
 const OF_MOTION: f64 = 2.0;
 
@@ -60,7 +60,7 @@ pub fn optimise_to(
             // What is not reproduced may be on a finer grid.
             let is_complete = run.meets_equations();
             let sample = match is_complete {
-                true => sample(&run, matches!(control.duration, Duration::Free { .. })),
+                true => sample(&run, &control),
                 false => ErrorSample::default(),
             };
             Ok(Attempt {
@@ -136,7 +136,7 @@ pub fn integrate_to(
 }
 
 /// Returns the reason why no other run may begin.
-fn stop(seconds: Option<f64>) -> Option<&'static str> {
+pub(super) fn stop(seconds: Option<f64>) -> Option<&'static str> {
     match seconds {
         _ if interrupt::requested() => Some("interrupted"),
         Some(seconds) if seconds <= 0.0 => Some("time_limit"),
@@ -145,8 +145,9 @@ fn stop(seconds: Option<f64>) -> Option<&'static str> {
 }
 
 /// Returns the values of an optimum that are compared.
-fn sample(optimum: &Optimum, is_free: bool) -> ErrorSample {
+pub(super) fn sample(optimum: &Optimum, control: &Control) -> ErrorSample {
     let kept = &optimum.motion;
+    let is_free = matches!(control.duration, Duration::Free { .. });
     let sample = ErrorSample {
         objective: Some(optimum.solution.objective),
         duration: is_free.then(|| kept.times[kept.intervals()]),

@@ -47,23 +47,8 @@ pub fn optimise_together(
     allowed: SolveLimits,
     observer: &mut dyn FnMut(usize, &Iterate<'_>) -> ControlFlow<()>,
 ) -> Result<Together, WorkflowError> {
-    if let (Some(other), [_, ..]) = (motions.other_grid(), &motions.shared_inputs[..]) {
-        return Err(WorkflowError::Problem {
-            place: "control.shared_inputs".to_owned(),
-            reason: format!(
-                "the instants of the motion \"{}\" are other ones",
-                other.name
-            ),
-        });
-    }
     let motions = &motions.with_limits_once();
-    let mut solves = Solves {
-        motions,
-        allowed,
-        observer,
-        began: Instant::now(),
-        iterations: 0,
-    };
+    let mut solves = Solves::new(motions, allowed, observer)?;
     let controls: Vec<Control> = motions.list.iter().map(|one| one.control.clone()).collect();
     let found = solves.first(&controls)?;
     let mut best = OnGrids {
@@ -133,7 +118,7 @@ impl OnGrids {
 }
 
 /// The solves so far.
-struct Solves<'a> {
+pub(super) struct Solves<'a> {
     motions: &'a Motions,
     allowed: SolveLimits,
     observer: &'a mut dyn FnMut(usize, &Iterate<'_>) -> ControlFlow<()>,
@@ -141,18 +126,41 @@ struct Solves<'a> {
     iterations: usize,
 }
 
-impl Solves<'_> {
-    fn left(&self) -> Option<f64> {
+impl<'a> Solves<'a> {
+    pub(super) fn new(
+        motions: &'a Motions,
+        allowed: SolveLimits,
+        observer: &'a mut dyn FnMut(usize, &Iterate<'_>) -> ControlFlow<()>,
+    ) -> Result<Self, WorkflowError> {
+        if let (Some(other), [_, ..]) = (motions.other_grid(), &motions.shared_inputs[..]) {
+            return Err(WorkflowError::Problem {
+                place: "control.shared_inputs".to_owned(),
+                reason: format!(
+                    "the instants of the motion \"{}\" are other ones",
+                    other.name
+                ),
+            });
+        }
+        Ok(Self {
+            motions,
+            allowed,
+            observer,
+            began: Instant::now(),
+            iterations: 0,
+        })
+    }
+
+    pub(super) fn left(&self) -> Option<f64> {
         seconds_left(self.allowed.seconds, self.began)
     }
 
     /// Returns the reason why nothing more may be begun, if there is one.
-    fn stopped(&self) -> Option<Status> {
+    pub(super) fn stopped(&self) -> Option<Status> {
         stopped(self.left())
     }
 
     /// Solves these problems of the motions, from earlier solutions or from their guesses.
-    fn solve(
+    pub(super) fn solve(
         &mut self,
         controls: &[Control],
         earlier: Option<&[&Solution]>,
@@ -179,8 +187,8 @@ impl Solves<'_> {
         Ok(found)
     }
 
-    /// The first solve, and where it leads nowhere one from displaced guesses.
-    fn first(&mut self, controls: &[Control]) -> Result<FoundTogether, WorkflowError> {
+    /// The first solve of these problems, and where it leads nowhere one from displaced guesses.
+    pub(super) fn first(&mut self, controls: &[Control]) -> Result<FoundTogether, WorkflowError> {
         let found = self.solve(controls, None)?;
         if !is_unreached(&found.optima[0].solution) || self.stopped().is_some() {
             return Ok(found);

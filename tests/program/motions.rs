@@ -128,10 +128,21 @@ fn each_motion_is_checked_and_what_cannot_be_done_is_refused() {
             .all(|name| out.contains(&format!("motion \"{name}\": derivatives agree"))),
         "{out}"
     );
+    let auto = "control.intervals=auto";
+    let one = "control.motions.ramp.intervals=auto";
     let refusals: [(&[&str], &str); 6] = [
-        (&["solve", PROBLEM, "--accuracy", "0.01"], "--accuracy"),
-        (&["solve", PROBLEM, "--estimate-error"], "--estimate-error"),
-        (&["solve", PROBLEM, "--starts", "2"], "several motions"),
+        (
+            &["solve", PROBLEM, "--accuracy", "0.01", "--set", one],
+            "--accuracy",
+        ),
+        (
+            &["solve", PROBLEM, "--estimate-error", "--set", one],
+            "\"intervals\" of some",
+        ),
+        (
+            &["solve", PROBLEM, "--estimate-error", "--set", auto],
+            "refined until their errors are confirmed",
+        ),
         (&["simulate", PROBLEM], "asks for optimal voltages"),
         (&["equilibrium", PROBLEM], "asks for optimal voltages"),
         (
@@ -157,6 +168,83 @@ fn each_motion_is_checked_and_what_cannot_be_done_is_refused() {
         err.contains("control.motions.ramp.start") || err.contains("control.motions[1].start"),
         "{err}"
     );
+}
+
+/// Motions that share nothing are solved as each alone: their errors are the greatest of both, and the objective has that of the sum.
+#[test]
+fn errors_of_several_motions_are_the_greatest_of_all() {
+    let folder = workshop();
+    let here = folder.path();
+    let both = "control.motions=[{\"name\":\"near\"},{\"name\":\"far\",\"duration\":\"0.3 s\"}]";
+    let estimate = |output: &str, set: &str| {
+        let arguments = [
+            "solve",
+            "problems/pair.json",
+            "--estimate-error",
+            "-o",
+            output,
+            "--no-report",
+            "--set",
+            "control.intervals=40",
+            "--set",
+            set,
+        ];
+        let (status, out, err) = run(here, &arguments);
+        assert_eq!(status, 0, "{out}{err}");
+        assert!(out.contains("error about"), "{out}");
+        summary(here, output)
+    };
+    let alone =
+        ["control.duration=0.2 s", "control.duration=0.3 s"].map(|set| estimate("one", set));
+    let all = estimate("both", both);
+    let error =
+        |of: &serde_json::Value, name: &str| of["accuracy"]["estimate"][name].as_f64().unwrap();
+    for name in ["path", "response"] {
+        let each = alone.each_ref().map(|one| error(one, name));
+        assert!(
+            each[0] > 0.0 && (each[0] / each[1] - 1.0).abs() > 1e-3,
+            "{each:?}"
+        );
+        let greatest = each[0].max(each[1]);
+        let found = error(&all, name);
+        assert!(
+            found >= 0.98 * greatest && found <= 1.3 * greatest,
+            "{name}: {found} {each:?}"
+        );
+    }
+    let own = [0, 1].map(|k| all["motions"][k]["objective"].as_f64().unwrap());
+    let each = alone
+        .each_ref()
+        .map(|one| one["objective"].as_f64().unwrap());
+    for (own, one) in own.iter().zip(each) {
+        assert!((own / one - 1.0).abs() < 1e-6, "{own} {one}");
+    }
+    // The grids of both motions are those of the problem; finer ones tell the error.
+    assert_eq!(all["motions"][0]["intervals"], alone[0]["intervals"]);
+    let level = |k: usize| &all["accuracy"]["levels"][k];
+    let sum = 2 * alone[0]["intervals"].as_u64().unwrap();
+    assert_eq!(
+        [0, 1].map(|k| level(k)["intervals"].as_u64()),
+        [Some(sum), Some(2 * sum)]
+    );
+    let asked = [
+        "solve",
+        "problems/pair.json",
+        "--set",
+        "control.intervals=40",
+        "--set",
+        both,
+        "--accuracy",
+        "0.02",
+        "-o",
+        "finer",
+        "--no-report",
+    ];
+    let (status, out, err) = run(here, &asked);
+    let finer = summary(here, "finer");
+    assert_eq!(status, 0, "{out}{err}");
+    assert_eq!(finer["accuracy"]["is_met"], true);
+    assert!(finer["motions"][1]["intervals"].as_u64() > alone[1]["intervals"].as_u64());
 }
 
 #[test]
