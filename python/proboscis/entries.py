@@ -981,8 +981,8 @@ class MarkerSpeedLimit(TypedDict):
 
 
 class Measured(TypedDict):
-    """A measured quantity: exactly one of `joint`, `joint_rate`, `marker`, `tension`, `charge`, `current`, `voltage`, `reaction_force` and
-    `reaction_torque`.
+    """A measured quantity: exactly one of `joint`, `joint_rate`, `marker`, `tension`, `charge`, `current`, `power`, `voltage`, `reaction_force`
+    and `reaction_torque`.
     """
 
     about: NotRequired[Sequence[float] | Numbers]
@@ -1011,6 +1011,9 @@ class Measured(TypedDict):
 
     marker: NotRequired[Text]
     """Place of a marker along a direction."""
+
+    power: NotRequired[Text]
+    """Electrical power of the source of a lumped muscle behind a resistor."""
 
     reaction_force: NotRequired[Text]
     """Force from the parent of a joint on its child along a direction, as in limits; of joints in no loop."""

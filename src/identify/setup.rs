@@ -205,7 +205,7 @@ impl Recording {
     }
 }
 
-/// Returns true of forces, charges, currents and voltages, which are none where they have no measure.
+/// Returns true of forces, charges, currents, powers and voltages, which are none where they have no measure.
 fn lasts(quantity: &Quantity) -> bool {
     matches!(
         quantity,
@@ -216,6 +216,7 @@ fn lasts(quantity: &Quantity) -> bool {
             | Quantity::MeanCharge { .. }
             | Quantity::ElectrodeVoltage { .. }
             | Quantity::SourceCurrent { .. }
+            | Quantity::SourcePower { .. }
             | Quantity::ChargeStep { .. }
     )
 }

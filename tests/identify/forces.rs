@@ -79,6 +79,13 @@ fn quantities() -> Vec<(Quantity, Vec<(&'static str, f64)>)> {
             vec![("muscle2_voltage", 1.0)],
         ),
         (
+            Quantity::SourcePower {
+                muscle: 1,
+                unit: 1.0,
+            },
+            vec![("muscle2_power", 1.0)],
+        ),
+        (
             reaction(0, Reaction::Force),
             vec![("joint1_force_x", 0.6), ("joint1_force_z", 0.8)],
         ),

@@ -198,6 +198,10 @@ fn mistakes_of_scenes_columns_and_forces_are_told() {
             "slide",
         ),
         (
+            measured(json!({ "power": "slide", "column": "x" })),
+            "slide",
+        ),
+        (
             measured(json!({ "reaction_force": "slide", "column": "x" })),
             "no direction",
         ),

@@ -7,7 +7,7 @@ use crate::files::problem::state::{driven, joint_with_coordinate, moving_marker}
 use crate::files::scene::names::names;
 use crate::files::scene::point::unit_axis;
 use crate::files::units::quantity::{
-    Angle, AngularVelocity, Charge, Current, Force, Kind, Length, Torque, Velocity, Voltage,
+    Angle, AngularVelocity, Charge, Current, Force, Kind, Length, Power, Torque, Velocity, Voltage,
 };
 use crate::functional::Stencil;
 use crate::math::Vector;
@@ -50,6 +50,7 @@ impl What {
             tension: tension;
             charge: charge;
             current: current;
+            power: power;
             voltage: voltage;
             reaction_force: reaction_force;
             reaction_torque: reaction_torque;
@@ -247,6 +248,28 @@ fn current(
     };
     let unit = (Current::kind(), ("A", 1.0));
     let title = format!("current of {name}");
+    Ok(What::plain(name, title, quantity, unit))
+}
+
+/// Electrical power of the source of a muscle.
+fn power(
+    name: &str,
+    _: &MeasuredSpec,
+    system: &System,
+    [place, _]: [&Scope<'_>; 2],
+) -> Result<What, SceneError> {
+    let of = Charging::new(name, system, place)?;
+    if !(of.is_lumped && of.is_behind_resistor) {
+        let found = format!("{name:?}, which is no lumped muscle behind a resistor");
+        let expected = "a lumped muscle with a \"resistance\" in its \"circuit\"";
+        return Err(place.wrong(found, expected));
+    }
+    let quantity = Quantity::SourcePower {
+        muscle: of.source,
+        unit: 1.0,
+    };
+    let unit = (Power::kind(), ("W", 1.0));
+    let title = format!("power of {name}");
     Ok(What::plain(name, title, quantity, unit))
 }
 

@@ -7,7 +7,7 @@ use crate::files::problem::spec_states::StartSpec;
 use crate::files::problem::spec_voltages::VoltagesSpec;
 use crate::files::study::ChangesSpec;
 use crate::files::units::quantity::{Angle, AngularVelocity, Kind, Length, Velocity};
-use crate::files::units::quantity::{Charge, Current, Force, Torque, Voltage};
+use crate::files::units::quantity::{Charge, Current, Force, Power, Torque, Voltage};
 use crate::files::units::quantity::{PhysicalQuantity, Quantity, Ratio, SoughtConstant, Time};
 use schemars::JsonSchema;
 use serde::Deserialize;
@@ -173,7 +173,7 @@ pub enum SoughtStartSpec {
     State,
 }
 
-/// A measured quantity: exactly one of `joint`, `joint_rate`, `marker`, `tension`, `charge`, `current`, `voltage`, `reaction_force` and
+/// A measured quantity: exactly one of `joint`, `joint_rate`, `marker`, `tension`, `charge`, `current`, `power`, `voltage`, `reaction_force` and
 /// `reaction_torque`.
 #[derive(Clone, Debug, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
@@ -196,6 +196,9 @@ pub struct MeasuredSpec {
     /// Current of a source: of a lumped muscle that does not leak, or of anything behind a resistor.
     #[serde(default)]
     pub current: Option<String>,
+    /// Electrical power of the source of a lumped muscle behind a resistor.
+    #[serde(default)]
+    pub power: Option<String>,
     /// Voltage of the electrodes behind the resistor of a source.
     #[serde(default)]
     pub voltage: Option<String>,
@@ -247,6 +250,7 @@ impl PhysicalQuantity for MeasuredSize {
             Torque::kind(),
             Charge::kind(),
             Current::kind(),
+            Power::kind(),
             Voltage::kind(),
         ]
     }
