@@ -1292,7 +1292,7 @@ class Range(TypedDict):
     """Lower bound."""
 
     prior: NotRequired[InputPrior]
-    """What is known of it beside the recordings; it counts as one reading more."""
+    """A normal distribution, as of a data sheet, which counts as one reading more."""
 
 
 class ReactionForceLimit(TypedDict):

@@ -336,3 +336,62 @@ fn each_motion_is_inspected_and_the_program_of_all() {
     };
     assert_eq!(inequalities(&worst), inequalities(&sum) + 3);
 }
+
+#[test]
+fn several_motions_have_starts_and_the_best_of_all_is_kept() {
+    let folder = workshop();
+    let path = folder.path();
+    let motions = "problems/robust_pair.json";
+    let (status, _, err) = run(path, &["solve", motions, "-o", "own", "--no-report"]);
+    assert_eq!(status, 0, "{err}");
+    let own = read(path.join("own/summary.json"));
+    let arguments = [
+        "solve",
+        motions,
+        "--starts",
+        "3",
+        "-o",
+        "out",
+        "--no-report",
+    ];
+    let (status, out, err) = run(path, &arguments);
+    assert_eq!(status, 0, "{out}{err}");
+    assert!(
+        out.contains("3 of 3 starts solved, 1 distinct optimum"),
+        "{out}"
+    );
+    let summary = read(path.join("out/summary.json"));
+    let each = summary["starts"]["each"].as_array().unwrap();
+    let objective = |one: &serde_json::Value| one["objective"].as_f64().unwrap();
+    for one in each {
+        assert!(
+            (objective(one) / objective(&own) - 1.0).abs() < 1e-6,
+            "{one}"
+        );
+        assert!(one["infeasibility"].as_f64().unwrap() < 1e-6);
+    }
+    let iterations: Vec<&serde_json::Value> = each.iter().map(|one| &one["iterations"]).collect();
+    assert!(
+        iterations.iter().any(|one| *one != iterations[0]),
+        "{iterations:?}"
+    );
+    assert!(
+        err.contains("motion \"soft\": note: joint1 ends at"),
+        "{err}"
+    );
+    // The files are those of the best start, each motion in its folder.
+    let best = format!(
+        "out/starts/{:02}",
+        summary["starts"]["best"].as_u64().unwrap()
+    );
+    for name in ["middle", "soft", "stiff"] {
+        let solution =
+            |from: &str| fs::read(path.join(from).join(name).join("solution.json")).unwrap();
+        assert!(solution("out") == solution(&best), "{name}");
+    }
+    let set = "control.motions[1].voltages={\"muscle9\": 0}";
+    let wrong = ["solve", motions, "--starts", "2", "--set", set];
+    let (status, out, err) = run(path, &wrong);
+    assert_eq!((status, out.as_str()), (2, ""), "{err}");
+    assert!(err.contains("muscle9"), "{err}");
+}

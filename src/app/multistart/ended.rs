@@ -175,7 +175,7 @@ impl Ended {
                 .flat_map(|(_, own)| &own.0)
                 .any(|one| LEAVES.contains(&&*one.code)),
             voltages: voltages.collect(),
-            notes: remarks.iter().flat_map(told).collect(),
+            notes: remarks.iter().flat_map(texts).collect(),
             ..Self::without_files(start, "", seconds)
         })
     }
@@ -209,7 +209,7 @@ impl Ended {
 }
 
 /// Remarks in words, with the name of the motion that they are on.
-fn told((motion, remarks): &(Option<String>, Remarks)) -> Vec<String> {
+fn texts((motion, remarks): &(Option<String>, Remarks)) -> Vec<String> {
     let name = motion.as_ref().map(|name| format!("motion \"{name}\": "));
     let name = name.unwrap_or_default();
     remarks

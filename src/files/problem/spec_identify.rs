@@ -64,7 +64,7 @@ pub struct RangeSpec<M: PhysicalQuantity> {
     /// Value at which the fit starts; 1 of a gain, the lower bound of a delay where not written.
     #[serde(default)]
     pub guess: Option<Quantity<M>>,
-    /// What is known of it beside the recordings; it counts as one reading more.
+    /// A normal distribution, as of a data sheet, which counts as one reading more.
     #[serde(default)]
     pub prior: Option<InputPriorSpec<M>>,
 }
