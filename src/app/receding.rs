@@ -6,7 +6,8 @@ use crate::app::error::CommandError;
 use crate::app::messages::key;
 use crate::app::task::read;
 use crate::control::problem::{Ahead, Task};
-use crate::files::feedback::unit_of;
+use crate::feedback::{Measured, Reading};
+use crate::files::feedback::{factor_of, unit_of};
 use crate::model::System;
 use crate::workflow::receding::{Horizon, RecedingHorizon, Source};
 
@@ -53,18 +54,36 @@ impl FileHorizon {
         })
     }
 
-    /// Names of all that is measured, with their units: rad, m, rad/s, m/s.
+    /// Names of all that is measured, the state or the readings of its observer, with their units: rad, m, rad/s, m/s.
     pub fn measured(&self) -> Vec<(String, &'static str)> {
-        let all = self.horizon.law().measured.iter();
-        all.map(|one| {
+        let law = self.horizon.law();
+        let of_state = |one: &Measured| {
             let unit = unit_of(one).0;
-            let name = match one.is_rate {
-                true => format!("rate of {}", one.name),
-                false => one.name.clone(),
-            };
-            (name, unit)
-        })
-        .collect()
+            match one.is_rate {
+                true => (format!("rate of {}", one.name), unit),
+                false => (one.name.clone(), unit),
+            }
+        };
+        let reading = |one: &Reading| match one {
+            Reading::State(place) => of_state(&law.measured[*place]),
+            Reading::Marker(name, axis) => (format!("{name}.{}", ["x", "y", "z"][*axis]), "m"),
+        };
+        match &law.observer {
+            Some(observer) => observer.readings.iter().map(reading).collect(),
+            None => law.measured.iter().map(of_state).collect(),
+        }
+    }
+
+    /// Factors of all that is measured from the units inside.
+    fn factors(&self) -> Vec<f64> {
+        let law = self.horizon.law();
+        match &law.observer {
+            Some(observer) => {
+                let all = observer.readings.iter();
+                all.map(|one| factor_of(one, &law.measured)).collect()
+            }
+            None => law.measured.iter().map(|one| unit_of(one).1).collect(),
+        }
     }
 
     /// Names of the inputs, with their units.
@@ -110,8 +129,7 @@ pub struct SiController<'h> {
 impl<'h> SiController<'h> {
     /// A controller at the start of the motion.
     pub fn new(of: &'h FileHorizon) -> Self {
-        let measured = of.horizon.law().measured.iter();
-        let measured: Vec<f64> = measured.map(|one| 1.0 / unit_of(one).1).collect();
+        let measured: Vec<f64> = of.factors().iter().map(|factor| 1.0 / factor).collect();
         let inputs: Vec<f64> = of.units().map(|(_, factor)| factor).collect();
         Self {
             controller: RecedingHorizon::new(&of.horizon),
@@ -122,7 +140,7 @@ impl<'h> SiController<'h> {
         }
     }
 
-    /// The inputs that act from a time in s on, with the state measured there; none where it did not come in time. Called again within an interval, it
+    /// The inputs that act from a time in s on, or the delay of the feedback later, with what is measured there; none where it did not come in time. Called again within an interval, it
     /// gives the same inputs.
     ///
     /// # Panics

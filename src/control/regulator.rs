@@ -35,6 +35,8 @@ pub struct Observation {
     pub inputs: f64,
     /// Of each rate, in 100 degrees/s or 100 mm/s.
     pub rates: f64,
+    /// Of the change of a lasting force on each joint, as a part of the greatest force of the inputs on it; `None`: no force lasts.
+    pub lasting: Option<f64>,
 }
 
 impl Observation {
@@ -59,6 +61,11 @@ impl Default for Regulator {
 }
 
 impl Regulator {
+    /// Intervals of a length in ms that the delay takes.
+    pub fn delayed(&self, h: f64) -> usize {
+        (self.delay / h - 1e-9).ceil().max(0.0) as usize
+    }
+
     /// Deviation of an angle that costs as much as one of a mm, in rad.
     pub const DEGREE: f64 = std::f64::consts::PI / 180.0;
     /// Time in ms in which a rate makes that deviation.

@@ -3,6 +3,7 @@
 //! A correction `−K (x − x₀)` is computed at each sample and acts, after the delay, until the next one does. Inputs of the motion are
 //! known beforehand and act at once. An observer finds the state where it is not measured. A step allocates nothing.
 
+use crate::feedback::estimate::Estimate;
 use crate::feedback::law::Law;
 
 /// State of a controller.
@@ -11,11 +12,11 @@ pub struct Controller<'l> {
     law: &'l Law,
     /// Delay in ms between a sample and its effect.
     delay: f64,
-    /// Deviations of the last sample: measured quantities, then integrals, then the corrections that will act before the next one does.
+    /// Numbers of the last sample that the gains read: deviations of measured quantities, lasting forces with the inputs against them, integrals, then the
+    /// corrections that will act before the next one does.
     deviation: Vec<f64>,
-    /// Deviations of the measured quantities that the observer expects at the next sample; its errors of readings, and deviations of inputs.
-    expected: Vec<f64>,
-    errors: Vec<f64>,
+    /// That of the observer, where there is one, and deviations of inputs.
+    estimate: Option<Estimate<'l>>,
     acting: Vec<f64>,
     /// Time in ms of the last sample.
     sampled: Option<f64>,
@@ -37,16 +38,12 @@ impl<'l> Controller<'l> {
     pub fn new(law: &'l Law, sample: f64, delay: f64) -> Self {
         let width = law.width();
         let waiting = (delay / sample).ceil() as usize + 2;
-        let observed = law.observer.as_ref().map_or(0, |one| one.readings.len());
+        let read = law.measured.len() + law.forces() + law.targets() + law.integral.of.len();
         Self {
             law,
             delay,
-            deviation: vec![
-                0.0;
-                law.measured.len() + law.integral.of.len() + law.delay * law.width()
-            ],
-            expected: vec![0.0; law.measured.len()],
-            errors: vec![0.0; observed],
+            deviation: vec![0.0; read + law.delay * law.width()],
+            estimate: Estimate::new(law),
             acting: vec![0.0; width],
             sampled: None,
             waiting: vec![(0.0, vec![0.0; width]); waiting],
@@ -65,12 +62,12 @@ impl<'l> Controller<'l> {
         let law = self.law;
         let elapsed = self.sampled.map_or(0.0, |before| time - before);
         self.sampled = Some(time);
-        let m = law.measured.len();
         // The deviation of the last sample lasted until now.
+        let first = self.integrals();
         for (place, &of) in law.integral.of.iter().enumerate() {
-            self.deviation[m + place] += elapsed * self.deviation[of];
+            self.deviation[first + place] += elapsed * self.deviation[of];
         }
-        match &law.observer {
+        match &mut self.estimate {
             None => {
                 for (place, value) in measured.iter().enumerate() {
                     if value.is_finite() {
@@ -78,11 +75,11 @@ impl<'l> Controller<'l> {
                     }
                 }
             }
-            Some(observer) => {
-                let state = &mut self.deviation[..m];
-                state.copy_from_slice(&self.expected);
-                let filter = observer.at(law.interval(time));
-                filter.correct(measured, state, &mut self.errors);
+            Some(estimate) => {
+                estimate.correct(law.interval(time), measured);
+                let found = estimate.state().iter().chain(estimate.against());
+                let read = self.deviation.iter_mut().zip(found);
+                read.for_each(|(to, value)| *to = *value);
             }
         }
         self.predict(time);
@@ -94,13 +91,7 @@ impl<'l> Controller<'l> {
         }
         let (acts, correction) = &mut self.waiting[slot];
         *acts = time + self.delay;
-        let gain = &law.at(time).gain;
-        for (input, value) in correction.iter_mut().enumerate() {
-            let terms = self.deviation.iter().enumerate();
-            *value = -terms
-                .map(|(place, d)| gain[(input, place)] * d)
-                .sum::<f64>();
-        }
+        law.correct(time, &self.deviation, correction);
         self.samples += 1;
         self.is_saturated = [false; 2];
         self.expect(time);
@@ -109,16 +100,21 @@ impl<'l> Controller<'l> {
     /// Finds the state that the observer expects an interval after a time in ms.
     fn expect(&mut self, time: f64) {
         let law = self.law;
-        let Some(observer) = &law.observer else {
+        if self.estimate.is_none() {
             return;
-        };
+        }
         let middle = time + 0.5 * law.h;
         for i in 0..law.width() {
             self.acting[i] = self.deviation_of_input(middle, i);
         }
-        let state = &self.deviation[..law.measured.len()];
-        let filter = observer.at(law.interval(time));
-        filter.predict(state, &self.acting, &mut self.expected);
+        if let Some(estimate) = &mut self.estimate {
+            estimate.expect(law.interval(time), &self.acting);
+        }
+    }
+
+    /// Place of the integrals among what the gains read.
+    fn integrals(&self) -> usize {
+        self.law.measured.len() + self.law.forces() + self.law.targets()
     }
 
     /// Deviation of an input from the motion at a time in ms, of its square where it acts by it, as bounds leave it.
@@ -138,7 +134,7 @@ impl<'l> Controller<'l> {
     /// Takes in the corrections that act in the intervals of the delay from a time in ms on, as bounds leave them.
     fn predict(&mut self, time: f64) {
         let law = self.law;
-        let first = law.measured.len() + law.integral.of.len();
+        let first = self.integrals() + law.integral.of.len();
         for k in 0..law.delay {
             let middle = time + (k as f64 + 0.5) * law.h;
             for i in 0..law.width() {

@@ -32,7 +32,7 @@ pub struct LawInput {
 
 impl LawInput {
     /// An input with a correction, its bounds, and the input itself, all in the unit in which it acts: squares where it does by them.
-    pub(super) fn wanted(&self, given: f64, correction: f64) -> (f64, [f64; 2], f64) {
+    pub fn wanted(&self, given: f64, correction: f64) -> (f64, [f64; 2], f64) {
         let [low, high] = self.bounds;
         match self.is_squared {
             true => {
@@ -51,7 +51,8 @@ pub struct Point {
     pub state: Vec<f64>,
     /// Inputs of the motion in the interval: V, N, N mm.
     pub inputs: Vec<f64>,
-    /// K: by input, over the measured quantities, then the integrals, then, interval by interval of the delay, the corrections of the inputs.
+    /// K: by input, over the measured quantities, then lasting forces and the inputs against them, then the integrals, then, interval by interval
+    /// of the delay, the corrections of the inputs.
     pub gain: DMatrix<f64>,
 }
 
@@ -92,6 +93,16 @@ impl Law {
         self.observer.as_ref().map_or(own, |one| one.readings.len())
     }
 
+    /// Number of lasting forces that its observer finds.
+    pub fn forces(&self) -> usize {
+        self.observer.as_ref().map_or(0, Observer::forces)
+    }
+
+    /// Number of inputs that act against lasting forces: all of them, or none without forces.
+    pub fn targets(&self) -> usize {
+        if self.forces() > 0 { self.width() } else { 0 }
+    }
+
     /// Number of inputs.
     pub fn width(&self) -> usize {
         self.inputs.len()
@@ -109,8 +120,19 @@ impl Law {
         self.points.get(k).or(last).expect("a law has an interval")
     }
 
+    /// Writes the corrections of the inputs for a deviation, by the gain of a time in ms.
+    pub fn correct(&self, time: f64, deviation: &[f64], correction: &mut [f64]) {
+        let gain = &self.at(time).gain;
+        for (input, value) in correction.iter_mut().enumerate() {
+            let terms = deviation.iter().enumerate();
+            *value = -terms
+                .map(|(place, d)| gain[(input, place)] * d)
+                .sum::<f64>();
+        }
+    }
+
     /// The interval of a time in ms; a time at its end, up to rounding, belongs to the next.
-    pub(super) fn interval(&self, time: f64) -> usize {
+    pub fn interval(&self, time: f64) -> usize {
         (time / self.h + 1e-9).max(0.0) as usize
     }
 

@@ -5,7 +5,10 @@
 //! ```text
 //! x̂ = x̂⁻ + M (y − C x̂⁻),     x̂⁻₊ = A x̂ + B u.
 //! ```
+//!
+//! Lasting forces are entries of x behind the state.
 
+use crate::feedback::lasting::Lasting;
 use nalgebra::DMatrix;
 
 /// A quantity that an observer reads.
@@ -22,7 +25,7 @@ pub enum Reading {
 pub struct Filter {
     /// Readings of the motion at the start of the interval: rad, mm.
     pub readings: Vec<f64>,
-    /// A, over the measured quantities of the law.
+    /// A, over the measured quantities of the law, then the lasting forces.
     pub by_state: DMatrix<f64>,
     /// B, over the inputs, or their squares.
     pub by_inputs: DMatrix<f64>,
@@ -73,9 +76,18 @@ pub struct Observer {
     pub points: Vec<Filter>,
     /// That of the time after the end, where it is held.
     pub held: Option<Filter>,
+    /// State at the end of the motion as a deviation from the goal that is held behind it, and not quite reached; empty for none.
+    pub jump: Vec<f64>,
+    /// Lasting forces that it finds.
+    pub lasting: Option<Lasting>,
 }
 
 impl Observer {
+    /// Number of lasting forces.
+    pub fn forces(&self) -> usize {
+        self.lasting.as_ref().map_or(0, |lasting| lasting.on.len())
+    }
+
     /// The filter of an interval; the last one where the end is not held.
     pub(super) fn at(&self, interval: usize) -> &Filter {
         let last = self.held.as_ref().or(self.points.last());

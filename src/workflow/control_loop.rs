@@ -9,7 +9,7 @@ use crate::workflow::error::WorkflowError;
 use crate::workflow::receding::{Horizon, RecedingHorizon};
 use serde::Serialize;
 use std::cell::RefCell;
-use std::collections::BTreeMap;
+use std::collections::{BTreeMap, VecDeque};
 use std::sync::Arc;
 use std::time::Instant;
 
@@ -49,14 +49,18 @@ struct Planning<'a> {
     samples: usize,
     /// The longest time of a step with its preparation, and without, in s.
     longest: [f64; 2],
+    /// Inputs that wait, with the times in ms from which they act, and those that act; none before the first do.
+    waiting: VecDeque<(f64, Vec<f64>)>,
+    acting: Option<Vec<f64>>,
 }
 
 impl Planning<'_> {
-    /// The inputs of an interval with the state at its start; then the next step is prepared.
-    fn sample(&mut self, time: f64, measured: &[f64], inputs: &mut [f64]) {
+    /// The inputs for what was measured at a time, which act after a delay; then the next step is prepared.
+    fn sample(&mut self, time: f64, measured: &[f64], delay: f64) {
         let began = Instant::now();
         let answer = self.controller.step(time, Some(measured));
-        inputs.copy_from_slice(answer.inputs);
+        self.waiting
+            .push_back((time + delay, answer.inputs.to_vec()));
         *self.sources.entry(answer.source.word()).or_default() += 1;
         self.samples += 1;
         let answered = began.elapsed().as_secs_f64();
@@ -64,6 +68,15 @@ impl Planning<'_> {
         let [whole, step] = &mut self.longest;
         *whole = whole.max(began.elapsed().as_secs_f64());
         *step = step.max(answered);
+    }
+
+    /// The inputs that act from a time on: those of the motion before the first.
+    fn inputs(&mut self, from: f64, law: &Law, inputs: &mut [f64]) {
+        let now = from + 1e-9 * (1.0 + from.abs());
+        while self.waiting.front().is_some_and(|(acts, _)| *acts <= now) {
+            self.acting = self.waiting.pop_front().map(|(_, values)| values);
+        }
+        inputs.copy_from_slice(self.acting.as_ref().unwrap_or(&law.at(from).inputs));
     }
 }
 
@@ -158,6 +171,8 @@ impl<'a> Loop<'a> {
                         sources: BTreeMap::new(),
                         samples: 0,
                         longest: [0.0; 2],
+                        waiting: VecDeque::new(),
+                        acting: None,
                     })),
                     None => {
                         let FeedbackControl { sample, delay, .. } = **controller;
@@ -225,7 +240,9 @@ impl<'a> Loop<'a> {
         }
         match &mut state.controller {
             Acting::Law(controller) => controller.sample(time, &state.values),
-            Acting::Plan(controller) => controller.sample(time, &state.values, &mut state.inputs),
+            Acting::Plan(controller) => {
+                controller.sample(time, &state.values, self.task.delay);
+            }
         }
     }
 
@@ -298,8 +315,9 @@ impl Drive for Loop<'_> {
         let State {
             controller, inputs, ..
         } = &mut *self.state.borrow_mut();
-        if let Acting::Law(controller) = controller {
-            controller.inputs(from, time, inputs);
+        match controller {
+            Acting::Law(controller) => controller.inputs(from, time, inputs),
+            Acting::Plan(controller) => controller.inputs(from, self.law, inputs),
         }
         for (scalar, value) in self.scalars.iter().zip(inputs) {
             if let Some(scalar) = scalar {

@@ -4,19 +4,40 @@ use crate::common::counting::ASKED;
 use crate::common::receding;
 use crate::number;
 use nalgebra::DMatrix;
-use proboscis::control::problem::Regulator;
+use proboscis::control::problem::{Observation, Regulator};
 use proboscis::feedback::{Controller, Filter, Law, Observer, Reading};
 use proboscis::workflow::receding::{RecedingHorizon, Source};
 use std::sync::atomic::Ordering;
 
-/// Most allocations of a step of a receding horizon with its preparation, of states that are measured, missing and wrong.
+/// Most allocations of a step of a receding horizon with its preparation, of states that are measured, missing and wrong: of the whole state, and
+/// with a delay and an observer that finds lasting forces.
 pub(crate) fn allocations_of_a_controller() -> usize {
-    let task = Regulator {
+    let whole = Regulator {
         step: 5.0,
         ..Regulator::default()
     };
-    let horizon = receding::horizon(&receding::problem("pair.json", &[]), &task, 6);
+    let observed = Regulator {
+        delay: 20.0,
+        observer: Some(observation()),
+        ..whole.clone()
+    };
+    most_allocations(&whole, 2).max(most_allocations(&observed, 1))
+}
+
+fn observation() -> Observation {
+    Observation {
+        joints: vec![(0, 1e-3)],
+        markers: Vec::new(),
+        inputs: 0.05,
+        rates: 0.1,
+        lasting: Some(0.02),
+    }
+}
+
+fn most_allocations(task: &Regulator, readings: usize) -> usize {
+    let horizon = receding::horizon(&receding::problem("pair.json", &[]), task, 6);
     let law = horizon.law();
+    assert_eq!(law.readings(), readings);
     let mut controller = RecedingHorizon::new(&horizon);
     let states: Vec<Vec<f64>> = (0..80)
         .map(|k| {
@@ -33,9 +54,9 @@ pub(crate) fn allocations_of_a_controller() -> usize {
         let before = ASKED.load(Ordering::Relaxed);
         let measured = match k {
             30 => None,
-            31 | 60..70 => Some(&[10.0, 0.0][..]),
-            40 => Some(&[f64::NAN; 2][..]),
-            _ => Some(&state[..]),
+            31 | 60..70 => Some(&[10.0, 0.0][..readings]),
+            40 => Some(&[f64::NAN; 2][..readings]),
+            _ => Some(&state[..readings]),
         };
         sources.push(controller.step(law.h * k as f64, measured).source);
         controller.prepare();
@@ -75,8 +96,15 @@ pub(crate) fn allocations_of_a_law() -> usize {
         readings: vec![Reading::State(0)],
         points: vec![filter],
         held: None,
+        jump: Vec::new(),
+        lasting: None,
     });
-    let laws = [(horizon.law(), 2), (&observed, 1)];
+    let lasting = Regulator {
+        observer: Some(observation()),
+        ..task
+    };
+    let other = receding::horizon(&receding::problem("pair.json", &[]), &lasting, 6);
+    let laws = [(horizon.law(), 2), (&observed, 1), (other.law(), 1)];
     let of = |(law, readings): (&Law, usize)| {
         let mut controller = Controller::new(law, law.h, 2.0 * law.h);
         let mut inputs = [0.0; 2];

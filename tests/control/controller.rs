@@ -133,6 +133,8 @@ fn an_observer_finds_the_state_from_one_of_its_parts() {
         readings: vec![Reading::State(0)],
         points: vec![filter.clone()],
         held: Some(filter),
+        jump: Vec::new(),
+        lasting: None,
     };
     let k = DMatrix::from_row_slice(1, 2, &[0.9, 1.1]);
     let law = law(k.clone(), 0, [-0.6, 0.6], Some(observer));

@@ -24,6 +24,7 @@ mod held_ends;
 mod identified;
 mod interface;
 mod interface_measured;
+mod lasting;
 mod limits;
 mod loads;
 mod measured;

@@ -2,7 +2,7 @@
 
 use crate::commands::summary;
 use crate::feedback::number;
-use crate::runs::{refused, run, workshop};
+use crate::runs::{read, refused, run, workshop};
 
 const PROBLEM: &str = "problems/pair_receding.json";
 
@@ -35,6 +35,52 @@ fn a_stiffer_pair_is_planned_anew() {
     }
 }
 
+/// With an observer of the tip, a delay and lasting forces it ends at the goal.
+#[test]
+fn an_observed_pair_is_planned_over_a_delay() {
+    let folder = workshop();
+    let here = folder.path();
+    let mut problem = read(here.join("problems/pair.json"));
+    problem["feedback"] = serde_json::json!({
+        "delay": "15 ms",
+        "observer": { "markers": { "tip": "0.1 mm" }, "lasting": 0.02 }
+    });
+    std::fs::write(here.join("problems/observed.json"), problem.to_string()).unwrap();
+    let stiffer = "scene.materials.silicone.shear_modulus=\"110 kPa\"";
+    let observed = "simulate.controller.horizon.problem=\"observed.json\"";
+    let tip = |noise: &str| {
+        let noise = format!("simulate.controller.noise={noise}");
+        let arguments = [
+            "simulate",
+            PROBLEM,
+            "-o",
+            "planned",
+            "--no-report",
+            "--set",
+            stiffer,
+            "--set",
+            observed,
+            "--set",
+            &noise,
+            "--set",
+            "simulate.duration=\"1 s\"",
+        ];
+        let (status, out, err) = run(here, &arguments);
+        assert_eq!(status, 0, "{out}{err}");
+        let closed = &summary(here, "planned")["closed_loop"];
+        assert_eq!(
+            closed["plans"]["sources"],
+            serde_json::json!({ "plan": 101 })
+        );
+        let tip = &closed["markers"]["tip"];
+        ["feedback", "open_loop"].map(|key| number(&tip[key]["last"]))
+    };
+    let [with, without] = tip("{}");
+    assert!(without > 5e-4 && with < 1e-7, "{with} {without}");
+    let [noisy, _] = tip("{\"length\":\"0.05 mm\",\"seed\":3}");
+    assert!(with < noisy && noisy < 0.3 * without, "{noisy} {without}");
+}
+
 #[test]
 fn wrong_horizons_are_refused() {
     let folder = workshop();
@@ -46,7 +92,10 @@ fn wrong_horizons_are_refused() {
     refused("={}", &["controller", "neither", "one of them"]);
     refused(".feedback=\"feedback/pair.json\"", &["both", "one of them"]);
     refused(".sample=\"10 ms\"", &["controller.sample", "none beside"]);
-    refused(".delay=\"10 ms\"", &["controller.delay", "none beside"]);
+    refused(
+        ".delay=\"1.5 ms\"",
+        &["controller.delay", "multiple of the step"],
+    );
     refused(".horizon.intervals=0", &["horizon.intervals", "1 interval"]);
     refused(".horizon.intervals=20000", &["horizon.intervals", "10000"]);
     let problem = |name: &str| format!(".horizon.problem=\"{name}\"");
@@ -61,7 +110,7 @@ fn wrong_horizons_are_refused() {
     );
     refused(
         &problem("pair_feedback.json"),
-        &["controller.horizon", "integral"],
+        &["controller.horizon", "integral", "lasting"],
     );
     refused(&problem("elephant_trunk.json"), &["multiples of the step"]);
     let other = "={\"horizon\":{\"problem\":\"elephant_trunk_effort.json\",\"intervals\":2}}";

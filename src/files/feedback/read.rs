@@ -1,9 +1,11 @@
 //! Reader of `feedback.json`, for a system with joints and sources of the same names.
 
-use crate::feedback::{Filter, Integral, Law, LawInput, Measured, Observer, Point, Reading};
+use crate::feedback::{
+    Filter, Forced, Integral, Lasting, Law, LawInput, Measured, Observer, Point, Reading,
+};
 use crate::files::feedback::record::{
-    FilterRecord, InputRecord, LawRecord, MeasuredRecord, ObserverRecord, PointRecord,
-    ReadingRecord, factor_of, integrated, unit_of, unit_of_input,
+    FilterRecord, InputRecord, LastingRecord, LawRecord, MeasuredRecord, ObserverRecord,
+    PointRecord, ReadingRecord, factor_of, integrated, unit_of, unit_of_force, unit_of_input,
 };
 use crate::files::json::document::Document;
 use crate::files::json::error::SceneError;
@@ -57,7 +59,8 @@ pub(crate) fn read_law(path: &Path, system: &System) -> Result<Law, SceneError> 
     let held = held.map(|one| point(one, &scope.key("held"))).transpose()?;
     let markers = markers(&record, points.len() + 1, system);
     let of_observer = record.observer.as_ref().map(|one| {
-        let factors = [&read[..measured.len()], &acting];
+        let forces = one.lasting.as_ref().map_or(0, |one| one.forces.len());
+        let factors = [&read[..measured.len() + forces], &acting];
         let place = scope.key("observer");
         observer(one, (&measured, points.len()), factors, &place)
     });
@@ -98,6 +101,29 @@ fn factors(
         }
     }
     let mut read: Vec<f64> = measured.iter().map(|one| unit_of(one).1).collect();
+    let acting = inputs.iter().zip(of_inputs);
+    let acting = acting.map(|(input, unit)| match input.is_squared {
+        true => unit * unit,
+        false => *unit,
+    });
+    let acting: Vec<f64> = acting.collect();
+    let lasting = record.observer.as_ref();
+    if let Some(lasting) = lasting.and_then(|one| one.lasting.as_ref()) {
+        let place = scope.key("observer").key("lasting").key("forces");
+        if lasting.forces.is_empty() {
+            return Err(place.wrong("none", "one force or more"));
+        }
+        for (i, force) in lasting.forces.iter().enumerate() {
+            let mut kinds = [false, true].map(unit_of_force).into_iter();
+            let own = kinds.find(|(unit, _)| *unit == force.unit);
+            let wrong = || {
+                let place = place.index(i).key("unit");
+                place.wrong(format!("{:?}", force.unit), "\"N m\" or \"N\"")
+            };
+            read.push(own.ok_or_else(wrong)?.1);
+        }
+        read.extend(&acting);
+    }
     read.extend(
         record
             .integrals
@@ -105,12 +131,6 @@ fn factors(
             .map(|&of| integrated(read[of]))
             .collect::<Vec<_>>(),
     );
-    let acting = inputs.iter().zip(of_inputs);
-    let acting = acting.map(|(input, unit)| match input.is_squared {
-        true => unit * unit,
-        false => *unit,
-    });
-    let acting: Vec<f64> = acting.collect();
     if record.delay_intervals > MOST_DELAYED {
         let found = record.delay_intervals.to_string();
         let expected = format!("no more than {MOST_DELAYED}");
@@ -269,7 +289,24 @@ fn observer(
     let points = record.intervals.iter().enumerate();
     let points = points.map(|(k, one)| filter(one, &of_intervals.index(k)));
     let held = record.held.as_ref();
+    let lasting = record.lasting.as_ref().map(|one: &LastingRecord| {
+        let on = one.forces.iter().map(|force| Forced {
+            name: force.on.clone(),
+            is_length: force.unit == unit_of_force(true).0,
+        });
+        let place = place.key("lasting").key("by_inputs");
+        Ok::<Lasting, SceneError>(Lasting {
+            on: on.collect(),
+            by_inputs: matrix(&one.by_inputs, [&state[measured.len()..], acting], &place)?,
+        })
+    });
+    let jump = match record.jump.is_empty() {
+        true => Vec::new(),
+        false => list(&record.jump, &state[..measured.len()], &place.key("jump"))?,
+    };
     Ok(Observer {
+        jump,
+        lasting: lasting.transpose()?,
         points: points.collect::<Result<_, _>>()?,
         held: held
             .map(|one| filter(one, &place.key("held")))

@@ -40,6 +40,28 @@ pub(super) struct ObserverRecord {
     pub(super) intervals: Vec<FilterRecord>,
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub(super) held: Option<FilterRecord>,
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub(super) lasting: Option<LastingRecord>,
+    /// State at the end of the motion as a deviation from the goal that is held.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub(super) jump: Vec<f64>,
+}
+
+/// Lasting forces that the filter finds, and what inputs change of them at the goal.
+#[derive(Debug, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub(super) struct LastingRecord {
+    pub(super) forces: Vec<ForceRecord>,
+    /// A row for each force, over the inputs or their squares.
+    pub(super) by_inputs: Vec<Vec<f64>>,
+}
+
+/// A lasting force on a coordinate: N m, N.
+#[derive(Debug, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub(super) struct ForceRecord {
+    pub(super) on: String,
+    pub(super) unit: String,
 }
 
 /// A reading of an observer.
@@ -52,7 +74,7 @@ pub(super) enum ReadingRecord {
     Marker(String, usize),
 }
 
-/// The filter in an interval: readings, and the matrices A, B, C and M row by row.
+/// The filter in an interval: readings, and the matrices A, B, C and M row by row, over what is measured and the lasting forces.
 #[derive(Debug, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub(super) struct FilterRecord {
@@ -90,7 +112,8 @@ pub(super) struct InputRecord {
 pub(super) struct PointRecord {
     pub(super) state: Vec<f64>,
     pub(super) inputs: Vec<f64>,
-    /// A row for each input, over what is measured, then the integrals, then the corrections of the inputs in each interval of the delay.
+    /// A row for each input, over what is measured, then lasting forces and the changes of inputs against them, then the integrals, then the
+    /// corrections of the inputs in each interval of the delay.
     pub(super) gain: Vec<Vec<f64>>,
 }
 
@@ -101,6 +124,14 @@ pub(crate) fn unit_of(measured: &Measured) -> (&'static str, f64) {
         (false, true) => ("rad/s", 1e3),
         (true, false) => ("m", 1e-3),
         (true, true) => ("m/s", 1.0),
+    }
+}
+
+/// Unit of a lasting force, and its factor from the units inside.
+pub(super) fn unit_of_force(is_length: bool) -> (&'static str, f64) {
+    match is_length {
+        true => ("N", 1.0),
+        false => ("N m", 1e-3),
     }
 }
 
@@ -116,7 +147,7 @@ pub(super) fn unit_of_input(source: &Source) -> (&'static str, f64) {
 }
 
 /// Factor of a reading from the units inside.
-pub(super) fn factor_of(reading: &Reading, measured: &[Measured]) -> f64 {
+pub(crate) fn factor_of(reading: &Reading, measured: &[Measured]) -> f64 {
     match reading {
         Reading::State(place) => unit_of(&measured[*place]).1,
         Reading::Marker(..) => 1e-3,

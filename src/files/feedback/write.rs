@@ -1,9 +1,10 @@
 //! Writer of `feedback.json` and of the table of gains.
 
-use crate::feedback::{Filter, Law, Point, Reading};
+use crate::feedback::{Filter, Forced, Law, Point, Reading};
 use crate::files::feedback::record::{
-    FilterRecord, InputRecord, LawRecord, MeasuredRecord, ObserverRecord, PointRecord,
-    ReadingRecord, factor_of, integrated, unit_of, unit_of_input,
+    FilterRecord, ForceRecord, InputRecord, LastingRecord, LawRecord, MeasuredRecord,
+    ObserverRecord, PointRecord, ReadingRecord, factor_of, integrated, unit_of, unit_of_force,
+    unit_of_input,
 };
 use crate::files::lay_out;
 use crate::model::System;
@@ -31,8 +32,15 @@ impl Factors {
             })
             .collect();
         let corrections = (0..law.delay).flat_map(|_| acting.iter().copied());
+        let forces = forces(law).map(|force| unit_of_force(force.is_length).1);
+        let against = acting.iter().copied().take(law.targets());
         Self {
-            read: measured.chain(integrals).chain(corrections).collect(),
+            read: measured
+                .chain(forces)
+                .chain(against)
+                .chain(integrals)
+                .chain(corrections)
+                .collect(),
             acting,
             inputs,
         }
@@ -44,9 +52,8 @@ impl Factors {
 
     fn filter(&self, filter: &Filter, outputs: &[f64]) -> FilterRecord {
         let state = &self.read[..filter.by_state.nrows()];
-        let readings = filter.readings.iter().zip(outputs);
         FilterRecord {
-            readings: readings.map(|(value, factor)| value * factor).collect(),
+            readings: scaled(&filter.readings, outputs),
             by_state: matrix(&filter.by_state, [state, state]),
             by_inputs: matrix(&filter.by_inputs, [state, &self.acting]),
             output: matrix(&filter.output, [outputs, state]),
@@ -68,23 +75,45 @@ impl Factors {
             readings: readings.map(record).collect(),
             intervals: observer.points.iter().map(filter).collect(),
             held: observer.held.as_ref().map(filter),
+            jump: scaled(&observer.jump, &self.read),
+            lasting: observer.lasting.as_ref().map(|lasting| {
+                let size = law.measured.len();
+                let rows = &self.read[size..size + lasting.on.len()];
+                LastingRecord {
+                    forces: lasting
+                        .on
+                        .iter()
+                        .map(|force| ForceRecord {
+                            on: force.name.clone(),
+                            unit: unit_of_force(force.is_length).0.to_owned(),
+                        })
+                        .collect(),
+                    by_inputs: matrix(&lasting.by_inputs, [rows, &self.acting]),
+                }
+            }),
         })
     }
 
     fn point(&self, point: &Point) -> PointRecord {
-        let scaled = |values: &[f64], factors: &[f64]| {
-            values
-                .iter()
-                .zip(factors)
-                .map(|(value, factor)| value * factor)
-                .collect()
-        };
         PointRecord {
             state: scaled(&point.state, &self.read),
             inputs: scaled(&point.inputs, &self.inputs),
             gain: self.gain(point),
         }
     }
+}
+
+/// Numbers times their factors.
+fn scaled(values: &[f64], factors: &[f64]) -> Vec<f64> {
+    let all = values.iter().zip(factors);
+    all.map(|(value, factor)| value * factor).collect()
+}
+
+/// Lasting forces of a law.
+fn forces(law: &Law) -> impl Iterator<Item = &Forced> {
+    let observer = law.observer.as_ref();
+    let lasting = observer.and_then(|one| one.lasting.as_ref());
+    lasting.into_iter().flat_map(|lasting| &lasting.on)
 }
 
 /// A matrix row by row, with the factors of what it gives and of what it is multiplied by.
@@ -166,28 +195,38 @@ pub fn law_csv(law: &Law, system: &System, head: &str) -> String {
         let (name, unit) = &names[of];
         (format!("integral of {name}"), format!("{unit} s"))
     });
-    let read: Vec<(String, String)> = names
+    let forces = forces(law).map(|force| {
+        let unit = unit_of_force(force.is_length).0;
+        (format!("lasting force on {}", force.name), unit.to_owned())
+    });
+    let acting: Vec<(&str, &str, &str)> = law
+        .inputs
+        .iter()
+        .zip(units(law, system))
+        .map(|(input, (unit, _))| (&*input.name, unit, if input.is_squared { "^2" } else { "" }))
+        .collect();
+    let against = acting.iter().take(law.targets());
+    let against = against.map(|(name, unit, square)| {
+        let name = format!("{name}{square} against lasting forces");
+        (name, format!("{unit}{square}"))
+    });
+    let mut read: Vec<(String, String)> = names
         .iter()
         .map(|(name, unit)| (name.clone(), (*unit).to_owned()))
+        .chain(forces)
+        .chain(against)
         .chain(integrals)
         .collect();
-    let mut read = read;
     for k in 0..law.delay {
-        for (input, (unit, _)) in law.inputs.iter().zip(units(law, system)) {
-            let square = if input.is_squared { "^2" } else { "" };
-            let name = format!("correction of {}{square} in interval {}", input.name, k + 1);
+        for (name, unit, square) in &acting {
+            let name = format!("correction of {name}{square} in interval {}", k + 1);
             read.push((name, format!("{unit}{square}")));
         }
     }
-    for (input, (unit, _)) in law.inputs.iter().zip(units(law, system)) {
-        let square = if input.is_squared { "^2" } else { "" };
+    for (input, unit, square) in &acting {
         for (name, of) in &read {
-            write!(
-                out,
-                ",{}{square} by {name} [{unit}{square}/({of})]",
-                input.name
-            )
-            .expect("text takes everything");
+            write!(out, ",{input}{square} by {name} [{unit}{square}/({of})]")
+                .expect("text takes everything");
         }
     }
     let points = law.points.iter().enumerate();

@@ -27,6 +27,7 @@ pub(crate) fn add_plan(
         .simulate
         .as_ref()
         .and_then(|one| one.controller.as_ref());
+    let written_delay = written.and_then(|one| one.delay.as_ref());
     let written = written.and_then(|one| one.horizon.as_ref());
     let (Some(horizon), Task::Simulate(simulation)) = (written, task) else {
         return Ok(());
@@ -77,11 +78,15 @@ pub(crate) fn add_plan(
         h: sample,
         ..(*controller.law).clone()
     });
+    let regulator = regulator.unwrap_or_default();
     controller.sample = sample;
+    if written_delay.is_none() {
+        controller.delay = regulator.delayed(sample) as f64 * sample;
+    }
     controller.ahead = Some(Box::new(Ahead {
         system,
         control: *control,
-        regulator: regulator.unwrap_or_default(),
+        regulator,
         intervals: horizon.intervals,
     }));
     Ok(())

@@ -69,6 +69,13 @@ pub(crate) fn regulator(
             .map(|spec| observation(spec, system, &scope.key("observer")))
             .transpose()?,
     };
+    let lasting = out.observer.as_ref().and_then(|one| one.lasting);
+    if out.integral > 0.0 && lasting.is_some() {
+        let expected = "no integrals beside lasting forces of the observer, which do their work";
+        return Err(place
+            .key("integral")
+            .wrong(out.integral.to_string(), expected));
+    }
     let costs = [out.coordinates, out.rates, out.integral];
     if costs.iter().all(|cost| *cost == 0.0) && out.markers.is_empty() {
         return Err(place.wrong("no positive weight of a deviation", "one or more"));
@@ -111,6 +118,14 @@ fn observation(
         markers: markers.collect::<Result<_, SceneError>>()?,
         inputs: disturbance("voltages", spec.voltages, inputs)?,
         rates: disturbance("rates", spec.rates, rates)?,
+        lasting: match spec.lasting {
+            Some(part) if part > 0.0 && part.is_finite() => Some(part),
+            Some(part) => {
+                let expected = "a positive number, or none where no force lasts";
+                return Err(scope.key("lasting").wrong(part.to_string(), expected));
+            }
+            None => None,
+        },
     };
     if out.joints.is_empty() && out.markers.is_empty() {
         return Err(scope.wrong(
@@ -141,7 +156,7 @@ pub(crate) fn controller(
     };
     let path = match (&spec.feedback, &spec.horizon) {
         (Some(path), None) => path,
-        (None, Some(horizon)) => return planning((spec, horizon), scope),
+        (None, Some(horizon)) => return planning((spec, horizon), step, scope),
         (both, _) => {
             let found = if both.is_some() { "both" } else { "neither" };
             let found = format!("{found} of \"feedback\" and \"horizon\"");
@@ -161,11 +176,8 @@ pub(crate) fn controller(
             format!("{h} ms, the interval of the observer, in steps of which it is a multiple");
         return Err(scope.key("sample").wrong(format!("{sample} ms"), expected));
     }
-    let delay = match &spec.delay {
-        Some(delay) if delay.value() != 0.0 => multiple(delay, step, &scope.key("delay"))?,
-        Some(_) => 0.0,
-        None => (law.delay as f64 * law.h / step - 1e-6).ceil() * step,
-    };
+    let predicted = (law.delay as f64 * law.h / step - 1e-6).ceil() * step;
+    let delay = delay(spec, step, scope)?.unwrap_or(predicted);
     Ok(FeedbackControl {
         law: Arc::new(law),
         path,
@@ -174,6 +186,14 @@ pub(crate) fn controller(
         noise: noise(&spec.noise, &scope.key("noise"))?,
         ahead: None,
     })
+}
+
+/// The delay of a controller as it is written, a multiple of the step.
+fn delay(spec: &ControllerSpec, step: f64, scope: &Scope<'_>) -> Result<Option<f64>, SceneError> {
+    match &spec.delay {
+        Some(delay) if delay.value() != 0.0 => multiple(delay, step, &scope.key("delay")).map(Some),
+        delay => Ok(delay.as_ref().map(|_| 0.0)),
+    }
 }
 
 fn noise(of: &NoiseSpec, place: &Scope<'_>) -> Result<Noise, SceneError> {
@@ -190,15 +210,12 @@ fn noise(of: &NoiseSpec, place: &Scope<'_>) -> Result<Noise, SceneError> {
 /// A controller that plans anew in each interval of a problem, which is read later.
 fn planning(
     (spec, horizon): (&ControllerSpec, &HorizonSpec),
+    step: f64,
     scope: &Scope<'_>,
 ) -> Result<FeedbackControl, SceneError> {
-    let (sample, delay) = (spec.sample.is_some(), spec.delay.is_some());
-    for (key, is_written) in [("sample", sample), ("delay", delay)] {
-        if is_written {
-            let expected =
-                "none beside \"horizon\", which plans anew in each interval of its problem";
-            return Err(scope.key(key).wrong(format!("a {key:?}"), expected));
-        }
+    if let Some(sample) = &spec.sample {
+        let expected = "none beside \"horizon\", which plans anew in each interval of its problem";
+        return Err(scope.key("sample").wrong(sample.to_string(), expected));
     }
     Ok(FeedbackControl {
         law: Arc::new(Law {
@@ -217,7 +234,7 @@ fn planning(
             .key("problem")
             .file_or_result(&horizon.problem, CONTROL_FILE)?,
         sample: 0.0,
-        delay: 0.0,
+        delay: delay(spec, step, scope)?.unwrap_or(0.0),
         noise: noise(&spec.noise, &scope.key("noise"))?,
         ahead: None,
     })

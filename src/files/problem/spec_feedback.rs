@@ -45,6 +45,10 @@ pub struct ObserverSpec {
     /// Of the rates of all coordinates, in 100 degrees/s or 100 mm/s, 0.1 where not written: pushes.
     #[serde(default)]
     pub rates: Option<f64>,
+    /// Of the change in each interval of a lasting force on each joint, as a part of the greatest force of an input on it. These forces are then found
+    /// beside the state, and inputs hold the goal against them; without it none are. As many independent measurements are needed as there are joints.
+    #[serde(default)]
+    pub lasting: Option<f64>,
 }
 
 /// Factors of sums of squares of deviations.
@@ -77,13 +81,13 @@ pub struct ControllerSpec {
     /// in its problem; the robot here has joints of the same names, and may be another one otherwise.
     #[serde(default)]
     pub feedback: Option<String>,
-    /// Plans anew in each interval, without `sample` and `delay`.
+    /// Plans anew in each interval, without `sample`.
     #[serde(default)]
     pub horizon: Option<HorizonSpec>,
     /// Time between samples, a multiple of the step, SI unit s; the interval of the gains, for which they are, where not written.
     #[serde(default)]
     pub sample: Option<Quantity<Time>>,
-    /// Time from a sample to its effect, a multiple of the step, SI unit s; that which the gains predict where not written.
+    /// Time from a sample to its effect, a multiple of the step, SI unit s; that which the gains or plans predict where not written.
     #[serde(default)]
     pub delay: Option<Quantity<Time>>,
     /// Noise of what is measured.

@@ -12,16 +12,18 @@
 //! the same again and again                       → the law of the regulator      Source::Regulator, and a new plan
 //! ```
 //!
-//! A step does a bounded amount of work and allocates nothing.
+//! A step does a bounded amount of work and allocates nothing. `workflow/receding/state.rs` finds the state from readings, and predicts it over a delay:
+//! the plan begins where its inputs act. Lasting forces enter the plan with its preparation.
 
 use crate::coordinates::Configuration;
-use crate::feedback::Controller;
 use crate::math::Vector;
 use crate::nlp::Nlp;
 use crate::workflow::receding::horizon::Horizon;
 use crate::workflow::receding::iteration::{Iteration, Residual};
 use crate::workflow::receding::program::Program;
 use crate::workflow::receding::shift::Shift;
+use crate::workflow::receding::source::Source;
+use crate::workflow::receding::state::Predicted;
 
 /// The barrier parameter, as a part of the weight of inputs.
 const BARRIER: f64 = 1e-7;
@@ -34,43 +36,6 @@ const FAR: f64 = 1.0;
 /// Iterations of the first plan, and the residual at which they end.
 const FIRST: usize = 100;
 const SMALL: f64 = 1e-9;
-
-/// Origin of the inputs of a step.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Source {
-    /// The plan, with what was measured.
-    Plan,
-    /// The plan as it was: nothing was measured in time.
-    Late,
-    /// The plan as it was: what was measured is no state of the system.
-    Unusable,
-    /// The plan as it was: its iteration failed.
-    Kept,
-    /// The law of the regulator: the plan has failed, and begins anew.
-    Regulator,
-}
-
-impl Source {
-    /// All of them.
-    pub const ALL: [Self; 5] = [
-        Self::Plan,
-        Self::Late,
-        Self::Unusable,
-        Self::Kept,
-        Self::Regulator,
-    ];
-
-    /// Its name in a word.
-    pub fn word(self) -> &'static str {
-        match self {
-            Self::Plan => "plan",
-            Self::Late => "late",
-            Self::Unusable => "unusable",
-            Self::Kept => "kept",
-            Self::Regulator => "regulator",
-        }
-    }
-}
 
 /// Inputs of an interval.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -87,7 +52,7 @@ pub struct RecedingHorizon<'h> {
     of: &'h Horizon,
     iteration: Iteration<Program<'h>>,
     shift: Shift,
-    regulator: Controller<'h>,
+    state: Predicted<'h>,
     /// True of the inputs that act by their squares.
     is_squared: Vec<bool>,
     /// Interval of the plan.
@@ -133,7 +98,7 @@ impl<'h> RecedingHorizon<'h> {
         let mut out = Self {
             iteration: Iteration::new(program, &x, &is_held, BARRIER * of.weight()),
             shift,
-            regulator: Controller::new(law, law.h, 0.0),
+            state: Predicted::new(law, of.delay()),
             is_squared: of.squared(),
             interval: 0,
             prepared: None,
@@ -197,6 +162,8 @@ impl<'h> RecedingHorizon<'h> {
             self.go_on();
         }
         if self.prepared.is_none() {
+            let (forces, against) = self.state.lasting();
+            self.iteration.program.load(forces, against);
             self.predict();
             self.factor();
         }
@@ -231,10 +198,12 @@ impl<'h> RecedingHorizon<'h> {
         self.prepared = Some(has_factors && is_near);
     }
 
-    /// The inputs that act from a time in ms on, with the state measured there, in the order of the law: rad, mm, rad/ms, mm/ms; none where it did
-    /// not come in time. Called again within an interval, it gives the same inputs.
+    /// The inputs that act from a time in ms on, or the delay of the feedback later, with what is measured there, in the order of the law: the state
+    /// in rad, mm, rad/ms, mm/ms, or the readings of its observer; none where it did not come in time. Called again within an interval, it gives the
+    /// same inputs.
     pub fn step(&mut self, time: f64, measured: Option<&[f64]>) -> Answer<'_> {
-        let interval = (time / self.of.law().h + 1e-6).max(0.0) as usize;
+        let sample = (time / self.of.law().h + 1e-6).max(0.0) as usize;
+        let interval = sample + self.of.delay();
         match self.answered {
             Some((last, source)) if interval <= last => {
                 return Answer {
@@ -251,7 +220,11 @@ impl<'h> RecedingHorizon<'h> {
             self.go_on();
         }
         self.prepare();
-        let source = self.decide(time, measured);
+        let source = match self.state.find(sample, measured) {
+            Ok(()) => self.decide(),
+            Err(source) => self.keep(source),
+        };
+        self.state.sent(interval, &self.inputs);
         self.answered = Some((interval, source));
         Answer {
             source,
@@ -259,16 +232,11 @@ impl<'h> RecedingHorizon<'h> {
         }
     }
 
-    fn decide(&mut self, time: f64, measured: Option<&[f64]>) -> Source {
-        let Some(measured) = measured else {
-            return self.keep(Source::Late);
-        };
-        if !measured.iter().all(|value| value.is_finite()) {
-            return self.keep(Source::Unusable);
-        }
-        let is_far = self.take(measured);
+    fn decide(&mut self) -> Source {
+        let is_far = self.take();
         self.implausible = if is_far { self.implausible + 1 } else { 0 };
         if is_far && self.implausible <= PATIENCE {
+            self.state.distrust();
             return self.keep(Source::Unusable);
         }
         if self.prepared == Some(true) && !is_far {
@@ -283,8 +251,7 @@ impl<'h> RecedingHorizon<'h> {
         if self.failures <= PATIENCE && !is_far {
             return self.keep(Source::Kept);
         }
-        self.regulator.sample(time, measured);
-        self.regulator.inputs(time, time, &mut self.inputs);
+        self.state.regulate(self.interval, &mut self.inputs);
         self.follow(self.interval);
         Source::Regulator
     }
@@ -307,10 +274,10 @@ impl<'h> RecedingHorizon<'h> {
         }
     }
 
-    /// Enters a state as changes of that of the plan; true if it is too far from it.
-    fn take(&mut self, measured: &[f64]) -> bool {
+    /// Enters the state as changes of that of the plan; true if it is too far from it.
+    fn take(&mut self) -> bool {
         let (coordinates, model) = (self.of.coordinates(), self.of.model());
-        let (places, rates) = measured.split_at(coordinates.len());
+        let (places, rates) = self.state.values().split_at(coordinates.len());
         let Iteration { program, x, .. } = &self.iteration;
         let layout = &program.layout;
         self.rates.fill(0.0);

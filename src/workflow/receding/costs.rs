@@ -9,7 +9,7 @@ impl Program<'_> {
         let point = self.reference.at(self.begin + k);
         for c in 0..n {
             let (column, scale) = self.layout.coordinates[k * n + c];
-            self.deviation[c] = scale * x[column] - point.state[c];
+            self.deviation[c] = scale * x[column] - point.state[c] - self.lasting.state[c];
         }
     }
 
@@ -20,7 +20,8 @@ impl Program<'_> {
         let point = self.reference.at(self.begin + last);
         for (place, &(_, scale)) in self.layout.momenta[1].iter().enumerate() {
             let momentum = x[self.columns + place] / scale;
-            self.deviation[n + place] = momentum - point.momentum[place];
+            let rest = self.lasting.state[n + place];
+            self.deviation[n + place] = momentum - point.momentum[place] - rest;
         }
     }
 
@@ -57,11 +58,14 @@ impl Program<'_> {
         }
         self.deviate_at_end(x);
         sum += square(&self.deviation, &self.reference.at(self.begin + last).end);
+        let slope = self.deviation.iter().zip(&self.lasting.slope);
+        sum += 2.0 * slope.map(|(d, slope)| d * slope).sum::<f64>();
         for (k, inputs) in self.layout.driven.iter().enumerate() {
             let given = &self.reference.at(self.begin + k).inputs;
-            for ((input, given), cost) in inputs.iter().zip(given).zip(&self.reference.inputs) {
+            for (i, (input, given)) in inputs.iter().zip(given).enumerate() {
                 let [value, ..] = input.reading(x[input.column]);
-                sum += cost * (value - given).powi(2);
+                let off = value - given - self.lasting.inputs[i];
+                sum += self.reference.inputs[i] * off.powi(2);
             }
         }
         0.5 * sum
@@ -89,13 +93,15 @@ impl Program<'_> {
         for a in 0..self.deviation.len() {
             let (column, scale) = self.end_column(a);
             let all = self.deviation.iter().enumerate();
-            grad[column] += scale * all.map(|(b, d)| end[(a, b)] * d).sum::<f64>();
+            let slope = all.map(|(b, d)| end[(a, b)] * d).sum::<f64>();
+            grad[column] += scale * (slope + self.lasting.slope[a]);
         }
         for (k, inputs) in self.layout.driven.iter().enumerate() {
             let given = &self.reference.at(self.begin + k).inputs;
-            for ((input, given), cost) in inputs.iter().zip(given).zip(&self.reference.inputs) {
+            for (i, (input, given)) in inputs.iter().zip(given).enumerate() {
                 let [value, slope, _] = input.reading(x[input.column]);
-                grad[input.column] += cost * (value - given) * slope;
+                let off = value - given - self.lasting.inputs[i];
+                grad[input.column] += self.reference.inputs[i] * off * slope;
             }
         }
     }
@@ -131,9 +137,10 @@ impl Program<'_> {
         }
         for (k, inputs) in self.layout.driven.iter().enumerate() {
             let given = &self.reference.at(self.begin + k).inputs;
-            for ((input, given), cost) in inputs.iter().zip(given).zip(&self.reference.inputs) {
+            for (i, (input, given)) in inputs.iter().zip(given).enumerate() {
                 let [value, slope, curvature] = input.reading(x[input.column]);
-                put(cost * (slope * slope + (value - given) * curvature));
+                let off = value - given - self.lasting.inputs[i];
+                put(self.reference.inputs[i] * (slope * slope + off * curvature));
             }
         }
     }

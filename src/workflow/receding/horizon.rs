@@ -18,7 +18,7 @@ use crate::workflow::optimise::optimise;
 use crate::workflow::optimum::SolveLimits;
 use crate::workflow::receding::program::Program;
 use crate::workflow::receding::reference::Reference;
-use crate::workflow::regulator::{NoRegulator, regulator};
+use crate::workflow::regulator::{NoRegulator, predicting};
 use std::fmt;
 use std::ops::ControlFlow;
 
@@ -50,6 +50,10 @@ impl fmt::Display for NoHorizon {
 
 impl std::error::Error for NoHorizon {}
 
+/// Words on integrals.
+const INTEGRAL: &str =
+    "an \"integral\" of feedback (an observer with \"lasting\" forces does its work)";
+
 /// A motion to follow, with all that its controllers share.
 #[derive(Debug)]
 pub struct Horizon {
@@ -69,11 +73,15 @@ pub struct Horizon {
     rates: Vec<f64>,
     /// Weight of inputs as parts of their ranges.
     of_inputs: f64,
+    /// Intervals from a measurement to its effect.
+    delay: usize,
+    /// Coordinates on which lasting forces act.
+    forced: Vec<usize>,
 }
 
 impl Horizon {
     /// Of an optimal motion of a problem with a momentum at its start, whose goal is held by `rest` voltages, by source: the horizon has a number of
-    /// intervals, each as long as those of the motion. Delays, integrals and observers are not offered.
+    /// intervals, each as long as those of the motion. Integrals are not offered: lasting forces of an observer do their work.
     ///
     /// # Errors
     /// There is none.
@@ -88,11 +96,10 @@ impl Horizon {
     ) -> Result<Self, NoHorizon> {
         assert!(intervals > 0, "an interval or more");
         offered(model, control)?;
-        if task.delay > 0.0 || task.integral > 0.0 || task.observer.is_some() {
-            let what = "a delay, an integral or an observer of feedback";
-            return Err(NoHorizon::NotOffered(what));
+        if task.integral > 0.0 {
+            return Err(NoHorizon::NotOffered(INTEGRAL));
         }
-        let found = regulator((model, control, task), discrete, momentum, rest);
+        let found = predicting((model, control, task), discrete, momentum, rest);
         let found = found.map_err(NoHorizon::Regulator)?;
         let not_held = || {
             let reason = found.not_held.clone();
@@ -130,7 +137,10 @@ impl Horizon {
         drop(linearisation);
         let momenta = |state: &[f64]| momenta(&model, (&coordinates, &inert), state);
         let reference = Reference::new(&found, momenta).ok_or_else(not_held)?;
+        let forced = forced(&model, &coordinates, &found.law);
         Ok(Self {
+            delay: task.delayed(h),
+            forced,
             of_inputs: task.inputs,
             parts,
             rates: rates(&model, task, (&coordinates, &inert), h),
@@ -183,6 +193,11 @@ impl Horizon {
     /// The law to which controllers fall back: names of all that is measured and of the inputs, bounds, length of the intervals.
     pub fn law(&self) -> &Law {
         &self.law
+    }
+
+    /// Intervals from a measurement to the effect of its inputs, over which the state is predicted.
+    pub fn delay(&self) -> usize {
+        self.delay
     }
 
     /// Number of intervals of the horizon.
@@ -250,7 +265,8 @@ impl Horizon {
         let program = program.expect("a program whose equations are not counted");
         let state = (&*self.coordinates, &*self.inert);
         let inputs = (&*self.inputs, self.rates.clone());
-        Program::new(program, &self.reference, self.parts, state, inputs)
+        let forced = (&*self.forced, self.law.h / self.parts as f64);
+        Program::new(program, &self.reference, self.parts, state, inputs, forced)
     }
 
     /// The motion to follow over the first horizon.
@@ -285,6 +301,19 @@ impl Horizon {
             carried: Carried::default(),
         }
     }
+}
+
+/// Coordinates on which the lasting forces of a law act.
+fn forced(model: &Model, coordinates: &[usize], law: &Law) -> Vec<usize> {
+    let observer = law.observer.as_ref();
+    let lasting = observer.and_then(|one| one.lasting.as_ref());
+    let on = lasting.into_iter().flat_map(|lasting| &lasting.on);
+    let named = |name: &str| {
+        let mut all = coordinates.iter();
+        let own = all.find(|&&i| model.variables.unknown(i).to_string() == name);
+        *own.expect("a coordinate of the law")
+    };
+    on.map(|force| named(&force.name)).collect()
 }
 
 /// Returns an error for what the horizon can not see ahead.

@@ -41,6 +41,8 @@ pub(super) struct Layout {
     pub(super) driven: Vec<Vec<InputColumn>>,
     /// Weight of the rates of each coordinate, for differences of a step.
     pub(super) rates: Vec<f64>,
+    /// Rows on which lasting forces act, with the scaled time of their action, and the number of the force.
+    pub(super) forced: Vec<(usize, f64, usize)>,
 }
 
 impl Layout {
@@ -50,6 +52,7 @@ impl Layout {
         (intervals, parts): (usize, usize),
         (state, inert): (&[usize], &[usize]),
         (inputs, rates): (&[(usize, bool)], Vec<f64>),
+        (forced, h): (&[usize], f64),
     ) -> Self {
         let unknowns = motion.unknowns();
         let squares = motion.squares();
@@ -79,7 +82,19 @@ impl Layout {
                 is_root: is_squared && !is_square,
             }
         };
+        let last = intervals * parts;
+        let force = |k: usize, (force, &i): (usize, &usize)| {
+            let row = unknowns.row(k, i).expect("a balance");
+            // Half of it acts before an instant, and half behind.
+            let time = if k == 0 || k == last { 0.5 * h } else { h };
+            (row, motion.row_scale(row) * time, force)
+        };
+        let steps = 0..=last;
         Self {
+            forced: steps
+                .flat_map(|k| forced.iter().enumerate().map(move |one| (k, one)))
+                .map(|(k, one)| force(k, one))
+                .collect(),
             intervals,
             parts,
             coordinates: instants

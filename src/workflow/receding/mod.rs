@@ -3,7 +3,8 @@
 //! - `horizon`: all that controllers share, from an optimal motion and the costs of its regulator; `reference`: the motion that is followed.
 //! - `program`: the nonlinear program of the next intervals, with its `layout` and `costs`.
 //! - `iteration`, `advance`: one iteration of it, in two parts, with its `matrix`; `shift`: the plan one interval later.
-//! - `controller`: inputs from what is measured, step by step, and what stands in where a step fails.
+//! - `state`: where a plan begins, from what is measured, over a delay and with an observer.
+//! - `controller`: inputs from what is measured, step by step, and what stands in where a step fails, by their `source`.
 
 mod advance;
 mod controller;
@@ -15,7 +16,10 @@ mod matrix;
 mod program;
 mod reference;
 mod shift;
+mod source;
+mod state;
 
-pub use controller::{Answer, RecedingHorizon, Source};
+pub use controller::{Answer, RecedingHorizon};
 pub use horizon::{Horizon, NoHorizon};
 pub use iteration::Residual;
+pub use source::Source;

@@ -42,18 +42,33 @@ pub(super) struct Program<'m> {
     pub(super) momentum: Vec<f64>,
     /// Deviations of the state at the end, and of coordinates, for one evaluation.
     pub(super) deviation: Vec<f64>,
+    /// Lasting forces with their effects.
+    pub(super) lasting: Lasting,
+}
+
+/// Lasting forces, with what they change of the motion that is followed.
+#[derive(Clone, Debug)]
+pub(super) struct Lasting {
+    /// The forces, then the changes of the inputs against them.
+    values: Vec<f64>,
+    forces: usize,
+    /// Changes of the state at rest, coordinates then momenta, and of the inputs; slope of the cost at the end.
+    pub(super) state: Vec<f64>,
+    pub(super) inputs: Vec<f64>,
+    pub(super) slope: Vec<f64>,
 }
 
 impl<'m> Program<'m> {
     /// The program of a transcription with an open start without momenta, and an end at rest with no coordinate given, in a number of steps for each
     /// interval. `state` are the coordinates of the state with the places of those that have momenta, `inputs` the scalars with those that act by their
-    /// squares, `rates` the weights of rates.
+    /// squares, `rates` the weights of rates, `forced` the coordinates on which lasting forces act, in steps of h ms.
     pub(super) fn new(
         motion: Transcription<'m>,
         reference: &'m Reference,
         parts: usize,
         (state, inert): (&[usize], &[usize]),
         (inputs, rates): (&[(usize, bool)], Vec<f64>),
+        (forced, h): (&[usize], f64),
     ) -> Self {
         let unknowns = motion.unknowns();
         let intervals = motion.intervals() / parts;
@@ -68,6 +83,7 @@ impl<'m> Program<'m> {
             (intervals, parts),
             (state, inert),
             (inputs, rates),
+            (forced, h),
         );
         let [jacobian, hessian] = [motion.jacobian_structure(), motion.hessian_structure()];
         let mut given = motion.variables().clone();
@@ -90,6 +106,13 @@ impl<'m> Program<'m> {
             reference,
             deviation: vec![0.0; state.len() + inert.len()],
             momentum: vec![0.0; inert.len()],
+            lasting: Lasting {
+                values: [vec![0.0; forced.len()], vec![0.0; inputs.len()]].concat(),
+                forces: forced.len(),
+                state: vec![0.0; state.len() + inert.len()],
+                inputs: vec![0.0; inputs.len()],
+                slope: vec![0.0; state.len() + inert.len()],
+            },
             layout,
             bounds,
             jacobian,
@@ -205,6 +228,30 @@ impl<'m> Program<'m> {
         }
     }
 
+    /// Takes lasting forces, and the changes of inputs against them, for the horizon that begins now.
+    pub(super) fn load(&mut self, forces: &[f64], against: &[f64]) {
+        let end = self.reference.at(self.begin + self.layout.intervals);
+        let (Some(rest), Some(slope)) = (&self.reference.rest, &end.slope) else {
+            return;
+        };
+        let Lasting {
+            values,
+            forces: count,
+            state,
+            inputs,
+            slope: of_end,
+        } = &mut self.lasting;
+        values[..*count].copy_from_slice(forces);
+        values[*count..].copy_from_slice(against);
+        inputs.copy_from_slice(against);
+        for (matrix, to) in [(rest, state), (slope, of_end)] {
+            for (row, to) in to.iter_mut().enumerate() {
+                let terms = values.iter().enumerate();
+                *to = terms.map(|(i, value)| matrix[(row, i)] * value).sum();
+            }
+        }
+    }
+
     /// Holds the state at the start: values of its columns, and its momenta.
     pub(super) fn hold_start(&mut self, values: &[f64], momenta: &[f64]) {
         for (&(column, _), value) in self.layout.coordinates.iter().zip(values) {
@@ -248,6 +295,9 @@ impl Nlp for Program<'_> {
         }
         for (&(row, _), momentum) in self.layout.momenta[1].iter().zip(&x[self.columns..]) {
             g[row] -= momentum;
+        }
+        for &(row, time, force) in &self.layout.forced {
+            g[row] += time * self.lasting.values[force];
         }
     }
 

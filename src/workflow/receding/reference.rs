@@ -17,6 +17,8 @@ pub(super) struct Point {
     pub(super) places: DMatrix<f64>,
     /// Cost of coordinates and momenta, as those of all time that follows.
     pub(super) end: DMatrix<f64>,
+    /// Slope of that cost by lasting forces and the inputs against them; none without such forces.
+    pub(super) slope: Option<DMatrix<f64>>,
 }
 
 /// A motion that ends in a state that is held.
@@ -26,6 +28,8 @@ pub(super) struct Reference {
     points: Vec<Point>,
     /// Cost of each input, or of its square.
     pub(super) inputs: Vec<f64>,
+    /// Change of the state at rest by lasting forces and the inputs against them; none without such forces.
+    pub(super) rest: Option<DMatrix<f64>>,
 }
 
 impl Reference {
@@ -47,6 +51,7 @@ impl Reference {
             inputs: acting(&law.inputs, &at.inputs),
             places: step.places.clone(),
             end: end.clone(),
+            slope: step.lasting.as_ref().map(|[_, slope]| slope.clone()),
         };
         let motion = law.points.iter().zip(&of.steps).zip(&ends);
         let mut points: Vec<Point> = motion
@@ -56,6 +61,7 @@ impl Reference {
         let costs = &held_step.costs.inputs;
         Some(Self {
             points,
+            rest: of.lasting.clone(),
             inputs: costs.diagonal().iter().copied().collect(),
         })
     }

@@ -30,6 +30,8 @@ pub(super) struct Design<'a> {
     pub(super) momenta: Vec<usize>,
     /// Places of the coordinates that are integrated.
     pub(super) integrated: Vec<usize>,
+    /// Places of the coordinates, and of their momenta in the state, on which lasting forces act.
+    pub(super) forced: Vec<[usize; 2]>,
     pub(super) h: f64,
 }
 
@@ -71,6 +73,14 @@ impl<'a> Design<'a> {
         let coordinates = linearisation.coordinates().to_vec();
         let of_joints = |place: &usize| coordinates[*place] < model.action.map.of_bodies;
         let places = (0..coordinates.len()).filter(of_joints);
+        let lasting = task.observer.as_ref().and_then(|one| one.lasting);
+        let inert = linearisation.momenta();
+        let forced = |place: usize| {
+            let own = inert.iter().position(|&i| i == coordinates[place])?;
+            Some([place, coordinates.len() + own])
+        };
+        let forced = places.clone().filter_map(forced);
+        let forced = forced.filter(|_| lasting.is_some()).collect();
         Ok(Self {
             model,
             task,
@@ -78,6 +88,7 @@ impl<'a> Design<'a> {
             bounds,
             ranges,
             momenta: linearisation.momenta().to_vec(),
+            forced,
             integrated: places.filter(|_| task.integral > 0.0).collect(),
             inputs,
             coordinates,
@@ -127,30 +138,40 @@ impl<'a> Design<'a> {
         })
     }
 
-    /// The linearised interval from a state under inputs: the product of its short steps.
+    /// The linearised interval from a state under inputs: the product of its short steps, and E, the state after it by lasting forces on joints. In
+    /// a step of h each adds h/2 to the momentum before it and h/2 to that after it.
     pub(super) fn linearised(
         &self,
         linearisation: &mut Linearisation<'_>,
         state: &State,
         inputs: &[f64],
-    ) -> Option<LinearStep> {
+    ) -> Option<(LinearStep, DMatrix<f64>)> {
         let State { z, momentum } = state;
         let mut stepper = Stepper::new(self.model, z, momentum, Default::default());
         let parts = self.parts();
         let h = self.h / parts as f64;
-        let mut whole: Option<LinearStep> = None;
+        let mut whole: Option<(LinearStep, DMatrix<f64>)> = None;
         for _ in 0..parts {
             let before = stepper.coordinates().to_vec();
             stepper.step(h, inputs).ok()?;
             let ends = [&*before, stepper.coordinates()];
             let step = linearisation.step(ends, stepper.scalars(), h)?;
+            let of = self.forced.iter().map(|[_, momentum]| momentum);
+            let mut by_forces = step.by_state.select_columns(of.clone());
+            let after = of.enumerate();
+            after.for_each(|(force, &row)| by_forces[(row, force)] += 1.0);
+            by_forces *= 0.5 * h;
             whole = Some(match whole {
-                None => step,
-                Some(done) => LinearStep {
-                    by_state: &step.by_state * done.by_state,
-                    by_inputs: &step.by_state * done.by_inputs + step.by_inputs,
-                    momentum: step.momentum,
-                },
+                None => (step, by_forces),
+                Some((done, forces)) => {
+                    by_forces += &step.by_state * forces;
+                    let done = LinearStep {
+                        by_state: &step.by_state * done.by_state,
+                        by_inputs: &step.by_state * done.by_inputs + step.by_inputs,
+                        momentum: step.momentum,
+                    };
+                    (done, by_forces)
+                }
             });
         }
         whole
@@ -159,7 +180,7 @@ impl<'a> Design<'a> {
     /// A step with integrals and costs at its start, without a gain.
     pub(super) fn augmented(
         &self,
-        step: &LinearStep,
+        (step, by_forces): &(LinearStep, DMatrix<f64>),
         at: &State,
     ) -> Result<RegulatedStep, NoRegulator> {
         let (n, u) = (step.by_state.nrows(), self.inputs.len());
@@ -187,6 +208,9 @@ impl<'a> Design<'a> {
                 .view((0, 0), (coordinates, coordinates))
                 .into_owned(),
             gain: DMatrix::zeros(u, size),
+            // Forces that last are not integrated beside.
+            by_forces: by_forces.clone(),
+            lasting: None,
         })
     }
 

@@ -4,15 +4,11 @@ use crate::dynamics::rates_of_momentum;
 use crate::feedback::{HeldGain, Integral, Law, LawInput, Measured, Point};
 use crate::model::Time;
 use crate::workflow::regulator::design::{Design, State};
+use crate::workflow::regulator::lasting::widened;
 use crate::workflow::regulator::regulated::RegulatedStep;
 use nalgebra::DMatrix;
 
 impl Design<'_> {
-    /// Intervals of the delay.
-    fn delayed(&self) -> usize {
-        (self.task.delay / self.h - 1e-9).ceil().max(0.0) as usize
-    }
-
     pub(super) fn law(
         &self,
         steps: &[RegulatedStep],
@@ -33,8 +29,18 @@ impl Design<'_> {
             let all = self.inputs.iter();
             all.map(|input| scalars[input.scalar]).collect()
         };
-        let delay = self.delayed();
-        let last = held.map(|(step, _)| step).or(steps.last()).expect("a step");
+        let delay = self.task.delayed(self.h);
+        let wide = |step: &RegulatedStep| widened(step);
+        let all: Vec<RegulatedStep>;
+        let steps = match self.forced.is_empty() {
+            true => steps,
+            false => {
+                all = steps.iter().map(wide).collect();
+                &all
+            }
+        };
+        let at_goal = held.map(|(step, _)| widened(step));
+        let last = at_goal.as_ref().or(steps.last()).expect("a step");
         let ahead = |k: usize| steps.get(k).unwrap_or(last);
         let points = steps.iter().enumerate().map(|(k, _)| {
             let inputs = given(&self.discrete.scalars[k]);
@@ -42,7 +48,7 @@ impl Design<'_> {
             self.point(&motion[k], &gain, inputs)
         });
         let is_held = held.is_some();
-        let held = rest.zip(held).map(|(rest, (step, _))| {
+        let held = rest.zip(at_goal.as_ref()).map(|(rest, step)| {
             let inputs = given(&self.model.scalars(rest));
             let gain = predicted((0..delay).map(|_| step), step);
             self.point(&self.goal(), &gain, inputs)
@@ -84,19 +90,23 @@ impl Design<'_> {
         moving.map(path).collect()
     }
 
+    /// Coordinates and rates of a state.
+    pub(super) fn measured(&self, State { z, momentum }: &State) -> Vec<f64> {
+        let rates = rates_of_momentum(self.model, z, 0.0, momentum);
+        let coordinates = self.coordinates.iter().map(|&i| z[i]);
+        coordinates
+            .chain(self.momenta.iter().map(|&i| rates[i]))
+            .collect()
+    }
+
     /// A point of the law, whose gain reads rates in place of momenta.
     fn point(&self, at: &State, gain: &DMatrix<f64>, inputs: Vec<f64>) -> Point {
-        let State { z, momentum } = at;
-        let rates = rates_of_momentum(self.model, z, 0.0, momentum);
         let by = self.by_rates(at);
         let mut read = gain.clone();
         let of_state = gain.columns(0, by.nrows()) * &by;
         read.columns_mut(0, by.nrows()).copy_from(&of_state);
-        let state = self.coordinates.iter().map(|&i| z[i]);
         Point {
-            state: state
-                .chain(self.momenta.iter().map(|&i| rates[i]))
-                .collect(),
+            state: self.measured(at),
             inputs,
             gain: read,
         }

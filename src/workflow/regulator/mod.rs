@@ -4,6 +4,7 @@
 
 mod check;
 mod design;
+mod lasting;
 mod law;
 mod observer;
 mod regulated;
@@ -15,6 +16,7 @@ use crate::ipopt::interrupt;
 use crate::model::Model;
 use crate::workflow::regulator::check::reproduced;
 use crate::workflow::regulator::design::Design;
+use crate::workflow::regulator::lasting::Against;
 use nalgebra::DMatrix;
 pub use regulated::{NoRegulator, Regulated, RegulatedStep, RegulatorReport, Reproduced};
 
@@ -30,6 +32,29 @@ pub fn regulator(
 ) -> Result<Regulated, NoRegulator> {
     let of = Design::new(model, control, task, discrete)?;
     of.regulated(momentum, rest)
+}
+
+/// The same without its delay, for what predicts the state over the delay by itself: the observer of the law does, or one that takes in the whole
+/// state where that is measured.
+///
+/// # Errors
+/// There is none.
+pub(crate) fn predicting(
+    (model, control, task): (&Model, &Control, &Regulator),
+    discrete: &DiscreteTrajectory,
+    momentum: &[f64],
+    rest: Option<&[f64]>,
+) -> Result<Regulated, NoRegulator> {
+    let now = Regulator {
+        delay: 0.0,
+        ..task.clone()
+    };
+    let of = Design::new(model, control, &now, discrete)?;
+    let mut out = of.regulated(momentum, rest)?;
+    if task.delay > 0.0 && out.law.observer.is_none() {
+        out.law.observer = Some(of.whole(&out, &of.motion(momentum)?));
+    }
+    Ok(out)
 }
 
 impl Design<'_> {
@@ -55,6 +80,8 @@ impl Design<'_> {
                 Err(reason) => not_held = Some(reason),
             }
         }
+        let goal = held.as_mut().map(|(step, _)| step);
+        let mut against = Against::new(goal, !self.forced.is_empty())?;
         let mut cost = match &held {
             Some((_, held)) => &held.cost * self.task.terminal,
             None => self.state_costs(end)? * self.task.terminal,
@@ -66,12 +93,18 @@ impl Design<'_> {
             let found = found.ok_or(NoRegulator::Recursion(k))?;
             residual = residual.max(left(step, &cost, &found.gain));
             step.gain = found.gain;
+            if let Some(against) = against.as_mut() {
+                let done = against.step(step, &cost);
+                done.ok_or(NoRegulator::Recursion(k))?;
+            }
             cost = found.cost;
         }
         let mut law = self.law(&steps, &motion, (rest, held.as_ref()));
         let mut observer_radius = None;
         if let Some(observation) = &self.task.observer {
-            let found = self.observer(observation, (&steps, &motion), held.as_ref())?;
+            let forces = against.as_ref().map(|against| against.forces(self));
+            let forces = forces.transpose()?;
+            let found = self.observer(observation, (&steps, &motion), held.as_ref(), forces)?;
             (law.observer, observer_radius) = (Some(found.0), Some(found.1));
         }
         let mut out = Regulated {
@@ -79,6 +112,7 @@ impl Design<'_> {
             steps,
             held,
             end_cost,
+            lasting: against.map(|against| against.rest),
             not_held,
             observer_radius,
             residual,
@@ -165,6 +199,8 @@ impl Design<'_> {
             },
             places: step.places.clone(),
             gain: step.gain.clone(),
+            by_forces: step.by_forces.clone(),
+            lasting: None,
         };
         (scales, scaled)
     }

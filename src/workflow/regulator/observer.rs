@@ -1,11 +1,11 @@
 //! The observer of a regulator: a Kalman filter along the motion, from the covariances of what is measured and of what disturbs.
 //!
-//! Its covariances P follow the Riccati recursion of `(Aᵀ, Cᵀ)` forward in time, from that of a robot which has done the first step for ever.
+//! Lasting forces on joints are entries of its state that change by chance. Its covariances P follow the Riccati recursion of `(Aᵀ, Cᵀ)` forward in time, from that of a robot which has done the first step for ever.
 
 use crate::control::problem::{Observation, Regulator};
 use crate::feedback::{Costs, Filter, HeldGain, Observer, Reading, held_gain, riccati_step};
 use crate::workflow::regulator::design::{Design, State};
-use crate::workflow::regulator::regulated::{NoRegulator, RegulatedStep};
+use crate::workflow::regulator::regulated::{NoRegulator, Regulated, RegulatedStep};
 use nalgebra::{DMatrix, DVector};
 
 /// Scales: units of the state and standard deviations of the readings.
@@ -36,17 +36,18 @@ impl Design<'_> {
         observation: &Observation,
         (steps, motion): (&[RegulatedStep], &[State]),
         held: Option<&(RegulatedStep, HeldGain)>,
+        forces: Option<DMatrix<f64>>,
     ) -> Result<(Observer, f64), NoRegulator> {
         let goal = self.goal();
         let readings = self.readings(observation)?;
-        let scales = self.scales(observation);
+        let scales = self.scales(observation, forces.as_ref());
         let end = match held {
             Some(_) => &goal,
             None => motion.last().expect("an instant"),
         };
         let at_rest = |step: &Scaled| {
             held_gain([&step.by_state, &step.output], &step.noise)
-                .map_err(|_| NoRegulator::Observer(NOT_SEEN.to_owned()))
+                .map_err(|_| NoRegulator::Observer(self.not_seen(step)))
         };
         let mut points = Vec::new();
         let mut covariance: Option<DMatrix<f64>> = None;
@@ -71,6 +72,7 @@ impl Design<'_> {
             covariance = Some(after.ok_or(NoRegulator::Recursion(k))?.cost);
             points.push(self.filter(scaled, &before, &scales)?);
         }
+        let is_held = held.is_some();
         let held = held.map(|(step, _)| {
             let scaled = self.scaled_step(observation, step, (&goal, &goal), &scales);
             let of = at_rest(&scaled)?;
@@ -81,8 +83,80 @@ impl Design<'_> {
             held: held.transpose()?,
             readings,
             points,
+            jump: self.jump(motion, is_held),
+            lasting: forces.map(|forces| self.lasting(forces)),
         };
         Ok((observer, radius))
+    }
+
+    /// An observer that takes in the whole state as it is measured, and predicts it.
+    pub(super) fn whole(&self, of: &Regulated, motion: &[State]) -> Observer {
+        let goal = self.goal();
+        let size = of.law.measured.len();
+        let scales = Scales {
+            state: DVector::from_element(size, 1.0),
+            readings: DVector::zeros(0),
+        };
+        let nothing = Observation {
+            joints: Vec::new(),
+            markers: Vec::new(),
+            inputs: 0.0,
+            rates: 0.0,
+            lasting: None,
+        };
+        let filter = |step: &RegulatedStep, at: (&State, &State), readings: &[f64]| {
+            let scaled = self.scaled_step(&nothing, step, at, &scales);
+            Filter {
+                readings: readings.to_vec(),
+                by_state: scaled.by_state.transpose(),
+                by_inputs: scaled.by_inputs,
+                output: DMatrix::identity(size, size),
+                gain: DMatrix::identity(size, size),
+            }
+        };
+        let points = of.steps.iter().zip(&of.law.points).enumerate();
+        let next = |k: usize| match k + 1 == of.steps.len() && of.held.is_some() {
+            true => &goal,
+            false => &motion[k + 1],
+        };
+        let held = of.held.as_ref().zip(of.law.held.as_ref());
+        Observer {
+            readings: (0..size).map(Reading::State).collect(),
+            points: points
+                .map(|(k, (step, point))| filter(step, (&motion[k], next(k)), &point.state))
+                .collect(),
+            held: held.map(|((step, _), point)| filter(step, (&goal, &goal), &point.state)),
+            jump: self.jump(motion, of.held.is_some()),
+            lasting: None,
+        }
+    }
+
+    /// The state at the end of the motion as a deviation from the goal, where that is held.
+    fn jump(&self, motion: &[State], is_held: bool) -> Vec<f64> {
+        if !is_held {
+            return Vec::new();
+        }
+        let end = self.measured(motion.last().expect("an instant"));
+        let goal = self.measured(&self.goal());
+        end.iter().zip(goal).map(|(end, goal)| end - goal).collect()
+    }
+
+    /// Words on a step whose state does not follow from its readings.
+    fn not_seen(&self, step: &Scaled) -> String {
+        let forces = self.forced.len();
+        let n = step.by_state.nrows() - forces;
+        let own = |of: &DMatrix<f64>| of.view((0, 0), (n, n)).into_owned();
+        let noise = Costs {
+            state: own(&step.noise.state),
+            inputs: step.noise.inputs.clone(),
+        };
+        let output = step.output.rows(0, n).into_owned();
+        match forces > 0 && held_gain([&own(&step.by_state), &output], &noise).is_ok() {
+            true => format!(
+                "{forces} lasting forces, one on each joint, do not follow from what is measured; expected as many independent joints or components of markers, or no \"lasting\""
+            ),
+            false => NOT_SEEN.to_owned(),
+        }
     }
 
     /// The readings: measured joints, then the places of measured markers.
@@ -105,7 +179,7 @@ impl Design<'_> {
         Ok(out)
     }
 
-    fn scales(&self, observation: &Observation) -> Scales {
+    fn scales(&self, observation: &Observation, forces: Option<&DMatrix<f64>>) -> Scales {
         let coordinates = self.coordinates.iter().map(|&i| self.unit(i));
         let rates = self.momenta.iter();
         let rates = rates.map(|&i| self.unit(i) / Regulator::RATE_TIME);
@@ -113,9 +187,28 @@ impl Design<'_> {
         let markers = observation.markers.iter();
         let markers = markers.flat_map(|(_, deviation)| [*deviation; 3]);
         Scales {
-            state: DVector::from_vec(coordinates.chain(rates).collect()),
+            state: DVector::from_vec(
+                coordinates
+                    .chain(rates)
+                    .chain(forces.into_iter().flat_map(|forces| self.greatest(forces)))
+                    .collect(),
+            ),
             readings: DVector::from_vec(joints.chain(markers).collect()),
         }
+    }
+
+    /// The force on each joint that the ranges of all inputs make; the greatest of all where no input acts.
+    fn greatest(&self, forces: &DMatrix<f64>) -> Vec<f64> {
+        let of = |row: usize| {
+            let all = self.ranges.iter().enumerate();
+            all.map(|(i, range)| (forces[(row, i)] * range).abs())
+                .fold(0.0, f64::max)
+        };
+        let own: Vec<f64> = (0..forces.nrows()).map(of).collect();
+        let most = own.iter().copied().fold(0.0, f64::max);
+        own.into_iter()
+            .map(|one| if one > 1e-6 * most { one } else { most })
+            .collect()
     }
 
     /// A step over coordinates and rates from one state to the next, scaled.
@@ -126,24 +219,38 @@ impl Design<'_> {
         (at, next): (&State, &State),
         Scales { state, readings }: &Scales,
     ) -> Scaled {
-        let n = state.len();
+        let (n, size) = (self.coordinates.len() + self.momenta.len(), state.len());
         let to_rates = |right: DMatrix<f64>| {
             let by = self.by_rates(next).lu().solve(&right);
             let by = by.unwrap_or_else(|| DMatrix::from_element(n, right.ncols(), f64::NAN));
             DMatrix::from_fn(n, by.ncols(), |i, j| by[(i, j)] / state[i])
         };
-        let by_state = to_rates(step.by_state.view((0, 0), (n, n)) * self.by_rates(at));
-        let by_inputs = to_rates(step.by_inputs.rows(0, n).into_owned());
-        let (values, output) = self.read(observation, at);
+        let of_state = to_rates(step.by_state.view((0, 0), (n, n)) * self.by_rates(at));
+        let of_inputs = to_rates(step.by_inputs.rows(0, n).into_owned());
+        let mut by_state = DMatrix::zeros(size, size);
+        by_state.view_mut((0, 0), (n, n)).copy_from(&of_state);
+        if size > n {
+            let of_forces = to_rates(step.by_forces.rows(0, n).into_owned());
+            by_state
+                .view_mut((0, n), of_forces.shape())
+                .copy_from(&of_forces);
+            (n..size).for_each(|i| by_state[(i, i)] = 1.0 / state[i]);
+        }
+        let mut by_inputs = DMatrix::zeros(size, of_inputs.ncols());
+        by_inputs.rows_mut(0, n).copy_from(&of_inputs);
+        let (values, output) = self.read(observation, at, size);
         let noise = |i: usize| observation.inputs * self.ranges[i];
-        let disturbed = DMatrix::from_fn(n, by_inputs.ncols(), |i, j| by_inputs[(i, j)] * noise(j));
+        let disturbed =
+            DMatrix::from_fn(size, by_inputs.ncols(), |i, j| by_inputs[(i, j)] * noise(j));
         let mut covariance = &disturbed * disturbed.transpose();
         for i in self.coordinates.len()..n {
             covariance[(i, i)] += observation.rates * observation.rates;
         }
+        let lasting = observation.lasting.unwrap_or(0.0);
+        (n..size).for_each(|i| covariance[(i, i)] = lasting * lasting);
         Scaled {
-            by_state: DMatrix::from_fn(n, n, |j, i| by_state[(i, j)] * state[j]),
-            output: DMatrix::from_fn(n, output.nrows(), |j, i| {
+            by_state: DMatrix::from_fn(size, size, |j, i| by_state[(i, j)] * state[j]),
+            output: DMatrix::from_fn(size, output.nrows(), |j, i| {
                 output[(i, j)] * state[j] / readings[i]
             }),
             noise: Costs {
@@ -155,10 +262,9 @@ impl Design<'_> {
         }
     }
 
-    /// The readings of a state, and C, their derivatives by coordinates and rates.
-    fn read(&self, observation: &Observation, at: &State) -> (Vec<f64>, DMatrix<f64>) {
+    /// The readings of a state, and C, their derivatives by coordinates, rates and lasting forces.
+    fn read(&self, observation: &Observation, at: &State, size: usize) -> (Vec<f64>, DMatrix<f64>) {
         let joints = observation.joints.len();
-        let size = self.coordinates.len() + self.momenta.len();
         let mut by_state = DMatrix::zeros(joints + 3 * observation.markers.len(), size);
         let mut readings = Vec::new();
         for (row, &(joint, _)) in observation.joints.iter().enumerate() {
