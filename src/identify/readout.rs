@@ -7,6 +7,7 @@ use crate::functional::{Measure, Sample, SumDerivatives};
 use crate::identify::drive::Delay;
 use crate::identify::interpolation::{piece, slopes, weights};
 use crate::identify::sensitivity::CourseDerivatives;
+use crate::identify::setup::ends;
 use crate::model::{Model, Quantity};
 use nalgebra::{DMatrix, DVector, RowDVector};
 
@@ -115,7 +116,17 @@ impl Course<'_> {
     /// Values of a quantity at all instants or in all intervals, and their derivatives; of one that is a step between intervals its rates.
     fn nodes(&self, instants: &[Configuration], quantity: &Quantity, columns: usize) -> Nodes {
         let [_, h] = self.grid(quantity);
-        let (mut values, mut derivatives) = self.all(instants, quantity, columns);
+        let parameters = &self.model.analysis.parameters;
+        let (mut values, mut derivatives) = match ends(quantity, parameters) {
+            None => self.all(instants, quantity, columns),
+            Some([start, end]) => {
+                let (mut values, mut derivatives) = self.all(instants, &start, columns);
+                let (at_end, by_end) = self.all(instants, &end, columns);
+                values.extend(at_end.last());
+                derivatives.extend(by_end.last().cloned());
+                (values, derivatives)
+            }
+        };
         if let Some(before) = quantity.before() {
             let (of_before, by_before) = self.all(instants, &before, columns);
             let count = values.len() - 1;

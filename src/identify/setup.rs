@@ -5,6 +5,7 @@ use crate::control::problem::{
 };
 use crate::control::{BoundaryConditions, BoundaryError, resolve_start};
 use crate::dynamics::Start;
+use crate::functional::Stencil;
 use crate::identify::drive::Drive;
 use crate::identify::error::IdentifyError;
 use crate::model::{Analysis, Coordinates, Model, Parameter, Quantity, System, with_parameters};
@@ -50,7 +51,13 @@ impl<'a> Setup<'a> {
             ..Control::of_course(&start, &voltages, duration, intervals as usize)
         };
         let mut analysis = Analysis {
-            quantities: recording.quantities().collect(),
+            quantities: recording
+                .quantities()
+                .flat_map(|quantity| match ends(&quantity, &control.parameters) {
+                    Some(ends) => ends.to_vec(),
+                    None => vec![quantity],
+                })
+                .collect(),
             ..control.analysis(&system, duration / intervals)
         };
         // Forces and charges are there where nothing moves too.
@@ -78,9 +85,11 @@ impl<'a> Setup<'a> {
     fn check(&self) -> Result<(), IdentifyError> {
         let parameters = self.control.parameters.iter();
         let mut constants = parameters.flat_map(|parameter| &parameter.constants);
-        if constants.any(|one| one.constant.is_place()) {
+        let are_joints = self.model.coordinates == Coordinates::Reduced;
+        if !are_joints && constants.any(|one| one.constant.is_place()) {
             return Err(self.refused(
-                "places of bodies, joints and markers are not sought from recordings".to_owned(),
+                "places of bodies, joints and markers are sought in joint coordinates alone"
+                    .to_owned(),
             ));
         }
         if self.drive.delay.is_some() && self.recording.regime == Regime::Motion {
@@ -96,14 +105,13 @@ impl<'a> Setup<'a> {
                 )));
             }
         }
-        let is_tree = self.model.coordinates == Coordinates::Reduced;
         let is_of_rest = matches!(self.recording.start, BoundaryState::RestAtVoltages(..));
         let what = match (self.recording.sought_start, self.recording.regime) {
             (SoughtStart::Nothing, Regime::Motion) if !is_of_rest => return Ok(()),
             (SoughtStart::Nothing, _) => "states of rest are",
             _ => "an unknown start is",
         };
-        match is_tree {
+        match are_joints {
             true => Ok(()),
             false => Err(self.refused(format!(
                 "{what} offered in joint coordinates alone, of joints that form a tree"
@@ -203,6 +211,16 @@ impl Recording {
             source,
         }
     }
+}
+
+/// The quantity at the starts of the intervals, to which constants belong, and at the end of the last one, where sought constants move places.
+pub(super) fn ends(quantity: &Quantity, parameters: &[Parameter]) -> Option<[Quantity; 2]> {
+    let mut constants = parameters.iter().flat_map(|parameter| &parameter.constants);
+    if !constants.any(|one| one.constant.is_place()) {
+        return None;
+    }
+    let [start, end] = [Stencil::Here, Stencil::Next].map(|at| quantity.in_intervals(at));
+    Some([start?, end?])
 }
 
 /// Returns true of forces, charges, currents, powers and voltages, which are none where they have no measure.

@@ -9,6 +9,7 @@ mod forces;
 mod front;
 mod inputs;
 mod oscillator;
+mod places;
 mod priors;
 mod ratio;
 mod recovered;
