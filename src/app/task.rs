@@ -22,7 +22,7 @@ use crate::control::problem::{BoundaryState, Guess, Task};
 use crate::files::solution::SolutionFile;
 use crate::files::{Loaded, read_problem, read_problem_text};
 use crate::workflow::accuracy::AccuracyTarget;
-use crate::workflow::memory;
+use crate::workflow::memory::{self, Occasion};
 use crate::workflow::phase::phase;
 
 /// Runs the task of a problem: optimal control, simulation, equilibrium or identification.
@@ -107,8 +107,8 @@ pub(super) fn read(
         Some(text) => read_problem_text(input, text, set),
         None => read_problem(input, set),
     }?;
-    let is_of_motion = !matches!(loaded.task, Task::Equilibrium(_));
-    memory::of_elements(&loaded.system, is_of_motion).map_err(CommandError::in_file(input))?;
+    let occasion = Occasion::of_task(&loaded.task);
+    memory::of_elements(&loaded.system, occasion).map_err(CommandError::in_file(input))?;
     Ok(loaded)
 }
 

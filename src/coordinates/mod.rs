@@ -17,6 +17,7 @@
 mod charts;
 mod configuration;
 mod interval;
+mod laid;
 mod map;
 mod pattern;
 mod pull_back;
@@ -26,7 +27,7 @@ mod tree;
 
 pub use configuration::Configuration;
 pub use interval::Interval;
-pub use map::{CoordinateMap, NodePlace};
+pub use map::{CoordinateMap, Dependence, NodePlace};
 pub use pattern::{BlockPattern, StepPattern};
 pub use pull_back::Destination;
 pub use reduced::Reduced;

@@ -2,14 +2,16 @@
 
 use crate::coordinates::configuration::Configuration;
 use crate::coordinates::interval::Interval;
+use crate::coordinates::laid::Laid;
 use crate::coordinates::map::CoordinateMap;
 use crate::coordinates::pattern::StepPattern;
-use crate::coordinates::pull_back::{Destination, PullBack, Site};
+use crate::coordinates::pull_back::Destination;
 use crate::coordinates::scratch::{Carried, Scratch};
 use crate::functional::{
-    BlockMask, Blocks, Functional, Horizon, Order, Outer, Sample, SumDerivatives,
+    BlockMask, Blocks, Functional, Horizon, NodeBlocks, Order, Outer, Sample, SumDerivatives,
 };
 use crate::math::Vector;
+use std::sync::OnceLock;
 
 /// Sums over intervals and instants as functions of the coordinates z of the instants and the scalars of the intervals.
 #[derive(Debug)]
@@ -20,41 +22,28 @@ pub struct Reduced {
     pub intervals: Functional,
     /// Sum over instants; its scalars are multipliers.
     pub instants: Functional,
-    interval_plan: PullBack,
-    instant_plan: PullBack,
-    curvature: Vec<[usize; 2]>,
-    layout: StepPattern,
+    laid: OnceLock<Laid>,
 }
 
 impl Reduced {
-    /// Lays down the structure.
+    /// Of vectors that follow from coordinates.
     pub fn new(map: CoordinateMap, intervals: Functional, instants: Functional) -> Self {
-        let mut layout = StepPattern {
-            unknowns: map.unknowns(),
-            interval_scalars: intervals.scalars,
-            ..StepPattern::default()
-        };
-        let interval_plan = PullBack::new(&intervals.couplings, &map, &mut layout, Site::Intervals);
-        let instant_plan = PullBack::new(&instants.couplings, &map, &mut layout, Site::Instants);
-        let entries = map.tree.iter().flat_map(|tree| tree.curvature_entries());
-        let curvature = entries
-            .map(|(i, k)| [layout.same.slot(i, k), layout.same.slot(k, i)])
-            .collect();
-        layout.shrink_to_fit();
         Self {
             map,
             intervals,
             instants,
-            interval_plan,
-            instant_plan,
-            curvature,
-            layout,
+            laid: OnceLock::new(),
         }
+    }
+
+    fn laid(&self) -> &Laid {
+        let laid = || Laid::new(&self.map, &self.intervals, &self.instants);
+        self.laid.get_or_init(laid)
     }
 
     /// Returns the pattern of the entries.
     pub fn layout(&self) -> &StepPattern {
-        &self.layout
+        &self.laid().layout
     }
 
     /// Storage for evaluations up to a order; sweeps, which carry blocks on, need `Third`.
@@ -69,7 +58,16 @@ impl Reduced {
             carried: [carried.clone(), carried],
             interval,
             instant: self.instants.output(order),
-            local: vec![0.0; self.interval_plan.local().max(self.instant_plan.local())],
+            local: match order {
+                Order::Gradient => Vec::new(),
+                _ => vec![
+                    0.0;
+                    self.laid()
+                        .intervals
+                        .local()
+                        .max(self.laid().instants.local())
+                ],
+            },
         }
     }
 
@@ -94,16 +92,37 @@ impl Reduced {
         }
     }
 
+    /// The same up to second derivatives, which are added to a matrix of nodes.
+    pub fn evaluate_at_nodes(
+        &self,
+        ends: [&mut Configuration; 2],
+        interval: &Interval<'_>,
+        scratch: &mut Scratch,
+        nodes: &mut NodeBlocks,
+    ) {
+        scratch.interval.plain.nodes = Some(std::mem::take(nodes));
+        self.evaluate_interval(Order::Hessian, ends, interval, scratch);
+        *nodes = scratch.interval.plain.nodes.take().unwrap_or_default();
+    }
+
     /// Evaluates what acts at rest between two instants, up to second derivatives, and adds its forces to theirs.
     pub fn evaluate_at_rest(
         &self,
         [a, b]: [&mut Configuration; 2],
         interval: &Interval<'_>,
         scratch: &mut Scratch,
+        nodes: Option<&mut NodeBlocks>,
     ) {
         let sample = interval.sample([&*a, &*b]);
         let out = &mut scratch.interval;
-        self.intervals.evaluate_at_rest(&sample, out);
+        match nodes {
+            Some(nodes) => {
+                out.plain.nodes = Some(std::mem::take(nodes));
+                self.intervals.evaluate_at_rest(&sample, out);
+                *nodes = out.plain.nodes.take().unwrap_or_default();
+            }
+            None => self.intervals.evaluate_at_rest(&sample, out),
+        }
         add(&mut a.forces, &out.plain.forces[0]);
         add(&mut b.forces, &out.plain.forces[1]);
     }
@@ -119,7 +138,14 @@ impl Reduced {
         scratch: &mut Scratch,
         values: &mut [f64],
     ) {
-        let layout = &self.layout;
+        if order == Order::Gradient {
+            return;
+        }
+        let Laid {
+            intervals: plan,
+            layout,
+            ..
+        } = self.laid();
         let target = Destination {
             blocks: [
                 layout.same_at(k),
@@ -135,21 +161,8 @@ impl Reduced {
         } = scratch;
         let (plain, contracted) = (&interval.plain, &interval.contracted);
         match order {
-            Order::Gradient => return,
-            Order::Hessian => {
-                self.interval_plan
-                    .hessian([a, b], plain, sides, &target, local, values);
-            }
-            Order::Third => {
-                self.interval_plan.third(
-                    [a, b],
-                    [plain, contracted],
-                    sides,
-                    &target,
-                    local,
-                    values,
-                );
-            }
+            Order::Third => plan.third([a, b], [plain, contracted], sides, &target, local, values),
+            _ => plan.hessian([a, b], plain, sides, &target, local, values),
         }
         if horizon == Horizon::Free {
             let part = if order == Order::Third {
@@ -189,8 +202,8 @@ impl Reduced {
         values: &mut [f64],
     ) {
         let local = &mut scratch.local;
-        self.interval_plan
-            .hessian(ends, part, sides, target, local, values);
+        let plan = &self.laid().intervals;
+        plan.hessian(ends, part, sides, target, local, values);
     }
 
     /// Pulls back the blocks that the last interval of a sweep carried on to the final instant k.
@@ -208,11 +221,16 @@ impl Reduced {
         scratch.interval.plain.clear(true);
         scratch.interval.contracted.clear(true);
         scratch.carry(order);
-        let same = self.layout.same_at(k);
+        let Laid {
+            intervals: plan,
+            layout,
+            ..
+        } = self.laid();
+        let same = layout.same_at(k);
         let target = Destination {
             blocks: [same; 4],
             mixed: [usize::MAX; 2],
-            scalars: self.layout.scalars_at(k),
+            scalars: layout.scalars_at(k),
         };
         let Scratch {
             interval, local, ..
@@ -220,7 +238,7 @@ impl Reduced {
         let (plain, contracted) = (&interval.plain, &interval.contracted);
         let ends = [last, last];
         match order {
-            Order::Third => self.interval_plan.third(
+            Order::Third => plan.third(
                 ends,
                 [plain, contracted],
                 BlockMask::HERE,
@@ -228,9 +246,7 @@ impl Reduced {
                 local,
                 values,
             ),
-            _ => self
-                .interval_plan
-                .hessian(ends, plain, BlockMask::HERE, &target, local, values),
+            _ => plan.hessian(ends, plain, BlockMask::HERE, &target, local, values),
         }
     }
 
@@ -273,7 +289,16 @@ impl Reduced {
         scratch: &mut Scratch,
         values: &mut [f64],
     ) {
-        let same = self.layout.same_at(k);
+        if order == Order::Gradient {
+            return;
+        }
+        let Laid {
+            instants: plan,
+            curvature,
+            layout,
+            ..
+        } = self.laid();
+        let same = layout.same_at(k);
         let target = Destination {
             blocks: [same; 4],
             mixed: [same, usize::MAX],
@@ -286,18 +311,17 @@ impl Reduced {
         } = scratch;
         let (plain, contracted) = (&output.plain, &output.contracted);
         match order {
-            Order::Gradient => return,
-            Order::Hessian => self.instant_plan.hessian(
+            Order::Third => plan.third(
                 [instant, instant],
-                plain,
+                [plain, contracted],
                 BlockMask::HERE,
                 &target,
                 local,
                 values,
             ),
-            Order::Third => self.instant_plan.third(
+            _ => plan.hessian(
                 [instant, instant],
-                [plain, contracted],
+                plain,
                 BlockMask::HERE,
                 &target,
                 local,
@@ -307,8 +331,8 @@ impl Reduced {
         if let Some(tree) = &self.map.tree {
             let values = &mut values[same..];
             match order {
-                Order::Third => tree.curvature_along(instant, &self.curvature, values),
-                _ => tree.curvature(instant, &self.curvature, values),
+                Order::Third => tree.curvature_along(instant, curvature, values),
+                _ => tree.curvature(instant, curvature, values),
             }
         }
     }

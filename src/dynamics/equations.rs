@@ -4,7 +4,7 @@ use crate::coordinates::Configuration;
 use crate::dynamics::drive::Drive;
 use crate::dynamics::interval_energies::Work;
 use crate::dynamics::resolution::Balance;
-use crate::functional::Order;
+use crate::functional::{NodeBlocks, Order};
 use crate::model::Model;
 
 /// The equations that lead from one instant to the next.
@@ -15,8 +15,14 @@ pub trait Equations {
     /// First guess of the unknowns of a step of `h` ms.
     fn guess(&mut self, h: f64);
 
-    /// Writes the residual; at order `Hessian` also the values of the tangent.
-    fn evaluate(&mut self, order: Order, h: f64, residual: &mut [f64]);
+    /// Writes the residual; at order `Hessian` also the tangent, to a matrix of nodes where there is one.
+    fn evaluate(
+        &mut self,
+        order: Order,
+        h: f64,
+        residual: &mut [f64],
+        nodes: Option<&mut NodeBlocks>,
+    );
 
     /// Values of the tangent.
     fn values(&self) -> &[f64];

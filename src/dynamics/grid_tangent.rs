@@ -1,11 +1,13 @@
 //! The matrix of one Newton iteration on box grids of nodes, solved by an iteration with multigrid to the accuracy that the next update
 //! deserves (S. C. Eisenstat, H. F. Walker, SIAM J. Sci. Comput. 17, 1996).
 
-use crate::coordinates::StepPattern;
+use crate::coordinates::Dependence;
 use crate::dynamics::tangent::Tangent;
-use crate::math::{IsOver, Stopped, compact_index};
+use crate::functional::{NodeBlocks, ScalarPlace, Term, VectorPlace};
+use crate::math::{IsOver, Stopped};
 use crate::model::Model;
 use crate::sparse::multigrid::{Multigrid, MultigridReport, NoSolution};
+use std::sync::Arc;
 
 /// Least and largest residual of a linear system relative to that of no update.
 const FORCING: [f64; 2] = [1e-4, 1e-2];
@@ -18,23 +20,12 @@ const KEPT: usize = 250_000;
 const STRONG: f64 = 0.1;
 /// Residual of that solution.
 const OF_POTENTIALS: f64 = 1e-4;
-/// In place of an entry of the matrix.
-const NONE: u32 = u32::MAX;
-
-/// Values of a range of places that go to entries of the matrix, one after the other.
-#[derive(Debug)]
-struct Run {
-    /// Ranges that are summed up begin here.
-    starts: Vec<usize>,
-    targets: Vec<u32>,
-}
 
 /// A matrix on box grids.
 #[derive(Debug)]
 pub(super) struct GridTangent {
-    runs: Vec<Run>,
-    /// The first of the runs that couple potentials with each other.
-    electric: usize,
+    /// The way from derivatives of the action to the matrix.
+    nodes: NodeBlocks,
     solver: Multigrid,
     /// Unknowns from here on are potentials.
     potentials: usize,
@@ -52,67 +43,37 @@ pub(super) struct GridTangent {
     pub(super) direct: fn(&Model) -> Tangent,
 }
 
-/// Places in the values of the action whose numbers make a matrix.
-pub(super) struct Blocks<'a> {
-    /// Of blocks of coordinates at one instant.
-    pub(super) same: &'a [usize],
-    /// Of blocks of coordinates at two instants.
-    pub(super) cross: &'a [usize],
-    /// Of blocks of coordinates and scalars: rows of coordinates, and their columns.
-    pub(super) sides: [&'a [usize]; 2],
-    /// Place of a number that is added to the diagonal of each coordinate and potential.
-    pub(super) added: Option<usize>,
-}
-
 impl GridTangent {
-    /// Of a model whose unknowns are those of box grids; `None` for others.
+    /// Of a model whose unknowns are those of box grids; `None` for others. At rest derivatives by given scalars are kept too.
     pub(super) fn new(
         model: &Model,
-        blocks: &Blocks<'_>,
         direct: fn(&Model) -> Tangent,
+        is_at_rest: bool,
     ) -> Option<Self> {
         let grids = model.node_grids().ok()?;
         let edges = grids.iter().flat_map(|grid| &grid.planes);
         let edges = edges.flat_map(|planes| planes.windows(2).map(|two| two[1] - two[0]));
         let edge = edges.fold(f64::INFINITY, f64::min);
-        let (m, size) = (model.action.map.unknowns(), model.variables.unknown_count());
+        let (map, size) = (&model.action.map, model.variables.unknown_count());
         let solver = Multigrid::new(size, &grids)?;
-        let layout: &StepPattern = model.action.layout();
-        let place = |s: usize| model.variables.place(s);
-        let mut runs = Vec::new();
-        let mut add =
-            |starts: Vec<usize>, entries: &mut dyn Iterator<Item = Option<(usize, usize)>>| {
-                if !starts.is_empty() {
-                    let targets = targets(&solver, entries)?;
-                    runs.push(Run { starts, targets });
-                }
-                Some(())
-            };
-        add(blocks.same.to_vec(), &mut layout.same.entries().map(Some))?;
-        add(blocks.cross.to_vec(), &mut layout.cross.entries().map(Some))?;
-        let entries = || layout.mixed.entries().map(|(i, s)| Some((i, place(s)?)));
-        add(blocks.sides[0].to_vec(), &mut entries())?;
-        let transposed = &mut entries().map(|entry| entry.map(|(i, s)| (s, i)));
-        add(blocks.sides[1].to_vec(), transposed)?;
-        let entries = || {
-            layout
-                .scalars
-                .entries()
-                .map(|(s, t)| Some((place(s)?, place(t)?)))
-        };
-        let scalars = || vec![layout.scalars_at(0)];
-        add(scalars(), &mut entries())?;
-        let transposed =
-            &mut entries().map(|entry| entry.map(|(s, t)| (t, s)).filter(|(s, t)| s != t));
-        add(scalars(), transposed)?;
-        let added = blocks.added.into_iter().collect();
-        add(added, &mut (0..size).map(|i| Some((i, i))))?;
-        let electric = runs.len() - 2 - usize::from(blocks.added.is_some());
+        let sum = &model.action.intervals;
+        let vectors = map.vectors.iter().map(|of| vector_place(&solver, of));
+        let scalars = (0..sum.scalars).map(|s| scalar_place(&solver, model.variables.place(s)));
+        let mut nodes = NodeBlocks::new(vectors.collect(), scalars.collect(), is_at_rest);
+        let is_meant = |term: &&Arc<dyn Term>| !is_at_rest || term.kind().acts_at_rest();
+        for term in sum.terms.iter().filter(is_meant) {
+            let mut are_taken = true;
+            term.couple(&mut |coupling| {
+                are_taken &= coupling.is_none_or(|coupling| nodes.take(coupling));
+            });
+            if !are_taken {
+                return None;
+            }
+        }
         Some(Self {
-            runs,
-            electric,
+            nodes,
             solver,
-            potentials: m,
+            potentials: map.unknowns(),
             edge,
             before: None,
             is_regular: false,
@@ -137,9 +98,22 @@ impl GridTangent {
         self.solver.forget();
     }
 
-    /// Takes the matrix of these values; where a matrix of the grids is singular, nothing is solved.
-    pub(super) fn take(&mut self, values: &[f64]) {
-        self.fill(0, values);
+    /// Lets a matrix be written in place of the last one.
+    pub(super) fn write(&mut self, evaluate: impl FnOnce(&mut NodeBlocks)) {
+        self.nodes.matrix = self.solver.lend();
+        self.nodes.clear();
+        evaluate(&mut self.nodes);
+        let matrix = std::mem::take(&mut self.nodes.matrix);
+        self.solver.hand_back(matrix);
+    }
+
+    /// Derivatives by given scalars, of the matrix that was written.
+    pub(super) fn nodes(&self) -> &NodeBlocks {
+        &self.nodes
+    }
+
+    /// Takes the matrix that was written; where a matrix of the grids is singular, nothing is solved.
+    pub(super) fn take(&mut self) {
         self.is_new = true;
         self.is_regular = self.solver.take_values().is_ok();
     }
@@ -164,20 +138,6 @@ impl GridTangent {
         self.solver.forget();
         self.is_regular = self.solver.take_values().is_ok();
         self.is_regular
-    }
-
-    fn fill(&mut self, first: usize, values: &[f64]) {
-        let matrix = self.solver.values_mut();
-        matrix.fill(0.0);
-        for run in &self.runs[first..] {
-            for &start in &run.starts {
-                for (value, &target) in values[start..].iter().zip(&run.targets) {
-                    if target != NONE {
-                        matrix[target as usize] += value;
-                    }
-                }
-            }
-        }
     }
 
     /// Solves for an update in place, as accurately as it deserves.
@@ -214,36 +174,35 @@ impl GridTangent {
         }
     }
 
-    /// The update that brings potentials to Gauss's law where nothing moves; `None` where they are near it, or it is not found.
+    /// The update that brings potentials to Gauss's law where nothing moves, with the matrix that was written, which is lost; `None` where they are
+    /// near it, or it is not found.
     pub(super) fn potentials_first(
         &mut self,
-        values: &[f64],
         residual: &[f64],
         is_over: IsOver<'_>,
     ) -> Result<Option<Vec<f64>>, Stopped> {
         if self.potentials == residual.len() {
             return Ok(None);
         }
-        self.fill(self.electric, values);
-        let changes = (self.potentials..residual.len()).map(|i| {
-            let diagonal = self.solver.slot(i, i);
-            diagonal.map_or(0.0, |slot| residual[i] / self.solver.values_mut()[slot])
+        let changes = (self.potentials..residual.len()).map(|i| match self.solver.diagonal(i) {
+            0.0 => 0.0,
+            diagonal => residual[i] / diagonal,
         });
         let largest = changes.fold(0.0, |m, change| f64::max(m, change.abs()));
         match largest < STRONG * self.edge {
             true => Ok(None),
-            false => self.potentials_to_law(values, residual, is_over),
+            false => self.potentials_to_law(residual, is_over),
         }
     }
 
-    /// The update that brings potentials to Gauss's law where nothing moves; `None` where it is not found.
+    /// The update that brings potentials to Gauss's law where nothing moves, with the matrix that was written, which is lost; `None` where it is not
+    /// found.
     pub(super) fn potentials_to_law(
         &mut self,
-        values: &[f64],
         residual: &[f64],
         is_over: IsOver<'_>,
     ) -> Result<Option<Vec<f64>>, Stopped> {
-        self.fill(self.electric, values);
+        self.solver.keep_last_components();
         self.solver.forget();
         let mut update = residual.to_vec();
         update[..self.potentials].fill(0.0);
@@ -259,19 +218,37 @@ impl GridTangent {
 /// Outcome of an iteration that may be stopped.
 pub(super) type Iterated = Result<Result<(), NoSolution>, Stopped>;
 
-/// Entries of the matrix by slot; `None` where something couples that are no neighbours.
-fn targets(
-    solver: &Multigrid,
-    entries: &mut dyn Iterator<Item = Option<(usize, usize)>>,
-) -> Option<Vec<u32>> {
-    let target = |entry: Option<(usize, usize)>| {
-        let Some((row, col)) = entry else {
-            return Some(NONE);
-        };
-        match solver.slot(row, col) {
-            Some(slot) => Some(compact_index(slot)),
-            None => (solver.holds(row) || solver.holds(col)).then_some(NONE),
+/// The node that a vector is the place of.
+fn vector_place(solver: &Multigrid, dependence: &Dependence) -> VectorPlace {
+    let parts = match dependence {
+        Dependence::Linear { parts, .. } => parts,
+        Dependence::Articulated(columns) if columns.support.is_empty() => {
+            return VectorPlace::Still;
         }
+        Dependence::Articulated(_) => return VectorPlace::Other,
     };
-    entries.map(target).collect()
+    let mut place = VectorPlace::Still;
+    for part in parts {
+        // What is held does not move.
+        let Some((node, component)) = solver.place(part.coordinate) else {
+            continue;
+        };
+        let mut free = match place {
+            VectorPlace::Still => [false; 3],
+            VectorPlace::Node(known, free) if known == node => free,
+            _ => return VectorPlace::Other,
+        };
+        if component != part.axis || part.factor != 1.0 {
+            return VectorPlace::Other;
+        }
+        free[part.axis] = true;
+        place = VectorPlace::Node(node, free);
+    }
+    place
+}
+
+/// The node that a scalar with this unknown belongs to.
+fn scalar_place(solver: &Multigrid, unknown: Option<usize>) -> ScalarPlace {
+    let node = unknown.and_then(|unknown| solver.place(unknown));
+    node.map_or(ScalarPlace::Given, |(node, _)| ScalarPlace::Node(node))
 }

@@ -11,16 +11,13 @@
 use crate::coordinates::{Configuration as Place, Interval, Scratch};
 use crate::dynamics::drive::Drive;
 use crate::dynamics::equations::Equations;
-use crate::dynamics::grid_tangent::{Blocks, GridTangent};
+use crate::dynamics::midpoint_matrix::step_matrix;
 use crate::dynamics::resolution::{Balance, typical_energy};
-use crate::dynamics::solving::{Newton, Solving};
-use crate::dynamics::step_matrix::StepMatrix;
+use crate::dynamics::solving::Solving;
 use crate::dynamics::stepper::Steps;
-use crate::dynamics::tangent::{EntryList, Tangent};
-use crate::functional::{BlockMask, Order};
+use crate::functional::{BlockMask, NodeBlocks, Order};
 use crate::math::Vector;
 use crate::model::Model;
-use crate::sparse::{Backend, DENSE};
 use std::slice;
 
 /// Steps of the midpoint rule.
@@ -59,12 +56,13 @@ impl<'m> Stepper<'m> {
     /// Starts at coordinates `z` with the momentum of each coordinate at time zero.
     pub fn new(model: &'m Model, z: &[f64], momentum: &[f64], solving: Solving) -> Self {
         let map = &model.action.map;
-        let (n, layout) = (map.coordinates, model.action.layout());
+        let n = map.coordinates;
         let (sizes, algebraic) = (model.sizes(), model.variables.algebraic());
         let (mut here, next) = (map.instant(), map.instant());
         here.z.copy_from_slice(z);
         map.place(&mut here);
-        let equations = Midpoint {
+        let matrix = step_matrix(model, solving);
+        let mut equations = Midpoint {
             model,
             here,
             next,
@@ -77,13 +75,15 @@ impl<'m> Stepper<'m> {
             sizes: sizes[..n].to_vec(),
             lengths: [0.0; 2],
             time: 0.0,
-            scratch: model.action.scratch(Order::Hessian),
-            values: vec![0.0; layout.values(1)],
-            scalars: vec![0.0; layout.interval_scalars],
+            scratch: model.action.scratch(Order::Gradient),
+            values: Vec::new(),
+            scalars: vec![0.0; model.action.intervals.scalars],
             saved: [map.multipliers, algebraic.len()].map(|count| vec![0.0; count]),
         };
+        if matrix.direct().is_some() {
+            equations.lay_down();
+        }
         let held = model.prescribed_coordinates();
-        let matrix = step_matrix(model, solving);
         Self::by(equations, (matrix, held), sizes, solving.newton)
     }
 
@@ -103,55 +103,14 @@ impl<'m> Stepper<'m> {
     }
 }
 
-/// The matrix of a step: on box grids where these are wanted and hold all unknowns, otherwise factorised.
-fn step_matrix(model: &Model, solving: Solving) -> StepMatrix {
-    let layout = model.action.layout();
-    let blocks = Blocks {
-        same: &[],
-        cross: &[layout.upper_at(0)],
-        sides: [&[layout.mixed_at(0, 0)], &[layout.mixed_at(0, 1)]],
-        added: None,
-    };
-    let direct = |model: &Model| direct(model, Newton::Modified, None);
-    let is_wanted = solving.takes_grids(model.variables.unknown_count());
-    let grids = is_wanted.then(|| GridTangent::new(model, &blocks, direct));
-    match grids.flatten() {
-        Some(grids) => StepMatrix::Grids(Box::new(grids)),
-        None => StepMatrix::Direct(Box::new(self::direct(
-            model,
-            solving.newton,
-            solving.backend,
-        ))),
-    }
-}
-
-/// The matrix of a step, factorised.
-fn direct(model: &Model, newton: Newton, backend: Option<Backend>) -> Tangent {
-    let map = &model.action.map;
-    let (n, layout) = (map.coordinates, model.action.layout());
-    let mut entries = EntryList::default();
-    for (slot, entry) in layout.cross.entries().enumerate() {
-        entries.add(layout.upper_at(0) + slot, entry);
-    }
-    for (slot, (row, col)) in layout.same.entries().enumerate() {
-        if row < n && col >= n {
-            entries.add(layout.same_at(0) + slot, (row, col));
-        }
-        if row >= n && col < n {
-            entries.add(layout.same_at(1) + slot, (row, col));
-        }
-    }
-    entries.add_scalars(model, &[[0, 1]]);
-    entries.hold(&model.prescribed_coordinates(), 1.0);
-    let (size, symmetry) = (model.variables.unknown_count(), model.step_symmetry());
-    let is_corrected = newton == Newton::Modified && backend.is_none();
-    match is_corrected && map.multipliers == 0 && size > DENSE {
-        true => entries.corrected_tangent(model, symmetry),
-        false => entries.tangent(size, symmetry, backend),
-    }
-}
-
 impl Midpoint<'_> {
+    /// Makes room for the values of a tangent.
+    fn lay_down(&mut self) {
+        let action = &self.model.action;
+        self.scratch = action.scratch(Order::Hessian);
+        self.values = vec![0.0; action.layout().values(1)];
+    }
+
     /// Measures the changes of the coordinates in the step that the last update led to.
     fn measure_step(&mut self) {
         let n = self.differences.len();
@@ -188,7 +147,18 @@ impl Equations for Midpoint<'_> {
         self.next.z[n..].copy_from_slice(&self.here.z[n..]);
     }
 
-    fn evaluate(&mut self, order: Order, h: f64, residual: &mut [f64]) {
+    fn evaluate(
+        &mut self,
+        order: Order,
+        h: f64,
+        residual: &mut [f64],
+        nodes: Option<&mut NodeBlocks>,
+    ) {
+        let has_values = order >= Order::Hessian && nodes.is_none();
+        if has_values && self.values.is_empty() {
+            // Factors take over.
+            self.lay_down();
+        }
         let action = &self.model.action;
         let (n, m) = (action.map.coordinates, action.map.unknowns());
         let Self {
@@ -203,7 +173,7 @@ impl Equations for Midpoint<'_> {
         for instant in [&mut *here, &mut *next] {
             instant.forces.fill(Vector::zeros());
         }
-        if order >= Order::Hessian {
+        if has_values {
             // What stands before and behind is read where there are multipliers.
             let layout = action.layout();
             let read = match m > n {
@@ -218,8 +188,13 @@ impl Equations for Midpoint<'_> {
             sides: BlockMask::FORWARD,
             ..Interval::given(scalars, h)
         };
-        action.evaluate_interval(order, [here, next], &interval, scratch);
-        action.pull_back_interval(order, [here, next], &interval, 0, scratch, values);
+        match nodes {
+            Some(nodes) => action.evaluate_at_nodes([here, next], &interval, scratch, nodes),
+            None => {
+                action.evaluate_interval(order, [here, next], &interval, scratch);
+                action.pull_back_interval(order, [here, next], &interval, 0, scratch, values);
+            }
+        }
         let rows = &scratch.interval.plain.rows[self.model.variables.algebraic()];
         residual[m..].copy_from_slice(rows);
         if m > n {

@@ -32,6 +32,7 @@ mod kinetic;
 mod local_error;
 mod loop_rates;
 mod midpoint;
+mod midpoint_matrix;
 mod momenta;
 mod observe;
 mod part_columns;

@@ -83,6 +83,12 @@ pub enum MultigridUse {
 const LARGE: usize = 20_000;
 
 impl Solving {
+    /// Returns true if an iteration may solve for the unknowns of a step.
+    pub fn may_iterate(&self) -> bool {
+        let is_midpoint = self.integrator == Integrator::Midpoint;
+        is_midpoint && (self.backend.is_none() || self.multigrid == MultigridUse::Always)
+    }
+
     /// Returns true if so many unknowns on box grids are solved for by an iteration.
     pub(super) fn takes_grids(&self, unknowns: usize) -> bool {
         match self.multigrid {

@@ -60,7 +60,7 @@ impl StepMatrix {
             Self::Grids(grids) => {
                 // What follows from the matrix alone can be resumed with the same bits.
                 grids.forget();
-                grids.take(values);
+                grids.take();
                 Ok(Ok(()))
             }
         }

@@ -70,6 +70,7 @@ impl<E: Equations> Steps<E> {
                 .fall_back_with_room(self.equations.model()) =>
             {
                 self.report.fallbacks += 1;
+                self.evaluate(Order::Hessian, h);
                 self.factor(h)?;
                 self.solve_once(h)?.unwrap_or(f64::NAN)
             }
@@ -117,8 +118,7 @@ impl<E: Equations> Steps<E> {
         let Some(grids) = self.updates.matrix.grids_mut() else {
             return Ok(false);
         };
-        let (values, residual) = (self.equations.values(), &self.residual);
-        let update = grids.potentials_first(values, residual, &|| reached().is_some());
+        let update = grids.potentials_first(&self.residual, &|| reached().is_some());
         self.count();
         match update {
             Ok(None) => Ok(false),

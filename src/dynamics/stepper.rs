@@ -246,7 +246,16 @@ impl<E: Equations> Steps<E> {
 
     /// Evaluates the equations; those of prescribed unknowns hold.
     pub(super) fn evaluate(&mut self, order: Order, h: f64) {
-        self.equations.evaluate(order, h, &mut self.residual);
+        let grids = self.updates.matrix.grids_mut();
+        match grids.filter(|_| order >= Order::Hessian) {
+            Some(grids) => {
+                // The matrix of a step before is no more.
+                self.factored = None;
+                let residual = &mut self.residual;
+                grids.write(|nodes| self.equations.evaluate(order, h, residual, Some(nodes)));
+            }
+            None => self.equations.evaluate(order, h, &mut self.residual, None),
+        }
         for &unknown in &self.held {
             self.residual[unknown] = 0.0;
         }

@@ -1,8 +1,23 @@
 //! Couplings: pairs of vectors and scalars with mixed second derivatives, and the blocks of these.
 
 use crate::math::{Matrix, Vector};
-use nalgebra::SMatrix;
 use rustc_hash::FxHashMap;
+
+/// Two arguments with mixed second derivatives.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Coupling {
+    /// Vectors with a full 3 × 3 block.
+    Full(usize, usize),
+    /// Vectors whose block is a multiple of the identity.
+    Isotropic(usize, usize),
+    /// Vector and scalar.
+    Mixed(usize, usize),
+    /// Scalars.
+    Scalars(usize, usize),
+}
+
+/// In place of the slot of arguments that do not couple.
+pub(super) const NONE: u32 = u32::MAX;
 
 /// The pairs that couple at one site; laid down once by the terms, the same for every interval.
 ///
@@ -32,6 +47,17 @@ impl Couplings {
             list.push(pair);
             list.len() as u32 - 1
         }) as usize
+    }
+
+    /// Slot of a coupling, should there be one.
+    pub fn add(&mut self, coupling: Option<Coupling>) -> u32 {
+        match coupling {
+            None => NONE,
+            Some(Coupling::Full(a, b)) => self.add_full(a, b) as u32,
+            Some(Coupling::Isotropic(a, b)) => self.add_isotropic(a, b) as u32,
+            Some(Coupling::Mixed(a, s)) => self.add_mixed(a, s) as u32,
+            Some(Coupling::Scalars(s, t)) => self.add_scalars(s, t) as u32,
+        }
     }
 
     /// Slot of a full block of the vectors a, b.
@@ -104,65 +130,4 @@ impl BlockMask {
     pub const HERE: Self = Self {
         blocks: [true, false, false, false],
     };
-}
-
-/// First and second derivatives of a sum on one interval.
-#[derive(Clone, Debug, Default)]
-pub struct SumDerivatives {
-    /// ∂/∂x_k and ∂/∂x_{k+1}.
-    pub forces: [Vec<Vector>; 2],
-    /// ∂/∂s.
-    pub rows: Vec<f64>,
-    /// Second derivatives.
-    pub blocks: Blocks,
-    /// ∂²/∂x∂h at both instants.
-    pub horizon_forces: [Vec<Vector>; 2],
-    /// ∂²/∂s∂h.
-    pub horizon_rows: Vec<f64>,
-    /// ∂²/∂h².
-    pub horizon: f64,
-}
-
-impl SumDerivatives {
-    /// Zeros for first derivatives, and for second ones at these couplings.
-    pub fn new(vectors: usize, scalars: usize, couplings: Option<&Couplings>) -> Self {
-        let zeros = || vec![Vector::zeros(); vectors];
-        let blocks = |c: &Couplings| Blocks {
-            full: vec![[Matrix::zeros(); 4]; c.full.len()],
-            isotropic: vec![[0.0; 4]; c.isotropic.len()],
-            mixed: vec![[Vector::zeros(); 2]; c.mixed.len()],
-            scalars: vec![0.0; c.scalars.len()],
-        };
-        Self {
-            forces: [zeros(), zeros()],
-            rows: vec![0.0; scalars],
-            blocks: couplings.map(blocks).unwrap_or_default(),
-            horizon_forces: [zeros(), zeros()],
-            horizon_rows: vec![0.0; scalars],
-            horizon: 0.0,
-        }
-    }
-
-    /// Back to zero, first derivatives alone or second ones too.
-    pub fn clear(&mut self, second: bool) {
-        self.forces.iter_mut().for_each(|side| clear(side));
-        self.rows.fill(0.0);
-        if !second {
-            return;
-        }
-        clear(self.blocks.full.as_flattened_mut());
-        self.blocks.isotropic.as_flattened_mut().fill(0.0);
-        clear(self.blocks.mixed.as_flattened_mut());
-        self.blocks.scalars.fill(0.0);
-        self.horizon_forces.iter_mut().for_each(|side| clear(side));
-        self.horizon_rows.fill(0.0);
-        self.horizon = 0.0;
-    }
-}
-
-/// Number by number, which is one call for all bytes.
-fn clear<const R: usize, const C: usize>(list: &mut [SMatrix<f64, R, C>]) {
-    for one in list {
-        one.as_mut_slice().fill(0.0);
-    }
 }

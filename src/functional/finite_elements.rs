@@ -8,12 +8,13 @@ use crate::functional::{Kernel, Order, Sample, ScalarArg, Scatter, Stencil, Vect
 use crate::math::{Derivatives, Matrix, Vector};
 use std::fmt;
 use std::marker::PhantomData;
+use std::sync::Arc;
 
 /// One finite element: its geometry, its law, and its arguments.
 #[derive(Clone, Debug)]
 pub struct FiniteElement<F: Electrical, L = NeoHooke, const NODES: usize = 8> {
-    /// Gradients of the shape functions.
-    pub shape: ElementGeometry<NODES>,
+    /// Gradients of the shape functions, which all elements of one place share.
+    pub shape: Arc<ElementGeometry<NODES>>,
     /// The law.
     pub law: Elastomer<F, L>,
     /// Vectors of the nodes.

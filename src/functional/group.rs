@@ -5,7 +5,7 @@ use crate::functional::border::{Border, BorderAlong, Rates};
 use crate::functional::scatter::{ALL, Places};
 use crate::functional::slots::{self, Slots};
 use crate::functional::{
-    Couplings, Horizon, Kernel, Order, Output, Sample, Scatter, Term, TermKind,
+    Coupling, Horizon, Kernel, Order, Output, Sample, Scatter, Term, TermKind,
 };
 use crate::math::{Derivatives, Vector};
 use std::fmt;
@@ -55,12 +55,12 @@ impl<K: Kernel> Group<K> {
         }
     }
 
-    /// Registers the couplings of the elements, and lists their slots.
-    pub(super) fn register(&self, couplings: &mut Couplings, slots: &mut Vec<u32>) {
+    /// Hands over the couplings of the elements.
+    pub(super) fn hand_over(&self, to: &mut dyn FnMut(Option<Coupling>)) {
         // Multipliers do not meet in second derivatives.
         let has_scalars = self.site == Site::Intervals;
         for element in &self.elements {
-            slots::couple::<K>(element, has_scalars, couplings, slots);
+            slots::couple::<K>(element, has_scalars, to);
         }
     }
 
@@ -220,8 +220,8 @@ impl<K: Kernel> Term for Group<K> {
         self.elements.len()
     }
 
-    fn couple(&self, couplings: &mut Couplings, slots: &mut Vec<u32>) {
-        self.register(couplings, slots);
+    fn couple(&self, to: &mut dyn FnMut(Option<Coupling>)) {
+        self.hand_over(to);
     }
 
     fn reading(&self, is_meant: &dyn Fn(usize) -> bool) -> Option<Arc<dyn Term>> {

@@ -105,7 +105,7 @@ impl Impulse {
             mixed,
             scalars: pairs,
             ..
-        } = &functional.couplings;
+        } = functional.couplings();
         let once = |mut list: Vec<usize>| {
             list.sort_unstable();
             list.dedup();
@@ -248,7 +248,7 @@ macro_rules! add {
 
 impl Measure for Impulse {
     fn couple(&self, couplings: &mut Couplings, slots: &mut Vec<u32>) {
-        let own = &self.functional.couplings;
+        let own = self.functional.couplings();
         let mut add = |slot: usize| slots.push(slot as u32);
         own.full
             .iter()

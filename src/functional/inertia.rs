@@ -1,6 +1,8 @@
 //! Kinetic energy of constant masses: the one term whose second derivative never changes.
 
-use crate::functional::{BlockMask, Couplings, Horizon, Order, Output, Sample, Term, TermKind};
+use crate::functional::{
+    BlockMask, Coupling, Horizon, NodeBlocks, Order, Output, Sample, Term, TermKind,
+};
 use crate::math::{Vector, compact_index};
 use std::sync::Arc;
 
@@ -81,9 +83,9 @@ impl Term for Inertia {
         self.masses
     }
 
-    fn couple(&self, couplings: &mut Couplings, slots: &mut Vec<u32>) {
+    fn couple(&self, to: &mut dyn FnMut(Option<Coupling>)) {
         for [a, b] in self.entries.iter().map(|e| e.vectors()) {
-            slots.push(couplings.add_isotropic(a, b) as u32);
+            to(Some(Coupling::Isotropic(a, b)));
         }
     }
 
@@ -128,7 +130,10 @@ impl Term for Inertia {
         let plain = &mut out.plain;
         self.add_momenta(sample.vectors, r, 1.0, &mut plain.forces);
         if order >= Order::Hessian {
-            self.add_blocks(r, sample.sides, slots, &mut plain.blocks.isotropic);
+            match &mut plain.nodes {
+                Some(nodes) => self.add_to_nodes(r, sample.sides, nodes),
+                None => self.add_blocks(r, sample.sides, slots, &mut plain.blocks.isotropic),
+            }
             if is_free {
                 self.add_momenta(sample.vectors, r, -r, &mut plain.horizon_forces);
             }
@@ -163,14 +168,21 @@ impl Inertia {
 
     /// Adds ±r m to the blocks that are asked for.
     fn add_blocks(&self, r: f64, mask: BlockMask, slots: &[u32], blocks: &mut [[f64; 4]]) {
-        const SIGNS: [f64; 4] = [1.0, -1.0, -1.0, 1.0];
-        let mut factors = [0.0; 4];
-        for side in (0..4).filter(|&side| mask.blocks[side]) {
-            factors[side] = SIGNS[side] * r;
-        }
+        let factors = factors(r, mask);
         for (e, &slot) in self.entries.iter().zip(slots) {
             for (entry, factor) in blocks[slot as usize].iter_mut().zip(factors) {
                 *entry += factor * e.mass;
+            }
+        }
+    }
+
+    /// Adds the sum of the blocks that are asked for to a matrix of nodes.
+    fn add_to_nodes(&self, r: f64, mask: BlockMask, nodes: &mut NodeBlocks) {
+        let factor: f64 = factors(r, mask).iter().sum();
+        for e in &self.entries {
+            let [a, b] = e.vectors();
+            if let Some(pair) = nodes.pair(a, b) {
+                nodes.add_isotropic(pair, factor * e.mass);
             }
         }
     }
@@ -183,4 +195,14 @@ impl Inertia {
             *sum += 2.0 * e.mass * (y[b] - x[b]).dot(&(wy[a] - wx[a])) * r * r * r;
         }
     }
+}
+
+/// Factors ±r of the blocks that are asked for; zero of others.
+fn factors(r: f64, mask: BlockMask) -> [f64; 4] {
+    const SIGNS: [f64; 4] = [1.0, -1.0, -1.0, 1.0];
+    let mut factors = [0.0; 4];
+    for side in (0..4).filter(|&side| mask.blocks[side]) {
+        factors[side] = SIGNS[side] * r;
+    }
+    factors
 }

@@ -4,6 +4,7 @@ use crate::element::{BranchLocal, ElementGeometry, MaxwellSpring, ViscousStrains
 use crate::functional::finite_elements::middle;
 use crate::functional::{Kernel, Order, Sample, Scatter, Stencil, VectorArg};
 use crate::math::{Derivatives, Matrix, Vector};
+use std::sync::Arc;
 
 /// Gauss points of an element.
 pub const POINTS: usize = 8;
@@ -11,8 +12,8 @@ pub const POINTS: usize = 8;
 /// One branch of a finite element.
 #[derive(Clone, Debug)]
 pub struct MaxwellElement<const NODES: usize = 8> {
-    /// Gradients of the shape functions.
-    pub shape: ElementGeometry<NODES>,
+    /// Gradients of the shape functions, which all elements of one place share.
+    pub shape: Arc<ElementGeometry<NODES>>,
     /// The law.
     pub law: MaxwellSpring,
     /// Vectors of the nodes.

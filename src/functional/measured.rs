@@ -99,7 +99,7 @@ impl<K: Kernel> Scatter for Weighted<'_, K> {
 
 impl<K: Kernel> Measure for Group<K> {
     fn couple(&self, couplings: &mut Couplings, slots: &mut Vec<u32>) {
-        self.register(couplings, slots);
+        self.hand_over(&mut |coupling| slots.push(couplings.add(coupling)));
     }
 
     fn vectors(&self) -> Vec<usize> {

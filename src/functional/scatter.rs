@@ -1,7 +1,7 @@
 //! The one loop that adds derivatives of elements to forces, blocks and couplings.
 
 use crate::functional::slots::Slots;
-use crate::functional::{BlockMask, Kernel, Sample, SumDerivatives};
+use crate::functional::{BlockMask, Kernel, NodeBlocks, Sample, SumDerivatives};
 use crate::math::{Derivatives, Matrix, Vector};
 use std::ops::Range;
 
@@ -65,6 +65,9 @@ impl<'a, K: Kernel> Places<'a, K> {
         d: &D,
         part: &mut SumDerivatives,
     ) {
+        if let Some(nodes) = &mut part.nodes {
+            return self.at_nodes(c, (rows, columns), d, nodes);
+        }
         self.blocks(c, (rows.clone(), columns), d, part);
         let vectors = K::vectors(self.element);
         for i in 0..vectors * K::READINGS {
@@ -156,5 +159,74 @@ impl<'a, K: Kernel> Places<'a, K> {
                 part.blocks.scalars[slot] += c * factor * other * d.entry(s, t);
             }
         }
+    }
+
+    /// The same, to a matrix of nodes: the sum of the blocks that are asked for.
+    #[inline(always)]
+    fn at_nodes<D: Derivatives>(
+        &self,
+        c: f64,
+        (rows, columns): (Range<usize>, Range<usize>),
+        d: &D,
+        nodes: &mut NodeBlocks,
+    ) {
+        let vectors = K::vectors(self.element);
+        let vector = |i: usize| K::vector(self.element, i);
+        for a in 0..vectors {
+            for b in 0..vectors {
+                let Some(pair) = nodes.pair(vector(a).vector, vector(b).vector) else {
+                    continue;
+                };
+                let mut sum = Matrix::zeros();
+                for k in 0..K::READINGS {
+                    for l in 0..K::READINGS {
+                        let (i, j) = (k * vectors + a, l * vectors + b);
+                        if rows.contains(&i) && columns.contains(&j) && K::couples(i, j) {
+                            let weight = c * self.weight(i, j);
+                            if weight != 0.0 {
+                                sum += d.block(i, j) * weight;
+                            }
+                        }
+                    }
+                }
+                match K::ISOTROPIC {
+                    true => nodes.add_isotropic(pair, sum[(0, 0)]),
+                    false => nodes.add_full(pair, &sum),
+                }
+            }
+        }
+        let [of_rows, of_columns] = self.mask.instants();
+        let sum = |weights: [f64; 2], read: [bool; 2]| {
+            let read = weights.into_iter().zip(read).filter(|(_, read)| *read);
+            read.map(|(weight, _)| weight).sum::<f64>()
+        };
+        for s in 0..K::scalars(self.element) {
+            let Some((at, factor)) = K::scalar(self.element, s) else {
+                continue;
+            };
+            for i in (0..vectors * K::READINGS).filter(|i| rows.contains(i)) {
+                let weights = vector(i).stencil.weights(self.h);
+                let column = d.column(i, s) * (c * factor);
+                let parts = [of_rows, of_columns].map(|read| column * sum(weights, read));
+                nodes.add_mixed(vector(i).vector, at, parts);
+            }
+            for t in 0..K::scalars(self.element) {
+                // Each pair once, as among couplings.
+                if let Some((other, by)) = K::scalar(self.element, t)
+                    && other <= at
+                {
+                    nodes.add_scalars(at, other, c * factor * by * d.entry(s, t));
+                }
+            }
+        }
+    }
+
+    /// Sum of the products of weights of two arguments over the blocks that are asked for.
+    #[inline(always)]
+    fn weight(&self, i: usize, j: usize) -> f64 {
+        let weights = |i: usize| K::vector(self.element, i).stencil.weights(self.h);
+        let (wi, wj) = (weights(i), weights(j));
+        let sides = (0..4).filter(|&side| self.mask.blocks[side]);
+        sides.map(|side| wi[side / 2] * wj[side % 2]).sum()
     }
 }

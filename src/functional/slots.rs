@@ -1,9 +1,7 @@
 //! Positions of the second derivatives of one element.
 
-use crate::functional::{Couplings, Kernel};
-
-/// No slot.
-const NONE: u32 = u32::MAX;
+use crate::functional::couplings::NONE;
+use crate::functional::{Coupling, Kernel};
 
 /// The slots of one element: pairs of vectors, then of vectors and scalars, then of scalars.
 #[derive(Clone, Copy, Default)]
@@ -14,7 +12,7 @@ pub(super) struct Slots<'a> {
 }
 
 impl<'a> Slots<'a> {
-    /// The first slots of a list are those of the element; they are taken off it.
+    /// The first slots of a list are those of the element; they are taken off it. A list without slots serves where no blocks are asked for.
     #[inline(always)]
     pub(super) fn take<K: Kernel>(element: &K::Element, list: &mut &'a [u32]) -> Self {
         let (vectors, scalars) = (K::vectors(element), K::scalars(element));
@@ -22,7 +20,7 @@ impl<'a> Slots<'a> {
             true => vectors * (vectors + scalars) + scalars * scalars,
             false => 0,
         };
-        let (own, rest) = list.split_at(count);
+        let (own, rest) = list.split_at(count.min(list.len()));
         *list = rest;
         Self {
             list: own,
@@ -40,7 +38,7 @@ impl<'a> Slots<'a> {
     /// Slot of a vector and a scalar that is none of the constants.
     #[inline(always)]
     pub(super) fn mixed(self, a: usize, s: usize) -> Option<usize> {
-        self.slot(self.vectors * self.vectors + self.scalars * a + s)
+        self.slot(self.vectors * (self.vectors + s) + a)
     }
 
     /// Slot of two scalars; `None` where they do not couple, and for one order of two different ones.
@@ -57,12 +55,11 @@ impl<'a> Slots<'a> {
     }
 }
 
-/// Registers the couplings of an element; `has_scalars` is true if its scalars couple with each other.
+/// Hands over the couplings of an element in the order of its slots; `has_scalars` is true if its scalars couple with each other.
 pub(super) fn couple<K: Kernel>(
     element: &K::Element,
     has_scalars: bool,
-    couplings: &mut Couplings,
-    slots: &mut Vec<u32>,
+    to: &mut dyn FnMut(Option<Coupling>),
 ) {
     if K::DEGREE < 2 {
         return;
@@ -77,7 +74,7 @@ pub(super) fn couple<K: Kernel>(
         scalar: &|s| K::scalar(element, s).map(|(at, _)| at),
         couples: K::couples,
     }
-    .couple(couplings, slots);
+    .couple(to);
 }
 
 /// The arguments of an element of any kernel.
@@ -94,34 +91,28 @@ struct Arguments<'a> {
 }
 
 impl Arguments<'_> {
-    fn couple(&self, couplings: &mut Couplings, slots: &mut Vec<u32>) {
+    fn couple(&self, to: &mut dyn FnMut(Option<Coupling>)) {
         for a in 0..self.vectors {
             for b in 0..self.vectors {
                 let (row, column) = ((self.vector)(a), (self.vector)(b));
-                slots.push(match (self.are_coupled(a, b), self.is_isotropic) {
-                    (false, _) => NONE,
-                    (true, true) => couplings.add_isotropic(row, column) as u32,
-                    (true, false) => couplings.add_full(row, column) as u32,
+                to(match (self.are_coupled(a, b), self.is_isotropic) {
+                    (false, _) => None,
+                    (true, true) => Some(Coupling::Isotropic(row, column)),
+                    (true, false) => Some(Coupling::Full(row, column)),
                 });
             }
         }
-        let first = slots.len();
-        slots.resize(first + self.scalars * (self.vectors + self.scalars), NONE);
-        let own = &mut slots[first..];
         for s in 0..self.scalars {
-            let Some(at) = (self.scalar)(s) else {
-                continue;
-            };
             for a in 0..self.vectors {
-                own[self.scalars * a + s] = couplings.add_mixed((self.vector)(a), at) as u32;
+                to((self.scalar)(s).map(|at| Coupling::Mixed((self.vector)(a), at)));
             }
+        }
+        for s in 0..self.scalars {
             for t in 0..self.scalars {
                 // Pairs of different scalars are met twice, once in each order, and kept once.
-                let other = (self.scalar)(t).filter(|&other| self.has_scalars && other <= at);
-                if let Some(other) = other {
-                    let slot = couplings.add_scalars(at, other) as u32;
-                    own[self.scalars * (self.vectors + s) + t] = slot;
-                }
+                let pair = (self.scalar)(s).zip((self.scalar)(t));
+                let pair = pair.filter(|(at, other)| self.has_scalars && other <= at);
+                to(pair.map(|(at, other)| Coupling::Scalars(at, other)));
             }
         }
     }

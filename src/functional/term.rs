@@ -1,9 +1,9 @@
 //! A term of a sum, and the sum.
 
-use crate::functional::{BlockMask, Couplings, Outer, SumDerivatives};
+use crate::functional::{BlockMask, Coupling, Couplings, Outer, SumDerivatives};
 use crate::math::Vector;
 use std::fmt::Debug;
-use std::sync::Arc;
+use std::sync::{Arc, OnceLock};
 
 /// Highest order of the derivatives that are asked for.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
@@ -106,8 +106,8 @@ pub trait Term: Debug + Send + Sync {
     /// Returns the number of elements.
     fn elements(&self) -> usize;
 
-    /// Registers the couplings of the elements, and lists the slots that they got in the order in which they are read.
-    fn couple(&self, couplings: &mut Couplings, slots: &mut Vec<u32>);
+    /// Hands over the couplings of the elements in the order in which their slots are read; nothing for arguments that do not couple.
+    fn couple(&self, to: &mut dyn FnMut(Option<Coupling>));
 
     /// The elements that read one of some vectors as a term; none where there are no such elements.
     fn reading(&self, is_meant: &dyn Fn(usize) -> bool) -> Option<Arc<dyn Term>>;
@@ -144,7 +144,7 @@ pub trait Term: Debug + Send + Sync {
     /// Adds the derivatives of the momenta at vectors and rates along changes `by` of both.
     fn momentum_along(&self, at: [&[Vector]; 2], by: [&[Vector]; 2], out: &mut [Vector]);
 
-    /// Adds the derivatives; `slots` are those of its couplings.
+    /// Adds the derivatives; `slots` are those of its couplings, and are not read where no blocks are asked for.
     fn evaluate(&self, order: Order, sample: &Sample<'_>, slots: &[u32], out: &mut Output);
 }
 
@@ -195,16 +195,21 @@ pub struct Functional {
     pub terms: Vec<Arc<dyn Term>>,
     /// The quantities.
     pub measures: Vec<Box<dyn Measure>>,
-    /// Couplings of vectors and scalars in them.
-    pub couplings: Couplings,
-    /// Slots of the couplings of each term.
-    effect_slots: Vec<Vec<u32>>,
-    /// Slots of the couplings of each quantity.
-    measure_slots: Vec<Vec<u32>>,
+    laid: OnceLock<Laid>,
     /// Number of vectors.
     pub vectors: usize,
     /// Number of scalars of the site.
     pub scalars: usize,
+}
+
+/// Couplings of a sum, laid down where blocks are asked for.
+#[derive(Debug)]
+struct Laid {
+    couplings: Couplings,
+    /// Slots of the couplings of each term.
+    effect_slots: Vec<Vec<u32>>,
+    /// Slots of the couplings of each quantity.
+    measure_slots: Vec<Vec<u32>>,
 }
 
 impl Functional {
@@ -215,37 +220,61 @@ impl Functional {
         vectors: usize,
         scalars: usize,
     ) -> Self {
-        let mut couplings = Couplings::default();
-        let mut laid = |couple: &dyn Fn(&mut Couplings, &mut Vec<u32>)| {
-            let mut slots = Vec::new();
-            couple(&mut couplings, &mut slots);
-            slots
-        };
-        let of_term = |term: &dyn Term| laid(&|c, slots| term.couple(c, slots));
-        let effect_slots = terms.iter().map(Arc::as_ref).map(of_term).collect();
-        let of_measure = |measure: &dyn Measure| laid(&|c, slots| measure.couple(c, slots));
-        let measure_slots = measures.iter().map(Box::as_ref).map(of_measure).collect();
         Self {
             terms,
             measures,
-            couplings,
-            effect_slots,
-            measure_slots,
+            laid: OnceLock::new(),
             vectors,
             scalars,
         }
     }
 
+    fn laid(&self) -> &Laid {
+        self.laid.get_or_init(|| {
+            let mut couplings = Couplings::default();
+            let mut of_term = |term: &Arc<dyn Term>| {
+                let mut slots = Vec::new();
+                term.couple(&mut |coupling| slots.push(couplings.add(coupling)));
+                slots.shrink_to_fit();
+                slots
+            };
+            let effect_slots = self.terms.iter().map(&mut of_term).collect();
+            let mut of_measure = |measure: &Box<dyn Measure>| {
+                let mut slots = Vec::new();
+                measure.couple(&mut couplings, &mut slots);
+                slots
+            };
+            let measure_slots = self.measures.iter().map(&mut of_measure).collect();
+            Laid {
+                couplings,
+                effect_slots,
+                measure_slots,
+            }
+        })
+    }
+
+    /// Couplings of vectors and scalars in terms and quantities.
+    pub fn couplings(&self) -> &Couplings {
+        &self.laid().couplings
+    }
+
     /// The terms with the slots of their couplings.
     pub fn terms(&self) -> impl Iterator<Item = (&dyn Term, &[u32])> {
-        let terms = self.terms.iter().map(Arc::as_ref);
-        terms.zip(self.effect_slots.iter().map(Vec::as_slice))
+        self.with_slots(true)
+    }
+
+    /// The same, without slots where no blocks are asked for.
+    fn with_slots(&self, is_asked: bool) -> impl Iterator<Item = (&dyn Term, &[u32])> {
+        let laid = is_asked.then(|| self.laid());
+        let slots = move |i: usize| laid.map_or(&[][..], |laid| &laid.effect_slots[i]);
+        let terms = self.terms.iter().enumerate();
+        terms.map(move |(i, term)| (term.as_ref(), slots(i)))
     }
 
     /// Storage for the derivatives up to a order.
     pub fn output(&self, order: Order) -> Output {
         let part = |least: Order| {
-            let couplings = (order >= least).then_some(&self.couplings);
+            let couplings = (order >= least).then(|| self.couplings());
             SumDerivatives::new(self.vectors, self.scalars, couplings)
         };
         Output {
@@ -261,8 +290,9 @@ impl Functional {
     /// The derivatives of what acts at rest up to the second, on one interval, in place of the contents of `out`.
     pub fn evaluate_at_rest(&self, sample: &Sample<'_>, out: &mut Output) {
         out.plain.clear(true);
+        let has_blocks = out.plain.nodes.is_none();
         let at_rest = |(term, _): &(&dyn Term, &[u32])| term.kind().acts_at_rest();
-        for (term, slots) in self.terms().filter(at_rest) {
+        for (term, slots) in self.with_slots(has_blocks).filter(at_rest) {
             term.evaluate(Order::Hessian, sample, slots, out);
         }
     }
@@ -273,11 +303,12 @@ impl Functional {
         if order == Order::Third {
             out.contracted.clear(true);
         }
-        for (term, slots) in self.terms() {
+        let has_blocks = order >= Order::Hessian && out.plain.nodes.is_none();
+        for (term, slots) in self.with_slots(has_blocks) {
             term.evaluate(order, sample, slots, out);
         }
         if order == Order::Third {
-            let measures = self.measures.iter().zip(&self.measure_slots);
+            let measures = self.measures.iter().zip(&self.laid().measure_slots);
             for ((measure, slots), &outer) in measures.zip(sample.outer) {
                 if !outer.is_zero() {
                     measure.add_function(outer, sample, slots, &mut out.contracted);

@@ -7,12 +7,13 @@ use crate::element::{ElementGeometry, Viscosity, ViscousContraction, ViscousLoca
 use crate::functional::finite_elements::middle;
 use crate::functional::{Kernel, Order, Sample, Scatter, Stencil, VectorArg};
 use crate::math::{Derivatives, Matrix, Vector};
+use std::sync::Arc;
 
 /// One viscous finite element.
 #[derive(Clone, Debug)]
 pub struct ViscousElement<const NODES: usize = 8> {
-    /// Gradients of the shape functions.
-    pub shape: ElementGeometry<NODES>,
+    /// Gradients of the shape functions, which all elements of one place share.
+    pub shape: Arc<ElementGeometry<NODES>>,
     /// The law.
     pub law: Viscosity,
     /// Vectors of the nodes.

@@ -18,7 +18,7 @@ use crate::model::{Parameter, System};
 use crate::nlp::Nlp;
 use crate::tasks::{self, SolveRequest};
 use crate::workflow::Iterate;
-use crate::workflow::memory;
+use crate::workflow::memory::{self, Occasion};
 use crate::workflow::optimum::SolveLimits;
 use crate::workflow::prepare::Counted;
 use crate::workflow::prepare_together::{
@@ -222,7 +222,7 @@ impl Control {
         read: impl FnOnce(&mut dyn Nlp, &[f64]) -> R,
     ) -> Result<R> {
         let system = &system.checked()?;
-        memory::of_elements(system, true)?;
+        memory::of_elements(system, Occasion::Factors)?;
         let control = self.resolve(system)?;
         let (model, boundary) = resolve(system, &control)?;
         let asked = [MotionAsked {

@@ -12,6 +12,7 @@ use crate::model::members::Formula;
 use crate::model::solid_block::SolidBlock;
 use crate::model::solids::Solids;
 use crate::model::terms::{Terms, UNRELAXED, mid, rate};
+use std::sync::Arc;
 
 const MAXWELL: [&str; 2] = ["block maxwell elasticity", "block maxwell viscosity"];
 
@@ -23,8 +24,9 @@ impl Solids {
                 if let Some(strains) = internals.strains(b, e, branch) {
                     add_branch((c, e, branch), constants, strains, terms);
                 } else if terms.is_instantaneous() {
+                    let shape = Arc::new(c.reference_shape(e));
                     let element = |shear_modulus| FiniteElement {
-                        shape: c.reference_shape(e),
+                        shape: shape.clone(),
                         law: c.unrelaxed(shear_modulus),
                         nodes: c.nodes(e),
                         terminals: (),

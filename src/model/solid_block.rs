@@ -9,6 +9,7 @@ use crate::math::{Matrix, Vector};
 use crate::model::constant::{Constant, MaterialConstant};
 use crate::model::system::{ElectricConstants, Electrode, ElementKind, Material, Potential, Solid};
 use std::collections::BTreeMap;
+use std::sync::Arc;
 
 /// A block as the model sees it.
 #[derive(Clone, Debug)]
@@ -22,7 +23,7 @@ pub struct SolidBlock {
     /// Part of the scene that it is.
     pub owner: Owner,
     /// Geometry of each element.
-    pub shapes: Vec<ElementGeometry>,
+    pub shapes: Vec<Arc<ElementGeometry>>,
     /// For each element, true if a field reaches it.
     pub is_dielectric: Vec<bool>,
     /// True if all nodes rest on the ground, and there is no field.

@@ -15,6 +15,7 @@ use crate::model::solid_block::{Owner, SolidBlock};
 use crate::model::system::{Fidelity, Glue, Material, Potential, Solid, System};
 use crate::model::variables::{Variable, Variables};
 use std::collections::{BTreeMap, BTreeSet, HashMap};
+use std::sync::Arc;
 
 /// Blocks before they become terms: nodes and ties of all of them.
 #[derive(Debug, Default)]
@@ -232,8 +233,8 @@ fn terminals(
 }
 
 /// √(μ ε) V^⅔ in mC of the volume V of a block: a charge whose field balances the elasticity.
-fn unit_of_charge(solid: &Solid, shapes: &[ElementGeometry]) -> f64 {
-    let volumes = shapes.iter().flat_map(ElementGeometry::weights);
+fn unit_of_charge(solid: &Solid, shapes: &[Arc<ElementGeometry>]) -> f64 {
+    let volumes = shapes.iter().flat_map(|shape| shape.weights());
     let area = volumes.sum::<f64>().powf(2.0 / 3.0);
     let of = |m: &Material| {
         let electric = m.electric?;
@@ -257,14 +258,15 @@ fn unit(solids: &[Solid]) -> f64 {
     if largest > 0.0 { largest } else { 1.0 }
 }
 
-fn shapes(solid: &Solid) -> Result<Vec<ElementGeometry>, ModelError> {
+fn shapes(solid: &Solid) -> Result<Vec<Arc<ElementGeometry>>, ModelError> {
     let shape = |(element, nodes): (usize, &[usize; 8])| {
-        ElementGeometry::new(&nodes.map(|n| solid.unstretched(n))).map_err(|Inverted { .. }| {
-            ModelError::Inverted {
+        let shape = ElementGeometry::new(&nodes.map(|n| solid.unstretched(n)));
+        shape
+            .map(Arc::new)
+            .map_err(|Inverted { .. }| ModelError::Inverted {
                 solid: solid.name.clone(),
                 element,
-            }
-        })
+            })
     };
     solid.mesh.hexahedra.iter().enumerate().map(shape).collect()
 }

@@ -12,7 +12,7 @@ use crate::model::{Model, System};
 use crate::tasks::moved_markers::moved_markers;
 use crate::workflow::WorkflowError;
 use crate::workflow::domain::{self, Outside};
-use crate::workflow::memory;
+use crate::workflow::memory::{self, Occasion};
 use crate::workflow::phase::phase;
 use crate::workflow::remark::Remarks;
 use crate::workflow::stalled;
@@ -56,7 +56,7 @@ pub struct EquilibriumResult {
 /// # Errors
 /// It does not exist in the coordinates that the task names, or the machine has no room for it.
 pub(crate) fn model_at_rest(system: &System, task: &AtRest) -> Result<Model, WorkflowError> {
-    memory::of_elements(system, false)?;
+    memory::of_elements(system, Occasion::Rest)?;
     phase("building");
     let model = Model::for_analysis(system.clone(), task.analysis(system));
     model.map_err(|error| WorkflowError::boundary("equilibrium", &error.into()))

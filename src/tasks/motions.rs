@@ -11,7 +11,7 @@ use crate::tasks::solve::{SolveResult, assessed};
 use crate::tasks::verdict::Verdict;
 use crate::workflow::accuracy::{Accuracy, AccuracyTarget};
 use crate::workflow::further::stopped;
-use crate::workflow::memory;
+use crate::workflow::memory::{self, Occasion};
 use crate::workflow::optimum::{SolveLimits, seconds_left};
 use crate::workflow::{
     ACCURACY, Iterate, Remarks, Together, WholeProgram, WorkflowError, optimise_together,
@@ -46,7 +46,7 @@ pub fn solve_motions(
     observer: &mut dyn FnMut(usize, &Iterate<'_>) -> ControlFlow<()>,
 ) -> Result<MotionsResult, WorkflowError> {
     for motion in &motions.list {
-        memory::of_elements(&motion.system, true)?;
+        memory::of_elements(&motion.system, Occasion::Factors)?;
     }
     let ((found, accuracy), motions, notes) = solve_and_hold(motions, request, observer)?;
     let Together {

@@ -19,7 +19,7 @@ use crate::workflow::domain::{self, Outside};
 use crate::workflow::grids::integrate_to;
 use crate::workflow::integrate::{Simulated, grid, integrate_on};
 use crate::workflow::longer_steps;
-use crate::workflow::memory;
+use crate::workflow::memory::{self, Occasion};
 use crate::workflow::remark::Remarks;
 use crate::workflow::stalled;
 use crate::workflow::steps;
@@ -146,7 +146,7 @@ pub fn simulate(
     request: SimulationRequest,
     observer: &mut dyn FnMut(usize, &Model, &DiscreteTrajectory) -> ControlFlow<()>,
 ) -> Result<SimulationResult, WorkflowError> {
-    memory::of_elements(system, true)?;
+    memory::of_elements(system, Occasion::of_steps(task.solving))?;
     let SimulationRequest {
         wanted,
         begun,

@@ -23,7 +23,7 @@ use crate::workflow::found_hold;
 use crate::workflow::further::is_unreached;
 use crate::workflow::hold_check::{self, free_end};
 use crate::workflow::infeasible::explain;
-use crate::workflow::memory;
+use crate::workflow::memory::{self, Occasion};
 use crate::workflow::motion::{discrete_trajectory, trajectory};
 use crate::workflow::optimum::Optimum;
 use crate::workflow::period::Repeated;
@@ -76,7 +76,7 @@ pub fn solve(
     request: SolveRequest,
     observer: &mut dyn FnMut(usize, &Iterate<'_>) -> ControlFlow<()>,
 ) -> Result<SolveResult, WorkflowError> {
-    memory::of_elements(system, true)?;
+    memory::of_elements(system, Occasion::Factors)?;
     sensitivity::check(system, control).map_err(|(name, reason)| WorkflowError::Problem {
         place: format!("control.sensitivity.{name}"),
         reason,

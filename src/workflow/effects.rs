@@ -149,7 +149,7 @@ fn each(model: &Model) -> impl Iterator<Item = Coupled<'_>> {
 impl<'a> Coupled<'a> {
     fn new(effect: &'a dyn Term, map: &CoordinateMap) -> Self {
         let mut couplings = Couplings::default();
-        effect.couple(&mut couplings, &mut Vec::new());
+        effect.couple(&mut |coupling| _ = couplings.add(coupling));
         let scalar = |s: usize| map.coordinates + s;
         let mut pairs: Vec<[u32; 2]> = Vec::new();
         let mut add = |a: usize, b: usize| pairs.push([a.min(b) as u32, a.max(b) as u32]);

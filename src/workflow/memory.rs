@@ -1,5 +1,7 @@
 //! Lower bounds of the memory that a run needs, checked before it begins.
 
+use crate::control::problem::Task;
+use crate::dynamics::Solving;
 use crate::math::memory::{available, readable};
 use crate::model::system::{Fidelity, Material};
 use crate::model::{Model, System, Time, has_boxes_alone};
@@ -8,8 +10,8 @@ use crate::workflow::error::WorkflowError;
 /// Bytes of an element with its share of nodes, couplings, tangent and factors: dielectric blocks of 2048 to 16 384 elements took
 /// 133 000 at rest, 155 000 to 193 000 with the first step of a motion.
 const OF_ELEMENT: f64 = 1.2e5;
-/// The same where an iteration may solve for all unknowns: blocks of 55 000 to 256 000 elements took 33 000 to 40 000.
-const OF_ITERATION: f64 = 3e4;
+/// The same where an iteration solves for all unknowns: blocks of 55 000 to 256 000 elements took 11 400 to 12 100 (benches/README.md).
+const OF_ITERATION: f64 = 1e4;
 /// Bytes of a Maxwell branch of an element in a motion, with the derivatives and factors of what it remembers: blocks of 512 and 1024
 /// elements took 410 000 to 500 000 more with each branch.
 const OF_BRANCH: f64 = 4e5;
@@ -23,20 +25,54 @@ const OF_INSTANT: f64 = 1e3;
 /// Bytes of a body at an instant: its pose, in the motion and in the drawings.
 const OF_POSE: f64 = 192.0;
 
-/// Refuses a scene whose elements need more than there is; at rest their Maxwell branches are no unknowns.
+/// Occasion at which elements are solved for.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) enum Occasion {
+    /// States of rest: Maxwell branches are no unknowns, and an iteration may solve.
+    Rest,
+    /// Steps for which an iteration may solve.
+    Steps,
+    /// Steps or programs that are solved by factors.
+    Factors,
+}
+
+impl Occasion {
+    /// That of a simulation.
+    pub(crate) fn of_steps(solving: Solving) -> Self {
+        match solving.may_iterate() {
+            true => Self::Steps,
+            false => Self::Factors,
+        }
+    }
+
+    /// That of a task.
+    pub(crate) fn of_task(task: &Task) -> Self {
+        match task {
+            Task::Equilibrium(_) => Self::Rest,
+            Task::Simulate(simulation) => Self::of_steps(simulation.solving),
+            Task::Control(_) | Task::Motions(_) | Task::Identify(_) => Self::Factors,
+        }
+    }
+}
+
+/// Refuses a scene whose elements need more than there is.
 ///
 /// # Errors
 /// They do.
-pub(crate) fn of_elements(system: &System, is_of_motion: bool) -> Result<(), WorkflowError> {
+pub(crate) fn of_elements(system: &System, occasion: Occasion) -> Result<(), WorkflowError> {
     let elements = system.elements();
-    let branches = if is_of_motion { branches(system) } else { 0 };
+    let branches = match occasion {
+        Occasion::Rest => 0,
+        Occasion::Steps | Occasion::Factors => branches(system),
+    };
     let unknowns = unknowns(system) + REMEMBERED * branches;
     let with = match branches {
         0 => String::new(),
         branches => format!("{branches} Maxwell branches and "),
     };
     let what = format!("{elements} elements with {with}about {unknowns} unknowns");
-    let of_element = match branches == 0 && has_boxes_alone(system) {
+    let may_iterate = occasion != Occasion::Factors && branches == 0;
+    let of_element = match may_iterate && has_boxes_alone(system) {
         true => OF_ITERATION,
         false => OF_ELEMENT,
     };

@@ -168,20 +168,20 @@ fn dense(part: &SumDerivatives, sum: &Functional) -> (Vec<f64>, Vec<Vec<f64>>) {
         gradient[scalar(s)] = part.rows[s];
         hessian[scalar(s)][LENGTH] = part.horizon_rows[s];
     }
-    for (&(a, b), blocks) in sum.couplings.full.iter().zip(&part.blocks.full) {
+    for (&(a, b), blocks) in sum.couplings().full.iter().zip(&part.blocks.full) {
         for (side, block) in blocks.iter().enumerate() {
             for (r, c) in (0..9).map(|i| (i / 3, i % 3)) {
                 hessian[place(a, side / 2, r)][place(b, side % 2, c)] += block[(r, c)];
             }
         }
     }
-    for (&(a, s), columns) in sum.couplings.mixed.iter().zip(&part.blocks.mixed) {
+    for (&(a, s), columns) in sum.couplings().mixed.iter().zip(&part.blocks.mixed) {
         for (side, c) in (0..6).map(|i| (i / 3, i % 3)) {
             hessian[place(a, side, c)][scalar(s)] += columns[side][c];
             hessian[scalar(s)][place(a, side, c)] += columns[side][c];
         }
     }
-    for (&(s, t), &entry) in sum.couplings.scalars.iter().zip(&part.blocks.scalars) {
+    for (&(s, t), &entry) in sum.couplings().scalars.iter().zip(&part.blocks.scalars) {
         hessian[scalar(s)][scalar(t)] += entry;
         if s != t {
             hessian[scalar(t)][scalar(s)] += entry;

@@ -5,7 +5,7 @@ use crate::common::{at_reference, trunk};
 use proboscis::control::problem::Control;
 use proboscis::control::{BoundaryConditions, InitialGuess, Transcription, guess};
 use proboscis::dynamics::{DiscreteTrajectory, Start, StepError, simulate};
-use proboscis::functional::{Couplings, Order, Output, Sample, Term, TermKind};
+use proboscis::functional::{Coupling, Order, Output, Sample, Term, TermKind};
 use proboscis::ipopt::{
     self, Iteration, LinearSolver, Options, Reached, SolverResult, StartingPoint, Status,
 };
@@ -294,8 +294,8 @@ impl Term for Failing {
         self.effect.elements()
     }
 
-    fn couple(&self, couplings: &mut Couplings, slots: &mut Vec<u32>) {
-        self.effect.couple(couplings, slots);
+    fn couple(&self, to: &mut dyn FnMut(Option<Coupling>)) {
+        self.effect.couple(to);
     }
 
     fn reading(&self, _: &dyn Fn(usize) -> bool) -> Option<Arc<dyn Term>> {

@@ -73,3 +73,31 @@ fn numbers_that_are_none_have_no_solution() {
     assert_eq!(solver.solve(&mut values, 1e-4, &|| false), Ok(Ok(())));
     assert!(values.iter().all(|value| value.is_finite()));
 }
+
+/// A grid of enough planes is swept in four slabs, two at once.
+#[test]
+fn tall_grids_are_solved_with_the_same_bits_in_any_number_of_threads() {
+    let mut size = 0;
+    // Slabs of nine and of ten planes.
+    let grids = [grid([12, 11, 38], &mut size)];
+    let size = size as usize;
+    let solve = |threads: usize| {
+        let pool = rayon::ThreadPoolBuilder::new().num_threads(threads);
+        pool.build().unwrap().install(|| {
+            let mut solver = solver(size, &grids);
+            let mut found = rhs(size);
+            let solved = solver.solve(&mut found, 1e-10, &|| false);
+            assert_eq!(solved, Ok(Ok(())));
+            (found, solver.counted())
+        })
+    };
+    let (found, report) = solve(1);
+    assert!(report.levels > 2 && report.iterations < 30, "{report:?}");
+    let mut left = rhs(size);
+    for ((row, col), value) in entries(&grids[0]) {
+        left[row] -= value * found[col];
+    }
+    let norm = |x: &[f64]| x.iter().map(|v| v * v).sum::<f64>().sqrt();
+    assert!(norm(&found) > 1.0 && norm(&left) < 1e-8 * norm(&rhs(size)));
+    assert_eq!(solve(2), (found, report));
+}

@@ -1,6 +1,7 @@
 //! Weights, loads and voltages that grow along a path of equilibria: the rows of rest by them.
 
 use crate::dynamics::equilibrium::statics::Statics;
+use crate::dynamics::step_matrix::StepMatrix;
 use crate::math::Vector;
 use crate::model::Role;
 
@@ -32,9 +33,21 @@ impl Statics<'_> {
 
     /// Adds the derivative of the rows along a change of the inputs, at the state evaluated last.
     pub(super) fn add_load(&self, change: &[f64], rows: &mut [f64]) {
-        let layout = self.model.action.layout();
         let variables = &self.model.variables;
         let change = &variables.scalars(change);
+        if let StepMatrix::Grids(grids) = &self.matrix {
+            let (map, nodes) = (&self.model.action.map, grids.nodes());
+            for (vector, s, sum) in nodes.of_vectors() {
+                map.pull_back_one(vector, &[], &(sum * change[s]), rows);
+            }
+            for (s, t, sum) in nodes.of_scalars() {
+                if let Some(row) = variables.place(s) {
+                    rows[row] += sum * change[t];
+                }
+            }
+            return;
+        }
+        let layout = self.model.action.layout();
         for side in 0..2 {
             for (slot, (i, s)) in layout.mixed.entries().enumerate() {
                 if variables.place(s).is_none() {

@@ -1,6 +1,6 @@
 //! The matrix of rest: factorised, with what gives its inertia, or on box grids.
 
-use crate::dynamics::grid_tangent::{Blocks, GridTangent};
+use crate::dynamics::grid_tangent::GridTangent;
 use crate::dynamics::solving::{MultigridUse, Solving};
 use crate::dynamics::step_matrix::StepMatrix;
 use crate::dynamics::tangent::{EntryList, Tangent};
@@ -94,16 +94,6 @@ impl Inertia {
 
 /// The matrix of a model, on box grids where these are wanted and hold all unknowns; what gives the inertia, where it is factorised.
 pub(super) fn matrix(model: &Model, multigrid: Option<MultigridUse>) -> (StepMatrix, Inertia) {
-    let layout = model.action.layout();
-    let [same, lower, upper] = [layout.same_at(0), layout.lower_at(0), layout.upper_at(0)];
-    let mixed = [layout.mixed_at(0, 0), layout.mixed_at(0, 1)];
-    let [_, added] = places(model);
-    let blocks = Blocks {
-        same: &[same, layout.same_at(1)],
-        cross: &[lower, upper],
-        sides: [&mixed, &mixed],
-        added: Some(added),
-    };
     let grids = multigrid.and_then(|multigrid| {
         let solving = Solving {
             multigrid,
@@ -111,7 +101,7 @@ pub(super) fn matrix(model: &Model, multigrid: Option<MultigridUse>) -> (StepMat
         };
         let is_wanted = solving.takes_grids(model.variables.unknown_count());
         is_wanted
-            .then(|| GridTangent::new(model, &blocks, direct))
+            .then(|| GridTangent::new(model, direct, true))
             .flatten()
     });
     match grids {

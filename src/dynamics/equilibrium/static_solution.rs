@@ -30,6 +30,10 @@ impl Statics<'_> {
 
     /// The same with a stiffness σ in N mm for each rad, and each length of the system.
     pub(super) fn factor_with(&mut self, sigma: f64) -> Result<(), Singular> {
+        // An iteration has no inertia, for which stiffness is added.
+        if self.is_iterated() {
+            return self.factor();
+        }
         let n = self.model.action.map.coordinates;
         let h = self.model.multiplier_time;
         for (value, scale) in self.values[self.added..].iter_mut().zip(&self.scales[..n]) {
@@ -73,6 +77,7 @@ impl Statics<'_> {
             Ok(Ok(())) => {}
             Ok(Err(_)) if self.fall_back() => {
                 self.fallbacks += 1;
+                self.evaluate_again();
                 match self.factor() {
                     Ok(()) => self.solve(rhs),
                     Err(_) => rhs.fill(f64::NAN),
@@ -84,11 +89,12 @@ impl Statics<'_> {
 
     /// Factorises from now on, where there is room; returns true if it did not before.
     pub(super) fn fall_back(&mut self) -> bool {
-        let unknowns = self.residual.len();
+        let unknowns = self.scales.len();
         if !(is_affordable(unknowns) && self.matrix.fall_back(self.model)) {
             return false;
         }
         self.inertia = Inertia::new(self.model);
+        self.lay_down();
         true
     }
 
@@ -135,7 +141,7 @@ impl Statics<'_> {
         let m = self.model.action.map.unknowns();
         if let Some(grids) = self.matrix.grids_mut() {
             let is_over = || interrupt::stop().is_some();
-            let found = grids.potentials_to_law(&self.values, &self.residual, &is_over);
+            let found = grids.potentials_to_law(&self.residual, &is_over);
             self.multigrid.add(grids.counted());
             return Some(found.ok()??.split_off(m));
         }

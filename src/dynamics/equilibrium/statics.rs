@@ -95,24 +95,21 @@ impl<'m> Statics<'m> {
     /// The same, by an iteration on box grids where that is possible and wanted.
     pub(super) fn by(model: &'m Model, inputs: &[f64], multigrid: Option<MultigridUse>) -> Self {
         let map = &model.action.map;
-        let layout = model.action.layout();
-        let (n, m) = (map.coordinates, map.unknowns());
         let size = model.variables.unknown_count();
-        let [curved, added] = places(model);
         let (matrix, inertia) = matrix(model, multigrid);
-        Self {
+        let mut statics = Self {
             model,
             a: map.instant(),
             b: map.instant(),
-            scratch: model.action.scratch(Order::Hessian),
-            values: vec![0.0; added + n + (size - m)],
-            scalars: vec![0.0; layout.interval_scalars],
+            scratch: model.action.scratch(Order::Gradient),
+            values: Vec::new(),
+            scalars: vec![0.0; model.action.intervals.scalars],
             gravity: weights(model),
             loads: model
                 .variables
                 .inputs_where(inputs, |role| role == Role::Load),
             weight: 1.0,
-            added,
+            added: 0,
             matrix,
             inertia,
             multigrid: MultigridReport::default(),
@@ -121,9 +118,22 @@ impl<'m> Statics<'m> {
             scales: model.sizes(),
             charted: map.charted(),
             handedness: map.handedness(),
-            curved,
+            curved: 0,
             iterations: 0,
+        };
+        if !statics.is_iterated() {
+            statics.lay_down();
         }
+        statics
+    }
+
+    /// Makes room for the values of the tangent.
+    pub(super) fn lay_down(&mut self) {
+        let (map, size) = (&self.model.action.map, self.scales.len());
+        let [curved, added] = places(self.model);
+        self.scratch = self.model.action.scratch(Order::Hessian);
+        self.values = vec![0.0; added + map.coordinates + (size - map.unknowns())];
+        (self.curved, self.added) = (curved, added);
     }
 
     /// Places both instants at a state.
@@ -140,6 +150,27 @@ impl<'m> Statics<'m> {
     /// Rows and second derivatives at a state under voltages.
     pub(super) fn evaluate(&mut self, state: &RestState, voltages: &[f64]) {
         self.place(state);
+        let m = self.model.action.map.unknowns();
+        let variables = &self.model.variables;
+        let scalars = &mut self.scalars;
+        scalars[variables.inputs()].copy_from_slice(voltages);
+        scalars[variables.range(Role::Load)]
+            .iter_mut()
+            .for_each(|load| *load *= self.weight);
+        scalars[variables.algebraic()].copy_from_slice(&state[m..]);
+        self.differentiate();
+    }
+
+    /// Second derivatives once more where they were evaluated last, for factors that take over.
+    pub(super) fn evaluate_again(&mut self) {
+        let residual = vec![0.0; self.scales.len()];
+        let before = std::mem::replace(&mut self.residual, residual);
+        self.differentiate();
+        self.residual = before;
+    }
+
+    /// Rows and second derivatives where both instants are placed.
+    fn differentiate(&mut self) {
         let action = &self.model.action;
         let m = action.map.unknowns();
         let variables = &self.model.variables;
@@ -152,20 +183,23 @@ impl<'m> Statics<'m> {
             residual,
             gravity,
             weight,
+            matrix,
             ..
         } = self;
-        scalars[variables.inputs()].copy_from_slice(voltages);
-        scalars[variables.range(Role::Load)]
-            .iter_mut()
-            .for_each(|load| *load *= *weight);
-        scalars[variables.algebraic()].copy_from_slice(&state[m..]);
         values.fill(0.0);
         for instant in [&mut *a, &mut *b] {
             instant.forces.fill(Vector::zeros());
         }
         let interval = Interval::given(scalars, self.model.multiplier_time);
-        action.evaluate_at_rest([a, b], &interval, scratch);
-        action.pull_back_interval(Order::Hessian, [a, b], &interval, 0, scratch, values);
+        match matrix.grids_mut() {
+            Some(grids) => grids.write(|nodes| {
+                action.evaluate_at_rest([a, b], &interval, scratch, Some(nodes));
+            }),
+            None => {
+                action.evaluate_at_rest([a, b], &interval, scratch, None);
+                action.pull_back_interval(Order::Hessian, [a, b], &interval, 0, scratch, values);
+            }
+        }
         for (force, other) in a.forces.iter_mut().zip(&b.forces) {
             *force += other;
         }
@@ -174,8 +208,11 @@ impl<'m> Statics<'m> {
                 *force += (*weight - 1.0) * *all;
             }
         }
-        action.evaluate_instant(Order::Hessian, a, &[], scratch);
-        action.pull_back_instant(Order::Hessian, a, 0, scratch, values);
+        // Blocks on box grids have no constraints.
+        if matrix.direct().is_some() {
+            action.evaluate_instant(Order::Hessian, a, &[], scratch);
+            action.pull_back_instant(Order::Hessian, a, 0, scratch, values);
+        }
         residual.fill(0.0);
         action.rows(a, scratch, &mut residual[..m]);
         let rows = &scratch.interval.plain.rows[variables.algebraic()];

@@ -8,7 +8,7 @@ use crate::dynamics::galerkin::rule::Rule;
 use crate::dynamics::galerkin::state::{GalerkinEquations, between};
 use crate::dynamics::interval_energies::Work;
 use crate::dynamics::momenta::vector_momenta;
-use crate::functional::Order;
+use crate::functional::{NodeBlocks, Order};
 use crate::math::Vector;
 use crate::model::Model;
 use std::slice;
@@ -46,7 +46,7 @@ impl Equations for GalerkinEquations<'_> {
         }
     }
 
-    fn evaluate(&mut self, order: Order, h: f64, residual: &mut [f64]) {
+    fn evaluate(&mut self, order: Order, h: f64, residual: &mut [f64], _: Option<&mut NodeBlocks>) {
         self.sample(order, h);
         let model = self.model;
         let action = &model.action;

@@ -34,7 +34,7 @@ impl Massless {
         };
         let is_massless: Vec<bool> = model.vectors.iter().map(is_massless).collect();
         let vectors: Vec<usize> = (0..is_massless.len()).filter(|&v| is_massless[v]).collect();
-        let couplings = &model.action.intervals.couplings;
+        let couplings = model.action.intervals.couplings();
         let of_rows = |pairs: &[(usize, usize)]| {
             let slots = pairs.iter().enumerate();
             let own = slots.filter(|(_, (row, _))| is_massless[*row]);

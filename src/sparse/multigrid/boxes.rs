@@ -2,15 +2,17 @@
 
 use crate::math::join;
 use crate::sparse::Singular;
-use crate::sparse::multigrid::field::Field;
+use crate::sparse::multigrid::field::{Block, Field};
 use crate::sparse::multigrid::hierarchy::Hierarchy;
 use crate::sparse::multigrid::krylov::Operator;
-use crate::sparse::multigrid::level::Block;
 use crate::sparse::multigrid::node_grid::{COMPONENTS, NEIGHBOURS, OWN, offsets};
 use std::ops::Range;
 
 /// Entries of a block.
 pub(super) const ENTRIES: usize = COMPONENTS * COMPONENTS;
+
+/// A block of the matrix: entries between the components of two nodes, by column.
+pub type NodeBlock = [f64; ENTRIES];
 
 /// The boxes and their matrix.
 #[derive(Debug)]
@@ -19,7 +21,7 @@ pub(super) struct Parts {
     /// First node of each box, and the number of all.
     pub(super) starts: Vec<usize>,
     /// Blocks by node and neighbour, each by column.
-    pub(super) matrix: Vec<[f64; ENTRIES]>,
+    pub(super) matrix: Vec<NodeBlock>,
     /// Factors of rows and columns of a box by component.
     pub(super) scales: Vec<[f64; COMPONENTS]>,
 }

@@ -2,6 +2,9 @@
 
 use crate::sparse::multigrid::node_grid::COMPONENTS;
 
+/// A block of the matrix, by column.
+pub(super) type Block = [f32; COMPONENTS * COMPONENTS];
+
 /// Values at the nodes in single precision.
 #[derive(Clone, Debug)]
 pub(super) struct Field {
@@ -28,5 +31,15 @@ impl Field {
     pub(super) fn nodes_mut(&mut self) -> &mut [[f32; COMPONENTS]] {
         let end = self.values.len() - self.margin;
         &mut self.values[self.margin..end]
+    }
+}
+
+/// Adds a block times a vector.
+#[inline(always)]
+pub(super) fn add(sum: &mut [f32; COMPONENTS], block: &Block, x: &[f32; COMPONENTS]) {
+    for (column, x) in block.chunks_exact(COMPONENTS).zip(x) {
+        for (sum, entry) in sum.iter_mut().zip(column) {
+            *sum += entry * x;
+        }
     }
 }

@@ -2,7 +2,8 @@
 
 use crate::math::join;
 use crate::sparse::multigrid::axis::Axis;
-use crate::sparse::multigrid::level::{Block, Level};
+use crate::sparse::multigrid::field::Block;
+use crate::sparse::multigrid::level::Level;
 use crate::sparse::multigrid::node_grid::{
     COMPONENTS, NEIGHBOURS, indices, neighbour, node_at, offsets,
 };

@@ -3,13 +3,12 @@
 //! The matrix has 27 blocks for each node, by column within a block; those of neighbours beyond the grid are zero. Rows and columns of
 //! components with given values are zero too.
 
+use crate::math::join;
 use crate::sparse::multigrid::axis::Axis;
-use crate::sparse::multigrid::field::Field;
+use crate::sparse::multigrid::field::{Block, Field};
 use crate::sparse::multigrid::node_grid::{COMPONENTS, NEIGHBOURS, OWN, offsets};
+use crate::sparse::multigrid::slab::{Equations, Slab, slabs, split};
 use nalgebra::Matrix4;
-
-/// A block of the matrix, by column.
-pub(super) type Block = [f32; COMPONENTS * COMPONENTS];
 
 /// A grid of the hierarchy.
 #[derive(Debug)]
@@ -26,16 +25,7 @@ pub(super) struct Level {
     pub(super) rhs: Field,
     pub(super) x: Field,
     pub(super) residual: Field,
-}
-
-/// Adds a block times a vector.
-#[inline(always)]
-fn add(sum: &mut [f32; COMPONENTS], block: &Block, x: &[f32; COMPONENTS]) {
-    for (column, x) in block.chunks_exact(COMPONENTS).zip(x) {
-        for (sum, entry) in sum.iter_mut().zip(column) {
-            *sum += entry * x;
-        }
-    }
+    slabs: Vec<Slab>,
 }
 
 impl Level {
@@ -49,6 +39,7 @@ impl Level {
             rhs: Field::new(counts),
             x: Field::new(counts),
             residual: Field::new(counts),
+            slabs: slabs(counts),
             counts,
             free,
             transfer,
@@ -82,52 +73,64 @@ impl Level {
         Ok(())
     }
 
-    /// Places of the neighbours of a node in a field.
-    #[inline(always)]
-    fn place(&self, node: usize, neighbour: usize) -> usize {
-        (node as isize + self.x.margin as isize + self.offsets[neighbour]) as usize
-    }
-
-    /// Sum over neighbours of a node of their blocks times their unknowns.
-    #[inline(always)]
-    fn sum(&self, node: usize, neighbours: impl Iterator<Item = usize>) -> [f32; COMPONENTS] {
-        let blocks = &self.matrix[NEIGHBOURS * node..][..NEIGHBOURS];
-        let mut sum = [0.0; COMPONENTS];
-        for neighbour in neighbours {
-            let x = &self.x.values[self.place(node, neighbour)];
-            add(&mut sum, &blocks[neighbour], x);
+    /// Calls `sweep` with all slabs of one colour, at once.
+    fn each(&mut self, is_second: bool, sweep: impl Fn(&Equations<'_>, &mut Slab) + Sync) {
+        let Self {
+            counts, x, slabs, ..
+        } = self;
+        let of_colour = |slab: &&mut Slab| slab.is_second == is_second;
+        for slab in slabs.iter_mut().filter(of_colour) {
+            slab.take(*counts, x);
         }
-        sum
-    }
-
-    /// Solves the equations of a node, of which its neighbours have this sum.
-    #[inline(always)]
-    fn relax(&mut self, node: usize, sum: [f32; COMPONENTS]) {
-        let margin = self.x.margin;
-        let rhs = self.rhs.values[node + margin];
-        let left: [f32; COMPONENTS] = std::array::from_fn(|c| rhs[c] - sum[c]);
-        let mut solution = [0.0; COMPONENTS];
-        add(&mut solution, &self.inverse[node], &left);
-        self.x.values[node + margin] = solution;
+        let equations = Equations {
+            counts: *counts,
+            offsets: &self.offsets,
+            matrix: &self.matrix,
+            inverse: &self.inverse,
+            rhs: &self.rhs,
+        };
+        let mut of_one = slabs.iter_mut().filter(of_colour);
+        match (of_one.next(), of_one.next()) {
+            (Some(a), Some(b)) => _ = join(|| sweep(&equations, a), || sweep(&equations, b)),
+            (Some(a), None) => sweep(&equations, a),
+            _ => {}
+        }
+        for slab in slabs.iter().filter(|slab| slab.is_second == is_second) {
+            slab.hand_back(*counts, x);
+        }
     }
 
     /// A forward sweep from zero, then what it leaves of the right-hand side: the neighbours behind have had no part in it.
     pub(super) fn sweep_down(&mut self) {
-        for node in 0..self.free.len() {
-            self.relax(node, self.sum(node, 0..OWN));
+        for is_second in [false, true] {
+            self.each(is_second, |equations, slab| equations.forward(slab));
         }
-        let margin = self.x.margin;
-        for node in 0..self.free.len() {
-            let sum = self.sum(node, OWN + 1..NEIGHBOURS);
-            self.residual.values[node + margin] = sum.map(|s| -s);
+        let equations = Equations {
+            counts: self.counts,
+            offsets: &self.offsets,
+            matrix: &self.matrix,
+            inverse: &self.inverse,
+            rhs: &self.rhs,
+        };
+        let (counts, x) = (self.counts, &self.x);
+        let (lower, upper) = self.slabs.split_at(self.slabs.len() / 2);
+        let nodes = upper[0].first_node(counts);
+        let (below, above) = self.residual.nodes_mut().split_at_mut(nodes);
+        let leave = |slabs: &[Slab], residual: &mut [[f32; COMPONENTS]]| {
+            for (slab, residual) in split(slabs, counts, residual) {
+                equations.leave(slab, x, residual);
+            }
+        };
+        match lower.is_empty() {
+            true => leave(upper, above),
+            false => _ = join(|| leave(lower, below), || leave(upper, above)),
         }
     }
 
     /// A backward sweep.
     pub(super) fn sweep_up(&mut self) {
-        for node in (0..self.free.len()).rev() {
-            let others = (0..NEIGHBOURS).filter(|&neighbour| neighbour != OWN);
-            self.relax(node, self.sum(node, others));
+        for is_second in [true, false] {
+            self.each(is_second, |equations, slab| equations.backward(slab));
         }
     }
 }

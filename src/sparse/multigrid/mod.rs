@@ -13,7 +13,9 @@ mod hierarchy;
 mod krylov;
 mod level;
 mod node_grid;
+mod slab;
 mod solver;
 
-pub use node_grid::NodeGrid;
+pub use boxes::NodeBlock;
+pub use node_grid::{GridNode, NodeGrid};
 pub use solver::{Multigrid, MultigridReport, NoSolution};

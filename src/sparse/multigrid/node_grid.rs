@@ -23,6 +23,43 @@ impl NodeGrid {
     }
 }
 
+/// Bits of the index of a plane in the code of a node.
+const BITS: u32 = 20;
+/// Most planes along an axis of all boxes.
+pub(super) const PLANES: usize = (1 << BITS) - 4;
+/// Difference of codes of a node and its last neighbour.
+const ONE: u64 = 1 | 1 << BITS | 1 << (2 * BITS);
+
+/// A node among those of all boxes.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct GridNode {
+    number: u32,
+    /// Indices of its planes; boxes stand one above the other, and do not touch.
+    code: u64,
+}
+
+impl GridNode {
+    /// The node with this number at these planes.
+    pub(super) fn new(number: usize, [x, y, z]: [usize; 3]) -> Self {
+        let [x, y, z] = [x, y, z].map(|plane| plane as u64);
+        Self {
+            number: number as u32,
+            code: x | y << BITS | z << (2 * BITS),
+        }
+    }
+
+    /// Number of the block of its rows and the columns of another node; `None` where they are no neighbours.
+    #[inline(always)]
+    pub fn block(self, other: Self) -> Option<usize> {
+        let steps = other.code.wrapping_sub(self.code).wrapping_add(ONE);
+        let [x, y] = [steps, steps >> BITS].map(|step| step & ((1 << BITS) - 1));
+        let z = steps >> (2 * BITS);
+        let is_neighbour = x <= 2 && y <= 2 && z <= 2;
+        let neighbour = (9 * z + 3 * y + x) as usize;
+        is_neighbour.then(|| NEIGHBOURS * self.number as usize + neighbour)
+    }
+}
+
 /// Axis indices of a node.
 pub(super) fn indices([n_x, n_y, _]: [usize; 3], node: usize) -> [usize; 3] {
     [node % n_x, node / n_x % n_y, node / (n_x * n_y)]

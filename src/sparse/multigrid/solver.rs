@@ -5,10 +5,12 @@
 
 use crate::math::{IsOver, Stopped};
 use crate::sparse::Singular;
-use crate::sparse::multigrid::boxes::{ENTRIES, Parts, products};
+use crate::sparse::multigrid::boxes::{ENTRIES, NodeBlock, Parts, products};
 use crate::sparse::multigrid::hierarchy::Hierarchy;
 use crate::sparse::multigrid::krylov::{Iterated, Krylov, norm};
-use crate::sparse::multigrid::node_grid::{COMPONENTS, NEIGHBOURS, NodeGrid, indices, neighbour};
+use crate::sparse::multigrid::node_grid::{
+    COMPONENTS, GridNode, NEIGHBOURS, NodeGrid, OWN, PLANES, indices,
+};
 
 /// Iterations for each digit, relative to those with fresh grids, above which grids are made anew.
 const SLOWER: f64 = 1.4;
@@ -82,7 +84,10 @@ impl Multigrid {
             starts.push(first + nodes);
         }
         let nodes = starts[grids.len()];
-        if nodes > NONE as usize / (NEIGHBOURS * ENTRIES) {
+        let planes = grids.iter().map(NodeGrid::counts);
+        let across = planes.clone().flat_map(|[x, y, _]| [x, y]).max();
+        let above: usize = planes.map(|[_, _, z]| z + 2).sum();
+        if nodes > NONE as usize / COMPONENTS || across.max(Some(above)) > Some(PLANES) {
             return None;
         }
         let boxes: Vec<_> = grids.iter().map(Hierarchy::new).collect();
@@ -109,34 +114,68 @@ impl Multigrid {
         })
     }
 
-    /// Place of an entry among [`values_mut`](Self::values_mut); `None` where it couples what are no neighbours, or something that is held.
-    pub fn slot(&self, row: usize, col: usize) -> Option<usize> {
-        let [row, col] = [row, col].map(|unknown| self.places[unknown]);
-        if row == NONE || col == NONE {
+    /// Node and component of an unknown; `None` where it is held.
+    pub fn place(&self, unknown: usize) -> Option<(GridNode, usize)> {
+        let place = self.places[unknown];
+        if place == NONE {
             return None;
         }
-        let [row, col] = [row, col].map(|place| place as usize);
-        let [node, other] = [row, col].map(|place| place / COMPONENTS);
+        let (node, component) = (place as usize / COMPONENTS, place as usize % COMPONENTS);
         let starts = &self.parts.starts;
         let part = starts.partition_point(|&start| start <= node) - 1;
-        let range = starts[part]..starts[part + 1];
-        if !range.contains(&other) {
-            return None;
-        }
-        let counts = self.parts.boxes[part].levels[0].counts;
-        let [at, there] = [node, other].map(|node| indices(counts, node - range.start));
-        let block = NEIGHBOURS * node + neighbour(at, there)?;
-        Some(ENTRIES * block + COMPONENTS * (col % COMPONENTS) + row % COMPONENTS)
+        let counts = |part: usize| self.parts.boxes[part].levels[0].counts;
+        let below: usize = (0..part).map(|part| counts(part)[2] + 2).sum();
+        let [x, y, z] = indices(counts(part), node - starts[part]);
+        Some((GridNode::new(node, [x, y, below + z]), component))
     }
 
-    /// Returns true if an unknown is held.
-    pub fn holds(&self, unknown: usize) -> bool {
-        self.places[unknown] == NONE
+    /// Place of an entry among [`values_mut`](Self::values_mut); `None` where it couples what are no neighbours, or something that is held.
+    pub fn slot(&self, row: usize, col: usize) -> Option<usize> {
+        let (node, row) = self.place(row)?;
+        let (other, col) = self.place(col)?;
+        Some(ENTRIES * node.block(other)? + COMPONENTS * col + row)
     }
 
     /// Entries of the matrix, which the next solution belongs to: all of them are to be written.
     pub fn values_mut(&mut self) -> &mut [f64] {
         self.parts.matrix.as_flattened_mut()
+    }
+
+    /// The blocks of the matrix, by node and neighbour, to be written anew and handed back.
+    pub fn lend(&mut self) -> Vec<NodeBlock> {
+        std::mem::take(&mut self.parts.matrix)
+    }
+
+    /// Takes the blocks back; [`take_values`](Self::take_values) makes them the matrix.
+    ///
+    /// # Panics
+    /// They are not those that were lent.
+    pub fn hand_back(&mut self, matrix: Vec<NodeBlock>) {
+        let nodes = self.parts.starts[self.parts.boxes.len()];
+        assert_eq!(
+            matrix.len(),
+            NEIGHBOURS * nodes,
+            "the blocks that were lent"
+        );
+        self.parts.matrix = matrix;
+    }
+
+    /// Entry on the diagonal of an unknown, as it was written; zero of one that is held.
+    pub fn diagonal(&self, unknown: usize) -> f64 {
+        match self.places[unknown] as usize {
+            place if place == NONE as usize => 0.0,
+            place => {
+                let block = &self.parts.matrix[NEIGHBOURS * (place / COMPONENTS) + OWN];
+                block[(COMPONENTS + 1) * (place % COMPONENTS)]
+            }
+        }
+    }
+
+    /// Leaves of the matrix that was written the entries between last components alone.
+    pub fn keep_last_components(&mut self) {
+        for block in &mut self.parts.matrix {
+            block[..ENTRIES - 1].fill(0.0);
+        }
     }
 
     /// Copies the values as they were written.
