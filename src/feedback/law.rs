@@ -34,6 +34,8 @@ impl LawInput {
     /// An input with a correction, its bounds, and the input itself, all in the unit in which it acts: squares where it does by them.
     pub fn wanted(&self, given: f64, correction: f64) -> (f64, [f64; 2], f64) {
         let [low, high] = self.bounds;
+        // Of measured numbers so large that what follows is none.
+        let correction = if correction.is_nan() { 0.0 } else { correction };
         match self.is_squared {
             true => {
                 let square = given * given;

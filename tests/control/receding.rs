@@ -212,6 +212,28 @@ fn faults() {
     assert_eq!(source, Source::Plan);
 }
 
+/// Rates that are finite, but whose momenta are not, make no step: the plan is kept, then the gains act, and a new plan begins.
+#[test]
+fn plans_without_a_step() {
+    let pair = problem("pair.json", &[]);
+    let horizon = horizon(&pair, &Regulator::default(), 5);
+    let law = horizon.law();
+    let mut controller = RecedingHorizon::new(&horizon);
+    let goal = law.at(1e4).state.clone();
+    let mut step = |k: usize, rate: f64| {
+        let answer = controller.step(law.h * k as f64, Some(&[goal[0], rate]));
+        assert!(answer.inputs.iter().all(|v| (0.0..=3000.0).contains(v)));
+        let source = answer.source;
+        controller.prepare();
+        source
+    };
+    assert_eq!(step(30, 0.0), Source::Plan);
+    let sources: Vec<Source> = (31..36).map(|k| step(k, 1e308)).collect();
+    let [kept, acts] = [Source::Kept, Source::Regulator];
+    assert_eq!(sources, [kept, kept, kept, acts, kept]);
+    assert!((36..50).all(|k| step(k, 0.0) == Source::Plan));
+}
+
 /// A robot built part by part is held at its goal.
 #[test]
 fn a_robot_of_parts() {

@@ -52,6 +52,7 @@ mod study_control;
 mod study_limits;
 mod study_refused;
 mod sweep;
+mod two_processes;
 mod views;
 mod warm_starts;
 mod whole_files;
