@@ -8,8 +8,10 @@ use crate::workflow::Remarks;
 /// Probability of residuals of the fit below which its model does not explain them, whatever else it predicts.
 const BEYOND_CHANCE: f64 = 1e-6;
 
-/// Standard deviations of a prior beyond which, with a probability of 1 %, a constant lies.
+/// Standard deviations beyond which, with a probability of 1 %, a constant lies from its prior.
 const APART: f64 = 2.576;
+/// Least part of the variance of a prior that recordings take from it, where they can check it; less is rounding.
+const TAKEN: f64 = 1e-9;
 
 /// Powers of constants as a product, such as `a / b^2`.
 pub(super) fn product(task: &Identification, powers: &[(usize, f64)]) -> String {
@@ -113,11 +115,27 @@ pub(super) fn remarks(task: &Identification, found: &Identified) -> Remarks {
         ),
     }
     let differences = found.fit.of_priors(task);
-    let apart = task
-        .priors
+    let compared = task.priors.iter().zip(differences).map(|(prior, z)| {
+        // Where both agree, the estimate differs from the mean with the variance that the recordings take from that of the prior.
+        let place = (prior.constant, prior.constant);
+        let taken = 1.0 - found.information.covariance[place] / prior.deviation.powi(2);
+        (prior, (taken > TAKEN).then(|| z / taken.sqrt()))
+    });
+    let compared: Vec<_> = compared.collect();
+    let alone = compared.iter().filter(|(_, z)| z.is_none());
+    remarks.note(
+        "prior_not_checked",
+        alone.map(|(prior, _)| {
+            format!(
+                "the prior of {} alone decides its value: it is too narrow for the recordings to check it",
+                task.parameters[prior.constant].name
+            )
+        }),
+    );
+    let compared = compared
         .iter()
-        .zip(differences)
-        .filter(|(_, z)| z.abs() > APART);
+        .filter_map(|(prior, z)| Some((prior, (*z)?)));
+    let apart = compared.filter(|(_, z)| z.abs() > APART);
     remarks.warn(
         "prior_contradicted",
         apart.map(|(prior, z)| {

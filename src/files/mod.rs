@@ -43,7 +43,7 @@ use serde_json::Value;
 use std::path::{Path, PathBuf};
 
 use crate::control::Motion;
-use crate::control::problem::{Regulator, Task};
+use crate::control::problem::{Duration, Regulator, Task};
 use crate::files::json::scan::{Entry, Scanner, string};
 use crate::files::json::set::Override;
 use crate::files::problem::ahead::add_plan;
@@ -295,7 +295,17 @@ fn feedback(
     };
     let place = scope.key("feedback");
     match task {
-        Task::Control(_) => regulator(spec, system, &place).map(Some),
+        Task::Control(control) => {
+            let regulator = regulator(spec, system, &place)?;
+            let (Duration::Given(longest) | Duration::Free { max: longest, .. }) = control.duration;
+            match &spec.delay {
+                Some(delay) if regulator.delay > longest => {
+                    let expected = "a time no longer than the motion";
+                    Err(place.key("delay").wrong(delay.to_string(), expected))
+                }
+                _ => Ok(Some(regulator)),
+            }
+        }
         _ => Err(place.wrong(
             "a \"feedback\"",
             "none but beside \"control\", along whose optimum it is",

@@ -239,12 +239,12 @@ impl Functional {
                 slots
             };
             let effect_slots = self.terms.iter().map(&mut of_term).collect();
-            let mut of_measure = |measure: &Box<dyn Measure>| {
+            let measures = self.measures.iter().map(|measure| {
                 let mut slots = Vec::new();
                 measure.couple(&mut couplings, &mut slots);
                 slots
-            };
-            let measure_slots = self.measures.iter().map(&mut of_measure).collect();
+            });
+            let measure_slots = measures.collect();
             Laid {
                 couplings,
                 effect_slots,

@@ -198,6 +198,19 @@ fn begin(
         fixed_starts(system, task, recording)?;
     }
     let count = |&r: &usize| count_of_start(system, task, &task.recordings[r]);
+    let held_out = (0..task.recordings.len()).filter(|&r| task.recordings[r].is_held_out);
+    for r in held_out {
+        let (recording, of_start) = (&task.recordings[r], count(&r)?);
+        if recording.count() <= of_start {
+            return Err(IdentifyError::Refused {
+                recording: recording.name.clone(),
+                reason: format!(
+                    "{of_start} unknowns of the start are fitted to {} of its readings, which leaves nothing to check; expected more readings",
+                    recording.count()
+                ),
+            });
+        }
+    }
     let counts: Vec<usize> = fitted.iter().map(count).collect::<Result<_, _>>()?;
     let mut next = counts.into_iter();
     let unknowns = Unknowns::new(task, |_| next.next().expect("one of each that is fitted"));

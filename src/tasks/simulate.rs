@@ -108,6 +108,7 @@ impl SimulationResult {
         remarks.note("voltages_end", afterwards(task));
         if let Some(closed) = &self.closed_loop {
             remarks.note("feedback", closed.notes());
+            remarks.warn("goal_missed", closed.missed(model.length()));
             remarks.warn("feedback_timing", timing(task));
             remarks.warn("plan_failed", closed.other_sources());
             remarks.note("at_lower_bound", closed.at_lower_bound());

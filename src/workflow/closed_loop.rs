@@ -26,6 +26,9 @@ pub struct ClosedLoop {
     /// Reason why the motion without corrections ended early.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub open_loop_failure: Option<String>,
+    /// Lengths in m of the paths of markers in the motion of the law, by name.
+    #[serde(skip)]
+    pub paths: BTreeMap<String, f64>,
     /// Markers next to their places in the motion of the law.
     #[serde(skip)]
     pub tracked: Vec<Tracked>,
@@ -33,6 +36,11 @@ pub struct ClosedLoop {
     #[serde(skip)]
     pub open_loop: Option<Trajectory>,
 }
+
+/// Part of its path by which a marker may be beside its goal without a warning.
+const MISSED: f64 = 0.1;
+/// Least path, as a part of the length of the system.
+const STILL: f64 = 0.05;
 
 /// Distances of a marker from its place in the motion of a law, in m.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize)]
@@ -93,6 +101,7 @@ impl ClosedLoop {
             samples_at_upper_bound,
             plans,
             markers: BTreeMap::new(),
+            paths: BTreeMap::new(),
             tracked: Vec::new(),
             open_loop_failure,
             open_loop: None,
@@ -113,6 +122,12 @@ impl ClosedLoop {
             let is_whole = out.open_loop_failure.is_none();
             let open_loop = is_whole.then(|| of(&open).1);
             out.tracked.push(tracked);
+            let step = |two: &[[f64; 3]]| {
+                let apart = (0..3).map(|axis| (two[1][axis] - two[0][axis]).powi(2));
+                apart.sum::<f64>().sqrt() / 1e3
+            };
+            let path = places.windows(2).map(step).sum();
+            out.paths.insert(name.clone(), path);
             let deviations = Deviations {
                 feedback,
                 open_loop,
@@ -139,11 +154,27 @@ impl ClosedLoop {
         let line = |(name, of): (&String, &Deviations)| {
             let open = match &of.open_loop {
                 Some(open) => format!("; without feedback {}", millimetres(open)),
-                None => String::new(),
+                None => "; without feedback the motion ends early".to_owned(),
             };
             format!("{name}: {}{open}", millimetres(&of.feedback))
         };
         self.markers.iter().map(line).collect()
+    }
+
+    /// Warnings of markers that are far from their goal at the end of a simulation which lasts longer than the motion; `length` of the system in mm.
+    pub fn missed(&self, length: f64) -> Vec<String> {
+        let line = |(name, of): (&String, &Deviations)| {
+            let last = of.feedback.greatest_held.map(|_| of.feedback.last)?;
+            let path = self.paths[name].max(STILL * length / 1e3);
+            (last > MISSED * path).then(|| {
+                format!(
+                    "under the controller {name} is {:.3} mm from its goal at the end, {:.0} % of its path",
+                    1e3 * last,
+                    100.0 * last / path
+                )
+            })
+        };
+        self.markers.iter().filter_map(line).collect()
     }
 
     /// That inputs of a controller that plans anew came from elsewhere than from its plan with what was measured.

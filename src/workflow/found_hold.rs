@@ -1,6 +1,6 @@
 //! Inputs that hold the goal of a motion, found with it.
 
-use crate::control::BoundaryConditions;
+use crate::control::{BoundaryConditions, Rests};
 use crate::dynamics::trajectory::by_source;
 use crate::dynamics::{DiscreteTrajectory, Equilibrium};
 use crate::math::significant;
@@ -10,17 +10,37 @@ use crate::model::system::Source;
 /// A part of the largest input that holds a goal; smaller ones are not named.
 const HARDLY: f64 = 1e-3;
 
-/// Makes the goal of a motion the state of rest that it is, under the inputs that were found with it; nothing where none were.
+/// Makes the goal of a motion the state of rest that it is, under the inputs that were found with it or that the goal names.
 ///
 /// Its stability is known where the coordinates are free of constraints.
 pub(crate) fn keep(model: &Model, boundary: &mut BoundaryConditions, motion: &DiscreteTrajectory) {
-    let (Some(held), Some(z)) = (&motion.held, motion.z.last()) else {
+    let Some(z) = motion.z.last() else {
         return;
     };
-    boundary.rest[1] = Some(by_source(model, held));
+    let held = match &motion.held {
+        Some(found) => {
+            boundary.rest[1] = Some(by_source(model, found));
+            found.clone()
+        }
+        None => match named(model, boundary) {
+            Some(named) => named,
+            None => return,
+        },
+    };
     if model.action.map.multipliers == 0 {
-        boundary.goal.rest = Some(Equilibrium::of_state(model, z, held));
+        boundary.goal.rest = Some(Equilibrium::of_state(model, z, &held));
     }
+}
+
+/// Scalars of an interval with the inputs under which all of the system rests at a goal whose state was found; none where potentials follow from
+/// them, or the goal was known to be an equilibrium.
+fn named(model: &Model, boundary: &BoundaryConditions) -> Option<Vec<f64>> {
+    let goal = &boundary.goal;
+    let is_open = goal.rest.is_none() && goal.rests == Rests::Everything;
+    let inputs = boundary.rest[1].as_ref().filter(|_| is_open)?;
+    let scalars = model.variables.scalars(&model.scalars(inputs));
+    let [_, others] = model.variables.split(&scalars);
+    others.is_empty().then_some(scalars)
 }
 
 /// Names the inputs that were found and hold the goal, without those that are hardly any.

@@ -125,6 +125,33 @@ fn nothing_is_corrected_where_nothing_deviates() {
     assert_eq!(closed["samples"], 20);
 }
 
+/// Two kilogrammes stand upright on a joint whose muscles hold less than a degree of them: m g l is 0.49 N m, theirs 0.34 at most.
+#[test]
+fn an_unstable_goal_with_named_inputs_is_not_held() {
+    let folder = workshop();
+    let here = folder.path();
+    let heavy = "scene.chain.mass=\"2 kg\"";
+    let weight = "scene.gravity=[0,-9.81,0]";
+    let start = "control.start={\"joint_angles\":{\"joint1\":\"5 deg\"}}";
+    let goal = "control.goal={\"markers\":{\"tip\":[0,null,null]},\"hold\":{}}";
+    let set = [heavy, weight, start, goal, "control.intervals=40"];
+    let solve = |hold: &str| {
+        let mut arguments = vec!["solve", "problems/pair.json", "-o", "up", "--no-report"];
+        arguments.extend(set.iter().flat_map(|one| ["--set", one]));
+        arguments.extend(["--set", hold]);
+        run(here, &arguments)
+    };
+    let (status, out, err) = solve("control.hold=reported");
+    assert_eq!(status, 0, "{out}{err}");
+    assert!(
+        err.contains("an unstable equilibrium, in 1 direction"),
+        "{err}"
+    );
+    let (status, out, err) = solve("control.hold=required");
+    assert_eq!(status, 1, "{out}{err}");
+    assert!(format!("{out}{err}").contains("unstable"), "{out}{err}");
+}
+
 #[test]
 fn wrong_feedback_is_refused() {
     let folder = workshop();
@@ -153,6 +180,10 @@ fn wrong_feedback_is_refused() {
         &["feedback.weights", "positive"],
     );
     solve("feedback={\"terminal\":-2}", &["feedback.terminal"]);
+    solve(
+        "feedback={\"delay\":\"1e6 s\"}",
+        &["feedback.delay", "no longer than the motion"],
+    );
     solve("feedback={\"gain\":1}", &["gain"]);
     refused(
         here,
@@ -180,9 +211,26 @@ fn wrong_feedback_is_refused() {
     );
     simulate(
         own,
+        "simulate.controller.delay=\"1e6 s\"",
+        &["controller.delay", "no more than the duration"],
+    );
+    simulate(
+        own,
         "simulate.controller.noise={\"angle\":\"-1 deg\"}",
         &["noise.angle"],
     );
+    simulate(
+        own,
+        "simulate.controller.noise={\"length\":\"1 mm\"}",
+        &["noise.length", "nothing measures"],
+    );
+    for problem in [own, "problems/pair_receding.json"] {
+        simulate(
+            problem,
+            "simulate.voltages={\"muscle1\":\"1 kV\"}",
+            &["simulate.voltages.muscle1", "the controller gives"],
+        );
+    }
     simulate(
         own,
         "simulate.step=\"auto\"",

@@ -127,6 +127,22 @@ fn gains_and_delays_have_priors_in_their_units() {
     );
 }
 
+/// However narrow it is: the estimate then stays at the prior, and the readings are what it is far from.
+#[test]
+fn a_narrow_prior_beside_the_recording_is_told() {
+    for deviation in ["1 N/m", "1e-3 N/m", "1e-4 N/m"] {
+        let mut wrong = problem();
+        wrong["identify"]["priors"]["springs.stay.stiffness"] =
+            json!({ "value": "230 N/m", "standard_deviation": deviation });
+        wrong["identify"]["inputs"] = json!({ "delay": { "min": "0 s", "max": "20 ms" } });
+        let (_, text, _) = solved(&wrong);
+        assert!(
+            text.contains("standard deviations away from its prior"),
+            "{deviation}: {text}"
+        );
+    }
+}
+
 #[test]
 fn mistakes_of_inputs_and_priors_are_told() {
     let cases: &[(&str, Value, &str)] = &[

@@ -218,6 +218,16 @@ fn mistakes_of_scenes_columns_and_forces_are_told() {
         let message = refusal(&problem);
         assert!(message.contains(expected), "{expected}: {message}");
     }
+    // As many unknowns as readings are met by any readings.
+    let recording = coasting("alone", 0.0);
+    let mut held_out = recording.clone();
+    held_out["name"] = json!("short");
+    held_out["held_out"] = json!(true);
+    held_out["experiment"]["sought_start"] = json!("state");
+    held_out["columns"] = json!({ "time [s]": [0, 1], "x [m]": [1, 2] });
+    held_out.as_object_mut().unwrap().remove("file");
+    let message = refusal(&problem(vec![recording, held_out]));
+    assert!(message.contains("leaves nothing to check"), "{message}");
     let fixed = json!({ "reaction_force": "tray", "along": [1, 0, 0], "column": "x", "standard_deviation": "1 N" });
     let mut recording = coasting("alone", 0.0);
     recording["columns"] = json!({ "time [s]": [0, 1, 2, 3, 4, 5], "x [N]": [1, 2, 3, 4, 5, 6] });

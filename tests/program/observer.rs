@@ -172,6 +172,33 @@ fn lasting_forces_are_found_and_held_against() {
     }
 }
 
+/// A marker on the axis of the joint does not move with it.
+#[test]
+fn an_observer_that_sees_nothing_has_no_gains() {
+    let folder = workshop();
+    let here = folder.path();
+    let marker = "scene.markers=[{\"name\":\"axis\",\"body\":\"segment1\",\"at\":[0,0,0]}]";
+    let observer = "feedback={\"observer\":{\"markers\":{\"axis\":\"0.1 mm\"}}}";
+    let arguments = [
+        "solve",
+        "problems/pair_feedback.json",
+        "-o",
+        "blind",
+        "--no-report",
+        "--set",
+        marker,
+        "--set",
+        observer,
+    ];
+    let (status, out, err) = run(here, &arguments);
+    assert_eq!(status, 0, "{out}{err}");
+    assert!(
+        err.contains("no observer: not all that moves follows"),
+        "{err}"
+    );
+    assert!(!here.join("blind/feedback.json").exists());
+}
+
 #[test]
 fn wrong_observers_are_refused() {
     let folder = workshop();

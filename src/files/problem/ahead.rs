@@ -7,6 +7,7 @@ use crate::files::json::error::SceneError;
 use crate::files::json::scope::Scope;
 use crate::files::problem::coordinates::count;
 use crate::files::problem::feedback::{CONTROL_FILE, ROUNDING};
+use crate::files::problem::simulation::refuse_given;
 use crate::files::problem::spec::ProblemSpec;
 use crate::math::shortest;
 use crate::model::system::{Source, System};
@@ -78,6 +79,9 @@ pub(crate) fn add_plan(
         h: sample,
         ..(*controller.law).clone()
     });
+    if let Some(simulate) = &spec.simulate {
+        refuse_given(simulate, &controller.law, &scope.key("simulate"))?;
+    }
     let regulator = regulator.unwrap_or_default();
     controller.sample = sample;
     if written_delay.is_none() {

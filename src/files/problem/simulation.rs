@@ -2,6 +2,7 @@
 
 use crate::control::problem::Simulation;
 use crate::dynamics::{Integrator, Newton, Solving};
+use crate::feedback::Law;
 use crate::files::json::error::SceneError;
 use crate::files::json::scope::Scope;
 use crate::files::problem::coordinates::coordinates;
@@ -9,6 +10,8 @@ use crate::files::problem::driven::driven;
 use crate::files::problem::feedback::controller;
 use crate::files::problem::spec_integrator::integrator;
 use crate::files::problem::spec_simulate::{LinearSolverSpec, SimulateSpec, StepSpec};
+use crate::files::problem::spec_voltages::VoltagesSpec;
+use crate::math::shortest;
 use crate::model::system::System;
 
 /// Tolerances below this ask for more than rounding allows.
@@ -55,11 +58,43 @@ pub(crate) fn simulation(
                 let equal = tolerance.is_none().then_some(equal);
                 let place = scope.key("controller");
                 let controller = controller(written, equal, system, &place)?;
+                if controller.delay > duration {
+                    let found = format!("{} s", shortest(controller.delay / 1e3, 9));
+                    let expected = format!("no more than the duration {}", spec.duration);
+                    return Err(place.key("delay").wrong(found, expected));
+                }
+                refuse_given(spec, &controller.law, scope)?;
                 Some(Box::new(controller))
             }
             None => None,
         },
     })
+}
+
+/// Refuses voltages and loads that are written for inputs which the controller gives.
+pub(crate) fn refuse_given(
+    spec: &SimulateSpec,
+    law: &Law,
+    scope: &Scope<'_>,
+) -> Result<(), SceneError> {
+    let of_voltages: Vec<&String> = match &spec.voltages {
+        VoltagesSpec::Signals(map) => map.keys().collect(),
+        VoltagesSpec::Table(table) => table.voltages.keys().collect(),
+        VoltagesSpec::Solution(_) => Vec::new(),
+    };
+    let loads = spec.loads.keys().map(|name| ("loads", name));
+    let mut written = of_voltages
+        .into_iter()
+        .map(|name| ("voltages", name))
+        .chain(loads);
+    match written.find(|(_, name)| law.inputs.iter().any(|input| input.name == **name)) {
+        None => Ok(()),
+        Some((key, name)) => {
+            let found = format!("{name:?}, an input that the controller gives");
+            let expected = "other inputs alone beside \"controller\"";
+            Err(scope.key(key).key(name).wrong(found, expected))
+        }
+    }
 }
 
 /// Length of the steps in ms, of the first attempt where a tolerance controls it, and the tolerance.

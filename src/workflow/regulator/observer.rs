@@ -25,6 +25,8 @@ struct Scaled {
     readings: Vec<f64>,
 }
 
+/// Derivatives of readings by the state, of mm or rad by mm or rad, that are rounding.
+const BLIND: f64 = 1e-9;
 /// Reason why a state cannot be found.
 const NOT_SEEN: &str =
     "not all that moves follows from what is measured; expected more measured joints or markers";
@@ -79,6 +81,13 @@ impl Design<'_> {
             radius = of.radius;
             self.filter(scaled, &of.cost, &scales)
         });
+        // A stable robot comes to rest by itself, whatever is measured.
+        if points
+            .iter()
+            .all(|point| point.output.iter().all(|value| value.abs() <= BLIND))
+        {
+            return Err(NoRegulator::Observer(NOT_SEEN.to_owned()));
+        }
         let observer = Observer {
             held: held.transpose()?,
             readings,

@@ -137,6 +137,9 @@ pub struct RegulatorReport {
     pub difference: f64,
 }
 
+/// Part of its range within which an input is at a bound.
+const AT_BOUND: f64 = 1e-6;
+
 impl Regulated {
     /// Numbers for a summary.
     pub fn report(&self) -> RegulatorReport {
@@ -178,9 +181,40 @@ impl Regulated {
         held.into_iter().chain(observed).collect()
     }
 
+    /// That a goal which is unstable without feedback is held by inputs of which some act to one side alone, which linear feedback does not know.
+    fn one_sided(&self) -> Option<String> {
+        let (_, held) = self
+            .held
+            .as_ref()
+            .filter(|(_, held)| held.open_radius >= 1.0)?;
+        let point = self.law.held.as_ref()?;
+        let at_bound = self
+            .law
+            .inputs
+            .iter()
+            .zip(&point.inputs)
+            .filter(|(input, value)| {
+                let [low, high] = input.bounds;
+                let margin = AT_BOUND * (high - low);
+                **value <= low + margin || **value >= high - margin
+            });
+        let names: Vec<&str> = at_bound.map(|(input, _)| input.name.as_str()).collect();
+        (!names.is_empty()).then(|| {
+            format!(
+                "without feedback the goal is unstable (spectral radius {:.4}), and there {} at a bound, where inputs act to one side alone: \
+                 that feedback holds it is not shown; simulate it with \"controller\"",
+                held.open_radius,
+                match &names[..] {
+                    [one] => format!("{one} is"),
+                    several => format!("{} are", several.join(", ")),
+                }
+            )
+        })
+    }
+
     /// Doubts about the gains.
     pub fn warnings(&self) -> Vec<String> {
-        let mut out: Vec<String> = Vec::new();
+        let mut out: Vec<String> = self.one_sided().into_iter().collect();
         out.extend(
             self.not_held
                 .as_ref()
