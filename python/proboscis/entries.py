@@ -534,7 +534,7 @@ class Controller(TypedDict):
     """A controller that follows a motion by the gains of `feedback.json`, or plans anew over a receding horizon: one of `feedback` and `horizon`."""
 
     delay: NotRequired[Quantity]
-    """Time from a sample to its effect, a multiple of the step, SI unit s; that which the gains predict where not written."""
+    """Time from a sample to its effect, a multiple of the step, SI unit s; that which the gains or plans predict where not written."""
 
     feedback: NotRequired[Text]
     """Path of a `feedback.json` or of the folder that holds it, relative to this file or to the current folder. It gives the inputs that were
@@ -542,7 +542,7 @@ class Controller(TypedDict):
     """
 
     horizon: NotRequired[Horizon]
-    """Plans anew in each interval, without `sample` and `delay`."""
+    """Plans anew in each interval, without `sample`."""
 
     noise: NotRequired[Noise]
     """Noise of what is measured."""
@@ -1183,6 +1183,12 @@ class Observer(TypedDict):
 
     joints: NotRequired[Mapping[Any, Quantity]]
     """Of measured joint coordinates, by joint, SI unit rad or m."""
+
+    lasting: NotRequired[float]
+    """Of the change in each interval of a lasting force on each joint, as a part of the greatest force of an input on it. These forces are then
+    found beside the state, and inputs hold the goal against them; without it none are. As many independent measurements are needed as there are
+    joints.
+    """
 
     markers: NotRequired[Mapping[Any, Quantity]]
     """Of each component of the places of measured markers, by marker, SI unit m."""
