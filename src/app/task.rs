@@ -107,9 +107,18 @@ pub(super) fn read(
         Some(text) => read_problem_text(input, text, set),
         None => read_problem(input, set),
     }?;
-    let occasion = Occasion::of_task(&loaded.task);
-    memory::of_elements(&loaded.system, occasion).map_err(CommandError::in_file(input))?;
+    memory::of_elements(&loaded.system, occasion(&loaded.task))
+        .map_err(CommandError::in_file(input))?;
     Ok(loaded)
+}
+
+/// The occasion at which a task solves for elements.
+fn occasion(task: &Task) -> Occasion {
+    match task {
+        Task::Equilibrium(_) => Occasion::Rest,
+        Task::Simulate(simulation) => Occasion::of_steps(simulation.solving),
+        Task::Control(_) | Task::Motions(_) | Task::Identify(_) => Occasion::Factors,
+    }
 }
 
 /// Refuses results in the place of those of another problem, or of the one from whose end the motion starts.

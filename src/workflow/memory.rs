@@ -1,6 +1,5 @@
 //! Lower bounds of the memory that a run needs, checked before it begins.
 
-use crate::control::problem::Task;
 use crate::dynamics::Solving;
 use crate::math::memory::{available, readable};
 use crate::model::system::{Fidelity, Material};
@@ -42,15 +41,6 @@ impl Occasion {
         match solving.may_iterate() {
             true => Self::Steps,
             false => Self::Factors,
-        }
-    }
-
-    /// That of a task.
-    pub(crate) fn of_task(task: &Task) -> Self {
-        match task {
-            Task::Equilibrium(_) => Self::Rest,
-            Task::Simulate(simulation) => Self::of_steps(simulation.solving),
-            Task::Control(_) | Task::Motions(_) | Task::Identify(_) => Self::Factors,
         }
     }
 }
