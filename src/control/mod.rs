@@ -62,6 +62,7 @@ pub use problem::{Motion, Motions};
 pub use rest::rest_at;
 pub use rest_program::{RestProgram, rest_programs};
 pub use solution::{Costates, Solution};
+pub(crate) use sought::ends_that_read;
 pub(crate) use sought_hold::obstacle as hold_obstacle;
 pub use span::Span;
 pub use transcription::{Outline, Transcription};

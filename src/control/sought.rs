@@ -58,17 +58,31 @@ fn reads(quantity: &Quantity, parameter: &Parameter) -> bool {
     }
 }
 
+/// A quantity of the instants at the starts of the intervals, and at the end of the last one, where it reads a parameter: parameters belong to
+/// intervals.
+pub(crate) fn ends_that_read(
+    quantity: &Quantity,
+    parameters: &[Parameter],
+) -> Option<[Quantity; 2]> {
+    if !parameters
+        .iter()
+        .any(|parameter| reads(quantity, parameter))
+    {
+        return None;
+    }
+    let [start, end] = [Stencil::Here, Stencil::Next].map(|at| quantity.in_intervals(at));
+    Some([start?, end?])
+}
+
 /// Puts limits of the instants that read a parameter in the place of the starts of intervals and the end of the last one: parameters belong to
 /// intervals.
 pub(super) fn in_intervals(limits: &mut Limits, control: &Control) {
-    let is_read = |quantity: &Quantity| control.parameters.iter().any(|p| reads(quantity, p));
     let list = std::mem::take(&mut limits.list);
     for bounded in list {
-        match bounded.quantity.in_intervals(Stencil::Here) {
-            Some(start) if is_read(&bounded.quantity) => {
-                let end = bounded.quantity.in_intervals(Stencil::Next);
+        match ends_that_read(&bounded.quantity, &control.parameters) {
+            Some([start, end]) => {
                 let is_closed = control.goal == BoundaryState::Periodic;
-                let of_end = end.filter(|_| !is_closed || bounded.when.is_single());
+                let of_end = (!is_closed || bounded.when.is_single()).then_some(end);
                 let (at_start, at_end) = match bounded.when {
                     When::Everywhere => (Some(start), When::At(1.0)),
                     single => (None, single),
@@ -83,7 +97,7 @@ pub(super) fn in_intervals(limits: &mut Limits, control: &Control) {
                     ..bounded.clone()
                 }));
             }
-            _ => limits.list.push(bounded),
+            None => limits.list.push(bounded),
         }
     }
 }

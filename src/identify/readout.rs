@@ -1,5 +1,6 @@
 //! Channels read off a motion, with their derivatives by the unknowns.
 
+use crate::control::ends_that_read;
 use crate::control::problem::{Channel, Reading};
 use crate::coordinates::Configuration;
 use crate::dynamics::DiscreteTrajectory;
@@ -7,7 +8,6 @@ use crate::functional::{Measure, Sample, SumDerivatives};
 use crate::identify::drive::Delay;
 use crate::identify::interpolation::{piece, slopes, weights};
 use crate::identify::sensitivity::CourseDerivatives;
-use crate::identify::setup::ends;
 use crate::model::{Model, Quantity};
 use nalgebra::{DMatrix, DVector, RowDVector};
 
@@ -117,7 +117,7 @@ impl Course<'_> {
     fn nodes(&self, instants: &[Configuration], quantity: &Quantity, columns: usize) -> Nodes {
         let [_, h] = self.grid(quantity);
         let parameters = &self.model.analysis.parameters;
-        let (mut values, mut derivatives) = match ends(quantity, parameters) {
+        let (mut values, mut derivatives) = match ends_that_read(quantity, parameters) {
             None => self.all(instants, quantity, columns),
             Some([start, end]) => {
                 let (mut values, mut derivatives) = self.all(instants, &start, columns);

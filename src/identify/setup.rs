@@ -3,9 +3,8 @@
 use crate::control::problem::{
     BoundaryState, Control, Duration, Identification, Recording, Regime, SoughtStart, Voltages,
 };
-use crate::control::{BoundaryConditions, BoundaryError, resolve_start};
+use crate::control::{BoundaryConditions, BoundaryError, ends_that_read, resolve_start};
 use crate::dynamics::Start;
-use crate::functional::Stencil;
 use crate::identify::drive::Drive;
 use crate::identify::error::IdentifyError;
 use crate::model::{Analysis, Coordinates, Model, Parameter, Quantity, System, with_parameters};
@@ -53,10 +52,12 @@ impl<'a> Setup<'a> {
         let mut analysis = Analysis {
             quantities: recording
                 .quantities()
-                .flat_map(|quantity| match ends(&quantity, &control.parameters) {
-                    Some(ends) => ends.to_vec(),
-                    None => vec![quantity],
-                })
+                .flat_map(
+                    |quantity| match ends_that_read(&quantity, &control.parameters) {
+                        Some(ends) => ends.to_vec(),
+                        None => vec![quantity],
+                    },
+                )
                 .collect(),
             ..control.analysis(&system, duration / intervals)
         };
@@ -211,16 +212,6 @@ impl Recording {
             source,
         }
     }
-}
-
-/// The quantity at the starts of the intervals, to which constants belong, and at the end of the last one, where sought constants move places.
-pub(super) fn ends(quantity: &Quantity, parameters: &[Parameter]) -> Option<[Quantity; 2]> {
-    let mut constants = parameters.iter().flat_map(|parameter| &parameter.constants);
-    if !constants.any(|one| one.constant.is_place()) {
-        return None;
-    }
-    let [start, end] = [Stencil::Here, Stencil::Next].map(|at| quantity.in_intervals(at));
-    Some([start?, end?])
 }
 
 /// Returns true of forces, charges, currents, powers and voltages, which are none where they have no measure.
