@@ -3,6 +3,7 @@
 //! `u = u₀ − K (x − x₀)` with the inputs u₀ and the state x₀ of the motion: coordinates, their rates, and time integrals of deviations.
 //! An input that acts by its square is u = V². Gains hold over an interval of the motion, or for the time after its end.
 
+use crate::feedback::lasting::Forced;
 use crate::feedback::observer::Observer;
 use nalgebra::DMatrix;
 
@@ -95,9 +96,15 @@ impl Law {
         self.observer.as_ref().map_or(own, |one| one.readings.len())
     }
 
+    /// Lasting forces that its observer finds; nothing without them.
+    pub fn lasting(&self) -> &[Forced] {
+        let lasting = self.observer.as_ref().and_then(|one| one.lasting.as_ref());
+        lasting.map_or(&[], |lasting| &lasting.on)
+    }
+
     /// Number of lasting forces that its observer finds.
     pub fn forces(&self) -> usize {
-        self.observer.as_ref().map_or(0, Observer::forces)
+        self.lasting().len()
     }
 
     /// Number of inputs that act against lasting forces: all of them, or none without forces.

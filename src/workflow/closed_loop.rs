@@ -26,9 +26,6 @@ pub struct ClosedLoop {
     /// Reason why the motion without corrections ended early.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub open_loop_failure: Option<String>,
-    /// Lengths in m of the paths of markers in the motion of the law, by name.
-    #[serde(skip)]
-    pub paths: BTreeMap<String, f64>,
     /// Markers next to their places in the motion of the law.
     #[serde(skip)]
     pub tracked: Vec<Tracked>,
@@ -101,7 +98,6 @@ impl ClosedLoop {
             samples_at_upper_bound,
             plans,
             markers: BTreeMap::new(),
-            paths: BTreeMap::new(),
             tracked: Vec::new(),
             open_loop_failure,
             open_loop: None,
@@ -122,12 +118,6 @@ impl ClosedLoop {
             let is_whole = out.open_loop_failure.is_none();
             let open_loop = is_whole.then(|| of(&open).1);
             out.tracked.push(tracked);
-            let step = |two: &[[f64; 3]]| {
-                let apart = (0..3).map(|axis| (two[1][axis] - two[0][axis]).powi(2));
-                apart.sum::<f64>().sqrt() / 1e3
-            };
-            let path = places.windows(2).map(step).sum();
-            out.paths.insert(name.clone(), path);
             let deviations = Deviations {
                 feedback,
                 open_loop,
@@ -163,18 +153,20 @@ impl ClosedLoop {
 
     /// Warnings of markers that are far from their goal at the end of a simulation which lasts longer than the motion; `length` of the system in mm.
     pub fn missed(&self, length: f64) -> Vec<String> {
-        let line = |(name, of): (&String, &Deviations)| {
-            let last = of.feedback.greatest_held.map(|_| of.feedback.last)?;
-            let path = self.paths[name].max(STILL * length / 1e3);
+        let line = |tracked: &Tracked| {
+            let of = &self.markers[&tracked.name].feedback;
+            let last = of.greatest_held.map(|_| of.last)?;
+            let path = path_length(tracked).max(STILL * length) / 1e3;
             (last > MISSED * path).then(|| {
                 format!(
-                    "under the controller {name} is {:.3} mm from its goal at the end, {:.0} % of its path",
+                    "under the controller {} is {:.3} mm from its goal at the end, {:.0} % of its path",
+                    tracked.name,
                     1e3 * last,
                     100.0 * last / path
                 )
             })
         };
-        self.markers.iter().filter_map(line).collect()
+        self.tracked.iter().filter_map(line).collect()
     }
 
     /// That inputs of a controller that plans anew came from elsewhere than from its plan with what was measured.
@@ -213,4 +205,16 @@ impl ClosedLoop {
             format!("in {count} of {samples} samples the controller wanted an input above its upper bound")
         })
     }
+}
+
+/// Length in mm of the path of a marker in the motion of the law.
+fn path_length(tracked: &Tracked) -> f64 {
+    let step = |k: usize| {
+        let along = tracked
+            .paths
+            .iter()
+            .map(|path| path.reference[k] - path.reference[k - 1]);
+        along.map(|step| step * step).sum::<f64>().sqrt()
+    };
+    (1..tracked.deviation.len()).map(step).sum()
 }

@@ -1,6 +1,6 @@
 //! Writer of `feedback.json` and of the table of gains.
 
-use crate::feedback::{Filter, Forced, Law, Point, Reading};
+use crate::feedback::{Filter, Law, Point, Reading};
 use crate::files::feedback::record::{
     FilterRecord, ForceRecord, InputRecord, LastingRecord, LawRecord, MeasuredRecord,
     ObserverRecord, PointRecord, ReadingRecord, factor_of, integrated, unit_of, unit_of_force,
@@ -32,7 +32,10 @@ impl Factors {
             })
             .collect();
         let corrections = (0..law.delay).flat_map(|_| acting.iter().copied());
-        let forces = forces(law).map(|force| unit_of_force(force.is_length).1);
+        let forces = law
+            .lasting()
+            .iter()
+            .map(|force| unit_of_force(force.is_length).1);
         let against = acting.iter().copied().take(law.targets());
         Self {
             read: measured
@@ -107,13 +110,6 @@ impl Factors {
 fn scaled(values: &[f64], factors: &[f64]) -> Vec<f64> {
     let all = values.iter().zip(factors);
     all.map(|(value, factor)| value * factor).collect()
-}
-
-/// Lasting forces of a law.
-fn forces(law: &Law) -> impl Iterator<Item = &Forced> {
-    let observer = law.observer.as_ref();
-    let lasting = observer.and_then(|one| one.lasting.as_ref());
-    lasting.into_iter().flat_map(|lasting| &lasting.on)
 }
 
 /// A matrix row by row, with the factors of what it gives and of what it is multiplied by.
@@ -195,7 +191,7 @@ pub fn law_csv(law: &Law, system: &System, head: &str) -> String {
         let (name, unit) = &names[of];
         (format!("integral of {name}"), format!("{unit} s"))
     });
-    let forces = forces(law).map(|force| {
+    let forces = law.lasting().iter().map(|force| {
         let unit = unit_of_force(force.is_length).0;
         (format!("lasting force on {}", force.name), unit.to_owned())
     });

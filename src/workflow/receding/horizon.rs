@@ -305,14 +305,12 @@ impl Horizon {
 
 /// Coordinates on which the lasting forces of a law act.
 fn forced(model: &Model, coordinates: &[usize], law: &Law) -> Vec<usize> {
-    let observer = law.observer.as_ref();
-    let lasting = observer.and_then(|one| one.lasting.as_ref());
-    let on = lasting.into_iter().flat_map(|lasting| &lasting.on);
     let named = |name: &str| {
         let mut all = coordinates.iter();
         let own = all.find(|&&i| model.variables.unknown(i).to_string() == name);
         *own.expect("a coordinate of the law")
     };
+    let on = law.lasting().iter();
     on.map(|force| named(&force.name)).collect()
 }
 
