@@ -98,7 +98,7 @@ impl HeldOut {
         let whole = weighted(&found.prediction.derivatives, &data.deviations);
         let residuals = &data.values - &found.prediction.values;
         let mut residuals = residuals.component_div(&data.deviations);
-        let n = residuals.len().saturating_sub(count).max(1) as f64;
+        let n = (residuals.len() - count) as f64;
         let series = data.series(task, &which, &found.prediction.values);
         let reduced = residuals.norm_squared() / n;
         let mut by = whole.columns(0, constants.len()).into_owned();

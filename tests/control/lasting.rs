@@ -81,6 +81,15 @@ fn a_torque_is_found() {
     }
 }
 
+/// Inputs that act in interval k of those that were sent, before these those of the motion.
+fn acting(horizon: &Horizon, sent: &[Vec<f64>], k: usize) -> Vec<f64> {
+    let law = horizon.law();
+    match k.checked_sub(horizon.delay()) {
+        Some(of) => sent[of].clone(),
+        None => law.at(law.h * k as f64).inputs.clone(),
+    }
+}
+
 /// Inputs of a controller interval by interval, of a stiffer robot with a torque; then its angle and that of the goal.
 fn stiffer(horizon: &Horizon, torque: f64, steps: usize) -> (Vec<Vec<f64>>, [f64; 2]) {
     let (stiff, _) = problem(
@@ -97,10 +106,7 @@ fn stiffer(horizon: &Horizon, torque: f64, steps: usize) -> (Vec<Vec<f64>>, [f64
         assert_eq!(answer.source, Source::Plan);
         sent.push(answer.inputs.to_vec());
         controller.prepare();
-        let acting = match k.checked_sub(horizon.delay()) {
-            Some(of) => sent[of].clone(),
-            None => law.at(law.h * k as f64).inputs.clone(),
-        };
+        let acting = acting(horizon, &sent, k);
         go(&mut robot, law.h, &acting, torque);
     }
     let goal = law.held.as_ref().unwrap();
@@ -149,10 +155,7 @@ fn a_delay_of_the_whole_state() {
             assert_eq!(answer.source, Source::Plan);
             sent.push(answer.inputs.to_vec());
             controller.prepare();
-            let acting = match k.checked_sub(horizon.delay()) {
-                Some(of) => sent[of].clone(),
-                None => law.at(law.h * k as f64).inputs.clone(),
-            };
+            let acting = acting(&horizon, &sent, k);
             off.push(robot.z[0] - law.at(law.h * k as f64).state[0]);
             robot.go(law.h, &acting);
             if k == 22 {

@@ -11,7 +11,7 @@ use proboscis::control::problem::{
 };
 use proboscis::dynamics::{observations, simulate};
 use proboscis::functional::Stencil;
-use proboscis::identify::{Ended, Grid, Unknowns, fit, predict};
+use proboscis::identify::{Ended, Fit, Grid, Unknowns, fit, predict};
 use proboscis::model::components::{Load, LoadPlace};
 use proboscis::model::system::ElectricConstants;
 use proboscis::model::{
@@ -270,6 +270,19 @@ fn constants_come_back_from_forces_and_from_circuits() {
     recovered(&[reaction(0, Reaction::Force)], &["mass", "stiffness"]);
 }
 
+/// The fit of the constants to the only recording on a grid of intervals, from their guesses on.
+pub(crate) fn converged(system: &System, task: &Identification, intervals: usize) -> Fit {
+    let guesses: Vec<f64> = task.parameters.iter().map(|p| p.guess).collect();
+    let begin = (Unknowns::of_values(&guesses, &[&[]]), 0);
+    let grid = Grid {
+        intervals: vec![intervals],
+        meets_corners: vec![true; 8],
+    };
+    let found = fit((system, task), &[0], begin, &grid).unwrap();
+    assert_eq!(found.ended, Ended::Converged);
+    found
+}
+
 fn recovered(quantities: &[Quantity], names: &[&str]) {
     let system = system();
     let channels = quantities.iter();
@@ -299,14 +312,7 @@ fn recovered(quantities: &[Quantity], names: &[&str]) {
             row += 1;
         }
     }
-    let guesses: Vec<f64> = task.parameters.iter().map(|p| p.guess).collect();
-    let begin = (Unknowns::of_values(&guesses, &[&[]]), 0);
-    let grid = Grid {
-        intervals: vec![76],
-        meets_corners: vec![true; 8],
-    };
-    let found = fit((&system, &task), &[0], begin, &grid).unwrap();
-    assert_eq!(found.ended, Ended::Converged);
+    let found = converged(&system, &task, 76);
     for (j, (value, truth)) in found.of_constants().iter().zip(&truth).enumerate() {
         println!("{} {value} {truth}", task.parameters[j].name);
         assert!(

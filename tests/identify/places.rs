@@ -2,13 +2,14 @@
 
 use crate::common::trunk;
 use crate::derivatives::{channel, compare, readings};
+use crate::forces::converged;
 use crate::oscillator::{self, DAMPING, STIFFNESS, joint, parameter};
 use nalgebra::Vector3;
 use proboscis::Signal;
 use proboscis::control::problem::{
     BoundaryState, Identification, Recording, Regime, SoughtStart, Voltages,
 };
-use proboscis::identify::{Ended, Grid, Unknowns, fit};
+use proboscis::identify::Unknowns;
 use proboscis::model::system::{Attachment, Marker, System};
 use proboscis::model::{Constant, Parameter, Quantity};
 
@@ -118,14 +119,7 @@ fn the_place_of_a_marker_comes_back_with_stiffness_and_damping() {
     let mut task = oscillator::task(vec![recording]);
     task.parameters
         .push(place("marker", Constant::MarkerPlace(0, 0), 0.0));
-    let guesses: Vec<f64> = task.parameters.iter().map(|p| p.guess).collect();
-    let begin = (Unknowns::of_values(&guesses, &[&[]]), 0);
-    let grid = Grid {
-        intervals: vec![236],
-        meets_corners: vec![true; 8],
-    };
-    let found = fit((&system, &task), &[0], begin, &grid).unwrap();
-    assert_eq!(found.ended, Ended::Converged);
+    let found = converged(&system, &task, 236);
     let truth = [STIFFNESS, DAMPING, BESIDE];
     for (value, truth) in found.of_constants().iter().zip(truth) {
         assert!((value / truth - 1.0).abs() < 1e-4, "{value} {truth}");

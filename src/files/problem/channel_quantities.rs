@@ -78,6 +78,11 @@ impl What {
             unit,
         }
     }
+
+    /// The same, called by a word and the name of what it is of.
+    fn named(word: &str, of: &str, quantity: Quantity, unit: (Kind, SiUnit)) -> Self {
+        Self::plain(of, format!("{word} of {of}"), quantity, unit)
+    }
 }
 
 /// Symbol and factor.
@@ -110,7 +115,7 @@ fn joint_rate(
         _ => (AngularVelocity::kind(), ("rad/s", 1e3)),
     };
     let quantity = Quantity::joint_rate(joint);
-    Ok(What::plain(name, format!("rate of {name}"), quantity, unit))
+    Ok(What::named("rate", name, quantity, unit))
 }
 
 fn marker(
@@ -164,8 +169,7 @@ fn tension(
         return Err(place.wrong(format!("{name:?}, {without}"), EXPECTED));
     }
     let unit = (Force::kind(), ("N", 1.0));
-    let title = format!("tension of {name}");
-    Ok(What::plain(name, title, quantity, unit))
+    Ok(What::named("tension", name, quantity, unit))
 }
 
 /// A source, whether it charges a lumped muscle, and whether a resistor lies between.
@@ -213,8 +217,7 @@ fn charge(
         }
     };
     let unit = (Charge::kind(), ("C", 1e-3));
-    let title = format!("charge of {name}");
-    Ok(What::plain(name, title, quantity, unit))
+    Ok(What::named("charge", name, quantity, unit))
 }
 
 /// Current of a source: through a resistor, or that of the changing charge.
@@ -247,8 +250,7 @@ fn current(
         }
     };
     let unit = (Current::kind(), ("A", 1.0));
-    let title = format!("current of {name}");
-    Ok(What::plain(name, title, quantity, unit))
+    Ok(What::named("current", name, quantity, unit))
 }
 
 /// Electrical power of the source of a muscle.
@@ -269,8 +271,7 @@ fn power(
         unit: 1.0,
     };
     let unit = (Power::kind(), ("W", 1.0));
-    let title = format!("power of {name}");
-    Ok(What::plain(name, title, quantity, unit))
+    Ok(What::named("power", name, quantity, unit))
 }
 
 /// Voltage of electrodes that is not given.
@@ -288,8 +289,7 @@ fn voltage(
     }
     let quantity = Quantity::ElectrodeVoltage { source: of.source };
     let unit = (Voltage::kind(), ("V", 1.0));
-    let title = format!("voltage of {name}");
-    Ok(What::plain(name, title, quantity, unit))
+    Ok(What::named("voltage", name, quantity, unit))
 }
 
 fn reaction_force(
@@ -336,12 +336,7 @@ fn reaction(
         unit: 1.0,
         h: 1.0,
     };
-    Ok(What::plain(
-        name,
-        format!("{word} of {name}"),
-        quantity,
-        unit,
-    ))
+    Ok(What::named(word, name, quantity, unit))
 }
 
 /// The unit vector of a direction that has to be written.
