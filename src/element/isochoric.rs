@@ -36,6 +36,16 @@ pub enum IsochoricLaw {
         /// c₃ in MPa.
         c3: f64,
     },
+    /// The first derivative of Gent's law by Jₘ.
+    GentSlope {
+        /// Jₘ.
+        limit: f64,
+    },
+    /// The second one.
+    GentCurvature {
+        /// Jₘ.
+        limit: f64,
+    },
 }
 
 impl IsochoricLaw {
@@ -72,6 +82,29 @@ impl IsochoricLaw {
                 let first = (strain * strain.scaled(3.0 * c3).shifted(2.0 * c2)).shifted(0.5 * mu);
                 [value, first, strain.scaled(6.0 * c3).shifted(2.0 * c2)]
             }
+            Self::GentSlope { limit } => {
+                let left = strain.scaled(-1.0 / limit).shifted(1.0);
+                let (ln, r) = (left.ln(), left.recip());
+                let c = 0.5 * mu / limit;
+                let value = (ln + r).shifted(-1.0).scaled(-0.5 * mu);
+                let first = (r - r * r).scaled(c) + ln.scaled(0.0);
+                [
+                    value,
+                    first,
+                    (r * r - (r * r * r).scaled(2.0)).scaled(c / limit),
+                ]
+            }
+            Self::GentCurvature { limit } => {
+                let left = strain.scaled(-1.0 / limit).shifted(1.0);
+                let (r, c) = (left.recip(), 0.5 * mu / limit);
+                let more = r.shifted(-1.0);
+                let second = (r * r * r * r).scaled(3.0) - (r * r * r).scaled(2.0);
+                [
+                    (more * more).scaled(c) + left.ln().scaled(0.0),
+                    (more * r * r).scaled(2.0 * c / limit),
+                    second.scaled(2.0 * c / (limit * limit)),
+                ]
+            }
         }
     }
 
@@ -80,7 +113,17 @@ impl IsochoricLaw {
     pub(super) fn of_second_invariant(&self, mu: f64) -> Option<f64> {
         match *self {
             Self::MooneyRivlin { share } => Some(0.5 * mu * share),
-            Self::Gent { .. } | Self::Yeoh { .. } => None,
+            _ => None,
+        }
+    }
+
+    /// Its first and second derivative by Jₘ, laws without a volumetric energy; `None` where it is not Gent's.
+    pub fn by_limit(self) -> Option<[Self; 2]> {
+        match self {
+            Self::Gent { limit } => {
+                Some([Self::GentSlope { limit }, Self::GentCurvature { limit }])
+            }
+            _ => None,
         }
     }
 }
@@ -104,6 +147,7 @@ pub trait ElementLaw: sealed::Sealed + Copy + Debug + Send + Sync + 'static {
     fn moduli(&self, mu: f64, lambda: f64) -> [f64; 2] {
         match self.isochoric() {
             None => [mu, lambda],
+            Some(IsochoricLaw::GentSlope { .. } | IsochoricLaw::GentCurvature { .. }) => [0.0; 2],
             Some(_) => [0.0, lambda + 2.0 / 3.0 * mu],
         }
     }

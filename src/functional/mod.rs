@@ -41,6 +41,7 @@ mod stencil;
 mod sum;
 mod sum_derivatives;
 mod term;
+mod varied_elements;
 mod viscous_elements;
 
 pub use couplings::{BlockMask, Blocks, Coupling, Couplings};
@@ -66,4 +67,5 @@ pub use stencil::{Stencil, VectorArg};
 pub use sum::Sum;
 pub use sum_derivatives::SumDerivatives;
 pub use term::{Functional, Horizon, Measure, Order, Output, Sample, Term, TermKind};
+pub use varied_elements::{VariedElement, VariedElements};
 pub use viscous_elements::{ViscousElement, ViscousElements, ViscousVariations};

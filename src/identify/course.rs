@@ -1,7 +1,7 @@
 //! The motion of a recording on one grid, or its states of rest, read at all readings.
 
 use crate::control::problem::{BoundaryState, Identification, Recording, Regime, Voltages};
-use crate::dynamics::{DiscreteTrajectory, Start, simulate};
+use crate::dynamics::{DiscreteTrajectory, Equilibrium, Start, simulate};
 use crate::identify::error::IdentifyError;
 use crate::identify::readout::{Course, Values};
 use crate::identify::sensitivity::{CourseDerivatives, StartDerivatives, derivatives};
@@ -89,9 +89,9 @@ fn by_start(setup: &Setup<'_>, point: Point<'_>) -> Result<StartDerivatives, Ide
         momenta: DMatrix::zeros(n, point.count()),
     };
     if let BoundaryState::RestAtVoltages(voltages, _) = &setup.control.start {
-        let start = setup.start(&[])?;
+        let state = setup.rest_under(voltages)?;
         let voltages = Voltages::Constant(voltages.clone());
-        let by = of_rest(setup, &start, &voltages, constants)?.1;
+        let by = of_rest(setup, &state, &voltages, constants)?.1;
         let by = &by.instants[0];
         out.coordinates.columns_mut(0, constants).copy_from(by);
     }
@@ -107,7 +107,7 @@ fn by_start(setup: &Setup<'_>, point: Point<'_>) -> Result<StartDerivatives, Ide
 /// A state of rest as a motion of two intervals, and its derivatives by the constants.
 fn of_rest(
     setup: &Setup<'_>,
-    state: &Start,
+    state: &Equilibrium,
     voltages: &Voltages,
     constants: usize,
 ) -> Result<(DiscreteTrajectory, CourseDerivatives), IdentifyError> {
@@ -117,16 +117,15 @@ fn of_rest(
         coordinates: none.clone(),
         momenta: none,
     };
-    let scalars = model.scalars(&voltages.at(0.0));
-    let scalars = model.variables.scalars(&scalars);
+    let start = Start::at_rest(model, state.z.clone());
     let lasting = |intervals: usize| DiscreteTrajectory {
         times: (0..=intervals).map(|k| k as f64).collect(),
         z: vec![state.z.clone(); intervals + 1],
-        scalars: vec![scalars.clone(); intervals],
+        scalars: vec![state.scalars.clone(); intervals],
         ..DiscreteTrajectory::default()
     };
     let inputs = (voltages, Regime::Rest);
-    let by = derivatives(setup, (state, &by_start), &lasting(1), inputs)?;
+    let by = derivatives(setup, (&start, &by_start), &lasting(1), inputs)?;
     // What a joint transmits is read between two intervals.
     Ok((lasting(2), by.lasting(2)))
 }
@@ -142,8 +141,9 @@ fn at_rest(setup: &Setup<'_>, point: Point<'_>) -> Result<Values, IdentifyError>
     times.sort_unstable_by(f64::total_cmp);
     times.dedup();
     for time in times {
-        let state = setup.rest(time)?;
-        let voltages = Voltages::Constant(setup.voltages.at(time).to_vec());
+        let voltages = setup.voltages.at(time).to_vec();
+        let state = setup.rest_under(&voltages)?;
+        let voltages = Voltages::Constant(voltages);
         let (discrete, by) = of_rest(setup, &state, &voltages, point.constants.len())?;
         let course = Course {
             model: &setup.model,

@@ -3,8 +3,8 @@
 use crate::control::problem::{
     BoundaryState, Control, Duration, Identification, Recording, Regime, SoughtStart, Voltages,
 };
-use crate::control::{BoundaryConditions, BoundaryError, ends_that_read, resolve_start};
-use crate::dynamics::Start;
+use crate::control::{BoundaryConditions, BoundaryError, ends_that_read, resolve_start, rest_at};
+use crate::dynamics::{Equilibrium, Start};
 use crate::identify::drive::Drive;
 use crate::identify::error::IdentifyError;
 use crate::model::{Analysis, Coordinates, Model, Parameter, Quantity, System, with_parameters};
@@ -171,11 +171,9 @@ impl<'a> Setup<'a> {
         }
     }
 
-    /// The equilibrium under the voltages of a time in ms.
-    pub(super) fn rest(&self, time: f64) -> Result<Start, IdentifyError> {
-        let voltages = self.voltages.at(time).to_vec();
-        let state = BoundaryState::RestAtVoltages(voltages, Default::default());
-        let found = resolve_start(&self.model, &state, "rest");
+    /// The equilibrium under voltages in V, by source.
+    pub(super) fn rest_under(&self, voltages: &[f64]) -> Result<Equilibrium, IdentifyError> {
+        let found = rest_at(&self.model, voltages, ("rest", 0.0));
         found.map_err(|error| self.recording.wrong(error))
     }
 

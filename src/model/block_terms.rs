@@ -1,20 +1,21 @@
 //! Terms of elastic blocks: elements by kind.
 
-use crate::element::{Elastomer, ElementLaw, Viscosity};
+use crate::element::{ElementLaw, Viscosity};
 use crate::energy::{NeoHooke, Polynomial};
-use crate::functional::{FiniteElement, ViscousElement};
+use crate::functional::ViscousElement;
 use crate::model::constant::MaterialConstant;
 use crate::model::internal::Internals;
 use crate::model::members::{Member, OfKind};
 use crate::model::solid_block::SolidBlock;
 use crate::model::solids::Solids;
 use crate::model::sought::Read;
+use crate::model::sought_elements::ElementOf;
 use crate::model::terms::Terms;
 
 const INERTIA: &str = "block inertia";
-const ELASTICITY: &str = "block elasticity";
-const ELECTROELASTICITY: &str = "block electroelasticity";
-/// Elasticity and electroelasticity by a law other than the neo-Hookean one.
+/// Elasticity and electroelasticity.
+const NEO_HOOKEAN: [&str; 2] = ["block elasticity", "block electroelasticity"];
+/// Both by a law other than the neo-Hookean one.
 const GENERAL: [&str; 2] = [
     "general block elasticity",
     "general block electroelasticity",
@@ -37,7 +38,7 @@ impl Solids {
 
     /// Terms of all blocks.
     pub(super) fn build(&self, internals: &Internals, terms: &mut Terms<'_>) {
-        let all = [INERTIA, ELASTICITY, ELECTROELASTICITY, VISCOSITY];
+        let all = [INERTIA, NEO_HOOKEAN[0], NEO_HOOKEAN[1], VISCOSITY];
         self.add_inertia(terms);
         self.add_elements(terms);
         self.add_viscosity(terms);
@@ -57,11 +58,10 @@ impl Solids {
     fn add_elements(&self, terms: &mut Terms<'_>) {
         for (c, e) in self.elements() {
             match c.isochoric(e) {
-                None if is_sought(c, e, terms) => add_sought_element(c, e, terms),
-                None => add_element(c, e, (NeoHooke, [ELASTICITY, ELECTROELASTICITY]), terms),
+                None => add_element(c, e, (NeoHooke, NEO_HOOKEAN), terms),
                 Some(law) => {
                     add_element(c, e, (law, GENERAL), terms);
-                    for term in [ELASTICITY, ELECTROELASTICITY] {
+                    for term in NEO_HOOKEAN {
                         terms.without(term, "every elastic block names a law of elasticity");
                     }
                 }
@@ -117,112 +117,24 @@ pub(super) fn add_times<Kind, E: OfKind + Member<Kind>>(
 fn add_element<L: ElementLaw>(
     c: &SolidBlock,
     e: usize,
-    (law, [elasticity, electroelasticity]): (L, [&'static str; 2]),
+    (law, names): (L, [&'static str; 2]),
     terms: &mut Terms<'_>,
 ) {
-    let (shape, nodes) = (c.shapes[e].clone(), c.nodes(e));
-    let name = &c.solid.name;
-    match c.is_dielectric[e] {
-        false => {
-            let element = FiniteElement {
-                shape,
-                law: c.passive(e).by(law),
-                nodes,
-                terminals: (),
-            };
-            terms.collect(elasticity, "elements without a field of", name, element);
-            let why = match c.material(e).electric {
-                None => "no elastic block that moves names electric constants there",
-                Some(_) => "no field between electrodes of different voltages reaches an element",
-            };
-            terms.without(electroelasticity, why);
-        }
-        true => {
-            let element = FiniteElement {
-                shape,
-                law: c.dielectric(e).by(law),
-                nodes,
-                terminals: c.terminals(e),
-            };
-            terms.collect(electroelasticity, "elements in a field of", name, element);
-            terms.without(elasticity, "a field reaches every element");
-        }
+    match (c.is_dielectric[e], c.material(e).electric) {
+        (true, _) => terms.without(names[0], "a field reaches every element"),
+        (false, None) => terms.without(
+            names[1],
+            "no elastic block that moves names electric constants there",
+        ),
+        (false, Some(_)) => terms.without(
+            names[1],
+            "no field between electrodes of different voltages reaches an element",
+        ),
     }
-}
-
-/// Returns true if a constant of the elastic or electric energy of an element is sought.
-fn is_sought(c: &SolidBlock, e: usize, terms: &Terms<'_>) -> bool {
-    let sought = |constant: &MaterialConstant| terms.sought().is_sought(c.constant(e, *constant));
-    OF_ENERGY.iter().any(sought)
-}
-
-/// Constants of the energy of a neo-Hookean element, in all of which it is linear.
-const OF_ENERGY: [MaterialConstant; 5] = [
-    MaterialConstant::ShearModulus,
-    MaterialConstant::LameLambda,
-    MaterialConstant::C1,
-    MaterialConstant::C2,
-    MaterialConstant::Permittivity,
-];
-
-/// A neo-Hookean element some of whose constants are sought: the elements of one of these each times the constant, and one of the others.
-fn add_sought_element(c: &SolidBlock, e: usize, terms: &mut Terms<'_>) {
-    let is_charged = c.is_dielectric[e];
-    let given = match is_charged {
-        true => c.dielectric(e).constants(),
-        false => {
-            let law = c.passive(e);
-            [law.shear_modulus, law.lame_lambda, 0.0, 0.0, 0.0]
-        }
+    let element = ElementOf {
+        block: c,
+        number: e,
+        names,
     };
-    let mut rest = given;
-    for (i, constant) in OF_ENERGY.into_iter().enumerate() {
-        let mut read = terms.sought().read();
-        let factor = read.constant(c.constant(e, constant), given[i]);
-        if read.is_empty() || (i >= 2 && !is_charged) {
-            continue;
-        }
-        rest[i] = 0.0;
-        let mut unit = [0.0; 5];
-        unit[i] = 1.0;
-        add_part(c, e, (unit, (vec![factor], read)), terms);
-    }
-    if rest != [0.0; 5] {
-        add_part(c, e, (rest, (Vec::new(), terms.sought().read())), terms);
-    }
-}
-
-/// An element of these constants, times others that are sought, if there are any.
-fn add_part(
-    c: &SolidBlock,
-    e: usize,
-    (constants, sought): ([f64; 5], (Vec<Polynomial>, Read)),
-    terms: &mut Terms<'_>,
-) {
-    let (shape, nodes) = (c.shapes[e].clone(), c.nodes(e));
-    let name = &c.solid.name;
-    if c.is_dielectric[e] {
-        let element = FiniteElement {
-            shape,
-            law: c.dielectric(e).with_constants(constants),
-            nodes,
-            terminals: c.terminals(e),
-        };
-        let of = (ELECTROELASTICITY, "elements in a field of", name.as_str());
-        add_times::<(), _>(of, (element.clone(), element), sought, terms);
-        return;
-    }
-    let law = Elastomer {
-        shear_modulus: constants[0],
-        lame_lambda: constants[1],
-        ..c.passive(e)
-    };
-    let element = FiniteElement {
-        shape,
-        law,
-        nodes,
-        terminals: (),
-    };
-    let of = (ELASTICITY, "elements without a field of", name.as_str());
-    add_times::<(), _>(of, (element.clone(), element), sought, terms);
+    element.build(law, terms);
 }

@@ -141,6 +141,11 @@ pub struct Parameter {
 }
 
 impl MaterialConstant {
+    /// Returns true if the elastic energy of small and large strains at rest depends on it.
+    pub fn is_elastic(self) -> bool {
+        matches!(self, Self::ShearModulus | Self::LameLambda | Self::Law(_))
+    }
+
     /// The constant of a muscle.
     pub fn of_muscle(self, muscle: usize) -> Constant {
         Constant::Material(MaterialOf::Muscle(muscle), self)

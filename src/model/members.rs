@@ -5,7 +5,8 @@ use crate::energy::{Energy, MaxwellDamper};
 use crate::functional::{
     Electrical, Element, FiniteElement, FiniteElements, Formulas, Group, Inertia, Kernel, Law,
     LawElement, Laws, Mass, MaxwellElement, MaxwellElements, Path, Paths, PressureFace,
-    PressureFaces, Scaled, ScaledElement, Term, ViscousElement, ViscousElements,
+    PressureFaces, Scaled, ScaledElement, Term, VariedElement, VariedElements, ViscousElement,
+    ViscousElements,
 };
 
 /// Element that makes one term together with all of its type.
@@ -31,6 +32,12 @@ impl Member for ViscousElement {
     }
 }
 
+impl Member for VariedElement {
+    fn term(name: &str, list: Vec<Self>) -> Box<dyn Term> {
+        Box::new(Group::<VariedElements>::intervals(name, -1.0, list))
+    }
+}
+
 impl Member for MaxwellElement {
     fn term(name: &str, list: Vec<Self>) -> Box<dyn Term> {
         Box::new(Group::<MaxwellElements>::intervals(name, -1.0, list))
@@ -50,6 +57,10 @@ pub(super) trait OfKind: Clone + Send + Sync + 'static {
 
 impl<F: Electrical, L: ElementLaw> OfKind for FiniteElement<F, L> {
     type Kind = FiniteElements<F, L>;
+}
+
+impl OfKind for VariedElement {
+    type Kind = VariedElements;
 }
 
 impl OfKind for ViscousElement {

@@ -70,6 +70,7 @@ mod redundancy;
 mod solid_block;
 mod solids;
 mod sought;
+mod sought_elements;
 mod source;
 mod states;
 pub mod system;

@@ -1,29 +1,12 @@
 //! Sought parameters in a system: their values put in the places of their constants, and the cases in which none can be sought.
 
-use crate::model::constant::{
-    Constant, Follower, FoundParameter, MaterialConstant, MaterialOf, Parameter, SiUnit,
-};
+use crate::model::constant::{Constant, Follower, FoundParameter, Parameter, SiUnit};
 use crate::model::graph::Graph;
-use crate::model::system::{Fidelity, Material, Muscle, System};
+use crate::model::system::{Fidelity, Muscle, System};
 use std::fmt;
 
 /// A value this near to a bound, relative to the size of the parameter, lies at it.
 const AT_BOUND: f64 = 1e-6;
-
-impl MaterialConstant {
-    /// Reason why it cannot be sought where finite elements read it, if there is one.
-    fn obstacle_of_elements(self, material: &Material) -> Option<&'static str> {
-        match self {
-            Self::Density | Self::Viscosity | Self::BranchModulus(_) | Self::RelaxationTime(_) => {
-                None
-            }
-            _ if material.law.is_some() => Some(
-                "of laws of elasticity of finite elements, the neo-Hookean one alone can have sought constants",
-            ),
-            _ => None,
-        }
-    }
-}
 
 /// Parts of a system that read places of bodies otherwise than as points that a parameter can move, in words.
 fn moved_otherwise(system: &System) -> Option<&'static str> {
@@ -63,33 +46,19 @@ impl Constant {
                 system.muscles[m].name
             ));
         }
-        let meshed = match self {
-            Self::Material(MaterialOf::Block(b, k), constant) => {
-                let solid = &system.solids[b];
-                Some(("block", &solid.name, &solid.materials[k], Some(constant)))
+        let muscle = &system.muscles[self.muscle()?];
+        let reason = match (muscle.fidelity, self) {
+            (Fidelity::Lumped, _) => return None,
+            (_, Self::Material(_, constant)) => {
+                let is_read = constant.is_elastic() && muscle.prestretch.is_some();
+                is_read.then_some("its stretches across the prestretch depend on it")?
             }
-            other => {
-                let muscle = other.muscle().map(|m| &system.muscles[m]);
-                let muscle = muscle.filter(|muscle| muscle.fidelity != Fidelity::Lumped);
-                let constant = match other {
-                    Self::Material(_, constant) => Some(constant),
-                    _ => None,
-                };
-                muscle.map(|m| ("muscle", &m.name, &m.material, constant))
-            }
+            _ => "sought shapes of finite elements are not offered",
         };
-        let (what, name, material, constant) = meshed?;
-        match constant {
-            Some(constant) => {
-                let reason = constant.obstacle_of_elements(material)?;
-                Some(format!(
-                    "{what} \"{name}\" of finite elements reads it; {reason}"
-                ))
-            }
-            None => Some(format!(
-                "{what} \"{name}\" of finite elements has it; sought shapes of finite elements are not offered"
-            )),
-        }
+        let name = &muscle.name;
+        Some(format!(
+            "muscle \"{name}\" of finite elements has it; {reason}"
+        ))
     }
 }
 

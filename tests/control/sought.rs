@@ -8,7 +8,7 @@ use proboscis::State;
 use proboscis::control::problem::{BoundaryState, Control, Duration, PathConstraint, Rest};
 use proboscis::control::{BoundaryConditions, BoundaryError};
 use proboscis::ipopt::Start;
-use proboscis::model::system::System;
+use proboscis::model::system::{Discretisation, ElementKind, Fidelity, System};
 use proboscis::model::{Constant, Coordinates, Follower, MaterialConstant, Role, with_parameters};
 use proboscis::prelude::{
     Body, GROUND, Joint, Material, Muscle, Parameter, X, g, kpa, kv, mm, ms, um,
@@ -266,6 +266,21 @@ fn parameters_are_refused_where_they_may_not_act() {
     };
     let text = refusal(&heavy, &moving);
     assert!(text.contains("momentum at the start"), "{text}");
+    // A prestretched muscle of finite elements is free of stress across, by its constants.
+    let mut stretched = pair();
+    let muscle = &mut stretched.muscles[1];
+    muscle.fidelity = Fidelity::FiniteElements(Discretisation {
+        first_side: None,
+        elements: [1, 1, 1],
+        layers: 1,
+        element: ElementKind::Hex8,
+    });
+    muscle.material.lame_lambda = Some(0.4);
+    let control = with(vec![modulus()]);
+    assert!(BoundaryConditions::resolve(&stretched, &control, 10.0).is_ok());
+    stretched.muscles[1].prestretch = Some(1.2);
+    let text = refusal(&stretched, &control);
+    assert!(text.contains("across the prestretch"), "{text}");
 }
 
 #[test]

@@ -30,6 +30,7 @@ fn isochoric<D: DualNum<f64> + Copy>(law: IsochoricLaw, mu: f64, f: [[D; 3]; 3])
             i1 * (0.5 * mu * (1.0 - share)) + i2 * (0.5 * mu * share)
         }
         IsochoricLaw::Yeoh { c2, c3 } => i1 * (0.5 * mu) + i1.powi(2) * c2 + i1.powi(3) * c3,
+        IsochoricLaw::GentSlope { .. } | IsochoricLaw::GentCurvature { .. } => unreachable!(),
     }
 }
 

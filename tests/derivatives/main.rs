@@ -25,4 +25,5 @@ mod naive_formulas;
 mod naive_hexahedron;
 mod naive_sources;
 mod sought;
+mod sought_laws;
 mod sought_limits;

@@ -5,6 +5,7 @@ use crate::action::not_trivial;
 use crate::common::cases::joints;
 use crate::common::random::Random;
 use crate::common::sought::{crowded, elements, lengthened, problem, relaxing, robot, wired};
+use crate::sought_laws::by_laws;
 use proboscis::control::problem::{BoundaryState, Control, Voltages};
 use proboscis::control::{BoundaryConditions, Column, InitialGuess, Transcription, guess};
 use proboscis::model::{Coordinates, Model, Role, System, with_parameters};
@@ -25,19 +26,20 @@ fn variants() -> Vec<(System, Control)> {
         };
         (system, control)
     };
-    let of_elements = [elements(), relaxing()]
-        .into_iter()
-        .flat_map(|(system, parameters)| {
-            [false, true].map(|is_free| {
-                let control = Control {
-                    parameters: parameters.clone(),
-                    start: joints(&[(0, 0.05)]),
-                    goal: BoundaryState::Free,
-                    ..problem(&system, is_free, None)
-                };
-                (system.clone(), control)
-            })
-        });
+    let of_elements =
+        [elements(), relaxing(), by_laws()]
+            .into_iter()
+            .flat_map(|(system, parameters)| {
+                [false, true].map(|is_free| {
+                    let control = Control {
+                        parameters: parameters.clone(),
+                        start: joints(&[(0, 0.05)]),
+                        goal: BoundaryState::Free,
+                        ..problem(&system, is_free, None)
+                    };
+                    (system.clone(), control)
+                })
+            });
     let (system, parameters) = wired();
     let of_circuits = [false, true].map(|is_free| Control {
         parameters: parameters.clone(),

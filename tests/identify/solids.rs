@@ -1,16 +1,18 @@
 //! Constants of finite elements, recovered from the motion of a marker.
 
 use crate::common::solid;
+use crate::derivatives::compare;
 use crate::oscillator::parameter;
 use nalgebra::Vector3;
 use proboscis::Signal;
 use proboscis::control::problem::{
     BoundaryState, Channel, Identification, Reading, Recording, Regime, SoughtStart, Voltages,
 };
+use proboscis::energy::ElasticLaw;
 use proboscis::identify::{Ended, Grid, Unknowns, identify, predict};
 use proboscis::mesh::grid::Grid as Boxes;
 use proboscis::model::system::{Attachment, ElectricConstants, Marker, Material, System};
-use proboscis::model::{MaterialConstant, Quantity, with_parameters};
+use proboscis::model::{MaterialConstant, Parameter, Quantity, with_parameters};
 
 /// Shear modulus in MPa and viscosity in MPa ms.
 const TRUE: [f64; 2] = [0.12, 0.9];
@@ -129,4 +131,59 @@ fn modulus_and_viscosity_of_a_block_are_recovered_from_a_marker() {
         assert!((value / truth - 1.0).abs() < 1e-4, "{value} {truth}");
     }
     assert!(found.fit.steps <= 10, "{} steps", found.fit.steps);
+}
+
+#[test]
+fn states_of_rest_of_a_block_follow_the_constants_of_its_law() {
+    use ElasticLaw::{Gent, MooneyRivlin, Yeoh};
+    let laws = [
+        (Gent { limit: 4.0 }, vec![("limit", 4.0)]),
+        (MooneyRivlin { share: 0.3 }, vec![("share", 0.3)]),
+        (
+            Yeoh {
+                c2: -5e-3,
+                c3: 5e-3,
+            },
+            vec![("c2", -5e-3), ("c3", 5e-3)],
+        ),
+    ];
+    for (law, constants) in laws {
+        let mut system = block();
+        system.solids[0].materials[0].law = Some(law);
+        let of_block = |constant: MaterialConstant| constant.of_block(0, 0);
+        let linear = [
+            ("modulus", MaterialConstant::ShearModulus, 0.11),
+            ("lambda", MaterialConstant::LameLambda, 0.6),
+        ];
+        let linear = linear.map(|(name, one, value)| parameter(name, of_block(one), value));
+        let of_law = constants.iter().map(|&(name, value)| {
+            let one = parameter(name, of_block(MaterialConstant::Law(name)), value);
+            let [lower, upper] = [-0.1, 0.1].map(|change| value + change * value.abs());
+            Parameter {
+                lower,
+                upper,
+                ..one
+            }
+        });
+        let parameters: Vec<Parameter> = linear.into_iter().chain(of_law).collect();
+        let mut recording = recording();
+        recording.regime = Regime::Rest;
+        recording.channels[0].readings =
+            [8, 15].map(|k| recording.channels[0].readings[k]).to_vec();
+        recording.voltages = Voltages::Signals(vec![Signal::ramp(0.0, 180e3, 30.0)]);
+        let values: Vec<f64> = parameters.iter().map(|one| one.guess).collect();
+        let task = Identification {
+            parameters,
+            recordings: vec![recording],
+            priors: Vec::new(),
+            candidates: Vec::new(),
+            step: Some(1.0),
+            coordinates: None,
+        };
+        let largest = compare(&system, &task, &Unknowns::of_values(&values, &[&[]]));
+        assert!(
+            largest.iter().all(|size| *size > 1e-3),
+            "{law:?}: {largest:?}"
+        );
+    }
 }
