@@ -66,7 +66,8 @@ test-python: install-deps
 test-other-ipopt: install-deps
 	@PKG_CONFIG_PATH=$$(.ci/other-ipopt) && export PKG_CONFIG_PATH && target=$${CARGO_TARGET_DIR:-target} && \
 	  CARGO_BUILD_BUILD_DIR=$$target CARGO_TARGET_DIR=$$target/other-ipopt/build \
-	  $(CARGO) test --locked $(TEST_PACKAGES) --config 'profile.dev.package.proboscis.opt-level=1' --test solver
+	  $(CARGO) test --locked $(TEST_PACKAGES) --config 'profile.dev.package.proboscis.opt-level=1' \
+	  --config 'profile.dev.package.proboscis.overflow-checks=false' --config 'profile.dev.package.proboscis.debug-assertions=false' --test solver
 
 test-browser:
 	@.ci/install --browser

@@ -1,7 +1,7 @@
 //! Verdicts on an identification: its status, and remarks in words.
 
 use crate::control::problem::{Identification, Recording};
-use crate::identify::{Ended, HeldOut, Identified, Undetermined};
+use crate::identify::{Ended, HeldOut, Identified, NONE, Undetermined};
 use crate::math::significant;
 use crate::workflow::Remarks;
 
@@ -99,6 +99,13 @@ pub(super) fn remarks(task: &Identification, found: &Identified) -> Remarks {
     }
     let largest = found.bias.largest();
     match found.bias.is_confirmed {
+        true if !found.bias.is_small() => remarks.note(
+            "grid",
+            [format!(
+                "the last halving of the steps changes no constant by more than {NONE:.0e} of its value; that is {} standard errors, as the readings have hardly any scatter",
+                significant(largest, 2)
+            )],
+        ),
         true => remarks.note(
             "grid",
             [format!(

@@ -49,13 +49,19 @@ impl Polynomial {
     /// Its value at parameters.
     #[inline(always)]
     pub fn at<T: Number>(&self, parameters: &[T]) -> T {
+        self.of(|place| parameters[place])
+    }
+
+    /// Its value at the parameters of places.
+    #[inline(always)]
+    pub fn of<T: Number>(&self, parameter: impl Fn(usize) -> T) -> T {
         let mut sum = T::of(self.value);
         for &(place, factor) in &self.slopes {
-            sum += parameters[place].scaled(factor);
+            sum += parameter(place).scaled(factor);
         }
         for &(place, [a, b]) in &self.higher {
-            let square = parameters[place] * parameters[place];
-            sum += square * parameters[place].scaled(b).shifted(a);
+            let value = parameter(place);
+            sum += value * value * value.scaled(b).shifted(a);
         }
         sum
     }

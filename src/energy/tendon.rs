@@ -18,8 +18,8 @@ pub struct Cable<T = f64> {
 
 impl<T: Number> Cable<T> {
     /// Energy W, tension W′, stiffness W″ and W‴ at a length. Slack is the left of ℓ − w/2, ℓ − w/2 included.
-    pub fn of_length(&self, length: f64) -> [T; 4] {
-        let beyond = T::of(length) - self.length;
+    pub fn of_length(&self, length: T) -> [T; 4] {
+        let beyond = length - self.length;
         one_sided((self.stiffness, self.smoothing), beyond)
     }
 }

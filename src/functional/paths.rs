@@ -1,5 +1,8 @@
 //! Functions of the length of a path of any number of spans: `W(L)`, L = Σ |r̄ᵢ|, at the midpoint of an interval.
 //!
+//! A span is a vector, or one that parameters move: `r = x + Σ (π − π⁰) e`. Derivatives by parameters are those of forces and of the contraction
+//! over numbers that carry them.
+//!
 //! With the directions uᵢ = r̄ᵢ/|r̄ᵢ| and Kᵢ = (1 − uᵢ uᵢᵀ)/|r̄ᵢ|
 //!
 //! ```text
@@ -13,8 +16,9 @@
 //! ```
 
 use crate::energy::{Cable, Polynomial};
-use crate::functional::{Kernel, Order, Sample, Scatter, Stencil, VectorArg};
+use crate::functional::{Kernel, Move, Order, Sample, Scatter, Stencil, VectorArg};
 use crate::math::{Derivatives, HyperDual, Matrix, Number, Vector};
+use nalgebra::Vector3;
 use std::cell::Cell;
 
 /// A path and the energy of its length, whose constants may follow from sought parameters.
@@ -24,11 +28,13 @@ pub struct Path {
     pub energy: Cable<Polynomial>,
     /// Vectors of the spans, one after the other.
     pub spans: Vec<usize>,
-    /// Parameters that the constants follow, scalars of the interval.
+    /// Parameters that constants and spans follow, scalars of the interval.
     pub parameters: Vec<usize>,
+    /// Those that move spans.
+    pub moves: Vec<Move>,
 }
 
-/// The kind of elements that are paths: one argument a span, as many as a path has.
+/// The kind of elements that are paths: one argument a span, then one a move, as many as a path has.
 #[derive(Debug)]
 pub enum Paths {}
 
@@ -50,12 +56,13 @@ fn middle(vector: usize, vectors: [&[Vector]; 2]) -> Vector {
 }
 
 impl Span {
-    fn new(vector: usize, order: Order, sample: &Sample<'_>) -> Self {
-        let r = middle(vector, sample.vectors);
+    fn new(path: &Path, i: usize, order: Order, sample: &Sample<'_>) -> Self {
+        let given = |place: usize| sample.scalars[path.parameters[place]];
+        let r = path.span(i, sample.vectors, &given);
         let length = r.norm();
         let direction = r / length;
         let w = match order {
-            Order::Third => middle(vector, sample.along),
+            Order::Third => path.span(i, sample.along, &given),
             _ => Vector::zeros(),
         };
         let stretch = direction.dot(&w);
@@ -82,36 +89,109 @@ impl Span {
 }
 
 impl Path {
-    /// The energy, with seeds at one or two parameters where derivatives by them are asked for.
-    fn cable<T: Number>(&self, sample: &Sample<'_>, seeded: impl Fn(usize, f64) -> T) -> Cable<T> {
-        let at = |constant: &Polynomial| {
-            let mut sum = T::of(constant.value);
-            for &(place, factor) in &constant.slopes {
-                let value = sample.scalars[self.parameters[place]];
-                sum += seeded(place, value).scaled(factor);
-            }
-            sum
-        };
-        Cable {
-            stiffness: at(&self.energy.stiffness),
-            length: at(&self.energy.length),
+    /// Span `i` of vectors, or its rate of those along the direction, at numbers in place of the parameters.
+    fn span<T: Number>(
+        &self,
+        i: usize,
+        vectors: [&[Vector]; 2],
+        parameter: &impl Fn(usize) -> T,
+    ) -> Vector3<T> {
+        let mut r = middle(self.spans[i], vectors).map(T::of);
+        for one in self.moves.iter().filter(|one| one.of == i) {
+            let factor = parameter(one.parameter).shifted(-one.at);
+            r += middle(one.vector, vectors).map(|part| factor.scaled(part));
+        }
+        r
+    }
+
+    /// Energy, tension, stiffness and its derivative at numbers in place of the parameters.
+    fn taut<T: Number>(&self, sample: &Sample<'_>, parameter: &impl Fn(usize) -> T) -> [T; 4] {
+        let mut length = T::zero();
+        for i in 0..self.spans.len() {
+            length += norm(&self.span(i, sample.vectors, parameter));
+        }
+        let cable = Cable {
+            stiffness: self.energy.stiffness.of(parameter),
+            length: self.energy.length.of(parameter),
             smoothing: self.energy.smoothing,
+        };
+        cable.of_length(length)
+    }
+
+    /// Span of an argument, and the move that it is, if it is one.
+    fn argument(&self, i: usize) -> (usize, Option<&Move>) {
+        match i.checked_sub(self.spans.len()) {
+            None => (i, None),
+            Some(moved) => (self.moves[moved].of, Some(&self.moves[moved])),
+        }
+    }
+}
+
+fn norm<T: Number>(r: &Vector3<T>) -> T {
+    (r.x * r.x + r.y * r.y + r.z * r.z).sqrt()
+}
+
+/// A taut path at a sample with derivatives by two of its parameters.
+struct Seeded<'a> {
+    path: &'a Path,
+    sample: &'a Sample<'a>,
+    seeds: [usize; 2],
+}
+
+impl Seeded<'_> {
+    fn parameter(&self, place: usize) -> HyperDual {
+        let [a, b] = self.seeds.map(|seed| f64::from(u8::from(place == seed)));
+        let value = self.sample.scalars[self.path.parameters[place]];
+        HyperDual {
+            a,
+            b,
+            ..HyperDual::of(value)
         }
     }
 
-    /// Energy, tension, stiffness and its derivative with their derivatives by parameters `a` and `b`.
-    fn by(&self, sample: &Sample<'_>, length: f64, [a, b]: [usize; 2]) -> [HyperDual; 4] {
-        let seeded = |place, value| HyperDual {
-            a: f64::from(u8::from(place == a)),
-            b: f64::from(u8::from(place == b)),
-            ..HyperDual::of(value)
-        };
-        self.cable(sample, seeded).of_length(length)
+    fn taut(&self) -> [HyperDual; 4] {
+        self.path.taut(self.sample, &|place| self.parameter(place))
     }
 
-    fn length(&self, sample: &Sample<'_>) -> f64 {
-        let spans = self.spans.iter();
-        spans.map(|&v| middle(v, sample.vectors).norm()).sum()
+    /// Direction and length of span `i`, and its rate.
+    fn span(&self, i: usize) -> (Vector3<HyperDual>, HyperDual, Vector3<HyperDual>) {
+        let parameter = |place| self.parameter(place);
+        let r = self.path.span(i, self.sample.vectors, &parameter);
+        let length = norm(&r);
+        let rate = self.path.span(i, self.sample.along, &parameter);
+        (r * length.recip(), length, rate)
+    }
+
+    /// L_w.
+    fn stretch(&self) -> HyperDual {
+        let spans = (0..self.path.spans.len()).map(|i| self.span(i));
+        spans.fold(HyperDual::of(0.0), |sum, (u, _, w)| sum + u.dot(&w))
+    }
+
+    /// A force on the span of argument `i` as one on the argument.
+    fn on_argument(
+        &self,
+        i: usize,
+        force: impl Fn(usize) -> Vector3<HyperDual>,
+    ) -> Vector3<HyperDual> {
+        let (span, moved) = self.path.argument(i);
+        match moved {
+            None => force(span),
+            Some(one) => force(span) * self.parameter(one.parameter).shifted(-one.at),
+        }
+    }
+
+    /// ∂W/∂rᵢ of the span i.
+    fn force(&self, i: usize) -> Vector3<HyperDual> {
+        self.span(i).0 * self.taut()[1]
+    }
+
+    /// The derivative of the contraction by rᵢ.
+    fn force_rate(&self, i: usize) -> Vector3<HyperDual> {
+        let [_, tension, stiffness, _] = self.taut();
+        let (u, length, w) = self.span(i);
+        let turn = (w - u * u.dot(&w)) * length.recip();
+        u * (stiffness * self.stretch()) + turn * tension
     }
 }
 
@@ -120,8 +200,6 @@ struct Taut<'a> {
     path: &'a Path,
     sample: &'a Sample<'a>,
     order: Order,
-    /// L.
-    length: f64,
     /// W′.
     tension: f64,
     /// W″.
@@ -136,11 +214,23 @@ struct Taut<'a> {
 
 impl Taut<'_> {
     fn span(&self, i: usize) -> Span {
-        Span::new(self.path.spans[i], self.order, self.sample)
+        Span::new(self.path, i, self.order, self.sample)
     }
 
-    fn by(&self, parameters: [usize; 2]) -> [HyperDual; 4] {
-        self.path.by(self.sample, self.length, parameters)
+    /// Derivatives by two parameters.
+    fn by(&self, seeds: [usize; 2]) -> Seeded<'_> {
+        Seeded {
+            path: self.path,
+            sample: self.sample,
+            seeds,
+        }
+    }
+
+    /// Span of argument `i`, and its factor.
+    fn argument(&self, i: usize) -> (usize, f64) {
+        let (span, moved) = self.path.argument(i);
+        let value = |one: &Move| self.sample.scalars[self.path.parameters[one.parameter]] - one.at;
+        (span, moved.map_or(1.0, value))
     }
 
     fn row_span(&self, i: usize) -> Span {
@@ -153,41 +243,54 @@ impl Taut<'_> {
 
 impl Derivatives for Taut<'_> {
     fn force(&self, i: usize) -> Vector {
-        self.row_span(i).direction * self.tension
+        let (i, factor) = self.argument(i);
+        self.row_span(i).direction * (self.tension * factor)
     }
 
     fn block(&self, i: usize, j: usize) -> Matrix {
+        let ((i, of_row), (j, of_column)) = (self.argument(i), self.argument(j));
         let (a, b) = (self.row_span(i), self.span(j));
         let mut block = a.direction * b.direction.transpose() * self.stiffness;
         if i == j {
             block += a.curvature() * self.tension;
         }
-        block
+        block * (of_row * of_column)
     }
 
     fn row(&self, s: usize) -> f64 {
-        self.by([s; 2])[0].a
+        self.by([s; 2]).taut()[0].a
     }
 
     fn column(&self, i: usize, s: usize) -> Vector {
-        self.row_span(i).direction * self.by([s; 2])[1].a
+        let by = self.by([s; 2]);
+        by.on_argument(i, |i| by.force(i)).map(|part| part.a)
     }
 
     fn entry(&self, s: usize, t: usize) -> f64 {
-        self.by([s, t])[0].ab
+        self.by([s, t]).taut()[0].ab
     }
 }
 
 /// Rates of the derivatives of a taut path along the direction.
 struct Rates<'a>(&'a Taut<'a>);
 
+impl Rates<'_> {
+    /// The contraction W′ L_w.
+    fn contraction(&self, seeds: [usize; 2]) -> HyperDual {
+        let by = self.0.by(seeds);
+        by.taut()[1] * by.stretch()
+    }
+}
+
 impl Derivatives for Rates<'_> {
     fn force(&self, i: usize) -> Vector {
+        let (i, factor) = self.0.argument(i);
         let (path, a) = (self.0, self.0.row_span(i));
-        a.direction * (path.stiffness * path.stretch) + a.turn * path.tension
+        (a.direction * (path.stiffness * path.stretch) + a.turn * path.tension) * factor
     }
 
     fn block(&self, i: usize, j: usize) -> Matrix {
+        let ((i, of_row), (j, of_column)) = (self.0.argument(i), self.0.argument(j));
         let (path, a, b) = (self.0, self.0.row_span(i), self.0.span(j));
         let turned = a.turn * b.direction.transpose() + a.direction * b.turn.transpose();
         let along = a.direction * b.direction.transpose();
@@ -196,20 +299,20 @@ impl Derivatives for Rates<'_> {
             rate += a.curvature() * (path.stiffness * path.stretch);
             rate += a.curvature_rate() * path.tension;
         }
-        rate
+        rate * (of_row * of_column)
     }
 
     fn row(&self, s: usize) -> f64 {
-        self.0.by([s; 2])[1].a * self.0.stretch
+        self.contraction([s; 2]).a
     }
 
     fn column(&self, i: usize, s: usize) -> Vector {
-        let (path, a, by) = (self.0, self.0.row_span(i), self.0.by([s; 2]));
-        a.direction * (by[2].a * path.stretch) + a.turn * by[1].a
+        let by = self.0.by([s; 2]);
+        by.on_argument(i, |i| by.force_rate(i)).map(|part| part.a)
     }
 
     fn entry(&self, s: usize, t: usize) -> f64 {
-        self.0.by([s, t])[1].ab * self.0.stretch
+        self.contraction([s, t]).ab
     }
 }
 
@@ -218,7 +321,7 @@ impl Kernel for Paths {
     type Storage = ();
 
     fn vectors(path: &Path) -> usize {
-        path.spans.len()
+        path.spans.len() + path.moves.len()
     }
 
     fn scalars(path: &Path) -> usize {
@@ -227,7 +330,10 @@ impl Kernel for Paths {
 
     fn vector(path: &Path, i: usize) -> VectorArg {
         VectorArg {
-            vector: path.spans[i],
+            vector: match path.argument(i) {
+                (span, None) => path.spans[span],
+                (_, Some(one)) => one.vector,
+            },
             stencil: Stencil::Mid,
         }
     }
@@ -237,8 +343,7 @@ impl Kernel for Paths {
     }
 
     fn energy(path: &Path, sample: &Sample<'_>) -> f64 {
-        let cable = path.cable(sample, |_, value| value);
-        cable.of_length(path.length(sample))[0]
+        path.taut(sample, &|place| sample.scalars[path.parameters[place]])[0]
     }
 
     fn derivatives<S: Scatter>(
@@ -248,9 +353,8 @@ impl Kernel for Paths {
         (): &(),
         to: &mut S,
     ) {
-        let length = path.length(sample);
-        let cable = path.cable(sample, |_, value| value);
-        let [_, tension, stiffness, stiffening] = cable.of_length(length);
+        let given = |place: usize| sample.scalars[path.parameters[place]];
+        let [_, tension, stiffness, stiffening] = path.taut(sample, &given);
         if tension == 0.0 {
             return;
         }
@@ -258,7 +362,6 @@ impl Kernel for Paths {
             path,
             sample,
             order,
-            length,
             tension,
             stiffness,
             stiffening,

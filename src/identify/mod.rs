@@ -31,7 +31,7 @@ pub use fit::{Ended, Fit, fit};
 pub use held_out::HeldOut;
 pub use information::{Information, Product, Undetermined};
 pub use prediction::{Grid, Prediction, predict};
-pub use refine::{Bias, Identified, first_model, identify};
+pub use refine::{Bias, Identified, NONE, first_model, identify};
 pub use residuals::Series;
 pub use starts::{FoundStart, found_starts};
 pub use unknowns::Unknowns;

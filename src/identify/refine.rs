@@ -18,7 +18,7 @@ use statrs::distribution::{ChiSquared, ContinuousCDF};
 /// Greatest bias of a constant by the grid, in standard errors.
 const BIAS: f64 = 0.1;
 /// A relative change of all constants below this is none, however small the standard errors.
-const NONE: f64 = 1e-8;
+pub const NONE: f64 = 1e-8;
 /// Relative change of a start below which it is the same.
 const SAME: f64 = 1e-9;
 /// Most halvings of the steps, and most intervals of a recording.
@@ -32,7 +32,7 @@ pub struct Bias {
     pub changes: Vec<f64>,
     /// Root of the mean squared change of the predictions, in standard deviations.
     pub readings: f64,
-    /// True if all are below a tenth.
+    /// True if all are below a tenth, or where no constant changes by more than rounding.
     pub is_confirmed: bool,
     /// Number of halvings of the first steps.
     pub halvings: usize,
@@ -42,6 +42,11 @@ impl Bias {
     /// The largest change.
     pub fn largest(&self) -> f64 {
         self.changes.iter().copied().fold(0.0, f64::max)
+    }
+
+    /// Returns true if all changes are below a tenth of the errors.
+    pub fn is_small(&self) -> bool {
+        self.largest().max(self.readings) < BIAS
     }
 }
 
@@ -293,7 +298,7 @@ impl Bias {
         let change = &after.prediction.values - &before.prediction.values;
         let change = change.component_div(&after.data.deviations);
         self.readings = change.norm() / (change.len() as f64).sqrt();
-        self.is_confirmed = is_none || self.largest().max(self.readings) < BIAS;
+        self.is_confirmed = is_none || self.is_small();
     }
 }
 

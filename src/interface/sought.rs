@@ -80,6 +80,11 @@ impl Handle<Tendon> {
     pub fn rest_length(self) -> Constant {
         Constant::TendonLength(self.index())
     }
+
+    /// A component, 0 to 2, of the place in mm of one of its points, by its number along it.
+    pub fn point(self, number: usize, axis: usize) -> Constant {
+        Constant::TendonPoint(self.index(), number, axis)
+    }
 }
 
 impl Handle<Joint> {

@@ -63,6 +63,8 @@ pub enum Constant {
     TendonStiffness(usize),
     /// Length in mm up to which a tendon is slack.
     TendonLength(usize),
+    /// A component, 0 to 2, of the place of a point of a tendon, by its number along it, in mm.
+    TendonPoint(usize, usize, usize),
     /// Damping of a joint in N mm ms or N ms/mm.
     JointDamping(usize),
     /// Stiffness of a joint in N mm/rad or N/mm.
@@ -182,6 +184,7 @@ impl Constant {
             self,
             Self::End(..)
                 | Self::SpringEnd(..)
+                | Self::TendonPoint(..)
                 | Self::JointRest(_)
                 | Self::BodyPlace(..)
                 | Self::JointPlace(..)
@@ -230,7 +233,11 @@ impl Constant {
 
     /// Returns true if formulas read it as a vector alone, which moves along a straight line.
     pub fn is_point(self) -> bool {
-        self.is_place() || matches!(self, Self::End(..) | Self::SpringEnd(..))
+        self.is_place()
+            || matches!(
+                self,
+                Self::End(..) | Self::SpringEnd(..) | Self::TendonPoint(..)
+            )
     }
 }
 

@@ -121,6 +121,10 @@ impl Constant {
             Self::SpringEnd(s, _, axis) => springs.get_mut(s)?.to.at.get_mut(axis),
             Self::TendonStiffness(t) => Some(&mut tendons.get_mut(t)?.stiffness),
             Self::TendonLength(t) => Some(&mut tendons.get_mut(t)?.rest_length),
+            Self::TendonPoint(t, point, axis) => {
+                let through = &mut tendons.get_mut(t)?.through;
+                through.get_mut(point)?.at.get_mut(axis)
+            }
             Self::JointDamping(j) => system.joints.get_mut(j)?.damping.as_mut(),
             Self::JointStiffness(j) => {
                 let spring = system.joints.get_mut(j)?.spring.as_mut();
@@ -184,8 +188,10 @@ impl Constant {
             ]);
             all.extend((0..6).map(|i| Self::SpringEnd(s, i / 3, i % 3)));
         }
-        for t in 0..system.components.tendons.len() {
+        for (t, tendon) in system.components.tendons.iter().enumerate() {
             all.extend([Self::TendonStiffness(t), Self::TendonLength(t)]);
+            let components = 0..3 * tendon.through.len();
+            all.extend(components.map(|i| Self::TendonPoint(t, i / 3, i % 3)));
         }
         for j in 0..system.joints.len() {
             all.extend([
@@ -220,7 +226,8 @@ impl Constant {
             | Self::BodySize(..)
             | Self::JointPlace(..)
             | Self::MarkerPlace(..)
-            | Self::TendonLength(_) => ("m", 1e-3),
+            | Self::TendonLength(_)
+            | Self::TendonPoint(..) => ("m", 1e-3),
             Self::PeakVoltage => ("V", 1.0),
             Self::Gain(_) => ("", 1.0),
             Self::Delay => ("s", 1e-3),
@@ -252,6 +259,7 @@ impl Constant {
             | Self::BodyPlace(_, axis)
             | Self::JointPlace(_, axis)
             | Self::MarkerPlace(_, axis)
+            | Self::TendonPoint(.., axis)
             | Self::Gravity(axis)
                 if axis >= 3 =>
             {
@@ -261,7 +269,10 @@ impl Constant {
             | Self::SpringDamping(s)
             | Self::SpringLength(s)
             | Self::SpringEnd(s, ..) => ("spring", s, system.components.springs.len()),
-            Self::TendonStiffness(t) | Self::TendonLength(t) => {
+            Self::TendonPoint(t, point, _) if t < system.components.tendons.len() => {
+                ("point", point, system.components.tendons[t].through.len())
+            }
+            Self::TendonStiffness(t) | Self::TendonLength(t) | Self::TendonPoint(t, ..) => {
                 ("tendon", t, system.components.tendons.len())
             }
             Self::JointDamping(j)

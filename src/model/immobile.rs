@@ -163,7 +163,7 @@ fn is_sought_length(system: &System, component: usize, analysis: &Analysis) -> b
     let springs = system.components.springs.len();
     analysis.is_sought(|constant| match constant {
         Constant::SpringLength(s) | Constant::SpringEnd(s, ..) => s == component,
-        Constant::TendonLength(t) => springs + t == component,
+        Constant::TendonLength(t) | Constant::TendonPoint(t, ..) => springs + t == component,
         _ => false,
     })
 }

@@ -18,7 +18,6 @@ fn moved_otherwise(system: &System) -> Option<&'static str> {
             system.muscles.iter().any(of_elements),
             "muscles of finite elements",
         ),
-        (!components.tendons.is_empty(), "tendons"),
         (!components.others.is_empty(), "components of other kinds"),
         (
             Graph::new(system).obstacle(system).is_some(),
@@ -180,10 +179,12 @@ pub fn check(system: &System, parameters: &[Parameter]) -> Result<(), NotSought>
             if constant.is_positive() && (least <= 0.0 || least.is_nan()) {
                 return not("its bounds have to be positive".to_owned());
             }
-            let before = parameters[..index].iter().flat_map(|p| &p.constants);
-            let mut others = before.chain(&constants[..place]);
-            if others.any(|other| other.constant == constant) {
-                return not("another parameter is the same constant".to_owned());
+            let follows = |list: &[Follower]| list.iter().any(|one| one.constant == constant);
+            let mut before = parameters[..index].iter();
+            let other = before.find(|other| follows(&other.constants));
+            let own = follows(&constants[..place]).then_some(&parameters[index]);
+            if let Some(Parameter { name, .. }) = other.or(own) {
+                return not(format!("\"{name}\" changes the same constant"));
             }
         }
     }

@@ -80,6 +80,11 @@ impl Read {
         self.scalars
     }
 
+    /// The same, and the moves of what an element reads.
+    pub(super) fn with_moves(self) -> (Vec<usize>, Vec<Move>) {
+        (self.scalars, self.moves)
+    }
+
     /// Returns true if nothing that is sought was read.
     pub fn is_empty(&self) -> bool {
         self.scalars.is_empty()

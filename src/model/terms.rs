@@ -159,6 +159,12 @@ impl<'a> Terms<'a> {
         })
     }
 
+    /// Index of a vector that stays as it is.
+    pub(super) fn on_ground(&mut self, vector: &Vector) -> usize {
+        let fixed = MaterialVector::direction(None, vector, self.bodies.reference);
+        self.vectors.index(fixed)
+    }
+
     /// Returns true if a vector of the list moves with a body, a node or a coordinate.
     pub fn moves(&self, vector: usize) -> bool {
         let mut parts = self.vectors.list()[vector].terms.iter();

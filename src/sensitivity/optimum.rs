@@ -1,6 +1,6 @@
 //! Sensitivities of the optimum of a control problem.
 
-use crate::control::problem::{Control, Varied};
+use crate::control::problem::{Control, Varied, VariedOf};
 use crate::control::{Column, Solution, Transcription};
 use crate::model::{Coordinates, Model, Role, System, Time};
 use crate::sensitivity::directions::Directions;
@@ -120,12 +120,26 @@ fn sensitivity(
             .map(|&row| derivative.multipliers[row] * program.row_scale(row))
             .collect(),
         varied: varied.clone(),
-        range: derivative.range.clone(),
+        range: derivative
+            .range
+            .clone()
+            .while_true(varied.value, |value| has_meaning(varied, value)),
         weak: derivative.weak.clone(),
         duration,
         parameters,
         voltages,
         coordinates,
+    }
+}
+
+/// Returns true if constants that have to be positive are so at a value of the number, and the duration is.
+fn has_meaning(varied: &Varied, value: f64) -> bool {
+    match varied.parameter() {
+        Some(parameter) => {
+            let mut constants = parameter.constants.iter();
+            constants.all(|one| !one.constant.is_positive() || one.at(value) > 0.0)
+        }
+        None => varied.of != VariedOf::Duration || value > 0.0,
     }
 }
 

@@ -24,6 +24,9 @@ pub struct Range {
 /// A derivative this small relative to the greatest is rounding.
 const ROUNDING: f64 = 1e-9;
 
+/// Multiple of a value beyond which none is asked whether it has a meaning.
+const FAR: f64 = 100.0;
+
 /// A distance with its derivative, and a number by which its words are found.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Margin<M> {
@@ -49,6 +52,30 @@ impl Range {
             down: end(-1.0),
             up: end(1.0),
         }
+    }
+
+    /// The part of the range around `value` within which values have a meaning.
+    #[must_use]
+    pub(super) fn while_true(mut self, value: f64, has_meaning: impl Fn(f64) -> bool) -> Self {
+        for end in [&mut self.down, &mut self.up] {
+            let far = FAR * value.abs().max(f64::MIN_POSITIVE);
+            let (mut good, mut bad) = (0.0, end.change.clamp(-far, far));
+            if has_meaning(value + bad) {
+                continue;
+            }
+            while (bad - good).abs() > f64::EPSILON * value.abs() {
+                let middle = 0.5 * (good + bad);
+                match has_meaning(value + middle) {
+                    true => good = middle,
+                    false => bad = middle,
+                }
+            }
+            *end = End {
+                change: bad,
+                bound: Some("it loses its meaning".to_owned()),
+            };
+        }
+        self
     }
 
     /// Margins that a change ends at once, to either side.

@@ -303,12 +303,19 @@ pub fn crowded() -> (System, Vec<Parameter>) {
     (system, parameters)
 }
 
-/// The robot without tendon, with a floating body, forces and a marker, and parameters that move joints, bodies and all that is on them; a
+/// The robot with a floating body, forces and a marker, and parameters that move joints, bodies, points of its tendon and all that is on them; a
 /// moment of inertia goes with the square and the cube of one.
 pub fn lengthened() -> (System, Vec<Parameter>) {
     use Constant as C;
     let mut system = robot();
-    system.components.tendons.clear();
+    // A span of the tendon between points of one body.
+    let through = &mut system.components.tendons[0].through;
+    let last = *through.last().unwrap();
+    through.push(Attachment {
+        at: last.at + Vector3::new(1.0, 4.0, -2.0),
+        ..last
+    });
+    let last = through.len() - 1;
     system.muscles[0].section_inertia = true;
     system.muscles[3].material.maxwell = MaxwellBranches::default();
     let mut free = system.bodies[1].clone();
@@ -356,6 +363,8 @@ pub fn lengthened() -> (System, Vec<Parameter>) {
         (C::BodyPlace(1, 1), 1.2),
         (C::End(0, 1, 1), 1.0),
         (C::SpringEnd(0, 1, 0), 0.7),
+        (C::TendonPoint(0, 1, 0), 0.1),
+        (C::TendonPoint(0, last, 2), -0.2),
         (C::MarkerPlace(0, 1), 1.5),
     ];
     let mut stem = places(&stem, &mut system, "stem");
@@ -375,6 +384,12 @@ pub fn lengthened() -> (System, Vec<Parameter>) {
         (C::MarkerPlace(0, 2), 0.9),
     ];
     let aside = places(&aside, &mut system, "aside");
-    let mass = parameter("mass", &[(C::Mass(0), 1.0)], 20.0);
+    let mut mass = parameter("mass", &[(C::Mass(0), 1.0)], 20.0);
+    mass.constants.push(Follower {
+        constant: C::TendonStiffness(0),
+        factor: 0.0,
+        offset: 0.005,
+        higher: [0.005 / 400.0, 0.0],
+    });
     (system, vec![stem, aside, mass])
 }

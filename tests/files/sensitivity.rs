@@ -95,7 +95,7 @@ fn mistakes_are_told_with_their_places() {
         (whole, r#""duration": { "tolerance": "1 kV" }"#, "control.sensitivity.duration.tolerance", "which is a voltage", "a time", "1 kV"),
         (whole, r#""duration": {}, "duration": {}"#, "control.sensitivity.duration", "twice", "each key once", "duration"),
         (whole, r#""duration": { "also": { "chain.mass": 2 } }"#, "control.sensitivity.duration.also", "other constants", "a number of the scene", "chain.mass"),
-        (whole, r#""muscles.muscle1.layer_thickness": {}, "muscles[0].layer_thickness": {}"#, "control.sensitivity.muscles[0].layer_thickness", "another parameter is the same constant", "a constant that can be differentiated by", "{"),
+        (whole, r#""muscles.muscle1.layer_thickness": {}, "muscles[0].layer_thickness": {}"#, "control.sensitivity.muscles[0].layer_thickness", "changes the same constant", "a constant that can be differentiated by", "{"),
     ];
     check(cases, &base, |text| mistake(CHAIN, text, &[]));
 }

@@ -6,7 +6,7 @@ use crate::model::attachment::Attachment;
 use crate::model::component::Component;
 use crate::model::components::kind::Kind;
 use crate::model::constant::Constant;
-use crate::model::sought::Read;
+use crate::model::sought::{MovedPoint, Read};
 use crate::model::system_error::{SystemError, positive, require};
 use crate::model::terms::Terms;
 use nalgebra::Vector3;
@@ -48,11 +48,23 @@ impl Tendon {
     fn add(&self, mut read: Read, index: usize, terms: &mut Terms<'_>) {
         let mut length = read.constant(Constant::TendonLength(index), self.rest_length);
         let mut spans = Vec::new();
-        for pair in self.through.windows(2) {
-            match terms.span(&pair[0], &pair[1]) {
+        for (first, pair) in self.through.windows(2).enumerate() {
+            let places =
+                [0, 1].map(|end| move |axis| Constant::TendonPoint(index, first + end, axis));
+            let span = terms.span(&pair[0], &pair[1]);
+            let ends = [0, 1].map(|end| MovedPoint {
+                weight: [-1.0, 1.0][end],
+                // A span within a body has the length that it has on the ground.
+                body: span.and_then(|_| terms.carrier(&pair[end])),
+                place: Some(&places[end]),
+            });
+            let moved = read.moves(spans.len(), ends, |vector| terms.vector(vector));
+            let between = pair[1].at - pair[0].at;
+            match span {
                 Some(span) => spans.push(span),
+                None if !moved.is_empty() => spans.push(terms.on_ground(&between)),
                 // What never changes its length leaves the rest to the others.
-                None => length.value -= (pair[1].at - pair[0].at).norm(),
+                None => length.value -= between.norm(),
             }
         }
         if spans.is_empty() {
@@ -63,10 +75,12 @@ impl Tendon {
             length,
             smoothing: self.smoothing,
         };
+        let (parameters, moves) = read.with_moves();
         let path = Path {
             energy,
             spans,
-            parameters: read.scalars(),
+            parameters,
+            moves,
         };
         terms.add_path(ELASTICITY, "stiffness of", &self.name, path);
     }
