@@ -76,27 +76,8 @@ fn beyond(recording: &Recording) -> Option<String> {
     })
 }
 
-/// Warnings and notes on a result.
-pub(super) fn remarks(task: &Identification, found: &Identified) -> Remarks {
-    let mut remarks = Remarks::default();
-    let at_bound = task.parameters.iter().zip(&found.fit.is_at_bound);
-    let at_bound = at_bound.filter(|(_, held)| **held);
-    remarks.warn(
-        "at_bound",
-        at_bound.map(|(p, _)| format!("{} lies at its bound: the fit would go on", p.name)),
-    );
-    let open = found.information.undetermined.iter();
-    remarks.warn("not_determined", open.map(|one| words(task, one)));
-    if !found.is_white() {
-        let text = "the residuals are not white (Ljung-Box, 1 %): the model misses part of the motion, or errors of neighbouring readings are alike, and intervals are too short";
-        remarks.warn("not_white", [text.to_owned()]);
-    }
-    if let Some(p) = found.p.filter(|p| *p < 0.01) {
-        let text = format!(
-            "the residuals are larger than the standard deviations of the readings say (p = {p:.1e})"
-        );
-        remarks.warn("large_residuals", [text]);
-    }
+/// That the grid biases the constants, or how little it does.
+fn of_grid(found: &Identified, remarks: &mut Remarks) {
     let largest = found.bias.largest();
     match found.bias.is_confirmed {
         true if !found.bias.is_small() => remarks.note(
@@ -121,6 +102,30 @@ pub(super) fn remarks(task: &Identification, found: &Identified) -> Remarks {
             )],
         ),
     }
+}
+
+/// Warnings and notes on a result.
+pub(super) fn remarks(task: &Identification, found: &Identified) -> Remarks {
+    let mut remarks = Remarks::default();
+    let at_bound = task.parameters.iter().zip(&found.fit.is_at_bound);
+    let at_bound = at_bound.filter(|(_, held)| **held);
+    remarks.warn(
+        "at_bound",
+        at_bound.map(|(p, _)| format!("{} lies at its bound: the fit would go on", p.name)),
+    );
+    let open = found.information.undetermined.iter();
+    remarks.warn("not_determined", open.map(|one| words(task, one)));
+    if !found.is_white() {
+        let text = "the residuals are not white (Ljung-Box, 1 %): the model misses part of the motion, or errors of neighbouring readings are alike, and intervals are too short";
+        remarks.warn("not_white", [text.to_owned()]);
+    }
+    if let Some(p) = found.p.filter(|p| *p < 0.01) {
+        let text = format!(
+            "the residuals are larger than the standard deviations of the readings say (p = {p:.1e})"
+        );
+        remarks.warn("large_residuals", [text]);
+    }
+    of_grid(found, &mut remarks);
     let differences = found.fit.of_priors(task);
     let compared = task.priors.iter().zip(differences).map(|(prior, z)| {
         // Where both agree, the estimate differs from the mean with the variance that the recordings take from that of the prior.

@@ -163,7 +163,8 @@ pub(super) fn check(
         for (index, parameter) in control.parameters.iter().enumerate() {
             if depends_on(model, (at, voltages, z), index) {
                 *depends = true;
-                if let Some(reason) = not_sought(model, boundary, at.0) {
+                let reason = not_sought(model, boundary, at.0);
+                if let Some(reason) = reason.or_else(|| steps_from_rest(boundary, at.0)) {
                     return Err(BoundaryError::Parameter {
                         name: parameter.name.clone(),
                         reason,
@@ -173,6 +174,19 @@ pub(super) fn check(
         }
     }
     Ok(depends)
+}
+
+/// A limit of steps from or to a state of rest that depends on a parameter: what is subtracted there would have to follow it.
+fn steps_from_rest(boundary: &BoundaryConditions, place: &str) -> Option<String> {
+    let mut limits = boundary.limits.list.iter();
+    let reads = |quantity: &Quantity| {
+        !matches!(quantity, Quantity::VoltageStep { .. }) && quantity.before().is_some()
+    };
+    let limit = limits.find(|one| reads(&one.quantity))?;
+    Some(format!(
+        "the state of rest at the {place} depends on it, and {} is counted from there, which is not offered",
+        limit.name
+    ))
 }
 
 /// The reason why a state of rest cannot be an unknown, if there is one.

@@ -13,12 +13,15 @@ use crate::identify::unknowns::Unknowns;
 use crate::identify::whiteness::{Whiteness, ljung_box};
 use crate::ipopt::interrupt;
 use crate::model::{Model, System, check_parameters};
+use nalgebra::{DMatrix, DVector};
 use statrs::distribution::{ChiSquared, ContinuousCDF};
 
 /// Greatest bias of a constant by the grid, in standard errors.
 const BIAS: f64 = 0.1;
 /// A relative change of all constants below this is none, however small the standard errors.
 pub const NONE: f64 = 1e-8;
+/// Singular value of the derivatives, relative to the largest, of a combination that is determined.
+const RANK: f64 = 1e-8;
 /// Relative change of a start below which it is the same.
 const SAME: f64 = 1e-9;
 /// Most halvings of the steps, and most intervals of a recording.
@@ -284,22 +287,39 @@ fn refined(
 
 impl Bias {
     fn compare(&mut self, before: &Fit, after: &Fit, information: &Information) {
-        let mut is_none = true;
+        let mut is_none = information.is_determined.contains(&true);
+        let change = &after.prediction.values - &before.prediction.values;
+        let change = change.component_div(&after.data.deviations);
+        let of_readings = shift(&after.weighted(), &change);
         let pairs = before.of_constants().iter().zip(after.of_constants());
         for (j, (a, b)) in pairs.enumerate() {
             let error = information.covariance[(j, j)].sqrt();
-            // A constant that is not determined has no bias.
-            self.changes[j] = match error > 0.0 {
+            // Of a constant that is not determined combinations may be, which move with the readings.
+            self.changes[j] = match information.is_determined[j] && error > 0.0 {
                 true => (a - b).abs() / error,
-                false => 0.0,
+                false => of_readings,
             };
             is_none &= !information.is_determined[j] || (a - b).abs() <= NONE * b.abs();
         }
-        let change = &after.prediction.values - &before.prediction.values;
-        let change = change.component_div(&after.data.deviations);
         self.readings = change.norm() / (change.len() as f64).sqrt();
         self.is_confirmed = is_none || self.is_small();
     }
+}
+
+/// Length in standard deviations of that part of a change of readings which unknowns can take: no combination of them moves by more standard
+/// errors.
+fn shift(jacobian: &DMatrix<f64>, change: &DVector<f64>) -> f64 {
+    let size = |column: &usize| jacobian.column(*column).norm();
+    let scaled = DMatrix::from_fn(jacobian.nrows(), jacobian.ncols(), |i, j| {
+        jacobian[(i, j)] / size(&j).max(f64::MIN_POSITIVE)
+    });
+    let svd = scaled.svd(true, false);
+    let least = RANK * svd.singular_values.amax();
+    let of = svd.u.as_ref().map(|u| u.column_iter());
+    let pairs = of.into_iter().flatten().zip(svd.singular_values.iter());
+    let taken = pairs.filter(|(_, value)| **value > least);
+    let squares = taken.map(|(u, _)| u.dot(change).powi(2));
+    squares.sum::<f64>().sqrt()
 }
 
 /// Refuses constants on which no reading depends.

@@ -1,28 +1,109 @@
 //! Refusals of numbers by which no optimum is differentiated, before one is looked for.
 
-use crate::control::problem::{Control, Varied};
+use crate::control::problem::{BoundaryState, Control, Varied, VariedOf};
 use crate::control::{BoundaryConditions, BoundaryError};
-use crate::model::System;
+use crate::model::{Coordinates, Model, System};
 
 /// Checks that the optimum of a problem may be differentiated by the numbers that it names.
 ///
 /// # Errors
 /// Name of the number and the reason why not.
 pub fn check(system: &System, control: &Control) -> Result<(), (String, String)> {
-    let constants: Vec<_> = control
-        .varied
-        .iter()
-        .filter_map(Varied::parameter)
-        .collect();
-    if constants.is_empty() {
+    if control.varied.is_empty() {
         return Ok(());
     }
+    let constants = control.varied.iter().filter_map(Varied::parameter);
     let mut held = control.clone();
-    held.parameters.extend(constants.into_iter().cloned());
+    held.parameters.extend(constants.cloned());
     let h0 = control.duration.first() / control.intervals as f64;
-    match BoundaryConditions::resolve_held(system, &held, h0) {
-        Err(BoundaryError::Parameter { name, reason }) => Err((name, reason)),
+    let (model, boundary) = match BoundaryConditions::resolve_held(system, &held, h0) {
+        Ok(found) => found,
+        Err(BoundaryError::Parameter { name, reason }) => return Err((name, reason)),
         // The solve itself tells of other mistakes.
-        _ => Ok(()),
+        Err(_) => return Ok(()),
+    };
+    for varied in &control.varied {
+        let reason = match &varied.of {
+            VariedOf::Duration => of_duration(system, control, &boundary).map(str::to_owned),
+            VariedOf::StartJoint(_) if remembers(system) => Some(
+                "the memory of Maxwell branches at the start follows it, which is not offered"
+                    .to_owned(),
+            ),
+            of => in_directors((system, &model), control, of),
+        };
+        if let Some(reason) = reason {
+            return Err((varied.name.clone(), reason));
+        }
+    }
+    Ok(())
+}
+
+/// What else a given duration changes.
+fn of_duration(
+    system: &System,
+    control: &Control,
+    boundary: &BoundaryConditions,
+) -> Option<&'static str> {
+    let given = control.given.values().all(|signal| signal.is_constant());
+    let joints = system
+        .joints
+        .iter()
+        .filter_map(|joint| joint.motion.as_ref());
+    let is_function = control.course.is_some() || !given || joints.count() > 0;
+    let mut limits = boundary.limits.list.iter();
+    let is_rate = limits.any(|one| {
+        let quantity = &one.quantity;
+        one.rate.is_some() || quantity.is_step() || quantity.before().is_some()
+    });
+    match (is_function, is_rate) {
+        (true, _) => Some("given functions of time do not stretch with it, which is not offered"),
+        (_, true) => {
+            Some("limits of rates, currents or reactions count time by it, which is not offered")
+        }
+        _ => None,
+    }
+}
+
+/// Returns true if a material has Maxwell branches.
+fn remembers(system: &System) -> bool {
+    let of_muscles = system.muscles.iter().map(|muscle| &muscle.material);
+    let of_blocks = system.solids.iter().flat_map(|solid| &solid.materials);
+    let mut all = of_muscles.chain(of_blocks);
+    all.any(|material| !material.maxwell.list().is_empty())
+}
+
+/// The reason why redundant coordinates leave a number out: those of start and goal, and of states of rest there.
+fn in_directors(
+    (system, model): (&System, &Model),
+    control: &Control,
+    of: &VariedOf,
+) -> Option<String> {
+    if model.coordinates != Coordinates::Redundant {
+        return None;
+    }
+    match of {
+        VariedOf::GoalJoint(_)
+        | VariedOf::GoalVoltage(_)
+        | VariedOf::StartJoint(_)
+        | VariedOf::StartVoltage(_) => {
+            Some("it is offered in joint coordinates, without constraints, alone".to_owned())
+        }
+        VariedOf::Constants(parameter) => {
+            let ends = [&control.start, &control.goal];
+            let mut rests = ends
+                .into_iter()
+                .filter(|end| matches!(end, BoundaryState::RestAtVoltages(..)));
+            rests.next()?;
+            let alone = Control {
+                parameters: vec![parameter.clone()],
+                ..control.clone()
+            };
+            let h0 = control.duration.first() / control.intervals as f64;
+            match BoundaryConditions::resolve(system, &alone, h0) {
+                Err(BoundaryError::Parameter { reason, .. }) => Some(reason),
+                _ => None,
+            }
+        }
+        _ => None,
     }
 }

@@ -25,7 +25,7 @@ pub(super) struct Conditions<N> {
 }
 
 impl<N: Nlp> Conditions<N> {
-    /// A program at a point; its multipliers become those of the unknowns and of the scaled objective. `squares` are the variables that enter by
+    /// A program at a point with its constraints; its multipliers become those of the unknowns and of the scaled objective. `squares` are the variables that enter by
     /// their squares where the program does not know.
     pub(super) fn new(
         program: N,
@@ -65,7 +65,7 @@ impl<N: Nlp> Conditions<N> {
             x: unknowns,
             y: multipliers.constraints.clone(),
         };
-        out.evaluate();
+        out.program.constraint(&out.x, &mut out.g);
         out
     }
 

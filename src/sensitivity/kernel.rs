@@ -12,8 +12,9 @@ use crate::sensitivity::range::Range;
 
 /// Most steps of Newton's method to the optimum.
 const STEPS: usize = 6;
-/// A step that is so small ends them.
+/// A step that is so small ends them, and one that is rounding is not made.
 const SMALL: f64 = 1e-9;
+const ROUNDING: f64 = 1e-12;
 /// Conditions hold that are met up to this.
 const MET: f64 = 1e-8;
 /// A bound whose distance and multiplier are both smaller is reached weakly.
@@ -130,11 +131,14 @@ impl<N: Nlp> Kernel<N> {
             self.linear.solve(&mut dx, &mut dy)?;
             let Conditions { x, y, .. } = &mut self.conditions;
             let size = largest(y).max(1.0);
+            let step = largest(&dx).max(largest(&dy) / size);
+            self.moved = self.moved.max(step);
+            if step <= ROUNDING {
+                break;
+            }
             x.iter_mut().zip(&dx).for_each(|(x, dx)| *x += dx);
             y.iter_mut().zip(&dy).for_each(|(y, dy)| *y += dy);
             self.conditions.evaluate();
-            let step = largest(&dx).max(largest(&dy) / size);
-            self.moved = self.moved.max(step);
             if step <= SMALL {
                 break;
             }
@@ -198,6 +202,12 @@ impl<N: Nlp> Kernel<N> {
     /// The variables at the optimum.
     pub fn point(&self) -> Vec<f64> {
         self.conditions.point()
+    }
+
+    /// The multipliers of the constraints there, by the unscaled objective.
+    pub fn multipliers(&self) -> Vec<f64> {
+        let y = self.conditions.y.iter();
+        y.map(|value| value / self.conditions.scale).collect()
     }
 
     /// The program.

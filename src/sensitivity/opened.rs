@@ -11,6 +11,7 @@ use crate::model::{Model, Parameter, Role, System};
 use crate::nlp::Nlp;
 use crate::sensitivity::direction::Held;
 use crate::sensitivity::error::NoSensitivity;
+use crate::sensitivity::kernel::Kernel;
 
 /// A state of rest with its voltages.
 type AtRest = (Equilibrium, Vec<f64>);
@@ -24,16 +25,29 @@ pub(super) struct Opened {
     pub(super) initial: InitialGuess,
     /// Columns and rows of the program that was solved.
     pub(super) solved: Outline,
-    /// Those of its columns that enter by their squares alone.
-    squares: Vec<Column>,
+    /// That program, at its optimum.
+    at: Approached,
     /// States of rest at the start and at the goal, with their voltages.
     pub(super) rests: [Option<AtRest>; 2],
     /// Number of parameters that are sought.
     pub(super) sought: usize,
 }
 
+/// The optimum of the program that was solved, to which Newton's method has moved.
+struct Approached {
+    /// Values of the columns, and multipliers of the rows.
+    columns: Vec<f64>,
+    rows: Vec<f64>,
+    /// Multipliers of the bounds of the columns, those of the solution.
+    bounds: [Vec<f64>; 2],
+    /// Numbers of the columns that enter by their squares alone.
+    squares: Vec<usize>,
+}
+
 /// Columns and rows of the program that was solved among those of the opened one.
 pub(super) struct Mapped {
+    /// The optimum.
+    pub(super) x: Vec<f64>,
     pub(super) held: Held,
     pub(super) multipliers: Multipliers,
     /// Row of each row of the solved program.
@@ -61,7 +75,7 @@ impl Opened {
             return Err(NoSensitivity::Refused(reason.to_owned()));
         }
         let solved = Outline::new(&model, &boundary, control);
-        let squares = squares((&model, &boundary), control, motion)?;
+        let at = approached((&model, &boundary), control, motion)?;
         let counts = (model.coordinate_count(), model.action.map.unknowns());
         let mut control = eased(control, &boundary);
         let constants = control.varied.iter().filter_map(Varied::parameter).cloned();
@@ -99,7 +113,7 @@ impl Opened {
             boundary,
             initial,
             solved,
-            squares,
+            at,
             rests,
             sought,
         })
@@ -112,25 +126,17 @@ impl Opened {
     }
 
     /// Finds the solved program in the opened one.
-    pub(super) fn map(
-        &self,
-        program: &Transcription<'_>,
-        motion: &Solution,
-    ) -> Result<Mapped, NoSensitivity> {
+    pub(super) fn map(&self, program: &Transcription<'_>) -> Result<Mapped, NoSensitivity> {
         let all = program.unknowns();
         let Numbering { columns, rows, .. } = &self.solved.unknowns;
-        let missing =
-            || NoSensitivity::Refused("the optimum has no multipliers of this problem".to_owned());
-        let costates = motion.costates.as_ref().ok_or_else(missing)?;
-        let counts = (
-            costates.rows.len(),
-            costates.lower.len(),
-            costates.upper.len(),
-        );
-        if counts != (rows.len(), columns.len(), columns.len()) {
-            return Err(missing());
-        }
+        let Approached {
+            columns: values,
+            rows: multipliers,
+            bounds: [lower, upper],
+            squares,
+        } = &self.at;
         let mut out = Mapped {
+            x: program.encode(&self.initial.discrete, self.initial.h),
             held: Held {
                 variables: vec![true; all.columns.len()],
                 constraints: vec![true; all.rows.len()],
@@ -149,15 +155,16 @@ impl Opened {
             let place = places.find(|(_, one)| **one == column);
             let (place, _) = place.ok_or_else(missing)?;
             let scale = program.column_scale(place);
+            out.x[place] = values[number] / scale;
             out.held.variables[place] = false;
-            if self.squares.contains(&columns[number]) {
+            if squares.contains(&number) {
                 out.held
                     .squares
                     .iter_mut()
                     .for_each(|list| list.push(place));
             }
-            out.multipliers.lower[place] = costates.lower[number] * scale;
-            out.multipliers.upper[place] = costates.upper[number] * scale;
+            out.multipliers.lower[place] = lower[number] * scale;
+            out.multipliers.upper[place] = upper[number] * scale;
         }
         let mut places = all.rows.iter().enumerate();
         for (number, row) in rows.iter().enumerate() {
@@ -165,7 +172,7 @@ impl Opened {
             let place = places.find(|(_, one)| is_row(one));
             let (place, _) = place.ok_or_else(|| self.unknown_row(row))?;
             out.held.constraints[place] = false;
-            out.multipliers.constraints[place] = costates.rows[number] / program.row_scale(place);
+            out.multipliers.constraints[place] = multipliers[number] / program.row_scale(place);
             out.rows.push(place);
         }
         Ok(out)
@@ -225,20 +232,62 @@ fn refused(error: crate::control::BoundaryError) -> NoSensitivity {
     NoSensitivity::Refused(error.to_string())
 }
 
-/// Columns of the solved program that enter by their squares alone.
-fn squares(
+fn missing() -> NoSensitivity {
+    NoSensitivity::Refused("the optimum has no multipliers of this problem".to_owned())
+}
+
+/// The optimum of the solved program: where its conditions hold with the bounds that the solution has reached.
+fn approached(
     (model, boundary): (&Model, &BoundaryConditions),
     control: &Control,
     motion: &Solution,
-) -> Result<Vec<Column>, NoSensitivity> {
-    if control.objective.rate != 0.0 || !control.objective.energies.is_empty() {
-        return Ok(Vec::new());
-    }
+) -> Result<Approached, NoSensitivity> {
     let h0 = control.duration.first() / control.intervals as f64;
     let initial = guess(model, boundary, control, h0, Some(motion));
     let program = Transcription::of_any(model, boundary, control, &initial).map_err(refused)?;
-    let columns = &program.unknowns().columns;
-    Ok(program.squares().into_iter().map(|i| columns[i]).collect())
+    let costates = motion.costates.as_ref().ok_or_else(missing)?;
+    let [columns, rows] = [
+        program.variables().lower.len(),
+        program.constraints().lower.len(),
+    ];
+    let counts = [&costates.rows, &costates.lower, &costates.upper].map(Vec::len);
+    if counts != [rows, columns, columns] {
+        return Err(missing());
+    }
+    let of_columns = |list: &[f64]| -> Vec<f64> {
+        let scaled = list.iter().enumerate();
+        scaled.map(|(i, v)| v * program.column_scale(i)).collect()
+    };
+    let of_rows = costates.rows.iter().enumerate();
+    let multipliers = Multipliers {
+        constraints: of_rows.map(|(r, v)| v / program.row_scale(r)).collect(),
+        lower: of_columns(&costates.lower),
+        upper: of_columns(&costates.upper),
+    };
+    let by_squares = control.objective.rate == 0.0 && control.objective.energies.is_empty();
+    let squares = match by_squares {
+        true => program.squares(),
+        false => Vec::new(),
+    };
+    let held = Held {
+        variables: vec![false; columns],
+        constraints: vec![false; rows],
+        squares: Some(squares.clone()),
+    };
+    let x = program.encode(&initial.discrete, initial.h);
+    let kernel = Kernel::new(program, (&x, &multipliers), &held)?;
+    let (program, point) = (kernel.program(), kernel.point());
+    let multipliers = kernel.multipliers().into_iter().enumerate();
+    Ok(Approached {
+        rows: multipliers.map(|(r, v)| v * program.row_scale(r)).collect(),
+        columns: point
+            .iter()
+            .enumerate()
+            .map(|(i, v)| v * program.column_scale(i))
+            .collect(),
+        bounds: [costates.lower.clone(), costates.upper.clone()],
+        squares,
+    })
 }
 
 /// Sought parameters at the values that were found.

@@ -48,9 +48,8 @@ pub fn sensitivities(
 ) -> Result<Vec<Sensitivity>, NoSensitivity> {
     let opened = Opened::new(system, control, motion)?;
     let program = opened.program()?;
-    let mapped = opened.map(&program, motion)?;
-    let x = program.encode(&opened.initial.discrete, opened.initial.h);
-    let mut kernel = Kernel::new(program, (&x, &mapped.multipliers), &mapped.held)?;
+    let mapped = opened.map(&program)?;
+    let mut kernel = Kernel::new(program, (&mapped.x, &mapped.multipliers), &mapped.held)?;
     let all = {
         let point = kernel.point();
         let at = (kernel.program(), &mapped.held, &point[..]);

@@ -1,8 +1,8 @@
 //! Model and boundary of a control problem, also with the parameters put in that were found.
 
-use crate::control::problem::Control;
+use crate::control::problem::{Control, QuantityCost};
 use crate::control::{BoundaryConditions, Solution};
-use crate::model::{Model, System, with_parameters};
+use crate::model::{Model, Quantity, System, with_parameters};
 use crate::workflow::error::WorkflowError;
 use crate::workflow::hold_check;
 
@@ -30,8 +30,13 @@ pub(crate) fn with_found(
     motion: &Solution,
 ) -> Result<(Model, BoundaryConditions), WorkflowError> {
     let values: Vec<f64> = motion.parameters.iter().map(|found| found.value).collect();
+    let mut objective = control.objective.clone();
+    // What nothing changes any more is no cost.
+    let amounts = |cost: &QuantityCost| matches!(cost.quantity, Quantity::OfMuscles { .. });
+    objective.quantities.retain(|cost| !amounts(cost));
     let given = Control {
         parameters: Vec::new(),
+        objective,
         coordinates: Some(sought.coordinates),
         ..control.clone()
     };
