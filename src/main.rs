@@ -213,11 +213,15 @@ fn output_of(
     interrupt::install(tell);
     let output = match run(request) {
         // What was found is told in the summary, which is written.
-        Err(error @ CommandError::NoEquilibrium { .. }) if json => CommandOutput {
-            is_solved: false,
-            result: String::new(),
-            notes: vec![format!("error: {}", message(&error.to_string()))],
-        },
+        Err(error @ (CommandError::NoEquilibrium { .. } | CommandError::Unsolved { .. }))
+            if json =>
+        {
+            CommandOutput {
+                is_solved: false,
+                result: String::new(),
+                notes: vec![format!("error: {}", message(&error.to_string()))],
+            }
+        }
         other => other?,
     };
     Ok(match json {

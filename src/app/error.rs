@@ -44,6 +44,16 @@ pub enum CommandError {
         /// Reason.
         reason: String,
     },
+    /// The input is right, but the problem that a controller plans anew was not solved.
+    #[error("{}: {place}: {reason}", file.display())]
+    Unsolved {
+        /// The problem file as typed.
+        file: PathBuf,
+        /// Path in it.
+        place: String,
+        /// Reason.
+        reason: String,
+    },
     /// A value typed on the command line is wrong.
     #[error("{option}: {reason}")]
     Option {
@@ -104,7 +114,8 @@ impl CommandError {
             | Self::Unreadable { .. }
             | Self::Stopped(_)
             | Self::Engine(_)
-            | Self::NoEquilibrium { .. } => 1,
+            | Self::NoEquilibrium { .. }
+            | Self::Unsolved { .. } => 1,
             _ => 2,
         }
     }
@@ -113,7 +124,9 @@ impl CommandError {
     pub fn place(&self) -> &str {
         match self {
             Self::Scene(mistake) => mistake.path(),
-            Self::Problem { place, .. } | Self::NoEquilibrium { place, .. } => place,
+            Self::Problem { place, .. }
+            | Self::NoEquilibrium { place, .. }
+            | Self::Unsolved { place, .. } => place,
             _ => "",
         }
     }
@@ -136,6 +149,11 @@ impl CommandError {
                 reason,
             },
             WorkflowError::NoEquilibrium { place, reason } => Self::NoEquilibrium {
+                file: file.clone(),
+                place,
+                reason,
+            },
+            WorkflowError::Unsolved { place, reason } => Self::Unsolved {
                 file: file.clone(),
                 place,
                 reason,

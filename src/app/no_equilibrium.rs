@@ -1,4 +1,4 @@
-//! Result of a run that finds no state of rest to begin with, to end with, or at all: its summary alone.
+//! Result of a run that finds no state of rest to begin with, to end with, or at all, or no optimum that its controller follows: its summary alone.
 
 use crate::app::error::CommandError;
 use crate::app::folder::make_folder_of;
@@ -10,6 +10,8 @@ use crate::report::file_set::FileSet;
 
 /// The status of such a run.
 const STATUS: &str = "no_equilibrium";
+/// That of one whose controller has no optimum to follow.
+const UNSOLVED: &str = "plan_unsolved";
 
 /// Writes the summary of a run that has ended so, and gives its answer back.
 ///
@@ -19,19 +21,29 @@ pub(super) fn kept<T>(
     request: &CommandInput,
     answer: Result<T, CommandError>,
 ) -> Result<T, CommandError> {
-    if let Err(CommandError::NoEquilibrium { place, reason, .. }) = &answer {
-        write(request, &format!("{place}: {reason}"))?;
+    match &answer {
+        Err(CommandError::NoEquilibrium { place, reason, .. }) => {
+            write(request, STATUS, &format!("{place}: {reason}"))?;
+        }
+        Err(CommandError::Unsolved { place, reason, .. }) => {
+            write(request, UNSOLVED, &format!("{place}: {reason}"))?;
+        }
+        _ => {}
     }
     answer
 }
 
-/// Writes the summary alone, with why there is no equilibrium.
+/// Writes the summary alone, with a status and its reason.
 ///
 /// # Errors
 /// It cannot be written.
-pub(super) fn write(request: &CommandInput, reason: &str) -> Result<(), CommandError> {
+pub(super) fn write(
+    request: &CommandInput,
+    status: &'static str,
+    reason: &str,
+) -> Result<(), CommandError> {
     let folder = make_folder_of(request)?;
-    let mut summary = Summary::new(request, STATUS, None);
+    let mut summary = Summary::new(request, status, None);
     summary.message = Some(reason.to_owned());
     let mut files = FileSet::in_folder(&folder);
     EARLIER.iter().for_each(|name| files.remove(name));
@@ -55,7 +67,7 @@ pub(super) fn refused(
         EquilibriumError::Stopped(status) => return Err(CommandError::Stopped(*status)),
         _ => {}
     }
-    write(request, &error.to_string())?;
+    write(request, STATUS, &error.to_string())?;
     Ok(CommandOutput {
         is_solved: false,
         result: format!("{result}, {}", request.folder().display()),

@@ -47,7 +47,9 @@ impl FileHorizon {
             regulator: loaded.feedback.unwrap_or_default(),
             intervals,
         };
-        let horizon = Horizon::solved(&ahead).map_err(|reason| wrong("control", reason))?;
+        let horizon = Horizon::solved(&ahead);
+        let horizon =
+            horizon.map_err(|error| CommandError::in_file(input)(error.at("control", "")))?;
         Ok(Self {
             horizon,
             system: ahead.system,

@@ -55,18 +55,20 @@ impl BoundedQuantity {
         [self.lower + moved, self.upper + moved]
     }
 
+    /// The bound that a value breaks by more than rounding, and by how much; true if it is the lower one.
+    pub fn beyond(&self, value: f64) -> Option<(f64, f64, bool)> {
+        let rounding = |bound: f64| ROUNDING * (1.0 + bound.abs());
+        let sides = [
+            (self.lower, self.lower - value, true),
+            (self.upper, value - self.upper, false),
+        ];
+        let mut sides = sides.into_iter();
+        sides.find(|&(bound, excess, _)| excess > rounding(bound))
+    }
+
     /// A value and the bound that it breaks, in words; `None` where it keeps its bounds up to rounding.
     pub fn broken(&self, value: f64, system: &System) -> Option<String> {
-        let rounding = |bound: f64| ROUNDING * (1.0 + bound.abs());
-        let (is_below, is_above) = (
-            value < self.lower - rounding(self.lower),
-            value > self.upper + rounding(self.upper),
-        );
-        let bound = match (is_below, is_above) {
-            (true, _) => self.lower,
-            (_, true) => self.upper,
-            _ => return None,
-        };
+        let (bound, _, is_below) = self.beyond(value)?;
         let [value, bound] = [value, bound].map(|v| self.quantity.plain(v, system));
         let side = if is_below { "at least" } else { "at most" };
         let [value, bound] = [value, bound].map(|(v, unit)| {

@@ -15,6 +15,18 @@ pub fn measured_value(
     k: usize,
 ) -> Option<(f64, &'static str)> {
     let place = boundary.limits.quantities().len() + index;
+    let (value, h) = value(model, (place, quantity), motion, k)?;
+    let quantity = quantity.clone().with_interval(h);
+    Some(quantity.plain(value, &model.system))
+}
+
+/// The value of measured quantity number `place`, and the length in ms of the interval; 1 of what is measured at instants.
+pub(super) fn value(
+    model: &Model,
+    (place, quantity): (usize, &Quantity),
+    motion: &DiscreteTrajectory,
+    k: usize,
+) -> Option<(f64, f64)> {
     let site = Site::from_quantity(quantity);
     let measure = site.measure(model, (*model.measured.get(place)?)?);
     let first = k.checked_sub(site.sides() - 1)?;
@@ -29,11 +41,5 @@ pub fn measured_value(
         h,
         ..Sample::of_instant(&before.x, scalars)
     };
-    let value = measure.value(&sample);
-    Some(
-        quantity
-            .clone()
-            .with_interval(h)
-            .plain(value, &model.system),
-    )
+    Some((measure.value(&sample), h))
 }

@@ -1,5 +1,7 @@
 //! A regulator along an optimal motion: the costs of deviations, of which its gains are the least; and the noise of what it measures.
 
+use crate::feedback::{Law, Reading};
+
 /// Costs of deviations from a motion. Each is the factor of a sum of squares: of deviations in degrees or mm, of rates in 100 degrees/s or
 /// 100 mm/s, of inputs as parts of their ranges, and of integrals over 0.1 s of the first.
 #[derive(Clone, Debug, PartialEq)]
@@ -87,4 +89,38 @@ pub struct Noise {
     pub velocity: f64,
     /// Seed of the numbers that are drawn.
     pub seed: u64,
+}
+
+impl Noise {
+    /// The key of noise of a kind of which a law reads nothing; `None` where all is read.
+    pub fn unread(&self, law: &Law) -> Option<&'static str> {
+        let of_state = |place: usize| {
+            let one = &law.measured[place];
+            (!one.is_memory).then_some((one.is_rate, one.is_length))
+        };
+        let of_reading = |one: &Reading| match one {
+            Reading::State(place) => of_state(*place),
+            Reading::Marker(..) => Some((false, true)),
+        };
+        let kinds: Vec<(bool, bool)> = match &law.observer {
+            None => (0..law.measured.len()).filter_map(of_state).collect(),
+            Some(observer) => observer.readings.iter().filter_map(of_reading).collect(),
+        };
+        let all = [
+            ("angle", self.angle, (false, false)),
+            ("length", self.length, (false, true)),
+            ("angular_velocity", self.angular_velocity, (true, false)),
+            ("velocity", self.velocity, (true, true)),
+        ];
+        let mut unread = all
+            .into_iter()
+            .filter(|(_, size, kind)| *size > 0.0 && !kinds.contains(kind));
+        unread.next().map(|(key, ..)| key)
+    }
+
+    /// Words on noise that nothing reads: found, and expected.
+    pub const UNREAD: [&str; 2] = [
+        "noise of a kind that nothing measures",
+        "noise of what the controller measures",
+    ];
 }

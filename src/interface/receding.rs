@@ -4,7 +4,6 @@ use crate::control::problem::{Ahead, Regulator};
 use crate::interface::control::Control;
 use crate::interface::error::{Result, require};
 use crate::model::System;
-use crate::workflow::WorkflowError;
 use crate::workflow::receding::Horizon;
 
 impl Control {
@@ -26,10 +25,6 @@ impl Control {
             system,
             intervals,
         };
-        let refused = |reason| WorkflowError::Problem {
-            place: "horizon".to_owned(),
-            reason,
-        };
-        Ok(Horizon::solved(&ahead).map_err(refused)?)
+        Ok(Horizon::solved(&ahead).map_err(|error| error.at("horizon", ""))?)
     }
 }

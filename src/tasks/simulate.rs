@@ -19,6 +19,7 @@ use crate::workflow::domain::{self, Outside};
 use crate::workflow::grids::integrate_to;
 use crate::workflow::integrate::{Simulated, grid, integrate_on};
 use crate::workflow::longer_steps;
+use crate::workflow::loop_limits::LoopLimits;
 use crate::workflow::memory::{self, Occasion};
 use crate::workflow::remark::Remarks;
 use crate::workflow::stalled;
@@ -111,6 +112,9 @@ impl SimulationResult {
             remarks.warn("goal_missed", closed.missed(model.length()));
             remarks.warn("feedback_timing", timing(task));
             remarks.warn("plan_failed", closed.other_sources());
+            if let Some(limits) = &closed.limits {
+                limits.remark(&mut remarks);
+            }
             remarks.note("at_lower_bound", closed.at_lower_bound());
             remarks.warn("at_upper_bound", closed.at_upper_bound());
         }
@@ -208,5 +212,9 @@ fn closed_loop(
     let open = (open.discrete, failure);
     let (model, discrete) = (&simulated.model, &simulated.discrete);
     let counts = samples.clone();
-    Ok(Some(ClosedLoop::new(model, counts, discrete, open)))
+    let mut out = ClosedLoop::new(model, counts, discrete, open);
+    if let Some(ahead) = &controller.ahead {
+        out.limits = LoopLimits::new(ahead, (system, task), discrete)?;
+    }
+    Ok(Some(out))
 }

@@ -2,8 +2,10 @@
 
 use crate::dynamics::DiscreteTrajectory;
 use crate::dynamics::trajectory::Trajectory;
-use crate::model::Model;
+use crate::feedback::Law;
+use crate::model::{Model, Role};
 use crate::workflow::control_loop::{Counts, Plans};
+use crate::workflow::loop_limits::LoopLimits;
 use crate::workflow::receding::Source;
 use crate::workflow::tracking::Tracked;
 use serde::Serialize;
@@ -21,12 +23,18 @@ pub struct ClosedLoop {
     /// Steps of a controller that plans anew.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub plans: Option<Plans>,
+    /// The path limits of the problem that is planned anew; absent where it has none.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub limits: Option<LoopLimits>,
     /// Deviations of markers, by name.
     pub markers: BTreeMap<String, Deviations>,
+    /// Deviations of the coordinates of joints, by name, of a robot without markers.
+    #[serde(skip_serializing_if = "BTreeMap::is_empty")]
+    pub joints: BTreeMap<String, Deviations>,
     /// Reason why the motion without corrections ended early.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub open_loop_failure: Option<String>,
-    /// Markers next to their places in the motion of the law.
+    /// Markers, or the coordinates of joints, next to their places in the motion of the law.
     #[serde(skip)]
     pub tracked: Vec<Tracked>,
     /// The motion without corrections.
@@ -34,12 +42,12 @@ pub struct ClosedLoop {
     pub open_loop: Option<Trajectory>,
 }
 
-/// Part of its path by which a marker may be beside its goal without a warning.
+/// Part of its path by which a marker or coordinate may be beside its goal without a warning.
 const MISSED: f64 = 0.1;
-/// Least path, as a part of the length of the system.
+/// Least path, as a part of the length of the system, or in rad.
 const STILL: f64 = 0.05;
 
-/// Distances of a marker from its place in the motion of a law, in m.
+/// Distances of a marker or coordinate from its place in the motion of a law, in m or rad.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize)]
 pub struct Deviations {
     /// With feedback.
@@ -62,11 +70,11 @@ pub struct Deviation {
 }
 
 impl Deviation {
-    /// Of a marker at times in ms, greatest also from another one on.
+    /// Of what is tracked at times in ms, greatest also from another one on.
     fn new(times: &[f64], tracked: &Tracked, end: f64) -> Self {
         let mut out = Self::default();
         for (&time, deviation) in times.iter().zip(&tracked.deviation) {
-            out.last = deviation / 1e3;
+            out.last = deviation * scale(tracked);
             out.greatest = out.greatest.max(out.last);
             if time >= end * (1.0 - 1e-9) {
                 let before = out.greatest_held.unwrap_or(0.0);
@@ -97,7 +105,9 @@ impl ClosedLoop {
             samples_at_lower_bound,
             samples_at_upper_bound,
             plans,
+            limits: None,
             markers: BTreeMap::new(),
+            joints: BTreeMap::new(),
             tracked: Vec::new(),
             open_loop_failure,
             open_loop: None,
@@ -110,58 +120,112 @@ impl ClosedLoop {
             let of = |motion: &Trajectory| {
                 let places = motion.times.iter().map(|&time| law.place(places, time));
                 let places: Vec<[f64; 3]> = places.collect();
-                let tracked = Tracked::marker(name, marker, motion, &places);
-                let deviation = Deviation::new(&motion.times, &tracked, law.duration());
-                (tracked, deviation)
+                Tracked::marker(name, marker, motion, &places)
             };
-            let (tracked, feedback) = of(&motion);
-            let is_whole = out.open_loop_failure.is_none();
-            let open_loop = is_whole.then(|| of(&open).1);
-            out.tracked.push(tracked);
-            let deviations = Deviations {
-                feedback,
-                open_loop,
-            };
+            let deviations = out.take(of(&motion), of(&open), [&motion, &open], &law);
             out.markers.insert(name.clone(), deviations);
+        }
+        if out.markers.is_empty() {
+            let of = (model, discrete, &open_loop);
+            out.take_joints(of, [&motion, &open], &law);
         }
         out.open_loop = Some(open);
         out
     }
 
-    /// One line a marker.
-    pub fn notes(&self) -> Vec<String> {
-        let millimetres = |of: &Deviation| {
-            let held = of
-                .greatest_held
-                .map(|held| format!(", {:.3} mm after the end of the reference", 1e3 * held));
-            format!(
-                "at most {:.3} mm from the reference{}, {:.3} mm at the end",
-                1e3 * of.greatest,
-                held.unwrap_or_default(),
-                1e3 * of.last
-            )
+    /// Takes what is tracked in a motion, and in the one without corrections.
+    fn take(
+        &mut self,
+        tracked: Tracked,
+        without: Tracked,
+        [motion, open]: [&Trajectory; 2],
+        law: &Law,
+    ) -> Deviations {
+        let of = |motion: &Trajectory, tracked: &Tracked| {
+            Deviation::new(&motion.times, tracked, law.duration())
         };
-        let line = |(name, of): (&String, &Deviations)| {
-            let open = match &of.open_loop {
-                Some(open) => format!("; without feedback {}", millimetres(open)),
-                None => "; without feedback the motion ends early".to_owned(),
-            };
-            format!("{name}: {}{open}", millimetres(&of.feedback))
+        let is_whole = self.open_loop_failure.is_none();
+        let out = Deviations {
+            feedback: of(motion, &tracked),
+            open_loop: is_whole.then(|| of(open, &without)),
         };
-        self.markers.iter().map(line).collect()
+        self.tracked.push(tracked);
+        out
     }
 
-    /// Warnings of markers that are far from their goal at the end of a simulation which lasts longer than the motion; `length` of the system in mm.
+    /// Takes the coordinates of joints that the law knows.
+    fn take_joints(
+        &mut self,
+        (model, discrete, without): (&Model, &DiscreteTrajectory, &DiscreteTrajectory),
+        motions: [&Trajectory; 2],
+        law: &Law,
+    ) {
+        let coordinates = model.variables.with(Role::Coordinate);
+        for (place, measured) in law.measured.iter().enumerate() {
+            let own = coordinates.iter().position(|one| one.name == measured.name);
+            let own = own.filter(|_| !measured.is_rate && !measured.is_memory);
+            let Some(i) = own else { continue };
+            let of = |discrete: &DiscreteTrajectory, motion: &Trajectory| {
+                let value = discrete.z.iter().map(|z| z[i]).collect();
+                let times = motion.times.iter();
+                let reference = times.map(|&time| law.reference(time, place)).collect();
+                let values = [value, reference];
+                Tracked::coordinate(&measured.name, measured.is_length, &motion.times, values)
+            };
+            let [tracked, open] = [of(discrete, motions[0]), of(without, motions[1])];
+            let deviations = self.take(tracked, open, motions, law);
+            self.joints.insert(measured.name.clone(), deviations);
+        }
+    }
+
+    /// Deviations of what is tracked.
+    fn of(&self, tracked: &Tracked) -> &Deviations {
+        let all = if tracked.kind == "marker" {
+            &self.markers
+        } else {
+            &self.joints
+        };
+        &all[&tracked.name]
+    }
+
+    /// One line for each marker, or for each joint of a robot without markers.
+    pub fn notes(&self) -> Vec<String> {
+        let told = |of: &Deviation, tracked: &Tracked| {
+            let held = of.greatest_held;
+            let held = held
+                .map(|held| format!(", {} after the end of the reference", plain(held, tracked)));
+            format!(
+                "at most {} from the reference{}, {} at the end",
+                plain(of.greatest, tracked),
+                held.unwrap_or_default(),
+                plain(of.last, tracked)
+            )
+        };
+        let line = |tracked: &Tracked| {
+            let of = self.of(tracked);
+            let open = match &of.open_loop {
+                Some(open) => format!("; without feedback {}", told(open, tracked)),
+                None => "; without feedback the motion ends early".to_owned(),
+            };
+            format!("{}: {}{open}", tracked.name, told(&of.feedback, tracked))
+        };
+        let mut all: Vec<&Tracked> = self.tracked.iter().collect();
+        all.sort_by_key(|tracked| &tracked.name);
+        all.into_iter().map(line).collect()
+    }
+
+    /// Warnings of markers, or of joints, that are far from their goal at the end of a simulation which lasts longer than the motion; `length` of the system in mm.
     pub fn missed(&self, length: f64) -> Vec<String> {
         let line = |tracked: &Tracked| {
-            let of = &self.markers[&tracked.name].feedback;
+            let of = &self.of(tracked).feedback;
             let last = of.greatest_held.map(|_| of.last)?;
-            let path = path_length(tracked).max(STILL * length) / 1e3;
+            let size = if tracked.unit == "m" { length } else { 1.0 };
+            let path = path_length(tracked).max(STILL * size) * scale(tracked);
             (last > MISSED * path).then(|| {
                 format!(
-                    "under the controller {} is {:.3} mm from its goal at the end, {:.0} % of its path",
+                    "under the controller {} is {} from its goal at the end, {:.0} % of its path",
                     tracked.name,
-                    1e3 * last,
+                    plain(last, tracked),
                     100.0 * last / path
                 )
             })
@@ -207,7 +271,20 @@ impl ClosedLoop {
     }
 }
 
-/// Length in mm of the path of a marker in the motion of the law.
+/// m in a mm; of angles, nothing changes.
+fn scale(of: &Tracked) -> f64 {
+    if of.unit == "m" { 1e-3 } else { 1.0 }
+}
+
+/// A deviation in m or rad, in words.
+fn plain(value: f64, of: &Tracked) -> String {
+    match of.unit {
+        "m" => format!("{:.3} mm", 1e3 * value),
+        _ => format!("{value:.5} rad"),
+    }
+}
+
+/// Length in mm or rad of the path of what is tracked in the motion of the law.
 fn path_length(tracked: &Tracked) -> f64 {
     let step = |k: usize| {
         let along = tracked

@@ -111,11 +111,13 @@ pub(crate) fn horizon(task: &Simulation) -> Result<Option<Horizon>, WorkflowErro
     else {
         return Ok(None);
     };
-    let refused = |reason: String| WorkflowError::Problem {
-        place: "simulate.controller.horizon".to_owned(),
-        reason: format!("{}: {reason}", path.display()),
-    };
-    Horizon::solved(ahead).map(Some).map_err(refused)
+    let found = Horizon::solved(ahead);
+    found.map(Some).map_err(|error| {
+        error.at(
+            "simulate.controller.horizon",
+            &format!("{}: ", path.display()),
+        )
+    })
 }
 
 impl<'a> Loop<'a> {
@@ -145,6 +147,13 @@ impl<'a> Loop<'a> {
             return Err(wrong(reason.to_owned()));
         }
         let law = horizon.map_or(&*controller.law, Horizon::law);
+        if let Some(key) = controller.noise.unread(law) {
+            let [found, expected] = Noise::UNREAD;
+            return Err(WorkflowError::Problem {
+                place: format!("simulate.controller.noise.{key}"),
+                reason: format!("found {found}, expected {expected}"),
+            });
+        }
         let end = law.duration() * (1.0 + 1e-9);
         if law.held.is_none() && task.duration > end {
             let reason = "it does not hold its goal after its end, where this simulation goes on; expected a shorter \"duration\"";

@@ -32,6 +32,14 @@ pub enum WorkflowError {
         /// Reason.
         reason: String,
     },
+    /// The problem is right, but one that a controller has to solve before it begins was not solved.
+    #[error("{place}: {reason}")]
+    Unsolved {
+        /// Path in the problem.
+        place: String,
+        /// Reason.
+        reason: String,
+    },
     /// The earlier solution that a solve starts from cannot be used.
     #[error(transparent)]
     Earlier(Box<dyn StdError + Send + Sync>),

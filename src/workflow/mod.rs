@@ -11,7 +11,7 @@
 //! - `effects`, `reasons`, `stopwatch`: terms of a model, their reasons and times; `memory`: a refusal of more than the machine has.
 //! - `steps`, `domain`: warnings of a motion: steps that do not resolve it, muscles outside the domain of their material; `longer_steps`: the error of
 //!   methods of high order.
-//! - `regulator`: feedback along an optimum; `receding`: a controller that plans anew; `control_loop`, `closed_loop`: a simulation under feedback.
+//! - `regulator`: feedback along an optimum; `receding`: a controller that plans anew; `control_loop`, `closed_loop`, `loop_limits`: a simulation under feedback.
 //! - `tracking`: deviations of a motion from the references of its objective.
 //! - `motion`: conversion between unknowns and a trajectory; `parallel_map`: pieces of work in several threads.
 
@@ -41,6 +41,7 @@ pub(crate) mod infeasible;
 pub(crate) mod integrate;
 mod iterate;
 pub(crate) mod longer_steps;
+pub(crate) mod loop_limits;
 pub(crate) mod memory;
 pub(crate) mod motion;
 pub(crate) mod optimise;

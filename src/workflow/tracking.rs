@@ -173,6 +173,36 @@ impl Tracked {
     }
 }
 
+impl Tracked {
+    /// A coordinate of a motion, a length in mm or not, and its values in another motion, at each instant.
+    pub(crate) fn coordinate(
+        name: &str,
+        is_length: bool,
+        times: &[f64],
+        [value, reference]: [Vec<f64>; 2],
+    ) -> Self {
+        let pairs = value.iter().zip(&reference);
+        let difference: Vec<f64> = pairs.map(|(value, reference)| value - reference).collect();
+        let deviation: Vec<f64> = difference.iter().map(|d| d.abs()).collect();
+        let (unit, scale) = if is_length { ("m", 1e-3) } else { ("rad", 1.0) };
+        Self {
+            kind: "joint",
+            name: name.to_owned(),
+            unit,
+            error: TrackingError::from_deviations(times, &deviation, scale),
+            simulated: None,
+            paths: vec![TrackedPath {
+                name: name.to_owned(),
+                axis: None,
+                value,
+                reference,
+                difference,
+            }],
+            deviation,
+        }
+    }
+}
+
 fn of_marker(cost: &QuantityCost) -> Option<usize> {
     match cost.quantity {
         Quantity::MarkerPlace { marker, .. } => Some(marker),

@@ -1,8 +1,11 @@
 //! Simulations under a controller that plans anew over a receding horizon.
 
 use crate::commands::summary;
-use crate::feedback::number;
+use crate::feedback::{number, solved};
 use crate::runs::{read, refused, run, workshop};
+use serde_json::Value;
+use std::fs;
+use std::path::Path;
 
 const PROBLEM: &str = "problems/pair_receding.json";
 
@@ -45,7 +48,7 @@ fn an_observed_pair_is_planned_over_a_delay() {
         "delay": "15 ms",
         "observer": { "markers": { "tip": "0.1 mm" }, "lasting": 0.02 }
     });
-    std::fs::write(here.join("problems/observed.json"), problem.to_string()).unwrap();
+    fs::write(here.join("problems/observed.json"), problem.to_string()).unwrap();
     let stiffer = "scene.materials.silicone.shear_modulus=\"110 kPa\"";
     let observed = "simulate.controller.horizon.problem=\"observed.json\"";
     let tip = |noise: &str| {
@@ -81,6 +84,157 @@ fn an_observed_pair_is_planned_over_a_delay() {
     assert!(with < noisy && noisy < 0.3 * without, "{noisy} {without}");
 }
 
+/// The values of a column of a table by its title.
+fn column(file: &Path, title: &str) -> Vec<f64> {
+    let text = fs::read_to_string(file).unwrap();
+    let mut lines = text.lines().skip(1);
+    let titles = lines.next().unwrap().split(',');
+    let place = titles.clone().position(|own| own == title);
+    let place = place.unwrap_or_else(|| panic!("{title}: {:?}", titles.collect::<Vec<_>>()));
+    let value = |line: &str| line.split(',').nth(place).unwrap().parse().unwrap();
+    lines.map(value).collect()
+}
+
+/// A file of a changed problem beside the kept ones.
+fn changed(here: &Path, name: &str, key: &str, value: &Value) {
+    let mut problem = read(here.join("problems/pair.json"));
+    problem["control"][key] = value.clone();
+    fs::write(here.join("problems").join(name), problem.to_string()).unwrap();
+}
+
+const OF_CHANGED: &str = "simulate.controller.horizon.problem=\"changed.json\"";
+
+/// A robot of softer silicone passes limits that its plans keep: by as much as the tables say.
+#[test]
+fn limits_that_the_motion_passes_are_told() {
+    let folder = workshop();
+    let here = folder.path();
+    let limits = serde_json::json!([
+        { "joint_angle": { "joint": "joint1", "max": "9.2 deg" } },
+        { "electric_field": { "muscles": "all", "max": "40 V/um" } },
+        { "stretch": { "muscle": "muscle1", "max": 1.5 } }
+    ]);
+    changed(here, "changed.json", "limits", &limits);
+    let softer = "scene.materials.silicone.shear_modulus=\"80 kPa\"";
+    let short = "simulate.duration=\"0.3 s\"";
+    let mut arguments = vec!["simulate", PROBLEM, "-o", "limited", "--no-report"];
+    for set in [OF_CHANGED, softer, short] {
+        arguments.extend(["--set", set]);
+    }
+    let (status, out, err) = run(here, &arguments);
+    assert_eq!(status, 0, "{out}{err}");
+    let limits = &summary(here, "limited")["closed_loop"]["limits"];
+    let fields = [1, 2].map(|muscle| format!("electric field of muscle{muscle}"));
+    let names = [
+        "limit of joint1",
+        &fields[0],
+        &fields[1],
+        "stretch of muscle1",
+    ];
+    assert_eq!(limits["compared"], serde_json::json!(names));
+    assert!(limits.get("not_compared").is_none());
+    let passed = limits["passed"].as_array().unwrap();
+    let of = |name: &str| passed.iter().find(|one| one["limit"] == name);
+    let table = here.join("limited/trajectory.csv");
+    let times = column(&table, "time [ms]");
+    let angles = column(&table, "joint1 [rad]");
+    let (k, angle) = greatest(&angles);
+    let joint = of("limit of joint1").unwrap();
+    let excess = angle - 9.2_f64.to_radians();
+    assert!(excess > 5e-3, "{excess}");
+    assert!((number(&joint["excess"]) - excess).abs() < 1e-12, "{joint}");
+    assert!((number(&joint["time"]) - 1e-3 * times[k]).abs() < 1e-9);
+    assert_eq!(joint["unit"], "rad");
+    // |V|/(t Λ) at both ends of each interval, t = 50 µm.
+    for muscle in [1, 2] {
+        let voltages = column(
+            &here.join("limited/controls.csv"),
+            &format!("muscle{muscle} [V]"),
+        );
+        let stretches = column(&table, &format!("muscle{muscle}_stretch"));
+        let field = |k: usize| voltages[k] / 50.0 / stretches[k].min(stretches[k + 1]);
+        let all: Vec<f64> = (0..voltages.len()).map(field).collect();
+        let (_, field) = greatest(&all);
+        match of(&fields[muscle - 1]) {
+            Some(told) => {
+                assert!(
+                    (number(&told["value"]) - field).abs() < 1e-3,
+                    "{told} {field}"
+                );
+                assert_eq!(told["unit"], "V/um");
+            }
+            None => assert!(field < 40.0 + 1e-6, "{field}"),
+        }
+    }
+    assert!(of("stretch of muscle1").is_none());
+    let told = "warning: under the controller a limit is passed, limit of joint1: ";
+    assert!(err.contains(told), "{err}");
+}
+
+fn greatest(list: &[f64]) -> (usize, f64) {
+    let all = list.iter().copied().enumerate();
+    all.reduce(|a, b| if b.1 > a.1 { b } else { a }).unwrap()
+}
+
+/// A robot without markers has the distances of its joints from the motion.
+#[test]
+fn joints_of_a_robot_without_markers() {
+    let folder = workshop();
+    let here = folder.path();
+    let stiffer = "scene.materials.silicone.shear_modulus=\"110 kPa\"";
+    let arguments = [
+        "simulate",
+        PROBLEM,
+        "-o",
+        "bare",
+        "--set",
+        stiffer,
+        "--set",
+        "scene.markers=[]",
+    ];
+    let (status, out, err) = run(here, &arguments);
+    assert_eq!(status, 0, "{out}{err}");
+    let closed = &summary(here, "bare")["closed_loop"];
+    assert_eq!(closed["markers"], serde_json::json!({}));
+    solved(here, "problems/pair.json", "pair", &[]);
+    let last = |run: &str| {
+        let angles = column(&here.join(run).join("trajectory.csv"), "joint1 [rad]");
+        *angles.last().unwrap()
+    };
+    let off = (last("bare") - last("pair")).abs();
+    let told = &closed["joints"]["joint1"];
+    let [with, without] = ["feedback", "open_loop"].map(|key| number(&told[key]["last"]));
+    assert!((with - off).abs() < 1e-6 && off > 1e-3, "{told} {off}");
+    assert!(without > 2.0 * with, "{told}");
+    assert!(
+        err.contains("note: joint1: at most 0.08727 rad from the reference"),
+        "{err}"
+    );
+    assert!(here.join("bare/tracking.svg").exists());
+}
+
+/// A problem without an optimum is no wrong input.
+#[test]
+fn horizons_of_problems_without_an_optimum() {
+    let folder = workshop();
+    let here = folder.path();
+    changed(here, "changed.json", "duration", &"4 ms".into());
+    let mut problem = read(here.join("problems/changed.json"));
+    problem["control"]["intervals"] = 2.into();
+    fs::write(here.join("problems/changed.json"), problem.to_string()).unwrap();
+    let arguments = ["simulate", PROBLEM, "-o", "none", "--set", OF_CHANGED];
+    let (status, out, err) = run(here, &arguments);
+    assert_eq!(status, 1, "{out}{err}");
+    for told in [
+        "controller.horizon",
+        "changed.json",
+        "no optimum was found: infeasible",
+    ] {
+        assert!(err.contains(told), "{told}: {err}");
+    }
+    assert_eq!(summary(here, "none")["status"], "plan_unsolved");
+}
+
 #[test]
 fn wrong_horizons_are_refused() {
     let folder = workshop();
@@ -98,6 +252,10 @@ fn wrong_horizons_are_refused() {
     );
     refused(".horizon.intervals=0", &["horizon.intervals", "1 interval"]);
     refused(".horizon.intervals=20000", &["horizon.intervals", "10000"]);
+    refused(
+        ".noise={\"velocity\":\"1 mm/s\"}",
+        &["controller.noise.velocity", "nothing measures"],
+    );
     let problem = |name: &str| format!(".horizon.problem=\"{name}\"");
     refused(&problem("none.json"), &["horizon.problem", "none.json"]);
     refused(

@@ -1,7 +1,7 @@
 //! Conversion of the feedback of a problem file to costs of deviations, and to a controller.
 
 use crate::control::problem::{FeedbackControl, Noise, Observation, Regulator};
-use crate::feedback::{Integral, Law, Reading};
+use crate::feedback::{Integral, Law};
 use crate::files::feedback::read_law;
 use crate::files::json::error::SceneError;
 use crate::files::json::scope::Scope;
@@ -192,37 +192,10 @@ pub(crate) fn controller(
 
 /// Refuses noise of a kind of which the controller measures nothing.
 fn refuse_unread(noise: &Noise, law: &Law, scope: &Scope<'_>) -> Result<(), SceneError> {
-    let of_state = |place: usize| {
-        let one = &law.measured[place];
-        (!one.is_memory).then_some((one.is_rate, one.is_length))
-    };
-    let kinds: Vec<(bool, bool)> = match &law.observer {
-        None => (0..law.measured.len()).filter_map(of_state).collect(),
-        Some(observer) => observer
-            .readings
-            .iter()
-            .filter_map(|one| match one {
-                Reading::State(place) => of_state(*place),
-                Reading::Marker(..) => Some((false, true)),
-            })
-            .collect(),
-    };
-    let all = [
-        ("angle", noise.angle, (false, false)),
-        ("length", noise.length, (false, true)),
-        ("angular_velocity", noise.angular_velocity, (true, false)),
-        ("velocity", noise.velocity, (true, true)),
-    ];
-    let unread = |(_, size, kind): &(&str, f64, (bool, bool))| *size > 0.0 && !kinds.contains(kind);
-    match all.into_iter().find(unread) {
-        None => Ok(()),
-        Some((key, ..)) => {
-            let expected = "noise of what the controller measures";
-            Err(scope
-                .key(key)
-                .wrong("noise of a kind that nothing measures", expected))
-        }
-    }
+    let [found, expected] = Noise::UNREAD;
+    noise
+        .unread(law)
+        .map_or(Ok(()), |key| Err(scope.key(key).wrong(found, expected)))
 }
 
 /// The delay of a controller as it is written, a multiple of the step.

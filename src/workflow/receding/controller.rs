@@ -29,8 +29,10 @@ use crate::workflow::receding::state::Predicted;
 const BARRIER: f64 = 1e-7;
 /// Steps that fail one after the other before the law of the regulator takes over.
 const PATIENCE: usize = 3;
-/// Deviation from the predicted state that is taken for an error of the measurement, in rad, and as a part of the length of the system.
+/// Deviation from the predicted state that is taken for an error of the measurement, in rad, and as a part of the length of the system; and the change in an
+/// interval by a deviation of a rate from that of the motion: a push makes large rates at once.
 const ABSURD: f64 = 1.0;
+const ABSURD_RATE: f64 = 10.0;
 /// Residual of the equations from which on a plan that does not improve has failed.
 const FAR: f64 = 1.0;
 /// Iterations of the first plan, and the residual at which they end.
@@ -134,10 +136,7 @@ impl<'h> RecedingHorizon<'h> {
 
     /// Iterates for the plan from the state at its start.
     fn converge(&mut self) {
-        self.changes
-            .iter_mut()
-            .for_each(|(_, change)| *change = 0.0);
-        self.rows.iter_mut().for_each(|(_, change)| *change = 0.0);
+        self.stay();
         for _ in 0..FIRST {
             self.factor();
             let Residual {
@@ -256,6 +255,12 @@ impl<'h> RecedingHorizon<'h> {
         Source::Regulator
     }
 
+    /// Changes nothing of the state at the start.
+    fn stay(&mut self) {
+        let all = self.changes.iter_mut().chain(&mut self.rows);
+        all.for_each(|(_, change)| *change = 0.0);
+    }
+
     /// The inputs of the plan as it is.
     fn keep(&mut self, source: Source) -> Source {
         let x = &self.iteration.x[..self.iteration.columns];
@@ -281,20 +286,22 @@ impl<'h> RecedingHorizon<'h> {
         let Iteration { program, x, .. } = &self.iteration;
         let layout = &program.layout;
         self.rates.fill(0.0);
+        let unit = |c: usize| match model.is_length(coordinates[c]) {
+            true => model.length(),
+            false => 1.0,
+        };
         let mut is_far = false;
         for (c, value) in places.iter().enumerate() {
             let (column, scale) = layout.coordinates[c];
             let change = value - scale * x[column];
-            let unit = if model.is_length(coordinates[c]) {
-                model.length()
-            } else {
-                1.0
-            };
-            is_far |= change.abs() > ABSURD * unit;
+            is_far |= change.abs() > ABSURD * unit(c);
             self.changes[c] = (column, change / scale);
             self.instant.z[coordinates[c]] = *value;
         }
-        for (&c, rate) in layout.inert.iter().zip(rates) {
+        let law = self.of.law();
+        let motion = &law.at(law.h * self.interval as f64).state[places.len()..];
+        for ((&c, rate), motion) in layout.inert.iter().zip(rates).zip(motion) {
+            is_far |= (rate - motion).abs() * law.h > ABSURD_RATE * unit(c);
             self.rates[coordinates[c]] = *rate;
         }
         let action = &model.action;

@@ -12,43 +12,16 @@ use crate::feedback::Law;
 use crate::ipopt::{IpoptError, Options, StartingPoint, Status, solve};
 use crate::model::{Model, System, Time};
 use crate::nlp::Nlp;
+use crate::workflow::error::WorkflowError;
 use crate::workflow::iterate::Iterate;
 use crate::workflow::motion::discrete_trajectory;
 use crate::workflow::optimise::optimise;
 use crate::workflow::optimum::SolveLimits;
+use crate::workflow::receding::no_horizon::NoHorizon;
 use crate::workflow::receding::program::Program;
 use crate::workflow::receding::reference::Reference;
 use crate::workflow::regulator::{NoRegulator, predicting};
-use std::fmt;
 use std::ops::ControlFlow;
-
-/// Reason why there is no controller with a receding horizon.
-#[derive(Clone, Debug, PartialEq)]
-pub enum NoHorizon {
-    /// There is no regulator of the motion, whose costs it takes.
-    Regulator(NoRegulator),
-    /// Nothing holds the goal after the end.
-    NotHeld(String),
-    /// The program of the horizon does not exist.
-    Program(String),
-    /// Something of the problem is not offered.
-    NotOffered(&'static str),
-}
-
-impl fmt::Display for NoHorizon {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        match self {
-            Self::Regulator(reason) => reason.fmt(f),
-            Self::NotHeld(reason) => write!(f, "the goal is not held after the end: {reason}"),
-            Self::Program(reason) => f.write_str(reason),
-            Self::NotOffered(what) => {
-                write!(f, "{what}, which a receding horizon does not take in")
-            }
-        }
-    }
-}
-
-impl std::error::Error for NoHorizon {}
 
 /// Words on integrals.
 const INTEGRAL: &str =
@@ -161,8 +134,8 @@ impl Horizon {
     /// The horizon of a problem that is solved for it.
     ///
     /// # Errors
-    /// There is none, in words.
-    pub fn solved(of: &Ahead) -> Result<Self, String> {
+    /// There is none.
+    pub fn solved(of: &Ahead) -> Result<Self, NoHorizon> {
         let Ahead {
             system,
             control,
@@ -172,22 +145,29 @@ impl Horizon {
         let limits = SolveLimits::default();
         let go_on = &mut |_: &Iterate<'_>| ControlFlow::Continue(());
         let optimum = optimise(system, control, None, limits, go_on);
-        let optimum = optimum.map_err(|error| error.to_string())?;
+        let optimum = optimum.map_err(|error| match error {
+            WorkflowError::Stopped(status) => NoHorizon::Stopped(status),
+            WorkflowError::NoEquilibrium { .. } => NoHorizon::Unsolved(error.to_string()),
+            error => NoHorizon::Program(error.to_string()),
+        })?;
+        if let Some(status) = optimum.stopped {
+            return Err(NoHorizon::Stopped(status));
+        }
         if !optimum.is_solved() {
-            return Err(format!("no optimum was found: {}", optimum.word()));
+            let word = optimum.word().replace('_', " ");
+            return Err(NoHorizon::Unsolved(format!("no optimum was found: {word}")));
         }
         let discrete = discrete_trajectory(&optimum.model, &optimum.motion);
         let momentum = &optimum.boundary.start.momentum;
         let rest = optimum.motion.hold.as_deref();
         let rest = rest.or(optimum.boundary.rest[1].as_deref());
         let of = (&optimum.model, &discrete);
-        let found = Self::new(
+        Self::new(
             (system, control, regulator),
             *intervals,
             of,
             (momentum, rest),
-        );
-        found.map_err(|reason| reason.to_string())
+        )
     }
 
     /// The law to which controllers fall back: names of all that is measured and of the inputs, bounds, length of the intervals.

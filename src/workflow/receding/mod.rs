@@ -1,6 +1,6 @@
 //! A controller that plans anew in each interval: nonlinear model predictive control by real-time iterations.
 //!
-//! - `horizon`: all that controllers share, from an optimal motion and the costs of its regulator; `reference`: the motion that is followed.
+//! - `horizon`: all that controllers share, from an optimal motion and the costs of its regulator, or `no_horizon`; `reference`: the motion that is followed.
 //! - `program`: the nonlinear program of the next intervals, with its `layout` and `costs`.
 //! - `iteration`, `advance`: one iteration of it, in two parts, with its `matrix`; `shift`: the plan one interval later.
 //! - `state`: where a plan begins, from what is measured, over a delay and with an observer.
@@ -13,6 +13,7 @@ mod horizon;
 mod iteration;
 mod layout;
 mod matrix;
+mod no_horizon;
 mod program;
 mod reference;
 mod shift;
@@ -20,6 +21,7 @@ mod source;
 mod state;
 
 pub use controller::{Answer, RecedingHorizon};
-pub use horizon::{Horizon, NoHorizon};
+pub use horizon::Horizon;
 pub use iteration::Residual;
+pub use no_horizon::NoHorizon;
 pub use source::Source;

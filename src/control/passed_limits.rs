@@ -1,0 +1,161 @@
+//! Path limits of a problem along a motion of a robot, the one of the problem or another with joints, muscles and markers of the same names.
+
+use crate::control::bounded_quantity::BoundedQuantity;
+use crate::control::limits::{Length, Limits, largest};
+use crate::control::measured_values::value;
+use crate::control::problem::PathConstraint;
+use crate::dynamics::DiscreteTrajectory;
+use crate::model::system::{Fidelity, Muscle};
+use crate::model::{Analysis, Model, ModelError, Quantity, System};
+
+/// A limit beyond which a motion goes, there where it does so most.
+#[derive(Clone, Debug, PartialEq)]
+pub struct PassedLimit {
+    /// Name of the limit.
+    pub name: String,
+    /// Its value there, and the bound, in their plain unit.
+    pub value: f64,
+    /// The bound.
+    pub bound: f64,
+    /// The unit; none of a pure number.
+    pub unit: &'static str,
+    /// Instant in ms; of what is measured in an interval its end.
+    pub time: f64,
+    /// Distance to the bound as a part of the larger bound; of a squared quantity that of its square.
+    pub part: f64,
+}
+
+/// Comparison of a motion with limits.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct LimitsAlong {
+    /// Names of the limits that were compared.
+    pub compared: Vec<String>,
+    /// Names of those that can not be.
+    pub left_out: Vec<String>,
+    /// Those that are passed, in the order of the problem.
+    pub passed: Vec<PassedLimit>,
+}
+
+/// Compares a motion of a system in steps of about h ms with limits of another system, at the instants of its steps and in the steps.
+///
+/// # Errors
+/// There is no model of the system that measures them.
+pub fn limits_along(
+    (of, limits): (&System, &[PathConstraint]),
+    (system, analysis): (&System, Analysis),
+    motion: &DiscreteTrajectory,
+) -> Result<LimitsAlong, ModelError> {
+    let mut out = LimitsAlong::default();
+    let length = Length {
+        h: analysis.interval,
+        is_free: false,
+    };
+    let mut own = Vec::new();
+    for limit in limits {
+        match limit.of_other(of, system) {
+            Some(limit) => own.push(limit),
+            None => {
+                let named = Limits::new(std::slice::from_ref(limit), of, true, length);
+                let mut names: Vec<String> = named.list.into_iter().map(|one| one.name).collect();
+                names.dedup();
+                out.left_out.append(&mut names);
+            }
+        }
+    }
+    let list = Limits::new(&own, system, true, length);
+    let analysis = Analysis {
+        quantities: list.quantities(),
+        ..analysis
+    };
+    let model = Model::for_analysis(system.clone(), analysis)?;
+    for (place, bounded) in list.list.iter().enumerate() {
+        let along = (0..=motion.intervals()).filter_map(|k| {
+            let value = along(&model, (place, bounded), motion, k)?;
+            let beyond = bounded.beyond(value);
+            Some((
+                k,
+                value,
+                beyond.map_or((0.0, 0.0), |(bound, excess, _)| (excess, bound)),
+            ))
+        });
+        let worst = along.reduce(|a, b| if b.2.0 > a.2.0 { b } else { a });
+        let Some((k, value, (excess, bound))) = worst else {
+            continue;
+        };
+        if out.compared.last() != Some(&bounded.name) {
+            out.compared.push(bounded.name.clone());
+        }
+        if excess > 0.0 {
+            let plain = |value: f64| bounded.quantity.plain(value, system);
+            let (value, unit) = plain(value);
+            out.take(PassedLimit {
+                name: bounded.name.clone(),
+                value,
+                bound: plain(bound).0,
+                unit,
+                time: motion.times[k],
+                part: excess / largest([bounded.lower, bounded.upper]).unwrap_or(0.0),
+            });
+        }
+    }
+    Ok(out)
+}
+
+/// A value of a bounded quantity at instant k of a motion, or in the interval before it.
+fn along(
+    model: &Model,
+    (place, bounded): (usize, &BoundedQuantity),
+    motion: &DiscreteTrajectory,
+    k: usize,
+) -> Option<f64> {
+    // An angle as it has turned, whatever the branch that a measure would take.
+    if let Quantity::Joint { joint, .. } = bounded.quantity {
+        let own = model.joint_readings[joint].coordinate?;
+        return Some(motion.z[k][own]);
+    }
+    value(model, (place, &bounded.quantity), motion, k).map(|(value, _)| value)
+}
+
+impl LimitsAlong {
+    /// Takes a limit that is passed, unless one of its name is passed farther.
+    fn take(&mut self, passed: PassedLimit) {
+        let mut same = self.passed.iter_mut();
+        match same.find(|known| known.name == passed.name) {
+            None => self.passed.push(passed),
+            Some(known) if passed.part > known.part => *known = passed,
+            Some(_) => {}
+        }
+    }
+}
+
+impl PathConstraint {
+    /// The limit of another system whose joints, muscles, sources and markers have the same names; none where it has not what is limited.
+    fn of_other(&self, from: &System, to: &System) -> Option<Self> {
+        let mut out = self.clone();
+        match &mut out {
+            Self::JointAngle { joint, .. }
+            | Self::JointRate { joint, .. }
+            | Self::Reaction { joint, .. } => {
+                let name = &from.joints[*joint].name;
+                *joint = to.joints.iter().position(|one| one.name == *name)?;
+            }
+            Self::Stretch { muscle, .. }
+            | Self::Tension { muscle, .. }
+            | Self::ElectricField { muscle, .. }
+            | Self::Current { muscle, .. }
+            | Self::Power { muscle, .. } => {
+                let name = &from.muscles[*muscle].name;
+                let is_own = |one: &Muscle| one.name == *name && one.fidelity == Fidelity::Lumped;
+                *muscle = to.muscles.iter().position(is_own)?;
+            }
+            Self::Marker { marker, .. } | Self::MarkerSpeed { marker, .. } => {
+                let name = &from.markers[*marker].name;
+                *marker = to.markers.iter().position(|one| one.name == *name)?;
+            }
+            Self::BlockField { .. } if from.solids == to.solids && from.muscles == to.muscles => {}
+            // Steps between intervals, sought constants and single times belong to the intervals of a problem.
+            _ => return None,
+        }
+        Some(out)
+    }
+}
