@@ -57,6 +57,8 @@ pub struct Point {
     /// K: by input, over the measured quantities, then lasting forces and the inputs against them, then the integrals, then, interval by interval
     /// of the delay, the corrections of the inputs.
     pub gain: DMatrix<f64>,
+    /// Correction whatever is measured, where a delay leads from the motion to the goal behind its end, which the motion does not quite reach; empty for none.
+    pub offset: Vec<f64>,
 }
 
 /// Deviations whose integrals over time are fed back: they vanish where the system comes to rest.
@@ -131,13 +133,15 @@ impl Law {
 
     /// Writes the corrections of the inputs for a deviation, by the gain of a time in ms.
     pub fn correct(&self, time: f64, deviation: &[f64], correction: &mut [f64]) {
-        let gain = &self.at(time).gain;
+        let Point { gain, offset, .. } = self.at(time);
         for (input, value) in correction.iter_mut().enumerate() {
             let terms = deviation.iter().enumerate();
             *value = -terms
                 .map(|(place, d)| gain[(input, place)] * d)
                 .sum::<f64>();
         }
+        let offsets = correction.iter_mut().zip(offset);
+        offsets.for_each(|(value, offset)| *value += offset);
     }
 
     /// The interval of a time in ms; a time at its end, up to rounding, belongs to the next.
@@ -159,7 +163,10 @@ impl Law {
     pub fn open(&self) -> Self {
         let mut out = self.clone();
         let points = out.points.iter_mut().chain(&mut out.held);
-        points.for_each(|point| point.gain.fill(0.0));
+        points.for_each(|point| {
+            point.gain.fill(0.0);
+            point.offset.clear();
+        });
         out
     }
 

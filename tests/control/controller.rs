@@ -25,6 +25,7 @@ fn law(gain: DMatrix<f64>, delay: usize, bounds: [f64; 2], observer: Option<Obse
         state: vec![0.0; 2],
         inputs: vec![0.0],
         gain,
+        offset: Vec::new(),
     };
     Law {
         measured: vec![measured("x"), measured("y")],

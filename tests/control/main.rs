@@ -9,6 +9,7 @@ mod closed_form;
 mod codesign;
 mod controller;
 mod creep;
+mod delays;
 mod direct_sources;
 mod drivers;
 mod electrode_circuits;

@@ -182,15 +182,9 @@ fn joints_of_a_robot_without_markers() {
     let folder = workshop();
     let here = folder.path();
     let stiffer = "scene.materials.silicone.shear_modulus=\"110 kPa\"";
+    let bare = "scene.chain.tip_marker=null";
     let arguments = [
-        "simulate",
-        PROBLEM,
-        "-o",
-        "bare",
-        "--set",
-        stiffer,
-        "--set",
-        "scene.markers=[]",
+        "simulate", PROBLEM, "-o", "bare", "--set", stiffer, "--set", bare,
     ];
     let (status, out, err) = run(here, &arguments);
     assert_eq!(status, 0, "{out}{err}");

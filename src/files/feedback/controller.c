@@ -53,6 +53,10 @@ void feedback_step(feedback_state_t *self, const double measured[FEEDBACK_STATES
     double sum = 0.0;
     for (j = 0; j < FEEDBACK_READ; j++)
       sum += feedback_gain[row][i][j] * deviation[j];
+#if FEEDBACK_DELAY > 0
+    /* Behind the end the goal is not quite where the motion leads. */
+    sum -= feedback_offset[row][i];
+#endif
     self->correction[(self->interval + FEEDBACK_DELAY) % (FEEDBACK_DELAY + 1)][i] = -sum;
   }
   for (i = 0; i < FEEDBACK_INPUTS; i++) {

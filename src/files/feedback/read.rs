@@ -46,6 +46,10 @@ pub(crate) fn read_law(path: &Path, system: &System) -> Result<Law, SceneError> 
             state: list(&record.state, measured, &place.key("state"))?,
             inputs: list(&record.inputs, &of_inputs, &place.key("inputs"))?,
             gain: matrix(&record.gain, [&acting, &read], &place.key("gain"))?,
+            offset: match record.offset.is_empty() {
+                true => Vec::new(),
+                false => list(&record.offset, &acting, &place.key("offset"))?,
+            },
         })
     };
     let place = scope.key("intervals");

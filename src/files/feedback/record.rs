@@ -115,6 +115,9 @@ pub(super) struct PointRecord {
     /// A row for each input, over what is measured, then lasting forces and the changes of inputs against them, then the integrals, then the
     /// corrections of the inputs in each interval of the delay.
     pub(super) gain: Vec<Vec<f64>>,
+    /// Correction of each input whatever is measured, where a delay leads behind the end.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub(super) offset: Vec<f64>,
 }
 
 /// Unit of a measured quantity, and its factor from the units inside.

@@ -102,6 +102,7 @@ impl Factors {
             state: scaled(&point.state, &self.read),
             inputs: scaled(&point.inputs, &self.inputs),
             gain: self.gain(point),
+            offset: scaled(&point.offset, &self.acting),
         }
     }
 }

@@ -69,6 +69,17 @@ pub fn law_c(law: &Law, system: &System, head: &str) -> String {
         "double feedback_gain[FEEDBACK_POINTS][FEEDBACK_INPUTS][FEEDBACK_READ]",
         points().map(gain).collect(),
     );
+    if record.delay_intervals > 0 {
+        let none = vec![0.0; inputs];
+        let offset = |point: &PointRecord| match point.offset.is_empty() {
+            true => row(&none),
+            false => row(&point.offset),
+        };
+        table(
+            "double feedback_offset[FEEDBACK_POINTS][FEEDBACK_INPUTS]",
+            points().map(offset).collect(),
+        );
+    }
     out + CODE
 }
 

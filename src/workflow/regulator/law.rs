@@ -6,7 +6,7 @@ use crate::model::Time;
 use crate::workflow::regulator::design::{Design, State};
 use crate::workflow::regulator::lasting::widened;
 use crate::workflow::regulator::regulated::RegulatedStep;
-use nalgebra::DMatrix;
+use nalgebra::{DMatrix, DVector};
 
 impl Design<'_> {
     pub(super) fn law(
@@ -42,12 +42,19 @@ impl Design<'_> {
         let at_goal = held.map(|(step, _)| widened(step));
         let last = at_goal.as_ref().or(steps.last()).expect("a step");
         let ahead = |k: usize| steps.get(k).unwrap_or(last);
+        let is_held = held.is_some();
         let points = steps.iter().enumerate().map(|(k, _)| {
             let inputs = given(&self.discrete.scalars[k]);
             let gain = predicted((k..k + delay).map(ahead), ahead(k + delay));
-            self.point(&motion[k], &gain, inputs)
+            let offset = match (k + delay).checked_sub(steps.len()) {
+                Some(behind) if is_held => self.offset(motion, behind, last),
+                _ => Vec::new(),
+            };
+            Point {
+                offset,
+                ..self.point(&motion[k], &gain, inputs)
+            }
         });
-        let is_held = held.is_some();
         let held = rest.zip(at_goal.as_ref()).map(|(rest, step)| {
             let inputs = given(&self.model.scalars(rest));
             let gain = predicted((0..delay).map(|_| step), step);
@@ -72,6 +79,21 @@ impl Design<'_> {
             observer: None,
             markers: self.markers(motion, is_held),
         }
+    }
+
+    /// The correction some intervals behind the end of a motion that ends beside its goal, by the step that is held there.
+    fn offset(&self, motion: &[State], behind: usize, held: &RegulatedStep) -> Vec<f64> {
+        let (end, goal) = (motion.last().expect("an instant"), self.goal());
+        let coordinates = self.coordinates.iter().map(|&i| end.z[i] - goal.z[i]);
+        let momenta = self.momenta.iter();
+        let momenta = momenta.map(|&i| end.momentum[i] - goal.momentum[i]);
+        let mut state = DVector::zeros(held.by_state.nrows());
+        let places = state.iter_mut().zip(coordinates.chain(momenta));
+        places.for_each(|(to, value)| *to = value);
+        for _ in 0..behind {
+            state = &held.by_state * state;
+        }
+        (-(&held.gain * state)).iter().copied().collect()
     }
 
     /// The places of markers that can move.
@@ -109,6 +131,7 @@ impl Design<'_> {
             state: self.measured(at),
             inputs,
             gain: read,
+            offset: Vec::new(),
         }
     }
 }

@@ -1,0 +1,79 @@
+//! Gains over a delay at the end of a motion, which in short steps is not quite at the goal that is held behind it.
+
+use crate::common::receding::problem;
+use crate::common::robot::Robot;
+use proboscis::control::problem::Regulator;
+use proboscis::feedback::{Controller, Law};
+use proboscis::model::Model;
+use proboscis::tasks::{SolveRequest, solve};
+use proboscis::workflow::Iterate;
+use proboscis::workflow::regulator::regulator;
+use std::ops::ControlFlow;
+
+/// Deviations in rad of the joint from the goal in intervals behind the end of the motion, and the greatest before.
+fn behind_the_end(model: &Model, law: &Law) -> (Vec<f64>, f64) {
+    let mut robot = Robot::new(model, 5);
+    let delay = law.delay as f64 * law.h;
+    let mut controller = Controller::new(law, law.h, delay);
+    let (mut behind, mut before) = (Vec::new(), 0.0_f64);
+    let end = law.points.len();
+    for k in 0..end + 12 {
+        let time = law.h * k as f64;
+        let off = robot.z[0] - law.at(time).state[0];
+        match k < end {
+            true => before = before.max(off.abs()),
+            false => behind.push(off),
+        }
+        controller.sample(time, &robot.measure());
+        let mut inputs = vec![0.0; law.inputs.len()];
+        controller.inputs(time, time + 0.5 * law.h, &mut inputs);
+        robot.go(law.h, &inputs);
+    }
+    (behind, before)
+}
+
+/// On its motion the pair comes to the goal under gains over a delay as it does under gains without.
+#[test]
+fn the_end_of_the_motion_is_predicted_over_a_delay() {
+    // Coarse intervals in shorter steps end clearly beside the goal.
+    let changes = [
+        "control.intervals=10",
+        "control.goal={\"rest_at_voltages\": {\"muscle1\": \"1.2 kV\", \"muscle2\": \"1.9 kV\"}}",
+    ];
+    let (system, control) = problem("pair.json", &changes);
+    let go_on = &mut |_: usize, _: &Iterate<'_>| ControlFlow::Continue(());
+    let found = solve(&system, &control, SolveRequest::default(), go_on).unwrap();
+    assert!(found.verdict.is_solved);
+    let optimum = &found.optimum;
+    let law = |delay: f64| {
+        let task = Regulator {
+            step: 4.0,
+            delay,
+            ..Regulator::default()
+        };
+        let of = (&optimum.model, &control, &task);
+        let rest = optimum.boundary.rest[1].as_deref();
+        let momentum = &optimum.boundary.start.momentum;
+        regulator(of, &found.discrete, momentum, rest).unwrap().law
+    };
+    let (at_once, late) = (law(0.0), law(40.0));
+    assert_eq!(late.delay, 2);
+    let model = Model::new(system, None, at_once.h, &[]).unwrap();
+    let (expected, before) = behind_the_end(&model, &at_once);
+    let (found, late_before) = behind_the_end(&model, &late);
+    println!("{expected:.6?}\n{found:.6?}\n{before:e} {late_before:e}");
+    let jump = expected[0].abs();
+    assert!(before < 1e-6 && late_before < 1e-6 && jump > 1e-3);
+    for (k, (found, expected)) in found.iter().zip(&expected).enumerate() {
+        assert!(
+            (found - expected).abs() < 0.05 * jump,
+            "{k}: {found} {expected}"
+        );
+    }
+    // Without the corrections that know of the end it stays there for the delay.
+    let mut unaware = late;
+    unaware.points.iter_mut().for_each(|p| p.offset.clear());
+    let (beside, _) = behind_the_end(&model, &unaware);
+    println!("{beside:.6?}");
+    assert!((beside[1] - expected[1]).abs() > 0.5 * jump);
+}
