@@ -165,16 +165,19 @@ impl ClosedLoop {
             let own = coordinates.iter().position(|one| one.name == measured.name);
             let own = own.filter(|_| !measured.is_rate && !measured.is_memory);
             let Some(i) = own else { continue };
+            let mut readings = model.joint_readings.iter();
+            let joint = readings.position(|one| one.coordinate == Some(i));
+            let name = joint.map_or(&measured.name, |joint| &model.system.joints[joint].name);
             let of = |discrete: &DiscreteTrajectory, motion: &Trajectory| {
                 let value = discrete.z.iter().map(|z| z[i]).collect();
                 let times = motion.times.iter();
                 let reference = times.map(|&time| law.reference(time, place)).collect();
                 let values = [value, reference];
-                Tracked::coordinate(&measured.name, measured.is_length, &motion.times, values)
+                Tracked::coordinate(name, measured.is_length, &motion.times, values)
             };
             let [tracked, open] = [of(discrete, motions[0]), of(without, motions[1])];
             let deviations = self.take(tracked, open, motions, law);
-            self.joints.insert(measured.name.clone(), deviations);
+            self.joints.insert(name.clone(), deviations);
         }
     }
 

@@ -87,20 +87,20 @@ impl LoopLimits {
     /// Adds a warning of limits that are passed, a note where steps of finite length explain it, and one of limits that are not compared.
     pub(crate) fn remark(&self, remarks: &mut Remarks) {
         match self.passed.first().is_some_and(|worst| worst.is_far) {
-            true => remarks.warn("limit_passed", self.told()),
-            false => remarks.note("limit_passed", self.told()),
+            true => remarks.warn("limit_passed", self.message()),
+            false => remarks.note("limit_passed", self.message()),
         }
         let names = &self.not_compared;
-        let not_told = (!names.is_empty()).then(|| {
+        let not_compared = (!names.is_empty()).then(|| {
             format!(
                 "limits that the simulated robot does not tell are not compared with its motion: {}",
                 names.join(", ")
             )
         });
-        remarks.note("limits_not_compared", not_told);
+        remarks.note("limits_not_compared", not_compared);
     }
 
-    fn told(&self) -> Option<String> {
+    fn message(&self) -> Option<String> {
         let worst = self.passed.first()?;
         let space = if worst.unit.is_empty() { "" } else { " " };
         let number = |value: f64| format!("{}{space}{}", significant(value, 4), worst.unit);
