@@ -13,7 +13,7 @@ MOTIONS := fe_trunk clamped_stack_step bending_actuator_step free_flight creepin
 FUZZ_SECONDS := 600
 ADVERSARY_SECONDS := 600
 
-.PHONY: help trunk blocks gallery build test test-python test-other-ipopt test-browser wheel docs fuzz adversary check audit bench studies install-deps try-fresh clean
+.PHONY: help trunk blocks gallery build test test-python test-other-ipopt test-browser wheel docs fuzz adversary compare-solvers check audit bench studies install-deps try-fresh clean
 
 help:
 	@echo 'make trunk         solve the elephant trunk, let it swing under constant voltages, and say where the pictures are'
@@ -27,6 +27,7 @@ help:
 	@echo 'make docs          pages of the Python package, in target/python/docs'
 	@echo 'make fuzz          look for files that the reader does not survive, for FUZZ_SECONDS=$(FUZZ_SECONDS)'
 	@echo 'make adversary     random robots in many forms, with fresh seeds, for ADVERSARY_SECONDS=$(ADVERSARY_SECONDS)'
+	@echo 'make compare-solvers  200 random blocks and the kept problems of finite elements, by multigrid and by factors'
 	@echo 'make check         formatting, lints, documentation'
 	@echo 'make audit         licences, sources and known vulnerabilities of all crates, by cargo-deny (installed where it is missing)'
 	@echo 'make bench         measure; rewrite the tables of benches/README.md'
@@ -87,6 +88,9 @@ fuzz: install-deps
 
 adversary: install-deps
 	@PROBOSCIS_SEED=$$(date +%s) PROBOSCIS_SECONDS=$(ADVERSARY_SECONDS) $(CARGO) test --release --locked --test adversary -- --nocapture
+
+compare-solvers: install-deps
+	@PROBOSCIS_BLOCKS=200 $(CARGO) test --release --locked --test solids -- --include-ignored --nocapture kept_problems random_blocks
 
 check: install-deps
 	@$(CARGO) fmt --check

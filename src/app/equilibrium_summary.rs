@@ -42,6 +42,9 @@ pub(super) struct Rest {
     is_stable: Option<bool>,
     /// Number of directions in which the potential energy falls, by the inertia of the tangent.
     unstable_directions: Option<usize>,
+    /// The lowest mode, where it decided without factors: then directions are those that were found.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    lowest_mode: Option<Lowest>,
     /// `growing_loads`, `path_continued` or `energy_minimum`.
     route: &'static str,
     /// State at which the path of growing loads loses its stable equilibrium, if this one does not lie on it.
@@ -65,6 +68,17 @@ struct Softest {
     /// `voltages`, `weight` or `elastic_forces`; absent where nothing takes from the elastic stiffness.
     #[serde(skip_serializing_if = "Option::is_none")]
     softened_by: Option<&'static str>,
+}
+
+/// The lowest eigenvalue of the stiffness of nodes, with potentials that follow.
+#[derive(Debug, Serialize)]
+struct Lowest {
+    /// Its quotient in N/m.
+    stiffness: f64,
+    /// Distance in N/m within which there is an eigenvalue.
+    bound: f64,
+    /// Iterations.
+    iterations: usize,
 }
 
 /// A loss of the stable equilibrium under a growing load.
@@ -165,6 +179,11 @@ pub(super) fn describe(
             fraction: loss.fraction,
             kind: status(loss),
         }),
+        lowest_mode: found.lowest.as_ref().map(|mode| Lowest {
+            stiffness: 1e3 * mode.stiffness,
+            bound: 1e3 * mode.bound,
+            iterations: mode.iterations,
+        }),
         multigrid: found
             .on_grids
             .and_then(|(report, fallbacks)| MultigridCounts::new(report, fallbacks)),
@@ -213,9 +232,25 @@ impl Rest {
                 1 => "1 direction".to_owned(),
                 _ => format!("{count} directions"),
             };
+            text.push_str(&match &self.lowest_mode {
+                None => format!(
+                    ": the potential energy falls in {directions} ({cause}); no stable one was found on the path of growing \
+                     loads, on its continuation, or by descent of the potential energy from them"
+                ),
+                Some(_) => format!(
+                    ": the potential energy falls in at least {directions} ({cause}); a stable one was not sought, for which \
+                     the matrix is too large to be factorised"
+                ),
+            });
+        }
+        if let Some(Lowest {
+            stiffness, bound, ..
+        }) = &self.lowest_mode
+        {
             text.push_str(&format!(
-                ": the potential energy falls in {directions} ({cause}); no stable one was found on the path of growing \
-                 loads, on its continuation, or by descent of the potential energy from them"
+                "; by the lowest mode, {:.4e} ± {:.1e} N/mm for the vector of all nodes",
+                1e-3 * stiffness,
+                1e-3 * bound
             ));
         }
         if let (Some(lost), false) = (&self.lost, self.route == "growing_loads") {

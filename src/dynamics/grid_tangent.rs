@@ -6,7 +6,7 @@ use crate::dynamics::tangent::Tangent;
 use crate::functional::{NodeBlocks, ScalarPlace, Term, VectorPlace};
 use crate::math::{IsOver, Stopped};
 use crate::model::Model;
-use crate::sparse::multigrid::{Multigrid, MultigridReport, NoSolution};
+use crate::sparse::multigrid::{LowestModes, Multigrid, MultigridReport, NoSolution};
 use std::sync::Arc;
 
 /// Least and largest residual of a linear system relative to that of no update.
@@ -39,15 +39,15 @@ pub(super) struct GridTangent {
     is_new: bool,
     /// Number of unknowns.
     size: usize,
-    /// Makes the direct solver that takes over.
-    pub(super) direct: fn(&Model) -> Tangent,
+    /// Makes the direct solver that takes over, where one may.
+    pub(super) direct: Option<fn(&Model) -> Tangent>,
 }
 
 impl GridTangent {
     /// Of a model whose unknowns are those of box grids; `None` for others. At rest derivatives by given scalars are kept too.
     pub(super) fn new(
         model: &Model,
-        direct: fn(&Model) -> Tangent,
+        direct: Option<fn(&Model) -> Tangent>,
         is_at_rest: bool,
     ) -> Option<Self> {
         let grids = model.node_grids().ok()?;
@@ -172,6 +172,24 @@ impl GridTangent {
             true => self.solver.solve(rhs, tolerance, is_over),
             false => Ok(Err(NoSolution)),
         }
+    }
+
+    /// The lowest modes of displacements that potentials follow, of a factor times the matrix taken last, which is lost where it has no
+    /// symmetry; `None` where they are not found.
+    pub(super) fn lowest_modes(
+        &mut self,
+        factor: f64,
+        is_over: IsOver<'_>,
+    ) -> Result<Option<LowestModes>, Stopped> {
+        match self.is_regular {
+            true => self.solver.lowest_modes(factor, is_over),
+            false => Ok(None),
+        }
+    }
+
+    /// Product of the matrix that was written with a direction on either side.
+    pub(super) fn along(&self, direction: &[f64]) -> f64 {
+        self.solver.along(direction)
     }
 
     /// The update that brings potentials to Gauss's law where nothing moves, with the matrix that was written, which is lost; `None` where they are

@@ -1,7 +1,7 @@
 //! The matrix of a step of the midpoint rule.
 
 use crate::dynamics::grid_tangent::GridTangent;
-use crate::dynamics::solving::{Newton, Solving};
+use crate::dynamics::solving::{MultigridUse, Newton, Solving};
 use crate::dynamics::step_matrix::StepMatrix;
 use crate::dynamics::tangent::{EntryList, Tangent};
 use crate::model::Model;
@@ -11,6 +11,7 @@ use crate::sparse::{Backend, DENSE};
 pub(super) fn step_matrix(model: &Model, solving: Solving) -> StepMatrix {
     let direct = |model: &Model| direct_by(model, Newton::Modified, None);
     let is_wanted = solving.takes_grids(model.variables.unknown_count());
+    let direct = (solving.multigrid != MultigridUse::Alone).then_some(direct as fn(&_) -> _);
     let grids = is_wanted.then(|| GridTangent::new(model, direct, false));
     match grids.flatten() {
         Some(grids) => StepMatrix::Grids(Box::new(grids)),

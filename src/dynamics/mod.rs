@@ -61,8 +61,9 @@ pub use domain::{OutOfDomain, largest_stretch, out_of_domain};
 pub use drive::Drive;
 pub use equations::Equations;
 pub use equilibrium::{
-    Continuation, Equilibrium, Instability, Load, Mode, Route, Softening, StabilityLoss,
-    continuation, equilibrium, stable_equilibrium, stable_equilibrium_by,
+    Continuation, Equilibrium, Instability, Load, LowestMode, Mode, Route, Softening,
+    StabilityLoss, continuation, equilibrium, lowest_mode, stable_equilibrium,
+    stable_equilibrium_by,
 };
 pub use error::{EquilibriumError, StepError};
 pub use exchange::{EnergyExchange, SourceEnergies};

@@ -77,6 +77,8 @@ pub enum MultigridUse {
     WhereFaster,
     /// For systems of any size.
     Always,
+    /// For systems of any size, without factors that take over.
+    Alone,
 }
 
 /// Number of unknowns from which on the iteration is faster, as `benches/multigrid.rs` measures.
@@ -86,15 +88,22 @@ impl Solving {
     /// Returns true if an iteration may solve for the unknowns of a step.
     pub fn may_iterate(&self) -> bool {
         let is_midpoint = self.integrator == Integrator::Midpoint;
-        is_midpoint && (self.backend.is_none() || self.multigrid == MultigridUse::Always)
+        is_midpoint && (self.backend.is_none() || self.multigrid.is_asked_for())
     }
 
     /// Returns true if so many unknowns on box grids are solved for by an iteration.
     pub(super) fn takes_grids(&self, unknowns: usize) -> bool {
         match self.multigrid {
-            MultigridUse::Always => true,
+            MultigridUse::Always | MultigridUse::Alone => true,
             MultigridUse::WhereFaster => self.backend.is_none() && unknowns > LARGE,
         }
+    }
+}
+
+impl MultigridUse {
+    /// Returns true if it is used whatever the size.
+    pub fn is_asked_for(self) -> bool {
+        self != Self::WhereFaster
     }
 }
 

@@ -105,7 +105,10 @@ impl StepMatrix {
         let Self::Grids(grids) = self else {
             return false;
         };
-        *self = Self::Direct(Box::new((grids.direct)(model)));
+        let Some(direct) = grids.direct else {
+            return false;
+        };
+        *self = Self::Direct(Box::new(direct(model)));
         true
     }
 }

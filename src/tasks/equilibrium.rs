@@ -92,10 +92,7 @@ pub fn equilibrium(
     if let Some((_, fallbacks)) = found.on_grids {
         remarks.warn("multigrid_stalled", stalled::warning(fallbacks));
         let is_unknown = found.is_stable().is_none();
-        remarks.warn(
-            "stability_not_examined",
-            is_unknown.then(stalled::unexamined),
-        );
+        remarks.warn("stability_unknown", is_unknown.then(stalled::undecided));
     }
     Ok(EquilibriumResult {
         trajectory: Trajectory::from_discrete(&model, &discrete),

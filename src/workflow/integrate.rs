@@ -6,8 +6,8 @@ use std::time::Instant;
 use crate::control::problem::{BoundaryState, Simulation, Voltages};
 use crate::control::resolve_start;
 use crate::dynamics::{
-    DiscreteTrajectory, Drive, Integrator, Lengths, MultigridUse, Solving, StepControl, StepError,
-    StepState, TimeGrid, go_on,
+    DiscreteTrajectory, Drive, Integrator, Lengths, Solving, StepControl, StepError, StepState,
+    TimeGrid, go_on,
 };
 use crate::ipopt::interrupt;
 use crate::math::in_order;
@@ -147,7 +147,7 @@ pub fn integrate_on(
 
 /// Refuses an iteration with multigrid where there are no grids.
 fn has_solver(model: &Model, solving: Solving) -> Result<(), WorkflowError> {
-    if solving.multigrid != MultigridUse::Always {
+    if !solving.multigrid.is_asked_for() {
         return Ok(());
     }
     let found = match solving.integrator {

@@ -8,7 +8,8 @@ pub(crate) fn warning(fallbacks: usize) -> Option<String> {
     })
 }
 
-/// The warning where an equilibrium was found without factors, whose inertia would prove its stability.
-pub(crate) fn unexamined() -> String {
-    "stability was not examined: the matrix is too large to be factorised".to_owned()
+/// The warning where an equilibrium was found without factors, whose inertia would prove its stability, and the lowest mode does not.
+pub(crate) fn undecided() -> String {
+    "stability is not known: the matrix is too large to be factorised, and the lowest mode was not found within a bound that decides"
+        .to_owned()
 }

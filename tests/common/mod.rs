@@ -20,6 +20,7 @@ pub mod robot;
 pub mod signals;
 pub mod solid;
 pub mod sought;
+pub mod stacks;
 pub mod systems;
 pub mod timed;
 pub mod tracked;

@@ -1,16 +1,15 @@
 //! Steps of blocks on boxes by an iteration with multigrid: the motion of the direct solver, at a cost that does not grow with the mesh.
 
 use crate::common::random::Random;
-use crate::common::solid::{DRIVEN, block, electrode, held, system};
+use crate::common::solid::{DRIVEN, held, system};
+use crate::common::stacks::{LENGTH, cubes, rubber, stack};
 use nalgebra::Vector3;
 use proboscis::dynamics::{
     DiscreteTrajectory, Lengths, MultigridUse, Newton, Solving, Start, TimeGrid, go_on,
     simulate_by, stable_equilibrium, stable_equilibrium_by,
 };
 use proboscis::mesh::grid::Grid;
-use proboscis::model::system::{
-    ElectricConstants, ElementKind, Material, Potential, Solid, System, VACUUM_PERMITTIVITY,
-};
+use proboscis::model::system::{ElementKind, Potential, Solid, System};
 use proboscis::model::{Model, NoGrids};
 use proboscis::sparse::Backend;
 use std::ops::ControlFlow;
@@ -21,47 +20,6 @@ const MULTIGRID: Solving = Solving {
     backend: None,
     multigrid: MultigridUse::Always,
 };
-/// Length of the blocks in mm.
-const LENGTH: f64 = 40.0;
-
-fn rubber(lame_lambda: f64, viscosity: Option<f64>) -> Material {
-    Material {
-        density: Some(1e-3),
-        shear_modulus: 0.1,
-        lame_lambda: Some(lame_lambda),
-        electric: Some(ElectricConstants {
-            c1: -2.0 * VACUUM_PERMITTIVITY,
-            c2: VACUUM_PERMITTIVITY,
-            permittivity: VACUUM_PERMITTIVITY,
-        }),
-        viscosity,
-        ..Material::default()
-    }
-}
-
-/// A block of 10 × 10 × 40 mm with electrodes across it, fixed below.
-fn stack(grid: &Grid, electrodes: &[f64], material: Material) -> Solid {
-    let mut solid = block(grid.mesh(), material);
-    let mesh = &solid.mesh;
-    solid.electrodes = (electrodes.iter().enumerate())
-        .map(|(e, &place)| {
-            let potential = match e % 2 {
-                0 => Potential::Given(0.0),
-                _ => DRIVEN,
-            };
-            electrode(mesh, &format!("e{e}"), place, potential)
-        })
-        .collect();
-    solid.supports = vec![held(mesh, "z_min", [true; 3])];
-    solid
-}
-
-fn cubes(n: usize, material: Material) -> Solid {
-    let size = Vector3::new(10.0, 10.0, LENGTH);
-    let grid = Grid::uniform(Vector3::zeros(), size, [n, n, 4 * n]);
-    stack(&grid, &[0.0, 10.0, 20.0, 30.0, 40.0], material)
-}
-
 /// Steps of h ms from rest, under a voltage that is switched on at once.
 fn motion(
     system: &System,

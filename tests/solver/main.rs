@@ -13,6 +13,7 @@ mod ipopt;
 mod ipopt_stops;
 mod kkt;
 mod linear_solver;
+mod lowest_modes;
 mod ma57_adapter;
 mod matrices;
 mod mpi;

@@ -3,15 +3,17 @@
 //! - `statics`: Newton on the rows of rest; `static_matrix`, `static_solution`: their matrix and its solvers; `rest_state`, `states`: their unknowns; `settle`, `minimum`, `relaxation`: states that Newton's method does not reach.
 //! - `instability`, `ramp`, `growth`: loads that grow; `arc_length`: the path of equilibria by arc length; `load_path`: its points.
 //! - `in_joints`: equilibria in redundant coordinates by way of joint coordinates.
-//! - `result`, `mode`, `softest_mode`, `stability`: a state of rest and its softest mode; `slowest_mode`: its slowest vibration; `stable`: the
+//! - `result`, `mode`, `softest_mode`, `stability`: a state of rest and its softest mode; `examined`, `lowest_mode`: its lowest mode without factors; `slowest_mode`: its slowest vibration; `stable`: the
 //!   stable one.
 
 mod arc_length;
+mod examined;
 mod growing;
 mod growth;
 mod in_joints;
 mod instability;
 mod load_path;
+mod lowest_mode;
 mod minimum;
 mod mode;
 mod ramp;
@@ -29,9 +31,11 @@ mod static_solution;
 mod statics;
 mod weights;
 
+pub use examined::LowestMode;
 pub use growth::equilibrium;
 pub use instability::{Instability, Load};
 pub use load_path::{Continuation, continuation};
+pub use lowest_mode::lowest_mode;
 pub use mode::{Mode, Softening};
 pub use result::{Equilibrium, Route, StabilityLoss};
 pub use stable::{stable_equilibrium, stable_equilibrium_by};

@@ -1,5 +1,6 @@
 //! A state of rest: its stiffness, and the route to it.
 
+use crate::dynamics::equilibrium::examined::LowestMode;
 use crate::dynamics::equilibrium::instability::{Instability, Load};
 use crate::dynamics::equilibrium::mode::Mode;
 use crate::sparse::multigrid::MultigridReport;
@@ -14,9 +15,11 @@ pub struct Equilibrium {
     /// Eigenvalues of the stiffness in joint coordinates, ascending, in N mm/rad or N/mm; empty in redundant coordinates
     /// and for elastic blocks.
     pub stiffness: Vec<f64>,
-    /// Number of directions in which the potential energy falls, by the inertia of the tangent; `None` where the
-    /// factorisation does not give it.
+    /// Number of directions in which the potential energy falls, by the inertia of the tangent or, without factors, of those that were found;
+    /// `None` where neither gives it.
     pub unstable: Option<usize>,
+    /// The lowest mode, where it decided without factors.
+    pub lowest: Option<LowestMode>,
     /// The softest mode; `None` at the points of a path, and where nothing moves.
     pub softest: Option<Mode>,
     /// Route on which it was found.

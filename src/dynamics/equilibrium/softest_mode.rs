@@ -70,8 +70,7 @@ pub(super) fn softest_mode(
 ) -> Option<Mode> {
     let direction = match eigenpairs(statics) {
         Some((_, lowest)) => lowest,
-        // An iteration does not say which mode is the lowest.
-        None if statics.is_iterated() => return None,
+        None if statics.is_iterated() => statics.lowest_mode()?.direction.clone(),
         None => inverse_iteration(statics)?,
     };
     Some(named(statics, state, voltages, direction))

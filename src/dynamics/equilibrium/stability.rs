@@ -40,11 +40,13 @@ impl Equilibrium {
         let m = statics.model.action.map.unknowns();
         statics.evaluate(state, voltages);
         let is_known = statics.factor().is_ok();
+        let unstable = is_known.then(|| statics.unstable_anyhow()).flatten();
         Self {
             z: statics.configuration(state),
             scalars: voltages.iter().chain(&state[m..]).copied().collect(),
             stiffness: stiffness(statics),
-            unstable: is_known.then(|| statics.unstable()).flatten(),
+            unstable,
+            lowest: statics.lowest_mode().cloned(),
             softest: None,
             route,
             iterations: statics.iterations,

@@ -45,7 +45,7 @@ pub fn stable_equilibrium(
     stable_equilibrium_by(model, start, voltages, MultigridUse::WhereFaster)
 }
 
-/// The same, with an iteration where it is wanted: its stability is examined up to a size.
+/// The same, with an iteration where it is wanted: its stability is examined by factors up to a size, by the lowest mode above.
 ///
 /// # Errors
 /// As of [`stable_equilibrium`].
@@ -201,6 +201,10 @@ fn under(
         return Ok((state, Route::Loads));
     }
     statics.fall_back();
+    if is_reached && statics.is_iterated() {
+        // There is no room for the factors by which other states are sought.
+        return Ok((state, Route::Loads));
+    }
     // Where it was lost: the limit point from the last stable state on.
     let (before, at) = last_stable.unwrap_or((state.clone(), fraction));
     let limit = match path_end(statics, &before, ramp, at) {
@@ -258,7 +262,7 @@ fn under(
 fn is_stable(statics: &mut Statics<'_>, state: &RestState, voltages: &[f64]) -> Option<bool> {
     statics.evaluate(state, voltages);
     statics.factor().ok()?;
-    statics.unstable().map(|count| count == 0)
+    statics.unstable_anyhow().map(|count| count == 0)
 }
 
 /// A way from a state to one of rest under all loads.
@@ -294,6 +298,9 @@ fn lowest(
     voltages: &[f64],
     way: Way,
 ) -> Result<Option<RestState>, EquilibriumError> {
+    if statics.is_iterated() {
+        return Ok(None);
+    }
     statics.weight = 1.0;
     statics.evaluate(state, voltages);
     // At a limit point the tangent is singular, and still the lowest eigenvalue has its direction.

@@ -99,9 +99,10 @@ pub(super) fn matrix(model: &Model, multigrid: Option<MultigridUse>) -> (StepMat
             multigrid,
             ..Solving::default()
         };
+        let by_factors = (multigrid != MultigridUse::Alone).then_some(direct as fn(&_) -> _);
         let is_wanted = solving.takes_grids(model.variables.unknown_count());
         is_wanted
-            .then(|| GridTangent::new(model, direct, true))
+            .then(|| GridTangent::new(model, by_factors, true))
             .flatten()
     });
     match grids {

@@ -10,6 +10,7 @@
 //! state is stable. Where that part is positive no displacement gains energy from springs and loads.
 
 use crate::coordinates::{Configuration, Interval, Scratch};
+use crate::dynamics::equilibrium::examined::Examined;
 use crate::dynamics::equilibrium::rest_state::RestState;
 use crate::dynamics::equilibrium::static_matrix::{Inertia, matrix, places, turned_pairs};
 use crate::dynamics::equilibrium::weights::weights;
@@ -71,6 +72,8 @@ pub(super) struct Statics<'m> {
     pub(super) added: usize,
     pub(super) matrix: StepMatrix,
     pub(super) inertia: Inertia,
+    /// The lowest mode found without factors.
+    pub(super) examined: Examined,
     /// Counts of an iteration that solves, and of the systems for which factors took over.
     pub(super) multigrid: MultigridReport,
     pub(super) fallbacks: usize,
@@ -112,6 +115,7 @@ impl<'m> Statics<'m> {
             added: 0,
             matrix,
             inertia,
+            examined: Examined::default(),
             multigrid: MultigridReport::default(),
             fallbacks: 0,
             residual: vec![0.0; size],
@@ -235,6 +239,9 @@ impl<'m> Statics<'m> {
 
     /// Stiffness of the state evaluated last along a direction of the coordinates, potentials being held.
     pub(super) fn stiffness_along(&self, direction: &[f64]) -> f64 {
+        if let StepMatrix::Grids(grids) = &self.matrix {
+            return -grids.along(direction) / self.model.multiplier_time;
+        }
         let products = self.stiffness();
         products
             .map(|((i, j), value)| value * direction[i] * direction[j])

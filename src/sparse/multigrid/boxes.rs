@@ -88,6 +88,29 @@ impl Parts {
         }
     }
 
+    /// Product of the matrix with a vector by node on either side.
+    pub(super) fn along(&self, x: &[[f64; COMPONENTS]]) -> f64 {
+        let mut sum = 0.0;
+        for (part, one) in self.boxes.iter().enumerate() {
+            let offsets = offsets(one.levels[0].counts);
+            let x = &x[self.nodes(part)];
+            for node in 0..x.len() {
+                let blocks = &self.matrix[NEIGHBOURS * (self.starts[part] + node)..];
+                for (block, offset) in blocks.iter().zip(&offsets) {
+                    let other = usize::try_from(node as isize + offset).ok();
+                    let Some(there) = other.and_then(|other| x.get(other)) else {
+                        continue;
+                    };
+                    for (column, value) in block.chunks_exact(COMPONENTS).zip(there) {
+                        let along: f64 = column.iter().zip(&x[node]).map(|(a, x)| a * x).sum();
+                        sum += along * value;
+                    }
+                }
+            }
+        }
+        sum
+    }
+
     /// Makes the grids of the present matrix.
     pub(super) fn prepare(&mut self) -> Result<(), Singular> {
         for part in 0..self.boxes.len() {

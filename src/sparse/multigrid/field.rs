@@ -5,30 +5,30 @@ use crate::sparse::multigrid::node_grid::COMPONENTS;
 /// A block of the matrix, by column.
 pub(super) type Block = [f32; COMPONENTS * COMPONENTS];
 
-/// Values at the nodes in single precision.
+/// Values at the nodes: as a rule those of the components in single precision.
 #[derive(Clone, Debug)]
-pub(super) struct Field {
-    pub(super) values: Vec<[f32; COMPONENTS]>,
+pub(super) struct Field<T = [f32; COMPONENTS]> {
+    pub(super) values: Vec<T>,
     pub(super) margin: usize,
 }
 
-impl Field {
+impl<T: Copy + Default> Field<T> {
     /// Zero at all nodes of a grid.
     pub(super) fn new([n_x, n_y, n_z]: [usize; 3]) -> Self {
         let margin = n_x * n_y + n_x + 1;
         Self {
-            values: vec![[0.0; COMPONENTS]; n_x * n_y * n_z + 2 * margin],
+            values: vec![T::default(); n_x * n_y * n_z + 2 * margin],
             margin,
         }
     }
 
     /// The nodes without the margins.
-    pub(super) fn nodes(&self) -> &[[f32; COMPONENTS]] {
+    pub(super) fn nodes(&self) -> &[T] {
         &self.values[self.margin..self.values.len() - self.margin]
     }
 
     /// The nodes without the margins.
-    pub(super) fn nodes_mut(&mut self) -> &mut [[f32; COMPONENTS]] {
+    pub(super) fn nodes_mut(&mut self) -> &mut [T] {
         let end = self.values.len() - self.margin;
         &mut self.values[self.margin..end]
     }

@@ -14,6 +14,8 @@ const COARSEST: usize = 100;
 /// Grids of one box.
 #[derive(Debug)]
 pub(super) struct Hierarchy {
+    /// Places of the node planes of the finest grid.
+    pub(super) planes: [Vec<f64>; 3],
     /// Ordered, the finest first.
     pub(super) levels: Vec<Level>,
     coarsest: Direct,
@@ -23,15 +25,19 @@ pub(super) struct Hierarchy {
 
 impl Hierarchy {
     /// The grids of a box without matrices.
-    pub(super) fn new(grid: &NodeGrid) -> Self {
-        let mut planes = grid.planes.clone();
+    pub(super) fn of(grid: &NodeGrid) -> Self {
         let bits = |of: &[Option<u32>; COMPONENTS]| {
             let bits = of.iter().enumerate();
             bits.fold(0, |free, (c, unknown)| {
                 free | u8::from(unknown.is_some()) << c
             })
         };
-        let mut free: Vec<u8> = grid.unknowns.iter().map(bits).collect();
+        Self::new(&grid.planes, grid.unknowns.iter().map(bits).collect())
+    }
+
+    /// The grids between these planes, with a bit for each component of a node without a given value.
+    pub(super) fn new(finest: &[Vec<f64>; 3], mut free: Vec<u8>) -> Self {
+        let mut planes = finest.clone();
         let mut levels = Vec::new();
         loop {
             let counts = planes.each_ref().map(Vec::len);
@@ -60,6 +66,7 @@ impl Hierarchy {
         let size = COMPONENTS * last.free.len();
         let entries: Vec<_> = entries(last).map(|(entry, _)| entry).collect();
         Self {
+            planes: finest.clone(),
             coarsest: Direct::new(size, &entries),
             values: vec![0.0; entries.len()],
             rhs: vec![0.0; size],

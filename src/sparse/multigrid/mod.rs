@@ -12,10 +12,14 @@ mod galerkin;
 mod hierarchy;
 mod krylov;
 mod level;
+mod lobpcg;
 mod node_grid;
+mod potentials;
 mod slab;
 mod solver;
+mod stiffness;
 
 pub use boxes::NodeBlock;
 pub use node_grid::{GridNode, NodeGrid};
 pub use solver::{Multigrid, MultigridReport, NoSolution};
+pub use stiffness::LowestModes;

@@ -11,6 +11,7 @@ use crate::sparse::multigrid::krylov::{Iterated, Krylov, norm};
 use crate::sparse::multigrid::node_grid::{
     COMPONENTS, GridNode, NEIGHBOURS, NodeGrid, OWN, PLANES, indices,
 };
+use crate::sparse::multigrid::stiffness::{LowestModes, lowest_modes};
 
 /// Iterations for each digit, relative to those with fresh grids, above which grids are made anew.
 const SLOWER: f64 = 1.4;
@@ -90,7 +91,7 @@ impl Multigrid {
         if nodes > NONE as usize / COMPONENTS || across.max(Some(above)) > Some(PLANES) {
             return None;
         }
-        let boxes: Vec<_> = grids.iter().map(Hierarchy::new).collect();
+        let boxes: Vec<_> = grids.iter().map(Hierarchy::of).collect();
         let levels = boxes.iter().map(|one| one.levels.len()).max();
         let report = MultigridReport {
             levels: levels.unwrap_or(0),
@@ -171,6 +172,18 @@ impl Multigrid {
         }
     }
 
+    /// Product of the matrix that was written with a vector on either side.
+    pub fn along(&self, direction: &[f64]) -> f64 {
+        let nodes = self.parts.starts[self.parts.boxes.len()];
+        let mut by_node = vec![[0.0; COMPONENTS]; nodes];
+        for (value, &place) in direction.iter().zip(&self.places) {
+            if place != NONE {
+                by_node[place as usize / COMPONENTS][place as usize % COMPONENTS] = *value;
+            }
+        }
+        self.parts.along(&by_node)
+    }
+
     /// Leaves of the matrix that was written the entries between last components alone.
     pub fn keep_last_components(&mut self) {
         for block in &mut self.parts.matrix {
@@ -221,6 +234,35 @@ impl Multigrid {
         self.report.hierarchies += 1;
         (self.fresh, self.is_prepared) = (None, true);
         Ok(())
+    }
+
+    /// Finds the lowest modes of displacements that potentials follow, of the symmetric part of the values that were taken times a factor; `None`
+    /// where they are not found.
+    ///
+    /// # Errors
+    /// It was time to stop.
+    pub fn lowest_modes(
+        &mut self,
+        factor: f64,
+        is_over: IsOver<'_>,
+    ) -> Result<Option<LowestModes>, Stopped> {
+        self.parts.symmetrise();
+        let Ok(Some(pairs)) = lowest_modes(&mut self.parts, factor, is_over)? else {
+            return Ok(None);
+        };
+        let lowest = self.places.iter().map(|&place| match place as usize {
+            place if place == NONE as usize => 0.0,
+            place => pairs.vectors[place / COMPONENTS][0][place % COMPONENTS],
+        });
+        let lowest: Vec<f64> = lowest.collect();
+        let largest = lowest.iter().fold(0.0, |m, value| f64::max(m, value.abs()));
+        Ok(Some(LowestModes {
+            bounds: std::array::from_fn(|v| pairs.residuals[v] + pairs.errors[v]),
+            quotients: pairs.quotients,
+            errors: pairs.errors,
+            iterations: pairs.iterations,
+            lowest: lowest.iter().map(|value| value / largest).collect(),
+        }))
     }
 
     /// Makes the grids anew with the next values.

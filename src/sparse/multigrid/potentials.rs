@@ -1,0 +1,200 @@
+//! Potentials at given displacements: conjugate gradients with multigrid, for four right-hand sides at once as the components of a node.
+
+use crate::math::{IsOver, Stopped};
+use crate::sparse::Singular;
+use crate::sparse::multigrid::boxes::{ENTRIES, Parts};
+use crate::sparse::multigrid::field::Field;
+use crate::sparse::multigrid::hierarchy::Hierarchy;
+use crate::sparse::multigrid::node_grid::{COMPONENTS, NEIGHBOURS, offsets};
+
+/// Component of the potential.
+pub(super) const POTENTIAL: usize = COMPONENTS - 1;
+/// Residual relative to that of zero, both measured by the preconditioner.
+const RESIDUAL: f64 = 1e-11;
+/// Iterations after which it is given up.
+const LIMIT: usize = 60;
+
+/// A value for each right-hand side.
+type Values = [f64; COMPONENTS];
+
+/// The part of a matrix between potentials, made positive by a sign.
+#[derive(Debug)]
+pub(super) struct Potentials {
+    boxes: Vec<Hierarchy>,
+    /// First node of each box, and the number of all.
+    starts: Vec<usize>,
+    matrix: Vec<[f64; NEIGHBOURS]>,
+    direction: Vec<Field<Values>>,
+    residual: Vec<Values>,
+    corrections: Vec<Values>,
+    products: Vec<Values>,
+    pub(super) solution: Vec<Values>,
+}
+
+impl Potentials {
+    /// The potentials of a matrix times a sign; `None` where there are none.
+    pub(super) fn new(parts: &Parts, sign: f64) -> Result<Option<Self>, Singular> {
+        let is_free = |free: &u8| free & 1 << POTENTIAL != 0;
+        let mut of_all = parts.boxes.iter().flat_map(|one| &one.levels[0].free);
+        if !of_all.any(is_free) {
+            return Ok(None);
+        }
+        let of_potentials = |blocks: &[[f64; ENTRIES]]| {
+            std::array::from_fn(|neighbour| sign * blocks[neighbour][ENTRIES - 1])
+        };
+        let matrix: Vec<[f64; NEIGHBOURS]> =
+            (parts.matrix.chunks_exact(NEIGHBOURS).map(of_potentials)).collect();
+        let mut boxes = Vec::new();
+        for (part, one) in parts.boxes.iter().enumerate() {
+            let all = u8::MAX >> (u8::BITS as usize - COMPONENTS);
+            let free = one.levels[0].free.iter();
+            let free = free.map(|free| if is_free(free) { all } else { 0 });
+            let mut one = Hierarchy::new(&one.planes, free.collect());
+            let values = matrix[parts.starts[part]..parts.starts[part + 1]].as_flattened();
+            for (block, value) in one.levels[0].matrix.iter_mut().zip(values) {
+                for component in 0..COMPONENTS {
+                    block[(COMPONENTS + 1) * component] = *value as f32;
+                }
+            }
+            one.prepare()?;
+            boxes.push(one);
+        }
+        let zero = || vec![Values::default(); matrix.len()];
+        let counts = boxes.iter().map(|one| one.levels[0].counts);
+        Ok(Some(Self {
+            direction: counts.map(Field::new).collect(),
+            starts: parts.starts.clone(),
+            residual: zero(),
+            corrections: zero(),
+            products: zero(),
+            solution: zero(),
+            matrix,
+            boxes,
+        }))
+    }
+
+    /// Solves for the right-hand sides; returns their residuals relative to those of zero, or `None` where the matrix is not positive or the
+    /// iteration does not converge.
+    pub(super) fn solve(
+        &mut self,
+        rhs: impl Iterator<Item = Values>,
+        is_over: IsOver<'_>,
+    ) -> Result<Option<Values>, Stopped> {
+        for (residual, rhs) in self.residual.iter_mut().zip(rhs) {
+            *residual = rhs;
+        }
+        self.solution.fill(Values::default());
+        self.precondition();
+        let first = dot(&self.residual, &self.corrections);
+        let (mut square, mut factor) = (first, Values::default());
+        for _ in 0..LIMIT {
+            if is_over() {
+                return Err(Stopped);
+            }
+            if square.iter().any(|square| square.is_nan() || *square < 0.0) {
+                return Ok(None);
+            }
+            let relative: Values = std::array::from_fn(|v| match first[v] > 0.0 {
+                true => (square[v] / first[v]).sqrt(),
+                false => 0.0,
+            });
+            if relative.iter().all(|relative| *relative <= RESIDUAL) {
+                return Ok(Some(relative));
+            }
+            self.turn(&factor);
+            let along = self.multiply();
+            let is_active = |v: usize| relative[v] > RESIDUAL;
+            if (0..COMPONENTS).any(|v| is_active(v) && along[v] <= 0.0) {
+                return Ok(None);
+            }
+            let step = std::array::from_fn(|v| match is_active(v) {
+                true => square[v] / along[v],
+                false => 0.0,
+            });
+            self.step(&step);
+            self.precondition();
+            let next = dot(&self.residual, &self.corrections);
+            factor = std::array::from_fn(|v| match square[v] > 0.0 {
+                true => next[v] / square[v],
+                false => 0.0,
+            });
+            square = next;
+        }
+        Ok(None)
+    }
+
+    /// Directions of the next step: corrections and a part of the last directions.
+    fn turn(&mut self, factor: &Values) {
+        for (part, field) in self.direction.iter_mut().enumerate() {
+            let corrections = &self.corrections[self.starts[part]..];
+            for (direction, correction) in field.nodes_mut().iter_mut().zip(corrections) {
+                *direction = std::array::from_fn(|v| correction[v] + factor[v] * direction[v]);
+            }
+        }
+    }
+
+    /// Multiplies the directions; returns their products with the results.
+    fn multiply(&mut self) -> Values {
+        let mut along = Values::default();
+        for (part, field) in self.direction.iter().enumerate() {
+            let offsets = offsets(self.boxes[part].levels[0].counts);
+            let nodes = self.starts[part]..self.starts[part + 1];
+            let rows = self.matrix[nodes.clone()].iter();
+            let rows = rows.zip(&mut self.products[nodes]);
+            for (node, (row, product)) in rows.enumerate() {
+                let at = node + field.margin;
+                *product = Values::default();
+                for (entry, offset) in row.iter().zip(&offsets) {
+                    let there = &field.values[(at as isize + offset) as usize];
+                    for (sum, value) in product.iter_mut().zip(there) {
+                        *sum += entry * value;
+                    }
+                }
+                for v in 0..COMPONENTS {
+                    along[v] += product[v] * field.values[at][v];
+                }
+            }
+        }
+        along
+    }
+
+    fn step(&mut self, step: &Values) {
+        for (part, field) in self.direction.iter().enumerate() {
+            let nodes = self.starts[part]..self.starts[part + 1];
+            let lists = self.solution[nodes.clone()].iter_mut();
+            let lists = lists.zip(&mut self.residual[nodes.clone()]);
+            let lists = lists.zip(&self.products[nodes]).zip(field.nodes());
+            for (((solution, residual), product), direction) in lists {
+                for v in 0..COMPONENTS {
+                    solution[v] += step[v] * direction[v];
+                    residual[v] -= step[v] * product[v];
+                }
+            }
+        }
+    }
+
+    fn precondition(&mut self) {
+        for (part, one) in self.boxes.iter_mut().enumerate() {
+            let nodes = self.starts[part]..self.starts[part + 1];
+            let rhs = one.levels[0].rhs.nodes_mut().iter_mut();
+            for (to, from) in rhs.zip(&self.residual[nodes.clone()]) {
+                *to = from.map(|value| value as f32);
+            }
+            one.cycle();
+            let x = one.levels[0].x.nodes();
+            for (to, from) in self.corrections[nodes].iter_mut().zip(x) {
+                *to = from.map(f64::from);
+            }
+        }
+    }
+}
+
+fn dot(a: &[Values], b: &[Values]) -> Values {
+    let mut sums = Values::default();
+    for (a, b) in a.iter().zip(b) {
+        for v in 0..COMPONENTS {
+            sums[v] += a[v] * b[v];
+        }
+    }
+    sums
+}

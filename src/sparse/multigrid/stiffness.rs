@@ -1,0 +1,274 @@
+//! The stiffness of displacements that potentials follow, and its lowest modes, of the matrix of a solver.
+//!
+//! With a matrix c [[K, B], [Bᵀ, −C]] of displacements u and potentials, potentials that follow are C⁻¹ Bᵀ u, and the stiffness is K + B C⁻¹ Bᵀ.
+
+use crate::math::{IsOver, Random, Stopped, join};
+use crate::sparse::Singular;
+use crate::sparse::multigrid::boxes::{ENTRIES, Parts};
+use crate::sparse::multigrid::field::Field;
+use crate::sparse::multigrid::lobpcg::{AtNode, COUNT, Pairs, SymmetricMatrix, lowest};
+use crate::sparse::multigrid::node_grid::{COMPONENTS, NEIGHBOURS, OWN, offsets};
+use crate::sparse::multigrid::potentials::{POTENTIAL, Potentials};
+
+/// Rounding of a product, relative to the largest entry of the diagonal.
+const ROUNDING: f64 = 1e-13;
+
+/// The lowest modes of a stiffness.
+#[derive(Clone, Debug, PartialEq)]
+pub struct LowestModes {
+    /// Quotients of the vectors found, ascending: the lowest eigenvalue is not above the first one.
+    pub quotients: [f64; COUNT],
+    /// Distance of each within which there is an eigenvalue.
+    pub bounds: [f64; COUNT],
+    /// Errors of the quotients themselves.
+    pub errors: [f64; COUNT],
+    /// Iterations.
+    pub iterations: usize,
+    /// The first vector by unknown, with a largest entry of one; zero at potentials.
+    pub lowest: Vec<f64>,
+}
+
+impl LowestModes {
+    /// Number of eigenvalues below zero, as far as the vectors show it: none only where bounds keep all of them above zero; `None` where
+    /// nothing is shown.
+    pub fn below_zero(&self) -> Option<usize> {
+        let pairs = self.quotients.iter().zip(&self.errors);
+        let below = pairs.filter(|(quotient, error)| *quotient + *error < 0.0);
+        let mut bounded = self.quotients.iter().zip(&self.bounds);
+        match below.count() {
+            0 => bounded
+                .all(|(quotient, bound)| quotient > bound)
+                .then_some(0),
+            count => Some(count),
+        }
+    }
+}
+
+/// The stiffness, as a factor times a matrix.
+struct Stiffness<'p> {
+    parts: &'p mut Parts,
+    factor: f64,
+    rounding: f64,
+    fields: Vec<Field<AtNode>>,
+    by_potentials: Vec<AtNode>,
+    potentials: Option<Potentials>,
+}
+
+/// Finds the lowest modes of a factor times a matrix, whose grids are made.
+pub(super) fn lowest_modes(
+    parts: &mut Parts,
+    factor: f64,
+    is_over: IsOver<'_>,
+) -> Result<Result<Option<Pairs>, Singular>, Stopped> {
+    let potentials = match Potentials::new(parts, -factor.signum()) {
+        Ok(found) => found,
+        Err(singular) => return Ok(Err(singular)),
+    };
+    let mut random = Random::new(1);
+    let mut start = Vec::new();
+    for one in &parts.boxes {
+        for free in &one.levels[0].free {
+            let mut at = AtNode::default();
+            for component in (0..POTENTIAL).filter(|c| free & 1 << c != 0) {
+                for vector in &mut at {
+                    vector[component] = random.between(-1.0, 1.0);
+                }
+            }
+            start.push(at);
+        }
+    }
+    let counts = parts.boxes.iter().map(|one| one.levels[0].counts);
+    let mut stiffness = Stiffness {
+        fields: counts.map(Field::new).collect(),
+        by_potentials: vec![AtNode::default(); if potentials.is_some() { start.len() } else { 0 }],
+        rounding: ROUNDING * factor.abs() * parts.largest_diagonal(),
+        potentials,
+        factor,
+        parts,
+    };
+    lowest(&mut stiffness, start, is_over).map(Ok)
+}
+
+impl Parts {
+    /// Largest entry on the diagonal of displacements, without scales.
+    fn largest_diagonal(&self) -> f64 {
+        let mut largest: f64 = 0.0;
+        for (part, scales) in self.scales.iter().enumerate() {
+            for node in self.starts[part]..self.starts[part + 1] {
+                let own = &self.matrix[NEIGHBOURS * node + OWN];
+                for component in 0..POTENTIAL {
+                    let entry = own[(COMPONENTS + 1) * component].abs();
+                    largest = largest.max(entry / scales[component].powi(2));
+                }
+            }
+        }
+        largest
+    }
+
+    /// Replaces the matrix by its symmetric part.
+    pub(super) fn symmetrise(&mut self) {
+        for (part, one) in self.boxes.iter().enumerate() {
+            let offsets = offsets(one.levels[0].counts);
+            let nodes = self.starts[part]..self.starts[part + 1];
+            let blocks = &mut self.matrix[NEIGHBOURS * nodes.start..NEIGHBOURS * nodes.end];
+            for node in 0..nodes.len() {
+                for neighbour in OWN..NEIGHBOURS {
+                    let other = node + offsets[neighbour] as usize;
+                    if other >= nodes.len() {
+                        continue;
+                    }
+                    let here = NEIGHBOURS * node + neighbour;
+                    let there = NEIGHBOURS * other + (NEIGHBOURS - 1 - neighbour);
+                    let [a, b] = [blocks[here], blocks[there]];
+                    for entry in 0..ENTRIES {
+                        let (row, col) = (entry % COMPONENTS, entry / COMPONENTS);
+                        let transposed = COMPONENTS * row + col;
+                        let mean = 0.5 * (a[entry] + b[transposed]);
+                        (blocks[here][entry], blocks[there][transposed]) = (mean, mean);
+                    }
+                }
+            }
+        }
+    }
+}
+
+impl Stiffness<'_> {
+    /// Multiplies the vectors in the fields.
+    fn multiply(&self, product: &mut [AtNode]) {
+        for (part, field) in self.fields.iter().enumerate() {
+            let nodes = self.parts.starts[part]..self.parts.starts[part + 1];
+            let offsets = offsets(self.parts.boxes[part].levels[0].counts);
+            let blocks = &self.parts.matrix[NEIGHBOURS * nodes.start..NEIGHBOURS * nodes.end];
+            let half = nodes.len() / 2;
+            let (lower, upper) = product[nodes].split_at_mut(half);
+            let rows = |first: usize, product: &mut [AtNode]| {
+                rows((blocks, &offsets), field, first, product);
+            };
+            join(|| rows(0, lower), || rows(half, upper));
+        }
+    }
+
+    /// Lets potentials follow the displacements with these products, and adds what they do; returns the lengths of that times the part of it that may be off.
+    fn follow(
+        &mut self,
+        product: &mut [AtNode],
+        is_over: IsOver<'_>,
+    ) -> Result<Option<[f64; COUNT]>, Stopped> {
+        let Some(potentials) = &mut self.potentials else {
+            return Ok(Some([0.0; COUNT]));
+        };
+        let sign = self.factor.signum();
+        let rhs = product.iter().map(|at| at.map(|v| sign * v[POTENTIAL]));
+        let Some(relative) = potentials.solve(rhs, is_over)? else {
+            return Ok(None);
+        };
+        for (part, field) in self.fields.iter_mut().enumerate() {
+            let found = &potentials.solution[self.parts.starts[part]..];
+            for (at, found) in field.nodes_mut().iter_mut().zip(found) {
+                for (vector, potential) in at.iter_mut().zip(found) {
+                    *vector = [0.0; COMPONENTS];
+                    vector[POTENTIAL] = *potential;
+                }
+            }
+        }
+        let mut added = std::mem::take(&mut self.by_potentials);
+        self.multiply(&mut added);
+        let mut squares = [0.0; COUNT];
+        for (part, scales) in self.parts.scales.iter().enumerate() {
+            let nodes = self.parts.starts[part]..self.parts.starts[part + 1];
+            for (product, added) in product[nodes.clone()].iter_mut().zip(&added[nodes]) {
+                for v in 0..COUNT {
+                    for c in 0..POTENTIAL {
+                        product[v][c] += added[v][c];
+                        squares[v] += (added[v][c] * self.factor / scales[c]).powi(2);
+                    }
+                }
+            }
+        }
+        self.by_potentials = added;
+        Ok(Some(std::array::from_fn(|v| {
+            relative[v] * squares[v].sqrt()
+        })))
+    }
+}
+
+impl SymmetricMatrix for Stiffness<'_> {
+    fn apply(
+        &mut self,
+        x: &[AtNode],
+        product: &mut [AtNode],
+        is_over: IsOver<'_>,
+    ) -> Result<Option<[f64; COUNT]>, Stopped> {
+        if is_over() {
+            return Err(Stopped);
+        }
+        for (part, field) in self.fields.iter_mut().enumerate() {
+            let scales = &self.parts.scales[part];
+            let x = &x[self.parts.starts[part]..];
+            for (to, from) in field.nodes_mut().iter_mut().zip(x) {
+                *to = from.map(|vector| std::array::from_fn(|c| vector[c] / scales[c]));
+            }
+        }
+        self.multiply(product);
+        let Some(errors) = self.follow(product, is_over)? else {
+            return Ok(None);
+        };
+        for (part, scales) in self.parts.scales.iter().enumerate() {
+            let nodes = self.parts.starts[part]..self.parts.starts[part + 1];
+            for vector in product[nodes].as_flattened_mut() {
+                for c in 0..POTENTIAL {
+                    vector[c] *= self.factor / scales[c];
+                }
+                vector[POTENTIAL] = 0.0;
+            }
+        }
+        Ok(Some(errors.map(|error| error + self.rounding)))
+    }
+
+    fn precondition(&mut self, r: &[AtNode], x: &mut [AtNode]) {
+        for v in 0..COUNT {
+            let squares = r.iter().flat_map(|at| at[v]).map(|value| value * value);
+            let length = squares.sum::<f64>().sqrt();
+            let unit = if length > 0.0 { length.recip() } else { 0.0 };
+            for (part, one) in self.parts.boxes.iter_mut().enumerate() {
+                let scales = &self.parts.scales[part];
+                let nodes = self.parts.starts[part]..self.parts.starts[part + 1];
+                let rhs = one.levels[0].rhs.nodes_mut().iter_mut();
+                for (to, from) in rhs.zip(&r[nodes.clone()]) {
+                    *to = std::array::from_fn(|c| (unit * from[v][c] * scales[c]) as f32);
+                }
+                one.cycle();
+                let found = one.levels[0].x.nodes().iter();
+                for (to, from) in x[nodes].iter_mut().zip(found) {
+                    to[v] = std::array::from_fn(|c| f64::from(from[c]) * scales[c]);
+                    to[v][POTENTIAL] = 0.0;
+                }
+            }
+        }
+    }
+}
+
+/// Adds up the rows of nodes from one on.
+fn rows(
+    (blocks, offsets): (&[[f64; ENTRIES]], &[isize; NEIGHBOURS]),
+    field: &Field<AtNode>,
+    first: usize,
+    product: &mut [AtNode],
+) {
+    for (row, product) in product.iter_mut().enumerate() {
+        let at = (first + row + field.margin) as isize;
+        let mut sums = AtNode::default();
+        let blocks = &blocks[NEIGHBOURS * (first + row)..][..NEIGHBOURS];
+        for (block, offset) in blocks.iter().zip(offsets) {
+            let there = &field.values[(at + offset) as usize];
+            for (sum, vector) in sums.iter_mut().zip(there) {
+                for (column, value) in block.chunks_exact(COMPONENTS).zip(vector) {
+                    for (sum, entry) in sum.iter_mut().zip(column) {
+                        *sum += entry * value;
+                    }
+                }
+            }
+        }
+        *product = sums;
+    }
+}

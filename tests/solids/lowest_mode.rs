@@ -1,0 +1,101 @@
+//! Stability by the lowest mode, against the inertia of factors.
+
+use crate::common::random::Random;
+use crate::common::solid::system;
+use crate::common::stacks::{LENGTH, cubes, rubber, stack};
+use nalgebra::Vector3;
+use proboscis::dynamics::{continuation, equilibrium, lowest_mode};
+use proboscis::mesh::grid::Grid;
+use proboscis::model::Model;
+use proboscis::model::system::{Solid, System};
+
+/// Vectors of the search.
+const SOUGHT: usize = 4;
+
+/// Numbers of states: stable, unstable, and not decided by the lowest mode.
+#[derive(Debug, Default)]
+struct Tally([usize; 3]);
+
+impl Tally {
+    /// Compares along a path of equilibria up to a voltage, where that is reached, and past it.
+    fn compare(&mut self, system: System, voltage: f64, steps: usize) {
+        let model = Model::new(system, None, 1.0, &[]).unwrap();
+        let start = model.reference_coordinates();
+        let path = continuation(&model, &start, &[voltage], steps).unwrap();
+        for (point, fraction) in path.points.iter().zip(&path.fractions) {
+            let expected = point.unstable.expect("factors give the inertia");
+            let Some(mode) = lowest_mode(&model, &point.z, &point.scalars) else {
+                println!("{fraction:.4}: inertia {expected}, not found");
+                assert!(expected > 0, "what is stable is found");
+                self.0[2] += 1;
+                continue;
+            };
+            println!(
+                "{:.4}: inertia {expected}, {:?}, {:.3e} ± {:.1e} N/mm, {} iterations",
+                fraction, mode.unstable, mode.stiffness, mode.bound, mode.iterations
+            );
+            match mode.unstable {
+                Some(found) => {
+                    assert_eq!(found > 0, expected > 0);
+                    assert!(found <= expected, "{found} of {expected}");
+                    if mode.iterations < 30 {
+                        assert_eq!(found, expected.min(SOUGHT));
+                    }
+                    self.0[usize::from(found > 0)] += 1;
+                }
+                None => {
+                    assert!(expected > 0, "what is stable is decided");
+                    self.0[2] += 1;
+                }
+            }
+        }
+    }
+}
+
+fn layered(random: &mut Random) -> Solid {
+    let mut count = || 1 + (random.between(0.0, 1.99) as usize);
+    let [x, y, z] = [count(), 2, 2 * count()];
+    let below = random.between(5.0, 30.0);
+    let size = Vector3::new(random.between(5.0, 20.0), 10.0, LENGTH);
+    let layers = vec![(below, z / 2), (LENGTH - below, z / 2)];
+    let axes = [vec![(size.x, x)], vec![(10.0, y)], layers];
+    let grid = Grid::layers(Vector3::zeros(), size, axes).unwrap();
+    let material = rubber(random.between(0.1, 0.8), None);
+    stack(&grid, &[0.0, below, LENGTH], material)
+}
+
+/// Paths of growing voltages to pull-in and past it.
+#[test]
+fn the_lowest_mode_tells_what_the_inertia_tells() {
+    let mut tally = Tally::default();
+    tally.compare(system(vec![cubes(2, rubber(0.4, None))]), 2e6, 14);
+    let mut random = Random(11);
+    for _ in 0..4 {
+        let solid = layered(&mut random);
+        tally.compare(system(vec![solid]), 3e6, 14);
+    }
+    println!("{tally:?}");
+    let Tally([stable, unstable, undecided]) = tally;
+    assert!(stable > 30 && unstable > 8, "{stable} {unstable}");
+    assert!(undecided < unstable, "{undecided}");
+}
+
+/// A column under a growing weight stays straight by symmetry, and buckles to both sides.
+#[test]
+fn a_column_that_buckles_is_unstable_by_its_lowest_mode() {
+    let counts = [0.1, 0.3, 0.5, 1.0].map(|weight| {
+        let mut system = system(vec![cubes(2, rubber(0.4, None))]);
+        system.gravity = Some(Vector3::new(0.0, 0.0, -weight));
+        let model = Model::new(system, None, 1.0, &[]).unwrap();
+        let found = equilibrium(&model, &model.reference_coordinates(), &[0.0]).unwrap();
+        let mode = lowest_mode(&model, &found.z, &found.scalars).unwrap();
+        println!(
+            "{:?} {:?} {:e}",
+            found.unstable, mode.unstable, mode.stiffness
+        );
+        assert_eq!(mode.unstable, found.unstable.map(|count| count.min(SOUGHT)));
+        mode.unstable.unwrap()
+    });
+    assert_eq!(counts[0], 0);
+    assert!(counts.contains(&2), "{counts:?}");
+}
