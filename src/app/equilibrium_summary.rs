@@ -8,7 +8,7 @@ use serde::Serialize;
 use crate::app::multigrid_summary::MultigridCounts;
 use crate::dynamics::trajectory::{Column, Observations, Trajectory};
 use crate::dynamics::{
-    DiscreteTrajectory, Equilibrium, Instability, Load, Route, Softening, StabilityLoss,
+    DiscreteTrajectory, Equilibrium, Instability, Load, LowestMode, Route, Softening, StabilityLoss,
 };
 use crate::model::Model;
 use crate::model::system::{Joint, JointKind};
@@ -79,6 +79,16 @@ struct Lowest {
     bound: f64,
     /// Iterations.
     iterations: usize,
+}
+
+impl Lowest {
+    fn new(mode: &LowestMode) -> Self {
+        Self {
+            stiffness: 1e3 * mode.stiffness,
+            bound: 1e3 * mode.bound,
+            iterations: mode.iterations,
+        }
+    }
 }
 
 /// A loss of the stable equilibrium under a growing load.
@@ -179,11 +189,7 @@ pub(super) fn describe(
             fraction: loss.fraction,
             kind: status(loss),
         }),
-        lowest_mode: found.lowest.as_ref().map(|mode| Lowest {
-            stiffness: 1e3 * mode.stiffness,
-            bound: 1e3 * mode.bound,
-            iterations: mode.iterations,
-        }),
+        lowest_mode: found.lowest.as_ref().map(Lowest::new),
         multigrid: found
             .on_grids
             .and_then(|(report, fallbacks)| MultigridCounts::new(report, fallbacks)),

@@ -196,9 +196,14 @@ struct Counts {
     unstable: usize,
     without_rest: usize,
     fallbacks: usize,
+    /// Motions in which one of both halves a step that the other one takes.
+    halved: usize,
+    /// Verdicts without factors, and those that the lowest mode leaves open.
+    by_mode: usize,
     undecided: usize,
-    /// Greatest difference of places.
-    greatest: f64,
+    /// Greatest differences of places from those by factors in each iteration: by multigrid with a new tangent in each, with one that is kept,
+    /// at rest, and by factors that are kept.
+    greatest: [f64; 4],
 }
 
 impl Counts {
@@ -206,36 +211,58 @@ impl Counts {
         let model = Model::new(case.system.clone(), None, h, &[]).unwrap();
         let start = Start::at_rest(&model, model.coordinates_at(&[]));
         let scalars = model.scalars(&case.inputs);
-        let motion = |solving| -> (DiscreteTrajectory, Option<StepError>) {
+        let motion = |solving: Solving| -> (DiscreteTrajectory, Option<StepError>) {
             let drive = |_: f64, _: f64| scalars.clone();
             let observer = |_: &_| ControlFlow::Continue(());
             simulate_by(solving, &model, &start, h, steps, drive, observer)
         };
-        let direct = motion(Solving {
-            backend: Some(Backend::Faer),
-            newton: Newton::Full,
-            ..Solving::default()
-        });
-        let iterated = motion(Solving {
-            newton: Newton::Modified,
-            multigrid: MultigridUse::Always,
-            ..Solving::default()
-        });
-        assert_eq!(direct.1.is_some(), iterated.1.is_some());
-        let [direct, iterated] = [direct.0, iterated.0];
-        assert!(iterated.report.multigrid.iterations > 0);
-        self.fallbacks += usize::from(iterated.report.fallbacks > 0);
+        let by = |newton, backend, multigrid| {
+            let (discrete, failure) = motion(Solving {
+                newton,
+                backend,
+                multigrid,
+                ..Solving::default()
+            });
+            assert_eq!(failure, None);
+            discrete
+        };
+        let factors = Some(Backend::Faer);
+        let direct = by(Newton::Full, factors, MultigridUse::WhereFaster);
         self.motions += 1;
         let last = direct.z.len() - 1;
         self.moved += usize::from(apart(&direct.z[last], &direct.z[0]) > 1e-5 * model.length());
-        for (a, b) in direct.z.iter().zip(&iterated.z) {
-            let error = apart(a, b) / model.length();
-            self.greatest = self.greatest.max(error);
-            assert!(error < APART, "{error:e}, {:?}", iterated.report);
+        // An update below 1e-9 ends Newton's method: with a tangent that is kept, as much may be missing in each step.
+        for (kind, newton, tolerance) in [
+            (0, Newton::Full, APART),
+            (1, Newton::Modified, 10.0 * APART),
+        ] {
+            let iterated = by(newton, None, MultigridUse::Always);
+            assert!(iterated.report.multigrid.iterations > 0);
+            self.fallbacks += usize::from(iterated.report.fallbacks > 0);
+            if direct.report.halved != iterated.report.halved {
+                // Potentials come to Gauss's law first on grids: a step may converge that factors halve.
+                println!(
+                    "  halved {} and {} times",
+                    direct.report.halved, iterated.report.halved
+                );
+                self.halved += 1;
+                continue;
+            }
+            for (a, b) in direct.z.iter().zip(&iterated.z) {
+                let error = apart(a, b) / model.length();
+                self.greatest[kind] = self.greatest[kind].max(error);
+                assert!(error < tolerance, "{error:e}, {:?}", iterated.report);
+            }
+            let largest = case.inputs[0].abs().max(1.0);
+            for (a, b) in direct.scalars.iter().zip(&iterated.scalars) {
+                assert!(apart(a, b) < tolerance * largest, "{:e}", apart(a, b));
+            }
         }
-        let largest = case.inputs[0].abs().max(1.0);
-        for (a, b) in direct.scalars.iter().zip(&iterated.scalars) {
-            assert!(apart(a, b) < APART * largest, "{:e}", apart(a, b));
+        let modified = by(Newton::Modified, None, MultigridUse::WhereFaster);
+        if modified.report.halved == direct.report.halved {
+            for (a, b) in direct.z.iter().zip(&modified.z) {
+                self.greatest[3] = self.greatest[3].max(apart(a, b) / model.length());
+            }
         }
     }
 
@@ -257,14 +284,20 @@ impl Counts {
             let found = found.as_ref().ok();
             found.is_some_and(|found| apart(&direct.z, &found.z) < 1e-3 * model.length())
         };
-        if !is_iterated(&iterated) {
+        let is_alone = is_iterated(&iterated);
+        if !is_alone {
             self.fallbacks += 1;
             iterated = by(MultigridUse::Always);
         }
         let iterated = iterated.unwrap();
+        assert_eq!(
+            iterated.lowest.is_none(),
+            iterated.softest.is_none() || !is_alone
+        );
+        self.by_mode += usize::from(iterated.lowest.is_some());
         self.moved += usize::from(apart(&direct.z, &start) > 1e-5 * model.length());
         let error = apart(&direct.z, &iterated.z) / model.length();
-        self.greatest = self.greatest.max(error);
+        self.greatest[2] = self.greatest[2].max(error);
         assert!(error < APART, "{error:e}");
         let largest = case.inputs[0].abs().max(1.0);
         let potentials = apart(&direct.scalars, &iterated.scalars);
@@ -286,8 +319,8 @@ fn random_blocks_are_those_of_the_direct_solver() {
     let mut counts = Counts::default();
     for number in 0..blocks {
         let random = &mut Random(1000 + number);
-        println!("block {number}");
         let case = case(random, number % 4 > 1);
+        println!("block {number}");
         match number % 2 {
             0 => counts.rest(&case),
             _ => {
@@ -297,8 +330,10 @@ fn random_blocks_are_those_of_the_direct_solver() {
         }
     }
     println!("{counts:?}");
+    assert!(20 * counts.halved <= counts.motions, "{counts:?}");
     let found = counts.rests - counts.without_rest;
     assert!(2 * counts.moved > blocks as usize, "{counts:?}");
     assert!(3 * found > counts.rests && 4 * counts.fallbacks < blocks as usize);
+    assert!(counts.by_mode > counts.undecided, "{counts:?}");
     assert!(8 * counts.undecided <= counts.rests, "{counts:?}");
 }

@@ -5,7 +5,7 @@ use crate::math::{IsOver, Stopped};
 /// Vectors between restarts.
 const RESTART: usize = 20;
 /// Iterations after which it is given up.
-pub(super) const LIMIT: usize = 60;
+pub(super) const LIMIT: usize = 150;
 
 /// A matrix with a preconditioner.
 pub(super) trait Operator {
