@@ -29,7 +29,7 @@ def modes():
     return numpy.linalg.qr(numpy.array(columns).T)[0].T
 
 
-for smoother in ["jacobi", "sor"]:
+for smoother in ["jacobi", "sor"]:  # with rigid-body modes, version 3.18 fails with the second one (reason -11)
     matrix = PETSc.Mat().createAIJ((size, size), csr=csr)
     matrix.setBlockSize(3)
     vectors = []

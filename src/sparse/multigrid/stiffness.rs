@@ -112,8 +112,8 @@ impl Parts {
             let nodes = self.starts[part]..self.starts[part + 1];
             let blocks = &mut self.matrix[NEIGHBOURS * nodes.start..NEIGHBOURS * nodes.end];
             for node in 0..nodes.len() {
-                for neighbour in OWN..NEIGHBOURS {
-                    let other = node + offsets[neighbour] as usize;
+                for (neighbour, offset) in offsets.iter().enumerate().skip(OWN) {
+                    let other = node + *offset as usize;
                     if other >= nodes.len() {
                         continue;
                     }
