@@ -38,7 +38,7 @@ pub fn check(system: &System, control: &Control) -> Result<(), (String, String)>
     Ok(())
 }
 
-/// What else a given duration changes.
+/// The reason why the derivative by a given duration is not known, if there is one.
 fn of_duration(
     system: &System,
     control: &Control,
