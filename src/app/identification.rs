@@ -13,8 +13,8 @@ use crate::app::request::{CommandInput, CommandOutput, PageWanted};
 use crate::app::summary::Summary;
 use crate::control::problem;
 use crate::files::Loaded;
-use crate::identify::{Identified, IdentifyError, found_starts, identify};
-use crate::ipopt::interrupt;
+use crate::identify::{Ended, Identified, IdentifyError, found_starts, identify};
+use crate::ipopt::{Status, interrupt};
 use crate::report::file_set::FileSet;
 use crate::report::table::cells_csv;
 use crate::workflow::phase::phase;
@@ -35,13 +35,19 @@ pub(super) fn run(
     let found = found.map_err(|error| refused(request, &error))?;
     let starts = found_starts(&loaded.system, task, &found);
     let starts = starts.map_err(|error| refused(request, &error))?;
+    let is_complete = found.fit.ended == Ended::Converged && found.bias.is_confirmed;
+    let stopped = interrupt::stop().filter(|_| !is_complete);
     drop(watch);
     let folder = make_folder_of(request)?;
     let writing = Instant::now();
     let origin = request.origin(false);
-    let status = status(&found);
+    let status = stopped.map_or_else(|| status(&found), Status::word);
     let mut summary = Summary::new(request, status, None);
     summary.notes = remarks(task, &found);
+    if stopped.is_some() {
+        let text = "it was stopped: constants and intervals are those of the last step of a fit on the last grid";
+        summary.notes.warn("stopped", [text.to_owned()]);
+    }
     let identification = Identification::new(&loaded.system, task, (&found, &starts));
     let text = identification.text();
     summary.identification = Some(identification);
@@ -60,7 +66,7 @@ pub(super) fn run(
     let notes = summary.notes.lines().collect();
     summary.write(files)?;
     Ok(CommandOutput {
-        is_solved: is_solved(&found),
+        is_solved: stopped.is_none() && is_solved(&found),
         result: format!("{}\n{text}\n{}", status.replace('_', " "), folder.display()),
         notes,
     })

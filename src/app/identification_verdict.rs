@@ -94,6 +94,10 @@ fn of_grid(found: &Identified, remarks: &mut Remarks) {
                 significant(largest, 2)
             )],
         ),
+        false if largest.is_infinite() => remarks.warn(
+            "bias_not_confirmed",
+            ["no fit on a finer grid tells how far the grid biases the result".to_owned()],
+        ),
         false => remarks.warn(
             "bias_not_confirmed",
             [format!(

@@ -1,8 +1,8 @@
 //! Refusals of numbers by which no optimum is differentiated, before one is looked for.
 
-use crate::control::problem::{BoundaryState, Control, Varied, VariedOf};
+use crate::control::problem::{Control, Varied, VariedOf};
 use crate::control::{BoundaryConditions, BoundaryError};
-use crate::model::{Coordinates, Model, System};
+use crate::model::{Coordinates, System};
 
 /// Checks that the optimum of a problem may be differentiated by the numbers that it names.
 ///
@@ -29,7 +29,10 @@ pub fn check(system: &System, control: &Control) -> Result<(), (String, String)>
                 "the memory of Maxwell branches at the start follows it, which is not offered"
                     .to_owned(),
             ),
-            of => in_directors((system, &model), control, of),
+            VariedOf::StartJoint(_) if model.coordinates == Coordinates::Redundant => {
+                Some("it is offered in joint coordinates, without constraints, alone".to_owned())
+            }
+            _ => None,
         };
         if let Some(reason) = reason {
             return Err((varied.name.clone(), reason));
@@ -70,40 +73,4 @@ fn remembers(system: &System) -> bool {
     let of_blocks = system.solids.iter().flat_map(|solid| &solid.materials);
     let mut all = of_muscles.chain(of_blocks);
     all.any(|material| !material.maxwell.list().is_empty())
-}
-
-/// The reason why redundant coordinates leave a number out: those of start and goal, and of states of rest there.
-fn in_directors(
-    (system, model): (&System, &Model),
-    control: &Control,
-    of: &VariedOf,
-) -> Option<String> {
-    if model.coordinates != Coordinates::Redundant {
-        return None;
-    }
-    match of {
-        VariedOf::GoalJoint(_)
-        | VariedOf::GoalVoltage(_)
-        | VariedOf::StartJoint(_)
-        | VariedOf::StartVoltage(_) => {
-            Some("it is offered in joint coordinates, without constraints, alone".to_owned())
-        }
-        VariedOf::Constants(parameter) => {
-            let ends = [&control.start, &control.goal];
-            let mut rests = ends
-                .into_iter()
-                .filter(|end| matches!(end, BoundaryState::RestAtVoltages(..)));
-            rests.next()?;
-            let alone = Control {
-                parameters: vec![parameter.clone()],
-                ..control.clone()
-            };
-            let h0 = control.duration.first() / control.intervals as f64;
-            match BoundaryConditions::resolve(system, &alone, h0) {
-                Err(BoundaryError::Parameter { reason, .. }) => Some(reason),
-                _ => None,
-            }
-        }
-        _ => None,
-    }
 }

@@ -2,7 +2,7 @@
 
 use crate::control::problem::{BoundaryState, Control, Objective, Varied, VariedOf, WeightOf};
 use crate::control::{BoundedQuantity, Column, Row, Transcription, When, resolve_start};
-use crate::model::{Model, Quantity, Role};
+use crate::model::{Coordinates, Model, Quantity, Role};
 use crate::nlp::Nlp;
 use crate::sensitivity::direction::{Direction, Held, Side};
 use crate::sensitivity::error::NoSensitivity;
@@ -171,8 +171,15 @@ impl<'a> Directions<'a> {
         Ok(self.of_held(self.by_rest(end, parameters + place)))
     }
 
+    /// The coordinate of the model that is that of a joint; none in redundant coordinates.
+    fn coordinate(&self, joint: usize) -> Option<usize> {
+        let reading = &self.model().joint_readings[joint];
+        let is_one = self.model().coordinates == Coordinates::Reduced;
+        reading.coordinate.filter(|_| is_one)
+    }
+
     fn of_goal_joint(&self, joint: usize) -> Option<Direction> {
-        if let Some(c) = self.model().joint_readings[joint].coordinate {
+        if let Some(c) = self.coordinate(joint) {
             let column = self.of_end(1).find(|(_, i)| *i == c)?;
             return Some(self.of_held([(column.0, 1.0)]));
         }
@@ -207,9 +214,7 @@ impl<'a> Directions<'a> {
             .momentum
             .iter()
             .any(|p| *p != 0.0);
-        let c = self.model().joint_readings[joint]
-            .coordinate
-            .filter(|_| !is_moving)?;
+        let c = self.coordinate(joint).filter(|_| !is_moving)?;
         let column = self.of_end(0).find(|(_, i)| *i == c)?;
         Some(self.of_held([(column.0, 1.0)]))
     }

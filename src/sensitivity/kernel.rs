@@ -265,7 +265,8 @@ impl<N: Nlp> Kernel<N> {
             .iter()
             .zip(&dx)
             .map(|(g, x)| (g * x).abs());
-        let size = terms.sum::<f64>() + envelope.abs();
+        let of_itself = (direction.objective * conditions.scale).abs();
+        let size = terms.sum::<f64>() + envelope.abs() + of_itself;
         let difference = (envelope - along).abs();
         if difference.is_nan() || difference > SAME * size {
             let [a, b] = [envelope, along].map(|v| v / conditions.scale + direction.objective);

@@ -135,11 +135,36 @@ fn solved(
     let singular = || NoSensitivity::Refused("a state of rest has no derivative".to_owned());
     let equations = Equations::new(&program, sources).ok_or_else(singular)?;
     let parameters = program.model().variables.count(Role::Parameter);
-    let x = program.encode(&initial.discrete, initial.h);
+    let mut x = program.encode(&initial.discrete, initial.h);
+    let given = parameters + sources.len();
+    if program.model().action.map.multipliers > 0 {
+        let (solver, _) = factored(&mut program, &equations, &x, given).ok_or_else(singular)?;
+        balance(&mut program, &equations, &mut x, solver);
+    }
+    let (mut solver, mut right) =
+        factored(&mut program, &equations, &x, given).ok_or_else(singular)?;
+    for mut column in right.column_iter_mut() {
+        solver.solve(column.as_mut_slice());
+    }
+    let mut out = DMatrix::zeros(equations.of_coordinates.len(), given);
+    for (i, unknown) in equations.of_coordinates.iter().enumerate() {
+        if let Some(unknown) = *unknown {
+            out.set_row(i, &right.row(unknown));
+        }
+    }
+    Ok(out)
+}
+
+/// The factorised matrix of the equations at a point, and minus their derivatives by what is given.
+fn factored(
+    program: &mut Transcription<'_>,
+    equations: &Equations,
+    x: &[f64],
+    given: usize,
+) -> Option<(Direct, DMatrix<f64>)> {
     let entries = program.jacobian_structure();
     let mut values = vec![0.0; entries.rows.len()];
-    program.jacobian(&x, &mut values);
-    let given = parameters + sources.len();
+    program.jacobian(x, &mut values);
     let mut right = DMatrix::zeros(equations.size, given);
     let (mut places, mut left) = (Vec::new(), Vec::new());
     for ((&row, &col), &value) in entries.rows.iter().zip(&entries.cols).zip(&values) {
@@ -156,15 +181,32 @@ fn solved(
         }
     }
     let mut solver = Direct::new(equations.size, &places);
-    solver.factor(&left).map_err(|_| singular())?;
-    for mut column in right.column_iter_mut() {
-        solver.solve(column.as_mut_slice());
+    solver.factor(&left).ok()?;
+    Some((solver, right))
+}
+
+/// Finds the multipliers of the constraints, in which the equations are linear: at a state of rest a step of Newton's method changes them alone.
+fn balance(
+    program: &mut Transcription<'_>,
+    equations: &Equations,
+    x: &mut [f64],
+    mut solver: Direct,
+) {
+    let n = program.model().coordinate_count();
+    let mut g = vec![0.0; program.constraints().lower.len()];
+    program.constraint(x, &mut g);
+    let bounds = &program.constraints().lower;
+    let mut step = vec![0.0; equations.size];
+    for (row, (value, bound)) in equations.rows.iter().zip(g.iter().zip(bounds)) {
+        row.iter().for_each(|&row| step[row] = bound - value);
     }
-    let mut out = DMatrix::zeros(equations.of_coordinates.len(), given);
-    for (i, unknown) in equations.of_coordinates.iter().enumerate() {
-        if let Some(unknown) = *unknown {
-            out.set_row(i, &right.row(unknown));
+    solver.solve(&mut step);
+    let columns = program.unknowns().columns.iter().zip(&equations.columns);
+    for (number, (column, meaning)) in columns.enumerate() {
+        if let (Column::Instant { i, .. }, Meaning::Unknown(unknown)) = (*column, *meaning)
+            && i >= n
+        {
+            x[number] += step[unknown] / program.column_scale(number);
         }
     }
-    Ok(out)
 }

@@ -9,6 +9,8 @@ use proboscis::control::{BoundaryConditions, BoundaryError, Row};
 use proboscis::ipopt::Start;
 use proboscis::model::system::System;
 use proboscis::model::{Amount, Constant, Follower, Parameter, Quantity, Role};
+use proboscis::workflow::{Iterate, SolveLimits, optimise};
+use std::ops::ControlFlow;
 use std::sync::Arc;
 
 /// Both muscles are 10 mm thick and 40 mm long.
@@ -101,7 +103,7 @@ fn a_bound_of_the_volume_is_kept_and_its_multiplier_is_the_slope_of_the_effort()
         "{prescribed}"
     );
     // As a cost with the weight of the multiplier the volume has the same optimum.
-    let paid = |factor: f64, limits: &[PathConstraint]| {
+    let costly = |factor: f64, limits: &[PathConstraint]| {
         let mut control = designed(&system, limits);
         control.objective.quantities.push(QuantityCost {
             quantity: Quantity::OfMuscles {
@@ -113,9 +115,22 @@ fn a_bound_of_the_volume_is_kept_and_its_multiplier_is_the_slope_of_the_effort()
             function: CostFunction::Itself,
             during: During::End,
         });
-        let from = Some((&limited.discrete, limited.h, None));
-        found(&solve(&system, &control, from, Start::PRIMAL))[1]
+        control
     };
+    let paid = |factor: f64, limits: &[PathConstraint]| {
+        let from = Some((&limited.discrete, limited.h, None));
+        found(&solve(
+            &system,
+            &costly(factor, limits),
+            from,
+            Start::PRIMAL,
+        ))[1]
+    };
+    // With the values that were found put in, the volume is no cost that anything changes: it is simulated all the same.
+    let mut go_on = |_: &Iterate<'_>| ControlFlow::Continue(());
+    let control = costly(1.0, &[]);
+    let simulated = optimise(&system, &control, None, SolveLimits::default(), &mut go_on).unwrap();
+    assert!(simulated.resimulation.is_some());
     assert!((paid(1.0, &[]) / narrow - 1.0).abs() < 1e-6);
     // At three times the price there is less of it, down to a lower bound.
     assert!(paid(3.0, &[]) < 0.9 * narrow);

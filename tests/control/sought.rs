@@ -236,6 +236,35 @@ fn parameters_are_refused_where_they_may_not_act() {
         ..with(vec![modulus()])
     };
     says(at_rest, "state of rest at the start depends on it");
+    // Steps of charges from there are not offered, those of voltages are.
+    let limited = |limit: PathConstraint| Control {
+        start: BoundaryState::RestAtVoltages(vec![0.0, 900.0], Rest::Everything),
+        limits: vec![limit],
+        ..with(vec![modulus()])
+    };
+    let (min, max) = (-1e3, 1e3);
+    says(
+        limited(PathConstraint::Current {
+            muscle: 1,
+            min,
+            max,
+        }),
+        "is counted from there",
+    );
+    says(
+        limited(PathConstraint::Power {
+            muscle: 1,
+            min,
+            max,
+        }),
+        "is counted from there",
+    );
+    let rate = limited(PathConstraint::VoltageRate {
+        source: 1,
+        min,
+        max,
+    });
+    assert!(BoundaryConditions::resolve(&system, &rate, 10.0).is_ok());
     // Energies of a muscle whose capacitance depends on one; not on its modulus, nor that of another muscle.
     let paid = |source: usize, parameter: Parameter| {
         let mut control = with(vec![parameter]);

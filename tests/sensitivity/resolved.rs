@@ -9,7 +9,7 @@ use std::ops::ControlFlow;
 use std::path::Path;
 
 /// A problem of `problems/` with changes.
-fn problem(name: &str, changes: &[String]) -> (System, Control) {
+pub(crate) fn problem(name: &str, changes: &[String]) -> (System, Control) {
     let path = format!("{}/problems/{name}.json", env!("CARGO_MANIFEST_DIR"));
     let loaded = read_problem(Path::new(&path), changes).unwrap_or_else(|error| panic!("{error}"));
     let Task::Control(control) = loaded.task else {
@@ -213,6 +213,24 @@ fn the_pair_by_constants_of_the_scene() {
         of("chain.muscles.arm", "scene.chain.muscles.arm", 0.015, 2e-4),
     ];
     check("pair", &[], &numbers, 1e-6);
+}
+
+/// The curvature of constraints is a part of how states of rest follow constants.
+#[test]
+fn the_pair_in_redundant_coordinates() {
+    let numbers = [
+        of(MODULUS, SET_MODULUS, 1e5, 2e-4),
+        of(VISCOSITY, SET_VISCOSITY, 1e3, 2e-4),
+        of(
+            "goal.rest_at_voltages.muscle2",
+            "control.goal.rest_at_voltages.muscle2",
+            1700.0,
+            2e-4,
+        ),
+    ];
+    let gravity = "scene.gravity=[2.0, -9.81, 0.0]";
+    let extra = ["control.coordinates=\"redundant\"", gravity];
+    check("pair", &extra, &numbers, 1e-5);
 }
 
 #[test]
