@@ -10,6 +10,7 @@
 //!   recorded and observed.
 //! - `state_space`: steps linearised by state and inputs.
 //! - `loop_rates`: rates of the joints of closed loops, completed from those that are named.
+//! - `independent`: changes of coordinates that constraints leave free.
 //! - `exchange`: electrical energy from the sources and mechanical work of their muscles.
 //! - `statics`, `weights`: the rows of rest; `growing`: these by loads; `ramp`, `growth`, `load_path`: paths of rest under growing loads; `minimum`: minima
 //!   of the potential energy; `stable`: a stable equilibrium by all of these; `softest_mode`: its softest mode.
@@ -27,6 +28,7 @@ mod error;
 mod exchange;
 mod galerkin;
 mod grid_tangent;
+mod independent;
 mod interval_energies;
 mod kinetic;
 mod local_error;
@@ -68,6 +70,7 @@ pub use equilibrium::{
 pub use error::{EquilibriumError, StepError};
 pub use exchange::{EnergyExchange, SourceEnergies};
 pub use galerkin::GalerkinEquations;
+pub use independent::IndependentChanges;
 pub use interval_energies::{Energies, Work, energies};
 pub use local_error::{LocalError, distance_between, local_error, local_error_of};
 pub use loop_rates::rates_in_loops;

@@ -1,10 +1,11 @@
 //! The motion of a recording on one grid, or its states of rest, read at all readings.
 
+use crate::control::StartDerivatives;
 use crate::control::problem::{BoundaryState, Identification, Recording, Regime, Voltages};
 use crate::dynamics::{DiscreteTrajectory, Equilibrium, Start, simulate};
 use crate::identify::error::IdentifyError;
 use crate::identify::readout::{Course, Values};
-use crate::identify::sensitivity::{CourseDerivatives, StartDerivatives, derivatives};
+use crate::identify::sensitivity::{Beginning, CourseDerivatives, derivatives};
 use crate::identify::setup::Setup;
 use crate::model::System;
 use nalgebra::DMatrix;
@@ -50,7 +51,7 @@ fn in_motion(
 ) -> Result<Values, IdentifyError> {
     let (model, recording) = (&setup.model, setup.recording);
     let h = recording.duration() / intervals as f64;
-    let start = setup.start(point.start)?;
+    let (start, by_start) = start_of(setup, point)?;
     let scalars = |from: f64, to: f64| model.scalars(&setup.voltages.at(0.5 * (from + to)));
     let (discrete, failure) = simulate(model, &start, h, intervals, scalars, |_| {
         ControlFlow::Continue(())
@@ -64,9 +65,12 @@ fn in_motion(
     if discrete.intervals() < intervals {
         return Err(IdentifyError::Stopped);
     }
-    let by_start = by_start(setup, point)?;
-    let inputs = (&*setup.voltages, Regime::Motion);
-    let by = derivatives(setup, (&start, &by_start), &discrete, inputs)?;
+    let from = Beginning {
+        start: &start,
+        derivatives: Some(&by_start),
+        unknowns: point.count(),
+    };
+    let by = derivatives(setup, from, &discrete, &setup.voltages)?;
     let corners = setup.voltages.switches();
     let inside = |corner: &&f64| **corner < recording.duration();
     let course = Course {
@@ -80,14 +84,13 @@ fn in_motion(
     Ok(course.read(&recording.channels, point.count()))
 }
 
-/// Derivatives of the state at the start; a state of rest depends on the constants.
-fn by_start(setup: &Setup<'_>, point: Point<'_>) -> Result<StartDerivatives, IdentifyError> {
-    let (n, constants) = (setup.model.coordinate_count(), point.constants.len());
-    let (coordinates, momenta) = setup.sought();
-    let mut out = StartDerivatives {
-        coordinates: DMatrix::zeros(n, point.count()),
-        momenta: DMatrix::zeros(n, point.count()),
-    };
+/// The start and its derivatives; a state of rest depends on the constants.
+fn start_of(
+    setup: &Setup<'_>,
+    point: Point<'_>,
+) -> Result<(Start, StartDerivatives), IdentifyError> {
+    let constants = point.constants.len();
+    let (start, mut out) = setup.start((constants, point.start))?;
     if let BoundaryState::RestAtVoltages(voltages, _) = &setup.control.start {
         let state = setup.rest_under(voltages)?;
         let voltages = Voltages::Constant(voltages.clone());
@@ -95,13 +98,7 @@ fn by_start(setup: &Setup<'_>, point: Point<'_>) -> Result<StartDerivatives, Ide
         let by = &by.instants[0];
         out.coordinates.columns_mut(0, constants).copy_from(by);
     }
-    for (j, &i) in coordinates.iter().enumerate() {
-        out.coordinates[(i, constants + j)] = 1.0;
-    }
-    for (j, &i) in momenta.iter().enumerate() {
-        out.momenta[(i, constants + coordinates.len() + j)] = 1.0;
-    }
-    Ok(out)
+    Ok((start, out))
 }
 
 /// A state of rest as a motion of two intervals, and its derivatives by the constants.
@@ -112,11 +109,6 @@ fn of_rest(
     constants: usize,
 ) -> Result<(DiscreteTrajectory, CourseDerivatives), IdentifyError> {
     let model = &setup.model;
-    let none = DMatrix::zeros(model.coordinate_count(), constants);
-    let by_start = StartDerivatives {
-        coordinates: none.clone(),
-        momenta: none,
-    };
     let start = Start::at_rest(model, state.z.clone());
     let lasting = |intervals: usize| DiscreteTrajectory {
         times: (0..=intervals).map(|k| k as f64).collect(),
@@ -124,8 +116,12 @@ fn of_rest(
         scalars: vec![state.scalars.clone(); intervals],
         ..DiscreteTrajectory::default()
     };
-    let inputs = (voltages, Regime::Rest);
-    let by = derivatives(setup, (&start, &by_start), &lasting(1), inputs)?;
+    let from = Beginning {
+        start: &start,
+        derivatives: None,
+        unknowns: constants,
+    };
+    let by = derivatives(setup, from, &lasting(1), voltages)?;
     // What a joint transmits is read between two intervals.
     Ok((lasting(2), by.lasting(2)))
 }

@@ -137,8 +137,7 @@ pub(super) fn count_of_start(
         &guesses,
         [recording.duration(), 4.0],
     )?;
-    let (coordinates, momenta) = setup.sought();
-    Ok(coordinates.len() + momenta.len())
+    setup.count_of_start()
 }
 
 /// The prediction of one recording, extrapolated.

@@ -155,7 +155,7 @@ fn fixed_starts(
     }
     let guesses: Vec<f64> = task.parameters.iter().map(|p| p.guess).collect();
     let grid = [recording.duration(), 4.0];
-    let at = |values: &[f64]| Setup::new(system, task, recording, values, grid)?.start(&[]);
+    let at = |values: &[f64]| Setup::new(system, task, recording, values, grid)?.given_start();
     let start = at(&guesses)?;
     for (j, parameter) in task.parameters.iter().enumerate() {
         let mut values = guesses.clone();

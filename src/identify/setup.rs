@@ -3,11 +3,14 @@
 use crate::control::problem::{
     BoundaryState, Control, Duration, Identification, Recording, Regime, SoughtStart, Voltages,
 };
-use crate::control::{BoundaryConditions, BoundaryError, ends_that_read, resolve_start, rest_at};
-use crate::dynamics::{Equilibrium, Start};
+use crate::control::{
+    BoundaryConditions, BoundaryError, StartDerivatives, ends_that_read, resolve_start, rest_at,
+};
+use crate::dynamics::{Equilibrium, IndependentChanges, Start};
 use crate::identify::drive::Drive;
 use crate::identify::error::IdentifyError;
 use crate::model::{Analysis, Coordinates, Model, Parameter, Quantity, System, with_parameters};
+use nalgebra::DMatrix;
 use std::borrow::Cow;
 
 /// The model of a recording on a grid.
@@ -107,17 +110,14 @@ impl<'a> Setup<'a> {
             }
         }
         let is_of_rest = matches!(self.recording.start, BoundaryState::RestAtVoltages(..));
-        let what = match (self.recording.sought_start, self.recording.regime) {
-            (SoughtStart::Nothing, Regime::Motion) if !is_of_rest => return Ok(()),
-            (SoughtStart::Nothing, _) => "states of rest are",
-            _ => "an unknown start is",
-        };
-        match are_joints {
-            true => Ok(()),
-            false => Err(self.refused(format!(
-                "{what} offered in joint coordinates alone, of joints that form a tree"
-            ))),
+        let is_sought = self.recording.sought_start != SoughtStart::Nothing;
+        if is_of_rest && is_sought && self.model.action.map.multipliers > 0 {
+            return Err(self.refused(
+                "an unknown start near a state of rest is offered in joint coordinates alone; expected a start with \"joint_angles\""
+                    .to_owned(),
+            ));
         }
+        Ok(())
     }
 
     /// Refuses recordings of which a delay of the inputs is no shift in time.
@@ -136,39 +136,77 @@ impl<'a> Setup<'a> {
         Err(self.refused(format!("a delay of the inputs is sought; expected {what}")))
     }
 
-    fn refused(&self, reason: String) -> IdentifyError {
+    pub(super) fn refused(&self, reason: String) -> IdentifyError {
         IdentifyError::Refused {
             recording: self.recording.name.clone(),
             reason,
         }
     }
 
-    /// The start with changes of its coordinates and momenta.
-    pub(super) fn start(&self, changes: &[f64]) -> Result<Start, IdentifyError> {
+    /// The start that the recording gives.
+    pub(super) fn given_start(&self) -> Result<Start, IdentifyError> {
         let found = resolve_start(&self.model, &self.start, "start");
-        let mut start = found.map_err(|error| self.recording.wrong(error))?;
-        let (coordinates, momenta) = self.sought();
-        let (of_coordinates, of_momenta) = changes.split_at(coordinates.len().min(changes.len()));
-        for (&i, change) in coordinates.iter().zip(of_coordinates) {
-            start.z[i] += change;
-        }
-        for (&i, change) in momenta.iter().zip(of_momenta) {
-            start.momentum[i] += change;
-            start.rates = None;
-        }
-        Ok(start)
+        found.map_err(|error| self.recording.wrong(error))
     }
 
-    /// Coordinates, and coordinates whose momenta, of the start are unknowns.
-    pub(super) fn sought(&self) -> (Vec<usize>, Vec<usize>) {
-        let open = |i: &usize| !self.model.prescribed.iter().any(|one| one.coordinate == *i);
-        let all = || (0..self.model.coordinate_count()).filter(open);
-        let momenta = || all().filter(|&i| !self.model.is_memory(i)).collect();
-        match self.recording.sought_start {
-            SoughtStart::Nothing => (Vec::new(), Vec::new()),
-            SoughtStart::Coordinates => (all().collect(), Vec::new()),
-            SoughtStart::State => (all().collect(), momenta()),
+    /// The changes of the start that are unknowns; none where it is given.
+    fn changes(&self, start: &Start) -> Result<Option<IndependentChanges<'_>>, IdentifyError> {
+        if self.recording.sought_start == SoughtStart::Nothing {
+            return Ok(None);
         }
+        let found = IndependentChanges::at(&self.model, start.z.clone());
+        let many = || self.refused("an unknown start is offered of fewer coordinates".to_owned());
+        found.ok_or_else(many).map(Some)
+    }
+
+    /// Number of unknowns of the start.
+    pub(super) fn count_of_start(&self) -> Result<usize, IdentifyError> {
+        let Some(changes) = self.changes(&self.given_start()?)? else {
+            return Ok(0);
+        };
+        let momenta = match self.recording.sought_start {
+            SoughtStart::State => changes.moving().len(),
+            _ => 0,
+        };
+        Ok(changes.basis().ncols() + momenta)
+    }
+
+    /// The start with changes of its coordinates and momenta, and its derivatives by these: columns behind those of the constants.
+    pub(super) fn start(
+        &self,
+        (constants, values): (usize, &[f64]),
+    ) -> Result<(Start, StartDerivatives), IdentifyError> {
+        let mut start = self.given_start()?;
+        let (n, count) = (self.model.coordinate_count(), constants + values.len());
+        let mut by = StartDerivatives {
+            coordinates: DMatrix::zeros(n, count),
+            momenta: DMatrix::zeros(n, count),
+        };
+        let Some(changes) = self.changes(&start)? else {
+            return Ok((start, by));
+        };
+        let basis = changes.basis();
+        let (of_coordinates, of_momenta) = values.split_at(basis.ncols());
+        let Some((z, slopes)) = changes.changed(of_coordinates) else {
+            return Err(
+                self.refused("its loops do not close at the start that is sought".to_owned())
+            );
+        };
+        start.z = z;
+        let columns = by.coordinates.columns_mut(constants, slopes.ncols());
+        { columns }.copy_from(&slopes);
+        let first = constants + slopes.ncols();
+        for ((column, of), value) in (first..).zip(changes.moving()).zip(of_momenta) {
+            let along = basis.column(of);
+            by.momenta.set_column(column, &along);
+            start
+                .momentum
+                .iter_mut()
+                .zip(along.iter())
+                .for_each(|(p, along)| *p += along * value);
+            start.rates = None;
+        }
+        Ok((start, by))
     }
 
     /// The equilibrium under voltages in V, by source.

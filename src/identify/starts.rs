@@ -41,7 +41,7 @@ impl FoundStart {
         let intervals = 2.0 * found.grid.intervals[index] as f64;
         let grid = [recording.duration(), intervals];
         let setup = Setup::new(system, task, recording, found.fit.of_constants(), grid)?;
-        let start = setup.start(found.fit.unknowns.of_start(index))?;
+        let (start, _) = setup.start((0, found.fit.unknowns.of_start(index)))?;
         let model = &setup.model;
         let scalars = |from: f64, to: f64| model.scalars(&setup.voltages.at(0.5 * (from + to)));
         // Tables tell a state at its instant.

@@ -8,7 +8,9 @@ use proboscis::control::problem::{
 };
 use proboscis::identify::{Grid, Unknowns, predict};
 use proboscis::model::system::ElectricConstants;
-use proboscis::model::{Constant, Follower, MaterialConstant, Parameter, Quantity, System};
+use proboscis::model::{
+    Constant, Coordinates, Follower, MaterialConstant, Parameter, Quantity, System,
+};
 
 pub(crate) fn readings(count: usize, last: f64) -> Vec<Reading> {
     let reading = |time| Reading {
@@ -94,7 +96,7 @@ pub(crate) fn all(name: &str, constant: MaterialConstant, count: usize, guess: f
 }
 
 /// Two muscles beside a joint, under voltages that change, from a state of rest that depends on the constants.
-fn pair(
+pub(crate) fn pair(
     start: BoundaryState,
     sought_start: SoughtStart,
     regime: Regime,
@@ -157,7 +159,18 @@ fn pair(
 }
 
 fn of_pair(start: BoundaryState, sought: SoughtStart, regime: Regime, of_start: &[f64]) {
-    let (system, task) = pair(start, sought, regime);
+    of_pair_in(None, (start, sought), regime, of_start);
+}
+
+/// The same in given coordinates.
+pub(crate) fn of_pair_in(
+    coordinates: Option<Coordinates>,
+    (start, sought): (BoundaryState, SoughtStart),
+    regime: Regime,
+    of_start: &[f64],
+) {
+    let (system, mut task) = pair(start, sought, regime);
+    task.coordinates = coordinates;
     let values: Vec<f64> = task.parameters.iter().map(|p| 1.1 * p.guess).collect();
     let unknowns = Unknowns::of_values(&values, &[of_start]);
     let largest = compare(&system, &task, &unknowns);
