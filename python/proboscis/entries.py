@@ -808,7 +808,12 @@ class InputConstants(TypedDict):
     """Constants of the inputs of all recordings."""
 
     delay: NotRequired[Range]
-    """Time by which all voltages and loads act later than recordings say, SI unit s."""
+    """Time by which all voltages and loads act later than recordings say, SI unit s; before they act, those of the state of rest at the start, or
+    the first ones.
+    """
+
+    delays: NotRequired[Mapping[Any, Range]]
+    """The same of single sources, by the names of muscles, electrodes and loads, beside that of all others."""
 
     gains: NotRequired[Mapping[Any, Range]]
     """Factors between the voltages and loads that recordings say and those that act, by the names of muscles, electrodes and loads."""
@@ -1850,7 +1855,7 @@ class Identify(TypedDict):
     """Sought constants by their paths in the scene, such as `"materials.silicone.shear_modulus"`, each between bounds."""
 
     inputs: NotRequired[InputConstants]
-    """Constants of the inputs that are sought: gains of sources, and their delay."""
+    """Constants of the inputs that are sought: gains of sources, and their delays."""
 
     priors: NotRequired[Mapping[Any, Prior]]
     """Constants of `free` that are known beside the recordings, by their paths: each counts as one reading more."""

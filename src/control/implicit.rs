@@ -17,14 +17,14 @@ use crate::sparse::Direct;
 use nalgebra::DMatrix;
 
 /// Part of a column of a program in the equations of the derivatives.
-#[derive(Clone, Copy, Debug)]
+#[derive(Clone, Debug)]
 pub enum Argument {
     /// Unknown of this number.
     Unknown(usize),
     /// Coordinate of the start of a motion.
     Start(usize),
-    /// A known number, by its index, and the derivative of the column by it.
-    Known(usize, f64),
+    /// A function of known numbers: the index of each, and the derivative of the column by it.
+    Known(Vec<(usize, f64)>),
 }
 
 /// Derivatives of the start of a motion by what is known: coordinates, and momenta.
@@ -52,7 +52,7 @@ impl ImplicitFunction {
     pub fn new(
         program: &Transcription<'_>,
         regime: Regime,
-        known: impl Fn(&Column) -> Option<(usize, f64)>,
+        known: impl Fn(&Column) -> Option<Vec<(usize, f64)>>,
     ) -> Option<Self> {
         let n = program.model().coordinate_count();
         let mut size = 0;
@@ -67,7 +67,7 @@ impl ImplicitFunction {
                 Argument::Unknown(*of_rest[i].get_or_insert_with(&mut next))
             }
             _ => match known(column) {
-                Some((number, slope)) => Argument::Known(number, slope),
+                Some(slopes) => Argument::Known(slopes),
                 None => Argument::Unknown(next()),
             },
         };
@@ -126,17 +126,20 @@ impl ImplicitFunction {
                 continue;
             };
             let value = value / program.column_scale(col as usize);
-            match self.columns[col as usize] {
+            match &self.columns[col as usize] {
                 Argument::Unknown(unknown) => {
-                    places.push((row, unknown));
+                    places.push((row, *unknown));
                     left.push(value);
                 }
                 Argument::Start(i) => {
                     let by = start.map(|start| &start.coordinates);
                     (0..count)
-                        .for_each(|j| right[(row, j)] -= value * by.map_or(0.0, |by| by[(i, j)]));
+                        .for_each(|j| right[(row, j)] -= value * by.map_or(0.0, |by| by[(*i, j)]));
                 }
-                Argument::Known(number, slope) => right[(row, number)] -= value * slope,
+                Argument::Known(slopes) => {
+                    let each = slopes.iter();
+                    each.for_each(|&(number, slope)| right[(row, number)] -= value * slope);
+                }
             }
         }
         if let Some(start) = start {
@@ -166,7 +169,7 @@ impl ImplicitFunction {
         solver.solve(&mut step);
         let columns = program.unknowns().columns.iter().zip(&self.columns);
         for (number, (column, part)) in columns.enumerate() {
-            if let (Column::Instant { i, .. }, Argument::Unknown(unknown)) = (*column, *part)
+            if let (Column::Instant { i, .. }, &Argument::Unknown(unknown)) = (*column, part)
                 && i >= n
             {
                 x[number] += step[unknown] / program.column_scale(number);

@@ -52,7 +52,7 @@ fn in_motion(
     let (model, recording) = (&setup.model, setup.recording);
     let h = recording.duration() / intervals as f64;
     let (start, by_start) = start_of(setup, point)?;
-    let scalars = |from: f64, to: f64| model.scalars(&setup.voltages.at(0.5 * (from + to)));
+    let scalars = |from: f64, to: f64| model.scalars(&setup.inputs.within(from, to));
     let (discrete, failure) = simulate(model, &start, h, intervals, scalars, |_| {
         ControlFlow::Continue(())
     });
@@ -70,16 +70,14 @@ fn in_motion(
         derivatives: Some(&by_start),
         unknowns: point.count(),
     };
-    let by = derivatives(setup, from, &discrete, &setup.voltages)?;
-    let corners = setup.voltages.switches();
-    let inside = |corner: &&f64| **corner < recording.duration();
+    let by = derivatives(setup, from, &discrete, &setup.inputs.undelayed)?;
+    let corners = setup.inputs.corners().into_iter();
     let course = Course {
         model,
         discrete: &discrete,
         derivatives: &by,
-        corners: corners.iter().filter(inside).copied().collect(),
+        corners: corners.filter(|t| *t < recording.duration()).collect(),
         is_still: false,
-        delay: setup.drive.delay,
     };
     Ok(course.read(&recording.channels, point.count()))
 }
@@ -137,7 +135,7 @@ fn at_rest(setup: &Setup<'_>, point: Point<'_>) -> Result<Values, IdentifyError>
     times.sort_unstable_by(f64::total_cmp);
     times.dedup();
     for time in times {
-        let voltages = setup.voltages.at(time).to_vec();
+        let voltages = setup.inputs.undelayed.at(time).to_vec();
         let state = setup.rest_under(&voltages)?;
         let voltages = Voltages::Constant(voltages);
         let (discrete, by) = of_rest(setup, &state, &voltages, point.constants.len())?;
@@ -147,7 +145,6 @@ fn at_rest(setup: &Setup<'_>, point: Point<'_>) -> Result<Values, IdentifyError>
             derivatives: &by,
             corners: Vec::new(),
             is_still: true,
-            delay: None,
         };
         let read = course.read(&recording.channels, point.count());
         for (row, reading) in recording.readings().enumerate() {

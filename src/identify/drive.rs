@@ -1,55 +1,61 @@
-//! Constants of the inputs of recordings: gains of sources, and the delay with which all of them act.
+//! Sought constants of the inputs of recordings: gains, and delays with which they act.
 //!
-//! The input of a source is `g V(t − τ)`, of which a recording says V(t). A robot that rests until its inputs begin and reads no other function of
-//! time moves τ later with all of them: a reading at t is that of the motion without delay at t − τ, and before that one of the start.
-
-use std::borrow::Cow;
+//! The input of a source is `u(t) = g V(t − τ)`, of which a recording says V(t) from 0 on; before, it is that of the state of rest at the
+//! start, or V(0). An interval of the motion from a to b has of a delayed input
+//!
+//! ```text
+//! the mean  1/h ∫ u dt,     or  (1/h ∫ u² dt)^½  of one that acts by its square alone,
+//! ```
+//!
+//! so that its impulse is exact and changes smoothly with the delay: `d/dτ ∫ u² dt = u²(a) − u²(b)`.
 
 use crate::control::problem::{BoundaryState, Voltages};
-use crate::model::{Constant, Parameter};
+use crate::dynamics::step_inputs;
+use crate::math::in_order;
+use crate::model::{Constant, Model, Parameter, Time};
+use std::borrow::Cow;
 
-/// Gains and delay at values of the constants.
+/// Places and weights of Gauss's rule of eight digits in smooth parts of an interval of length 1.
+const GAUSS: [(f64, f64); 4] = [
+    (0.069_431_844_202_973_71, 0.173_927_422_568_726_93),
+    (0.330_009_478_207_571_87, 0.326_072_577_431_273_07),
+    (0.669_990_521_792_428_1, 0.326_072_577_431_273_07),
+    (0.930_568_155_797_026_3, 0.173_927_422_568_726_93),
+];
+
+/// A sought constant at its value.
+#[derive(Clone, Copy, Debug)]
+struct Sought {
+    /// Index of the constant.
+    constant: usize,
+    value: f64,
+}
+
+/// Gains and delays at values of the constants, by source.
 #[derive(Clone, Debug, Default)]
 pub(super) struct Drive {
-    gains: Vec<Gain>,
-    pub(super) delay: Option<Delay>,
+    gains: Vec<Option<Sought>>,
+    delays: Vec<Option<Sought>>,
 }
 
-/// Gain of a source.
-#[derive(Clone, Copy, Debug)]
-pub(super) struct Gain {
-    pub(super) source: usize,
-    /// Index of the constant.
-    pub(super) constant: usize,
-    pub(super) value: f64,
-}
-
-/// Delay of all inputs.
-#[derive(Clone, Copy, Debug)]
-pub(super) struct Delay {
-    /// Index of the constant.
-    pub(super) constant: usize,
-    /// Time in ms.
-    pub(super) time: f64,
+/// An input in an interval, and its derivative by its delay.
+struct Delayed {
+    value: f64,
+    slope: f64,
 }
 
 impl Drive {
-    pub(super) fn new(parameters: &[Parameter], constants: &[f64]) -> Self {
-        let mut out = Self::default();
+    pub(super) fn new(sources: usize, parameters: &[Parameter], constants: &[f64]) -> Self {
+        let mut out = Self {
+            gains: vec![None; sources],
+            delays: vec![None; sources],
+        };
         for (constant, (parameter, &value)) in parameters.iter().zip(constants).enumerate() {
+            let sought = Some(Sought { constant, value });
             for follower in &parameter.constants {
                 match follower.constant {
-                    Constant::Gain(source) => out.gains.push(Gain {
-                        source,
-                        constant,
-                        value,
-                    }),
-                    Constant::Delay => {
-                        out.delay = Some(Delay {
-                            constant,
-                            time: value,
-                        });
-                    }
+                    Constant::Gain(source) => out.gains[source] = sought,
+                    Constant::Delay(source) => out.delays[source] = sought,
                     _ => {}
                 }
             }
@@ -57,26 +63,26 @@ impl Drive {
         out
     }
 
-    /// The gain of a source, where it is sought.
-    pub(super) fn of_source(&self, source: usize) -> Option<Gain> {
-        self.gains
-            .iter()
-            .copied()
-            .find(|gain| gain.source == source)
+    /// Sources of which a gain or a delay is sought.
+    pub(super) fn sources(&self) -> impl Iterator<Item = usize> + '_ {
+        let is_sought = |source: &usize| {
+            let of = |list: &[Option<Sought>]| list[*source].is_some();
+            of(&self.gains) || of(&self.delays)
+        };
+        (0..self.gains.len()).filter(is_sought)
     }
 
-    /// Sources whose gains are sought.
-    pub(super) fn sources(&self) -> impl Iterator<Item = usize> + '_ {
-        self.gains.iter().map(|gain| gain.source)
+    fn has_delays(&self) -> bool {
+        self.delays.iter().any(Option::is_some)
     }
 
     fn factor(&self, source: usize) -> f64 {
-        self.of_source(source).map_or(1.0, |gain| gain.value)
+        self.gains[source].map_or(1.0, |gain| gain.value)
     }
 
     /// Voltages and loads of a recording with their gains.
-    pub(super) fn voltages<'a>(&self, said: &'a Voltages) -> Cow<'a, Voltages> {
-        match self.gains.is_empty() {
+    fn voltages<'a>(&self, said: &'a Voltages) -> Cow<'a, Voltages> {
+        match self.gains.iter().all(Option::is_none) {
             true => Cow::Borrowed(said),
             false => Cow::Owned(said.scaled(|source| self.factor(source))),
         }
@@ -85,12 +91,151 @@ impl Drive {
     /// The start with gains of the voltages under which it rests.
     pub(super) fn start<'a>(&self, said: &'a BoundaryState) -> Cow<'a, BoundaryState> {
         match said {
-            BoundaryState::RestAtVoltages(row, rest) if !self.gains.is_empty() => {
+            BoundaryState::RestAtVoltages(row, rest) if self.gains.iter().any(Option::is_some) => {
                 let of = |(source, value): (usize, &f64)| self.factor(source) * value;
                 let row = row.iter().enumerate().map(of).collect();
                 Cow::Owned(BoundaryState::RestAtVoltages(row, *rest))
             }
             _ => Cow::Borrowed(said),
+        }
+    }
+}
+
+/// The inputs of a motion with their gains and delays.
+#[derive(Clone, Debug)]
+pub(super) struct Inputs<'a> {
+    drive: Drive,
+    /// Those that are said, with gains.
+    pub(super) undelayed: Cow<'a, Voltages>,
+    /// Inputs before those that are said.
+    before: Vec<f64>,
+    /// Sources that act by their squares alone.
+    by_squares: Vec<bool>,
+}
+
+impl<'a> Inputs<'a> {
+    /// Those that a recording says; `start` has gains.
+    pub(super) fn new(drive: Drive, said: &'a Voltages, start: &BoundaryState) -> Self {
+        let undelayed = drive.voltages(said);
+        let before = match start {
+            BoundaryState::RestAtVoltages(row, _) => row.clone(),
+            _ => undelayed.at(0.0).to_vec(),
+        };
+        Self {
+            by_squares: vec![false; before.len()],
+            before,
+            undelayed,
+            drive,
+        }
+    }
+
+    /// Tells which inputs act by their squares alone in a model.
+    pub(super) fn read_by(&mut self, model: &Model) {
+        let variables = model.variables.of(Time::Interval);
+        for input in step_inputs(model) {
+            if let Some(source) = variables[input.scalar].source {
+                self.by_squares[source] = input.is_squared;
+            }
+        }
+    }
+
+    /// Sources of which a gain or a delay is sought.
+    pub(super) fn sought(&self) -> impl Iterator<Item = usize> + '_ {
+        self.drive.sources()
+    }
+
+    /// Inputs in the interval between two times in ms: at its middle, unless they are delayed.
+    pub(super) fn within(&self, from: f64, to: f64) -> Cow<'_, [f64]> {
+        let mut out = self.undelayed.at(0.5 * (from + to));
+        if self.drive.has_delays() {
+            let row = out.to_mut();
+            for (source, value) in row.iter_mut().enumerate() {
+                if let Some(delay) = self.drive.delays[source] {
+                    *value = self.delayed(source, delay.value, [from, to]).value;
+                }
+            }
+        }
+        out
+    }
+
+    /// Constants on which the value of an input in an interval depends, and its derivatives by them; of one at rest there is no interval. None
+    /// where nothing of the source is sought.
+    pub(super) fn slopes(
+        &self,
+        (source, value): (usize, f64),
+        interval: Option<[f64; 2]>,
+    ) -> Option<Vec<(usize, f64)>> {
+        let Drive { gains, delays } = &self.drive;
+        let (gain, delay) = (gains[source], delays[source]);
+        let by_delay = delay.zip(interval).map(|(delay, times)| {
+            let slope = self.delayed(source, delay.value, times).slope;
+            (delay.constant, slope)
+        });
+        let by_gain = gain.map(|gain| (gain.constant, value / gain.value));
+        let is_sought = gain.is_some() || delay.is_some();
+        is_sought.then(|| by_gain.into_iter().chain(by_delay).collect())
+    }
+
+    /// Times in ms at which inputs have corners or jumps.
+    pub(super) fn corners(&self) -> Vec<f64> {
+        let said = self.undelayed.switches();
+        let mut delays: Vec<f64> = self
+            .drive
+            .delays
+            .iter()
+            .map(|one| one.map_or(0.0, |one| one.value))
+            .collect();
+        delays.sort_by(f64::total_cmp);
+        delays.dedup();
+        let later = |delay: &f64| {
+            let begins = (*delay > 0.0).then_some(*delay);
+            begins
+                .into_iter()
+                .chain(said.iter().map(|t| t + delay))
+                .collect::<Vec<_>>()
+        };
+        in_order(delays.iter().flat_map(later))
+    }
+
+    /// A delayed input: mean, or root of the mean of its square with the sign of the mean.
+    fn delayed(&self, source: usize, delay: f64, [from, to]: [f64; 2]) -> Delayed {
+        let h = to - from;
+        let at = |time: f64| match time - delay {
+            early if early < 0.0 => self.before[source],
+            said => self.undelayed.at(said)[source],
+        };
+        let said = self.undelayed.switches();
+        let corners = [0.0].into_iter().chain(said.iter().copied());
+        let inside = corners
+            .map(|t| t + delay)
+            .filter(|t| (from..to).contains(t));
+        let ends = in_order([from, to].into_iter().chain(inside));
+        let integral = |of: fn(f64) -> f64| -> f64 {
+            let piece = |pair: &[f64]| -> f64 {
+                let length = pair[1] - pair[0];
+                GAUSS
+                    .iter()
+                    .map(|(x, w)| w * length * of(at(pair[0] + x * length)))
+                    .sum()
+            };
+            ends.windows(2).map(piece).sum()
+        };
+        let mean = integral(|u| u) / h;
+        if !self.by_squares[source] {
+            return Delayed {
+                value: mean,
+                slope: (at(from) - at(to)) / h,
+            };
+        }
+        let value = (integral(|u| u * u) / h).sqrt().copysign(mean);
+        let slope = (at(from).powi(2) - at(to).powi(2)) / h;
+        Delayed {
+            value,
+            slope: if value == 0.0 {
+                0.0
+            } else {
+                0.5 * slope / value
+            },
         }
     }
 }

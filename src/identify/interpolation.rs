@@ -47,18 +47,3 @@ pub(super) fn weights(time: f64, grid: [f64; 2], points: Range<usize>) -> (usize
     };
     (begin, (0..count).map(weight).collect())
 }
-
-/// The same for the derivative by the time.
-pub(super) fn slopes(time: f64, grid: [f64; 2], points: Range<usize>) -> (usize, Vec<f64>) {
-    let (begin, count, s) = local(time, grid, points);
-    let slope = |j: usize| {
-        let others = || (0..count).filter(move |&i| i != j);
-        let factor = |i: usize| (s - i as f64) / (j as f64 - i as f64);
-        let without = |k: usize| -> f64 {
-            let product: f64 = others().filter(|&i| i != k).map(factor).product();
-            product / (j as f64 - k as f64)
-        };
-        others().map(without).sum::<f64>() / grid[1]
-    };
-    (begin, (0..count).map(slope).collect())
-}

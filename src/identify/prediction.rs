@@ -10,7 +10,7 @@ use crate::identify::readout::Values;
 use crate::identify::setup::Setup;
 use crate::identify::unknowns::Unknowns;
 use crate::math::{cores, has_pool};
-use crate::model::System;
+use crate::model::{Constant, System};
 use nalgebra::{DMatrix, DVector};
 use rayon::prelude::*;
 
@@ -36,6 +36,9 @@ impl Grid {
     /// The first grid: with the step of the problem, or as many intervals as there are times of readings; a few more where readings and
     /// corners of voltages lie at its instants then.
     pub fn first(task: &Identification, recordings: &[Recording]) -> Self {
+        let mut constants = task.parameters.iter().flat_map(|one| &one.constants);
+        // Delayed corners lie somewhere.
+        let is_delayed = constants.any(|one| matches!(one.constant, Constant::Delay(_)));
         let of = |recording: &Recording| match (recording.regime, task.step) {
             (Regime::Rest, _) => (1, true),
             (_, Some(step)) => {
@@ -47,7 +50,8 @@ impl Grid {
                 meeting(recording, lengths.max().unwrap_or(0).clamp(LEAST, MOST))
             }
         };
-        let (intervals, meets_corners) = recordings.iter().map(of).unzip();
+        let met = |(intervals, meets)| (intervals, meets && !is_delayed);
+        let (intervals, meets_corners) = recordings.iter().map(of).map(met).unzip();
         Self {
             intervals,
             meets_corners,

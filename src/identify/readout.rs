@@ -5,8 +5,7 @@ use crate::control::problem::{Channel, Reading};
 use crate::coordinates::Configuration;
 use crate::dynamics::DiscreteTrajectory;
 use crate::functional::{Measure, Sample, SumDerivatives};
-use crate::identify::drive::Delay;
-use crate::identify::interpolation::{piece, slopes, weights};
+use crate::identify::interpolation::{piece, weights};
 use crate::identify::sensitivity::CourseDerivatives;
 use crate::model::{Model, Quantity};
 use nalgebra::{DMatrix, DVector, RowDVector};
@@ -21,8 +20,6 @@ pub(super) struct Course<'a> {
     pub(super) corners: Vec<f64>,
     /// True of a state of rest, of which all times are the same.
     pub(super) is_still: bool,
-    /// Time by which readings show the motion later.
-    pub(super) delay: Option<Delay>,
 }
 
 /// Values and derivatives of readings.
@@ -91,19 +88,11 @@ impl Course<'_> {
     ) {
         let grid = self.grid(quantity);
         let jumps = quantity.before().is_some();
-        let time = reading.time - self.delay.map_or(0.0, |delay| delay.time);
-        let (begin, weights) = match self.is_still || time < 0.0 {
+        let (begin, weights) = match self.is_still {
             true => (0, vec![1.0]),
             false => {
-                let points = (grid, values.len());
-                let piece = piece(time, &self.corners, points, jumps);
-                if let Some(delay) = self.delay {
-                    let (begin, slopes) = slopes(time, grid, piece.clone());
-                    let pairs = slopes.iter().zip(&values[begin..]);
-                    let rate: f64 = pairs.map(|(slope, value)| slope * value).sum();
-                    out.derivatives[(row, delay.constant)] -= factor * rate;
-                }
-                weights(time, grid, piece)
+                let piece = piece(reading.time, &self.corners, (grid, values.len()), jumps);
+                weights(reading.time, grid, piece)
             }
         };
         for (j, weight) in weights.iter().enumerate() {

@@ -52,7 +52,7 @@ pub(super) fn derivatives(
         Some(_) => Regime::Motion,
         None => Regime::Rest,
     };
-    let function = ImplicitFunction::new(&program, regime, known(setup, discrete));
+    let function = ImplicitFunction::new(&program, regime, known(setup, discrete, regime));
     let function = function.expect("a motion follows from its start");
     let mut x = program.encode(&initial.discrete, h);
     let by = (from.unknowns, from.derivatives);
@@ -68,19 +68,22 @@ pub(super) fn derivatives(
     ))
 }
 
-/// Tells the columns that are functions of the constants, and their derivatives: constants themselves, and inputs with gains.
+/// Tells the columns that are functions of the constants, and their derivatives: constants themselves, and inputs with gains or delays.
 fn known<'a>(
     setup: &'a Setup<'_>,
     discrete: &'a DiscreteTrajectory,
-) -> impl Fn(&Column) -> Option<(usize, f64)> + 'a {
+    regime: Regime,
+) -> impl Fn(&Column) -> Option<Vec<(usize, f64)>> + 'a {
     let variables = &setup.model.variables;
     let first = variables.range(Role::Parameter).start;
     move |column| match *column {
-        Column::Parameter { s } => Some((s - first, 1.0)),
+        Column::Parameter { s } => Some(vec![(s - first, 1.0)]),
         Column::Interval { k, s } => {
             let source = variables.of(Time::Interval)[s].source?;
-            let gain = setup.drive.of_source(source)?;
-            Some((gain.constant, discrete.scalars[k][s] / gain.value))
+            let times = [discrete.times[k], discrete.times[k + 1]];
+            let interval = (regime == Regime::Motion).then_some(times);
+            let value = discrete.scalars[k][s];
+            setup.inputs.slopes((source, value), interval)
         }
         _ => None,
     }
@@ -115,11 +118,12 @@ impl CourseDerivatives {
         }
         let columns = program.unknowns().columns.iter().zip(&function.columns);
         for (column, meaning) in columns {
-            let unknown = match (*column, *meaning) {
-                (_, Argument::Unknown(unknown)) => unknown,
-                (Column::Interval { k, s }, Argument::Known(gain, slope)) => {
+            let unknown = match (*column, meaning) {
+                (_, Argument::Unknown(unknown)) => *unknown,
+                (Column::Interval { k, s }, Argument::Known(slopes)) => {
                     if let Ok(row) = out.read.binary_search(&s) {
-                        out.intervals[k][(row, gain)] = slope;
+                        let each = slopes.iter();
+                        each.for_each(|&(of, slope)| out.intervals[k][(row, of)] = slope);
                     }
                     continue;
                 }

@@ -1,13 +1,13 @@
 //! The model of a recording at values of the constants, with its start.
 
 use crate::control::problem::{
-    BoundaryState, Control, Duration, Identification, Recording, Regime, SoughtStart, Voltages,
+    BoundaryState, Control, Duration, Identification, Recording, SoughtStart, Voltages,
 };
 use crate::control::{
     BoundaryConditions, BoundaryError, StartDerivatives, ends_that_read, resolve_start, rest_at,
 };
 use crate::dynamics::{Equilibrium, IndependentChanges, Start};
-use crate::identify::drive::Drive;
+use crate::identify::drive::{Drive, Inputs};
 use crate::identify::error::IdentifyError;
 use crate::model::{Analysis, Coordinates, Model, Parameter, Quantity, System, with_parameters};
 use nalgebra::DMatrix;
@@ -17,10 +17,8 @@ use std::borrow::Cow;
 #[derive(Debug)]
 pub(super) struct Setup<'a> {
     pub(super) recording: &'a Recording,
-    /// Gains and delay of the inputs.
-    pub(super) drive: Drive,
-    /// Voltages and loads with their gains.
-    pub(super) voltages: Cow<'a, Voltages>,
+    /// Voltages and loads with their gains and delays.
+    pub(super) inputs: Inputs<'a>,
     start: Cow<'a, BoundaryState>,
     pub(super) control: Control,
     pub(super) model: Model,
@@ -42,15 +40,14 @@ impl<'a> Setup<'a> {
         let (system, parameters) = recording.of((system, &task.parameters));
         let parameters: Vec<_> = parameters.iter().zip(constants).map(at).collect();
         let system = with_parameters(system, &parameters, constants);
-        let drive = Drive::new(&parameters, constants);
-        let (voltages, start) = (
-            drive.voltages(&recording.voltages),
-            drive.start(&recording.start),
-        );
+        let drive = Drive::new(system.sources().len(), &parameters, constants);
+        let start = drive.start(&recording.start);
+        let inputs = Inputs::new(drive, &recording.voltages, &start);
+        let voltages = &inputs.undelayed;
         let control = Control {
             parameters,
             coordinates: task.coordinates,
-            ..Control::of_course(&start, &voltages, duration, intervals as usize)
+            ..Control::of_course(&start, voltages, duration, intervals as usize)
         };
         let mut analysis = Analysis {
             quantities: recording
@@ -73,14 +70,14 @@ impl<'a> Setup<'a> {
             analysis.zero_inputs.remove(&source);
         }
         let model = Model::for_analysis(system, analysis);
-        let setup = Self {
+        let mut setup = Self {
             model: model.map_err(|error| recording.wrong(error.into()))?,
             control,
             recording,
-            drive,
-            voltages,
+            inputs,
             start,
         };
+        setup.inputs.read_by(&setup.model);
         setup.check()?;
         Ok(setup)
     }
@@ -95,9 +92,6 @@ impl<'a> Setup<'a> {
                 "places of bodies, joints and markers are sought in joint coordinates alone"
                     .to_owned(),
             ));
-        }
-        if self.drive.delay.is_some() && self.recording.regime == Regime::Motion {
-            self.check_delay()?;
         }
         for channel in &self.recording.channels {
             let parts = channel.parts.iter().map(|(_, quantity)| quantity);
@@ -118,22 +112,6 @@ impl<'a> Setup<'a> {
             ));
         }
         Ok(())
-    }
-
-    /// Refuses recordings of which a delay of the inputs is no shift in time.
-    fn check_delay(&self) -> Result<(), IdentifyError> {
-        let parts = self.recording.channels.iter().flat_map(|one| &one.parts);
-        let mut later = parts.filter(|(_, quantity)| quantity.is_of_intervals());
-        let what = match () {
-            () if !matches!(*self.start, BoundaryState::RestAtVoltages(..)) => {
-                "a start with \"rest_at_voltages\": what rests until its inputs begin moves later by it"
-            }
-            () if self.recording.sought_start != SoughtStart::Nothing => "a start that is given",
-            () if !self.model.prescribed.is_empty() => "joints without prescribed motions",
-            () if later.next().is_some() => "readings of joints and places of markers alone",
-            () => return Ok(()),
-        };
-        Err(self.refused(format!("a delay of the inputs is sought; expected {what}")))
     }
 
     pub(super) fn refused(&self, reason: String) -> IdentifyError {
@@ -225,8 +203,8 @@ impl<'a> Setup<'a> {
         let any = [f64::NEG_INFINITY, f64::INFINITY];
         Control {
             start: BoundaryState::Free,
-            // Inputs with gains have columns.
-            load_bounds: self.drive.sources().map(|source| (source, any)).collect(),
+            // Inputs of which something is sought have columns.
+            load_bounds: self.inputs.sought().map(|source| (source, any)).collect(),
             course: Some(voltages),
             duration: Duration::Given(h * intervals as f64),
             intervals,

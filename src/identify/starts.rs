@@ -43,7 +43,7 @@ impl FoundStart {
         let setup = Setup::new(system, task, recording, found.fit.of_constants(), grid)?;
         let (start, _) = setup.start((0, found.fit.unknowns.of_start(index)))?;
         let model = &setup.model;
-        let scalars = |from: f64, to: f64| model.scalars(&setup.voltages.at(0.5 * (from + to)));
+        let scalars = |from: f64, to: f64| model.scalars(&setup.inputs.within(from, to));
         // Tables tell a state at its instant.
         let h = recording.duration() / intervals;
         let (first, _) = simulate(model, &start, h, 1, scalars, |_| ControlFlow::Continue(()));

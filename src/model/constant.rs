@@ -89,8 +89,8 @@ pub enum Constant {
     PeakVoltage,
     /// No constant of a component: the factor between the input that a recording says of a source and that which acts.
     Gain(usize),
-    /// No constant of a component: the time in ms by which inputs act later than a recording says.
-    Delay,
+    /// No constant of a component: the time in ms by which the input of a source acts later than a recording says.
+    Delay(usize),
 }
 
 /// A unit of the International System: its symbol, and the factor from the unit of a constant.
@@ -192,7 +192,7 @@ impl Constant {
                 | Self::Inertia(..)
                 | Self::Gravity(_)
                 | Self::PeakVoltage
-                | Self::Delay
+                | Self::Delay(_)
                 | Self::Material(_, Law(_) | LameLambda | C1 | C2 | Permittivity)
         )
     }

@@ -143,7 +143,7 @@ impl Constant {
             Self::Gravity(axis) => system.gravity.as_mut()?.get_mut(axis),
             Self::PeakVoltage
             | Self::Gain(_)
-            | Self::Delay
+            | Self::Delay(_)
             | Self::Material(..)
             | Self::Resistance(_)
             | Self::Leakage(_) => None,
@@ -230,7 +230,7 @@ impl Constant {
             | Self::TendonPoint(..) => ("m", 1e-3),
             Self::PeakVoltage => ("V", 1.0),
             Self::Gain(_) => ("", 1.0),
-            Self::Delay => ("s", 1e-3),
+            Self::Delay(_) => ("s", 1e-3),
             Self::SpringStiffness(_) | Self::TendonStiffness(_) => ("N/m", 1e3),
             Self::Prestretch(_) => ("", 1.0),
             Self::Resistance(_) | Self::Leakage(_) => ("Ohm", 1.0),
@@ -289,10 +289,10 @@ impl Constant {
             | Self::Layer(m)
             | Self::Prestretch(m)
             | Self::End(m, ..) => ("muscle", m, system.muscles.len()),
-            Self::Resistance(s) | Self::Leakage(s) | Self::Gain(s) => {
+            Self::Resistance(s) | Self::Leakage(s) | Self::Gain(s) | Self::Delay(s) => {
                 ("source", s, system.sources().len())
             }
-            Self::Gravity(_) | Self::PeakVoltage | Self::Delay => return None,
+            Self::Gravity(_) | Self::PeakVoltage => return None,
         };
         (index >= count).then(|| format!("there is no {what} {index}, only {count}"))
     }
@@ -320,7 +320,7 @@ impl Constant {
         match self {
             // A length is named with the stiffness of its spring.
             Self::SpringLength(s) => system.components.springs[s].stiffness.is_some(),
-            Self::PeakVoltage | Self::Gain(_) | Self::Delay => true,
+            Self::PeakVoltage | Self::Gain(_) | Self::Delay(_) => true,
             other => other.value(system).is_some(),
         }
     }

@@ -70,12 +70,12 @@ fn solved(
     let parameters = variables.range(Role::Parameter);
     let inputs = variables.sources_range();
     let known = |column: &Column| match *column {
-        Column::Parameter { s } => Some((s - parameters.start, 1.0)),
+        Column::Parameter { s } => Some(vec![(s - parameters.start, 1.0)]),
         Column::Interval { s, .. } if inputs.contains(&s) => {
             let source = column.of(variables).source;
             let place = sources.iter().position(|one| Some(*one) == source);
             let place = place.expect("a source that is open");
-            Some((parameters.len() + place, 1.0))
+            Some(vec![(parameters.len() + place, 1.0)])
         }
         _ => None,
     };
@@ -86,7 +86,7 @@ fn solved(
     let mut out = DMatrix::zeros(n, count);
     let columns = program.unknowns().columns.iter().zip(&function.columns);
     for (column, argument) in columns {
-        if let (Column::Instant { k: 0, i }, Argument::Unknown(unknown)) = (*column, *argument)
+        if let (Column::Instant { k: 0, i }, &Argument::Unknown(unknown)) = (*column, argument)
             && i < n
         {
             out.set_row(i, &solved.row(unknown));

@@ -1,6 +1,6 @@
 //! Gains and delay of the inputs of recordings, of an oscillator under a force that is switched on.
 
-use crate::derivatives::compare;
+use crate::derivatives::{compare, pair};
 use crate::oscillator::{
     DAMPING, STIFFNESS, joint, parameter, parameters, place, slide, system, task, times,
 };
@@ -8,7 +8,7 @@ use proboscis::Signal;
 use proboscis::control::problem::{
     BoundaryState, Identification, Reading, Recording, Regime, SoughtStart, Voltages,
 };
-use proboscis::identify::{IdentifyError, Unknowns, identify};
+use proboscis::identify::{Grid, Unknowns, identify, predict};
 use proboscis::math::Random;
 use proboscis::model::components::{Load, LoadPlace};
 use proboscis::model::{Constant, Parameter, Quantity, System};
@@ -74,7 +74,7 @@ fn sought(recording: Recording) -> Identification {
     let delay = Parameter {
         lower: 0.0,
         upper: 40.0,
-        ..parameter("delay", Constant::Delay, 1.0)
+        ..parameter("delay", Constant::Delay(0), 1.0)
     };
     Identification {
         parameters: [
@@ -126,7 +126,7 @@ fn a_force_that_sets_in_between_instants_leaves_no_bias_unseen() {
 }
 
 #[test]
-fn a_delay_that_is_no_shift_in_time_is_refused() {
+fn a_delayed_motion_from_any_start_depends_on_gain_and_delay_as_derivatives_say() {
     let base = || step(ONSET, 1.0, &mut Random::new(1));
     let moving = Recording {
         start: joint(0.0, 0.01),
@@ -136,15 +136,95 @@ fn a_delay_that_is_no_shift_in_time_is_refused() {
     open.sought_start = SoughtStart::State;
     let mut rates = base();
     rates.channels[0].parts = vec![(1.0, Quantity::JointStep { joint: 0, h: 1.0 })];
-    for (recording, expected) in [
-        (moving, "rest_at_voltages"),
-        (open, "a start that is given"),
-        (rates, "readings of joints and places"),
-    ] {
-        let error = identify(&pulled(), &sought(recording), &mut |_, _| {}).unwrap_err();
-        let IdentifyError::Refused { reason, .. } = &error else {
-            panic!("{error}");
-        };
-        assert!(reason.contains(expected), "{reason}");
+    let of_start: [&[f64]; 3] = [&[], &[0.1, 0.4], &[]];
+    for (recording, of_start) in [moving, open, rates].into_iter().zip(of_start) {
+        let unknowns = Unknowns::of_values(&[0.22, 0.5, 1.1, 6.17], &[of_start]);
+        let largest = compare(&pulled(), &sought(recording), &unknowns);
+        assert!(largest.iter().all(|size| *size > 1e-3), "{largest:?}");
     }
+}
+
+/// Two muscles beside a joint whose drivers have delays of their own; the second one is switched on.
+fn of_two_drivers() -> (System, Identification) {
+    let rest = BoundaryState::RestAtVoltages(vec![1200.0, 0.0], Default::default());
+    let (system, mut task) = pair(rest, SoughtStart::Nothing, Regime::Motion);
+    task.parameters.truncate(1);
+    for source in 0..2 {
+        task.parameters.push(Parameter {
+            lower: 0.0,
+            upper: 40.0,
+            ..parameter("delay", Constant::Delay(source), 5.0 + 4.0 * source as f64)
+        });
+        task.parameters[1 + source].name = format!("delay {source}");
+    }
+    let switched = Signal::Ramp {
+        from: 0.0,
+        to: 900.0,
+        start: 31.0,
+        duration: 0.0,
+    };
+    task.recordings[0].voltages =
+        Voltages::Signals(vec![Signal::ramp(1200.0, 300.0, 60.0), switched]);
+    (system, task)
+}
+
+#[test]
+fn each_driver_has_a_delay_of_its_own() {
+    let (system, task) = of_two_drivers();
+    let unknowns = Unknowns::of_values(&[0.11, 4.3, 9.6], &[&[]]);
+    let largest = compare(&system, &task, &unknowns);
+    assert!(largest.iter().all(|size| *size > 1e-3), "{largest:?}");
+}
+
+/// Readings of a motion under voltages that are delayed by hand.
+fn by_hand(truth: [f64; 3]) -> (System, Identification) {
+    let (system, mut task) = of_two_drivers();
+    let mut known = task.clone();
+    known.parameters.truncate(1);
+    let table = |delay: f64| Signal::Table {
+        times: vec![delay, delay + 60.0],
+        values: vec![1200.0, 300.0],
+    };
+    let switched = Signal::Ramp {
+        from: 0.0,
+        to: 900.0,
+        start: 31.0 + truth[2],
+        duration: 0.0,
+    };
+    known.recordings[0].voltages = Voltages::Signals(vec![table(truth[1]), switched]);
+    let unknowns = Unknowns::of_values(&truth[..1], &[&[]]);
+    let mut grid = Grid::first(&known, &known.recordings);
+    grid.intervals = vec![4000];
+    let seen = predict((&system, &known), &[0], &unknowns, &grid)
+        .unwrap()
+        .values;
+    let mut row = 0;
+    for reading in task.recordings[0]
+        .channels
+        .iter_mut()
+        .flat_map(|one| &mut one.readings)
+    {
+        reading.value = seen[row];
+        reading.deviation = 1e-3;
+        row += 1;
+    }
+    (system, task)
+}
+
+#[test]
+fn delays_of_two_drivers_are_recovered() {
+    let truth = [0.11, 6.7, 12.9];
+    let (system, task) = by_hand(truth);
+    let found = identify(&system, &task, &mut |_, _| {}).unwrap();
+    for (j, truth) in truth.into_iter().enumerate() {
+        let error = found.information.covariance[(j, j)].sqrt();
+        let value = found.fit.of_constants()[j];
+        println!("{j}: {value} ± {error} of {truth}");
+        assert!(error > 0.0 && error < 0.05 * truth, "{j}: {error}");
+        assert!(
+            (value - truth).abs() < 0.2 * error,
+            "{j}: {value} {truth} ± {error}"
+        );
+    }
+    assert!(found.bias.is_confirmed, "{:?}", found.bias);
 }

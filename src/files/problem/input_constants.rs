@@ -4,12 +4,15 @@ use crate::control::problem::Prior;
 use crate::files::json::error::SceneError;
 use crate::files::json::scope::Scope;
 use crate::files::problem::spec_identify::{InputConstantsSpec, RangeSpec};
-use crate::files::units::quantity::PhysicalQuantity;
+use crate::files::units::quantity::{PhysicalQuantity, Time};
 use crate::model::system::System;
-use crate::model::{Constant, Parameter};
+use crate::model::{Constant, Follower, Parameter};
 
-/// Name of the delay among the constants.
+/// Name of the delay of all inputs among the constants.
 const DELAY: &str = "delay";
+
+/// Words for what a source is.
+const SOURCE: &str = "the name of a muscle, an electrode or a load";
 
 /// Name of a gain among the constants.
 fn gain(source: &str) -> String {
@@ -26,26 +29,39 @@ pub(super) fn input_constants(
     let (mut out, mut priors) = (Vec::new(), Vec::new());
     for (name, range) in &spec.gains {
         let place = scope.key("gains").key(name);
-        let source = place.find(
-            name,
-            &sources,
-            "the name of a muscle, an electrode or a load",
-        )?;
-        let constant = Constant::Gain(source);
+        let source = place.find(name, &sources, SOURCE)?;
+        let constant = vec![Constant::Gain(source).into()];
         priors.extend(prior(range, first + out.len(), &place)?);
         out.push(parameter((gain(name), constant), range, 1.0, &place)?);
     }
+    let mut delays: Vec<(String, &RangeSpec<Time>, Vec<usize>, Scope<'_>)> = Vec::new();
+    for (name, range) in &spec.delays {
+        let place = scope.key("delays").key(name);
+        let source = place.find(name, &sources, SOURCE)?;
+        delays.push((format!("delay of {name}"), range, vec![source], place));
+    }
     if let Some(range) = &spec.delay {
-        let place = scope.key("delay");
-        let delay = (DELAY.to_owned(), Constant::Delay);
+        let own: Vec<usize> = delays.iter().flat_map(|one| one.2.clone()).collect();
+        let others = (0..sources.len()).filter(|source| !own.contains(source));
+        delays.push((
+            DELAY.to_owned(),
+            range,
+            others.collect(),
+            scope.key("delay"),
+        ));
+    }
+    for (name, range, sources, place) in delays {
         let least = range.min.value();
         if least < 0.0 {
-            return Err(place
-                .key("min")
-                .wrong(range.min.to_string(), "no negative time"));
+            let found = range.min.to_string();
+            return Err(place.key("min").wrong(found, "no negative time"));
         }
         priors.extend(prior(range, first + out.len(), &place)?);
-        out.push(parameter(delay, range, least, &place)?);
+        let constants = sources
+            .into_iter()
+            .map(|source| Constant::Delay(source).into());
+        let of = (name, constants.collect());
+        out.push(parameter(of, range, least, &place)?);
     }
     Ok((out, priors))
 }
@@ -69,7 +85,7 @@ fn prior<M: PhysicalQuantity>(
 
 /// A constant between bounds, from its guess on or from a `usual` value.
 fn parameter<M: PhysicalQuantity>(
-    (name, constant): (String, Constant),
+    (name, constants): (String, Vec<Follower>),
     range: &RangeSpec<M>,
     usual: f64,
     scope: &Scope<'_>,
@@ -90,7 +106,7 @@ fn parameter<M: PhysicalQuantity>(
     }
     Ok(Parameter {
         name,
-        constants: vec![constant.into()],
+        constants,
         lower,
         upper,
         guess,

@@ -20,7 +20,7 @@ pub struct IdentifySpec {
     /// Sought constants by their paths in the scene, such as `"materials.silicone.shear_modulus"`, each between bounds.
     #[serde(default)]
     pub free: FreeMap,
-    /// Constants of the inputs that are sought: gains of sources, and their delay.
+    /// Constants of the inputs that are sought: gains of sources, and their delays.
     #[serde(default)]
     pub inputs: InputConstantsSpec,
     /// Constants of `free` that are known beside the recordings, by their paths: each counts as one reading more.
@@ -47,9 +47,13 @@ pub struct InputConstantsSpec {
     /// Factors between the voltages and loads that recordings say and those that act, by the names of muscles, electrodes and loads.
     #[serde(default)]
     pub gains: BTreeMap<String, RangeSpec<Ratio>>,
-    /// Time by which all voltages and loads act later than recordings say, SI unit s.
+    /// Time by which all voltages and loads act later than recordings say, SI unit s; before they act, those of the state of rest at the
+    /// start, or the first ones.
     #[serde(default)]
     pub delay: Option<RangeSpec<Time>>,
+    /// The same of single sources, by the names of muscles, electrodes and loads, beside that of all others.
+    #[serde(default)]
+    pub delays: BTreeMap<String, RangeSpec<Time>>,
 }
 
 /// Bounds of a constant.
