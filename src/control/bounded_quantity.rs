@@ -29,6 +29,8 @@ pub enum When {
     Goal,
     /// At the instant nearest to a part of the duration: a waypoint.
     At(f64),
+    /// Not in this program.
+    Never,
 }
 
 impl When {
@@ -42,6 +44,19 @@ impl When {
 const ROUNDING: f64 = 1e-8;
 
 impl BoundedQuantity {
+    /// The same in the program of a state of rest: limits of what inputs change, too, which the end of the motion does not have.
+    #[must_use]
+    pub fn of_rest(&self) -> Self {
+        let is_counted = self.rate.is_none() && self.when == When::Everywhere;
+        Self {
+            when: match is_counted && self.quantity.is_of_held_inputs() {
+                true => When::Everywhere,
+                false => When::Never,
+            },
+            ..self.clone()
+        }
+    }
+
     /// The quantity that is subtracted in the interval before, where it is another one.
     pub fn other_before(&self) -> Option<Quantity> {
         let before = self.quantity.before();

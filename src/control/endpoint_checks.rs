@@ -86,6 +86,7 @@ pub(super) fn check(
                     When::Everywhere => true,
                     When::Goal => is_goal,
                     When::At(part) => is_there(part),
+                    When::Never => false,
                 };
                 let is_here =
                     bounded.when == When::Everywhere || !bounded.quantity.is_of_intervals();

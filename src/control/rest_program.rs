@@ -7,11 +7,15 @@
 //! ```text
 //! D₂L_d(q, q; u) + D₁L_d(q, q; u) = −h ∂V/∂q(q, u) = 0.
 //! ```
+//!
+//! Limits of quantities that read the inputs, as of fields, hold there too; those of coordinates alone are those of the motion at its end.
 
 use crate::control::boundary_conditions::BoundaryConditions;
+use crate::control::bounded_quantity::BoundedQuantity;
 use crate::control::error::BoundaryError;
 use crate::control::guess::{Carried, InitialGuess};
 use crate::control::inputs::Voltages;
+use crate::control::limits::Limits;
 use crate::control::peak_voltage::PEAK_VOLTAGE;
 use crate::control::problem::{BoundaryState, Control};
 use crate::control::transcription::Transcription;
@@ -55,7 +59,11 @@ pub fn rest_programs<'m>(
             continue;
         };
         let h = control.duration.first() / control.intervals as f64;
-        let (program, point) = equations(model, control, (z, voltages), h)?;
+        let limits = boundary.limits.list.iter().map(BoundedQuantity::of_rest);
+        let limits = Limits {
+            list: limits.collect(),
+        };
+        let (program, point) = equations((model, limits), control, (z, voltages), h)?;
         let own = |i: usize| {
             Some([
                 motion.unknowns().unknown(k, i)?,
@@ -81,9 +89,9 @@ pub fn rest_programs<'m>(
     Ok(out)
 }
 
-/// The equations of an equilibrium near coordinates under voltages, with steps of `h` ms, and the point of these coordinates.
+/// The equations of an equilibrium near coordinates under voltages and its limits, with steps of `h` ms, and the point of these coordinates.
 fn equations<'m>(
-    model: &'m Model,
+    (model, limits): (&'m Model, Limits),
     control: &Control,
     (z, voltages): (&[f64], &[f64]),
     h: f64,
@@ -96,7 +104,10 @@ fn equations<'m>(
         ..Control::of_course(&control.start, &inputs, h, 1)
     };
     let start = Start::moving(model, z.to_vec(), vec![0.0; model.coordinate_count()]);
-    let boundary = BoundaryConditions::without_goal(start, model.coordinate_count());
+    let boundary = BoundaryConditions {
+        limits,
+        ..BoundaryConditions::without_goal(start, model.coordinate_count())
+    };
     let mut scalars = model.scalars(voltages);
     scalars = model.variables.scalars(&scalars);
     for (s, parameter) in model

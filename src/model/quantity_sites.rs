@@ -32,6 +32,19 @@ impl Quantity {
         )
     }
 
+    /// Returns true if it is read from the inputs of an interval, and of a state of rest under them as well; one of three of a field.
+    pub fn is_of_held_inputs(&self) -> bool {
+        match self {
+            Self::SquaredField { at, .. } => *at == Stencil::Here,
+            Self::SourceCurrent { .. }
+            | Self::SourcePower { .. }
+            | Self::Tension { .. }
+            | Self::MeanCharge { .. }
+            | Self::ElectrodeVoltage { .. } => true,
+            _ => false,
+        }
+    }
+
     /// Returns true if its values are steps within intervals, whose rates they are over the length of the interval.
     pub fn is_step(&self) -> bool {
         matches!(

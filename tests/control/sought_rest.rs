@@ -4,7 +4,7 @@ use crate::common::sought::of_all_muscles;
 use crate::optimality::guessed_step;
 use crate::sought::{arm, pair, turn};
 use nalgebra::Vector3;
-use proboscis::control::problem::{BoundaryState, Control, Rest};
+use proboscis::control::problem::{BoundaryState, Control, PathConstraint, Rest};
 use proboscis::control::{BoundaryConditions, Transcription, guess, rest_programs};
 use proboscis::ipopt::Status;
 use proboscis::model::with_parameters;
@@ -139,4 +139,53 @@ fn what_moves_no_state_of_rest_leaves_it_given() {
     };
     let (_, boundary) = BoundaryConditions::resolve(&system, &control, 10.0).unwrap();
     assert_eq!(boundary.sought_rest, [false; 2]);
+}
+
+#[test]
+fn a_field_at_rest_that_an_arm_changes_keeps_its_limit() {
+    let system = sagging();
+    // The muscle that is pulled longer by the weight.
+    let problem = || Control {
+        goal: BoundaryState::RestAtVoltages(vec![300.0, 1500.0], Rest::Everything),
+        ..between_states_of_rest(&system)
+    };
+    let free = Control {
+        parameters: vec![arm([8.0, 22.0], 15.0)],
+        ..problem()
+    };
+    let limited = |max: f64, control: &Control| Control {
+        limits: vec![PathConstraint::ElectricField { muscle: 1, max }],
+        ..control.clone()
+    };
+    // A problem with the arm given refuses a goal that breaks the limit.
+    let keeps = |length: f64, max: f64| {
+        let system = with_parameters(&system, &[arm([1.0, 99.0], 15.0)], &[length]);
+        let control = limited(max, &problem());
+        BoundaryConditions::resolve(&system, &control, 10.0).is_ok()
+    };
+    // The largest limit that the goal with an arm breaks, by halving.
+    let field = |length: f64| {
+        let (mut low, mut high) = (1e3, 1e6);
+        assert!(!keeps(length, low) && keeps(length, high));
+        while high - low > 1e-9 * high {
+            let middle = 0.5 * (low + high);
+            match keeps(length, middle) {
+                true => high = middle,
+                false => low = middle,
+            }
+        }
+        high
+    };
+    let best = solved(&system, &free, None);
+    let (length, _) = found(&best);
+    let others = [8.0, 22.0].map(field);
+    let (own, least) = (field(length), others[0].min(others[1]));
+    println!("arm {length}: {own} V/mm, {others:?}");
+    assert!(least < 0.999 * own);
+    let max = 0.5 * (own + least);
+    let best = solved(&system, &limited(max, &free), None);
+    let (length, _) = found(&best);
+    let reached = field(length);
+    println!("arm {length}: {reached} V/mm of {max}");
+    assert!((reached / max - 1.0).abs() < 1e-6);
 }

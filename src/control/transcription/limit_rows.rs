@@ -93,6 +93,7 @@ pub(super) fn limit_rows(
                     When::Everywhere => all,
                     When::Goal => single.start.max(all.start)..single.end.min(all.end),
                     When::At(part) => step.nearest(instant_at(part, span.end), all),
+                    When::Never => single,
                 }
             }
             None => single,
@@ -136,7 +137,7 @@ fn unchecked(
     let is_of_goal = site == Site::Instants && at.end == span.end + 1;
     let is_checked = match bounded.when {
         When::Everywhere => true,
-        When::Goal => false,
+        When::Goal | When::Never => false,
         When::At(_) => is_of_goal,
     };
     if !is_checked {
@@ -197,6 +198,7 @@ fn sites((when, site): (When, Site), span: Span, reads_inputs: bool) -> Range<us
         is_closed,
     } = span;
     match (when, site) {
+        (When::Never, _) => 0..0,
         (When::Goal, Site::Instants) => end..end + 1,
         (When::Goal, Site::Intervals) => end - 1..end,
         (When::At(part), _) => {

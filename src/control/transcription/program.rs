@@ -178,7 +178,7 @@ impl Nlp for Transcription<'_> {
                     ..
                 } = self.limit(limit);
                 match when {
-                    When::Goal | When::At(_) => name.clone(),
+                    When::Goal | When::At(_) | When::Never => name.clone(),
                     When::Everywhere => format!("{name} {} {k}", quantity.when()),
                 }
             }
