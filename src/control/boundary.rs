@@ -121,6 +121,7 @@ impl BoundaryConditions {
         };
         let mut boundary = Self {
             start,
+            momentum_slopes: Vec::new(),
             goal: TerminalState {
                 coordinates: given,
                 rests,
@@ -139,6 +140,7 @@ impl BoundaryConditions {
             false => [start, rest.map(|rest| &rest.z[..])],
         };
         boundary.sought_rest = sought::check(&model, control, &boundary, ends)?;
+        boundary.momentum_slopes = sought::moving_start(&model, control, &mut boundary.start)?;
         if boundary.sought_rest[1] {
             boundary.goal.coordinates.fill(None);
         }

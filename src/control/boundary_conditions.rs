@@ -1,6 +1,7 @@
 //! Boundary conditions of a motion: its start and its terminal state.
 
 use crate::control::limits::Limits;
+use crate::control::moving_start::MomentumSlopes;
 use crate::dynamics::{Equilibrium, Start};
 
 /// A control problem's model with its start and goal.
@@ -8,6 +9,8 @@ use crate::dynamics::{Equilibrium, Start};
 pub struct BoundaryConditions {
     /// Start of the motion.
     pub start: Start,
+    /// Changes of its momenta with sought masses.
+    pub momentum_slopes: Vec<MomentumSlopes>,
     /// End of the motion.
     pub goal: TerminalState,
     /// Voltages at rest before the start and after the goal (V, one per muscle), where known.
@@ -25,6 +28,7 @@ impl BoundaryConditions {
     pub fn without_goal(start: Start, coordinates: usize) -> Self {
         Self {
             start,
+            momentum_slopes: Vec::new(),
             goal: TerminalState {
                 coordinates: vec![None; coordinates],
                 rests: Rests::Nothing,

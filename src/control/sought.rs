@@ -4,9 +4,11 @@ use crate::control::boundary_conditions::{BoundaryConditions, Rests};
 use crate::control::bounded_quantity::{BoundedQuantity, When};
 use crate::control::error::BoundaryError;
 use crate::control::limits::Limits;
+use crate::control::moving_start::{MomentumSlopes, momentum_slopes};
 use crate::control::problem::{BoundaryState, Control};
 use crate::control::rest::rest_with;
-use crate::functional::{Stencil, Term, TermKind};
+use crate::dynamics::Start;
+use crate::functional::Stencil;
 use crate::model::{
     Constant, Coordinates, MaterialConstant, Model, NotSought, Parameter, Quantity, Role, System,
     check_parameters, with_parameters,
@@ -110,7 +112,6 @@ pub(super) fn check(
     boundary: &BoundaryConditions,
     rest: [Option<&[f64]>; 2],
 ) -> Result<[bool; 2], BoundaryError> {
-    let moves = boundary.start.momentum.iter().any(|p| *p != 0.0);
     let layout = model.action.layout();
     let scalars = model.variables.range(Role::Parameter);
     for (s, parameter) in scalars.zip(&control.parameters) {
@@ -127,17 +128,6 @@ pub(super) fn check(
             return Err(BoundaryError::Parameter {
                 name: parameter.name.clone(),
                 reason: "a place of a body, joint or marker depends on it, which is offered in joint coordinates alone"
-                    .to_owned(),
-            });
-        }
-        let terms = &model.action.intervals.terms;
-        let is_mass = |term: &dyn Term| {
-            term.kind() == TermKind::Kinetic && term.not_by_squares().contains(&s)
-        };
-        if moves && terms.iter().any(|term| is_mass(term.as_ref())) {
-            return Err(BoundaryError::Parameter {
-                name: parameter.name.clone(),
-                reason: "a mass depends on it, and with it the momentum at the start; give a start at rest"
                     .to_owned(),
             });
         }
@@ -174,6 +164,25 @@ pub(super) fn check(
         }
     }
     Ok(depends)
+}
+
+/// Changes of the momenta at a start that moves with sought parameters.
+///
+/// # Errors
+/// They are no straight lines.
+pub(super) fn moving_start(
+    model: &Model,
+    control: &Control,
+    start: &mut Start,
+) -> Result<Vec<MomentumSlopes>, BoundaryError> {
+    if control.goal == BoundaryState::Periodic {
+        return Ok(Vec::new());
+    }
+    momentum_slopes(model, (&control.start, start)).map_err(|index| BoundaryError::Parameter {
+        name: control.parameters[index].name.clone(),
+        reason: "a mass depends on it, and with it the momentum at the start, which is no straight line in it; give a start at rest"
+            .to_owned(),
+    })
 }
 
 /// A limit of steps from or to a state of rest that depends on a parameter: what is subtracted there would have to follow it.

@@ -141,8 +141,8 @@ fn check(system: &System, task: &Identification) -> Result<(), IdentifyError> {
     })
 }
 
-/// Refuses starts that depend on a constant otherwise than by a state of rest, whose derivatives are known: momenta of given rates that read
-/// a mass, memories of given coordinates that read a length.
+/// Refuses starts whose coordinates depend on a constant otherwise than by a state of rest, whose derivatives are known: memories of given
+/// coordinates that read a length.
 fn fixed_starts(
     system: &System,
     task: &Identification,
@@ -155,7 +155,13 @@ fn fixed_starts(
     }
     let guesses: Vec<f64> = task.parameters.iter().map(|p| p.guess).collect();
     let grid = [recording.duration(), 4.0];
-    let at = |values: &[f64]| Setup::new(system, task, recording, values, grid)?.given_start();
+    let at = |values: &[f64]| {
+        Ok::<_, IdentifyError>(
+            Setup::new(system, task, recording, values, grid)?
+                .given_start()?
+                .0,
+        )
+    };
     let start = at(&guesses)?;
     for (j, parameter) in task.parameters.iter().enumerate() {
         let mut values = guesses.clone();
@@ -166,10 +172,10 @@ fn fixed_starts(
             false => parameter.lower,
         };
         let other = at(&values)?;
-        let pairs =
-            (start.z.iter().zip(&other.z)).chain(start.momentum.iter().zip(&other.momentum));
-        if pairs
-            .into_iter()
+        if start
+            .z
+            .iter()
+            .zip(&other.z)
             .any(|(a, b)| (a - b).abs() > SAME * a.abs().max(b.abs()))
         {
             let name = &parameter.name;

@@ -2,7 +2,8 @@
 
 use crate::control::problem::{Regime, Voltages};
 use crate::control::{
-    Argument, Column, ImplicitFunction, InitialGuess, StartDerivatives, Transcription,
+    Argument, BoundaryConditions, Column, ImplicitFunction, InitialGuess, StartDerivatives,
+    Transcription,
 };
 use crate::dynamics::{DiscreteTrajectory, Start};
 use crate::identify::error::IdentifyError;
@@ -39,7 +40,10 @@ pub(super) fn derivatives(
     let (model, intervals) = (&setup.model, discrete.intervals());
     let h = discrete.times[1] - discrete.times[0];
     let control = setup.open(voltages.clone(), intervals, h);
-    let boundary = setup.boundary(from.start.clone());
+    let boundary = match from.derivatives {
+        Some(_) => setup.boundary(from.start.clone())?,
+        None => BoundaryConditions::without_goal(from.start.clone(), model.coordinate_count()),
+    };
     let initial = InitialGuess {
         discrete: discrete.clone(),
         h,

@@ -4,7 +4,8 @@ use crate::control::problem::{
     BoundaryState, Control, Duration, Identification, Recording, SoughtStart, Voltages,
 };
 use crate::control::{
-    BoundaryConditions, BoundaryError, StartDerivatives, ends_that_read, resolve_start, rest_at,
+    BoundaryConditions, BoundaryError, MomentumSlopes, StartDerivatives, ends_that_read,
+    momentum_slopes, resolve_start, rest_at,
 };
 use crate::dynamics::{Equilibrium, IndependentChanges, Start};
 use crate::identify::drive::{Drive, Inputs};
@@ -121,10 +122,18 @@ impl<'a> Setup<'a> {
         }
     }
 
-    /// The start that the recording gives.
-    pub(super) fn given_start(&self) -> Result<Start, IdentifyError> {
+    /// The start that the recording gives, and the changes of its momenta with sought masses.
+    pub(super) fn given_start(&self) -> Result<(Start, Vec<MomentumSlopes>), IdentifyError> {
         let found = resolve_start(&self.model, &self.start, "start");
-        found.map_err(|error| self.recording.wrong(error))
+        let mut start = found.map_err(|error| self.recording.wrong(error))?;
+        let slopes = momentum_slopes(&self.model, (&self.start, &mut start));
+        let slopes = slopes.map_err(|index| {
+            let name = &self.control.parameters[index].name;
+            self.refused(format!(
+                "the momenta of its start are no straight line in {name}; expected a start at rest, with \"sought_start\": \"state\" where it moves"
+            ))
+        })?;
+        Ok((start, slopes))
     }
 
     /// The changes of the start that are unknowns; none where it is given.
@@ -139,7 +148,7 @@ impl<'a> Setup<'a> {
 
     /// Number of unknowns of the start.
     pub(super) fn count_of_start(&self) -> Result<usize, IdentifyError> {
-        let Some(changes) = self.changes(&self.given_start()?)? else {
+        let Some(changes) = self.changes(&self.given_start()?.0)? else {
             return Ok(0);
         };
         let momenta = match self.recording.sought_start {
@@ -154,7 +163,7 @@ impl<'a> Setup<'a> {
         &self,
         (constants, values): (usize, &[f64]),
     ) -> Result<(Start, StartDerivatives), IdentifyError> {
-        let mut start = self.given_start()?;
+        let (mut start, _) = self.given_start()?;
         let (n, count) = (self.model.coordinate_count(), constants + values.len());
         let mut by = StartDerivatives {
             coordinates: DMatrix::zeros(n, count),
@@ -194,8 +203,12 @@ impl<'a> Setup<'a> {
     }
 
     /// Start and open end of the transcription.
-    pub(super) fn boundary(&self, start: Start) -> BoundaryConditions {
-        BoundaryConditions::without_goal(start, self.model.coordinate_count())
+    pub(super) fn boundary(&self, start: Start) -> Result<BoundaryConditions, IdentifyError> {
+        let (_, momentum_slopes) = self.given_start()?;
+        Ok(BoundaryConditions {
+            momentum_slopes,
+            ..BoundaryConditions::without_goal(start, self.model.coordinate_count())
+        })
     }
 
     /// The problem whose transcription has the derivatives by the start too.

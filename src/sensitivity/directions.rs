@@ -1,7 +1,9 @@
 //! Changes of an opened program with each number by which its optimum is differentiated.
 
 use crate::control::problem::{BoundaryState, Control, Objective, Varied, VariedOf, WeightOf};
-use crate::control::{BoundedQuantity, Column, Row, Transcription, When, resolve_start};
+use crate::control::{
+    BoundedQuantity, Column, Row, Transcription, When, momentum_slopes, resolve_start,
+};
 use crate::model::{Coordinates, Model, Quantity, Role};
 use crate::nlp::Nlp;
 use crate::sensitivity::direction::{Direction, Held, Side};
@@ -231,7 +233,11 @@ impl<'a> Directions<'a> {
             velocities: BTreeMap::new(),
         };
         let start = resolve_start(self.model(), &unit, "start");
-        let start = start.map_err(|error| NoSensitivity::Refused(error.to_string()))?;
+        let mut start = start.map_err(|error| NoSensitivity::Refused(error.to_string()))?;
+        let slopes = momentum_slopes(self.model(), (&unit, &mut start));
+        slopes.map_err(|_| {
+            NoSensitivity::Refused("momenta are no straight line in a mass".to_owned())
+        })?;
         let rows = self.program.unknowns().rows.iter().enumerate();
         let of = |(row, of): (usize, &Row)| match *of {
             Row::Instant { k: 0, i } => {

@@ -48,6 +48,7 @@ mod riccati;
 mod single_times;
 mod sought;
 mod sought_hold;
+mod sought_momentum;
 mod sought_rest;
 mod squares;
 mod tension_limits;

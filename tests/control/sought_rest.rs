@@ -30,7 +30,7 @@ fn between_states_of_rest(system: &System) -> Control {
     control
 }
 
-fn solved(system: &System, control: &Control, from: Option<&Optimum>) -> Optimum {
+pub(crate) fn solved(system: &System, control: &Control, from: Option<&Optimum>) -> Optimum {
     let earlier = from.map(|optimum| &optimum.motion);
     let go_on = &mut |_: &proboscis::workflow::Iterate<'_>| ControlFlow::Continue(());
     let optimum = optimise(system, control, earlier, SolveLimits::default(), go_on).unwrap();

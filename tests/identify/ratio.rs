@@ -1,10 +1,11 @@
 //! A cart that its damper stops: a free motion determines damping over mass, a pushed one both.
 
+use crate::derivatives::compare;
 use crate::oscillator::{joint, parameter, slide, times};
 use proboscis::control::problem::{
     Identification, Reading, Recording, Regime, SoughtStart, Voltages,
 };
-use proboscis::identify::{IdentifyError, identify};
+use proboscis::identify::{Unknowns, identify};
 use proboscis::math::Random;
 use proboscis::model::components::{Load, LoadPlace};
 use proboscis::model::{Constant, System};
@@ -92,13 +93,20 @@ fn a_free_motion_determines_damping_over_mass_and_a_pushed_one_both() {
 }
 
 #[test]
-fn a_start_whose_momentum_reads_a_sought_mass_is_refused() {
-    let mut own = recording("free", 0.2, 0.0, &mut Random::new(1));
+fn a_mass_is_found_from_a_start_with_a_given_velocity() {
+    let mut own = recording("pushed", 0.2, 0.1, &mut Random::new(4));
     own.start = joint(0.0, 0.2);
     own.sought_start = SoughtStart::Nothing;
-    let error = identify(&system(), &task(vec![own]), &mut |_, _| {}).unwrap_err();
-    let IdentifyError::Refused { reason, .. } = error else {
-        panic!("{error}");
-    };
-    assert!(reason.contains("its start depends on mass"), "{reason}");
+    let task = task(vec![own]);
+    let unknowns = Unknowns::of_values(&[0.8, 450.0], &[&[]]);
+    let largest = compare(&system(), &task, &unknowns);
+    assert!(largest.iter().all(|size| *size > 0.1), "{largest:?}");
+    let found = identify(&system(), &task, &mut |_, _| {}).unwrap();
+    for (j, truth) in [DAMPING, MASS].into_iter().enumerate() {
+        let error = found.information.covariance[(j, j)].sqrt();
+        let value = found.fit.of_constants()[j];
+        println!("{j}: {value} ± {error} of {truth}");
+        assert!(error > 0.0 && error < 0.02 * truth);
+        assert!((value - truth).abs() < 3.5 * error);
+    }
 }

@@ -29,6 +29,7 @@ mod program;
 mod scaling;
 mod segment;
 mod squares;
+mod start_momentum;
 mod step;
 mod structure;
 mod time_rows;
@@ -50,6 +51,7 @@ use layout::Layout;
 pub(super) use limit_rows::Site;
 use objective::Objective;
 pub use outline::Outline;
+use start_momentum::StartMomentum;
 use structure::Structure;
 use workspace::Workspace;
 
@@ -67,7 +69,7 @@ pub struct Transcription<'m> {
     bounds: Bounds,
     row_bounds: Bounds,
     /// Momentum of the start.
-    momentum: Vec<f64>,
+    momentum: StartMomentum,
     /// Part of the system that comes to rest at the end.
     rests: Rests,
     /// Goals and limits, those that nothing can change included.
@@ -117,6 +119,7 @@ impl<'m> Transcription<'m> {
         let objective = Objective::new(model, boundary, (control, &layout), initial);
         let structure = Structure::new(model, &layout, &objective)?;
         let workspace = Workspace::new(model, boundary, control, initial, &layout);
+        let momentum = StartMomentum::new(model, boundary, (&layout, &structure));
         let mut out = Self {
             model,
             variable_scales: Self::variable_scales(model, &layout, control, initial.h),
@@ -125,10 +128,7 @@ impl<'m> Transcription<'m> {
             structure,
             bounds: Bounds::default(),
             row_bounds: Bounds::default(),
-            momentum: match layout.is_closed() {
-                true => vec![0.0; boundary.start.momentum.len()],
-                false => boundary.start.momentum.clone(),
-            },
+            momentum,
             layout,
             rests: boundary.goal.rests,
             bounded: boundary.limits.list.len(),

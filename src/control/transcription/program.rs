@@ -80,10 +80,9 @@ impl Nlp for Transcription<'_> {
             *value = scale
                 * match *row {
                     Row::Instant { k, i } => {
-                        let start = if k == 0 && i < self.momentum.len() {
-                            self.momentum[i]
-                        } else {
-                            0.0
+                        let start = match k {
+                            0 => self.momentum.at(i, (x, &self.variable_scales)),
+                            _ => 0.0,
                         };
                         let again = match self.layout.twin {
                             Some(twin) if twin.is_closed && k == twin.of && i < coordinates => {
@@ -107,6 +106,9 @@ impl Nlp for Transcription<'_> {
         self.time_gradients();
         for (value, kept) in values.iter_mut().zip(&self.structure.jacobian.kept) {
             *value = kept.scale * self.workspace.values[kept.place];
+        }
+        for (entry, slope) in self.momentum.slopes() {
+            values[entry] += self.structure.jacobian.kept[entry].scale * slope;
         }
     }
 

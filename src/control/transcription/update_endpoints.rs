@@ -25,7 +25,7 @@ impl Transcription<'_> {
         } = boundary;
         self.workspace.instants[0].z.copy_from_slice(&start.z);
         if !self.layout.is_closed() {
-            self.momentum.copy_from_slice(&start.momentum);
+            self.momentum.given.copy_from_slice(&start.momentum);
         }
         let unknowns = self.model.action.map.unknowns();
         let last = &mut self.workspace.instants[self.layout.end].z;
@@ -69,7 +69,7 @@ impl Transcription<'_> {
             return other("a state of rest depends on a sought constant".to_owned());
         }
         if start.z.len() != self.workspace.instants[0].z.len()
-            || start.momentum.len() != self.momentum.len()
+            || start.momentum.len() != self.momentum.given.len()
         {
             return other("the start belongs to another model".to_owned());
         }
