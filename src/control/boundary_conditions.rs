@@ -1,7 +1,6 @@
 //! Boundary conditions of a motion: its start and its terminal state.
 
 use crate::control::limits::Limits;
-use crate::control::moving_start::MomentumSlopes;
 use crate::dynamics::{Equilibrium, Start};
 
 /// A control problem's model with its start and goal.
@@ -40,6 +39,17 @@ impl BoundaryConditions {
             notes: Vec::new(),
         }
     }
+}
+
+/// Derivatives of the momenta of a start by a parameter.
+#[derive(Clone, Debug, PartialEq)]
+pub struct MomentumSlopes {
+    /// Index of the parameter.
+    pub parameter: usize,
+    /// Its value at the start.
+    pub value: f64,
+    /// A derivative for each coordinate.
+    pub slopes: Vec<f64>,
 }
 
 /// Part of the system that comes to rest at the end.

@@ -76,12 +76,7 @@ pub(super) fn check(
         let bounded = || {
             let list = boundary.limits.list.iter().zip(&model.measured);
             let is_of_path = |bounded: &BoundedQuantity| {
-                let is_mean = matches!(
-                    bounded.quantity,
-                    Quantity::JointStep { .. } | Quantity::SquaredSpeed { .. }
-                );
-                let is_of_rate =
-                    is_mean || bounded.rate.is_some() || bounded.quantity.before().is_some();
+                let is_of_rate = is_of_rate(bounded);
                 let is_then = match bounded.when {
                     When::Everywhere => true,
                     When::Goal => is_goal,
@@ -101,6 +96,16 @@ pub(super) fn check(
         }
     }
     Ok(())
+}
+
+/// Returns true of quantities that are rates, or counted from the interval before.
+fn is_of_rate(bounded: &BoundedQuantity) -> bool {
+    let quantity = &bounded.quantity;
+    let is_mean = matches!(
+        quantity,
+        Quantity::JointStep { .. } | Quantity::SquaredSpeed { .. }
+    );
+    is_mean || bounded.rate.is_some() || quantity.before().is_some()
 }
 
 /// Known values of a start or goal.

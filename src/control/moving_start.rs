@@ -3,25 +3,15 @@
 //! The momentum p = M(q, π) q̇ of given coordinates and rates is a straight line in each mass, density or moment of inertia, and in
 //! several of them together: its values at two values of a parameter tell its slope, and a third one that it is a straight line.
 
-use crate::control::boundary::resolve_start;
+use crate::control::boundary_conditions::MomentumSlopes;
+use crate::control::given_state::resolve_start;
 use crate::control::problem::BoundaryState;
 use crate::dynamics::Start;
 use crate::functional::TermKind;
-use crate::model::{Analysis, Model, Parameter, Role, with_parameters};
+use crate::model::{Analysis, Model, Parameter, Presolved, Role, with_parameters};
 
 /// Differences from a straight line this small, relative to the momenta, are rounding.
 const STRAIGHT: f64 = 1e-9;
-
-/// Derivatives of the momenta of a start by a parameter.
-#[derive(Clone, Debug, PartialEq)]
-pub struct MomentumSlopes {
-    /// Index of the parameter.
-    pub parameter: usize,
-    /// Its value at the start.
-    pub value: f64,
-    /// A derivative for each coordinate.
-    pub slopes: Vec<f64>,
-}
 
 /// Gives a start with rates the momenta of its masses, and returns their derivatives by the parameters; none of a start at rest.
 ///
@@ -112,12 +102,14 @@ fn start_at(model: &Model, state: &BoundaryState, (index, value): (usize, f64)) 
     let parameters = &model.analysis.parameters;
     let mut values: Vec<f64> = parameters.iter().map(|one| one.guess).collect();
     values[index] = value;
-    let analysis = Analysis {
+    let system = with_parameters(&model.system, parameters, &values);
+    // What may move is that of the model.
+    let presolved = Presolved::new(&system, &model.analysis);
+    let given = Analysis {
         parameters: Vec::new(),
         coordinates: Some(model.coordinates),
         ..model.analysis.clone()
     };
-    let system = with_parameters(&model.system, parameters, &values);
-    let model = Model::for_analysis(system, analysis).ok()?;
+    let model = Model::of_presolved(system, given, presolved).ok()?;
     resolve_start(&model, state, "start").ok()
 }
