@@ -1,18 +1,20 @@
 //! Sought constants of the inputs of recordings: gains, and delays with which they act.
 //!
 //! The input of a source is `u(t) = g V(t − τ)`, of which a recording says V(t) from 0 on; before, it is that of the state of rest at the
-//! start, or V(0). An interval of the motion from a to b has of a delayed input
+//! start, or V(0). An interval of length h around the time m has of a delayed input the mean
 //!
 //! ```text
-//! the mean  1/h ∫ u dt,     or  (1/h ∫ u² dt)^½  of one that acts by its square alone,
+//! ∫ w u dt,     or  (∫ w u² dt)^½  of one that acts by its square alone,     w(t) = (1 − |t − m| / h) / h.
 //! ```
 //!
-//! so that its impulse is exact and changes smoothly with the delay: `d/dτ ∫ u² dt = u²(a) − u²(b)`.
+//! These weights of neighbouring intervals add up to 1, and their centres to the time itself: the impulse of a jump and its moment are exact
+//! wherever it lies within an interval. The mean is smooth in the delay, `d/dτ ∫ w u dt = ∫ w′ u dt`. The first interval takes in what the one
+//! before it would have.
 
 use crate::control::problem::{BoundaryState, Voltages};
 use crate::dynamics::step_inputs;
 use crate::math::in_order;
-use crate::model::{Constant, Model, Parameter, Time};
+use crate::model::{Analysis, Constant, Model, ModelError, Parameter, Presolved, Time};
 use std::borrow::Cow;
 
 /// Places and weights of Gauss's rule of eight digits in smooth parts of an interval of length 1.
@@ -129,14 +131,25 @@ impl<'a> Inputs<'a> {
         }
     }
 
-    /// Tells which inputs act by their squares alone in a model.
-    pub(super) fn read_by(&mut self, model: &Model) {
+    /// Tells which delayed inputs act by their squares alone in a model, whose terms tell it where no constants are sought.
+    pub(super) fn read_by(&mut self, model: &Model) -> Result<(), ModelError> {
+        if !self.drive.has_delays() {
+            return Ok(());
+        }
+        let given = Analysis {
+            parameters: Vec::new(),
+            coordinates: Some(model.coordinates),
+            ..model.analysis.clone()
+        };
+        let presolved = Presolved::new(&model.system, &model.analysis);
+        let model = Model::of_presolved(model.system.clone(), given, presolved)?;
         let variables = model.variables.of(Time::Interval);
-        for input in step_inputs(model) {
+        for input in step_inputs(&model) {
             if let Some(source) = variables[input.scalar].source {
                 self.by_squares[source] = input.is_squared;
             }
         }
+        Ok(())
     }
 
     /// Sources of which a gain or a delay is sought.
@@ -200,42 +213,68 @@ impl<'a> Inputs<'a> {
     /// A delayed input: mean, or root of the mean of its square with the sign of the mean.
     fn delayed(&self, source: usize, delay: f64, [from, to]: [f64; 2]) -> Delayed {
         let h = to - from;
+        let weighted = |of: fn(f64) -> f64| {
+            let own = self.weighted((source, delay), [from, to], of);
+            match from > 0.0 {
+                true => own,
+                false => {
+                    let earlier = self.weighted((source, delay), [from - h, from], of);
+                    Delayed {
+                        value: own.value + earlier.value - of(self.before[source]),
+                        slope: own.slope + earlier.slope,
+                    }
+                }
+            }
+        };
+        let mean = weighted(|u| u);
+        if !self.by_squares[source] {
+            return mean;
+        }
+        let square = weighted(|u| u * u);
+        let value = square.value.max(0.0).sqrt().copysign(mean.value);
+        Delayed {
+            value,
+            slope: if value == 0.0 {
+                0.0
+            } else {
+                0.5 * square.slope / value
+            },
+        }
+    }
+
+    /// The weighted mean of a function of a delayed input in an interval.
+    fn weighted(
+        &self,
+        (source, delay): (usize, f64),
+        [from, to]: [f64; 2],
+        of: fn(f64) -> f64,
+    ) -> Delayed {
+        let (h, middle) = (to - from, 0.5 * (from + to));
         let at = |time: f64| match time - delay {
             early if early < 0.0 => self.before[source],
             said => self.undelayed.at(said)[source],
         };
         let said = self.undelayed.switches();
         let corners = [0.0].into_iter().chain(said.iter().copied());
+        let (first, last) = (middle - h, middle + h);
         let inside = corners
             .map(|t| t + delay)
-            .filter(|t| (from..to).contains(t));
-        let ends = in_order([from, to].into_iter().chain(inside));
-        let integral = |of: fn(f64) -> f64| -> f64 {
-            let piece = |pair: &[f64]| -> f64 {
-                let length = pair[1] - pair[0];
-                GAUSS
-                    .iter()
-                    .map(|(x, w)| w * length * of(at(pair[0] + x * length)))
-                    .sum()
-            };
-            ends.windows(2).map(piece).sum()
+            .filter(|t| (first..last).contains(t));
+        let ends = in_order([first, middle, last].into_iter().chain(inside));
+        let mut out = Delayed {
+            value: 0.0,
+            slope: 0.0,
         };
-        let mean = integral(|u| u) / h;
-        if !self.by_squares[source] {
-            return Delayed {
-                value: mean,
-                slope: (at(from) - at(to)) / h,
-            };
+        for pair in ends.windows(2) {
+            let length = pair[1] - pair[0];
+            let side = if pair[0] < middle { 1.0 } else { -1.0 };
+            for (x, w) in GAUSS {
+                let time = pair[0] + x * length;
+                let part = w * length * of(at(time)) / h;
+                out.value += part * (1.0 - (time - middle).abs() / h);
+                out.slope += part * side / h;
+            }
         }
-        let value = (integral(|u| u * u) / h).sqrt().copysign(mean);
-        let slope = (at(from).powi(2) - at(to).powi(2)) / h;
-        Delayed {
-            value,
-            slope: if value == 0.0 {
-                0.0
-            } else {
-                0.5 * slope / value
-            },
-        }
+        out
     }
 }

@@ -78,7 +78,8 @@ impl<'a> Setup<'a> {
             inputs,
             start,
         };
-        setup.inputs.read_by(&setup.model);
+        let read = setup.inputs.read_by(&setup.model);
+        read.map_err(|error| recording.wrong(error.into()))?;
         setup.check()?;
         Ok(setup)
     }

@@ -194,7 +194,8 @@ fn by_hand(truth: [f64; 3]) -> (System, Identification) {
     known.recordings[0].voltages = Voltages::Signals(vec![table(truth[1]), switched]);
     let unknowns = Unknowns::of_values(&truth[..1], &[&[]]);
     let mut grid = Grid::first(&known, &known.recordings);
-    grid.intervals = vec![4000];
+    // Voltages switch at instants.
+    grid.intervals = vec![3600];
     let seen = predict((&system, &known), &[0], &unknowns, &grid)
         .unwrap()
         .values;
@@ -227,4 +228,39 @@ fn delays_of_two_drivers_are_recovered() {
         );
     }
     assert!(found.bias.is_confirmed, "{:?}", found.bias);
+}
+
+#[test]
+fn a_switched_voltage_moves_a_muscle_later_by_its_square() {
+    // The modulus of the muscle is sought too.
+    let truth = [0.11, 6.7, 12.9];
+    let values = |delay: f64| -> Vec<f64> {
+        let (_, task) = by_hand([truth[0], truth[1], delay]);
+        let readings = task.recordings[0]
+            .channels
+            .iter()
+            .flat_map(|one| &one.readings);
+        readings.map(|reading| reading.value).collect()
+    };
+    let [before, after] = [-0.3, 0.3].map(|change| values(truth[2] + change));
+    let expected: Vec<f64> = after
+        .iter()
+        .zip(&before)
+        .map(|(a, b)| (a - b) / 0.6)
+        .collect();
+    let (system, task) = of_two_drivers();
+    let mut grid = Grid::first(&task, &task.recordings);
+    grid.intervals = vec![301];
+    let unknowns = Unknowns::of_values(&truth, &[&[]]);
+    let found = predict((&system, &task), &[0], &unknowns, &grid).unwrap();
+    let largest = expected
+        .iter()
+        .fold(0.0, |most: f64, slope| most.max(slope.abs()));
+    assert!(largest > 1e-4, "{largest}");
+    for (own, expected) in found.derivatives.column(2).iter().zip(&expected) {
+        assert!(
+            (own - expected).abs() < 0.01 * largest,
+            "{own} {expected} of {largest}"
+        );
+    }
 }
