@@ -4,7 +4,7 @@
 //! start, or V(0). An interval of length h around the time m has of a delayed input the mean
 //!
 //! ```text
-//! ∫ w u dt,     or  (∫ w u² dt)^½  of one that acts by its square alone,     w(t) = (1 − |t − m| / h) / h.
+//! ∫ w u dt,     or  (∫ w u² dt)^½  of a voltage without a resistor, whose forces follow its square,     w(t) = (1 − |t − m| / h) / h.
 //! ```
 //!
 //! These weights of neighbouring intervals add up to 1, and their centres to the time itself: the impulse of a jump and its moment are exact
@@ -12,9 +12,8 @@
 //! before it would have.
 
 use crate::control::problem::{BoundaryState, Voltages};
-use crate::dynamics::step_inputs;
 use crate::math::in_order;
-use crate::model::{Analysis, Constant, Model, ModelError, Parameter, Presolved, Time};
+use crate::model::{Constant, Parameter, System};
 use std::borrow::Cow;
 
 /// Places and weights of Gauss's rule of eight digits in smooth parts of an interval of length 1.
@@ -111,45 +110,34 @@ pub(super) struct Inputs<'a> {
     pub(super) undelayed: Cow<'a, Voltages>,
     /// Inputs before those that are said.
     before: Vec<f64>,
-    /// Sources that act by their squares alone.
+    /// Sources that act by their squares: voltages of electrodes without a resistor.
     by_squares: Vec<bool>,
 }
 
 impl<'a> Inputs<'a> {
-    /// Those that a recording says; `start` has gains.
-    pub(super) fn new(drive: Drive, said: &'a Voltages, start: &BoundaryState) -> Self {
+    /// Those that a recording says of a system; `start` has gains.
+    pub(super) fn new(
+        drive: Drive,
+        said: &'a Voltages,
+        (system, start): (&System, &BoundaryState),
+    ) -> Self {
         let undelayed = drive.voltages(said);
         let before = match start {
             BoundaryState::RestAtVoltages(row, _) => row.clone(),
             _ => undelayed.at(0.0).to_vec(),
         };
+        let mut system = system.clone();
+        let loads = system.first_load();
+        let is_square = |source| {
+            let resistor = Constant::Resistance(source).value(&mut system);
+            source < loads && resistor.is_none()
+        };
         Self {
-            by_squares: vec![false; before.len()],
+            by_squares: (0..before.len()).map(is_square).collect(),
             before,
             undelayed,
             drive,
         }
-    }
-
-    /// Tells which delayed inputs act by their squares alone in a model, whose terms tell it where no constants are sought.
-    pub(super) fn read_by(&mut self, model: &Model) -> Result<(), ModelError> {
-        if !self.drive.has_delays() {
-            return Ok(());
-        }
-        let given = Analysis {
-            parameters: Vec::new(),
-            coordinates: Some(model.coordinates),
-            ..model.analysis.clone()
-        };
-        let presolved = Presolved::new(&model.system, &model.analysis);
-        let model = Model::of_presolved(model.system.clone(), given, presolved)?;
-        let variables = model.variables.of(Time::Interval);
-        for input in step_inputs(&model) {
-            if let Some(source) = variables[input.scalar].source {
-                self.by_squares[source] = input.is_squared;
-            }
-        }
-        Ok(())
     }
 
     /// Sources of which a gain or a delay is sought.

@@ -43,7 +43,7 @@ impl<'a> Setup<'a> {
         let system = with_parameters(system, &parameters, constants);
         let drive = Drive::new(system.sources().len(), &parameters, constants);
         let start = drive.start(&recording.start);
-        let inputs = Inputs::new(drive, &recording.voltages, &start);
+        let inputs = Inputs::new(drive, &recording.voltages, (&system, &start));
         let voltages = &inputs.undelayed;
         let control = Control {
             parameters,
@@ -71,15 +71,13 @@ impl<'a> Setup<'a> {
             analysis.zero_inputs.remove(&source);
         }
         let model = Model::for_analysis(system, analysis);
-        let mut setup = Self {
+        let setup = Self {
             model: model.map_err(|error| recording.wrong(error.into()))?,
             control,
             recording,
             inputs,
             start,
         };
-        let read = setup.inputs.read_by(&setup.model);
-        read.map_err(|error| recording.wrong(error.into()))?;
         setup.check()?;
         Ok(setup)
     }

@@ -23,6 +23,7 @@ use crate::workflow::found_hold;
 use crate::workflow::further::is_unreached;
 use crate::workflow::hold_check::{self, free_end};
 use crate::workflow::infeasible::explain;
+use crate::workflow::loop_limits::LoopLimits;
 use crate::workflow::memory::{self, Occasion};
 use crate::workflow::motion::{discrete_trajectory, trajectory};
 use crate::workflow::optimum::Optimum;
@@ -170,6 +171,8 @@ fn remarks(
     remarks.warn("singular_loops", optimum.model.loops.warning.clone());
     remarks.note("refined_grid", refined);
     remarks.warn("coarse_intervals", tested.and_then(Resimulation::warning));
+    let along = LoopLimits::of_optimum(control, optimum);
+    remarks.warn("limit_passed", along.and_then(|along| along.warning()));
     remarks.warn("goal_not_held", not_kept.into_iter().chain(left_goal));
     let repeated = optimum.repeated.as_ref();
     remarks.warn("not_periodic", repeated.and_then(Repeated::warning));

@@ -16,7 +16,7 @@ use std::collections::BTreeMap;
 pub struct ClosedLoop {
     /// Number of samples.
     pub samples: usize,
-    /// Number of samples with an input at its lower bound, below which it was wanted: a muscle can not push.
+    /// Number of samples with an input at its lower bound, below which it was wanted: a muscle cannot push.
     pub samples_at_lower_bound: usize,
     /// Number of samples with an input at its upper bound, above which it was wanted.
     pub samples_at_upper_bound: usize,
@@ -260,7 +260,7 @@ impl ClosedLoop {
         let (count, samples) = (self.samples_at_lower_bound, self.samples);
         (count > 0).then(|| {
             format!(
-                "in {count} of {samples} samples the controller wanted an input below its lower bound: a muscle can not push"
+                "in {count} of {samples} samples the controller wanted an input below its lower bound: a muscle cannot push"
             )
         })
     }

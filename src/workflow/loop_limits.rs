@@ -1,20 +1,23 @@
-//! The path limits of a problem that a controller plans anew, along the motion that followed.
+//! The path limits of a problem along a simulated motion: of a robot under a controller that plans anew, or under the inputs of an optimum.
 //!
-//! A plan keeps them at its own instants, for the robot that it knows, as it was measured; the motion of another robot, between these instants or under a
-//! push, may pass them. All limits are compared that the model of the simulated robot tells.
+//! A program keeps them at its own instants and intervals, a plan for the robot that it knows, as it was measured; the motion in finer steps, of
+//! another robot, or under a push, may pass them. All limits are compared that the model of the simulated robot tells.
 
-use crate::control::problem::{Ahead, Simulation};
-use crate::control::{PassedLimit, limits_along};
+use crate::control::problem::{Ahead, Control, Simulation};
+use crate::control::{LimitsAlong, PassedLimit, limits_along};
 use crate::dynamics::DiscreteTrajectory;
 use crate::math::significant;
-use crate::model::System;
+use crate::model::{Analysis, System};
 use crate::workflow::error::WorkflowError;
 use crate::workflow::integrate::grid;
+use crate::workflow::optimum::Optimum;
 use crate::workflow::remark::Remarks;
 use serde::Serialize;
 
 /// A part of the larger bound by which a limit may be passed without a warning: that of steps of finite length.
 const SLIGHT: f64 = 1e-3;
+/// The same of an optimum, of which the intervals are longer.
+const BETWEEN: f64 = 0.02;
 
 /// Limits along the motion of a closed loop.
 #[derive(Clone, Debug, PartialEq, Serialize)]
@@ -65,8 +68,26 @@ impl LoopLimits {
         }
         let analysis = task.analysis(system, grid(task).1);
         let found = limits_along((&of.system, limits), (system, analysis), motion);
-        let mut found =
-            found.map_err(|error| WorkflowError::boundary("simulate", &error.into()))?;
+        let found = found.map_err(|error| WorkflowError::boundary("simulate", &error.into()))?;
+        Ok(Some(Self::of(found, SLIGHT)))
+    }
+
+    /// Those of a problem along the motion under the inputs of its optimum in steps of half the length; none where it has none.
+    pub(crate) fn of_optimum(control: &Control, optimum: &Optimum) -> Option<Self> {
+        let motion = optimum.resimulation.as_ref()?.half.as_ref()?;
+        if control.limits.is_empty() {
+            return None;
+        }
+        let system = &optimum.model.system;
+        let analysis = Analysis {
+            interval: motion.times[1] - motion.times[0],
+            ..optimum.model.analysis.clone()
+        };
+        let found = limits_along((system, &control.limits), (system, analysis), motion);
+        found.ok().map(|found| Self::of(found, BETWEEN))
+    }
+
+    fn of(mut found: LimitsAlong, slight: f64) -> Self {
         found.passed.sort_by(|a, b| b.part.total_cmp(&a.part));
         let passed = |one: PassedLimit| Passed {
             excess: (one.value - one.bound).abs(),
@@ -75,20 +96,21 @@ impl LoopLimits {
             bound: one.bound,
             unit: one.unit,
             time: one.time / 1e3,
-            is_far: one.part > SLIGHT,
+            is_far: one.part > slight,
         };
-        Ok(Some(Self {
+        Self {
             compared: found.compared,
             not_compared: found.left_out,
             passed: found.passed.into_iter().map(passed).collect(),
-        }))
+        }
     }
 
     /// Adds a warning of limits that are passed, a note where steps of finite length explain it, and one of limits that are not compared.
     pub(crate) fn remark(&self, remarks: &mut Remarks) {
-        match self.passed.first().is_some_and(|worst| worst.is_far) {
-            true => remarks.warn("limit_passed", self.message()),
-            false => remarks.note("limit_passed", self.message()),
+        let message = self.message("under the controller");
+        match self.is_far() {
+            true => remarks.warn("limit_passed", message),
+            false => remarks.note("limit_passed", message),
         }
         let names = &self.not_compared;
         let not_compared = (!names.is_empty()).then(|| {
@@ -100,7 +122,17 @@ impl LoopLimits {
         remarks.note("limits_not_compared", not_compared);
     }
 
-    fn message(&self) -> Option<String> {
+    /// The warning of an optimum whose motion in finer steps passes a limit by far.
+    pub(crate) fn warning(&self) -> Option<String> {
+        let message = self.message("under the optimal inputs, in steps of half the length,");
+        message.filter(|_| self.is_far())
+    }
+
+    fn is_far(&self) -> bool {
+        self.passed.first().is_some_and(|worst| worst.is_far)
+    }
+
+    fn message(&self, when: &str) -> Option<String> {
         let worst = self.passed.first()?;
         let space = if worst.unit.is_empty() { "" } else { " " };
         let number = |value: f64| format!("{}{space}{}", significant(value, 4), worst.unit);
@@ -110,7 +142,7 @@ impl LoopLimits {
             others => format!("; {others} other limits are passed too"),
         };
         Some(format!(
-            "under the controller a limit is passed, {}: {} at {} s, {} beyond its bound {}{others}",
+            "{when} a limit is passed, {}: {} at {} s, {} beyond its bound {}{others}",
             worst.limit,
             number(worst.value),
             worst.time,
