@@ -60,14 +60,7 @@ pub(super) fn add(
                 TABLE,
                 law_csv(&found.law, system, &origin.line()).as_bytes(),
             )?;
-            match found.law.observer {
-                None => files.add(CODE, law_c(&found.law, system, &origin.line()).as_bytes())?,
-                Some(_) => {
-                    let text = "feedback.c is not written: it has no observer";
-                    summary.notes.warn("feedback", [text.to_owned()]);
-                    files.remove(CODE);
-                }
-            }
+            files.add(CODE, law_c(&found.law, system, &origin.line()).as_bytes())?;
             let arrays = arrays(&found).map_err(|cause| WriteError {
                 path: files.folder().join(ARRAYS),
                 cause,

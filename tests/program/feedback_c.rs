@@ -1,8 +1,9 @@
 //! The law of a controller in C, compiled and called beside that of the library.
 
-use crate::runs::{run, workshop};
+use crate::feedback::solved;
+use crate::runs::workshop;
 use proboscis::control::problem::Task;
-use proboscis::feedback::{Controller, Law};
+use proboscis::feedback::{Controller, Law, Reading};
 use proboscis::files::read_problem;
 use proboscis::math::Random;
 use std::fs;
@@ -15,7 +16,7 @@ const MAIN: &str = r#"
 #include "feedback.c"
 int main(void) {
   feedback_state_t state;
-  double measured[FEEDBACK_STATES], inputs[FEEDBACK_INPUTS];
+  double measured[FEEDBACK_READINGS], inputs[FEEDBACK_INPUTS];
   int i;
   long k;
   feedback_start(&state);
@@ -24,7 +25,7 @@ int main(void) {
     for (i = 0; i < FEEDBACK_INPUTS; i++) printf("%.17g ", inputs[i]);
   }
   for (;;) {
-    for (i = 0; i < FEEDBACK_STATES; i++)
+    for (i = 0; i < FEEDBACK_READINGS; i++)
       if (scanf("%lf", &measured[i]) != 1) return 0;
     feedback_step(&state, measured, inputs);
     for (i = 0; i < FEEDBACK_INPUTS; i++) printf("%.17g ", inputs[i]);
@@ -35,14 +36,36 @@ int main(void) {
 /// Intervals that are compared: those of the motion, and more after its end.
 const STEPS: usize = 30;
 
-/// Deviations in rad and rad/ms about the motion.
-fn measured(law: &Law, random: &mut Random, time: f64) -> Vec<f64> {
-    let all = law.measured.iter().enumerate();
-    all.map(|(place, of)| {
-        let size = if of.is_rate { 6e-3 } else { 0.6 };
-        law.reference(time, place) + random.between(-size, size)
-    })
-    .collect()
+/// What is measured about the motion at an instant, and the same in SI units: off by up to 0.6 rad and 6 rad/s, or by a part of that which markers move.
+fn measured(law: &Law, random: &mut Random, k: usize) -> [Vec<f64>; 2] {
+    let mut off = |place: usize| {
+        let of = &law.measured[place];
+        let (size, unit) = if of.is_rate { (6e-3, 1e3) } else { (0.6, 1.0) };
+        (random.between(-size, size), unit)
+    };
+    let (values, si): (Vec<f64>, Vec<f64>) = match &law.observer {
+        None => (0..law.measured.len())
+            .map(|place| {
+                let (off, unit) = off(place);
+                let value = law.reference(law.h * k as f64, place) + off;
+                (value, unit * value)
+            })
+            .unzip(),
+        Some(observer) => {
+            let filter = observer.points.get(k).or(observer.held.as_ref()).unwrap();
+            let readings = observer.readings.iter().zip(&filter.readings);
+            readings
+                .map(|(of, value)| {
+                    let (off, _) = off(0);
+                    match of {
+                        Reading::State(_) => (value + off, value + off),
+                        Reading::Marker(..) => (value + 10.0 * off, 1e-3 * (value + 10.0 * off)),
+                    }
+                })
+                .unzip()
+        }
+    };
+    [values, si]
 }
 
 /// Inputs of all intervals by the library, and what it measured in SI units.
@@ -53,14 +76,12 @@ fn by_library(law: &Law) -> (Vec<f64>, String) {
     for k in 0..STEPS + law.delay {
         let time = law.h * k as f64;
         if k < STEPS {
-            let mut values = measured(law, random, time);
+            let [mut values, mut si] = measured(law, random, k);
             if k == 7 {
-                values[0] = f64::NAN;
+                (values[0], si[0]) = (f64::NAN, f64::NAN);
             }
-            for (value, of) in values.iter().zip(&law.measured) {
-                let si = if of.is_rate { 1e3 * value } else { *value };
-                text.push_str(&format!("{si:?} "));
-            }
+            si.iter()
+                .for_each(|value| text.push_str(&format!("{value:?} ")));
             text.push('\n');
             controller.sample(time, &values);
         }
@@ -104,26 +125,28 @@ fn by_c(folder: &Path, measured: &str) -> Vec<f64> {
         .collect()
 }
 
+/// An observer of the tip, also with lasting forces, and one of the joint.
+const TIP: &str = "feedback.observer={\"markers\":{\"tip\":\"0.1 mm\"}}";
+const LASTING: &str = "feedback.observer={\"markers\":{\"tip\":\"0.1 mm\"},\"lasting\":0.02}";
+const JOINT: &str = "feedback.observer={\"joints\":{\"joint1\":\"0.5 deg\"}}";
+const NO_INTEGRAL: &str = "feedback.weights.integral=0";
+
 #[test]
 fn a_compiled_controller_gives_the_inputs_of_the_library() {
     let folder = workshop();
     let here = folder.path();
-    for (to, delay) in [("at_once", "0 ms"), ("late", "21 ms")] {
+    for (to, delay, observer) in [
+        ("at_once", "0 ms", &[][..]),
+        ("late", "21 ms", &[]),
+        ("observed", "0 ms", &[JOINT]),
+        ("observed_late", "21 ms", &[TIP]),
+        ("lasting", "0 ms", &[LASTING, NO_INTEGRAL]),
+        ("lasting_late", "21 ms", &[LASTING, NO_INTEGRAL]),
+    ] {
         let bounds = "control.voltage_bounds=[\"0 V\", \"2.2 kV\"]";
         let delay = format!("feedback.delay=\"{delay}\"");
-        let arguments = [
-            "solve",
-            "problems/pair_feedback.json",
-            "-o",
-            to,
-            "--no-report",
-            "--set",
-            &delay,
-            "--set",
-            bounds,
-        ];
-        let (status, out, err) = run(here, &arguments);
-        assert_eq!(status, 0, "{out}{err}");
+        let set = [&[&*delay, bounds], observer].concat();
+        solved(here, "problems/pair_feedback.json", to, &set);
         let law = format!(
             "simulate.controller.feedback=\"{}\"",
             here.join(to).display()
@@ -133,7 +156,9 @@ fn a_compiled_controller_gives_the_inputs_of_the_library() {
             panic!("a simulation");
         };
         let law = task.controller.unwrap().law;
-        assert_eq!(law.delay, if to == "late" { 3 } else { 0 });
+        assert_eq!(law.delay, if to.ends_with("late") { 3 } else { 0 });
+        assert_eq!(law.observer.is_some(), !observer.is_empty());
+        assert_eq!(law.forces(), usize::from(to.starts_with("lasting")));
         let (expected, text) = by_library(&law);
         let found = by_c(&here.join(to), &text);
         assert_eq!(found.len(), expected.len());
@@ -141,9 +166,9 @@ fn a_compiled_controller_gives_the_inputs_of_the_library() {
         let within = expected
             .iter()
             .filter(|v| **v > least + 1.0 && **v < most - 1.0);
-        assert!(within.count() > STEPS / 3, "{expected:?}");
+        assert!(within.count() > STEPS / 3, "{to}: {expected:?}");
         let [low, high] = [least, most].map(|bound| expected.contains(&bound));
-        assert!(low && high, "{expected:?}");
+        assert!(low && high, "{to}: {expected:?}");
         for (k, (a, b)) in found.iter().zip(&expected).enumerate() {
             assert!((a - b).abs() < 1e-6 * b.abs().max(1.0), "{to} {k}: {a} {b}");
         }

@@ -1,7 +1,9 @@
 //! The law of a controller as a C file without dependencies: tables, and a function that a driver board calls once an interval.
 
 use crate::feedback::Law;
-use crate::files::feedback::record::{LawRecord, PointRecord};
+use crate::files::feedback::record::{
+    FilterRecord, ForceRecord, LawRecord, PointRecord, ReadingRecord, unit_of_force,
+};
 use crate::files::feedback::write::record;
 use crate::model::System;
 use std::fmt::Write;
@@ -12,75 +14,156 @@ const CODE: &str = include_str!("controller.c");
 /// The text of `feedback.c`; `head` says where it is from.
 pub fn law_c(law: &Law, system: &System, head: &str) -> String {
     let record = record(law, system);
-    let points = || record.intervals.iter().chain(&record.held);
     let mut out = format!("/* {}\n *\n", comment(head));
     out.push_str(&interface(&record));
+    sizes(&record, &mut out);
+    tables(&record, &mut out);
+    observer_tables(&record, &mut out);
+    out + CODE
+}
+
+/// The intervals, then the time after them.
+fn points(record: &LawRecord) -> impl Iterator<Item = &PointRecord> {
+    record.intervals.iter().chain(&record.held)
+}
+
+/// Definitions of all sizes.
+fn sizes(record: &LawRecord, out: &mut String) {
     let (states, inputs) = (record.measured.len(), record.inputs.len());
-    let integrals = record.integrals.len();
+    let observer = record.observer.as_ref();
+    let forces = observer.and_then(|one| Some(one.lasting.as_ref()?.forces.len()));
     let sizes = [
-        ("POINTS", points().count()),
+        ("POINTS", points(record).count()),
+        ("END", record.intervals.len()),
         ("STATES", states),
+        (
+            "READINGS",
+            observer.map_or(states, |one| one.readings.len()),
+        ),
         ("INPUTS", inputs),
-        ("INTEGRALS", integrals),
+        ("INTEGRALS", record.integrals.len()),
         ("DELAY", record.delay_intervals),
+        ("OBSERVER", observer.map_or(0, |_| 1)),
+        ("FORCES", forces.unwrap_or(0)),
+        ("TARGETS", forces.map_or(0, |_| inputs)),
     ];
     for (name, size) in sizes {
         writeln!(out, "#define FEEDBACK_{name} {size}").expect("text takes everything");
     }
-    out.push_str("#define FEEDBACK_READ (FEEDBACK_STATES + FEEDBACK_INTEGRALS + FEEDBACK_DELAY * FEEDBACK_INPUTS)\n\n");
-    let mut table = |declaration: &str, rows: Vec<String>| {
-        let rows = rows.join(",\n  ");
-        writeln!(out, "static const {declaration} = {{\n  {rows}\n}};\n")
-            .expect("text takes everything");
-    };
-    let interval = vec![number(record.interval)];
-    table("double feedback_interval[1]", interval);
-    // C has no empty arrays.
-    let places = record.integrals.iter().copied().chain([0]);
-    let places = places.map(|place| place.to_string());
-    table(
-        "int feedback_integrated[FEEDBACK_INTEGRALS + 1]",
-        places.collect(),
+    out.push_str(
+        "#define FEEDBACK_ESTIMATED (FEEDBACK_STATES + FEEDBACK_FORCES)\n\
+         #define FEEDBACK_FOUND (FEEDBACK_ESTIMATED + FEEDBACK_TARGETS)\n\
+         #define FEEDBACK_READ (FEEDBACK_FOUND + FEEDBACK_INTEGRALS + FEEDBACK_DELAY * FEEDBACK_INPUTS)\n\n",
     );
+}
+
+/// Adds a table of rows.
+fn table(out: &mut String, declaration: &str, rows: impl Iterator<Item = String>) {
+    let rows: Vec<String> = rows.collect();
+    let rows = rows.join(",\n  ");
+    writeln!(out, "static const {declaration} = {{\n  {rows}\n}};\n")
+        .expect("text takes everything");
+}
+
+/// Tables of the motion and of its gains.
+fn tables(record: &LawRecord, out: &mut String) {
+    let interval = [number(record.interval)];
+    table(out, "double feedback_interval[1]", interval.into_iter());
+    // C has no empty arrays.
+    if !record.integrals.is_empty() {
+        let places = record.integrals.iter().map(usize::to_string);
+        table(out, "int feedback_integrated[FEEDBACK_INTEGRALS]", places);
+    }
     let squared = record.inputs.iter().map(|one| u8::from(one.is_squared));
     let squared = squared.map(|is_squared| is_squared.to_string());
-    table("int feedback_squared[FEEDBACK_INPUTS]", squared.collect());
+    table(out, "int feedback_squared[FEEDBACK_INPUTS]", squared);
     let bounds = record.inputs.iter().map(|one| row(&one.bounds));
+    table(out, "double feedback_bounds[FEEDBACK_INPUTS][2]", bounds);
+    if record.observer.is_none() {
+        let states = points(record).map(|point| row(&point.state));
+        table(
+            out,
+            "double feedback_state[FEEDBACK_POINTS][FEEDBACK_STATES]",
+            states,
+        );
+    }
+    let given = points(record).map(|point| row(&point.inputs));
     table(
-        "double feedback_bounds[FEEDBACK_INPUTS][2]",
-        bounds.collect(),
-    );
-    let of = |list: fn(&PointRecord) -> &Vec<f64>| points().map(|p| row(list(p))).collect();
-    let states = of(|point| &point.state);
-    table(
-        "double feedback_state[FEEDBACK_POINTS][FEEDBACK_STATES]",
-        states,
-    );
-    let given = of(|point| &point.inputs);
-    table(
+        out,
         "double feedback_given[FEEDBACK_POINTS][FEEDBACK_INPUTS]",
         given,
     );
-    let gain = |point: &PointRecord| {
-        let rows: Vec<String> = point.gain.iter().map(|one| row(one)).collect();
-        format!("{{ {} }}", rows.join(", "))
-    };
     table(
+        out,
         "double feedback_gain[FEEDBACK_POINTS][FEEDBACK_INPUTS][FEEDBACK_READ]",
-        points().map(gain).collect(),
+        points(record).map(|point| matrix(&point.gain)),
     );
     if record.delay_intervals > 0 {
-        let none = vec![0.0; inputs];
-        let offset = |point: &PointRecord| match point.offset.is_empty() {
+        let none = vec![0.0; record.inputs.len()];
+        let offset = points(record).map(|point| match point.offset.is_empty() {
             true => row(&none),
             false => row(&point.offset),
-        };
+        });
         table(
+            out,
             "double feedback_offset[FEEDBACK_POINTS][FEEDBACK_INPUTS]",
-            points().map(offset).collect(),
+            offset,
         );
     }
-    out + CODE
+}
+
+/// Tables of the observer, where there is one.
+fn observer_tables(record: &LawRecord, out: &mut String) {
+    let Some(observer) = &record.observer else {
+        return;
+    };
+    let filters = || observer.intervals.iter().chain(&observer.held);
+    let readings = filters().map(|one| row(&one.readings));
+    table(
+        out,
+        "double feedback_reading[FEEDBACK_POINTS][FEEDBACK_READINGS]",
+        readings,
+    );
+    let mut of =
+        |name: &str, rows: &str, columns: &str, list: fn(&FilterRecord) -> &Vec<Vec<f64>>| {
+            let declaration = format!(
+                "double feedback_{name}[FEEDBACK_POINTS][FEEDBACK_{rows}][FEEDBACK_{columns}]"
+            );
+            table(out, &declaration, filters().map(|one| matrix(list(one))));
+        };
+    of("by_state", "ESTIMATED", "ESTIMATED", |one| &one.by_state);
+    of("by_input", "ESTIMATED", "INPUTS", |one| &one.by_inputs);
+    of("output", "READINGS", "ESTIMATED", |one| &one.output);
+    of("filter", "ESTIMATED", "READINGS", |one| &one.gain);
+    let lasting = observer.lasting.as_ref();
+    let forces = lasting.map_or(&[][..], |one| &one.forces);
+    let size = record.measured.len() + forces.len();
+    let jump = observer.jump.iter().copied().chain(std::iter::repeat(0.0));
+    table(
+        out,
+        "double feedback_jump[FEEDBACK_ESTIMATED]",
+        jump.take(size).map(number),
+    );
+    if let Some(lasting) = lasting {
+        // Forces that can not be held count in N and N mm.
+        let kinds = [true, false].map(unit_of_force);
+        let unit = |force: &ForceRecord| {
+            let own = kinds.iter().find(|(unit, _)| *unit == force.unit);
+            1.0 / own.map_or(1.0, |(_, factor)| *factor)
+        };
+        let units: Vec<f64> = forces.iter().map(unit).collect();
+        let rows = lasting.by_inputs.iter().zip(&units);
+        let rows: Vec<String> = rows
+            .map(|(of, unit)| row(&of.iter().map(|value| value * unit).collect::<Vec<_>>()))
+            .collect();
+        let units = units.into_iter().map(number);
+        table(out, "double feedback_force_unit[FEEDBACK_FORCES]", units);
+        table(
+            out,
+            "double feedback_force[FEEDBACK_FORCES][FEEDBACK_INPUTS]",
+            rows.into_iter(),
+        );
+    }
 }
 
 /// The head comment: what is measured and given, in which order and units, and when.
@@ -102,9 +185,23 @@ fn interface(record: &LawRecord) -> String {
         let rows = rows.map(|(place, row)| format!(" *   [{place}] {}\n", comment(row)));
         format!(" * {title}:\n{}", rows.collect::<String>())
     };
-    let measured = record.measured.iter();
-    let measured = measured.map(|one| format!("{} [{}]", one.name, one.unit));
-    out.push_str(&list("measured", measured.collect()));
+    let of_state = |place: usize| {
+        let one = &record.measured[place];
+        format!("{} [{}]", one.name, one.unit)
+    };
+    let measured = match &record.observer {
+        None => (0..record.measured.len()).map(of_state).collect(),
+        Some(observer) => {
+            let readings = observer.readings.iter().map(|reading| match reading {
+                ReadingRecord::Measured(place) => of_state(*place),
+                ReadingRecord::Marker(name, axis) => {
+                    format!("place of {name} along {} [m]", ["x", "y", "z"][*axis])
+                }
+            });
+            readings.collect()
+        }
+    };
+    out.push_str(&list("measured", measured));
     let inputs = record.inputs.iter();
     let inputs = inputs.map(|one| {
         let [low, high] = one.bounds;
@@ -122,6 +219,11 @@ fn comment(text: &str) -> String {
 fn row(values: &[f64]) -> String {
     let values: Vec<String> = values.iter().map(|value| number(*value)).collect();
     format!("{{ {} }}", values.join(", "))
+}
+
+fn matrix(rows: &[Vec<f64>]) -> String {
+    let rows: Vec<String> = rows.iter().map(|one| row(one)).collect();
+    format!("{{ {} }}", rows.join(", "))
 }
 
 /// A number as C reads it back to the bit.
