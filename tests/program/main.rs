@@ -23,6 +23,7 @@ mod identify_scenes;
 mod kept;
 mod killed;
 mod loops;
+mod lumped_controller;
 mod materials;
 mod messages;
 mod motions;
