@@ -1,7 +1,8 @@
 //! Times of the steps of a receding horizon on the trunk, and its memory over many of them.
 //!
-//! `cargo bench --bench receding_horizon -- [--write]`: the trunk of `problems/elephant_trunk.json` is planned anew over 20 intervals in each of them,
-//! on its way and at its goal, under random pushes. With `--write` the page goes to `results/gallery/receding_horizon.md`.
+//! `cargo bench --bench receding_horizon -- [--write] [--hour]`: the trunk of `problems/elephant_trunk.json` is planned anew over 20 intervals in each
+//! of them, on its way and at its goal, under random pushes. With `--write` the page goes to `results/gallery/receding_horizon.md`. With `--hour` the
+//! same loop runs for an hour of the robot instead, and its memory is printed every six minutes.
 
 #[path = "../tests/common/random.rs"]
 #[expect(dead_code, unreachable_pub, reason = "tests draw vectors too")]
@@ -26,13 +27,20 @@ const INTERVALS: usize = 20;
 /// Steps that are timed under pushes, and after these the steps by which memory is compared.
 const STEPS: usize = 20_000;
 const MORE: usize = 100_000;
+/// Length in ms of the long run, and of its parts.
+const HOUR: f64 = 3_600_000.0;
+const PART: f64 = 360_000.0;
 /// Intervals between pushes, and their greatest size in g mm²/ms about each joint.
 const BETWEEN: usize = 60;
 const PUSH: f64 = 3000.0;
 const SEED: u64 = 35;
 
 fn main() {
-    let writes = std::env::args().any(|argument| argument == "--write");
+    let is_given = |option: &str| std::env::args().any(|argument| argument == option);
+    if is_given("--hour") {
+        return hour();
+    }
+    let writes = is_given("--write");
     let text = page();
     println!("{text}");
     if writes {
@@ -90,10 +98,105 @@ fn followed(
     sum / STEPS as f64
 }
 
-/// Resident memory in kB, where the system tells.
-fn memory() -> Option<f64> {
+/// Numbers of times in bins that are a hundredth wide, from a microsecond on: no more memory for more of them.
+struct Times {
+    bins: Vec<usize>,
+    greatest: f64,
+}
+
+impl Times {
+    fn new() -> Self {
+        Self {
+            bins: vec![0; 2000],
+            greatest: 0.0,
+        }
+    }
+
+    /// Takes a time in s.
+    fn add(&mut self, time: f64) {
+        let bin = (time / 1e-6).max(1.0).ln() / 1.01_f64.ln();
+        let last = self.bins.len() - 1;
+        self.bins[(bin as usize).min(last)] += 1;
+        self.greatest = self.greatest.max(time);
+    }
+
+    /// The time in ms that a part of them does not exceed, upwards to a hundredth of it.
+    fn at(&self, part: f64) -> f64 {
+        let all: usize = self.bins.iter().sum();
+        let mut count = 0;
+        let within = self.bins.iter().position(|bin| {
+            count += bin;
+            count as f64 >= part * all as f64
+        });
+        1e-3 * 1.01_f64.powi(within.map_or(0, |bin| bin as i32 + 1))
+    }
+}
+
+/// The closed loop for an hour of the robot.
+fn hour() {
+    let horizon = Horizon::solved(&ahead(2.4)).expect("a horizon");
+    let law = horizon.law();
+    let model = Model::new(ahead(2.4).system, None, law.h, &[]).expect("a model");
+    let mut controller = RecedingHorizon::new(&horizon);
+    let mut robot = Robot::new(&model, 4);
+    let mut random = Random(SEED);
+    let mut times = [Times::new(), Times::new(), Times::new()];
+    let [steps, part] = [HOUR, PART].map(|time| (time / law.h).round() as usize);
+    let mut others = 0;
+    let told = |k: usize| {
+        let minutes = law.h * k as f64 / 60_000.0;
+        match memory("VmRSS") {
+            Some(memory) => println!("{minutes:.1} min of the robot, {k} steps: {memory} kB"),
+            None => println!("{minutes:.1} min of the robot, {k} steps: unknown memory"),
+        }
+    };
+    let began = Instant::now();
+    for k in 0..steps {
+        // The first second has what is built once.
+        if k == 417 || k % part == 0 {
+            told(k);
+        }
+        let time = law.h * k as f64;
+        let state = robot.measure();
+        let before = Instant::now();
+        let answer = controller.step(time, Some(&state));
+        let step = before.elapsed().as_secs_f64();
+        others += usize::from(answer.source != Source::Plan);
+        robot.go(law.h, answer.inputs);
+        let before = Instant::now();
+        controller.prepare();
+        let preparation = before.elapsed().as_secs_f64();
+        for (times, time) in times
+            .iter_mut()
+            .zip([step, preparation, step + preparation])
+        {
+            times.add(time);
+        }
+        if k % BETWEEN == BETWEEN - 1 {
+            push(&mut robot, &mut random);
+        }
+    }
+    told(steps);
+    println!(
+        "greatest memory {:?} kB, {others} of {steps} inputs are not those of the plan, {:.0} s",
+        memory("VmHWM"),
+        began.elapsed().as_secs_f64()
+    );
+    for (name, times) in ["step", "preparation", "both"].iter().zip(&times) {
+        println!(
+            "{name}, ms: median {:.3}, 99 % {:.3}, 99.9 % {:.3}, greatest {:.3}",
+            times.at(0.5),
+            times.at(0.99),
+            times.at(0.999),
+            1e3 * times.greatest
+        );
+    }
+}
+
+/// Resident memory in kB by its name, where the system tells.
+fn memory(name: &str) -> Option<f64> {
     let text = fs::read_to_string("/proc/self/status").ok()?;
-    let line = text.lines().find(|line| line.starts_with("VmRSS"))?;
+    let line = text.lines().find(|line| line.starts_with(name))?;
     line.split_whitespace().nth(1)?.parse().ok()
 }
 
@@ -158,7 +261,7 @@ fn page() -> String {
             regulated.sqrt()
         ));
         if step == 2.4 {
-            let before = memory();
+            let before = memory("VmRSS");
             let state = law.at(1e4).state.clone();
             let mut state_off = state.clone();
             for k in STEPS..STEPS + MORE {
@@ -166,7 +269,9 @@ fn page() -> String {
                 controller.step(law.h * k as f64, Some(&state_off));
                 controller.prepare();
             }
-            let grown = memory().zip(before).map(|(after, before)| after - before);
+            let grown = memory("VmRSS")
+                .zip(before)
+                .map(|(after, before)| after - before);
             costs.push_str(&format!(
                 "After {MORE} more steps the memory of the process has grown by {} kB. ",
                 grown.map_or("an unknown number of".to_owned(), |size| size.to_string())

@@ -77,23 +77,29 @@ pub(super) fn add(
 /// Matrices of all steps in rad, mm, ms, g, V: of the state of coordinates, momenta and integrals.
 fn arrays(found: &Regulated) -> io::Result<Vec<u8>> {
     let mut arrays = NpzWriter::default();
-    type Matrix = fn(&RegulatedStep) -> &DMatrix<f64>;
-    let of: [(&str, Matrix); 5] = [
-        ("A", |step| &step.by_state),
-        ("B", |step| &step.by_inputs),
-        ("Q", |step| &step.costs.state),
-        ("R", |step| &step.costs.inputs),
-        ("K", |step| &step.gain),
+    type Matrix = fn(&RegulatedStep) -> DMatrix<f64>;
+    let mut of: Vec<(&str, Matrix)> = vec![
+        ("A", |step| step.by_state.clone()),
+        ("B", |step| step.by_inputs.clone()),
+        ("Q", |step| step.whole_costs().costs.state),
+        ("R", |step| step.whole_costs().costs.inputs),
+        ("K", |step| step.gain.clone()),
     ];
+    if found.steps[0].rates.iter().any(|weight| *weight > 0.0) {
+        of.push(("N", |step| step.whole_costs().cross.transpose()));
+    }
     for (name, matrix) in of {
         let first = matrix(&found.steps[0]);
         let shape = [found.steps.len(), first.nrows(), first.ncols()];
-        let all = found.steps.iter().flat_map(|step| rows(matrix(step)));
+        let all = found
+            .steps
+            .iter()
+            .flat_map(|step| rows(&matrix(step)).collect::<Vec<_>>());
         arrays.array(name, &shape, all);
         if let Some((step, _)) = &found.held {
             let matrix = matrix(step);
             let shape = [matrix.nrows(), matrix.ncols()];
-            arrays.array(&format!("{name}_held"), &shape, rows(matrix));
+            arrays.array(&format!("{name}_held"), &shape, rows(&matrix));
         }
     }
     let end = &found.end_cost;

@@ -193,8 +193,12 @@ fn by_gains(law: &Law, estimate: &Estimate<'_>, k: usize) -> Vec<f64> {
 #[test]
 fn gains_of_the_regulator_under_a_lasting_force() {
     let pair = problem("pair.json", &BETWEEN);
-    for n in [1, 6] {
-        let horizon = horizon(&pair, &regulator(0.0), n);
+    for (n, rates) in [(1, 0.0), (6, 0.0), (1, 0.5), (6, 0.5)] {
+        let task = Regulator {
+            rates,
+            ..regulator(0.0)
+        };
+        let horizon = horizon(&pair, &task, n);
         let law = horizon.law();
         let model = Model::new(pair.0.clone(), None, law.h, &[]).unwrap();
         let mut robot = Robot::new(&model, 1);
@@ -213,12 +217,12 @@ fn gains_of_the_regulator_under_a_lasting_force() {
             let given = &law.at(law.h * k as f64).inputs;
             let found = inputs.iter().zip(given).map(|(a, b)| a * a - b * b);
             let found: Vec<f64> = found.collect();
-            println!("{n} {k}: {found:.1?} {wanted:.1?}");
+            println!("{n} {rates} {k}: {found:.1?} {wanted:.1?}");
             estimate.expect(k, &found);
             if k > 8 {
                 most = wanted.iter().fold(most, |a, b| a.max(b.abs()));
                 for (found, wanted) in found.iter().zip(&wanted) {
-                    assert!((found - wanted).abs() < 2e-2 * most, "{n} {k}");
+                    assert!((found - wanted).abs() < 2e-2 * most, "{n} {rates} {k}");
                 }
             }
             go(&mut robot, law.h, &inputs, 0.1);

@@ -20,18 +20,22 @@ const BETWEEN: [&str; 3] = [
     "control.objective={\"rate\": 1.0}",
 ];
 
-/// Without bounds the plan is that of the linear-quadratic regulator, whatever the length of the horizon: its cost at the end is that of all time.
+/// Without bounds the plan is that of the linear-quadratic regulator, whatever the length of the horizon: its cost at the end is that of all time. So it is
+/// where rates cost.
 #[test]
 fn gains_of_the_regulator_for_small_deviations() {
     let pair = problem("pair.json", &BETWEEN);
-    for (n, step) in [(1, 1.0), (6, 2.5)] {
+    let mut first = Vec::new();
+    for (n, step, rates) in [(1, 1.0, 0.0), (6, 2.5, 0.0), (1, 1.0, 5.0), (6, 2.5, 5.0)] {
         let task = Regulator {
             step,
+            rates,
             ..Regulator::default()
         };
         let horizon = horizon(&pair, &task, n);
         let law = horizon.law();
         let point = law.at(0.0);
+        first.push(point.gain[(0, 0)]);
         assert!(point.inputs.iter().all(|voltage| *voltage > 1100.0));
         // To first order: half the difference of the inputs of opposite deviations.
         for (angle, rate) in [(1e-4, 0.0), (0.0, 1e-5)] {
@@ -56,6 +60,8 @@ fn gains_of_the_regulator_for_small_deviations() {
             }
         }
     }
+    // Rates that cost change the gains.
+    assert!((first[2] / first[0] - 1.0).abs() > 0.05, "{first:?}");
 }
 
 /// One iteration a step comes to the optima from the states that are measured, which Ipopt finds to the end.

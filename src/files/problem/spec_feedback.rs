@@ -58,7 +58,7 @@ pub struct WeightsSpec {
     /// Of coordinates of joints and nodes in degrees or mm; 1 where not written.
     #[serde(default)]
     pub joints: Option<f64>,
-    /// Of their rates in 100 degrees/s or 100 mm/s; 0 where not written.
+    /// Of their mean rates over an interval in 100 degrees/s or 100 mm/s; 0 where not written.
     #[serde(default)]
     pub rates: Option<f64>,
     /// Of places of markers in mm, by name; 0 where not named.

@@ -20,7 +20,7 @@ use crate::workflow::optimum::SolveLimits;
 use crate::workflow::receding::no_horizon::NoHorizon;
 use crate::workflow::receding::program::Program;
 use crate::workflow::receding::reference::Reference;
-use crate::workflow::regulator::{NoRegulator, predicting};
+use crate::workflow::regulator::{NoRegulator, predicting, rate_weight};
 use std::ops::ControlFlow;
 
 /// Words on integrals.
@@ -354,15 +354,9 @@ fn momenta(model: &Model, (of, inert): (&[usize], &[usize]), state: &[f64]) -> V
 
 /// Weight of the rate of each coordinate, for its differences over a step.
 fn rates(model: &Model, task: &Regulator, (of, inert): (&[usize], &[usize]), h: f64) -> Vec<f64> {
-    let weight = |c: usize| {
-        let unit = match model.is_length(of[c]) {
-            true => 1.0,
-            false => Regulator::DEGREE,
-        };
-        match inert.contains(&c) {
-            true => task.rates * (Regulator::RATE_TIME / (unit * h)).powi(2),
-            false => 0.0,
-        }
+    let weight = |c: usize| match inert.contains(&c) {
+        true => rate_weight(model, task, of[c], h),
+        false => 0.0,
     };
     (0..of.len()).map(weight).collect()
 }

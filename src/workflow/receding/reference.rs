@@ -1,6 +1,6 @@
 //! The motion that a receding horizon follows, with the costs of deviations from it: those of the regulator.
 
-use crate::feedback::{LawInput, riccati_step};
+use crate::feedback::LawInput;
 use crate::workflow::regulator::{Regulated, RegulatedStep};
 use nalgebra::DMatrix;
 
@@ -40,8 +40,7 @@ impl Reference {
         let mut after = of.end_cost.clone();
         let mut ends = vec![];
         for step in of.steps.iter().rev() {
-            let found = riccati_step([&step.by_state, &step.by_inputs], &step.costs, &after)?;
-            after = found.cost;
+            after = step.riccati(&after)?.cost;
             ends.push(after.clone());
         }
         ends.reverse();

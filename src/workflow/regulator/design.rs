@@ -182,7 +182,7 @@ impl<'a> Design<'a> {
         &self,
         (step, by_forces): &(LinearStep, DMatrix<f64>),
         at: &State,
-    ) -> Result<RegulatedStep, NoRegulator> {
+    ) -> RegulatedStep {
         let (n, u) = (step.by_state.nrows(), self.inputs.len());
         let size = n + self.integrated.len();
         let mut by_state = DMatrix::identity(size, size);
@@ -196,11 +196,12 @@ impl<'a> Design<'a> {
         }
         let input = |i: usize| self.task.inputs / (self.ranges[i] * self.ranges[i]);
         let coordinates = self.coordinates.len();
-        Ok(RegulatedStep {
+        RegulatedStep {
             by_state,
             by_inputs,
+            rates: self.rate_weights(size),
             costs: Costs {
-                state: self.state_costs(at)?,
+                state: self.state_costs(at),
                 inputs: DMatrix::from_fn(u, u, |i, j| if i == j { input(i) } else { 0.0 }),
             },
             places: self
@@ -211,29 +212,34 @@ impl<'a> Design<'a> {
             // Forces that last are not integrated beside.
             by_forces: by_forces.clone(),
             lasting: None,
-        })
+        }
     }
 
     /// Q at an instant.
-    pub(super) fn state_costs(&self, at: &State) -> Result<DMatrix<f64>, NoRegulator> {
+    pub(super) fn state_costs(&self, at: &State) -> DMatrix<f64> {
         let (n, m) = (self.coordinates.len(), self.momenta.len());
         let mut costs = self.place_costs(at);
         for (place, &of) in self.integrated.iter().enumerate() {
             let unit = self.unit(self.coordinates[of]) * Regulator::INTEGRAL_TIME;
             costs[(n + m + place, n + m + place)] = self.task.integral / unit.powi(2);
         }
-        if self.task.rates > 0.0 {
-            costs += self.rate_costs(at, costs.nrows())?;
+        costs
+    }
+
+    /// Weights of the differences of a state of a size over an interval: those of coordinates that have momenta.
+    fn rate_weights(&self, size: usize) -> Vec<f64> {
+        let mut out = vec![0.0; size];
+        for (weight, &i) in out.iter_mut().zip(&self.coordinates) {
+            if self.momenta.contains(&i) {
+                *weight = rate_weight(self.model, self.task, i, self.h);
+            }
         }
-        Ok(costs)
+        out
     }
 
     /// Deviation of a coordinate that costs as much as one of a mm.
     pub(super) fn unit(&self, i: usize) -> f64 {
-        match self.model.is_length(i) {
-            true => 1.0,
-            false => Regulator::DEGREE,
-        }
+        unit(self.model, i)
     }
 
     /// The part of Q that is of coordinates and markers.
@@ -272,23 +278,6 @@ impl<'a> Design<'a> {
         out
     }
 
-    /// The costs of rates: δq̇ = M⁻¹ (δp − ∂p/∂q δq).
-    fn rate_costs(&self, at: &State, size: usize) -> Result<DMatrix<f64>, NoRegulator> {
-        let n = self.coordinates.len();
-        let [mass, by] = self.of_momenta(at);
-        let m = self.momenta.len();
-        let mut right = DMatrix::zeros(m, size);
-        right.columns_mut(0, n).copy_from(&-by);
-        right.columns_mut(n, m).fill_with_identity();
-        let mut rates = mass.lu().solve(&right).ok_or(NoRegulator::Rates)?;
-        for (row, &i) in self.momenta.iter().enumerate() {
-            rates
-                .row_mut(row)
-                .scale_mut(Regulator::RATE_TIME / self.unit(i));
-        }
-        Ok(self.task.rates * rates.transpose() * rates)
-    }
-
     /// Derivatives of coordinates and momenta by coordinates and rates.
     pub(super) fn by_rates(&self, at: &State) -> DMatrix<f64> {
         let (n, m) = (self.coordinates.len(), self.momenta.len());
@@ -310,4 +299,17 @@ impl<'a> Design<'a> {
                 .select_columns(&self.coordinates),
         ]
     }
+}
+
+/// Deviation of a coordinate that costs as much as one of a mm.
+fn unit(model: &Model, i: usize) -> f64 {
+    match model.is_length(i) {
+        true => 1.0,
+        false => Regulator::DEGREE,
+    }
+}
+
+/// Weight of the rate of a coordinate, for its difference over an interval of h ms.
+pub(crate) fn rate_weight(model: &Model, task: &Regulator, i: usize, h: f64) -> f64 {
+    task.rates * (Regulator::RATE_TIME / (unit(model, i) * h)).powi(2)
 }

@@ -8,7 +8,8 @@
 //! v = −K ξ − K′ w,     K′ = (R + BᵀS₊B)⁻¹ Bᵀ (S₊D + P₊),     P = (A − BK)ᵀ (S₊D + P₊)
 //! ```
 //!
-//! with P = 0 behind the end, and the gain over w is K′ − K X − (0, 1).
+//! with P = 0 behind the end, and the gain over w is K′ − K X − (0, 1). Where rates cost, R̂ stands for R, S₊D + P₊ + WD for S₊D + P₊, and WD is
+//! subtracted from P.
 
 use crate::feedback::{Forced, Lasting};
 use crate::workflow::regulator::design::Design;
@@ -59,11 +60,15 @@ impl Against {
             ..
         } = &*step;
         let drift = by_state * &self.rest + acting(step) - &self.rest;
+        let of_rates = step.weighted(&drift);
         let costs = after * drift + &self.ahead;
         let toward = by_inputs.transpose() * after;
-        let inner = (&step.costs.inputs + toward * by_inputs).cholesky()?;
-        let further = inner.solve(&(by_inputs.transpose() * &costs));
-        self.ahead = (by_state - by_inputs * &step.gain).transpose() * costs;
+        let inner = step.whole_costs().costs.inputs + toward * by_inputs;
+        let further = by_inputs.transpose() * (&costs + &of_rates);
+        let further = inner.cholesky()?.solve(&further);
+        let closed = by_state - by_inputs * &step.gain;
+        // Rates cost by the change of the state.
+        self.ahead = closed.transpose() * (costs + &of_rates) - of_rates;
         step.lasting = Some([gain(step, &self.rest, Some(&further)), self.ahead.clone()]);
         Some(())
     }

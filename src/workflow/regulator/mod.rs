@@ -7,17 +7,20 @@ mod design;
 mod lasting;
 mod law;
 mod observer;
+mod rates;
 mod regulated;
 
 use crate::control::problem::{Control, Regulator};
 use crate::dynamics::{DiscreteTrajectory, Linearisation};
-use crate::feedback::{Costs, HeldGain, NotHeld, held_gain, riccati_step};
+use crate::feedback::{Costs, HeldGain, NotHeld};
 use crate::ipopt::interrupt;
 use crate::model::Model;
 use crate::workflow::regulator::check::reproduced;
 use crate::workflow::regulator::design::Design;
 use crate::workflow::regulator::lasting::Against;
+pub(crate) use design::rate_weight;
 use nalgebra::DMatrix;
+pub use rates::WholeCosts;
 pub use regulated::{NoRegulator, Regulated, RegulatedStep, RegulatorReport, Reproduced};
 
 /// The regulator of a motion with a momentum at its start, whose goal is held by `rest` voltages, by source, where it is.
@@ -67,7 +70,7 @@ impl Design<'_> {
             let inputs = self.model.variables.split(&self.discrete.scalars[k])[0];
             let step = self.linearised(&mut linearisation, &part[0], inputs);
             let step = step.ok_or(NoRegulator::Singular(k))?;
-            steps.push(self.augmented(&step, &part[0])?);
+            steps.push(self.augmented(&step, &part[0]));
             if interrupt::stop().is_some() {
                 return Err(NoRegulator::Stopped);
             }
@@ -84,13 +87,12 @@ impl Design<'_> {
         let mut against = Against::new(goal, !self.forced.is_empty())?;
         let mut cost = match &held {
             Some((_, held)) => &held.cost * self.task.terminal,
-            None => self.state_costs(end)? * self.task.terminal,
+            None => self.state_costs(end) * self.task.terminal,
         };
         let end_cost = cost.clone();
         let mut residual = held.as_ref().map_or(0.0, |(_, held)| held.residual);
         for (k, step) in steps.iter_mut().enumerate().rev() {
-            let found = riccati_step([&step.by_state, &step.by_inputs], &step.costs, &cost);
-            let found = found.ok_or(NoRegulator::Recursion(k))?;
+            let found = step.riccati(&cost).ok_or(NoRegulator::Recursion(k))?;
             residual = residual.max(left(step, &cost, &found.gain));
             step.gain = found.gain;
             if let Some(against) = against.as_mut() {
@@ -133,11 +135,10 @@ impl Design<'_> {
         let goal = self.goal();
         let step = self.linearised(linearisation, &goal, &rest);
         let step = step.ok_or("the linearised step there has no result")?;
-        let step = self.augmented(&step, &goal);
-        let mut step = step.map_err(|reason| reason.to_string())?;
+        let mut step = self.augmented(&step, &goal);
         let (scales, scaled) = self.scaled(&step);
-        let mut held = held_gain([&scaled.by_state, &scaled.by_inputs], &scaled.costs)
-            .map_err(|reason| self.reason(reason))?;
+        let held = scaled.for_ever();
+        let mut held = held.map_err(|reason| self.reason(reason))?;
         // Back to rad, mm, V.
         held.gain = DMatrix::from_fn(held.gain.nrows(), held.gain.ncols(), |i, j| {
             held.gain[(i, j)] * self.ranges[i] / scales[j]
@@ -169,7 +170,7 @@ impl Design<'_> {
     fn scaled(&self, step: &RegulatedStep) -> (Vec<f64>, RegulatedStep) {
         let n = step.by_state.nrows();
         let q = &step.costs.state;
-        let scale = |i: usize| match q[(i, i)] {
+        let scale = |i: usize| match q[(i, i)] + step.rates[i] {
             cost if cost > 0.0 => 1.0 / cost.sqrt(),
             _ => 1.0,
         };
@@ -197,6 +198,7 @@ impl Design<'_> {
                     inputs[(i, j)] * self.ranges[i] * self.ranges[j]
                 }),
             },
+            rates: (0..n).map(|i| step.rates[i] * scales[i].powi(2)).collect(),
             places: step.places.clone(),
             gain: step.gain.clone(),
             by_forces: step.by_forces.clone(),
@@ -206,11 +208,12 @@ impl Design<'_> {
     }
 }
 
-/// Relative residual of (R + BᵀSB) K = BᵀSA, computed once more.
+/// Relative residual of (R̂ + BᵀSB) K = BᵀSA + Nᵀ, computed once more.
 fn left(step: &RegulatedStep, cost: &DMatrix<f64>, gain: &DMatrix<f64>) -> f64 {
+    let WholeCosts { costs, cross } = step.whole_costs();
     let toward = step.by_inputs.transpose() * cost;
-    let right = &toward * &step.by_state;
-    let inner = &step.costs.inputs + &toward * &step.by_inputs;
+    let right = &toward * &step.by_state + cross;
+    let inner = costs.inputs + &toward * &step.by_inputs;
     let size = (inner.norm() * gain.norm()).max(right.norm());
     match size > 0.0 {
         true => (inner * gain - right).norm() / size,

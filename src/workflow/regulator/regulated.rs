@@ -57,8 +57,10 @@ pub struct RegulatedStep {
     pub by_state: DMatrix<f64>,
     /// B.
     pub by_inputs: DMatrix<f64>,
-    /// Q and R.
+    /// Q and R, without rates.
     pub costs: Costs,
+    /// W, over the state: weights of its differences over the step.
+    pub rates: Vec<f64>,
     /// The part of Q that is of coordinates and markers, over the coordinates.
     pub places: DMatrix<f64>,
     /// K, over the state.
@@ -84,8 +86,6 @@ pub enum NoRegulator {
     Step(String),
     /// The recursion fails at a step.
     Recursion(usize),
-    /// A momentum does not tell its rate, which has a cost.
-    Rates,
     /// The state does not follow from what is measured.
     Observer(String),
     /// It was time to stop.
@@ -100,9 +100,6 @@ impl fmt::Display for NoRegulator {
             Self::Large(size) => write!(f, "its state has {size} entries, more than {MOST}"),
             Self::Singular(k) => write!(f, "the linearised step {} is singular", k + 1),
             Self::Step(error) => f.write_str(error),
-            Self::Rates => f.write_str(
-                "a part without mass has no rate that momenta tell; expected no weight of \"rates\"",
-            ),
             Self::Observer(reason) => write!(f, "no observer: {reason}"),
             Self::Stopped => f.write_str("the run was stopped before"),
             Self::Recursion(k) => {
