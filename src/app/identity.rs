@@ -26,10 +26,17 @@ impl Identity {
             system,
             task,
             output,
+            disturbed,
             ..
         } = loaded;
         let earlier = earlier(task);
-        Self::from_text(format_args!("{system:?}{task:?}{output:?}{earlier:?}"))
+        let disturbed = match &disturbed[..] {
+            [] => String::new(),
+            parts => format!("{parts:?}"),
+        };
+        Self::from_text(format_args!(
+            "{system:?}{task:?}{output:?}{earlier:?}{disturbed}"
+        ))
     }
 
     /// Of a problem with the options of a run that have a part in its files.

@@ -34,6 +34,7 @@ use crate::report::origin::Origin;
 use crate::report::{self, write_run};
 use crate::tasks::{self, Assessment, SimulationRequest, SimulationResult};
 use crate::workflow::Simulated;
+use crate::workflow::closed_loop::DisturbedLoop;
 use crate::workflow::effects::Plan;
 use crate::workflow::integrate::grid;
 use crate::workflow::motion::{solved, solved_of};
@@ -57,13 +58,21 @@ pub(super) fn simulation(
         // Steps that are halved begin anew: what is kept of them is no motion to go on with.
         // Of a controller neither is.
         resumable: (request.wanted.is_none() && task.controller.is_none()).then_some(&*problem),
+        loops: &[],
+        left_out: &[],
     };
     let from = request.from.as_ref();
     let begun = from.map(|from| resume_file::begun(from, &problem, task));
     let begun = begun.transpose()?;
     let read = began.elapsed().as_secs_f64();
-    let (ended, folder) = integrate(&run, (begun, read), observer)?;
+    let (mut ended, folder) = integrate(&run, (begun, read), observer)?;
     phase("writing");
+    let (loops, left_out) = disturbed(&run, &mut ended)?;
+    let run = Run {
+        loops: &loops,
+        left_out: &left_out,
+        ..run
+    };
     let writing = Instant::now();
     let mut files = FileSet::in_folder(&folder);
     keep(&run, &ended, &mut files)?;
@@ -104,6 +113,24 @@ struct Run<'a> {
     began: Instant,
     /// Text of the problem of a motion that can be resumed.
     resumable: Option<&'a str>,
+    /// Closed loops with parts of the disturbance, and reasons why some are left out.
+    loops: &'a [DisturbedLoop],
+    left_out: &'a [String],
+}
+
+/// Simulates parts of the disturbance that the problem asks for, and adds their deviations to those of the whole.
+fn disturbed(
+    run: &Run<'_>,
+    ended: &mut SimulationResult,
+) -> Result<(Vec<DisturbedLoop>, Vec<String>), CommandError> {
+    let elapsed = run.began.elapsed().as_secs_f64();
+    let seconds = run.request.max_seconds.map(|limit| limit - elapsed);
+    let found = tasks::disturbed(&run.loaded.disturbed, ended, seconds);
+    let (loops, left_out) = found.map_err(CommandError::in_file(&run.request.input))?;
+    if let Some(closed) = &mut ended.closed_loop {
+        closed.disturbance = loops.iter().map(DisturbedLoop::report).collect();
+    }
+    Ok((loops, left_out))
 }
 
 /// Simulates, from where a motion that has `begun` ends, and keeps the steps in the folder of the results, which is returned, until the motion
@@ -269,6 +296,9 @@ fn summarise(
     summary.energies = EnergySummary::new(&assessment.exchange);
     summary.notes.clone_from(&assessment.remarks);
     summary.closed_loop.clone_from(&ended.closed_loop);
+    summary
+        .notes
+        .warn("disturbance", run.left_out.iter().cloned());
 }
 
 /// Writes tables, figures and page, next to the solution that the voltages come from, and adds what they show to the summary.
@@ -318,6 +348,7 @@ fn write_pictures(
         },
         comparison: open.as_ref().map(|o| ("without feedback", o)).or(earlier),
         tracked: &tracked,
+        disturbed: run.loops,
         held: held(task, ended.reached()),
         figures: request.figures,
         page: request.page.of(&content),

@@ -93,6 +93,17 @@ pub struct FeedbackControl {
     pub ahead: Option<Box<Ahead>>,
 }
 
+/// A simulation with a part of its disturbance.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Disturbed {
+    /// The part; 1 is that of the problem.
+    pub size: f64,
+    /// The system.
+    pub system: System,
+    /// The simulation.
+    pub task: Simulation,
+}
+
 /// A motion that a controller plans anew over a receding horizon.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Ahead {

@@ -43,12 +43,13 @@ use serde_json::Value;
 use std::path::{Path, PathBuf};
 
 use crate::control::Motion;
-use crate::control::problem::{Duration, Regulator, Task};
+use crate::control::problem::{Disturbed, Duration, Regulator, Task};
 use crate::files::json::scan::{Entry, Scanner, string};
 use crate::files::json::set::Override;
 use crate::files::problem::ahead::add_plan;
 use crate::files::problem::build::build_problem;
 use crate::files::problem::changed_scenes::changed_scenes;
+use crate::files::problem::disturbance::disturbed;
 use crate::files::problem::feedback::regulator;
 use crate::files::problem::motions::{MotionDocument, motions, together};
 use crate::files::problem::output::{Output, output};
@@ -72,6 +73,8 @@ pub struct Loaded {
     pub output: Output,
     /// Costs of deviations of which the gains of a controller are the least.
     pub feedback: Option<Regulator>,
+    /// The simulation with parts of the disturbance that its controller names.
+    pub disturbed: Vec<Disturbed>,
     /// File of the scene; `None` where the problem holds the scene itself.
     pub scene_path: Option<PathBuf>,
     /// The JSON text of the scene as written, overrides applied.
@@ -176,7 +179,7 @@ fn problem_of(
     })
 }
 
-/// A problem without a list of motions, whose recordings may have scenes of their own.
+/// A problem without a list of motions, whose recordings may have scenes of their own, and whose controller may name a disturbance.
 fn with_changed_scenes(document: &Document, of_scene: &[Override]) -> Result<Loaded, SceneError> {
     let scenes = changed_scenes(document)?;
     let mut loaded = alone(document.clone(), of_scene, &ChangesSpec::default())?;
@@ -189,6 +192,11 @@ fn with_changed_scenes(document: &Document, of_scene: &[Override]) -> Result<Loa
         let changed = changed.map_err(|error| of.changes.at_fault(error, &document.path))?;
         of.add(&mut loaded.task, (changed.system, changed.task), document)?;
     }
+    let texts = [&*loaded.problem, &*loaded.scene];
+    loaded.disturbed = disturbed(document, of_scene, texts, |document, of_scene| {
+        let found = alone(document, of_scene, &ChangesSpec::default())?;
+        Ok((found.system, found.task))
+    })?;
     Ok(loaded)
 }
 
@@ -259,6 +267,7 @@ fn alone(
         task,
         output,
         feedback,
+        disturbed: Vec::new(),
         system,
         scene_path,
         scene,

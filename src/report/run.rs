@@ -11,6 +11,7 @@ use crate::report::pose::Shown;
 use crate::report::skins::Skins;
 use crate::report::viewpoint::Viewpoint;
 use crate::workflow::Tracked;
+use crate::workflow::closed_loop::DisturbedLoop;
 
 /// Settings of figures, and further formats.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
@@ -50,6 +51,8 @@ pub struct Run<'a> {
     pub figures: Figures,
     /// References of markers and joints.
     pub tracked: &'a [Tracked],
+    /// Closed loops with parts of the disturbance.
+    pub disturbed: &'a [DisturbedLoop],
     /// Origin of the results.
     pub origin: &'a Origin,
     /// Poses of the bodies where the motion was to end, where they are known.
@@ -128,6 +131,7 @@ impl<'a> Run<'a> {
             branch: None,
             figures: Figures::default(),
             tracked: &[],
+            disturbed: &[],
             origin,
             goal: None,
             targets: &[],

@@ -2,11 +2,13 @@
 //!
 //! - `solve`, `simulate`, `equilibrium`: the three tasks. The commands, Python and the interface for Rust call them; nothing here knows files.
 //! - `grid`, `held_goal`: the solves of a control problem, for an accuracy and for a goal that is kept.
+//! - `disturbed`: a closed loop with parts of its disturbance.
 //! - `motions`: several control problems solved together.
 //! - `check`: the derivatives of a task against differences.
 //! - `verdict`: the verdict on an optimum. `solve_messages`, `tracking_messages`, `simulation_messages`, `moved_markers`: their texts.
 
 pub mod check;
+mod disturbed;
 pub mod equilibrium;
 mod grid;
 mod held_goal;
@@ -20,6 +22,7 @@ pub(crate) mod tracking_messages;
 mod verdict;
 
 pub use check::{CheckResult, GreatestErrors, WrongDerivative, check};
+pub use disturbed::disturbed;
 pub use equilibrium::{EquilibriumResult, EquilibriumTaskError, equilibrium};
 pub use grid::SolveRequest;
 pub use motions::{MotionsResult, solve_motions};

@@ -37,9 +37,49 @@ pub struct ClosedLoop {
     /// Markers, or the coordinates of joints, next to their places in the motion of the law.
     #[serde(skip)]
     pub tracked: Vec<Tracked>,
+    /// The same of the motion without corrections.
+    #[serde(skip)]
+    pub tracked_open: Vec<Tracked>,
     /// The motion without corrections.
     #[serde(skip)]
     pub open_loop: Option<Trajectory>,
+    /// Deviations with parts of the disturbance, where they were simulated.
+    #[serde(skip_serializing_if = "Vec::is_empty")]
+    pub disturbance: Vec<PartOfDisturbance>,
+}
+
+/// Deviations with a part of the disturbance.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct PartOfDisturbance {
+    /// The part.
+    pub size: f64,
+    /// Deviations of markers, by name.
+    pub markers: BTreeMap<String, Deviations>,
+    /// Of the coordinates of joints, of a robot without markers.
+    #[serde(skip_serializing_if = "BTreeMap::is_empty")]
+    pub joints: BTreeMap<String, Deviations>,
+}
+
+/// A closed loop with a part of the disturbance.
+#[derive(Clone, Debug, PartialEq)]
+pub struct DisturbedLoop {
+    /// The part.
+    pub size: f64,
+    /// Instants of the motion in ms.
+    pub times: Vec<f64>,
+    /// The motion next to that of the controller.
+    pub closed: ClosedLoop,
+}
+
+impl DisturbedLoop {
+    /// Its numbers for a summary.
+    pub fn report(&self) -> PartOfDisturbance {
+        PartOfDisturbance {
+            size: self.size,
+            markers: self.closed.markers.clone(),
+            joints: self.closed.joints.clone(),
+        }
+    }
 }
 
 /// Part of its path by which a marker or coordinate may be beside its goal without a warning.
@@ -109,8 +149,10 @@ impl ClosedLoop {
             markers: BTreeMap::new(),
             joints: BTreeMap::new(),
             tracked: Vec::new(),
+            tracked_open: Vec::new(),
             open_loop_failure,
             open_loop: None,
+            disturbance: Vec::new(),
         };
         for (name, places) in &law.markers {
             let all = &model.system.markers;
@@ -150,6 +192,7 @@ impl ClosedLoop {
             open_loop: is_whole.then(|| of(open, &without)),
         };
         self.tracked.push(tracked);
+        self.tracked_open.push(without);
         out
     }
 

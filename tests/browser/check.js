@@ -33,6 +33,7 @@ const RUNS = [
   { name: "pull_in", commands: solve("pull_in"), moves: true, walks: true, parts: 1, faces: 24, charts: ["Path"], megabytes: 1 },
   { name: "long_trunk", commands: [["new", "trunk", "--segments", "14", "FOLDER/scene"], ["simulate", "FOLDER/scene/swing.json"]], moves: true, parts: 42, charts: ["Voltages"], megabytes: 3 },
   { name: "aimed", commands: [["solve", "problems/pair.json", ...AIM]], moves: true, parts: 3, charts: ["Voltages"], megabytes: 1, target: [-12, 60, 0] },
+  { name: "disturbed", commands: [["simulate", "problems/pair_disturbed.json"]], moves: true, parts: 3, charts: ["Disturbance", "Voltages"], megabytes: 1.5, sizes: [0, 0.25, 0.5, 1] },
   { name: "study", commands: [["study", "FOLDER/study.json"]], charts: [], megabytes: 1 },
   { name: "sweep", commands: [["sweep", "FOLDER/sweep.json"]], variants: 6, charts: [], megabytes: 0.1 },
   { name: "compared", commands: [["report", "FOLDER/elephant_trunk", "FOLDER/long_trunk"]], follows: true, charts: ["Joints", "Energies"], megabytes: 2 },
@@ -110,6 +111,7 @@ async function look(browser, run, screen, file) {
     else {
       await charts(page, run, told, screen);
       await pointed(page, told);
+      if (run.sizes) await slide(page, run, told);
     }
   }
   if (!run.variants) await paper(page, run, told);
@@ -387,6 +389,55 @@ async function charts(page, run, told, screen) {
   }
   const empty = await page.evaluate(() => window.proboscis.charts.made.filter((one) => !one.chart).length);
   expect(empty === 0, `${told}: ${empty} charts are not drawn`);
+}
+
+/** The slider over a disturbance shows a motion of each size with and without feedback on the same axes, and the same reference. */
+async function slide(page, run, told) {
+  const slider = page.locator("input#size");
+  await slider.scrollIntoViewIfNeeded();
+  expect(await slider.inputValue() === String(run.sizes.indexOf(1)), `${told}: the slider begins at ${await slider.inputValue()}`);
+  const seen = [];
+  for (const [index, size] of run.sizes.entries()) {
+    await slider.fill(String(index));
+    await page.waitForTimeout(150);
+    seen.push(await page.evaluate(() => {
+      // A chart out of sight is not drawn; on paper all are.
+      window.dispatchEvent(new Event("beforeprint"));
+      const panels = window.proboscis.charts.made.filter((one) => one.size !== undefined);
+      const ends = ({ min, max }) => [min, max].map((value) => Number(value.toPrecision(6)));
+      const curve = ({ label, data }) => [label, JSON.stringify(data)];
+      const found = {
+        words: document.querySelector("output[for=size]").textContent,
+        panels: panels.map(({ chart }) => ({ axes: JSON.stringify([ends(chart.scales.x), ends(chart.scales.y)]), curves: Object.fromEntries(chart.data.datasets.map(curve)), count: chart.data.datasets.length })),
+      };
+      window.dispatchEvent(new Event("afterprint"));
+      return found;
+    }));
+    const { words, panels } = seen[index];
+    expect(words === `${size} of the disturbance`, `${told}: the slider says ${words}`);
+    expect(panels.length === 4 && panels.every(({ count }, i) => count === (i < 3 ? 3 : 2)), `${told}: ${panels.map(({ count }) => count)} curves`);
+    if (!index) continue;
+    const before = seen[index - 1].panels;
+    for (const [i, { axes, curves }] of panels.entries()) {
+      expect(axes === before[i].axes, `${told}: axes ${axes} after ${before[i].axes}`);
+      expect(curves.reference === before[i].curves.reference, `${told}: another reference`);
+      for (const name of ["with feedback", "without feedback"]) expect(curves[name] && curves[name] !== before[i].curves[name], `${told}: the same curve ${name} of ${size}`);
+    }
+  }
+  // A key hides its curve, whatever size is shown.
+  await slider.scrollIntoViewIfNeeded();
+  await page.waitForTimeout(150);
+  const key = page.locator("section[aria-label=Disturbance] .panel").first().locator("button", { hasText: "without feedback" });
+  await key.click();
+  const hidden = () => page.evaluate(() => window.proboscis.charts.made.find((one) => one.size !== undefined).chart.data.datasets.filter((one) => one.hidden).map((one) => one.label).join());
+  expect((await hidden()) === "without feedback", `${told}: hidden is ${await hidden()}`);
+  await slider.fill("0");
+  await page.waitForTimeout(100);
+  expect((await hidden()) === "without feedback", `${told}: hidden is ${await hidden()} after a step of the slider`);
+  await key.click();
+  await slider.fill(String(run.sizes.length - 1));
+  await page.waitForTimeout(100);
+  await page.locator("section[aria-label=Disturbance]").screenshot({ path: join(folder, `${told.replaceAll(" ", "-")}-slider.png`) });
 }
 
 const browser = await chromium.launch({ executablePath: PROGRAM, args: ARGUMENTS });

@@ -8,6 +8,7 @@ mod rank;
 mod accuracy;
 mod commands;
 mod creeping_fields;
+mod disturbance;
 mod end_of;
 mod end_of_refused;
 mod engine;

@@ -51,11 +51,12 @@ fn imports_go_downwards() {
 }
 
 /// The data of the page and of glTF, which are JSON.
-const FIGURES: [&str; 6] = [
+const FIGURES: [&str; 7] = [
     "report/gltf/document.rs",
     "report/page/mod.rs",
     "report/page/charts.rs",
     "report/page/compared.rs",
+    "report/page/disturbance.rs",
     "report/page/scene.rs",
     "report/page/numbers.rs",
 ];

@@ -91,6 +91,13 @@ impl Override {
     }
 }
 
+/// The value in a place of a text, where there is one.
+pub(crate) fn value_at(text: &str, place: &JsonPath) -> Option<Value> {
+    let slot = slot(text, place);
+    let is_there = slot.wrong.is_none() && slot.missing.keys.is_empty();
+    is_there.then(|| serde_json::from_str(&text[slot.bytes]).ok())?
+}
+
 /// Parts of a scene for which a chain stands.
 const OF_CHAIN: [&str; 3] = ["bodies", "joints", "muscles"];
 

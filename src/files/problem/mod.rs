@@ -2,7 +2,7 @@
 //!
 //! - `motions`: several motions of one problem, each as a problem of its own.
 //! - `build`: the problem; `control`, `simulation`, `identify`: its longer tasks; `channels`, `channel_quantities`: what recordings measure; `changed_scenes`: scenes of some of them; `driven`: start and inputs of both motions.
-//! - `feedback`: gains along an optimum, and a controller that reads them; `ahead`: a problem that it plans anew.
+//! - `feedback`: gains along an optimum, and a controller that reads them; `ahead`: a problem that it plans anew; `disturbance`: the same simulation with parts of its disturbance.
 //! - `state`, `end_of`, `goal`, `limits`, `source_limits`, `free`, `guess`, `voltages`, `track`, `measured`, `energies`, `coordinates`: their parts; `output`: what is written of a motion; `solution_voltages`,
 //!   `solution_joints`, `solution_document`:
 //!   what is read of an earlier solution.
@@ -16,6 +16,7 @@ mod channel_quantities;
 mod channels;
 pub(crate) mod control;
 pub(crate) mod coordinates;
+pub(crate) mod disturbance;
 pub(crate) mod driven;
 mod end_of;
 pub(crate) mod energies;

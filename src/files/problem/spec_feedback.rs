@@ -93,6 +93,22 @@ pub struct ControllerSpec {
     /// Noise of what is measured.
     #[serde(default)]
     pub noise: NoiseSpec,
+    /// Simulations of parts of the disturbance too, for a slider on the page.
+    #[serde(default)]
+    pub disturbance: Option<DisturbanceSpec>,
+}
+
+/// The disturbance of a closed loop: what differs from the robot and the motion that the controller knows. It is simulated in several sizes, of which 0 has
+/// none and 1 is that of the problem.
+#[derive(Clone, Debug, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct DisturbanceSpec {
+    /// Values without the disturbance, by their places in the problem, or in its scene after `scene.`. Values of a size are on the line between these and
+    /// those of the problem.
+    pub without: BTreeMap<String, serde_json::Value>,
+    /// Sizes, the smallest first; 0, 0.25, 0.5 and 1 where not written.
+    #[serde(default)]
+    pub sizes: Option<Vec<f64>>,
 }
 
 /// A motion that is planned anew over a horizon in each interval of its problem, with its limits and bounds, by one iteration of an interior-point

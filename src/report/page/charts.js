@@ -30,8 +30,25 @@ class Charts {
     const panels = element("div", { class: `panels ${chart.kind === "rows" ? "rows" : several ? "several" : "alone"} ${equal ? "equal" : ""}` });
     this.holder.append(element("section", { "aria-label": chart.title }, element("h2", {}, chart.title), panels));
     const clock = chart.time || chart.level ? this.clock : null;
+    if (chart.kind === "sizes") panels.before(this.slider(chart));
     if (chart.kind === "rows") this.made.push(new Rows(chart, panels, clock));
     else for (const panel of chart.panels) this.made.push(new Panel(panel, panels, clock, chart));
+  }
+
+  /** A slider over the sizes of a disturbance, of which each was simulated. */
+  slider({ title, sizes, shown }) {
+    const told = element("output", { for: "size" });
+    const slider = element("input", { type: "range", id: "size", min: 0, max: sizes.length - 1, step: 1, value: shown, "aria-label": "Size of the disturbance" });
+    const tell = () => {
+      told.textContent = `${short(sizes[slider.value])} of the disturbance`;
+      slider.setAttribute("aria-valuetext", told.textContent);
+    };
+    slider.addEventListener("input", () => {
+      tell();
+      for (const panel of this.made) if (panel.title === title && panel.size !== undefined) panel.resize(Number(slider.value));
+    });
+    tell();
+    return element("div", { class: "bar", role: "group", "aria-label": title }, slider, told);
   }
 }
 
@@ -112,32 +129,45 @@ class Drawn {
 
 /** Curves over a pair of axes. */
 class Panel extends Drawn {
-  constructor(panel, holder, clock, { title }) {
+  constructor(panel, holder, clock, { title, sizes, shown }) {
     const frame = element("div", { class: "panel" });
     if (panel.title) frame.append(element("h3", {}, panel.title));
     holder.append(frame);
     super(frame, clock, `${panel.title || title}: ${measure(panel.y.label).name} over ${measure(panel.x.label).name}`);
-    this.panel = panel;
+    Object.assign(this, { panel, title, size: sizes ? shown : undefined });
     this.series = panel.series.map((one) => ({ ...one, hidden: false, points: pairs(numbers(one.points)) }));
     this.keys();
   }
 
   keys() {
-    const named = this.series.filter((one) => one.name);
+    const named = this.series.filter((one, i, all) => one.name && all.findIndex((other) => other.name === one.name) === i);
     if (!named.length) return;
     const key = (one) => {
       const told = element("span");
       const button = element("button", { class: `key${one.dashed ? " dashed" : ""}${one.joined ? "" : ` ${one.mark}`}`, "aria-pressed": true, style: `--c:${one.colour}` }, one.name, told);
       button.addEventListener("click", () => {
-        one.hidden = !one.hidden;
-        button.setAttribute("aria-pressed", !one.hidden);
+        const hidden = !one.hidden;
+        for (const same of this.series) if (same.name === one.name) same.hidden = hidden;
+        button.setAttribute("aria-pressed", !hidden);
         this.renew();
       });
-      return Object.assign(one, { button, told }).button;
+      for (const same of this.series) if (same.name === one.name) Object.assign(same, { button, told });
+      return button;
     };
     const keys = element("div", { class: "keys", role: "group", "aria-label": "Curves" }, ...named.map(key));
     const many = named.length > 14;
     this.plot.after(many ? element("details", {}, element("summary", {}, `${named.length} curves`), keys) : keys);
+  }
+
+  /** Shows another size of a disturbance. */
+  resize(size) {
+    this.size = size;
+    this.renew();
+  }
+
+  /** Curves of the size that is shown, and those of all sizes. */
+  current() {
+    return this.series.filter((one) => (one.size ?? this.size) === this.size);
   }
 
   /** Values at the time of the clock beside the names. */
@@ -154,6 +184,16 @@ class Panel extends Drawn {
         const width = ctx.measureText(text).width;
         ctx.fillText(text, Math.min(x, chartArea.right - width), scales.y.getPixelForValue(points[i].y) - 6);
       }
+    }
+  }
+
+  /** Axes that hold the curves of all sizes. */
+  hold({ options: { scales } }) {
+    const points = this.series.flatMap((one) => one.points).filter((point) => Number.isFinite(point.x) && Number.isFinite(point.y));
+    for (const axis of ["x", "y"]) {
+      const values = points.map((point) => point[axis]);
+      const [least, greatest] = [Math.min, Math.max].map((of) => values.reduce((a, b) => of(a, b), values[0]));
+      Object.assign(scales[axis], { suggestedMin: least, suggestedMax: greatest });
     }
   }
 
@@ -177,7 +217,8 @@ class Panel extends Drawn {
         pointStyle: one.mark === "cross" ? "crossRot" : "circle", pointRadius: one.mark === "none" ? 0 : 3.5, pointHitRadius: 6, tension: 0,
       };
     };
-    settings.data = { datasets: this.series.map(dataset) };
+    settings.data = { datasets: this.current().map(dataset) };
+    if (this.size !== undefined) this.hold(settings);
     settings.plugins = [{ id: "labels", afterDatasetsDraw: (chart) => this.label(chart) }];
     if (panel.equal) {
       settings.plugins.push({ id: "equal", afterLayout: (chart) => even(chart, this.series) });

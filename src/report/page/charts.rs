@@ -226,11 +226,11 @@ fn panel(title: &str, plot: &LinePlot) -> Value {
     })
 }
 
-fn axis(label: &str, scale: Scale) -> Value {
+pub(super) fn axis(label: &str, scale: Scale) -> Value {
     json!({ "label": label, "log": scale == Scale::Log })
 }
 
-fn series(series: &Series) -> Value {
+pub(super) fn series(series: &Series) -> Value {
     json!({
         "name": series.name,
         "colour": series.colour.hex(),

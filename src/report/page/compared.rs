@@ -130,7 +130,9 @@ fn list(value: &Value) -> std::slice::Iter<'_, Value> {
 
 /// All curves of a page with their charts and panels.
 fn curves(data: &Value) -> impl Iterator<Item = (&Value, &Value, &Value)> {
-    list(&data["charts"]).flat_map(move |chart| {
+    // Curves of parts of a disturbance are those of other motions.
+    let charts = list(&data["charts"]).filter(|chart| chart["kind"] != "sizes");
+    charts.flat_map(move |chart| {
         list(&chart["panels"])
             .flat_map(move |panel| list(&panel["series"]).map(move |series| (chart, panel, series)))
     })

@@ -6,6 +6,7 @@
 mod charts;
 mod code;
 pub mod compared;
+mod disturbance;
 mod numbers;
 mod scene;
 
@@ -18,6 +19,9 @@ use crate::report::{PageContent, Run};
 /// The page of a run, or of a path of equilibria.
 pub fn html(run: &Run<'_>, content: &PageContent) -> String {
     let run = &run.along_branch();
+    let of_disturbance = disturbance::chart(run.disturbed).into_iter();
+    let charts = charts::charts(run, content);
+    let charts: Vec<Value> = of_disturbance.chain(charts).collect();
     let documents = content.documents.iter();
     let documents = documents.map(|(name, text)| json!({ "name": name, "text": text }));
     let data = json!({
@@ -29,7 +33,7 @@ pub fn html(run: &Run<'_>, content: &PageContent) -> String {
         "rows": content.rows,
         "command": run.origin.command,
         "scene": scene::scene(run),
-        "charts": charts::charts(run, content),
+        "charts": charts,
         "documents": documents.collect::<Vec<_>>(),
     });
     page(
