@@ -536,6 +536,9 @@ class Controller(TypedDict):
     delay: NotRequired[Quantity]
     """Time from a sample to its effect, a multiple of the step, SI unit s; that which the gains or plans predict where not written."""
 
+    disturbance: NotRequired[Disturbance]
+    """Simulations of parts of the disturbance too, for a slider on the page."""
+
     feedback: NotRequired[Text]
     """Path of a `feedback.json` or of the folder that holds it, relative to this file or to the current folder. It gives the inputs that were
     sought in its problem; the robot here has joints of the same names, and may be another one otherwise.
@@ -589,6 +592,20 @@ class CurrentLimit(TypedDict):
 
     sources: NotRequired[All]
     """All sources."""
+
+
+class Disturbance(TypedDict):
+    """The disturbance of a closed loop: what differs from the robot and the motion that the controller knows. It is simulated in several sizes, of
+    which 0 has none and 1 is that of the problem.
+    """
+
+    sizes: NotRequired[Sequence[float] | Numbers]
+    """Sizes, the smallest first; 0, 0.25, 0.5 and 1 where not written."""
+
+    without: Mapping[str, Any]
+    """Values without the disturbance, by their places in the problem, or in its scene after `scene.`. Values of a size are on the line between
+    these and those of the problem.
+    """
 
 
 Duration: TypeAlias = "Quantity | FreeDuration"
@@ -1697,7 +1714,7 @@ class Weights(TypedDict):
     """Of places of markers in mm, by name; 0 where not named."""
 
     rates: NotRequired[float]
-    """Of their rates in 100 degrees/s or 100 mm/s; 0 where not written."""
+    """Of their mean rates over an interval in 100 degrees/s or 100 mm/s; 0 where not written."""
 
     voltages: NotRequired[float]
     """Of voltages and loads as parts of their ranges, of voltages of lumped muscles by their squares; positive, 0.01 where not written."""
