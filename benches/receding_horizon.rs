@@ -1,8 +1,8 @@
 //! Times of the steps of a receding horizon on the trunk, and its memory over many of them.
 //!
-//! `cargo bench --bench receding_horizon -- [--write] [--hour]`: the trunk of `problems/elephant_trunk.json` is planned anew over 20 intervals in each
-//! of them, on its way and at its goal, under random pushes. With `--write` the page goes to `results/gallery/receding_horizon.md`. With `--hour` the
-//! same loop runs for an hour of the robot instead, and its memory is printed every six minutes.
+//! `cargo bench --bench receding_horizon -- [--write] [--minutes 60]`: the trunk of `problems/elephant_trunk.json` is planned anew over 20 intervals in each
+//! of them, on its way and at its goal, under random pushes. With `--write` the page goes to `results/gallery/receding_horizon.md`. With
+//! `--minutes` the same loop runs for that time of the robot instead, and its memory is printed ten times.
 
 #[path = "../tests/common/random.rs"]
 #[expect(dead_code, unreachable_pub, reason = "tests draw vectors too")]
@@ -27,9 +27,8 @@ const INTERVALS: usize = 20;
 /// Steps that are timed under pushes, and after these the steps by which memory is compared.
 const STEPS: usize = 20_000;
 const MORE: usize = 100_000;
-/// Length in ms of the long run, and of its parts.
-const HOUR: f64 = 3_600_000.0;
-const PART: f64 = 360_000.0;
+/// Lines on the memory of a long run.
+const LINES: usize = 10;
 /// Intervals between pushes, and their greatest size in g mm²/ms about each joint.
 const BETWEEN: usize = 60;
 const PUSH: f64 = 3000.0;
@@ -37,8 +36,8 @@ const SEED: u64 = 35;
 
 fn main() {
     let is_given = |option: &str| std::env::args().any(|argument| argument == option);
-    if is_given("--hour") {
-        return hour();
+    if let Some(minutes) = std::env::args().skip_while(|one| one != "--minutes").nth(1) {
+        return long_run(minutes.parse().expect("a number of minutes"));
     }
     let writes = is_given("--write");
     let text = page();
@@ -132,8 +131,8 @@ impl Times {
     }
 }
 
-/// The closed loop for an hour of the robot.
-fn hour() {
+/// The closed loop for a number of minutes of the robot.
+fn long_run(minutes: f64) {
     let horizon = Horizon::solved(&ahead(2.4)).expect("a horizon");
     let law = horizon.law();
     let model = Model::new(ahead(2.4).system, None, law.h, &[]).expect("a model");
@@ -141,7 +140,8 @@ fn hour() {
     let mut robot = Robot::new(&model, 4);
     let mut random = Random(SEED);
     let mut times = [Times::new(), Times::new(), Times::new()];
-    let [steps, part] = [HOUR, PART].map(|time| (time / law.h).round() as usize);
+    let steps = (60_000.0 * minutes / law.h).round() as usize;
+    let part = steps.div_ceil(LINES);
     let mut others = 0;
     let told = |k: usize| {
         let minutes = law.h * k as f64 / 60_000.0;
