@@ -159,7 +159,7 @@ pub(crate) fn scale(value: f64, exponent: i32) -> f64 {
 }
 
 /// SI prefixes and their decimal exponents.
-const PREFIXES: [(&str, i32); 13] = [
+const PREFIXES: [(&str, i32); 14] = [
     ("da", 1),
     ("T", 12),
     ("G", 9),

@@ -12,7 +12,7 @@ mod regulated;
 
 use crate::control::problem::{Control, Regulator};
 use crate::dynamics::{DiscreteTrajectory, Linearisation};
-use crate::feedback::{Costs, HeldGain, NotHeld};
+use crate::feedback::{Costs, HeldGain, NotHeld, spectral_radius};
 use crate::ipopt::interrupt;
 use crate::model::Model;
 use crate::workflow::regulator::check::reproduced;
@@ -139,6 +139,10 @@ impl Design<'_> {
         let (scales, scaled) = self.scaled(&step);
         let held = scaled.for_ever();
         let mut held = held.map_err(|reason| self.reason(reason))?;
+        // Integrals that nothing takes to zero are no motion.
+        let moving = scaled.by_state.nrows() - self.integrated.len();
+        let without_integrals = scaled.by_state.view((0, 0), (moving, moving));
+        held.open_radius = spectral_radius(&without_integrals.into_owned());
         // Back to rad, mm, V.
         held.gain = DMatrix::from_fn(held.gain.nrows(), held.gain.ncols(), |i, j| {
             held.gain[(i, j)] * self.ranges[i] / scales[j]
