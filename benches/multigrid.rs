@@ -1,13 +1,15 @@
 //! Steps and equilibria of large blocks by GMRES with multigrid: seconds, iterations and memory against the number of unknowns.
 //!
 //! `cargo bench --bench multigrid` measures 8 × 8 × 32 and 16 × 16 × 64 elements; other sizes are given as the number n of n × n × 4n
-//! elements, `cargo bench --bench multigrid -- 24 40`; `--rest` measures equilibria in place of steps, `--direct` factorises. The peak of memory is
+//! elements, `cargo bench --bench multigrid -- 24 40`; `--rest` measures equilibria in place of steps, `--direct` factorises.
+//! `--stiff` measures mean dilatation in steps and at rest for ratios λ/μ from 10 to 10⁴ with n × n × 2n elements. The peak of memory is
 //! that of the process: one size at a time tells what it needs.
 
 use proboscis::dynamics::{MultigridUse, Newton, Solving, Start, Stepper, stable_equilibrium_by};
 use proboscis::model::Model;
+use proboscis::model::system::ElementKind;
 use proboscis::sparse::Backend;
-use shared::block;
+use shared::{block, long_block};
 use std::time::Instant;
 
 mod shared;
@@ -17,6 +19,9 @@ const STEP: f64 = 0.5;
 const STEPS: usize = 3;
 /// Voltage in V over layers of 10 mm, switched on at once.
 const VOLTAGE: f64 = 3e5;
+/// The same of nearly incompressible blocks.
+const STIFF_STEPS: usize = 2;
+const STIFF_VOLTAGE: f64 = 1e5;
 
 fn main() {
     let arguments: Vec<String> = std::env::args().collect();
@@ -27,6 +32,10 @@ fn main() {
         "| elements | unknowns | | set-up, s | seconds | Newton, Krylov iterations | grids, MB | peak of memory, GB |\n|:--|--:|:--|--:|--:|--:|--:|--:|"
     );
     for n in sizes {
+        if has("--stiff") {
+            stiff(n, has("--direct"));
+            continue;
+        }
         if has("--rest") {
             rest(n);
             continue;
@@ -37,12 +46,8 @@ fn main() {
     }
 }
 
-/// Steps under a voltage that is switched on at once.
-fn steps(n: usize, viscosity: Option<f64>, is_direct: bool) {
-    let began = Instant::now();
-    let model = Model::new(block(n, viscosity), None, STEP, &[]).unwrap();
-    let start = Start::at_rest(&model, model.coordinates_at(&[]));
-    let solving = Solving {
+fn solving(is_direct: bool) -> Solving {
+    Solving {
         newton: Newton::Modified,
         backend: is_direct.then_some(Backend::Faer),
         multigrid: match is_direct {
@@ -50,8 +55,15 @@ fn steps(n: usize, viscosity: Option<f64>, is_direct: bool) {
             false => MultigridUse::Always,
         },
         ..Solving::default()
-    };
-    let mut stepper = Stepper::new(&model, &start.z, &start.momentum, solving);
+    }
+}
+
+/// Steps under a voltage that is switched on at once.
+fn steps(n: usize, viscosity: Option<f64>, is_direct: bool) {
+    let began = Instant::now();
+    let model = Model::new(block(n, viscosity), None, STEP, &[]).unwrap();
+    let start = Start::at_rest(&model, model.coordinates_at(&[]));
+    let mut stepper = Stepper::new(&model, &start.z, &start.momentum, solving(is_direct));
     let setup = began.elapsed().as_secs_f64();
     let what = match viscosity {
         Some(_) => "viscous step of 0.5 ms",
@@ -76,6 +88,63 @@ fn steps(n: usize, viscosity: Option<f64>, is_direct: bool) {
             report.multigrid.bytes / 1_000_000,
             peak(),
         );
+    }
+}
+
+/// Two steps, and the equilibrium, of blocks of mean dilatation.
+fn stiff(n: usize, is_direct: bool) {
+    println!(
+        "| elements | λ/μ | | Newton, Krylov iterations | systems by factors | seconds |\n|:--|--:|:--|--:|--:|--:|"
+    );
+    for ratio in [10.0, 100.0, 1e3, 1e4] {
+        let mut system = long_block([n, n, 2 * n], None);
+        let solid = &mut system.solids[0];
+        solid.element = ElementKind::Hex8Q1P0;
+        for material in &mut solid.materials {
+            material.lame_lambda = Some(ratio * material.shear_modulus);
+        }
+        for viscosity in [None, Some(1.0)] {
+            system.solids[0].materials[0].viscosity = viscosity;
+            let model = Model::new(system.clone(), None, STEP, &[]).unwrap();
+            let start = Start::at_rest(&model, model.coordinates_at(&[]));
+            let mut stepper = Stepper::new(&model, &start.z, &start.momentum, solving(is_direct));
+            let began = Instant::now();
+            for _ in 0..STIFF_STEPS {
+                stepper.step(STEP, &[STIFF_VOLTAGE]).unwrap();
+            }
+            let report = stepper.report();
+            let what = viscosity.map_or("two steps of 0.5 ms", |_| "the same, viscous");
+            println!(
+                "| {n} × {n} × {} | {ratio} | {what} | {}, {} | {} | {:.2} |",
+                2 * n,
+                report.iterations,
+                report.multigrid.iterations,
+                report.fallbacks,
+                began.elapsed().as_secs_f64(),
+            );
+        }
+        system.solids[0].materials[0].viscosity = None;
+        let model = Model::new(system, None, 1.0, &[]).unwrap();
+        let start = model.reference_coordinates();
+        let by = match is_direct {
+            true => MultigridUse::WhereFaster,
+            false => MultigridUse::Always,
+        };
+        let began = Instant::now();
+        let found = stable_equilibrium_by(&model, &start, &[STIFF_VOLTAGE], by);
+        let seconds = began.elapsed().as_secs_f64();
+        match found {
+            Ok(found) => {
+                let (report, fallbacks) = found.on_grids.unwrap_or_default();
+                println!(
+                    "| | | equilibrium, stable: {:?} | {}, {} | {fallbacks} | {seconds:.2} |",
+                    found.is_stable(),
+                    found.iterations,
+                    report.iterations,
+                );
+            }
+            Err(error) => println!("| | | {error} | | | {seconds:.2} |"),
+        }
     }
 }
 

@@ -9,12 +9,12 @@ use proboscis::model::system::{
 
 /// A block of n × n × 4n elements of 10 × 10 × 40 mm with four layers, fixed below.
 pub(crate) fn block(n: usize, viscosity: Option<f64>) -> System {
-    let mesh = Grid::uniform(
-        Vector3::zeros(),
-        Vector3::new(10.0, 10.0, 40.0),
-        [n, n, 4 * n],
-    )
-    .mesh();
+    long_block([n, n, 4 * n], viscosity)
+}
+
+/// The same of other numbers of elements.
+pub(crate) fn long_block(counts: [usize; 3], viscosity: Option<f64>) -> System {
+    let mesh = Grid::uniform(Vector3::zeros(), Vector3::new(10.0, 10.0, 40.0), counts).mesh();
     let electrode = |layer: usize| Electrode {
         circuit: None,
         name: format!("e{layer}"),

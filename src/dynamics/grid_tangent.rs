@@ -3,7 +3,7 @@
 
 use crate::coordinates::Dependence;
 use crate::dynamics::tangent::Tangent;
-use crate::functional::{NodeBlocks, ScalarPlace, Term, VectorPlace};
+use crate::functional::{NodeBlocks, Pressures, ScalarPlace, Term, VectorPlace};
 use crate::math::{IsOver, Stopped};
 use crate::model::Model;
 use crate::sparse::multigrid::{LowestModes, Multigrid, MultigridReport, NoSolution};
@@ -60,6 +60,7 @@ impl GridTangent {
         let vectors = map.vectors.iter().map(|of| vector_place(&solver, of));
         let scalars = (0..sum.scalars).map(|s| scalar_place(&solver, model.variables.place(s)));
         let mut nodes = NodeBlocks::new(vectors.collect(), scalars.collect(), is_at_rest);
+        nodes.pressures = solver.has_pressures().then_some(Pressures::Exact);
         let is_meant = |term: &&Arc<dyn Term>| !is_at_rest || term.kind().acts_at_rest();
         for term in sum.terms.iter().filter(is_meant) {
             let mut are_taken = true;
@@ -91,6 +92,14 @@ impl GridTangent {
     /// Begins an iteration.
     pub(super) fn start(&mut self) {
         self.before = None;
+        self.expect(Pressures::Bounded);
+    }
+
+    /// Lets second derivatives of volumes enter the next matrix with these pressures.
+    fn expect(&mut self, pressures: Pressures) {
+        if self.nodes.pressures.is_some() {
+            self.nodes.pressures = Some(pressures);
+        }
     }
 
     /// Makes the grids of the preconditioner anew with the next matrix.
@@ -105,6 +114,15 @@ impl GridTangent {
         evaluate(&mut self.nodes);
         let matrix = std::mem::take(&mut self.nodes.matrix);
         self.solver.hand_back(matrix);
+        if self.nodes.pressures.is_some() {
+            self.solver.clear_volumes();
+            for of in &self.nodes.volumes {
+                if let Some((node, corner)) = of.known {
+                    self.solver.take_volume(node, corner, &of.volume);
+                }
+            }
+            self.nodes.pressures = Some(Pressures::Exact);
+        }
     }
 
     /// Derivatives by given scalars, of the matrix that was written.
@@ -130,11 +148,9 @@ impl GridTangent {
 
     /// Takes a matrix that was copied; returns true if it fits.
     pub(super) fn take_copy(&mut self, from: &[f64]) -> bool {
-        let matrix = self.solver.values_mut();
-        if matrix.len() != from.len() {
+        if !self.solver.restore_values(from) {
             return false;
         }
-        matrix.copy_from_slice(from);
         self.solver.forget();
         self.is_regular = self.solver.take_values().is_ok();
         self.is_regular
@@ -149,16 +165,26 @@ impl GridTangent {
         let norm = self.solver.size(residual);
         let [least, largest] = FORCING;
         // A new matrix makes residuals shrink quadratically, one that is kept by a factor.
-        let power = if std::mem::take(&mut self.is_new) {
-            2
-        } else {
-            1
-        };
+        let is_new = std::mem::take(&mut self.is_new);
+        let power = if is_new { 2 } else { 1 };
         let asked = match self.before.replace(norm) {
             Some(before) => (PART * (norm / before).powi(power)).clamp(least, largest),
             None => largest,
         };
-        self.solve(residual, asked, is_over)
+        let solved = self.solve(residual, asked, is_over);
+        if is_new && self.nodes.pressures.is_some() {
+            // Volumes are off by the square of the update, which a stiffness makes great; pressures of this solution are not.
+            self.nodes.predicted.clear();
+            for of in &self.nodes.volumes {
+                let change = of
+                    .known
+                    .map(|(node, corner)| self.solver.volume_change(node, corner));
+                let pressure = of.pressure - of.change * change.unwrap_or_default();
+                self.nodes.predicted.push(pressure);
+            }
+            self.expect(Pressures::Predicted);
+        }
+        solved
     }
 
     /// Solves in place to this residual, relative to that of zero.
@@ -209,7 +235,11 @@ impl GridTangent {
         let largest = changes.fold(0.0, |m, change| f64::max(m, change.abs()));
         match largest < STRONG * self.edge {
             true => Ok(None),
-            false => self.potentials_to_law(residual, is_over),
+            false => {
+                let found = self.potentials_to_law(residual, is_over);
+                self.expect(Pressures::Bounded);
+                found
+            }
         }
     }
 

@@ -21,6 +21,7 @@ mod algebra;
 mod branch;
 mod branch_local;
 mod charged;
+mod dilatation;
 mod dispatch;
 mod dual;
 mod elastomer;
@@ -40,6 +41,7 @@ mod viscosity;
 mod viscous_local;
 
 pub use branch_local::{BranchLocal, COORDINATES};
+pub use dilatation::{Dilatation, second_derivatives_of_volume};
 pub use elastomer::Elastomer;
 pub use field_point::{FieldPoint, SpatialField};
 pub use fields::Fields;

@@ -2,7 +2,10 @@
 //!
 //! Nodes are read at the midpoint of an interval, potentials are scalars of the interval.
 
-use crate::element::{Dielectric, Elastomer, ElementGeometry, ElementLaw, Field, Local, Passive};
+use crate::element::{
+    Dielectric, Dilatation, Elastomer, ElementGeometry, ElementLaw, Field, Local, Passive,
+    second_derivatives_of_volume,
+};
 use crate::energy::NeoHooke;
 use crate::functional::{Kernel, Order, Sample, ScalarArg, Scatter, Stencil, VectorArg};
 use crate::math::{Derivatives, Matrix, Vector};
@@ -171,6 +174,28 @@ impl<F: Electrical, L: ElementLaw, const NODES: usize> Kernel for FiniteElements
         let x = middle(sample.vectors, &element.nodes);
         let law = element.law.passive();
         law.energy(&element.shape, &x, &())
+    }
+
+    fn volume(element: &FiniteElement<F, L, NODES>, sample: &Sample<'_>) -> Option<Dilatation> {
+        let x = middle(sample.vectors, &element.nodes);
+        let found = element.law.dilatation(&element.shape, &x)?;
+        Some(Dilatation {
+            slopes: found.slopes.as_slice().try_into().ok()?,
+            stiffness: found.stiffness,
+            pressure: found.pressure,
+            shear_modulus: found.shear_modulus,
+        })
+    }
+
+    fn curved_volume(
+        element: &FiniteElement<F, L, NODES>,
+        sample: &Sample<'_>,
+    ) -> Option<[[Matrix; 8]; 8]> {
+        let x = middle(sample.vectors, &element.nodes);
+        let found = second_derivatives_of_volume(&element.shape, &x);
+        let rows = found.iter().map(|row| row.as_slice().try_into().ok());
+        let rows: Option<Vec<[Matrix; 8]>> = rows.collect();
+        rows?.try_into().ok()
     }
 
     fn prepare(

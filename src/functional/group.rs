@@ -296,6 +296,14 @@ impl<K: Kernel> Term for Group<K> {
         let is_free =
             K::BY_DURATION && sample.horizon == Horizon::Free && self.site == Site::Intervals;
         self.each(order, sample, slots, |element, places, storage| {
+            if let Some(nodes) = out
+                .plain
+                .nodes
+                .as_mut()
+                .filter(|nodes| nodes.pressures.is_some())
+            {
+                places.volume(c, sample, nodes);
+            }
             let mut action = Action {
                 element,
                 places,

@@ -1,7 +1,8 @@
 //! Kernel: the arguments of elements of one kind, and the evaluation of their derivatives.
 
+use crate::element::Dilatation;
 use crate::functional::{Order, Sample, VectorArg};
-use crate::math::{Derivatives, Vector};
+use crate::math::{Derivatives, Matrix, Vector};
 use std::fmt::Debug;
 
 /// Receives the derivatives of one element.
@@ -97,6 +98,16 @@ pub trait Kernel: Debug + Send + Sync + 'static {
         _by: [&[Vector]; 2],
         _: &mut [Vector],
     ) {
+    }
+
+    /// The volume of a hexahedron with one pressure; `None` of other elements.
+    fn volume(_: &Self::Element, _: &Sample<'_>) -> Option<Dilatation> {
+        None
+    }
+
+    /// Second derivatives of that volume.
+    fn curved_volume(_: &Self::Element, _: &Sample<'_>) -> Option<[[Matrix; 8]; 8]> {
+        None
     }
 
     /// Computes what takes time: many elements are prepared on all cores, before derivatives are handed over in their order.

@@ -57,7 +57,7 @@ pub use kernel::{Kernel, Scatter};
 pub use law::{Law, LawElement, MOST_PARAMETERS, Move};
 pub use laws::Laws;
 pub use maxwell_elements::{MaxwellElement, MaxwellElements, POINTS};
-pub use node_blocks::{NodeBlocks, ScalarPlace, VectorPlace};
+pub use node_blocks::{NodeBlocks, NodeVolume, Pressures, ScalarPlace, VectorPlace};
 pub use outer::Outer;
 pub use paths::{Path, Paths};
 pub use pressure::{PressureFace, PressureFaces};

@@ -1,8 +1,10 @@
 //! Second derivatives that are added straight into the matrix of nodes on box grids, without a list of couplings.
 
+use crate::element::Dilatation;
 use crate::functional::{BlockMask, Coupling};
 use crate::math::{Matrix, Vector};
-use crate::sparse::multigrid::{GridNode, NodeBlock};
+use crate::mesh::CORNERS;
+use crate::sparse::multigrid::{ElementVolume, GridNode, NodeBlock};
 use rustc_hash::FxHashMap;
 
 /// Number of components of a node; the last one is a scalar.
@@ -30,6 +32,33 @@ pub enum ScalarPlace {
     Node(GridNode),
 }
 
+/// Pressures with which second derivatives of volumes enter a matrix.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Pressures {
+    /// Those of the volumes, which may be far off before an iteration comes near its end: as far as a few shear moduli.
+    Bounded,
+    /// Those that were predicted.
+    Predicted,
+    /// Those of the volumes.
+    Exact,
+}
+
+/// Largest pressure relative to the shear modulus that volumes are believed.
+const BELIEVED: f64 = 2.0;
+
+/// The volume of an element at nodes.
+#[derive(Clone, Copy, Debug)]
+pub struct NodeVolume {
+    /// One of its nodes that moves, and the corner that it is; `None` where none moves.
+    pub known: Option<(GridNode, usize)>,
+    /// The volume.
+    pub volume: ElementVolume,
+    /// Its pressure in MPa.
+    pub pressure: f64,
+    /// Factor from the product of derivatives and an update to a change of the pressure.
+    pub change: f64,
+}
+
 /// Matrix by node and neighbour: the sum of the blocks between both instants of an interval that are asked for, and likewise of the rows and
 /// columns of scalars.
 #[derive(Clone, Debug, Default)]
@@ -38,6 +67,12 @@ pub struct NodeBlocks {
     scalars: Vec<ScalarPlace>,
     /// The blocks; lent by the solver for an evaluation.
     pub matrix: Vec<NodeBlock>,
+    /// Volumes of elements whose products of derivatives are parts of the blocks.
+    pub volumes: Vec<NodeVolume>,
+    /// Pressures with which second derivatives of volumes enter, where these are asked for.
+    pub pressures: Option<Pressures>,
+    /// Predicted pressures in MPa, in the order of the volumes.
+    pub predicted: Vec<f64>,
     /// True if derivatives by given scalars are kept too.
     has_given: bool,
     /// Places of these by vector or scalar, and given scalar.
@@ -113,6 +148,7 @@ impl NodeBlocks {
     /// Back to zero.
     pub fn clear(&mut self) {
         self.matrix.as_flattened_mut().fill(0.0);
+        self.volumes.clear();
         let of_vectors = self.of_vectors.iter_mut();
         of_vectors.for_each(|(.., sum)| sum.fill(0.0));
         self.of_scalars.iter_mut().for_each(|(.., sum)| *sum = 0.0);
@@ -128,6 +164,51 @@ impl NodeBlocks {
     pub fn of_scalars(&self) -> impl Iterator<Item = (usize, usize, f64)> + '_ {
         let list = self.of_scalars.iter();
         list.map(|&(s, t, sum)| (s as usize, t as usize, sum))
+    }
+
+    /// Adds the volume of a hexahedron of these vectors, with the sum of the weights of its blocks; returns the change of its pressure that makes
+    /// it the one asked for.
+    pub(super) fn add_volume(
+        &mut self,
+        vectors: [usize; 8],
+        of: &Dilatation,
+        weights: [f64; 2],
+    ) -> f64 {
+        let [factor, weight] = weights;
+        // Beyond a dilatation of e the energy is no longer convex.
+        let stiffness = of.stiffness.max(0.0);
+        let mut volume = ElementVolume {
+            factor: factor * weight * stiffness,
+            ..ElementVolume::default()
+        };
+        let mut known = None;
+        for (i, vector) in vectors.into_iter().enumerate() {
+            let VectorPlace::Node(node, free) = self.vectors[vector] else {
+                continue;
+            };
+            let sides = CORNERS[i].iter().enumerate();
+            let corner = sides.fold(0, |corner, (axis, side)| {
+                corner | usize::from(*side > 0.0) << axis
+            });
+            for axis in (0..3).filter(|&axis| free[axis]) {
+                volume.slopes[corner][axis] = of.slopes[i][axis];
+            }
+            known = Some((node, corner));
+        }
+        let most = BELIEVED * of.shear_modulus;
+        let asked = match self.pressures {
+            Some(Pressures::Predicted) => self.predicted.get(self.volumes.len()).copied(),
+            Some(Pressures::Bounded) => Some(of.pressure.clamp(-most, most)),
+            _ => None,
+        };
+        self.volumes.push(NodeVolume {
+            known,
+            volume,
+            pressure: of.pressure,
+            // Rows and columns have the same weight.
+            change: weight.sqrt() * stiffness,
+        });
+        asked.map_or(0.0, |asked| asked - of.pressure)
     }
 
     /// The block of two vectors; `None` where one of them does not move.

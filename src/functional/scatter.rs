@@ -221,6 +221,30 @@ impl<'a, K: Kernel> Places<'a, K> {
         }
     }
 
+    /// Adds c times the volume of an element, where a matrix of nodes asks for it, and what its pressure is off in the blocks.
+    #[inline(always)]
+    pub(super) fn volume(&self, c: f64, sample: &Sample<'_>, nodes: &mut NodeBlocks) {
+        let Some(volume) = K::volume(self.element, sample) else {
+            return;
+        };
+        let vectors = std::array::from_fn(|i| K::vector(self.element, i).vector);
+        let weight = self.weight(0, 0);
+        let change = nodes.add_volume(vectors, &volume, [c, weight]);
+        if change == 0.0 {
+            return;
+        }
+        let Some(curved) = K::curved_volume(self.element, sample) else {
+            return;
+        };
+        for (row, a) in curved.iter().zip(vectors) {
+            for (block, b) in row.iter().zip(vectors) {
+                if let Some(pair) = nodes.pair(a, b) {
+                    nodes.add_full(pair, &(block * (c * weight * change)));
+                }
+            }
+        }
+    }
+
     /// Sum of the products of weights of two arguments over the blocks that are asked for.
     #[inline(always)]
     fn weight(&self, i: usize, j: usize) -> f64 {

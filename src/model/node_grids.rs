@@ -1,7 +1,7 @@
 //! Box grids of nodes with the unknowns of a step at each node, where these are all that is unknown.
 
 use crate::model::Model;
-use crate::model::system::{Solid, System};
+use crate::model::system::{ElementKind, Material, Solid, System};
 use crate::sparse::multigrid::NodeGrid;
 use thiserror::Error;
 
@@ -25,6 +25,18 @@ pub(crate) fn has_boxes_alone(system: &System) -> bool {
     system.bodies.is_empty() && system.muscles.is_empty() && system.solids.iter().all(is_box)
 }
 
+/// Least λ/μ from which on pressures of mean dilatations are worth their iterations.
+const STIFF: f64 = 4.0;
+
+/// Returns true if elements of a block resist changes of their volumes by far more than anything else, with one pressure each.
+fn has_pressures(solid: &Solid) -> bool {
+    let is_stiff = |of: &Material| {
+        of.lame_lambda
+            .is_some_and(|lambda| lambda > STIFF * of.shear_modulus)
+    };
+    solid.element == ElementKind::Hex8Q1P0 && solid.materials.iter().any(is_stiff)
+}
+
 impl Model {
     /// The grids of the blocks that move, each with its unknowns. Prescribed coordinates belong to no grid.
     ///
@@ -42,7 +54,11 @@ impl Model {
             };
             let nodes = planes.iter().map(Vec::len).product();
             let unknowns = vec![[None; 4]; nodes];
-            grids.push(NodeGrid { planes, unknowns });
+            grids.push(NodeGrid {
+                planes,
+                unknowns,
+                has_pressures: has_pressures(&block.solid),
+            });
         }
         let mut found = vec![false; self.variables.unknown_count()];
         for (place, &(node, axis)) in map.of_nodes.iter().enumerate() {

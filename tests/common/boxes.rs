@@ -16,6 +16,7 @@ pub(crate) fn grid(counts: [usize; 3], first: &mut u32) -> NodeGrid {
     };
     let unknowns = (0..nodes).map(|node| [0; 4].map(|_| fresh(node)));
     NodeGrid {
+        has_pressures: false,
         planes,
         unknowns: unknowns.collect(),
     }

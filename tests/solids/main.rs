@@ -5,6 +5,7 @@ mod common;
 
 mod dynamics;
 mod gmsh;
+mod incompressible;
 mod invariants;
 mod kept_problems;
 mod loads;

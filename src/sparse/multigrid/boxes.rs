@@ -5,14 +5,11 @@ use crate::sparse::Singular;
 use crate::sparse::multigrid::field::{Block, Field};
 use crate::sparse::multigrid::hierarchy::Hierarchy;
 use crate::sparse::multigrid::krylov::Operator;
-use crate::sparse::multigrid::node_grid::{COMPONENTS, NEIGHBOURS, OWN, offsets};
+use crate::sparse::multigrid::node_grid::{
+    COMPONENTS, ENTRIES, NEIGHBOURS, NodeBlock, OWN, offsets,
+};
+use crate::sparse::multigrid::volumes::{Volumes, scale_of_mean};
 use std::ops::Range;
-
-/// Entries of a block.
-pub(super) const ENTRIES: usize = COMPONENTS * COMPONENTS;
-
-/// A block of the matrix: entries between the components of two nodes, by column.
-pub type NodeBlock = [f64; ENTRIES];
 
 /// The boxes and their matrix.
 #[derive(Debug)]
@@ -24,6 +21,8 @@ pub(super) struct Parts {
     pub(super) matrix: Vec<NodeBlock>,
     /// Factors of rows and columns of a box by component.
     pub(super) scales: Vec<[f64; COMPONENTS]>,
+    /// Volumes of elements by their first node; none where no box has pressures.
+    pub(super) volumes: Volumes,
 }
 
 impl Parts {
@@ -57,19 +56,16 @@ impl Parts {
                     *count += f64::from(u8::from(diagonal > 0.0));
                 }
             }
+            sums[0][0] -= self.volumes.resistance(self.nodes(part));
             let scale = |parts: Range<usize>| {
                 let (sum, count) = sums[parts]
                     .iter()
                     .fold((0.0, 0.0), |(s, c), [sum, count]| (s + sum, c + count));
-                let mean: f64 = sum / count;
-                // A power of two rounds nothing.
-                if mean > 0.0 && mean.is_finite() {
-                    (-0.5 * mean.log2()).round().exp2()
-                } else {
-                    1.0
-                }
+                scale_of_mean(sum / count)
             };
             let displacement = scale(0..3);
+            self.volumes
+                .find_scale(part, self.nodes(part), displacement);
             self.scales[part] = [displacement, displacement, displacement, scale(3..4)];
         }
     }
@@ -85,6 +81,8 @@ impl Parts {
                     *entry *= product;
                 }
             }
+            self.volumes
+                .scale(part, self.nodes(part), &self.scales[part]);
         }
     }
 
@@ -116,12 +114,13 @@ impl Parts {
         for part in 0..self.boxes.len() {
             let nodes = self.nodes(part);
             let blocks = &self.matrix[NEIGHBOURS * nodes.start..NEIGHBOURS * nodes.end];
-            let finest = &mut self.boxes[part].levels[0].matrix;
-            for (to, from) in finest.iter_mut().zip(blocks) {
+            let level = &mut self.boxes[part].levels[0];
+            for (to, from) in level.matrix.iter_mut().zip(blocks) {
                 for (to, from) in to.iter_mut().zip(from) {
                     *to = *from as f32;
                 }
             }
+            self.volumes.take_out(nodes, blocks, level);
             self.boxes[part].prepare()?;
         }
         Ok(())
@@ -147,6 +146,7 @@ impl Operator for Parts {
                 || multiply(blocks, field, offsets(counts), 0, lower),
                 || multiply(blocks, field, offsets(counts), half, upper),
             );
+            self.volumes.apply((nodes, counts), field, x, product);
         }
     }
 
@@ -159,9 +159,31 @@ impl Operator for Parts {
             for (value, r) in field.iter_mut().zip(&r[own.clone()]) {
                 *value = *r as f32;
             }
+            let behind = self.starts[self.starts.len() - 1] * COMPONENTS;
+            let of_pressures = behind + nodes.start..behind + nodes.end;
+            if let Some(pressures) = &mut finest.pressures {
+                let rhs = pressures.rhs.nodes_mut().iter_mut();
+                for (value, r) in rhs.zip(&r[of_pressures.clone()]) {
+                    *value = *r as f32;
+                }
+            }
             self.boxes[part].cycle();
-            let field = self.boxes[part].levels[0].x.nodes().as_flattened();
-            x[own].copy_from_slice(field);
+            let finest = &self.boxes[part].levels[0];
+            x[own].copy_from_slice(finest.x.nodes().as_flattened());
+            if let Some(pressures) = &finest.pressures {
+                x[of_pressures].copy_from_slice(pressures.p.nodes());
+            }
+        }
+    }
+
+    fn is_reduced(&self) -> bool {
+        !self.volumes.is_empty()
+    }
+
+    fn reduce(&self, residual: &mut [f64]) {
+        let counts = self.boxes.iter().map(|one| one.levels[0].counts);
+        for (part, counts) in counts.enumerate() {
+            self.volumes.condense((self.nodes(part), counts), residual);
         }
     }
 }

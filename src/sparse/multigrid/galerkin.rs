@@ -31,6 +31,10 @@ pub(super) fn coarse_matrix(fine: &Level, coarse: &mut Level) {
         || rows(fine, axes, (counts, free), 0, lower),
         || rows(fine, axes, (counts, free), half, upper),
     );
+    if let (Some(from), Some(to)) = (&fine.pressures, &mut coarse.pressures) {
+        from.coarsen(axes, to);
+        to.hold(&coarse.free);
+    }
 }
 
 /// Rows of a coarse matrix from a node on.
@@ -119,6 +123,9 @@ pub(super) fn restrict(fine: &Level, coarse: &mut Level) {
         .transfer
         .as_ref()
         .expect("a coarser grid has a transfer");
+    if let (Some(from), Some(to)) = (&fine.pressures, &mut coarse.pressures) {
+        from.restrict(axes, to);
+    }
     let (counts, residual) = (coarse.counts, fine.residual.nodes());
     for (node, rhs) in coarse.rhs.nodes_mut().iter_mut().enumerate() {
         let at = indices(counts, node);
@@ -144,6 +151,9 @@ pub(super) fn correct(fine: &mut Level, coarse: &Level) {
         .transfer
         .as_ref()
         .expect("a coarser grid has a transfer");
+    if let (Some(to), Some(from)) = (&mut fine.pressures, &coarse.pressures) {
+        to.add_coarse(axes, from);
+    }
     let (counts, correction) = (fine.counts, coarse.x.nodes());
     for (node, x) in fine.x.nodes_mut().iter_mut().enumerate() {
         for (parent, weight) in parents(axes, indices(counts, node)) {

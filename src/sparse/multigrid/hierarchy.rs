@@ -1,11 +1,13 @@
 //! Grids from the finest to the coarsest, and one V-cycle through them.
 
 use crate::sparse::multigrid::axis::coarsening;
+use crate::sparse::multigrid::field::Block;
 use crate::sparse::multigrid::galerkin::{coarse_matrix, correct, restrict};
 use crate::sparse::multigrid::level::Level;
 use crate::sparse::multigrid::node_grid::{
     COMPONENTS, NEIGHBOURS, NodeGrid, indices, node_at, offsets,
 };
+use crate::sparse::multigrid::pressures::Pressures;
 use crate::sparse::{Direct, Singular};
 
 /// A grid of so few nodes is solved directly.
@@ -32,11 +34,12 @@ impl Hierarchy {
                 free | u8::from(unknown.is_some()) << c
             })
         };
-        Self::new(&grid.planes, grid.unknowns.iter().map(bits).collect())
+        let free = grid.unknowns.iter().map(bits).collect();
+        Self::new(&grid.planes, free, grid.has_pressures)
     }
 
     /// The grids between these planes, with a bit for each component of a node without a given value.
-    pub(super) fn new(finest: &[Vec<f64>; 3], mut free: Vec<u8>) -> Self {
+    pub(super) fn new(finest: &[Vec<f64>; 3], mut free: Vec<u8>, has_pressures: bool) -> Self {
         let mut planes = finest.clone();
         let mut levels = Vec::new();
         loop {
@@ -46,7 +49,7 @@ impl Hierarchy {
                 false => None,
             };
             let Some(axes) = &transfer else {
-                levels.push(Level::new(counts, free, None));
+                levels.push(Level::new(counts, free, None, has_pressures));
                 break;
             };
             let next = [0, 1, 2].map(|axis| axes[axis].kept.len());
@@ -59,7 +62,7 @@ impl Hierarchy {
             for (planes, axis) in planes.iter_mut().zip(axes) {
                 *planes = axis.kept.iter().map(|&plane| planes[plane]).collect();
             }
-            levels.push(Level::new(counts, free, transfer));
+            levels.push(Level::new(counts, free, transfer, has_pressures));
             free = coarse;
         }
         let last = &levels[levels.len() - 1];
@@ -88,14 +91,22 @@ impl Hierarchy {
             level.invert().map_err(|column| Singular { column })?;
         }
         let last = &self.levels[self.levels.len() - 1];
+        let matrix = with_volumes(last);
         for (value, ((row, col), entry)) in self.values.iter_mut().zip(entries(last)) {
-            let found = f64::from(last.matrix[entry.0][entry.1]);
+            let found = matrix[entry.0][entry.1];
             *value = match found == 0.0 && row == col {
                 true => 1.0,
                 false => found,
             };
         }
         self.coarsest.factor(&self.values)
+    }
+
+    /// Makes the right-hand side of pressures zero.
+    pub(super) fn forget_volumes(&mut self) {
+        if let Some(pressures) = &mut self.levels[0].pressures {
+            pressures.rhs.values.fill(0.0);
+        }
     }
 
     /// One V-cycle for the right-hand side of the finest grid.
@@ -107,6 +118,9 @@ impl Hierarchy {
             restrict(&above[fine], &mut below[0]);
         }
         let last = &mut self.levels[coarsest];
+        if let Some(pressures) = &last.pressures {
+            pressures.condense(&mut last.rhs);
+        }
         for (value, from) in self.rhs.iter_mut().zip(last.rhs.nodes().as_flattened()) {
             *value = f64::from(*from);
         }
@@ -118,6 +132,9 @@ impl Hierarchy {
                 _ => from[component] as f32,
             });
         }
+        if let Some(pressures) = &mut last.pressures {
+            pressures.follow(&last.x);
+        }
         for fine in (0..coarsest).rev() {
             let (above, below) = self.levels.split_at_mut(fine + 1);
             correct(&mut above[fine], &below[0]);
@@ -128,11 +145,20 @@ impl Hierarchy {
     /// Bytes of all grids.
     pub(super) fn bytes(&self) -> usize {
         let blocks = |level: &Level| level.matrix.len() + level.free.len();
-        let levels = self.levels.iter();
-        levels
-            .map(|level| size_of::<[f32; 16]>() * blocks(level))
-            .sum()
+        let of_pressures = |level: &Level| level.pressures.as_ref().map_or(0, Pressures::bytes);
+        let of_level = |level: &Level| size_of::<Block>() * blocks(level) + of_pressures(level);
+        self.levels.iter().map(of_level).sum()
     }
+}
+
+/// The matrix of a grid with the resistance to changes of volume.
+fn with_volumes(level: &Level) -> Vec<[f64; COMPONENTS * COMPONENTS]> {
+    let matrix = level.matrix.iter().map(|block| block.map(f64::from));
+    let mut matrix: Vec<_> = matrix.collect();
+    if let Some(pressures) = &level.pressures {
+        pressures.add_to(&mut matrix);
+    }
+    matrix
 }
 
 /// Rows and columns of the entries of a matrix, with their block and their place there.

@@ -14,6 +14,14 @@ pub(super) trait Operator {
 
     /// Writes an approximation of A⁻¹ r.
     fn precondition(&mut self, r: &[f64], x: &mut [f32]);
+
+    /// Returns true if the equations stand for a smaller system, whose residual is the one to become small.
+    fn is_reduced(&self) -> bool {
+        false
+    }
+
+    /// Turns a residual into that of the smaller system.
+    fn reduce(&self, _residual: &mut [f64]) {}
 }
 
 /// Storage of the iteration, laid out once.
@@ -26,6 +34,8 @@ pub(super) struct Krylov {
     rotations: [[f64; 2]; RESTART],
     /// Right-hand side of the least squares.
     left: [f64; RESTART + 1],
+    /// A residual, where equations stand for a smaller system.
+    reduced: Vec<f64>,
 }
 
 /// Outcome of an iteration.
@@ -62,6 +72,7 @@ impl Krylov {
             columns: vec![[0.0; RESTART + 1]; RESTART],
             rotations: [[0.0; 2]; RESTART],
             left: [0.0; RESTART + 1],
+            reduced: Vec::new(),
         }
     }
 
@@ -82,9 +93,9 @@ impl Krylov {
         };
         // Not finite numbers end it too.
         while iterated.residual > tolerance && iterated.iterations < LIMIT {
-            let before = iterated.residual;
+            let before = norm(rhs);
             self.round(operator, rhs, x, (whole, tolerance), &mut iterated, is_over)?;
-            if iterated.residual.is_nan() || iterated.residual > 0.9 * before {
+            if iterated.residual.is_nan() || norm(rhs) > 0.9 * before {
                 iterated.residual = f64::INFINITY;
             }
             if iterated.residual.is_infinite() {
@@ -119,14 +130,41 @@ impl Krylov {
             count += 1;
             iterated.iterations += 1;
             let left = self.left[count].abs() / whole;
-            if left.is_nan() || left <= tolerance {
+            if left.is_nan()
+                || left <= tolerance && self.is_enough(operator, count, tolerance * whole)
+            {
                 break;
             }
         }
         self.leave(count, rhs);
         self.combine(count, x);
-        iterated.residual = norm(rhs) / whole;
+        iterated.residual = self.size(operator, rhs) / whole;
         Ok(())
+    }
+
+    /// Norm of a residual, of the smaller system where the equations stand for one.
+    fn size(&mut self, operator: &impl Operator, residual: &[f64]) -> f64 {
+        if !operator.is_reduced() {
+            return norm(residual);
+        }
+        self.reduced.clear();
+        self.reduced.extend_from_slice(residual);
+        operator.reduce(&mut self.reduced);
+        norm(&self.reduced)
+    }
+
+    /// Returns true if the residual of a smaller system is small too.
+    fn is_enough(&mut self, operator: &impl Operator, count: usize, most: f64) -> bool {
+        if !operator.is_reduced() {
+            return true;
+        }
+        let mut residual = std::mem::take(&mut self.reduced);
+        residual.resize(self.basis[0].len(), 0.0);
+        self.leave(count, &mut residual);
+        operator.reduce(&mut residual);
+        let size = norm(&residual);
+        self.reduced = residual;
+        size <= most
     }
 
     /// Adds a vector to the basis, and a column to the least squares.

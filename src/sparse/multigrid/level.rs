@@ -7,6 +7,7 @@ use crate::math::join;
 use crate::sparse::multigrid::axis::Axis;
 use crate::sparse::multigrid::field::{Block, Field};
 use crate::sparse::multigrid::node_grid::{COMPONENTS, NEIGHBOURS, OWN, offsets};
+use crate::sparse::multigrid::pressures::Pressures;
 use crate::sparse::multigrid::slab::{Equations, Slab, slabs, split};
 use nalgebra::Matrix4;
 
@@ -25,12 +26,19 @@ pub(super) struct Level {
     pub(super) rhs: Field,
     pub(super) x: Field,
     pub(super) residual: Field,
+    /// Pressures of elements, where they resist changes of volume.
+    pub(super) pressures: Option<Pressures>,
     slabs: Vec<Slab>,
 }
 
 impl Level {
     /// A grid of these nodes without a matrix.
-    pub(super) fn new(counts: [usize; 3], free: Vec<u8>, transfer: Option<[Axis; 3]>) -> Self {
+    pub(super) fn new(
+        counts: [usize; 3],
+        free: Vec<u8>,
+        transfer: Option<[Axis; 3]>,
+        has_pressures: bool,
+    ) -> Self {
         let nodes = free.len();
         Self {
             offsets: offsets(counts),
@@ -40,6 +48,7 @@ impl Level {
             x: Field::new(counts),
             residual: Field::new(counts),
             slabs: slabs(counts),
+            pressures: has_pressures.then(|| Pressures::new(counts)),
             counts,
             free,
             transfer,
@@ -69,6 +78,9 @@ impl Level {
             if !inverse.iter().all(|entry| entry.is_finite()) {
                 return Err(node);
             }
+        }
+        if let Some(pressures) = &mut self.pressures {
+            pressures.prepare(&self.inverse);
         }
         Ok(())
     }
@@ -105,6 +117,7 @@ impl Level {
         for is_second in [false, true] {
             self.each(is_second, |equations, slab| equations.forward(slab));
         }
+        let has_pressures = self.correct_pressures(true);
         let equations = Equations {
             counts: self.counts,
             offsets: &self.offsets,
@@ -118,19 +131,42 @@ impl Level {
         let (below, above) = self.residual.nodes_mut().split_at_mut(nodes);
         let leave = |slabs: &[Slab], residual: &mut [[f32; COMPONENTS]]| {
             for (slab, residual) in split(slabs, counts, residual) {
-                equations.leave(slab, x, residual);
+                match has_pressures {
+                    true => equations.leave_all(slab, x, residual),
+                    false => equations.leave(slab, x, residual),
+                }
             }
         };
         match lower.is_empty() {
             true => leave(upper, above),
             false => _ = join(|| leave(lower, below), || leave(upper, above)),
         }
+        if let Some(pressures) = &mut self.pressures {
+            pressures.subtract_forces(&mut self.residual);
+            pressures.leave(&self.x);
+        }
     }
 
-    /// A backward sweep.
+    /// Corrects pressures behind a sweep, from zero or from those there are; returns false where there are none.
+    fn correct_pressures(&mut self, is_from_zero: bool) -> bool {
+        let Some(pressures) = &mut self.pressures else {
+            return false;
+        };
+        if is_from_zero {
+            pressures.p.values.fill(0.0);
+        }
+        pressures.correct(&mut self.x, &self.inverse, &mut self.residual);
+        true
+    }
+
+    /// A backward sweep; pressures act as forces.
     pub(super) fn sweep_up(&mut self) {
+        if let Some(pressures) = &self.pressures {
+            pressures.subtract_forces(&mut self.rhs);
+        }
         for is_second in [true, false] {
             self.each(is_second, |equations, slab| equations.backward(slab));
         }
+        self.correct_pressures(false);
     }
 }

@@ -7,19 +7,23 @@
 
 mod axis;
 mod boxes;
+mod element_volume;
 mod field;
 mod galerkin;
 mod hierarchy;
 mod krylov;
 mod level;
 mod lobpcg;
+mod matrix_values;
 mod node_grid;
 mod potentials;
+mod pressures;
 mod slab;
 mod solver;
 mod stiffness;
+mod volumes;
 
-pub use boxes::NodeBlock;
-pub use node_grid::{GridNode, NodeGrid};
+pub use element_volume::ElementVolume;
+pub use node_grid::{GridNode, NodeBlock, NodeGrid};
 pub use solver::{Multigrid, MultigridReport, NoSolution};
 pub use stiffness::LowestModes;

@@ -2,10 +2,15 @@
 
 /// Components of a node: three displacements and a potential.
 pub(super) const COMPONENTS: usize = 4;
+/// Entries of a block.
+pub(super) const ENTRIES: usize = COMPONENTS * COMPONENTS;
 /// Neighbours of a node, itself included.
 pub(super) const NEIGHBOURS: usize = 27;
 /// The node itself among its neighbours.
 pub(super) const OWN: usize = 13;
+
+/// A block of the matrix: entries between the components of two nodes, by column.
+pub type NodeBlock = [f64; ENTRIES];
 
 /// A box grid of nodes, which count along the first axis first.
 #[derive(Clone, Debug, PartialEq)]
@@ -14,6 +19,8 @@ pub struct NodeGrid {
     pub planes: [Vec<f64>; 3],
     /// Unknowns of each node by component; `None` where the value is given.
     pub unknowns: Vec<[Option<u32>; COMPONENTS]>,
+    /// True if elements have pressures, as they resist changes of their volumes by far more than anything else.
+    pub has_pressures: bool,
 }
 
 impl NodeGrid {
@@ -46,6 +53,11 @@ impl GridNode {
             number: number as u32,
             code: x | y << BITS | z << (2 * BITS),
         }
+    }
+
+    /// Its number.
+    pub(super) fn number(self) -> usize {
+        self.number as usize
     }
 
     /// Number of the block of its rows and the columns of another node; `None` where they are no neighbours.

@@ -2,10 +2,10 @@
 
 use crate::math::{IsOver, Stopped};
 use crate::sparse::Singular;
-use crate::sparse::multigrid::boxes::{ENTRIES, Parts};
+use crate::sparse::multigrid::boxes::Parts;
 use crate::sparse::multigrid::field::Field;
 use crate::sparse::multigrid::hierarchy::Hierarchy;
-use crate::sparse::multigrid::node_grid::{COMPONENTS, NEIGHBOURS, offsets};
+use crate::sparse::multigrid::node_grid::{COMPONENTS, ENTRIES, NEIGHBOURS, offsets};
 
 /// Component of the potential.
 pub(super) const POTENTIAL: usize = COMPONENTS - 1;
@@ -49,7 +49,7 @@ impl Potentials {
             let all = u8::MAX >> (u8::BITS as usize - COMPONENTS);
             let free = one.levels[0].free.iter();
             let free = free.map(|free| if is_free(free) { all } else { 0 });
-            let mut one = Hierarchy::new(&one.planes, free.collect());
+            let mut one = Hierarchy::new(&one.planes, free.collect(), false);
             let values = matrix[parts.starts[part]..parts.starts[part + 1]].as_flattened();
             for (block, value) in one.levels[0].matrix.iter_mut().zip(values) {
                 for component in 0..COMPONENTS {

@@ -160,6 +160,16 @@ impl Equations<'_> {
         }
     }
 
+    /// Writes what any field leaves of the right-hand side at the nodes of a slab.
+    pub(super) fn leave_all(&self, slab: &Slab, x: &Field, residual: &mut [[f32; COMPONENTS]]) {
+        let nodes = slab.planes.clone().flat_map(|plane| self.nodes(plane));
+        for (node, residual) in nodes.zip(residual) {
+            let sum = self.sum(node, (node + x.margin, &x.values), 0..NEIGHBOURS);
+            let rhs = self.rhs.values[node + self.rhs.margin];
+            *residual = std::array::from_fn(|c| rhs[c] - sum[c]);
+        }
+    }
+
     /// A backward sweep over a slab.
     pub(super) fn backward(&self, slab: &mut Slab) {
         for plane in slab.planes.clone().rev() {

@@ -5,13 +5,15 @@
 
 use crate::math::{IsOver, Stopped};
 use crate::sparse::Singular;
-use crate::sparse::multigrid::boxes::{ENTRIES, NodeBlock, Parts, products};
+use crate::sparse::multigrid::boxes::Parts;
+use crate::sparse::multigrid::element_volume::ElementVolume;
 use crate::sparse::multigrid::hierarchy::Hierarchy;
 use crate::sparse::multigrid::krylov::{Iterated, Krylov, norm};
 use crate::sparse::multigrid::node_grid::{
-    COMPONENTS, GridNode, NEIGHBOURS, NodeGrid, OWN, PLANES, indices,
+    COMPONENTS, ENTRIES, GridNode, NEIGHBOURS, NodeBlock, NodeGrid, OWN, PLANES, indices,
 };
 use crate::sparse::multigrid::stiffness::{LowestModes, lowest_modes};
+use crate::sparse::multigrid::volumes::Volumes;
 
 /// Iterations for each digit, relative to those with fresh grids, above which grids are made anew.
 const SLOWER: f64 = 1.4;
@@ -50,10 +52,11 @@ impl MultigridReport {
 /// A solver of systems on box grids.
 #[derive(Debug)]
 pub struct Multigrid {
-    parts: Parts,
+    pub(super) parts: Parts,
     krylov: Krylov,
     rhs: Vec<f64>,
-    x: Vec<f64>,
+    /// The solution found last, by nodes, then by elements.
+    pub(super) x: Vec<f64>,
     /// Component of a node of each unknown; none of those that are held.
     places: Vec<u32>,
     /// Iterations for each digit with fresh grids; none before they are used.
@@ -98,15 +101,21 @@ impl Multigrid {
             bytes: boxes.iter().map(Hierarchy::bytes).sum(),
             ..MultigridReport::default()
         };
+        let volumes = match grids.iter().any(|grid| grid.has_pressures) {
+            true => Volumes::new(nodes, boxes.len()),
+            false => Volumes::default(),
+        };
+        let all = COMPONENTS * nodes + volumes.list.len();
         Some(Self {
-            krylov: Krylov::new(COMPONENTS * nodes),
-            rhs: vec![0.0; COMPONENTS * nodes],
-            x: vec![0.0; COMPONENTS * nodes],
+            krylov: Krylov::new(all),
+            rhs: vec![0.0; all],
+            x: vec![0.0; all],
             parts: Parts {
                 matrix: vec![[0.0; ENTRIES]; NEIGHBOURS * nodes],
                 scales: vec![[1.0; COMPONENTS]; boxes.len()],
                 boxes,
                 starts,
+                volumes,
             },
             places,
             fresh: None,
@@ -189,23 +198,7 @@ impl Multigrid {
         for block in &mut self.parts.matrix {
             block[..ENTRIES - 1].fill(0.0);
         }
-    }
-
-    /// Copies the values as they were written.
-    pub fn copy_values(&self, to: &mut Vec<f64>) {
-        let Parts {
-            matrix,
-            starts,
-            scales,
-            ..
-        } = &self.parts;
-        to.clear();
-        for (part, factors) in scales.iter().enumerate() {
-            let products = products(factors).map(f64::recip);
-            for block in &matrix[NEIGHBOURS * starts[part]..NEIGHBOURS * starts[part + 1]] {
-                to.extend(block.iter().zip(&products).map(|(entry, by)| entry * by));
-            }
-        }
+        self.parts.volumes.list.fill(ElementVolume::default());
     }
 
     /// Counts since the last call.

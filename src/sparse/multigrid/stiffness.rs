@@ -4,10 +4,10 @@
 
 use crate::math::{IsOver, Random, Stopped, join};
 use crate::sparse::Singular;
-use crate::sparse::multigrid::boxes::{ENTRIES, Parts};
+use crate::sparse::multigrid::boxes::Parts;
 use crate::sparse::multigrid::field::Field;
 use crate::sparse::multigrid::lobpcg::{AtNode, COUNT, Pairs, SymmetricMatrix, lowest};
-use crate::sparse::multigrid::node_grid::{COMPONENTS, NEIGHBOURS, OWN, offsets};
+use crate::sparse::multigrid::node_grid::{COMPONENTS, ENTRIES, NEIGHBOURS, OWN, offsets};
 use crate::sparse::multigrid::potentials::{POTENTIAL, Potentials};
 
 /// Rounding of a product, relative to the largest entry of the diagonal.
@@ -237,6 +237,7 @@ impl SymmetricMatrix for Stiffness<'_> {
                 for (to, from) in rhs.zip(&r[nodes.clone()]) {
                     *to = std::array::from_fn(|c| (unit * from[v][c] * scales[c]) as f32);
                 }
+                one.forget_volumes();
                 one.cycle();
                 let found = one.levels[0].x.nodes().iter();
                 for (to, from) in x[nodes].iter_mut().zip(found) {

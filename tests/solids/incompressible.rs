@@ -1,0 +1,100 @@
+//! Nearly incompressible blocks of mean dilatation by multigrid: the displacements of factors, with iterations that neither the ratio of
+//! moduli nor the mesh makes grow.
+
+use crate::common::solid::system;
+use crate::common::stacks::{LENGTH, cubes, rubber};
+use proboscis::dynamics::{
+    DiscreteTrajectory, MultigridUse, Newton, Solving, Start, simulate_by, stable_equilibrium,
+    stable_equilibrium_by,
+};
+use proboscis::model::Model;
+use proboscis::model::system::{ElementKind, System};
+use proboscis::sparse::Backend;
+use std::ops::ControlFlow;
+
+/// Voltage in V over layers of 10 mm.
+const VOLTAGE: f64 = 5e4;
+/// Ratios λ/μ.
+const RATIOS: [f64; 4] = [10.0, 100.0, 1e3, 1e4];
+
+/// Most iterations for each update.
+const MOST: f64 = 8.0;
+
+/// A block between electrodes on its ends and middle planes, of n × n × 4n elements.
+fn stiff(n: usize, ratio: f64, viscosity: Option<f64>) -> System {
+    let mut solid = cubes(n, rubber(0.4, viscosity));
+    solid.element = ElementKind::Hex8Q1P0;
+    for material in &mut solid.materials {
+        material.lame_lambda = Some(ratio * material.shear_modulus);
+    }
+    system(vec![solid])
+}
+
+fn apart(a: &[f64], b: &[f64]) -> f64 {
+    let parts = a.iter().zip(b).map(|(a, b)| (a - b).abs());
+    parts.fold(0.0, f64::max)
+}
+
+/// Two steps under a voltage that is switched on at once.
+fn motion(system: &System, solving: Solving) -> DiscreteTrajectory {
+    let model = Model::new(system.clone(), None, 0.5, &[]).unwrap();
+    let start = Start::at_rest(&model, model.coordinates_at(&[]));
+    let observer = |_: &_| ControlFlow::Continue(());
+    let drive = |_: f64, _: f64| vec![VOLTAGE];
+    let (discrete, failure) = simulate_by(solving, &model, &start, 0.5, 2, drive, observer);
+    assert_eq!(failure, None);
+    discrete
+}
+
+#[test]
+fn the_motion_of_nearly_incompressible_blocks_is_that_of_factors() {
+    let by = |newton, backend, multigrid| Solving {
+        newton,
+        backend,
+        multigrid,
+        ..Solving::default()
+    };
+    for viscosity in [None, Some(1.0)] {
+        for ratio in RATIOS {
+            let system = stiff(3, ratio, viscosity);
+            let factors = by(Newton::Full, Some(Backend::Faer), MultigridUse::WhereFaster);
+            let direct = motion(&system, factors);
+            let iterated = motion(&system, by(Newton::Full, None, MultigridUse::Always));
+            let moved = apart(&direct.z[2], &direct.z[0]);
+            let error = apart(&direct.z[2], &iterated.z[2]);
+            println!(
+                "{viscosity:?} {ratio}: moved {moved:.1e} apart {error:.1e} {:?}",
+                iterated.report
+            );
+            assert!(moved > 1e-4 * LENGTH, "{moved}");
+            assert!(error < 1e-9 * LENGTH, "{error:e}");
+            assert_eq!(iterated.report.fallbacks, 0);
+            assert_eq!(iterated.report.factorisations, 0);
+            let each =
+                iterated.report.multigrid.iterations as f64 / iterated.report.iterations as f64;
+            assert!(each < MOST, "{each} iterations for each update");
+        }
+    }
+}
+
+#[test]
+fn the_rest_of_nearly_incompressible_blocks_is_that_of_factors() {
+    for ratio in RATIOS {
+        let model = Model::new(stiff(3, ratio, None), None, 1.0, &[]).unwrap();
+        let start = model.reference_coordinates();
+        let direct = stable_equilibrium(&model, &start, &[VOLTAGE]).unwrap();
+        let iterated =
+            stable_equilibrium_by(&model, &start, &[VOLTAGE], MultigridUse::Always).unwrap();
+        let (report, fallbacks) = iterated.on_grids.unwrap();
+        let error = apart(&direct.z, &iterated.z);
+        println!(
+            "{ratio}: apart {error:.1e}, {} updates, {report:?}",
+            iterated.iterations
+        );
+        assert!(apart(&direct.z, &start) > 1e-4 * LENGTH);
+        assert!(error < 1e-9 * LENGTH, "{error:e}");
+        assert_eq!(fallbacks, 0);
+        let each = report.iterations as f64 / iterated.iterations as f64;
+        assert!(each < 2.0 * MOST, "{each} iterations for each update");
+    }
+}
