@@ -19,6 +19,8 @@ pub(super) struct Contraction {
     newton: Newton,
     /// Rate of the updates above which a tangent is made anew.
     slow: f64,
+    /// Least rate that is believed: solutions by an iteration are as accurate as asked for, which one small ratio does not show.
+    least: f64,
     /// Relative size of the last update that was made.
     last: Option<f64>,
 }
@@ -42,6 +44,7 @@ impl Contraction {
         Self {
             newton,
             slow: SLOW,
+            least: 0.0,
             last: None,
         }
     }
@@ -50,6 +53,7 @@ impl Contraction {
     pub(super) const fn of_cheap_tangents(newton: Newton) -> Self {
         Self {
             slow: CHEAP,
+            least: CHEAP,
             ..Self::new(newton)
         }
     }
@@ -69,7 +73,10 @@ impl Contraction {
         }
         let is_close = match self.newton {
             Newton::Full => size < UPDATE,
-            Newton::Modified => size * (rate / (1.0 - rate)).max(size) < LEFT,
+            Newton::Modified => {
+                let rate = rate.max(self.least);
+                size * (rate / (1.0 - rate)).max(size) < LEFT
+            }
         };
         let is_first = self.last.replace(size).is_none();
         if is_close && (rate < 1.0 || size < UPDATE) {
@@ -113,6 +120,19 @@ mod tests {
             assert_eq!(slow > 0, rate > 0.75, "{rate}");
             assert!(!found.contains(&Verdict::Astray));
         }
+    }
+
+    /// A solution by an iteration may leave a part of an update that the last ratio does not show.
+    #[test]
+    fn one_small_ratio_of_an_iteration_is_not_believed() {
+        let judged = |mut contraction: Contraction| {
+            contraction.judge(1e-4, false, false);
+            contraction.judge(1e-9, true, false)
+        };
+        let newton = Newton::Modified;
+        assert_eq!(judged(Contraction::new(newton)), Verdict::Converged);
+        let cheap = Contraction::of_cheap_tangents(newton);
+        assert_eq!(judged(cheap), Verdict::Shrinks);
     }
 
     #[test]

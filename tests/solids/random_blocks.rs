@@ -231,11 +231,7 @@ impl Counts {
         self.motions += 1;
         let last = direct.z.len() - 1;
         self.moved += usize::from(apart(&direct.z[last], &direct.z[0]) > 1e-5 * model.length());
-        // An update below 1e-9 ends Newton's method: with a tangent that is kept, as much may be missing in each step.
-        for (kind, newton, tolerance) in [
-            (0, Newton::Full, APART),
-            (1, Newton::Modified, 10.0 * APART),
-        ] {
+        for (kind, newton, tolerance) in [(0, Newton::Full, APART), (1, Newton::Modified, APART)] {
             let iterated = by(newton, None, MultigridUse::Always);
             assert!(iterated.report.multigrid.iterations > 0);
             self.fallbacks += usize::from(iterated.report.fallbacks > 0);
