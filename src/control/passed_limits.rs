@@ -69,6 +69,13 @@ pub fn limits_along(
     };
     let model = Model::for_analysis(system.clone(), analysis)?;
     for (place, bounded) in list.list.iter().enumerate() {
+        // Steps from one interval to the next are those of the program.
+        if bounded.quantity.before().is_some() {
+            if out.left_out.last() != Some(&bounded.name) {
+                out.left_out.push(bounded.name.clone());
+            }
+            continue;
+        }
         let along = (0..=motion.intervals()).filter_map(|k| {
             let value = along(&model, (place, bounded), motion, k)?;
             let beyond = bounded.beyond(value);

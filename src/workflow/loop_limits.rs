@@ -13,6 +13,7 @@ use crate::workflow::integrate::grid;
 use crate::workflow::optimum::Optimum;
 use crate::workflow::remark::Remarks;
 use serde::Serialize;
+use std::collections::BTreeSet;
 
 /// A part of the larger bound by which a limit may be passed without a warning: that of steps of finite length.
 const SLIGHT: f64 = 1e-3;
@@ -81,6 +82,7 @@ impl LoopLimits {
         let system = &optimum.model.system;
         let analysis = Analysis {
             interval: motion.times[1] - motion.times[0],
+            curved: BTreeSet::new(),
             ..optimum.model.analysis.clone()
         };
         let found = limits_along((system, &control.limits), (system, analysis), motion);

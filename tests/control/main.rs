@@ -5,6 +5,7 @@ mod common;
 
 mod accuracy;
 mod amount_limits;
+mod between_instants;
 mod closed_form;
 mod codesign;
 mod controller;

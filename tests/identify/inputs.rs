@@ -199,15 +199,11 @@ fn by_hand(truth: [f64; 3]) -> (System, Identification) {
     let seen = predict((&system, &known), &[0], &unknowns, &grid)
         .unwrap()
         .values;
-    let mut row = 0;
-    for reading in task.recordings[0]
-        .channels
-        .iter_mut()
-        .flat_map(|one| &mut one.readings)
-    {
-        reading.value = seen[row];
+    let channels = task.recordings[0].channels.iter_mut();
+    let readings = channels.flat_map(|one| &mut one.readings);
+    for (reading, value) in readings.zip(seen.iter()) {
+        reading.value = *value;
         reading.deviation = 1e-3;
-        row += 1;
     }
     (system, task)
 }

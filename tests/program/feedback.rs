@@ -99,7 +99,7 @@ fn a_stiffer_trunk_follows_under_feedback() {
     assert!(without > 5e-3 && with < 0.2 * without, "{tip}");
     assert!(number(&closed["samples"]) == 251.0);
     assert!(closed["samples_at_lower_bound"].as_u64().unwrap() > 0);
-    assert!(err.contains("a muscle can not push"), "{err}");
+    assert!(err.contains("a muscle cannot push"), "{err}");
     assert!(here.join("closed/tracking.svg").exists());
     let figure = fs::read_to_string(here.join("closed/tip_path.svg")).unwrap();
     assert!(figure.contains("without feedback") && figure.contains("reference"));

@@ -207,9 +207,14 @@ fn mistakes_of_inputs_and_priors_are_told() {
             "a positive size",
         ),
         (
-            "/recordings/0/experiment/start",
-            Value::Null,
-            "expected a start with \"rest_at_voltages\"",
+            "/inputs",
+            json!({ "delays": { "push": { "min": "0 s", "max": "2 ms" } } }),
+            "the name of a muscle",
+        ),
+        (
+            "/inputs",
+            json!({ "delays": { "pull": { "min": "-1 ms", "max": "2 ms" } } }),
+            "no negative time",
         ),
     ];
     for (place, value, expected) in cases {
