@@ -1,7 +1,8 @@
 //! Momenta of a start with given rates where masses are sought.
 //!
-//! The momentum p = M(q, π) q̇ of given coordinates and rates is a straight line in each mass, density or moment of inertia, and in
-//! several of them together: its values at two values of a parameter tell its slope, and a third one that it is a straight line.
+//! The momentum p = M(q, π) q̇ of given coordinates and rates is linear in masses, densities and moments of inertia: its values at two values
+//! of a parameter tell its slope, a third one that it is a straight line, and one with all parameters changed that it is linear in them
+//! together.
 
 use crate::control::boundary_conditions::MomentumSlopes;
 use crate::control::given_state::resolve_start;
@@ -34,7 +35,7 @@ pub fn momentum_slopes(
         .collect();
     if let Some(&first) = of_masses.first() {
         let guess = model.analysis.parameters[first].guess;
-        start.momentum = start_at(model, state, (first, guess))
+        start.momentum = start_at(model, state, &[(first, guess)])
             .ok_or(first)?
             .momentum;
     }
@@ -43,7 +44,62 @@ pub fn momentum_slopes(
         let found = by_parameter(model, (state, start), index);
         found.ok_or(index).transpose()
     });
-    slopes.collect()
+    let slopes: Vec<MomentumSlopes> = slopes.collect::<Result<_, usize>>()?;
+    match slopes.last() {
+        Some(last) if !are_linear(model, (state, start), &slopes) => Err(last.parameter),
+        _ => Ok(slopes),
+    }
+}
+
+/// Returns true if the changes by all parameters add up.
+fn are_linear(
+    model: &Model,
+    (state, start): (&BoundaryState, &Start),
+    slopes: &[MomentumSlopes],
+) -> bool {
+    let parameters = &model.analysis.parameters;
+    let rooms = slopes
+        .iter()
+        .map(|one| (one.parameter, room(&parameters[one.parameter])));
+    let values: Vec<(usize, f64)> = rooms
+        .map(|(index, room)| (index, parameters[index].guess + room))
+        .collect();
+    let Some(moved) = start_at(model, state, &values) else {
+        return false;
+    };
+    let size = largest(start).max(largest(&moved));
+    let mut pairs = start.momentum.iter().zip(&moved.momentum).enumerate();
+    pairs.all(|(i, (from, to))| {
+        let changes = slopes
+            .iter()
+            .map(|one| one.slopes[i] * room(&parameters[one.parameter]));
+        (from + changes.sum::<f64>() - to).abs() <= STRAIGHT * size
+    })
+}
+
+fn largest(start: &Start) -> f64 {
+    start.momentum.iter().fold(0.0, |most, p| p.abs().max(most))
+}
+
+/// A change of a parameter within its bounds, about as large as its guess, to the side that leaves more room.
+fn room(parameter: &Parameter) -> f64 {
+    let Parameter {
+        lower,
+        upper,
+        guess,
+        ..
+    } = *parameter;
+    let most = (upper - guess).max(guess - lower);
+    let size = match (guess == 0.0, most.is_finite()) {
+        (false, _) => most.min(guess.abs()),
+        (true, true) => most,
+        (true, false) => 1.0,
+    };
+    if upper - guess > guess - lower {
+        size
+    } else {
+        -size
+    }
 }
 
 /// The same by one parameter, nothing where they do not change; other parameters keep their guesses. None where they are no straight line.
@@ -52,25 +108,11 @@ fn by_parameter(
     (state, start): (&BoundaryState, &Start),
     index: usize,
 ) -> Option<Option<MomentumSlopes>> {
-    let parameters = &model.analysis.parameters;
-    let Parameter {
-        lower,
-        upper,
-        guess,
-        ..
-    } = parameters[index];
-    // On the side of the bounds that leaves more room.
-    let room = match upper - guess > guess - lower {
-        true => (upper - guess).min(guess.abs().max(f64::MIN_POSITIVE)),
-        false => -(guess - lower).min(guess.abs().max(f64::MIN_POSITIVE)),
-    };
-    let at = |part: f64| start_at(model, state, (index, guess + part * room));
+    let parameter = &model.analysis.parameters[index];
+    let (guess, room) = (parameter.guess, room(parameter));
+    let at = |part: f64| start_at(model, state, &[(index, guess + part * room)]);
     let (half, whole) = (at(0.5)?, at(1.0)?);
-    let size = start
-        .momentum
-        .iter()
-        .chain(&whole.momentum)
-        .fold(0.0, |most: f64, p| most.max(p.abs()));
+    let size = largest(start).max(largest(&whole));
     let is_same = |a: &f64, b: &f64| (a - b).abs() <= STRAIGHT * a.abs().max(b.abs());
     let moves = [&half, &whole]
         .iter()
@@ -97,11 +139,13 @@ fn by_parameter(
     }))
 }
 
-/// The start with a value of a parameter: that of the system in which all of them are put.
-fn start_at(model: &Model, state: &BoundaryState, (index, value): (usize, f64)) -> Option<Start> {
+/// The start with values of some parameters: that of the system in which all of them are put.
+fn start_at(model: &Model, state: &BoundaryState, changed: &[(usize, f64)]) -> Option<Start> {
     let parameters = &model.analysis.parameters;
     let mut values: Vec<f64> = parameters.iter().map(|one| one.guess).collect();
-    values[index] = value;
+    changed
+        .iter()
+        .for_each(|&(index, value)| values[index] = value);
     let system = with_parameters(&model.system, parameters, &values);
     // What may move is that of the model.
     let presolved = Presolved::new(&system, &model.analysis);

@@ -6,7 +6,9 @@ use crate::sought::{pair, turn};
 use crate::sought_rest::solved;
 use proboscis::control::problem::{BoundaryState, Control};
 use proboscis::control::{BoundaryConditions, Transcription, guess};
-use proboscis::model::{Constant, MaterialConstant, MaterialOf, System, with_parameters};
+use proboscis::model::{
+    Constant, MaterialConstant, MaterialOf, Parameter, System, with_parameters,
+};
 use proboscis::nlp::{Nlp, differences};
 
 /// Rate of the joint at the start in rad/ms.
@@ -77,6 +79,30 @@ fn the_momentum_of_a_muscle_follows_its_density() {
     assert!(expected.abs() > 1.0, "{expected}");
     assert!((line.slopes[0] / expected - 1.0).abs() < 1e-9);
     assert!((boundary.start.momentum[0] / momentum(1e-3) - 1.0).abs() < 1e-12);
+}
+
+#[test]
+fn a_momentum_that_is_a_product_of_two_parameters_is_refused() {
+    let mut system = pair();
+    system.muscles[1].material.density = Some(1e-3);
+    let density = (
+        Constant::Material(MaterialOf::Muscle(1), MaterialConstant::Density),
+        1.0,
+    );
+    let side = parameter("side", &[(Constant::Side(1, 0), 1.0)], 10.0);
+    let resolved = |parameters: Vec<Parameter>| {
+        let control = Control {
+            parameters,
+            ..swinging(&system)
+        };
+        BoundaryConditions::resolve(&system, &control, 10.0)
+            .map(|(_, boundary)| boundary.momentum_slopes.len())
+    };
+    let density = parameter("density", &[density], 1e-3);
+    assert_eq!(resolved(vec![density.clone()]), Ok(1));
+    assert_eq!(resolved(vec![side.clone()]), Ok(1));
+    let error = resolved(vec![density, side]).unwrap_err().to_string();
+    assert!(error.contains("no straight line"), "{error}");
 }
 
 #[test]
