@@ -62,13 +62,12 @@ test: install-deps
 test-python: install-deps
 	@python/test
 
-# The dependencies are those of other tests, and a library optimised less and without what draws and reads arguments, in half the time, is
-# kept apart from theirs.
+# The dependencies are those of other tests, and a library optimised less, in half the time, is kept apart from theirs.
 # Cargo before 1.91 does not know the first variable, and builds the dependencies too.
 test-other-ipopt: install-deps
 	@PKG_CONFIG_PATH=$$(.ci/other-ipopt) && export PKG_CONFIG_PATH && target=$${CARGO_TARGET_DIR:-target} && \
 	  CARGO_BUILD_BUILD_DIR=$$target CARGO_TARGET_DIR=$$target/other-ipopt/build \
-	  $(CARGO) test --locked --no-default-features --features files --config 'profile.dev.package.proboscis.opt-level=1' \
+	  $(CARGO) test --locked $(TEST_PACKAGES) --config 'profile.dev.package.proboscis.opt-level=1' \
 	  --config 'profile.dev.package.proboscis.overflow-checks=false' --config 'profile.dev.package.proboscis.debug-assertions=false' --test solver
 
 test-browser:
