@@ -85,7 +85,7 @@ fn arrays(found: &Regulated) -> io::Result<Vec<u8>> {
         ("R", |step| step.whole_costs().costs.inputs),
         ("K", |step| step.gain.clone()),
     ];
-    if found.steps[0].rates.iter().any(|weight| *weight > 0.0) {
+    if found.steps[0].has_rates() {
         of.push(("N", |step| step.whole_costs().cross.transpose()));
     }
     for (name, matrix) in of {

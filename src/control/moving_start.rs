@@ -7,9 +7,10 @@
 use crate::control::boundary_conditions::MomentumSlopes;
 use crate::control::given_state::resolve_start;
 use crate::control::problem::BoundaryState;
+use crate::control::rest::with_values;
 use crate::dynamics::Start;
 use crate::functional::TermKind;
-use crate::model::{Analysis, Model, Parameter, Presolved, Role, with_parameters};
+use crate::model::{Model, Parameter, Role};
 
 /// Differences from a straight line this small, relative to the momenta, are rounding.
 const STRAIGHT: f64 = 1e-9;
@@ -25,14 +26,7 @@ pub fn momentum_slopes(
     if start.momentum.iter().all(|p| *p == 0.0) || matches!(state, BoundaryState::EndOf(_)) {
         return Ok(Vec::new());
     }
-    let terms = &model.action.intervals.terms;
-    let kinetic = terms.iter().filter(|term| term.kind() == TermKind::Kinetic);
-    let read: Vec<usize> = kinetic.flat_map(|term| term.not_by_squares()).collect();
-    let scalars = model.variables.range(Role::Parameter).enumerate();
-    let of_masses: Vec<usize> = scalars
-        .filter(|(_, s)| read.contains(s))
-        .map(|(index, _)| index)
-        .collect();
+    let of_masses = of_masses(model);
     if let Some(&first) = of_masses.first() {
         let guess = model.analysis.parameters[first].guess;
         start.momentum = start_at(model, state, &[(first, guess)])
@@ -49,6 +43,16 @@ pub fn momentum_slopes(
         Some(last) if !are_linear(model, (state, start), &slopes) => Err(last.parameter),
         _ => Ok(slopes),
     }
+}
+
+/// Indices of the parameters that masses read.
+pub(super) fn of_masses(model: &Model) -> Vec<usize> {
+    let terms = &model.action.intervals.terms;
+    let kinetic = terms.iter().filter(|term| term.kind() == TermKind::Kinetic);
+    let read: Vec<usize> = kinetic.flat_map(|term| term.not_by_squares()).collect();
+    let scalars = model.variables.range(Role::Parameter).enumerate();
+    let of_masses = scalars.filter(|(_, s)| read.contains(s));
+    of_masses.map(|(index, _)| index).collect()
 }
 
 /// Returns true if the changes by all parameters add up.
@@ -146,14 +150,6 @@ fn start_at(model: &Model, state: &BoundaryState, changed: &[(usize, f64)]) -> O
     changed
         .iter()
         .for_each(|&(index, value)| values[index] = value);
-    let system = with_parameters(&model.system, parameters, &values);
-    // What may move is that of the model.
-    let presolved = Presolved::new(&system, &model.analysis);
-    let given = Analysis {
-        parameters: Vec::new(),
-        coordinates: Some(model.coordinates),
-        ..model.analysis.clone()
-    };
-    let model = Model::of_presolved(system, given, presolved).ok()?;
+    let model = with_values(model, &values).ok()?;
     resolve_start(&model, state, "start").ok()
 }

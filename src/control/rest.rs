@@ -2,7 +2,7 @@
 
 use crate::control::error::BoundaryError;
 use crate::dynamics::{Equilibrium, stable_equilibrium};
-use crate::model::{Analysis, Model, Presolved, Role, with_parameters};
+use crate::model::{Analysis, Model, ModelError, Presolved, Role, with_parameters};
 
 /// The equilibrium under voltages (V, one per muscle), with sought parameters at their guesses and prescribed coordinates at a time in ms.
 ///
@@ -31,6 +31,11 @@ pub(super) fn rest_with(
     values: &[f64],
     at: (&'static str, f64),
 ) -> Result<Equilibrium, BoundaryError> {
+    equilibrium(&with_values(model, values)?, voltages, at)
+}
+
+/// The model without sought parameters, with values put in their places.
+pub(super) fn with_values(model: &Model, values: &[f64]) -> Result<Model, ModelError> {
     let sought = &model.analysis;
     let system = with_parameters(&model.system, &sought.parameters, values);
     // What may move is that of the model.
@@ -40,8 +45,7 @@ pub(super) fn rest_with(
         coordinates: Some(model.coordinates),
         ..sought.clone()
     };
-    let model = Model::of_presolved(system, given, presolved)?;
-    equilibrium(&model, voltages, at)
+    Model::of_presolved(system, given, presolved)
 }
 
 fn equilibrium(

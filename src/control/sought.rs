@@ -4,7 +4,7 @@ use crate::control::boundary_conditions::{BoundaryConditions, MomentumSlopes, Re
 use crate::control::bounded_quantity::{BoundedQuantity, When};
 use crate::control::error::BoundaryError;
 use crate::control::limits::Limits;
-use crate::control::moving_start::momentum_slopes;
+use crate::control::moving_start::{momentum_slopes, of_masses};
 use crate::control::problem::{BoundaryState, Control};
 use crate::control::rest::rest_with;
 use crate::dynamics::Start;
@@ -169,7 +169,7 @@ pub(super) fn check(
 /// Changes of the momenta at a start that moves with sought parameters.
 ///
 /// # Errors
-/// They are no straight lines.
+/// They are no straight lines, or the start is the end of another motion, whose masses were others.
 pub(super) fn moving_start(
     model: &Model,
     control: &Control,
@@ -178,7 +178,13 @@ pub(super) fn moving_start(
     if control.goal == BoundaryState::Periodic {
         return Ok(Vec::new());
     }
-    momentum_slopes(model, (&control.start, start)).map_err(|index| BoundaryError::Parameter {
+    let is_end = matches!(control.start, BoundaryState::EndOf(_));
+    let moves = start.momentum.iter().any(|p| *p != 0.0);
+    let found = match of_masses(model).first() {
+        Some(&first) if is_end && moves => Err(first),
+        _ => momentum_slopes(model, (&control.start, start)),
+    };
+    found.map_err(|index| BoundaryError::Parameter {
         name: control.parameters[index].name.clone(),
         reason: "a mass depends on it, and with it the momentum at the start, which is no straight line in it; give a start at rest"
             .to_owned(),

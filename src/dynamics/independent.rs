@@ -8,13 +8,11 @@
 //!
 //! Without constraints N holds unit vectors, and z = z₀ + N δ. Prescribed coordinates do not change.
 
-use crate::dynamics::kinetic::Kinetic;
+use crate::dynamics::kinetic::{Kinetic, directions};
 use crate::functional::Order;
 use crate::model::Model;
-use nalgebra::{DMatrix, DVector, SVD, SymmetricEigen};
+use nalgebra::{DMatrix, DVector, SVD};
 
-/// Parts of the largest square of a constraint gradient that count as none.
-const DEPENDENT: f64 = 1e-14;
 /// Singular values below this part of the greatest are none.
 const NONE: f64 = 1e-11;
 /// Updates of Newton's method.
@@ -44,10 +42,10 @@ impl<'m> IndependentChanges<'m> {
         let mut columns: Vec<Vec<(usize, f64)>> = Vec::new();
         if !joined.is_empty() {
             let gradients = gradients(model, &z)?.select_rows(&joined);
-            let square = SymmetricEigen::new(&gradients * gradients.transpose());
-            let least = DEPENDENT * square.eigenvalues.amax();
-            let free = (0..joined.len()).filter(|&i| square.eigenvalues[i] <= least);
-            let vectors = free.map(|i| square.eigenvectors.column(i).into_owned());
+            let (square, [free, _]) = directions(&gradients);
+            let vectors = free
+                .iter()
+                .map(|&i| square.eigenvectors.column(i).into_owned());
             let of =
                 |vector: DVector<f64>| joined.iter().copied().zip(vector.iter().copied()).collect();
             columns.extend(vectors.map(of));
@@ -95,7 +93,7 @@ impl<'m> IndependentChanges<'m> {
         if self.model.action.map.multipliers == 0 {
             return Some((z, self.basis.clone()));
         }
-        let mut update = f64::INFINITY;
+        let (sizes, mut update) = (self.model.sizes(), f64::INFINITY);
         for _ in 0..UPDATES {
             if update <= SETTLED {
                 break;
@@ -111,8 +109,7 @@ impl<'m> IndependentChanges<'m> {
             z.iter_mut()
                 .zip(step.iter())
                 .for_each(|(z, step)| *z -= step);
-            let sizes = self.model.sizes();
-            let steps = step.iter().zip(sizes);
+            let steps = step.iter().zip(&sizes);
             update = steps
                 .map(|(step, size)| step.abs() / size)
                 .fold(0.0, f64::max);

@@ -16,7 +16,7 @@ use crate::functional::{BlockMask, Blocks, Order, Sample, SumDerivatives, TermKi
 use crate::math::Vector;
 use crate::model::Model;
 use crate::sparse::Symmetry;
-use nalgebra::{DMatrix, DVector, SymmetricEigen};
+use nalgebra::{DMatrix, DVector, Dyn, SymmetricEigen};
 
 /// Parts of the largest square of a constraint gradient that count as none.
 const DEPENDENT: f64 = 1e-14;
@@ -231,10 +231,7 @@ pub(super) fn constrained(
     [momentum, values]: [&[f64]; 2],
 ) -> Vec<f64> {
     let n = mass.nrows();
-    let square = SymmetricEigen::new(gradients * gradients.transpose());
-    let least = DEPENDENT * square.eigenvalues.amax();
-    let (free, held): (Vec<usize>, Vec<usize>) =
-        (0..n).partition(|&i| square.eigenvalues[i] <= least);
+    let (square, [free, held]) = directions(gradients);
     let of_constraints = gradients * DVector::from_column_slice(values);
     let mut met = DVector::<f64>::zeros(n);
     for i in held {
@@ -249,6 +246,15 @@ pub(super) fn constrained(
         .zip(&met)
         .map(|(free, met)| free + met)
         .collect()
+}
+
+/// Eigenvectors of G Gᵀ, and which of them the constraints leave free and hold.
+pub(super) fn directions(gradients: &DMatrix<f64>) -> (SymmetricEigen<f64, Dyn>, [Vec<usize>; 2]) {
+    let square = SymmetricEigen::new(gradients * gradients.transpose());
+    let least = DEPENDENT * square.eigenvalues.amax();
+    let all = 0..gradients.nrows();
+    let (free, held) = all.partition(|&i| square.eigenvalues[i] <= least);
+    (square, [free, held])
 }
 
 /// Second derivatives of the kinetic energy by the rates of vectors, at rest at places `x`: the last of the four blocks of an

@@ -20,4 +20,5 @@ pub use lasting::{Forced, Lasting};
 pub use law::{Integral, Law, LawInput, Measured, Point};
 pub use observer::{Filter, Observer, Reading};
 pub use radius::spectral_radius;
+pub(crate) use riccati::symmetric;
 pub use riccati::{Costs, RiccatiStep, riccati_step};

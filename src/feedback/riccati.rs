@@ -48,6 +48,6 @@ pub fn riccati_step(
 }
 
 /// The symmetric part of a matrix.
-pub(super) fn symmetric(matrix: DMatrix<f64>) -> DMatrix<f64> {
+pub(crate) fn symmetric(matrix: DMatrix<f64>) -> DMatrix<f64> {
     0.5 * (&matrix + matrix.transpose())
 }

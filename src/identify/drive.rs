@@ -16,7 +16,7 @@ use crate::math::in_order;
 use crate::model::{Constant, Parameter, System};
 use std::borrow::Cow;
 
-/// Places and weights of Gauss's rule of eight digits in smooth parts of an interval of length 1.
+/// Places and weights of Gauss's rule of order 8 in an interval of length 1.
 const GAUSS: [(f64, f64); 4] = [
     (0.069_431_844_202_973_71, 0.173_927_422_568_726_93),
     (0.330_009_478_207_571_87, 0.326_072_577_431_273_07),
@@ -33,7 +33,7 @@ struct Sought {
 }
 
 /// Gains and delays at values of the constants, by source.
-#[derive(Clone, Debug, Default)]
+#[derive(Clone, Debug)]
 pub(super) struct Drive {
     gains: Vec<Option<Sought>>,
     delays: Vec<Option<Sought>>,
@@ -119,17 +119,16 @@ impl<'a> Inputs<'a> {
     pub(super) fn new(
         drive: Drive,
         said: &'a Voltages,
-        (system, start): (&System, &BoundaryState),
+        (system, start): (&mut System, &BoundaryState),
     ) -> Self {
         let undelayed = drive.voltages(said);
         let before = match start {
             BoundaryState::RestAtVoltages(row, _) => row.clone(),
             _ => undelayed.at(0.0).to_vec(),
         };
-        let mut system = system.clone();
         let loads = system.first_load();
         let is_square = |source| {
-            let resistor = Constant::Resistance(source).value(&mut system);
+            let resistor = Constant::Resistance(source).value(system);
             source < loads && resistor.is_none()
         };
         Self {
@@ -180,20 +179,13 @@ impl<'a> Inputs<'a> {
     /// Times in ms at which inputs have corners or jumps.
     pub(super) fn corners(&self) -> Vec<f64> {
         let said = self.undelayed.switches();
-        let mut delays: Vec<f64> = self
-            .drive
-            .delays
-            .iter()
-            .map(|one| one.map_or(0.0, |one| one.value))
-            .collect();
-        delays.sort_by(f64::total_cmp);
-        delays.dedup();
-        let later = |delay: &f64| {
-            let begins = (*delay > 0.0).then_some(*delay);
+        let delays = self.drive.delays.iter();
+        let delays = in_order(delays.map(|one| one.map_or(0.0, |one| one.value)));
+        let later = |&delay: &f64| {
+            let begins = (delay > 0.0).then_some(delay);
             begins
                 .into_iter()
-                .chain(said.iter().map(|t| t + delay))
-                .collect::<Vec<_>>()
+                .chain(said.iter().map(move |t| t + delay))
         };
         in_order(delays.iter().flat_map(later))
     }

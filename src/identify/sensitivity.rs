@@ -40,10 +40,8 @@ pub(super) fn derivatives(
     let (model, intervals) = (&setup.model, discrete.intervals());
     let h = discrete.times[1] - discrete.times[0];
     let control = setup.open(voltages.clone(), intervals, h);
-    let boundary = match from.derivatives {
-        Some(_) => setup.boundary(from.start.clone())?,
-        None => BoundaryConditions::without_goal(from.start.clone(), model.coordinate_count()),
-    };
+    let count = model.coordinate_count();
+    let boundary = BoundaryConditions::without_goal(from.start.clone(), count);
     let initial = InitialGuess {
         discrete: discrete.clone(),
         h,

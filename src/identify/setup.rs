@@ -4,14 +4,14 @@ use crate::control::problem::{
     BoundaryState, Control, Duration, Identification, Recording, SoughtStart, Voltages,
 };
 use crate::control::{
-    BoundaryConditions, BoundaryError, MomentumSlopes, StartDerivatives, ends_that_read,
-    momentum_slopes, resolve_start, rest_at,
+    BoundaryError, MomentumSlopes, StartDerivatives, ends_that_read, momentum_slopes,
+    resolve_start, rest_at,
 };
 use crate::dynamics::{Equilibrium, IndependentChanges, Start};
 use crate::identify::drive::{Drive, Inputs};
 use crate::identify::error::IdentifyError;
 use crate::model::{Analysis, Coordinates, Model, Parameter, Quantity, System, with_parameters};
-use nalgebra::DMatrix;
+use nalgebra::{DMatrix, DVector};
 use std::borrow::Cow;
 
 /// The model of a recording on a grid.
@@ -40,10 +40,10 @@ impl<'a> Setup<'a> {
         };
         let (system, parameters) = recording.of((system, &task.parameters));
         let parameters: Vec<_> = parameters.iter().zip(constants).map(at).collect();
-        let system = with_parameters(system, &parameters, constants);
+        let mut system = with_parameters(system, &parameters, constants);
         let drive = Drive::new(system.sources().len(), &parameters, constants);
         let start = drive.start(&recording.start);
-        let inputs = Inputs::new(drive, &recording.voltages, (&system, &start));
+        let inputs = Inputs::new(drive, &recording.voltages, (&mut system, &start));
         let voltages = &inputs.undelayed;
         let control = Control {
             parameters,
@@ -157,17 +157,21 @@ impl<'a> Setup<'a> {
         Ok(changes.basis().ncols() + momenta)
     }
 
-    /// The start with changes of its coordinates and momenta, and its derivatives by these: columns behind those of the constants.
+    /// The start with changes of its coordinates and momenta, and its derivatives by the constants that masses read, then by these changes.
     pub(super) fn start(
         &self,
         (constants, values): (usize, &[f64]),
     ) -> Result<(Start, StartDerivatives), IdentifyError> {
-        let (mut start, _) = self.given_start()?;
+        let (mut start, lines) = self.given_start()?;
         let (n, count) = (self.model.coordinate_count(), constants + values.len());
         let mut by = StartDerivatives {
             coordinates: DMatrix::zeros(n, count),
             momenta: DMatrix::zeros(n, count),
         };
+        for line in lines.iter().filter(|line| line.parameter < constants) {
+            let slopes = DVector::from_column_slice(&line.slopes);
+            by.momenta.set_column(line.parameter, &slopes);
+        }
         let Some(changes) = self.changes(&start)? else {
             return Ok((start, by));
         };
@@ -199,15 +203,6 @@ impl<'a> Setup<'a> {
     pub(super) fn rest_under(&self, voltages: &[f64]) -> Result<Equilibrium, IdentifyError> {
         let found = rest_at(&self.model, voltages, ("rest", 0.0));
         found.map_err(|error| self.recording.wrong(error))
-    }
-
-    /// Start and open end of the transcription.
-    pub(super) fn boundary(&self, start: Start) -> Result<BoundaryConditions, IdentifyError> {
-        let (_, momentum_slopes) = self.given_start()?;
-        Ok(BoundaryConditions {
-            momentum_slopes,
-            ..BoundaryConditions::without_goal(start, self.model.coordinate_count())
-        })
     }
 
     /// The problem whose transcription has the derivatives by the start too.

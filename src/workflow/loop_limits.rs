@@ -20,7 +20,7 @@ const SLIGHT: f64 = 1e-3;
 /// The same of an optimum, of which the intervals are longer.
 const BETWEEN: f64 = 0.02;
 
-/// Limits along the motion of a closed loop.
+/// Limits along a simulated motion.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct LoopLimits {
     /// Names of those that were compared.

@@ -171,9 +171,14 @@ pub(crate) fn of_pair_in(
 ) {
     let (system, mut task) = pair(start, sought, regime);
     task.coordinates = coordinates;
+    all_act_as_they_say(&system, &task, of_start);
+}
+
+/// Compares the derivatives of a task of one recording beside its guesses, by all of which it has some.
+pub(crate) fn all_act_as_they_say(system: &System, task: &Identification, of_start: &[f64]) {
     let values: Vec<f64> = task.parameters.iter().map(|p| 1.1 * p.guess).collect();
     let unknowns = Unknowns::of_values(&values, &[of_start]);
-    let largest = compare(&system, &task, &unknowns);
+    let largest = compare(system, task, &unknowns);
     println!("{largest:?}");
     assert!(largest.iter().all(|size| *size > 1e-3), "{largest:?}");
 }

@@ -117,8 +117,7 @@ impl Pressures {
                         continue;
                     };
                     // The node is one corner of both.
-                    let step = |axis: usize| (corner >> axis & 1) + 1 - (of_other >> axis & 1);
-                    let neighbour = step(0) + 3 * step(1) + 9 * step(2);
+                    let neighbour = neighbour_of(of_other, corner);
                     let there = &self.slopes[other][of_other];
                     let product: f32 = moved.iter().zip(there).map(|(a, b)| a * b).sum();
                     row[neighbour] += product;

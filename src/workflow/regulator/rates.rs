@@ -9,11 +9,9 @@
 //! Of the inputs `v = u + L x`, L = R̂⁻¹Nᵀ, the step has no such products: A′ = A − B L, Q′ = Q̂ − N L, K = K′ + L. Q′ is computed as
 //! `Q + (A − 1)ᵀ (W⁻¹ + BR⁻¹Bᵀ)⁻¹ (A − 1)`, a sum of squares.
 
-use crate::feedback::{
-    Costs, HeldGain, NotHeld, RiccatiStep, held_gain, riccati_step, spectral_radius,
-};
+use crate::feedback::{Costs, HeldGain, NotHeld, RiccatiStep, held_gain, riccati_step, symmetric};
 use crate::workflow::regulator::regulated::RegulatedStep;
-use nalgebra::DMatrix;
+use nalgebra::{DMatrix, DVector};
 
 /// All costs of a step as factors of products.
 #[derive(Clone, Debug)]
@@ -36,7 +34,7 @@ struct Plain {
 
 impl RegulatedStep {
     /// True if rates cost.
-    fn has_rates(&self) -> bool {
+    pub(crate) fn has_rates(&self) -> bool {
         self.rates.iter().any(|weight| *weight > 0.0)
     }
 
@@ -72,25 +70,14 @@ impl RegulatedStep {
             .filter(|&i| self.rates[i] > 0.0)
             .collect();
         let moved = self.by_inputs.select_rows(&costly);
-        let inner = &moved
-            * self
-                .costs
-                .inputs
-                .clone()
-                .cholesky()?
-                .solve(&moved.transpose());
-        let inner = inner
-            + DMatrix::from_fn(costly.len(), costly.len(), |i, j| {
-                if i == j {
-                    1.0 / self.rates[costly[i]]
-                } else {
-                    0.0
-                }
-            });
-        let inner = 0.5 * (&inner + inner.transpose());
+        let resistance = self.costs.inputs.clone().cholesky()?;
+        let weights = costly.iter().map(|&i| 1.0 / self.rates[i]);
+        let weights = DVector::from_iterator(costly.len(), weights);
+        let inner = &moved * resistance.solve(&moved.transpose());
+        let inner = symmetric(inner + DMatrix::from_diagonal(&weights));
         let change = self.change().select_rows(&costly);
         let of_rates = change.transpose() * inner.cholesky()?.solve(&change);
-        let state = &self.costs.state + 0.5 * (&of_rates + of_rates.transpose());
+        let state = &self.costs.state + symmetric(of_rates);
         Some(Plain {
             by_state: &self.by_state - &self.by_inputs * &shift,
             costs: Costs { state, ..costs },
@@ -120,7 +107,6 @@ impl RegulatedStep {
         let found = held_gain([&plain.by_state, &self.by_inputs], &plain.costs)?;
         Ok(HeldGain {
             gain: found.gain + plain.shift,
-            open_radius: spectral_radius(&self.by_state),
             ..found
         })
     }
