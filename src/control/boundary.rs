@@ -248,15 +248,9 @@ fn coordinates_at_goal(
             for (given, value) in given.iter_mut().zip(&rest.z[..reached]) {
                 *given = Some(*value);
             }
-            // A voltage that is sought charges its muscle in finite time, unless it rests at a bound; nothing sets at once what others
-            // remember.
-            let [low, high] = control.voltage_bounds;
-            let is_between = |m: usize| low < voltages[m] && voltages[m] < high;
-            let is_set = |i: usize| {
-                let muscle = model.charge(i);
-                muscle.is_some_and(|m| !control.is_given(m) && is_between(m))
-            };
-            forget(model, &mut given, is_set);
+            forget(model, &mut given, |i| {
+                is_set_at(model, control, voltages, i)
+            });
             return Ok((given, Some(rest)));
         }
         BoundaryState::JointAngles { angles, .. } if !redundant => {
@@ -277,6 +271,15 @@ fn coordinates_at_goal(
         _ => {}
     }
     Ok((given, None))
+}
+
+/// Returns true if a goal under voltages sets a coordinate that muscles remember. A voltage that is sought charges its muscle in finite time,
+/// unless it rests at a bound; nothing sets at once what others remember.
+pub(super) fn is_set_at(model: &Model, control: &Control, voltages: &[f64], i: usize) -> bool {
+    let [low, high] = control.voltage_bounds;
+    let is_between = |m: usize| low < voltages[m] && voltages[m] < high;
+    let muscle = model.charge(i);
+    muscle.is_some_and(|m| !control.is_given(m) && is_between(m))
 }
 
 /// Prescribes nothing of what muscles remember, unless it is set.

@@ -10,6 +10,7 @@
 //!
 //! Limits of quantities that read the inputs, as of fields, hold there too; those of coordinates alone are those of the motion at its end.
 
+use crate::control::boundary::is_set_at;
 use crate::control::boundary_conditions::BoundaryConditions;
 use crate::control::bounded_quantity::BoundedQuantity;
 use crate::control::error::BoundaryError;
@@ -64,7 +65,13 @@ pub fn rest_programs<'m>(
             list: limits.collect(),
         };
         let (program, point) = equations((model, limits), control, (z, voltages), h)?;
+        // At the goal, what muscles remember may still relax.
+        let is_free =
+            |i: usize| end == 1 && model.is_memory(i) && !is_set_at(model, control, voltages, i);
         let own = |i: usize| {
+            if is_free(i) {
+                return None;
+            }
             Some([
                 motion.unknowns().unknown(k, i)?,
                 program.unknowns().unknown(0, i)?,

@@ -141,6 +141,7 @@ pub(super) fn check(
             });
         }
     }
+    remembered_start(model, control)?;
     let ends = [
         (("start", 0.0), &control.start),
         (("goal", control.duration.first()), &control.goal),
@@ -164,6 +165,34 @@ pub(super) fn check(
         }
     }
     Ok(depends)
+}
+
+/// Refuses parameters that change what muscles remember at a start whose coordinates are given: the stretches there.
+fn remembered_start(model: &Model, control: &Control) -> Result<(), BoundaryError> {
+    if matches!(
+        control.start,
+        BoundaryState::RestAtVoltages(..) | BoundaryState::Free
+    ) {
+        return Ok(());
+    }
+    let muscles = &model.system.muscles;
+    let remembers = |&m: &usize| !muscles[m].material.maxwell.list().is_empty();
+    for parameter in &control.parameters {
+        let stretched = parameter.constants.iter().filter_map(|c| match c.constant {
+            Constant::End(m, ..) | Constant::Prestretch(m) => Some(m),
+            _ => None,
+        });
+        if let Some(m) = stretched.into_iter().find(remembers) {
+            return Err(BoundaryError::Parameter {
+                name: parameter.name.clone(),
+                reason: format!(
+                    "the state of the Maxwell branches of muscle \"{}\" at the start depends on it; give a start at rest (\"rest_at_voltages\")",
+                    muscles[m].name
+                ),
+            });
+        }
+    }
+    Ok(())
 }
 
 /// Changes of the momenta at a start that moves with sought parameters.

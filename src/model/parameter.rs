@@ -37,14 +37,6 @@ impl Constant {
         if !self.is_named(system) {
             return Some(format!("{}, which the scene has to name", self.lacking()));
         }
-        if let Self::End(m, ..) | Self::Prestretch(m) = self
-            && !system.muscles[m].material.maxwell.list().is_empty()
-        {
-            return Some(format!(
-                "the state of the Maxwell branches of muscle \"{}\" at the start depends on it; sought ends and prestretches of muscles with branches are not offered",
-                system.muscles[m].name
-            ));
-        }
         let muscle = &system.muscles[self.muscle()?];
         let reason = match (muscle.fidelity, self) {
             (Fidelity::Lumped, _) => return None,

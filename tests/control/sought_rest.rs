@@ -1,5 +1,6 @@
 //! States of rest at start and goal that depend on sought constants: their coordinates are unknowns with equations of their own.
 
+use crate::common::cases::joints;
 use crate::common::sought::of_all_muscles;
 use crate::optimality::guessed_step;
 use crate::sought::{arm, pair, turn};
@@ -8,7 +9,7 @@ use proboscis::control::problem::{BoundaryState, Control, PathConstraint, Rest};
 use proboscis::control::{BoundaryConditions, Transcription, guess, rest_programs};
 use proboscis::ipopt::Status;
 use proboscis::model::with_parameters;
-use proboscis::model::{MaterialConstant, System};
+use proboscis::model::{MaterialConstant, MaxwellBranch, MaxwellBranches, System};
 use proboscis::nlp::differences;
 use proboscis::workflow::{Optimum, SolveLimits, optimise};
 use std::ops::ControlFlow;
@@ -79,28 +80,22 @@ fn rest_programs_are_equilibria_with_exact_derivatives() {
     }
 }
 
-#[test]
-fn an_arm_is_sought_between_states_of_rest_that_it_moves() {
-    let system = sagging();
+/// Seeks an arm, to an angle and to a state of rest that a short arm brings near, within bounds of each.
+fn seek_arms(system: &System, bounds: [[f64; 2]; 2]) {
     let to_angle = |system: &System| Control {
         goal: turn(system).goal,
         ..between_states_of_rest(system)
     };
-    // To an angle, and to a state of rest that a short arm brings near.
-    type Problem<'a> = (&'a dyn Fn(&System) -> Control, [f64; 2]);
-    let problems: [Problem<'_>; 2] = [
-        (&to_angle, [4.0, 60.0]),
-        (&between_states_of_rest, [8.0, 22.0]),
-    ];
-    for (number, (problem, bounds)) in problems.into_iter().enumerate() {
+    let problems: [&dyn Fn(&System) -> Control; 2] = [&to_angle, &between_states_of_rest];
+    for (number, (problem, bounds)) in problems.into_iter().zip(bounds).enumerate() {
         let control = Control {
             parameters: vec![arm(bounds, 15.0)],
-            ..problem(&system)
+            ..problem(system)
         };
-        let best = solved(&system, &control, None);
+        let best = solved(system, &control, None);
         let (length, ends) = found(&best);
-        let guess = at_rest(&system, 15.0);
-        let expected = at_rest(&system, length);
+        let guess = at_rest(system, 15.0);
+        let expected = at_rest(system, length);
         println!("{length}: {ends:?}, {expected:?}, at the guess {guess:?}");
         for end in 0..=number {
             assert!((expected[end] - guess[end]).abs() > 0.01, "it moves");
@@ -108,7 +103,7 @@ fn an_arm_is_sought_between_states_of_rest_that_it_moves() {
         }
         // The same effort with the arm given, more with any other one within the bounds.
         let effort = |length: f64| {
-            let system = with_parameters(&system, &[arm([1.0, 99.0], 15.0)], &[length]);
+            let system = with_parameters(system, &[arm([1.0, 99.0], 15.0)], &[length]);
             let optimum = solved(&system, &problem(&system), Some(&best));
             optimum.solution.objective
         };
@@ -125,6 +120,36 @@ fn an_arm_is_sought_between_states_of_rest_that_it_moves() {
             assert!(effort(other) > least * (1.0 + 1e-6), "{other}");
         }
     }
+}
+
+#[test]
+fn an_arm_is_sought_between_states_of_rest_that_it_moves() {
+    seek_arms(&sagging(), [[4.0, 60.0], [8.0, 22.0]]);
+}
+
+/// The same where muscles remember their stretch: relaxed at the start, as it comes at the goal.
+#[test]
+fn an_arm_of_muscles_that_creep_is_sought_between_states_of_rest() {
+    let branch = MaxwellBranch {
+        shear_modulus: 0.03,
+        relaxation_time: 40.0,
+    };
+    let mut system = sagging();
+    for muscle in &mut system.muscles {
+        muscle.material.maxwell = MaxwellBranches::new(&[branch]).unwrap();
+    }
+    seek_arms(&system, [[4.0, 60.0], [8.0, 22.0]]);
+    // Coordinates that are given leave open where branches are relaxed.
+    let control = Control {
+        start: joints(&[]),
+        parameters: vec![arm([8.0, 22.0], 15.0)],
+        ..between_states_of_rest(&system)
+    };
+    let refused = BoundaryConditions::resolve(&system, &control, 10.0).unwrap_err();
+    assert!(
+        refused.to_string().contains("give a start at rest"),
+        "{refused}"
+    );
 }
 
 #[test]

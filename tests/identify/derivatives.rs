@@ -9,7 +9,8 @@ use proboscis::control::problem::{
 use proboscis::identify::{Grid, Unknowns, predict};
 use proboscis::model::system::ElectricConstants;
 use proboscis::model::{
-    Constant, Coordinates, Follower, MaterialConstant, Parameter, Quantity, System,
+    Constant, Coordinates, Follower, MaterialConstant, MaxwellBranch, MaxwellBranches, Parameter,
+    Quantity, System,
 };
 
 pub(crate) fn readings(count: usize, last: f64) -> Vec<Reading> {
@@ -199,6 +200,26 @@ fn a_motion_from_rest_depends_on_constants_by_its_start_too() {
     let rest = BoundaryState::RestAtVoltages(vec![1200.0, 0.0], Default::default());
     of_pair(rest.clone(), SoughtStart::Nothing, Regime::Motion, &[]);
     of_pair(rest, SoughtStart::Coordinates, Regime::Motion, &[0.05]);
+}
+
+/// What muscles with branches remember at rest depends on their lengths and ends.
+#[test]
+fn muscles_that_creep_from_rest_depend_on_their_prestretch_and_ends() {
+    let rest = BoundaryState::RestAtVoltages(vec![1200.0, 0.0], Default::default());
+    let (mut system, mut task) = pair(rest, SoughtStart::Nothing, Regime::Motion);
+    let branch = MaxwellBranch {
+        shear_modulus: 0.04,
+        relaxation_time: 25.0,
+    };
+    for muscle in &mut system.muscles {
+        muscle.prestretch = Some(1.2);
+        muscle.material.maxwell = MaxwellBranches::new(&[branch]).unwrap();
+    }
+    task.parameters.extend([
+        oscillator::parameter("prestretch", Constant::Prestretch(1), 1.2),
+        oscillator::parameter("end", Constant::End(0, 1, 0), 15.0),
+    ]);
+    all_act_as_they_say(&system, &task, &[]);
 }
 
 #[test]
