@@ -30,7 +30,7 @@ pub struct PassedLimit {
 pub struct LimitsAlong {
     /// Names of the limits that were compared.
     pub compared: Vec<String>,
-    /// Names of those that can not be.
+    /// Names of those that cannot be.
     pub left_out: Vec<String>,
     /// Those that are passed, in the order of the problem.
     pub passed: Vec<PassedLimit>,
@@ -68,16 +68,22 @@ pub fn limits_along(
         ..analysis
     };
     let model = Model::for_analysis(system.clone(), analysis)?;
+    let mut others = list.list.len()..;
     for (place, bounded) in list.list.iter().enumerate() {
-        // Steps from one interval to the next are those of the program.
-        if bounded.quantity.before().is_some() {
+        let before = bounded.other_before().and_then(|_| others.next());
+        // Steps of voltages, and what flows with them, are those of the program.
+        let is_reaction = matches!(bounded.quantity, Quantity::ReactionStep { .. });
+        if bounded.quantity.before().is_some() && !is_reaction {
             if out.left_out.last() != Some(&bounded.name) {
                 out.left_out.push(bounded.name.clone());
             }
             continue;
         }
         let along = (0..=motion.intervals()).filter_map(|k| {
-            let value = along(&model, (place, bounded), motion, k)?;
+            let value = match before {
+                None => along(&model, (place, bounded), motion, k)?,
+                Some(before) => step(&model, [before, place], &bounded.quantity, motion, k)?,
+            };
             let beyond = bounded.beyond(value);
             Some((
                 k,
@@ -121,6 +127,23 @@ fn along(
         return Some(motion.z[k][own]);
     }
     value(model, (place, &bounded.quantity), motion, k).map(|(value, _)| value)
+}
+
+/// The step from the interval before instant k of a motion to the one after it, by what is measured in both, in its unit.
+fn step(
+    model: &Model,
+    places: [usize; 2],
+    quantity: &Quantity,
+    motion: &DiscreteTrajectory,
+    k: usize,
+) -> Option<f64> {
+    let is_between = 0 < k && k < motion.intervals();
+    let at = [k, k + 1];
+    let [before, here] = [0, 1].map(|side| {
+        let measured = (places[side], quantity);
+        is_between.then(|| value(model, measured, motion, at[side]))?
+    });
+    Some((here?.0 - before?.0) / quantity.step_unit())
 }
 
 impl LimitsAlong {

@@ -40,7 +40,7 @@ pub struct HeldGain {
 /// Reason why no gain holds a state.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum NotHeld {
-    /// The equation has no finite solution that was found: some motion that costs can not be steered.
+    /// The equation has no finite solution that was found: some motion that costs cannot be steered.
     Unsolved,
     /// The closed loop has this spectral radius of one or more: some motion is neither steered nor costs anything.
     Unstable(f64),

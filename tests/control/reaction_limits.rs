@@ -36,6 +36,31 @@ fn a_joint_transmits_no_more_than_its_limit() {
     }
 }
 
+/// In steps of half the length, by multipliers of the joint in redundant coordinates.
+#[test]
+fn a_reaction_that_is_passed_between_instants_is_told() {
+    let limit = json!([{ "reaction_force": { "joint": "joint1", "along": [0, 1, 0], "max": 7 } }]);
+    let ran = run("solve", &problem(limit, "reduced", false), &[]);
+    ran.is_solved();
+    let step = Table::read(&ran, "trajectory.csv").column("time")[1];
+    let scene = problem(json!([]), "reduced", false)["scene"].clone();
+    let voltages = ran.folder.path().join("p/solution.json");
+    let simulated = run(
+        "simulate",
+        &json!({ "scene": scene, "simulate": {
+            "duration": "0.06 s", "step": format!("{} ms", step / 2.0), "coordinates": "redundant",
+            "voltages": { "solution": voltages }
+        } }),
+        &[],
+    );
+    simulated.is_solved();
+    let column = Table::read(&simulated, "trajectory.csv").column("joint1_force_y");
+    let most = greatest(&column[1..column.len() - 1]);
+    assert!(most > 1.1 * 7.0, "{most}");
+    let told = format!("a limit is passed, reaction force of joint1: {most:.3} N");
+    assert!(ran.err.contains(&told), "no {told:?} in {}", ran.err);
+}
+
 #[test]
 fn limits_of_reactions_that_make_no_sense_are_refused() {
     let refused = |limit: Value, words: &[&str]| {

@@ -145,7 +145,7 @@ fn observer_tables(record: &LawRecord, out: &mut String) {
         jump.take(size).map(number),
     );
     if let Some(lasting) = lasting {
-        // Forces that can not be held count in N and N mm.
+        // Forces that cannot be held count in N and N mm.
         let kinds = [true, false].map(unit_of_force);
         let unit = |force: &ForceRecord| {
             let own = kinds.iter().find(|(unit, _)| *unit == force.unit);

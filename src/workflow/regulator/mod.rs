@@ -162,9 +162,9 @@ impl Design<'_> {
             }
         };
         match self.integrated.len() {
-            0 => format!("{reason}: some motion can not be steered by the inputs"),
+            0 => format!("{reason}: some motion cannot be steered by the inputs"),
             count => format!(
-                "{reason}: {} inputs can not take {count} integrals to zero; expected no \"integral\", or more inputs",
+                "{reason}: {} inputs cannot take {count} integrals to zero; expected no \"integral\", or more inputs",
                 self.inputs.len()
             ),
         }
