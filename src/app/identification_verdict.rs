@@ -8,6 +8,8 @@ use crate::workflow::Remarks;
 /// Probability of residuals of the fit below which its model does not explain them, whatever else it predicts.
 const BEYOND_CHANCE: f64 = 1e-6;
 
+/// Readings of a quantity below which their scatter tells too little of their standard deviation.
+const FEW: usize = 15;
 /// Standard deviations beyond which, with a probability of 1 %, a constant lies from its prior.
 const APART: f64 = 2.576;
 /// Least part of the variance of a prior that recordings take from it, where they can check it; less is rounding.
@@ -98,6 +100,13 @@ fn of_grid(found: &Identified, remarks: &mut Remarks) {
             "bias_not_confirmed",
             ["no fit on a finer grid tells how far the grid biases the result".to_owned()],
         ),
+        false if found.bias.is_small() => remarks.warn(
+            "bias_not_confirmed",
+            [format!(
+                "the last halving of the steps changes a standard error by {} %: the intervals are not confirmed",
+                significant(100.0 * found.bias.errors, 2)
+            )],
+        ),
         false => remarks.warn(
             "bias_not_confirmed",
             [format!(
@@ -106,6 +115,23 @@ fn of_grid(found: &Identified, remarks: &mut Remarks) {
             )],
         ),
     }
+}
+
+/// That the interval of a constant is not confirmed by the squares of the residuals at its ends.
+fn of_interval(name: &str, ends: [Option<f64>; 2]) -> String {
+    let sides = ["lower", "upper"].into_iter().zip(ends);
+    let told = sides.filter_map(|(side, rise)| {
+        Some(match rise? {
+            rise if rise.is_finite() => {
+                format!("{} times as far at the {side} end", significant(rise, 2))
+            }
+            _ => format!("without a number at the {side} end"),
+        })
+    });
+    format!(
+        "the interval of {name} is one of first order: as it says, the squared residuals would rise alike at both ends, and they rise {}",
+        told.collect::<Vec<_>>().join(" and ")
+    )
 }
 
 /// Warnings and notes on a result.
@@ -130,6 +156,16 @@ pub(super) fn remarks(task: &Identification, found: &Identified) -> Remarks {
         remarks.warn("large_residuals", [text]);
     }
     of_grid(found, &mut remarks);
+    let few = found.fit.fewest().filter(|count| *count < FEW);
+    let few = few.map(|count| {
+        format!(
+            "the scatter of a quantity is estimated from its {count} readings, and its weight with it: intervals are too narrow; give its \"standard_deviation\""
+        )
+    });
+    remarks.warn("few_readings", few);
+    let unlike = found.rises.unlike();
+    let unlike = unlike.map(|(j, ends)| of_interval(&task.parameters[j].name, ends));
+    remarks.warn("interval_not_confirmed", unlike);
     let differences = found.fit.of_priors(task);
     let compared = task.priors.iter().zip(differences).map(|(prior, z)| {
         // Where both agree, the estimate differs from the mean with the variance that the recordings take from that of the prior.

@@ -129,10 +129,7 @@ fn problem_of(
     read: impl FnOnce() -> Result<Document, SceneError>,
     overrides: &[String],
 ) -> Result<Loaded, SceneError> {
-    let overrides: Vec<Override> = overrides
-        .iter()
-        .map(|written| Override::parse(written))
-        .collect::<Result<_, _>>()?;
+    let overrides = Override::all(overrides)?;
     let (of_scene, of_problem): (Vec<_>, Vec<_>) = overrides
         .into_iter()
         .partition(|change| change.in_scene().is_some());

@@ -83,6 +83,11 @@ impl Fit {
         self.residuals().norm_squared()
     }
 
+    /// Least number of readings from which the standard deviation of a quantity is estimated beside those of others.
+    pub fn fewest(&self) -> Option<usize> {
+        self.data.fewest()
+    }
+
     /// Number of unknowns that no bound holds.
     pub fn free(&self) -> usize {
         self.unknowns.values.len() - self.is_at_bound.iter().filter(|held| **held).count()

@@ -4,7 +4,8 @@
 //! given, has the exact derivatives of its discrete equations `c(y, p) = 0` by motion and constants, so that the motion changes by
 //! `S = −(∂c/∂y)⁻¹ ∂c/∂p` (`sensitivity`). Readings are interpolated between instants (`interpolation`, `readout`), and predictions of
 //! two grids are extrapolated to steps of zero length (`prediction`). `fit` is the method of Levenberg and Marquardt, `information`
-//! the covariance and what is not determined, `whiteness` and `held_out` the checks, `experiments` what to measure next, `starts` the
+//! the covariance and what is not determined, `whiteness`, `likelihood` and
+//! `held_out` the checks, `experiments` what to measure next, `starts` the
 //! states at starts that were sought.
 
 mod course;
@@ -15,6 +16,7 @@ mod fit;
 mod held_out;
 mod information;
 mod interpolation;
+mod likelihood;
 mod prediction;
 mod readout;
 mod refine;
@@ -30,6 +32,7 @@ pub use experiments::Experiment;
 pub use fit::{Ended, Fit, fit};
 pub use held_out::HeldOut;
 pub use information::{Information, Product, Undetermined};
+pub use likelihood::Rises;
 pub use prediction::{Grid, Prediction, predict};
 pub use refine::{Bias, Identified, NONE, first_model, identify};
 pub use residuals::Series;

@@ -6,6 +6,7 @@ use crate::identify::experiments::Experiment;
 use crate::identify::fit::{Fit, fit};
 use crate::identify::held_out::{HeldOut, LEVEL};
 use crate::identify::information::Information;
+use crate::identify::likelihood::Rises;
 use crate::identify::prediction::{Grid, count_of_start};
 use crate::identify::residuals::Series;
 use crate::identify::setup::Setup;
@@ -16,7 +17,7 @@ use crate::model::{Model, System, check_parameters};
 use nalgebra::{DMatrix, DVector};
 use statrs::distribution::{ChiSquared, ContinuousCDF};
 
-/// Greatest bias of a constant by the grid, in standard errors.
+/// Greatest bias of a constant by the grid, in standard errors, and greatest relative change of those.
 const BIAS: f64 = 0.1;
 /// A relative change of all constants below this is none, however small the standard errors.
 pub const NONE: f64 = 1e-8;
@@ -24,6 +25,8 @@ pub const NONE: f64 = 1e-8;
 const RANK: f64 = 1e-8;
 /// Relative change of a start below which it is the same.
 const SAME: f64 = 1e-9;
+/// Halvings that the grid lacks on which the ends of intervals are predicted: it is cheaper, and differences of predictions are alike.
+const COARSER: usize = 2;
 /// Most halvings of the steps, and most intervals of a recording.
 const HALVINGS: usize = 10;
 const MOST: usize = 200_000;
@@ -35,7 +38,9 @@ pub struct Bias {
     pub changes: Vec<f64>,
     /// Root of the mean squared change of the predictions, in standard deviations.
     pub readings: f64,
-    /// True if all are below a tenth, or where no constant changes by more than rounding.
+    /// Largest relative change of a standard error of a constant that is determined.
+    pub errors: f64,
+    /// True if all are below a tenth, of the constants also where none changes by more than rounding.
     pub is_confirmed: bool,
     /// Number of halvings of the first steps.
     pub halvings: usize,
@@ -50,6 +55,11 @@ impl Bias {
     /// Returns true if all changes are below a tenth of the errors.
     pub fn is_small(&self) -> bool {
         self.largest().max(self.readings) < BIAS
+    }
+
+    /// Returns true if standard errors change by less than a tenth.
+    pub fn keeps_errors(&self) -> bool {
+        self.errors < BIAS
     }
 }
 
@@ -66,6 +76,8 @@ pub struct Identified {
     pub grid: Grid,
     /// Bias by the grid.
     pub bias: Bias,
+    /// Squares of the residuals at the ends of the intervals.
+    pub rises: Rises,
     /// Residuals of the fitted recordings.
     pub series: Vec<Series>,
     /// Their whiteness.
@@ -101,7 +113,10 @@ pub fn identify(
         .filter(|&r| !task.recordings[r].is_held_out)
         .collect();
     let unknowns = begin(system, task, &fitted)?;
-    let (found, information, grid, bias) = refined((system, task), &fitted, unknowns, told)?;
+    let (found, information, grids, bias) = refined((system, task), &fitted, unknowns, told)?;
+    let grid = grids.last().expect("the first one").clone();
+    let coarser = &grids[grids.len().saturating_sub(1 + COARSER)];
+    let rises = Rises::new((system, task), &fitted, (&found, &information), coarser)?;
     let held_out = (0..task.recordings.len()).filter(|r| !fitted.contains(r));
     let predicted =
         held_out.map(|r| HeldOut::new((system, task), r, (&found, &information), &grid));
@@ -126,6 +141,7 @@ pub fn identify(
         information,
         grid,
         bias,
+        rises,
         held_out,
         experiments,
     })
@@ -249,14 +265,15 @@ fn begin(
     }
 }
 
-/// Fits on grids of halved steps until constants change by less than a tenth of their standard errors.
+/// Fits on grids of halved steps, which are told, until constants change by less than a tenth of their standard errors.
 fn refined(
     (system, task): (&System, &Identification),
     fitted: &[usize],
     unknowns: Unknowns,
     told: &mut dyn FnMut(&Fit, &Grid),
-) -> Result<(Fit, Information, Grid, Bias), IdentifyError> {
+) -> Result<(Fit, Information, Vec<Grid>, Bias), IdentifyError> {
     let mut grid = Grid::first(task, &task.recordings);
+    let mut grids = vec![grid.clone()];
     let mut found = fit((system, task), fitted, (unknowns, 0), &grid)?;
     unread(task, &found)?;
     let mut information = Information::of_fit(task, &found);
@@ -267,6 +284,7 @@ fn refined(
             .iter()
             .all(|&r| task.recordings[r].regime == Regime::Rest),
         readings: 0.0,
+        errors: 0.0,
         halvings: 0,
     };
     if bias.is_confirmed {
@@ -280,26 +298,35 @@ fn refined(
         if finer.intervals.iter().any(|&n| n > MOST) {
             break;
         }
-        let before = found.clone();
-        found = fit((system, task), fitted, (before.unknowns.clone(), 0), &finer)?;
+        let before = (found.clone(), information);
+        found = fit((system, task), fitted, (found.unknowns.clone(), 0), &finer)?;
         grid = finer;
+        grids.push(grid.clone());
         told(&found, &grid);
         information = Information::of_fit(task, &found);
         bias.halvings += 1;
-        bias.compare(&before, &found, &information);
+        bias.compare((&before.0, &before.1), (&found, &information));
     }
-    Ok((found, information, grid, bias))
+    Ok((found, information, grids, bias))
 }
 
 impl Bias {
-    fn compare(&mut self, before: &Fit, after: &Fit, information: &Information) {
+    fn compare(
+        &mut self,
+        (before, known): (&Fit, &Information),
+        (after, information): (&Fit, &Information),
+    ) {
+        self.errors = 0.0;
         let mut is_none = information.is_determined.contains(&true);
         let change = &after.prediction.values - &before.prediction.values;
         let change = change.component_div(&after.data.deviations);
         let of_readings = shift(&after.weighted(), &change);
         let pairs = before.of_constants().iter().zip(after.of_constants());
         for (j, (a, b)) in pairs.enumerate() {
-            let error = information.covariance[(j, j)].sqrt();
+            let [earlier, error] = [known, information].map(|one| one.covariance[(j, j)].sqrt());
+            if information.is_determined[j] && error > 0.0 {
+                self.errors = self.errors.max((earlier / error - 1.0).abs());
+            }
             // Of a constant that is not determined combinations may be, which move with the readings.
             self.changes[j] = match information.is_determined[j] && error > 0.0 {
                 true => (a - b).abs() / error,
@@ -308,7 +335,7 @@ impl Bias {
             is_none &= !information.is_determined[j] || (a - b).abs() <= NONE * b.abs();
         }
         self.readings = change.norm() / (change.len() as f64).sqrt();
-        self.is_confirmed = is_none || self.is_small();
+        self.is_confirmed = (is_none || self.is_small()) && self.keeps_errors();
     }
 }
 

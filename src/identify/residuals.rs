@@ -133,6 +133,13 @@ impl Data {
         self.ranges.is_empty()
     }
 
+    /// Least number of readings of a quantity of which the deviation is estimated beside others; none where none is, or one of all.
+    pub(super) fn fewest(&self) -> Option<usize> {
+        let count = |group: usize| self.groups.iter().filter(|g| **g == Some(group)).count();
+        let counts = (0..self.ranges.len()).map(count);
+        counts.min().filter(|_| !self.is_scaled_alike())
+    }
+
     /// Returns true if one estimated deviation scales all readings, so that it does not change the fit.
     pub(super) fn is_scaled_alike(&self) -> bool {
         self.ranges.len() == 1 && self.groups.iter().all(Option::is_some)

@@ -8,6 +8,7 @@ mod derivatives;
 mod forces;
 mod front;
 mod inputs;
+mod likelihood;
 mod loops;
 mod oscillator;
 mod places;

@@ -49,6 +49,28 @@ impl Override {
         })
     }
 
+    /// Reads a list of overrides, of which each has a place of its own.
+    pub(crate) fn all(written: &[String]) -> Result<Vec<Self>, SceneError> {
+        let mut out: Vec<Self> = Vec::with_capacity(written.len());
+        for written in written {
+            let next = Self::parse(written)?;
+            if let Some(known) = out.iter().find(|known| known.place == next.place) {
+                let mistake = Mistake {
+                    file: "command line".to_owned(),
+                    path: next.place.to_string(),
+                    found: format!("{:?} and {:?}", known.written, next.written),
+                    expected: "one value".to_owned(),
+                    nearest: None,
+                    source: None,
+                    overridden: Some(next.typed),
+                };
+                return Err(mistake.into());
+            }
+            out.push(next);
+        }
+        Ok(out)
+    }
+
     /// A value for a place.
     pub(crate) fn new(place: JsonPath, value: Value) -> Self {
         Self {
