@@ -1,4 +1,4 @@
-//! The matrix of one Newton iteration on box grids of nodes, solved by an iteration with multigrid to the accuracy that the next update
+//! The matrix of one Newton iteration by the nodes of boxes and meshes, solved by an iteration with multigrid to the accuracy that the next update
 //! deserves (S. C. Eisenstat, H. F. Walker, SIAM J. Sci. Comput. 17, 1996).
 
 use crate::coordinates::Dependence;
@@ -44,22 +44,24 @@ pub(super) struct GridTangent {
 }
 
 impl GridTangent {
-    /// Of a model whose unknowns are those of box grids; `None` for others. At rest derivatives by given scalars are kept too.
+    /// Of a model whose unknowns are those of nodes; `None` for others. At rest derivatives by given scalars are kept too.
     pub(super) fn new(
         model: &Model,
         direct: Option<fn(&Model) -> Tangent>,
         is_at_rest: bool,
     ) -> Option<Self> {
         let grids = model.node_grids().ok()?;
-        let edges = grids.iter().flat_map(|grid| &grid.planes);
-        let edges = edges.flat_map(|planes| planes.windows(2).map(|two| two[1] - two[0]));
-        let edge = edges.fold(f64::INFINITY, f64::min);
         let (map, size) = (&model.action.map, model.variables.unknown_count());
-        let solver = Multigrid::new(size, &grids)?;
+        let solver = Multigrid::with_meshes(size, &grids.boxes, &grids.meshes)?;
         let sum = &model.action.intervals;
         let vectors = map.vectors.iter().map(|of| vector_place(&solver, of));
         let scalars = (0..sum.scalars).map(|s| scalar_place(&solver, model.variables.place(s)));
-        let mut nodes = NodeBlocks::new(vectors.collect(), scalars.collect(), is_at_rest);
+        let mut nodes = NodeBlocks::new(
+            solver.block_places(),
+            vectors.collect(),
+            scalars.collect(),
+            is_at_rest,
+        );
         nodes.pressures = solver.has_pressures().then_some(Pressures::Exact);
         let is_meant = |term: &&Arc<dyn Term>| !is_at_rest || term.kind().acts_at_rest();
         for term in sum.terms.iter().filter(is_meant) {
@@ -75,7 +77,7 @@ impl GridTangent {
             nodes,
             solver,
             potentials: map.unknowns(),
-            edge,
+            edge: grids.shortest_edge(),
             before: None,
             is_regular: false,
             is_new: true,

@@ -7,10 +7,10 @@ use crate::dynamics::tangent::{EntryList, Tangent};
 use crate::model::Model;
 use crate::sparse::{Backend, DENSE};
 
-/// The matrix of a step: on box grids where these are wanted and hold all unknowns, otherwise factorised.
+/// The matrix of a step: by its nodes where an iteration is wanted and nodes have all unknowns, otherwise factorised.
 pub(super) fn step_matrix(model: &Model, solving: Solving) -> StepMatrix {
     let direct = |model: &Model| direct_by(model, Newton::Modified, None);
-    let is_wanted = solving.takes_grids(model.variables.unknown_count());
+    let is_wanted = solving.takes_grids(model);
     let direct = (solving.multigrid != MultigridUse::Alone).then_some(direct as fn(&_) -> _);
     let grids = is_wanted.then(|| GridTangent::new(model, direct, false));
     match grids.flatten() {

@@ -1,6 +1,7 @@
 //! Settings of the integration of a motion: the method, and the solution of the equations of a step.
 
-use crate::model::system::{Fidelity, System};
+use crate::model::Model;
+use crate::model::system::{Fidelity, Solid, System};
 use crate::sparse::Backend;
 
 /// The method that leads from one instant to the next.
@@ -65,11 +66,11 @@ pub struct Solving {
     pub newton: Newton,
     /// Method of its factorisation; `None`: the one that is fastest as a rule.
     pub backend: Option<Backend>,
-    /// Solution of the linear systems of blocks on box grids by an iteration with multigrid.
+    /// Solution of the linear systems of blocks by an iteration with multigrid.
     pub multigrid: MultigridUse,
 }
 
-/// Use of an iteration with multigrid, where all unknowns are at nodes of box grids.
+/// Use of an iteration with multigrid, where all unknowns are at nodes of blocks.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum MultigridUse {
     /// For large systems for which no factorisation is named.
@@ -83,6 +84,8 @@ pub enum MultigridUse {
 
 /// Number of unknowns from which on the iteration is faster, as `benches/multigrid.rs` measures.
 const LARGE: usize = 20_000;
+/// The same where a mesh is no box.
+const LARGE_MESH: usize = 50_000;
 
 impl Solving {
     /// Returns true if an iteration may solve for the unknowns of a step.
@@ -91,11 +94,16 @@ impl Solving {
         is_midpoint && (self.backend.is_none() || self.multigrid.is_asked_for())
     }
 
-    /// Returns true if so many unknowns on box grids are solved for by an iteration.
-    pub(super) fn takes_grids(&self, unknowns: usize) -> bool {
+    /// Returns true if the unknowns of a model, where nodes have all of them, are solved for by an iteration.
+    pub(super) fn takes_grids(&self, model: &Model) -> bool {
+        let is_box = |solid: &Solid| solid.mesh.box_planes().is_some();
+        let is_large = || {
+            let unknowns = model.variables.unknown_count();
+            unknowns > LARGE_MESH || unknowns > LARGE && model.system.solids.iter().all(is_box)
+        };
         match self.multigrid {
             MultigridUse::Always | MultigridUse::Alone => true,
-            MultigridUse::WhereFaster => self.backend.is_none() && unknowns > LARGE,
+            MultigridUse::WhereFaster => self.backend.is_none() && is_large(),
         }
     }
 }

@@ -1,11 +1,12 @@
-//! Second derivatives that are added straight into the matrix of nodes on box grids, without a list of couplings.
+//! Second derivatives that are added straight into the matrix of nodes, without a list of couplings.
 
 use crate::element::Dilatation;
 use crate::functional::{BlockMask, Coupling};
 use crate::math::{Matrix, Vector};
 use crate::mesh::CORNERS;
-use crate::sparse::multigrid::{ElementVolume, GridNode, NodeBlock};
+use crate::sparse::multigrid::{BlockPlaces, ElementVolume, GridNode, NodeBlock};
 use rustc_hash::FxHashMap;
+use std::sync::Arc;
 
 /// Number of components of a node; the last one is a scalar.
 const COMPONENTS: usize = 4;
@@ -63,6 +64,7 @@ pub struct NodeVolume {
 /// columns of scalars.
 #[derive(Clone, Debug, Default)]
 pub struct NodeBlocks {
+    places: Arc<BlockPlaces>,
     vectors: Vec<VectorPlace>,
     scalars: Vec<ScalarPlace>,
     /// The blocks; lent by the solver for an evaluation.
@@ -90,9 +92,15 @@ pub(super) struct Pair {
 }
 
 impl NodeBlocks {
-    /// Of vectors and scalars at these places; `has_given` if derivatives by given scalars are kept too.
-    pub fn new(vectors: Vec<VectorPlace>, scalars: Vec<ScalarPlace>, has_given: bool) -> Self {
+    /// Of vectors and scalars at the nodes of these blocks; `has_given` if derivatives by given scalars are kept too.
+    pub fn new(
+        places: Arc<BlockPlaces>,
+        vectors: Vec<VectorPlace>,
+        scalars: Vec<ScalarPlace>,
+        has_given: bool,
+    ) -> Self {
         Self {
+            places,
             vectors,
             scalars,
             has_given,
@@ -104,7 +112,7 @@ impl NodeBlocks {
     pub fn take(&mut self, coupling: Coupling) -> bool {
         use ScalarPlace::{Given, Node as Scalar};
         use VectorPlace::{Node, Other, Still};
-        let touch = |a: GridNode, b: GridNode| a.block(b).is_some();
+        let touch = |a: GridNode, b: GridNode| self.places.block(a, b).is_some();
         match coupling {
             Coupling::Full(a, b) | Coupling::Isotropic(a, b) => {
                 match (self.vectors[a], self.vectors[b]) {
@@ -220,7 +228,7 @@ impl NodeBlocks {
         let VectorPlace::Node(column, columns) = self.vectors[b] else {
             return None;
         };
-        let block = row.block(column)?;
+        let block = self.places.block(row, column)?;
         Some(Pair {
             block,
             rows,
@@ -264,13 +272,13 @@ impl NodeBlocks {
             }
             return;
         };
-        if let Some(block) = node.block(other) {
+        if let Some(block) = self.places.block(node, other) {
             let block = &mut self.matrix[block];
             for axis in (0..3).filter(|&axis| free[axis]) {
                 block[COMPONENTS * SCALAR + axis] += by_scalar[axis];
             }
         }
-        if let Some(block) = other.block(node) {
+        if let Some(block) = self.places.block(other, node) {
             let block = &mut self.matrix[block];
             for axis in (0..3).filter(|&axis| free[axis]) {
                 block[COMPONENTS * axis + SCALAR] += by_vector[axis];
@@ -284,10 +292,10 @@ impl NodeBlocks {
         const OWN: usize = (COMPONENTS + 1) * SCALAR;
         match (self.scalars[s], self.scalars[t]) {
             (ScalarPlace::Node(a), ScalarPlace::Node(b)) => {
-                if let Some(block) = a.block(b) {
+                if let Some(block) = self.places.block(a, b) {
                     self.matrix[block][OWN] += value;
                 }
-                if let Some(block) = b.block(a).filter(|_| s != t) {
+                if let Some(block) = self.places.block(b, a).filter(|_| s != t) {
                     self.matrix[block][OWN] += value;
                 }
             }

@@ -103,8 +103,8 @@ pub use maxwell::{MOST_BRANCHES, MaxwellBranch, MaxwellBranches, NO_BRANCHES, Re
 pub use model::Model;
 pub use muscle_state::{MuscleReading, SourceFlow};
 pub use named::Freedom;
-pub use node_grids::NoGrids;
-pub(crate) use node_grids::has_boxes_alone;
+pub(crate) use node_grids::has_nodes_alone;
+pub use node_grids::{NoGrids, NodeGrids};
 pub use parameter::{NotSought, check as check_parameters, unit as unit_of, with_parameters};
 pub use plan::{LeftOut, Present};
 pub use presolved::{BodyLocation, Presolved};

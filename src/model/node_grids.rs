@@ -1,28 +1,37 @@
-//! Box grids of nodes with the unknowns of a step at each node, where these are all that is unknown.
+//! The nodes of boxes and meshes with the unknowns of a step at each node, where these are all that is unknown.
 
-use crate::model::Model;
 use crate::model::system::{ElementKind, Material, Solid, System};
-use crate::sparse::multigrid::NodeGrid;
+use crate::model::{Model, SolidBlock};
+use crate::sparse::multigrid::{NodeGrid, NodeMesh};
 use thiserror::Error;
 
-/// Reason why the unknowns are not those of box grids.
+/// The nodes of blocks, with their unknowns.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct NodeGrids {
+    /// Blocks on boxes.
+    pub boxes: Vec<NodeGrid>,
+    /// Blocks on other meshes.
+    pub meshes: Vec<NodeMesh>,
+}
+
+/// Reason why the unknowns are not those of nodes.
 #[derive(Clone, Debug, Error, PartialEq, Eq)]
 pub enum NoGrids {
     /// There is no block.
     #[error("there is no elastic block that moves")]
     NoBlock,
-    /// The nodes of a block are no box grid.
-    #[error("the mesh of {0} is no box of elements")]
+    /// A block resists changes of volume by far more than anything else, and its nodes are no box grid.
+    #[error("the elements of {0} are nearly incompressible, and its mesh is no box")]
     NoBox(String),
     /// Something else is unknown.
     #[error("{0} is unknown too, which belongs to no node")]
     Other(String),
 }
 
-/// Returns true if all that can move in a system are blocks on boxes.
-pub(crate) fn has_boxes_alone(system: &System) -> bool {
-    let is_box = |solid: &Solid| solid.mesh.box_planes().is_some();
-    system.bodies.is_empty() && system.muscles.is_empty() && system.solids.iter().all(is_box)
+/// Returns true if all that can move in a system are blocks for which an iteration may solve.
+pub(crate) fn has_nodes_alone(system: &System) -> bool {
+    let is_meant = |solid: &Solid| !has_pressures(solid) || solid.mesh.box_planes().is_some();
+    system.bodies.is_empty() && system.muscles.is_empty() && system.solids.iter().all(is_meant)
 }
 
 /// Least λ/μ from which on pressures of mean dilatations are worth their iterations.
@@ -38,40 +47,30 @@ fn has_pressures(solid: &Solid) -> bool {
 }
 
 impl Model {
-    /// The grids of the blocks that move, each with its unknowns. Prescribed coordinates belong to no grid.
+    /// The nodes of the blocks that move, with their unknowns. Prescribed coordinates belong to no node.
     ///
     /// # Errors
-    /// A block is no box grid, or something else is unknown: coordinates of bodies, what materials remember, multipliers, potentials of whole
-    /// electrodes.
-    pub fn node_grids(&self) -> Result<Vec<NodeGrid>, NoGrids> {
+    /// A block is nearly incompressible on no box, or something else is unknown: coordinates of bodies, what materials remember, multipliers,
+    /// potentials of whole electrodes.
+    pub fn node_grids(&self) -> Result<NodeGrids, NoGrids> {
         let map = &self.action.map;
-        let mut grids = Vec::new();
-        for block in &self.solids {
-            let planes = match block.is_immobile {
-                true => Default::default(),
-                false => (block.solid.mesh.box_planes())
-                    .ok_or_else(|| NoGrids::NoBox(block.solid.name.clone()))?,
-            };
-            let nodes = planes.iter().map(Vec::len).product();
-            let unknowns = vec![[None; 4]; nodes];
-            grids.push(NodeGrid {
-                planes,
-                unknowns,
-                has_pressures: has_pressures(&block.solid),
-            });
-        }
+        let nodes = |block: &SolidBlock| match block.is_immobile {
+            true => Vec::new(),
+            false => vec![[None; 4]; block.solid.mesh.nodes.len()],
+        };
+        let mut lists: Vec<_> = self.solids.iter().map(nodes).collect();
         let mut found = vec![false; self.variables.unknown_count()];
         for (place, &(node, axis)) in map.of_nodes.iter().enumerate() {
             let (block, node) = self.node_names[node];
             let unknown = map.of_bodies + place;
             if !self.is_prescribed(unknown) {
-                grids[block].unknowns[node][axis] = Some(unknown as u32);
+                lists[block][node][axis] = Some(unknown as u32);
             }
             found[unknown] = true;
         }
         let other = |unknown: usize| NoGrids::Other(self.variables.unknown(unknown).to_string());
-        for (grid, block) in grids.iter_mut().zip(&self.solids) {
-            for (unknowns, terminal) in grid.unknowns.iter_mut().zip(&block.terminals) {
+        for (list, block) in lists.iter_mut().zip(&self.solids) {
+            for (unknowns, terminal) in list.iter_mut().zip(&block.terminals) {
                 let scalar = terminal.and_then(|terminal| terminal.scalar);
                 let Some(unknown) = scalar.and_then(|(s, _)| self.variables.place(s)) else {
                     continue;
@@ -83,11 +82,53 @@ impl Model {
                 unknowns[3] = Some(unknown as u32);
             }
         }
-        grids.retain(|grid| !grid.unknowns.is_empty());
-        match found.iter().position(|found| !found) {
-            Some(unknown) => Err(other(unknown)),
-            None if grids.is_empty() => Err(NoGrids::NoBlock),
-            None => Ok(grids),
+        if let Some(unknown) = found.iter().position(|found| !found) {
+            return Err(other(unknown));
         }
+        let mut grids = NodeGrids::default();
+        for (block, unknowns) in self.solids.iter().zip(lists) {
+            if !unknowns.is_empty() {
+                grids.add(&block.solid, unknowns)?;
+            }
+        }
+        match grids.boxes.is_empty() && grids.meshes.is_empty() {
+            true => Err(NoGrids::NoBlock),
+            false => Ok(grids),
+        }
+    }
+}
+
+impl NodeGrids {
+    /// Adds a block with the unknowns of its nodes.
+    fn add(&mut self, solid: &Solid, unknowns: Vec<[Option<u32>; 4]>) -> Result<(), NoGrids> {
+        let has_pressures = has_pressures(solid);
+        if let Some(planes) = solid.mesh.box_planes() {
+            self.boxes.push(NodeGrid {
+                planes,
+                unknowns,
+                has_pressures,
+            });
+            return Ok(());
+        }
+        if has_pressures {
+            return Err(NoGrids::NoBox(solid.name.clone()));
+        }
+        let elements = solid.mesh.hexahedra.iter();
+        self.meshes.push(NodeMesh {
+            places: solid.mesh.nodes.iter().map(|&node| node.into()).collect(),
+            elements: elements
+                .map(|nodes| nodes.map(|node| node as u32))
+                .collect(),
+            unknowns,
+        });
+        Ok(())
+    }
+
+    /// Length of the shortest edge in mm.
+    pub fn shortest_edge(&self) -> f64 {
+        let planes = self.boxes.iter().flat_map(|grid| &grid.planes);
+        let edges = planes.flat_map(|planes| planes.windows(2).map(|two| two[1] - two[0]));
+        let of_meshes = self.meshes.iter().map(NodeMesh::shortest_edge);
+        edges.chain(of_meshes).fold(f64::INFINITY, f64::min)
     }
 }

@@ -145,7 +145,7 @@ pub fn integrate_on(
     })
 }
 
-/// Refuses an iteration with multigrid where there are no grids.
+/// Refuses an iteration with multigrid where nodes have not all unknowns.
 fn has_solver(model: &Model, solving: Solving) -> Result<(), WorkflowError> {
     if !solving.multigrid.is_asked_for() {
         return Ok(());
@@ -154,7 +154,7 @@ fn has_solver(model: &Model, solving: Solving) -> Result<(), WorkflowError> {
         Integrator::Midpoint => model.node_grids().err().map(|none| none.to_string()),
         other => Some(format!("the integrator is {}", other.name())),
     };
-    let expected = "\"auto\", \"faer\" or \"mumps\"; multigrid needs the midpoint rule and elastic blocks on boxes, beside which nothing moves";
+    let expected = "\"auto\", \"faer\" or \"mumps\"; multigrid needs the midpoint rule and elastic blocks, nearly incompressible ones on boxes, beside which nothing moves";
     found.map_or(Ok(()), |found| {
         Err(WorkflowError::Problem {
             place: "simulate.linear_solver".to_owned(),

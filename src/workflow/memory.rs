@@ -3,7 +3,7 @@
 use crate::dynamics::Solving;
 use crate::math::memory::{available, readable};
 use crate::model::system::{Fidelity, Material};
-use crate::model::{Model, System, Time, has_boxes_alone};
+use crate::model::{Model, System, Time, has_nodes_alone};
 use crate::workflow::error::WorkflowError;
 
 /// Bytes of an element with its share of nodes, couplings, tangent and factors: dielectric blocks of 2048 to 16 384 elements took
@@ -62,7 +62,7 @@ pub(crate) fn of_elements(system: &System, occasion: Occasion) -> Result<(), Wor
     };
     let what = format!("{elements} elements with {with}about {unknowns} unknowns");
     let may_iterate = occasion != Occasion::Factors && branches == 0;
-    let of_element = match may_iterate && has_boxes_alone(system) {
+    let of_element = match may_iterate && has_nodes_alone(system) {
         true => OF_ITERATION,
         false => OF_ELEMENT,
     };

@@ -50,3 +50,56 @@ pub(crate) fn cubes(n: usize, material: Material) -> Solid {
     let grid = Grid::uniform(Vector3::zeros(), size, [n, n, 4 * n]);
     stack(&grid, &[0.0, 10.0, 20.0, 30.0, 40.0], material)
 }
+
+/// The same block with its nodes and elements in another order, and nodes inside elsewhere by a part of the distance to their neighbours: no box.
+pub(crate) fn scattered(mut solid: Solid, part: f64) -> Solid {
+    let mesh = &mut solid.mesh;
+    let count = mesh.nodes.len();
+    // Without a common divisor with the number of nodes every number is taken once.
+    let stride = (count / 3..).find(|stride| gcd(*stride, count) == 1);
+    let new = |old: usize| old * stride.unwrap() % count;
+    let mut at_surface = vec![false; count];
+    for &node in ["x_min", "x_max", "y_min", "y_max", "z_min", "z_max"]
+        .iter()
+        .flat_map(|face| &mesh.sets[*face])
+        .chain(solid.electrodes.iter().flat_map(|e| &e.nodes))
+    {
+        at_surface[node] = true;
+    }
+    let mut edges = vec![f64::INFINITY; count];
+    for nodes in &mesh.hexahedra {
+        for &a in nodes {
+            for &b in nodes.iter().filter(|&&b| b != a) {
+                edges[a] = edges[a].min((mesh.nodes[a] - mesh.nodes[b]).norm());
+            }
+        }
+    }
+    let mut nodes = mesh.nodes.clone();
+    for (old, place) in mesh.nodes.iter().enumerate() {
+        let inside = f64::from(u8::from(!at_surface[old]));
+        let way = [0.0, 2.0, 4.0].map(|phase| (old as f64 * 12.9898 + phase).sin());
+        nodes[new(old)] = place + Vector3::from(way) * (inside * part * edges[old]);
+    }
+    mesh.nodes = nodes;
+    mesh.hexahedra = (mesh.hexahedra.iter())
+        .map(|nodes| nodes.map(new))
+        .collect();
+    mesh.hexahedra.reverse();
+    mesh.regions.reverse();
+    let renumber = |list: &mut Vec<usize>| {
+        list.iter_mut().for_each(|node| *node = new(*node));
+        list.sort_unstable();
+    };
+    mesh.sets.values_mut().for_each(renumber);
+    let electrodes = solid.electrodes.iter_mut().map(|e| &mut e.nodes);
+    let supports = solid.supports.iter_mut().map(|s| &mut s.nodes);
+    electrodes.chain(supports).for_each(renumber);
+    solid
+}
+
+fn gcd(a: usize, b: usize) -> usize {
+    match b {
+        0 => a,
+        _ => gcd(b, a % b),
+    }
+}

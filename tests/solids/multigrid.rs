@@ -9,19 +9,19 @@ use proboscis::dynamics::{
     simulate_by, stable_equilibrium, stable_equilibrium_by,
 };
 use proboscis::mesh::grid::Grid;
-use proboscis::model::system::{Potential, Solid, System};
+use proboscis::model::system::{ElementKind, Potential, Solid, System};
 use proboscis::model::{Model, NoGrids};
 use proboscis::sparse::Backend;
 use std::ops::ControlFlow;
 
-const MULTIGRID: Solving = Solving {
+pub(crate) const MULTIGRID: Solving = Solving {
     integrator: proboscis::dynamics::Integrator::Midpoint,
     newton: Newton::Modified,
     backend: None,
     multigrid: MultigridUse::Always,
 };
 /// Steps of h ms from rest, under a voltage that is switched on at once.
-fn motion(
+pub(crate) fn motion(
     system: &System,
     solving: Solving,
     (h, steps): (f64, usize),
@@ -36,13 +36,13 @@ fn motion(
     discrete
 }
 
-fn apart(a: &[f64], b: &[f64]) -> f64 {
+pub(crate) fn apart(a: &[f64], b: &[f64]) -> f64 {
     let parts = a.iter().zip(b).map(|(a, b)| (a - b).abs());
     parts.fold(0.0, f64::max)
 }
 
 /// Compares a motion by an iteration with that by factors of the whole tangent.
-fn compare(system: &System, step: (f64, usize), voltage: f64) -> DiscreteTrajectory {
+pub(crate) fn compare(system: &System, step: (f64, usize), voltage: f64) -> DiscreteTrajectory {
     let by_factors = Solving {
         backend: Some(Backend::Faer),
         newton: Newton::Full,
@@ -224,7 +224,7 @@ fn the_equilibrium_is_that_of_the_direct_solver() {
 }
 
 #[test]
-fn other_meshes_and_unknowns_are_named() {
+fn other_blocks_and_unknowns_are_named() {
     let of = |solid: Solid| {
         Model::new(system(vec![solid]), None, 0.5, &[])
             .unwrap()
@@ -232,10 +232,17 @@ fn other_meshes_and_unknowns_are_named() {
     };
     let mut solid = cubes(2, rubber(0.4, None));
     let grids = of(solid.clone()).unwrap();
-    assert_eq!(grids[0].planes[2].len(), 9);
+    assert_eq!(grids.boxes[0].planes[2].len(), 9);
+    assert!(grids.meshes.is_empty());
     solid.mesh.hexahedra.swap(0, 1);
+    let grids = of(solid.clone()).unwrap();
+    assert!(grids.boxes.is_empty() && grids.meshes[0].places.len() == 81);
+    solid.element = ElementKind::Hex8Q1P0;
+    assert!(of(solid.clone()).is_ok());
+    solid.materials[0].lame_lambda = Some(10.0);
     assert_eq!(of(solid.clone()), Err(NoGrids::NoBox("block".into())));
     solid.mesh.hexahedra.swap(0, 1);
+    assert!(of(solid.clone()).unwrap().boxes[0].has_pressures);
     solid.electrodes[1].potential = Potential::Floating;
     solid.electrodes[2].potential = DRIVEN;
     let found = of(solid);

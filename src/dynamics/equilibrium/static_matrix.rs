@@ -92,7 +92,7 @@ impl Inertia {
     }
 }
 
-/// The matrix of a model, on box grids where these are wanted and hold all unknowns; what gives the inertia, where it is factorised.
+/// The matrix of a model, by its nodes where an iteration is wanted and nodes have all unknowns; what gives the inertia, where it is factorised.
 pub(super) fn matrix(model: &Model, multigrid: Option<MultigridUse>) -> (StepMatrix, Inertia) {
     let grids = multigrid.and_then(|multigrid| {
         let solving = Solving {
@@ -100,7 +100,7 @@ pub(super) fn matrix(model: &Model, multigrid: Option<MultigridUse>) -> (StepMat
             ..Solving::default()
         };
         let by_factors = (multigrid != MultigridUse::Alone).then_some(direct as fn(&_) -> _);
-        let is_wanted = solving.takes_grids(model.variables.unknown_count());
+        let is_wanted = solving.takes_grids(model);
         is_wanted
             .then(|| GridTangent::new(model, by_factors, true))
             .flatten()

@@ -137,7 +137,7 @@ pub enum LinearSolverSpec {
     Faer,
     /// LDLᵀ or LU of MUMPS.
     Mumps,
-    /// GMRES with multigrid, for blocks on boxes beside which nothing moves.
+    /// GMRES with multigrid, for blocks beside which nothing moves.
     Multigrid,
 }
 

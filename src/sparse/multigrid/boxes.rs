@@ -1,39 +1,109 @@
-//! Box grids side by side: their matrix in double precision, by blocks, with its product and its preconditioner.
+//! Box grids and meshes side by side: their matrix in double precision, by blocks, with its product and its preconditioner.
 
 use crate::math::join;
 use crate::sparse::Singular;
+use crate::sparse::multigrid::block_rows::BlockRows;
 use crate::sparse::multigrid::field::{Block, Field};
 use crate::sparse::multigrid::hierarchy::Hierarchy;
 use crate::sparse::multigrid::krylov::Operator;
+use crate::sparse::multigrid::level::Level;
+use crate::sparse::multigrid::mesh_level::MeshLevel;
 use crate::sparse::multigrid::node_grid::{
-    COMPONENTS, ENTRIES, NEIGHBOURS, NodeBlock, OWN, offsets,
+    COMPONENTS, ENTRIES, NEIGHBOURS, NodeBlock, NodeGrid, offsets,
 };
+use crate::sparse::multigrid::node_mesh::{BlockPlaces, NodeMesh};
 use crate::sparse::multigrid::volumes::{Volumes, scale_of_mean};
 use std::ops::Range;
+use std::sync::Arc;
 
-/// The boxes and their matrix.
+/// The boxes, the meshes behind them, and their matrix.
 #[derive(Debug)]
 pub(super) struct Parts {
-    pub(super) boxes: Vec<Hierarchy>,
-    /// First node of each box, and the number of all.
+    pub(super) boxes: Vec<Hierarchy<Level>>,
+    pub(super) meshes: Vec<Hierarchy<MeshLevel>>,
+    /// First node of each part, and the number of all.
     pub(super) starts: Vec<usize>,
+    /// First block of each part, and the number of all.
+    pub(super) first_blocks: Vec<usize>,
+    pub(super) places: Arc<BlockPlaces>,
     /// Blocks by node and neighbour, each by column.
     pub(super) matrix: Vec<NodeBlock>,
-    /// Factors of rows and columns of a box by component.
+    /// Factors of rows and columns of a part by component.
     pub(super) scales: Vec<[f64; COMPONENTS]>,
     /// Volumes of elements by their first node; none where no box has pressures.
     pub(super) volumes: Volumes,
 }
 
 impl Parts {
-    /// Nodes of a box.
-    fn nodes(&self, part: usize) -> Range<usize> {
+    /// The parts without a matrix.
+    pub(super) fn new(grids: &[NodeGrid], meshes: &[NodeMesh]) -> Self {
+        let boxes: Vec<_> = grids.iter().map(Hierarchy::of).collect();
+        let meshes: Vec<_> = meshes.iter().map(Hierarchy::of_mesh).collect();
+        let (mut starts, mut first_blocks) = (vec![0], vec![0]);
+        for grid in grids {
+            starts.push(starts[starts.len() - 1] + grid.unknowns.len());
+            first_blocks.push(NEIGHBOURS * starts[starts.len() - 1]);
+        }
+        let mut places = BlockPlaces {
+            of_boxes: starts[grids.len()],
+            meshes: Vec::new(),
+        };
+        for one in &meshes {
+            let finest = &one.levels[0];
+            let (node, block) = (starts[starts.len() - 1], first_blocks[starts.len() - 1]);
+            places.meshes.push((node, block, finest.rows.clone()));
+            starts.push(node + finest.free.len());
+            first_blocks.push(block + finest.matrix.len());
+        }
+        let (parts, nodes) = (boxes.len() + meshes.len(), starts[starts.len() - 1]);
+        Self {
+            matrix: vec![[0.0; ENTRIES]; first_blocks[parts]],
+            scales: vec![[1.0; COMPONENTS]; parts],
+            volumes: match grids.iter().any(|grid| grid.has_pressures) {
+                true => Volumes::new(nodes, boxes.len()),
+                false => Volumes::default(),
+            },
+            places: Arc::new(places),
+            boxes,
+            meshes,
+            starts,
+            first_blocks,
+        }
+    }
+
+    /// Number of nodes of all parts.
+    pub(super) fn node_count(&self) -> usize {
+        self.starts[self.starts.len() - 1]
+    }
+
+    /// Number of levels of the part that has most.
+    pub(super) fn levels(&self) -> usize {
+        let of_boxes = self.boxes.iter().map(|one| one.levels.len());
+        let of_meshes = self.meshes.iter().map(|one| one.levels.len());
+        of_boxes.chain(of_meshes).max().unwrap_or(0)
+    }
+
+    /// Bytes of all levels.
+    pub(super) fn bytes(&self) -> usize {
+        let of_boxes = self.boxes.iter().map(Hierarchy::bytes);
+        of_boxes
+            .chain(self.meshes.iter().map(Hierarchy::bytes))
+            .sum()
+    }
+
+    /// Nodes of a part.
+    pub(super) fn nodes(&self, part: usize) -> Range<usize> {
         self.starts[part]..self.starts[part + 1]
+    }
+
+    /// Blocks of a part.
+    pub(super) fn blocks(&self, part: usize) -> Range<usize> {
+        self.first_blocks[part]..self.first_blocks[part + 1]
     }
 
     /// Factor of the row and column at a place.
     pub(super) fn scale_of(&self, place: usize) -> f64 {
-        let part = match self.boxes.len() {
+        let part = match self.scales.len() {
             1 => 0,
             _ => {
                 self.starts
@@ -44,12 +114,12 @@ impl Parts {
         self.scales[part][place % COMPONENTS]
     }
 
-    /// Finds scales that make the mean of the diagonal one: of all displacements of a box, and of its potentials.
+    /// Finds scales that make the mean of the diagonal one: of all displacements of a part, and of its potentials.
     pub(super) fn find_scales(&mut self) {
-        for part in 0..self.boxes.len() {
+        for part in 0..self.scales.len() {
             let mut sums = [[0.0; 2]; COMPONENTS];
             for node in self.nodes(part) {
-                let own = &self.matrix[NEIGHBOURS * node + OWN];
+                let own = &self.matrix[self.places.diagonal(node)];
                 for (component, [sum, count]) in sums.iter_mut().enumerate() {
                     let diagonal = own[(COMPONENTS + 1) * component].abs();
                     *sum += diagonal;
@@ -72,10 +142,9 @@ impl Parts {
 
     /// Multiplies rows and columns by their factors.
     pub(super) fn scale(&mut self) {
-        for part in 0..self.boxes.len() {
+        for part in 0..self.scales.len() {
             let products = products(&self.scales[part]);
-            let blocks = self.nodes(part);
-            let blocks = NEIGHBOURS * blocks.start..NEIGHBOURS * blocks.end;
+            let blocks = self.blocks(part);
             for block in &mut self.matrix[blocks] {
                 for (entry, product) in block.iter_mut().zip(&products) {
                     *entry *= product;
@@ -89,6 +158,15 @@ impl Parts {
     /// Product of the matrix with a vector by node on either side.
     pub(super) fn along(&self, x: &[[f64; COMPONENTS]]) -> f64 {
         let mut sum = 0.0;
+        for (part, rows) in self.of_meshes() {
+            let (x, blocks) = (&x[self.nodes(part)], &self.matrix[self.blocks(part)]);
+            for (block, (node, other)) in blocks.iter().zip(rows.entries()) {
+                for (column, value) in block.chunks_exact(COMPONENTS).zip(&x[other]) {
+                    let along: f64 = column.iter().zip(&x[node]).map(|(a, x)| a * x).sum();
+                    sum += along * value;
+                }
+            }
+        }
         for (part, one) in self.boxes.iter().enumerate() {
             let offsets = offsets(one.levels[0].counts);
             let x = &x[self.nodes(part)];
@@ -109,8 +187,24 @@ impl Parts {
         sum
     }
 
+    /// Numbers of the meshes among the parts, and their patterns.
+    fn of_meshes(&self) -> impl Iterator<Item = (usize, &BlockRows)> {
+        let meshes = self.meshes.iter().enumerate();
+        let boxes = self.boxes.len();
+        meshes.map(move |(mesh, one)| (boxes + mesh, &*one.levels[0].rows))
+    }
+
     /// Makes the grids of the present matrix.
     pub(super) fn prepare(&mut self) -> Result<(), Singular> {
+        for (mesh, one) in self.meshes.iter_mut().enumerate() {
+            let part = self.boxes.len() + mesh;
+            let blocks = self.first_blocks[part]..self.first_blocks[part + 1];
+            let finest = one.levels[0].matrix.iter_mut();
+            for (to, from) in finest.zip(&self.matrix[blocks]) {
+                *to = from.map(|entry| entry as f32);
+            }
+            one.prepare()?;
+        }
         for part in 0..self.boxes.len() {
             let nodes = self.nodes(part);
             let blocks = &self.matrix[NEIGHBOURS * nodes.start..NEIGHBOURS * nodes.end];
@@ -148,6 +242,18 @@ impl Operator for Parts {
             );
             self.volumes.apply((nodes, counts), field, x, product);
         }
+        for (part, rows) in self.of_meshes() {
+            let nodes = self.nodes(part);
+            let own = COMPONENTS * nodes.start..COMPONENTS * nodes.end;
+            let (blocks, half) = (&self.matrix[self.blocks(part)], nodes.len() / 2);
+            let x = &x[own.clone()];
+            let (lower, upper) = product[own].split_at_mut(COMPONENTS * half);
+            join(
+                || multiply_rows((rows, blocks), x, 0, lower),
+                || multiply_rows((rows, blocks), x, half, upper),
+            );
+            self.clear_pressures(part, product);
+        }
     }
 
     fn precondition(&mut self, r: &[f64], x: &mut [f32]) {
@@ -174,6 +280,18 @@ impl Operator for Parts {
                 x[of_pressures].copy_from_slice(pressures.p.nodes());
             }
         }
+        for mesh in 0..self.meshes.len() {
+            let part = self.boxes.len() + mesh;
+            let nodes = self.nodes(part);
+            let own = COMPONENTS * nodes.start..COMPONENTS * nodes.end;
+            let rhs = self.meshes[mesh].levels[0].rhs.as_flattened_mut();
+            for (value, r) in rhs.iter_mut().zip(&r[own.clone()]) {
+                *value = *r as f32;
+            }
+            self.meshes[mesh].cycle();
+            x[own].copy_from_slice(self.meshes[mesh].levels[0].x.as_flattened());
+            self.clear_pressures(part, x);
+        }
     }
 
     fn is_reduced(&self) -> bool {
@@ -184,6 +302,17 @@ impl Operator for Parts {
         let counts = self.boxes.iter().map(|one| one.levels[0].counts);
         for (part, counts) in counts.enumerate() {
             self.volumes.condense((self.nodes(part), counts), residual);
+        }
+    }
+}
+
+impl Parts {
+    /// Makes the pressures of a mesh, which has none, zero where vectors hold those of all nodes.
+    fn clear_pressures<T: Copy + Default>(&self, part: usize, x: &mut [T]) {
+        if !self.volumes.is_empty() {
+            let behind = COMPONENTS * self.node_count();
+            let nodes = self.nodes(part);
+            x[behind + nodes.start..behind + nodes.end].fill(T::default());
         }
     }
 }
@@ -211,6 +340,28 @@ fn multiply(
         {
             let there = &field.values[(at + offset) as usize];
             for (column, value) in block.chunks_exact(COMPONENTS).zip(there) {
+                let value = f64::from(*value);
+                for (sum, entry) in sum.iter_mut().zip(column) {
+                    *sum += entry * value;
+                }
+            }
+        }
+        product.copy_from_slice(&sum);
+    }
+}
+
+/// Writes the products of the rows of a mesh from one on.
+fn multiply_rows(
+    (rows, blocks): (&BlockRows, &[NodeBlock]),
+    x: &[f32],
+    first: usize,
+    product: &mut [f64],
+) {
+    for (row, product) in product.chunks_exact_mut(COMPONENTS).enumerate() {
+        let mut sum = [0.0; COMPONENTS];
+        for block in rows.range(first + row) {
+            let there = &x[COMPONENTS * rows.column(block)..][..COMPONENTS];
+            for (column, value) in blocks[block].chunks_exact(COMPONENTS).zip(there) {
                 let value = f64::from(*value);
                 for (sum, entry) in sum.iter_mut().zip(column) {
                     *sum += entry * value;

@@ -5,15 +5,16 @@
 
 use crate::math::join;
 use crate::sparse::multigrid::axis::Axis;
-use crate::sparse::multigrid::field::{Block, Field};
+use crate::sparse::multigrid::field::{Block, Field, inverse_of};
 use crate::sparse::multigrid::node_grid::{COMPONENTS, NEIGHBOURS, OWN, offsets};
 use crate::sparse::multigrid::pressures::Pressures;
 use crate::sparse::multigrid::slab::{Equations, Slab, slabs, split};
-use nalgebra::Matrix4;
 
 /// A grid of the hierarchy.
 #[derive(Debug)]
 pub(super) struct Level {
+    /// Places of the node planes.
+    pub(super) planes: [Vec<f64>; 3],
     pub(super) counts: [usize; 3],
     offsets: [isize; NEIGHBOURS],
     /// For each node, a bit for each component without a given value.
@@ -32,15 +33,16 @@ pub(super) struct Level {
 }
 
 impl Level {
-    /// A grid of these nodes without a matrix.
+    /// A grid of the nodes at these planes without a matrix.
     pub(super) fn new(
-        counts: [usize; 3],
+        planes: [Vec<f64>; 3],
         free: Vec<u8>,
         transfer: Option<[Axis; 3]>,
         has_pressures: bool,
     ) -> Self {
-        let nodes = free.len();
+        let (nodes, counts) = (free.len(), planes.each_ref().map(Vec::len));
         Self {
+            planes,
             offsets: offsets(counts),
             matrix: vec![[0.0; COMPONENTS * COMPONENTS]; NEIGHBOURS * nodes],
             inverse: vec![[0.0; COMPONENTS * COMPONENTS]; nodes],
@@ -61,23 +63,7 @@ impl Level {
             field.values.fill([0.0; COMPONENTS]);
         }
         for (node, inverse) in self.inverse.iter_mut().enumerate() {
-            let block = &self.matrix[NEIGHBOURS * node + OWN];
-            let mut own = Matrix4::from_fn(|row, col| f64::from(block[COMPONENTS * col + row]));
-            // Of given values the whole row is zero.
-            let given = [0, 1, 2, 3].map(|component| own[(component, component)] == 0.0);
-            for component in (0..COMPONENTS).filter(|&c| given[c]) {
-                own[(component, component)] = 1.0;
-            }
-            let mut found = own.try_inverse().ok_or(node)?;
-            for component in (0..COMPONENTS).filter(|&c| given[c]) {
-                found[(component, component)] = 0.0;
-            }
-            for (entry, value) in inverse.iter_mut().zip(found.iter()) {
-                *entry = *value as f32;
-            }
-            if !inverse.iter().all(|entry| entry.is_finite()) {
-                return Err(node);
-            }
+            *inverse = inverse_of(&self.matrix[NEIGHBOURS * node + OWN]).ok_or(node)?;
         }
         if let Some(pressures) = &mut self.pressures {
             pressures.prepare(&self.inverse);

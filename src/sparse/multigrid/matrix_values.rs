@@ -2,7 +2,7 @@
 
 use crate::sparse::multigrid::boxes::{Parts, products};
 use crate::sparse::multigrid::element_volume::{CORNERS, ElementVolume, corners};
-use crate::sparse::multigrid::node_grid::{COMPONENTS, GridNode, NEIGHBOURS};
+use crate::sparse::multigrid::node_grid::{COMPONENTS, GridNode};
 use crate::sparse::multigrid::solver::Multigrid;
 
 /// Numbers of a volume.
@@ -40,26 +40,21 @@ impl Multigrid {
         let Parts { boxes, starts, .. } = &self.parts;
         let node = node.number();
         let part = starts.partition_point(|&start| start <= node) - 1;
-        let finest = &boxes[part].levels[0];
+        let finest = &boxes.get(part)?.levels[0];
         (finest.pressures.is_some()).then(|| (part, node - corners(finest.counts)[corner]))
     }
 
     /// Copies the values as they were written.
     pub fn copy_values(&self, to: &mut Vec<f64>) {
-        let Parts {
-            matrix,
-            starts,
-            scales,
-            volumes,
-            ..
-        } = &self.parts;
+        let parts = &self.parts;
         to.clear();
-        for (part, factors) in scales.iter().enumerate() {
+        for (part, factors) in parts.scales.iter().enumerate() {
             let products = products(factors).map(f64::recip);
-            for block in &matrix[NEIGHBOURS * starts[part]..NEIGHBOURS * starts[part + 1]] {
+            for block in &parts.matrix[parts.blocks(part)] {
                 to.extend(block.iter().zip(&products).map(|(entry, by)| entry * by));
             }
-            for volume in volumes.without_scale(part, starts[part]..starts[part + 1], factors) {
+            let nodes = parts.nodes(part);
+            for volume in parts.volumes.without_scale(part, nodes, factors) {
                 to.extend(volume.slopes.as_flattened());
                 to.push(volume.factor);
             }
@@ -71,6 +66,7 @@ impl Multigrid {
         let Parts {
             matrix,
             starts,
+            first_blocks,
             volumes,
             ..
         } = &mut self.parts;
@@ -78,8 +74,8 @@ impl Multigrid {
             return false;
         }
         let mut rest = from;
-        for part in starts.windows(2) {
-            let blocks = matrix[NEIGHBOURS * part[0]..NEIGHBOURS * part[1]].as_flattened_mut();
+        for (part, of) in starts.windows(2).zip(first_blocks.windows(2)) {
+            let blocks = matrix[of[0]..of[1]].as_flattened_mut();
             let (own, behind) = rest.split_at(blocks.len());
             blocks.copy_from_slice(own);
             rest = behind;

@@ -1,21 +1,29 @@
-//! Krylov method with geometric multigrid for systems on box grids of nodes.
+//! Krylov method with multigrid for systems of the nodes of finite elements: geometric on boxes, by smoothed aggregation on other meshes.
 //!
 //! Unknowns are components of nodes (displacements and a potential) that are coupled with those of neighbouring nodes alone. The
 //! preconditioner of flexible GMRES is one V-cycle in single precision: a forward sweep of block Gauss–Seidel on the way down, a backward
-//! sweep on the way up, trilinear transfer, Galerkin coarse matrices, a direct solution on the coarsest grid. Grids become coarser along
-//! short edges only, so that thin layers do no harm (`docs/theory.md`, linear systems of finite elements).
+//! sweep on the way up, trilinear transfer or that of smoothed rigid motions of aggregates, Galerkin coarse matrices, a direct solution on the
+//! coarsest level. Levels become coarser along short edges only, so that thin layers do no harm (`docs/theory.md`, linear systems of
+//! finite elements).
 
+mod aggregates;
+mod aggregation;
 mod axis;
+mod block_rows;
+mod box_levels;
 mod boxes;
 mod element_volume;
 mod field;
 mod galerkin;
+mod grid_level;
 mod hierarchy;
 mod krylov;
 mod level;
 mod lobpcg;
 mod matrix_values;
+mod mesh_level;
 mod node_grid;
+mod node_mesh;
 mod potentials;
 mod pressures;
 mod slab;
@@ -25,5 +33,6 @@ mod volumes;
 
 pub use element_volume::ElementVolume;
 pub use node_grid::{GridNode, NodeBlock, NodeGrid};
+pub use node_mesh::{BlockPlaces, NodeMesh};
 pub use solver::{Multigrid, MultigridReport, NoSolution};
 pub use stiffness::LowestModes;

@@ -37,11 +37,11 @@ pub(super) const PLANES: usize = (1 << BITS) - 4;
 /// Difference of codes of a node and its last neighbour.
 const ONE: u64 = 1 | 1 << BITS | 1 << (2 * BITS);
 
-/// A node among those of all boxes.
+/// A node among those of all boxes and meshes.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct GridNode {
     number: u32,
-    /// Indices of its planes; boxes stand one above the other, and do not touch.
+    /// Indices of its planes, where it has some; boxes stand one above the other, and do not touch.
     code: u64,
 }
 
@@ -60,9 +60,17 @@ impl GridNode {
         self.number as usize
     }
 
-    /// Number of the block of its rows and the columns of another node; `None` where they are no neighbours.
+    /// The node of a mesh without a grid with this number.
+    pub(super) fn of_mesh(number: usize) -> Self {
+        Self {
+            number: number as u32,
+            code: u64::MAX,
+        }
+    }
+
+    /// Number of the block of its rows and the columns of another node of a box; `None` where they are no neighbours.
     #[inline(always)]
-    pub fn block(self, other: Self) -> Option<usize> {
+    pub(super) fn neighbour_block(self, other: Self) -> Option<usize> {
         let steps = other.code.wrapping_sub(self.code).wrapping_add(ONE);
         let [x, y] = [steps, steps >> BITS].map(|step| step & ((1 << BITS) - 1));
         let z = steps >> (2 * BITS);
@@ -70,6 +78,14 @@ impl GridNode {
         let neighbour = (9 * z + 3 * y + x) as usize;
         is_neighbour.then(|| NEIGHBOURS * self.number as usize + neighbour)
     }
+}
+
+/// A bit for each component of a node whose value is unknown.
+pub(super) fn free_components(unknowns: &[Option<u32>; COMPONENTS]) -> u8 {
+    let bits = unknowns.iter().enumerate();
+    bits.fold(0, |free, (component, unknown)| {
+        free | u8::from(unknown.is_some()) << component
+    })
 }
 
 /// Axis indices of a node.

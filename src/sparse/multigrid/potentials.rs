@@ -5,6 +5,7 @@ use crate::sparse::Singular;
 use crate::sparse::multigrid::boxes::Parts;
 use crate::sparse::multigrid::field::Field;
 use crate::sparse::multigrid::hierarchy::Hierarchy;
+use crate::sparse::multigrid::level::Level;
 use crate::sparse::multigrid::node_grid::{COMPONENTS, ENTRIES, NEIGHBOURS, offsets};
 
 /// Component of the potential.
@@ -20,7 +21,7 @@ type Values = [f64; COMPONENTS];
 /// The part of a matrix between potentials, made positive by a sign.
 #[derive(Debug)]
 pub(super) struct Potentials {
-    boxes: Vec<Hierarchy>,
+    boxes: Vec<Hierarchy<Level>>,
     /// First node of each box, and the number of all.
     starts: Vec<usize>,
     matrix: Vec<[f64; NEIGHBOURS]>,
@@ -49,7 +50,7 @@ impl Potentials {
             let all = u8::MAX >> (u8::BITS as usize - COMPONENTS);
             let free = one.levels[0].free.iter();
             let free = free.map(|free| if is_free(free) { all } else { 0 });
-            let mut one = Hierarchy::new(&one.planes, free.collect(), false);
+            let mut one = Hierarchy::between(&one.levels[0].planes, free.collect(), false);
             let values = matrix[parts.starts[part]..parts.starts[part + 1]].as_flattened();
             for (block, value) in one.levels[0].matrix.iter_mut().zip(values) {
                 for component in 0..COMPONENTS {

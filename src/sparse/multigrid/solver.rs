@@ -1,4 +1,4 @@
-//! Solution of systems whose unknowns are components of nodes on box grids.
+//! Solution of systems whose unknowns are components of nodes on box grids and of meshes.
 //!
 //! The matrix is held in double precision, by blocks; the grids of the preconditioner are those of an earlier matrix as long as they cost
 //! no iterations: they are made anew where a solution took more of them for each digit than the first one did.
@@ -7,13 +7,13 @@ use crate::math::{IsOver, Stopped};
 use crate::sparse::Singular;
 use crate::sparse::multigrid::boxes::Parts;
 use crate::sparse::multigrid::element_volume::ElementVolume;
-use crate::sparse::multigrid::hierarchy::Hierarchy;
 use crate::sparse::multigrid::krylov::{Iterated, Krylov, norm};
 use crate::sparse::multigrid::node_grid::{
-    COMPONENTS, ENTRIES, GridNode, NEIGHBOURS, NodeBlock, NodeGrid, OWN, PLANES, indices,
+    COMPONENTS, ENTRIES, GridNode, NodeBlock, NodeGrid, PLANES, indices,
 };
+use crate::sparse::multigrid::node_mesh::{BlockPlaces, NodeMesh};
 use crate::sparse::multigrid::stiffness::{LowestModes, lowest_modes};
-use crate::sparse::multigrid::volumes::Volumes;
+use std::sync::Arc;
 
 /// Iterations for each digit, relative to those with fresh grids, above which grids are made anew.
 const SLOWER: f64 = 1.4;
@@ -49,7 +49,7 @@ impl MultigridReport {
     }
 }
 
-/// A solver of systems on box grids.
+/// A solver of systems on box grids and meshes.
 #[derive(Debug)]
 pub struct Multigrid {
     pub(super) parts: Parts,
@@ -72,56 +72,56 @@ impl Multigrid {
     /// # Panics
     /// A grid has not one node for each of its places.
     pub fn new(size: usize, grids: &[NodeGrid]) -> Option<Self> {
-        let (mut starts, mut places) = (vec![0], vec![NONE; size]);
+        Self::with_meshes(size, grids, &[])
+    }
+
+    /// The same, with the unknowns of meshes too.
+    ///
+    /// # Panics
+    /// As of [`new`](Self::new).
+    pub fn with_meshes(size: usize, grids: &[NodeGrid], meshes: &[NodeMesh]) -> Option<Self> {
+        let (mut nodes, mut places) = (0, vec![NONE; size]);
         for grid in grids {
-            let first = starts[starts.len() - 1];
-            let nodes: usize = grid.counts().iter().product();
-            assert_eq!(nodes, grid.unknowns.len(), "a box has all of its nodes");
-            for (node, unknowns) in grid.unknowns.iter().enumerate() {
-                for (component, unknown) in unknowns.iter().enumerate() {
-                    if let Some(unknown) = unknown {
-                        let place = COMPONENTS * (first + node) + component;
-                        places[*unknown as usize] = place as u32;
-                    }
+            let count: usize = grid.counts().iter().product();
+            assert_eq!(count, grid.unknowns.len(), "a box has all of its nodes");
+        }
+        let of_grids = grids.iter().map(|grid| &grid.unknowns);
+        for list in of_grids.chain(meshes.iter().map(|mesh| &mesh.unknowns)) {
+            for (place, unknown) in list.as_flattened().iter().enumerate() {
+                if let Some(unknown) = unknown {
+                    places[*unknown as usize] = (COMPONENTS * nodes + place) as u32;
                 }
             }
-            starts.push(first + nodes);
+            nodes += list.len();
         }
-        let nodes = starts[grids.len()];
         let planes = grids.iter().map(NodeGrid::counts);
         let across = planes.clone().flat_map(|[x, y, _]| [x, y]).max();
         let above: usize = planes.map(|[_, _, z]| z + 2).sum();
         if nodes > NONE as usize / COMPONENTS || across.max(Some(above)) > Some(PLANES) {
             return None;
         }
-        let boxes: Vec<_> = grids.iter().map(Hierarchy::of).collect();
-        let levels = boxes.iter().map(|one| one.levels.len()).max();
+        let parts = Parts::new(grids, meshes);
         let report = MultigridReport {
-            levels: levels.unwrap_or(0),
-            bytes: boxes.iter().map(Hierarchy::bytes).sum(),
+            levels: parts.levels(),
+            bytes: parts.bytes(),
             ..MultigridReport::default()
         };
-        let volumes = match grids.iter().any(|grid| grid.has_pressures) {
-            true => Volumes::new(nodes, boxes.len()),
-            false => Volumes::default(),
-        };
-        let all = COMPONENTS * nodes + volumes.list.len();
+        let all = COMPONENTS * nodes + parts.volumes.list.len();
         Some(Self {
             krylov: Krylov::new(all),
             rhs: vec![0.0; all],
             x: vec![0.0; all],
-            parts: Parts {
-                matrix: vec![[0.0; ENTRIES]; NEIGHBOURS * nodes],
-                scales: vec![[1.0; COMPONENTS]; boxes.len()],
-                boxes,
-                starts,
-                volumes,
-            },
+            parts,
             places,
             fresh: None,
             is_prepared: false,
             report,
         })
+    }
+
+    /// Places of blocks among [`lend`](Self::lend).
+    pub fn block_places(&self) -> Arc<BlockPlaces> {
+        self.parts.places.clone()
     }
 
     /// Node and component of an unknown; `None` where it is held.
@@ -131,9 +131,12 @@ impl Multigrid {
             return None;
         }
         let (node, component) = (place as usize / COMPONENTS, place as usize % COMPONENTS);
-        let starts = &self.parts.starts;
+        let (boxes, starts) = (&self.parts.boxes, &self.parts.starts);
         let part = starts.partition_point(|&start| start <= node) - 1;
-        let counts = |part: usize| self.parts.boxes[part].levels[0].counts;
+        if part >= boxes.len() {
+            return Some((GridNode::of_mesh(node), component));
+        }
+        let counts = |part: usize| boxes[part].levels[0].counts;
         let below: usize = (0..part).map(|part| counts(part)[2] + 2).sum();
         let [x, y, z] = indices(counts(part), node - starts[part]);
         Some((GridNode::new(node, [x, y, below + z]), component))
@@ -143,7 +146,8 @@ impl Multigrid {
     pub fn slot(&self, row: usize, col: usize) -> Option<usize> {
         let (node, row) = self.place(row)?;
         let (other, col) = self.place(col)?;
-        Some(ENTRIES * node.block(other)? + COMPONENTS * col + row)
+        let block = self.parts.places.block(node, other)?;
+        Some(ENTRIES * block + COMPONENTS * col + row)
     }
 
     /// Entries of the matrix, which the next solution belongs to: all of them are to be written.
@@ -161,12 +165,8 @@ impl Multigrid {
     /// # Panics
     /// They are not those that were lent.
     pub fn hand_back(&mut self, matrix: Vec<NodeBlock>) {
-        let nodes = self.parts.starts[self.parts.boxes.len()];
-        assert_eq!(
-            matrix.len(),
-            NEIGHBOURS * nodes,
-            "the blocks that were lent"
-        );
+        let blocks = self.parts.first_blocks.last();
+        assert_eq!(Some(&matrix.len()), blocks, "the blocks that were lent");
         self.parts.matrix = matrix;
     }
 
@@ -175,7 +175,7 @@ impl Multigrid {
         match self.places[unknown] as usize {
             place if place == NONE as usize => 0.0,
             place => {
-                let block = &self.parts.matrix[NEIGHBOURS * (place / COMPONENTS) + OWN];
+                let block = &self.parts.matrix[self.parts.places.diagonal(place / COMPONENTS)];
                 block[(COMPONENTS + 1) * (place % COMPONENTS)]
             }
         }
@@ -183,8 +183,7 @@ impl Multigrid {
 
     /// Product of the matrix that was written with a vector on either side.
     pub fn along(&self, direction: &[f64]) -> f64 {
-        let nodes = self.parts.starts[self.parts.boxes.len()];
-        let mut by_node = vec![[0.0; COMPONENTS]; nodes];
+        let mut by_node = vec![[0.0; COMPONENTS]; self.parts.node_count()];
         for (value, &place) in direction.iter().zip(&self.places) {
             if place != NONE {
                 by_node[place as usize / COMPONENTS][place as usize % COMPONENTS] = *value;
@@ -239,6 +238,10 @@ impl Multigrid {
         factor: f64,
         is_over: IsOver<'_>,
     ) -> Result<Option<LowestModes>, Stopped> {
+        // Those of meshes are not sought.
+        if !self.parts.meshes.is_empty() {
+            return Ok(None);
+        }
         self.parts.symmetrise();
         let Ok(Some(pairs)) = lowest_modes(&mut self.parts, factor, is_over)? else {
             return Ok(None);

@@ -1,0 +1,263 @@
+//! One level of a mesh without a grid: its matrix in single precision by rows of blocks, and the sweeps of block Gauss–Seidel.
+
+use crate::math::join;
+use crate::sparse::multigrid::aggregates::Points;
+use crate::sparse::multigrid::aggregation::Aggregation;
+use crate::sparse::multigrid::block_rows::BlockRows;
+use crate::sparse::multigrid::field::{Block, add, add_transposed, inverse_of};
+use crate::sparse::multigrid::grid_level::GridLevel;
+use crate::sparse::multigrid::hierarchy::{COARSEST, Hierarchy};
+use crate::sparse::multigrid::node_grid::{COMPONENTS, free_components};
+use crate::sparse::multigrid::node_mesh::NodeMesh;
+use std::sync::Arc;
+
+/// Products by which the largest eigenvalue of D⁻¹ A is estimated.
+const PRODUCTS: usize = 8;
+/// Factor of the inverse of that eigenvalue which damps the smoothing of the transfer.
+const DAMPING: f32 = 4.0 / 3.0;
+/// Part by which that estimate may be too small.
+const SAFE: f32 = 1.05;
+/// Relative addition to the diagonal of coarse matrices: aggregates of points on a line turn about it without resistance.
+const SHIFT: f32 = 1e-5;
+
+/// Values of the components of a node.
+type AtNode = [f32; COMPONENTS];
+
+/// A level of the hierarchy.
+#[derive(Debug)]
+pub(super) struct MeshLevel {
+    pub(super) rows: Arc<BlockRows>,
+    /// For each node, a bit for each component without a given value.
+    pub(super) free: Vec<u8>,
+    pub(super) matrix: Vec<Block>,
+    inverse: Vec<Block>,
+    /// Transfer to the next coarser level; none of the coarsest.
+    transfer: Option<Aggregation>,
+    pub(super) rhs: Vec<AtNode>,
+    pub(super) x: Vec<AtNode>,
+    residual: Vec<AtNode>,
+}
+
+impl Hierarchy<MeshLevel> {
+    /// The levels of a mesh without matrices.
+    pub(super) fn of_mesh(mesh: &NodeMesh) -> Self {
+        let rows = BlockRows::of_elements(mesh.places.len(), &mesh.elements);
+        let mut rows = Arc::new(rows);
+        let mut free: Vec<u8> = mesh.unknowns.iter().map(free_components).collect();
+        let mut points = Points::at(&mesh.places);
+        let mut levels = Vec::new();
+        while free.len() > COARSEST {
+            let aggregates = points.aggregate(&rows, &free);
+            let (next, next_free) = (aggregates.points.clone(), aggregates.free.clone());
+            // Nothing becomes coarser where no points are coupled.
+            if next_free.len() >= free.len() {
+                break;
+            }
+            let (transfer, next_rows) = Aggregation::new(&rows, aggregates);
+            levels.push(MeshLevel::new(rows, free, Some(transfer)));
+            (rows, free, points) = (Arc::new(next_rows), next_free, next);
+        }
+        levels.push(MeshLevel::new(rows, free, None));
+        Self::new(levels)
+    }
+}
+
+impl MeshLevel {
+    fn new(rows: Arc<BlockRows>, free: Vec<u8>, transfer: Option<Aggregation>) -> Self {
+        let nodes = free.len();
+        Self {
+            matrix: vec![Block::default(); rows.blocks()],
+            inverse: vec![Block::default(); nodes],
+            rhs: vec![AtNode::default(); nodes],
+            x: vec![AtNode::default(); nodes],
+            residual: vec![AtNode::default(); nodes],
+            rows,
+            free,
+            transfer,
+        }
+    }
+
+    /// Sum over blocks of a row times what they multiply.
+    #[inline(always)]
+    fn sum(&self, blocks: impl Iterator<Item = usize>) -> AtNode {
+        let mut sum = AtNode::default();
+        for block in blocks {
+            add(
+                &mut sum,
+                &self.matrix[block],
+                &self.x[self.rows.column(block)],
+            );
+        }
+        sum
+    }
+
+    /// Estimates the largest eigenvalue of D⁻¹ A by powers of it.
+    fn largest(&mut self) -> f32 {
+        for (node, x) in self.x.iter_mut().enumerate() {
+            *x = std::array::from_fn(|component| match self.free[node] & (1 << component) {
+                0 => 0.0,
+                _ => (0.7 * (COMPONENTS * node + component) as f32).sin(),
+            });
+        }
+        let mut largest = 1.0;
+        for _ in 0..PRODUCTS {
+            let before = length(&self.x);
+            for node in 0..self.x.len() {
+                let product = self.sum(self.rows.range(node));
+                self.residual[node] = AtNode::default();
+                add(&mut self.residual[node], &self.inverse[node], &product);
+            }
+            let after = length(&self.residual);
+            if after == 0.0 || !after.is_finite() {
+                break;
+            }
+            largest = after / before;
+            for (x, product) in self.x.iter_mut().zip(&self.residual) {
+                *x = product.map(|value| value / after);
+            }
+        }
+        self.x.fill(AtNode::default());
+        largest
+    }
+
+    /// Leaves rows and columns of given values out, and makes the matrix regular.
+    fn hold(&mut self) {
+        for node in 0..self.free.len() {
+            for block in self.rows.range(node) {
+                let columns = self.free[self.rows.column(block)];
+                let entries = self.matrix[block].iter_mut().enumerate();
+                for (entry, value) in entries {
+                    let (row, column) = (entry % COMPONENTS, entry / COMPONENTS);
+                    if self.free[node] & 1 << row == 0 || columns & 1 << column == 0 {
+                        *value = 0.0;
+                    }
+                }
+            }
+            let own = &mut self.matrix[self.rows.diagonal(node)];
+            for component in 0..COMPONENTS {
+                own[(COMPONENTS + 1) * component] *= 1.0 + SHIFT;
+            }
+        }
+    }
+}
+
+impl GridLevel for MeshLevel {
+    fn invert(&mut self) -> Result<(), usize> {
+        for (node, inverse) in self.inverse.iter_mut().enumerate() {
+            *inverse = inverse_of(&self.matrix[self.rows.diagonal(node)]).ok_or(node)?;
+        }
+        Ok(())
+    }
+
+    fn coarsen(&mut self, coarse: &mut Self) {
+        let damping = DAMPING / (SAFE * self.largest());
+        let transfer = self.transfer.as_mut();
+        transfer.expect("a coarser level has a transfer").prepare(
+            (&self.rows, &self.matrix),
+            &self.inverse,
+            damping,
+            (&coarse.rows, &mut coarse.matrix),
+        );
+        coarse.hold();
+    }
+
+    fn sweep_down(&mut self) {
+        for node in 0..self.x.len() {
+            let before = self.rows.range(node);
+            let before = before.take_while(|&block| self.rows.column(block) < node);
+            let sum = self.sum(before);
+            let left: AtNode = std::array::from_fn(|c| self.rhs[node][c] - sum[c]);
+            self.x[node] = AtNode::default();
+            add(&mut self.x[node], &self.inverse[node], &left);
+        }
+        let rows = &self.rows;
+        let half = self.residual.len() / 2;
+        let mut residual = std::mem::take(&mut self.residual);
+        let (lower, upper) = residual.split_at_mut(half);
+        let leave = |first: usize, residual: &mut [AtNode]| {
+            for (node, residual) in (first..).zip(residual) {
+                let behind = rows.range(node).rev();
+                let sum = self.sum(behind.take_while(|&block| rows.column(block) > node));
+                *residual = sum.map(|value| -value);
+            }
+        };
+        join(|| leave(0, lower), || leave(half, upper));
+        self.residual = residual;
+    }
+
+    fn restrict(&self, coarse: &mut Self) {
+        let transfer = self.transfer.as_ref();
+        let transfer = transfer.expect("a coarser level has a transfer");
+        for (rhs, children) in coarse.rhs.iter_mut().zip(&transfer.children) {
+            *rhs = AtNode::default();
+            for &[row, block] in children {
+                let weights = &transfer.values[block as usize];
+                add_transposed(rhs, weights, &self.residual[row as usize]);
+            }
+        }
+    }
+
+    fn correct(&mut self, coarse: &Self) {
+        let transfer = self.transfer.as_ref();
+        let transfer = transfer.expect("a coarser level has a transfer");
+        for (node, x) in self.x.iter_mut().enumerate() {
+            for block in transfer.pattern.range(node) {
+                let from = &coarse.x[transfer.pattern.column(block)];
+                add(x, &transfer.values[block], from);
+            }
+        }
+    }
+
+    fn sweep_up(&mut self) {
+        for node in (0..self.x.len()).rev() {
+            let others = self.rows.range(node);
+            let sum = self.sum(others.filter(|&block| self.rows.column(block) != node));
+            let left: AtNode = std::array::from_fn(|c| self.rhs[node][c] - sum[c]);
+            self.x[node] = AtNode::default();
+            add(&mut self.x[node], &self.inverse[node], &left);
+        }
+    }
+
+    fn free(&self) -> &[u8] {
+        &self.free
+    }
+
+    fn condensed_rhs(&mut self) -> &[AtNode] {
+        &self.rhs
+    }
+
+    fn take_solution(&mut self, found: impl Iterator<Item = AtNode>) {
+        for ((x, free), from) in self.x.iter_mut().zip(&self.free).zip(found) {
+            *x = std::array::from_fn(|component| match free & (1 << component) {
+                0 => 0.0,
+                _ => from[component],
+            });
+        }
+    }
+
+    fn visit(&self, visit: &mut dyn FnMut(usize, usize, f64)) {
+        for node in 0..self.free.len() {
+            for block in self.rows.range(node) {
+                for (entry, value) in self.matrix[block].iter().enumerate() {
+                    let row = COMPONENTS * node + entry % COMPONENTS;
+                    let column = COMPONENTS * self.rows.column(block) + entry / COMPONENTS;
+                    visit(row, column, f64::from(*value));
+                }
+            }
+        }
+    }
+
+    fn bytes(&self) -> usize {
+        let of_transfer = self.transfer.as_ref().map_or(0, Aggregation::blocks);
+        size_of::<Block>() * (self.matrix.len() + self.free.len() + of_transfer)
+    }
+}
+
+/// Length of a vector, in a fixed order of sums.
+fn length(x: &[AtNode]) -> f32 {
+    let squares = x
+        .as_flattened()
+        .iter()
+        .map(|&value| f64::from(value).powi(2));
+    squares.sum::<f64>().sqrt() as f32
+}
