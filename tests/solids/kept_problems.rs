@@ -8,6 +8,7 @@ use proboscis::files::read_problem;
 use proboscis::model::{Model, System};
 use proboscis::sparse::Backend;
 use proboscis::tasks::{SimulationRequest, simulate};
+use proboscis::workflow::Simulated;
 use std::ops::ControlFlow;
 use std::path::{Path, PathBuf};
 
@@ -54,7 +55,10 @@ fn apart(a: &[f64], b: &[f64]) -> f64 {
     parts.fold(0.0, f64::max)
 }
 
-/// Compares motions; returns the number of systems for which factors took over.
+/// Error of a step with a tangent that is kept, relative to the length: `dynamics/contraction.rs` ends its iteration there.
+const OF_STEP: f64 = 1e-10;
+
+/// Compares motions with a new tangent in each iteration, and with one that is kept; returns the number of systems for which factors took over.
 fn motions(system: &System, mut task: Simulation, steps: Option<usize>) -> usize {
     if let Some(steps) = steps {
         task.duration = task.duration.min(steps as f64 * task.step);
@@ -75,21 +79,35 @@ fn motions(system: &System, mut task: Simulation, steps: Option<usize>) -> usize
         newton: Newton::Full,
         ..Solving::default()
     });
-    let iterated = run(Solving {
-        newton: Newton::Modified,
-        multigrid: MultigridUse::Always,
-        ..Solving::default()
-    });
+    let mut fallbacks = 0;
+    for newton in [Newton::Full, Newton::Modified] {
+        let iterated = run(Solving {
+            newton,
+            multigrid: MultigridUse::Always,
+            ..Solving::default()
+        });
+        let halved = [&direct, &iterated].map(|one| one.discrete.report.halved);
+        if halved[0] != halved[1] {
+            // Halves are other steps. Which ones Newton's method needs depends on its updates: potentials come to Gauss's law first on grids.
+            println!("  {newton:?}: halved {halved:?} times: a tenth of the steps");
+            task.step *= 0.1;
+            task.duration *= 0.1;
+            return motions(system, task, steps);
+        }
+        fallbacks += iterated.discrete.report.fallbacks;
+        let allowed = match newton {
+            Newton::Full => 1e-9,
+            Newton::Modified => f64::max(1e-9, OF_STEP * direct.discrete.intervals() as f64),
+        };
+        compare_motions(&direct, &iterated, allowed);
+    }
+    fallbacks
+}
+
+/// Compares a motion by an iteration with that by factors.
+fn compare_motions(direct: &Simulated, iterated: &Simulated, allowed: f64) {
     let length = direct.model.length();
     let [a, b] = [&direct.discrete, &iterated.discrete];
-    if a.report.halved != b.report.halved {
-        // Potentials come to Gauss's law first on grids: a step may converge that factors halve, or the other way round.
-        let halved = [a, b].map(|one| one.report.halved);
-        println!("  halved {halved:?} times: a tenth of the steps");
-        task.step *= 0.1;
-        task.duration *= 0.1;
-        return b.report.fallbacks + motions(system, task, steps);
-    }
     assert!(direct.failure.is_none() && iterated.failure.is_none());
     assert!(b.report.multigrid.iterations > 0 && a.report.multigrid.iterations == 0);
     assert_eq!(a.z.len(), b.z.len());
@@ -107,9 +125,8 @@ fn motions(system: &System, mut task: Simulation, steps: Option<usize>) -> usize
         b.report
     );
     assert!(moved > 1e-6 * length);
-    assert!(error < 1e-9 * length, "{error:e} of {length}");
+    assert!(error < allowed * length, "{error:e} of {length}");
     assert!(potentials <= 1e-9 * largest.max(1.0), "{potentials:e}");
-    b.report.fallbacks
 }
 
 /// Compares states of rest under a part of the voltages for which there is one.
