@@ -254,6 +254,73 @@ fn implausible_rates() {
     assert!((55..60).all(|k| step(k, 0.0) == Source::Plan));
 }
 
+/// An arm between two rubber bands by Gent's law that a motor turns; the bands tear before it has turned by a radian.
+const MOTOR: [&str; 8] = [
+    "scene.materials.silicone.law={\"gent\": {\"limit\": 0.05}}",
+    "scene.materials.silicone.relative_permittivity=null",
+    "scene.materials.silicone.viscosity=\"100 Pa s\"",
+    "scene.loads=[{\"name\": \"motor\", \"joint\": \"joint1\"}]",
+    "control.start={\"joint_angles\": {\"joint1\": \"6 deg\"}}",
+    "control.goal={\"rest_at_voltages\": {}}",
+    "control.load_bounds={\"motor\": [\"-1 N m\", \"1 N m\"]}",
+    "control.objective={\"effort\": 1.0}",
+];
+
+/// A measurement that is no error by its size is taken in. The plan behind it tears a band, so that its matrix is not finite and has no factors: it is followed as it
+/// was, then the gains act, and the new plan has factors.
+#[test]
+fn factors_that_fail() {
+    let arm = problem("pair.json", &MOTOR);
+    let horizon = horizon(&arm, &Regulator::default(), 5);
+    let law = horizon.law();
+    let (fault, fails) = (30, 31..35);
+    let [mut controller, mut unmeasured] = [0, 1].map(|_| RecedingHorizon::new(&horizon));
+    for k in 0..45 {
+        let time = law.h * k as f64;
+        let point = law.at(time);
+        let off = match k {
+            _ if k == fault => [0.9, 0.2],
+            _ if fails.contains(&k) => [1e-4, 1e-5],
+            _ => [0.0; 2],
+        };
+        let state: Vec<f64> = point
+            .state
+            .iter()
+            .zip(off)
+            .map(|(x, off)| x + off)
+            .collect();
+        let residual = controller.residual().equations;
+        let has_factors = residual.is_finite();
+        assert_eq!(has_factors, !fails.contains(&k), "{k}: {residual}");
+        let answer = controller.step(time, Some(&state));
+        let (source, input) = (answer.source, answer.inputs[0]);
+        assert!(input.abs() <= 1000.0);
+        match k {
+            31..=33 => {
+                assert_eq!(source, Source::Kept);
+                // The plan goes on as where nothing is measured.
+                let answer = unmeasured.step(time, None);
+                assert_eq!((answer.source, answer.inputs[0]), (Source::Late, input));
+                assert!(input.abs() > 100.0, "{input}");
+            }
+            34 => {
+                assert_eq!(source, Source::Regulator);
+                let gains = point.gain[(0, 0)] * off[0] + point.gain[(0, 1)] * off[1];
+                let wanted = point.inputs[0] - gains;
+                println!("{input} {wanted}");
+                assert!(gains.abs() > 1e-3 && (input - wanted).abs() < 1e-9 * gains.abs());
+            }
+            _ => {
+                assert_eq!(source, Source::Plan, "{k}");
+                unmeasured.step(time, Some(&state));
+            }
+        }
+        controller.prepare();
+        unmeasured.prepare();
+    }
+    assert!(controller.residual().equations < 1e-6);
+}
+
 /// A robot built part by part is held at its goal.
 #[test]
 fn a_robot_of_parts() {
