@@ -18,6 +18,16 @@ struct Weights {
     duration: f64,
 }
 
+impl Weights {
+    fn of(objective: &Objective) -> Self {
+        Self {
+            effort: objective.effort,
+            rate: objective.rate,
+            duration: objective.duration,
+        }
+    }
+}
+
 /// The objective with the voltages at rest before and after.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Cost {
@@ -36,17 +46,17 @@ impl Cost {
         span: Span,
         ends: [Option<Vec<f64>>; 2],
     ) -> Self {
-        let weights = Weights {
-            effort: objective.effort,
-            rate: objective.rate,
-            duration: objective.duration,
-        };
         Self {
-            weights,
+            weights: Weights::of(objective),
             scalars,
             span,
             ends,
         }
+    }
+
+    /// Takes the weights of another objective.
+    pub(super) fn weigh(&mut self, objective: &Objective) {
+        self.weights = Weights::of(objective);
     }
 
     /// The rest voltages before and after in kV.

@@ -21,13 +21,13 @@ pub(super) struct Directions<'a> {
     opened: &'a Opened,
     program: &'a Transcription<'a>,
     held: &'a Held,
-    /// The optimum.
-    point: &'a [f64],
     /// The start as the problem gives it.
     start: &'a BoundaryState,
     /// Derivatives of the states of rest at start and goal by parameters of the model, then by sources.
     rests: [Option<DMatrix<f64>>; 2],
     sources: [Vec<usize>; 2],
+    /// Directions of the weights of the objective.
+    weights: Vec<(WeightOf, Direction)>,
 }
 
 impl<'a> Directions<'a> {
@@ -62,10 +62,10 @@ impl<'a> Directions<'a> {
         };
         Ok(Self {
             rests: [of(0)?, of(1)?],
+            weights: of_weights(opened, (held, point))?,
             opened,
             program,
             held,
-            point,
             start,
             sources,
         })
@@ -102,7 +102,10 @@ impl<'a> Directions<'a> {
             VariedOf::LoadBound(source, side) => {
                 Ok(self.of_input_bounds(side, |s| s == Some(source), Role::Load))
             }
-            VariedOf::Weight(weight) => self.of_weight(weight),
+            VariedOf::Weight(weight) => {
+                let own = self.weights.iter().find(|(one, _)| *one == weight);
+                Ok(own.expect("a weight of the problem").1.clone())
+            }
         }
     }
 
@@ -271,39 +274,55 @@ impl<'a> Directions<'a> {
             ..Direction::default()
         }
     }
+}
 
-    /// The objective is linear in its weights: its derivative is that with this weight alone.
-    fn of_weight(&self, weight: WeightOf) -> Result<Direction, NoSensitivity> {
+/// Directions of weights: the objective is linear in them, and its derivative by one is that with this weight alone. One program is built for all.
+fn of_weights(
+    opened: &Opened,
+    (held, point): (&Held, &[f64]),
+) -> Result<Vec<(WeightOf, Direction)>, NoSensitivity> {
+    let weight = |one: &Varied| match one.of {
+        VariedOf::Weight(weight) => Some(weight),
+        _ => None,
+    };
+    let list: Vec<WeightOf> = opened.control.varied.iter().filter_map(weight).collect();
+    if list.is_empty() {
+        return Ok(Vec::new());
+    }
+    let Opened {
+        model,
+        boundary,
+        initial,
+        ..
+    } = opened;
+    let control = Control {
+        objective: Objective::default(),
+        ..opened.control.clone()
+    };
+    let program = Transcription::of_any(model, boundary, &control, initial);
+    let mut program = program.map_err(|error| NoSensitivity::Refused(error.to_string()))?;
+    let mut x = point.to_vec();
+    // Where a square is zero its root has no slope: the slope by the square is that beside zero.
+    for &square in held.squares.iter().flatten() {
+        x[square] = x[square].max(BESIDE * program.variables().upper[square]);
+    }
+    let mut direction = |weight: WeightOf| {
         let one = |of: WeightOf| f64::from(u8::from(of == weight));
-        let control = Control {
-            objective: Objective {
-                effort: one(WeightOf::Effort),
-                rate: one(WeightOf::Rate),
-                duration: one(WeightOf::Duration),
-                ..Objective::default()
-            },
-            ..self.opened.control.clone()
-        };
-        let Opened {
-            model,
-            boundary,
-            initial,
-            ..
-        } = self.opened;
-        let program = Transcription::of_any(model, boundary, &control, initial);
-        let mut program = program.map_err(|error| NoSensitivity::Refused(error.to_string()))?;
-        let mut x = self.point.to_vec();
-        // Where a square is zero its root has no slope: the slope by the square is that beside zero.
-        for &square in self.held.squares.iter().flatten() {
-            x[square] = x[square].max(BESIDE * program.variables().upper[square]);
-        }
+        program.weigh(&Objective {
+            effort: one(WeightOf::Effort),
+            rate: one(WeightOf::Rate),
+            duration: one(WeightOf::Duration),
+            ..Objective::default()
+        });
         let mut gradient = vec![0.0; x.len()];
         program.gradient(&x, &mut gradient);
         let gradient = gradient.into_iter().enumerate();
-        Ok(Direction {
+        Direction {
             gradient: gradient.filter(|(_, value)| *value != 0.0).collect(),
             objective: program.objective(&x),
             ..Direction::default()
-        })
-    }
+        }
+    };
+    let all = list.into_iter();
+    Ok(all.map(|weight| (weight, direction(weight))).collect())
 }

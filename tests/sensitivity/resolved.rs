@@ -19,7 +19,7 @@ pub(crate) fn problem(name: &str, changes: &[String]) -> (System, Control) {
 }
 
 /// Its optimum, from another one where there is one.
-fn optimum((system, control): &(System, Control), from: Option<&Optimum>) -> Optimum {
+pub(crate) fn optimum((system, control): &(System, Control), from: Option<&Optimum>) -> Optimum {
     let mut go_on = |_: &Iterate<'_>| ControlFlow::Continue(());
     let from = from.map(|one| &one.motion);
     let found = optimise(system, control, from, SolveLimits::default(), &mut go_on).unwrap();
@@ -260,6 +260,7 @@ fn the_elephant_trunk() {
         of(MODULUS, SET_MODULUS, 1e5, 2e-4),
         of(VISCOSITY, SET_VISCOSITY, 1e3, 2e-4),
         of("objective.rate", "control.objective.rate", 5e-4, 2e-4),
+        of("objective.effort", "control.objective.effort", 1.0, 2e-4),
         of("duration", "control.duration", 0.3, 2e-4),
     ];
     check("elephant_trunk", &["control.intervals=20"], &numbers, 1e-5);

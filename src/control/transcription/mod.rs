@@ -43,7 +43,7 @@ use crate::control::boundary_conditions::{BoundaryConditions, Rests};
 use crate::control::bounded_quantity::BoundedQuantity;
 use crate::control::guess::InitialGuess;
 use crate::control::numbering::Numbering;
-use crate::control::problem::Control;
+use crate::control::problem::{self, Control};
 use crate::model::Model;
 use crate::nlp::{Bounds, Nlp};
 use count::overdetermined;
@@ -138,6 +138,12 @@ impl<'m> Transcription<'m> {
         out.set_bounds(control);
         out.set_row_bounds();
         Ok(out)
+    }
+
+    /// Gives effort, rate and duration the weights of another objective, for its value and gradient. Second derivatives have entries of those weights alone that it
+    /// was built with.
+    pub fn weigh(&mut self, objective: &problem::Objective) {
+        self.objective.cost.weigh(objective);
     }
 
     /// Number of intervals N of the motion.
