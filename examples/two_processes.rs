@@ -30,8 +30,8 @@ use std::process::Command;
 type Mistake = Box<dyn Error>;
 
 /// The robot without a problem: one of finite elements under the plans of a lumped one, with noise and a delay of an interval.
-pub const PROBLEM: &str = concat!(env!("CARGO_MANIFEST_DIR"), "/problems/pair_receding.json");
-pub const CHANGES: [&str; 6] = [
+const PROBLEM: &str = concat!(env!("CARGO_MANIFEST_DIR"), "/problems/pair_receding.json");
+const CHANGES: [&str; 6] = [
     "scene.chain.muscles.model=\"finite_elements\"",
     "scene.chain.muscles.elements=[1,1,4]",
     "scene.materials.silicone.shear_modulus=\"110 kPa\"",

@@ -104,7 +104,7 @@ pub mod units;
 #[cfg_attr(not(internals), doc(hidden))]
 pub mod workflow;
 
-pub use control::problem::{Varied, VariedOf, WeightOf};
+pub use control::problem::{OutcomeOf, Varied, VariedOf, WeightOf};
 pub use control::{EarlierSolution, Orientation, Solution};
 pub use dynamics::Integrator;
 pub use energy::Energy;
@@ -128,7 +128,7 @@ pub use model::{
     mid,
 };
 pub use nlp::Nlp;
-pub use sensitivity::Sensitivity;
+pub use sensitivity::{Gradients, Sensitivity};
 pub use workflow::receding;
 pub use workflow::{Remark, Severity, Tracked, TrackingError};
 

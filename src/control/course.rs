@@ -19,6 +19,7 @@ impl Control {
             intervals,
             is_refined: false,
             varied: Vec::new(),
+            outcomes: Vec::new(),
             start: start.clone(),
             goal: BoundaryState::Free,
             voltage_bounds: [f64::NEG_INFINITY, f64::INFINITY],

@@ -12,7 +12,7 @@ pub use crate::control::inputs::{Afterwards, Voltages, absent_loads};
 pub use crate::control::path_constraint::{PathConstraint, Side};
 pub use crate::control::quantity_cost::{CostFunction, During, Objective, QuantityCost};
 pub use crate::control::regulator::{Noise, Observation, Regulator};
-pub use crate::control::varied::{Varied, VariedOf, WeightOf};
+pub use crate::control::varied::{OutcomeOf, Varied, VariedOf, WeightOf};
 pub use crate::control::waypoint::{Waypoint, instant_at};
 use crate::dynamics::Solving;
 use crate::feedback::Law;
@@ -142,6 +142,8 @@ pub struct Control {
     pub parameters: Vec<Parameter>,
     /// Numbers by which the optimum is differentiated.
     pub varied: Vec<Varied>,
+    /// Outcomes that are differentiated; where there are none, all that an optimum has.
+    pub outcomes: Vec<OutcomeOf>,
     /// Search for the inputs that hold the goal.
     pub sought_hold: SoughtHold,
     /// Treatment of a goal that cannot be kept.

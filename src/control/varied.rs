@@ -61,6 +61,40 @@ pub enum WeightOf {
     Duration,
 }
 
+/// An outcome of an optimum that is differentiated; times are those of the nearest instant in ms.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum OutcomeOf {
+    /// A free duration in ms.
+    Duration,
+    /// A constant that was sought, by its place in the problem.
+    Parameter(usize),
+    /// The voltage or load of a source at a time, in V, N or N mm.
+    Input {
+        /// The source.
+        source: usize,
+        /// The time.
+        time: f64,
+    },
+    /// The coordinate of a joint at a time, in rad or mm; in reduced coordinates.
+    Joint {
+        /// The joint.
+        joint: usize,
+        /// The time.
+        time: f64,
+    },
+    /// A component of the place of a marker at a time, in mm.
+    Marker {
+        /// The marker.
+        marker: usize,
+        /// Its component, 0 to 2.
+        axis: usize,
+        /// The time.
+        time: f64,
+    },
+    /// The multiplier of an equation or limit, in the order of the program.
+    Multiplier(usize),
+}
+
 impl Varied {
     /// Constants of a system at their guess, which is their value there.
     pub fn constants(parameter: Parameter, tolerance: Option<f64>, system: &System) -> Self {

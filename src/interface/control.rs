@@ -1,8 +1,8 @@
 //! Optimal control problems.
 
 use crate::control::problem::{
-    self, Duration, Guess, Hold, InCommon, Objective, PathConstraint, QuantityCost, Solver,
-    SoughtHold, Varied,
+    self, Duration, Guess, Hold, InCommon, Objective, OutcomeOf, PathConstraint, QuantityCost,
+    Solver, SoughtHold, Varied,
 };
 use crate::control::{Earlier, EarlierSolution};
 use crate::interface::cost_checks::{check_costs, check_energies, check_limits, check_waypoints};
@@ -45,6 +45,7 @@ pub struct Control {
     voltages: Vec<(Input, Signal)>,
     parameters: Vec<Parameter>,
     varied: Vec<Varied>,
+    outcomes: Vec<OutcomeOf>,
     pub(super) peak_voltage: f64,
     guess: Guess,
     max_seconds: Option<f64>,
@@ -67,6 +68,7 @@ impl Control {
             voltages: Vec::new(),
             parameters: Vec::new(),
             varied: Vec::new(),
+            outcomes: Vec::new(),
             peak_voltage: 0.0,
             guess: Guess::Interpolate,
             max_seconds: None,
@@ -172,6 +174,13 @@ impl Control {
     /// Differentiates the optimum by a number of the problem; see [`Optimum::sensitivities`](crate::interface::Optimum::sensitivities).
     pub fn sensitivity(mut self, varied: Varied) -> Self {
         self.varied.push(varied);
+        self
+    }
+
+    /// Differentiates this outcome, others that are named, and the objective, and nothing else; see
+    /// [`Optimum::gradients`](crate::interface::Optimum::gradients). A few outcomes by many numbers take less work than all by each number.
+    pub fn outcome(mut self, outcome: OutcomeOf) -> Self {
+        self.outcomes.push(outcome);
         self
     }
 
@@ -288,6 +297,7 @@ impl Control {
             intervals: self.intervals,
             is_refined: false,
             varied: self.varied.clone(),
+            outcomes: self.outcomes.clone(),
             start: self.start.resolve(system, sources.len())?,
             goal: self.goal.resolve(system, sources.len())?,
             voltage_bounds: self.voltage_bounds,

@@ -3,7 +3,7 @@
 use crate::control::Solution;
 use crate::interface::motion::Motion;
 use crate::model::FoundParameter;
-use crate::sensitivity::Sensitivity;
+use crate::sensitivity::{Gradients, Sensitivity};
 use crate::tasks::SolveResult;
 use crate::workflow::{Afterwards, FinalValue, Repeated, Tracked};
 use std::sync::Arc;
@@ -37,6 +37,8 @@ pub struct Optimum {
     /// Derivatives of the optimum by the numbers that [`Control::sensitivity`](crate::interface::Control::sensitivity) names; none where they do not
     /// exist, which a remark of the motion says.
     pub sensitivities: Vec<Sensitivity>,
+    /// Derivatives of the outcomes that [`Control::outcome`](crate::interface::Control::outcome) names by these numbers.
+    pub gradients: Option<Gradients>,
     pub(super) is_solved: bool,
     /// All that a later solve can start from, see [`Control::starting_from`](crate::interface::Control::starting_from).
     pub solution: Solution,
@@ -62,6 +64,7 @@ impl Optimum {
             },
             parameters: optimum.motion.parameters.clone(),
             sensitivities: result.sensitivities,
+            gradients: result.gradients,
             tracking: result.tracking,
             waypoint_values: result.waypoint_values,
             final_values: result.final_values,

@@ -160,7 +160,8 @@ impl<N: Nlp> Conditions<N> {
     }
 }
 
-fn entries<'a>(
+/// Rows, columns and values of a matrix.
+pub(super) fn entries<'a>(
     entries: &'a Entries,
     values: &'a [f64],
 ) -> impl Iterator<Item = (&'a u32, &'a u32, &'a f64)> {

@@ -7,8 +7,8 @@ use crate::sensitivity::conditions::Conditions;
 use crate::sensitivity::direction::{Direction, Held, Side};
 use crate::sensitivity::error::NoSensitivity;
 use crate::sensitivity::linear::Linear;
-use crate::sensitivity::margins::{At, Changes};
-use crate::sensitivity::range::Range;
+use crate::sensitivity::margins::{At, Changes, Of};
+use crate::sensitivity::range::{Margin, Range};
 
 /// Most steps of Newton's method to the optimum.
 const STEPS: usize = 6;
@@ -18,7 +18,7 @@ const ROUNDING: f64 = 1e-12;
 /// Conditions hold that are met up to this.
 const MET: f64 = 1e-8;
 /// A bound whose distance and multiplier are both smaller is reached weakly.
-const WEAK: f64 = 1e-6;
+pub(super) const WEAK: f64 = 1e-6;
 /// Two derivatives of the objective that differ by less, relative to their terms, are one.
 const SAME: f64 = 1e-6;
 
@@ -37,13 +37,26 @@ pub struct Derivative {
     pub weak: Vec<String>,
 }
 
+/// Changes with a number while the unknowns that are free stay, in the units of the conditions.
+pub(super) struct Change {
+    /// Of unknowns that are held, and of those at bounds.
+    pub(super) given: Vec<f64>,
+    /// Of the gradient of the Lagrangian, and of the equations with bounds that are reached.
+    pub(super) slopes: Vec<f64>,
+    pub(super) rows: Vec<f64>,
+    /// Of the constraints alone.
+    values: Vec<f64>,
+    /// Of the objective by multipliers.
+    pub(super) envelope: f64,
+}
+
 /// An optimum with the factors of its conditions.
 #[derive(Debug)]
 pub struct Kernel<N> {
-    conditions: Conditions<N>,
-    linear: Linear,
-    columns: Vec<Place>,
-    rows: Vec<Place>,
+    pub(super) conditions: Conditions<N>,
+    pub(super) linear: Linear,
+    pub(super) columns: Vec<Place>,
+    pub(super) rows: Vec<Place>,
     /// ∇f + Jᵀy.
     slopes: Vec<f64>,
     moved: f64,
@@ -169,7 +182,7 @@ impl<N: Nlp> Kernel<N> {
         [of_x, self.rows.iter().enumerate().map(of_row).collect()]
     }
 
-    fn at(&self) -> At<'_, N> {
+    pub(super) fn at(&self) -> At<'_, N> {
         At {
             conditions: &self.conditions,
             columns: &self.columns,
@@ -178,17 +191,21 @@ impl<N: Nlp> Kernel<N> {
         }
     }
 
-    /// Checks that bounds push the right way and are kept.
-    fn check_bounds(&self) -> Result<(), NoSensitivity> {
+    /// Distances from bounds, and multipliers, as they are.
+    pub(super) fn margins(&self) -> Vec<Margin<Of>> {
         let [columns, rows] = [&self.columns, &self.rows].map(|list| vec![0.0; list.len()]);
-        let margins = self.at().margins(Changes {
+        self.at().margins(Changes {
             x: &columns,
             y: &rows,
             slopes: &columns,
             constraints: &rows,
             direction: &Direction::default(),
-        });
-        match margins.iter().find(|margin| margin.distance < -WEAK) {
+        })
+    }
+
+    /// Checks that bounds push the right way and are kept.
+    fn check_bounds(&self) -> Result<(), NoSensitivity> {
+        match self.margins().iter().find(|margin| margin.distance < -WEAK) {
             Some(margin) => Err(NoSensitivity::Undecided(self.at().words(margin.of))),
             None => Ok(()),
         }
@@ -215,29 +232,23 @@ impl<N: Nlp> Kernel<N> {
         self.conditions.program()
     }
 
-    /// Derivatives along a direction.
-    ///
-    /// # Errors
-    /// The linear system is not solved exactly, or what follows from it is contradictory.
-    pub fn along(&mut self, direction: &Direction) -> Result<Derivative, NoSensitivity> {
+    /// Changes of all that a direction gives, in the units of the conditions.
+    pub(super) fn change(&self, direction: &Direction) -> Change {
         let conditions = &self.conditions;
         let (columns, rows) = (self.columns.len(), self.rows.len());
         let x = conditions.point();
-        let rate = |i: usize| conditions.squares.rate(i, x[i]);
         let mut given = vec![0.0; columns];
-        for &(i, value) in &direction.held {
-            given[i] += rate(i) * value;
+        let reached = direction.bounds.iter();
+        let reached = reached.filter(|(i, side, _)| self.columns[*i] == side.place());
+        let held = direction.held.iter().copied();
+        for (i, value) in held.chain(reached.map(|&(i, _, value)| (i, value))) {
+            given[i] += conditions.squares.rate(i, x[i]) * value;
         }
-        for &(i, side, value) in &direction.bounds {
-            if self.columns[i] == side.place() {
-                given[i] += rate(i) * value;
-            }
-        }
-        let mut explicit = vec![0.0; columns];
+        let mut slopes = vec![0.0; columns];
         for &(i, value) in &direction.gradient {
-            explicit[i] += conditions.scale * value;
+            slopes[i] += conditions.scale * value;
         }
-        conditions.squares.of_changes(&x, &mut explicit);
+        conditions.squares.of_changes(&x, &mut slopes);
         let mut of_rows = vec![0.0; rows];
         for &(i, value) in &direction.constraints {
             of_rows[i] += value;
@@ -250,33 +261,61 @@ impl<N: Nlp> Kernel<N> {
                 of_rows[i] -= value;
             }
         }
-        let envelope = dot(&self.slopes, &given) + dot(&conditions.y, &of_rows);
-        let mut of_x = explicit.clone();
+        Change {
+            envelope: dot(&self.slopes, &given) + dot(&conditions.y, &of_rows),
+            given,
+            slopes,
+            rows: of_rows,
+            values,
+        }
+    }
+
+    /// The derivative of the objective by multipliers, where that along the change of the optimum does not contradict; both differ by rounding as large
+    /// as `terms`.
+    pub(super) fn objective(
+        &self,
+        direction: &Direction,
+        [envelope, along]: [f64; 2],
+        terms: f64,
+    ) -> Result<f64, NoSensitivity> {
+        let scale = self.conditions.scale;
+        let size = terms + envelope.abs() + (direction.objective * scale).abs();
+        let difference = (envelope - along).abs();
+        let [envelope, along] = [envelope, along].map(|v| v / scale + direction.objective);
+        match difference <= SAME * size {
+            true => Ok(envelope),
+            false => Err(NoSensitivity::Contradicts(envelope, along)),
+        }
+    }
+
+    /// Derivatives along a direction.
+    ///
+    /// # Errors
+    /// The linear system is not solved exactly, or what follows from it is contradictory.
+    pub fn along(&mut self, direction: &Direction) -> Result<Derivative, NoSensitivity> {
+        let Change {
+            given,
+            slopes,
+            rows,
+            values,
+            envelope,
+        } = self.change(direction);
+        let conditions = &self.conditions;
+        let (mut of_x, mut of_rows) = (slopes.clone(), rows);
         conditions.add_curved(&given, &mut of_x);
         conditions.add_times(&given, &mut of_rows);
         let [mut dx, mut dy] =
             [of_x, of_rows].map(|list| list.iter().map(|v| -v).collect::<Vec<f64>>());
         self.linear.solve(&mut dx, &mut dy)?;
         dx.iter_mut().zip(&given).for_each(|(x, given)| *x += given);
-        let conditions = &self.conditions;
-        let along = dot(&conditions.gradient, &dx);
-        let terms = conditions
-            .gradient
-            .iter()
-            .zip(&dx)
-            .map(|(g, x)| (g * x).abs());
-        let of_itself = (direction.objective * conditions.scale).abs();
-        let size = terms.sum::<f64>() + envelope.abs() + of_itself;
-        let difference = (envelope - along).abs();
-        if difference.is_nan() || difference > SAME * size {
-            let [a, b] = [envelope, along].map(|v| v / conditions.scale + direction.objective);
-            return Err(NoSensitivity::Contradicts(a, b));
-        }
+        let gradient = &self.conditions.gradient;
+        let along = [envelope, dot(gradient, &dx)];
+        let objective = self.objective(direction, along, sizes(gradient, &dx))?;
         let at = self.at();
         let margins = at.margins(Changes {
             x: &dx,
             y: &dy,
-            slopes: &explicit,
+            slopes: &slopes,
             constraints: &values,
             direction,
         });
@@ -284,18 +323,24 @@ impl<N: Nlp> Kernel<N> {
         let range = Range::new(&margins, words);
         let weak = Range::ends_at_once(&margins, WEAK).map(words).collect();
         let scale = self.conditions.scale;
+        let x = self.conditions.point();
         self.conditions.squares.of_changes(&x, &mut dx);
         Ok(Derivative {
             variables: dx,
             multipliers: dy.iter().map(|value| value / scale).collect(),
-            objective: envelope / scale + direction.objective,
+            objective,
             range,
             weak,
         })
     }
 }
 
-fn dot(a: &[f64], b: &[f64]) -> f64 {
+/// Sum of the sizes of the terms of a product.
+pub(super) fn sizes(a: &[f64], b: &[f64]) -> f64 {
+    a.iter().zip(b).map(|(a, b)| (a * b).abs()).sum()
+}
+
+pub(super) fn dot(a: &[f64], b: &[f64]) -> f64 {
     a.iter().zip(b).map(|(a, b)| a * b).sum()
 }
 

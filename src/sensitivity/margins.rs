@@ -51,6 +51,11 @@ impl<N: Nlp> At<'_, N> {
         let mut slopes = changes.slopes.to_vec();
         conditions.add_curved(changes.x, &mut slopes);
         conditions.add_transposed(changes.y, &mut slopes);
+        let mut moved = [vec![0.0; self.columns.len()], vec![0.0; self.columns.len()]];
+        for &(i, side, value) in &changes.direction.bounds {
+            let given = side.of(conditions.given_bounds())[i];
+            moved[side as usize][i] += conditions.squares.rate(i, given) * value;
+        }
         let mut margins = Vec::new();
         for (i, place) in self.columns.iter().enumerate() {
             match place {
@@ -60,9 +65,7 @@ impl<N: Nlp> At<'_, N> {
                         if !bound.is_finite() {
                             continue;
                         }
-                        let given = side.of(conditions.given_bounds())[i];
-                        let of_bound = conditions.squares.rate(i, given);
-                        let of_bound = of_bound * moved(&changes.direction.bounds, i, side);
+                        let of_bound = moved[side as usize][i];
                         margins.push(Margin {
                             distance: sign * (conditions.x[i] - bound),
                             rate: sign * (changes.x[i] - of_bound),

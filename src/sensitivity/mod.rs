@@ -17,11 +17,13 @@
 //! `rest` how states of rest depend on constants, `directions` what changes with each number. `check` refuses numbers before the solve.
 
 mod active_set;
+mod adjoint;
 mod check;
 mod conditions;
 mod direction;
 mod directions;
 mod error;
+mod gradients;
 mod kernel;
 mod linear;
 mod margins;
@@ -30,9 +32,11 @@ mod optimum;
 mod range;
 mod rest;
 
+pub use adjoint::{Adjoint, Outcome};
 pub use check::check;
 pub use direction::{Direction, Held, Side};
 pub use error::NoSensitivity;
+pub use gradients::{Gradients, gradients};
 pub use kernel::{Derivative, Kernel};
 pub use optimum::{Sensitivity, sensitivities};
 pub use range::{End, Range};

@@ -3,6 +3,7 @@
 use crate::control::problem::{Control, Varied, VariedOf};
 use crate::control::{Column, Solution, Transcription};
 use crate::model::{Coordinates, Model, Role, System, Time};
+use crate::sensitivity::direction::Direction;
 use crate::sensitivity::directions::Directions;
 use crate::sensitivity::error::NoSensitivity;
 use crate::sensitivity::kernel::{Derivative, Kernel};
@@ -46,11 +47,39 @@ pub fn sensitivities(
     control: &Control,
     motion: &Solution,
 ) -> Result<Vec<Sensitivity>, NoSensitivity> {
+    with_kernel(
+        system,
+        control,
+        motion,
+        |opened, kernel, directions, rows| {
+            let mut list = Vec::new();
+            for (varied, direction) in opened.control.varied.iter().zip(directions) {
+                let derivative = kernel.along(direction)?;
+                let at = (opened, kernel.program(), rows);
+                list.push(sensitivity(varied, &derivative, at));
+            }
+            Ok(list)
+        },
+    )
+}
+
+/// Hands on the opened problem of an optimum, its kernel, the directions of the numbers that it names, and the rows of the solved program.
+pub(super) fn with_kernel<T>(
+    system: &System,
+    control: &Control,
+    motion: &Solution,
+    go_on: impl FnOnce(
+        &Opened,
+        &mut Kernel<Transcription<'_>>,
+        &[Direction],
+        &[usize],
+    ) -> Result<T, NoSensitivity>,
+) -> Result<T, NoSensitivity> {
     let opened = Opened::new(system, control, motion)?;
     let program = opened.program()?;
     let mapped = opened.map(&program)?;
     let mut kernel = Kernel::new(program, (&mapped.x, &mapped.multipliers), &mapped.held)?;
-    let all = {
+    let directions = {
         let point = kernel.point();
         let at = (kernel.program(), &mapped.held, &point[..]);
         let directions = Directions::new(&opened, at, &control.start)?;
@@ -58,16 +87,7 @@ pub fn sensitivities(
         let all = all.map(|varied| directions.of(varied));
         all.collect::<Result<Vec<_>, _>>()?
     };
-    let mut list = Vec::new();
-    for (varied, direction) in opened.control.varied.iter().zip(&all) {
-        let derivative = kernel.along(direction)?;
-        list.push(sensitivity(
-            varied,
-            &derivative,
-            (&opened, kernel.program(), &mapped.rows),
-        ));
-    }
-    Ok(list)
+    go_on(&opened, &mut kernel, &directions, &mapped.rows)
 }
 
 fn sensitivity(
@@ -103,14 +123,10 @@ fn sensitivity(
             _ => {}
         }
     }
-    let is_place = varied.parameter().is_some_and(|parameter| {
-        let mut constants = parameter.constants.iter();
-        constants.any(|one| one.constant.is_place())
-    });
     Sensitivity {
         objective: derivative.objective,
         joints: joints(model, &coordinates),
-        markers: match is_place {
+        markers: match is_place(varied) {
             true => Vec::new(),
             false => markers(model, &opened.initial.discrete.z, &coordinates),
         },
@@ -129,6 +145,14 @@ fn sensitivity(
         voltages,
         coordinates,
     }
+}
+
+/// Returns true if a number is a place on which places of markers depend by themselves.
+pub(super) fn is_place(varied: &Varied) -> bool {
+    varied.parameter().is_some_and(|parameter| {
+        let mut constants = parameter.constants.iter();
+        constants.any(|one| one.constant.is_place())
+    })
 }
 
 /// Returns true if constants that have to be positive are so at a value of the number, and the duration is.

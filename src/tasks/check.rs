@@ -285,6 +285,7 @@ fn as_control(task: Task, system: &System) -> Control {
         intervals: INTERVALS,
         is_refined: false,
         varied: Vec::new(),
+        outcomes: Vec::new(),
         start,
         // A joint that goes on does not rest.
         goal: match system.joints.iter().any(|joint| joint.motion.is_some()) {

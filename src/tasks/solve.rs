@@ -7,7 +7,7 @@ use crate::control::problem::Control;
 use crate::dynamics::trajectory::Trajectory;
 use crate::dynamics::{DiscreteTrajectory, EnergyExchange, out_of_domain, out_of_range};
 use crate::model::System;
-use crate::sensitivity::{self, NoSensitivity, Sensitivity, sensitivities};
+use crate::sensitivity::{self, Gradients, NoSensitivity, Sensitivity, gradients, sensitivities};
 use crate::tasks::grid::{Found, SolveRequest};
 use crate::tasks::held_goal::{HeldGoal, solve_and_hold};
 use crate::tasks::moved_markers::moved_markers;
@@ -59,6 +59,8 @@ pub struct SolveResult {
     pub final_values: Vec<FinalValue>,
     /// Derivatives of the optimum by the numbers that the problem names; none where they do not exist, which a remark says.
     pub sensitivities: Vec<Sensitivity>,
+    /// Derivatives of the outcomes that it names, where it names some.
+    pub gradients: Option<Gradients>,
     /// Muscles and blocks outside the domain of their material.
     pub outside: Vec<Outside>,
     /// Warnings and notes.
@@ -117,6 +119,7 @@ pub(super) fn assessed(
         waypoint_values,
         final_values,
         sensitivities: Vec::new(),
+        gradients: None,
         outside: domain::records(&out_of_domain(model, &discrete)),
         remarks: Remarks::default(),
         optimum,
@@ -139,16 +142,21 @@ fn add_sensitivities(system: &System, control: &Control, result: &mut SolveResul
     if control.varied.is_empty() {
         return;
     }
-    let found = match result.optimum.meets_equations() {
-        true => sensitivities(system, control, &result.optimum.motion),
-        false => Err(NoSensitivity::Refused("no optimum was found".to_owned())),
-    };
-    match found {
-        Ok(list) => result.sensitivities = list,
-        Err(error) => {
-            let text = format!("no sensitivities: {error}");
-            result.remarks.warn("no_sensitivities", [text]);
+    let (motion, outcomes) = (&result.optimum.motion, &control.outcomes);
+    let found = match (result.optimum.meets_equations(), &outcomes[..]) {
+        (false, _) => Err(NoSensitivity::Refused("no optimum was found".to_owned())),
+        (true, []) => {
+            let list = sensitivities(system, control, motion);
+            list.map(|list| result.sensitivities = list)
         }
+        (true, outcomes) => {
+            let found = gradients(system, control, motion, outcomes);
+            found.map(|found| result.gradients = Some(found))
+        }
+    };
+    if let Err(error) = found {
+        let text = format!("no sensitivities: {error}");
+        result.remarks.warn("no_sensitivities", [text]);
     }
 }
 

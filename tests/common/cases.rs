@@ -17,7 +17,6 @@ use proboscis::control::problem::{
     BoundaryState, Control, Duration, Guess, Objective, Orientation, PathConstraint, Place, Rest,
     Solver, SoughtHold,
 };
-use proboscis::ipopt::LinearSolver;
 use proboscis::math::Signal;
 use proboscis::model::Coordinates;
 use proboscis::model::system::{ElectricConstants, Material, System, VACUUM_PERMITTIVITY};
@@ -49,6 +48,7 @@ pub fn control(system: &System, intervals: usize) -> Control {
         intervals,
         is_refined: false,
         varied: Vec::new(),
+        outcomes: Vec::new(),
         start: BoundaryState::RestAtVoltages(vec![0.0; system.sources().len()], Rest::Everything),
         goal: joints(&[]),
         voltage_bounds: [0.0, 3000.0],
@@ -69,7 +69,7 @@ pub fn control(system: &System, intervals: usize) -> Control {
         solver: Solver {
             tolerance: 1e-10,
             max_iterations: 500,
-            linear_solver: LinearSolver::Auto,
+            linear_solver: Default::default(),
             ipopt: BTreeMap::new(),
         },
     }

@@ -54,6 +54,7 @@ fn double_integrator(intervals: usize) -> Attempt<usize> {
         intervals,
         is_refined: false,
         varied: Vec::new(),
+        outcomes: Vec::new(),
         start: rest_at(0.0),
         goal: rest_at(GOAL),
         voltage_bounds: [f64::NEG_INFINITY, f64::INFINITY],

@@ -57,6 +57,7 @@ fn optimum(
         intervals,
         is_refined: false,
         varied: Vec::new(),
+        outcomes: Vec::new(),
         start: rest_at(0.0),
         goal: rest_at(goal),
         voltage_bounds: [f64::NEG_INFINITY, f64::INFINITY],

@@ -35,6 +35,7 @@ fn problem(name: &str, coordinates: Coordinates) -> Control {
         intervals: control["intervals"].as_u64().unwrap() as usize,
         is_refined: false,
         varied: Vec::new(),
+        outcomes: Vec::new(),
         start: BoundaryState::RestAtVoltages(vec![0.0; hold.len()], Rest::Everything),
         goal: BoundaryState::RestAtVoltages(hold, Rest::Everything),
         voltage_bounds: [0.0, 3000.0],

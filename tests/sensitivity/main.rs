@@ -1,5 +1,6 @@
 //! Sensitivities of optima: against closed forms, and against differences of optima that are found anew.
 
+mod backward;
 mod parametric;
 mod refused;
 mod resolved;

@@ -2,7 +2,7 @@
 
 use proboscis::ipopt::{Multipliers, Options, StartingPoint, solve};
 use proboscis::nlp::{Bounds, Entries, Nlp};
-use proboscis::sensitivity::{Direction, Held, Kernel, NoSensitivity, Side};
+use proboscis::sensitivity::{Direction, Held, Kernel, NoSensitivity, Outcome, Side};
 use std::ops::ControlFlow;
 
 /// Minimise x₁² + x₂² + x₃² subject to 6x₁ + 3x₂ + 2x₃ = p₁, p₂x₁ + x₂ − x₃ = 1, x ≥ 0, where p are variables with equal bounds.
@@ -210,6 +210,8 @@ fn what_is_no_strict_optimum_has_no_sensitivities() {
     };
     let found = kernel.along(&slope).unwrap();
     assert_eq!(found.variables[0], -0.5);
+    // Which of them moves the change of the optimum tells alone.
+    assert_eq!(kernel.one_sided(&[slope]), None);
     assert_eq!(found.weak, ["x[0] reaches its lower bound"]);
     assert_eq!(
         (found.range.up.change, found.range.down.change),
@@ -228,4 +230,43 @@ fn what_is_no_strict_optimum_has_no_sensitivities() {
             columns: 1
         }
     );
+}
+
+/// What one solution for an outcome finds by a number is what one for the number finds of it, also where a bound is reached.
+#[test]
+fn outcomes_backward_are_those_forward() {
+    let directions = [
+        Direction {
+            held: vec![(3, 1.0)],
+            ..Direction::default()
+        },
+        Direction {
+            held: vec![(4, 1.0)],
+            gradient: vec![(0, 0.3)],
+            ..Direction::default()
+        },
+        Direction {
+            bounds: vec![(2, Side::Lower, 1.0)],
+            constraint_bounds: vec![(1, Side::Lower, 0.7), (1, Side::Upper, 0.7)],
+            objective: 2.0,
+            ..Direction::default()
+        },
+    ];
+    for p in [[5.0, 1.0], [4.0, 1.0]] {
+        let (x, y) = solved(p);
+        let mut kernel = Kernel::new(Parametric::new(p), (&x, &y), &held()).unwrap();
+        let outcome = Outcome {
+            variables: vec![(0, 1.0), (2, 0.5), (3, 0.25)],
+            multipliers: vec![(1, 2.0)],
+        };
+        let adjoint = kernel.adjoint(&outcome).unwrap();
+        let objectives = kernel.objectives(&directions).unwrap();
+        for (direction, objective) in directions.iter().zip(objectives) {
+            let forward = kernel.along(direction).unwrap();
+            let expected = outcome.of(&forward);
+            let found = kernel.by(&adjoint, direction);
+            assert!(expected.abs() > 0.1 && (found - expected).abs() < 1e-12 * expected.abs());
+            assert!((objective - forward.objective).abs() < 1e-12 * objective.abs());
+        }
+    }
 }

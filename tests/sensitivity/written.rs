@@ -2,7 +2,7 @@
 
 use proboscis::app::{CommandInput, ProgressDisplay, run};
 use proboscis::prelude::*;
-use proboscis::{MaterialConstant, Varied};
+use proboscis::{MaterialConstant, OutcomeOf, Varied};
 use serde_json::Value;
 use std::fs;
 use std::path::{Path, PathBuf};
@@ -102,7 +102,7 @@ fn a_tolerance_beyond_the_range_is_a_warning_and_no_optimum_has_no_derivatives()
 fn the_library_differentiates_too() {
     let silicone = Material::elastomer(kpa(100.0)).density(kg_per_m3(1000.0));
     let silicone = silicone.relative_permittivity(3.0).viscosity(pa_s(1000.0));
-    let of = |modulus: f64| {
+    let of = |modulus: f64, outcomes: &[OutcomeOf]| {
         let mut arm = System::new("arm");
         let link = Body::cylinder(mm(50.0), mm(20.0))
             .mass(g(30.0))
@@ -133,16 +133,34 @@ fn the_library_differentiates_too() {
             guess: modulus,
         };
         let varied = Varied::constants(parameter, None, &arm);
-        control.sensitivity(varied).solve(&arm).unwrap()
+        let control = control.sensitivity(varied);
+        let control = outcomes.iter().fold(control, |to, one| to.outcome(*one));
+        control.solve(&arm).unwrap()
     };
-    let found = of(kpa(100.0));
+    let found = of(kpa(100.0), &[]);
     assert!(found.is_solved());
     let step = kpa(0.1);
-    let [before, after] = [-step, step].map(|change| of(kpa(100.0) + change).objective);
+    let [before, after] = [-step, step].map(|change| of(kpa(100.0) + change, &[]).objective);
     let expected = (after - before) / (2.0 * step);
     let derivative = found.sensitivities[0].objective;
     assert!(
         expected != 0.0 && (derivative - expected).abs() < 1e-4 * expected.abs(),
         "{derivative} {expected}"
     );
+    // One outcome alone: the joint on its way.
+    let joints = &found.sensitivities[0].joints;
+    let (k, _) = greatest(joints.iter().map(|row| row[0].abs()));
+    let time = found.motion.times()[k];
+    let one = of(kpa(100.0), &[OutcomeOf::Joint { joint: 0, time }]);
+    let gradients = one.gradients.unwrap();
+    assert!(one.sensitivities.is_empty() && found.gradients.is_none());
+    let expected = joints[k][0];
+    assert!(expected != 0.0);
+    assert_eq!(gradients.outcomes, [[expected]]);
+    assert_eq!(gradients.objective, [derivative]);
+}
+
+fn greatest(list: impl Iterator<Item = f64>) -> (usize, f64) {
+    let all = list.enumerate();
+    all.reduce(|a, b| if b.1 > a.1 { b } else { a }).unwrap()
 }

@@ -100,6 +100,7 @@ pub(crate) fn control(
         intervals: intervals.unwrap_or(FIRST_INTERVALS),
         is_refined: intervals.is_none(),
         varied: Vec::new(),
+        outcomes: Vec::new(),
         start,
         goal,
         voltage_bounds,

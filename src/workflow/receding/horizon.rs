@@ -335,6 +335,7 @@ fn ahead(control: &Control, rest: &[f64], intervals: usize, h: f64) -> Control {
         sought_hold: SoughtHold::Never,
         objective: Objective::default(),
         varied: Vec::new(),
+        outcomes: Vec::new(),
         waypoints: Vec::new(),
         guess: Guess::Interpolate,
         ..control.clone()
