@@ -206,8 +206,8 @@ fn page() -> String {
          The trunk of [`elephant_trunk`](../../problems/elephant_trunk.json) is planned anew over {INTERVALS} of its intervals of 2.4 ms, \
          at the start of each of {STEPS} of them; a random push of up to {PUSH} g mm²/ms about each joint comes every {BETWEEN} intervals. \
          A step is what passes from a measurement to its inputs; then the next one is prepared. Where other work runs on the same core, the \
-         greatest times are those of the scheduler: these are of `chrt -f 50 taskset -c 1` on a shared machine of two cores, which pauses such a \
-         process for 50 ms now and then.\n\n\
+         greatest times are those of the scheduler: these are of `chrt -f 50 taskset -c 1` on a shared machine of two cores. \
+         Linux takes a core for 50 ms of each second from such a process, which never waits (`/proc/sys/kernel/sched_rt_runtime_us`).\n\n\
          | steps of an interval | part | median, ms | 99 % | 99.9 % | greatest |\n|--:|:--|--:|--:|--:|--:|\n"
     );
     let mut costs = String::new();

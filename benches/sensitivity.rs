@@ -1,11 +1,11 @@
-//! Time of sensitivities as a part of that of the solve: the elephant trunk, with one number and with five, interleaved.
+//! Time of sensitivities as a part of that of the solve: the elephant trunk, with one number and with five, and two outcomes by the five, interleaved.
 //!
 //! `cargo bench --bench sensitivity`
 
-use proboscis::control::problem::{Control, Task};
+use proboscis::control::problem::{Control, OutcomeOf, Task};
 use proboscis::files::read_problem;
 use proboscis::model::System;
-use proboscis::sensitivity::sensitivities;
+use proboscis::sensitivity::{gradients, sensitivities};
 use proboscis::workflow::{Iterate, Optimum, SolveLimits, optimise};
 use std::hint::black_box;
 use std::ops::ControlFlow;
@@ -20,6 +20,19 @@ const NUMBERS: [&str; 5] = [
     "materials.silicone.relative_permittivity",
     "chain.mass",
     "duration",
+];
+
+/// The place of the tip and a voltage in the middle of the motion.
+const OUTCOMES: [OutcomeOf; 2] = [
+    OutcomeOf::Marker {
+        marker: 0,
+        axis: 0,
+        time: 150.0,
+    },
+    OutcomeOf::Input {
+        source: 1,
+        time: 150.0,
+    },
 ];
 
 fn problem(count: usize) -> (System, Control) {
@@ -50,6 +63,7 @@ fn main() {
     let asked = [1, NUMBERS.len()].map(problem);
     let optimum = solved(&asked[0]);
     let (mut solves, mut one, mut all) = (Vec::new(), Vec::new(), Vec::new());
+    let (mut few, mut solutions) = (Vec::new(), 0);
     for _ in 0..ROUNDS {
         let found = solved(&asked[0]);
         solves.push(found.solution.seconds.total + found.setup);
@@ -59,14 +73,25 @@ fn main() {
                 .expect("sensitivities");
             times.push(began.elapsed().as_secs_f64());
         }
+        let (system, control) = &asked[1];
+        let began = Instant::now();
+        let found = gradients(system, control, &optimum.motion, &OUTCOMES).expect("gradients");
+        few.push(began.elapsed().as_secs_f64());
+        solutions = found.solutions;
     }
-    let [solve, one, all] = [solves, one, all].map(median);
+    let [solve, one, all, few] = [solves, one, all, few].map(median);
     let each = (all - one) / (NUMBERS.len() - 1) as f64;
     println!(
         "solve {:.1} ms, sensitivities to one number {:.1} ms, to each further one {:.2} ms",
         1e3 * solve,
         1e3 * one,
         1e3 * each
+    );
+    println!(
+        "two outcomes by {} numbers, {solutions} solutions: {:.1} ms in place of {:.1} ms for all",
+        NUMBERS.len(),
+        1e3 * few,
+        1e3 * all
     );
     println!(
         "parts of the solve: {:.1} % for the first number, {:.2} % for each further one",

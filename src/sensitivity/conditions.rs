@@ -20,6 +20,8 @@ pub(super) struct Conditions<N> {
     pub(super) y: Vec<f64>,
     pub(super) gradient: Vec<f64>,
     pub(super) g: Vec<f64>,
+    /// The unknowns at which the constraints have these values.
+    constrained: Vec<f64>,
     pub(super) jacobian_values: Vec<f64>,
     pub(super) hessian_values: Vec<f64>,
 }
@@ -62,6 +64,7 @@ impl<N: Nlp> Conditions<N> {
             jacobian,
             bounds,
             row_bounds,
+            constrained: unknowns.clone(),
             x: unknowns,
             y: multipliers.constraints.clone(),
         };
@@ -84,7 +87,10 @@ impl<N: Nlp> Conditions<N> {
         self.gradient
             .iter_mut()
             .for_each(|value| *value *= self.scale);
-        self.program.constraint(&self.x, &mut self.g);
+        if self.constrained != self.x {
+            self.program.constraint(&self.x, &mut self.g);
+            self.constrained.copy_from_slice(&self.x);
+        }
         self.program.jacobian(&self.x, &mut self.jacobian_values);
     }
 
