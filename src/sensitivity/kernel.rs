@@ -72,33 +72,42 @@ impl<N: Nlp> Kernel<N> {
     /// If lengths contradict each other.
     pub fn new(
         program: N,
+        point: (&[f64], &Multipliers),
+        held: &Held,
+    ) -> Result<Self, NoSensitivity> {
+        Self::with_places(program, point, held, None)
+    }
+
+    /// As [`new`](Self::new), for the optimum of an equal program to which Newton's method has moved: places of its variables and constraints are known.
+    pub(super) fn with_places(
+        program: N,
         (x, multipliers): (&[f64], &Multipliers),
         held: &Held,
+        places: Option<[Vec<Place>; 2]>,
     ) -> Result<Self, NoSensitivity> {
         let mut multipliers = multipliers.clone();
         let mut conditions =
             Conditions::new(program, (x, &mut multipliers), held.squares.as_deref());
+        let is_known = places.is_some();
         let Multipliers {
             constraints,
             lower,
             upper,
         } = &multipliers;
-        let columns = of_variables(
-            (&conditions.x, &conditions.bounds),
-            [lower, upper],
-            &held.variables,
-        );
-        let rows = of_constraints(
-            (&conditions.g, &conditions.row_bounds),
-            constraints,
-            &held.constraints,
-        );
+        let [columns, rows] = places.unwrap_or_else(|| {
+            let of_columns = (&*conditions.x, &conditions.bounds);
+            let of_rows = (&*conditions.g, &conditions.row_bounds);
+            [
+                of_variables(of_columns, [lower, upper], &held.variables),
+                of_constraints(of_rows, constraints, &held.constraints),
+            ]
+        });
         for (i, place) in columns.iter().enumerate() {
             match place {
                 Place::Lower => conditions.x[i] = conditions.bounds.lower[i],
                 Place::Upper => conditions.x[i] = conditions.bounds.upper[i],
                 // Where a bound is reached without a multiplier nothing of what follows is to be rounding.
-                Place::Free => conditions.round(i, WEAK),
+                Place::Free if !is_known => conditions.round(i, WEAK),
                 _ => {}
             }
         }
@@ -209,6 +218,11 @@ impl<N: Nlp> Kernel<N> {
             Some(margin) => Err(NoSensitivity::Undecided(self.at().words(margin.of))),
             None => Ok(()),
         }
+    }
+
+    /// Places of variables and constraints.
+    pub(super) fn places(&self) -> [&[Place]; 2] {
+        [&self.columns, &self.rows]
     }
 
     /// Greatest step of Newton's method to the optimum, in the scales of the program.

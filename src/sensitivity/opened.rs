@@ -9,6 +9,7 @@ use crate::dynamics::Equilibrium;
 use crate::ipopt::Multipliers;
 use crate::model::{Model, Parameter, Role, System};
 use crate::nlp::Nlp;
+use crate::sensitivity::active_set::Place;
 use crate::sensitivity::direction::Held;
 use crate::sensitivity::error::NoSensitivity;
 use crate::sensitivity::kernel::Kernel;
@@ -40,6 +41,8 @@ struct Approached {
     rows: Vec<f64>,
     /// Multipliers of the bounds of the columns, those of the solution.
     bounds: [Vec<f64>; 2],
+    /// Places of both.
+    places: [Vec<Place>; 2],
     /// Numbers of the columns that enter by their squares alone.
     squares: Vec<usize>,
 }
@@ -50,6 +53,8 @@ pub(super) struct Mapped {
     pub(super) x: Vec<f64>,
     pub(super) held: Held,
     pub(super) multipliers: Multipliers,
+    /// Places of columns and rows.
+    pub(super) places: [Vec<Place>; 2],
     /// Row of each row of the solved program.
     pub(super) rows: Vec<usize>,
 }
@@ -133,6 +138,7 @@ impl Opened {
             columns: values,
             rows: multipliers,
             bounds: [lower, upper],
+            places: [of_columns, of_rows],
             squares,
         } = &self.at;
         let mut out = Mapped {
@@ -147,6 +153,7 @@ impl Opened {
                 lower: vec![0.0; all.columns.len()],
                 upper: vec![0.0; all.columns.len()],
             },
+            places: [&all.columns.len(), &all.rows.len()].map(|&n| vec![Place::Held; n]),
             rows: Vec::new(),
         };
         let mut places = all.columns.iter().enumerate();
@@ -157,6 +164,7 @@ impl Opened {
             let scale = program.column_scale(place);
             out.x[place] = values[number] / scale;
             out.held.variables[place] = false;
+            out.places[0][place] = of_columns[number];
             if squares.contains(&number) {
                 out.held
                     .squares
@@ -172,6 +180,7 @@ impl Opened {
             let place = places.find(|(_, one)| is_row(one));
             let (place, _) = place.ok_or_else(|| self.unknown_row(row))?;
             out.held.constraints[place] = false;
+            out.places[1][place] = of_rows[number];
             out.multipliers.constraints[place] = multipliers[number] / program.row_scale(place);
             out.rows.push(place);
         }
@@ -286,6 +295,7 @@ fn approached(
             .map(|(i, v)| v * program.column_scale(i))
             .collect(),
         bounds: [costates.lower.clone(), costates.upper.clone()],
+        places: kernel.places().map(<[Place]>::to_vec),
         squares,
     })
 }

@@ -78,7 +78,9 @@ pub(super) fn with_kernel<T>(
     let opened = Opened::new(system, control, motion)?;
     let program = opened.program()?;
     let mapped = opened.map(&program)?;
-    let mut kernel = Kernel::new(program, (&mapped.x, &mapped.multipliers), &mapped.held)?;
+    let point = (&*mapped.x, &mapped.multipliers);
+    let places = Some(mapped.places);
+    let mut kernel = Kernel::with_places(program, point, &mapped.held, places)?;
     let directions = {
         let point = kernel.point();
         let at = (kernel.program(), &mapped.held, &point[..]);
