@@ -40,7 +40,7 @@ pub struct Bias {
     pub readings: f64,
     /// Largest relative change of a standard error of a constant that is determined.
     pub errors: f64,
-    /// True if all are below a tenth, of the constants also where none changes by more than rounding.
+    /// True if all are below a tenth, or where no constant changes by more than rounding.
     pub is_confirmed: bool,
     /// Number of halvings of the first steps.
     pub halvings: usize,
@@ -298,14 +298,20 @@ fn refined(
         if finer.intervals.iter().any(|&n| n > MOST) {
             break;
         }
-        let before = (found.clone(), information);
-        found = fit((system, task), fitted, (found.unknowns.clone(), 0), &finer)?;
+        let before = found.clone();
+        found = fit((system, task), fitted, (before.unknowns.clone(), 0), &finer)?;
         grid = finer;
         grids.push(grid.clone());
         told(&found, &grid);
         information = Information::of_fit(task, &found);
         bias.halvings += 1;
-        bias.compare((&before.0, &before.1), (&found, &information));
+        // Errors by the derivatives of both grids, whatever the scatter that each leaves.
+        let alike = Fit {
+            data: found.data.clone(),
+            ..before.clone()
+        };
+        let known = Information::of_fit(task, &alike);
+        bias.compare((&before, &known), (&found, &information));
     }
     Ok((found, information, grids, bias))
 }
@@ -335,7 +341,7 @@ impl Bias {
             is_none &= !information.is_determined[j] || (a - b).abs() <= NONE * b.abs();
         }
         self.readings = change.norm() / (change.len() as f64).sqrt();
-        self.is_confirmed = (is_none || self.is_small()) && self.keeps_errors();
+        self.is_confirmed = is_none || (self.is_small() && self.keeps_errors());
     }
 }
 
