@@ -232,7 +232,7 @@ impl Sweep {
 pub(crate) struct Input {
     /// The problem file; - for standard input.
     problem: PathBuf,
-    /// Override an entry, such as control.intervals=80 or scene.gravity=[0,-9.81,0]; may be repeated.
+    /// Override an entry, such as control.intervals=80 or scene.gravity=[0,-9.81,0]; may be repeated, the last of a path counts.
     #[arg(long, value_name = "PATH=VALUE")]
     set: Vec<String>,
 }

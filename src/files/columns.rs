@@ -53,7 +53,11 @@ impl Columns {
             let expected = "a CSV file: a line of headers, then lines of numbers";
             return Err(scope.wrong(format!("{}, which is empty", path.display()), expected));
         }
-        let headers = headers.iter().map(plain).collect();
+        let headers: StringRecord = headers.iter().map(plain).collect();
+        if headers.len() == 1 && headers[0].contains(';') {
+            let found = format!("{}, with semicolons between columns", path.display());
+            return Err(scope.wrong(found, "a CSV file with commas between columns"));
+        }
         let rows: Result<_, _> = reader.records().collect();
         Ok(Self {
             rows: rows.map_err(|cause| mistake(&cause))?,
@@ -151,6 +155,7 @@ impl Columns {
         let (_, unit) = parts(&self.headers[at]);
         let cell = &row[at];
         let quantity = match unit {
+            _ if cell.trim().is_empty() => Err("an empty cell".to_owned()),
             Some(unit) => Quantity::try_from_text(&format!("{cell} {unit}")),
             None => match cell.parse() {
                 Ok(number) => Quantity::try_from_number(number),

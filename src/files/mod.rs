@@ -36,7 +36,7 @@ pub(crate) use json::source::is_standard_input;
 pub(crate) use scene::build::LONGEST_CHAIN;
 pub use scene::named_materials::named_materials;
 pub use scene::trunk::new_trunk;
-pub use typed::{driven_voltages, read_system};
+pub use typed::{driven_voltages, each_once, read_system};
 pub(crate) use units::si;
 
 use serde_json::Value;
@@ -129,7 +129,10 @@ fn problem_of(
     read: impl FnOnce() -> Result<Document, SceneError>,
     overrides: &[String],
 ) -> Result<Loaded, SceneError> {
-    let overrides = Override::all(overrides)?;
+    let overrides: Vec<Override> = overrides
+        .iter()
+        .map(|written| Override::parse(written))
+        .collect::<Result<_, _>>()?;
     let (of_scene, of_problem): (Vec<_>, Vec<_>) = overrides
         .into_iter()
         .partition(|change| change.in_scene().is_some());

@@ -13,6 +13,14 @@ use crate::files::scene::build::build_scene;
 use crate::files::units::quantity::{Quantity, Voltage};
 use crate::model::system::{Source, System};
 
+/// Refuses overrides of which two are of one place; where a list is made, the later one counts.
+///
+/// # Errors
+/// There are two, or one is no override.
+pub fn each_once(overrides: &[String]) -> Result<(), SceneError> {
+    Override::check(overrides)
+}
+
 /// The system of a scene file, or of the scene of a problem file, with overrides as for the file itself.
 ///
 /// # Errors
@@ -22,7 +30,8 @@ pub fn read_system(path: &Path, overrides: &[String]) -> Result<System, SceneErr
     if document.entry("scene").is_some() {
         return Ok(crate::files::read_problem(path, overrides)?.system);
     }
-    for change in Override::all(overrides)? {
+    for written in overrides {
+        let change = Override::parse(written)?;
         change.in_scene().unwrap_or(change).apply(&mut document)?;
     }
     build_scene(&document.parse()?, &Scope::of(&document))

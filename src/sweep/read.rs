@@ -8,7 +8,7 @@ use serde_json::Value;
 use crate::app::{Identity, task_runs_at_once};
 use crate::files::changes::Changes;
 use crate::files::sweep::{CombineSpec, SweepSpec};
-use crate::files::{Columns, Document, SceneError, Scope, read_problem};
+use crate::files::{Columns, Document, SceneError, Scope, each_once, read_problem};
 use crate::math::Random;
 use crate::sweep::values::Values;
 
@@ -70,6 +70,7 @@ pub(super) fn read_sweep(path: &Path) -> Result<Sweep, SceneError> {
         for (place, value) in places.iter().zip(&values) {
             changes.push(place, value, place_of(place))?;
         }
+        each_once(&changes.words).map_err(|error| changes.at_fault(error, &problem))?;
         let (identity, refused) = match read_problem(&problem, &changes.words) {
             Ok(loaded) => {
                 run_at_once &= task_runs_at_once(&loaded.task);

@@ -3,7 +3,7 @@
 use crate::scene::{Case, PROBLEM, SCENE, check, folder, mistake};
 use proboscis::control::problem::{Afterwards, BoundaryState, Task, Voltages};
 use proboscis::dynamics::Integrator;
-use proboscis::files::{driven_voltages, read_problem};
+use proboscis::files::{driven_voltages, each_once, read_problem};
 use proboscis::math::Signal;
 use proboscis::model::Response;
 use std::fs;
@@ -196,7 +196,10 @@ fn voltages_may_come_from_a_csv_file() {
         (b"time,left [kV]\n0,1\n1,x\n", left, "in line 3 of"),
         (b"time,left [kg]\n0,1\n", left, "a mass"),
         (b"time,left [furlong]\n0,1\n", left, "furlong"),
-        (b"time,left\n0,\n", left, "which is no number"),
+        (b"time,left\n0,x\n", left, "which is no number"),
+        (b"time,left\n0,\n", left, "an empty cell"),
+        (b"time,left [kV]\n0,\n", left, "an empty cell"),
+        (b"time;left [kV]\n0;1\n", left, "with semicolons between"),
         (b"time,left\n0,inf\n", left, "not finite"),
         (b"time,left\n0,1,2\n", left, "cannot be read"),
         (b"time,left\n\xff\xfe,1\n", left, "cannot be read"),
@@ -225,6 +228,16 @@ fn a_voltage_that_is_typed_twice_is_refused() {
         error.to_string().contains("one voltage of \"muscle1\""),
         "{error}"
     );
+}
+
+#[test]
+fn a_place_that_is_set_twice_is_refused() {
+    let words = ["control.intervals=7", "control.intervals = 8"].map(str::to_owned);
+    each_once(&words[..1]).unwrap();
+    let error = each_once(&words).unwrap_err().to_string();
+    for told in ["control.intervals", "=7", "= 8", "expected one value"] {
+        assert!(error.contains(told), "{error}");
+    }
 }
 
 #[test]

@@ -295,6 +295,10 @@ fn mistakes_of_a_sweep_have_their_places() {
             json!({ "vary": { "control.duration": ["1 s"] }, "combine": { "random": { "count": 0 } } }),
             "0 variants",
         ),
+        (
+            json!({ "set": { "control.duration": "2 s" }, "vary": { "control.duration": ["1 s"] } }),
+            "one value",
+        ),
         (json!({ "table": "none.csv" }), "none.csv"),
         (
             json!({ "table": "none.csv", "vary": { "control.duration": ["1 s"] } }),

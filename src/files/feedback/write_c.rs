@@ -211,9 +211,10 @@ fn interface(record: &LawRecord) -> String {
     out + " */\n#include <math.h>\n#include <string.h>\n\n"
 }
 
-/// Text that ends no comment.
+/// Text that begins and ends no comment.
 fn comment(text: &str) -> String {
-    text.replace("*/", "* /").replace('\n', " ")
+    let text = text.replace("*/", "* /").replace("/*", "/ *");
+    text.replace('\n', " ")
 }
 
 fn row(values: &[f64]) -> String {

@@ -49,12 +49,12 @@ impl Override {
         })
     }
 
-    /// Reads a list of overrides, of which each has a place of its own.
-    pub(crate) fn all(written: &[String]) -> Result<Vec<Self>, SceneError> {
-        let mut out: Vec<Self> = Vec::with_capacity(written.len());
+    /// Refuses two overrides of one place.
+    pub(crate) fn check(written: &[String]) -> Result<(), SceneError> {
+        let mut known: Vec<Self> = Vec::with_capacity(written.len());
         for written in written {
             let next = Self::parse(written)?;
-            if let Some(known) = out.iter().find(|known| known.place == next.place) {
+            if let Some(known) = known.iter().find(|known| known.place == next.place) {
                 let mistake = Mistake {
                     file: "command line".to_owned(),
                     path: next.place.to_string(),
@@ -66,9 +66,9 @@ impl Override {
                 };
                 return Err(mistake.into());
             }
-            out.push(next);
+            known.push(next);
         }
-        Ok(out)
+        Ok(())
     }
 
     /// A value for a place.

@@ -70,11 +70,16 @@ pub(crate) fn start_state(
 ) -> Result<BoundaryState, SceneError> {
     let moving =
         spec.joint_angles.is_some() || spec.joint_rates.is_some() || spec.body_velocities.is_some();
+    let joints = match () {
+        () if spec.joint_angles.is_some() || !moving => "joint_angles",
+        () if spec.joint_rates.is_some() => "joint_rates",
+        () => "body_velocities",
+    };
     let (rest, end) = (spec.rest_at_voltages.as_ref(), spec.end_of.as_ref());
     match scope.exactly_one([
         ("rest_at_voltages", rest.map(Written::Rest)),
         ("end_of", end.map(|path| Written::EndOf(path))),
-        ("joint_angles", moving.then_some(Written::Joints)),
+        (joints, moving.then_some(Written::Joints)),
     ])? {
         Written::Rest(map) => {
             let row = voltages(map, system, &scope.key("rest_at_voltages"))?;
