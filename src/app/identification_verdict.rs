@@ -121,16 +121,15 @@ fn of_grid(found: &Identified, remarks: &mut Remarks) {
 fn of_interval(name: &str, ends: [Option<f64>; 2]) -> String {
     let sides = ["lower", "upper"].into_iter().zip(ends);
     let told = sides.filter_map(|(side, rise)| {
-        Some(match rise? {
-            rise if rise.is_finite() => {
-                format!("{} times as far at the {side} end", significant(rise, 2))
-            }
-            _ => format!("without a number at the {side} end"),
+        let rise = rise?;
+        Some(match rise.is_finite() {
+            true => format!("{} times at the {side} end", significant(rise, 2)),
+            false => format!("no simulation at the {side} end"),
         })
     });
     format!(
-        "the interval of {name} is one of first order: as it says, the squared residuals would rise alike at both ends, and they rise {}",
-        told.collect::<Vec<_>>().join(" and ")
+        "the interval of {name} follows from derivatives at the estimate, and is not confirmed: at its ends the squared residuals rise otherwise than these foretell ({})",
+        told.collect::<Vec<_>>().join(", ")
     )
 }
 

@@ -132,18 +132,16 @@ fn along(
 /// The step from the interval before instant k of a motion to the one after it, by what is measured in both, in its unit.
 fn step(
     model: &Model,
-    places: [usize; 2],
+    [before, here]: [usize; 2],
     quantity: &Quantity,
     motion: &DiscreteTrajectory,
     k: usize,
 ) -> Option<f64> {
-    let is_between = 0 < k && k < motion.intervals();
-    let at = [k, k + 1];
-    let [before, here] = [0, 1].map(|side| {
-        let measured = (places[side], quantity);
-        is_between.then(|| value(model, measured, motion, at[side]))?
-    });
-    Some((here?.0 - before?.0) / quantity.step_unit())
+    if k == 0 || k == motion.intervals() {
+        return None;
+    }
+    let at = |place: usize, k: usize| Some(value(model, (place, quantity), motion, k)?.0);
+    Some((at(here, k + 1)? - at(before, k)?) / quantity.step_unit())
 }
 
 impl LimitsAlong {

@@ -69,9 +69,6 @@ pub fn rest_programs<'m>(
         let is_free =
             |i: usize| end == 1 && model.is_memory(i) && !is_set_at(model, control, voltages, i);
         let own = |i: usize| {
-            if is_free(i) {
-                return None;
-            }
             Some([
                 motion.unknowns().unknown(k, i)?,
                 program.unknowns().unknown(0, i)?,
@@ -85,7 +82,8 @@ pub fn rest_programs<'m>(
             let column = |program: &Transcription<'_>| program.unknowns().scalar(0, first + p);
             Some([column(motion)?, column(&program)?])
         };
-        let coordinates = model.variables.range(Role::Coordinate).filter_map(own);
+        let coordinates = model.variables.range(Role::Coordinate);
+        let coordinates = coordinates.filter(|&i| !is_free(i)).filter_map(own);
         out.push(RestProgram {
             shared: coordinates.chain(peak.filter_map(of_peak)).collect(),
             program,

@@ -178,11 +178,11 @@ fn remembered_start(model: &Model, control: &Control) -> Result<(), BoundaryErro
     let muscles = &model.system.muscles;
     let remembers = |&m: &usize| !muscles[m].material.maxwell.list().is_empty();
     for parameter in &control.parameters {
-        let stretched = parameter.constants.iter().filter_map(|c| match c.constant {
+        let mut stretched = parameter.constants.iter().filter_map(|c| match c.constant {
             Constant::End(m, ..) | Constant::Prestretch(m) => Some(m),
             _ => None,
         });
-        if let Some(m) = stretched.into_iter().find(remembers) {
+        if let Some(m) = stretched.find(remembers) {
             return Err(BoundaryError::Parameter {
                 name: parameter.name.clone(),
                 reason: format!(

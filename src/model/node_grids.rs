@@ -120,6 +120,7 @@ impl NodeGrids {
                 .map(|nodes| nodes.map(|node| node as u32))
                 .collect(),
             unknowns,
+            shortest_edge: solid.mesh.shortest_edge(),
         });
         Ok(())
     }
@@ -128,7 +129,7 @@ impl NodeGrids {
     pub fn shortest_edge(&self) -> f64 {
         let planes = self.boxes.iter().flat_map(|grid| &grid.planes);
         let edges = planes.flat_map(|planes| planes.windows(2).map(|two| two[1] - two[0]));
-        let of_meshes = self.meshes.iter().map(NodeMesh::shortest_edge);
+        let of_meshes = self.meshes.iter().map(|mesh| mesh.shortest_edge);
         edges.chain(of_meshes).fold(f64::INFINITY, f64::min)
     }
 }

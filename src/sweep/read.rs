@@ -65,12 +65,20 @@ pub(super) fn read_sweep(path: &Path) -> Result<Sweep, SceneError> {
     let mut first_error = None;
     let mut run_at_once = true;
     let mut variants = Vec::with_capacity(rows.len());
-    for values in rows {
+    let changes_of = |values: &[Value]| -> Result<Changes<'_>, SceneError> {
         let mut changes = fixed.clone();
-        for (place, value) in places.iter().zip(&values) {
+        for (place, value) in places.iter().zip(values) {
             changes.push(place, value, place_of(place))?;
         }
+        Ok(changes)
+    };
+    // All variants set the same places.
+    if let Some(values) = rows.first() {
+        let changes = changes_of(values)?;
         each_once(&changes.words).map_err(|error| changes.at_fault(error, &problem))?;
+    }
+    for values in rows {
+        let changes = changes_of(&values)?;
         let (identity, refused) = match read_problem(&problem, &changes.words) {
             Ok(loaded) => {
                 run_at_once &= task_runs_at_once(&loaded.task);

@@ -51,6 +51,28 @@ pub(crate) fn cubes(n: usize, material: Material) -> Solid {
     stack(&grid, &[0.0, 10.0, 20.0, 30.0, 40.0], material)
 }
 
+/// Twelve layers of 0.5 mm below elements ten times as high, five elements across.
+pub(crate) fn thin_layers() -> Solid {
+    let layers = vec![(6.0, 12), (34.0, 7)];
+    let size = Vector3::new(10.0, 10.0, LENGTH);
+    let across = || vec![(10.0, 5)];
+    let grid = Grid::layers(Vector3::zeros(), size, [across(), across(), layers]).unwrap();
+    stack(&grid, &[0.0, 1.5, 3.0, 4.5, 6.0], rubber(0.4, Some(0.5)))
+}
+
+/// Cubes, three across, on three faces that slide, beside those that are fixed.
+pub(crate) fn sliding() -> Solid {
+    let mut solid = cubes(3, rubber(0.3, None));
+    let mesh = &solid.mesh;
+    solid.supports = vec![
+        held(mesh, "x_min", [true, false, false]),
+        held(mesh, "y_min", [false, true, false]),
+        held(mesh, "z_min", [false, false, true]),
+    ];
+    solid.mesh = (solid.mesh).transformed(|x| x + Vector3::new(20.0, 0.0, 0.0));
+    solid
+}
+
 /// The same block with its nodes and elements in another order, and nodes inside elsewhere by a part of the distance to their neighbours: no box.
 pub(crate) fn scattered(mut solid: Solid, part: f64) -> Solid {
     let mesh = &mut solid.mesh;

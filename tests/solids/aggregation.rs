@@ -1,14 +1,13 @@
 //! Steps and equilibria of blocks on meshes without a grid, by multigrid with smoothed aggregation.
 
-use crate::common::solid::{held, system};
-use crate::common::stacks::{LENGTH, cubes, rubber, scattered, stack};
+use crate::common::solid::system;
+use crate::common::stacks::{LENGTH, cubes, rubber, scattered, sliding, thin_layers};
 use crate::multigrid::{MULTIGRID, apart, compare, motion};
 use nalgebra::Vector3;
 use proboscis::dynamics::{
     DiscreteTrajectory, Lengths, MultigridUse, Solving, Start, TimeGrid, go_on, stable_equilibrium,
     stable_equilibrium_by,
 };
-use proboscis::mesh::grid::Grid;
 use proboscis::model::Model;
 use std::ops::ControlFlow;
 
@@ -26,13 +25,7 @@ fn the_motion_is_that_of_the_direct_solver() {
 
 #[test]
 fn thin_layers_do_no_harm() {
-    // Twelve layers of 0.5 mm below elements ten times as high.
-    let layers = vec![(6.0, 12), (34.0, 7)];
-    let size = Vector3::new(10.0, 10.0, LENGTH);
-    let across = || vec![(10.0, 5)];
-    let grid = Grid::layers(Vector3::zeros(), size, [across(), across(), layers]).unwrap();
-    let solid = stack(&grid, &[0.0, 1.5, 3.0, 4.5, 6.0], rubber(0.4, Some(0.5)));
-    let iterated = compare(&system(vec![scattered(solid, 0.0)]), (0.5, 3), 3e4);
+    let iterated = compare(&system(vec![scattered(thin_layers(), 0.0)]), (0.5, 3), 3e4);
     let report = iterated.report;
     let each = report.multigrid.iterations as f64 / report.iterations as f64;
     assert!(each < 10.0, "{each} iterations for each update");
@@ -40,16 +33,8 @@ fn thin_layers_do_no_harm() {
 
 #[test]
 fn a_mesh_and_a_box_are_solved_together() {
-    let mut second = cubes(3, rubber(0.3, None));
-    let mesh = &second.mesh;
-    second.supports = vec![
-        held(mesh, "x_min", [true, false, false]),
-        held(mesh, "y_min", [false, true, false]),
-        held(mesh, "z_min", [false, false, true]),
-    ];
-    second.mesh = (second.mesh).transformed(|x| x + Vector3::new(20.0, 0.0, 0.0));
     let first = cubes(4, rubber(0.4, None));
-    let second = scattered(second, PART);
+    let second = scattered(sliding(), PART);
     compare(&system(vec![second, first]), (0.5, 3), 2e5);
 }
 

@@ -1,8 +1,8 @@
 //! Steps of blocks on boxes by an iteration with multigrid: the motion of the direct solver, at a cost that does not grow with the mesh.
 
 use crate::common::random::Random;
-use crate::common::solid::{DRIVEN, held, system};
-use crate::common::stacks::{LENGTH, cubes, rubber, stack};
+use crate::common::solid::{DRIVEN, system};
+use crate::common::stacks::{LENGTH, cubes, rubber, sliding, stack, thin_layers};
 use nalgebra::Vector3;
 use proboscis::dynamics::{
     DiscreteTrajectory, Lengths, MultigridUse, Newton, Solving, Start, TimeGrid, go_on,
@@ -80,13 +80,7 @@ fn the_motion_is_that_of_the_direct_solver() {
 
 #[test]
 fn thin_layers_and_odd_counts_of_elements_do_no_harm() {
-    // Twelve layers of 0.5 mm below elements ten times as high, and five elements across.
-    let layers = vec![(6.0, 12), (34.0, 7)];
-    let size = Vector3::new(10.0, 10.0, LENGTH);
-    let across = || vec![(10.0, 5)];
-    let grid = Grid::layers(Vector3::zeros(), size, [across(), across(), layers]).unwrap();
-    let solid = stack(&grid, &[0.0, 1.5, 3.0, 4.5, 6.0], rubber(0.4, Some(0.5)));
-    let iterated = compare(&system(vec![solid]), (0.5, 3), 3e4);
+    let iterated = compare(&system(vec![thin_layers()]), (0.5, 3), 3e4);
     let report = iterated.report;
     let each = report.multigrid.iterations as f64 / report.iterations as f64;
     assert!(each < 8.0, "{each} iterations for each update");
@@ -94,16 +88,8 @@ fn thin_layers_and_odd_counts_of_elements_do_no_harm() {
 
 #[test]
 fn two_blocks_with_sliding_faces_are_solved_together() {
-    let mut second = cubes(3, rubber(0.3, None));
-    let mesh = &second.mesh;
-    second.supports = vec![
-        held(mesh, "x_min", [true, false, false]),
-        held(mesh, "y_min", [false, true, false]),
-        held(mesh, "z_min", [false, false, true]),
-    ];
-    second.mesh = (second.mesh).transformed(|x| x + Vector3::new(20.0, 0.0, 0.0));
     compare(
-        &system(vec![cubes(4, rubber(0.4, None)), second]),
+        &system(vec![cubes(4, rubber(0.4, None)), sliding()]),
         (0.5, 3),
         2e5,
     );

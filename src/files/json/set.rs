@@ -35,18 +35,8 @@ impl Override {
                 written: written.to_owned(),
             })
         };
-        parts.and_then(read).ok_or_else(|| {
-            let mistake = Mistake {
-                file: "command line".to_owned(),
-                path: String::new(),
-                found: format!("{written:?}"),
-                expected: "path=value, such as control.intervals=80".to_owned(),
-                nearest: None,
-                source: None,
-                overridden: None,
-            };
-            mistake.into()
-        })
+        let expected = "path=value, such as control.intervals=80";
+        (parts.and_then(read)).ok_or_else(|| typed_wrong(None, format!("{written:?}"), expected))
     }
 
     /// Refuses two overrides of one place.
@@ -55,16 +45,8 @@ impl Override {
         for written in written {
             let next = Self::parse(written)?;
             if let Some(known) = known.iter().find(|known| known.place == next.place) {
-                let mistake = Mistake {
-                    file: "command line".to_owned(),
-                    path: next.place.to_string(),
-                    found: format!("{:?} and {:?}", known.written, next.written),
-                    expected: "one value".to_owned(),
-                    nearest: None,
-                    source: None,
-                    overridden: Some(next.typed),
-                };
-                return Err(mistake.into());
+                let found = format!("{:?} and {:?}", known.written, next.written);
+                return Err(typed_wrong(Some(next.typed), found, "one value"));
             }
             known.push(next);
         }
@@ -111,6 +93,20 @@ impl Override {
         document.replace(bytes, &missing.written(&self.value));
         Ok(())
     }
+}
+
+/// A mistake of what is typed, of an override with its place.
+fn typed_wrong(place: Option<JsonPath>, found: String, expected: &str) -> SceneError {
+    let mistake = Mistake {
+        file: "command line".to_owned(),
+        path: place.as_ref().map_or_else(String::new, JsonPath::to_string),
+        found,
+        expected: expected.to_owned(),
+        nearest: None,
+        source: None,
+        overridden: place,
+    };
+    mistake.into()
 }
 
 /// The value in a place of a text, where there is one.

@@ -4,22 +4,6 @@ use crate::sparse::multigrid::block_rows::BlockRows;
 use crate::sparse::multigrid::node_grid::{COMPONENTS, GridNode, NEIGHBOURS, OWN};
 use std::sync::Arc;
 
-/// Corners of an element, one after the other along an edge.
-const EDGES: [[usize; 2]; 12] = [
-    [0, 1],
-    [1, 2],
-    [2, 3],
-    [3, 0],
-    [4, 5],
-    [5, 6],
-    [6, 7],
-    [7, 4],
-    [0, 4],
-    [1, 5],
-    [2, 6],
-    [3, 7],
-];
-
 /// A mesh of hexahedra whose nodes are on no grid.
 #[derive(Clone, Debug, PartialEq)]
 pub struct NodeMesh {
@@ -29,19 +13,8 @@ pub struct NodeMesh {
     pub elements: Vec<[u32; 8]>,
     /// Unknowns of each node by component; `None` where the value is given.
     pub unknowns: Vec<[Option<u32>; COMPONENTS]>,
-}
-
-impl NodeMesh {
     /// Length of the shortest edge in mm.
-    pub fn shortest_edge(&self) -> f64 {
-        let edges = self.elements.iter().flat_map(|nodes| {
-            EDGES.map(|ends| {
-                let [a, b] = ends.map(|end| self.places[nodes[end] as usize]);
-                distance(a, b)
-            })
-        });
-        edges.fold(f64::INFINITY, f64::min)
-    }
+    pub shortest_edge: f64,
 }
 
 /// Distance of two places.
