@@ -12,7 +12,8 @@
 //! the same again and again                       → the law of the regulator      Source::Regulator, and a new plan
 //! ```
 //!
-//! A step does a bounded amount of work and allocates nothing. `workflow/receding/state.rs` finds the state from readings, and predicts it over a delay:
+//! A step does a bounded amount of work and allocates nothing: one iteration, and up to three further ones where the bounds of limits cut it.
+//! `workflow/receding/state.rs` finds the state from readings, and predicts it over a delay:
 //! the plan begins where its inputs act. Lasting forces enter the plan with its preparation.
 
 use crate::coordinates::Configuration;
@@ -35,6 +36,8 @@ const ABSURD: f64 = 1.0;
 const ABSURD_RATE: f64 = 10.0;
 /// Residual of the equations from which on a plan that does not improve has failed.
 const FAR: f64 = 1.0;
+/// Most further iterations of a step that the bounds of limits cut.
+const FURTHER: usize = 3;
 /// Iterations of the first plan, and the residual at which they end.
 const FIRST: usize = 100;
 const SMALL: f64 = 1e-9;
@@ -241,6 +244,7 @@ impl<'h> RecedingHorizon<'h> {
         if self.prepared == Some(true) && !is_far {
             let full = &mut self.points[0];
             if self.iteration.advance(&self.changes, &self.rows, full) {
+                self.iterate_further();
                 self.failures = 0;
                 self.read(0);
                 return Source::Plan;
@@ -253,6 +257,25 @@ impl<'h> RecedingHorizon<'h> {
         self.state.regulate(self.interval, &mut self.inputs);
         self.follow(self.interval);
         Source::Regulator
+    }
+
+    /// Iterates a few times more from the measured state, where the bounds of limits cut the step.
+    fn iterate_further(&mut self) {
+        for _ in 0..FURTHER {
+            if !self.iteration.is_cut {
+                return;
+            }
+            self.stay();
+            let Iteration { program, .. } = &mut self.iteration;
+            for (momentum, &c) in program.momentum.iter_mut().zip(&program.layout.inert) {
+                *momentum = self.momenta[self.of.coordinates()[c]];
+            }
+            let full = &mut self.points[0];
+            if !self.iteration.prepare() || !self.iteration.advance(&self.changes, &self.rows, full)
+            {
+                return;
+            }
+        }
     }
 
     /// Changes nothing of the state at the start.

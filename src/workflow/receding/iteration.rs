@@ -23,6 +23,8 @@ use crate::workflow::receding::matrix::{Matrix, held, kinds};
 
 /// A point starts no nearer to its bounds than this part of their distance, or of one.
 const INSIDE: f64 = 1e-4;
+/// A multiplier of a bound differs from μ over the distance by no more than the first factor, that of a slack by no more than the second one.
+const NEAR: [f64; 2] = [1e4, 1e2];
 
 /// Conditions that a point does not meet yet.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
@@ -67,6 +69,8 @@ pub(super) struct Iteration<N> {
     weights: Vec<f64>,
     pub(super) solution: Vec<f64>,
     pub(super) step: Vec<f64>,
+    /// True if a bound cut the last step of the slack of a limit.
+    pub(super) is_cut: bool,
     pub(super) solver: Solver,
 }
 
@@ -137,6 +141,7 @@ impl<N: Nlp> Iteration<N> {
             solution: zeros(order),
             weights: zeros(all),
             step: zeros(all),
+            is_cut: false,
             program,
             barrier,
             bounds,
@@ -168,9 +173,15 @@ impl<N: Nlp> Iteration<N> {
 
     /// Puts a variable inside its bounds, with the multipliers of its place.
     pub(super) fn centre(&mut self, i: usize) {
-        if self.unknowns[i].is_none() {
-            return;
+        if self.unknowns[i].is_some() {
+            self.put_inside(i);
+            self.z[0][i] = self.barrier / (self.x[i] - self.bounds[0][i]);
+            self.z[1][i] = self.barrier / (self.bounds[1][i] - self.x[i]);
         }
+    }
+
+    /// Puts a variable inside its bounds.
+    fn put_inside(&mut self, i: usize) {
         let [low, high] = [self.bounds[0][i], self.bounds[1][i]];
         let range = if (high - low).is_finite() {
             high - low
@@ -179,8 +190,28 @@ impl<N: Nlp> Iteration<N> {
         };
         let margin = INSIDE * range;
         self.x[i] = self.x[i].max(low + margin).min(high - margin);
-        self.z[0][i] = self.barrier / (self.x[i] - low);
-        self.z[1][i] = self.barrier / (high - self.x[i]);
+    }
+
+    /// A multiplier of a bound of variable or slack `i` at a distance, near that of its place.
+    pub(super) fn near(&self, i: usize, z: f64, distance: f64) -> f64 {
+        let of_place = self.barrier / distance;
+        let near = NEAR[usize::from(i >= self.columns)];
+        z.clamp(of_place / near, of_place * near)
+    }
+
+    /// Gives slacks the values of their rows, inside their bounds, so that a limit that is kept leaves no residual.
+    fn renew_slacks(&mut self) {
+        for row in 0..self.slacks.len() {
+            let Some(slack) = self.slacks[row] else {
+                continue;
+            };
+            self.x[slack] = self.g[row];
+            self.put_inside(slack);
+            let below = self.x[slack] - self.bounds[0][slack];
+            let above = self.bounds[1][slack] - self.x[slack];
+            self.z[0][slack] = self.near(slack, self.z[0][slack], below);
+            self.z[1][slack] = self.near(slack, self.z[1][slack], above);
+        }
     }
 
     /// Evaluates and factorises at the point; false if there are no factors of a minimum.
@@ -190,6 +221,7 @@ impl<N: Nlp> Iteration<N> {
         self.program.constraint(x, &mut self.g);
         self.program.jacobian(x, &mut self.jacobian_values);
         self.program.hessian(x, 1.0, y, &mut self.hessian_values);
+        self.renew_slacks();
         self.set_right();
         if !self.right.iter().all(|value| value.is_finite()) {
             return false;
