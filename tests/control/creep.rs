@@ -1,13 +1,15 @@
 //! Control of rubber that creeps.
 
 use crate::common::cases::{control, hold};
-use crate::common::trunk;
-use proboscis::control::problem::{BoundaryState, Rest, Task};
+use crate::common::robot::Robot;
+use crate::common::{receding, trunk};
+use proboscis::control::problem::{BoundaryState, Regulator, Rest, Task};
+use proboscis::feedback::Controller;
 use proboscis::files::read_problem;
-use proboscis::model::Role;
 use proboscis::model::system::{
     Discretisation, ElementKind, Fidelity, MaxwellBranch, MaxwellBranches,
 };
+use proboscis::model::{Model, Role};
 use proboscis::workflow::{SolveLimits, optimise};
 use std::ops::ControlFlow;
 use std::path::Path;
@@ -95,4 +97,43 @@ fn a_muscle_of_finite_elements_that_creeps_is_steered() {
         "{turned} {}",
         largest(last)
     );
+}
+
+/// What a regulator holds is at rest: the rubber has relaxed there, though not yet at the end of the motion. Under the gains the robot comes
+/// to its goal.
+#[test]
+fn a_goal_is_held_where_rubber_has_relaxed() {
+    let creeping = "scene.materials.silicone.maxwell=[{\"shear_modulus\": \"60 kPa\", \"relaxation_time\": \"0.1 s\"}]";
+    let pair = receding::problem("pair.json", &[creeping]);
+    let horizon = receding::horizon(&pair, &Regulator::default(), 4);
+    let law = horizon.law();
+    let held = law.held.as_ref().unwrap();
+    let memory = law.measured.iter().position(|one| one.is_memory).unwrap();
+    let at_end = law.at(law.duration() - 0.5 * law.h);
+    let relaxed = held.state[memory] - at_end.state[memory];
+    assert!(relaxed.abs() > 0.01, "{relaxed}");
+    let model = Model::new(pair.0.clone(), None, law.h, &[]).unwrap();
+    let mut robot = Robot::new(&model, 10);
+    let end = 120.0 * law.h;
+    let mut at_rest = Robot::new(&model, 10);
+    let own = model.coordinate_count();
+    let of_held = at_rest.z[..own].iter_mut().zip(&held.state);
+    of_held.for_each(|(z, value)| *z = *value);
+    let before = at_rest.z.clone();
+    at_rest.go(law.h, &held.inputs);
+    for (z, before) in at_rest.z[..own].iter().zip(&before) {
+        assert!((z - before).abs() < 1e-9, "{z} {before}");
+    }
+    let mut regulator = Controller::new(law, law.h, 0.0);
+    let mut inputs = vec![0.0; law.inputs.len()];
+    let mut time = 0.0;
+    while time < end {
+        let state = robot.measure();
+        regulator.sample(time, &state[..law.measured.len()]);
+        regulator.inputs(time, time, &mut inputs);
+        robot.go(law.h, &inputs);
+        time += law.h;
+    }
+    let off = robot.z[0] - held.state[0];
+    assert!(held.state[0] > 0.1 && off.abs() < 1e-4, "{off} rad");
 }

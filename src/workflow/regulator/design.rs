@@ -12,6 +12,7 @@ use crate::workflow::regulator::regulated::{MOST, NoRegulator, RegulatedStep};
 use nalgebra::DMatrix;
 
 /// Coordinates and momenta at an instant.
+#[derive(Clone)]
 pub(super) struct State {
     pub(super) z: Vec<f64>,
     pub(super) momentum: Vec<f64>,
@@ -33,6 +34,10 @@ pub(super) struct Design<'a> {
     /// Places of the coordinates, and of their momenta in the state, on which lasting forces act.
     pub(super) forced: Vec<[usize; 2]>,
     pub(super) h: f64,
+    /// The state at rest that is held: at first the end of the optimum.
+    goal: State,
+    /// True if none is known.
+    pub(super) is_restless: bool,
 }
 
 impl<'a> Design<'a> {
@@ -40,7 +45,7 @@ impl<'a> Design<'a> {
         model: &'a Model,
         control: &Control,
         task: &'a Regulator,
-        discrete: &'a DiscreteTrajectory,
+        (discrete, rest): (&'a DiscreteTrajectory, Option<&[f64]>),
     ) -> Result<Self, NoRegulator> {
         let scalars = model.variables.of(Time::Interval);
         let mut inputs = step_inputs(model);
@@ -66,7 +71,7 @@ impl<'a> Design<'a> {
         if inputs.is_empty() {
             return Err(NoRegulator::NoInput);
         }
-        let linearisation = Linearisation::new(model, &inputs).map_err(NoRegulator::State)?;
+        let mut linearisation = Linearisation::new(model, &inputs).map_err(NoRegulator::State)?;
         if linearisation.size() > MOST {
             return Err(NoRegulator::Large(linearisation.size()));
         }
@@ -81,7 +86,7 @@ impl<'a> Design<'a> {
         };
         let forced = places.clone().filter_map(forced);
         let forced = forced.filter(|_| lasting.is_some()).collect();
-        Ok(Self {
+        let mut out = Self {
             model,
             task,
             discrete,
@@ -90,10 +95,21 @@ impl<'a> Design<'a> {
             momenta: linearisation.momenta().to_vec(),
             forced,
             integrated: places.filter(|_| task.integral > 0.0).collect(),
-            inputs,
+            goal: State {
+                z: discrete.z.last().expect("an instant").clone(),
+                momentum: vec![0.0; model.coordinate_count()],
+            },
+            is_restless: false,
+            inputs: inputs.clone(),
             coordinates,
             h: discrete.times[1] - discrete.times[0],
-        })
+        };
+        if let Some(rest) = rest {
+            let found = out.at_rest(&mut linearisation, &model.scalars(rest));
+            out.is_restless = found.is_none();
+            out.goal = found.unwrap_or(out.goal);
+        }
+        Ok(out)
     }
 
     /// The motion from a momentum under the inputs of the optimum, in short steps: its states at the instants.
@@ -111,12 +127,9 @@ impl<'a> Design<'a> {
         Ok(states)
     }
 
-    /// The state at rest at the end of the optimum.
-    pub(super) fn goal(&self) -> State {
-        State {
-            z: self.discrete.z.last().expect("an instant").clone(),
-            momentum: vec![0.0; self.model.coordinate_count()],
-        }
+    /// The state at rest that is held.
+    pub(super) fn goal(&self) -> &State {
+        &self.goal
     }
 
     /// Number of the short steps of an interval.

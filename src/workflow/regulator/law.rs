@@ -102,7 +102,7 @@ impl Design<'_> {
         // The end is the goal, where that is held.
         let goal = is_held.then(|| self.goal());
         let motion = motion[..motion.len() - usize::from(is_held)].iter();
-        let instants: Vec<_> = motion.chain(&goal).map(|at| map.placed(&at.z)).collect();
+        let instants: Vec<_> = motion.chain(goal).map(|at| map.placed(&at.z)).collect();
         let moving = self.model.moving_markers().into_iter();
         let path = |(marker, vector): (usize, usize)| {
             let name = self.model.system.markers[marker].name.clone();

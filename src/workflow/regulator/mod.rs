@@ -9,6 +9,7 @@ mod law;
 mod observer;
 mod rates;
 mod regulated;
+mod rest;
 
 use crate::control::problem::{Control, Regulator};
 use crate::dynamics::{DiscreteTrajectory, Linearisation};
@@ -33,7 +34,7 @@ pub fn regulator(
     momentum: &[f64],
     rest: Option<&[f64]>,
 ) -> Result<Regulated, NoRegulator> {
-    let of = Design::new(model, control, task, discrete)?;
+    let of = Design::new(model, control, task, (discrete, rest))?;
     of.regulated(momentum, rest)
 }
 
@@ -52,7 +53,7 @@ pub(crate) fn predicting(
         delay: 0.0,
         ..task.clone()
     };
-    let of = Design::new(model, control, &now, discrete)?;
+    let of = Design::new(model, control, &now, (discrete, rest))?;
     let mut out = of.regulated(momentum, rest)?;
     if task.delay > 0.0 && out.law.observer.is_none() {
         out.law.observer = Some(of.whole(&out, &of.motion(momentum)?));
@@ -130,12 +131,13 @@ impl Design<'_> {
         linearisation: &mut Linearisation<'_>,
         rest: &[f64],
     ) -> Result<(RegulatedStep, HeldGain), String> {
-        let model = self.model;
-        let rest = model.scalars(rest);
+        if self.is_restless {
+            return Err("no state at rest near the end of the motion is known".to_owned());
+        }
         let goal = self.goal();
-        let step = self.linearised(linearisation, &goal, &rest);
+        let step = self.linearised(linearisation, goal, &self.model.scalars(rest));
         let step = step.ok_or("the linearised step there has no result")?;
-        let mut step = self.augmented(&step, &goal);
+        let mut step = self.augmented(&step, goal);
         let (scales, scaled) = self.scaled(&step);
         let held = scaled.for_ever();
         let mut held = held.map_err(|reason| self.reason(reason))?;

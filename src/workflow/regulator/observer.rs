@@ -146,7 +146,7 @@ impl Design<'_> {
             return Vec::new();
         }
         let end = self.measured(motion.last().expect("an instant"));
-        let goal = self.measured(&self.goal());
+        let goal = self.measured(self.goal());
         end.iter().zip(goal).map(|(end, goal)| end - goal).collect()
     }
 
