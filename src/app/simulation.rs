@@ -126,7 +126,9 @@ fn disturbed(
     let elapsed = run.began.elapsed().as_secs_f64();
     let seconds = run.request.max_seconds.map(|limit| limit - elapsed);
     let found = tasks::disturbed(&run.loaded.disturbed, ended, seconds);
-    let (loops, left_out) = found.map_err(CommandError::in_file(&run.request.input))?;
+    let found = found.map_err(CommandError::in_file(&run.request.input));
+    let (loops, left_out, stopped) = found?;
+    ended.stopped = ended.stopped.or(stopped);
     if let Some(closed) = &mut ended.closed_loop {
         closed.disturbance = loops.iter().map(DisturbedLoop::report).collect();
     }

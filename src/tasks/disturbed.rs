@@ -1,7 +1,7 @@
 //! Closed loops with parts of their disturbance.
 
 use crate::control::problem::Disturbed;
-use crate::ipopt::interrupt;
+use crate::ipopt::{Status, interrupt};
 use crate::tasks::simulate::{SimulationRequest, SimulationResult, simulate};
 use crate::workflow::WorkflowError;
 use crate::workflow::closed_loop::DisturbedLoop;
@@ -11,8 +11,8 @@ use std::time::Instant;
 /// The part that is the problem itself.
 const WHOLE: f64 = 1.0;
 
-/// Closed loops with all parts of a disturbance, next to that of the whole, which has been simulated; and reasons why some are left out. They end after a
-/// number of seconds.
+/// Closed loops with all parts of a disturbance, next to that of the whole, which has been simulated; reasons why some are left out; and that to stop. They
+/// end after a number of seconds.
 ///
 /// # Errors
 /// A model or a start does not exist.
@@ -20,11 +20,11 @@ pub fn disturbed(
     parts: &[Disturbed],
     whole: &SimulationResult,
     seconds: Option<f64>,
-) -> Result<(Vec<DisturbedLoop>, Vec<String>), WorkflowError> {
+) -> Result<(Vec<DisturbedLoop>, Vec<String>, Option<Status>), WorkflowError> {
     let began = Instant::now();
-    let (mut loops, mut left_out) = (Vec::new(), Vec::new());
+    let (mut loops, mut left_out, mut stopped) = (Vec::new(), Vec::new(), None);
     if whole.closed_loop.is_none() {
-        return Ok((loops, left_out));
+        return Ok((loops, left_out, stopped));
     }
     let go_on = &mut |_: usize, _: &_, _: &_| match interrupt::stop() {
         Some(_) => ControlFlow::Break(()),
@@ -39,10 +39,18 @@ pub fn disturbed(
                     seconds: seconds.map(|limit| limit - began.elapsed().as_secs_f64()),
                     ..SimulationRequest::default()
                 };
-                simulated = simulate(system, task, request, go_on)?;
+                match simulate(system, task, request, go_on) {
+                    Err(WorkflowError::Stopped(status)) => {
+                        left_out.push(not_whole(*size));
+                        stopped = Some(status);
+                        continue;
+                    }
+                    found => simulated = found?,
+                }
                 &simulated
             }
         };
+        stopped = stopped.or(found.stopped);
         if let Some(failure) = &found.simulated.failure {
             left_out.push(format!(
                 "the motion with {size} of the disturbance ends early: {failure}"
@@ -54,10 +62,12 @@ pub fn disturbed(
                 times: found.simulated.discrete.times.clone(),
                 closed: closed.clone(),
             }),
-            None => left_out.push(format!(
-                "{size} of the disturbance was not simulated to the end: the run was stopped before"
-            )),
+            None => left_out.push(not_whole(*size)),
         }
     }
-    Ok((loops, left_out))
+    Ok((loops, left_out, stopped))
+}
+
+fn not_whole(size: f64) -> String {
+    format!("{size} of the disturbance was not simulated to the end: the run was stopped before")
 }

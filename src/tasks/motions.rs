@@ -105,10 +105,11 @@ fn held_apart(motions: &Motions, list: &[SolveResult]) -> Option<String> {
     })
 }
 
-/// The verdict on all: the word of the first that is not solved, and the reasons of all of these.
+/// The verdict on all: the word of the first that is not solved, or not to the whole tolerance, and the reasons of all of these.
 fn verdict(motions: &[Motion], list: &[SolveResult]) -> Verdict {
     let verdicts = || list.iter().map(|result| &result.verdict);
     let first = verdicts().find(|verdict| !verdict.is_solved);
+    let weaker = verdicts().find(|verdict| verdict.word != "solved");
     let messages: Vec<&String> = verdicts()
         .filter_map(|verdict| verdict.message.as_ref())
         .collect();
@@ -126,7 +127,7 @@ fn verdict(motions: &[Motion], list: &[SolveResult]) -> Verdict {
         }
     };
     Verdict {
-        word: first.map_or("solved", |verdict| verdict.word),
+        word: first.or(weaker).map_or("solved", |verdict| verdict.word),
         is_solved: first.is_none(),
         message,
     }

@@ -43,7 +43,7 @@ pub struct SimulationRequest {
 pub struct SimulationResult {
     /// The motion, on the grid that was taken.
     pub simulated: Simulated,
-    /// Status of a run that was stopped before its end.
+    /// Status of a run that was stopped before its end, or before that of the motion to which a controller is compared.
     pub stopped: Option<Status>,
     /// Estimated errors, where an accuracy was wanted.
     pub accuracy: Option<Accuracy>,
@@ -112,6 +112,7 @@ impl SimulationResult {
             remarks.warn("goal_missed", closed.missed(model.length()));
             remarks.warn("feedback_timing", timing(task));
             remarks.warn("plan_failed", closed.other_sources());
+            remarks.warn("open_loop_early", closed.open_loop_early());
             if let Some(limits) = &closed.limits {
                 limits.remark(&mut remarks);
             }
@@ -163,38 +164,45 @@ pub fn simulate(
             let (steps, _) = grid(task);
             let observer =
                 |model: &Model, discrete: &DiscreteTrajectory| observer(steps, model, discrete);
-            (integrate_on(system, task, begun, observer)?, None)
+            let simulated = integrate_on(system, task, begun, observer);
+            (simulated.map_err(WorkflowError::unless_stopped)?, None)
         }
         Some(wanted) => {
-            let refined = integrate_to(system, task, wanted, seconds, observer)?;
+            let refined = integrate_to(system, task, wanted, seconds, observer);
+            let refined = refined.map_err(WorkflowError::unless_stopped)?;
             (refined.run, Some(refined.accuracy))
         }
     };
     // A finer grid that was stopped leaves the motion on the one before as it is.
-    let reached = simulated.discrete.times[simulated.discrete.intervals()];
-    let is_early = reached < task.duration * (1.0 - 1e-12);
+    let is_early = ends_early(&simulated.discrete, task);
     let stopped = interrupt::stop().filter(|_| is_early);
-    let closed_loop = match stopped {
+    let (closed_loop, without) = match stopped {
         None => closed_loop(system, task, &simulated)?,
-        Some(_) => None,
+        Some(_) => (None, None),
     };
     drop(watch);
     Ok(SimulationResult {
         closed_loop,
         simulated,
-        stopped,
+        stopped: stopped.or(without),
         accuracy,
     })
 }
 
-/// The deviations of a motion under a controller from that of its law, next to those of the motion without corrections.
+/// Returns true if a motion does not last as long as it was to.
+fn ends_early(discrete: &DiscreteTrajectory, task: &Simulation) -> bool {
+    discrete.times[discrete.intervals()] < task.duration * (1.0 - 1e-12)
+}
+
+/// The deviations of a motion under a controller from that of its law, next to those of the motion without corrections, and the reason why that one was
+/// stopped.
 fn closed_loop(
     system: &System,
     task: &Simulation,
     simulated: &Simulated,
-) -> Result<Option<ClosedLoop>, WorkflowError> {
+) -> Result<(Option<ClosedLoop>, Option<Status>), WorkflowError> {
     let (Some(controller), Some(samples)) = (&task.controller, &simulated.samples) else {
-        return Ok(None);
+        return Ok((None, None));
     };
     let open = Simulation {
         controller: Some(Box::new(FeedbackControl {
@@ -207,14 +215,23 @@ fn closed_loop(
     let open = integrate_on(system, &open, None, |_, _| match interrupt::stop() {
         Some(_) => ControlFlow::Break(()),
         None => ControlFlow::Continue(()),
-    })?;
+    });
+    let open = match open.map_err(WorkflowError::unless_stopped) {
+        Err(WorkflowError::Stopped(status)) => return Ok((None, Some(status))),
+        open => open?,
+    };
+    let is_early = ends_early(&open.discrete, task);
+    let stopped = interrupt::stop().filter(|_| is_early);
+    let reason =
+        stopped.map(|status| format!("it was stopped ({})", status.word().replace('_', " ")));
     let failure = open.failure.map(|failure| failure.to_string());
-    let open = (open.discrete, failure);
+    let open = (open.discrete, failure.or(reason));
     let (model, discrete) = (&simulated.model, &simulated.discrete);
     let counts = samples.clone();
     let mut out = ClosedLoop::new(model, counts, discrete, open);
     if let Some(ahead) = &controller.ahead {
+        let _unwatched = interrupt::unwatched();
         out.limits = LoopLimits::new(ahead, (system, task), discrete)?;
     }
-    Ok(Some(out))
+    Ok((Some(out), stopped))
 }

@@ -87,7 +87,7 @@ pub(crate) fn attempt_together(
     let began = Instant::now();
     let watch = interrupt::watch(allowed.seconds);
     phase("building the model, finding start and goal");
-    let resolved = resolve_each(asked)?;
+    let resolved = resolve_each(asked).map_err(WorkflowError::unless_stopped)?;
     phase("building the program");
     let motions = program_motions(asked, &resolved);
     let PreparedTogether {
@@ -96,7 +96,8 @@ pub(crate) fn attempt_together(
         point,
         start,
         carried,
-    } = prepare_together(&motions, asked, in_common, Counted::Yes)?;
+    } = prepare_together(&motions, asked, in_common, Counted::Yes)
+        .map_err(WorkflowError::unless_stopped)?;
     let setup = began.elapsed().as_secs_f64();
     let first = motions[0];
     let options = Options {

@@ -279,6 +279,14 @@ impl ClosedLoop {
         self.tracked.iter().filter_map(line).collect()
     }
 
+    /// That the motion without corrections ends early, so that there is nothing to compare with.
+    pub fn open_loop_early(&self) -> Option<String> {
+        let reason = self.open_loop_failure.as_ref()?;
+        Some(format!(
+            "the motion without feedback, for comparison, ends early: {reason}"
+        ))
+    }
+
     /// That inputs of a controller that plans anew came from elsewhere than from its plan with what was measured.
     pub fn other_sources(&self) -> Option<String> {
         let plans = self.plans.as_ref()?;

@@ -6,7 +6,7 @@ use thiserror::Error;
 
 use crate::control::BoundaryError;
 use crate::dynamics::EquilibriumError;
-use crate::ipopt::{IpoptError, Status};
+use crate::ipopt::{IpoptError, Status, interrupt};
 use crate::model::ModelError;
 
 /// Hint at the start of a robot that nothing holds.
@@ -49,6 +49,11 @@ pub enum WorkflowError {
 }
 
 impl WorkflowError {
+    /// The stop, where this thread was to stop: what is cut short may seem wrong.
+    pub(crate) fn unless_stopped(self) -> Self {
+        interrupt::stop().map_or(self, Self::Stopped)
+    }
+
     /// Start or goal of a problem that does not exist; `task` is its key in the file.
     pub(crate) fn boundary(task: &str, error: &BoundaryError) -> Self {
         let (key, reason) = match error {

@@ -1,11 +1,17 @@
 //! Problems that no start solves: what is said of their duration, and stops on the way.
 
 use crate::verdicts::{control, kept, output_of, read};
+use proboscis::control::problem::Task;
+use proboscis::files::read_problem;
 use proboscis::ipopt::Status;
 use proboscis::ipopt::interrupt::{self, Questions};
-use proboscis::workflow::{Optimum, Shortest, SolveLimits, listen_to_phases, optimise, verified};
+use proboscis::tasks::{SimulationRequest, simulate};
+use proboscis::workflow::{
+    Iterate, Optimum, Shortest, SolveLimits, WorkflowError, listen_to_phases, optimise, verified,
+};
 use std::cell::Cell;
 use std::ops::ControlFlow;
+use std::path::Path;
 use std::rc::Rc;
 use tempfile::tempdir;
 
@@ -115,4 +121,47 @@ fn a_stop_between_grids_keeps_the_result_so_far() {
     assert_eq!(found.optimum.motion.intervals(), control.intervals);
     let note = found.note.expect("the accuracy is not reached");
     assert!(note.ends_with("it was stopped"), "{note}");
+}
+
+/// Whenever it is time to stop, a motion, a state of rest and a motion over a horizon end as stopped: no other error, and no panic.
+#[test]
+fn stops_are_no_errors() {
+    let kept = |name: &str| {
+        let path = Path::new(env!("CARGO_MANIFEST_DIR")).join(format!("problems/{name}.json"));
+        read_problem(&path, &[]).unwrap()
+    };
+    let mut stopped = 0;
+    for (name, counts) in [("pair_receding", 400), ("tendon_finger_control", 150)] {
+        let loaded = kept(name);
+        for count in (0..counts).step_by(7) {
+            let questions = Questions::allowed(count);
+            let watch = interrupt::watch_questions(&questions);
+            let found = match &loaded.task {
+                Task::Simulate(task) => {
+                    let request = SimulationRequest::default();
+                    let go_on = &mut |_: usize, _: &_, _: &_| match interrupt::stop() {
+                        Some(_) => ControlFlow::Break(()),
+                        None => ControlFlow::Continue(()),
+                    };
+                    let found = simulate(&loaded.system, task, request, go_on);
+                    found.map(|found| found.word() != "simulated")
+                }
+                Task::Control(control) => {
+                    let limits = SolveLimits::default();
+                    let go_on = &mut |_: &Iterate<'_>| ControlFlow::Continue(());
+                    let found = optimise(&loaded.system, control, None, limits, go_on);
+                    found.map(|found| !found.is_solved())
+                }
+                _ => unreachable!("of two kinds"),
+            };
+            drop(watch);
+            let is_stopped = match found {
+                Err(WorkflowError::Stopped(_)) => true,
+                Err(error) => panic!("{name} {count}: {error}"),
+                Ok(is_stopped) => is_stopped,
+            };
+            stopped += usize::from(is_stopped);
+        }
+    }
+    assert!(stopped > 50, "{stopped}");
 }

@@ -313,6 +313,7 @@ impl<'m> Statics<'m> {
             let mut update = std::mem::take(&mut self.residual);
             self.solve_for_update(&mut update);
             if let Some(status) = interrupt::stop() {
+                self.residual = update;
                 return Err(EquilibriumError::Stopped(status));
             }
             let size = self.size(&update);

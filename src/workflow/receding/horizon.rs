@@ -9,7 +9,7 @@ use crate::control::{
 };
 use crate::dynamics::{DiscreteTrajectory, Linearisation, NoState, Start, step_inputs};
 use crate::feedback::Law;
-use crate::ipopt::{IpoptError, Options, StartingPoint, Status, solve};
+use crate::ipopt::{IpoptError, Options, StartingPoint, Status, interrupt, solve};
 use crate::model::{Model, System, Time};
 use crate::nlp::Nlp;
 use crate::workflow::error::WorkflowError;
@@ -145,12 +145,12 @@ impl Horizon {
         let limits = SolveLimits::default();
         let go_on = &mut |_: &Iterate<'_>| ControlFlow::Continue(());
         let optimum = optimise(system, control, None, limits, go_on);
-        let optimum = optimum.map_err(|error| match error {
+        let optimum = optimum.map_err(|error| match error.unless_stopped() {
             WorkflowError::Stopped(status) => NoHorizon::Stopped(status),
-            WorkflowError::NoEquilibrium { .. } => NoHorizon::Unsolved(error.to_string()),
+            error @ WorkflowError::NoEquilibrium { .. } => NoHorizon::Unsolved(error.to_string()),
             error => NoHorizon::Program(error.to_string()),
         })?;
-        if let Some(status) = optimum.stopped {
+        if let Some(status) = optimum.stopped.or_else(interrupt::stop) {
             return Err(NoHorizon::Stopped(status));
         }
         if !optimum.is_solved() {
@@ -240,6 +240,8 @@ impl Horizon {
     /// The program of the horizon at the start of the motion.
     pub(super) fn program(&self) -> Program<'_> {
         let guess = self.guess();
+        // A moment's work that stays whole when it is time to stop.
+        let _unwatched = interrupt::unwatched();
         let program = Transcription::of_any(&self.model, &self.boundary, &self.control, &guess);
         // Nothing stops it, and nothing else is an error.
         let program = program.expect("a program whose equations are not counted");
