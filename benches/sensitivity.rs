@@ -1,6 +1,6 @@
 //! Time of sensitivities as a part of that of the solve: the elephant trunk, with one number and with five, and two outcomes by the five, interleaved.
 //!
-//! `cargo bench --bench sensitivity`
+//! `cargo bench --bench sensitivity`; with `-- --once 5` once to five numbers, for one who counts instructions.
 
 use proboscis::control::problem::{Control, OutcomeOf, Task};
 use proboscis::files::read_problem;
@@ -59,7 +59,18 @@ fn median(mut list: Vec<f64>) -> f64 {
     list[list.len() / 2]
 }
 
+/// Sensitivities to some numbers, once.
+fn once(count: usize) {
+    let asked = problem(count);
+    let optimum = solved(&asked);
+    black_box(sensitivities(&asked.0, &asked.1, &optimum.motion)).expect("sensitivities");
+}
+
 fn main() {
+    let mut arguments = std::env::args().skip_while(|word| word != "--once");
+    if let Some(count) = arguments.nth(1) {
+        return once(count.parse().expect("a number after --once"));
+    }
     let asked = [1, NUMBERS.len()].map(problem);
     let optimum = solved(&asked[0]);
     let (mut solves, mut one, mut all) = (Vec::new(), Vec::new(), Vec::new());

@@ -1,7 +1,7 @@
 //! Derivatives of an element by sought parameters, and by the arguments of the element from those by the arguments of its formula.
 
 use crate::functional::law::{LawElement, MOST_PARAMETERS, Move};
-use crate::math::{Derivatives, HyperDual, Matrix, Number, Vector};
+use crate::math::{Derivatives, Matrix, Number, Vector};
 use nalgebra::{SVector, Vector3};
 
 /// Values of the parameters of an element, as many as it has.
@@ -102,17 +102,18 @@ impl<D: Derivatives, L, const NV: usize, const NS: usize> Derivatives
 
 /// ∇E·w.
 pub(super) fn contraction<
-    D: Derivatives<HyperDual>,
+    T: Number,
+    D: Derivatives<T>,
     const NV: usize,
     const NS: usize,
     const M: usize,
 >(
     d: &D,
-    w: &SVector<HyperDual, M>,
-) -> HyperDual {
-    let mut sum = HyperDual::of(0.0);
+    w: &SVector<T, M>,
+) -> T {
+    let mut sum = T::zero();
     for i in 0..NV {
-        let along: Vector3<HyperDual> = w.fixed_rows::<3>(3 * i).into();
+        let along: Vector3<T> = w.fixed_rows::<3>(3 * i).into();
         sum += d.force(i).dot(&along);
     }
     for s in 0..NS {

@@ -1,6 +1,6 @@
 //! Elements of a formula whose constants are functions of sought parameters, some of which move the points that it reads.
 //!
-//! The formula is that of elements without parameters, over [`HyperDual`] numbers where derivatives by parameters are asked for. Parameters π have
+//! The formula is that of elements without parameters, over [`Dual`] numbers where derivatives by parameters are asked for. Parameters π have
 //! no equation, hence no direction, so that three derivatives are shared out. With the contraction D = ∇E·w,
 //!
 //! ```text
@@ -16,7 +16,7 @@ use crate::energy::Energy;
 use crate::functional::by_parameters::{ByParameters, OfElement, Values, contraction};
 use crate::functional::law::{Law, LawElement, MOST_PARAMETERS, Move};
 use crate::functional::{Kernel, Order, Sample, Scatter, VectorArg};
-use crate::math::{Derivatives, HyperDual, Local, Number, Vector};
+use crate::math::{Derivatives, Dual, HyperDual, Local, Number, Vector};
 use nalgebra::{SVector, Vector3};
 use std::fmt;
 use std::marker::PhantomData;
@@ -105,11 +105,11 @@ impl<L: Law<M>, const M: usize, const NV: usize, const NS: usize> Laws<L, M, NV,
         w
     }
 
-    /// Fills derivatives by parameter `a`, and where the contraction is asked for, those of it.
+    /// Fills first derivatives by parameter `a`, and where the contraction is asked for, those of it.
     fn first<const ORDER: usize>(
         element: &LawElement<L, NV, NS>,
         (order, sample): (Order, &Sample<'_>),
-        (a, seeded): (usize, &[HyperDual]),
+        (a, seeded): (usize, &[Dual<f64>]),
         plain: &mut ByParameters<NV, NS>,
         along: Option<&mut ByParameters<NV, NS>>,
     ) {
@@ -119,45 +119,42 @@ impl<L: Law<M>, const M: usize, const NV: usize, const NS: usize> Laws<L, M, NV,
             .formula(seeded)
             .at::<ORDER>(&p, &SVector::zeros());
         let d = local.plain::<NV>();
-        plain.rows[a] = local.value().a;
-        plain.entries[a][a] = local.value().ab;
+        plain.rows[a] = local.value().part;
         for i in 0..NV {
-            plain.columns[a][i] = d.force(i).map(|x| x.a);
+            plain.columns[a][i] = d.force(i).map(|x| x.part);
         }
         for s in 0..NS {
-            plain.mixed[a][s] = d.row(s).a;
+            plain.mixed[a][s] = d.row(s).part;
         }
         let Some(along) = along else {
             return;
         };
         let w = Self::direction(element, sample, seeded);
-        let vector = |i: usize| -> Vector3<HyperDual> { w.fixed_rows::<3>(3 * i).into() };
+        let vector = |i: usize| -> Vector3<Dual<f64>> { w.fixed_rows::<3>(3 * i).into() };
         for i in 0..NV {
-            let mut turned = Vector3::<HyperDual>::zeros();
+            let mut turned = Vector3::<Dual<f64>>::zeros();
             for j in (0..NV).filter(|&j| Plain::<L, M>::couples(i, j)) {
                 turned += d.block(i, j) * vector(j);
             }
             for s in 0..NS {
                 turned += d.column(i, s) * w[3 * NV + s];
             }
-            along.columns[a][i] = turned.map(|x| x.a);
+            along.columns[a][i] = turned.map(|x| x.part);
         }
         for s in 0..NS {
-            let mut turned = HyperDual::of(0.0);
+            let mut turned = Dual::of(0.0);
             for i in 0..NV {
                 turned += d.column(i, s).dot(&vector(i));
             }
             for t in 0..NS {
                 turned += d.entry(s, t) * w[3 * NV + t];
             }
-            along.mixed[a][s] = turned.a;
+            along.mixed[a][s] = turned.part;
         }
-        let value = contraction::<_, NV, NS, M>(&d, &w);
-        along.rows[a] = value.a;
-        along.entries[a][a] = value.ab;
+        along.rows[a] = contraction::<_, _, NV, NS, M>(&d, &w).part;
     }
 
-    /// Fills the mixed second derivative by parameters `a` and `b`, and where it is asked for, that of the contraction.
+    /// Fills the second derivative by parameters `a` and `b`, and where it is asked for, that of the contraction.
     fn second(
         element: &LawElement<L, NV, NS>,
         (order, sample): (Order, &Sample<'_>),
@@ -167,11 +164,11 @@ impl<L: Law<M>, const M: usize, const NV: usize, const NS: usize> Laws<L, M, NV,
     ) {
         let p = Self::point(element, order, sample, seeded);
         let local = element.law.formula(seeded).at::<1>(&p, &SVector::zeros());
-        plain.entries[a][b] = local.value().ab;
+        plain.entries[a][b] = local.value().part.part;
         if let Some(along) = along {
             let w = Self::direction(element, sample, seeded);
-            let value = contraction::<_, NV, NS, M>(&local.plain::<NV>(), &w);
-            along.entries[a][b] = value.ab;
+            let value = contraction::<_, _, NV, NS, M>(&local.plain::<NV>(), &w);
+            along.entries[a][b] = value.part.part;
         }
     }
 
@@ -184,27 +181,23 @@ impl<L: Law<M>, const M: usize, const NV: usize, const NS: usize> Laws<L, M, NV,
         mut along: Option<&mut ByParameters<NV, NS>>,
     ) {
         let count = element.parameters.len();
-        let constants = values.map(HyperDual::of);
         let at = (order, sample);
         for a in 0..count {
-            let mut seeded = constants;
-            seeded[a].a = 1.0;
-            for b in (0..a).filter(|_| pairs) {
-                seeded[b].b = 1.0;
-                Self::second(
-                    element,
-                    at,
-                    ((a, b), &seeded[..count]),
-                    plain,
-                    along.as_deref_mut(),
-                );
-                seeded[b].b = 0.0;
-            }
-            seeded[a].b = 1.0;
+            let mut seeded = values.map(Dual::of);
+            seeded[a].part = 1.0;
             let seeds = (a, &seeded[..count]);
             match along.as_deref_mut() {
                 None => Self::first::<1>(element, at, seeds, plain, None),
                 along => Self::first::<2>(element, at, seeds, plain, along),
+            }
+        }
+        for a in (0..count).filter(|_| pairs) {
+            for b in 0..=a {
+                let mut seeded = values.map(HyperDual::of);
+                seeded[a].value.part = 1.0;
+                seeded[b].part.value = 1.0;
+                let seeds = ((a, b), &seeded[..count]);
+                Self::second(element, at, seeds, plain, along.as_deref_mut());
             }
         }
     }
@@ -247,7 +240,7 @@ impl<L: Law<M>, const M: usize, const NV: usize, const NS: usize> Laws<L, M, NV,
             let pairs = match order {
                 Order::Gradient => false,
                 Order::Hessian => S::OF_PARAMETERS,
-                Order::Third => true,
+                Order::Third => sample.sides.parameters,
             };
             let at = (order, sample, pairs);
             Self::by_parameters(element, at, &values, &mut by, by_along.as_mut());

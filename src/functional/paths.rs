@@ -142,11 +142,9 @@ impl Seeded<'_> {
     fn parameter(&self, place: usize) -> HyperDual {
         let [a, b] = self.seeds.map(|seed| f64::from(u8::from(place == seed)));
         let value = self.sample.scalars[self.path.parameters[place]];
-        HyperDual {
-            a,
-            b,
-            ..HyperDual::of(value)
-        }
+        let mut number = HyperDual::of(value);
+        (number.value.part, number.part.value) = (a, b);
+        number
     }
 
     fn taut(&self) -> [HyperDual; 4] {
@@ -258,16 +256,16 @@ impl Derivatives for Taut<'_> {
     }
 
     fn row(&self, s: usize) -> f64 {
-        self.by([s; 2]).taut()[0].a
+        self.by([s; 2]).taut()[0].value.part
     }
 
     fn column(&self, i: usize, s: usize) -> Vector {
         let by = self.by([s; 2]);
-        by.on_argument(i, |i| by.force(i)).map(|part| part.a)
+        by.on_argument(i, |i| by.force(i)).map(|by| by.value.part)
     }
 
     fn entry(&self, s: usize, t: usize) -> f64 {
-        self.by([s, t]).taut()[0].ab
+        self.by([s, t]).taut()[0].part.part
     }
 }
 
@@ -303,16 +301,17 @@ impl Derivatives for Rates<'_> {
     }
 
     fn row(&self, s: usize) -> f64 {
-        self.contraction([s; 2]).a
+        self.contraction([s; 2]).value.part
     }
 
     fn column(&self, i: usize, s: usize) -> Vector {
         let by = self.0.by([s; 2]);
-        by.on_argument(i, |i| by.force_rate(i)).map(|part| part.a)
+        by.on_argument(i, |i| by.force_rate(i))
+            .map(|by| by.value.part)
     }
 
     fn entry(&self, s: usize, t: usize) -> f64 {
-        self.contraction([s, t]).ab
+        self.contraction([s, t]).part.part
     }
 }
 

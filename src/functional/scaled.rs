@@ -60,12 +60,12 @@ impl<E> ScaledElement<E> {
         for i in 0..self.parameters.len() {
             for j in 0..=i {
                 let mut numbers = values.map(HyperDual::of);
-                numbers[i].a = 1.0;
-                numbers[j].b = 1.0;
-                let HyperDual { a, ab, .. } = self.constant(numbers);
-                factor.slopes[i] = a;
-                factor.curvatures[i][j] = ab;
-                factor.curvatures[j][i] = ab;
+                numbers[i].value.part = 1.0;
+                numbers[j].part.value = 1.0;
+                let by = self.constant(numbers);
+                factor.slopes[i] = by.value.part;
+                factor.curvatures[i][j] = by.part.part;
+                factor.curvatures[j][i] = by.part.part;
             }
         }
         factor

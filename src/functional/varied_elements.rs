@@ -39,7 +39,7 @@ pub struct LimitVariations<const NODES: usize> {
 /// The limit with its derivatives J′ and J″ by the parameter.
 fn limit<const NODES: usize>(element: &VariedElement<NODES>, sample: &Sample<'_>) -> HyperDual {
     let mut number = HyperDual::of(sample.scalars[element.parameter]);
-    (number.a, number.b) = (1.0, 1.0);
+    (number.value.part, number.part.value) = (1.0, 1.0);
     element.limit.at(&[number])
 }
 
@@ -115,7 +115,7 @@ impl<const NODES: usize> Kernel for VariedElements<NODES> {
 
     fn energy(element: &VariedElement<NODES>, sample: &Sample<'_>) -> f64 {
         let x = middle(sample.vectors, &element.nodes);
-        let law = element.at(limit(element, sample).value);
+        let law = element.at(limit(element, sample).real());
         law.energy(&element.shape, &x, &())
     }
 
@@ -128,7 +128,7 @@ impl<const NODES: usize> Kernel for VariedElements<NODES> {
         let x = middle(sample.vectors, &element.nodes);
         let w = middle(sample.along, &element.nodes);
         let shape = &element.shape;
-        let law = element.at(limit(element, sample).value);
+        let law = element.at(limit(element, sample).real());
         let [slope, curvature] = law.law.by_limit().expect("it is Gent's law");
         let laws = [law, law.by(slope), law.by(curvature)];
         for ((law, plain), along) in laws.iter().zip(plain).zip(along) {
@@ -147,12 +147,12 @@ impl<const NODES: usize> Kernel for VariedElements<NODES> {
         LimitVariations { plain, along }: &LimitVariations<NODES>,
         to: &mut S,
     ) {
-        let HyperDual { a, ab, .. } = limit(element, sample);
+        let limit = limit(element, sample);
         let by_limit = |of, values| ByLimit {
             of,
             values,
-            slope: a,
-            curvature: ab,
+            slope: limit.value.part,
+            curvature: limit.part.part,
         };
         let of_energy = by_limit(plain, plain.each_ref().map(|local| local.energy));
         to.plain(&of_energy);

@@ -20,7 +20,7 @@ pub use digits::{no_smaller, shortest, significant};
 pub use jet::Jet;
 pub use join::cores;
 pub(crate) use join::join_if;
-pub use number::{HyperDual, Number};
+pub use number::{Dual, HyperDual, Number};
 pub(crate) use pool::has_pool;
 pub(crate) use pool::join;
 pub use random::Random;

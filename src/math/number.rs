@@ -1,4 +1,4 @@
-//! Numbers of a formula: plain ones, and those with their derivatives by two parameters.
+//! Numbers of a formula: plain ones, and those with their derivatives by one parameter or two.
 
 use nalgebra::{ClosedAddAssign, ClosedMulAssign, ClosedSubAssign, Scalar};
 use num_traits::{One, Zero};
@@ -149,98 +149,87 @@ impl Number for f64 {
     }
 }
 
-/// A hyper-dual number `value + a ε₁ + b ε₂ + ab ε₁ε₂` with ε₁² = ε₂² = 0: a number with its derivatives by two parameters and the mixed
-/// second one (Fike and Alonso, 2011).
+/// A dual number `value + part ε` with ε² = 0: a number with its derivative by a parameter. That of a dual number has the derivatives by two
+/// parameters and the mixed second one (hyper-dual numbers; Fike and Alonso, 2011); a third level has none, for want of third derivatives.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct HyperDual {
+pub struct Dual<T> {
     /// The value.
-    pub value: f64,
-    /// Derivative by the first parameter.
-    pub a: f64,
-    /// Derivative by the second parameter.
-    pub b: f64,
-    /// The mixed second derivative.
-    pub ab: f64,
+    pub value: T,
+    /// Its derivative.
+    pub part: T,
 }
 
-impl HyperDual {
-    #[inline(always)]
-    fn with(self, other: Self, f: impl Fn(f64, f64) -> f64) -> Self {
-        Self {
-            value: f(self.value, other.value),
-            a: f(self.a, other.a),
-            b: f(self.b, other.b),
-            ab: f(self.ab, other.ab),
-        }
-    }
-}
+/// A number with its derivatives by two parameters: `value.part` by the first, `part.value` by the second, and the mixed one, `part.part`.
+pub type HyperDual = Dual<Dual<f64>>;
 
-impl Number for HyperDual {
+impl<T: Number> Number for Dual<T> {
     #[inline(always)]
     fn of(value: f64) -> Self {
         Self {
-            value,
-            a: 0.0,
-            b: 0.0,
-            ab: 0.0,
+            value: T::of(value),
+            part: T::zero(),
         }
     }
 
     #[inline(always)]
     fn real(self) -> f64 {
-        self.value
+        self.value.real()
     }
 
     #[inline(always)]
     fn scaled(self, c: f64) -> Self {
-        self.with(self, |x, _| x * c)
+        Self {
+            value: self.value.scaled(c),
+            part: self.part.scaled(c),
+        }
     }
 
     #[inline(always)]
     fn map(self, f: [f64; 3]) -> Self {
         Self {
-            value: f[0],
-            a: f[1] * self.a,
-            b: f[1] * self.b,
-            ab: f[1] * self.ab + f[2] * self.a * self.b,
+            value: self.value.map(f),
+            part: self.part * self.value.map([f[1], f[2], f64::NAN]),
         }
     }
 }
 
-impl Add for HyperDual {
+impl<T: Number> Add for Dual<T> {
     type Output = Self;
 
     #[inline(always)]
     fn add(self, other: Self) -> Self {
-        self.with(other, |x, y| x + y)
-    }
-}
-
-impl Sub for HyperDual {
-    type Output = Self;
-
-    #[inline(always)]
-    fn sub(self, other: Self) -> Self {
-        self.with(other, |x, y| x - y)
-    }
-}
-
-impl Mul for HyperDual {
-    type Output = Self;
-
-    #[inline(always)]
-    fn mul(self, other: Self) -> Self {
-        let (x, y) = (self, other);
         Self {
-            value: x.value * y.value,
-            a: x.a * y.value + x.value * y.a,
-            b: x.b * y.value + x.value * y.b,
-            ab: x.ab * y.value + x.a * y.b + x.b * y.a + x.value * y.ab,
+            value: self.value + other.value,
+            part: self.part + other.part,
         }
     }
 }
 
-impl Neg for HyperDual {
+impl<T: Number> Sub for Dual<T> {
+    type Output = Self;
+
+    #[inline(always)]
+    fn sub(self, other: Self) -> Self {
+        Self {
+            value: self.value - other.value,
+            part: self.part - other.part,
+        }
+    }
+}
+
+impl<T: Number> Mul for Dual<T> {
+    type Output = Self;
+
+    #[inline(always)]
+    fn mul(self, other: Self) -> Self {
+        Self {
+            value: self.value * other.value,
+            part: self.part * other.value + self.value * other.part,
+        }
+    }
+}
+
+impl<T: Number> Neg for Dual<T> {
     type Output = Self;
 
     #[inline(always)]
@@ -249,28 +238,28 @@ impl Neg for HyperDual {
     }
 }
 
-impl AddAssign for HyperDual {
+impl<T: Number> AddAssign for Dual<T> {
     #[inline(always)]
     fn add_assign(&mut self, other: Self) {
         *self = *self + other;
     }
 }
 
-impl SubAssign for HyperDual {
+impl<T: Number> SubAssign for Dual<T> {
     #[inline(always)]
     fn sub_assign(&mut self, other: Self) {
         *self = *self - other;
     }
 }
 
-impl MulAssign for HyperDual {
+impl<T: Number> MulAssign for Dual<T> {
     #[inline(always)]
     fn mul_assign(&mut self, other: Self) {
         *self = *self * other;
     }
 }
 
-impl Zero for HyperDual {
+impl<T: Number> Zero for Dual<T> {
     #[inline(always)]
     fn zero() -> Self {
         Self::of(0.0)
@@ -282,7 +271,7 @@ impl Zero for HyperDual {
     }
 }
 
-impl One for HyperDual {
+impl<T: Number> One for Dual<T> {
     #[inline(always)]
     fn one() -> Self {
         Self::of(1.0)

@@ -6,14 +6,14 @@
 
 use crate::control::problem::{Control, OutcomeOf, Varied};
 use crate::control::{Column, Solution, Transcription};
-use crate::model::{Coordinates, Model, Role, System, Time};
+use crate::model::{Coordinates, Role, System, Time};
 use crate::sensitivity::adjoint::Outcome;
 use crate::sensitivity::direction::Direction;
 use crate::sensitivity::error::NoSensitivity;
 use crate::sensitivity::kernel::Kernel;
+use crate::sensitivity::marker_slopes::MarkerSlopes;
 use crate::sensitivity::opened::Opened;
 use crate::sensitivity::optimum::{is_place, with_kernel};
-use nalgebra::Vector3;
 
 /// Part of an interval before its start that counts as its own.
 const SNAP: f64 = 1e-6;
@@ -145,7 +145,8 @@ fn outcome(
             }
             let k = instant(time);
             let z = &opened.initial.discrete.z[k];
-            (k, marker_factors(model, z, (marker, axis)))
+            let slopes = MarkerSlopes::new(model, z);
+            (k, slopes.of(marker, axis).to_vec())
         }
         _ => (0, Vec::new()),
     };
@@ -174,23 +175,4 @@ fn outcome(
         }
     }
     Ok(out)
-}
-
-/// Derivatives of the place of a marker along an axis by coordinates.
-fn marker_factors(model: &Model, z: &[f64], (marker, axis): (usize, usize)) -> Vec<(usize, f64)> {
-    let map = &model.action.map;
-    let mut instant = map.placed(z);
-    map.tangent(&mut instant);
-    let mut along = Vector3::zeros();
-    along[axis] = 1.0;
-    let mut factors = vec![0.0; map.unknowns()];
-    map.pull_back_one(
-        model.markers[marker],
-        &instant.columns,
-        &along,
-        &mut factors,
-    );
-    factors.truncate(model.coordinate_count());
-    let factors = factors.into_iter().enumerate();
-    factors.filter(|(_, factor)| *factor != 0.0).collect()
 }

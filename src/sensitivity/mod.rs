@@ -27,6 +27,7 @@ mod gradients;
 mod kernel;
 mod linear;
 mod margins;
+mod marker_slopes;
 mod opened;
 mod optimum;
 mod range;

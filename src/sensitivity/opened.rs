@@ -126,8 +126,13 @@ impl Opened {
 
     /// The program with all columns.
     pub(super) fn program(&self) -> Result<Transcription<'_>, NoSensitivity> {
-        Transcription::of_any(&self.model, &self.boundary, &self.control, &self.initial)
-            .map_err(refused)
+        let (model, boundary) = (&self.model, &self.boundary);
+        let mut program = Transcription::of_any(model, boundary, &self.control, &self.initial)
+            .map_err(refused)?;
+        if self.sought == 0 {
+            program.hold_parameters();
+        }
+        Ok(program)
     }
 
     /// Finds the solved program in the opened one.

@@ -7,6 +7,7 @@ use crate::sensitivity::direction::Direction;
 use crate::sensitivity::directions::Directions;
 use crate::sensitivity::error::NoSensitivity;
 use crate::sensitivity::kernel::{Derivative, Kernel};
+use crate::sensitivity::marker_slopes::MarkerSlopes;
 use crate::sensitivity::opened::Opened;
 use crate::sensitivity::range::Range;
 use nalgebra::Vector3;
@@ -52,11 +53,14 @@ pub fn sensitivities(
         control,
         motion,
         |opened, kernel, directions, rows| {
+            let instants = opened.initial.discrete.z.iter();
+            let markers = instants.map(|z| MarkerSlopes::new(&opened.model, z));
+            let markers: Vec<MarkerSlopes> = markers.collect();
             let mut list = Vec::new();
             for (varied, direction) in opened.control.varied.iter().zip(directions) {
                 let derivative = kernel.along(direction)?;
                 let at = (opened, kernel.program(), rows);
-                list.push(sensitivity(varied, &derivative, at));
+                list.push(sensitivity(varied, (&derivative, &markers), at));
             }
             Ok(list)
         },
@@ -94,7 +98,7 @@ pub(super) fn with_kernel<T>(
 
 fn sensitivity(
     varied: &Varied,
-    derivative: &Derivative,
+    (derivative, markers): (&Derivative, &[MarkerSlopes]),
     (opened, program, rows): (&Opened, &Transcription<'_>, &[usize]),
 ) -> Sensitivity {
     let model = &opened.model;
@@ -130,7 +134,10 @@ fn sensitivity(
         joints: joints(model, &coordinates),
         markers: match is_place(varied) {
             true => Vec::new(),
-            false => markers(model, &opened.initial.discrete.z, &coordinates),
+            false => {
+                let instants = markers.iter().zip(&coordinates);
+                instants.map(|(slopes, row)| slopes.along(row)).collect()
+            }
         },
         multipliers: rows
             .iter()
@@ -181,31 +188,4 @@ fn joints(model: &Model, coordinates: &[Vec<f64>]) -> Vec<Vec<f64>> {
             .collect()
     };
     coordinates.iter().map(of).collect()
-}
-
-/// Derivatives of the places of the markers.
-fn markers(model: &Model, z: &[Vec<f64>], coordinates: &[Vec<f64>]) -> Vec<Vec<Vector3<f64>>> {
-    let map = &model.action.map;
-    let mut rows = vec![0.0; map.unknowns()];
-    let mut at = |(z, changes): (&Vec<f64>, &Vec<f64>)| {
-        let mut instant = map.placed(z);
-        map.tangent(&mut instant);
-        let place = |&vector: &usize| {
-            let mut out = Vector3::zeros();
-            for axis in 0..3 {
-                let mut along = Vector3::zeros();
-                along[axis] = 1.0;
-                rows.fill(0.0);
-                map.pull_back_one(vector, &instant.columns, &along, &mut rows);
-                out[axis] = rows
-                    .iter()
-                    .zip(changes)
-                    .map(|(row, change)| row * change)
-                    .sum();
-            }
-            out
-        };
-        model.markers.iter().map(place).collect()
-    };
-    z.iter().zip(coordinates).map(&mut at).collect()
 }

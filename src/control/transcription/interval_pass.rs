@@ -124,6 +124,7 @@ impl<'m> Transcription<'m> {
             model,
             layout,
             objective,
+            sides,
             workspace,
             ..
         } = self;
@@ -144,6 +145,7 @@ impl<'m> Transcription<'m> {
                 stride,
                 h: workspace.h,
                 horizon: layout.horizon,
+                sides: *sides,
                 placed: workspace.placed,
                 order,
                 limit: limit.as_ref(),

@@ -44,6 +44,7 @@ use crate::control::bounded_quantity::BoundedQuantity;
 use crate::control::guess::InitialGuess;
 use crate::control::numbering::Numbering;
 use crate::control::problem::{self, Control};
+use crate::functional::BlockMask;
 use crate::model::Model;
 use crate::nlp::{Bounds, Nlp};
 use count::overdetermined;
@@ -74,6 +75,8 @@ pub struct Transcription<'m> {
     rests: Rests,
     /// Goals and limits, those that nothing can change included.
     bounded: usize,
+    /// Second derivatives of an interval that are asked for.
+    sides: BlockMask,
     workspace: Workspace,
 }
 
@@ -132,6 +135,7 @@ impl<'m> Transcription<'m> {
             layout,
             rests: boundary.goal.rests,
             bounded: boundary.limits.list.len(),
+            sides: BlockMask::ALL,
             workspace,
         };
         out.set_scales(&initial.discrete, initial.h);
@@ -144,6 +148,11 @@ impl<'m> Transcription<'m> {
     /// was built with.
     pub fn weigh(&mut self, objective: &problem::Objective) {
         self.objective.cost.weigh(objective);
+    }
+
+    /// Leaves entries of the Hessian by two sought parameters of elements zero, for one who holds all of them.
+    pub fn hold_parameters(&mut self) {
+        self.sides.parameters = false;
     }
 
     /// Number of intervals N of the motion.

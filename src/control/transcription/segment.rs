@@ -32,6 +32,7 @@ pub(super) struct Shared<'a> {
     pub(super) stride: usize,
     pub(super) h: f64,
     pub(super) horizon: Horizon,
+    pub(super) sides: BlockMask,
     pub(super) placed: Placed,
     pub(super) order: Order,
     /// Until when intervals are evaluated.
@@ -144,6 +145,7 @@ impl Segment<'_> {
             action,
             order,
             horizon,
+            sides,
             h,
             stride,
             ..
@@ -164,7 +166,7 @@ impl Segment<'_> {
             along: &self.shared.along[of_step],
             h,
             horizon,
-            sides: BlockMask::ALL,
+            sides,
             outer: &[],
         };
         if order == Order::Third {

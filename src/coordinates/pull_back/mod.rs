@@ -148,6 +148,7 @@ impl PullBack {
         let (columns, columns_l) = columns(ends);
         let lower = BlockMask {
             blocks: [sides.blocks[0], false, sides.blocks[2], sides.blocks[3]],
+            ..sides
         };
         let (ends, h, hw) = (
             Ends { columns, columns_l },

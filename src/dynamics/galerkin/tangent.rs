@@ -69,7 +69,10 @@ impl GalerkinEquations<'_> {
 
     /// Writes the derivatives by the scalars of the samples, and those of their equations.
     pub(super) fn tangent_of_scalars(&mut self) {
-        let none = BlockMask { blocks: [false; 4] };
+        let none = BlockMask {
+            blocks: [false; 4],
+            ..BlockMask::ALL
+        };
         for (i, sample) in self.samples.iter().enumerate() {
             let weights = &sample.weights;
             let mixed = &sample.out.plain.blocks.mixed;
