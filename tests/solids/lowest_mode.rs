@@ -7,7 +7,7 @@ use nalgebra::Vector3;
 use proboscis::dynamics::{continuation, equilibrium, lowest_mode};
 use proboscis::mesh::grid::Grid;
 use proboscis::model::Model;
-use proboscis::model::system::{Solid, System};
+use proboscis::model::system::{ElementKind, Solid, System};
 
 /// Vectors of the search.
 const SOUGHT: usize = 4;
@@ -98,4 +98,30 @@ fn a_column_that_buckles_is_unstable_by_its_lowest_mode() {
     });
     assert_eq!(counts[0], 0);
     assert!(counts.contains(&2), "{counts:?}");
+}
+
+/// Columns of mean dilatation with ratios λ/μ, stable under a small weight, and buckled under a great one.
+#[test]
+fn the_lowest_mode_of_nearly_incompressible_columns_tells_what_the_inertia_tells() {
+    for ratio in [10.0, 100.0, 1e3, 1e4] {
+        let mut solid = cubes(3, rubber(0.4, None));
+        solid.element = ElementKind::Hex8Q1P0;
+        for material in &mut solid.materials {
+            material.lame_lambda = Some(ratio * material.shear_modulus);
+        }
+        let counts = [0.1, 0.4].map(|weight| {
+            let mut system = system(vec![solid.clone()]);
+            system.gravity = Some(Vector3::new(0.0, 0.0, -weight));
+            let model = Model::new(system, None, 1.0, &[]).unwrap();
+            let found = equilibrium(&model, &model.reference_coordinates(), &[1e5]).unwrap();
+            let mode = lowest_mode(&model, &found.z, &found.scalars).unwrap();
+            println!(
+                "{ratio} {weight}: {:?} {:?} {:.3e} ± {:.1e} N/mm, {} iterations",
+                found.unstable, mode.unstable, mode.stiffness, mode.bound, mode.iterations
+            );
+            assert_eq!(mode.unstable, found.unstable.map(|count| count.min(SOUGHT)));
+            mode.unstable.unwrap()
+        });
+        assert_eq!(counts, [0, 2]);
+    }
 }

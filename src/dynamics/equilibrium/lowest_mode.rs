@@ -32,6 +32,7 @@ impl Statics<'_> {
             return;
         }
         let found = grids.lowest_modes(factor, &|| interrupt::stop().is_some());
+        self.multigrid.add(grids.counted());
         let count = self.model.action.map.coordinates;
         let found = found.ok().flatten().map(|modes| {
             let unstable = modes.below_zero();

@@ -48,13 +48,6 @@ impl Hierarchy<Level> {
             (planes, free) = (coarse_planes, coarse);
         }
     }
-
-    /// Makes the right-hand side of pressures zero.
-    pub(super) fn forget_volumes(&mut self) {
-        if let Some(pressures) = &mut self.levels[0].pressures {
-            pressures.rhs.values.fill(0.0);
-        }
-    }
 }
 
 impl GridLevel for Level {

@@ -12,8 +12,6 @@ pub(super) const COUNT: usize = 4;
 /// Limit of iterations, and that where a quotient is below zero, which says enough.
 const LIMIT: usize = 150;
 const BELOW: usize = 30;
-/// Least number of iterations where none is: random vectors hold little of a mode at first.
-const LEAST: usize = 8;
 /// Part of the lowest eigenvalue below which its residual has to fall.
 const ACCURACY: f64 = 0.1;
 /// Directions that are combinations of others up to this part are left out.
@@ -32,8 +30,16 @@ pub(super) trait SymmetricMatrix {
         is_over: IsOver<'_>,
     ) -> Result<Option<[f64; COUNT]>, Stopped>;
 
+    /// Least number of iterations where no quotient is below zero: random vectors hold little of a mode at first.
+    fn least_iterations(&self) -> usize;
+
     /// Writes approximations of A⁻¹ r.
-    fn precondition(&mut self, r: &[AtNode], x: &mut [AtNode]);
+    fn precondition(
+        &mut self,
+        r: &[AtNode],
+        x: &mut [AtNode],
+        is_over: IsOver<'_>,
+    ) -> Result<(), Stopped>;
 }
 
 /// Vectors with their quotients.
@@ -82,7 +88,7 @@ pub(super) fn lowest(
         let residuals = search.leave(&quotients);
         let [least, limit] = match quotients[0] < 0.0 {
             true => [0, BELOW],
-            false => [LEAST, LIMIT],
+            false => [matrix.least_iterations(), LIMIT],
         };
         if iterations >= limit || (iterations >= least && are_found(&quotients, &residuals)) {
             break;
@@ -92,7 +98,7 @@ pub(super) fn lowest(
             products,
             residual,
         } = &mut search;
-        matrix.precondition(residual, w);
+        matrix.precondition(residual, w, is_over)?;
         project(x, w);
         if matrix.apply(w, &mut products[1], is_over)?.is_none() {
             return Ok(None);

@@ -12,7 +12,7 @@ use crate::sparse::multigrid::node_grid::{
     COMPONENTS, ENTRIES, GridNode, NodeBlock, NodeGrid, PLANES, indices,
 };
 use crate::sparse::multigrid::node_mesh::{BlockPlaces, NodeMesh};
-use crate::sparse::multigrid::stiffness::{LowestModes, lowest_modes};
+use crate::sparse::multigrid::stiffness::{LowestModes, Workspace, lowest_modes};
 use std::sync::Arc;
 
 /// Iterations for each digit, relative to those with fresh grids, above which grids are made anew.
@@ -243,7 +243,13 @@ impl Multigrid {
             return Ok(None);
         }
         self.parts.symmetrise();
-        let Ok(Some(pairs)) = lowest_modes(&mut self.parts, factor, is_over)? else {
+        let workspace = Workspace {
+            krylov: &mut self.krylov,
+            rhs: &mut self.rhs,
+            x: &mut self.x,
+            iterations: &mut self.report.iterations,
+        };
+        let Ok(Some(pairs)) = lowest_modes(&mut self.parts, workspace, factor, is_over)? else {
             return Ok(None);
         };
         let lowest = self.places.iter().map(|&place| match place as usize {

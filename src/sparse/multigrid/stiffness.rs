@@ -6,12 +6,17 @@ use crate::math::{IsOver, Random, Stopped, join};
 use crate::sparse::Singular;
 use crate::sparse::multigrid::boxes::Parts;
 use crate::sparse::multigrid::field::Field;
+use crate::sparse::multigrid::krylov::Krylov;
 use crate::sparse::multigrid::lobpcg::{AtNode, COUNT, Pairs, SymmetricMatrix, lowest};
 use crate::sparse::multigrid::node_grid::{COMPONENTS, ENTRIES, NEIGHBOURS, OWN, offsets};
 use crate::sparse::multigrid::potentials::{POTENTIAL, Potentials};
 
 /// Rounding of a product, relative to the largest entry of the diagonal.
 const ROUNDING: f64 = 1e-13;
+/// Residual of corrections of nearly incompressible blocks, relative to that of none.
+const OF_CORRECTION: f64 = 1e-2;
+/// Least number of iterations with such corrections, which are inverse iterations, and with those of one cycle.
+const LEAST: [usize; 2] = [4, 8];
 
 /// The lowest modes of a stiffness.
 #[derive(Clone, Debug, PartialEq)]
@@ -52,11 +57,22 @@ struct Stiffness<'p> {
     fields: Vec<Field<AtNode>>,
     by_potentials: Vec<AtNode>,
     potentials: Option<Potentials>,
+    workspace: Workspace<'p>,
+}
+
+/// Storage of solutions with the whole matrix, as they are made for any right-hand side.
+pub(super) struct Workspace<'p> {
+    pub(super) krylov: &'p mut Krylov,
+    pub(super) rhs: &'p mut [f64],
+    pub(super) x: &'p mut [f64],
+    /// Iterations so far.
+    pub(super) iterations: &'p mut usize,
 }
 
 /// Finds the lowest modes of a factor times a matrix, whose grids are made.
 pub(super) fn lowest_modes(
     parts: &mut Parts,
+    workspace: Workspace<'_>,
     factor: f64,
     is_over: IsOver<'_>,
 ) -> Result<Result<Option<Pairs>, Singular>, Stopped> {
@@ -85,6 +101,7 @@ pub(super) fn lowest_modes(
         potentials,
         factor,
         parts,
+        workspace,
     };
     lowest(&mut stiffness, start, is_over).map(Ok)
 }
@@ -225,27 +242,82 @@ impl SymmetricMatrix for Stiffness<'_> {
         Ok(Some(errors.map(|error| error + self.rounding)))
     }
 
-    fn precondition(&mut self, r: &[AtNode], x: &mut [AtNode]) {
+    fn least_iterations(&self) -> usize {
+        LEAST[usize::from(self.parts.volumes.is_empty())]
+    }
+
+    fn precondition(
+        &mut self,
+        r: &[AtNode],
+        x: &mut [AtNode],
+        is_over: IsOver<'_>,
+    ) -> Result<(), Stopped> {
         for v in 0..COUNT {
             let squares = r.iter().flat_map(|at| at[v]).map(|value| value * value);
             let length = squares.sum::<f64>().sqrt();
             let unit = if length > 0.0 { length.recip() } else { 0.0 };
-            for (part, one) in self.parts.boxes.iter_mut().enumerate() {
-                let scales = &self.parts.scales[part];
-                let nodes = self.parts.starts[part]..self.parts.starts[part + 1];
-                let rhs = one.levels[0].rhs.nodes_mut().iter_mut();
-                for (to, from) in rhs.zip(&r[nodes.clone()]) {
-                    *to = std::array::from_fn(|c| (unit * from[v][c] * scales[c]) as f32);
-                }
-                one.forget_volumes();
-                one.cycle();
-                let found = one.levels[0].x.nodes().iter();
-                for (to, from) in x[nodes].iter_mut().zip(found) {
-                    to[v] = std::array::from_fn(|c| f64::from(from[c]) * scales[c]);
-                    to[v][POTENTIAL] = 0.0;
+            match self.parts.volumes.is_empty() {
+                true => self.cycle((r, unit), v, x),
+                false => self.solve((r, unit), v, x, is_over)?,
+            }
+        }
+        Ok(())
+    }
+}
+
+impl Stiffness<'_> {
+    /// Writes what one cycle makes of a multiple of the residual of a vector.
+    fn cycle(&mut self, (r, unit): (&[AtNode], f64), v: usize, x: &mut [AtNode]) {
+        for (part, one) in self.parts.boxes.iter_mut().enumerate() {
+            let scales = &self.parts.scales[part];
+            let nodes = self.parts.starts[part]..self.parts.starts[part + 1];
+            let rhs = one.levels[0].rhs.nodes_mut().iter_mut();
+            for (to, from) in rhs.zip(&r[nodes.clone()]) {
+                *to = std::array::from_fn(|c| (unit * from[v][c] * scales[c]) as f32);
+            }
+            one.cycle();
+            let found = one.levels[0].x.nodes().iter();
+            for (to, from) in x[nodes].iter_mut().zip(found) {
+                to[v] = std::array::from_fn(|c| f64::from(from[c]) * scales[c]);
+                to[v][POTENTIAL] = 0.0;
+            }
+        }
+    }
+
+    /// Writes the solution for a multiple of the residual of a vector, potentials and pressures following, of the accuracy of a correction.
+    ///
+    /// One cycle leaves changes of volumes that a great stiffness makes greater than the residual.
+    fn solve(
+        &mut self,
+        (r, unit): (&[AtNode], f64),
+        v: usize,
+        x: &mut [AtNode],
+        is_over: IsOver<'_>,
+    ) -> Result<(), Stopped> {
+        let Workspace {
+            krylov,
+            rhs,
+            x: found,
+            iterations,
+        } = &mut self.workspace;
+        rhs.fill(0.0);
+        for (part, scales) in self.parts.scales.iter().enumerate() {
+            for node in self.parts.starts[part]..self.parts.starts[part + 1] {
+                for c in 0..POTENTIAL {
+                    rhs[COMPONENTS * node + c] = unit * r[node][v][c] * scales[c];
                 }
             }
         }
+        let iterated = krylov.solve(self.parts, rhs, found, OF_CORRECTION, is_over)?;
+        **iterations += iterated.iterations;
+        for (part, scales) in self.parts.scales.iter().enumerate() {
+            for node in self.parts.starts[part]..self.parts.starts[part + 1] {
+                let found = &found[COMPONENTS * node..];
+                x[node][v] = std::array::from_fn(|c| found[c] * scales[c]);
+                x[node][v][POTENTIAL] = 0.0;
+            }
+        }
+        Ok(())
     }
 }
 
