@@ -1,9 +1,10 @@
-//! Factorisations of the tangent of a dielectric block, against those of MUMPS.
+//! Factorisations of the tangent of a dielectric block, against those of MUMPS, and GMRES with multigrid for the same matrix.
 //!
 //! `n × n × 4n` nodes of trilinear hexahedra carry three displacements and a potential each; displacements make a positive
 //! block, potentials a negative one, and the face z = 0 is held. Without arguments n is 7 and 12; others are given as numbers:
 //! `cargo bench --bench factorisation -- 17`. Numbers are the least of a few runs.
 
+use proboscis::sparse::multigrid::{Multigrid, NodeGrid};
 use proboscis::sparse::{Backend, Direct, Symmetry};
 use std::time::Instant;
 
@@ -17,6 +18,8 @@ const GAUSS: [f64; 2] = [0.211_324_865_405_187_1, 0.788_675_134_594_812_9];
 const MATERIAL: (f64, f64, [f64; 3]) = (1.0, 10.0, [0.1, 0.2, 0.4]);
 /// Sizes measured without arguments.
 const SIZES: [usize; 2] = [7, 12];
+/// Residual of an iteration relative to the right-hand side.
+const RESIDUAL: f64 = 1e-8;
 /// Seconds that are spent on the runs of one quantity.
 const PATIENCE: f64 = 2.0;
 
@@ -45,18 +48,13 @@ fn table(n: usize) {
             let mut solver = Direct::with(size, &entries, symmetry, Some(backend));
             let analysis = clock.elapsed().as_secs_f64();
             let factorisation = least(|| solver.factor(&values).expect("a regular matrix"));
-            let known = |i: usize| (i as f64).sin();
-            let mut rhs = vec![0.0; size];
-            for (&(row, col), value) in entries.iter().zip(&values) {
-                rhs[row] += value * known(col);
-            }
+            let rhs = product(size, &entries, &values);
             let mut x = rhs.clone();
             let solution = least(|| {
                 x.copy_from_slice(&rhs);
                 solver.solve(&mut x);
             });
-            let error = x.iter().enumerate().map(|(i, x)| (x - known(i)).abs());
-            let error = error.fold(0.0, f64::max);
+            let error = error(&x);
             if backend == Backend::Mumps {
                 reference = factorisation;
             }
@@ -68,6 +66,75 @@ fn table(n: usize) {
             );
         }
     }
+    iterate(n, &entries, &values);
+}
+
+/// A solution that is known.
+fn known(i: usize) -> f64 {
+    (i as f64).sin()
+}
+
+/// The right-hand side that belongs to it.
+fn product(size: usize, entries: &[(usize, usize)], values: &[f64]) -> Vec<f64> {
+    let mut rhs = vec![0.0; size];
+    for (&(row, col), value) in entries.iter().zip(values) {
+        rhs[row] += value * known(col);
+    }
+    rhs
+}
+
+/// Greatest distance from it.
+fn error(x: &[f64]) -> f64 {
+    let errors = x.iter().enumerate().map(|(i, x)| (x - known(i)).abs());
+    errors.fold(0.0, f64::max)
+}
+
+/// Grids, and a solution to a small residual, of the same matrix.
+fn iterate(n: usize, entries: &[(usize, usize)], values: &[f64]) {
+    let held = n * n;
+    let nodes = held * 4 * n;
+    let size = NODE * (nodes - held);
+    let clock = Instant::now();
+    let unknown = |node: usize, component: usize| {
+        let node = node.checked_sub(held)?;
+        Some((NODE * node + component) as u32)
+    };
+    let grid = NodeGrid {
+        planes: [n, n, 4 * n].map(|count| (0..count).map(|plane| plane as f64).collect()),
+        unknowns: (0..nodes)
+            .map(|node| [0, 1, 2, 3].map(|component| unknown(node, component)))
+            .collect(),
+        has_pressures: false,
+    };
+    let mut solver = Multigrid::new(size, &[grid]).expect("few nodes");
+    let slots = entries.iter().map(|&(row, col)| solver.slot(row, col));
+    let slots: Vec<usize> = slots
+        .map(|slot| slot.expect("neighbours alone are coupled"))
+        .collect();
+    let analysis = clock.elapsed().as_secs_f64();
+    let making = least(|| {
+        solver.forget();
+        solver.values_mut().fill(0.0);
+        for (&slot, value) in slots.iter().zip(values) {
+            solver.values_mut()[slot] += value;
+        }
+        solver.take_values().expect("a regular matrix");
+    });
+    let rhs = product(size, entries, values);
+    let mut x = rhs.clone();
+    let mut iterations = 0;
+    let solution = least(|| {
+        x.copy_from_slice(&rhs);
+        solver.counted();
+        let solved = solver.solve(&mut x, RESIDUAL, &|| false);
+        solved.expect("nothing stops it").expect("it converges");
+        iterations = solver.counted().iterations;
+    });
+    println!(
+        "| {size:8} | {:7} | multigrid, {iterations} iterations to {RESIDUAL:.0e} | {analysis:11.3} | {making:16.3} | {solution:11.4} | | {:5.0e} |",
+        entries.len(),
+        error(&x),
+    );
 }
 
 /// The least duration of a few runs.
