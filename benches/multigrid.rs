@@ -34,7 +34,7 @@ fn main() {
     );
     for n in sizes {
         if has("--stiff") {
-            stiff(n, has("--direct"));
+            stiff(n, has("--direct"), has("--mesh"));
             continue;
         }
         let system = |viscosity: Option<f64>| match has("--mesh") {
@@ -114,12 +114,15 @@ fn steps(n: usize, (viscosity, system): (Option<f64>, System), is_direct: bool) 
 }
 
 /// Two steps, and the equilibrium, of blocks of mean dilatation.
-fn stiff(n: usize, is_direct: bool) {
+fn stiff(n: usize, is_direct: bool, is_mesh: bool) {
     println!(
         "| elements | λ/μ | | Newton, Krylov iterations | systems by factors | seconds |\n|:--|--:|:--|--:|--:|--:|"
     );
     for ratio in [10.0, 100.0, 1e3, 1e4] {
         let mut system = long_block([n, n, 2 * n], None);
+        if is_mesh {
+            system = without_box(system, 10.0 / n as f64);
+        }
         let solid = &mut system.solids[0];
         solid.element = ElementKind::Hex8Q1P0;
         for material in &mut solid.materials {

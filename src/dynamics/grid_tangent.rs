@@ -27,6 +27,8 @@ pub(super) struct GridTangent {
     /// The way from derivatives of the action to the matrix.
     nodes: NodeBlocks,
     solver: Multigrid,
+    /// Place in the solver of each volume, where it has one.
+    volumes: Vec<Option<usize>>,
     /// Unknowns from here on are potentials.
     potentials: usize,
     /// Shortest edge of all grids in mm.
@@ -76,6 +78,7 @@ impl GridTangent {
         Some(Self {
             nodes,
             solver,
+            volumes: Vec::new(),
             potentials: map.unknowns(),
             edge: grids.shortest_edge(),
             before: None,
@@ -118,10 +121,10 @@ impl GridTangent {
         self.solver.hand_back(matrix);
         if self.nodes.pressures.is_some() {
             self.solver.clear_volumes();
+            self.volumes.clear();
             for of in &self.nodes.volumes {
-                if let Some((node, corner)) = of.known {
-                    self.solver.take_volume(node, corner, &of.volume);
-                }
+                let place = self.solver.take_volume(&of.corners, &of.volume);
+                self.volumes.push(place);
             }
             self.nodes.pressures = Some(Pressures::Exact);
         }
@@ -177,10 +180,8 @@ impl GridTangent {
         if is_new && self.nodes.pressures.is_some() {
             // Volumes are off by the square of the update, which a stiffness makes great; pressures of this solution are not.
             self.nodes.predicted.clear();
-            for of in &self.nodes.volumes {
-                let change = of
-                    .known
-                    .map(|(node, corner)| self.solver.volume_change(node, corner));
+            for (of, place) in self.nodes.volumes.iter().zip(&self.volumes) {
+                let change = place.map(|place| self.solver.volume_change(place));
                 let pressure = of.pressure - of.change * change.unwrap_or_default();
                 self.nodes.predicted.push(pressure);
             }

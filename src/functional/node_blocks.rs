@@ -50,8 +50,8 @@ const BELIEVED: f64 = 2.0;
 /// The volume of an element at nodes.
 #[derive(Clone, Copy, Debug)]
 pub struct NodeVolume {
-    /// One of its nodes that moves, and the corner that it is; `None` where none moves.
-    pub known: Option<(GridNode, usize)>,
+    /// Its nodes that move, by corner.
+    pub corners: [Option<GridNode>; 8],
     /// The volume.
     pub volume: ElementVolume,
     /// Its pressure in MPa.
@@ -189,7 +189,7 @@ impl NodeBlocks {
             factor: factor * weight * stiffness,
             ..ElementVolume::default()
         };
-        let mut known = None;
+        let mut corners = [None; 8];
         for (i, vector) in vectors.into_iter().enumerate() {
             let VectorPlace::Node(node, free) = self.vectors[vector] else {
                 continue;
@@ -201,7 +201,7 @@ impl NodeBlocks {
             for axis in (0..3).filter(|&axis| free[axis]) {
                 volume.slopes[corner][axis] = of.slopes[i][axis];
             }
-            known = Some((node, corner));
+            corners[corner] = Some(node);
         }
         let most = BELIEVED * of.shear_modulus;
         let asked = match self.pressures {
@@ -210,7 +210,7 @@ impl NodeBlocks {
             _ => None,
         };
         self.volumes.push(NodeVolume {
-            known,
+            corners,
             volume,
             pressure: of.pressure,
             // Rows and columns have the same weight.

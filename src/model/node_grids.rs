@@ -20,9 +20,6 @@ pub enum NoGrids {
     /// There is no block.
     #[error("there is no elastic block that moves")]
     NoBlock,
-    /// A block resists changes of volume by far more than anything else, and its nodes are no box grid.
-    #[error("the elements of {0} are nearly incompressible, and its mesh is no box")]
-    NoBox(String),
     /// Something else is unknown.
     #[error("{0} is unknown too, which belongs to no node")]
     Other(String),
@@ -30,8 +27,7 @@ pub enum NoGrids {
 
 /// Returns true if all that can move in a system are blocks for which an iteration may solve.
 pub(crate) fn has_nodes_alone(system: &System) -> bool {
-    let is_meant = |solid: &Solid| !has_pressures(solid) || solid.mesh.box_planes().is_some();
-    system.bodies.is_empty() && system.muscles.is_empty() && system.solids.iter().all(is_meant)
+    system.bodies.is_empty() && system.muscles.is_empty()
 }
 
 /// Least λ/μ from which on pressures of mean dilatations are worth their iterations.
@@ -50,7 +46,7 @@ impl Model {
     /// The nodes of the blocks that move, with their unknowns. Prescribed coordinates belong to no node.
     ///
     /// # Errors
-    /// A block is nearly incompressible on no box, or something else is unknown: coordinates of bodies, what materials remember, multipliers,
+    /// Something else is unknown: coordinates of bodies, what materials remember, multipliers,
     /// potentials of whole electrodes.
     pub fn node_grids(&self) -> Result<NodeGrids, NoGrids> {
         let map = &self.action.map;
@@ -88,7 +84,7 @@ impl Model {
         let mut grids = NodeGrids::default();
         for (block, unknowns) in self.solids.iter().zip(lists) {
             if !unknowns.is_empty() {
-                grids.add(&block.solid, unknowns)?;
+                grids.add(&block.solid, unknowns);
             }
         }
         match grids.boxes.is_empty() && grids.meshes.is_empty() {
@@ -100,7 +96,7 @@ impl Model {
 
 impl NodeGrids {
     /// Adds a block with the unknowns of its nodes.
-    fn add(&mut self, solid: &Solid, unknowns: Vec<[Option<u32>; 4]>) -> Result<(), NoGrids> {
+    fn add(&mut self, solid: &Solid, unknowns: Vec<[Option<u32>; 4]>) {
         let has_pressures = has_pressures(solid);
         if let Some(planes) = solid.mesh.box_planes() {
             self.boxes.push(NodeGrid {
@@ -108,10 +104,7 @@ impl NodeGrids {
                 unknowns,
                 has_pressures,
             });
-            return Ok(());
-        }
-        if has_pressures {
-            return Err(NoGrids::NoBox(solid.name.clone()));
+            return;
         }
         let elements = solid.mesh.hexahedra.iter();
         self.meshes.push(NodeMesh {
@@ -121,8 +114,8 @@ impl NodeGrids {
                 .collect(),
             unknowns,
             shortest_edge: solid.mesh.shortest_edge(),
+            has_pressures,
         });
-        Ok(())
     }
 
     /// Length of the shortest edge in mm.

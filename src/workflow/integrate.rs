@@ -154,7 +154,7 @@ fn has_solver(model: &Model, solving: Solving) -> Result<(), WorkflowError> {
         Integrator::Midpoint => model.node_grids().err().map(|none| none.to_string()),
         other => Some(format!("the integrator is {}", other.name())),
     };
-    let expected = "\"auto\", \"faer\" or \"mumps\"; multigrid needs the midpoint rule and elastic blocks, nearly incompressible ones on boxes, beside which nothing moves";
+    let expected = "\"auto\", \"faer\" or \"mumps\"; multigrid needs the midpoint rule and elastic blocks, beside which nothing moves";
     found.map_or(Ok(()), |found| {
         Err(WorkflowError::Problem {
             place: "simulate.linear_solver".to_owned(),

@@ -50,6 +50,21 @@ impl Points {
         }
     }
 
+    /// Number of points.
+    pub(super) fn count(&self) -> usize {
+        self.places.len()
+    }
+
+    /// Aggregate of each point, and the aggregates as points of one node each.
+    pub(super) fn alone(&self, rows: &BlockRows) -> (Vec<u32>, Self) {
+        let (of, count) = self.aggregates(rows);
+        let points = Self {
+            nodes_of_each: 1,
+            ..self.coarse(&of, count)
+        };
+        (of, points)
+    }
+
     /// Strongly coupled neighbours of a point.
     fn neighbours(&self, rows: &BlockRows, point: usize) -> Vec<u32> {
         let columns = rows.columns(self.nodes_of_each * point).iter();

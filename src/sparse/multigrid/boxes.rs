@@ -3,6 +3,7 @@
 use crate::math::join;
 use crate::sparse::Singular;
 use crate::sparse::multigrid::block_rows::BlockRows;
+use crate::sparse::multigrid::element_volume::{VolumePlaces, corners};
 use crate::sparse::multigrid::field::{Block, Field};
 use crate::sparse::multigrid::hierarchy::Hierarchy;
 use crate::sparse::multigrid::krylov::Operator;
@@ -30,19 +31,37 @@ pub(super) struct Parts {
     pub(super) matrix: Vec<NodeBlock>,
     /// Factors of rows and columns of a part by component.
     pub(super) scales: Vec<[f64; COMPONENTS]>,
-    /// Volumes of elements by their first node; none where no box has pressures.
+    /// Volumes of elements; none where no part has pressures.
     pub(super) volumes: Volumes,
 }
 
 impl Parts {
     /// The parts without a matrix.
-    pub(super) fn new(grids: &[NodeGrid], meshes: &[NodeMesh]) -> Self {
+    pub(super) fn new(grids: &[NodeGrid], node_meshes: &[NodeMesh]) -> Self {
         let boxes: Vec<_> = grids.iter().map(Hierarchy::of).collect();
-        let meshes: Vec<_> = meshes.iter().map(Hierarchy::of_mesh).collect();
+        let meshes: Vec<_> = node_meshes.iter().map(Hierarchy::of_mesh).collect();
         let (mut starts, mut first_blocks) = (vec![0], vec![0]);
         for grid in grids {
             starts.push(starts[starts.len() - 1] + grid.unknowns.len());
             first_blocks.push(NEIGHBOURS * starts[starts.len() - 1]);
+        }
+        let mut volumes = Volumes::default();
+        for grid in grids {
+            let count = if grid.has_pressures {
+                grid.unknowns.len()
+            } else {
+                0
+            };
+            volumes.add(count, VolumePlaces::Box(corners(grid.counts())));
+        }
+        for (mesh, one) in node_meshes.iter().zip(&meshes) {
+            let elements = if mesh.has_pressures {
+                &mesh.elements[..]
+            } else {
+                &[]
+            };
+            let places = VolumePlaces::of_mesh(elements, &one.levels[0].free);
+            volumes.add(elements.len(), places);
         }
         let mut places = BlockPlaces {
             of_boxes: starts[grids.len()],
@@ -55,14 +74,11 @@ impl Parts {
             starts.push(node + finest.free.len());
             first_blocks.push(block + finest.matrix.len());
         }
-        let (parts, nodes) = (boxes.len() + meshes.len(), starts[starts.len() - 1]);
+        let parts = boxes.len() + meshes.len();
         Self {
             matrix: vec![[0.0; ENTRIES]; first_blocks[parts]],
             scales: vec![[1.0; COMPONENTS]; parts],
-            volumes: match grids.iter().any(|grid| grid.has_pressures) {
-                true => Volumes::new(nodes, boxes.len()),
-                false => Volumes::default(),
-            },
+            volumes,
             places: Arc::new(places),
             boxes,
             meshes,
@@ -126,7 +142,7 @@ impl Parts {
                     *count += f64::from(u8::from(diagonal > 0.0));
                 }
             }
-            sums[0][0] -= self.volumes.resistance(self.nodes(part));
+            sums[0][0] -= self.volumes.resistance(part);
             let scale = |parts: Range<usize>| {
                 let (sum, count) = sums[parts]
                     .iter()
@@ -134,8 +150,7 @@ impl Parts {
                 scale_of_mean(sum / count)
             };
             let displacement = scale(0..3);
-            self.volumes
-                .find_scale(part, self.nodes(part), displacement);
+            self.volumes.find_scale(part, displacement);
             self.scales[part] = [displacement, displacement, displacement, scale(3..4)];
         }
     }
@@ -150,8 +165,7 @@ impl Parts {
                     *entry *= product;
                 }
             }
-            self.volumes
-                .scale(part, self.nodes(part), &self.scales[part]);
+            self.volumes.scale(part, &self.scales[part]);
         }
     }
 
@@ -199,10 +213,12 @@ impl Parts {
         for (mesh, one) in self.meshes.iter_mut().enumerate() {
             let part = self.boxes.len() + mesh;
             let blocks = self.first_blocks[part]..self.first_blocks[part + 1];
-            let finest = one.levels[0].matrix.iter_mut();
-            for (to, from) in finest.zip(&self.matrix[blocks]) {
+            let blocks = &self.matrix[blocks];
+            let level = &mut one.levels[0];
+            for (to, from) in level.matrix.iter_mut().zip(blocks) {
                 *to = from.map(|entry| entry as f32);
             }
+            self.volumes.take_out_of_mesh(part, blocks, level);
             one.prepare()?;
         }
         for part in 0..self.boxes.len() {
@@ -214,7 +230,7 @@ impl Parts {
                     *to = *from as f32;
                 }
             }
-            self.volumes.take_out(nodes, blocks, level);
+            self.volumes.take_out(part, blocks, level);
             self.boxes[part].prepare()?;
         }
         Ok(())
@@ -240,23 +256,24 @@ impl Operator for Parts {
                 || multiply(blocks, field, offsets(counts), 0, lower),
                 || multiply(blocks, field, offsets(counts), half, upper),
             );
-            self.volumes.apply((nodes, counts), field, x, product);
+            self.volumes.apply(part, nodes.start, x, product);
         }
         for (part, rows) in self.of_meshes() {
             let nodes = self.nodes(part);
             let own = COMPONENTS * nodes.start..COMPONENTS * nodes.end;
             let (blocks, half) = (&self.matrix[self.blocks(part)], nodes.len() / 2);
-            let x = &x[own.clone()];
+            let of_part = &x[own.clone()];
             let (lower, upper) = product[own].split_at_mut(COMPONENTS * half);
             join(
-                || multiply_rows((rows, blocks), x, 0, lower),
-                || multiply_rows((rows, blocks), x, half, upper),
+                || multiply_rows((rows, blocks), of_part, 0, lower),
+                || multiply_rows((rows, blocks), of_part, half, upper),
             );
-            self.clear_pressures(part, product);
+            self.volumes.apply(part, nodes.start, x, product);
         }
     }
 
     fn precondition(&mut self, r: &[f64], x: &mut [f32]) {
+        let behind = COMPONENTS * self.node_count();
         for part in 0..self.boxes.len() {
             let nodes = self.nodes(part);
             let finest = &mut self.boxes[part].levels[0];
@@ -265,8 +282,8 @@ impl Operator for Parts {
             for (value, r) in field.iter_mut().zip(&r[own.clone()]) {
                 *value = *r as f32;
             }
-            let behind = self.starts[self.starts.len() - 1] * COMPONENTS;
-            let of_pressures = behind + nodes.start..behind + nodes.end;
+            let of_pressures = self.volumes.range(part);
+            let of_pressures = behind + of_pressures.start..behind + of_pressures.end;
             if let Some(pressures) = &mut finest.pressures {
                 let rhs = pressures.rhs.nodes_mut().iter_mut();
                 for (value, r) in rhs.zip(&r[of_pressures.clone()]) {
@@ -288,9 +305,19 @@ impl Operator for Parts {
             for (value, r) in rhs.iter_mut().zip(&r[own.clone()]) {
                 *value = *r as f32;
             }
+            let of_pressures = self.volumes.range(part);
+            let of_pressures = behind + of_pressures.start..behind + of_pressures.end;
+            if let Some(pressures) = &mut self.meshes[mesh].levels[0].pressures {
+                for (value, r) in pressures.rhs.iter_mut().zip(&r[of_pressures.clone()]) {
+                    *value = *r as f32;
+                }
+            }
             self.meshes[mesh].cycle();
-            x[own].copy_from_slice(self.meshes[mesh].levels[0].x.as_flattened());
-            self.clear_pressures(part, x);
+            let finest = &self.meshes[mesh].levels[0];
+            x[own].copy_from_slice(finest.x.as_flattened());
+            if let Some(pressures) = &finest.pressures {
+                x[of_pressures].copy_from_slice(&pressures.p);
+            }
         }
     }
 
@@ -299,20 +326,8 @@ impl Operator for Parts {
     }
 
     fn reduce(&self, residual: &mut [f64]) {
-        let counts = self.boxes.iter().map(|one| one.levels[0].counts);
-        for (part, counts) in counts.enumerate() {
-            self.volumes.condense((self.nodes(part), counts), residual);
-        }
-    }
-}
-
-impl Parts {
-    /// Makes the pressures of a mesh, which has none, zero where vectors hold those of all nodes.
-    fn clear_pressures<T: Copy + Default>(&self, part: usize, x: &mut [T]) {
-        if !self.volumes.is_empty() {
-            let behind = COMPONENTS * self.node_count();
-            let nodes = self.nodes(part);
-            x[behind + nodes.start..behind + nodes.end].fill(T::default());
+        for part in 0..self.scales.len() {
+            self.volumes.condense(part, self.starts[part], residual);
         }
     }
 }

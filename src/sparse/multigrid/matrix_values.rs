@@ -1,7 +1,7 @@
 //! Values of the matrix of a solver: the volumes of elements, and copies of all.
 
 use crate::sparse::multigrid::boxes::{Parts, products};
-use crate::sparse::multigrid::element_volume::{CORNERS, ElementVolume, corners};
+use crate::sparse::multigrid::element_volume::{CORNERS, ElementVolume};
 use crate::sparse::multigrid::node_grid::{COMPONENTS, GridNode};
 use crate::sparse::multigrid::solver::Multigrid;
 
@@ -19,29 +19,27 @@ impl Multigrid {
         self.parts.volumes.list.fill(ElementVolume::default());
     }
 
-    /// Takes the volume of an element, whose part is in the matrix that was written, with one of its nodes and the corner that it is.
-    pub fn take_volume(&mut self, node: GridNode, corner: usize, volume: &ElementVolume) {
-        if let Some((_, element)) = self.element(node, corner) {
-            self.parts.volumes.list[element] = *volume;
-        }
+    /// Takes the volume of an element, whose part is in the matrix that was written, with its nodes that move, by corner; returns its place.
+    pub fn take_volume(
+        &mut self,
+        corners: &[Option<GridNode>; CORNERS],
+        volume: &ElementVolume,
+    ) -> Option<usize> {
+        let Parts {
+            starts, volumes, ..
+        } = &mut self.parts;
+        let known = corners.iter().flatten().next()?.number();
+        let part = starts.partition_point(|&start| start <= known) - 1;
+        let local = |node: GridNode| (node.number() - starts[part]) as u32;
+        let place = volumes.find(part, &corners.map(|node| node.map(local)))?;
+        volumes.list[place] = *volume;
+        Some(place)
     }
 
-    /// Product of the derivatives of a volume and the solution found last, by its pressure; zero where there is none.
-    pub fn volume_change(&self, node: GridNode, corner: usize) -> f64 {
-        let Some((part, element)) = self.element(node, corner) else {
-            return 0.0;
-        };
-        let pressure = self.x[self.x.len() - self.parts.volumes.list.len() + element];
-        self.parts.volumes.change(part, element, pressure)
-    }
-
-    /// Box and number of an element; `None` where it has no pressure.
-    fn element(&self, node: GridNode, corner: usize) -> Option<(usize, usize)> {
-        let Parts { boxes, starts, .. } = &self.parts;
-        let node = node.number();
-        let part = starts.partition_point(|&start| start <= node) - 1;
-        let finest = &boxes.get(part)?.levels[0];
-        (finest.pressures.is_some()).then(|| (part, node - corners(finest.counts)[corner]))
+    /// Product of the derivatives of the volume at a place and the solution found last, by its pressure.
+    pub fn volume_change(&self, place: usize) -> f64 {
+        let volumes = &self.parts.volumes;
+        volumes.change(place, self.x[self.x.len() - volumes.list.len() + place])
     }
 
     /// Copies the values as they were written.
@@ -53,8 +51,7 @@ impl Multigrid {
             for block in &parts.matrix[parts.blocks(part)] {
                 to.extend(block.iter().zip(&products).map(|(entry, by)| entry * by));
             }
-            let nodes = parts.nodes(part);
-            for volume in parts.volumes.without_scale(part, nodes, factors) {
+            for volume in parts.volumes.without_scale(part, factors) {
                 to.extend(volume.slopes.as_flattened());
                 to.push(volume.factor);
             }
@@ -65,7 +62,6 @@ impl Multigrid {
     pub fn restore_values(&mut self, from: &[f64]) -> bool {
         let Parts {
             matrix,
-            starts,
             first_blocks,
             volumes,
             ..
@@ -74,12 +70,13 @@ impl Multigrid {
             return false;
         }
         let mut rest = from;
-        for (part, of) in starts.windows(2).zip(first_blocks.windows(2)) {
+        for (part, of) in first_blocks.windows(2).enumerate() {
             let blocks = matrix[of[0]..of[1]].as_flattened_mut();
             let (own, behind) = rest.split_at(blocks.len());
             blocks.copy_from_slice(own);
             rest = behind;
-            for volume in volumes.list.get_mut(part[0]..part[1]).unwrap_or_default() {
+            let range = volumes.range(part);
+            for volume in &mut volumes.list[range] {
                 let (own, behind) = rest.split_at(OF_VOLUME);
                 volume
                     .slopes

@@ -7,6 +7,7 @@ use crate::sparse::multigrid::block_rows::BlockRows;
 use crate::sparse::multigrid::field::{Block, add, add_transposed, inverse_of};
 use crate::sparse::multigrid::grid_level::GridLevel;
 use crate::sparse::multigrid::hierarchy::{COARSEST, Hierarchy};
+use crate::sparse::multigrid::mesh_pressures::MeshPressures;
 use crate::sparse::multigrid::node_grid::{COMPONENTS, free_components};
 use crate::sparse::multigrid::node_mesh::NodeMesh;
 use std::sync::Arc;
@@ -36,6 +37,8 @@ pub(super) struct MeshLevel {
     pub(super) rhs: Vec<AtNode>,
     pub(super) x: Vec<AtNode>,
     residual: Vec<AtNode>,
+    /// Pressures, where elements resist changes of volume.
+    pub(super) pressures: Option<MeshPressures>,
 }
 
 impl Hierarchy<MeshLevel> {
@@ -45,6 +48,7 @@ impl Hierarchy<MeshLevel> {
         let mut rows = Arc::new(rows);
         let mut free: Vec<u8> = mesh.unknowns.iter().map(free_components).collect();
         let mut points = Points::at(&mesh.places);
+        let mut pressures = (mesh.has_pressures).then(|| MeshPressures::of_elements(mesh));
         let mut levels = Vec::new();
         while free.len() > COARSEST {
             let aggregates = points.aggregate(&rows, &free);
@@ -54,16 +58,28 @@ impl Hierarchy<MeshLevel> {
                 break;
             }
             let (transfer, next_rows) = Aggregation::new(&rows, aggregates);
-            levels.push(MeshLevel::new(rows, free, Some(transfer)));
+            let coarse = |of: &mut MeshPressures| of.coarse(&transfer, next_free.len());
+            let next_pressures = pressures.as_mut().map(coarse);
+            levels.push(MeshLevel::new(rows, free, Some(transfer), pressures));
             (rows, free, points) = (Arc::new(next_rows), next_free, next);
+            pressures = next_pressures;
         }
-        levels.push(MeshLevel::new(rows, free, None));
+        // The matrix that is solved directly is that of displacements alone.
+        if let Some(pressures) = &pressures {
+            rows = Arc::new(pressures.couple(&rows));
+        }
+        levels.push(MeshLevel::new(rows, free, None, pressures));
         Self::new(levels)
     }
 }
 
 impl MeshLevel {
-    fn new(rows: Arc<BlockRows>, free: Vec<u8>, transfer: Option<Aggregation>) -> Self {
+    fn new(
+        rows: Arc<BlockRows>,
+        free: Vec<u8>,
+        transfer: Option<Aggregation>,
+        pressures: Option<MeshPressures>,
+    ) -> Self {
         let nodes = free.len();
         Self {
             matrix: vec![Block::default(); rows.blocks()],
@@ -74,7 +90,20 @@ impl MeshLevel {
             rows,
             free,
             transfer,
+            pressures,
         }
+    }
+
+    /// Corrects pressures behind a sweep, from zero or from those there are; returns false where there are none.
+    fn correct_pressures(&mut self, is_from_zero: bool) -> bool {
+        let Some(pressures) = &mut self.pressures else {
+            return false;
+        };
+        if is_from_zero {
+            pressures.p.fill(0.0);
+        }
+        pressures.correct(&mut self.x, &self.inverse, &mut self.residual);
+        true
     }
 
     /// Sum over blocks of a row times what they multiply.
@@ -146,19 +175,26 @@ impl GridLevel for MeshLevel {
         for (node, inverse) in self.inverse.iter_mut().enumerate() {
             *inverse = inverse_of(&self.matrix[self.rows.diagonal(node)]).ok_or(node)?;
         }
+        if let Some(pressures) = &mut self.pressures {
+            pressures.prepare(&self.inverse);
+        }
         Ok(())
     }
 
     fn coarsen(&mut self, coarse: &mut Self) {
         let damping = DAMPING / (SAFE * self.largest());
         let transfer = self.transfer.as_mut();
-        transfer.expect("a coarser level has a transfer").prepare(
+        let transfer = transfer.expect("a coarser level has a transfer");
+        transfer.prepare(
             (&self.rows, &self.matrix),
             &self.inverse,
             damping,
             (&coarse.rows, &mut coarse.matrix),
         );
         coarse.hold();
+        if let (Some(from), Some(to)) = (&self.pressures, &mut coarse.pressures) {
+            from.coarsen(transfer, &coarse.free, to);
+        }
     }
 
     fn sweep_down(&mut self) {
@@ -170,22 +206,37 @@ impl GridLevel for MeshLevel {
             self.x[node] = AtNode::default();
             add(&mut self.x[node], &self.inverse[node], &left);
         }
+        let has_pressures = self.correct_pressures(true);
         let rows = &self.rows;
         let half = self.residual.len() / 2;
         let mut residual = std::mem::take(&mut self.residual);
         let (lower, upper) = residual.split_at_mut(half);
         let leave = |first: usize, residual: &mut [AtNode]| {
             for (node, residual) in (first..).zip(residual) {
-                let behind = rows.range(node).rev();
-                let sum = self.sum(behind.take_while(|&block| rows.column(block) > node));
-                *residual = sum.map(|value| -value);
+                // The neighbours behind alone had no part in the sweep, unless displacements were corrected.
+                let (behind, rhs) = match has_pressures {
+                    true => (self.sum(rows.range(node)), self.rhs[node]),
+                    false => {
+                        let behind = rows.range(node).rev();
+                        let behind = behind.take_while(|&block| rows.column(block) > node);
+                        (self.sum(behind), AtNode::default())
+                    }
+                };
+                *residual = std::array::from_fn(|c| rhs[c] - behind[c]);
             }
         };
         join(|| leave(0, lower), || leave(half, upper));
         self.residual = residual;
+        if let Some(pressures) = &mut self.pressures {
+            pressures.add_forces(&pressures.p, -1.0, &mut self.residual);
+            pressures.leave(&self.x);
+        }
     }
 
     fn restrict(&self, coarse: &mut Self) {
+        if let (Some(from), Some(to)) = (&self.pressures, &mut coarse.pressures) {
+            from.restrict(to);
+        }
         let transfer = self.transfer.as_ref();
         let transfer = transfer.expect("a coarser level has a transfer");
         for (rhs, children) in coarse.rhs.iter_mut().zip(&transfer.children) {
@@ -198,6 +249,9 @@ impl GridLevel for MeshLevel {
     }
 
     fn correct(&mut self, coarse: &Self) {
+        if let (Some(to), Some(from)) = (&mut self.pressures, &coarse.pressures) {
+            to.add_coarse(from);
+        }
         let transfer = self.transfer.as_ref();
         let transfer = transfer.expect("a coarser level has a transfer");
         for (node, x) in self.x.iter_mut().enumerate() {
@@ -209,6 +263,9 @@ impl GridLevel for MeshLevel {
     }
 
     fn sweep_up(&mut self) {
+        if let Some(pressures) = &self.pressures {
+            pressures.add_forces(&pressures.p, -1.0, &mut self.rhs);
+        }
         for node in (0..self.x.len()).rev() {
             let others = self.rows.range(node);
             let sum = self.sum(others.filter(|&block| self.rows.column(block) != node));
@@ -216,6 +273,7 @@ impl GridLevel for MeshLevel {
             self.x[node] = AtNode::default();
             add(&mut self.x[node], &self.inverse[node], &left);
         }
+        self.correct_pressures(false);
     }
 
     fn free(&self) -> &[u8] {
@@ -223,6 +281,9 @@ impl GridLevel for MeshLevel {
     }
 
     fn condensed_rhs(&mut self) -> &[AtNode] {
+        if let Some(pressures) = &mut self.pressures {
+            pressures.condense(&mut self.rhs);
+        }
         &self.rhs
     }
 
@@ -233,23 +294,29 @@ impl GridLevel for MeshLevel {
                 _ => from[component],
             });
         }
+        if let Some(pressures) = &mut self.pressures {
+            pressures.follow(&self.x);
+        }
     }
 
     fn visit(&self, visit: &mut dyn FnMut(usize, usize, f64)) {
-        for node in 0..self.free.len() {
-            for block in self.rows.range(node) {
-                for (entry, value) in self.matrix[block].iter().enumerate() {
-                    let row = COMPONENTS * node + entry % COMPONENTS;
-                    let column = COMPONENTS * self.rows.column(block) + entry / COMPONENTS;
-                    visit(row, column, f64::from(*value));
-                }
+        let matrix = self.matrix.iter().map(|block| block.map(f64::from));
+        let mut matrix: Vec<_> = matrix.collect();
+        if let Some(pressures) = &self.pressures {
+            pressures.add_to(&self.rows, &mut matrix);
+        }
+        for (block, (node, other)) in matrix.iter().zip(self.rows.entries()) {
+            for (entry, value) in block.iter().enumerate() {
+                let (row, column) = (entry % COMPONENTS, entry / COMPONENTS);
+                visit(COMPONENTS * node + row, COMPONENTS * other + column, *value);
             }
         }
     }
 
     fn bytes(&self) -> usize {
         let of_transfer = self.transfer.as_ref().map_or(0, Aggregation::blocks);
-        size_of::<Block>() * (self.matrix.len() + self.free.len() + of_transfer)
+        let of_pressures = self.pressures.as_ref().map_or(0, MeshPressures::bytes);
+        size_of::<Block>() * (self.matrix.len() + self.free.len() + of_transfer) + of_pressures
     }
 }
 

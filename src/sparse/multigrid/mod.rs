@@ -22,6 +22,7 @@ mod level;
 mod lobpcg;
 mod matrix_values;
 mod mesh_level;
+mod mesh_pressures;
 mod node_grid;
 mod node_mesh;
 mod potentials;

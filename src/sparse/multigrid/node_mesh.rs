@@ -15,6 +15,8 @@ pub struct NodeMesh {
     pub unknowns: Vec<[Option<u32>; COMPONENTS]>,
     /// Length of the shortest edge in mm.
     pub shortest_edge: f64,
+    /// True if elements have pressures, as they resist changes of their volumes by far more than anything else.
+    pub has_pressures: bool,
 }
 
 /// Distance of two places.

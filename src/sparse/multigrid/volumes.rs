@@ -1,11 +1,13 @@
-//! Volumes of the elements of boxes, in double precision: what they add to products with the matrix, and pressures in its vectors.
+//! Volumes of the elements of boxes and meshes, in double precision: what they add to products with the matrix, and pressures in its vectors.
 //!
 //! With the derivatives b of a volume and the factor k of b bᵀ in the matrix, a pressure p stands for k b·u: rows of displacements have
-//! b (p − k b·u) in addition, and p has the row b·u − p/k. Vectors hold the pressures of all nodes behind their components.
+//! b (p − k b·u) in addition, and p has the row b·u − p/k. Vectors hold the pressures behind the components of all nodes.
 
-use crate::sparse::multigrid::element_volume::{CORNERS, ElementVolume, corners, neighbour_of};
-use crate::sparse::multigrid::field::Field;
+use crate::sparse::multigrid::element_volume::{
+    CORNERS, ElementVolume, VolumePlaces, neighbour_of,
+};
 use crate::sparse::multigrid::level::Level;
+use crate::sparse::multigrid::mesh_level::MeshLevel;
 use crate::sparse::multigrid::node_grid::{COMPONENTS, ENTRIES, NEIGHBOURS, NodeBlock};
 use std::ops::Range;
 
@@ -17,59 +19,72 @@ pub(super) fn scale_of_mean(mean: f64) -> f64 {
     }
 }
 
-/// Volumes of the elements of all boxes.
+/// Volumes of the elements of all parts.
 #[derive(Debug, Default)]
 pub(super) struct Volumes {
-    /// By first node; of factor zero where there is no element, or none with a pressure.
+    /// By part: of a box by first node, of factor zero where there is no element, of a mesh by element.
     pub(super) list: Vec<ElementVolume>,
-    /// Factors of pressures by box.
+    /// Places of the volumes of each part in the list; none of a part without pressures.
+    ranges: Vec<Range<usize>>,
+    places: Vec<VolumePlaces>,
+    /// Factors of pressures by part.
     scales: Vec<f64>,
 }
 
 impl Volumes {
-    /// Of so many nodes in boxes.
-    pub(super) fn new(nodes: usize, boxes: usize) -> Self {
-        Self {
-            list: vec![ElementVolume::default(); nodes],
-            scales: vec![1.0; boxes],
-        }
+    /// Adds those of a part.
+    pub(super) fn add(&mut self, count: usize, places: VolumePlaces) {
+        let first = self.list.len();
+        self.list.resize(first + count, ElementVolume::default());
+        self.ranges.push(first..first + count);
+        self.places.push(places);
+        self.scales.push(1.0);
     }
 
     pub(super) fn is_empty(&self) -> bool {
         self.list.is_empty()
     }
 
-    /// Those of a box.
-    fn of(&self, nodes: Range<usize>) -> &[ElementVolume] {
-        self.list.get(nodes).unwrap_or_default()
+    /// Places of a part in the list.
+    pub(super) fn range(&self, part: usize) -> Range<usize> {
+        self.ranges[part].clone()
+    }
+
+    /// Those of a part.
+    fn of(&self, part: usize) -> &[ElementVolume] {
+        &self.list[self.range(part)]
+    }
+
+    /// Place in the list of the volume of an element, with the nodes of the part at its corners that move; `None` where it has none.
+    pub(super) fn find(&self, part: usize, moving: &[Option<u32>; CORNERS]) -> Option<usize> {
+        let range = self.range(part);
+        let is_free = |element: &usize| self.list[range.start + element].factor == 0.0;
+        let element = self.places[part].find(moving, is_free)?;
+        (element < range.len()).then(|| range.start + element)
     }
 
     /// Sum of the parts that volumes have in the diagonal.
-    pub(super) fn resistance(&self, nodes: Range<usize>) -> f64 {
-        let each = self.of(nodes).iter();
+    pub(super) fn resistance(&self, part: usize) -> f64 {
+        let each = self.of(part).iter();
         each.map(|volume| volume.factor.abs() * volume.square())
             .sum()
     }
 
     /// Finds the scale that makes the answer of displacements to a pressure about one, where their own scale makes their diagonal one.
-    pub(super) fn find_scale(&mut self, part: usize, nodes: Range<usize>, displacement: f64) {
-        let squares = self.of(nodes).iter().map(ElementVolume::square);
+    pub(super) fn find_scale(&mut self, part: usize, displacement: f64) {
+        let squares = self.of(part).iter().map(ElementVolume::square);
         let (sum, count) = squares
             .filter(|square| *square > 0.0)
             .fold((0.0, 0.0), |(sum, count), square| {
                 (sum + square, count + 1.0)
             });
-        if let Some(scale) = self.scales.get_mut(part) {
-            *scale = scale_of_mean(sum / count * displacement * displacement);
-        }
+        self.scales[part] = scale_of_mean(sum / count * displacement * displacement);
     }
 
     /// Multiplies rows and columns by their factors.
-    pub(super) fn scale(&mut self, part: usize, nodes: Range<usize>, scales: &[f64; COMPONENTS]) {
-        let Some(pressure) = self.scales.get(part) else {
-            return;
-        };
-        for volume in &mut self.list[nodes] {
+    pub(super) fn scale(&mut self, part: usize, scales: &[f64; COMPONENTS]) {
+        let (pressure, range) = (self.scales[part], self.range(part));
+        for volume in &mut self.list[range] {
             volume.factor /= pressure * pressure;
             for slopes in &mut volume.slopes {
                 for (slope, scale) in slopes.iter_mut().zip(scales) {
@@ -79,16 +94,15 @@ impl Volumes {
         }
     }
 
-    /// Those of a box as they were before they were scaled.
+    /// Those of a part as they were before they were scaled.
     pub(super) fn without_scale(
         &self,
         part: usize,
-        nodes: Range<usize>,
         scales: &[f64; COMPONENTS],
     ) -> impl Iterator<Item = ElementVolume> + use<'_> {
         let scales = *scales;
-        let pressure = self.scales.get(part).copied().unwrap_or(1.0);
-        self.of(nodes).iter().map(move |volume| ElementVolume {
+        let pressure = self.scales[part];
+        self.of(part).iter().map(move |volume| ElementVolume {
             slopes: volume
                 .slopes
                 .map(|slopes| std::array::from_fn(|c| slopes[c] / (scales[c] * pressure))),
@@ -96,34 +110,30 @@ impl Volumes {
         })
     }
 
-    /// Product of the derivatives of a volume, without their scale, and displacements to which this pressure belongs.
-    pub(super) fn change(&self, part: usize, element: usize, pressure: f64) -> f64 {
-        match self.list[element].factor == 0.0 {
-            true => 0.0,
-            false => pressure / (self.list[element].factor * self.scales[part]),
+    /// Product of the derivatives of the volume at a place, without their scale, and displacements to which this pressure belongs.
+    pub(super) fn change(&self, place: usize, pressure: f64) -> f64 {
+        let part = self.ranges.iter().position(|range| range.contains(&place));
+        match part.filter(|_| self.list[place].factor != 0.0) {
+            Some(part) => pressure / (self.list[place].factor * self.scales[part]),
+            None => 0.0,
         }
     }
 
     /// Hands volumes over to the finest grid, whose matrix is that of the rest.
-    pub(super) fn take_out(&self, nodes: Range<usize>, blocks: &[NodeBlock], level: &mut Level) {
-        let volumes = self.of(nodes);
+    pub(super) fn take_out(&self, part: usize, blocks: &[NodeBlock], level: &mut Level) {
+        let volumes = self.of(part);
         let Some(pressures) = &mut level.pressures else {
             return;
         };
-        let corners = corners(level.counts);
         let lists = pressures.slopes.iter_mut().zip(&mut pressures.compliance);
         for ((slopes, compliance), volume) in lists.zip(volumes) {
-            *slopes = volume.slopes.map(|slopes| slopes.map(|slope| slope as f32));
-            *compliance = match volume.factor == 0.0 {
-                true => 0.0,
-                false => volume.factor.recip() as f32,
-            };
+            (*slopes, *compliance) = volume.in_single_precision();
         }
         for (node, blocks) in blocks.chunks_exact(NEIGHBOURS).enumerate() {
             let mut rest = [[0.0; ENTRIES]; NEIGHBOURS];
             rest.copy_from_slice(blocks);
-            for (corner, to_corner) in corners.iter().enumerate() {
-                let element = node.checked_sub(*to_corner);
+            for corner in 0..CORNERS {
+                let element = self.places[part].of_corner(node, corner);
                 if let Some(volume) = element.and_then(|element| volumes.get(element)) {
                     volume.take_from(corner, &mut rest);
                 }
@@ -135,42 +145,60 @@ impl Volumes {
         }
     }
 
-    /// Adds to a product what pressures do, and writes their rows; the field has the displacements of the box.
-    pub(super) fn apply(
+    /// Hands volumes over to the finest level of a mesh, whose matrix is that of the rest.
+    pub(super) fn take_out_of_mesh(
         &self,
-        (nodes, counts): (Range<usize>, [usize; 3]),
-        field: &Field,
-        x: &[f32],
-        product: &mut [f64],
+        part: usize,
+        blocks: &[NodeBlock],
+        level: &mut MeshLevel,
     ) {
-        let corners = corners(counts);
-        let behind = COMPONENTS * self.list.len();
-        for (element, volume) in self.of(nodes.clone()).iter().enumerate() {
-            let at = nodes.start + element;
+        let Some(pressures) = &mut level.pressures else {
+            return;
+        };
+        let mut rest = blocks.to_vec();
+        for (element, volume) in self.of(part).iter().enumerate() {
+            let nodes = self.places[part].corners(element);
+            let (slopes, compliance) = volume.in_single_precision();
+            pressures.take(element, &nodes, &slopes, compliance);
+            for (row, own) in nodes.iter().zip(&volume.slopes) {
+                for (column, there) in nodes.iter().zip(&volume.slopes) {
+                    let block = level.rows.find(*row, *column);
+                    let block = block.expect("nodes of an element are coupled");
+                    volume.take_block(own, there, &mut rest[block]);
+                }
+            }
+        }
+        for (to, from) in level.matrix.iter_mut().zip(&rest) {
+            *to = from.map(|entry| entry as f32);
+        }
+    }
+
+    /// Adds to a product what pressures do, and writes their rows; `node` is the first one of the part.
+    pub(super) fn apply(&self, part: usize, node: usize, x: &[f32], product: &mut [f64]) {
+        let behind = product.len() - self.list.len();
+        for (element, place) in self.range(part).enumerate() {
+            let (volume, at) = (&self.list[place], behind + place);
             if volume.factor == 0.0 {
-                product[behind + at] = 0.0;
+                product[at] = 0.0;
                 continue;
             }
-            let along = volume.along(&corners, (field.margin + element, field));
-            let p = f64::from(x[behind + at]);
-            product[behind + at] = along - p / volume.factor;
-            volume.add_force(p - volume.factor * along, at, &corners, product);
+            let corners = self.places[part].corners(element).map(|c| node + c);
+            let along = volume.along(&corners, x);
+            let p = f64::from(x[at]);
+            product[at] = along - p / volume.factor;
+            volume.add_force(p - volume.factor * along, &corners, product);
         }
     }
 
     /// Adds to a residual of displacements what follows for them where pressures are eliminated.
-    pub(super) fn condense(
-        &self,
-        (nodes, counts): (Range<usize>, [usize; 3]),
-        residual: &mut [f64],
-    ) {
-        let corners = corners(counts);
-        let behind = COMPONENTS * self.list.len();
-        for (element, volume) in self.of(nodes.clone()).iter().enumerate() {
-            let at = nodes.start + element;
+    pub(super) fn condense(&self, part: usize, node: usize, residual: &mut [f64]) {
+        let behind = residual.len() - self.list.len();
+        for (element, place) in self.range(part).enumerate() {
+            let volume = &self.list[place];
             if volume.factor != 0.0 {
-                let p = volume.factor * std::mem::take(&mut residual[behind + at]);
-                volume.add_force(p, at, &corners, residual);
+                let corners = self.places[part].corners(element).map(|c| node + c);
+                let p = volume.factor * std::mem::take(&mut residual[behind + place]);
+                volume.add_force(p, &corners, residual);
             }
         }
     }
@@ -186,11 +214,22 @@ impl ElementVolume {
             .sum()
     }
 
-    /// Adds the forces of a pressure at the corners; its first one is at a place.
+    /// Its derivatives, and the inverse of its factor, which is zero where there is no volume.
+    fn in_single_precision(&self) -> ([[f32; COMPONENTS]; CORNERS], f32) {
+        let compliance = match self.factor == 0.0 {
+            true => 0.0,
+            false => self.factor.recip() as f32,
+        };
+        let slopes = self.slopes;
+        let slopes = slopes.map(|slopes| slopes.map(|slope| slope as f32));
+        (slopes, compliance)
+    }
+
+    /// Adds the forces of a pressure at the corners.
     #[inline(always)]
-    fn add_force(&self, p: f64, at: usize, corners: &[usize; CORNERS], to: &mut [f64]) {
+    fn add_force(&self, p: f64, corners: &[usize; CORNERS], to: &mut [f64]) {
         for (slopes, corner) in self.slopes.iter().zip(corners) {
-            let there = &mut to[COMPONENTS * (at + corner)..][..COMPONENTS];
+            let there = &mut to[COMPONENTS * corner..][..COMPONENTS];
             for (sum, slope) in there.iter_mut().zip(slopes) {
                 *sum += slope * p;
             }
@@ -204,10 +243,19 @@ impl ElementVolume {
         }
         let own = &self.slopes[corner];
         for (other, there) in self.slopes.iter().enumerate() {
-            let block = &mut row[neighbour_of(corner, other)];
-            for (entry, value) in block.iter_mut().enumerate() {
-                *value -= self.factor * own[entry % COMPONENTS] * there[entry / COMPONENTS];
-            }
+            self.take_block(own, there, &mut row[neighbour_of(corner, other)]);
+        }
+    }
+
+    /// Leaves its part out of a block.
+    fn take_block(
+        &self,
+        own: &[f64; COMPONENTS],
+        there: &[f64; COMPONENTS],
+        block: &mut NodeBlock,
+    ) {
+        for (entry, value) in block.iter_mut().enumerate() {
+            *value -= self.factor * own[entry % COMPONENTS] * there[entry / COMPONENTS];
         }
     }
 }
