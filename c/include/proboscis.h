@@ -48,7 +48,8 @@ const char *proboscis_measured_name(const proboscis_controller *controller, size
 const char *proboscis_input_name(const proboscis_controller *controller, size_t place);
 
 /* The inputs that act from a time in s on, or the delay of the feedback later, within their bounds, with what is measured at that time; NULL where
- * it did not come before a deadline. Returns a proboscis_source. Called again within an interval, it gives the same inputs. */
+ * it did not come before a deadline. Returns a proboscis_source. Called again within an interval, or at
+ * a time that is no finite number, it gives the same inputs. */
 int proboscis_step(proboscis_controller *controller, double time, const double *measured, double *inputs);
 
 /* Prepares the next step, when the inputs went out; otherwise that step does it first. */

@@ -147,3 +147,19 @@ fn what_is_wrong_has_a_message() {
         assert!(text.contains(told), "{text}");
     }
 }
+
+/// A horizon that no memory holds has a message, and a time that is no time inputs.
+#[test]
+fn what_is_too_large_ends_no_program() {
+    let pair = problem("pair.json");
+    let refused = FileHorizon::new(&pair, None, 1_000_000_000).unwrap_err();
+    let told = "found a horizon of 1000000000 intervals, expected no more than 10000 intervals";
+    assert!(refused.to_string().contains(told), "{refused}");
+    let text = "0.0 0.0 0.0\ninf 0.0 0.0\n1e30 0.0 0.0\n0.01 0.0 0.0\n";
+    let out = run(compiled(), &pair, text);
+    let told = String::from_utf8(out.stdout).unwrap();
+    let steps: Vec<&str> = told.lines().skip(5).collect();
+    assert_eq!(steps.len(), 5, "{told}");
+    assert_eq!(steps[0], steps[1]);
+    assert!(steps[..4].iter().all(|one| one.starts_with("0 ")), "{told}");
+}

@@ -34,8 +34,8 @@ class Controller:
         self.source = ""
 
     def step(self, time: float, measured: npt.ArrayLike | None) -> Array:
-        """The inputs that act from a time in s on, with what is measured there; `None` where it did not come in time. Called again within an interval, it
-        gives the same inputs."""
+        """The inputs that act from a time in s on, with what is measured there; `None` where it did not come in time. Called again within an interval, or
+        at a time that is no finite number, it gives the same inputs."""
         state = None
         if measured is not None:
             state = np.ascontiguousarray(measured, dtype=float)

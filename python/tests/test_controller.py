@@ -28,13 +28,19 @@ def test_inputs_follow_what_is_measured(pair: pb.Problem) -> None:
     assert less[1] < held[1] < more[1]
     controller.step(1.03, None)
     assert controller.source == "late"
-    controller.step(1.04, [np.nan, 0.0])
+    kept = controller.step(1.04, [np.nan, 0.0])
     assert controller.source == "unusable"
+    # A time that is none, and one that is far ahead; then all goes on.
+    assert np.array_equal(controller.step(np.inf, [0.16, 0.0]), kept)
+    controller.step(1e30, [0.16, 0.0])
+    assert controller.step(1.05, [0.16, 0.0])[1] < held[1] and controller.source == "plan"
 
 
 def test_mistakes(pair: pb.Problem) -> None:
     with pytest.raises(pb.Error, match="intervals"):
         pair.controller(0)
+    with pytest.raises(pb.Error, match="no more than 10000"):
+        pair.controller(10**9)
     with pytest.raises(pb.Error, match="expected 2"):
         pair.controller(2).step(0.0, [1.0])
     with pytest.raises(pb.Error, match="integral"):

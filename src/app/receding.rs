@@ -31,11 +31,16 @@ impl FileHorizon {
             place: place.to_owned(),
             reason,
         };
-        if intervals == 0 {
-            return Err(wrong(
-                "",
-                "found a horizon of 0 intervals, expected 1 or more".to_owned(),
-            ));
+        let expected = match intervals {
+            0 => Some("1 or more".to_owned()),
+            _ if intervals > Ahead::MOST_INTERVALS => {
+                Some(format!("no more than {} intervals", Ahead::MOST_INTERVALS))
+            }
+            _ => None,
+        };
+        if let Some(expected) = expected {
+            let reason = format!("found a horizon of {intervals} intervals, expected {expected}");
+            return Err(wrong("", reason));
         }
         let Task::Control(control) = loaded.task else {
             let reason = "only \"control\" is planned anew".to_owned();
@@ -142,8 +147,8 @@ impl<'h> SiController<'h> {
         }
     }
 
-    /// The inputs that act from a time in s on, or the delay of the feedback later, with what is measured there; none where it did not come in time. Called again within an interval, it
-    /// gives the same inputs.
+    /// The inputs that act from a time in s on, or the delay of the feedback later, with what is measured there; none where it did not come in time. Called again within an interval, or at
+    /// a time that is no finite number, it gives the same inputs.
     ///
     /// # Panics
     /// If there are more or fewer numbers than are measured.

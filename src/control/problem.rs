@@ -117,6 +117,11 @@ pub struct Ahead {
     pub intervals: usize,
 }
 
+impl Ahead {
+    /// Most intervals of a horizon.
+    pub const MOST_INTERVALS: usize = 10_000;
+}
+
 /// An optimal control problem.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Control {

@@ -18,6 +18,12 @@ impl Control {
             || "0 intervals".to_owned(),
             "1 or more",
         )?;
+        require(
+            intervals <= Ahead::MOST_INTERVALS,
+            "horizon",
+            || format!("{intervals} intervals"),
+            "no more than 10000",
+        )?;
         let system = system.checked()?;
         let ahead = Ahead {
             control: self.resolve(&system)?,

@@ -258,6 +258,50 @@ fn faults() {
     assert_eq!(source, Source::Plan);
 }
 
+/// A wrong time stamp has inputs within bounds: the first controller has some, and goes on as the second one.
+#[test]
+fn wrong_times() {
+    let pair = problem("pair.json", &[]);
+    for delay in [0.0, 20.0] {
+        let task = Regulator {
+            delay,
+            ..Regulator::default()
+        };
+        let horizon = horizon(&pair, &task, 5);
+        let law = horizon.law();
+        let mut controllers = [(); 2].map(|()| RecedingHorizon::new(&horizon));
+        let stamps = [f64::INFINITY, f64::NAN, -5.0, 1e33, 1e9 * law.h, f64::MAX];
+        let mut largest = 0.0_f64;
+        for k in 0..18 {
+            let time = law.h * f64::from(k);
+            let mut state = law.at(time).state.clone();
+            state[0] += 1e-3;
+            if k % 3 == 1 {
+                let stamp = stamps[k as usize / 3];
+                let before = controllers[0].step(time - law.h, None).inputs.to_vec();
+                let answer = controllers[0].step(stamp, Some(&state));
+                assert!(answer.inputs.iter().all(|v| (0.0..=3000.0).contains(v)));
+                let is_far = stamp.is_finite() && stamp > time;
+                assert_eq!(answer.inputs != before, is_far, "{stamp}");
+                controllers[0].prepare();
+            }
+            let [stamped, plain] = controllers.each_mut().map(|controller| {
+                let answer = controller.step(time, Some(&state));
+                let out = (answer.source, answer.inputs.to_vec());
+                controller.prepare();
+                out
+            });
+            assert_eq!([stamped.0, plain.0], [Source::Plan; 2], "{k}");
+            largest = plain.1.iter().fold(largest, |most, v| most.max(*v));
+            // A plan that begins anew needs some iterations.
+            let both = stamped.1.iter().zip(&plain.1);
+            let distance = both.fold(0.0_f64, |most, (a, b)| most.max((a - b).abs()));
+            assert!(distance < 200.0, "{k}: {stamped:?} {plain:?}");
+        }
+        assert!(largest > 100.0, "{largest}");
+    }
+}
+
 /// Rates that no plan predicts are not taken in, however plausible their angles; in the end they are believed, the gains act, and a new plan begins.
 #[test]
 fn implausible_rates() {

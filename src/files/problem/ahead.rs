@@ -14,9 +14,6 @@ use crate::model::system::{Source, System};
 use std::path::Path;
 use std::sync::Arc;
 
-/// Most intervals of a horizon.
-const MOST: usize = 10_000;
-
 /// Reads the problem that the controller of a simulation plans anew, where there is one, by a reader of problem files.
 pub(crate) fn add_plan(
     task: &mut Task,
@@ -34,7 +31,8 @@ pub(crate) fn add_plan(
         return Ok(());
     };
     let place = scope.key("simulate").key("controller").key("horizon");
-    count(horizon.intervals, "interval", MOST, &place.key("intervals"))?;
+    let most = Ahead::MOST_INTERVALS;
+    count(horizon.intervals, "interval", most, &place.key("intervals"))?;
     let Simulation {
         duration,
         step,

@@ -38,6 +38,8 @@ const ABSURD_RATE: f64 = 10.0;
 const FAR: f64 = 1.0;
 /// Most further iterations of a step that the bounds of limits cut.
 const FURTHER: usize = 3;
+/// The last sample: a later time, of a wrong time stamp, is that of it.
+const LAST_SAMPLE: f64 = 1e15;
 /// Iterations of the first plan, and the residual at which they end.
 const FIRST: usize = 100;
 const SMALL: f64 = 1e-9;
@@ -66,6 +68,8 @@ pub struct RecedingHorizon<'h> {
     prepared: Option<bool>,
     /// Interval of the last answer, and its origin.
     answered: Option<(usize, Source)>,
+    /// The first interval that has an answer of its own: the next one, or that behind the answer before a leap of the time.
+    next: usize,
     /// Steps without an iteration one after the other, and implausible measurements.
     failures: usize,
     implausible: usize,
@@ -108,6 +112,7 @@ impl<'h> RecedingHorizon<'h> {
             interval: 0,
             prepared: None,
             answered: None,
+            next: 0,
             failures: 0,
             implausible: 0,
             residual: Residual::default(),
@@ -201,22 +206,26 @@ impl<'h> RecedingHorizon<'h> {
     }
 
     /// The inputs that act from a time in ms on, or the delay of the feedback later, with what is measured there, in the order of the law: the state
-    /// in rad, mm, rad/ms, mm/ms, or the readings of its observer; none where it did not come in time. Called again within an interval, it gives the
-    /// same inputs.
+    /// in rad, mm, rad/ms, mm/ms, or the readings of its observer; none where it did not come in time. Called again within an interval, or at a time
+    /// before it or that is no finite number, it gives the same inputs. After a leap of the time by more than the horizon, earlier times have answers of
+    /// their own again: the leap may have been a wrong time stamp.
     pub fn step(&mut self, time: f64, measured: Option<&[f64]>) -> Answer<'_> {
-        let sample = (time / self.of.law().h + 1e-6).max(0.0) as usize;
+        let sample = (time / self.of.law().h + 1e-6).clamp(0.0, LAST_SAMPLE) as usize;
         let interval = sample + self.of.delay();
-        match self.answered {
-            Some((last, source)) if interval <= last => {
-                return Answer {
-                    source,
-                    inputs: &self.inputs,
-                };
-            }
-            _ => {}
+        if let Some((last, source)) = self.answered
+            && (interval < self.next || interval == last || !time.is_finite())
+        {
+            return Answer {
+                source,
+                inputs: &self.inputs,
+            };
         }
-        if interval > self.interval + self.of.intervals() {
+        let is_leap = interval > self.interval + self.of.intervals();
+        if is_leap || interval < self.interval {
             self.follow(interval);
+        }
+        if !is_leap {
+            self.next = interval + 1;
         }
         while self.interval < interval {
             self.go_on();
