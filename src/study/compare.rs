@@ -142,11 +142,13 @@ fn against(
             (StudyMeasure::Objective, Some(limit)) => limit.value[0].abs(),
             _ => 1.0,
         };
+        // A single value tells nothing of its own error.
+        let known = limit.filter(|limit| limit.floor().is_finite());
         let error = |value: &Option<Vec<f64>>| {
-            Some(distance(value.as_ref()?, &limit?.value, width) / relative)
+            Some(distance(value.as_ref()?, &known?.value, width) / relative)
         };
         let errors: Vec<_> = judged.values[index].iter().map(error).collect();
-        let floor = limit.map_or(0.0, |limit| limit.floor() / relative);
+        let floor = known.map_or(0.0, |limit| limit.floor() / relative);
         let order = order(points, &errors, floor);
         judged.orders.push(order);
         judged.floors.push(floor);

@@ -271,24 +271,34 @@ fn expected(points: &[Done<'_>], measure: StudyMeasure) -> Option<f64> {
 /// References that are no limit but a finest value.
 fn references(study: &Study, judged: &Judged) -> Option<String> {
     let mut kinds = Grouped::default();
+    let mut single = Vec::new();
     for (index, limit) in judged.limits.iter().enumerate() {
         let Some(limit) = limit else { continue };
         match limit.how {
             How::NoOrder => kinds.add("no order is observed".to_owned(), index),
+            How::TooFew if limit.uncertainty.is_none() => single.push(index),
             How::TooFew => kinds.add("there are fewer than three".to_owned(), index),
             How::Extrapolated | How::Rounding => {}
         }
     }
+    let names = |indices: &[usize]| {
+        let each = indices.iter();
+        list(
+            each.map(|&i| format!("`{}`", of_reference(study, judged, i)))
+                .collect(),
+        )
+    };
     let each = kinds.0.iter().map(|(why, indices)| {
-        let names = indices
-            .iter()
-            .map(|&i| format!("`{}`", of_reference(study, judged, i)));
         format!(
-            "Errors are distances from the finest value of {}, as {why}",
-            list(names.collect())
+            "Errors are distances from the finest value of {}, as {why}, and its own error is estimated from the last differences by the order 0.5",
+            names(indices)
         )
     });
-    let text = each.collect::<Vec<_>>().join(". ");
+    let single = (!single.is_empty()).then(|| {
+        let names = names(&single);
+        format!("Errors are not known, as a single point of {names} has an answer")
+    });
+    let text = each.chain(single).collect::<Vec<_>>().join(". ");
     (!text.is_empty()).then_some(text)
 }
 

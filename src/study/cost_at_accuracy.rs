@@ -46,9 +46,9 @@ pub fn costs_at_accuracy(results: &Results<'_>, judged: &Judged) -> Vec<CostAtAc
     ACCURACIES.map(of).into()
 }
 
-/// The error that a point surely does not exceed: an error below the uncertainty of the reference may be as large as that.
+/// The error that a point does not exceed: its distance from the reference, and the uncertainty of that.
 pub fn surely(judged: &Judged, method: usize, point: usize) -> Option<f64> {
-    Some(judged.errors[method][point]?.max(judged.floors[method]))
+    Some(judged.errors[method][point]? + judged.floors[method])
 }
 
 /// Seconds, of the given quantile, until errors are `wanted`: between the first point that is so accurate and the one before;

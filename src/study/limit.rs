@@ -10,6 +10,8 @@
 
 /// Orders that are believed.
 const SENSIBLE: [f64; 2] = [0.5, 8.0];
+/// Least part of the last difference by which the finest value is taken to be off where no order is observed: that of first order and halved sizes.
+const LEAST: f64 = 1.0;
 /// Differences below this part of the values are rounding.
 const ROUNDING: f64 = 1e-12;
 /// Local slopes of a curve that differ by more from the slope of the rest do not belong to its straight part.
@@ -37,9 +39,11 @@ impl How {
             Self::Extrapolated => "extrapolated from the three finest values",
             Self::Rounding => "the finest value: the last ones differ by round-off only",
             Self::NoOrder => {
-                "the finest value: no order between 0.5 and 8 is observed, so nothing can be extrapolated"
+                "the finest value: no order between 0.5 and 8 is observed, so nothing can be extrapolated, and its error is estimated from the last differences by the order 0.5"
             }
-            Self::TooFew => "the finest value: there are fewer than three",
+            Self::TooFew => {
+                "the finest value: there are fewer than three, and its error is estimated from the last difference by the order 0.5"
+            }
         }
     }
 }
@@ -53,8 +57,8 @@ pub struct SequenceLimit {
     pub how: How,
     /// The order observed in each three successive values; none where it is not sensible.
     pub orders: Vec<Option<f64>>,
-    /// Change of the limit by the last value, where it could be extrapolated before; otherwise the distance of the finest value
-    /// from it, or of the one before from the finest. None of a single value.
+    /// Change of the limit by the last value, where it could be extrapolated before; otherwise the distance of the finest value from it. Where there is no
+    /// order, an estimate: the larger one of the last two differences, as errors of the least order that is believed have it. None of a single value.
     pub uncertainty: Option<f64>,
     /// Differences that are no larger are rounding.
     pub rounding: f64,
@@ -67,7 +71,7 @@ impl SequenceLimit {
         match (self.how, is_confirmed) {
             // The last error is how far the limit was extrapolated, by construction.
             (How::Extrapolated, false) => self.rounding,
-            _ => self.uncertainty.unwrap_or(0.0).max(self.rounding),
+            _ => self.uncertainty.unwrap_or(f64::INFINITY).max(self.rounding),
         }
     }
 }
@@ -107,10 +111,7 @@ pub fn limit(sizes: &[f64], values: &[Vec<f64>], width: usize) -> Option<Sequenc
     };
     let Some(last) = each.len().checked_sub(1) else {
         return Some(SequenceLimit {
-            uncertainty: match values {
-                [.., before, finest] => Some(distance(before, finest, width)),
-                _ => None,
-            },
+            uncertainty: (values.len() > 1).then(|| estimated(sizes, values, width)),
             value: finest.clone(),
             how: How::TooFew,
             orders,
@@ -118,6 +119,7 @@ pub fn limit(sizes: &[f64], values: &[Vec<f64>], width: usize) -> Option<Sequenc
         });
     };
     let apart = distance(&values[values.len() - 2], finest, width);
+    let is_rounding = apart <= rounding;
     let found = match extrapolated(last) {
         Some(value) => {
             let before = last.checked_sub(1).and_then(extrapolated);
@@ -132,16 +134,30 @@ pub fn limit(sizes: &[f64], values: &[Vec<f64>], width: usize) -> Option<Sequenc
         }
         None => SequenceLimit {
             value: finest.clone(),
-            how: match apart <= rounding {
+            how: match is_rounding {
                 true => How::Rounding,
                 false => How::NoOrder,
             },
             orders,
-            uncertainty: Some(apart),
+            uncertainty: Some(match is_rounding {
+                true => apart,
+                false => estimated(sizes, values, width),
+            }),
             rounding,
         },
     };
     Some(found)
+}
+
+/// An estimate of the error of the finest of two values or more that show no order: errors C hᵖ are `h₂ᵖ/(h₁ᵖ − h₂ᵖ)` times the last difference, and the
+/// less the order, the larger. The difference before counts where it is larger: values may come near to each other by chance.
+fn estimated(sizes: &[f64], values: &[Vec<f64>], width: usize) -> f64 {
+    let n = values.len();
+    let [coarse, fine] = [sizes[n - 2], sizes[n - 1]].map(|size| size.powf(SENSIBLE[0]));
+    let pairs = values[n.saturating_sub(3)..].windows(2);
+    let differences = pairs.map(|pair| distance(&pair[0], &pair[1], width));
+    let largest = differences.fold(0.0, f64::max);
+    largest * (fine / (coarse - fine)).max(LEAST)
 }
 
 /// Returns true if values go on as they went before, as errors C hᵖ do.

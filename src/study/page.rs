@@ -46,7 +46,7 @@ pub(super) fn markdown(
     }
     add(format!("## All points\n\n```text\n{}```", table));
     add(
-        "Seconds are the median of the timed runs. An error written with `<` is below the uncertainty of the limit itself; `–` means not known. `table.csv` and `study.json` have the input, the quartiles and every run of each point."
+        "Seconds are the median of the timed runs. An error written with `<` is below the uncertainty of the limit itself: the number is that uncertainty and the distance from the limit together; `–` means not known. `table.csv` and `study.json` have the input, the quartiles and every run of each point."
             .to_owned(),
     );
     if let Some(failed) = failed(study, results) {
@@ -170,7 +170,10 @@ fn section(study: &Study, judged: &Judged, figure: Option<&str>) -> String {
             (How::Extrapolated, Some(apart)) => {
                 format!("; the finest value is {apart:.1e}{unit} from it")
             }
-            (_, Some(apart)) => format!("; the two finest values are {apart:.1e}{unit} apart"),
+            (How::Rounding, Some(apart)) => {
+                format!("; the two finest values are {apart:.1e}{unit} apart")
+            }
+            (_, Some(apart)) => format!("; this estimate is {apart:.1e}{unit}"),
             (_, None) => String::new(),
         };
         let seen = match orders.is_empty() {

@@ -11,7 +11,7 @@ use crate::study::sizes::sizes;
 
 /// Fewest timed runs of a point.
 const RUNS: usize = 5;
-/// Fewest points of a method that is its own reference: those a limit is extrapolated from.
+/// Fewest points of a reference: those a limit is extrapolated from.
 const POINTS: usize = 3;
 
 /// A study, checked.
@@ -94,7 +94,12 @@ pub fn read_study(path: &Path) -> Result<Study, SceneError> {
         .collect::<Result<Vec<_>, _>>()?;
     let reference = match &spec.reference {
         None => own(&methods, &scope)?,
-        Some(reference) => of_one(&spec, reference, &names, &scope.key("reference"))?,
+        Some(reference) => of_one(
+            &spec,
+            reference,
+            (&names, &methods),
+            &scope.key("reference"),
+        )?,
     };
     let asked = same_question(&methods, &reference, &scope)?;
     Ok(Study {
@@ -176,7 +181,7 @@ fn own(methods: &[Method], scope: &Scope<'_>) -> Result<Reference, SceneError> {
 fn of_one(
     spec: &StudySpec,
     reference: &ReferenceSpec,
-    names: &[String],
+    (names, methods): (&[String], &[Method]),
     scope: &Scope<'_>,
 ) -> Result<Reference, SceneError> {
     let whole = Scope::of(scope.document);
@@ -186,6 +191,15 @@ fn of_one(
         None => Vec::new(),
         Some(refine) => points(spec, method, refine, &scope.key("refine"), &whole)?,
     };
+    let (count, place) = match &reference.refine {
+        None => (methods[method].points.len(), scope.clone()),
+        Some(_) => (points.len(), scope.key("refine")),
+    };
+    if count < POINTS {
+        let expected = format!("{POINTS} or more, from which a limit is extrapolated");
+        let points = if count == 1 { "point" } else { "points" };
+        return Err(place.wrong(format!("{count} {points}"), expected));
+    }
     Ok(Reference::Of { method, points })
 }
 

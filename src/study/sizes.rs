@@ -55,7 +55,14 @@ pub(super) fn sizes(
     }
     let grows = numbers.windows(2).all(|pair| pair[0] < pair[1]);
     let falls = numbers.windows(2).all(|pair| pair[0] > pair[1]);
+    // A length or a tolerance that grows is refined the other way round.
+    let are_counts = refine.sizes.is_some()
+        || (numbers[0] >= 1.0 && values.iter().all(|value| value.is_number()));
     match (grows, falls) {
+        (true, _) if !are_counts && numbers.len() > 1 => Err(place.wrong(
+            labels.join(", "),
+            "values that fall, the coarsest point first: growing ones are counts, 1 or more without a unit",
+        )),
         (true, _) => Ok((labels, numbers.iter().map(|n| n.recip()).collect())),
         (_, true) => Ok((labels, numbers)),
         _ => Err(place.wrong(

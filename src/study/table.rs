@@ -63,7 +63,7 @@ fn full(value: Option<f64>) -> String {
 
 /// The same in columns, rounded, with the orders below.
 ///
-/// An error that is no larger than the uncertainty of the reference is reported as less than that.
+/// An error that is no larger than the uncertainty of the reference is reported as less than both together.
 pub(super) fn text(study: &Study, results: &Results<'_>, judged: &[Judged]) -> String {
     let same = |method: &crate::study::read::Method| method.refined == study.methods[0].refined;
     let refined = match study.methods.iter().all(same) {
@@ -90,7 +90,7 @@ pub(super) fn text(study: &Study, results: &Results<'_>, judged: &[Judged]) -> S
             row.extend(judged.iter().map(|judged| match judged.errors[m][k] {
                 None => dash(),
                 Some(error) if judged.known(m, k).is_none() && judged.floors[m] > 0.0 => {
-                    format!("<{:.1e}", judged.floors[m].max(error))
+                    format!("<{:.1e}", judged.floors[m] + error)
                 }
                 Some(0.0) => "0".to_owned(),
                 Some(error) => format!("{error:.2e}"),

@@ -212,7 +212,7 @@ fn errors_that_rise_are_said_to_rise() {
     let words = said(&study, &points, nothing);
     assert!(
         words.contains(
-            "Errors are distances from the finest value of `clean`, as no order is observed."
+            "Errors are distances from the finest value of `clean`, as no order is observed, and its own error is estimated from the last differences by the order 0.5."
         ),
         "{words}"
     );

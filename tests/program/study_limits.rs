@@ -36,6 +36,27 @@ fn limits_and_orders_of_made_up_sequences() {
         How::TooFew
     );
     assert_eq!(limit(&[], &[], 1), None);
+    let single = limit(&[1.0], &[vec![1.0]], 1).unwrap();
+    assert_eq!(single.floor(), f64::INFINITY);
+    // Without an order, the larger of the last two differences, as the order 0.5 has errors: 1/(√2 − 1) of it.
+    let factor = (2.0_f64.sqrt() - 1.0).recip();
+    assert!((of([1.0, 5.0, 4.0]).floor() - 4.0 * factor).abs() < 1e-12);
+    let two = limit(&sizes[..2], &[vec![1.0], vec![2.0]], 1).unwrap();
+    assert!((two.floor() - factor).abs() < 1e-12);
+    // Errors of the orders 0.6 and 1 with kinks of a quarter show no order, and the finest value is not further off than it says.
+    let mut without = 0;
+    for (order, kinks) in [
+        (0.6, [1.0, 0.75, 1.25]),
+        (1.0, [1.0, 1.3, 0.8]),
+        (1.0, [1.0, 1.25, 1.0]),
+    ] {
+        let value = |k: usize| 7.0 + 0.3 * kinks[k] * sizes[k].powf(order);
+        let found = of([0, 1, 2].map(value));
+        without += usize::from(found.how == How::NoOrder);
+        let error = (found.value[0] - 7.0).abs();
+        assert!(error > 0.01 && error < found.floor(), "{error} {found:?}");
+    }
+    assert_eq!(without, 3);
     // A rough start and rounding at the end do not belong to the straight part, a flat curve has no order.
     let error = |h: f64| if h > 0.3 { 0.5 } else { h * h };
     let halved: Vec<_> = (0..12)

@@ -77,6 +77,32 @@ fn wrong_studies_are_refused_with_place_found_and_expected() {
         &|s| s["refine"]["set"]["simulate.step"] = json!(["50 ms", "25 ms"]),
         &[&word("methods[0]"), "2 points", "expected 3 or more"],
     );
+    refused(
+        &|s| s["refine"]["set"]["simulate.step"] = json!(["10 ms", "20 ms", "40 ms"]),
+        &[
+            &word("refine.set.simulate.step"),
+            "10 ms, 20 ms, 40 ms",
+            "expected values that fall, the coarsest point first",
+        ],
+    );
+    refused(
+        &|s| {
+            s["refine"]["set"]["simulate.step"] = json!(["50 ms", "25 ms"]);
+            s["reference"] = json!({ "method": "angle" });
+        },
+        &[&word("reference"), "2 points", "expected 3 or more"],
+    );
+    refused(
+        &|s| {
+            let set = json!({ "simulate.step": ["1 ms"] });
+            s["reference"] = json!({ "method": "angle", "refine": { "name": "step", "set": set } });
+        },
+        &[
+            &word("reference.refine"),
+            "found 1 point,",
+            "from which a limit is extrapolated",
+        ],
+    );
     // A wrong override is told where it stands in the study.
     refused(
         &|s| s["methods"][1]["set"]["simulate.coordinates"] = json!("reducd"),
