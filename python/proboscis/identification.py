@@ -56,11 +56,16 @@ class HeldOut:
     """The prediction of a recording that no constant was fitted to."""
 
     is_explained: bool
-    reduced_chi_square: float
+    statistic: float
+    """Squared differences over those that the deviations of readings and constants let expect: 1 where all is as expected."""
     quantile: float
-    """The value that it exceeds with a probability of 1 %."""
+    """The value that the statistic exceeds with a probability of 1 %."""
     p: float
-    """Probability of so large differences where the model is right."""
+    """Probability of so large a statistic where the model is right."""
+    not_white: list[str]
+    """Quantities whose differences are not white."""
+    reduced_chi_square: float
+    """The same as the statistic by the deviations of the readings alone."""
 
 
 @dataclass(frozen=True)
@@ -129,7 +134,14 @@ class Identification:
     def held_out(self) -> dict[str, HeldOut]:
         """Verdicts on the recordings that were held out, by their names."""
         return {
-            entry["recording"]: HeldOut(entry["verdict"] == "explained", entry["reduced_chi_square"], entry["quantile"], entry["p"])
+            entry["recording"]: HeldOut(
+                is_explained=entry["verdict"] == "explained",
+                statistic=entry["statistic"],
+                quantile=entry["quantile"],
+                p=entry["p"],
+                not_white=entry["not_white"],
+                reduced_chi_square=entry["reduced_chi_square"],
+            )
             for entry in self._summary["held_out"]
         }
 

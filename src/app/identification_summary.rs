@@ -2,7 +2,7 @@
 
 use serde::Serialize;
 
-use crate::app::identification_verdict::{product, words};
+use crate::app::identification_verdict::{prediction, product, verdict, words};
 use crate::control::problem;
 use crate::identify::{Experiment, FoundStart, HeldOut, Identified, Undetermined, Whiteness};
 use crate::math::significant;
@@ -141,10 +141,18 @@ struct Prediction {
     recording: String,
     /// `explained` or `not explained`.
     verdict: &'static str,
-    reduced_chi_square: f64,
+    /// Squared differences over those that the deviations of readings and constants let expect.
+    statistic: f64,
     /// The value that it exceeds with a probability of 1 %.
     quantile: f64,
     p: f64,
+    /// Quantities whose differences are not white.
+    not_white: Vec<String>,
+    /// The same as the statistic by the deviations of the readings alone.
+    reduced_chi_square: f64,
+    /// The verdict with its reason.
+    #[serde(skip)]
+    text: String,
     residuals: Vec<Residuals>,
 }
 
@@ -312,15 +320,7 @@ impl Identification {
                 ));
             }
         }
-        for one in &self.held_out {
-            lines.push(format!(
-                "{}: {} (reduced χ² {}, 1 % beyond {})",
-                one.recording,
-                one.verdict,
-                significant(one.reduced_chi_square, 3),
-                significant(one.quantile, 3)
-            ));
-        }
+        lines.extend(self.held_out.iter().map(|one| one.text.clone()));
         if let Some(best) = self.next_experiments.first() {
             lines.push(format!("next experiment: {}", best.name));
         }
@@ -357,15 +357,19 @@ impl Start {
 
 impl Prediction {
     fn new(task: &problem::Identification, one: &HeldOut) -> Self {
+        let recording = &task.recordings[one.recording];
         Self {
-            recording: task.recordings[one.recording].name.clone(),
-            verdict: match one.is_explained() {
-                true => "explained",
-                false => "not explained",
-            },
-            reduced_chi_square: one.reduced,
+            recording: recording.name.clone(),
+            verdict: verdict(one),
+            statistic: one.statistic,
             quantile: one.quantile,
             p: one.p,
+            not_white: one
+                .not_white()
+                .map(|(channel, _)| recording.channels[channel].name.clone())
+                .collect(),
+            reduced_chi_square: one.reduced,
+            text: prediction(recording, one),
             residuals: residuals(task, &one.series, &one.whiteness),
         }
     }

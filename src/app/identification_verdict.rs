@@ -63,6 +63,30 @@ pub(super) fn status(found: &Identified) -> &'static str {
     }
 }
 
+/// Verdict on a recording that was held out.
+pub(super) fn verdict(of: &HeldOut) -> &'static str {
+    match of.is_explained() {
+        true => "explained",
+        false => "not explained",
+    }
+}
+
+/// The same with the numbers that decide it.
+pub(super) fn prediction(recording: &Recording, of: &HeldOut) -> String {
+    let not_white = of.not_white().map(|(channel, p)| {
+        let name = &recording.channels[channel].name;
+        format!("; differences of {name} are not white, Ljung-Box p = {p:.1e}")
+    });
+    format!(
+        "{}: {} (reduced χ² of the prediction {}, 1 % beyond {}{})",
+        recording.name,
+        verdict(of),
+        significant(of.statistic, 3),
+        significant(of.quantile, 3),
+        not_white.collect::<String>()
+    )
+}
+
 /// A recording of which a table of voltages or loads ends before its last reading.
 fn beyond(recording: &Recording) -> Option<String> {
     let last = recording.readings().map(|reading| reading.time);

@@ -31,11 +31,13 @@ pub struct HeldOut {
     pub recording: usize,
     /// Its residuals.
     pub series: Vec<Series>,
-    /// Σ of the squared residuals in standard deviations over their number: 1 where all is as expected.
+    /// Σ of the squared residuals in standard deviations of the readings alone over their number.
     pub reduced: f64,
-    /// The value that it exceeds with a probability of 1 %.
+    /// `rᵀ (Σ + S C Sᵀ)⁻¹ r` over n: 1 where all is as expected.
+    pub statistic: f64,
+    /// The value that the statistic exceeds with a probability of 1 %.
     pub quantile: f64,
-    /// Probability of so large differences.
+    /// Probability of so large a statistic.
     pub p: f64,
     /// Whiteness of the residuals of each channel.
     pub whiteness: Vec<Option<Whiteness>>,
@@ -44,9 +46,17 @@ pub struct HeldOut {
 impl HeldOut {
     /// Returns true if its readings do not differ from the prediction by more than chance.
     pub fn is_explained(&self) -> bool {
-        let tests = self.whiteness.iter().flatten();
-        let count = tests.clone().count().max(1) as f64;
-        self.p >= LEVEL && tests.into_iter().all(|test| test.p >= LEVEL / count)
+        self.p >= LEVEL && self.not_white().next().is_none()
+    }
+
+    /// The channels whose differences are not white, with the probability of what was found; together they are as improbable as a large statistic.
+    pub fn not_white(&self) -> impl Iterator<Item = (usize, f64)> + '_ {
+        let count = self.whiteness.iter().flatten().count().max(1) as f64;
+        let tests = self.series.iter().zip(&self.whiteness);
+        tests.filter_map(move |(series, test)| {
+            let p = test.as_ref()?.p;
+            (p < LEVEL / count).then_some((series.channel, p))
+        })
     }
 
     /// The prediction of a recording by a fit.
@@ -108,16 +118,16 @@ impl HeldOut {
             &mut residuals,
         );
         let residuals = whitened(&by, &information.covariance, &residuals);
-        let sum = residuals.norm_squared();
+        let statistic = residuals.norm_squared() / n;
         let (p, quantile) = match of.data.is_known() {
             true => {
                 let chi = ChiSquared::new(n).expect("a positive number");
-                (chi.sf(sum), chi.inverse_cdf(1.0 - LEVEL) / n)
+                (chi.sf(statistic * n), chi.inverse_cdf(1.0 - LEVEL) / n)
             }
             false => {
                 let freedom = of.freedom().max(1) as f64;
                 let f = FisherSnedecor::new(n, freedom).expect("positive numbers");
-                (f.sf(sum / n), f.inverse_cdf(1.0 - LEVEL))
+                (f.sf(statistic), f.inverse_cdf(1.0 - LEVEL))
             }
         };
         Ok(Self {
@@ -125,6 +135,7 @@ impl HeldOut {
             whiteness: whiteness(&series, &residuals),
             series,
             reduced,
+            statistic,
             quantile,
             p,
         })

@@ -13,7 +13,16 @@ fn the_kept_recordings_tell_modulus_and_viscosity() {
     assert!(out.starts_with("explained\n"), "{out}");
     let summary = read(folder.path().join("found/summary.json"));
     assert_eq!(summary["status"], "explained");
-    assert_eq!(summary["held_out"][0]["verdict"], "explained");
+    let held_out = &summary["held_out"][0];
+    assert_eq!(held_out["verdict"], "explained");
+    assert_eq!(held_out["not_white"], serde_json::json!([]));
+    let [statistic, quantile] =
+        ["statistic", "quantile"].map(|key| held_out[key].as_f64().unwrap());
+    assert!(0.0 < statistic && statistic < quantile, "{held_out}");
+    let line = format!(
+        "sine: explained (reduced χ² of the prediction {statistic:.2}, 1 % beyond {quantile:.2})"
+    );
+    assert!(out.contains(&line), "{line}: {out}");
     assert_eq!(summary["grid"]["confirmed"], true);
     // The twin that made the recordings, from a scene with 100 kPa and 1000 Pa s.
     for (constant, truth) in summary["constants"]
