@@ -96,7 +96,7 @@ impl Noise {
     pub fn unread(&self, law: &Law) -> Option<&'static str> {
         let of_state = |place: usize| {
             let one = &law.measured[place];
-            (!one.is_memory).then_some((one.is_rate, one.is_length))
+            one.memory.is_none().then_some((one.is_rate, one.is_length))
         };
         let of_reading = |one: &Reading| match one {
             Reading::State(place) => of_state(*place),

@@ -16,8 +16,27 @@ pub struct Measured {
     pub is_rate: bool,
     /// True for a length in mm, false for an angle in rad or a number.
     pub is_length: bool,
-    /// True for what is remembered, as the viscous stretch of a muscle: another system need not have it.
-    pub is_memory: bool,
+    /// What is remembered, which another system need not have; none of coordinates and rates of joints and nodes.
+    pub memory: Option<Memory>,
+}
+
+/// What a muscle remembers.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Memory {
+    /// A number, as the logarithm of its viscous stretch.
+    Number,
+    /// Its charge, in a unit in mC.
+    Charge(f64),
+}
+
+impl Memory {
+    /// A value of what another law or system remembers, in the unit of this one.
+    pub fn take(self, value: f64, from: Self) -> f64 {
+        match (self, from) {
+            (Self::Charge(to), Self::Charge(from)) => value * (from / to),
+            _ => value,
+        }
+    }
 }
 
 /// An input that the law gives.

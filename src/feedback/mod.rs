@@ -17,7 +17,7 @@ pub use controller::Controller;
 pub use estimate::Estimate;
 pub use held::{HeldGain, NotHeld, held_gain};
 pub use lasting::{Forced, Lasting};
-pub use law::{Integral, Law, LawInput, Measured, Point};
+pub use law::{Integral, Law, LawInput, Measured, Memory, Point};
 pub use observer::{Filter, Observer, Reading};
 pub use radius::spectral_radius;
 pub(crate) use riccati::symmetric;

@@ -171,6 +171,16 @@ impl Model {
         }
     }
 
+    /// The unit in mC of coordinate `i` where it is a charge.
+    pub fn unit_of_charge(&self, i: usize) -> Option<f64> {
+        let source = self.charge(i)?;
+        let mut circuits = self.electrode_circuits.iter();
+        match circuits.find(|of| of.source == source) {
+            Some(of) => Some(of.unit_of_charge),
+            None => Some(capacitance(self.system.muscles.get(source)?)?.unit_of_charge()),
+        }
+    }
+
     /// Charge in mC of each muscle and of electrodes behind a resistor, by source, at instants with coordinates z.
     pub fn circuit_charges(&self, z: &[Vec<f64>]) -> BTreeMap<usize, Vec<f64>> {
         let of_circuit = |charged: Charged| match charged.place {

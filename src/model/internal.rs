@@ -74,7 +74,7 @@ impl Internal {
 
     fn of_branch(name: &str, muscle: usize, branch: usize) -> Self {
         Self {
-            name: format!("viscous stretch {} of {name}", branch + 1),
+            name: format!("logarithm of viscous stretch {} of {name}", branch + 1),
             size: Size::One,
             kind: InternalKind::Branch { muscle, branch },
         }

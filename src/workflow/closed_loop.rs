@@ -206,7 +206,7 @@ impl ClosedLoop {
         let coordinates = model.variables.with(Role::Coordinate);
         for (place, measured) in law.measured.iter().enumerate() {
             let own = coordinates.iter().position(|one| one.name == measured.name);
-            let own = own.filter(|_| !measured.is_rate && !measured.is_memory);
+            let own = own.filter(|_| !measured.is_rate && measured.memory.is_none());
             let Some(i) = own else { continue };
             let mut readings = model.joint_readings.iter();
             let joint = readings.position(|one| one.coordinate == Some(i));

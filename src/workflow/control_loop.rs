@@ -7,6 +7,7 @@ use crate::math::Random;
 use crate::model::{Coordinates, Model, Role};
 use crate::workflow::error::WorkflowError;
 use crate::workflow::receding::{Horizon, RecedingHorizon};
+use crate::workflow::regulator::remembered;
 use serde::Serialize;
 use std::cell::RefCell;
 use std::collections::{BTreeMap, VecDeque};
@@ -219,7 +220,10 @@ impl<'a> Loop<'a> {
         let of_state = |place: usize| {
             let of = &law.measured[place];
             let value = match (self.measured[place], of.is_rate) {
-                (Some(i), false) => z[i],
+                (Some(i), false) => match (of.memory, remembered(self.model, i)) {
+                    (Some(own), Some(here)) => own.take(z[i], here),
+                    _ => z[i],
+                },
                 (Some(i), true) => rates[i],
                 (None, _) => law.reference(time, place),
             };
@@ -290,7 +294,7 @@ fn measured(model: &Model, law: &Law) -> Result<Vec<Option<usize>>, String> {
             .position(|variable| variable.name == one.name);
         let own = own.filter(|&i| model.is_length(i) == one.is_length);
         match own {
-            None if !one.is_memory => Err(format!(
+            None if one.memory.is_none() => Err(format!(
                 "it measures {:?}, which this robot does not have; expected the feedback of a robot with the same joints",
                 one.name
             )),
@@ -341,7 +345,7 @@ impl Noise {
     /// The standard deviation of a measured quantity; what is remembered has none.
     fn of(&self, measured: &Measured) -> f64 {
         match (measured.is_length, measured.is_rate) {
-            _ if measured.is_memory => 0.0,
+            _ if measured.memory.is_some() => 0.0,
             (false, false) => self.angle,
             (false, true) => self.angular_velocity,
             (true, false) => self.length,

@@ -19,7 +19,7 @@ fn law(gain: DMatrix<f64>, delay: usize, bounds: [f64; 2], observer: Option<Obse
         name: name.into(),
         is_rate: false,
         is_length: true,
-        is_memory: false,
+        memory: None,
     };
     let point = Point {
         state: vec![0.0; 2],

@@ -227,7 +227,8 @@ fn a_muscle_without_branches_has_no_unknown_and_no_term_of_them() {
         .map(|list| model(&slider(20.0, list), Coordinates::Reduced, 1.0));
     assert_eq!(with.coordinate_count(), without.coordinate_count() + 1);
     let names = with.variables.with(Role::Coordinate);
-    assert_eq!(names[1].to_string(), "viscous stretch 1 of muscle");
+    let name = "logarithm of viscous stretch 1 of muscle";
+    assert_eq!(names[1].to_string(), name);
     for term in ["maxwell elasticity", "maxwell viscosity"] {
         let has = |model: &Model| model.present.iter().any(|p| p.term == term);
         assert!(has(&with) && !has(&without), "{term}");

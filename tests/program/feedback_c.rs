@@ -1,9 +1,10 @@
 //! The law of a controller in C, compiled and called beside that of the library.
 
 use crate::feedback::solved;
+use crate::remembered_feedback::{BRANCH, RESISTOR};
 use crate::runs::workshop;
 use proboscis::control::problem::Task;
-use proboscis::feedback::{Controller, Law, Reading};
+use proboscis::feedback::{Controller, Law, Memory, Reading};
 use proboscis::files::read_problem;
 use proboscis::math::Random;
 use std::fs;
@@ -40,7 +41,12 @@ const STEPS: usize = 30;
 fn measured(law: &Law, random: &mut Random, k: usize) -> [Vec<f64>; 2] {
     let mut off = |place: usize| {
         let of = &law.measured[place];
-        let (size, unit) = if of.is_rate { (6e-3, 1e3) } else { (0.6, 1.0) };
+        let (size, unit) = match of.memory {
+            Some(Memory::Charge(unit)) => (0.02 / unit, 1e-3 * unit),
+            Some(Memory::Number) => (0.05, 1.0),
+            None if of.is_rate => (6e-3, 1e3),
+            None => (0.6, 1.0),
+        };
         (random.between(-size, size), unit)
     };
     let (values, si): (Vec<f64>, Vec<f64>) = match &law.observer {
@@ -140,6 +146,9 @@ fn a_compiled_controller_gives_the_inputs_of_the_library() {
         ("late", "21 ms", &[]),
         ("observed", "0 ms", &[JOINT]),
         ("observed_late", "21 ms", &[TIP]),
+        ("remembered", "0 ms", &[RESISTOR, BRANCH]),
+        ("remembered_late", "21 ms", &[RESISTOR, BRANCH]),
+        ("seen_late", "21 ms", &[RESISTOR, BRANCH, TIP]),
         ("lasting", "0 ms", &[LASTING, NO_INTEGRAL]),
         ("lasting_late", "21 ms", &[LASTING, NO_INTEGRAL]),
     ] {
@@ -157,7 +166,10 @@ fn a_compiled_controller_gives_the_inputs_of_the_library() {
         };
         let law = task.controller.unwrap().law;
         assert_eq!(law.delay, if to.ends_with("late") { 3 } else { 0 });
-        assert_eq!(law.observer.is_some(), !observer.is_empty());
+        let is_observed = set.iter().any(|set| set.starts_with("feedback.observer"));
+        assert_eq!(law.observer.is_some(), is_observed);
+        let remembers = law.measured.iter().filter(|one| one.memory.is_some());
+        assert_eq!(remembers.count(), if set.contains(&BRANCH) { 4 } else { 0 });
         assert_eq!(law.forces(), usize::from(to.starts_with("lasting")));
         let (expected, text) = by_library(&law);
         let found = by_c(&here.join(to), &text);

@@ -40,6 +40,7 @@ mod path_rows;
 mod process;
 mod receding;
 mod refusals;
+mod remembered_feedback;
 mod report;
 mod resume;
 mod runs;

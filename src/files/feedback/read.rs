@@ -1,7 +1,7 @@
 //! Reader of `feedback.json`, for a system with joints and sources of the same names.
 
 use crate::feedback::{
-    Filter, Forced, Integral, Lasting, Law, LawInput, Measured, Observer, Point, Reading,
+    Filter, Forced, Integral, Lasting, Law, LawInput, Measured, Memory, Observer, Point, Reading,
 };
 use crate::files::feedback::record::{
     FilterRecord, InputRecord, LastingRecord, LawRecord, MeasuredRecord, ObserverRecord,
@@ -159,18 +159,24 @@ fn markers(record: &LawRecord, instants: usize, system: &System) -> Vec<(String,
 }
 
 fn of_measured(record: &MeasuredRecord, place: &Scope<'_>) -> Result<Measured, SceneError> {
-    let kinds = [(false, false), (false, true), (true, false), (true, true)];
-    let all = kinds.map(|(is_length, is_rate)| Measured {
+    let plain = [(false, false), (false, true), (true, false), (true, true)];
+    let plain = plain.map(|(is_length, is_rate)| (is_length, is_rate, None));
+    let remembered = [Memory::Number, Memory::Charge(1.0)].map(|one| (false, false, Some(one)));
+    let (kinds, expected) = match record.is_memory {
+        true => (&remembered[..], "1 or C"),
+        false => (&plain[..], "rad, m, rad/s or m/s"),
+    };
+    let all = kinds.iter().map(|&(is_length, is_rate, memory)| Measured {
         name: record.name.clone(),
         is_rate,
         is_length,
-        is_memory: record.is_memory,
+        memory,
     });
-    let mut own = all.into_iter().filter(|one| unit_of(one).0 == record.unit);
+    let mut own = all.filter(|one| unit_of(one).0 == record.unit);
     let wrong = || {
         place
             .key("unit")
-            .wrong(format!("{:?}", record.unit), "rad, m, rad/s or m/s")
+            .wrong(format!("{:?}", record.unit), expected)
     };
     own.next().ok_or_else(wrong)
 }

@@ -1,6 +1,6 @@
 //! The types of `feedback.json`, and the factors of its units.
 
-use crate::feedback::{Measured, Reading};
+use crate::feedback::{Measured, Memory, Reading};
 use crate::model::system::Source;
 use serde::{Deserialize, Serialize};
 use std::collections::BTreeMap;
@@ -85,7 +85,7 @@ pub(super) struct FilterRecord {
     pub(super) gain: Vec<Vec<f64>>,
 }
 
-/// A coordinate or its rate: rad, m, rad/s, m/s.
+/// A coordinate or its rate: rad, m, rad/s, m/s; or what a muscle remembers: a number, C.
 #[derive(Debug, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub(super) struct MeasuredRecord {
@@ -122,11 +122,13 @@ pub(super) struct PointRecord {
 
 /// Unit of a measured quantity, and its factor from the units inside.
 pub(crate) fn unit_of(measured: &Measured) -> (&'static str, f64) {
-    match (measured.is_length, measured.is_rate) {
-        (false, false) => ("rad", 1.0),
-        (false, true) => ("rad/s", 1e3),
-        (true, false) => ("m", 1e-3),
-        (true, true) => ("m/s", 1.0),
+    match (measured.memory, measured.is_length, measured.is_rate) {
+        (Some(Memory::Number), ..) => ("1", 1.0),
+        (Some(Memory::Charge(unit)), ..) => ("C", 1e-3 * unit),
+        (None, false, false) => ("rad", 1.0),
+        (None, false, true) => ("rad/s", 1e3),
+        (None, true, false) => ("m", 1e-3),
+        (None, true, true) => ("m/s", 1.0),
     }
 }
 

@@ -143,7 +143,7 @@ pub(super) fn record(law: &Law, system: &System) -> LawRecord {
     let measured = law.measured.iter().map(|one| MeasuredRecord {
         name: one.name.clone(),
         unit: unit_of(one).0.to_owned(),
-        is_memory: one.is_memory,
+        is_memory: one.memory.is_some(),
     });
     let inputs = law.inputs.iter().zip(units(law, system));
     let places = |places: &[[f64; 3]]| places.iter().map(|place| place.map(|x| x / 1e3)).collect();

@@ -1,12 +1,18 @@
 //! The law of a regulator: its gains read rates in place of momenta, as `δp = ∂p/∂q δq + M δq̇` at each instant of the motion.
 
 use crate::dynamics::rates_of_momentum;
-use crate::feedback::{HeldGain, Integral, Law, LawInput, Measured, Point};
-use crate::model::Time;
+use crate::feedback::{HeldGain, Integral, Law, LawInput, Measured, Memory, Point};
+use crate::model::{Model, Time};
 use crate::workflow::regulator::design::{Design, State};
 use crate::workflow::regulator::lasting::widened;
 use crate::workflow::regulator::regulated::RegulatedStep;
 use nalgebra::{DMatrix, DVector};
+
+/// What coordinate `i` remembers.
+pub(crate) fn remembered(model: &Model, i: usize) -> Option<Memory> {
+    let charge = model.unit_of_charge(i).map(Memory::Charge);
+    charge.or_else(|| model.is_memory(i).then_some(Memory::Number))
+}
 
 impl Design<'_> {
     pub(super) fn law(
@@ -20,7 +26,7 @@ impl Design<'_> {
             name: self.model.variables.unknown(i).to_string(),
             is_rate,
             is_length: self.model.is_length(i),
-            is_memory: self.model.is_memory(i),
+            memory: remembered(self.model, i),
         };
         let coordinates = self.coordinates.iter().map(|i| coordinate(i, false));
         let rates = self.momenta.iter().map(|i| coordinate(i, true));

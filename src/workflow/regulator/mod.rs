@@ -20,6 +20,7 @@ use crate::workflow::regulator::check::reproduced;
 use crate::workflow::regulator::design::Design;
 use crate::workflow::regulator::lasting::Against;
 pub(crate) use design::rate_weight;
+pub(crate) use law::remembered;
 use nalgebra::DMatrix;
 pub use rates::WholeCosts;
 pub use regulated::{NoRegulator, Regulated, RegulatedStep, RegulatorReport, Reproduced};
