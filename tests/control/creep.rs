@@ -108,7 +108,11 @@ fn a_goal_is_held_where_rubber_has_relaxed() {
     let horizon = receding::horizon(&pair, &Regulator::default(), 4);
     let law = horizon.law();
     let held = law.held.as_ref().unwrap();
-    let memory = law.measured.iter().position(|one| one.is_memory).unwrap();
+    let memory = law
+        .measured
+        .iter()
+        .position(|one| one.memory.is_some())
+        .unwrap();
     let at_end = law.at(law.duration() - 0.5 * law.h);
     let relaxed = held.state[memory] - at_end.state[memory];
     assert!(relaxed.abs() > 0.01, "{relaxed}");
