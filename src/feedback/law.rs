@@ -16,7 +16,7 @@ pub struct Measured {
     pub is_rate: bool,
     /// True for a length in mm, false for an angle in rad or a number.
     pub is_length: bool,
-    /// What is remembered, which another system need not have; none of coordinates and rates of joints and nodes.
+    /// The kind of what is remembered, which another system need not have; none of coordinates and rates of joints and nodes.
     pub memory: Option<Memory>,
 }
 

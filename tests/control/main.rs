@@ -42,6 +42,7 @@ mod rate_limits;
 mod reaction_limits;
 mod reaction_torques;
 mod receding;
+mod receding_limits;
 mod reference;
 mod resample;
 mod resisted_energies;
