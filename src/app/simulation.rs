@@ -32,7 +32,7 @@ use crate::report::atomic::WriteError;
 use crate::report::file_set::FileSet;
 use crate::report::origin::Origin;
 use crate::report::{self, write_run};
-use crate::tasks::{self, Assessment, SimulationRequest, SimulationResult};
+use crate::tasks::{self, Assessment, DisturbedLoops, SimulationRequest, SimulationResult};
 use crate::workflow::Simulated;
 use crate::workflow::closed_loop::DisturbedLoop;
 use crate::workflow::effects::Plan;
@@ -127,7 +127,11 @@ fn disturbed(
     let seconds = run.request.max_seconds.map(|limit| limit - elapsed);
     let found = tasks::disturbed(&run.loaded.disturbed, ended, seconds);
     let found = found.map_err(CommandError::in_file(&run.request.input));
-    let (loops, left_out, stopped) = found?;
+    let DisturbedLoops {
+        loops,
+        left_out,
+        stopped,
+    } = found?;
     ended.stopped = ended.stopped.or(stopped);
     if let Some(closed) = &mut ended.closed_loop {
         closed.disturbance = loops.iter().map(DisturbedLoop::report).collect();

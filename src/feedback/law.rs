@@ -20,7 +20,7 @@ pub struct Measured {
     pub memory: Option<Memory>,
 }
 
-/// What a muscle remembers.
+/// Quantity that a muscle remembers.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Memory {
     /// A number, as the logarithm of its viscous stretch.

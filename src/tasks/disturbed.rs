@@ -8,11 +8,21 @@ use crate::workflow::closed_loop::DisturbedLoop;
 use std::ops::ControlFlow;
 use std::time::Instant;
 
+/// Closed loops with parts of a disturbance.
+#[derive(Debug, Default)]
+pub struct DisturbedLoops {
+    /// Those that were simulated.
+    pub loops: Vec<DisturbedLoop>,
+    /// Reasons why others are left out.
+    pub left_out: Vec<String>,
+    /// Status of a run that was stopped before all of them ended.
+    pub stopped: Option<Status>,
+}
+
 /// The part that is the problem itself.
 const WHOLE: f64 = 1.0;
 
-/// Closed loops with all parts of a disturbance, next to that of the whole, which has been simulated; reasons why some are left out; and that to stop. They
-/// end after a number of seconds.
+/// Closed loops with all parts of a disturbance, next to that of the whole, which has been simulated. They end after a number of seconds.
 ///
 /// # Errors
 /// A model or a start does not exist.
@@ -20,11 +30,11 @@ pub fn disturbed(
     parts: &[Disturbed],
     whole: &SimulationResult,
     seconds: Option<f64>,
-) -> Result<(Vec<DisturbedLoop>, Vec<String>, Option<Status>), WorkflowError> {
+) -> Result<DisturbedLoops, WorkflowError> {
     let began = Instant::now();
-    let (mut loops, mut left_out, mut stopped) = (Vec::new(), Vec::new(), None);
+    let mut out = DisturbedLoops::default();
     if whole.closed_loop.is_none() {
-        return Ok((loops, left_out, stopped));
+        return Ok(out);
     }
     let go_on = &mut |_: usize, _: &_, _: &_| match interrupt::stop() {
         Some(_) => ControlFlow::Break(()),
@@ -41,8 +51,8 @@ pub fn disturbed(
                 };
                 match simulate(system, task, request, go_on) {
                     Err(WorkflowError::Stopped(status)) => {
-                        left_out.push(not_whole(*size));
-                        stopped = Some(status);
+                        out.left_out.push(not_whole(*size));
+                        out.stopped = Some(status);
                         continue;
                     }
                     found => simulated = found?,
@@ -50,22 +60,22 @@ pub fn disturbed(
                 &simulated
             }
         };
-        stopped = stopped.or(found.stopped);
+        out.stopped = out.stopped.or(found.stopped);
         if let Some(failure) = &found.simulated.failure {
-            left_out.push(format!(
+            out.left_out.push(format!(
                 "the motion with {size} of the disturbance ends early: {failure}"
             ));
         }
         match &found.closed_loop {
-            Some(closed) => loops.push(DisturbedLoop {
+            Some(closed) => out.loops.push(DisturbedLoop {
                 size: *size,
                 times: found.simulated.discrete.times.clone(),
                 closed: closed.clone(),
             }),
-            None => left_out.push(not_whole(*size)),
+            None => out.left_out.push(not_whole(*size)),
         }
     }
-    Ok((loops, left_out, stopped))
+    Ok(out)
 }
 
 fn not_whole(size: f64) -> String {

@@ -22,7 +22,7 @@ pub(crate) mod tracking_messages;
 mod verdict;
 
 pub use check::{CheckResult, GreatestErrors, WrongDerivative, check};
-pub use disturbed::disturbed;
+pub use disturbed::{DisturbedLoops, disturbed};
 pub use equilibrium::{EquilibriumResult, EquilibriumTaskError, equilibrium};
 pub use grid::SolveRequest;
 pub use motions::{MotionsResult, solve_motions};

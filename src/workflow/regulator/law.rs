@@ -64,7 +64,7 @@ impl Design<'_> {
         let held = rest.zip(at_goal.as_ref()).map(|(rest, step)| {
             let inputs = given(&self.model.scalars(rest));
             let gain = predicted((0..delay).map(|_| step), step);
-            self.point(&self.goal(), &gain, inputs)
+            self.point(self.goal(), &gain, inputs)
         });
         Law {
             measured: coordinates.chain(rates).collect(),

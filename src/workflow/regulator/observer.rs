@@ -44,7 +44,7 @@ impl Design<'_> {
         let readings = self.readings(observation)?;
         let scales = self.scales(observation, forces.as_ref());
         let end = match held {
-            Some(_) => &goal,
+            Some(_) => goal,
             None => motion.last().expect("an instant"),
         };
         let at_rest = |step: &Scaled| {
@@ -76,7 +76,7 @@ impl Design<'_> {
         }
         let is_held = held.is_some();
         let held = held.map(|(step, _)| {
-            let scaled = self.scaled_step(observation, step, (&goal, &goal), &scales);
+            let scaled = self.scaled_step(observation, step, (goal, goal), &scales);
             let of = at_rest(&scaled)?;
             radius = of.radius;
             self.filter(scaled, &of.cost, &scales)
@@ -125,7 +125,7 @@ impl Design<'_> {
         };
         let points = of.steps.iter().zip(&of.law.points).enumerate();
         let next = |k: usize| match k + 1 == of.steps.len() && of.held.is_some() {
-            true => &goal,
+            true => goal,
             false => &motion[k + 1],
         };
         let held = of.held.as_ref().zip(of.law.held.as_ref());
@@ -134,7 +134,7 @@ impl Design<'_> {
             points: points
                 .map(|(k, (step, point))| filter(step, (&motion[k], next(k)), &point.state))
                 .collect(),
-            held: held.map(|((step, _), point)| filter(step, (&goal, &goal), &point.state)),
+            held: held.map(|((step, _), point)| filter(step, (goal, goal), &point.state)),
             jump: self.jump(motion, of.held.is_some()),
             lasting: None,
         }
