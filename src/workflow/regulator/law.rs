@@ -8,7 +8,7 @@ use crate::workflow::regulator::lasting::widened;
 use crate::workflow::regulator::regulated::RegulatedStep;
 use nalgebra::{DMatrix, DVector};
 
-/// What coordinate `i` remembers.
+/// Quantity that coordinate `i` remembers.
 pub(crate) fn remembered(model: &Model, i: usize) -> Option<Memory> {
     let charge = model.unit_of_charge(i).map(Memory::Charge);
     charge.or_else(|| model.is_memory(i).then_some(Memory::Number))
