@@ -32,7 +32,7 @@ use crate::report::atomic::WriteError;
 use crate::report::file_set::FileSet;
 use crate::report::origin::Origin;
 use crate::report::{self, write_run};
-use crate::tasks::{self, Assessment, DisturbedLoops, SimulationRequest, SimulationResult};
+use crate::tasks::{self, Assessment, SimulationRequest, SimulationResult};
 use crate::workflow::Simulated;
 use crate::workflow::closed_loop::DisturbedLoop;
 use crate::workflow::effects::Plan;
@@ -126,17 +126,12 @@ fn disturbed(
     let elapsed = run.began.elapsed().as_secs_f64();
     let seconds = run.request.max_seconds.map(|limit| limit - elapsed);
     let found = tasks::disturbed(&run.loaded.disturbed, ended, seconds);
-    let found = found.map_err(CommandError::in_file(&run.request.input));
-    let DisturbedLoops {
-        loops,
-        left_out,
-        stopped,
-    } = found?;
-    ended.stopped = ended.stopped.or(stopped);
+    let found = found.map_err(CommandError::in_file(&run.request.input))?;
+    ended.stopped = ended.stopped.or(found.stopped);
     if let Some(closed) = &mut ended.closed_loop {
-        closed.disturbance = loops.iter().map(DisturbedLoop::report).collect();
+        closed.disturbance = found.loops.iter().map(DisturbedLoop::report).collect();
     }
-    Ok((loops, left_out))
+    Ok((found.loops, found.left_out))
 }
 
 /// Simulates, from where a motion that has `begun` ends, and keeps the steps in the folder of the results, which is returned, until the motion
