@@ -19,6 +19,8 @@ const RATIOS: [f64; 4] = [10.0, 100.0, 1e3, 1e4];
 
 /// Most iterations for each update.
 const MOST: f64 = 8.0;
+/// Solutions for the lowest modes of a block: four in each of four iterations.
+const MODES: usize = 16;
 
 /// A block between electrodes on its ends and middle planes, of n × n × 4n elements.
 fn stiff(n: usize, ratio: f64, viscosity: Option<f64>) -> System {
@@ -94,8 +96,9 @@ fn the_rest_of_nearly_incompressible_blocks_is_that_of_factors() {
         assert!(apart(&direct.z, &start) > 1e-4 * LENGTH);
         assert!(error < 1e-9 * LENGTH, "{error:e}");
         assert_eq!(fallbacks, 0);
-        let each = report.iterations as f64 / iterated.iterations as f64;
-        assert!(each < 2.0 * MOST, "{each} iterations for each update");
+        let solutions = iterated.iterations + MODES;
+        let each = report.iterations as f64 / solutions as f64;
+        assert!(each < 1.5 * MOST, "{each} iterations for each solution");
     }
 }
 
