@@ -17,6 +17,7 @@
 //! the plan begins where its inputs act. Lasting forces enter the plan with its preparation.
 
 use crate::coordinates::Configuration;
+use crate::ipopt::interrupt;
 use crate::math::Vector;
 use crate::nlp::Nlp;
 use crate::workflow::receding::horizon::Horizon;
@@ -142,7 +143,7 @@ impl<'h> RecedingHorizon<'h> {
         self.failures = 0;
     }
 
-    /// Iterates for the plan from the state at its start.
+    /// Iterates for the plan from the state at its start, until it is time to stop.
     fn converge(&mut self) {
         self.stay();
         for _ in 0..FIRST {
@@ -152,7 +153,7 @@ impl<'h> RecedingHorizon<'h> {
                 gradient,
             } = self.residual;
             let is_met = equations < SMALL && gradient < SMALL;
-            if self.prepared != Some(true) || is_met {
+            if self.prepared != Some(true) || is_met || interrupt::stop().is_some() {
                 break;
             }
             self.iteration
