@@ -1,6 +1,6 @@
 //! Pressures on one level of a mesh without a grid: those of elements on the finest level, of aggregates of elements on coarser ones.
 //!
-//! They are corrected behind each sweep as those of a grid are (`pressures.rs`), by conjugate gradients for S = C + B D⁻¹ Bᵀ. Elements with a node in
+//! They are corrected behind each sweep as those of a grid are (`pressures.rs`), with S = C + B D⁻¹ Bᵀ. Elements with a node in
 //! common are neighbours; an aggregate has one pressure, and the sums of volumes and compliances.
 
 use crate::sparse::multigrid::aggregates::Points;
@@ -9,11 +9,7 @@ use crate::sparse::multigrid::block_rows::BlockRows;
 use crate::sparse::multigrid::field::{Block, add};
 use crate::sparse::multigrid::node_grid::COMPONENTS;
 use crate::sparse::multigrid::node_mesh::NodeMesh;
-
-/// Residual of a correction relative to that of none, in the norm of the sweeps.
-const RESIDUAL: f64 = 0.1;
-/// Iterations for one correction.
-const LIMIT: usize = 40;
+use crate::sparse::multigrid::pressure_correction::{Lists, Schur, correct};
 
 /// Values of the components of a node.
 type AtNode = [f32; COMPONENTS];
@@ -44,19 +40,6 @@ pub(super) struct MeshPressures {
     swept: Vec<f32>,
     direction: Vec<f32>,
     product: Vec<f32>,
-}
-
-fn dot(a: &[f32], b: &[f32]) -> f64 {
-    let mut sums = [0.0; 8];
-    let (a, b) = (a.chunks_exact(8), b.chunks_exact(8));
-    let rest = a.remainder().iter().zip(b.remainder());
-    let rest: f64 = rest.map(|(a, b)| f64::from(*a) * f64::from(*b)).sum();
-    for (a, b) in a.zip(b) {
-        for (sum, (a, b)) in sums.iter_mut().zip(a.iter().zip(b)) {
-            *sum += f64::from(*a) * f64::from(*b);
-        }
-    }
-    sums.iter().sum::<f64>() + rest
 }
 
 impl MeshPressures {
@@ -309,7 +292,7 @@ impl MeshPressures {
     /// Corrects pressures, and displacements; `forces` is overwritten, `blocks` are the inverse of the diagonal ones.
     pub(super) fn correct(&mut self, x: &mut [AtNode], blocks: &[Block], forces: &mut [AtNode]) {
         self.leave(x);
-        self.solve();
+        correct(self);
         for (p, q) in self.p.iter_mut().zip(&self.correction) {
             *p += q;
         }
@@ -317,45 +300,6 @@ impl MeshPressures {
         self.add_forces(&self.correction, -1.0, forces);
         for ((x, force), block) in x.iter_mut().zip(forces).zip(blocks) {
             add(x, block, force);
-        }
-    }
-
-    /// Solves S q = −residual by conjugate gradients with symmetric sweeps; the residual is lost.
-    fn solve(&mut self) {
-        for residual in &mut self.residual {
-            *residual = -*residual;
-        }
-        self.correction.fill(0.0);
-        self.sweep();
-        self.direction.copy_from_slice(&self.swept);
-        let mut square = dot(&self.residual, &self.swept);
-        let enough = RESIDUAL * RESIDUAL * square.abs();
-        for _ in 0..LIMIT {
-            for pressure in 0..self.p.len() {
-                self.product[pressure] = self.sum(pressure, &self.direction);
-            }
-            let factor = square / dot(&self.direction, &self.product);
-            // Nothing is left, or nothing can be said.
-            if !factor.is_finite() {
-                break;
-            }
-            let factor = factor as f32;
-            let along = self.direction.iter().zip(&self.product);
-            let both = self.correction.iter_mut().zip(&mut self.residual);
-            for ((q, residual), (direction, product)) in both.zip(along) {
-                *q += factor * direction;
-                *residual -= factor * product;
-            }
-            self.sweep();
-            let next = dot(&self.residual, &self.swept);
-            if next.is_nan() || next.abs() <= enough {
-                break;
-            }
-            let ratio = (next / square) as f32;
-            for (direction, swept) in self.direction.iter_mut().zip(&self.swept) {
-                *direction = swept + ratio * *direction;
-            }
-            square = next;
         }
     }
 
@@ -370,8 +314,25 @@ impl MeshPressures {
             .map(|(entry, column)| entry * x[*column as usize])
             .sum()
     }
+}
 
-    /// Writes what a sweep forwards and one backwards make of the residual.
+impl Schur for MeshPressures {
+    fn lists(&mut self) -> Lists<'_> {
+        Lists {
+            residual: &mut self.residual,
+            correction: &mut self.correction,
+            swept: &mut self.swept,
+            direction: &mut self.direction,
+            product: &mut self.product,
+        }
+    }
+
+    fn multiply(&mut self) {
+        for pressure in 0..self.p.len() {
+            self.product[pressure] = self.sum(pressure, &self.direction);
+        }
+    }
+
     fn sweep(&mut self) {
         self.swept.fill(0.0);
         let count = self.p.len();

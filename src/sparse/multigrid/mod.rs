@@ -26,6 +26,7 @@ mod mesh_pressures;
 mod node_grid;
 mod node_mesh;
 mod potentials;
+mod pressure_correction;
 mod pressures;
 mod slab;
 mod solver;

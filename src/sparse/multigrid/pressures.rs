@@ -17,11 +17,8 @@ use crate::sparse::multigrid::axis::Axis;
 use crate::sparse::multigrid::element_volume::{CORNERS, corners, neighbour_of};
 use crate::sparse::multigrid::field::{Block, Field};
 use crate::sparse::multigrid::node_grid::{COMPONENTS, NEIGHBOURS, OWN, indices, node_at};
+use crate::sparse::multigrid::pressure_correction::{Lists, Schur, correct};
 
-/// Residual of a correction relative to that of none, in the norm of the sweeps.
-const RESIDUAL: f64 = 0.1;
-/// Iterations for one correction.
-const LIMIT: usize = 40;
 /// Rows of neighbours, three in each.
 const ROWS: usize = NEIGHBOURS / 3;
 
@@ -48,19 +45,6 @@ pub(super) struct Pressures {
     swept: Field<f32>,
     direction: Field<f32>,
     product: Field<f32>,
-}
-
-fn dot(a: &Field<f32>, b: &Field<f32>) -> f64 {
-    let mut sums = [0.0; 8];
-    let (a, b) = (a.nodes().chunks_exact(8), b.nodes().chunks_exact(8));
-    let rest = a.remainder().iter().zip(b.remainder());
-    let rest: f64 = rest.map(|(a, b)| f64::from(*a) * f64::from(*b)).sum();
-    for (a, b) in a.zip(b) {
-        for (sum, (a, b)) in sums.iter_mut().zip(a.iter().zip(b)) {
-            *sum += f64::from(*a) * f64::from(*b);
-        }
-    }
-    sums.iter().sum::<f64>() + rest
 }
 
 impl Pressures {
@@ -293,7 +277,7 @@ impl Pressures {
     /// Corrects pressures, and displacements; `forces` is overwritten, `blocks` are the inverse of the diagonal ones.
     pub(super) fn correct(&mut self, x: &mut Field, blocks: &[Block], forces: &mut Field) {
         self.leave(x);
-        self.solve();
+        correct(self);
         for (p, q) in self.p.values.iter_mut().zip(&self.correction.values) {
             *p += q;
         }
@@ -304,47 +288,6 @@ impl Pressures {
         }
     }
 
-    /// Solves S q = −residual by conjugate gradients with symmetric sweeps; the residual is lost.
-    fn solve(&mut self) {
-        for residual in self.residual.nodes_mut() {
-            *residual = -*residual;
-        }
-        self.correction.values.fill(0.0);
-        self.sweep();
-        self.direction.values.copy_from_slice(&self.swept.values);
-        let mut square = dot(&self.residual, &self.swept);
-        let enough = RESIDUAL * RESIDUAL * square.abs();
-        for _ in 0..LIMIT {
-            self.multiply();
-            let factor = square / dot(&self.direction, &self.product);
-            // Nothing is left, or nothing can be said.
-            if !factor.is_finite() {
-                break;
-            }
-            let factor = factor as f32;
-            let along = self.direction.values.iter().zip(&self.product.values);
-            let both = self
-                .correction
-                .values
-                .iter_mut()
-                .zip(&mut self.residual.values);
-            for ((q, residual), (direction, product)) in both.zip(along) {
-                *q += factor * direction;
-                *residual -= factor * product;
-            }
-            self.sweep();
-            let next = dot(&self.residual, &self.swept);
-            if next.is_nan() || next.abs() <= enough {
-                break;
-            }
-            let ratio = (next / square) as f32;
-            for (direction, swept) in self.direction.values.iter_mut().zip(&self.swept.values) {
-                *direction = swept + ratio * *direction;
-            }
-            square = next;
-        }
-    }
-
     /// First places in a list of each row of neighbours of an element.
     #[inline(always)]
     fn rows(&self, element: usize) -> [usize; ROWS] {
@@ -352,32 +295,6 @@ impl Pressures {
         // The margin keeps them in the list.
         let first = self.swept.margin + element - n_x * n_y - n_x - 1;
         std::array::from_fn(|row| first + n_x * (row % 3 + n_y * (row / 3)))
-    }
-
-    /// Writes S times the direction.
-    fn multiply(&mut self) {
-        for element in 0..self.schur.len() {
-            let rows = self.rows(element);
-            let x = &self.direction.values;
-            let mut sums = [0.0; ROWS];
-            for (row, sum) in sums.iter_mut().enumerate() {
-                let entries = &self.schur[element][3 * row..3 * row + 3];
-                let there = &x[rows[row]..rows[row] + 3];
-                *sum = entries[0] * there[0] + entries[1] * there[1] + entries[2] * there[2];
-            }
-            self.product.nodes_mut()[element] = sums.iter().sum();
-        }
-    }
-
-    /// Writes what a sweep forwards and one backwards make of the residual.
-    fn sweep(&mut self) {
-        self.swept.values.fill(0.0);
-        for element in 0..self.schur.len() {
-            self.relax(element);
-        }
-        for element in (0..self.schur.len()).rev() {
-            self.relax(element);
-        }
     }
 
     /// Solves the equation of one element.
@@ -395,5 +312,41 @@ impl Pressures {
         }
         let sum: f32 = sums.iter().sum();
         x[at] = own + self.inverse[element] * (self.residual.values[at] - sum);
+    }
+}
+
+impl Schur for Pressures {
+    fn lists(&mut self) -> Lists<'_> {
+        Lists {
+            residual: self.residual.nodes_mut(),
+            correction: self.correction.nodes_mut(),
+            swept: self.swept.nodes_mut(),
+            direction: self.direction.nodes_mut(),
+            product: self.product.nodes_mut(),
+        }
+    }
+
+    fn multiply(&mut self) {
+        for element in 0..self.schur.len() {
+            let rows = self.rows(element);
+            let x = &self.direction.values;
+            let mut sums = [0.0; ROWS];
+            for (row, sum) in sums.iter_mut().enumerate() {
+                let entries = &self.schur[element][3 * row..3 * row + 3];
+                let there = &x[rows[row]..rows[row] + 3];
+                *sum = entries[0] * there[0] + entries[1] * there[1] + entries[2] * there[2];
+            }
+            self.product.nodes_mut()[element] = sums.iter().sum();
+        }
+    }
+
+    fn sweep(&mut self) {
+        self.swept.values.fill(0.0);
+        for element in 0..self.schur.len() {
+            self.relax(element);
+        }
+        for element in (0..self.schur.len()).rev() {
+            self.relax(element);
+        }
     }
 }

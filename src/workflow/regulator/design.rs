@@ -100,7 +100,7 @@ impl<'a> Design<'a> {
                 momentum: vec![0.0; model.coordinate_count()],
             },
             is_restless: false,
-            inputs: inputs.clone(),
+            inputs,
             coordinates,
             h: discrete.times[1] - discrete.times[0],
         };
