@@ -3,27 +3,32 @@
 use crate::functional::law::{LawElement, MOST_PARAMETERS, Move};
 use crate::math::{Derivatives, Matrix, Number, Vector};
 use nalgebra::{SVector, Vector3};
+use smallvec::SmallVec;
 
 /// Values of the parameters of an element, as many as it has.
 pub(super) type Values<T> = [T; MOST_PARAMETERS];
 
-/// First and second derivatives by parameters.
-pub(super) struct ByParameters<const NV: usize, const NS: usize> {
-    pub(super) rows: Values<f64>,
-    pub(super) columns: Values<[Vector; NV]>,
-    pub(super) mixed: Values<[f64; NS]>,
-    pub(super) entries: Values<Values<f64>>,
+/// First and second derivatives by one parameter.
+#[derive(Clone, Copy)]
+pub(super) struct ByParameter<const NV: usize, const NS: usize> {
+    pub(super) row: f64,
+    pub(super) column: [Vector; NV],
+    pub(super) mixed: [f64; NS],
+    /// By this parameter and those up to it.
+    pub(super) entries: Values<f64>,
 }
 
-impl<const NV: usize, const NS: usize> Default for ByParameters<NV, NS> {
-    fn default() -> Self {
-        Self {
-            rows: [0.0; MOST_PARAMETERS],
-            columns: [[Vector::zeros(); NV]; MOST_PARAMETERS],
-            mixed: [[0.0; NS]; MOST_PARAMETERS],
-            entries: [[0.0; MOST_PARAMETERS]; MOST_PARAMETERS],
-        }
-    }
+/// First and second derivatives by the parameters of an element.
+pub(super) type AllParameters<const NV: usize, const NS: usize> =
+    SmallVec<[ByParameter<NV, NS>; MOST_PARAMETERS]>;
+
+impl<const NV: usize, const NS: usize> ByParameter<NV, NS> {
+    pub(super) const ZERO: Self = Self {
+        row: 0.0,
+        column: [Vector::new(0.0, 0.0, 0.0); NV],
+        mixed: [0.0; NS],
+        entries: [0.0; MOST_PARAMETERS],
+    };
 }
 
 /// Derivatives by the arguments of an element from those by the arguments of its formula, or rates from rates.
@@ -35,7 +40,7 @@ pub(super) struct OfElement<'a, D, L, const NV: usize, const NS: usize> {
     /// Says which vectors of the formula have mixed second derivatives.
     pub(super) couples: fn(usize, usize) -> bool,
     pub(super) formula: D,
-    pub(super) by: &'a ByParameters<NV, NS>,
+    pub(super) by: &'a [ByParameter<NV, NS>],
 }
 
 impl<D: Derivatives, L, const NV: usize, const NS: usize> OfElement<'_, D, L, NV, NS> {
@@ -67,7 +72,7 @@ impl<D: Derivatives, L, const NV: usize, const NS: usize> Derivatives
     fn row(&self, s: usize) -> f64 {
         match s.checked_sub(NS) {
             None => self.formula.row(s),
-            Some(a) => self.by.rows[a],
+            Some(a) => self.by[a].row,
         }
     }
 
@@ -84,18 +89,18 @@ impl<D: Derivatives, L, const NV: usize, const NS: usize> Derivatives
         match s.checked_sub(NS) {
             None => self.formula.column(argument, s) * factor,
             Some(a) if own == Some(a) => {
-                self.by.columns[a][argument] * factor + self.formula.force(argument)
+                self.by[a].column[argument] * factor + self.formula.force(argument)
             }
-            Some(a) => self.by.columns[a][argument] * factor,
+            Some(a) => self.by[a].column[argument] * factor,
         }
     }
 
     fn entry(&self, s: usize, t: usize) -> f64 {
         match (s.checked_sub(NS), t.checked_sub(NS)) {
             (None, None) => self.formula.entry(s, t),
-            (Some(a), None) => self.by.mixed[a][t],
-            (None, Some(b)) => self.by.mixed[b][s],
-            (Some(a), Some(b)) => self.by.entries[a.max(b)][a.min(b)],
+            (Some(a), None) => self.by[a].mixed[t],
+            (None, Some(b)) => self.by[b].mixed[s],
+            (Some(a), Some(b)) => self.by[a.max(b)].entries[a.min(b)],
         }
     }
 }

@@ -108,34 +108,45 @@ pub struct Blocks {
     pub scalars: Vec<f64>,
 }
 
+/// Second derivatives, and their rates, by sought parameters for which a reader asks.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum ByParameters {
+    /// None: they are zero.
+    Never,
+    /// Those by one parameter.
+    Once,
+    /// Rates of those by two of them too.
+    Twice,
+}
+
 /// Second derivatives of an interval for which a reader asks.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct BlockMask {
     /// Blocks (k, k), (k, k+1), (k+1, k), (k+1, k+1).
     pub blocks: [bool; 4],
-    /// Rates of those by two sought parameters.
-    pub parameters: bool,
+    /// Those by sought parameters.
+    pub parameters: ByParameters,
 }
 
 impl BlockMask {
     /// All four blocks.
     pub const ALL: Self = Self {
         blocks: [true; 4],
-        parameters: true,
+        parameters: ByParameters::Twice,
     };
     /// All but (k+1, k+1), which is carried on to the next interval.
     pub const CARRIED: Self = Self {
         blocks: [true, true, true, false],
-        parameters: true,
+        parameters: ByParameters::Twice,
     };
     /// Only the rows of t_k against t_{k+1}: what one step forward needs.
     pub const FORWARD: Self = Self {
         blocks: [false, true, false, false],
-        parameters: true,
+        parameters: ByParameters::Twice,
     };
     /// Only the block of the first instant: what an instant needs.
     pub const HERE: Self = Self {
         blocks: [true, false, false, false],
-        parameters: true,
+        parameters: ByParameters::Twice,
     };
 }

@@ -13,9 +13,11 @@
 //! material vectors e_a, which are arguments of the element like r₀.
 
 use crate::energy::Energy;
-use crate::functional::by_parameters::{ByParameters, OfElement, Values, contraction};
+use crate::functional::by_parameters::{
+    AllParameters, ByParameter, OfElement, Values, contraction,
+};
 use crate::functional::law::{Law, LawElement, MOST_PARAMETERS, Move};
-use crate::functional::{Kernel, Order, Sample, Scatter, VectorArg};
+use crate::functional::{ByParameters, Kernel, Order, Sample, Scatter, VectorArg};
 use crate::math::{Derivatives, Dual, HyperDual, Local, Number, Vector};
 use nalgebra::{SVector, Vector3};
 use std::fmt;
@@ -105,13 +107,13 @@ impl<L: Law<M>, const M: usize, const NV: usize, const NS: usize> Laws<L, M, NV,
         w
     }
 
-    /// Fills first derivatives by parameter `a`, and where the contraction is asked for, those of it.
+    /// Fills first derivatives by the seeded parameter, and where the contraction is asked for, those of it.
     fn first<const ORDER: usize>(
         element: &LawElement<L, NV, NS>,
         (order, sample): (Order, &Sample<'_>),
-        (a, seeded): (usize, &[Dual<f64>]),
-        plain: &mut ByParameters<NV, NS>,
-        along: Option<&mut ByParameters<NV, NS>>,
+        seeded: &[Dual<f64>],
+        plain: &mut ByParameter<NV, NS>,
+        along: Option<&mut ByParameter<NV, NS>>,
     ) {
         let p = Self::point(element, order, sample, seeded);
         let local = element
@@ -119,12 +121,12 @@ impl<L: Law<M>, const M: usize, const NV: usize, const NS: usize> Laws<L, M, NV,
             .formula(seeded)
             .at::<ORDER>(&p, &SVector::zeros());
         let d = local.plain::<NV>();
-        plain.rows[a] = local.value().part;
+        plain.row = local.value().part;
         for i in 0..NV {
-            plain.columns[a][i] = d.force(i).map(|x| x.part);
+            plain.column[i] = d.force(i).map(|x| x.part);
         }
         for s in 0..NS {
-            plain.mixed[a][s] = d.row(s).part;
+            plain.mixed[s] = d.row(s).part;
         }
         let Some(along) = along else {
             return;
@@ -139,7 +141,7 @@ impl<L: Law<M>, const M: usize, const NV: usize, const NS: usize> Laws<L, M, NV,
             for s in 0..NS {
                 turned += d.column(i, s) * w[3 * NV + s];
             }
-            along.columns[a][i] = turned.map(|x| x.part);
+            along.column[i] = turned.map(|x| x.part);
         }
         for s in 0..NS {
             let mut turned = Dual::of(0.0);
@@ -149,26 +151,26 @@ impl<L: Law<M>, const M: usize, const NV: usize, const NS: usize> Laws<L, M, NV,
             for t in 0..NS {
                 turned += d.entry(s, t) * w[3 * NV + t];
             }
-            along.mixed[a][s] = turned.part;
+            along.mixed[s] = turned.part;
         }
-        along.rows[a] = contraction::<_, _, NV, NS, M>(&d, &w).part;
+        along.row = contraction::<_, _, NV, NS, M>(&d, &w).part;
     }
 
-    /// Fills the second derivative by parameters `a` and `b`, and where it is asked for, that of the contraction.
+    /// Fills the second derivative by the seeded parameters, `b` one of them, and where it is asked for, that of the contraction.
     fn second(
         element: &LawElement<L, NV, NS>,
         (order, sample): (Order, &Sample<'_>),
-        ((a, b), seeded): ((usize, usize), &[HyperDual]),
-        plain: &mut ByParameters<NV, NS>,
-        along: Option<&mut ByParameters<NV, NS>>,
+        (b, seeded): (usize, &[HyperDual]),
+        plain: &mut ByParameter<NV, NS>,
+        along: Option<&mut ByParameter<NV, NS>>,
     ) {
         let p = Self::point(element, order, sample, seeded);
         let local = element.law.formula(seeded).at::<1>(&p, &SVector::zeros());
-        plain.entries[a][b] = local.value().part.part;
+        plain.entries[b] = local.value().part.part;
         if let Some(along) = along {
             let w = Self::direction(element, sample, seeded);
             let value = contraction::<_, _, NV, NS, M>(&local.plain::<NV>(), &w);
-            along.entries[a][b] = value.part.part;
+            along.entries[b] = value.part.part;
         }
     }
 
@@ -177,27 +179,25 @@ impl<L: Law<M>, const M: usize, const NV: usize, const NS: usize> Laws<L, M, NV,
         element: &LawElement<L, NV, NS>,
         (order, sample, pairs): (Order, &Sample<'_>, bool),
         values: &Values<f64>,
-        plain: &mut ByParameters<NV, NS>,
-        mut along: Option<&mut ByParameters<NV, NS>>,
+        plain: &mut [ByParameter<NV, NS>],
+        mut along: Option<&mut [ByParameter<NV, NS>]>,
     ) {
         let count = element.parameters.len();
         let at = (order, sample);
-        for a in 0..count {
+        for (a, plain) in plain.iter_mut().enumerate() {
             let mut seeded = values.map(Dual::of);
             seeded[a].part = 1.0;
-            let seeds = (a, &seeded[..count]);
+            let seeds = &seeded[..count];
             match along.as_deref_mut() {
                 None => Self::first::<1>(element, at, seeds, plain, None),
-                along => Self::first::<2>(element, at, seeds, plain, along),
+                Some(along) => Self::first::<2>(element, at, seeds, plain, Some(&mut along[a])),
             }
-        }
-        for a in (0..count).filter(|_| pairs) {
-            for b in 0..=a {
+            for b in (0..=a).filter(|_| pairs) {
                 let mut seeded = values.map(HyperDual::of);
                 seeded[a].value.part = 1.0;
                 seeded[b].part.value = 1.0;
-                let seeds = ((a, b), &seeded[..count]);
-                Self::second(element, at, seeds, plain, along.as_deref_mut());
+                let along = along.as_deref_mut().map(|along| &mut along[a]);
+                Self::second(element, at, (b, &seeded[..count]), plain, along);
             }
         }
     }
@@ -205,7 +205,7 @@ impl<L: Law<M>, const M: usize, const NV: usize, const NS: usize> Laws<L, M, NV,
     fn of_element<'a, D: Derivatives>(
         (element, values): (&'a LawElement<L, NV, NS>, &'a Values<f64>),
         formula: D,
-        by: &'a ByParameters<NV, NS>,
+        by: &'a [ByParameter<NV, NS>],
     ) -> OfElement<'a, D, L, NV, NS> {
         OfElement {
             element,
@@ -232,29 +232,31 @@ impl<L: Law<M>, const M: usize, const NV: usize, const NS: usize> Laws<L, M, NV,
             false => SVector::zeros(),
         };
         let local = element.law.formula(parameters).at::<ORDER>(&p, &w);
-        let (mut by, mut by_along) = (ByParameters::default(), None);
+        let count = parameters.len();
+        let (mut by, mut by_along) = (AllParameters::new(), AllParameters::new());
+        by.resize(count, ByParameter::ZERO);
         if is_contracted {
-            by_along = Some(ByParameters::default());
+            by_along.resize(count, ByParameter::ZERO);
         }
-        if S::OF_PARAMETERS || order > Order::Gradient {
+        let asked = sample.sides.parameters;
+        if S::OF_PARAMETERS || (order > Order::Gradient && asked != ByParameters::Never) {
             let pairs = match order {
                 Order::Gradient => false,
                 Order::Hessian => S::OF_PARAMETERS,
-                Order::Third => sample.sides.parameters,
+                Order::Third => asked == ByParameters::Twice,
             };
             let at = (order, sample, pairs);
-            Self::by_parameters(element, at, &values, &mut by, by_along.as_mut());
+            let along = is_contracted.then_some(&mut by_along[..]);
+            Self::by_parameters(element, at, &values, &mut by, along);
         }
         let plain = Self::of_element((element, &values), local.plain::<NV>(), &by);
         to.plain(&plain);
-        match &by_along {
-            Some(by) => {
-                let along = Self::of_element((element, &values), local.along::<NV>(), by);
-                to.along(&plain, &along);
-            }
+        if is_contracted {
+            let along = Self::of_element((element, &values), local.along::<NV>(), &by_along);
+            to.along(&plain, &along);
+        } else if order == Order::Third {
             // At δx = w the virtual work itself is the contraction with the costates.
-            None if order == Order::Third => to.along(&plain, &plain),
-            None => {}
+            to.along(&plain, &plain);
         }
     }
 }

@@ -5,8 +5,10 @@ use crate::control::problem::{Control, Duration, PathConstraint};
 use crate::control::transcription::Transcription;
 use crate::control::transcription::layout::Layout;
 use crate::dynamics::DiscreteTrajectory;
+use crate::functional::ByParameters;
 use crate::model::{Coordinates, Model, Role, Size, Time};
 use crate::nlp::{Bounds, Nlp};
+use std::mem;
 
 impl Transcription<'_> {
     /// Scales of the variables by their units; multipliers have none yet.
@@ -32,11 +34,13 @@ impl Transcription<'_> {
         layout.unknowns.columns.iter().map(scale).collect()
     }
 
-    /// Scales rows and multipliers by the largest entries of the Jacobian at the guess, kind by kind.
+    /// Scales rows and multipliers by the largest entries of the Jacobian at the guess, kind by kind, parameters left out.
     pub(super) fn set_scales(&mut self, discrete: &DiscreteTrajectory, h: f64) {
         let x = self.encode(discrete, h);
         let mut values = vec![0.0; self.structure.jacobian.kept.len()];
+        let asked = mem::replace(&mut self.sides.parameters, ByParameters::Never);
         self.jacobian(&x, &mut values);
+        self.sides.parameters = asked;
         let of_kinds = self.scales_of_kinds(&values);
         let of_multipliers = self.scales_of_multipliers(&values, &of_kinds);
         let columns = self.layout.unknowns.columns.iter();
