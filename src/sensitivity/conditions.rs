@@ -118,7 +118,11 @@ impl<N: Nlp> Conditions<N> {
     /// Adds J v to a list.
     pub(super) fn add_times(&self, v: &[f64], to: &mut [f64]) {
         for (&row, &col, value) in entries(&self.jacobian, &self.jacobian_values) {
-            to[row as usize] += value * v[col as usize];
+            let v = v[col as usize];
+            // Few columns change at once.
+            if v != 0.0 {
+                to[row as usize] += value * v;
+            }
         }
     }
 
@@ -126,8 +130,10 @@ impl<N: Nlp> Conditions<N> {
     pub(super) fn add_curved(&self, v: &[f64], to: &mut [f64]) {
         for (&row, &col, value) in entries(&self.hessian, &self.hessian_values) {
             let (row, col) = (row as usize, col as usize);
-            to[row] += value * v[col];
-            if row != col {
+            if v[col] != 0.0 {
+                to[row] += value * v[col];
+            }
+            if row != col && v[row] != 0.0 {
                 to[col] += value * v[row];
             }
         }

@@ -6,7 +6,7 @@ use crate::sensitivity::active_set::{Place, of_constraints, of_variables};
 use crate::sensitivity::conditions::Conditions;
 use crate::sensitivity::direction::{Direction, Held, Side};
 use crate::sensitivity::error::NoSensitivity;
-use crate::sensitivity::linear::Linear;
+use crate::sensitivity::linear::{Linear, largest};
 use crate::sensitivity::margins::{At, Changes, Of};
 use crate::sensitivity::range::{Margin, Range};
 
@@ -356,12 +356,4 @@ pub(super) fn sizes(a: &[f64], b: &[f64]) -> f64 {
 
 pub(super) fn dot(a: &[f64], b: &[f64]) -> f64 {
     a.iter().zip(b).map(|(a, b)| a * b).sum()
-}
-
-fn largest(list: &[f64]) -> f64 {
-    list.iter()
-        .fold(0.0, |largest: f64, value| match value.is_nan() {
-            true => f64::INFINITY,
-            false => largest.max(value.abs()),
-        })
 }

@@ -119,20 +119,20 @@ impl Linear {
         for (number, value) in all {
             number.iter().for_each(|&i| right[i] = *value);
         }
-        let mut solution = vec![0.0; right.len()];
+        let mut solution = right.clone();
+        self.solver.solve(&mut solution);
+        let size = self.size(&solution, &right);
         let mut left = right.clone();
-        let mut error = f64::INFINITY;
-        for _ in 0..=REFINED {
-            let mut correction = left.clone();
-            self.solver.solve(&mut correction);
-            solution
-                .iter_mut()
-                .zip(&correction)
-                .for_each(|(value, more)| *value += more);
-            error = self.residual(&solution, &right, &mut left);
+        let mut error = self.residual(&solution, size, &mut left);
+        for _ in 0..REFINED {
             if error <= f64::EPSILON {
                 break;
             }
+            self.solver.solve(&mut left);
+            let all = solution.iter_mut().zip(&left);
+            all.for_each(|(value, more)| *value += more);
+            left.copy_from_slice(&right);
+            error = self.residual(&solution, size, &mut left);
         }
         if error > EXACT {
             return Err(NoSensitivity::Inexact(error));
@@ -144,28 +144,38 @@ impl Linear {
         Ok(())
     }
 
-    /// Residuals of the equations, and the greatest one relative to the terms of equations.
-    fn residual(&self, solution: &[f64], right: &[f64], left: &mut [f64]) -> f64 {
-        left.copy_from_slice(right);
-        let mut size: Vec<f64> = right.iter().map(|value| value.abs()).collect();
+    /// Greatest sum of the sizes of the terms of an equation.
+    fn size(&self, solution: &[f64], right: &[f64]) -> f64 {
+        let mut sizes: Vec<f64> = right.iter().map(|value| value.abs()).collect();
+        self.each_term(solution, |row, term| sizes[row] += term.abs());
+        sizes.into_iter().fold(0.0, f64::max)
+    }
+
+    /// Turns right-hand sides into residuals of the equations, and returns the greatest one relative to a size.
+    fn residual(&self, solution: &[f64], size: f64, right: &mut [f64]) -> f64 {
+        self.each_term(solution, |row, term| right[row] -= term);
+        let worst = largest(right);
+        if worst == 0.0 { 0.0 } else { worst / size }
+    }
+
+    /// Hands on each term of the product of the matrix with a solution, with its row.
+    #[inline(always)]
+    fn each_term(&self, solution: &[f64], mut add: impl FnMut(usize, f64)) {
         for (&[row, col], value) in self.places.iter().zip(&self.values) {
             let (row, col) = (row as usize, col as usize);
-            let mut add = |row: usize, col: usize| {
-                left[row] -= value * solution[col];
-                size[row] += (value * solution[col]).abs();
-            };
-            add(row, col);
+            add(row, value * solution[col]);
             if row != col {
-                add(col, row);
+                add(col, value * solution[row]);
             }
         }
-        let largest = size.iter().copied().fold(0.0, f64::max);
-        let worst = left
-            .iter()
-            .fold(0.0, |worst: f64, value| match value.is_nan() {
-                true => f64::INFINITY,
-                false => worst.max(value.abs()),
-            });
-        if worst == 0.0 { 0.0 } else { worst / largest }
     }
+}
+
+/// The greatest size in a list; infinite where a number is not.
+pub(super) fn largest(list: &[f64]) -> f64 {
+    list.iter()
+        .fold(0.0, |largest: f64, value| match value.is_nan() {
+            true => f64::INFINITY,
+            false => largest.max(value.abs()),
+        })
 }
