@@ -116,7 +116,7 @@ fn steps(n: usize, (viscosity, system): (Option<f64>, System), is_direct: bool) 
 /// Two steps, and the equilibrium, of blocks of mean dilatation.
 fn stiff(n: usize, is_direct: bool, is_mesh: bool) {
     println!(
-        "| elements | λ/μ | | Newton, Krylov iterations | systems by factors | seconds |\n|:--|--:|:--|--:|--:|--:|"
+        "| elements | unknowns | λ/μ | | Newton, Krylov iterations | levels | systems by factors | seconds | peak of memory, GB |\n|:--|--:|--:|:--|--:|--:|--:|--:|--:|"
     );
     for ratio in [10.0, 100.0, 1e3, 1e4] {
         let mut system = long_block([n, n, 2 * n], None);
@@ -140,12 +140,15 @@ fn stiff(n: usize, is_direct: bool, is_mesh: bool) {
             let report = stepper.report();
             let what = viscosity.map_or("two steps of 0.5 ms", |_| "the same, viscous");
             println!(
-                "| {n} × {n} × {} | {ratio} | {what} | {}, {} | {} | {:.2} |",
+                "| {n} × {n} × {} | {} | {ratio} | {what} | {}, {} | {} | {} | {:.2} | {:.2} |",
                 2 * n,
+                model.variables.unknown_count(),
                 report.iterations,
                 report.multigrid.iterations,
+                report.multigrid.levels,
                 report.fallbacks,
                 began.elapsed().as_secs_f64(),
+                peak(),
             );
         }
         system.solids[0].materials[0].viscosity = None;
@@ -162,13 +165,15 @@ fn stiff(n: usize, is_direct: bool, is_mesh: bool) {
             Ok(found) => {
                 let (report, fallbacks) = found.on_grids.unwrap_or_default();
                 println!(
-                    "| | | equilibrium, stable: {:?} | {}, {} | {fallbacks} | {seconds:.2} |",
+                    "| | | | equilibrium, stable: {:?} | {}, {} | {} | {fallbacks} | {seconds:.2} | {:.2} |",
                     found.is_stable(),
                     found.iterations,
                     report.iterations,
+                    report.levels,
+                    peak(),
                 );
             }
-            Err(error) => println!("| | | {error} | | | {seconds:.2} |"),
+            Err(error) => println!("| | | | {error} | | | | {seconds:.2} | {:.2} |", peak()),
         }
     }
 }

@@ -2,13 +2,15 @@
 
 use crate::common::random::Random;
 use crate::common::solid::system;
-use crate::common::stacks::{LENGTH, cubes, rubber, stack};
+use crate::common::stacks::{LENGTH, cubes, rubber, scattered, stack};
 use nalgebra::Vector3;
 use proboscis::dynamics::{continuation, equilibrium, lowest_mode};
 use proboscis::mesh::grid::Grid;
 use proboscis::model::Model;
 use proboscis::model::system::{ElementKind, Solid, System};
 
+/// Distance by which nodes inside are moved, as a part of that of their neighbours.
+const PART: f64 = 0.15;
 /// Vectors of the search.
 const SOUGHT: usize = 4;
 
@@ -80,6 +82,28 @@ fn the_lowest_mode_tells_what_the_inertia_tells() {
     assert!(undecided < unstable, "{undecided}");
 }
 
+/// The same on meshes without a grid.
+#[test]
+fn the_lowest_mode_of_a_mesh_tells_what_the_inertia_tells() {
+    let mut tally = Tally::default();
+    let cubes = scattered(cubes(3, rubber(0.4, None)), PART);
+    assert_eq!(cubes.mesh.box_planes(), None);
+    tally.compare(system(vec![cubes.clone()]), 2e6, 14);
+    let mut random = Random(11);
+    for _ in 0..2 {
+        let layers = scattered(layered(&mut random), PART);
+        tally.compare(system(vec![layers]), 3e6, 14);
+    }
+    // Beside a box.
+    let mut beside = layered(&mut random);
+    beside.mesh = (beside.mesh).transformed(|x| x + Vector3::new(30.0, 0.0, 0.0));
+    tally.compare(system(vec![cubes, beside]), 3e6, 14);
+    println!("{tally:?}");
+    let Tally([stable, unstable, undecided]) = tally;
+    assert!(stable > 20 && unstable > 6, "{stable} {unstable}");
+    assert!(undecided < unstable, "{undecided}");
+}
+
 /// Unstable directions of a column under its weight, those of the lowest modes being those of the inertia.
 fn unstable(column: Solid, weight: f64, voltage: f64) -> usize {
     let mut system = system(vec![column]);
@@ -104,9 +128,19 @@ fn a_column_that_buckles_is_unstable_by_its_lowest_mode() {
     assert!(counts.contains(&2), "{counts:?}");
 }
 
-/// Columns of mean dilatation with ratios λ/μ, stable under a small weight, and buckled under a great one.
+/// A column on a mesh without a grid under a weight that the straight state does not carry.
+#[test]
+fn a_column_on_a_mesh_is_unstable_by_its_lowest_mode() {
+    let column = || scattered(cubes(3, rubber(0.4, None)), PART);
+    let counts = [0.1, 0.5].map(|weight| unstable(column(), weight, 1e5));
+    assert_eq!(counts[0], 0);
+    assert!(counts[1] > 0, "{counts:?}");
+}
+
+/// Columns of mean dilatation with ratios λ/μ, stable under a small weight, and buckled under a great one; on meshes without a grid too.
 #[test]
 fn the_lowest_mode_of_nearly_incompressible_columns_tells_what_the_inertia_tells() {
+    let mut on_meshes = 0;
     for ratio in [10.0, 100.0, 1e3, 1e4] {
         let mut solid = cubes(3, rubber(0.4, None));
         solid.element = ElementKind::Hex8Q1P0;
@@ -115,5 +149,11 @@ fn the_lowest_mode_of_nearly_incompressible_columns_tells_what_the_inertia_tells
         }
         let counts = [0.1, 0.4].map(|weight| unstable(solid.clone(), weight, 1e5));
         assert_eq!(counts, [0, 2], "{ratio}");
+        // Without symmetry the state that is found may be a bent one, which is stable.
+        let mesh = scattered(solid, PART);
+        let counts = [0.1, 0.4].map(|weight| unstable(mesh.clone(), weight, 1e5));
+        assert_eq!(counts[0], 0, "{ratio}");
+        on_meshes += counts[1];
     }
+    assert!(on_meshes > 0);
 }

@@ -1,6 +1,6 @@
 //! The lowest mode of a state of rest, which tells its stability without factors.
 
-/// The lowest mode of a block on a box.
+/// The lowest mode of blocks.
 #[derive(Clone, Debug, PartialEq)]
 pub struct LowestMode {
     /// Its eigenvalue in N/mm, of vectors of all displacements of nodes.

@@ -9,7 +9,7 @@ use crate::model::Model;
 use crate::sparse::multigrid::LowestModes;
 
 /// The lowest mode of a model at a state of rest: `z` of coordinates, `scalars` of voltages and potentials; `None` where something else than
-/// nodes of boxes moves, or it is not found.
+/// nodes of blocks moves, or it is not found.
 pub fn lowest_mode(model: &Model, z: &[f64], scalars: &[f64]) -> Option<LowestMode> {
     let [inputs, others] = model.variables.split(scalars);
     let mut statics = Statics::by(model, inputs, Some(MultigridUse::Always));

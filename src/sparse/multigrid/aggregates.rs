@@ -22,6 +22,8 @@ pub(super) struct Points {
     /// Lengths by which rotations are multiplied; zero where points have none.
     lengths: Vec<f64>,
     nodes_of_each: usize,
+    /// True if aggregates turn, as displacements do.
+    have_rotations: bool,
 }
 
 /// A node of a coarse level that a node follows, and how.
@@ -47,6 +49,15 @@ impl Points {
             places: places.to_vec(),
             lengths: vec![0.0; places.len()],
             nodes_of_each: 1,
+            have_rotations: true,
+        }
+    }
+
+    /// The same nodes with a scalar as each component.
+    pub(super) fn of_scalars(&self) -> Self {
+        Self {
+            have_rotations: false,
+            ..self.clone()
         }
     }
 
@@ -140,6 +151,7 @@ impl Points {
             places,
             lengths,
             nodes_of_each: OF_AGGREGATE,
+            have_rotations: self.have_rotations,
         }
     }
 
@@ -188,6 +200,7 @@ impl Points {
         let (mut moved, mut turned) = (Block::default(), Block::default());
         let length = coarse.lengths[aggregate];
         let is_free = |component: usize| free & 1 << component != 0;
+        let turns = |axis: &usize| self.have_rotations && is_free(*axis);
         if is_place {
             for component in (0..COMPONENTS).filter(|&c| is_free(c)) {
                 moved[(COMPONENTS + 1) * component] = 1.0;
@@ -195,15 +208,13 @@ impl Points {
             let (from, to) = (coarse.places[aggregate], self.places[point]);
             let arm = [0, 1, 2].map(|axis| ((to[axis] - from[axis]) / length) as f32);
             // The displacement ω × r of a rotation ω.
-            for axis in 0..3 {
+            for axis in (0..3).filter(turns) {
                 let [next, last] = [(axis + 1) % 3, (axis + 2) % 3];
-                if is_free(axis) {
-                    turned[COMPONENTS * next + axis] = arm[last];
-                    turned[COMPONENTS * last + axis] = -arm[next];
-                }
+                turned[COMPONENTS * next + axis] = arm[last];
+                turned[COMPONENTS * last + axis] = -arm[next];
             }
         } else {
-            for axis in (0..3).filter(|&axis| is_free(axis)) {
+            for axis in (0..3).filter(turns) {
                 turned[(COMPONENTS + 1) * axis] = (self.lengths[point] / length) as f32;
             }
         }

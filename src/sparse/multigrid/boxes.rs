@@ -202,7 +202,7 @@ impl Parts {
     }
 
     /// Numbers of the meshes among the parts, and their patterns.
-    fn of_meshes(&self) -> impl Iterator<Item = (usize, &BlockRows)> {
+    pub(super) fn of_meshes(&self) -> impl Iterator<Item = (usize, &BlockRows)> {
         let meshes = self.meshes.iter().enumerate();
         let boxes = self.boxes.len();
         meshes.map(move |(mesh, one)| (boxes + mesh, &*one.levels[0].rows))

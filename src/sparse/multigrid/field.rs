@@ -23,6 +23,14 @@ impl<T: Copy + Default> Field<T> {
         }
     }
 
+    /// Zero at so many nodes of a mesh, whose neighbours all have a place.
+    pub(super) fn of_mesh(count: usize) -> Self {
+        Self {
+            values: vec![T::default(); count],
+            margin: 0,
+        }
+    }
+
     /// The nodes without the margins.
     pub(super) fn nodes(&self) -> &[T] {
         &self.values[self.margin..self.values.len() - self.margin]

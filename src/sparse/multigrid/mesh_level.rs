@@ -28,6 +28,8 @@ type AtNode = [f32; COMPONENTS];
 #[derive(Debug)]
 pub(super) struct MeshLevel {
     pub(super) rows: Arc<BlockRows>,
+    /// Places of its nodes.
+    points: Points,
     /// For each node, a bit for each component without a given value.
     pub(super) free: Vec<u8>,
     pub(super) matrix: Vec<Block>,
@@ -45,10 +47,25 @@ impl Hierarchy<MeshLevel> {
     /// The levels of a mesh without matrices.
     pub(super) fn of_mesh(mesh: &NodeMesh) -> Self {
         let rows = BlockRows::of_elements(mesh.places.len(), &mesh.elements);
-        let mut rows = Arc::new(rows);
-        let mut free: Vec<u8> = mesh.unknowns.iter().map(free_components).collect();
-        let mut points = Points::at(&mesh.places);
-        let mut pressures = (mesh.has_pressures).then(|| MeshPressures::of_elements(mesh));
+        let free = mesh.unknowns.iter().map(free_components).collect();
+        let pressures = (mesh.has_pressures).then(|| MeshPressures::of_elements(mesh));
+        Self::from((Arc::new(rows), free), Points::at(&mesh.places), pressures)
+    }
+
+    /// The levels without matrices of scalars at the nodes of a level, a component each; `free` has a bit for each one without a given value.
+    pub(super) fn of_scalars(finest: &MeshLevel, free: Vec<u8>) -> Self {
+        Self::from(
+            (finest.rows.clone(), free),
+            finest.points.of_scalars(),
+            None,
+        )
+    }
+
+    fn from(
+        (mut rows, mut free): (Arc<BlockRows>, Vec<u8>),
+        mut points: Points,
+        mut pressures: Option<MeshPressures>,
+    ) -> Self {
         let mut levels = Vec::new();
         while free.len() > COARSEST {
             let aggregates = points.aggregate(&rows, &free);
@@ -60,7 +77,12 @@ impl Hierarchy<MeshLevel> {
             let (transfer, next_rows) = Aggregation::new(&rows, aggregates);
             let coarse = |of: &mut MeshPressures| of.coarse(&transfer, next_free.len());
             let next_pressures = pressures.as_mut().map(coarse);
-            levels.push(MeshLevel::new(rows, free, Some(transfer), pressures));
+            levels.push(MeshLevel::new(
+                (rows, points),
+                free,
+                Some(transfer),
+                pressures,
+            ));
             (rows, free, points) = (Arc::new(next_rows), next_free, next);
             pressures = next_pressures;
         }
@@ -68,14 +90,14 @@ impl Hierarchy<MeshLevel> {
         if let Some(pressures) = &pressures {
             rows = Arc::new(pressures.couple(&rows));
         }
-        levels.push(MeshLevel::new(rows, free, None, pressures));
+        levels.push(MeshLevel::new((rows, points), free, None, pressures));
         Self::new(levels)
     }
 }
 
 impl MeshLevel {
     fn new(
-        rows: Arc<BlockRows>,
+        (rows, points): (Arc<BlockRows>, Points),
         free: Vec<u8>,
         transfer: Option<Aggregation>,
         pressures: Option<MeshPressures>,
@@ -88,6 +110,7 @@ impl MeshLevel {
             x: vec![AtNode::default(); nodes],
             residual: vec![AtNode::default(); nodes],
             rows,
+            points,
             free,
             transfer,
             pressures,

@@ -31,6 +31,7 @@ mod pressures;
 mod slab;
 mod solver;
 mod stiffness;
+mod symmetric_part;
 mod volumes;
 
 pub use element_volume::ElementVolume;

@@ -3,9 +3,10 @@
 use crate::math::{IsOver, Stopped};
 use crate::sparse::Singular;
 use crate::sparse::multigrid::boxes::Parts;
-use crate::sparse::multigrid::field::Field;
+use crate::sparse::multigrid::field::{Block, Field};
 use crate::sparse::multigrid::hierarchy::Hierarchy;
 use crate::sparse::multigrid::level::Level;
+use crate::sparse::multigrid::mesh_level::MeshLevel;
 use crate::sparse::multigrid::node_grid::{COMPONENTS, ENTRIES, NEIGHBOURS, offsets};
 
 /// Component of the potential.
@@ -22,9 +23,12 @@ type Values = [f64; COMPONENTS];
 #[derive(Debug)]
 pub(super) struct Potentials {
     boxes: Vec<Hierarchy<Level>>,
-    /// First node of each box, and the number of all.
+    meshes: Vec<Hierarchy<MeshLevel>>,
+    /// First node of each part, and the number of all.
     starts: Vec<usize>,
-    matrix: Vec<[f64; NEIGHBOURS]>,
+    /// First entry of each part, and the number of all.
+    first_entries: Vec<usize>,
+    matrix: Vec<f64>,
     direction: Vec<Field<Values>>,
     residual: Vec<Values>,
     corrections: Vec<Values>,
@@ -35,42 +39,46 @@ pub(super) struct Potentials {
 impl Potentials {
     /// The potentials of a matrix times a sign; `None` where there are none.
     pub(super) fn new(parts: &Parts, sign: f64) -> Result<Option<Self>, Singular> {
-        let is_free = |free: &u8| free & 1 << POTENTIAL != 0;
-        let mut of_all = parts.boxes.iter().flat_map(|one| &one.levels[0].free);
-        if !of_all.any(is_free) {
+        let is_free = |free: u8| free & 1 << POTENTIAL != 0;
+        if !parts.free().any(is_free) {
             return Ok(None);
         }
-        let of_potentials = |blocks: &[[f64; ENTRIES]]| {
-            std::array::from_fn(|neighbour| sign * blocks[neighbour][ENTRIES - 1])
-        };
-        let matrix: Vec<[f64; NEIGHBOURS]> =
-            (parts.matrix.chunks_exact(NEIGHBOURS).map(of_potentials)).collect();
-        let mut boxes = Vec::new();
-        for (part, one) in parts.boxes.iter().enumerate() {
+        let free_of = |free: &[u8]| {
             let all = u8::MAX >> (u8::BITS as usize - COMPONENTS);
-            let free = one.levels[0].free.iter();
-            let free = free.map(|free| if is_free(free) { all } else { 0 });
-            let mut one = Hierarchy::between(&one.levels[0].planes, free.collect(), false);
-            let values = matrix[parts.starts[part]..parts.starts[part + 1]].as_flattened();
-            for (block, value) in one.levels[0].matrix.iter_mut().zip(values) {
-                for component in 0..COMPONENTS {
-                    block[(COMPONENTS + 1) * component] = *value as f32;
-                }
-            }
+            let free = free.iter();
+            let free = free.map(|free| if is_free(*free) { all } else { 0 });
+            free.collect::<Vec<u8>>()
+        };
+        let of_potentials = parts.matrix.iter();
+        let of_potentials = of_potentials.map(|block| sign * block[ENTRIES - 1]);
+        let matrix: Vec<f64> = of_potentials.collect();
+        let (mut boxes, mut meshes) = (Vec::new(), Vec::new());
+        for (part, one) in parts.boxes.iter().enumerate() {
+            let finest = &one.levels[0];
+            let mut one = Hierarchy::between(&finest.planes, free_of(&finest.free), false);
+            write(&mut one.levels[0].matrix, &matrix[parts.blocks(part)]);
             one.prepare()?;
             boxes.push(one);
         }
-        let zero = || vec![Values::default(); matrix.len()];
-        let counts = boxes.iter().map(|one| one.levels[0].counts);
+        for (part, one) in (boxes.len()..).zip(&parts.meshes) {
+            let finest = &one.levels[0];
+            let mut one = Hierarchy::of_scalars(finest, free_of(&finest.free));
+            write(&mut one.levels[0].matrix, &matrix[parts.blocks(part)]);
+            one.prepare()?;
+            meshes.push(one);
+        }
+        let zero = || vec![Values::default(); parts.node_count()];
         Ok(Some(Self {
-            direction: counts.map(Field::new).collect(),
+            direction: parts.fields(),
             starts: parts.starts.clone(),
+            first_entries: parts.first_blocks.clone(),
             residual: zero(),
             corrections: zero(),
             products: zero(),
             solution: zero(),
             matrix,
             boxes,
+            meshes,
         }))
     }
 
@@ -136,25 +144,35 @@ impl Potentials {
 
     /// Multiplies the directions; returns their products with the results.
     fn multiply(&mut self) -> Values {
-        let mut along = Values::default();
-        for (part, field) in self.direction.iter().enumerate() {
-            let offsets = offsets(self.boxes[part].levels[0].counts);
+        for (part, one) in self.boxes.iter().enumerate() {
+            let (offsets, field) = (offsets(one.levels[0].counts), &self.direction[part]);
             let nodes = self.starts[part]..self.starts[part + 1];
-            let rows = self.matrix[nodes.clone()].iter();
+            let rows = self.matrix[self.first_entries[part]..].chunks_exact(NEIGHBOURS);
             let rows = rows.zip(&mut self.products[nodes]);
             for (node, (row, product)) in rows.enumerate() {
-                let at = node + field.margin;
+                let at = (node + field.margin) as isize;
                 *product = Values::default();
                 for (entry, offset) in row.iter().zip(&offsets) {
-                    let there = &field.values[(at as isize + offset) as usize];
-                    for (sum, value) in product.iter_mut().zip(there) {
-                        *sum += entry * value;
-                    }
-                }
-                for v in 0..COMPONENTS {
-                    along[v] += product[v] * field.values[at][v];
+                    add(product, *entry, &field.values[(at + offset) as usize]);
                 }
             }
+        }
+        for (part, one) in (self.boxes.len()..).zip(&self.meshes) {
+            let (pattern, x) = (&one.levels[0].rows, self.direction[part].nodes());
+            let entries = &self.matrix[self.first_entries[part]..];
+            let nodes = self.starts[part]..self.starts[part + 1];
+            for (node, product) in self.products[nodes].iter_mut().enumerate() {
+                *product = Values::default();
+                for block in pattern.range(node) {
+                    add(product, entries[block], &x[pattern.column(block)]);
+                }
+            }
+        }
+        let mut along = Values::default();
+        for (part, field) in self.direction.iter().enumerate() {
+            let products = &self.products[self.starts[part]..];
+            let of_part = dot(field.nodes(), products);
+            along = std::array::from_fn(|v| along[v] + of_part[v]);
         }
         along
     }
@@ -187,6 +205,35 @@ impl Potentials {
                 *to = from.map(f64::from);
             }
         }
+        for (part, one) in (self.boxes.len()..).zip(&mut self.meshes) {
+            let nodes = self.starts[part]..self.starts[part + 1];
+            let rhs = one.levels[0].rhs.iter_mut();
+            for (to, from) in rhs.zip(&self.residual[nodes.clone()]) {
+                *to = from.map(|value| value as f32);
+            }
+            one.cycle();
+            let x = one.levels[0].x.iter();
+            for (to, from) in self.corrections[nodes].iter_mut().zip(x) {
+                *to = from.map(f64::from);
+            }
+        }
+    }
+}
+
+/// Writes the entries of a matrix of potentials as blocks with one of them for each component.
+fn write(blocks: &mut [Block], entries: &[f64]) {
+    for (block, value) in blocks.iter_mut().zip(entries) {
+        for component in 0..COMPONENTS {
+            block[(COMPONENTS + 1) * component] = *value as f32;
+        }
+    }
+}
+
+/// Adds an entry times the values at a node.
+#[inline(always)]
+fn add(sum: &mut Values, entry: f64, there: &Values) {
+    for (sum, value) in sum.iter_mut().zip(there) {
+        *sum += entry * value;
     }
 }
 

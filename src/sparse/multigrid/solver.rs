@@ -238,10 +238,6 @@ impl Multigrid {
         factor: f64,
         is_over: IsOver<'_>,
     ) -> Result<Option<LowestModes>, Stopped> {
-        // Those of meshes are not sought.
-        if !self.parts.meshes.is_empty() {
-            return Ok(None);
-        }
         self.parts.symmetrise();
         let workspace = Workspace {
             krylov: &mut self.krylov,

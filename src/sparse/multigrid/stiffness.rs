@@ -8,7 +8,7 @@ use crate::sparse::multigrid::boxes::Parts;
 use crate::sparse::multigrid::field::Field;
 use crate::sparse::multigrid::krylov::Krylov;
 use crate::sparse::multigrid::lobpcg::{AtNode, COUNT, Pairs, SymmetricMatrix, lowest};
-use crate::sparse::multigrid::node_grid::{COMPONENTS, ENTRIES, NEIGHBOURS, OWN, offsets};
+use crate::sparse::multigrid::node_grid::{COMPONENTS, ENTRIES, NEIGHBOURS, NodeBlock, offsets};
 use crate::sparse::multigrid::potentials::{POTENTIAL, Potentials};
 
 /// Rounding of a product, relative to the largest entry of the diagonal.
@@ -82,20 +82,17 @@ pub(super) fn lowest_modes(
     };
     let mut random = Random::new(1);
     let mut start = Vec::new();
-    for one in &parts.boxes {
-        for free in &one.levels[0].free {
-            let mut at = AtNode::default();
-            for component in (0..POTENTIAL).filter(|c| free & 1 << c != 0) {
-                for vector in &mut at {
-                    vector[component] = random.between(-1.0, 1.0);
-                }
+    for free in parts.free() {
+        let mut at = AtNode::default();
+        for component in (0..POTENTIAL).filter(|c| free & 1 << c != 0) {
+            for vector in &mut at {
+                vector[component] = random.between(-1.0, 1.0);
             }
-            start.push(at);
         }
+        start.push(at);
     }
-    let counts = parts.boxes.iter().map(|one| one.levels[0].counts);
     let mut stiffness = Stiffness {
-        fields: counts.map(Field::new).collect(),
+        fields: parts.fields(),
         by_potentials: vec![AtNode::default(); if potentials.is_some() { start.len() } else { 0 }],
         rounding: ROUNDING * factor.abs() * parts.largest_diagonal(),
         potentials,
@@ -111,8 +108,8 @@ impl Parts {
     fn largest_diagonal(&self) -> f64 {
         let mut largest: f64 = 0.0;
         for (part, scales) in self.scales.iter().enumerate() {
-            for node in self.starts[part]..self.starts[part + 1] {
-                let own = &self.matrix[NEIGHBOURS * node + OWN];
+            for node in self.nodes(part) {
+                let own = &self.matrix[self.places.diagonal(node)];
                 for component in 0..POTENTIAL {
                     let entry = own[(COMPONENTS + 1) * component].abs();
                     largest = largest.max(entry / scales[component].powi(2));
@@ -122,39 +119,29 @@ impl Parts {
         largest
     }
 
-    /// Replaces the matrix by its symmetric part.
-    pub(super) fn symmetrise(&mut self) {
-        for (part, one) in self.boxes.iter().enumerate() {
-            let offsets = offsets(one.levels[0].counts);
-            let nodes = self.starts[part]..self.starts[part + 1];
-            let blocks = &mut self.matrix[NEIGHBOURS * nodes.start..NEIGHBOURS * nodes.end];
-            for node in 0..nodes.len() {
-                for (neighbour, offset) in offsets.iter().enumerate().skip(OWN) {
-                    let other = node + *offset as usize;
-                    if other >= nodes.len() {
-                        continue;
-                    }
-                    let here = NEIGHBOURS * node + neighbour;
-                    let there = NEIGHBOURS * other + (NEIGHBOURS - 1 - neighbour);
-                    let [a, b] = [blocks[here], blocks[there]];
-                    for entry in 0..ENTRIES {
-                        let (row, col) = (entry % COMPONENTS, entry / COMPONENTS);
-                        let transposed = COMPONENTS * row + col;
-                        let mean = 0.5 * (a[entry] + b[transposed]);
-                        (blocks[here][entry], blocks[there][transposed]) = (mean, mean);
-                    }
-                }
-            }
-        }
+    /// Zero at the nodes of each part.
+    pub(super) fn fields<T: Copy + Default>(&self) -> Vec<Field<T>> {
+        let of_boxes = self.boxes.iter();
+        let of_boxes = of_boxes.map(|one| Field::new(one.levels[0].counts));
+        let of_meshes = self.meshes.iter();
+        let of_meshes = of_meshes.map(|one| Field::of_mesh(one.levels[0].free.len()));
+        of_boxes.chain(of_meshes).collect()
+    }
+
+    /// For each node, a bit for each component without a given value.
+    pub(super) fn free(&self) -> impl Iterator<Item = u8> {
+        let of_boxes = self.boxes.iter().flat_map(|one| &one.levels[0].free);
+        let of_meshes = self.meshes.iter().flat_map(|one| &one.levels[0].free);
+        of_boxes.chain(of_meshes).copied()
     }
 }
 
 impl Stiffness<'_> {
     /// Multiplies the vectors in the fields.
     fn multiply(&self, product: &mut [AtNode]) {
-        for (part, field) in self.fields.iter().enumerate() {
-            let nodes = self.parts.starts[part]..self.parts.starts[part + 1];
-            let offsets = offsets(self.parts.boxes[part].levels[0].counts);
+        for (part, one) in self.parts.boxes.iter().enumerate() {
+            let (nodes, field) = (self.parts.nodes(part), &self.fields[part]);
+            let offsets = offsets(one.levels[0].counts);
             let blocks = &self.parts.matrix[NEIGHBOURS * nodes.start..NEIGHBOURS * nodes.end];
             let half = nodes.len() / 2;
             let (lower, upper) = product[nodes].split_at_mut(half);
@@ -163,6 +150,28 @@ impl Stiffness<'_> {
             };
             join(|| rows(0, lower), || rows(half, upper));
         }
+        for (part, pattern) in self.parts.of_meshes() {
+            let (nodes, x) = (self.parts.nodes(part), self.fields[part].nodes());
+            let blocks = &self.parts.matrix[self.parts.blocks(part)];
+            let half = nodes.len() / 2;
+            let (lower, upper) = product[nodes].split_at_mut(half);
+            let rows = |first: usize, product: &mut [AtNode]| {
+                for (row, product) in (first..).zip(product) {
+                    *product = AtNode::default();
+                    for block in pattern.range(row) {
+                        add(product, &blocks[block], &x[pattern.column(block)]);
+                    }
+                }
+            };
+            join(|| rows(0, lower), || rows(half, upper));
+        }
+    }
+
+    /// Returns true if corrections are solutions, and not what one cycle makes.
+    ///
+    /// One cycle leaves changes of volumes that a great stiffness makes greater than the residual.
+    fn are_solutions(&self) -> bool {
+        !(self.parts.volumes.is_empty() && self.parts.meshes.is_empty())
     }
 
     /// Lets potentials follow the displacements with these products, and adds what they do; returns the lengths of that times the part of it that may be off.
@@ -243,7 +252,7 @@ impl SymmetricMatrix for Stiffness<'_> {
     }
 
     fn least_iterations(&self) -> usize {
-        LEAST[usize::from(self.parts.volumes.is_empty())]
+        LEAST[usize::from(!self.are_solutions())]
     }
 
     fn precondition(
@@ -256,9 +265,9 @@ impl SymmetricMatrix for Stiffness<'_> {
             let squares = r.iter().flat_map(|at| at[v]).map(|value| value * value);
             let length = squares.sum::<f64>().sqrt();
             let unit = if length > 0.0 { length.recip() } else { 0.0 };
-            match self.parts.volumes.is_empty() {
-                true => self.cycle((r, unit), v, x),
-                false => self.solve((r, unit), v, x, is_over)?,
+            match self.are_solutions() {
+                true => self.solve((r, unit), v, x, is_over)?,
+                false => self.cycle((r, unit), v, x),
             }
         }
         Ok(())
@@ -285,8 +294,6 @@ impl Stiffness<'_> {
     }
 
     /// Writes the solution for a multiple of the residual of a vector, potentials and pressures following, of the accuracy of a correction.
-    ///
-    /// One cycle leaves changes of volumes that a great stiffness makes greater than the residual.
     fn solve(
         &mut self,
         (r, unit): (&[AtNode], f64),
@@ -333,15 +340,20 @@ fn rows(
         let mut sums = AtNode::default();
         let blocks = &blocks[NEIGHBOURS * (first + row)..][..NEIGHBOURS];
         for (block, offset) in blocks.iter().zip(offsets) {
-            let there = &field.values[(at + offset) as usize];
-            for (sum, vector) in sums.iter_mut().zip(there) {
-                for (column, value) in block.chunks_exact(COMPONENTS).zip(vector) {
-                    for (sum, entry) in sum.iter_mut().zip(column) {
-                        *sum += entry * value;
-                    }
-                }
-            }
+            add(&mut sums, block, &field.values[(at + offset) as usize]);
         }
         *product = sums;
+    }
+}
+
+/// Adds a block times the vectors at a node.
+#[inline(always)]
+fn add(sums: &mut AtNode, block: &NodeBlock, there: &AtNode) {
+    for (sum, vector) in sums.iter_mut().zip(there) {
+        for (column, value) in block.chunks_exact(COMPONENTS).zip(vector) {
+            for (sum, entry) in sum.iter_mut().zip(column) {
+                *sum += entry * value;
+            }
+        }
     }
 }
