@@ -23,6 +23,8 @@ pub(super) struct Contraction {
     least: f64,
     /// Relative size of the last update that was made.
     last: Option<f64>,
+    /// Ratio of that update to the one before, both by the tangent that is kept; zero where there are no two.
+    rate_before: f64,
 }
 
 /// Verdict on an update.
@@ -46,6 +48,7 @@ impl Contraction {
             slow: SLOW,
             least: 0.0,
             last: None,
+            rate_before: 0.0,
         }
     }
 
@@ -67,6 +70,8 @@ impl Contraction {
             None if is_reused || is_approximate => SLOW,
             None => 0.0,
         };
+        let is_ratio = is_reused && self.last.is_some();
+        let before = std::mem::replace(&mut self.rate_before, if is_ratio { rate } else { 0.0 });
         if is_reused && rate >= 1.0 && size >= FAR {
             self.last = None;
             return Verdict::Astray;
@@ -74,7 +79,9 @@ impl Contraction {
         let is_close = match self.newton {
             Newton::Full => size < UPDATE,
             Newton::Modified => {
-                let rate = rate.max(self.least);
+                // Combinations of updates with earlier ones make one small ratio now and then.
+                let before = if is_reused { before } else { 0.0 };
+                let rate = rate.max(before).max(self.least);
                 size * (rate / (1.0 - rate)).max(size) < LEFT
             }
         };
@@ -133,6 +140,29 @@ mod tests {
         assert_eq!(judged(Contraction::new(newton)), Verdict::Converged);
         let cheap = Contraction::of_cheap_tangents(newton);
         assert_eq!(judged(cheap), Verdict::Shrinks);
+    }
+
+    /// Updates that shrink unevenly leave what the larger one of two ratios tells.
+    #[test]
+    fn one_small_ratio_among_others_of_a_kept_tangent_is_not_believed() {
+        let judged = |updates: &[(f64, bool)]| {
+            let mut contraction = Contraction::new(Newton::Modified);
+            let verdicts = updates.iter();
+            let verdicts = verdicts.map(|&(size, reused)| contraction.judge(size, reused, false));
+            verdicts.collect::<Vec<_>>()
+        };
+        let [shrinks, end] = [Verdict::Shrinks, Verdict::Converged];
+        let begun = [(1e-4, false), (5e-5, true)];
+        // By its own ratio 2e-10 would leave 8e-16, by the one before 2e-10.
+        let found = judged(&[begun[0], begun[1], (2e-10, true), (5e-11, true)]);
+        assert_eq!(found, [shrinks, shrinks, shrinks, end]);
+        let found = judged(&[begun[0], begun[1], (5e-11, true)]);
+        assert_eq!(found, [shrinks, shrinks, end]);
+        // A ratio says nothing of a tangent that is made anew, nor of the updates by it.
+        let found = judged(&[begun[0], begun[1], (2e-10, false)]);
+        assert_eq!(found, [shrinks, shrinks, end]);
+        let found = judged(&[begun[0], begun[1], (2.5e-5, false), (2e-10, true)]);
+        assert_eq!(found, [shrinks, shrinks, shrinks, end]);
     }
 
     #[test]
