@@ -3,6 +3,7 @@
 
 use crate::common::solid::system;
 use crate::common::stacks::{LENGTH, cubes, rubber};
+use crate::multigrid::MULTIGRID;
 use proboscis::dynamics::{
     DiscreteTrajectory, MultigridUse, Newton, Solving, Start, StepperReport, simulate_by,
     stable_equilibrium, stable_equilibrium_by,
@@ -139,4 +140,20 @@ fn nearly_incompressible_blocks_on_meshes_are_those_of_factors() {
         let each = iterations / updates as f64;
         assert!(each < 3.0 * MOST, "{each} iterations for each update");
     }
+}
+
+/// Coarser levels correct pressures too: where the second of three does not, an update takes three times as many iterations as on two levels.
+#[test]
+fn iterations_on_meshes_grow_little_with_them() {
+    let each = [(3, 2), (8, 3)].map(|(n, levels)| {
+        let report = motion(&without_box(stiff(n, 1e4, None)), MULTIGRID).report;
+        println!("{n}: {report:?}");
+        assert_eq!((report.multigrid.levels, report.fallbacks), (levels, 0));
+        report.multigrid.iterations as f64 / report.iterations as f64
+    });
+    assert!(each[0] > 1.0, "{each:?}");
+    assert!(
+        each[1] < 2.0 * each[0],
+        "{each:?} iterations for each update"
+    );
 }
