@@ -87,7 +87,7 @@ pub use program::{changed_text, check_text, with_program};
 pub(crate) use progress::{Progress, progress_bar};
 pub use progress::{ProgressDisplay, Reached};
 pub use receding::{FileHorizon, SiController};
-pub(crate) use record::{FileRecords, Found, OF_VARIANT, is_unfinished};
+pub(crate) use record::{Ending, FileRecords, Found, OF_VARIANT, is_unfinished};
 pub use request::{CommandInput, CommandOutput, PageWanted};
 pub use side_by_side::compare;
 pub use summary::written_summary;

@@ -4,11 +4,10 @@ use std::fs;
 use std::path::Path;
 
 use serde::{Deserialize, Serialize};
-use serde_json::Value;
 
 use crate::app::error::CommandError;
 use crate::app::identity::Identity;
-use crate::app::record::{FileRecords, Found, OF_RUN, is_unfinished};
+use crate::app::record::{Ending, FileRecords, Found, OF_RUN};
 use crate::app::request::{CommandInput, CommandOutput};
 use crate::app::task::{read, run};
 use crate::files::lay_out;
@@ -45,7 +44,7 @@ pub fn run_once(request: &CommandInput) -> Result<CommandOutput, CommandError> {
         Found::Nothing => None,
     };
     let mut output = run(request)?;
-    if !status(&folder).is_none_or(|status| is_unfinished(&status)) {
+    if Ending::of_folder(&folder).is_some_and(|ending| !ending.is_unfinished()) {
         write(&folder, &identity, &output)?;
     }
     let again = deviation.map(|words| format!("made again: {words}"));
@@ -68,13 +67,6 @@ fn found(folder: &Path, identity: &Identity) -> Found<Record> {
         Some(words) => Found::Deviates(words),
         None => Found::Whole(record),
     }
-}
-
-/// The word with which a summary says how a run ended.
-fn status(folder: &Path) -> Option<String> {
-    let text = fs::read_to_string(folder.join("summary.json")).ok()?;
-    let summary: Value = serde_json::from_str(&text).ok()?;
-    Some(summary.get("status")?.as_str()?.to_owned())
 }
 
 fn write(folder: &Path, identity: &Identity, output: &CommandOutput) -> Result<(), WriteError> {

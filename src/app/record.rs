@@ -8,6 +8,8 @@ use std::path::Path;
 use serde::{Deserialize, Serialize};
 
 use crate::app::content_hash::digest_of;
+use crate::workflow::Remarks;
+use crate::workflow::remark::STOPPED_EARLY;
 
 /// Statuses that may be otherwise the next time.
 const UNFINISHED: [&str; 5] = [
@@ -21,6 +23,27 @@ const UNFINISHED: [&str; 5] = [
 /// Returns true if another attempt may end with another status.
 pub(crate) fn is_unfinished(status: &str) -> bool {
     UNFINISHED.contains(&status)
+}
+
+/// The part of a summary that says how a run ended.
+#[derive(Debug, Deserialize)]
+pub(crate) struct Ending {
+    pub(crate) status: String,
+    #[serde(default)]
+    notes: Remarks,
+}
+
+impl Ending {
+    /// The end of the run whose results a folder has.
+    pub(crate) fn of_folder(folder: &Path) -> Option<Self> {
+        let text = fs::read_to_string(folder.join("summary.json")).ok()?;
+        serde_json::from_str(&text).ok()
+    }
+
+    /// Returns true if another attempt may end otherwise: the run failed, or a stop kept it from a better result.
+    pub(crate) fn is_unfinished(&self) -> bool {
+        is_unfinished(&self.status) || self.notes.have(STOPPED_EARLY)
+    }
 }
 
 /// The record of a run that is made once.

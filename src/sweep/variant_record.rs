@@ -8,7 +8,7 @@ use serde::{Deserialize, Serialize};
 use serde_json::{Map, Value};
 
 use crate::app::{
-    CommandError, FileRecords, Found, OF_VARIANT, RunEnd, Said, is_unfinished, make_folder,
+    CommandError, Ending, FileRecords, Found, OF_VARIANT, RunEnd, Said, is_unfinished, make_folder,
 };
 use crate::files::lay_out;
 use crate::report::atomic::{self, WriteError};
@@ -36,11 +36,15 @@ pub(super) struct VariantRecord {
     /// The files of its folder as they were written.
     #[serde(default)]
     files: FileRecords,
+    /// True if a stop kept it from a better result.
+    #[serde(skip)]
+    is_stopped_early: bool,
 }
 
 #[derive(Deserialize)]
 struct Summary {
-    status: String,
+    #[serde(flatten)]
+    ending: Ending,
     #[serde(default)]
     objective: Option<f64>,
     #[serde(default)]
@@ -66,6 +70,7 @@ impl VariantRecord {
             seconds: end.seconds,
             numbers: Map::new(),
             files: FileRecords::default(),
+            is_stopped_early: false,
         };
         if matches!(end.said, Said::Solved | Said::Unsolved(_)) {
             kept.read_results(folder);
@@ -99,7 +104,7 @@ impl VariantRecord {
 
     /// Returns true if another attempt may end otherwise.
     pub(super) fn is_unfinished(&self) -> bool {
-        is_unfinished(&self.status)
+        is_unfinished(&self.status) || self.is_stopped_early
     }
 
     /// Writes it into the folder of the variant, with the hashes of the files there.
@@ -120,7 +125,8 @@ impl VariantRecord {
         else {
             return;
         };
-        self.status = summary.status;
+        self.is_stopped_early = summary.ending.is_unfinished();
+        self.status = summary.ending.status;
         self.message = None;
         let objective = summary.objective.map(Value::from);
         let iterations = summary.iterations.map(Value::from);

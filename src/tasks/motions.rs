@@ -8,11 +8,13 @@ use crate::control::{Motion, Motions};
 use crate::tasks::grid::{Found, SolveRequest};
 use crate::tasks::held_goal::{NOT_FOUND, UNFINISHED, held, is_kept, is_left};
 use crate::tasks::solve::{SolveResult, assessed};
+use crate::tasks::solve_messages;
 use crate::tasks::verdict::Verdict;
 use crate::workflow::accuracy::{Accuracy, AccuracyTarget};
 use crate::workflow::further::stopped;
 use crate::workflow::memory::{self, Occasion};
 use crate::workflow::optimum::{SolveLimits, seconds_left};
+use crate::workflow::remark::STOPPED_EARLY;
 use crate::workflow::{
     ACCURACY, Iterate, Remarks, Together, WholeProgram, WorkflowError, optimise_together,
     optimise_together_to,
@@ -68,6 +70,9 @@ pub fn solve_motions(
     let list: Vec<SolveResult> = list.collect();
     let mut remarks = Remarks::default();
     remarks.warn("optimality_gap", whole.wide.clone());
+    let mut each = list.iter();
+    let cut_short = each.find_map(|one| one.optimum.cut_short);
+    remarks.warn(STOPPED_EARLY, cut_short.map(solve_messages::cut_short));
     remarks.warn("shared_inputs", held_apart(&motions, &list));
     Ok(MotionsResult {
         verdict: verdict(&motions.list, &list),

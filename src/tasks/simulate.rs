@@ -21,7 +21,7 @@ use crate::workflow::integrate::{Simulated, grid, integrate_on};
 use crate::workflow::longer_steps;
 use crate::workflow::loop_limits::LoopLimits;
 use crate::workflow::memory::{self, Occasion};
-use crate::workflow::remark::Remarks;
+use crate::workflow::remark::{Remarks, STOPPED_EARLY};
 use crate::workflow::stalled;
 use crate::workflow::steps;
 use crate::workflow::stops;
@@ -126,6 +126,11 @@ impl SimulationResult {
         remarks.note("stops", stops::notes(system, trajectory));
         remarks.warn("coarse_steps", steps::warning(neglected, discrete, task));
         remarks.warn("tolerance_exceeded", steps::beyond(*error, task));
+        let unconfirmed = self
+            .simulated
+            .unconfirmed
+            .filter(|_| self.stopped.is_none());
+        remarks.warn(STOPPED_EARLY, unconfirmed.map(steps::unconfirmed));
         remarks.warn(
             "multigrid_stalled",
             stalled::warning(discrete.report.fallbacks),

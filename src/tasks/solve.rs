@@ -11,7 +11,7 @@ use crate::sensitivity::{self, Gradients, NoSensitivity, Sensitivity, gradients,
 use crate::tasks::grid::{Found, SolveRequest};
 use crate::tasks::held_goal::{HeldGoal, solve_and_hold};
 use crate::tasks::moved_markers::moved_markers;
-use crate::tasks::solve_messages::{carried, ends, restarted};
+use crate::tasks::solve_messages::{self, carried, ends, restarted};
 use crate::tasks::tracking_messages;
 use crate::tasks::verdict::Verdict;
 use crate::workflow::Iterate;
@@ -28,7 +28,7 @@ use crate::workflow::memory::{self, Occasion};
 use crate::workflow::motion::{discrete_trajectory, trajectory};
 use crate::workflow::optimum::Optimum;
 use crate::workflow::period::Repeated;
-use crate::workflow::remark::Remarks;
+use crate::workflow::remark::{Remarks, STOPPED_EARLY};
 use crate::workflow::resimulate::Resimulation;
 use crate::workflow::stops;
 use crate::workflow::stretch_range;
@@ -89,7 +89,10 @@ pub fn solve(
         control,
         note,
     } = solve_and_hold(system, control, request, observer)?;
-    Ok(assessed(system, control.as_ref(), found, note))
+    let cut_short = found.optimum.cut_short.map(solve_messages::cut_short);
+    let mut result = assessed(system, control.as_ref(), found, note);
+    result.remarks.warn(STOPPED_EARLY, cut_short);
+    Ok(result)
 }
 
 /// An optimum with its verdict and all that is observed of it; `not_found` says that inputs that hold its goal were not found.

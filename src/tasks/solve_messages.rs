@@ -53,6 +53,14 @@ pub(crate) fn stopped_after(first: Status, stopped: Status) -> String {
     )
 }
 
+/// Describes an optimum to a weaker tolerance whose solve was stopped before it met its own.
+pub(crate) fn cut_short(stopped: Status) -> String {
+    format!(
+        "the solver was stopped ({}) before it met its tolerance: without the stop it may end at a better point",
+        stopped.word().replace('_', " ")
+    )
+}
+
 /// Describes the changes of an earlier solution that serves as a guess.
 pub(crate) fn carried(carried: &Carried) -> Vec<String> {
     let stretched = carried.stretched.map(|[from, to]| {

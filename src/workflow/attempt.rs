@@ -6,7 +6,7 @@ use std::time::Instant;
 use crate::control::problem::{Control, InCommon};
 use crate::control::{BoundaryConditions, Carried, Costates, Solution, Transcription};
 use crate::dynamics::{DiscreteTrajectory, reversed_muscle};
-use crate::ipopt::{Options, Solver, SolverResult, interrupt};
+use crate::ipopt::{Options, Solver, SolverResult, Status, interrupt};
 use crate::kinematics::Pose;
 use crate::model::{Model, System};
 use crate::nlp::Nlp;
@@ -121,6 +121,7 @@ pub(crate) fn attempt_together(
     let solution = solves.recentre(solution)?;
     let solution = solves.tighten(solution)?;
     let program = solves.solver.into_program();
+    let cut_short = interrupt::stop().filter(|_| solution.status == Status::Acceptable);
     drop(watch);
     let whole = WholeProgram::new(&program, &solution);
     let places = program.places().clone();
@@ -133,17 +134,28 @@ pub(crate) fn attempt_together(
         let point = FinalPoint::new(&mut part, &own, motion.model, motion.control);
         ends.push((own, discrete, found, point));
     }
+    let mut optima = verified_optima(asked, resolved, ends, (setup, carried))?;
+    for optimum in &mut optima {
+        optimum.cut_short = cut_short;
+        // A part of an objective may vanish: the gap of the whole counts.
+        optimum.wide = optimum.wide.take().filter(|_| asked.len() == 1);
+    }
+    Ok(FoundTogether { optima, whole })
+}
+
+/// Motions with their verifications.
+fn verified_optima(
+    asked: &[MotionAsked<'_>],
+    resolved: Vec<(Model, BoundaryConditions)>,
+    ends: Vec<End>,
+    (setup, carried): (f64, Vec<Carried>),
+) -> Result<Vec<Optimum>, WorkflowError> {
     let all = asked.iter().zip(resolved).zip(ends).zip(carried);
     let optima = all.map(|(((one, resolved), end), carried)| {
         let optimum = verified_optimum(*one, resolved, end, (setup, carried));
         optimum.map_err(|error| error.of_motion(one.name))
     });
-    let mut optima: Vec<Optimum> = optima.collect::<Result<_, _>>()?;
-    if let [_, _, ..] = asked {
-        // A part of an objective may vanish: the gap of the whole counts.
-        optima.iter_mut().for_each(|optimum| optimum.wide = None);
-    }
-    Ok(FoundTogether { optima, whole })
+    optima.collect()
 }
 
 /// The end of the last solve for one motion: its part of the result, its motion in unknowns and as it is kept, and the point of its program.
@@ -192,6 +204,7 @@ fn verified_optimum(
         shortest: Shortest::Unknown,
         half_period: None,
         stopped: None,
+        cut_short: None,
         active: point.active,
         gap: point.gap,
         wide: point.wide,

@@ -22,6 +22,11 @@ pub struct EstimatedError {
 }
 
 impl EstimatedError {
+    /// Returns true if it is confirmed to be no greater than a tolerance.
+    pub(crate) fn is_below(&self, tolerance: f64) -> bool {
+        self.is_confirmed && self.error <= tolerance
+    }
+
     /// Of the finest of three motions, each in steps of half the length: from the distance `before` between the first two and `last`
     /// between the last two.
     pub(crate) fn of_finest(before: f64, last: f64) -> Self {

@@ -9,7 +9,7 @@ use crate::dynamics::{
     DiscreteTrajectory, Drive, Integrator, Lengths, Solving, StepControl, StepError, StepState,
     TimeGrid, go_on,
 };
-use crate::ipopt::interrupt;
+use crate::ipopt::{Status, interrupt};
 use crate::math::in_order;
 use crate::model::{Model, System};
 use crate::workflow::confirmed::EstimatedError;
@@ -17,7 +17,7 @@ use crate::workflow::control_loop::{Counts, Loop, horizon};
 use crate::workflow::error::WorkflowError;
 use crate::workflow::memory;
 use crate::workflow::phase::phase;
-use crate::workflow::tolerance::ByTolerance;
+use crate::workflow::tolerance::{ByTolerance, Found};
 
 /// A simulation and how it ended.
 #[derive(Debug)]
@@ -30,6 +30,8 @@ pub struct Simulated {
     pub failure: Option<StepError>,
     /// Its error, where a tolerance controls its steps and it came to its end.
     pub error: Option<EstimatedError>,
+    /// Reason why the error was not confirmed to be below the tolerance, where that was stopped.
+    pub unconfirmed: Option<Status>,
     /// Counts of the samples of a controller.
     pub(crate) samples: Option<Counts>,
     /// Seconds before the first step.
@@ -106,7 +108,7 @@ pub fn integrate_on(
         voltages: &task.voltages,
     };
     let switches = switches(&task.voltages, &model);
-    let (discrete, failure, error) = match task.tolerance {
+    let found = match task.tolerance {
         Some(tolerance) => ByTolerance {
             model: &model,
             solving: task.solving,
@@ -121,7 +123,7 @@ pub fn integrate_on(
         .run(begun, observer),
         None => {
             let lengths = Lengths::Equal(TimeGrid { h, steps });
-            let (discrete, failure) = match &controlled {
+            let ended = match &controlled {
                 Some(controlled) => {
                     let solving = task.solving;
                     let drive = |from: f64, to: f64| controlled.at([from, to], 0.5);
@@ -129,7 +131,7 @@ pub fn integrate_on(
                 }
                 None => go_on(task.solving, &model, begun, lengths, drive, observer),
             };
-            (discrete, failure, None)
+            Found::without_error(ended)
         }
     };
     let seconds = began.elapsed().as_secs_f64() - setup;
@@ -137,9 +139,10 @@ pub fn integrate_on(
     Ok(Simulated {
         samples,
         model,
-        discrete,
-        failure,
-        error,
+        discrete: found.discrete,
+        failure: found.failure,
+        error: found.error,
+        unconfirmed: found.stopped,
         setup,
         seconds,
     })

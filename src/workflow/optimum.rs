@@ -70,6 +70,8 @@ pub struct Optimum {
     pub half_period: Option<f64>,
     /// Reason why other starts or finer grids were not tried to the end, where none before led to an answer.
     pub stopped: Option<Status>,
+    /// Reason why the solver ended at a point that meets a weaker tolerance only, where a stop kept it from better ones.
+    pub cut_short: Option<Status>,
     /// Bounds and limits that the motion reaches, the most frequent first; none of a solution.
     pub active: Vec<Active>,
     /// Duality gap: the objective lies no farther above its least value, in its unit.

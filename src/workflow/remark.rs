@@ -5,6 +5,9 @@ use std::fmt;
 
 use serde::{Deserialize, Serialize};
 
+/// The code of a warning on a result that another attempt may find better, since this one was stopped.
+pub(crate) const STOPPED_EARLY: &str = "stopped_early";
+
 /// The weight of a remark.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
@@ -63,6 +66,11 @@ impl Remarks {
             code: code.into(),
             text,
         }));
+    }
+
+    /// Returns true if there is one with a code.
+    pub fn have(&self, code: &str) -> bool {
+        self.0.iter().any(|remark| remark.code == code)
     }
 
     /// Returns true if there are none.

@@ -2,6 +2,7 @@
 
 use crate::control::problem::Simulation;
 use crate::dynamics::{DiscreteTrajectory, Integrator, LocalError};
+use crate::ipopt::Status;
 use crate::math::{shortest, significant};
 use crate::model::Model;
 use crate::workflow::confirmed::EstimatedError;
@@ -111,6 +112,14 @@ pub fn beyond(error: Option<EstimatedError>, task: &Simulation) -> Option<String
             "the error of the motion is not known: steps of other lengths lead elsewhere, {size} away (the tolerance is {tolerance:e})"
         )),
     }
+}
+
+/// A warning that a stop left open whether the error of a motion is below its tolerance.
+pub(crate) fn unconfirmed(stopped: Status) -> String {
+    format!(
+        "the run was stopped ({}) before steps of other lengths confirmed that the error of the motion is below its tolerance",
+        stopped.word().replace('_', " ")
+    )
 }
 
 /// Three digits of a step.

@@ -7,7 +7,7 @@
 use std::ops::ControlFlow;
 
 use crate::dynamics::{DiscreteTrajectory, Drive, Lengths, Solving, StepControl, StepError, go_on};
-use crate::ipopt::interrupt;
+use crate::ipopt::{Status, interrupt};
 use crate::model::Model;
 use crate::workflow::confirmed::EstimatedError;
 use crate::workflow::distance::Distance;
@@ -34,12 +34,30 @@ pub(crate) struct ByTolerance<'a> {
     pub(crate) drive: &'a dyn Drive,
 }
 
-/// A motion, why it ended early, and its error where it did not.
-pub(crate) type Found = (
-    DiscreteTrajectory,
-    Option<StepError>,
-    Option<EstimatedError>,
-);
+/// A motion by a tolerance.
+pub(crate) struct Found {
+    pub(crate) discrete: DiscreteTrajectory,
+    /// Reason why it ended early.
+    pub(crate) failure: Option<StepError>,
+    /// Its error, where it did not.
+    pub(crate) error: Option<EstimatedError>,
+    /// Reason why its error was not confirmed to be below the tolerance.
+    pub(crate) stopped: Option<Status>,
+}
+
+impl Found {
+    /// A motion whose error nothing asks for.
+    pub(crate) fn without_error(
+        (discrete, failure): (DiscreteTrajectory, Option<StepError>),
+    ) -> Self {
+        Self {
+            discrete,
+            failure,
+            error: None,
+            stopped: None,
+        }
+    }
+}
 
 impl ByTolerance<'_> {
     /// The motion resumed from where it has `begun`, or one in shorter steps whose error is confirmed to be below the tolerance.
@@ -50,32 +68,50 @@ impl ByTolerance<'_> {
     ) -> Found {
         let Self { control, .. } = *self;
         let start = at_start(&begun);
-        let mut found = self.go_on(begun, Lengths::Controlled(control), &mut observer);
+        let mut found =
+            self.assessed(self.go_on(begun, Lengths::Controlled(control), &mut observer));
         for _ in 0..AGAIN {
-            let Some(error) = self.error(&found.0).filter(|_| found.1.is_none()) else {
-                return (found.0, found.1, None);
+            let Some(error) = found.error.filter(|_| found.stopped.is_none()) else {
+                return found;
             };
-            let part = error.error / control.tolerance;
-            if interrupt::stop().is_some() || (part <= 1.0 && error.is_confirmed) {
-                return (found.0, None, Some(error));
+            if error.is_below(control.tolerance) {
+                return found;
             }
             let factor = match error.is_confirmed {
-                true => (LEAVES / part).max(MOST),
+                true => (LEAVES * control.tolerance / error.error).max(MOST),
                 false => UNCONFIRMED,
             };
             let mut again = start.clone();
-            let used = found.0.end.tolerance.unwrap_or(control.tolerance);
+            let used = found.discrete.end.tolerance.unwrap_or(control.tolerance);
             again.end.tolerance = Some(used * factor);
             let tighter = self.go_on(again, Lengths::Controlled(control), &mut observer);
-            let is_whole = tighter.0.times.last() == found.0.times.last();
+            let is_whole = tighter.0.times.last() == found.discrete.times.last();
             if !is_whole && interrupt::stop().is_none() {
                 // Steps that short fail: the motion before is the best there is.
-                return (found.0, None, Some(error));
+                return found;
             }
-            found = tighter;
+            found = self.assessed(tighter);
         }
-        let error = self.error(&found.0).filter(|_| found.1.is_none());
-        (found.0, found.1, error)
+        found
+    }
+
+    /// A motion with its error; a stop leaves the error unknown where it is not confirmed before.
+    fn assessed(&self, (discrete, failure): (DiscreteTrajectory, Option<StepError>)) -> Found {
+        let error = match failure {
+            None => self.error(&discrete),
+            Some(_) => None,
+        };
+        let is_below = |error: &EstimatedError| error.is_below(self.control.tolerance);
+        let stopped = match error.as_ref().is_some_and(is_below) {
+            true => None,
+            false => interrupt::stop(),
+        };
+        Found {
+            error: error.filter(|error| error.is_confirmed || stopped.is_none()),
+            discrete,
+            failure,
+            stopped,
+        }
     }
 
     fn go_on(

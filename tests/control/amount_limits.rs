@@ -219,3 +219,25 @@ fn a_given_volume_keeps_its_limit_without_a_row_or_is_refused() {
         "no constant that is sought changes the volume of muscle2"
     );
 }
+
+/// A limit that an iterate breaks, and that sought constants may keep, is none of a problem without these.
+#[test]
+fn an_iterate_beyond_the_limit_of_a_volume_is_no_mistake_of_the_problem() {
+    let system = pair();
+    let most = 0.9 * 10.0 * PER_WIDTH;
+    let control = designed(&system, &[volume(f64::NEG_INFINITY, most)]);
+    let run = |iterations: usize| {
+        let limits = SolveLimits {
+            iterations: Some(iterations),
+            seconds: None,
+        };
+        let mut each = |_: &Iterate<'_>| ControlFlow::Continue(());
+        optimise(&system, &control, None, limits, &mut each).expect("a point")
+    };
+    let begun = run(0);
+    assert_eq!(begun.word(), "iteration_limit");
+    let width = |found: &proboscis::workflow::Optimum| found.motion.parameters[1].value;
+    assert!(width(&begun) * PER_WIDTH > 1.05 * most);
+    let whole = run(200);
+    assert!(whole.is_solved() && width(&whole) * PER_WIDTH < most * (1.0 + 1e-6));
+}

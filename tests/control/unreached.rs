@@ -2,10 +2,13 @@
 
 use crate::verdicts::{control, kept, output_of, read};
 use proboscis::control::problem::Task;
+use proboscis::dynamics::trajectory::Trajectory;
 use proboscis::files::read_problem;
 use proboscis::ipopt::Status;
 use proboscis::ipopt::interrupt::{self, Questions};
-use proboscis::tasks::{SimulationRequest, simulate};
+use proboscis::tasks::{
+    SimulationRequest, SimulationResult, SolveRequest, SolveResult, simulate, solve,
+};
 use proboscis::workflow::{
     Iterate, Optimum, Shortest, SolveLimits, WorkflowError, listen_to_phases, optimise, verified,
 };
@@ -121,6 +124,84 @@ fn a_stop_between_grids_keeps_the_result_so_far() {
     assert_eq!(found.optimum.motion.intervals(), control.intervals);
     let note = found.note.expect("the accuracy is not reached");
     assert!(note.ends_with("it was stopped"), "{note}");
+}
+
+/// A stop that leaves a point of a weaker tolerance is told, so that the point does not count as the end of the matter.
+#[test]
+fn an_optimum_to_a_weaker_tolerance_tells_of_the_stop() {
+    let (system, control) = control("pair", &[]);
+    let run = |allowed: u64| {
+        let questions = Questions::allowed(allowed);
+        let asked = questions.clone();
+        // What the solver found is verified without a stop.
+        listen_to_phases(move |begun| {
+            if begun == "simulating under the optimal inputs" {
+                asked.end_after(u64::MAX >> 1);
+            }
+        });
+        let _watch = interrupt::watch_questions(&questions);
+        let mut last = 0;
+        let found = solve(&system, &control, SolveRequest::default(), &mut |_, _| {
+            last = questions.asked();
+            ControlFlow::Continue(())
+        });
+        listen_to_phases(|_| ());
+        (found.unwrap(), last)
+    };
+    let codes = |found: &SolveResult| -> Vec<String> {
+        let each = found.remarks.0.iter();
+        each.map(|remark| remark.code.to_string()).collect()
+    };
+    let (whole, last) = run(u64::MAX >> 1);
+    assert_eq!(whole.verdict.word, "solved");
+    assert!(!codes(&whole).contains(&"stopped_early".to_owned()));
+    let mut stopped = (0..last).rev().take(80).map(|allowed| run(allowed).0);
+    let early = stopped
+        .find(|found| found.verdict.word == "acceptable")
+        .expect("a stop at an acceptable point");
+    assert!(codes(&early).contains(&"stopped_early".to_owned()));
+    assert!(early.verdict.is_solved);
+    let [early, whole] = [early, whole].map(|found| found.optimum.solution.objective);
+    assert!(
+        early != whole && (early / whole - 1.0).abs() < 1e-3,
+        "{early} {whole}"
+    );
+}
+
+/// A motion by a tolerance whose confirmation is stopped is whole, and says that its error is not known.
+#[test]
+fn a_motion_whose_error_is_not_confirmed_tells_of_the_stop() {
+    let path = Path::new(env!("CARGO_MANIFEST_DIR")).join("problems/pair_constant.json");
+    let loaded = read_problem(&path, &["simulate.step=auto".to_owned()]).unwrap();
+    let Task::Simulate(task) = &loaded.task else {
+        panic!("a simulation");
+    };
+    let run = |allowed: u64| {
+        let questions = Questions::allowed(allowed);
+        let _watch = interrupt::watch_questions(&questions);
+        let go_on = &mut |_: usize, _: &_, _: &_| ControlFlow::Continue(());
+        let found = simulate(&loaded.system, task, SimulationRequest::default(), go_on);
+        (found.unwrap(), questions.asked())
+    };
+    let early = |found: &SimulationResult| {
+        let simulated = &found.simulated;
+        let trajectory = Trajectory::from_discrete(&simulated.model, &simulated.discrete);
+        let assessed = found.assess(&loaded.system, task, &trajectory);
+        let mut each = assessed.remarks.0.iter();
+        each.any(|remark| remark.code == "stopped_early")
+    };
+    let (whole, asked) = run(u64::MAX >> 1);
+    assert!(
+        whole
+            .simulated
+            .error
+            .is_some_and(|error| error.is_confirmed)
+    );
+    assert!(!early(&whole));
+    let (stopped, _) = run(asked - asked / 8);
+    assert_eq!(stopped.word(), "simulated");
+    assert_eq!(stopped.reached(), whole.reached());
+    assert!(stopped.simulated.error.is_none() && early(&stopped));
 }
 
 /// Whenever it is time to stop, a motion, a state of rest and a motion over a horizon end as stopped: no other error, and no panic.
