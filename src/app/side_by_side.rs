@@ -23,6 +23,18 @@ pub fn compare(
     output: &Path,
 ) -> Result<CommandOutput, CommandError> {
     let page = html(command, folders, &[])?;
+    // Its own page would be replaced by that of all.
+    let place = |folder: &Path| fs::canonicalize(folder).ok();
+    let is_own = |folder: &&PathBuf| place(folder).is_some_and(|it| place(output) == Some(it));
+    if let Some(own) = folders.iter().find(is_own) {
+        return Err(CommandError::Option {
+            option: "--output",
+            reason: format!(
+                "found {}, one of the results, expected another folder: its report.html is that of a run",
+                own.display()
+            ),
+        });
+    }
     make_folder(output)?;
     let file = output.join(PAGE);
     atomic::write(&file, page.as_bytes())?;
@@ -57,7 +69,7 @@ pub(super) fn html(
         })?;
         let data = compared::data(&html).ok_or_else(|| {
             wrong(format!(
-                "{} is no page of a result of this version",
+                "{} is no whole page of a result of this version",
                 file.display()
             ))
         })?;

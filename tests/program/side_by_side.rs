@@ -89,5 +89,33 @@ fn a_page_that_nobody_wants_is_not_written_and_then_cannot_be_compared() {
     };
     refused(&["out/report.html", "--no-report"]);
     fs::write(&file, "<html>another page</html>").unwrap();
-    refused(&["out/report.html", "no page of a result"]);
+    refused(&["out/report.html", "no whole page of a result"]);
+}
+
+#[test]
+fn a_result_keeps_its_own_page_and_a_truncated_one_is_refused() {
+    let folder = workshop();
+    let of = |name: &str| {
+        let arguments = ["solve", "problems/pair.json", "-o", name];
+        assert_eq!(run(folder.path(), &arguments).0, 0);
+        folder.path().join(name).join("report.html")
+    };
+    let [_, second] = ["one", "two"].map(of);
+    let whole = fs::read_to_string(&second).unwrap();
+    for output in ["two", "one/../two"] {
+        let arguments = ["report", "one", "two", "-o", output];
+        refused_run(folder.path(), &arguments, &["--output", "another folder"]);
+    }
+    assert!(fs::read_to_string(&second).unwrap() == whole);
+    // Behind the data, so that these can still be read.
+    let data = whole.find("id=\"data\">").unwrap();
+    let end = data + whole[data..].find("</script>").unwrap() + "</script>".len();
+    assert!(end < whole.len());
+    fs::write(&second, &whole[..end]).unwrap();
+    let arguments = ["report", "one", "two", "-o", "both"];
+    refused_run(
+        folder.path(),
+        &arguments,
+        &["two/report.html", "no whole page"],
+    );
 }

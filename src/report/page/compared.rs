@@ -12,8 +12,9 @@ const DATA: [&str; 2] = [
     "</script>",
 ];
 
-/// The data of a page that this program wrote; none where it is no such page.
+/// The data of a page that this program wrote; none where it is no such page, or not all of it.
 pub fn data(html: &str) -> Option<Value> {
+    html.trim_end().ends_with("</html>").then_some(())?;
     let (_, rest) = html.split_once(DATA[0])?;
     let (text, _) = rest.split_once(DATA[1])?;
     let data: Value = serde_json::from_str(text).ok()?;
@@ -47,8 +48,7 @@ pub fn html(results: &[(String, Value)], pages: &[String], origin: &Origin) -> S
 fn table(results: &[(String, Value)]) -> Vec<Vec<String>> {
     let mut rows: Vec<Vec<String>> = Vec::new();
     for (r, (_, data)) in results.iter().enumerate() {
-        for row in data["rows"].as_array().into_iter().flatten() {
-            let [name, value] = [0, 1].map(|i| row[i].as_str().unwrap_or_default().to_owned());
+        for [name, value] in rows_of(data) {
             let found = rows.iter().position(|row| row[0] == name);
             let at = found.unwrap_or_else(|| {
                 rows.push(vec![String::new(); results.len() + 1]);
@@ -59,6 +59,25 @@ fn table(results: &[(String, Value)]) -> Vec<Vec<String>> {
         }
     }
     rows
+}
+
+/// Names and values of the rows of a result; of several motions those of all, where they differ each with its own.
+fn rows_of(data: &Value) -> Vec<[String; 2]> {
+    let text = |value: &Value| value.as_str().unwrap_or_default().to_owned();
+    let of_one = data["rows"].as_array().into_iter().flatten();
+    let of_one = of_one.map(|row| [text(&row[0]), text(&row[1])]);
+    let of_several = data["table"].as_array().into_iter().flatten();
+    let of_several = of_several.filter_map(|row| {
+        let cells: Vec<String> = row.as_array()?.iter().map(text).collect();
+        let (name, values) = cells.split_first()?;
+        let are_one = values.iter().all(|value| *value == values[0]);
+        let shown = match are_one {
+            true => values.first()?.clone(),
+            false => values.join(", "),
+        };
+        Some([name.clone(), shown])
+    });
+    of_one.chain(of_several).collect()
 }
 
 /// A panel of some results.
