@@ -7,7 +7,7 @@
 use crate::model::{Role, Time, Variable, Variables};
 
 /// A variable of the program.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub enum Column {
     /// Variable `i` of instant `k`.
     Instant {
@@ -44,7 +44,7 @@ impl Column {
 }
 
 /// An equation of the program.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub enum Row {
     /// Equation of variable `i` of instant `k`: momentum balance or constraint.
     Instant {

@@ -1,5 +1,9 @@
 //! State and inputs of the program of a receding horizon by their columns.
 
+use std::hash::Hash;
+
+use rustc_hash::FxHashMap;
+
 use crate::control::{Column, Transcription};
 use crate::ipopt::Squares;
 use crate::nlp::Nlp;
@@ -122,6 +126,15 @@ impl Layout {
     }
 }
 
+/// The first place of each entry of a list.
+pub(super) fn places<T: Copy + Eq + Hash>(list: &[T]) -> FxHashMap<T, usize> {
+    let mut places = FxHashMap::default();
+    for (place, one) in list.iter().enumerate() {
+        places.entry(*one).or_insert(place);
+    }
+    places
+}
+
 /// A column of a coordinate within an interval, those at both of its ends, and the part of the interval that has passed there.
 pub(super) type Between = (usize, [usize; 2], f64);
 
@@ -132,17 +145,18 @@ pub(super) fn held_over_parts(
     parts: usize,
 ) -> (Vec<usize>, Vec<Column>) {
     let (mut own, mut first): (Vec<usize>, Vec<Column>) = Default::default();
+    let mut numbers = FxHashMap::default();
     for &column in columns {
         let same = match column {
             Column::Interval { k, s } if k % parts > 0 && inputs.contains(&s) => {
                 let k = k - k % parts;
-                let same = |one: &Column| *one == Column::Interval { k, s };
-                first.iter().position(same)
+                numbers.get(&Column::Interval { k, s }).copied()
             }
             _ => None,
         };
         own.push(same.unwrap_or(first.len()));
         if same.is_none() {
+            numbers.entry(column).or_insert(first.len());
             first.push(column);
         }
     }
@@ -151,10 +165,11 @@ pub(super) fn held_over_parts(
 
 /// Columns of coordinates within intervals.
 pub(super) fn between(columns: &[Column], parts: usize) -> Vec<Between> {
+    let places = places(columns);
     let all = columns.iter().enumerate();
     let of = all.filter_map(|(place, &column)| match column {
         Column::Instant { k, i } if k % parts > 0 => {
-            let at = |k| columns.iter().position(|c| *c == Column::Instant { k, i });
+            let at = |k| places.get(&Column::Instant { k, i }).copied();
             let from = k - k % parts;
             let part = (k - from) as f64 / parts as f64;
             Some((place, [at(from)?, at(from + parts)?], part))

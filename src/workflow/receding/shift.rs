@@ -1,8 +1,10 @@
 //! A plan one interval later: what it says of an instant or step becomes that of an interval before.
 
+use std::hash::Hash;
+
 use crate::control::{Column, Row};
 use crate::workflow::receding::iteration::Iteration;
-use crate::workflow::receding::layout::Between;
+use crate::workflow::receding::layout::{Between, places};
 use crate::workflow::receding::program::Program;
 
 /// Successors of columns and rows, which stand behind them.
@@ -87,10 +89,10 @@ impl Shift {
 }
 
 /// Places of entries with the places of their successors.
-fn successors<T: Copy + PartialEq>(list: &[T], next: impl Fn(T) -> T) -> Vec<(usize, usize)> {
-    let place = |one: T| list.iter().position(|other| *other == one);
+fn successors<T: Copy + Eq + Hash>(list: &[T], next: impl Fn(T) -> T) -> Vec<(usize, usize)> {
+    let places = places(list);
     let all = list.iter().enumerate();
-    all.filter_map(|(i, one)| Some((i, place(next(*one))?)))
+    all.filter_map(|(i, one)| Some((i, *places.get(&next(*one))?)))
         .filter(|(i, next)| i != next)
         .collect()
 }
