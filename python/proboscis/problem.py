@@ -214,7 +214,11 @@ class Problem:
         return self._run("identify", None, None, max_seconds, None, None, False, output)
 
     def nlp(self) -> Nlp:
-        """Returns the nonlinear program of a control problem, for a solver of one's own."""
+        """Returns the nonlinear program of a control problem, for a solver of one's own.
+
+        It is that of the first solve: voltages that hold the goal are unknowns where the goal has `"hold": "find"`, not where `solve` seeks them in a
+        second one.
+        """
         from proboscis.nlp import Nlp
 
         return Nlp(_proboscis.Program(self._input, self._text))
