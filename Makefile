@@ -95,10 +95,10 @@ compare-solvers: install-deps
 
 check: install-deps
 	@$(CARGO) fmt --check
-	@$(CARGO) clippy --quiet --locked --all-targets -- -D warnings
+	@$(CARGO) clippy --quiet --locked --lib --bins --examples --test '*' --bench '*' -- -D warnings
 	@$(CARGO) clippy --quiet --locked --all-targets --no-deps --manifest-path python/Cargo.toml --target-dir "$${CARGO_TARGET_DIR:-target}" -- -D warnings
-	@RUSTDOCFLAGS='-D warnings' $(CARGO) doc --quiet --locked --no-deps
-	@RUSTDOCFLAGS='-D warnings --cfg internals' $(CARGO) doc --quiet --locked --no-deps
+	@RUSTDOCFLAGS='-D warnings' $(CARGO) doc --quiet --locked --no-deps --lib --examples
+	@RUSTDOCFLAGS='-D warnings --cfg internals' $(CARGO) doc --quiet --locked --no-deps --lib --examples
 
 audit:
 	@.ci/audit
