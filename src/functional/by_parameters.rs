@@ -19,7 +19,7 @@ pub(super) struct ByParameter<const NV: usize, const NS: usize> {
 }
 
 /// First and second derivatives by the parameters of an element.
-pub(super) type AllParameters<const NV: usize, const NS: usize> =
+pub(super) type ByParameters<const NV: usize, const NS: usize> =
     SmallVec<[ByParameter<NV, NS>; MOST_PARAMETERS]>;
 
 impl<const NV: usize, const NS: usize> ByParameter<NV, NS> {

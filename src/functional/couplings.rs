@@ -108,15 +108,15 @@ pub struct Blocks {
     pub scalars: Vec<f64>,
 }
 
-/// Second derivatives, and their rates, by sought parameters for which a reader asks.
+/// Order of the derivatives by sought parameters for which a reader asks: among second derivatives of a sum and their rates.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum ByParameters {
-    /// None: they are zero.
-    Never,
+pub enum ParameterOrder {
+    /// None: they are left zero.
+    None,
     /// Those by one parameter.
-    Once,
+    First,
     /// Rates of those by two of them too.
-    Twice,
+    Second,
 }
 
 /// Second derivatives of an interval for which a reader asks.
@@ -125,28 +125,28 @@ pub struct BlockMask {
     /// Blocks (k, k), (k, k+1), (k+1, k), (k+1, k+1).
     pub blocks: [bool; 4],
     /// Those by sought parameters.
-    pub parameters: ByParameters,
+    pub parameters: ParameterOrder,
 }
 
 impl BlockMask {
     /// All four blocks.
     pub const ALL: Self = Self {
         blocks: [true; 4],
-        parameters: ByParameters::Twice,
+        parameters: ParameterOrder::Second,
     };
     /// All but (k+1, k+1), which is carried on to the next interval.
     pub const CARRIED: Self = Self {
         blocks: [true, true, true, false],
-        parameters: ByParameters::Twice,
+        parameters: ParameterOrder::Second,
     };
     /// Only the rows of t_k against t_{k+1}: what one step forward needs.
     pub const FORWARD: Self = Self {
         blocks: [false, true, false, false],
-        parameters: ByParameters::Twice,
+        parameters: ParameterOrder::Second,
     };
     /// Only the block of the first instant: what an instant needs.
     pub const HERE: Self = Self {
         blocks: [true, false, false, false],
-        parameters: ByParameters::Twice,
+        parameters: ParameterOrder::Second,
     };
 }

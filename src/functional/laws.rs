@@ -13,11 +13,9 @@
 //! material vectors e_a, which are arguments of the element like r₀.
 
 use crate::energy::Energy;
-use crate::functional::by_parameters::{
-    AllParameters, ByParameter, OfElement, Values, contraction,
-};
+use crate::functional::by_parameters::{ByParameter, ByParameters, OfElement, Values, contraction};
 use crate::functional::law::{Law, LawElement, MOST_PARAMETERS, Move};
-use crate::functional::{ByParameters, Kernel, Order, Sample, Scatter, VectorArg};
+use crate::functional::{Kernel, Order, ParameterOrder, Sample, Scatter, VectorArg};
 use crate::math::{Derivatives, Dual, HyperDual, Local, Number, Vector};
 use nalgebra::{SVector, Vector3};
 use std::fmt;
@@ -233,17 +231,17 @@ impl<L: Law<M>, const M: usize, const NV: usize, const NS: usize> Laws<L, M, NV,
         };
         let local = element.law.formula(parameters).at::<ORDER>(&p, &w);
         let count = parameters.len();
-        let (mut by, mut by_along) = (AllParameters::new(), AllParameters::new());
+        let (mut by, mut by_along) = (ByParameters::new(), ByParameters::new());
         by.resize(count, ByParameter::ZERO);
         if is_contracted {
             by_along.resize(count, ByParameter::ZERO);
         }
         let asked = sample.sides.parameters;
-        if S::OF_PARAMETERS || (order > Order::Gradient && asked != ByParameters::Never) {
+        if S::OF_PARAMETERS || (order > Order::Gradient && asked != ParameterOrder::None) {
             let pairs = match order {
                 Order::Gradient => false,
                 Order::Hessian => S::OF_PARAMETERS,
-                Order::Third => asked == ByParameters::Twice,
+                Order::Third => asked == ParameterOrder::Second,
             };
             let at = (order, sample, pairs);
             let along = is_contracted.then_some(&mut by_along[..]);

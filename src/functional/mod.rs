@@ -44,7 +44,7 @@ mod term;
 mod varied_elements;
 mod viscous_elements;
 
-pub use couplings::{BlockMask, Blocks, ByParameters, Coupling, Couplings};
+pub use couplings::{BlockMask, Blocks, Coupling, Couplings, ParameterOrder};
 pub use curved::Curved;
 pub use curved_sum::CurvedSum;
 pub use element_fields::{ElementField, ElementFields};

@@ -44,7 +44,7 @@ use crate::control::bounded_quantity::BoundedQuantity;
 use crate::control::guess::InitialGuess;
 use crate::control::numbering::Numbering;
 use crate::control::problem::{self, Control};
-use crate::functional::{BlockMask, ByParameters};
+use crate::functional::{BlockMask, ParameterOrder};
 use crate::model::Model;
 use crate::nlp::{Bounds, Nlp};
 use count::overdetermined;
@@ -152,7 +152,7 @@ impl<'m> Transcription<'m> {
 
     /// Leaves entries of the Hessian by two sought parameters of elements zero, for one who holds all of them.
     pub fn hold_parameters(&mut self) {
-        self.sides.parameters = ByParameters::Once;
+        self.sides.parameters = ParameterOrder::First;
     }
 
     /// Number of intervals N of the motion.

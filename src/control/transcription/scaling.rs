@@ -5,7 +5,7 @@ use crate::control::problem::{Control, Duration, PathConstraint};
 use crate::control::transcription::Transcription;
 use crate::control::transcription::layout::Layout;
 use crate::dynamics::DiscreteTrajectory;
-use crate::functional::ByParameters;
+use crate::functional::ParameterOrder;
 use crate::model::{Coordinates, Model, Role, Size, Time};
 use crate::nlp::{Bounds, Nlp};
 use std::mem;
@@ -38,7 +38,7 @@ impl Transcription<'_> {
     pub(super) fn set_scales(&mut self, discrete: &DiscreteTrajectory, h: f64) {
         let x = self.encode(discrete, h);
         let mut values = vec![0.0; self.structure.jacobian.kept.len()];
-        let asked = mem::replace(&mut self.sides.parameters, ByParameters::Never);
+        let asked = mem::replace(&mut self.sides.parameters, ParameterOrder::None);
         self.jacobian(&x, &mut values);
         self.sides.parameters = asked;
         let of_kinds = self.scales_of_kinds(&values);

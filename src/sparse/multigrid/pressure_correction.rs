@@ -42,6 +42,15 @@ fn dot(a: &[f32], b: &[f32]) -> f64 {
     sums.iter().sum::<f64>() + rest
 }
 
+/// Sweeps, and returns the product of the residual with what the sweep made of it.
+fn swept(of: &mut impl Schur) -> f64 {
+    of.sweep();
+    let Lists {
+        residual, swept, ..
+    } = of.lists();
+    dot(residual, swept)
+}
+
 /// Solves S q = −residual; the residual is lost.
 pub(super) fn correct(of: &mut impl Schur) {
     let Lists {
@@ -51,15 +60,9 @@ pub(super) fn correct(of: &mut impl Schur) {
     } = of.lists();
     residual.iter_mut().for_each(|value| *value = -*value);
     correction.fill(0.0);
-    of.sweep();
-    let Lists {
-        residual,
-        swept,
-        direction,
-        ..
-    } = of.lists();
-    direction.copy_from_slice(swept);
-    let mut square = dot(residual, swept);
+    let mut square = swept(of);
+    let lists = of.lists();
+    lists.direction.copy_from_slice(lists.swept);
     let enough = RESIDUAL * RESIDUAL * square.abs();
     for _ in 0..LIMIT {
         of.multiply();
@@ -82,19 +85,13 @@ pub(super) fn correct(of: &mut impl Schur) {
             *q += factor * direction;
             *residual -= factor * product;
         }
-        of.sweep();
-        let Lists {
-            residual,
-            swept,
-            direction,
-            ..
-        } = of.lists();
-        let next = dot(residual, swept);
+        let next = swept(of);
         if next.is_nan() || next.abs() <= enough {
             break;
         }
         let ratio = (next / square) as f32;
-        for (direction, swept) in direction.iter_mut().zip(swept.iter()) {
+        let lists = of.lists();
+        for (direction, swept) in lists.direction.iter_mut().zip(lists.swept.iter()) {
             *direction = swept + ratio * *direction;
         }
         square = next;

@@ -10,7 +10,7 @@ impl Parts {
     pub(super) fn symmetrise(&mut self) {
         for (part, one) in self.boxes.iter().enumerate() {
             let offsets = offsets(one.levels[0].counts);
-            let nodes = self.starts[part]..self.starts[part + 1];
+            let nodes = self.nodes(part);
             let blocks = &mut self.matrix[NEIGHBOURS * nodes.start..NEIGHBOURS * nodes.end];
             for node in 0..nodes.len() {
                 for (neighbour, offset) in offsets.iter().enumerate().skip(OWN) {
