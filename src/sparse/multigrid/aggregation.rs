@@ -6,6 +6,7 @@ use crate::math::join;
 use crate::sparse::multigrid::aggregates::{Aggregates, Rigid};
 use crate::sparse::multigrid::block_rows::BlockRows;
 use crate::sparse::multigrid::field::{Block, add_product, add_transposed_product};
+use crate::sparse::multigrid::mesh_matrix::MeshMatrix;
 use std::ops::Range;
 
 /// Transfer to a coarser level.
@@ -21,8 +22,15 @@ pub(super) struct Aggregation {
     of_products: Vec<Block>,
     /// Rows and blocks of P by column.
     pub(super) children: Vec<Vec<[u32; 2]>>,
-    /// Place in a row of each column, for either half of the rows.
-    marks: [Vec<u32>; 2],
+    /// Work space of either half of the rows.
+    marks: [Marks; 2],
+}
+
+/// A row, and the place in it of each of its columns.
+#[derive(Debug)]
+struct Marks {
+    places: Vec<u32>,
+    row: Vec<Block>,
 }
 
 impl Aggregation {
@@ -52,7 +60,10 @@ impl Aggregation {
         let found = Self {
             values: vec![Block::default(); pattern.blocks()],
             of_products: vec![Block::default(); products.blocks()],
-            marks: [vec![0; free.len()], vec![0; free.len()]],
+            marks: [(); 2].map(|()| Marks {
+                places: vec![0; free.len()],
+                row: Vec::new(),
+            }),
             is_strong,
             rigid,
             pattern,
@@ -70,11 +81,12 @@ impl Aggregation {
     /// Makes P, and the coarse matrix, of a matrix with the inverse of its diagonal blocks and a factor ω.
     pub(super) fn prepare(
         &mut self,
-        (rows, matrix): (&BlockRows, &[Block]),
+        fine: &MeshMatrix,
         inverse: &[Block],
         damping: f32,
-        (coarse_rows, coarse): (&BlockRows, &mut [Block]),
+        coarse: &mut MeshMatrix,
     ) {
+        let rows = &fine.rows;
         let Self {
             is_strong,
             rigid,
@@ -85,8 +97,9 @@ impl Aggregation {
             children,
             marks,
         } = self;
-        each_row(pattern, values, marks, |row, own, marks| {
-            for block in rows.range(row) {
+        let halves = in_two(values, pattern);
+        each_row(pattern, halves, marks, |row, own, marks| {
+            for (block, entries) in rows.range(row).zip(fine.row(row)) {
                 let from = if is_strong[block] {
                     rows.column(block)
                 } else {
@@ -94,7 +107,7 @@ impl Aggregation {
                 };
                 for (node, motion) in &rigid[from] {
                     let place = marks[*node as usize] as usize;
-                    add_product(&mut own[place], &matrix[block], motion);
+                    add_product(&mut own[place], entries, motion);
                 }
             }
             for block in own.iter_mut() {
@@ -110,16 +123,26 @@ impl Aggregation {
             }
         });
         let (pattern, values) = (&*pattern, &*values);
-        each_row(products, of_products, marks, |row, own, marks| {
-            for block in rows.range(row) {
-                for of_column in pattern.range(rows.column(block)) {
+        let halves = in_two(of_products, products);
+        each_row(products, halves, marks, |row, own, marks| {
+            for (column, entries) in rows.columns(row).iter().zip(fine.row(row)) {
+                for of_column in pattern.range(*column as usize) {
                     let place = marks[pattern.column(of_column)] as usize;
-                    add_product(&mut own[place], &matrix[block], &values[of_column]);
+                    add_product(&mut own[place], entries, &values[of_column]);
                 }
             }
         });
         let (products, of_products) = (&*products, &*of_products);
-        each_row(coarse_rows, coarse, marks, |row, own, marks| {
+        let coarse_rows = coarse.rows.clone();
+        let halves = coarse.in_two().map(|mut rows| {
+            let pattern = &coarse_rows;
+            move |row: usize, blocks: &[Block]| {
+                for (block, column) in blocks.iter().zip(pattern.columns(row)) {
+                    *rows.next(row, *column as usize) = *block;
+                }
+            }
+        });
+        each_row(&coarse_rows, halves, marks, |row, own, marks| {
             for &[child, block] in &children[row] {
                 let weights = &values[block as usize];
                 for product in products.range(child as usize) {
@@ -131,31 +154,49 @@ impl Aggregation {
     }
 }
 
-/// Calls `write` with each row, its blocks as zeros, and the place of each of its columns; both halves of the rows at once.
-fn each_row(
+/// Writes rows one after the other to either half of the blocks of a pattern.
+fn in_two<'v>(
+    values: &'v mut [Block],
     pattern: &BlockRows,
-    values: &mut [Block],
-    marks: &mut [Vec<u32>; 2],
-    write: impl Fn(usize, &mut [Block], &[u32]) + Sync,
-) {
+) -> [impl FnMut(usize, &[Block]) + Send + use<'v>; 2] {
     let half = pattern.count() / 2;
     let (lower, upper) = values.split_at_mut(pattern.range(half).start);
-    let of_rows = |rows: Range<usize>, values: &mut [Block], marks: &mut Vec<u32>| {
-        let mut rest = values;
-        for row in rows {
-            let columns = pattern.columns(row);
-            let (own, behind) = std::mem::take(&mut rest).split_at_mut(columns.len());
+    [lower, upper].map(|half| {
+        let mut rest = half;
+        move |_: usize, blocks: &[Block]| {
+            let (own, behind) = std::mem::take(&mut rest).split_at_mut(blocks.len());
+            own.copy_from_slice(blocks);
             rest = behind;
-            for (place, column) in columns.iter().enumerate() {
-                marks[*column as usize] = place as u32;
-            }
-            own.fill(Block::default());
-            write(row, own, marks);
         }
-    };
-    let [a, b] = marks;
+    })
+}
+
+/// Finds each row of a pattern by `find`, which is handed its blocks as zeros and the place of each of its columns, and hands it over; both
+/// halves of the rows at once.
+fn each_row(
+    pattern: &BlockRows,
+    halves: [impl FnMut(usize, &[Block]) + Send; 2],
+    marks: &mut [Marks; 2],
+    find: impl Fn(usize, &mut [Block], &[u32]) + Sync,
+) {
+    let half = pattern.count() / 2;
+    let of_rows =
+        |rows: Range<usize>, hand_over: &mut dyn FnMut(usize, &[Block]), marks: &mut Marks| {
+            let Marks { places, row: own } = marks;
+            for row in rows {
+                let columns = pattern.columns(row);
+                for (place, column) in columns.iter().enumerate() {
+                    places[*column as usize] = place as u32;
+                }
+                own.clear();
+                own.resize(columns.len(), Block::default());
+                find(row, own, places);
+                hand_over(row, own);
+            }
+        };
+    let ([mut a, mut b], [of_a, of_b]) = (halves, marks);
     join(
-        || of_rows(0..half, lower, a),
-        || of_rows(half..pattern.count(), upper, b),
+        || of_rows(0..half, &mut a, of_a),
+        || of_rows(half..pattern.count(), &mut b, of_b),
     );
 }

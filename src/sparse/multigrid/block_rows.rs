@@ -87,6 +87,16 @@ impl BlockRows {
         self.find(row, row).expect("a row has its diagonal")
     }
 
+    /// Number of blocks before the diagonal in all rows before each one, and in all.
+    pub(super) fn lower_starts(&self) -> Vec<usize> {
+        let mut starts = vec![0];
+        for row in 0..self.count() {
+            let before = self.columns(row).partition_point(|&c| (c as usize) < row);
+            starts.push(starts[row] + before);
+        }
+        starts
+    }
+
     /// The pattern of the product of this matrix with another one.
     pub(super) fn times(&self, other: &Self) -> Self {
         Self::new((0..self.count()).map(|row| {

@@ -100,33 +100,28 @@ impl GridLevel for Level {
     }
 
     fn visit(&self, visit: &mut dyn FnMut(usize, usize, f64)) {
-        let with_volumes = self.pressures.as_ref().map(|pressures| {
-            let matrix = self.matrix.iter().map(|block| block.map(f64::from));
-            let mut matrix: Vec<_> = matrix.collect();
+        let rows = (0..self.free.len()).flat_map(|node| self.matrix.grid_row(node));
+        let mut matrix: Vec<_> = rows.map(|block| block.map(f64::from)).collect();
+        if let Some(pressures) = &self.pressures {
             pressures.add_to(&mut matrix);
-            matrix
-        });
+        }
         let offsets = offsets(self.counts);
-        for block in 0..NEIGHBOURS * self.free.len() {
-            let (node, neighbour) = (block / NEIGHBOURS, block % NEIGHBOURS);
+        for (place, block) in matrix.iter().enumerate() {
+            let (node, neighbour) = (place / NEIGHBOURS, place % NEIGHBOURS);
             if !is_inside(self.counts, node, neighbour) {
                 continue;
             }
             let other = (node as isize + offsets[neighbour]) as usize;
-            for entry in 0..COMPONENTS * COMPONENTS {
-                let value = match &with_volumes {
-                    Some(matrix) => matrix[block][entry],
-                    None => f64::from(self.matrix[block][entry]),
-                };
+            for (entry, value) in block.iter().enumerate() {
                 let (row, col) = (entry % COMPONENTS, entry / COMPONENTS);
-                visit(COMPONENTS * node + row, COMPONENTS * other + col, value);
+                visit(COMPONENTS * node + row, COMPONENTS * other + col, *value);
             }
         }
     }
 
     fn bytes(&self) -> usize {
         let of_pressures = self.pressures.as_ref().map_or(0, Pressures::bytes);
-        size_of::<Block>() * (self.matrix.len() + self.free.len()) + of_pressures
+        size_of::<Block>() * (self.matrix.blocks() + self.free.len()) + of_pressures
     }
 }
 

@@ -70,9 +70,11 @@ impl Parts {
         for one in &meshes {
             let finest = &one.levels[0];
             let (node, block) = (starts[starts.len() - 1], first_blocks[starts.len() - 1]);
-            places.meshes.push((node, block, finest.rows.clone()));
+            places
+                .meshes
+                .push((node, block, finest.matrix.rows.clone()));
             starts.push(node + finest.free.len());
-            first_blocks.push(block + finest.matrix.len());
+            first_blocks.push(block + finest.matrix.rows.blocks());
         }
         let parts = boxes.len() + meshes.len();
         Self {
@@ -205,7 +207,7 @@ impl Parts {
     pub(super) fn of_meshes(&self) -> impl Iterator<Item = (usize, &BlockRows)> {
         let meshes = self.meshes.iter().enumerate();
         let boxes = self.boxes.len();
-        meshes.map(move |(mesh, one)| (boxes + mesh, &*one.levels[0].rows))
+        meshes.map(move |(mesh, one)| (boxes + mesh, &*one.levels[0].matrix.rows))
     }
 
     /// Makes the grids of the present matrix.
@@ -215,9 +217,9 @@ impl Parts {
             let blocks = self.first_blocks[part]..self.first_blocks[part + 1];
             let blocks = &self.matrix[blocks];
             let level = &mut one.levels[0];
-            for (to, from) in level.matrix.iter_mut().zip(blocks) {
-                *to = from.map(|entry| entry as f32);
-            }
+            level
+                .matrix
+                .write(|block| blocks[block].map(|entry| entry as f32));
             self.volumes.take_out_of_mesh(part, blocks, level);
             one.prepare()?;
         }
@@ -225,11 +227,11 @@ impl Parts {
             let nodes = self.nodes(part);
             let blocks = &self.matrix[NEIGHBOURS * nodes.start..NEIGHBOURS * nodes.end];
             let level = &mut self.boxes[part].levels[0];
-            for (to, from) in level.matrix.iter_mut().zip(blocks) {
-                for (to, from) in to.iter_mut().zip(from) {
-                    *to = *from as f32;
+            level.matrix.rows_mut().write(|node, row| {
+                for (to, from) in row.iter_mut().zip(&blocks[NEIGHBOURS * node..]) {
+                    *to = from.map(|entry| entry as f32);
                 }
-            }
+            });
             self.volumes.take_out(part, blocks, level);
             self.boxes[part].prepare()?;
         }

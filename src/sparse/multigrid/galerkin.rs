@@ -4,9 +4,8 @@ use crate::math::join;
 use crate::sparse::multigrid::axis::Axis;
 use crate::sparse::multigrid::field::Block;
 use crate::sparse::multigrid::level::Level;
-use crate::sparse::multigrid::node_grid::{
-    COMPONENTS, NEIGHBOURS, indices, neighbour, node_at, offsets,
-};
+use crate::sparse::multigrid::node_grid::{COMPONENTS, OWN, indices, neighbour, node_at, offsets};
+use crate::sparse::multigrid::triangles::{Row, Rows};
 
 /// Most fine planes that a coarse node and its neighbours of the fine grid are in, along an axis.
 const REACH: usize = 5;
@@ -26,10 +25,10 @@ pub(super) fn coarse_matrix(fine: &Level, coarse: &mut Level) {
         .expect("a coarser grid has a transfer");
     let half = coarse.free.len() / 2;
     let (counts, free) = (coarse.counts, &coarse.free);
-    let (lower, upper) = coarse.matrix.split_at_mut(NEIGHBOURS * half);
+    let [below, above] = coarse.matrix.rows_mut().split_at(half, [OWN * half; 2]);
     join(
-        || rows(fine, axes, (counts, free), 0, lower),
-        || rows(fine, axes, (counts, free), half, upper),
+        || rows(fine, axes, (counts, free), 0, below),
+        || rows(fine, axes, (counts, free), half, above),
     );
     if let (Some(from), Some(to)) = (&fine.pressures, &mut coarse.pressures) {
         from.coarsen(axes, to);
@@ -43,10 +42,10 @@ fn rows(
     axes: &[Axis; 3],
     (counts, free): ([usize; 3], &[u8]),
     first: usize,
-    matrix: &mut [Block],
+    matrix: Rows<'_>,
 ) {
     let offsets = offsets(counts);
-    for (place, blocks) in matrix.chunks_exact_mut(NEIGHBOURS).enumerate() {
+    matrix.write(|place, blocks| {
         let node = first + place;
         row(fine, axes, indices(counts, node), blocks);
         // Values that are given on the coarse grid.
@@ -61,20 +60,20 @@ fn rows(
                 }
             }
         }
-    }
+    });
 }
 
 /// One row of a coarse matrix.
-fn row(fine: &Level, axes: &[Axis; 3], at: [usize; 3], blocks: &mut [Block]) {
+fn row(fine: &Level, axes: &[Axis; 3], at: [usize; 3], blocks: &mut Row) {
     let children = [0, 1, 2].map(|axis| &axes[axis].children[at[axis]]);
     let first = children.map(|list| list[0].0.saturating_sub(1));
     let mut sums = [[0.0; COMPONENTS * COMPONENTS]; REACH * REACH * REACH];
     for &(z, weight_z) in children[2] {
         for &(y, weight_y) in children[1] {
             for &(x, weight_x) in children[0] {
-                let own = NEIGHBOURS * node_at(fine.counts, [x, y, z]);
+                let own = node_at(fine.counts, [x, y, z]);
                 let weight = weight_x * weight_y * weight_z;
-                for (place, block) in fine.matrix[own..own + NEIGHBOURS].iter().enumerate() {
+                for (place, block) in fine.matrix.grid_row(own).enumerate() {
                     let step = |i: usize, divisor: usize, axis: usize| {
                         let there = (i + place / divisor % 3).checked_sub(1)?;
                         (there < fine.counts[axis]).then(|| there - first[axis])

@@ -1,14 +1,14 @@
 //! One grid of the hierarchy: its matrix in single precision and the sweeps of block Gauss–Seidel.
 //!
-//! The matrix has 27 blocks for each node, by column within a block; those of neighbours beyond the grid are zero. Rows and columns of
-//! components with given values are zero too.
+//! Entries of blocks are by column. Rows and columns of components with given values are zero.
 
 use crate::math::join;
 use crate::sparse::multigrid::axis::Axis;
 use crate::sparse::multigrid::field::{Block, Field, inverse_of};
-use crate::sparse::multigrid::node_grid::{COMPONENTS, NEIGHBOURS, OWN, offsets};
+use crate::sparse::multigrid::node_grid::{COMPONENTS, NEIGHBOURS, offsets};
 use crate::sparse::multigrid::pressures::Pressures;
 use crate::sparse::multigrid::slab::{Equations, Slab, slabs, split};
+use crate::sparse::multigrid::triangles::Triangles;
 
 /// A grid of the hierarchy.
 #[derive(Debug)]
@@ -19,7 +19,7 @@ pub(super) struct Level {
     offsets: [isize; NEIGHBOURS],
     /// For each node, a bit for each component without a given value.
     pub(super) free: Vec<u8>,
-    pub(super) matrix: Vec<Block>,
+    pub(super) matrix: Triangles,
     /// Inverse of the diagonal blocks; rows and columns of given values are zero.
     inverse: Vec<Block>,
     /// Transfer to the next coarser grid; none of the coarsest.
@@ -44,7 +44,7 @@ impl Level {
         Self {
             planes,
             offsets: offsets(counts),
-            matrix: vec![[0.0; COMPONENTS * COMPONENTS]; NEIGHBOURS * nodes],
+            matrix: Triangles::of_grid(nodes),
             inverse: vec![[0.0; COMPONENTS * COMPONENTS]; nodes],
             rhs: Field::new(counts),
             x: Field::new(counts),
@@ -63,7 +63,7 @@ impl Level {
             field.values.fill([0.0; COMPONENTS]);
         }
         for (node, inverse) in self.inverse.iter_mut().enumerate() {
-            *inverse = inverse_of(&self.matrix[NEIGHBOURS * node + OWN]).ok_or(node)?;
+            *inverse = inverse_of(self.matrix.diagonal(node)).ok_or(node)?;
         }
         if let Some(pressures) = &mut self.pressures {
             pressures.prepare(&self.inverse);

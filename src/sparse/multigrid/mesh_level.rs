@@ -7,6 +7,7 @@ use crate::sparse::multigrid::block_rows::BlockRows;
 use crate::sparse::multigrid::field::{Block, add, add_transposed, inverse_of};
 use crate::sparse::multigrid::grid_level::GridLevel;
 use crate::sparse::multigrid::hierarchy::{COARSEST, Hierarchy};
+use crate::sparse::multigrid::mesh_matrix::MeshMatrix;
 use crate::sparse::multigrid::mesh_pressures::MeshPressures;
 use crate::sparse::multigrid::node_grid::{COMPONENTS, free_components};
 use crate::sparse::multigrid::node_mesh::NodeMesh;
@@ -27,12 +28,11 @@ type AtNode = [f32; COMPONENTS];
 /// A level of the hierarchy.
 #[derive(Debug)]
 pub(super) struct MeshLevel {
-    pub(super) rows: Arc<BlockRows>,
     /// Places of its nodes.
     points: Points,
     /// For each node, a bit for each component without a given value.
     pub(super) free: Vec<u8>,
-    pub(super) matrix: Vec<Block>,
+    pub(super) matrix: MeshMatrix,
     inverse: Vec<Block>,
     /// Transfer to the next coarser level; none of the coarsest.
     transfer: Option<Aggregation>,
@@ -55,7 +55,7 @@ impl Hierarchy<MeshLevel> {
     /// The levels without matrices of scalars at the nodes of a level, a component each; `free` has a bit for each one without a given value.
     pub(super) fn of_scalars(finest: &MeshLevel, free: Vec<u8>) -> Self {
         Self::from(
-            (finest.rows.clone(), free),
+            (finest.matrix.rows.clone(), free),
             finest.points.of_scalars(),
             None,
         )
@@ -104,12 +104,11 @@ impl MeshLevel {
     ) -> Self {
         let nodes = free.len();
         Self {
-            matrix: vec![Block::default(); rows.blocks()],
+            matrix: MeshMatrix::new(rows),
             inverse: vec![Block::default(); nodes],
             rhs: vec![AtNode::default(); nodes],
             x: vec![AtNode::default(); nodes],
             residual: vec![AtNode::default(); nodes],
-            rows,
             points,
             free,
             transfer,
@@ -129,17 +128,20 @@ impl MeshLevel {
         true
     }
 
-    /// Sum over blocks of a row times what they multiply.
+    /// Adds blocks times what they multiply.
     #[inline(always)]
-    fn sum(&self, blocks: impl Iterator<Item = usize>) -> AtNode {
-        let mut sum = AtNode::default();
-        for block in blocks {
-            add(
-                &mut sum,
-                &self.matrix[block],
-                &self.x[self.rows.column(block)],
-            );
+    fn add_all<'m>(&self, sum: &mut AtNode, couplings: impl Iterator<Item = (&'m Block, &'m u32)>) {
+        for (block, column) in couplings {
+            add(sum, block, &self.x[*column as usize]);
         }
+    }
+
+    /// Product of a row.
+    fn product(&self, row: usize) -> AtNode {
+        let mut sum = AtNode::default();
+        self.add_all(&mut sum, self.matrix.lower(row));
+        add(&mut sum, self.matrix.diagonal(row), &self.x[row]);
+        self.add_all(&mut sum, self.matrix.upper(row));
         sum
     }
 
@@ -155,7 +157,7 @@ impl MeshLevel {
         for _ in 0..PRODUCTS {
             let before = length(&self.x);
             for node in 0..self.x.len() {
-                let product = self.sum(self.rows.range(node));
+                let product = self.product(node);
                 self.residual[node] = AtNode::default();
                 add(&mut self.residual[node], &self.inverse[node], &product);
             }
@@ -174,29 +176,32 @@ impl MeshLevel {
 
     /// Leaves rows and columns of given values out, and makes the matrix regular.
     fn hold(&mut self) {
-        for node in 0..self.free.len() {
-            for block in self.rows.range(node) {
-                let columns = self.free[self.rows.column(block)];
-                let entries = self.matrix[block].iter_mut().enumerate();
-                for (entry, value) in entries {
-                    let (row, column) = (entry % COMPONENTS, entry / COMPONENTS);
-                    if self.free[node] & 1 << row == 0 || columns & 1 << column == 0 {
-                        *value = 0.0;
-                    }
+        let free = &self.free;
+        self.matrix.each_mut(|row, column, block| {
+            for (entry, value) in block.iter_mut().enumerate() {
+                let at = [entry % COMPONENTS, entry / COMPONENTS];
+                if free[row] & 1 << at[0] == 0 || free[column] & 1 << at[1] == 0 {
+                    *value = 0.0;
+                } else if row == column && at[0] == at[1] {
+                    *value *= 1.0 + SHIFT;
                 }
             }
-            let own = &mut self.matrix[self.rows.diagonal(node)];
-            for component in 0..COMPONENTS {
-                own[(COMPONENTS + 1) * component] *= 1.0 + SHIFT;
-            }
-        }
+        });
+    }
+
+    /// Solves the equations of a node, of which its neighbours have this sum.
+    #[inline(always)]
+    fn solve(&mut self, node: usize, sum: AtNode) {
+        let left: AtNode = std::array::from_fn(|c| self.rhs[node][c] - sum[c]);
+        self.x[node] = AtNode::default();
+        add(&mut self.x[node], &self.inverse[node], &left);
     }
 }
 
 impl GridLevel for MeshLevel {
     fn invert(&mut self) -> Result<(), usize> {
         for (node, inverse) in self.inverse.iter_mut().enumerate() {
-            *inverse = inverse_of(&self.matrix[self.rows.diagonal(node)]).ok_or(node)?;
+            *inverse = inverse_of(self.matrix.diagonal(node)).ok_or(node)?;
         }
         if let Some(pressures) = &mut self.pressures {
             pressures.prepare(&self.inverse);
@@ -208,12 +213,7 @@ impl GridLevel for MeshLevel {
         let damping = DAMPING / (SAFE * self.largest());
         let transfer = self.transfer.as_mut();
         let transfer = transfer.expect("a coarser level has a transfer");
-        transfer.prepare(
-            (&self.rows, &self.matrix),
-            &self.inverse,
-            damping,
-            (&coarse.rows, &mut coarse.matrix),
-        );
+        transfer.prepare(&self.matrix, &self.inverse, damping, &mut coarse.matrix);
         coarse.hold();
         if let (Some(from), Some(to)) = (&self.pressures, &mut coarse.pressures) {
             from.coarsen(transfer, &coarse.free, to);
@@ -222,30 +222,28 @@ impl GridLevel for MeshLevel {
 
     fn sweep_down(&mut self) {
         for node in 0..self.x.len() {
-            let before = self.rows.range(node);
-            let before = before.take_while(|&block| self.rows.column(block) < node);
-            let sum = self.sum(before);
-            let left: AtNode = std::array::from_fn(|c| self.rhs[node][c] - sum[c]);
-            self.x[node] = AtNode::default();
-            add(&mut self.x[node], &self.inverse[node], &left);
+            let mut sum = AtNode::default();
+            self.add_all(&mut sum, self.matrix.lower(node));
+            self.solve(node, sum);
         }
         let has_pressures = self.correct_pressures(true);
-        let rows = &self.rows;
         let half = self.residual.len() / 2;
         let mut residual = std::mem::take(&mut self.residual);
         let (lower, upper) = residual.split_at_mut(half);
         let leave = |first: usize, residual: &mut [AtNode]| {
             for (node, residual) in (first..).zip(residual) {
                 // The neighbours behind alone had no part in the sweep, unless displacements were corrected.
-                let (behind, rhs) = match has_pressures {
-                    true => (self.sum(rows.range(node)), self.rhs[node]),
+                *residual = match has_pressures {
+                    true => {
+                        let (rhs, product) = (self.rhs[node], self.product(node));
+                        std::array::from_fn(|c| rhs[c] - product[c])
+                    }
                     false => {
-                        let behind = rows.range(node).rev();
-                        let behind = behind.take_while(|&block| rows.column(block) > node);
-                        (self.sum(behind), AtNode::default())
+                        let mut sum = AtNode::default();
+                        self.add_all(&mut sum, self.matrix.upper(node));
+                        sum.map(|s| -s)
                     }
                 };
-                *residual = std::array::from_fn(|c| rhs[c] - behind[c]);
             }
         };
         join(|| leave(0, lower), || leave(half, upper));
@@ -290,11 +288,11 @@ impl GridLevel for MeshLevel {
             pressures.add_forces(&pressures.p, -1.0, &mut self.rhs);
         }
         for node in (0..self.x.len()).rev() {
-            let others = self.rows.range(node);
-            let sum = self.sum(others.filter(|&block| self.rows.column(block) != node));
-            let left: AtNode = std::array::from_fn(|c| self.rhs[node][c] - sum[c]);
-            self.x[node] = AtNode::default();
-            add(&mut self.x[node], &self.inverse[node], &left);
+            // The matrix is read backward too.
+            let mut sum = AtNode::default();
+            self.add_all(&mut sum, self.matrix.upper(node).rev());
+            self.add_all(&mut sum, self.matrix.lower(node).rev());
+            self.solve(node, sum);
         }
         self.correct_pressures(false);
     }
@@ -323,12 +321,12 @@ impl GridLevel for MeshLevel {
     }
 
     fn visit(&self, visit: &mut dyn FnMut(usize, usize, f64)) {
-        let matrix = self.matrix.iter().map(|block| block.map(f64::from));
+        let matrix = self.matrix.blocks().map(|block| block.map(f64::from));
         let mut matrix: Vec<_> = matrix.collect();
         if let Some(pressures) = &self.pressures {
-            pressures.add_to(&self.rows, &mut matrix);
+            pressures.add_to(&self.matrix.rows, &mut matrix);
         }
-        for (block, (node, other)) in matrix.iter().zip(self.rows.entries()) {
+        for (block, (node, other)) in matrix.iter().zip(self.matrix.rows.entries()) {
             for (entry, value) in block.iter().enumerate() {
                 let (row, column) = (entry % COMPONENTS, entry / COMPONENTS);
                 visit(COMPONENTS * node + row, COMPONENTS * other + column, *value);
@@ -339,7 +337,8 @@ impl GridLevel for MeshLevel {
     fn bytes(&self) -> usize {
         let of_transfer = self.transfer.as_ref().map_or(0, Aggregation::blocks);
         let of_pressures = self.pressures.as_ref().map_or(0, MeshPressures::bytes);
-        size_of::<Block>() * (self.matrix.len() + self.free.len() + of_transfer) + of_pressures
+        size_of::<Block>() * (self.matrix.rows.blocks() + self.free.len() + of_transfer)
+            + of_pressures
     }
 }
 

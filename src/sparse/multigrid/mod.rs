@@ -22,6 +22,7 @@ mod level;
 mod lobpcg;
 mod matrix_values;
 mod mesh_level;
+mod mesh_matrix;
 mod mesh_pressures;
 mod node_grid;
 mod node_mesh;
@@ -32,6 +33,7 @@ mod slab;
 mod solver;
 mod stiffness;
 mod symmetric_part;
+mod triangles;
 mod volumes;
 
 pub use element_volume::ElementVolume;

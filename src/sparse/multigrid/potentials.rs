@@ -56,14 +56,23 @@ impl Potentials {
         for (part, one) in parts.boxes.iter().enumerate() {
             let finest = &one.levels[0];
             let mut one = Hierarchy::between(&finest.planes, free_of(&finest.free), false);
-            write(&mut one.levels[0].matrix, &matrix[parts.blocks(part)]);
+            let entries = &matrix[parts.blocks(part)];
+            let rows = one.levels[0].matrix.rows_mut();
+            rows.write(|node, row| {
+                for (block, entry) in row.iter_mut().zip(&entries[NEIGHBOURS * node..]) {
+                    *block = of_scalar(*entry);
+                }
+            });
             one.prepare()?;
             boxes.push(one);
         }
         for (part, one) in (boxes.len()..).zip(&parts.meshes) {
             let finest = &one.levels[0];
             let mut one = Hierarchy::of_scalars(finest, free_of(&finest.free));
-            write(&mut one.levels[0].matrix, &matrix[parts.blocks(part)]);
+            let entries = &matrix[parts.blocks(part)];
+            one.levels[0]
+                .matrix
+                .write(|block| of_scalar(entries[block]));
             one.prepare()?;
             meshes.push(one);
         }
@@ -158,7 +167,7 @@ impl Potentials {
             }
         }
         for (part, one) in (self.boxes.len()..).zip(&self.meshes) {
-            let (pattern, x) = (&one.levels[0].rows, self.direction[part].nodes());
+            let (pattern, x) = (&one.levels[0].matrix.rows, self.direction[part].nodes());
             let entries = &self.matrix[self.first_entries[part]..];
             let nodes = self.starts[part]..self.starts[part + 1];
             for (node, product) in self.products[nodes].iter_mut().enumerate() {
@@ -220,13 +229,13 @@ impl Potentials {
     }
 }
 
-/// Writes the entries of a matrix of potentials as blocks with one of them for each component.
-fn write(blocks: &mut [Block], entries: &[f64]) {
-    for (block, value) in blocks.iter_mut().zip(entries) {
-        for component in 0..COMPONENTS {
-            block[(COMPONENTS + 1) * component] = *value as f32;
-        }
+/// A block of a matrix of potentials, with its entry for each component.
+fn of_scalar(entry: f64) -> Block {
+    let mut block = Block::default();
+    for component in 0..COMPONENTS {
+        block[(COMPONENTS + 1) * component] = entry as f32;
     }
+    block
 }
 
 /// Adds an entry times the values at a node.

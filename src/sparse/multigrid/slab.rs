@@ -4,11 +4,12 @@
 
 use crate::sparse::multigrid::field::{Block, Field, add};
 use crate::sparse::multigrid::node_grid::{COMPONENTS, NEIGHBOURS, OWN};
+use crate::sparse::multigrid::triangles::Triangles;
 use std::ops::Range;
 
-/// Neighbours in the plane below come before the others, then those of the own plane.
+/// Neighbours before a node in its plane come behind those in the plane below, those behind it there before those in the plane above.
 const BELOW: usize = 9;
-const ABOVE: usize = 18;
+const BESIDE: usize = OWN - BELOW;
 /// Planes of a grid, and its nodes, from which on it is swept in slabs.
 const PLANES: usize = 16;
 const NODES: usize = 4096;
@@ -29,7 +30,7 @@ pub(super) struct Slab {
 pub(super) struct Equations<'a> {
     pub(super) counts: [usize; 3],
     pub(super) offsets: &'a [isize; NEIGHBOURS],
-    pub(super) matrix: &'a [Block],
+    pub(super) matrix: &'a Triangles,
     /// Inverse of the diagonal blocks.
     pub(super) inverse: &'a [Block],
     pub(super) rhs: &'a Field,
@@ -76,12 +77,14 @@ impl Slab {
         x.nodes_mut()[to].copy_from_slice(from);
     }
 
-    /// Returns true if the planes below, and above, one of its own are swept down before it.
-    fn swept(&self, plane: usize) -> [bool; 2] {
-        let is_last = plane + 1 == self.planes.end;
+    /// The neighbours that are swept down before the nodes of a plane: the first ones of those before a node and of those behind it; all
+    /// after them are too.
+    fn swept(&self, plane: usize) -> [usize; 2] {
+        let is_below = plane > self.planes.start || self.is_second;
+        let is_above = plane + 1 == self.planes.end && self.is_second;
         [
-            plane > self.planes.start || self.is_second,
-            is_last && self.is_second,
+            if is_below { 0 } else { BELOW },
+            if is_above { BESIDE } else { OWN },
         ]
     }
 }
@@ -93,21 +96,32 @@ impl Equations<'_> {
         n_x * n_y * plane..n_x * n_y * (plane + 1)
     }
 
-    /// Sum over neighbours of a node of their blocks times their unknowns; the node is at a place in a list of these.
+    /// Some of the blocks of a node with the neighbours before it, and the way to these in a list.
     #[inline(always)]
-    fn sum(
+    fn lower(
         &self,
         node: usize,
-        (at, x): (usize, &[[f32; COMPONENTS]]),
-        neighbours: impl Iterator<Item = usize>,
-    ) -> [f32; COMPONENTS] {
-        let blocks = &self.matrix[NEIGHBOURS * node..][..NEIGHBOURS];
-        let mut sum = [0.0; COMPONENTS];
-        for neighbour in neighbours {
-            let there = (at as isize + self.offsets[neighbour]) as usize;
-            add(&mut sum, &blocks[neighbour], &x[there]);
-        }
-        sum
+        of: Range<usize>,
+    ) -> impl DoubleEndedIterator<Item = Coupling<'_>> {
+        let offsets = &self.offsets[..OWN];
+        self.matrix
+            .lower(places(node, &of))
+            .iter()
+            .zip(&offsets[of])
+    }
+
+    /// Some of the blocks of a node with the neighbours behind it, and the way to these in a list.
+    #[inline(always)]
+    fn upper(
+        &self,
+        node: usize,
+        of: Range<usize>,
+    ) -> impl DoubleEndedIterator<Item = Coupling<'_>> {
+        let offsets = &self.offsets[OWN + 1..];
+        self.matrix
+            .upper(places(node, &of))
+            .iter()
+            .zip(&offsets[of])
     }
 
     /// Solves the equations of a node, of which its neighbours have this sum.
@@ -129,16 +143,13 @@ impl Equations<'_> {
     pub(super) fn forward(&self, slab: &mut Slab) {
         for plane in slab.planes.clone() {
             let first = self.first_place(slab, plane);
-            let swept = slab.swept(plane);
+            let [lower, upper] = slab.swept(plane);
             for (place, node) in self.nodes(plane).enumerate() {
-                let at = first + place;
-                let x = (at, &slab.x.values[..]);
-                let sum = match swept {
-                    [true, false] => self.sum(node, x, 0..OWN),
-                    [true, true] => self.sum(node, x, (0..OWN).chain(ABOVE..NEIGHBOURS)),
-                    [false, _] => self.sum(node, x, BELOW..OWN),
-                };
-                slab.x.values[at] = self.solved(node, sum);
+                let x = (first + place, &slab.x.values[..]);
+                let mut sum = [0.0; COMPONENTS];
+                add_all(&mut sum, self.lower(node, lower..OWN), x);
+                add_all(&mut sum, self.upper(node, upper..OWN), x);
+                slab.x.values[first + place] = self.solved(node, sum);
             }
         }
     }
@@ -149,13 +160,11 @@ impl Equations<'_> {
             let swept = slab.swept(plane);
             self.nodes(plane).map(move |node| (node, swept))
         });
-        for ((node, swept), residual) in nodes.zip(residual) {
+        for ((node, [lower, upper]), residual) in nodes.zip(residual) {
             let x = (node + x.margin, &x.values[..]);
-            let sum = match swept {
-                [true, false] => self.sum(node, x, OWN + 1..NEIGHBOURS),
-                [true, true] => self.sum(node, x, OWN + 1..ABOVE),
-                [false, _] => self.sum(node, x, (0..BELOW).chain(OWN + 1..NEIGHBOURS)),
-            };
+            let mut sum = [0.0; COMPONENTS];
+            add_all(&mut sum, self.lower(node, 0..lower), x);
+            add_all(&mut sum, self.upper(node, 0..upper), x);
             *residual = sum.map(|s| -s);
         }
     }
@@ -164,23 +173,48 @@ impl Equations<'_> {
     pub(super) fn leave_all(&self, slab: &Slab, x: &Field, residual: &mut [[f32; COMPONENTS]]) {
         let nodes = slab.planes.clone().flat_map(|plane| self.nodes(plane));
         for (node, residual) in nodes.zip(residual) {
-            let sum = self.sum(node, (node + x.margin, &x.values), 0..NEIGHBOURS);
+            let x = (node + x.margin, &x.values[..]);
+            let mut sum = [0.0; COMPONENTS];
+            add_all(&mut sum, self.lower(node, 0..OWN), x);
+            add(&mut sum, self.matrix.diagonal(node), &x.1[x.0]);
+            add_all(&mut sum, self.upper(node, 0..OWN), x);
             let rhs = self.rhs.values[node + self.rhs.margin];
             *residual = std::array::from_fn(|c| rhs[c] - sum[c]);
         }
     }
 
-    /// A backward sweep over a slab.
+    /// A backward sweep over a slab, which reads the matrix backward too.
     pub(super) fn backward(&self, slab: &mut Slab) {
         for plane in slab.planes.clone().rev() {
             let first = self.first_place(slab, plane);
             for (place, node) in self.nodes(plane).enumerate().rev() {
-                let at = first + place;
-                let others = (0..OWN).chain(OWN + 1..NEIGHBOURS);
-                let sum = self.sum(node, (at, &slab.x.values), others);
-                slab.x.values[at] = self.solved(node, sum);
+                let x = (first + place, &slab.x.values[..]);
+                let mut sum = [0.0; COMPONENTS];
+                add_all(&mut sum, self.upper(node, 0..OWN).rev(), x);
+                add_all(&mut sum, self.lower(node, 0..OWN).rev(), x);
+                slab.x.values[first + place] = self.solved(node, sum);
             }
         }
+    }
+}
+
+/// Places in a triangle of some neighbours of a node.
+fn places(node: usize, of: &Range<usize>) -> Range<usize> {
+    OWN * node + of.start..OWN * node + of.end
+}
+
+/// A block, and the way to the unknowns that it multiplies.
+type Coupling<'m> = (&'m Block, &'m isize);
+
+/// Adds blocks times unknowns of neighbours; the node is at a place in a list of these.
+#[inline(always)]
+fn add_all<'m>(
+    sum: &mut [f32; COMPONENTS],
+    couplings: impl Iterator<Item = Coupling<'m>>,
+    (at, x): (usize, &[[f32; COMPONENTS]]),
+) {
+    for (block, offset) in couplings {
+        add(sum, block, &x[(at as isize + offset) as usize]);
     }
 }
 

@@ -26,7 +26,7 @@ impl Parts {
         }
         for (mesh, one) in self.meshes.iter().enumerate() {
             let blocks = self.blocks(self.boxes.len() + mesh);
-            let (blocks, rows) = (&mut self.matrix[blocks], &one.levels[0].rows);
+            let (blocks, rows) = (&mut self.matrix[blocks], &one.levels[0].matrix.rows);
             for (here, (node, other)) in rows.entries().enumerate() {
                 if node <= other {
                     let there = rows.find(other, node);

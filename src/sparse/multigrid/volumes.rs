@@ -129,20 +129,19 @@ impl Volumes {
         for ((slopes, compliance), volume) in lists.zip(volumes) {
             (*slopes, *compliance) = volume.in_single_precision();
         }
-        for (node, blocks) in blocks.chunks_exact(NEIGHBOURS).enumerate() {
+        level.matrix.rows_mut().write(|node, row| {
             let mut rest = [[0.0; ENTRIES]; NEIGHBOURS];
-            rest.copy_from_slice(blocks);
+            rest.copy_from_slice(&blocks[NEIGHBOURS * node..][..NEIGHBOURS]);
             for corner in 0..CORNERS {
                 let element = self.places[part].of_corner(node, corner);
                 if let Some(volume) = element.and_then(|element| volumes.get(element)) {
                     volume.take_from(corner, &mut rest);
                 }
             }
-            let finest = &mut level.matrix[NEIGHBOURS * node..][..NEIGHBOURS];
-            for (to, from) in finest.iter_mut().zip(&rest) {
+            for (to, from) in row.iter_mut().zip(&rest) {
                 *to = from.map(|entry| entry as f32);
             }
-        }
+        });
     }
 
     /// Hands volumes over to the finest level of a mesh, whose matrix is that of the rest.
@@ -162,15 +161,15 @@ impl Volumes {
             pressures.take(element, &nodes, &slopes, compliance);
             for (row, own) in nodes.iter().zip(&volume.slopes) {
                 for (column, there) in nodes.iter().zip(&volume.slopes) {
-                    let block = level.rows.find(*row, *column);
+                    let block = level.matrix.rows.find(*row, *column);
                     let block = block.expect("nodes of an element are coupled");
                     volume.take_block(own, there, &mut rest[block]);
                 }
             }
         }
-        for (to, from) in level.matrix.iter_mut().zip(&rest) {
-            *to = from.map(|entry| entry as f32);
-        }
+        level
+            .matrix
+            .write(|block| rest[block].map(|entry| entry as f32));
     }
 
     /// Adds to a product what pressures do, and writes their rows; `node` is the first one of the part.
