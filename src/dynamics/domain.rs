@@ -10,7 +10,7 @@
 #![expect(non_snake_case, reason = "notation of the law")]
 
 use crate::dynamics::discrete_trajectory::DiscreteTrajectory;
-use crate::math::{Matrix, Vector};
+use crate::math::{Matrix, Vector, largest_eigenvalue_bound};
 use crate::model::system::{ElectricConstants, Fidelity};
 use crate::model::{Model, SolidBlock};
 use nalgebra::SymmetricEigen;
@@ -167,12 +167,11 @@ fn worst_of_block(block: &SolidBlock, x: &[Vector], scalars: &[f64]) -> Option<(
             let Some(limit) = largest_stretch(&electric, F.determinant()) else {
                 continue;
             };
-            // No stretch is larger than the norm of F.
-            if F.norm() <= limit {
+            let C = F.transpose() * F;
+            if largest_eigenvalue_bound(&C) <= limit * limit {
                 continue;
             }
-            let squares = SymmetricEigen::new(F.transpose() * F).eigenvalues;
-            let stretch = squares.max().sqrt();
+            let stretch = SymmetricEigen::new(C).eigenvalues.max().sqrt();
             if stretch > limit && worst.is_none_or(|(before, _)| before < stretch) {
                 worst = Some((stretch, limit));
             }

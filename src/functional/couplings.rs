@@ -4,7 +4,7 @@ use crate::math::{Matrix, Vector};
 use rustc_hash::FxHashMap;
 
 /// Two arguments with mixed second derivatives.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
 pub enum Coupling {
     /// Vectors with a full 3 × 3 block.
     Full(usize, usize),

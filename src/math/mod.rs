@@ -4,6 +4,7 @@
 mod compact_index;
 mod derivatives;
 mod digits;
+mod eigenvalue_bound;
 mod jet;
 mod join;
 pub(crate) mod memory;
@@ -17,6 +18,7 @@ mod stopped;
 pub(crate) use compact_index::compact_index;
 pub use derivatives::{Derivatives, Local};
 pub use digits::{no_smaller, shortest, significant};
+pub use eigenvalue_bound::largest_eigenvalue_bound;
 pub use jet::Jet;
 pub use join::cores;
 pub(crate) use join::join_if;

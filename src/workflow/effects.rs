@@ -1,10 +1,12 @@
 //! Model terms and their sizes: elements, the unknowns that each term reads, and the pairs that it couples.
 
+use rayon::slice::ParallelSliceMut;
 use serde::Serialize;
 
 use crate::control::problem::Control;
 use crate::coordinates::CoordinateMap;
-use crate::functional::{Couplings, Term, TermKind};
+use crate::functional::{Coupling, Term, TermKind};
+use crate::math::has_pool;
 use crate::model::{Model, Time, Variable};
 use crate::workflow::reasons::{self, Absent, absent};
 use crate::workflow::stopwatch;
@@ -102,6 +104,7 @@ pub fn effect_counts(model: &Model, control: Option<&Control>, spent: f64) -> Ve
             .iter()
             .map(scalar)
             .collect(),
+        multipliers: model.action.instants.scalars,
         matrix,
     };
     let times = stopwatch::times(model, spent);
@@ -122,6 +125,8 @@ struct Unknowns {
     coordinates: usize,
     /// Scalars of an interval.
     scalars: Vec<Scalar>,
+    /// Number of multipliers of an instant.
+    multipliers: usize,
     matrix: Matrix,
 }
 
@@ -148,57 +153,61 @@ fn each(model: &Model) -> impl Iterator<Item = Coupled<'_>> {
 
 impl<'a> Coupled<'a> {
     fn new(effect: &'a dyn Term, map: &CoordinateMap) -> Self {
-        let mut couplings = Couplings::default();
-        effect.couple(&mut |coupling| _ = couplings.add(coupling));
+        let mut couplings = Vec::new();
+        effect.couple(&mut |coupling| couplings.extend(coupling.map(ordered)));
+        couplings.sort_unstable();
+        couplings.dedup();
+        let supports: Vec<Vec<usize>> = (0..map.vectors.len()).map(|v| map.support(v)).collect();
         let scalar = |s: usize| map.coordinates + s;
         let mut pairs: Vec<[u32; 2]> = Vec::new();
         let mut add = |a: usize, b: usize| pairs.push([a.min(b) as u32, a.max(b) as u32]);
-        // Pairs of vectors come in both orders.
-        for &(a, b) in couplings.full.iter().filter(|(a, b)| a <= b) {
-            let others = map.support(b);
-            for i in map.support(a) {
-                others.iter().for_each(|&j| add(i, j));
+        // Directors and nodes couple component by component, joint coordinates all with all.
+        let meets = |i, j| match (axis(map, i), axis(map, j)) {
+            (Some(a), Some(b)) => a == b,
+            _ => true,
+        };
+        for coupling in couplings {
+            match coupling {
+                Coupling::Full(a, b) => {
+                    for &i in &supports[a] {
+                        supports[b].iter().for_each(|&j| add(i, j));
+                    }
+                }
+                Coupling::Isotropic(a, b) => {
+                    for &i in &supports[a] {
+                        let others = supports[b].iter().filter(|&&j| meets(i, j));
+                        others.for_each(|&j| add(i, j));
+                    }
+                }
+                Coupling::Mixed(a, s) => supports[a].iter().for_each(|&i| add(i, scalar(s))),
+                Coupling::Scalars(s, t) => add(scalar(s), scalar(t)),
             }
         }
-        for &(a, b) in couplings.isotropic.iter().filter(|(a, b)| a <= b) {
-            // Directors and nodes couple component by component, joint coordinates all with all.
-            let meets = |i, j| match (axis(map, i), axis(map, j)) {
-                (Some(a), Some(b)) => a == b,
-                _ => true,
-            };
-            let others = map.support(b);
-            for i in map.support(a) {
-                let others = others.iter().filter(|&&j| meets(i, j));
-                others.for_each(|&j| add(i, j));
-            }
+        let key = |&[i, j]: &[u32; 2]| u64::from(i) << u32::BITS | u64::from(j);
+        match has_pool() {
+            true => pairs.par_sort_unstable_by_key(key),
+            false => pairs.sort_unstable_by_key(key),
         }
-        for &(a, s) in &couplings.mixed {
-            let support = map.support(a).into_iter();
-            support.for_each(|i| add(i, scalar(s)));
-        }
-        for &(s, t) in &couplings.scalars {
-            add(scalar(s), scalar(t));
-        }
-        pairs.sort_unstable();
         pairs.dedup();
         Self { effect, pairs }
     }
 
     /// Its counts, without reason and time.
     fn counts(&self, of: &Unknowns) -> EffectCounts {
-        let mut unknowns: Vec<u32> = self.pairs.iter().flatten().copied().collect();
-        unknowns.sort_unstable();
-        unknowns.dedup();
+        let mut is_read = vec![false; of.coordinates + of.scalars.len().max(of.multipliers)];
+        for &unknown in self.pairs.as_flattened() {
+            is_read[unknown as usize] = true;
+        }
         let kind = match self.effect.kind() {
             TermKind::Kinetic => "kinetic",
             TermKind::Potential => "potential",
             TermKind::AppliedWork | TermKind::Dissipation => "virtual work",
             TermKind::Constraint => "constraint",
         };
-        let scalars = unknowns.iter();
-        let scalars = scalars.filter_map(|&i| (i as usize).checked_sub(of.coordinates));
         let is_of_instant = self.effect.kind() == TermKind::Constraint;
-        let equations = scalars.filter(|&s| is_of_instant || of.scalars[s].has_equation);
+        let scalars = is_read[of.coordinates..].iter().enumerate();
+        let equations = scalars
+            .filter(|&(s, is_read)| *is_read && (is_of_instant || of.scalars[s].has_equation));
         let diagonal = self.pairs.iter().filter(|[i, j]| i == j).count();
         let touched = self.pairs.iter().map(|pair| self.touched(pair, of));
         let [jacobian, hessian] = touched.fold([0, 0], |[a, b], [c, d]| [a + c, b + d]);
@@ -207,7 +216,7 @@ impl<'a> Coupled<'a> {
             kind,
             why: String::new(),
             elements: self.effect.elements(),
-            unknowns: unknowns.len(),
+            unknowns: is_read.iter().filter(|is_read| **is_read).count(),
             equations: equations.count(),
             nonzeros: 2 * self.pairs.len() - diagonal,
             jacobian,
@@ -249,6 +258,16 @@ impl<'a> Coupled<'a> {
             }
             _ => [0, 0],
         }
+    }
+}
+
+/// A coupling with its vectors, or its scalars, in ascending order.
+fn ordered(coupling: Coupling) -> Coupling {
+    match coupling {
+        Coupling::Full(a, b) => Coupling::Full(a.min(b), a.max(b)),
+        Coupling::Isotropic(a, b) => Coupling::Isotropic(a.min(b), a.max(b)),
+        Coupling::Scalars(s, t) => Coupling::Scalars(s.min(t), s.max(t)),
+        Coupling::Mixed(..) => coupling,
     }
 }
 
