@@ -84,6 +84,7 @@ fn refused(request: &CommandInput, error: &IdentifyError) -> CommandError {
     }
     let place = match error {
         IdentifyError::NotSought(_) | IdentifyError::Unread { .. } => "identify.free",
+        IdentifyError::Candidate { .. } => "identify.candidates",
         _ => "identify.recordings",
     };
     CommandError::Problem {

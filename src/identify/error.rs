@@ -32,6 +32,14 @@ pub enum IdentifyError {
         /// Reason.
         reason: String,
     },
+    /// A candidate whose readings cannot be predicted.
+    #[error("candidate \"{candidate}\": {reason}")]
+    Candidate {
+        /// The candidate.
+        candidate: String,
+        /// Reason.
+        reason: String,
+    },
     /// A constant that cannot be sought.
     #[error("{0}")]
     NotSought(NotSought),
@@ -57,4 +65,17 @@ pub enum IdentifyError {
     /// The work was stopped.
     #[error("stopped before there was a result")]
     Stopped,
+}
+
+impl IdentifyError {
+    /// The same error of a candidate, which computes as a recording does.
+    pub(super) fn of_candidate(self) -> Self {
+        let (candidate, reason) = match self {
+            Self::Boundary { recording, source } => (recording, source.to_string()),
+            Self::Motion { recording, source } => (recording, source.to_string()),
+            Self::Refused { recording, reason } => (recording, reason),
+            other => return other,
+        };
+        Self::Candidate { candidate, reason }
+    }
 }

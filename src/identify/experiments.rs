@@ -1,10 +1,11 @@
 //! Experiments that could be done next: what their readings would add to the information on the constants.
 
-use crate::control::problem::{Identification, Recording};
+use crate::control::problem::{Channel, Identification, Recording};
 use crate::identify::error::IdentifyError;
 use crate::identify::fit::Fit;
 use crate::identify::information::Information;
 use crate::identify::prediction::{Grid, count_of_start, predict};
+use crate::identify::residuals::Data;
 use crate::identify::unknowns::Unknowns;
 use crate::model::System;
 use nalgebra::DMatrix;
@@ -24,7 +25,10 @@ impl Experiment {
         (system, task): (&System, &Identification),
         (fit, halvings): (&Fit, usize),
     ) -> Result<Vec<Self>, IdentifyError> {
-        let of = |candidate| Self::new((system, task), candidate, (fit, halvings));
+        let of = |candidate| {
+            Self::new((system, task), candidate, (fit, halvings))
+                .map_err(IdentifyError::of_candidate)
+        };
         let all: Result<Vec<_>, _> = (0..task.candidates.len()).map(of).collect();
         let mut all = all?;
         all.sort_by(|a, b| a.rank().partial_cmp(&b.rank()).expect("numbers"));
@@ -83,25 +87,39 @@ impl Experiment {
 /// Derivatives in standard deviations, of which those that are not known are as in the fit.
 fn standardised(
     mut derivatives: DMatrix<f64>,
-    recording: &Recording,
+    candidate: &Recording,
     fit: &Fit,
 ) -> Result<DMatrix<f64>, IdentifyError> {
     let mut row = 0;
-    for channel in &recording.channels {
+    for channel in &candidate.channels {
         for reading in &channel.readings {
-            let Some(deviation) = fit.data.deviation(channel, reading.deviation) else {
-                return Err(IdentifyError::Refused {
-                    recording: recording.name.clone(),
-                    reason: format!(
-                        "nothing tells the standard deviation of {}, which no other recording measures; expected one",
-                        channel.name
-                    ),
-                });
-            };
+            let deviation = deviation((candidate, channel), &fit.data, reading.deviation)?;
             let mut into = derivatives.row_mut(row);
             into /= deviation;
             row += 1;
         }
     }
     Ok(derivatives)
+}
+
+/// Refuses a candidate with readings whose standard deviation is neither known nor estimated from these data.
+pub(super) fn check_deviations(candidate: &Recording, data: &Data) -> Result<(), IdentifyError> {
+    let mut channels = candidate.channels.iter();
+    channels.try_for_each(|channel| deviation((candidate, channel), data, 1.0).map(|_| ()))
+}
+
+/// The standard deviation of a reading with this relative one.
+fn deviation(
+    (candidate, channel): (&Recording, &Channel),
+    data: &Data,
+    relative: f64,
+) -> Result<f64, IdentifyError> {
+    let found = data.deviation(channel, relative);
+    found.ok_or_else(|| IdentifyError::Refused {
+        recording: candidate.name.clone(),
+        reason: format!(
+            "nothing tells the standard deviation of {}, which no recording measures whose deviation is estimated; expected one",
+            channel.name
+        ),
+    })
 }

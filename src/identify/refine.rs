@@ -2,13 +2,13 @@
 
 use crate::control::problem::{BoundaryState, Identification, Recording, Regime};
 use crate::identify::error::IdentifyError;
-use crate::identify::experiments::Experiment;
+use crate::identify::experiments::{Experiment, check_deviations};
 use crate::identify::fit::{Fit, fit};
 use crate::identify::held_out::{HeldOut, LEVEL};
 use crate::identify::information::Information;
 use crate::identify::likelihood::Rises;
 use crate::identify::prediction::{Grid, count_of_start};
-use crate::identify::residuals::Series;
+use crate::identify::residuals::{Data, Series};
 use crate::identify::setup::Setup;
 use crate::identify::unknowns::Unknowns;
 use crate::identify::whiteness::{Whiteness, ljung_box};
@@ -224,8 +224,14 @@ fn begin(
     task: &Identification,
     fitted: &[usize],
 ) -> Result<Unknowns, IdentifyError> {
-    for recording in task.recordings.iter().chain(&task.candidates) {
+    for recording in &task.recordings {
         fixed_starts(system, task, recording)?;
+    }
+    let data = Data::new(task, fitted);
+    for candidate in &task.candidates {
+        fixed_starts(system, task, candidate)
+            .and_then(|()| check_deviations(candidate, &data))
+            .map_err(IdentifyError::of_candidate)?;
     }
     let count = |&r: &usize| count_of_start(system, task, &task.recordings[r]);
     let held_out = (0..task.recordings.len()).filter(|&r| task.recordings[r].is_held_out);

@@ -1,6 +1,7 @@
 //! Data that do not allow an identification, and verdicts that say so.
 
 use crate::oscillator::{DAMPING, parameter, recording, system, task};
+use proboscis::control::problem::Recording;
 use proboscis::identify::{IdentifyError, identify};
 use proboscis::math::Random;
 use proboscis::model::Constant;
@@ -35,6 +36,41 @@ fn a_constant_that_no_recording_depends_on_is_refused() {
         matches!(&error, IdentifyError::Unread { name } if name == "idle"),
         "{error}"
     );
+}
+
+#[test]
+fn a_candidate_needs_a_deviation_that_is_known_or_estimated() {
+    let first = |deviation: Option<f64>| {
+        let noise = &mut Random::new(4);
+        let mut recording = recording("free", [5.0, 0.0], (31, 150.0), Some((0.05, noise)));
+        recording.channels[0].is_deviation_known = deviation.is_some();
+        let readings = &mut recording.channels[0].readings;
+        readings
+            .iter_mut()
+            .for_each(|one| one.deviation = deviation.unwrap_or(1.0));
+        recording
+    };
+    let with_candidate = |recorded: Recording| {
+        let mut task = task(vec![recorded]);
+        let mut candidate = recording("free", [8.0, 0.0], (31, 150.0), None);
+        candidate.name = "again".into();
+        task.candidates = vec![candidate];
+        identify(&system(), &task, &mut |_, _| {})
+    };
+    let estimated = with_candidate(first(None)).unwrap();
+    assert_eq!(estimated.experiments[0].candidate, 0);
+    let [before, after] = [
+        &estimated.information,
+        &estimated.experiments[0].information,
+    ];
+    assert!(0.0 < after.covariance[(0, 0)] && after.covariance[(0, 0)] < before.covariance[(0, 0)]);
+    // A deviation that is known of the recording is not one of the candidate.
+    let error = with_candidate(first(Some(0.05))).unwrap_err();
+    let IdentifyError::Candidate { candidate, reason } = &error else {
+        panic!("{error}");
+    };
+    assert_eq!(candidate, "again");
+    assert!(reason.contains("the standard deviation of x"), "{reason}");
 }
 
 #[test]

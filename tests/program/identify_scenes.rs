@@ -235,3 +235,30 @@ fn mistakes_of_scenes_columns_and_forces_are_told() {
     let message = refusal(&problem(vec![recording]));
     assert!(message.contains("a joint that is fixed"), "{message}");
 }
+
+#[test]
+fn a_candidate_that_tells_nothing_is_refused_at_its_own_place() {
+    let candidate = |measured: Value| {
+        let mut problem = problem(vec![coasting("alone", 0.0), coasting("loaded", 1.0)]);
+        problem["identify"]["candidates"] = json!([{
+            "name": "again", "duration": "1 s", "readings": 20, "measured": [measured],
+            "experiment": { "start": { "joint_rates": { "slide": "1 m/s" } } }
+        }]);
+        problem
+    };
+    let force =
+        json!({ "reaction_force": "tray", "along": [1, 0, 0], "standard_deviation": "1 N" });
+    let cases = [
+        (
+            json!({ "joint": "slide" }),
+            "nothing tells the standard deviation of slide, which no recording measures whose deviation is estimated",
+        ),
+        (force, "a joint that is fixed"),
+    ];
+    for (measured, expected) in cases {
+        let message = refusal(&candidate(measured));
+        let place = "identify.candidates: candidate \"again\": ";
+        assert!(message.contains(place), "{message}");
+        assert!(message.contains(expected), "{message}");
+    }
+}
