@@ -27,6 +27,8 @@ struct Scaled {
 
 /// Derivatives of readings by the state, of mm or rad by mm or rad, that are rounding.
 const BLIND: f64 = 1e-9;
+/// Factors of standard deviations of readings, to tell whether small ones are lost in rounding.
+const COARSER: [f64; 3] = [1e1, 1e3, 1e5];
 /// Reason why a state cannot be found.
 const NOT_SEEN: &str =
     "not all that moves follows from what is measured; expected more measured joints or markers";
@@ -160,6 +162,16 @@ impl Design<'_> {
             inputs: step.noise.inputs.clone(),
         };
         let output = step.output.rows(0, n).into_owned();
+        let is_seen = |factor: &f64| {
+            let mut noise = step.noise.clone();
+            noise.inputs *= factor.powi(2);
+            held_gain([&step.by_state, &step.output], &noise).is_ok()
+        };
+        if let Some(factor) = COARSER.into_iter().find(is_seen) {
+            return format!(
+                "rounding hides the state behind readings of so small standard deviations; expected about {factor} times as large ones"
+            );
+        }
         match forces > 0 && held_gain([&own(&step.by_state), &output], &noise).is_ok() {
             true => format!(
                 "{forces} lasting forces, one on each joint, do not follow from what is measured; expected as many independent joints or components of markers, or no \"lasting\""
@@ -308,7 +320,7 @@ impl Design<'_> {
         let toward = scaled.output.transpose() * covariance;
         let inner = &scaled.noise.inputs + &toward * &scaled.output;
         let inner = inner.cholesky();
-        let inner = inner.ok_or_else(|| NoRegulator::Observer(NOT_SEEN.to_owned()))?;
+        let inner = inner.ok_or_else(|| NoRegulator::Observer(self.not_seen(&scaled)))?;
         let gain = inner.solve(&toward);
         let (n, outputs) = (state.len(), of.len());
         Ok(Filter {
