@@ -50,6 +50,9 @@ pub struct LawInput {
     pub bounds: [f64; 2],
 }
 
+/// Part of its range within which an input is at a bound; the barrier of plans keeps inputs off their bounds by less.
+const AT_BOUND: f64 = 1e-4;
+
 impl LawInput {
     /// An input with a correction, its bounds, and the input itself, all in the unit in which it acts: squares where it does by them.
     pub fn wanted(&self, given: f64, correction: f64) -> (f64, [f64; 2], f64) {
@@ -63,6 +66,12 @@ impl LawInput {
             }
             false => (given + correction, [low, high], given),
         }
+    }
+
+    /// Returns true if a value is within [`AT_BOUND`] of its range, of squares where it acts by them, of its lower (0) or upper (1) bound.
+    pub fn is_at_bound(&self, value: f64, side: usize) -> bool {
+        let (value, bounds, _) = self.wanted(value, 0.0);
+        (value - bounds[side]).abs() <= AT_BOUND * (bounds[1] - bounds[0])
     }
 }
 

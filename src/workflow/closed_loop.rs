@@ -16,9 +16,10 @@ use std::collections::BTreeMap;
 pub struct ClosedLoop {
     /// Number of samples.
     pub samples: usize,
-    /// Number of samples with an input at its lower bound, below which it was wanted: a muscle cannot push.
+    /// Number of samples with an input at its lower bound, below which gains wanted it: a muscle cannot push. Of plans, within 1e-4 of the range, of
+    /// squares of voltages.
     pub samples_at_lower_bound: usize,
-    /// Number of samples with an input at its upper bound, above which it was wanted.
+    /// Number of samples with an input at its upper bound, above which gains wanted it; of plans as below.
     pub samples_at_upper_bound: usize,
     /// Steps of a controller that plans anew.
     #[serde(skip_serializing_if = "Option::is_none")]
@@ -306,20 +307,20 @@ impl ClosedLoop {
         })
     }
 
-    /// That inputs came to their lower bounds.
+    /// That inputs of gains came to their lower bounds; those of plans know the bounds.
     pub fn at_lower_bound(&self) -> Option<String> {
         let (count, samples) = (self.samples_at_lower_bound, self.samples);
-        (count > 0).then(|| {
+        (count > 0 && self.plans.is_none()).then(|| {
             format!(
                 "in {count} of {samples} samples the controller wanted an input below its lower bound: a muscle cannot push"
             )
         })
     }
 
-    /// A warning of inputs at their upper bounds.
+    /// A warning of inputs of gains at their upper bounds.
     pub fn at_upper_bound(&self) -> Option<String> {
         let (count, samples) = (self.samples_at_upper_bound, self.samples);
-        (count > 0).then(|| {
+        (count > 0 && self.plans.is_none()).then(|| {
             format!("in {count} of {samples} samples the controller wanted an input above its upper bound")
         })
     }

@@ -48,6 +48,8 @@ struct Planning<'a> {
     controller: RecedingHorizon<'a>,
     sources: BTreeMap<&'static str, usize>,
     samples: usize,
+    /// Those of them with an input at its lower, and at its upper bound.
+    at_bounds: [usize; 2],
     /// The longest time of a step with its preparation, and without, in s.
     longest: [f64; 2],
     /// Inputs that wait, with the times in ms from which they act, and those that act; none before the first do.
@@ -57,7 +59,7 @@ struct Planning<'a> {
 
 impl Planning<'_> {
     /// The inputs for what was measured at a time, which act after a delay; then the next step is prepared.
-    fn sample(&mut self, time: f64, measured: &[f64], delay: f64) {
+    fn sample(&mut self, time: f64, measured: &[f64], (law, delay): (&Law, f64)) {
         let began = Instant::now();
         let answer = self.controller.step(time, Some(measured));
         self.waiting
@@ -65,6 +67,13 @@ impl Planning<'_> {
         *self.sources.entry(answer.source.word()).or_default() += 1;
         self.samples += 1;
         let answered = began.elapsed().as_secs_f64();
+        let is_at = |side: usize| {
+            let mut each = law.inputs.iter().zip(answer.inputs);
+            each.any(|(input, value)| input.is_at_bound(*value, side))
+        };
+        let is_at = [is_at(0), is_at(1)];
+        let counts = self.at_bounds.iter_mut().zip(is_at);
+        counts.for_each(|(count, is_at)| *count += usize::from(is_at));
         self.controller.prepare();
         let [whole, step] = &mut self.longest;
         *whole = whole.max(began.elapsed().as_secs_f64());
@@ -84,7 +93,7 @@ impl Planning<'_> {
 /// Counts of a loop.
 #[derive(Clone, Debug)]
 pub(crate) struct Counts {
-    /// Samples, and those of them with an input wanted beyond its lower and its upper bound.
+    /// Samples, and those of them with an input at its lower and at its upper bound.
     pub(crate) samples: [usize; 3],
     pub(crate) plans: Option<Plans>,
     /// The law that was followed.
@@ -180,6 +189,7 @@ impl<'a> Loop<'a> {
                         controller: RecedingHorizon::new(horizon),
                         sources: BTreeMap::new(),
                         samples: 0,
+                        at_bounds: [0; 2],
                         longest: [0.0; 2],
                         waiting: VecDeque::new(),
                         acting: None,
@@ -254,7 +264,7 @@ impl<'a> Loop<'a> {
         match &mut state.controller {
             Acting::Law(controller) => controller.sample(time, &state.values),
             Acting::Plan(controller) => {
-                controller.sample(time, &state.values, self.task.delay);
+                controller.sample(time, &state.values, (self.law, self.task.delay));
             }
         }
     }
@@ -273,7 +283,8 @@ impl<'a> Loop<'a> {
                     longest_step,
                     longest_with_preparation,
                 };
-                ([of.samples, 0, 0], Some(plans))
+                let [lower, upper] = of.at_bounds;
+                ([of.samples, lower, upper], Some(plans))
             }
         };
         let law = Arc::new(self.law.clone());

@@ -33,6 +33,28 @@ fn a_stiffer_pair_is_planned_anew() {
     let [step, all] =
         ["longest_step", "longest_with_preparation"].map(|key| number(&closed["plans"][key]));
     assert!(0.0 < step && step <= all, "{closed}");
+    // Inputs that act from each sample on but the last, which is at the end, against squares of the bounds.
+    let table = here.join("planned/controls.csv");
+    let times = column(&table, "start [ms]");
+    let inputs = [1, 2].map(|muscle| column(&table, &format!("muscle{muscle} [V]")));
+    let at = |bound: f64| {
+        let sampled = (0..times.len()).filter(|&row| (times[row] / 10.0).fract().abs() < 1e-9);
+        let is_near = |of: &Vec<f64>, row: usize| (of[row].powi(2) - bound * bound).abs() <= 900.0;
+        let near = sampled.filter(|&row| inputs.iter().any(|of| is_near(of, row)));
+        near.count() as u64
+    };
+    assert!((5..60).contains(&at(0.0)), "{}", at(0.0));
+    for (key, bound) in [
+        ("samples_at_lower_bound", 0.0),
+        ("samples_at_upper_bound", 3000.0),
+    ] {
+        let count = closed[key].as_u64().unwrap();
+        assert!(
+            (at(bound)..=at(bound) + 1).contains(&count),
+            "{key}: {count}"
+        );
+    }
+    assert!(!err.contains("bound"), "{err}");
     for name in ["tracking.svg", "report.html"] {
         assert!(here.join("planned").join(name).exists(), "{name}");
     }
