@@ -36,7 +36,7 @@ pub(crate) use json::source::is_standard_input;
 pub(crate) use scene::build::LONGEST_CHAIN;
 pub use scene::named_materials::named_materials;
 pub use scene::trunk::new_trunk;
-pub use typed::{driven_voltages, each_once, read_system};
+pub use typed::{driven_voltages, each_entry_once, each_once, read_system};
 pub(crate) use units::si;
 
 use serde_json::Value;

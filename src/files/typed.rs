@@ -4,10 +4,12 @@ use std::path::Path;
 
 use serde_json::Value;
 
+use crate::files::Loaded;
 use crate::files::json::document::Document;
 use crate::files::json::error::{Mistake, SceneError, nearest};
+use crate::files::json::locate::Step;
 use crate::files::json::scope::Scope;
-use crate::files::json::set::Override;
+use crate::files::json::set::{Override, resolved};
 use crate::files::problem::state::A_SOURCE;
 use crate::files::scene::build::build_scene;
 use crate::files::units::quantity::{Quantity, Voltage};
@@ -18,7 +20,22 @@ use crate::model::system::{Source, System};
 /// # Errors
 /// There are two, or one is no override.
 pub fn each_once(overrides: &[String]) -> Result<(), SceneError> {
-    Override::check(overrides)
+    Override::check(overrides, |change| change.place.clone())
+}
+
+/// Refuses overrides of which two are of one place of the problem that was read with them: an entry of a list has an index and a name.
+///
+/// # Errors
+/// There are two.
+pub fn each_entry_once(overrides: &[String], loaded: &Loaded) -> Result<(), SceneError> {
+    Override::check(overrides, |change| match change.in_scene() {
+        Some(inside) => {
+            let mut place = resolved(&loaded.scene, &inside.place);
+            place.0.insert(0, Step::Key("scene".to_owned()));
+            place
+        }
+        None => resolved(&loaded.problem, &change.place),
+    })
 }
 
 /// The system of a scene file, or of the scene of a problem file, with overrides as for the file itself.

@@ -8,7 +8,9 @@ use serde_json::Value;
 use crate::app::{Identity, task_runs_at_once};
 use crate::files::changes::Changes;
 use crate::files::sweep::{CombineSpec, SweepSpec};
-use crate::files::{Columns, Document, SceneError, Scope, each_once, read_problem};
+use crate::files::{
+    Columns, Document, SceneError, Scope, each_entry_once, each_once, read_problem,
+};
 use crate::math::Random;
 use crate::sweep::values::Values;
 
@@ -39,6 +41,10 @@ pub(super) struct Variant {
     pub(super) identity: Identity,
     /// Reason why its problem is refused.
     pub(super) refused: Option<String>,
+}
+
+fn is_refused(variant: &Variant) -> bool {
+    variant.refused.is_some()
 }
 
 /// Reads a sweep and the problems of all its variants.
@@ -81,6 +87,11 @@ pub(super) fn read_sweep(path: &Path) -> Result<Sweep, SceneError> {
         let changes = changes_of(&values)?;
         let (identity, refused) = match read_problem(&problem, &changes.words) {
             Ok(loaded) => {
+                // The same, with names of entries by their indices.
+                if variants.iter().all(is_refused) {
+                    let found = each_entry_once(&changes.words, &loaded);
+                    found.map_err(|error| changes.at_fault(error, &problem))?;
+                }
                 run_at_once &= task_runs_at_once(&loaded.task);
                 (Identity::of_problem(&loaded), None)
             }
@@ -98,7 +109,7 @@ pub(super) fn read_sweep(path: &Path) -> Result<Sweep, SceneError> {
         });
     }
     match first_error {
-        Some(error) if variants.iter().all(|one| one.refused.is_some()) => Err(error),
+        Some(error) if variants.iter().all(is_refused) => Err(error),
         _ => Ok(Sweep {
             title: spec.title.unwrap_or_else(|| name(path)),
             problem,

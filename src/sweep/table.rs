@@ -3,7 +3,7 @@
 use serde_json::Value;
 
 use crate::files::si;
-use crate::sweep::read::Sweep;
+use crate::sweep::read::{Sweep, Variant};
 use crate::sweep::variant_record::{END, VariantRecord};
 
 /// Headings and rows of cells; a cell without a value is empty.
@@ -43,32 +43,38 @@ struct Varied {
 }
 
 impl Varied {
-    /// Quantities are numbers in the International System, with their unit in the heading, if all of the place have the same; what else
-    /// varies is written as in the sweep.
+    /// Quantities are numbers in the International System, with their unit in the heading, if all of the place have the same, but for variants that
+    /// are refused; what else varies is written as in the sweep.
     fn of(sweep: &Sweep, place: usize) -> Self {
         let name = &sweep.places[place];
-        let values = || sweep.variants.iter().map(|variant| &variant.values[place]);
-        let quantities: Option<Vec<_>> = values()
-            .map(|value| match value {
-                Value::Number(number) => Some((number.as_f64()?, None)),
-                value => si(value.as_str()?).map(|(number, unit)| (number, Some(unit))),
-            })
-            .collect();
+        let accepted = sweep.variants.iter().filter(|one| one.refused.is_none());
+        let quantities: Option<Vec<_>> = accepted.map(|one| quantity(&one.values[place])).collect();
         let quantities = quantities.unwrap_or_default();
         let mut units = quantities.iter().filter_map(|(_, unit)| unit.as_ref());
         let unit = units
             .next()
             .filter(|&first| units.all(|unit| unit == first));
-        match unit {
-            Some(unit) => Self {
-                heading: format!("{name} [{unit}]"),
-                cells: quantities.iter().map(|(n, _)| format!("{n:?}")).collect(),
+        let written = |variant: &Variant| match (unit, quantity(&variant.values[place])) {
+            (Some(known), Some((number, unit))) if unit.as_ref().is_none_or(|one| one == known) => {
+                format!("{number:?}")
+            }
+            _ => cell(&variant.values[place]),
+        };
+        Self {
+            heading: match unit {
+                Some(unit) => format!("{name} [{unit}]"),
+                None => name.clone(),
             },
-            None => Self {
-                heading: name.clone(),
-                cells: values().map(cell).collect(),
-            },
+            cells: sweep.variants.iter().map(written).collect(),
         }
+    }
+}
+
+/// The number of a quantity in the International System, with its unit; none of a plain number.
+fn quantity(value: &Value) -> Option<(f64, Option<String>)> {
+    match value {
+        Value::Number(number) => Some((number.as_f64()?, None)),
+        value => si(value.as_str()?).map(|(number, unit)| (number, Some(unit))),
     }
 }
 

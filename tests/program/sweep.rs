@@ -249,7 +249,7 @@ fn refused_and_unsolved_variants_are_rows() {
     let folder = folder.path();
     fs::write(
         folder.join("lines.csv"),
-        "control.duration,control.solver.max_iterations\n0.3 s,100\n-1 s,100\n0.3 s,2\n",
+        "control.duration,control.solver.max_iterations\n300 ms,100\n,100\n0.3 s,2\n",
     )
     .unwrap();
     write(folder, json!({ "table": "lines.csv" }));
@@ -258,8 +258,11 @@ fn refused_and_unsolved_variants_are_rows() {
         status == 0 && err.contains("control.duration"),
         "{out}{err}"
     );
-    let words = column(&table(folder), "status");
+    let rows = table(folder);
+    let words = column(&rows, "status");
     assert_eq!(words, ["solved", "refused", "iteration_limit"]);
+    let durations = column(&rows, "control.duration [s]");
+    assert_eq!(durations, ["0.3", "", "0.3"]);
 }
 
 #[test]
@@ -298,6 +301,14 @@ fn mistakes_of_a_sweep_have_their_places() {
         (
             json!({ "set": { "control.duration": "2 s" }, "vary": { "control.duration": ["1 s"] } }),
             "one value",
+        ),
+        (
+            json!({ "problem": "problems/elbow_torque.json", "vary": { "scene.muscles[0].layer_thickness": ["50 um"], "scene.muscles.left.layer_thickness": ["60 um", "70 um"] } }),
+            "expected one value",
+        ),
+        (
+            json!({ "problem": "problems/elbow_torque.json", "vary": { "scene.muscles.right.layer_thickness": ["50 um"] }, "set": { "scene.muscles[1].layer_thickness": "60 um" } }),
+            "expected one value",
         ),
         (json!({ "table": "none.csv" }), "none.csv"),
         (

@@ -39,16 +39,20 @@ impl Override {
         (parts.and_then(read)).ok_or_else(|| typed_wrong(None, format!("{written:?}"), expected))
     }
 
-    /// Refuses two overrides of one place.
-    pub(crate) fn check(written: &[String]) -> Result<(), SceneError> {
-        let mut known: Vec<Self> = Vec::with_capacity(written.len());
+    /// Refuses two overrides of one place, which `place` tells.
+    pub(crate) fn check(
+        written: &[String],
+        place: impl Fn(&Self) -> JsonPath,
+    ) -> Result<(), SceneError> {
+        let mut known: Vec<(JsonPath, Self)> = Vec::with_capacity(written.len());
         for written in written {
             let next = Self::parse(written)?;
-            if let Some(known) = known.iter().find(|known| known.place == next.place) {
+            let place = place(&next);
+            if let Some((_, known)) = known.iter().find(|(known, _)| *known == place) {
                 let found = format!("{:?} and {:?}", known.written, next.written);
                 return Err(typed_wrong(Some(next.typed), found, "one value"));
             }
-            known.push(next);
+            known.push((place, next));
         }
         Ok(())
     }
@@ -114,6 +118,14 @@ pub(crate) fn value_at(text: &str, place: &JsonPath) -> Option<Value> {
     let slot = slot(text, place);
     let is_there = slot.wrong.is_none() && slot.missing.keys.is_empty();
     is_there.then(|| serde_json::from_str(&text[slot.bytes]).ok())?
+}
+
+/// A place of a text with the entries of lists by their indices.
+pub(crate) fn resolved(text: &str, place: &JsonPath) -> JsonPath {
+    let mut out = slot(text, place).place;
+    let known = out.0.len();
+    out.0.extend(place.0[known..].iter().cloned());
+    out
 }
 
 /// Parts of a scene for which a chain stands.
