@@ -5,6 +5,7 @@ use crate::feedback::solved;
 use crate::runs::{read, refused, run, workshop};
 use nalgebra::DMatrix;
 use serde_json::Value;
+use std::fs;
 
 const OBSERVER: &str = "feedback.observer={\"markers\":{\"tip\":\"0.1 mm\"}}";
 const LASTING: &str = "feedback.observer={\"markers\":{\"tip\":\"0.1 mm\"},\"lasting\":0.02}";
@@ -199,6 +200,60 @@ fn an_observer_that_sees_nothing_has_no_gains() {
     assert!(!here.join("blind/feedback.json").exists());
 }
 
+/// The corrections that act over the delay have the numbers of their intervals from 0 on, as in messages and names of unknowns.
+#[test]
+fn columns_of_corrections_count_intervals_from_0() {
+    let folder = workshop();
+    let here = folder.path();
+    let delay = "feedback.delay=\"20 ms\"";
+    let arguments = [
+        "solve",
+        "problems/pair_feedback.json",
+        "-o",
+        "late",
+        "--no-report",
+        "--set",
+        delay,
+    ];
+    let (status, out, err) = run(here, &arguments);
+    assert_eq!(status, 0, "{out}{err}");
+    let table = fs::read_to_string(here.join("late/feedback.csv")).unwrap();
+    let titles = table.lines().find(|line| !line.starts_with('#')).unwrap();
+    let has = |k: usize| {
+        let name = format!("by correction of muscle1^2 in interval {k} ");
+        titles.contains(&name)
+    };
+    assert_eq!([0, 1, 2].map(has), [true, true, false], "{titles}");
+}
+
+/// Readings so exact that rounding hides what they tell have another reason than readings that tell nothing.
+#[test]
+fn an_observer_of_too_exact_readings_tells_that_rounding_hides_the_state() {
+    let folder = workshop();
+    let here = folder.path();
+    let solved = |deviation: &str| {
+        let observer =
+            format!("feedback={{\"observer\":{{\"markers\":{{\"tip\":\"{deviation}\"}}}}}}");
+        let arguments = [
+            "solve",
+            "problems/pair_feedback.json",
+            "-o",
+            "exact",
+            "--no-report",
+            "--set",
+            &observer,
+        ];
+        let (status, out, err) = run(here, &arguments);
+        assert_eq!(status, 0, "{out}{err}");
+        err
+    };
+    let err = solved("1e-6 um");
+    assert!(err.contains("no observer: rounding hides"), "{err}");
+    assert!(!err.contains("not all that moves follows"), "{err}");
+    let err = solved("1 um");
+    assert!(err.contains("the observer finds the state"), "{err}");
+}
+
 #[test]
 fn wrong_observers_are_refused() {
     let folder = workshop();
@@ -236,7 +291,7 @@ fn wrong_observers_are_refused() {
         );
     }
     solved(here, "problems/pair_feedback.json", "pair", &[OBSERVER]);
-    let text = std::fs::read_to_string(here.join("pair/feedback.json")).unwrap();
+    let text = fs::read_to_string(here.join("pair/feedback.json")).unwrap();
     let simulate = |controller: &str, told: &[&str]| {
         let set = format!("simulate.controller={controller}");
         refused(
@@ -267,7 +322,7 @@ fn wrong_observers_are_refused() {
         ),
     ] {
         assert!(text.contains(from), "{from}");
-        std::fs::write(here.join("wrong.json"), text.replacen(from, to, 1)).unwrap();
+        fs::write(here.join("wrong.json"), text.replacen(from, to, 1)).unwrap();
         simulate("{\"feedback\":\"../wrong.json\"}", told);
     }
 }

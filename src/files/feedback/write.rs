@@ -216,7 +216,7 @@ pub fn law_csv(law: &Law, system: &System, head: &str) -> String {
         .collect();
     for k in 0..law.delay {
         for (name, unit, square) in &acting {
-            let name = format!("correction of {name}{square} in interval {}", k + 1);
+            let name = format!("correction of {name}{square} in interval {k}");
             read.push((name, format!("{unit}{square}")));
         }
     }

@@ -98,12 +98,12 @@ impl fmt::Display for NoRegulator {
             Self::State(reason) => write!(f, "{reason}"),
             Self::NoInput => f.write_str("no voltage or load is sought that could be fed back"),
             Self::Large(size) => write!(f, "its state has {size} entries, more than {MOST}"),
-            Self::Singular(k) => write!(f, "the linearised step {} is singular", k + 1),
+            Self::Singular(k) => write!(f, "the linearised step of interval {k} is singular"),
             Self::Step(error) => f.write_str(error),
             Self::Observer(reason) => write!(f, "no observer: {reason}"),
             Self::Stopped => f.write_str("the run was stopped before"),
             Self::Recursion(k) => {
-                write!(f, "the Riccati recursion has no result at step {}", k + 1)
+                write!(f, "the Riccati recursion has no result in interval {k}")
             }
         }
     }
@@ -227,7 +227,7 @@ impl Regulated {
         out.extend(worst.map(|one| {
             format!(
                 "in interval {} a step of the motion from a state off it differs from that of the linear closed loop by {:.1} %: shorter intervals are needed for feedback",
-                one.interval + 1,
+                one.interval,
                 100.0 * one.difference
             )
         }));
