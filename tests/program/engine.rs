@@ -8,7 +8,8 @@ use std::os::unix::fs::PermissionsExt;
 use std::path::Path;
 
 /// Keeps the name of its job, how its tasks ended, and a line for each task that it did. It is deaf to questions about tasks
-/// while there is a file `deaf`, and absent while there is a file `absent`.
+/// while there is a file `deaf`, and absent while there is a file `absent`. While there is a file `early`, a stop seems to have kept the results
+/// from better ones.
 const SERVER: &str = r#"#!/bin/sh
 here=$(dirname "$0")
 failed() { printf '%s\n' '{"error": "nobody there\n\nStack backtrace:\n   0: main"}'; exit 1; }
@@ -43,6 +44,7 @@ submit*)
         comma=,
         number=$((number + 1))
     done < "$lines" > "$here/tasks"
+    [ ! -e "$here/early" ] || sed -i 's/"code": "[a-z_]*"/"code": "stopped_early"/' "$here/../it's out/variants/"*/summary.json
     echo '{"id": 7}' ;;
 *) failed ;;
 esac
@@ -227,4 +229,31 @@ fn a_missing_server_is_told_before_anything_is_written() {
         "{err}"
     );
     assert!(!folder.join("it's out").exists());
+}
+
+/// Results that a stop kept from better ones are solved again, whatever their status is.
+#[test]
+fn variants_that_a_stop_left_acceptable_are_solved_again() {
+    let folder = workshop();
+    let folder = folder.path();
+    prepare(folder);
+    fs::write(folder.join("bin/early"), "").unwrap();
+    let (_, out, err) = sweep(folder);
+    assert!(out.contains("1 iteration_limit, 1 solved"), "{out}{err}");
+    let variants = fs::read_dir(folder.join("it's out/variants")).unwrap();
+    let mut summaries = variants.map(|one| read(one.unwrap().path().join("summary.json")));
+    let is_early = |summary: &serde_json::Value| {
+        summary["status"] == "solved" && summary["notes"][0]["code"] == "stopped_early"
+    };
+    assert!(summaries.any(|summary| is_early(&summary)));
+    fs::remove_file(folder.join("bin/early")).unwrap();
+    for found in ["1 found solved before", "2 found solved before"] {
+        let (status, out, err) = sweep(folder);
+        assert!(
+            status == 0 && out.contains("1 iteration_limit, 1 solved"),
+            "{out}{err}"
+        );
+        assert!(out.contains(found), "{out}{err}");
+        assert_eq!(tasks(folder), 3);
+    }
 }
