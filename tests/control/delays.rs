@@ -4,10 +4,11 @@ use crate::common::receding::problem;
 use crate::common::robot::Robot;
 use proboscis::control::problem::Regulator;
 use proboscis::feedback::{Controller, Law};
+use proboscis::ipopt::interrupt::{self, Questions};
 use proboscis::model::Model;
 use proboscis::tasks::{SolveRequest, solve};
 use proboscis::workflow::Iterate;
-use proboscis::workflow::regulator::regulator;
+use proboscis::workflow::regulator::{NoRegulator, regulator};
 use std::ops::ControlFlow;
 
 /// Deviations in rad of the joint from the goal in intervals behind the end of the motion, and the greatest before.
@@ -76,4 +77,41 @@ fn the_end_of_the_motion_is_predicted_over_a_delay() {
     let (beside, _) = behind_the_end(&model, &unaware);
     println!("{beside:.6?}");
     assert!((beside[1] - expected[1]).abs() > 0.5 * jump);
+}
+
+/// A stop in any step ends the search for gains as a stop: a step that was stopped is not a singular one.
+#[test]
+fn a_stop_among_the_gains_is_no_singular_step() {
+    let (system, control) = problem("pair.json", &["control.intervals=4"]);
+    let go_on = &mut |_: usize, _: &Iterate<'_>| ControlFlow::Continue(());
+    let found = solve(&system, &control, SolveRequest::default(), go_on).unwrap();
+    let optimum = &found.optimum;
+    let run = |allowed: u64| {
+        let questions = Questions::allowed(allowed);
+        let _watch = interrupt::watch_questions(&questions);
+        let task = Regulator::default();
+        let rest = optimum.boundary.rest[1].as_deref();
+        let momentum = &optimum.boundary.start.momentum;
+        let of = (&optimum.model, &control, &task);
+        let found = regulator(of, &found.discrete, momentum, rest);
+        (found.map(|found| found.held.is_some()), questions.asked())
+    };
+    let (whole, asked) = run(u64::MAX >> 1);
+    assert!(whole == Ok(true) && asked > 10, "{whole:?} {asked}");
+    let mut stopped = 0;
+    for allowed in (0..asked).step_by(29) {
+        match run(allowed).0 {
+            Ok(is_held) => assert!(is_held, "{allowed} of {asked}"),
+            Err(reason) => {
+                stopped += 1;
+                // The motion of the law is simulated first, and its steps say themselves that they were stopped.
+                let is_stop = match &reason {
+                    NoRegulator::Step(text) => text.contains("was stopped"),
+                    other => *other == NoRegulator::Stopped,
+                };
+                assert!(is_stop, "{allowed} of {asked}: {reason}");
+            }
+        }
+    }
+    assert!(stopped > 4, "{stopped}");
 }

@@ -71,17 +71,19 @@ impl Design<'_> {
         for (k, part) in motion.windows(2).enumerate() {
             let inputs = self.model.variables.split(&self.discrete.scalars[k])[0];
             let step = self.linearised(&mut linearisation, &part[0], inputs);
-            let step = step.ok_or(NoRegulator::Singular(k))?;
-            steps.push(self.augmented(&step, &part[0]));
+            // What is stopped has no result either.
             if interrupt::stop().is_some() {
                 return Err(NoRegulator::Stopped);
             }
+            let step = step.ok_or(NoRegulator::Singular(k))?;
+            steps.push(self.augmented(&step, &part[0]));
         }
         let end = motion.last().expect("an instant");
         let (mut held, mut not_held) = (None, None);
         if let Some(rest) = rest {
             match self.held(&mut linearisation, rest) {
                 Ok(found) => held = Some(found),
+                Err(_) if interrupt::stop().is_some() => return Err(NoRegulator::Stopped),
                 Err(reason) => not_held = Some(reason),
             }
         }
