@@ -2,7 +2,7 @@
 
 use crate::energy::Energy;
 use crate::functional::{Kernel, Order, Sample, Scatter, Stencil, VectorArg};
-use crate::math::{Derivatives, Local, Vector};
+use crate::math::{Derivatives, Gradient, Local, Vector};
 use nalgebra::SVector;
 use std::fmt;
 use std::marker::PhantomData;
@@ -88,15 +88,15 @@ where
         let (p, w) = Self::arguments(element, order, sample);
         let local = element.energy.at::<ORDER>(&p, &w);
         let plain = local.plain::<NV>();
-        to.plain(&plain);
-        if order < Order::Third {
-            return;
+        if const { ORDER == 1 } {
+            return to.plain(&Gradient(&plain));
         }
-        if E::VIRTUAL > 0 {
+        to.plain(&plain);
+        if const { ORDER == 3 } {
+            to.along(&plain, &local.along::<NV>());
+        } else if const { ORDER == 2 && E::VIRTUAL > 0 } && order == Order::Third {
             // At δx = w the virtual work itself is the contraction with the costates.
             to.along(&plain, &plain);
-        } else {
-            to.along(&plain, &local.along::<NV>());
         }
     }
 }
@@ -189,10 +189,17 @@ where
         (): &(),
         to: &mut S,
     ) {
-        match (order, E::VIRTUAL) {
-            (Order::Gradient, _) => Self::hand::<1>(element, order, sample, to),
-            (Order::Third, 0) => Self::hand::<3>(element, order, sample, to),
-            _ => Self::hand::<2>(element, order, sample, to),
+        debug_assert!(S::receives(order));
+        if const { matches!(S::ORDER, Some(Order::Gradient)) } {
+            Self::hand::<1>(element, order, sample, to);
+        } else if const { matches!(S::ORDER, Some(Order::Hessian)) } {
+            Self::hand::<2>(element, order, sample, to);
+        } else if order == Order::Gradient {
+            Self::hand::<1>(element, order, sample, to);
+        } else if const { E::VIRTUAL > 0 } || order == Order::Hessian {
+            Self::hand::<2>(element, order, sample, to);
+        } else {
+            Self::hand::<3>(element, order, sample, to);
         }
     }
 }

@@ -155,7 +155,7 @@ impl<K: Kernel> Scatter for Action<'_, K> {
         let to = (&mut part.forces, part.rows.as_mut_slice());
         self.places
             .first(self.c, rows::<K>(self.element), derivatives, to);
-        if self.order < Order::Hessian {
+        if const { !D::HAS_SECOND } || self.order < Order::Hessian {
             return;
         }
         if K::DEGREE >= 2 {

@@ -11,11 +11,19 @@ pub trait Scatter {
     /// not contracted it takes those by a vector and a parameter only.
     const OF_PARAMETERS: bool = true;
 
+    /// The one order at which it receives derivatives; all where it is `None`. Nothing is compiled for the others.
+    const ORDER: Option<Order> = None;
+
     /// Those of its scalar.
     fn plain<D: Derivatives>(&mut self, plain: &D);
 
     /// Those of its scalar contracted with the direction, after those of the scalar itself.
     fn along<D: Derivatives, W: Derivatives>(&mut self, plain: &D, along: &W);
+
+    /// False if it never receives derivatives at the order.
+    fn receives(order: Order) -> bool {
+        Self::ORDER.is_none_or(|only| only == order)
+    }
 }
 
 /// Elements of one kind: the arguments of an element, and the derivatives of its scalar E by them.

@@ -16,7 +16,7 @@ use crate::energy::Energy;
 use crate::functional::by_parameters::{ByParameter, ByParameters, OfElement, Values, contraction};
 use crate::functional::law::{Law, LawElement, MOST_PARAMETERS, Move};
 use crate::functional::{Kernel, Order, ParameterOrder, Sample, Scatter, VectorArg};
-use crate::math::{Derivatives, Dual, HyperDual, Local, Number, Vector};
+use crate::math::{Derivatives, Dual, Gradient, HyperDual, Local, Number, Vector};
 use nalgebra::{SVector, Vector3};
 use std::fmt;
 use std::marker::PhantomData;
@@ -215,6 +215,39 @@ impl<L: Law<M>, const M: usize, const NV: usize, const NS: usize> Laws<L, M, NV,
         }
     }
 
+    /// Derivatives up to an order: of the formula by its arguments, and by parameters where `of_parameters` alone or the sample asks for them.
+    /// It knows no receiver, so that it is compiled once for all.
+    fn evaluated<const ORDER: usize>(
+        element: &LawElement<L, NV, NS>,
+        (order, sample): (Order, &Sample<'_>),
+        of_parameters: bool,
+        values: &Values<f64>,
+        [by, by_along]: [&mut ByParameters<NV, NS>; 2],
+    ) -> <Plain<L, M> as Energy<M>>::Local<ORDER> {
+        let parameters = &values[..element.parameters.len()];
+        let p = Self::point(element, order, sample, parameters);
+        let w = match const { ORDER == 3 } {
+            true => Self::direction(element, sample, parameters),
+            false => SVector::zeros(),
+        };
+        by.resize(parameters.len(), ByParameter::ZERO);
+        if const { ORDER == 3 } {
+            by_along.resize(parameters.len(), ByParameter::ZERO);
+        }
+        let asked = sample.sides.parameters;
+        if of_parameters || (order > Order::Gradient && asked != ParameterOrder::None) {
+            let pairs = match order {
+                Order::Gradient => false,
+                Order::Hessian => of_parameters,
+                Order::Third => asked == ParameterOrder::Second,
+            };
+            let at = (order, sample, pairs);
+            let along = const { ORDER == 3 }.then_some(&mut by_along[..]);
+            Self::by_parameters(element, at, values, by, along);
+        }
+        element.law.formula(parameters).at::<ORDER>(&p, &w)
+    }
+
     fn hand<const ORDER: usize, S: Scatter>(
         element: &LawElement<L, NV, NS>,
         order: Order,
@@ -222,37 +255,19 @@ impl<L: Law<M>, const M: usize, const NV: usize, const NS: usize> Laws<L, M, NV,
         to: &mut S,
     ) {
         let values = Self::values(element, sample);
-        let parameters = &values[..element.parameters.len()];
-        let is_contracted = order == Order::Third && Self::VIRTUAL == 0;
-        let p = Self::point(element, order, sample, parameters);
-        let w = match is_contracted {
-            true => Self::direction(element, sample, parameters),
-            false => SVector::zeros(),
-        };
-        let local = element.law.formula(parameters).at::<ORDER>(&p, &w);
-        let count = parameters.len();
         let (mut by, mut by_along) = (ByParameters::new(), ByParameters::new());
-        by.resize(count, ByParameter::ZERO);
-        if is_contracted {
-            by_along.resize(count, ByParameter::ZERO);
-        }
-        let asked = sample.sides.parameters;
-        if S::OF_PARAMETERS || (order > Order::Gradient && asked != ParameterOrder::None) {
-            let pairs = match order {
-                Order::Gradient => false,
-                Order::Hessian => S::OF_PARAMETERS,
-                Order::Third => asked == ParameterOrder::Second,
-            };
-            let at = (order, sample, pairs);
-            let along = is_contracted.then_some(&mut by_along[..]);
-            Self::by_parameters(element, at, &values, &mut by, along);
-        }
+        let both = [&mut by, &mut by_along];
+        let at = (order, sample);
+        let local = Self::evaluated::<ORDER>(element, at, S::OF_PARAMETERS, &values, both);
         let plain = Self::of_element((element, &values), local.plain::<NV>(), &by);
+        if const { ORDER == 1 } {
+            return to.plain(&Gradient(&plain));
+        }
         to.plain(&plain);
-        if is_contracted {
+        if const { ORDER == 3 } {
             let along = Self::of_element((element, &values), local.along::<NV>(), &by_along);
             to.along(&plain, &along);
-        } else if order == Order::Third {
+        } else if const { ORDER == 2 && Self::VIRTUAL > 0 } && order == Order::Third {
             // At δx = w the virtual work itself is the contraction with the costates.
             to.along(&plain, &plain);
         }
@@ -322,10 +337,17 @@ impl<L: Law<M>, const M: usize, const NV: usize, const NS: usize> Kernel for Law
         (): &(),
         to: &mut S,
     ) {
-        match (order, Self::VIRTUAL) {
-            (Order::Gradient, _) => Self::hand::<1, S>(element, order, sample, to),
-            (Order::Third, 0) => Self::hand::<3, S>(element, order, sample, to),
-            _ => Self::hand::<2, S>(element, order, sample, to),
+        debug_assert!(S::receives(order));
+        if const { matches!(S::ORDER, Some(Order::Gradient)) } {
+            Self::hand::<1, S>(element, order, sample, to);
+        } else if const { matches!(S::ORDER, Some(Order::Hessian)) } {
+            Self::hand::<2, S>(element, order, sample, to);
+        } else if order == Order::Gradient {
+            Self::hand::<1, S>(element, order, sample, to);
+        } else if const { Self::VIRTUAL > 0 } || order == Order::Hessian {
+            Self::hand::<2, S>(element, order, sample, to);
+        } else {
+            Self::hand::<3, S>(element, order, sample, to);
         }
     }
 }

@@ -19,6 +19,8 @@ struct Gradient<'a, K: Kernel> {
 }
 
 impl<K: Kernel> Scatter for Gradient<'_, K> {
+    const ORDER: Option<Order> = Some(Order::Gradient);
+
     fn plain<D: Derivatives>(&mut self, d: &D) {
         let derivatives = (|i| d.force(i), |s| d.row(s));
         let to = (&mut *self.forces, &mut *self.rows);
@@ -35,6 +37,8 @@ struct AlongRates<'a, K: Kernel> {
 }
 
 impl<K: Kernel> Scatter for AlongRates<'_, K> {
+    const ORDER: Option<Order> = Some(Order::Gradient);
+
     fn plain<D: Derivatives>(&mut self, d: &D) {
         self.sum += self.v.along_gradient(d);
     }
@@ -82,6 +86,8 @@ impl<K: Kernel> Group<K> {
 }
 
 impl<K: Kernel> Scatter for Weighted<'_, K> {
+    const ORDER: Option<Order> = Some(Order::Hessian);
+
     fn plain<D: Derivatives>(&mut self, d: &D) {
         let Outer { slope, curvature } = self.outer;
         if curvature == 0.0 {

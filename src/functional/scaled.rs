@@ -92,6 +92,8 @@ struct Times<'a, D> {
 }
 
 impl<D: Derivatives> Derivatives for Times<'_, D> {
+    const HAS_SECOND: bool = D::HAS_SECOND;
+
     fn force(&self, i: usize) -> Vector {
         self.of.force(i) * self.factor.value
     }
@@ -171,6 +173,7 @@ impl<K: Kernel, S> WithFactor<'_, K, S> {
 
 impl<K: Kernel, S: Scatter> Scatter for WithFactor<'_, K, S> {
     const OF_PARAMETERS: bool = S::OF_PARAMETERS;
+    const ORDER: Option<Order> = S::ORDER;
 
     fn plain<D: Derivatives>(&mut self, plain: &D) {
         let plain = self.times(plain, 0.0);

@@ -9,6 +9,9 @@ use nalgebra::{Matrix3, SMatrix, SVector, Vector3};
 /// potentials). What nobody asks for need not exist: after a gradient nobody asks for blocks, and of a pair of arguments that
 /// does not couple neither. What belongs to scalars is zero for elements without any.
 pub trait Derivatives<T: Number = f64> {
+    /// False if there are first derivatives alone: what asks for second ones is not compiled.
+    const HAS_SECOND: bool = true;
+
     /// ∂E/∂x_i.
     fn force(&self, i: usize) -> Vector3<T>;
 
@@ -28,6 +31,28 @@ pub trait Derivatives<T: Number = f64> {
     /// ∂²E/∂s∂t.
     fn entry(&self, _s: usize, _t: usize) -> T {
         T::zero()
+    }
+}
+
+/// First derivatives alone.
+#[derive(Debug)]
+pub struct Gradient<'a, D>(pub &'a D);
+
+impl<D: Derivatives> Derivatives for Gradient<'_, D> {
+    const HAS_SECOND: bool = false;
+
+    #[inline(always)]
+    fn force(&self, i: usize) -> Vector3<f64> {
+        self.0.force(i)
+    }
+
+    #[inline(always)]
+    fn row(&self, s: usize) -> f64 {
+        self.0.row(s)
+    }
+
+    fn block(&self, i: usize, j: usize) -> Matrix3<f64> {
+        self.0.block(i, j)
     }
 }
 

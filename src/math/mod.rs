@@ -16,7 +16,7 @@ mod signal;
 mod stopped;
 
 pub(crate) use compact_index::compact_index;
-pub use derivatives::{Derivatives, Local};
+pub use derivatives::{Derivatives, Gradient, Local};
 pub use digits::{no_smaller, shortest, significant};
 pub use eigenvalue_bound::largest_eigenvalue_bound;
 pub use jet::Jet;
