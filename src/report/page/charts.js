@@ -309,6 +309,9 @@ function round(scale) {
   scale.ticks = ticks;
 }
 
+/** Layouts after which units are as equal as they become. */
+const ROUNDS = 20;
+
 /** Makes units equally long on both axes. */
 function even(chart, series) {
   const all = series.flatMap((one) => one.points).filter((point) => Number.isFinite(point.x) && Number.isFinite(point.y));
@@ -324,5 +327,7 @@ function even(chart, series) {
     return true;
   };
   const changed = [set("x", left, right, width), set("y", low, high, height)];
-  if (changed.includes(true)) queueMicrotask(() => chart.ctx && chart.update("none"));
+  // A chart whose ticks change its area at every layout has no end.
+  chart.rounds = changed.includes(true) ? ((chart.rounds ?? 0) + 1) % ROUNDS : 0;
+  if (chart.rounds > 0) queueMicrotask(() => chart.ctx && chart.update("none"));
 }
