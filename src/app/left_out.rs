@@ -4,10 +4,12 @@ use std::time::Instant;
 
 use crate::app::fields;
 use crate::app::request::CommandInput;
-use crate::app::summary::Summary;
+use crate::app::summary::{MEASURED, Summary};
 use crate::ipopt::Status;
 use crate::ipopt::interrupt::TimeLimit;
+use crate::model::Model;
 use crate::report::file_set::FileSet;
+use crate::workflow::effects::Plan;
 
 /// Files that an earlier result of the folder may have.
 pub(super) const EARLIER: [&str; 29] = [
@@ -44,6 +46,25 @@ pub(super) const EARLIER: [&str; 29] = [
 
 /// Statuses of a run that was stopped.
 pub(super) const STOPPED: [&str; 2] = ["interrupted", "time_limit"];
+
+/// Most unknowns of a run that was stopped whose effects are counted: those of 10⁶ take half a minute.
+const COUNTED: usize = 100_000;
+
+/// The effects of a model; none of a large one whose run was stopped.
+pub(super) fn plan(model: &Model, was_stopped: bool) -> Plan {
+    match was_stopped && model.variables.unknown_count() > COUNTED {
+        true => Plan::default(),
+        false => Plan::from_model(model, None, MEASURED),
+    }
+}
+
+/// Warns of effects that are not counted.
+pub(super) fn tell_plan(plan: &Plan, summary: &mut Summary) {
+    if plan.effects.is_empty() {
+        let words = "effects are not counted: the run was stopped";
+        summary.notes.warn("left_out", [words.to_owned()]);
+    }
+}
 
 /// The limit of writing, of a run that began at a time.
 pub(super) fn time_to_write(request: &CommandInput, began: Instant) -> TimeLimit {

@@ -10,7 +10,7 @@ use crate::app::displayed_motion::{DisplayedMotion, Motion};
 use crate::app::energy_summary::EnergySummary;
 use crate::app::error::CommandError;
 use crate::app::fields;
-use crate::app::left_out::{STOPPED, leave_out, time_to_write};
+use crate::app::left_out::{STOPPED, leave_out, plan, tell_plan, time_to_write};
 use crate::app::messages::counted;
 use crate::app::page;
 use crate::app::progress::{Progress, Reached};
@@ -19,7 +19,7 @@ use crate::app::resume_file;
 use crate::app::seconds::Seconds;
 use crate::app::simulation_page::{held, rows};
 use crate::app::solution_file;
-use crate::app::summary::{self, MEASURED, Summary};
+use crate::app::summary::{self, Summary};
 use crate::app::unfinished::{self, Unfinished};
 use crate::control::problem::Simulation;
 use crate::dynamics::trajectory::{Observations, Trajectory};
@@ -55,8 +55,7 @@ pub(super) fn simulation(
         loaded,
         task,
         began,
-        // Steps that are halved begin anew: what is kept of them is no motion to go on with.
-        // Of a controller neither is.
+        // What is kept of halved steps, which begin anew, or of a controller is no motion to go on with.
         resumable: (request.wanted.is_none() && task.controller.is_none()).then_some(&*problem),
         loops: &[],
         left_out: &[],
@@ -78,14 +77,16 @@ pub(super) fn simulation(
     keep(&run, &ended, &mut files)?;
     let (limit, kept) = (time_to_write(request, began), files.count());
     files.limit(&limit);
-    let mut summary = summary_of(&run, &ended, read);
+    let plan = plan(&ended.simulated.model, ended.stopped.is_some());
+    let mut summary = summary_of((&run, read), &ended, &plan);
     let written = write_all(&run, &ended, (&mut summary, asked), (&mut files, &limit));
     if let Err(error) = written {
         let status = limit.reached().ok_or(error)?;
-        summary = summary_of(&run, &ended, read);
+        summary = summary_of((&run, read), &ended, &plan);
         let status = ended.stopped.unwrap_or(status);
         leave_out(&mut summary, status, &mut files, kept);
     }
+    tell_plan(&plan, &mut summary);
     summary.seconds.wrote(began, writing);
     summary.write(files)?;
     unfinished::done(&folder);
@@ -257,11 +258,11 @@ fn observe(
 }
 
 /// The summary of a simulation that is neither observed nor assessed.
-fn summary_of(run: &Run<'_>, ended: &SimulationResult, read: f64) -> Summary {
+fn summary_of((run, read): (&Run<'_>, f64), ended: &SimulationResult, plan: &Plan) -> Summary {
     let simulated = &ended.simulated;
-    let model = &simulated.model;
-    let mut summary = Summary::new(run.request, ended.word(), model.coordinates.name());
-    summary.plan = Plan::from_model(model, None, MEASURED);
+    let coordinates = simulated.model.coordinates.name();
+    let mut summary = Summary::new(run.request, ended.word(), coordinates);
+    summary.plan = plan.clone();
     summary.message = simulated.failure.as_ref().map(ToString::to_string);
     summary.simulation = Some(simulation_summary(run, ended, None));
     summary.accuracy.clone_from(&ended.accuracy);

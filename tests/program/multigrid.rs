@@ -1,7 +1,11 @@
 //! Iterations with multigrid from the command line: their counts, and scenes without grids.
 
 use crate::commands::summary;
+use crate::common::signals::{Listening as _, interrupt};
 use crate::runs::{problem, run, workshop};
+use std::process::{Command, Stdio};
+use std::thread::sleep;
+use std::time::Duration;
 
 const MULTIGRID: [&str; 2] = ["--set", "simulate.linear_solver=multigrid"];
 
@@ -51,4 +55,40 @@ fn a_scene_without_grids_is_refused() {
     assert_eq!(status, 2, "{said}");
     assert!(said.contains("simulate.linear_solver"), "{said}");
     assert!(said.contains("elastic blocks"), "{said}");
+}
+
+/// Couplings of 10⁶ unknowns take half a minute to count, which nobody waits for behind a stop.
+#[cfg(unix)]
+#[test]
+fn effects_of_a_large_block_are_not_counted_behind_a_stop() {
+    let folder = workshop();
+    let path = problem("block");
+    let stopped = |elements: &str, duration: &str, to: &'static str| {
+        let duration = format!("simulate.duration={duration}");
+        let elements = format!("scene.solids.block.box.elements={elements}");
+        let mut child = Command::new(assert_cmd::cargo::cargo_bin("proboscis"))
+            .current_dir(folder.path())
+            .args(["simulate", &path, "--set", &elements, "-o", to])
+            .args(["--set", &duration])
+            .stdout(Stdio::null())
+            .stderr(Stdio::null())
+            .spawn_listening()
+            .unwrap();
+        // The folder is made when the first step is told.
+        while !folder.path().join(to).exists() {
+            assert_eq!(child.try_wait().unwrap(), None, "it has ended");
+            sleep(Duration::from_millis(20));
+        }
+        interrupt(&child);
+        assert_eq!(child.wait().unwrap().code(), Some(1));
+        let found = summary(folder.path(), to);
+        assert_eq!(found["status"], "interrupted");
+        let effects = found["effects"].as_array().map_or(0, Vec::len);
+        (
+            effects,
+            found.to_string().contains("effects are not counted"),
+        )
+    };
+    assert_eq!(stopped("[3,3,12]", "10 s", "small"), (3, false));
+    assert_eq!(stopped("[18,18,72]", "10 ms", "large"), (0, true));
 }
