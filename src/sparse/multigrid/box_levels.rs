@@ -100,21 +100,28 @@ impl GridLevel for Level {
     }
 
     fn visit(&self, visit: &mut dyn FnMut(usize, usize, f64)) {
-        let rows = (0..self.free.len()).flat_map(|node| self.matrix.grid_row(node));
-        let mut matrix: Vec<_> = rows.map(|block| block.map(f64::from)).collect();
-        if let Some(pressures) = &self.pressures {
+        let with_volumes = self.pressures.as_ref().map(|pressures| {
+            let mut matrix = Vec::with_capacity(self.matrix.blocks());
+            let rows = (0..self.free.len()).flat_map(|node| self.matrix.grid_row(node));
+            matrix.extend(rows.map(|block| block.map(f64::from)));
             pressures.add_to(&mut matrix);
-        }
+            matrix
+        });
         let offsets = offsets(self.counts);
-        for (place, block) in matrix.iter().enumerate() {
-            let (node, neighbour) = (place / NEIGHBOURS, place % NEIGHBOURS);
-            if !is_inside(self.counts, node, neighbour) {
-                continue;
-            }
-            let other = (node as isize + offsets[neighbour]) as usize;
-            for (entry, value) in block.iter().enumerate() {
-                let (row, col) = (entry % COMPONENTS, entry / COMPONENTS);
-                visit(COMPONENTS * node + row, COMPONENTS * other + col, *value);
+        for node in 0..self.free.len() {
+            for (neighbour, block) in self.matrix.grid_row(node).enumerate() {
+                if !is_inside(self.counts, node, neighbour) {
+                    continue;
+                }
+                let block = match &with_volumes {
+                    Some(matrix) => matrix[NEIGHBOURS * node + neighbour],
+                    None => block.map(f64::from),
+                };
+                let other = (node as isize + offsets[neighbour]) as usize;
+                for (entry, value) in block.iter().enumerate() {
+                    let (row, col) = (entry % COMPONENTS, entry / COMPONENTS);
+                    visit(COMPONENTS * node + row, COMPONENTS * other + col, *value);
+                }
             }
         }
     }

@@ -321,8 +321,8 @@ impl GridLevel for MeshLevel {
     }
 
     fn visit(&self, visit: &mut dyn FnMut(usize, usize, f64)) {
-        let matrix = self.matrix.blocks().map(|block| block.map(f64::from));
-        let mut matrix: Vec<_> = matrix.collect();
+        let mut matrix = Vec::with_capacity(self.matrix.rows.blocks());
+        matrix.extend(self.matrix.blocks().map(|block| block.map(f64::from)));
         if let Some(pressures) = &self.pressures {
             pressures.add_to(&self.matrix.rows, &mut matrix);
         }
