@@ -68,7 +68,7 @@ impl LawInput {
         }
     }
 
-    /// Returns true if a value is within [`AT_BOUND`] of its range, of squares where it acts by them, of its lower (0) or upper (1) bound.
+    /// Returns true if a value is within 1e-4 of its range, of squares where it acts by them, of its lower (0) or upper (1) bound.
     pub fn is_at_bound(&self, value: f64, side: usize) -> bool {
         let (value, bounds, _) = self.wanted(value, 0.0);
         (value - bounds[side]).abs() <= AT_BOUND * (bounds[1] - bounds[0])
