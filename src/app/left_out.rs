@@ -50,19 +50,14 @@ pub(super) const STOPPED: [&str; 2] = ["interrupted", "time_limit"];
 /// Most unknowns of a run that was stopped whose effects are counted: those of 10⁶ take half a minute.
 const COUNTED: usize = 100_000;
 
-/// The effects of a model; none of a large one whose run was stopped.
-pub(super) fn plan(model: &Model, was_stopped: bool) -> Plan {
+/// The plan of a model; where a large one was stopped, without effects and with words that say so.
+pub(super) fn plan(model: &Model, was_stopped: bool) -> (Plan, Option<String>) {
     match was_stopped && model.variables.unknown_count() > COUNTED {
-        true => Plan::default(),
-        false => Plan::from_model(model, None, MEASURED),
-    }
-}
-
-/// Warns of effects that are not counted.
-pub(super) fn tell_plan(plan: &Plan, summary: &mut Summary) {
-    if plan.effects.is_empty() {
-        let words = "effects are not counted: the run was stopped";
-        summary.notes.warn("left_out", [words.to_owned()]);
+        true => {
+            let words = "effects are not counted: the run was stopped";
+            (Plan::uncounted(model), Some(words.to_owned()))
+        }
+        false => (Plan::from_model(model, None, MEASURED), None),
     }
 }
 

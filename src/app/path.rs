@@ -8,13 +8,14 @@ use crate::app::equilibrium_summary::at_rest;
 use crate::app::error::CommandError;
 use crate::app::fields;
 use crate::app::folder::make_folder_of;
+use crate::app::left_out::plan;
 use crate::app::messages::counted;
 use crate::app::no_equilibrium::refused;
 use crate::app::page;
 use crate::app::path_summary::PathSummary;
 use crate::app::request::{CommandInput, CommandOutput};
 use crate::app::seconds::Seconds;
-use crate::app::summary::{MEASURED, Summary};
+use crate::app::summary::Summary;
 use crate::control::problem::AtRest;
 use crate::dynamics::trajectory::{Column, Observations, Trajectory};
 use crate::dynamics::{
@@ -33,7 +34,6 @@ use crate::report::style::Dash;
 use crate::report::{Branch, PageContent, Run, style, write_still};
 use crate::tasks::equilibrium::model_at_rest;
 use crate::workflow::domain;
-use crate::workflow::effects::Plan;
 use crate::workflow::phase::phase;
 
 /// Follows the path for `points` equilibria and writes `path.csv`, `path.svg`, the fields, and figure and page of the last
@@ -64,7 +64,9 @@ pub(super) fn follow(
     fields::write(&mut files, &model, &path.discrete, &origin)?;
     let word = stopped.map_or("path_followed", Status::word);
     let mut summary = Summary::new(request, word, model.coordinates.name());
-    summary.plan = Plan::from_model(&model, None, MEASURED);
+    let (plan, uncounted) = plan(&model, stopped.is_some());
+    summary.plan = plan;
+    summary.notes.warn("left_out", uncounted);
     let followed = PathSummary::new(&found);
     let rows = followed.rows(path.stops[path.shown()].fraction);
     let output = command_output(&followed, found.points.len(), stopped, &folder);

@@ -10,7 +10,7 @@ use crate::app::displayed_motion::{DisplayedMotion, Motion};
 use crate::app::energy_summary::EnergySummary;
 use crate::app::error::CommandError;
 use crate::app::fields;
-use crate::app::left_out::{STOPPED, leave_out, plan, tell_plan, time_to_write};
+use crate::app::left_out::{STOPPED, leave_out, plan, time_to_write};
 use crate::app::messages::counted;
 use crate::app::page;
 use crate::app::progress::{Progress, Reached};
@@ -77,7 +77,7 @@ pub(super) fn simulation(
     keep(&run, &ended, &mut files)?;
     let (limit, kept) = (time_to_write(request, began), files.count());
     files.limit(&limit);
-    let plan = plan(&ended.simulated.model, ended.stopped.is_some());
+    let (plan, uncounted) = plan(&ended.simulated.model, ended.stopped.is_some());
     let mut summary = summary_of((&run, read), &ended, &plan);
     let written = write_all(&run, &ended, (&mut summary, asked), (&mut files, &limit));
     if let Err(error) = written {
@@ -86,7 +86,7 @@ pub(super) fn simulation(
         let status = ended.stopped.unwrap_or(status);
         leave_out(&mut summary, status, &mut files, kept);
     }
-    tell_plan(&plan, &mut summary);
+    summary.notes.warn("left_out", uncounted);
     summary.seconds.wrote(began, writing);
     summary.write(files)?;
     unfinished::done(&folder);

@@ -55,6 +55,14 @@ impl Plan {
             absent: absent(model, control),
         }
     }
+
+    /// The plan of a model without control whose effects are not counted.
+    pub fn uncounted(model: &Model) -> Self {
+        Self {
+            effects: Vec::new(),
+            absent: absent(model, None),
+        }
+    }
 }
 
 /// Matrix in which the pairs of an effect are counted.
