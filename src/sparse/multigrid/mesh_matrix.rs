@@ -33,10 +33,11 @@ impl MeshMatrix {
 
     /// Writes the blocks, which count row by row.
     pub(super) fn write(&mut self, of: impl Fn(usize) -> Block) {
-        let mut rows = self.blocks.rows_mut();
-        for (block, (row, column)) in self.rows.entries().enumerate() {
-            *rows.next(row, column) = of(block);
-        }
+        let mut number = 0;
+        self.each_mut(|_, _, block| {
+            *block = of(number);
+            number += 1;
+        });
     }
 
     /// Calls `change` with row, column and block of each.
