@@ -112,8 +112,8 @@ impl GridTangent {
         self.solver.forget();
     }
 
-    /// Lets a matrix be written in place of the last one.
-    pub(super) fn write(&mut self, evaluate: impl FnOnce(&mut NodeBlocks)) {
+    /// Lets a matrix be written in place of the last one; returns false if it was time to stop before it was whole.
+    pub(super) fn write(&mut self, evaluate: impl FnOnce(&mut NodeBlocks)) -> bool {
         self.nodes.matrix = self.solver.lend();
         self.nodes.clear();
         evaluate(&mut self.nodes);
@@ -128,6 +128,7 @@ impl GridTangent {
             }
             self.nodes.pressures = Some(Pressures::Exact);
         }
+        self.nodes.is_whole
     }
 
     /// Derivatives by given scalars, of the matrix that was written.

@@ -197,6 +197,7 @@ impl<E: Equations> Steps<E> {
             let began = Instant::now();
             self.evaluate(order, h);
             self.report.assembly += began.elapsed().as_secs_f64();
+            self.go_on(h)?;
             let norm = self.residual.iter().map(|r| r * r).sum::<f64>().sqrt();
             residuals.push(norm);
             if !norm.is_finite() {
@@ -244,7 +245,7 @@ impl<E: Equations> Steps<E> {
         })
     }
 
-    /// Evaluates the equations; those of prescribed unknowns hold.
+    /// Evaluates the equations; those of prescribed unknowns hold. The residual is no number where it was time to stop.
     pub(super) fn evaluate(&mut self, order: Order, h: f64) {
         let grids = self.updates.matrix.grids_mut();
         match grids.filter(|_| order >= Order::Hessian) {
@@ -252,7 +253,11 @@ impl<E: Equations> Steps<E> {
                 // The matrix of a step before is no more.
                 self.factored = None;
                 let residual = &mut self.residual;
-                grids.write(|nodes| self.equations.evaluate(order, h, residual, Some(nodes)));
+                let is_whole =
+                    grids.write(|nodes| self.equations.evaluate(order, h, residual, Some(nodes)));
+                if !is_whole {
+                    residual.fill(f64::NAN);
+                }
             }
             None => self.equations.evaluate(order, h, &mut self.residual, None),
         }

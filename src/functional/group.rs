@@ -7,6 +7,7 @@ use crate::functional::slots::{self, Slots};
 use crate::functional::{
     Coupling, Horizon, Kernel, Order, Output, Sample, Scatter, Term, TermKind,
 };
+use crate::ipopt::interrupt;
 use crate::math::{Derivatives, Vector};
 use std::fmt;
 use std::ops::Range;
@@ -87,23 +88,25 @@ impl<K: Kernel> Group<K> {
         }
     }
 
-    /// Hands over the derivatives of each element, with the slots of its couplings, in their order.
+    /// Hands over the derivatives of each element, with the slots of its couplings, in their order, as long as `goes_on` says so; returns true
+    /// if it handed over all.
     #[inline(always)]
     pub(super) fn each(
         &self,
-        order: Order,
-        sample: &Sample<'_>,
+        (order, sample): (Order, &Sample<'_>),
         mut slots: &[u32],
-        mut receive: impl FnMut(&K::Element, Places<'_, K>, &K::Storage),
-    ) {
+        goes_on: impl Fn() -> bool,
+        mut receive: impl FnMut(&K::Element, Places<'_, K>, &K::Storage) + Send,
+    ) -> bool {
         self.prepared.each(
             &self.elements,
+            goes_on,
             |element, storage| K::prepare(element, order, sample, storage),
             |element, storage| {
                 let own = Slots::take::<K>(element, &mut slots);
                 receive(element, Places::new(element, own, sample), storage);
             },
-        );
+        )
     }
 }
 
@@ -295,26 +298,36 @@ impl<K: Kernel> Term for Group<K> {
         };
         let is_free =
             K::BY_DURATION && sample.horizon == Horizon::Free && self.site == Site::Intervals;
-        self.each(order, sample, slots, |element, places, storage| {
-            if let Some(nodes) = out
-                .plain
-                .nodes
-                .as_mut()
-                .filter(|nodes| nodes.pressures.is_some())
-            {
-                places.volume(c, sample, nodes);
-            }
-            let mut action = Action {
-                element,
-                places,
-                c,
-                scale: self.scale,
-                order,
-                sample,
-                is_free,
-                out: &mut *out,
-            };
-            K::derivatives(element, order, sample, storage, &mut action);
-        });
+        let is_at_nodes = out.plain.nodes.is_some();
+        let goes_on = || !(is_at_nodes && interrupt::stop().is_some());
+        let is_whole = self.each(
+            (order, sample),
+            slots,
+            goes_on,
+            |element, places, storage| {
+                if let Some(nodes) = out
+                    .plain
+                    .nodes
+                    .as_mut()
+                    .filter(|nodes| nodes.pressures.is_some())
+                {
+                    places.volume(c, sample, nodes);
+                }
+                let mut action = Action {
+                    element,
+                    places,
+                    c,
+                    scale: self.scale,
+                    order,
+                    sample,
+                    is_free,
+                    out: &mut *out,
+                };
+                K::derivatives(element, order, sample, storage, &mut action);
+            },
+        );
+        if let Some(nodes) = out.plain.nodes.as_mut() {
+            nodes.is_whole &= is_whole;
+        }
     }
 }

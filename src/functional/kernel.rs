@@ -37,7 +37,7 @@ pub trait Kernel: Debug + Send + Sync + 'static {
     type Element: Clone + Send + Sync;
 
     /// Storage in which [`prepare`](Self::prepare) keeps data of one element; `()` where nothing is worth it.
-    type Storage: Debug + Default + Send;
+    type Storage: Debug + Default + Send + Sync;
 
     /// Polynomial degree of E: derivatives above it vanish and are never asked for.
     const DEGREE: usize = usize::MAX;

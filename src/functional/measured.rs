@@ -173,16 +173,21 @@ impl<K: Kernel> Measure for Group<K> {
         debug_assert!(outer.curvature == 0.0 || is_one, "a sum has one square");
         let order = Order::Hessian;
         let is_free = sample.horizon == Horizon::Free && self.reads_rates();
-        self.each(order, sample, slots, |element, places, storage| {
-            let mut weighted = Weighted {
-                places,
-                scale: self.scale,
-                outer,
-                rates: is_free.then(|| Rates::new(element, sample)),
-                h: sample.h,
-                part: &mut *part,
-            };
-            K::derivatives(element, order, sample, storage, &mut weighted);
-        });
+        self.each(
+            (order, sample),
+            slots,
+            || true,
+            |element, places, storage| {
+                let mut weighted = Weighted {
+                    places,
+                    scale: self.scale,
+                    outer,
+                    rates: is_free.then(|| Rates::new(element, sample)),
+                    h: sample.h,
+                    part: &mut *part,
+                };
+                K::derivatives(element, order, sample, storage, &mut weighted);
+            },
+        );
     }
 }

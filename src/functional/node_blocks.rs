@@ -75,6 +75,8 @@ pub struct NodeBlocks {
     pub pressures: Option<Pressures>,
     /// Predicted pressures in MPa, in the order of the volumes.
     pub predicted: Vec<f64>,
+    /// False where it was time to stop before all elements were added.
+    pub is_whole: bool,
     /// True if derivatives by given scalars are kept too.
     has_given: bool,
     /// Places of these by vector or scalar, and given scalar.
@@ -155,6 +157,7 @@ impl NodeBlocks {
 
     /// Back to zero.
     pub fn clear(&mut self) {
+        self.is_whole = true;
         self.matrix.as_flattened_mut().fill(0.0);
         self.volumes.clear();
         let of_vectors = self.of_vectors.iter_mut();

@@ -178,11 +178,15 @@ fn muscles_of_finite_elements_go_on_to_the_bit() {
 /// A watch ends a motion at any of its questions, which are many within a step; what goes on after ever more of them is the whole motion.
 #[test]
 fn a_stop_within_a_step_changes_nothing() {
-    let set = [
-        &BLOCK[..1],
-        &["simulate.duration=40 ms", "simulate.step=0.5 ms"],
-    ]
-    .concat();
+    for (solver, duration) in [("auto", "40 ms"), ("multigrid", "8 ms")] {
+        stop_within_steps(solver, duration);
+    }
+}
+
+fn stop_within_steps(solver: &str, duration: &str) {
+    let solver = format!("simulate.linear_solver={solver}");
+    let duration = format!("simulate.duration={duration}");
+    let set = [BLOCK[0], "simulate.step=0.5 ms", &solver, &duration];
     let (system, task) = simulation("clamped_stack_step", &set);
     let watched = |begun: Option<DiscreteTrajectory>, allowed| {
         let questions = Questions::allowed(allowed);

@@ -21,4 +21,5 @@ mod random_blocks;
 mod refusals;
 mod slender;
 mod statics;
+mod stopped;
 mod structure;

@@ -55,6 +55,18 @@ pub fn stable_equilibrium_by(
     voltages: &[f64],
     multigrid: MultigridUse,
 ) -> Result<Equilibrium, EquilibriumError> {
+    // A way that was stopped ends like one that leads nowhere.
+    let stopped = |error| interrupt::stop().map_or(error, EquilibriumError::Stopped);
+    found(model, start, voltages, multigrid).map_err(stopped)
+}
+
+/// The same, whose errors may be those of a way that was stopped.
+fn found(
+    model: &Model,
+    start: &[f64],
+    voltages: &[f64],
+    multigrid: MultigridUse,
+) -> Result<Equilibrium, EquilibriumError> {
     let mut statics = begin(model, voltages, multigrid)?;
     if let Some(twin) = in_joints::twin(model) {
         let start = in_joints::carried(model, start, &twin);

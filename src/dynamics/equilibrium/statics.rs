@@ -173,7 +173,7 @@ impl<'m> Statics<'m> {
         self.residual = before;
     }
 
-    /// Rows and second derivatives where both instants are placed.
+    /// Rows and second derivatives where both instants are placed; rows are no numbers where it was time to stop.
     fn differentiate(&mut self) {
         let action = &self.model.action;
         let m = action.map.unknowns();
@@ -195,15 +195,16 @@ impl<'m> Statics<'m> {
             instant.forces.fill(Vector::zeros());
         }
         let interval = Interval::given(scalars, self.model.multiplier_time);
-        match matrix.grids_mut() {
+        let is_whole = match matrix.grids_mut() {
             Some(grids) => grids.write(|nodes| {
                 action.evaluate_at_rest([a, b], &interval, scratch, Some(nodes));
             }),
             None => {
                 action.evaluate_at_rest([a, b], &interval, scratch, None);
                 action.pull_back_interval(Order::Hessian, [a, b], &interval, 0, scratch, values);
+                true
             }
-        }
+        };
         for (force, other) in a.forces.iter_mut().zip(&b.forces) {
             *force += other;
         }
@@ -221,6 +222,9 @@ impl<'m> Statics<'m> {
         action.rows(a, scratch, &mut residual[..m]);
         let rows = &scratch.interval.plain.rows[variables.algebraic()];
         residual[m..].copy_from_slice(rows);
+        if !is_whole {
+            residual.fill(f64::NAN);
+        }
         self.add_curvature();
     }
 
@@ -301,6 +305,9 @@ impl<'m> Statics<'m> {
             }
             self.iterations += 1;
             self.evaluate(state, voltages);
+            if let Some(status) = interrupt::stop() {
+                return Err(EquilibriumError::Stopped(status));
+            }
             if self.residual.iter().any(|r| !r.is_finite()) {
                 return Ok(NewtonOutcome::Failed);
             }
