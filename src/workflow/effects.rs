@@ -1,13 +1,11 @@
 //! Model terms and their sizes: elements, the unknowns that each term reads, and the pairs that it couples.
 
-use rayon::slice::ParallelSliceMut;
 use serde::Serialize;
 
 use crate::control::problem::Control;
-use crate::coordinates::CoordinateMap;
-use crate::functional::{Coupling, Term, TermKind};
-use crate::math::has_pool;
+use crate::functional::{Term, TermKind};
 use crate::model::{Model, Time, Variable};
+use crate::workflow::coupled::{Arguments, Coupled};
 use crate::workflow::reasons::{self, Absent, absent};
 use crate::workflow::stopwatch;
 
@@ -76,13 +74,6 @@ enum Matrix {
     Rest,
 }
 
-/// An effect with the pairs of unknowns it couples, the smaller of each pair first, sorted; coordinates by entry, scalars
-/// of the site behind them.
-struct Coupled<'a> {
-    effect: &'a dyn Term,
-    pairs: Vec<[u32; 2]>,
-}
-
 /// Counts of all effects of a model, each measured for `spent` seconds or one evaluation; of a control problem in its
 /// program, otherwise in the tangent.
 pub fn effect_counts(model: &Model, control: Option<&Control>, spent: f64) -> Vec<EffectCounts> {
@@ -112,12 +103,13 @@ pub fn effect_counts(model: &Model, control: Option<&Control>, spent: f64) -> Ve
             .iter()
             .map(scalar)
             .collect(),
-        multipliers: model.action.instants.scalars,
         matrix,
     };
     let times = stopwatch::times(model, spent);
-    let count = |(coupled, microseconds): (Coupled<'_>, f64)| {
-        let count = coupled.counts(&unknowns);
+    let arguments = arguments(model);
+    let count = |(effect, microseconds): (&dyn Term, f64)| {
+        let coupled = Coupled::new(effect, &arguments);
+        let count = unknowns.counts(&coupled, &arguments);
         EffectCounts {
             why: reasons::why(&count.name, model),
             microseconds,
@@ -133,8 +125,6 @@ struct Unknowns {
     coordinates: usize,
     /// Scalars of an interval.
     scalars: Vec<Scalar>,
-    /// Number of multipliers of an instant.
-    multipliers: usize,
     matrix: Matrix,
 }
 
@@ -147,110 +137,82 @@ struct Scalar {
 
 /// Names of the effects that couple two unknowns: coordinates by entry, scalars of the site behind them.
 pub fn coupling(model: &Model, i: usize, j: usize) -> Vec<String> {
-    let pair = [i.min(j) as u32, i.max(j) as u32];
-    let couple = each(model).filter(|coupled| coupled.pairs.binary_search(&pair).is_ok());
-    couple.map(|c| c.effect.name().to_owned()).collect()
+    let arguments = arguments(model);
+    let couple =
+        each(model).filter(|effect| Coupled::new(*effect, &arguments).couples(&arguments, [i, j]));
+    couple.map(|effect| effect.name().to_owned()).collect()
 }
 
 /// The effects of a model one after the other.
-fn each(model: &Model) -> impl Iterator<Item = Coupled<'_>> {
+fn each(model: &Model) -> impl Iterator<Item = &dyn Term> {
     let sums = [&model.action.intervals, &model.action.instants];
-    let effects = sums.into_iter().flat_map(|sum| &sum.terms);
-    effects.map(|effect| Coupled::new(effect.as_ref(), &model.action.map))
+    sums.into_iter()
+        .flat_map(|sum| &sum.terms)
+        .map(|effect| effect.as_ref())
 }
 
-impl<'a> Coupled<'a> {
-    fn new(effect: &'a dyn Term, map: &CoordinateMap) -> Self {
-        let mut couplings = Vec::new();
-        effect.couple(&mut |coupling| couplings.extend(coupling.map(ordered)));
-        couplings.sort_unstable();
-        couplings.dedup();
-        let supports: Vec<Vec<usize>> = (0..map.vectors.len()).map(|v| map.support(v)).collect();
-        let scalar = |s: usize| map.coordinates + s;
-        let mut pairs: Vec<[u32; 2]> = Vec::new();
-        let mut add = |a: usize, b: usize| pairs.push([a.min(b) as u32, a.max(b) as u32]);
-        // Directors and nodes couple component by component, joint coordinates all with all.
-        let meets = |i, j| match (axis(map, i), axis(map, j)) {
-            (Some(a), Some(b)) => a == b,
-            _ => true,
-        };
-        for coupling in couplings {
-            match coupling {
-                Coupling::Full(a, b) => {
-                    for &i in &supports[a] {
-                        supports[b].iter().for_each(|&j| add(i, j));
-                    }
-                }
-                Coupling::Isotropic(a, b) => {
-                    for &i in &supports[a] {
-                        let others = supports[b].iter().filter(|&&j| meets(i, j));
-                        others.for_each(|&j| add(i, j));
-                    }
-                }
-                Coupling::Mixed(a, s) => supports[a].iter().for_each(|&i| add(i, scalar(s))),
-                Coupling::Scalars(s, t) => add(scalar(s), scalar(t)),
-            }
-        }
-        let key = |&[i, j]: &[u32; 2]| u64::from(i) << u32::BITS | u64::from(j);
-        match has_pool() {
-            true => pairs.par_sort_unstable_by_key(key),
-            false => pairs.sort_unstable_by_key(key),
-        }
-        pairs.dedup();
-        Self { effect, pairs }
-    }
+/// Vectors and scalars of both sites.
+fn arguments(model: &Model) -> Arguments<'_> {
+    let [of_interval, of_instant] =
+        [&model.action.intervals, &model.action.instants].map(|sum| sum.scalars);
+    Arguments::new(&model.action.map, of_interval.max(of_instant))
+}
 
-    /// Its counts, without reason and time.
-    fn counts(&self, of: &Unknowns) -> EffectCounts {
-        let mut is_read = vec![false; of.coordinates + of.scalars.len().max(of.multipliers)];
-        for &unknown in self.pairs.as_flattened() {
-            is_read[unknown as usize] = true;
-        }
-        let kind = match self.effect.kind() {
+impl Unknowns {
+    /// Counts of an effect, without reason and time.
+    fn counts(&self, coupled: &Coupled<'_>, arguments: &Arguments<'_>) -> EffectCounts {
+        let effect = coupled.effect;
+        let mut is_read = vec![false; arguments.count()];
+        let [mut pairs, mut diagonal, mut jacobian, mut hessian] = [0; 4];
+        coupled.each_pair(arguments, |i, j| {
+            (is_read[i], is_read[j]) = (true, true);
+            let touched = self.touched(effect, [i, j]);
+            pairs += 1;
+            diagonal += usize::from(i == j);
+            jacobian += touched[0];
+            hessian += touched[1];
+        });
+        let kind = match effect.kind() {
             TermKind::Kinetic => "kinetic",
             TermKind::Potential => "potential",
             TermKind::AppliedWork | TermKind::Dissipation => "virtual work",
             TermKind::Constraint => "constraint",
         };
-        let is_of_instant = self.effect.kind() == TermKind::Constraint;
-        let scalars = is_read[of.coordinates..].iter().enumerate();
+        let is_of_instant = effect.kind() == TermKind::Constraint;
+        let scalars = is_read[self.coordinates..].iter().enumerate();
         let equations = scalars
-            .filter(|&(s, is_read)| *is_read && (is_of_instant || of.scalars[s].has_equation));
-        let diagonal = self.pairs.iter().filter(|[i, j]| i == j).count();
-        let touched = self.pairs.iter().map(|pair| self.touched(pair, of));
-        let [jacobian, hessian] = touched.fold([0, 0], |[a, b], [c, d]| [a + c, b + d]);
+            .filter(|&(s, is_read)| *is_read && (is_of_instant || self.scalars[s].has_equation));
         EffectCounts {
-            name: self.effect.name().to_owned(),
+            name: effect.name().to_owned(),
             kind,
             why: String::new(),
-            elements: self.effect.elements(),
+            elements: effect.elements(),
             unknowns: is_read.iter().filter(|is_read| **is_read).count(),
             equations: equations.count(),
-            nonzeros: 2 * self.pairs.len() - diagonal,
+            nonzeros: 2 * pairs - diagonal,
             jacobian,
-            hessian: (of.matrix == Matrix::Program).then_some(hessian),
+            hessian: (self.matrix == Matrix::Program).then_some(hessian),
             microseconds: f64::NAN,
         }
     }
 
     /// Entries of Jacobian and Hessian that a pair of unknowns touches in an inner interval, its first instant included.
-    fn touched(&self, &[i, j]: &[u32; 2], of: &Unknowns) -> [usize; 2] {
-        let (i, j) = (i as usize, j as usize);
+    fn touched(&self, effect: &dyn Term, [i, j]: [usize; 2]) -> [usize; 2] {
         let both_orders = if i == j { 1 } else { 2 };
-        let is_instantaneous = self.effect.kind() == TermKind::Constraint;
+        let is_instantaneous = effect.kind() == TermKind::Constraint;
         if is_instantaneous {
             // A multiplier has a column in the balances of its instant, its constraint a row in the coordinates.
-            let is_pair_of_coordinates = j < of.coordinates;
-            return match (is_pair_of_coordinates, of.matrix) {
+            let is_pair_of_coordinates = j < self.coordinates;
+            return match (is_pair_of_coordinates, self.matrix) {
                 (true, Matrix::Program | Matrix::Rest) => [both_orders, 1],
                 // The curvature of a constraint at the end of a step belongs to the next one.
                 (true, Matrix::Step) => [0, 0],
                 (false, _) => [2, 1],
             };
         }
-        let scalar = |i: usize| Some(of.scalars[i.checked_sub(of.coordinates)?]);
+        let scalar = |i: usize| Some(self.scalars[i.checked_sub(self.coordinates)?]);
         // A program has the balances of an instant with the instants before, here and after, and an interval has two ends.
-        let (balances, ends) = match of.matrix {
+        let (balances, ends) = match self.matrix {
             Matrix::Program => (3, 2),
             Matrix::Step | Matrix::Rest => (1, 1),
         };
@@ -266,23 +228,5 @@ impl<'a> Coupled<'a> {
             }
             _ => [0, 0],
         }
-    }
-}
-
-/// A coupling with its vectors, or its scalars, in ascending order.
-fn ordered(coupling: Coupling) -> Coupling {
-    match coupling {
-        Coupling::Full(a, b) => Coupling::Full(a.min(b), a.max(b)),
-        Coupling::Isotropic(a, b) => Coupling::Isotropic(a.min(b), a.max(b)),
-        Coupling::Scalars(s, t) => Coupling::Scalars(s.min(t), s.max(t)),
-        Coupling::Mixed(..) => coupling,
-    }
-}
-
-/// Direction of a coordinate that moves along one; `None` for a joint's.
-fn axis(map: &CoordinateMap, i: usize) -> Option<usize> {
-    match i.checked_sub(map.of_bodies) {
-        Some(of_node) => map.of_nodes.get(of_node).map(|&(_, axis)| axis),
-        None => map.tree.is_none().then_some(i % 3),
     }
 }

@@ -8,7 +8,7 @@
 //!  objective; `held`, `hold_check`, `found_hold`, `afterwards`, `period`: its end; `final_values`: deviations from final costs.
 //! - `recentre`: a motion with other charts.
 //! - `further`, `retry_displaced`, `shortest`, `combined`, `infeasible`, `active`, `violations`: attempts before a problem is called infeasible, and the explanation.
-//! - `effects`, `reasons`, `stopwatch`: terms of a model, their reasons and times; `memory`: a refusal of more than the machine has.
+//! - `effects`, `coupled`, `reasons`, `stopwatch`: terms of a model, what they couple, their reasons and times; `memory`: a refusal of more than the machine has.
 //! - `steps`, `domain`: warnings of a motion: steps that do not resolve it, muscles outside the domain of their material; `longer_steps`: the error of
 //!   methods of high order.
 //! - `regulator`: feedback along an optimum; `receding`: a controller that plans anew; `control_loop`, `closed_loop`, `loop_limits`: a simulation under feedback.
@@ -24,6 +24,7 @@ pub mod closed_loop;
 pub(crate) mod combined;
 pub(crate) mod confirmed;
 pub(crate) mod control_loop;
+mod coupled;
 pub(crate) mod distance;
 pub(crate) mod domain;
 pub(crate) mod effects;

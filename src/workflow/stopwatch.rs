@@ -1,19 +1,22 @@
 //! Times of one evaluation of each effect.
 
 use std::hint::black_box;
+use std::sync::Arc;
 use std::time::Instant;
 
 use crate::coordinates::Interval;
-use crate::functional::{Order, Output, Sample, Term};
+use crate::functional::{Functional, Order, Output, Sample, Term};
 use crate::model::Model;
 
 /// Most evaluations of one effect.
 const MOST: u32 = 10_000;
 /// Number of means, of which the least is reported.
 const ROUNDS: u32 = 3;
+/// Most elements of an effect that are all evaluated: of more, a part is, and the time is multiplied.
+const ELEMENTS: usize = 100_000;
 
 /// Time in µs of one evaluation with second derivatives of each effect at the reference configuration, those of the intervals
-/// first; about `spent` seconds or one evaluation go into each.
+/// first; about `spent` seconds or one evaluation go into each, of large ones into a part.
 pub(crate) fn times(model: &Model, spent: f64) -> Vec<f64> {
     let action = &model.action;
     let start = model.reference_coordinates();
@@ -31,13 +34,32 @@ pub(crate) fn times(model: &Model, spent: f64) -> Vec<f64> {
         (&action.intervals, &of_interval),
         (&action.instants, &of_instant),
     ] {
-        let mut output = sum.output(Order::Hessian);
-        times.extend(
-            sum.terms()
-                .map(|term| 1e6 * time(term, sample, &mut output, spent)),
-        );
+        let parts = parts(sum);
+        let mut output = parts.as_ref().unwrap_or(sum).output(Order::Hessian);
+        let whole = sum.terms.iter().map(|term| term.elements());
+        for (all, part) in whole.zip(parts.as_ref().unwrap_or(sum).terms()) {
+            let times_as_many = all as f64 / part.0.elements().max(1) as f64;
+            times.push(1e6 * times_as_many * time(part, sample, &mut output, spent));
+        }
     }
     times
+}
+
+/// A sum of parts of the effects, so that the couplings of large ones are not laid down; `None` where there is no large one.
+fn parts(sum: &Functional) -> Option<Functional> {
+    let is_large = |term: &Arc<dyn Term>| term.elements() > ELEMENTS;
+    sum.terms.iter().any(is_large).then(|| {
+        let part = |term: &Arc<dyn Term>| match is_large(term) {
+            true => {
+                let read = sum.vectors * ELEMENTS / term.elements();
+                let part = term.reading(&|vector| vector < read);
+                part.unwrap_or_else(|| term.clone())
+            }
+            false => term.clone(),
+        };
+        let terms = sum.terms.iter().map(part).collect();
+        Functional::new(terms, Vec::new(), sum.vectors, sum.scalars)
+    })
 }
 
 /// Time of one evaluation in s.
