@@ -13,7 +13,7 @@ use crate::sparse::Singular;
 use crate::sparse::multigrid::MultigridReport;
 
 /// Most unknowns whose matrix is factorised for its inertia after an iteration has found the state.
-const EXAMINED: usize = 250_000;
+const EXAMINED: usize = 100_000;
 /// Residual of solutions of an iteration that are no updates of Newton's method, relative to that of zero.
 const RESIDUAL: f64 = 1e-6;
 
