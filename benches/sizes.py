@@ -14,11 +14,10 @@ COLOURS = ("#1f5fa8", "#c4551c")
 def rows():
     """Unknowns, seconds of the first and the second step, and the peak of memory in GB."""
     text = (HERE / "README.md").read_text()
-    table = text.split("| elements | unknowns | set-up, s: before, now |")[1].split("\n\n")[0]
+    table = text.split("| elements | unknowns | set-up, s | first step, s |")[1].split("\n\n")[0]
     for line in table.splitlines()[2:]:
         cells = [cell.strip() for cell in line.strip("|").split("|")]
-        memory = cells[6].split(",")[-1]
-        yield tuple(float(re.sub(r"\s", "", cell)) for cell in (cells[1], cells[3], cells[4], memory))
+        yield tuple(float(re.sub(r"\s", "", cells[column])) for column in (1, 3, 4, 6))
 
 
 def power(points):
