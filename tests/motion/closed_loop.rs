@@ -97,7 +97,11 @@ impl Loop {
         for _ in 0..20 {
             let [b, c] = self.ends(theta, phi);
             let velocity = self.axes[1].cross(&(c - self.points[3]));
-            phi -= ((c - b).norm_squared() - length) / (2.0 * (c - b).dot(&velocity));
+            let step = ((c - b).norm_squared() - length) / (2.0 * (c - b).dot(&velocity));
+            phi -= step;
+            if step.abs() < 1e-15 {
+                break;
+            }
         }
         phi
     }
@@ -199,7 +203,7 @@ fn a_parallelogram_swings_like_its_pendulum() {
     }
     let exact = y.x - 0.9;
     // The reduction below is the same pendulum, but for the axial inertia that the pendulum lacks (none about z).
-    assert!((linkage.exact(time, 1000) - exact).abs() < 1e-9);
+    assert!((linkage.exact(time, 250) - exact).abs() < 1e-9);
     check_loop(&linkage, exact, time, 100, 1e-9);
 }
 
@@ -220,8 +224,8 @@ fn a_spatial_four_bar_moves_like_its_one_degree_of_freedom() {
         gravity: Vector3::new(0.0, -9.81, 0.0),
     };
     let (time, n) = (0.4, 80);
-    let exact = linkage.exact(time, 2000);
-    assert!((exact - linkage.exact(time, 1000)).abs() < 1e-9);
+    let exact = linkage.exact(time, 400);
+    assert!((exact - linkage.exact(time, 200)).abs() < 1e-9);
     check_loop(&linkage, exact, time, n, 1e-8);
 
     // Energy at midpoints: bounded by O(h²).
