@@ -69,7 +69,7 @@ test-other-ipopt: install-deps
 	@PKG_CONFIG_PATH=$$(.ci/other-ipopt) && export PKG_CONFIG_PATH && target=$${CARGO_TARGET_DIR:-target} && \
 	  CARGO_BUILD_BUILD_DIR=$$target CARGO_TARGET_DIR=$$target/other-ipopt/build \
 	  $(CARGO) test --locked $(TEST_PACKAGES) --config 'profile.dev.package.proboscis.opt-level=0' --test solver -- \
-	  ipopt again:: linear_solver:: ma57_adapter:: mpi:: one_mumps:: stopped:: sparse::threads --skip random_goals
+	  ipopt again:: linear_solver:: ma57_adapter:: mpi:: one_mumps:: stopped::a_limit sparse::threads --skip random_goals
 
 test-browser:
 	@.ci/install --browser

@@ -322,7 +322,7 @@ fn threads_take_turns_in_mumps_and_ipopt() {
         move || {
             let mut random = Random(seed);
             for _ in 0..40 {
-                let matrix = Matrix::random(120, SYMMETRIES[random.below(2)], &mut random);
+                let matrix = Matrix::random(40, SYMMETRIES[random.below(2)], &mut random);
                 let mut direct = matrix.direct(Backend::Mumps);
                 for _ in 0..3 {
                     check(&mut direct, &matrix, &mut random);
