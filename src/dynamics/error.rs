@@ -2,7 +2,7 @@
 
 use crate::dynamics::equilibrium::{Equilibrium, Instability, Load};
 use crate::dynamics::singular_configurations::{BeyondLaw, NOTHING};
-use crate::ipopt::Status;
+use crate::ipopt::{Status, interrupt};
 use thiserror::Error;
 
 /// A step forward in time failed and was not accepted.
@@ -210,6 +210,13 @@ pub enum EquilibriumError {
         /// Constraints that follow from the others.
         redundant: Vec<String>,
     },
+}
+
+impl EquilibriumError {
+    /// The stop, where this thread was to stop: a way that was stopped ends like one that leads nowhere.
+    pub(super) fn unless_stopped(self) -> Self {
+        interrupt::stop().map_or(self, Self::Stopped)
+    }
 }
 
 /// Names the redundant constraints, or else the likely cause.

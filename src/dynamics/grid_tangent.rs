@@ -200,6 +200,8 @@ impl GridTangent {
     ) -> Iterated {
         match self.is_regular {
             true => self.solver.solve(rhs, tolerance, is_over),
+            // A matrix that is not whole is singular.
+            false if is_over() => Err(Stopped),
             false => Ok(Err(NoSolution)),
         }
     }

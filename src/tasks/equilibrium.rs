@@ -8,6 +8,7 @@ use crate::dynamics::{
     self, DiscreteTrajectory, Equilibrium, StabilityLoss, out_of_domain, out_of_range,
     stable_equilibrium,
 };
+use crate::ipopt::interrupt;
 use crate::model::{Model, System};
 use crate::tasks::moved_markers::moved_markers;
 use crate::workflow::WorkflowError;
@@ -92,7 +93,8 @@ pub fn equilibrium(
     if let Some((_, fallbacks)) = found.on_grids {
         remarks.warn("multigrid_stalled", stalled::warning(fallbacks));
         let is_unknown = found.is_stable().is_none();
-        remarks.warn("stability_unknown", is_unknown.then(stalled::undecided));
+        let undecided = || stalled::undecided(interrupt::stop());
+        remarks.warn("stability_unknown", is_unknown.then(undecided));
     }
     Ok(EquilibriumResult {
         trajectory: Trajectory::from_discrete(&model, &discrete),

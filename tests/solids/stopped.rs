@@ -1,14 +1,18 @@
-//! Stops within an evaluation of elements by the nodes of a box, at any question.
+//! Stops within evaluations of elements by the nodes of boxes and meshes, and on the ways to equilibria, at any question.
 
 use crate::common::solid::system;
-use crate::common::stacks::{cubes, rubber};
+use crate::common::stacks::{cubes, rubber, scattered};
 use crate::multigrid::{MULTIGRID, apart};
+use nalgebra::Vector3;
 use proboscis::dynamics::{
-    EquilibriumError, MultigridUse, Start, StepError, Stepper, stable_equilibrium_by,
+    EquilibriumError, MultigridUse, Route, Start, StepError, Stepper, continuation,
+    stable_equilibrium, stable_equilibrium_by,
 };
+use proboscis::files::read_system;
 use proboscis::ipopt::interrupt::{self, Questions};
 use proboscis::model::Model;
-use proboscis::model::system::System;
+use proboscis::model::system::{ElementKind, System};
+use std::path::Path;
 
 const STEP: f64 = 0.5;
 const VOLTAGE: f64 = 2e5;
@@ -94,4 +98,96 @@ fn an_equilibrium_stops_within_an_evaluation() {
         }
     }
     assert!(stops > 4, "{stops} stops");
+}
+
+/// Questions behind the state, about its mode and what softens it; of a box and of a mesh that is none, of mean dilatation.
+#[test]
+fn a_stop_behind_an_equilibrium_names_no_other_cause_of_its_softness() {
+    let mut nearly_incompressible = cubes(2, rubber(0.4, None));
+    nearly_incompressible.element = ElementKind::Hex8Q1P0;
+    for material in &mut nearly_incompressible.materials {
+        material.lame_lambda = Some(1e3 * material.shear_modulus);
+    }
+    let mut named = 0;
+    for solid in [
+        cubes(2, rubber(0.4, None)),
+        scattered(nearly_incompressible, 0.2),
+    ] {
+        let mut system = system(vec![solid]);
+        system.gravity = Some(Vector3::new(0.0, 0.0, -0.02));
+        let model = Model::new(system, None, STEP, &[]).unwrap();
+        let start = model.reference_coordinates();
+        let rest = || stable_equilibrium_by(&model, &start, &[5e4], MultigridUse::Alone);
+        let (whole, asked) = within(u64::MAX, rest);
+        let whole = whole.unwrap();
+        assert!(apart(&whole.z, &start) > 1e-3);
+        let softest = whole.softest.unwrap();
+        for allowed in (asked - 4)..asked {
+            let (stopped, _) = within(allowed, rest);
+            let rest = match stopped {
+                Ok(rest) => rest,
+                Err(EquilibriumError::Stopped(_)) => continue,
+                Err(other) => panic!("question {allowed} of {asked}: {other}"),
+            };
+            assert_eq!(rest.z, whole.z);
+            assert_ne!(rest.is_stable(), Some(false));
+            if let Some(mode) = rest.softest {
+                named += 1;
+                let is_same = mode.softening.is_none() || mode.softening == softest.softening;
+                assert!(
+                    is_same,
+                    "question {allowed} of {asked}: {:?}",
+                    mode.softening
+                );
+            }
+        }
+    }
+    assert!(named > 1, "{named}");
+}
+
+/// A path that is stopped while its limit point is sought does not have one elsewhere.
+#[test]
+fn a_stopped_path_loses_no_stability() {
+    let model = Model::new(system(vec![cubes(1, rubber(0.4, None))]), None, STEP, &[]).unwrap();
+    let start = model.reference_coordinates();
+    let path = |points: usize| continuation(&model, &start, &[1e6], points).unwrap();
+    let whole = path(16);
+    let (before, fraction, _) = whole.lost[0];
+    let (_, first) = within(u64::MAX, || path(before + 1));
+    let (_, asked) = within(u64::MAX, || path(before + 2));
+    assert!(asked > first + 10);
+    let mut stops = 0;
+    for allowed in (first..=asked).step_by((asked - first) as usize / 4) {
+        let (stopped, _) = within(allowed, || path(before + 2));
+        let points = stopped.points.len();
+        assert_eq!(stopped.fractions, whole.fractions[..points]);
+        stops += usize::from(points <= before + 1);
+        for (_, found, _) in stopped.lost {
+            assert_eq!(found, fraction, "question {allowed} of {asked}");
+        }
+    }
+    assert!(stops > 2, "{stops}");
+}
+
+/// A trunk that buckles under its weight falls to two sides: no side is the answer before both are known.
+#[test]
+fn the_lower_of_two_equilibria_is_not_told_before_both_are_known() {
+    let file = "tests/trust/06_solve_refused_earth_gravity.json";
+    let path = Path::new(env!("CARGO_MANIFEST_DIR")).join(file);
+    let system = read_system(&path, &["scene.gravity=[0,-9.81,0]".to_owned()]).unwrap();
+    let model = Model::new(system, None, 1.0, &[]).unwrap();
+    let (start, none) = (
+        model.reference_coordinates(),
+        vec![0.0; model.sources.len()],
+    );
+    let rest = || stable_equilibrium(&model, &start, &model.scalars(&none));
+    let (whole, asked) = within(u64::MAX, rest);
+    let whole = whole.unwrap();
+    assert!(matches!(whole.route, Route::Minimum(_)));
+    for allowed in asked - 12..asked {
+        let (stopped, _) = within(allowed, rest);
+        let is_stopped = matches!(stopped, Err(EquilibriumError::Stopped(_)));
+        assert!(is_stopped, "question {allowed} of {asked}: {stopped:?}");
+    }
+    assert_eq!(within(asked, rest).0.unwrap().z, whole.z);
 }

@@ -9,6 +9,7 @@ use crate::dynamics::equilibrium::result::{Equilibrium, Route, StabilityLoss};
 use crate::dynamics::equilibrium::statics::{NewtonOutcome, Statics, UpdateRange};
 use crate::dynamics::error::EquilibriumError;
 use crate::dynamics::solving::MultigridUse;
+use crate::ipopt::interrupt;
 use crate::model::{Floating, Model};
 
 /// Part of a load that is tried first, in V² for voltages.
@@ -36,7 +37,8 @@ pub fn equilibrium(
         let grown = grow(&mut statics, state, ramp)?;
         if grown.fraction < 1.0 {
             statics.fall_back();
-            return Err(at_limit(&mut statics, &grown.state, ramp, grown.fraction));
+            let lost = at_limit(&mut statics, &grown.state, ramp, grown.fraction);
+            return Err(lost.unless_stopped());
         }
         state = grown.state;
     }
@@ -129,6 +131,9 @@ pub(super) fn grow(
         let fraction = ramp.fraction(target);
         let voltages = ramp.apply(statics, fraction);
         if ramp.load == Load::Voltages && statics.settle(&mut trial, &voltages).is_none() {
+            if let Some(status) = interrupt::stop() {
+                return Err(EquilibriumError::Stopped(status));
+            }
             increment *= 0.5;
             continue;
         }

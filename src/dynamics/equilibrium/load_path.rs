@@ -7,6 +7,7 @@ use crate::dynamics::equilibrium::result::{Equilibrium, Route};
 use crate::dynamics::equilibrium::stable::stable_equilibrium;
 use crate::dynamics::equilibrium::statics::Statics;
 use crate::dynamics::error::EquilibriumError;
+use crate::ipopt::interrupt;
 use crate::model::Model;
 
 /// Equilibria along a path.
@@ -63,6 +64,10 @@ pub fn continuation(
         };
         let index = out.points.len() - 1;
         let limit = path.lost(&here, step, &next);
+        // A search that was stopped ends elsewhere than where stability is lost.
+        if interrupt::stop().is_some() {
+            break;
+        }
         let mut rest = |point: &PathPoint| {
             let loaded = ramp.apply(path.statics, point.fraction);
             Equilibrium::on_path(path.statics, &point.state, &loaded, Route::Loads)

@@ -4,6 +4,7 @@
 use crate::dynamics::equilibrium::mode::{Mode, Softening};
 use crate::dynamics::equilibrium::rest_state::RestState;
 use crate::dynamics::equilibrium::statics::Statics;
+use crate::ipopt::interrupt;
 use crate::math::Random;
 use crate::model::system::Fidelity;
 use crate::model::{Coordinates, Freedom, Model, Screw};
@@ -150,6 +151,10 @@ fn softening(
     let elastic = along(0.0, &bare, &none);
     statics.weight = weight;
     statics.evaluate(state, voltages);
+    // Sums over a part of the elements say nothing.
+    if statics.is_iterated() && interrupt::stop().is_some() {
+        return None;
+    }
     let parts = [
         (Softening::Voltages, all - mechanical),
         (Softening::Weight, mechanical - elastic),

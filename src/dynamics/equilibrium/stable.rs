@@ -55,9 +55,8 @@ pub fn stable_equilibrium_by(
     voltages: &[f64],
     multigrid: MultigridUse,
 ) -> Result<Equilibrium, EquilibriumError> {
-    // A way that was stopped ends like one that leads nowhere.
-    let stopped = |error| interrupt::stop().map_or(error, EquilibriumError::Stopped);
-    found(model, start, voltages, multigrid).map_err(stopped)
+    let found = found(model, start, voltages, multigrid);
+    found.map_err(EquilibriumError::unless_stopped)
 }
 
 /// The same, whose errors may be those of a way that was stopped.
@@ -134,6 +133,9 @@ fn under_weight(
         voltages: none,
     };
     let begun = unloaded(statics, start, none);
+    if let Err(EquilibriumError::Stopped(_)) = &begun {
+        return Ok((begun?, Route::Loads));
+    }
     // Where an iteration leads, stability is examined under all loads.
     let is_stable = begun.is_ok() && (statics.is_iterated() || statics.unstable() == Some(0));
     if is_stable || (begun.is_ok() && statics.weight < 1.0) {
@@ -325,11 +327,7 @@ fn lowest(
         let Some(pushed) = pushed(statics, state, voltages, &mode.direction, side) else {
             continue;
         };
-        let found = way(statics, &pushed, voltages);
-        if let Some(status) = interrupt::stop() {
-            return Err(EquilibriumError::Stopped(status));
-        }
-        let Some(mut found) = found else {
+        let Some(mut found) = way(statics, &pushed, voltages) else {
             continue;
         };
         statics.weight = 1.0;
@@ -344,7 +342,11 @@ fn lowest(
             lowest = Some((found, energy));
         }
     }
-    Ok(lowest.map(|(found, _)| found))
+    // One side that was not followed to its end may have the lower energy.
+    match interrupt::stop() {
+        Some(status) => Err(EquilibriumError::Stopped(status)),
+        None => Ok(lowest.map(|(found, _)| found)),
+    }
 }
 
 /// A state pushed along a direction, as far as it has energy there.
