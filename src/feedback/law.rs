@@ -147,6 +147,11 @@ impl Law {
         self.inputs.len()
     }
 
+    /// Returns true if the goal is held after the end of the motion.
+    pub fn holds_goal(&self) -> bool {
+        self.held.is_some()
+    }
+
     /// Length of the motion in ms.
     pub fn duration(&self) -> f64 {
         self.h * self.points.len() as f64

@@ -165,7 +165,7 @@ impl<'a> Loop<'a> {
             });
         }
         let end = law.duration() * (1.0 + 1e-9);
-        if law.held.is_none() && task.duration > end {
+        if !law.holds_goal() && task.duration > end {
             let reason = "it does not hold its goal after its end, where this simulation goes on; expected a shorter \"duration\"";
             return Err(wrong(reason.to_owned()));
         }

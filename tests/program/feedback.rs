@@ -125,6 +125,35 @@ fn nothing_is_corrected_where_nothing_deviates() {
     assert_eq!(closed["samples"], 20);
 }
 
+/// Gains along a motion whose goal nothing holds end with it: the solve says so, as a longer simulation under them does.
+#[test]
+fn gains_that_hold_no_goal_are_told() {
+    let folder = workshop();
+    let here = folder.path();
+    let told = "feedback does not hold the goal after the end";
+    let problem = "problems/pair_feedback.json";
+    let solve = |to: &str, set: &[&str]| {
+        let mut arguments = vec!["solve", problem, "-o", to, "--no-report"];
+        arguments.extend(set.iter().flat_map(|one| ["--set", one]));
+        let (status, out, err) = run(here, &arguments);
+        assert_eq!(status, 0, "{out}{err}");
+        let holds = read(here.join(to).join("feedback.json"))["held"].is_object();
+        (holds, err)
+    };
+    let (holds, err) = solve("held", &[]);
+    assert!(holds && !err.contains(told), "{err}");
+    let goal = "control.goal={\"markers\":{\"tip\":[\"-30 mm\",null,null]}}";
+    let (holds, err) = solve("ends", &[goal]);
+    assert!(!holds && err.contains(told), "{err}");
+    let law = format!("simulate.controller.feedback={:?}", here.join("ends"));
+    let closed = "problems/pair_closed_loop.json";
+    refused(
+        here,
+        &["simulate", closed, "--set", &law],
+        &["does not hold its goal after its end"],
+    );
+}
+
 /// Two kilogrammes stand upright on a joint whose muscles hold less than a degree of them: m g l is 0.49 N m, theirs 0.34 at most.
 #[test]
 fn an_unstable_goal_with_named_inputs_is_not_held() {

@@ -20,7 +20,7 @@ use crate::workflow::optimum::SolveLimits;
 use crate::workflow::receding::no_horizon::NoHorizon;
 use crate::workflow::receding::program::Program;
 use crate::workflow::receding::reference::Reference;
-use crate::workflow::regulator::{NoRegulator, predicting, rate_weight};
+use crate::workflow::regulator::{NOTHING_HOLDS, NoRegulator, predicting, rate_weight};
 use std::ops::ControlFlow;
 
 /// Words on integrals.
@@ -76,9 +76,7 @@ impl Horizon {
         let found = found.map_err(NoHorizon::Regulator)?;
         let not_held = || {
             let reason = found.not_held.clone();
-            NoHorizon::NotHeld(
-                reason.unwrap_or_else(|| "no inputs that hold it are known".to_owned()),
-            )
+            NoHorizon::NotHeld(reason.unwrap_or_else(|| NOTHING_HOLDS.to_owned()))
         };
         let rest = rest.ok_or_else(not_held)?;
         let h = found.law.h;

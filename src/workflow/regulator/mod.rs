@@ -23,6 +23,7 @@ pub(crate) use design::rate_weight;
 pub(crate) use law::remembered;
 use nalgebra::DMatrix;
 pub use rates::WholeCosts;
+pub(crate) use regulated::NOTHING_HOLDS;
 pub use regulated::{NoRegulator, Regulated, RegulatedStep, RegulatorReport, Reproduced};
 
 /// The regulator of a motion with a momentum at its start, whose goal is held by `rest` voltages, by source, where it is.

@@ -134,6 +134,9 @@ pub struct RegulatorReport {
     pub difference: f64,
 }
 
+/// The goal is not held as no inputs were sought or given that do.
+pub(crate) const NOTHING_HOLDS: &str = "no inputs that hold it are known";
+
 /// Part of its range within which an input is at a bound.
 const AT_BOUND: f64 = 1e-6;
 
@@ -212,11 +215,12 @@ impl Regulated {
     /// Doubts about the gains.
     pub fn warnings(&self) -> Vec<String> {
         let mut out: Vec<String> = self.one_sided().into_iter().collect();
-        out.extend(
-            self.not_held
-                .as_ref()
-                .map(|reason| format!("feedback does not hold the goal after the end: {reason}")),
-        );
+        if !self.law.holds_goal() {
+            let reason = self.not_held.as_deref().unwrap_or(NOTHING_HOLDS);
+            out.push(format!(
+                "feedback does not hold the goal after the end: {reason}; the gains serve as long as the motion lasts"
+            ));
+        }
         if self.residual.is_nan() || self.residual > DOUBTFUL {
             out.push(format!(
                 "the gains of feedback meet their Riccati equations up to {:.1e} only",
