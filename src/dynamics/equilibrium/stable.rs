@@ -132,10 +132,10 @@ fn under_weight(
         load: Load::Weight,
         voltages: none,
     };
-    let begun = unloaded(statics, start, none);
-    if let Err(EquilibriumError::Stopped(_)) = &begun {
-        return Ok((begun?, Route::Loads));
-    }
+    let begun = match unloaded(statics, start, none) {
+        Err(stopped @ EquilibriumError::Stopped(_)) => return Err(stopped),
+        begun => begun,
+    };
     // Where an iteration leads, stability is examined under all loads.
     let is_stable = begun.is_ok() && (statics.is_iterated() || statics.unstable() == Some(0));
     if is_stable || (begun.is_ok() && statics.weight < 1.0) {
