@@ -6,7 +6,7 @@ use serde::Serialize;
 
 use crate::control::problem::{BoundaryState, Control};
 use crate::control::{BoundaryConditions, Solution};
-use crate::dynamics::{Start, simulate};
+use crate::dynamics::{Start, StepError, simulate};
 use crate::ipopt::interrupt;
 use crate::math::significant;
 use crate::model::Model;
@@ -46,7 +46,7 @@ pub(crate) fn begin(control: &Control, boundary: &mut BoundaryConditions, motion
 }
 
 /// Simulates the inputs of a periodic motion again and again, with its step, and compares the drift with the length of its path; nothing
-/// where joints have motions of their own.
+/// where joints have motions of their own, or a stop ends the first period.
 pub(crate) fn repeated(
     model: &Model,
     control: &Control,
@@ -69,7 +69,12 @@ pub(crate) fn repeated(
         None => ControlFlow::Continue(()),
     };
     let (discrete, failure) = simulate(model, start, h, PERIODS * n, scalars, go_on);
+    let failure = failure.filter(|error| !matches!(error, StepError::Stopped { .. }));
     let motion = solved(model, &discrete, None);
+    // A stop within the first period leaves nothing to say.
+    if failure.is_none() && motion.intervals() < n {
+        return None;
+    }
     let of = |k: usize| Distance::between(model, &motion, k, optimal, k % n);
     let drift = (0..motion.times.len()).map(of);
     let drift = drift.fold(Distance::default(), Distance::max);

@@ -8,6 +8,7 @@ use proboscis::control::problem::{
 use proboscis::dynamics::simulate;
 use proboscis::files::read_problem;
 use proboscis::ipopt::Status;
+use proboscis::ipopt::interrupt::{self, Questions};
 use proboscis::model::system::{MaxwellBranch, MaxwellBranches};
 use proboscis::prelude::{Body, GROUND, Joint, Load, State, System, X};
 use proboscis::tasks::{SolveRequest, solve};
@@ -229,6 +230,43 @@ fn a_program_moves_periodically_too() {
     assert!(optimum.repeated.unwrap().comes_back);
     let wrong = problem.solve(&system);
     assert!(wrong.unwrap_err().to_string().contains("below 1"));
+}
+
+/// A stop while the motion is repeated takes periods away, and says neither that it comes back in none nor that it does not.
+#[test]
+fn a_stop_between_periods_is_no_drift() {
+    let (system, control) = pair(&[]);
+    let within = |allowed: u64| {
+        let questions = Questions::allowed(allowed);
+        let watch = interrupt::watch_questions(&questions);
+        let request = SolveRequest::default();
+        let result = solve(&system, &control, request, &mut |_, _| {
+            ControlFlow::Continue(())
+        });
+        drop(watch);
+        (result.unwrap().optimum, questions.asked())
+    };
+    let (whole, asked) = within(u64::MAX);
+    assert_eq!(whole.repeated.unwrap().periods, 5);
+    let mut periods = Vec::new();
+    for part in 1..16 {
+        let (stopped, _) = within(asked - part * asked / 32);
+        let Some(repeated) = stopped.repeated else {
+            periods.push(0);
+            continue;
+        };
+        assert!(
+            repeated.comes_back && repeated.failure.is_none(),
+            "{repeated:?}"
+        );
+        assert!(repeated.periods > 0);
+        periods.push(repeated.periods);
+    }
+    println!("{asked} {periods:?}");
+    assert!(
+        periods.contains(&0) && periods.iter().any(|&p| (1..5).contains(&p)),
+        "{periods:?}"
+    );
 }
 
 #[test]
