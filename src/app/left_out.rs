@@ -47,7 +47,7 @@ pub(super) const EARLIER: [&str; 29] = [
 /// Statuses of a run that was stopped.
 pub(super) const STOPPED: [&str; 2] = ["interrupted", "time_limit"];
 
-/// Most unknowns of a run that was stopped whose effects are counted: those of 10⁶ take half a minute.
+/// Most unknowns of a run that was stopped whose effects are counted: those of 10⁶ take several seconds.
 const COUNTED: usize = 100_000;
 
 /// The plan of a model; where a large one was stopped, without effects and with words that say so.

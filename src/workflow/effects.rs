@@ -32,7 +32,7 @@ pub struct EffectCounts {
     /// Entries of the lower triangle of the program's Hessian that it touches in an inner interval; only of a control problem.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub hessian: Option<usize>,
-    /// Time of one evaluation with second derivatives in µs, as measured here.
+    /// Time of one evaluation with second derivatives in µs, as measured here; of more than 100 000 elements that of a part, multiplied.
     pub microseconds: f64,
 }
 

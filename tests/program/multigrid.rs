@@ -57,7 +57,7 @@ fn a_scene_without_grids_is_refused() {
     assert!(said.contains("elastic blocks"), "{said}");
 }
 
-/// Couplings of 10⁶ unknowns take half a minute to count, which nobody waits for behind a stop.
+/// Couplings of 10⁶ unknowns take several seconds to count, which nobody waits for behind a stop.
 #[cfg(unix)]
 #[test]
 fn effects_of_a_large_block_are_not_counted_behind_a_stop() {
