@@ -213,6 +213,14 @@ pub enum EquilibriumError {
 }
 
 impl EquilibriumError {
+    /// Goes on, unless this thread is to stop.
+    ///
+    /// # Errors
+    /// It is to stop.
+    pub(super) fn heed_stops() -> Result<(), Self> {
+        interrupt::stop().map_or(Ok(()), |status| Err(Self::Stopped(status)))
+    }
+
     /// The stop, where this thread was to stop: a way that was stopped ends like one that leads nowhere.
     pub(super) fn unless_stopped(self) -> Self {
         interrupt::stop().map_or(self, Self::Stopped)

@@ -9,7 +9,6 @@ use crate::dynamics::equilibrium::result::{Equilibrium, Route, StabilityLoss};
 use crate::dynamics::equilibrium::statics::{NewtonOutcome, Statics, UpdateRange};
 use crate::dynamics::error::EquilibriumError;
 use crate::dynamics::solving::MultigridUse;
-use crate::ipopt::interrupt;
 use crate::model::{Floating, Model};
 
 /// Part of a load that is tried first, in V² for voltages.
@@ -131,9 +130,7 @@ pub(super) fn grow(
         let fraction = ramp.fraction(target);
         let voltages = ramp.apply(statics, fraction);
         if ramp.load == Load::Voltages && statics.settle(&mut trial, &voltages).is_none() {
-            if let Some(status) = interrupt::stop() {
-                return Err(EquilibriumError::Stopped(status));
-            }
+            EquilibriumError::heed_stops()?;
             increment *= 0.5;
             continue;
         }

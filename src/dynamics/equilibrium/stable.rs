@@ -20,7 +20,6 @@ use crate::dynamics::equilibrium::softest_mode::softest_mode;
 use crate::dynamics::equilibrium::statics::{NewtonOutcome, Statics, UpdateRange};
 use crate::dynamics::error::EquilibriumError;
 use crate::dynamics::solving::MultigridUse;
-use crate::ipopt::interrupt;
 use crate::model::{Coordinates, Model};
 
 /// Steps along a path beyond its limit point, and those for models with nodes.
@@ -343,10 +342,8 @@ fn lowest(
         }
     }
     // One side that was not followed to its end may have the lower energy.
-    match interrupt::stop() {
-        Some(status) => Err(EquilibriumError::Stopped(status)),
-        None => Ok(lowest.map(|(found, _)| found)),
-    }
+    EquilibriumError::heed_stops()?;
+    Ok(lowest.map(|(found, _)| found))
 }
 
 /// A state pushed along a direction, as far as it has energy there.

@@ -300,14 +300,10 @@ impl<'m> Statics<'m> {
             grids.start();
         }
         for iteration in 0..ITERATIONS {
-            if let Some(status) = interrupt::stop() {
-                return Err(EquilibriumError::Stopped(status));
-            }
+            EquilibriumError::heed_stops()?;
             self.iterations += 1;
             self.evaluate(state, voltages);
-            if let Some(status) = interrupt::stop() {
-                return Err(EquilibriumError::Stopped(status));
-            }
+            EquilibriumError::heed_stops()?;
             if self.residual.iter().any(|r| !r.is_finite()) {
                 return Ok(NewtonOutcome::Failed);
             }
