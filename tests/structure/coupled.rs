@@ -1,12 +1,10 @@
 //! Pairs of unknowns that terms couple, against a list of all of them.
 
-use crate::common::cases::cases;
-use crate::presolved::BOTH;
-use proboscis::control::BoundaryConditions;
+use crate::presolved::each_plan;
 use proboscis::coordinates::Dependence;
 use proboscis::functional::{Coupling, Term};
 use proboscis::model::Model;
-use proboscis::workflow::{Plan, coupling};
+use proboscis::workflow::coupling;
 use std::collections::BTreeSet;
 
 /// Pairs of unknowns that a term couples, from each of its couplings: coordinates by entry, scalars behind them.
@@ -46,29 +44,23 @@ fn pairs(model: &Model, term: &dyn Term) -> BTreeSet<[usize; 2]> {
 #[test]
 fn pairs_of_unknowns_are_counted_once() {
     let mut coupled = 0;
-    for case in cases() {
-        for coordinates in BOTH {
-            let mut control = case.control.clone();
-            control.coordinates = Some(coordinates);
-            let (model, _) = BoundaryConditions::resolve(&case.system, &control, 10.0).unwrap();
-            let plan = Plan::from_model(&model, Some(&control), 0.0);
-            let sums = [&model.action.intervals, &model.action.instants];
-            let terms = sums.into_iter().flat_map(|sum| &sum.terms);
-            assert_eq!(terms.clone().count(), plan.effects.len());
-            for (term, effect) in terms.zip(&plan.effects) {
-                let pairs = pairs(&model, term.as_ref());
-                let diagonal = pairs.iter().filter(|[i, j]| i == j).count();
-                let read: BTreeSet<usize> = pairs.iter().flatten().copied().collect();
-                let expected = (read.len(), 2 * pairs.len() - diagonal);
-                let found = (effect.unknowns, effect.nonzeros);
-                assert_eq!(found, expected, "{} of {}", effect.name, case.name);
-                let [first, last] = [pairs.first(), pairs.last()];
-                for [i, j] in first.into_iter().chain(last) {
-                    assert!(coupling(&model, *j, *i).contains(&effect.name));
-                }
-                coupled += pairs.len();
+    each_plan(|name, model, plan| {
+        let sums = [&model.action.intervals, &model.action.instants];
+        let terms = sums.into_iter().flat_map(|sum| &sum.terms);
+        assert_eq!(terms.clone().count(), plan.effects.len());
+        for (term, effect) in terms.zip(&plan.effects) {
+            let pairs = pairs(model, term.as_ref());
+            let diagonal = pairs.iter().filter(|[i, j]| i == j).count();
+            let read: BTreeSet<usize> = pairs.iter().flatten().copied().collect();
+            let expected = (read.len(), 2 * pairs.len() - diagonal);
+            let found = (effect.unknowns, effect.nonzeros);
+            assert_eq!(found, expected, "{} of {}", effect.name, name);
+            let [first, last] = [pairs.first(), pairs.last()];
+            for [i, j] in first.into_iter().chain(last) {
+                assert!(coupling(model, *j, *i).contains(&effect.name));
             }
+            coupled += pairs.len();
         }
-    }
+    });
     assert!(coupled > 10_000, "{coupled}");
 }

@@ -301,33 +301,40 @@ fn a_tangent_is_symmetric_where_nothing_dissipates() {
     assert_eq!(symmetry(Some(1.0)), Symmetry::Unsymmetric);
 }
 
-#[test]
-fn each_effect_is_in_the_plan_once_with_its_reason() {
-    let mut seen = BTreeSet::new();
+/// Hands over the name of each case with its model and plan, in both kinds of coordinates.
+pub(crate) fn each_plan(mut to: impl FnMut(&str, &Model, &Plan)) {
     for case in cases() {
         for coordinates in BOTH {
             let mut control = case.control.clone();
             control.coordinates = Some(coordinates);
             let (model, _) = BoundaryConditions::resolve(&case.system, &control, 10.0).unwrap();
             let plan = Plan::from_model(&model, Some(&control), 0.0);
-            for effect in &plan.effects {
-                assert!(terms().any(|term| term == effect.name), "{}", effect.name);
-                assert!(effect.why.len() > 5 && effect.elements > 0, "{effect:?}");
-                assert!(effect.microseconds > 0.0 && effect.hessian.is_some());
-                seen.insert(effect.name.clone());
-            }
-            let absent: Vec<&str> = plan.absent.iter().map(|a| a.name.as_str()).collect();
-            for effect in terms() {
-                let there = plan.effects.iter().any(|e| e.name == effect);
-                assert_ne!(there, absent.contains(&effect), "{effect} of {}", case.name);
-            }
-            assert!(
-                plan.absent.iter().all(|a| a.why.len() > 5),
-                "{:?}",
-                plan.absent
-            );
+            to(case.name, &model, &plan);
         }
     }
+}
+
+#[test]
+fn each_effect_is_in_the_plan_once_with_its_reason() {
+    let mut seen = BTreeSet::new();
+    each_plan(|name, _, plan| {
+        for effect in &plan.effects {
+            assert!(terms().any(|term| term == effect.name), "{}", effect.name);
+            assert!(effect.why.len() > 5 && effect.elements > 0, "{effect:?}");
+            assert!(effect.microseconds > 0.0 && effect.hessian.is_some());
+            seen.insert(effect.name.clone());
+        }
+        let absent: Vec<&str> = plan.absent.iter().map(|a| a.name.as_str()).collect();
+        for effect in terms() {
+            let there = plan.effects.iter().any(|e| e.name == effect);
+            assert_ne!(there, absent.contains(&effect), "{effect} of {}", name);
+        }
+        assert!(
+            plan.absent.iter().all(|a| a.why.len() > 5),
+            "{:?}",
+            plan.absent
+        );
+    });
     let all: BTreeSet<String> = terms().map(str::to_owned).collect();
     assert_eq!(seen, all);
 }
