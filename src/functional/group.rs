@@ -93,7 +93,8 @@ impl<K: Kernel> Group<K> {
     #[inline(always)]
     pub(super) fn each(
         &self,
-        (order, sample): (Order, &Sample<'_>),
+        order: Order,
+        sample: &Sample<'_>,
         mut slots: &[u32],
         goes_on: impl Fn() -> bool,
         mut receive: impl FnMut(&K::Element, Places<'_, K>, &K::Storage) + Send,
@@ -300,32 +301,27 @@ impl<K: Kernel> Term for Group<K> {
             K::BY_DURATION && sample.horizon == Horizon::Free && self.site == Site::Intervals;
         let is_at_nodes = out.plain.nodes.is_some();
         let goes_on = || !(is_at_nodes && interrupt::stop().is_some());
-        let is_whole = self.each(
-            (order, sample),
-            slots,
-            goes_on,
-            |element, places, storage| {
-                if let Some(nodes) = out
-                    .plain
-                    .nodes
-                    .as_mut()
-                    .filter(|nodes| nodes.pressures.is_some())
-                {
-                    places.volume(c, sample, nodes);
-                }
-                let mut action = Action {
-                    element,
-                    places,
-                    c,
-                    scale: self.scale,
-                    order,
-                    sample,
-                    is_free,
-                    out: &mut *out,
-                };
-                K::derivatives(element, order, sample, storage, &mut action);
-            },
-        );
+        let is_whole = self.each(order, sample, slots, goes_on, |element, places, storage| {
+            if let Some(nodes) = out
+                .plain
+                .nodes
+                .as_mut()
+                .filter(|nodes| nodes.pressures.is_some())
+            {
+                places.volume(c, sample, nodes);
+            }
+            let mut action = Action {
+                element,
+                places,
+                c,
+                scale: self.scale,
+                order,
+                sample,
+                is_free,
+                out: &mut *out,
+            };
+            K::derivatives(element, order, sample, storage, &mut action);
+        });
         if let Some(nodes) = out.plain.nodes.as_mut() {
             nodes.is_whole &= is_whole;
         }

@@ -174,7 +174,8 @@ impl<K: Kernel> Measure for Group<K> {
         let order = Order::Hessian;
         let is_free = sample.horizon == Horizon::Free && self.reads_rates();
         self.each(
-            (order, sample),
+            order,
+            sample,
             slots,
             || true,
             |element, places, storage| {

@@ -35,9 +35,10 @@ pub(crate) fn times(model: &Model, spent: f64) -> Vec<f64> {
         (&action.instants, &of_instant),
     ] {
         let parts = parts(sum);
-        let mut output = parts.as_ref().unwrap_or(sum).output(Order::Hessian);
+        let timed = parts.as_ref().unwrap_or(sum);
+        let mut output = timed.output(Order::Hessian);
         let whole = sum.terms.iter().map(|term| term.elements());
-        for (all, part) in whole.zip(parts.as_ref().unwrap_or(sum).terms()) {
+        for (all, part) in whole.zip(timed.terms()) {
             let times_as_many = all as f64 / part.0.elements().max(1) as f64;
             times.push(1e6 * times_as_many * time(part, sample, &mut output, spent));
         }
