@@ -1,9 +1,9 @@
 //! The linear system of a block under a voltage, displacements and potentials together, by GMRES with multigrid, and as files for other solvers.
 //!
 //! `cargo bench --bench coupled -- FOLDER 16` finds the equilibrium of 16 × 16 × 64 elements under a field of 30 MV/m, solves its tangent for
-//! weights across the block to a residual of 1e-8, and writes both with the solution for `benches/peers/coupled_block.py`, which runs this
-//! program: entries as rows, columns and values, of each unknown its place in mm and its component (3 is the potential). Rows and columns have
-//! factors that make the mean of the diagonal one, of displacements and of potentials.
+//! weights across the block to a residual of 1e-8, and writes both with the solution for `benches/peers/coupled_block.py`: entries as rows,
+//! columns and values, of each unknown its place in mm and its component (3 is the potential). Rows and columns have factors that make the mean
+//! of the diagonal one, of displacements and of potentials.
 
 use nalgebra::DVector;
 use proboscis::coordinates::Interval;
