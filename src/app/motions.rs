@@ -18,6 +18,7 @@ use crate::app::summary::Summary;
 use crate::app::{fields, iterates, resume_file, solution_file, unfinished};
 use crate::control::Motions;
 use crate::files::Loaded;
+use crate::math::significant;
 use crate::report::file_set::FileSet;
 use crate::tasks::{MotionsResult, solve_motions};
 
@@ -148,10 +149,7 @@ fn command_output(
         notes.extend(accuracy.notes());
         (word, is_solved) = accuracy.outcome(&word);
     }
-    let objective = match summary.objective.abs() < 1e9 {
-        true => format!("{:.7}", summary.objective),
-        false => format!("{:.7e}", summary.objective),
-    };
+    let objective = significant(summary.objective, 8);
     CommandOutput {
         is_solved,
         result: format!(

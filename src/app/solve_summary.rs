@@ -11,6 +11,7 @@ use crate::app::seconds::Seconds;
 use crate::app::solve_page::describe;
 use crate::app::summary::{Evaluations, PerInterval, Program, SoughtValue, Summary};
 use crate::control::problem::Control;
+use crate::math::significant;
 use crate::model::System;
 use crate::tasks::SolveResult;
 use crate::workflow::optimum::Optimum;
@@ -105,10 +106,7 @@ pub(super) fn command_output(
         ),
         false => String::new(),
     };
-    let objective = match objective.abs() < 1e9 {
-        true => format!("{objective:.7}"),
-        false => format!("{objective:.7e}"),
-    };
+    let objective = significant(objective, 8);
     CommandOutput {
         is_solved,
         result: format!(

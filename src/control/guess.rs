@@ -10,7 +10,7 @@ use crate::dynamics::{DiscreteTrajectory, simulate};
 use crate::model::{Coordinates, Graph, Model, Role};
 use std::ops::ControlFlow;
 
-/// Added to the rest voltages, in their unit: at zero the motion does not depend on a voltage to first order.
+/// Added to the rest voltages, as a part of their size: at zero the motion does not depend on a voltage to first order.
 const LIFT: f64 = 0.1;
 
 /// A start of the solver: a motion, an interval length, and costates where they are known.
@@ -103,7 +103,7 @@ fn interpolate(
     h: f64,
 ) -> InitialGuess {
     let intervals = control.intervals;
-    let lift = LIFT * control.voltage_unit(&model.system);
+    let lift = LIFT * control.voltage_size(&model.system);
     let n = model.coordinate_count();
     let start = &boundary.start.z;
     let end = match &boundary.goal.rest {

@@ -40,6 +40,7 @@ mod required_analysis;
 mod resample;
 mod rest;
 mod rest_program;
+mod sizes;
 mod solution;
 mod sought;
 mod sought_hold;

@@ -6,7 +6,6 @@
 //! f = a τ Σ_k |v_k|² + b/τ Σ_{k=0..N} |v_k − v_{k−1}|² + c N τ,     v_{−1}, v_N: rest voltages of start and goal.
 //! ```
 
-use crate::control::problem::nearest_thousand;
 use crate::control::quantity_cost::Objective;
 use crate::control::span::Span;
 
@@ -166,20 +165,4 @@ impl Cost {
         let (_, rate) = self.squares(v);
         2.0 * w.rate * rate / (tau * tau * tau)
     }
-}
-
-/// Factor of the objective: the power of a thousand that brings it near 1 where one voltage (kV) is its unit all the time (s)
-/// and costs of quantities are as large as `quantities`.
-pub(super) fn objective_scale(
-    weights: &Objective,
-    kilovolt: f64,
-    duration: f64,
-    quantities: f64,
-) -> f64 {
-    let square = kilovolt * kilovolt;
-    let size = weights.effort * square * duration
-        + weights.rate * square / duration
-        + weights.duration * duration
-        + quantities;
-    1.0 / nearest_thousand(size)
 }

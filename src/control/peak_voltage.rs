@@ -24,7 +24,7 @@ impl Control {
         if sought.is_empty() {
             return false;
         }
-        let (parameter, unit) = (self.parameters.len(), self.voltage_unit(system));
+        let (parameter, unit) = (self.parameters.len(), self.voltage_size(system));
         let [low, high] = self.voltage_bounds.map(f64::abs);
         let upper = low.max(high);
         self.parameters.push(Parameter {

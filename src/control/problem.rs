@@ -18,7 +18,7 @@ use crate::dynamics::Solving;
 use crate::feedback::Law;
 use crate::ipopt::{LinearSolver, OptionValue};
 use crate::math::Signal;
-use crate::model::system::{ElectricConstants, InputKind, Muscle};
+use crate::model::system::InputKind;
 use crate::model::{Coordinates, Parameter, Response, Role, System, Variable};
 use std::borrow::Cow;
 use std::collections::BTreeMap;
@@ -219,48 +219,10 @@ impl Control {
         }
     }
 
-    /// Scale of an input in V, N or N mm.
-    pub fn scale(&self, variable: &Variable, system: &System) -> f64 {
-        match variable.role {
-            Role::Load => {
-                let sizes = self.bounds(variable).map(f64::abs).into_iter();
-                let finite = sizes.filter(|size| size.is_finite());
-                nearest_thousand(finite.fold(0.0, f64::max))
-            }
-            _ => self.voltage_unit(system),
-        }
-    }
-
     /// The middle of interval `k` in ms, where the duration is given or at its guess.
     pub fn middle(&self, k: usize) -> f64 {
         (k as f64 + 0.5) * self.duration.first() / self.intervals as f64
     }
-
-    /// Unit of voltages in V that suits their bounds and what moves a muscle much, t √(μ/ε): V, kV, MV, or another power of
-    /// a thousand.
-    pub fn voltage_unit(&self, system: &System) -> f64 {
-        let [low, high] = self.voltage_bounds.map(f64::abs);
-        let large = |muscle: &Muscle| {
-            let material = &muscle.material;
-            let ElectricConstants {
-                c1,
-                c2,
-                permittivity,
-            } = material.electric?;
-            let permittivity = permittivity - 2.0 * (c1 + c2);
-            Some(muscle.layer_thickness * (material.shear_modulus / permittivity.abs()).sqrt())
-        };
-        let voltages = system.muscles.iter().filter_map(large);
-        nearest_thousand(voltages.fold(low.max(high), f64::min))
-    }
-}
-
-/// The power of a thousand nearest to a positive size; 1 where there is no size.
-pub fn nearest_thousand(size: f64) -> f64 {
-    if !size.is_finite() || size <= 0.0 {
-        return 1.0;
-    }
-    1e3_f64.powf((size.log10() / 3.0).round())
 }
 
 /// Motions whose sought constants are the same, and the inputs that are the same in all of them.

@@ -24,8 +24,6 @@ use crate::nlp::{Entries, Nlp};
 /// matters for Ipopt before 3.14, which has no call for it.
 pub(super) struct Evaluator<'a> {
     asked: Asked<'a>,
-    /// Factor of f in all that Ipopt sees.
-    scale: f64,
     began: Instant,
     _watch: Watch,
     record: &'a mut Record,
@@ -35,6 +33,8 @@ pub(super) struct Evaluator<'a> {
 pub(super) struct Asked<'a> {
     pub(super) nlp: &'a mut dyn Nlp,
     pub(super) observer: &'a mut dyn FnMut(&Iteration, &Reached<'_>) -> ControlFlow<()>,
+    /// Factor of f in all that Ipopt sees.
+    pub(super) scale: f64,
     pub(super) structures: &'a Structures,
     /// Right-hand sides that are subtracted from g.
     pub(super) right: &'a [f64],
@@ -59,7 +59,6 @@ impl<'a> Evaluator<'a> {
     ) -> Self {
         record.begin(start);
         Self {
-            scale: asked.nlp.objective_scale(),
             asked,
             began: Instant::now(),
             _watch: interrupt::watch(max_seconds),
@@ -74,7 +73,7 @@ impl<'a> Evaluator<'a> {
         }
         self.record.evaluations.objective += 1;
         let f = timed(&mut self.record.seconds.objective, || {
-            self.scale * self.asked.nlp.objective(x)
+            self.asked.scale * self.asked.nlp.objective(x)
         });
         self.accepts(&[f]).then_some(f)
     }
@@ -88,7 +87,7 @@ impl<'a> Evaluator<'a> {
         self.record.evaluations.gradient += 1;
         timed(&mut self.record.seconds.gradient, || {
             self.asked.nlp.gradient(x, grad);
-            grad.iter_mut().for_each(|g| *g *= self.scale);
+            grad.iter_mut().for_each(|g| *g *= self.asked.scale);
         });
         self.accepts(grad)
     }
@@ -141,7 +140,7 @@ impl<'a> Evaluator<'a> {
         timed(&mut self.record.seconds.hessian, || {
             self.asked
                 .nlp
-                .hessian(x, sigma * self.scale, costates, values);
+                .hessian(x, sigma * self.asked.scale, costates, values);
         });
         self.accepts(values)
     }
@@ -161,7 +160,7 @@ impl<'a> Evaluator<'a> {
         if session::stopped().is_some() {
             return ControlFlow::Break(());
         }
-        let objective = iteration.objective / self.scale;
+        let objective = iteration.objective / self.asked.scale;
         let iteration = &Iteration {
             objective,
             ..*iteration
@@ -172,7 +171,7 @@ impl<'a> Evaluator<'a> {
         let squares = self.asked.squares;
         let x = squares.point(&self.record.derivatives_at, now);
         let before = squares.point(&self.record.latest, before);
-        let before = Before::from_record(self.record, before, (bounds, squares), self.scale);
+        let before = Before::from_record(self.record, before, (bounds, squares), self.asked.scale);
         let reached = Reached { x, before };
         let verdict = timed(&mut seconds, || (self.asked.observer)(iteration, &reached));
         let record = &mut *self.record;

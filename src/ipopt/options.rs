@@ -91,6 +91,8 @@ pub struct Options {
     pub start: Start,
     /// Solver of the linear systems, unless `extra` names another one.
     pub linear_solver: LinearSolver,
+    /// Factor of the objective in place of the program's own ([`Nlp::objective_scale`](crate::nlp::Nlp::objective_scale)).
+    pub objective_scale: Option<f64>,
     /// Further options of Ipopt by name; they override all others.
     pub extra: BTreeMap<String, OptionValue>,
 }
@@ -103,6 +105,7 @@ impl Default for Options {
             max_seconds: None,
             start: Start::Cold,
             linear_solver: LinearSolver::Auto,
+            objective_scale: None,
             extra: BTreeMap::new(),
         }
     }

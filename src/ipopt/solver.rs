@@ -158,7 +158,8 @@ impl<N: Nlp> Solver<N> {
         self.program.take_bounds(relaxed);
         self.record.relaxed = relaxed;
         let mut problem = self.known_problem()?;
-        let scale = self.program.objective_scale();
+        let scale = self.options.objective_scale;
+        let scale = scale.unwrap_or_else(|| self.program.objective_scale());
         assert!(scale > 0.0, "a positive scale of the objective");
         let (n, m) = (self.bounds.variables.lower.len(), self.bounds.right.len());
         let mut x = mem::take(&mut self.result.x);
@@ -170,13 +171,20 @@ impl<N: Nlp> Solver<N> {
         self.squares.of_squares(&x, &mut costates);
         self.squares.square(&mut x);
         if self.options.start == Start::Centred {
-            centre(&mut self.program, &self.structures, &mut x, &mut costates);
+            let structures = &self.structures;
+            centre(
+                &mut self.program,
+                structures,
+                scale,
+                (&mut x, &mut costates),
+            );
         }
 
         self.record.iterations = mem::take(&mut self.result.iterations);
         let asked = Asked {
             nlp: &mut self.program,
             observer,
+            scale,
             structures: &self.structures,
             right: &self.bounds.right,
             squares: &self.squares,

@@ -48,6 +48,12 @@ impl Status {
         matches!(self, Self::Solved | Self::Acceptable | Self::FeasiblePoint)
     }
 
+    /// True if it minimises an objective, at least to the "acceptable" tolerance.
+    #[must_use]
+    pub const fn is_optimal(self) -> bool {
+        matches!(self, Self::Solved | Self::Acceptable)
+    }
+
     /// One word in snake case, for `summary.json`.
     #[must_use]
     pub const fn word(self) -> &'static str {

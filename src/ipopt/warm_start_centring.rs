@@ -31,10 +31,10 @@ const LEAST: f64 = 1e-14;
 pub(super) fn centre(
     nlp: &mut dyn Nlp,
     structures: &Structures,
-    x: &mut [f64],
-    costates: &mut Multipliers,
+    scale: f64,
+    (x, costates): (&mut [f64], &mut Multipliers),
 ) {
-    let (slope, curvature) = slopes(nlp, structures, x, &costates.constraints);
+    let (slope, curvature) = slopes(nlp, structures, scale, (x, &costates.constraints));
     let is_known = |list: &[f64]| list.iter().all(|v| v.is_finite());
     if !is_known(&slope) || !is_known(&curvature) {
         return;
@@ -95,11 +95,10 @@ fn distance(gap: f64, r: f64, c: f64, mu: f64) -> f64 {
 fn slopes(
     nlp: &mut dyn Nlp,
     structures: &Structures,
-    x: &[f64],
-    y: &[f64],
+    scale: f64,
+    (x, y): (&[f64], &[f64]),
 ) -> (Vec<f64>, Vec<f64>) {
     let Structures { jacobian, hessian } = structures;
-    let scale = nlp.objective_scale();
     let mut slope = vec![0.0; x.len()];
     nlp.gradient(x, &mut slope);
     slope.iter_mut().for_each(|g| *g *= scale);

@@ -16,7 +16,7 @@ use crate::model::plan::{LeftOut, Present};
 use crate::model::presolved::Presolved;
 use crate::model::quantity::Quantity;
 use crate::model::solid_block::SolidBlock;
-use crate::model::system::{InputKind, Source, System};
+use crate::model::system::{Body, InputKind, Source, System};
 use crate::model::variables::{Size, Variable, Variables};
 use crate::sparse::Symmetry;
 use std::collections::BTreeMap;
@@ -380,12 +380,17 @@ impl Model {
     }
 }
 
-/// A length in mm that is typical of a system with nodes.
+/// A length in mm that is typical of a system with nodes: the largest coordinate of its parts, or where all of them are at the origin the largest
+/// radius of gyration.
 pub(super) fn length(system: &System, nodes: &[NodePlace]) -> f64 {
     let far = |length: f64, x: &Vector| length.max(x.amax());
     let nodes = nodes.iter().map(|n| &n.reference);
     let bodies = system.bodies.iter().map(|body| &body.centre);
     let joints = system.joints.iter().map(|joint| &joint.at);
     let length = bodies.chain(nodes).chain(joints).fold(0.0, far);
+    let gyration =
+        |body: &Body| (body.inertia.iter().fold(0.0, |a, &b| f64::max(a, b)) / body.mass).sqrt();
+    let gyrations = || system.bodies.iter().map(gyration).fold(0.0, f64::max);
+    let length = if length > 0.0 { length } else { gyrations() };
     if length > 0.0 { length } else { 1.0 }
 }

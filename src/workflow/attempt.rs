@@ -14,7 +14,7 @@ use crate::nlp::joined::{Joined, Places};
 use crate::workflow::active::{Active, active};
 use crate::workflow::error::WorkflowError;
 use crate::workflow::found_hold;
-use crate::workflow::gap;
+use crate::workflow::gap::{self, Gap};
 use crate::workflow::iterate::Iterate;
 use crate::workflow::motion::solved;
 use crate::workflow::optimum::{Optimum, Shortest, SolveLimits};
@@ -119,11 +119,11 @@ pub(crate) fn attempt_together(
     };
     let solution = solves.solve(&point)?;
     let solution = solves.recentre(solution)?;
-    let solution = solves.tighten(solution)?;
+    let (solution, gap) = solves.confirm(solution)?;
     let program = solves.solver.into_program();
     let cut_short = interrupt::stop().filter(|_| solution.status == Status::Acceptable);
     drop(watch);
-    let whole = WholeProgram::new(&program, &solution);
+    let whole = WholeProgram::new(&program, &solution, gap);
     let places = program.places().clone();
     let mut ends = Vec::new();
     for (number, (motion, mut part)) in motions.iter().zip(program.into_parts()).enumerate() {
@@ -137,8 +137,10 @@ pub(crate) fn attempt_together(
     let mut optima = verified_optima(asked, resolved, ends, (setup, carried))?;
     for optimum in &mut optima {
         optimum.cut_short = cut_short;
-        // A part of an objective may vanish: the gap of the whole counts.
-        optimum.wide = optimum.wide.take().filter(|_| asked.len() == 1);
+    }
+    // A part of an objective may vanish: the gap of the whole counts.
+    if let [only] = &mut optima[..] {
+        (only.gap, only.wide) = (whole.gap, whole.wide.clone());
     }
     Ok(FoundTogether { optima, whole })
 }
@@ -207,7 +209,7 @@ fn verified_optimum(
         cut_short: None,
         active: point.active,
         gap: point.gap,
-        wide: point.wide,
+        wide: None,
         afterwards: None,
         repeated: None,
     })
@@ -248,15 +250,14 @@ pub struct WholeProgram {
     pub jacobian_nonzeros: usize,
     /// Nonzeros of the lower triangle of the Hessian, those of shared variables motion by motion.
     pub hessian_nonzeros: usize,
-    /// Duality gap of the objective, in its unit.
+    /// The objective lies no farther above its least value nearby, in its unit.
     pub gap: f64,
     /// A warning that it is large compared with the sum.
     pub(crate) wide: Option<String>,
 }
 
 impl WholeProgram {
-    fn new(program: &Joined<Transcription<'_>>, solution: &SolverResult) -> Self {
-        let gap = gap::gap(program, solution);
+    fn new(program: &Joined<Transcription<'_>>, solution: &SolverResult, gap: Gap) -> Self {
         Self {
             objective: solution.objective,
             weights: program.weights(&solution.costates.constraints),
@@ -264,8 +265,8 @@ impl WholeProgram {
             constraints: solution.constraints.len(),
             jacobian_nonzeros: program.jacobian_structure().rows.len(),
             hessian_nonzeros: program.hessian_structure().rows.len(),
-            gap,
-            wide: gap::warning(gap, solution, program.objective_scale()),
+            gap: gap.left,
+            wide: gap.warning(solution),
         }
     }
 }
@@ -327,7 +328,6 @@ struct FinalPoint {
     jacobian_nonzeros: usize,
     hessian_nonzeros: usize,
     gap: f64,
-    wide: Option<String>,
 }
 
 impl FinalPoint {
@@ -345,7 +345,7 @@ impl FinalPoint {
                 active(program, x, model, control),
             ),
         };
-        let gap = gap::gap(program, solution);
+        let gap = gap::bound(program, solution);
         Self {
             violated,
             active,
@@ -354,7 +354,6 @@ impl FinalPoint {
             jacobian_nonzeros: program.jacobian_structure().rows.len(),
             hessian_nonzeros: program.hessian_structure().rows.len(),
             gap,
-            wide: gap::warning(gap, solution, program.objective_scale()),
         }
     }
 }

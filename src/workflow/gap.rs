@@ -1,74 +1,211 @@
-//! Duality gap: a bound of the difference between an objective and its least value, which the barrier of the bounds leaves.
+//! What an objective may lie above its least value nearby, and the solves that make it small.
 //!
-//! A solver of interior points ends where the products of multipliers z with the distances d from their bounds are as small as the
-//! tolerance asks for, not zero. Their sum Σ z d is the gap to the dual objective, which bounds what is lost where the problem is convex
-//! near the optimum. The tolerance is relative to the size that the objective has at the guess: where the objective falls far below, as costs of a deviation
-//! do that vanishes, the gap may be as large as the objective.
+//! A solver of interior points ends where the optimality conditions hold to a tolerance that is relative to the size of the objective at the guess.
+//! Where the objective falls far below that, the tolerance may be as large as the objective. With the multipliers z of bounds at the distances d, y of
+//! rows that miss their bounds by c, and the gradient r of the Lagrangian, the bound
+//!
+//! ```text
+//! f − f* ≤ Σ z d + Σ |y c| + Σ |r|   to first order, where no variable changes by more than its scale
+//! ```
+//!
+//! tells whether it is so. Then the program is solved again from there, with the objective scaled by its own size, or by what may be left of it where
+//! that is more. Where the bound is wide all the same, as with many bounds that are not reached, two solves decide between which the barrier
+//! parameter falls by ten or more: f is linear in it near the end, so that what is left is less than what the second one gained.
 
-use crate::ipopt::SolverResult;
+use crate::ipopt::{Options, SolverResult, Start, Status};
 use crate::nlp::{Bounds, Nlp};
+use crate::sensitivity::{Held, Kernel, NoSensitivity};
 
-/// A gap as a part of the objective from which on a smaller tolerance is set, and a warning is given where it stays.
-const PART: f64 = 0.01;
-/// Scaled gaps below these are zero: one to make smaller, and one to report.
-const NONE: f64 = 1e-10;
-const UNTOLD: f64 = 1e-8;
+/// The objective of a solution is this part of itself above its least value at most, unless a larger tolerance is asked for.
+const PART: f64 = 1e-6;
+/// What is below this part of the size that the guess gives the objective is zero.
+const ZERO: f64 = 1e-15;
 /// No tolerance is smaller than this.
-const LEAST: f64 = 1e-11;
-/// A tolerance becomes smaller by these factors at once.
-const FACTORS: [f64; 2] = [1e-4, 0.1];
+const LEAST: f64 = 1e-14;
+/// Factor of a tolerance that was too large.
+const SMALLER: f64 = 1e-2;
+/// Fall of the barrier parameter between two solves after which what the second one gained bounds what is left.
+const FALL: f64 = 10.0;
 
-/// The gap of a solution in the unit of its objective.
-pub(crate) fn gap(program: &impl Nlp, solution: &SolverResult) -> f64 {
-    let (variables, rows) = (program.variables(), program.constraints());
-    let multipliers = &solution.costates;
-    let of_variables = |i: usize, x: f64| {
-        let low = product(multipliers.lower[i], x - variables.lower[i]);
-        low + product(multipliers.upper[i], variables.upper[i] - x)
-    };
-    let of_rows = |i: usize, value: f64| {
-        let y = multipliers.constraints[i];
-        match y < 0.0 {
-            true => product(-y, value - rows.lower[i]),
-            false => product(y, rows.upper[i] - value),
-        }
-    };
-    let is_inequality = |bounds: &Bounds, i: usize| bounds.lower[i] < bounds.upper[i];
-    let x = solution.x.iter().enumerate();
-    let x = x.filter(|&(i, _)| is_inequality(variables, i));
-    let g = solution.constraints.iter().enumerate();
-    let g = g.filter(|&(i, _)| is_inequality(rows, i));
-    let of_variables: f64 = x.map(|(i, &x)| of_variables(i, x)).sum();
-    of_variables + g.map(|(i, &value)| of_rows(i, value)).sum::<f64>()
+/// What is left to gain of an objective, with the scale and the tolerance of the solve that found it.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Gap {
+    /// The objective lies no farther above its least value nearby, in its unit.
+    pub(crate) left: f64,
+    /// Independent directions along which equations and reached bounds stay, and the Lagrangian falls to second order.
+    pub(crate) descents: usize,
+    objective: f64,
+    /// Part of the objective that may be left.
+    part: f64,
+    /// What counts as zero.
+    zero: f64,
+    scale: f64,
+    tolerance: f64,
 }
 
-/// A multiplier times the distance from its bound; nothing of a bound that is not there.
+impl Gap {
+    /// The gap of the solution of a program to a tolerance.
+    pub(crate) fn new(program: &mut impl Nlp, solution: &SolverResult, tolerance: f64) -> Self {
+        let scale = program.objective_scale();
+        let zero = ZERO / scale;
+        Self {
+            left: bound(program, solution),
+            descents: 0,
+            objective: solution.objective.abs(),
+            part: PART.max(tolerance),
+            zero,
+            scale,
+            tolerance,
+        }
+    }
+
+    /// Returns true if so little is left that the objective is the least one.
+    pub(crate) fn is_closed(&self) -> bool {
+        self.left <= self.zero.max(self.part * self.objective)
+    }
+
+    /// Options of a solve from a solution that leaves less; none where no smaller tolerance can be met.
+    pub(crate) fn next(&self, solution: &SolverResult, options: &Options) -> Option<Options> {
+        let size = self.objective.max(self.left.min(self.scale.recip()));
+        let own = size.max(self.zero).recip();
+        let tolerance = match own > self.scale / SMALLER {
+            true => self.tolerance,
+            false => self.tolerance * SMALLER,
+        };
+        let scale = own.max(self.scale);
+        let mu = solution.iterations.last()?.mu;
+        (tolerance >= LEAST).then(|| Options {
+            tolerance,
+            objective_scale: Some(scale),
+            start: Start::Resumed {
+                mu_init: (mu * scale / self.scale).min(0.1),
+            },
+            ..options.clone()
+        })
+    }
+
+    /// The gap after a solve with these options, `before` which there was another solution.
+    pub(crate) fn after(
+        &self,
+        program: &mut impl Nlp,
+        (before, solution): (&SolverResult, &SolverResult),
+        options: &Options,
+    ) -> Self {
+        let scale = options.objective_scale.unwrap_or(self.scale);
+        let barrier =
+            |of: &SolverResult, scale: f64| of.iterations.last().map(|last| last.mu / scale);
+        let falls = barrier(before, self.scale).zip(barrier(solution, scale));
+        let gained = match falls.is_some_and(|(before, after)| before >= FALL * after) {
+            true => (before.objective - solution.objective).abs(),
+            false => f64::INFINITY,
+        };
+        Self {
+            left: bound(program, solution).min(gained),
+            objective: solution.objective.abs(),
+            scale,
+            tolerance: options.tolerance,
+            ..*self
+        }
+    }
+
+    /// Counts the directions along which a solution is no minimum, by the inertia of its conditions with the bounds that it reaches as equations.
+    pub(crate) fn count_descents(&mut self, program: &mut impl Nlp, solution: &SolverResult) {
+        if !solution.status.is_optimal() || self.objective <= self.zero {
+            return;
+        }
+        let held = Held::nothing(solution.x.len(), solution.constraints.len());
+        let kernel = Kernel::new(program, (&solution.x, &solution.costates), &held);
+        if let Err(NoSensitivity::NoMinimum(descents)) = kernel {
+            self.descents = descents;
+        }
+    }
+
+    /// The status of a solution with this gap: what is not known to be the least objective is acceptable.
+    pub(crate) fn status(&self, found: Status) -> Status {
+        match found {
+            Status::Solved if !self.is_closed() || self.descents > 0 => Status::Acceptable,
+            found => found,
+        }
+    }
+
+    /// That an objective may lie above its least value, where it does.
+    pub(crate) fn warning(&self, solution: &SolverResult) -> Option<String> {
+        let is_optimal = solution.status.is_optimal();
+        let objective = solution.objective;
+        let stationary = (is_optimal && self.descents > 0).then(|| {
+            format!(
+                "a stationary point, but no minimum to second order: the objective falls along {} independent directions",
+                self.descents
+            )
+        });
+        let is_wide = is_optimal && !self.is_closed();
+        stationary.or_else(|| is_wide.then(|| {
+            format!(
+                "the objective {objective:.6e} may lie up to {:.1e} above the least one nearby: no solve to a smaller tolerance confirmed it",
+                self.left
+            )
+        }))
+    }
+}
+
+/// Returns true if a point keeps the rows to a tolerance and has a smaller objective than a solution.
+pub(crate) fn is_better(
+    program: &impl Nlp,
+    solution: &SolverResult,
+    other: &SolverResult,
+    tolerance: f64,
+) -> bool {
+    other.objective < solution.objective
+        && program.constraints().violation(&other.constraints) <= tolerance
+}
+
+/// A bound of what the objective of a solution lies above its least value, to first order.
+pub(crate) fn bound(program: &mut impl Nlp, solution: &SolverResult) -> f64 {
+    let SolverResult { x, costates, .. } = solution;
+    let mut slopes = vec![0.0; x.len()];
+    program.gradient(x, &mut slopes);
+    let entries = program.jacobian_structure();
+    let mut values = vec![0.0; entries.rows.len()];
+    program.jacobian(x, &mut values);
+    for ((&row, &col), value) in entries.rows.iter().zip(&entries.cols).zip(&values) {
+        slopes[col as usize] += value * costates.constraints[row as usize];
+    }
+    let Bounds { lower, upper } = program.variables();
+    let of_variable = |i: usize| {
+        let slope = slopes[i] - costates.lower[i] + costates.upper[i];
+        let of_bounds = product(costates.lower[i], x[i] - lower[i])
+            + product(costates.upper[i], upper[i] - x[i]);
+        match lower[i] < upper[i] {
+            true => slope.abs() + of_bounds,
+            false => 0.0,
+        }
+    };
+    let Bounds { lower, upper } = program.constraints();
+    let of_row = |(i, value): (usize, &f64)| {
+        let y = costates.constraints[i];
+        product(
+            y,
+            if y < 0.0 {
+                value - lower[i]
+            } else {
+                upper[i] - value
+            },
+        )
+    };
+    let of_variables: f64 = (0..x.len()).map(of_variable).sum();
+    of_variables
+        + solution
+            .constraints
+            .iter()
+            .enumerate()
+            .map(of_row)
+            .sum::<f64>()
+}
+
+/// The size of a multiplier times the distance from its bound; nothing of a bound that is not there.
 fn product(multiplier: f64, distance: f64) -> f64 {
     match distance.is_finite() {
         true => (multiplier * distance).abs(),
         false => 0.0,
     }
-}
-
-/// The tolerance with which the gap of a solution becomes small relative to its objective; none where it is small, or cannot become so.
-pub(crate) fn tighter(program: &impl Nlp, solution: &SolverResult, tolerance: f64) -> Option<f64> {
-    let gap = gap(program, solution);
-    let wanted = PART * solution.objective.abs();
-    let counts = gap > wanted && gap * program.objective_scale() > NONE;
-    let factor = (0.5 * wanted / gap).clamp(FACTORS[0], FACTORS[1]);
-    (counts && solution.status.is_solved())
-        .then_some(factor * tolerance)
-        .filter(|&tolerance| tolerance >= LEAST)
-}
-
-/// That an objective may lie well above its least value, where the gap says so.
-pub(crate) fn warning(gap: f64, solution: &SolverResult, scale: f64) -> Option<String> {
-    let objective = solution.objective;
-    let counts = gap > PART * objective.abs() && gap * scale > UNTOLD;
-    (counts && solution.status.is_solved()).then(|| {
-        format!(
-            "the objective {objective:.3e} may lie up to {gap:.1e} above its least value: the barrier of the bounds leaves that much at this \
-             \"tolerance\"; a smaller one tells more"
-        )
-    })
 }

@@ -74,7 +74,7 @@ pub struct Optimum {
     pub cut_short: Option<Status>,
     /// Bounds and limits that the motion reaches, the most frequent first; none of a solution.
     pub active: Vec<Active>,
-    /// Duality gap: the objective lies no farther above its least value, in its unit.
+    /// The objective lies no farther above its least value nearby, in its unit.
     pub gap: f64,
     /// A warning that the gap is large compared with the objective.
     pub(crate) wide: Option<String>,

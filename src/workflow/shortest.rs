@@ -73,7 +73,7 @@ fn slowed(control: &Control, model: &Model, given: f64, half_period: f64) -> Con
     }
 }
 
-/// Sum of the squared ranges of the inputs that are sought, in the units in which objectives count them; of unbounded ones their scales.
+/// Sum of the squared ranges of the inputs that are sought, in the units in which objectives count them; of unbounded ones their sizes.
 fn squared_ranges(control: &Control, model: &Model) -> f64 {
     let inputs = [Role::Voltage, Role::Load].into_iter();
     let inputs = inputs.flat_map(|role| model.variables.with(role));
@@ -82,7 +82,7 @@ fn squared_ranges(control: &Control, model: &Model) -> f64 {
         let [low, high] = control.bounds(input);
         let range = match (high - low).is_finite() {
             true => high - low,
-            false => control.scale(input, &model.system),
+            false => control.size(input, model),
         };
         let kind = model.input_kind(input.source.expect("an input of a source"));
         (range / kind.counted().1).powi(2)

@@ -1,4 +1,5 @@
-//! The solves of a program one after another: the first one, others with new charts of its rotations, others to a smaller tolerance.
+//! The solves of a program one after another: the first one, others with new charts of its rotations, others that confirm
+//! the objective.
 
 use std::ops::ControlFlow;
 use std::time::Instant;
@@ -6,13 +7,14 @@ use std::time::Instant;
 use crate::control::problem::Combined;
 use crate::control::{BoundaryError, Carried, InitialGuess, RestProgram, Solution, Transcription};
 use crate::ipopt::{
-    Iteration, Multipliers, Options, Reached, Solver, SolverResult, Start, StartingPoint, interrupt,
+    Iteration, Multipliers, Options, Reached, Solver, SolverResult, Start, StartingPoint, Status,
+    interrupt,
 };
 use crate::model::Model;
 use crate::nlp::joined::{Joined, Places, SharedVariable};
 use crate::workflow::combined::one_of_both;
 use crate::workflow::error::WorkflowError;
-use crate::workflow::gap;
+use crate::workflow::gap::{self, Gap};
 use crate::workflow::iterate::Iterate;
 use crate::workflow::motion::solved;
 use crate::workflow::optimum::seconds_left;
@@ -20,11 +22,9 @@ use crate::workflow::phase::phase;
 use crate::workflow::program_motion::{ProgramMotion, states_of_rest};
 use crate::workflow::recentre::recentred;
 
-/// Maximum numbers of repeated solves with other charts of its rotations, and to a smaller tolerance.
+/// Maximum numbers of repeated solves with other charts of its rotations, and with the objective scaled by its size.
 const CHARTS: usize = 4;
-const TIGHTENED: usize = 3;
-/// Iterations of a solve to a smaller tolerance.
-const AGAIN: usize = 100;
+const CONFIRMING: usize = 8;
 
 /// The program of one or several motions in a solver.
 pub(super) struct Solves<'a, 'm> {
@@ -145,35 +145,50 @@ impl Solves<'_, '_> {
         is_far.then_some(initial)
     }
 
-    /// Solves again to a smaller tolerance, as long as the duality gap is wide.
-    pub(super) fn tighten(
+    /// Solves again, with the objective scaled by its own size, as long as more of it may be left to gain than a solution may leave.
+    pub(super) fn confirm(
         &mut self,
         mut solution: SolverResult,
-    ) -> Result<SolverResult, WorkflowError> {
-        let mut tolerance = self.options.tolerance;
-        for _ in 0..TIGHTENED {
-            let tighter = gap::tighter(self.solver.program(), &solution, tolerance);
-            let Some(tighter) = tighter.filter(|_| interrupt::stop().is_none()) else {
+    ) -> Result<(SolverResult, Gap), WorkflowError> {
+        let tolerance = self.options.tolerance;
+        let mut gap = Gap::new(self.solver.program_mut(), &solution, tolerance);
+        for _ in 0..CONFIRMING {
+            let is_done = gap.is_closed() || !solution.status.is_optimal();
+            let next = gap.next(&solution, &self.options);
+            let next = next.filter(|_| !is_done && interrupt::stop().is_none());
+            let Some(mut options) = next else {
                 break;
             };
-            phase("solving again, to a smaller tolerance");
-            tolerance = tighter;
-            let mu_init = solution.iterations.last().map_or(1e-9, |last| last.mu);
-            self.solver.set_options(Options {
-                tolerance,
-                max_iterations: self.options.max_iterations.min(AGAIN),
-                max_seconds: self.left(),
-                start: Start::Resumed { mu_init },
-                ..self.options.clone()
-            });
+            phase("solving again, with the objective scaled by its size");
+            options.max_seconds = self.left();
+            self.solver.set_options(options.clone());
             let again = self.solve(&solution.to_point())?;
-            let failed = !again.status.is_solved();
-            solution = one_of_both(solution, again);
-            if failed {
+            let program = self.solver.program_mut();
+            let (status, objective) = (again.status, again.objective);
+            // Rounding may keep a solve from its tolerance at a point that is better all the same.
+            let is_better = gap::is_better(program, &solution, &again, self.options.tolerance);
+            if status.is_solved() || is_better {
+                gap = gap.after(program, (&solution, &again), &options);
+            }
+            tracing::info!(?status, objective, left = gap.left, "confirmation");
+            solution = match is_better && !status.is_solved() {
+                true => one_of_both(
+                    solution,
+                    SolverResult {
+                        status: Status::Acceptable,
+                        ..again
+                    },
+                ),
+                false => one_of_both(solution, again),
+            };
+            if !status.is_solved() {
                 break;
             }
         }
-        Ok(solution)
+        gap.count_descents(self.solver.program_mut(), &solution);
+        tracing::info!(left = gap.left, descents = gap.descents, "confirmed");
+        solution.status = gap.status(solution.status);
+        Ok((solution, gap))
     }
 
     /// Seconds that are left.

@@ -8,6 +8,7 @@ use crate::app::folder::make_folder;
 use crate::app::request::{CommandInput, CommandOutput};
 use crate::files::{lay_out, printable};
 use crate::ipopt::interrupt;
+use crate::math::significant;
 use crate::report::atomic::{self, WriteError};
 use crate::report::file_set::FileSet;
 use crate::report::table::{aligned, cells_csv};
@@ -70,9 +71,14 @@ pub(super) fn write(
         folder.display()
     );
     let head = match best.and_then(|best| best.objective) {
-        Some(objective) if is_solved => format!("solved: objective {objective:.7}, {counts}"),
+        Some(objective) if is_solved => {
+            format!("solved: objective {}, {counts}", significant(objective, 8))
+        }
         Some(objective) if solved > 0 => {
-            format!("interrupted: best objective {objective:.7}, {counts}")
+            format!(
+                "interrupted: best objective {}, {counts}",
+                significant(objective, 8)
+            )
         }
         _ => format!("not solved: {counts}"),
     };
@@ -99,7 +105,8 @@ fn lower(best: &Ended, ended: &[Ended]) -> Option<String> {
     let mut lower = others.filter_map(|one| Some((one.start, one.objective?)));
     let (start, other) = lower.find(|(_, other)| best.is_held && *other < objective)?;
     Some(format!(
-        "note: start {start} has the lower objective {other:.7}, but does not keep its goal or period"
+        "note: start {start} has the lower objective {}, but does not keep its goal or period",
+        significant(other, 8)
     ))
 }
 
@@ -122,7 +129,7 @@ pub(super) fn rows(ended: &[Ended]) -> Vec<Vec<String>> {
             one.seed
                 .map_or("own".to_owned(), |seed| format!("seed {seed}")),
             one.status.replace('_', " "),
-            or_dash(one.objective.map(|value| format!("{value:.7}"))),
+            or_dash(one.objective.map(|value| significant(value, 8))),
             or_dash(one.iterations.map(|count| count.to_string())),
             format!("{:.2}", one.seconds),
             or_dash(one.optimum.map(|number| number.to_string())),

@@ -17,7 +17,7 @@ use crate::control::waypoint::instant_at;
 use crate::coordinates::Reduced;
 use crate::functional::{Outer, Sample};
 use crate::math::Signal;
-use crate::model::{Model, Quantity, Size};
+use crate::model::{Model, Quantity};
 use std::ops::Range;
 
 /// A cost of a quantity before it is summed.
@@ -119,26 +119,6 @@ pub(super) fn cost_rows(
         .zip(measured)
         .filter_map(row)
         .collect()
-}
-
-/// Part of a length or of a radian that is the deviation of a motion at first, about.
-const DEVIATION: f64 = 0.1;
-
-/// The size of the costs of quantities, about, for a motion of `duration` s.
-pub(super) fn costs_size(model: &Model, costs: &[QuantityCost], duration: f64) -> f64 {
-    let size = |cost: &QuantityCost| {
-        let deviation = DEVIATION
-            * match cost.quantity.size(&model.system) {
-                Size::Length => model.length(),
-                _ => 1.0,
-            };
-        let time = match cost.during {
-            During::Motion => duration,
-            During::End | During::At(_) => 1.0,
-        };
-        cost.weight * time * deviation * deviation
-    };
-    costs.iter().map(size).sum()
 }
 
 impl CostRow {

@@ -15,7 +15,6 @@ use crate::control::energy_cost::{EnergyCost, SourceEnergy, sources};
 use crate::coordinates::StepPattern;
 use crate::functional::Outer;
 use crate::model::Model;
-use crate::model::components::capacitance;
 
 /// J in a mJ.
 const MILLIJOULE: f64 = 1e-3;
@@ -123,17 +122,6 @@ fn mixed(
         (i, slot.expect("a muscle couples its ends and its voltage"))
     };
     coordinates.into_iter().map(slot).collect()
-}
-
-/// The size of the energies, about, at voltages of `volts` V all the time.
-pub(super) fn energies_size(model: &Model, costs: &[EnergyCost], volts: f64) -> f64 {
-    let size = |cost: &EnergyCost| {
-        let muscle = &model.system.muscles[cost.source];
-        let of = capacitance(muscle);
-        let at_rest = of.map_or(0.0, |of| of.at_length(muscle.length()).abs());
-        cost.weight * MILLIJOULE * at_rest * volts * volts
-    };
-    costs.iter().map(size).sum()
 }
 
 impl EnergyRow {

@@ -41,6 +41,7 @@ pub(super) struct LimitRow {
     pub(super) entries: Vec<(usize, usize)>,
     /// Vectors it reads.
     pub(super) vectors: Vec<usize>,
+    /// Factor of its rows, which follows from the derivatives at the guess.
     pub(super) scale: f64,
     /// Step from the interval before, where steps between intervals are limited.
     pub(super) step: Option<Step>,
@@ -117,7 +118,7 @@ pub(super) fn limit_rows(
             at,
             entries,
             vectors,
-            scale: scale(bounded, model),
+            scale: 1.0,
             step,
         };
         first += limit.at.len();
@@ -209,19 +210,6 @@ fn sites((when, site): (When, Site), span: Span, reads_inputs: bool) -> Range<us
         (When::Everywhere, Site::Instants) => 0..end + 1 - usize::from(is_closed),
         (When::Everywhere, Site::Intervals) if reads_inputs => 0..intervals,
         (When::Everywhere, Site::Intervals) => 0..end,
-    }
-}
-
-/// Factor that brings the values of a quantity near 1.
-fn scale(bounded: &BoundedQuantity, model: &Model) -> f64 {
-    match bounded.quantity {
-        Quantity::JointStep { .. } => {
-            let bounds = bounded.bounds().map(f64::abs).into_iter();
-            let finite = bounds.filter(|bound| *bound > 0.0 && bound.is_finite());
-            1.0 / finite.reduce(f64::max).unwrap_or(1.0)
-        }
-        Quantity::MarkerPlace { .. } | Quantity::MarkerStep { .. } => 1.0 / model.length(),
-        _ => 1.0,
     }
 }
 

@@ -4,9 +4,8 @@
 //! momentum of the start in row 0 and rest at the goal in row N, constraints where coordinates leave any, then limits.
 //! The Jacobian is ∇²Ŝ, the Hessian of the Lagrangian ∇³Ŝ along the costates plus objective and limits, both exact.
 //!
-//! Rows and multipliers are scaled by magnitudes taken from the Jacobian at the guess, voltages are in V, kV or MV as their
-//! bounds suggest, lengths in the length of the system, the interval length in its guess, the objective by a power of a
-//! thousand, so that one tolerance means the same everywhere.
+//! Rows, limits, multipliers and the objective are scaled by magnitudes of derivatives at the guess, inputs by their bounds, lengths by the length
+//! of the system, and the interval length by its guess, so that one tolerance means the same everywhere: no scale is a number of its own.
 //!
 //! A [`Transcription`] has constant parts, `layout` (unknowns, equations, limits), `objective` and `structure` (entries of the derivatives),
 //! and one that every evaluation changes, `workspace`. Its methods are in `program` (the trait [`Nlp`]), `point`, `interval_pass`, `scaling`,
@@ -119,7 +118,7 @@ impl<'m> Transcription<'m> {
         initial: &InitialGuess,
         layout: Layout,
     ) -> Result<Self, BoundaryError> {
-        let objective = Objective::new(model, boundary, (control, &layout), initial);
+        let objective = Objective::new(model, boundary, (control, &layout));
         let structure = Structure::new(model, &layout, &objective)?;
         let workspace = Workspace::new(model, boundary, control, initial, &layout);
         let momentum = StartMomentum::new(model, boundary, (&layout, &structure));
@@ -141,6 +140,7 @@ impl<'m> Transcription<'m> {
         out.set_scales(&initial.discrete, initial.h);
         out.set_bounds(control);
         out.set_row_bounds();
+        out.set_objective_scale(&initial.discrete, initial.h);
         Ok(out)
     }
 

@@ -1,14 +1,12 @@
 //! The objective on a horizon: costs of inputs, of quantities and of energies, with its scale.
 
 use crate::control::boundary_conditions::BoundaryConditions;
-use crate::control::guess::InitialGuess;
-use crate::control::objective::{Cost, objective_scale};
+use crate::control::objective::Cost;
 use crate::control::problem::Control;
-use crate::control::transcription::cost_rows::{CostRow, cost_rows, costs_size};
-use crate::control::transcription::energy_rows::{EnergyRow, energies_size, energy_rows};
+use crate::control::transcription::cost_rows::{CostRow, cost_rows};
+use crate::control::transcription::energy_rows::{EnergyRow, energy_rows};
 use crate::control::transcription::layout::Layout;
-use crate::control::transcription::units::{KILOVOLT, MILLISECOND};
-use crate::model::{Model, Role, Time, Variable};
+use crate::model::{Model, Time, Variable};
 
 /// The objective of a control problem on its grid.
 #[derive(Clone, Debug)]
@@ -20,7 +18,7 @@ pub(super) struct Objective {
     pub(super) energies: Vec<EnergyRow>,
     /// Voltages and loads of an interval.
     pub(super) inputs: Vec<CostInput>,
-    /// Factor that brings the objective near 1.
+    /// Factor that brings the objective near 1, which follows from its derivatives at the guess.
     pub(super) scale: f64,
 }
 
@@ -46,7 +44,7 @@ impl CostInput {
         let input = |(s, variable): (usize, &Variable)| {
             let source = variable.source.expect("an input of a source");
             let unit = unit_of(model, control, source);
-            let size = control.scale(variable, &model.system);
+            let size = control.size(variable, model);
             Self {
                 scalar: s,
                 slot: slots
@@ -63,27 +61,17 @@ impl CostInput {
 }
 
 impl Objective {
-    /// The objective of a problem on a layout; the guess gives the length of an interval.
+    /// The objective of a problem on a layout.
     pub(super) fn new(
         model: &Model,
         boundary: &BoundaryConditions,
         (control, layout): (&Control, &Layout),
-        initial: &InitialGuess,
     ) -> Self {
         let objective = &control.objective;
         let (paid, energies) = (&objective.quantities, &objective.energies);
         let inputs = CostInput::of_model(model, control);
         let ends = boundary.rest.each_ref();
         let ends = ends.map(|row| row.as_ref().map(|row| counted(model, &inputs, row)));
-        let duration = layout.end as f64 * initial.h * MILLISECOND;
-        let volts = control.voltage_unit(&model.system);
-        let size = costs_size(model, paid, duration) + energies_size(model, energies, volts);
-        let unknown = |input: &&CostInput| {
-            let variable = &model.variables.of(Time::Interval)[input.scalar];
-            variable.role == Role::Load && variable.source.is_some_and(|s| !control.is_given(s))
-        };
-        let of_loads = inputs.iter().filter(unknown).map(|input| input.scale);
-        let largest = of_loads.fold(volts / KILOVOLT, f64::max);
         Self {
             cost: Cost::new(objective, inputs.len(), layout.span(), ends),
             quantities: cost_rows(
@@ -94,7 +82,7 @@ impl Objective {
             ),
             energies: energy_rows(model, energies, &boundary.rest, layout.intervals),
             inputs,
-            scale: objective_scale(objective, largest, duration, size),
+            scale: 1.0,
         }
     }
 }

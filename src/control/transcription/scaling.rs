@@ -10,6 +10,14 @@ use crate::model::{Coordinates, Model, Role, Size, Time};
 use crate::nlp::{Bounds, Nlp};
 use std::mem;
 
+/// Part of the largest inputs that motions use, about, and part of the objective of a guess that is left at the optimum.
+///
+/// With these 34 kept problems take 1.0 of the iterations that the fixed units of earlier versions needed; with 0.1 and 1 they take 1.1.
+const USUAL: f64 = 0.3;
+const LEFT: f64 = 0.1;
+/// A bound below this part of what a variable changes a quantity by is no scale of it.
+const SMALL: f64 = 0.01;
+
 impl Transcription<'_> {
     /// Scales of the variables by their units; multipliers have none yet.
     pub(super) fn variable_scales(
@@ -25,13 +33,20 @@ impl Transcription<'_> {
                 Role::Coordinate if variable.size == Size::Length => length,
                 Role::Coordinate | Role::Multiplier => 1.0,
                 Role::Voltage | Role::Load | Role::Potential => {
-                    control.scale(variable, &model.system) / variable.unit
+                    control.size(variable, model) / variable.unit
                 }
                 Role::Parameter => model.parameter(variable).size(),
                 Role::Duration => h,
             }
         };
         layout.unknowns.columns.iter().map(scale).collect()
+    }
+
+    /// Scales the objective by its size.
+    pub(super) fn set_objective_scale(&mut self, discrete: &DiscreteTrajectory, h: f64) {
+        let x = self.encode(discrete, h);
+        self.objective.scale = inverse(LEFT * self.objective_size(&x));
+        self.workspace.point.fill(f64::NAN);
     }
 
     /// Scales rows and multipliers by the largest entries of the Jacobian at the guess, kind by kind, parameters left out.
@@ -41,6 +56,7 @@ impl Transcription<'_> {
         let asked = mem::replace(&mut self.sides.parameters, ParameterOrder::None);
         self.jacobian(&x, &mut values);
         self.sides.parameters = asked;
+        self.set_limit_scales(&values);
         let of_kinds = self.scales_of_kinds(&values);
         let of_multipliers = self.scales_of_multipliers(&values, &of_kinds);
         let columns = self.layout.unknowns.columns.iter();
@@ -64,6 +80,53 @@ impl Transcription<'_> {
         self.structure.jacobian.scale(rows, columns);
         self.structure.hessian.scale(columns, columns);
         self.workspace.point.fill(f64::NAN);
+    }
+
+    /// Size of the objective: the larger one of its values at the guess and there with a part of the largest inputs all the time; where both are
+    /// zero, what it costs that every variable changes by its scale.
+    fn objective_size(&mut self, x: &[f64]) -> f64 {
+        let mut driven = x.to_vec();
+        for input in &self.layout.unknowns.inputs {
+            driven[input.column] = USUAL;
+        }
+        self.bounds.keep(&mut driven);
+        let size = self.objective(x).abs().max(self.objective(&driven).abs());
+        match size > 0.0 {
+            true => size,
+            false => self.objective_curvature_at(x),
+        }
+    }
+
+    /// Half the sum of the second derivatives of the objective by each variable.
+    fn objective_curvature_at(&mut self, x: &[f64]) -> f64 {
+        let mut values = vec![0.0; self.structure.hessian.entries.rows.len()];
+        let none = vec![0.0; self.layout.unknowns.rows.len()];
+        self.hessian(x, 1.0, &none, &mut values);
+        let entries = self.structure.hessian.with(&values);
+        let own = entries.filter(|(row, col, _)| row == col);
+        own.map(|(_, _, value)| 0.5 * value.abs()).sum()
+    }
+
+    /// Scales limits and goals: limits by their bounds, as far as these are no small part of what a change of a variable by its scale makes, goals
+    /// by that change alone.
+    fn set_limit_scales(&mut self, values: &[f64]) {
+        let mut changes = vec![0.0_f64; self.layout.limits.len()];
+        for (row, col, value) in self.structure.jacobian.with(values) {
+            if let Row::Limit { limit, .. } = self.layout.unknowns.rows[row] {
+                let change = (value * self.variable_scales[col]).abs();
+                changes[limit] = changes[limit].max(change);
+            }
+        }
+        for (limit, change) in self.layout.limits.iter_mut().zip(changes) {
+            let [lower, upper] = limit.bounded.bounds();
+            let sizes = [lower, upper].map(f64::abs).into_iter();
+            let bound = sizes.filter(|size| size.is_finite()).fold(0.0, f64::max);
+            let is_given = change > 0.0 && (lower == upper || bound == 0.0);
+            limit.scale = inverse(match is_given {
+                true => change,
+                false => bound.max(SMALL * change),
+            });
+        }
     }
 
     /// Scale of each kind of row but limits: one over the largest entry of these rows by variables of instants and intervals.

@@ -64,9 +64,11 @@ impl<'a> Design<'a> {
                 true => high * high - low * low,
                 false => high - low,
             };
-            let scale = control.scale(&scalars[input.scalar], &model.system);
             let is_range = range.is_finite() && range > 0.0;
-            ranges.push(if is_range { range } else { scale });
+            ranges.push(match is_range {
+                true => range,
+                false => control.size(&scalars[input.scalar], model),
+            });
         }
         if inputs.is_empty() {
             return Err(NoRegulator::NoInput);
