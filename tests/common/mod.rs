@@ -18,6 +18,7 @@ pub mod receding;
 pub mod remembering;
 pub mod robot;
 pub mod signals;
+pub mod similar;
 pub mod solid;
 pub mod sought;
 pub mod stacks;

@@ -33,6 +33,7 @@ mod reference;
 mod resolution;
 mod resumed;
 mod screws;
+mod similar;
 mod single_joints;
 mod squeezer;
 mod tolerance;

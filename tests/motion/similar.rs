@@ -1,0 +1,104 @@
+//! Similar robots have similar motions.
+
+use crate::common::similar::Scales;
+use serde_json::{Value, json};
+
+const SCALES: Scales = Scales {
+    mass: 2.0,
+    length: 3.0,
+    time: 5.0,
+    voltage: 7.0,
+};
+
+#[test]
+fn similar_problems_are_scaled_by_the_dimensions_of_their_numbers() {
+    let scales = SCALES;
+    let force = 2.0 * 3.0 / 25.0;
+    let permittivity = force / 49.0;
+    let problem = json!({
+        "scene": {
+            "name": "s",
+            "materials": { "m": {
+                "shear_modulus": "80 kPa", "density": 1000, "relative_permittivity": 30000.0, "dielectric": "ideal",
+                "maxwell": [ { "shear_modulus": 1e4, "relaxation_time": "20 ms" } ]
+            } },
+            "bodies": [ { "name": "b", "mass": "10 g", "sphere": { "radius": 0.5 }, "position": [0.25, "5 cm", 0] } ],
+            "joints": [ { "name": "j", "revolute": { "axis": [0, 0, 2] }, "child": "b", "damping": 4, "stiffness": "3 N/m" } ],
+            "gravity": [0, -9.5, 0]
+        },
+        "simulate": {
+            "duration": "100 ms", "step": 0.5, "tolerance": 1e-3,
+            "voltages": { "m": { "sine": { "amplitude": "2 kV", "period": 0.5, "phase": 1 } }, "n": 8 },
+            "loads": { "f": "2 N" },
+            "start": { "joint_angles": { "j": 0.5, "k": "8 mm" }, "joint_rates": { "j": 2 } }
+        },
+        "control": {
+            "duration": { "min": 0.5, "max": "1 s", "guess": 1 },
+            "objective": { "effort": 2.0, "final": [ { "marker": { "marker": "m", "at": [0.5, null, 0], "weight": 4.0 } } ] },
+            "limits": [ { "stretch": { "muscle": "m", "min": 0.5 } } ]
+        }
+    });
+    let scaled = scales.problem(&problem);
+    let number = |path: &str| {
+        let value = scaled.pointer(path).unwrap_or(&Value::Null);
+        let text = value.as_str().map(|text| text.split_once(' ').unwrap().0);
+        text.map_or_else(|| value.as_f64(), |number| number.parse().ok())
+    };
+    let material = "/scene/materials/m";
+    for (path, expected) in [
+        (format!("{material}/shear_modulus"), 80.0 * force / 9.0),
+        (format!("{material}/density"), 1000.0 * 2.0 / 27.0),
+        (
+            format!("{material}/relative_permittivity"),
+            3e4 * permittivity,
+        ),
+        (
+            format!("{material}/maxwell/0/shear_modulus"),
+            1e4 * force / 9.0,
+        ),
+        (format!("{material}/maxwell/0/relaxation_time"), 100.0),
+        ("/scene/bodies/0/mass".into(), 20.0),
+        ("/scene/bodies/0/sphere/radius".into(), 1.5),
+        ("/scene/bodies/0/position/0".into(), 0.75),
+        ("/scene/bodies/0/position/1".into(), 15.0),
+        ("/scene/joints/0/revolute/axis/2".into(), 2.0),
+        ("/scene/joints/0/damping".into(), 4.0 * force * 3.0 * 5.0),
+        ("/scene/joints/0/stiffness".into(), 3.0 * force / 3.0),
+        ("/scene/gravity/1".into(), -9.5 * 3.0 / 25.0),
+        ("/simulate/duration".into(), 500.0),
+        ("/simulate/step".into(), 2.5),
+        ("/simulate/tolerance".into(), 1e-3),
+        ("/simulate/voltages/m/sine/amplitude".into(), 14.0),
+        ("/simulate/voltages/m/sine/period".into(), 2.5),
+        ("/simulate/voltages/m/sine/phase".into(), 1.0),
+        ("/simulate/voltages/n".into(), 56.0),
+        ("/simulate/loads/f".into(), 2.0 * force),
+        ("/simulate/start/joint_angles/j".into(), 0.5),
+        ("/simulate/start/joint_angles/k".into(), 24.0),
+        ("/simulate/start/joint_rates/j".into(), 0.4),
+        ("/control/duration/min".into(), 2.5),
+        ("/control/duration/max".into(), 5.0),
+        ("/control/objective/effort".into(), 2.0 / (49.0 * 5.0)),
+        ("/control/objective/final/0/marker/at/0".into(), 1.5),
+        ("/control/objective/final/0/marker/weight".into(), 4.0 / 9.0),
+        ("/control/limits/0/stretch/min".into(), 0.5),
+    ] {
+        let found = number(&path).unwrap_or_else(|| panic!("nothing at {path}"));
+        let off = (found - expected).abs();
+        assert!(
+            off <= 1e-14 * expected.abs(),
+            "{path}: {found} for {expected}"
+        );
+    }
+}
+
+#[test]
+fn every_number_with_a_unit_of_the_schema_is_known() {
+    let (scene, problem) = proboscis::files::schema();
+    for schema in [scene, problem] {
+        for (name, definition) in schema["$defs"].as_object().unwrap() {
+            let has_unit = definition["type"] == json!(["number", "string"]);
+            assert!(!has_unit || SCALES.knows(name), "{name}");
+        }
+    }
+}
