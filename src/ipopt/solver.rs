@@ -154,13 +154,10 @@ impl<N: Nlp> Solver<N> {
         &mut self,
         observer: &mut dyn FnMut(&Iteration, &Reached<'_>) -> ControlFlow<()>,
     ) -> Result<&SolverResult, IpoptError> {
-        let relaxed = self.options.relaxed();
-        self.program.take_bounds(relaxed);
-        self.record.relaxed = relaxed;
+        self.record.relaxed = self.options.relaxed();
+        self.program.take_bounds(self.record.relaxed);
         let mut problem = self.known_problem()?;
-        let scale = self.options.objective_scale;
-        let scale = scale.unwrap_or_else(|| self.program.objective_scale());
-        assert!(scale > 0.0, "a positive scale of the objective");
+        let scale = self.scale();
         let (n, m) = (self.bounds.variables.lower.len(), self.bounds.right.len());
         let mut x = mem::take(&mut self.result.x);
         let mut costates = mem::take(&mut self.result.costates);
@@ -232,6 +229,14 @@ impl<N: Nlp> Solver<N> {
         };
         self.end();
         Ok(&self.result)
+    }
+
+    /// Factor of the objective.
+    fn scale(&self) -> f64 {
+        let scale = self.options.objective_scale;
+        let scale = scale.unwrap_or_else(|| self.program.objective_scale());
+        assert!(scale > 0.0, "a positive scale of the objective");
+        scale
     }
 
     /// The problem that Ipopt knows, or a new one where it has to know other bounds or options.

@@ -14,18 +14,6 @@ pub struct Held {
     pub squares: Option<Vec<usize>>,
 }
 
-impl Held {
-    /// All of a program of so many variables and constraints is part of the optimum.
-    #[must_use]
-    pub fn nothing(variables: usize, constraints: usize) -> Self {
-        Self {
-            variables: vec![false; variables],
-            constraints: vec![false; constraints],
-            squares: None,
-        }
-    }
-}
-
 /// Side of a bound.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Side {

@@ -1,4 +1,4 @@
-//! What an objective may lie above its least value nearby, and the solves that make it small.
+//! Distance of an objective from its least value nearby, and the solves that make it small.
 //!
 //! A solver of interior points ends where the optimality conditions hold to a tolerance that is relative to the size of the objective at the guess.
 //! Where the objective falls far below that, the tolerance may be as large as the objective. With the multipliers z of bounds at the distances d, y of
@@ -14,11 +14,10 @@
 
 use crate::ipopt::{Options, SolverResult, Start, Status};
 use crate::nlp::{Bounds, Nlp};
-use crate::sensitivity::{Held, Kernel, NoSensitivity};
 
 /// The objective of a solution is this part of itself above its least value at most, unless a larger tolerance is asked for.
 const PART: f64 = 1e-6;
-/// What is below this part of the size that the guess gives the objective is zero.
+/// Part of the size that the guess gives the objective which counts as zero.
 const ZERO: f64 = 1e-15;
 /// No tolerance is smaller than this.
 const LEAST: f64 = 1e-14;
@@ -27,17 +26,17 @@ const SMALLER: f64 = 1e-2;
 /// Fall of the barrier parameter between two solves after which what the second one gained bounds what is left.
 const FALL: f64 = 10.0;
 
-/// What is left to gain of an objective, with the scale and the tolerance of the solve that found it.
+/// Distance of an objective from its least value, with the scale and the tolerance of the solve that found it.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Gap {
     /// The objective lies no farther above its least value nearby, in its unit.
     pub(crate) left: f64,
-    /// Independent directions along which equations and reached bounds stay, and the Lagrangian falls to second order.
-    pub(crate) descents: usize,
+    /// True unless the last step needed more curvature than the Lagrangian has along the equations: its matrix had another inertia than at a minimum.
+    is_minimum: bool,
     objective: f64,
     /// Part of the objective that may be left.
     part: f64,
-    /// What counts as zero.
+    /// Objective that counts as zero.
     zero: f64,
     scale: f64,
     tolerance: f64,
@@ -50,7 +49,7 @@ impl Gap {
         let zero = ZERO / scale;
         Self {
             left: bound(program, solution),
-            descents: 0,
+            is_minimum: is_minimum(solution),
             objective: solution.objective.abs(),
             part: PART.max(tolerance),
             zero,
@@ -101,6 +100,7 @@ impl Gap {
         };
         Self {
             left: bound(program, solution).min(gained),
+            is_minimum: is_minimum(solution),
             objective: solution.objective.abs(),
             scale,
             tolerance: options.tolerance,
@@ -108,22 +108,10 @@ impl Gap {
         }
     }
 
-    /// Counts the directions along which a solution is no minimum, by the inertia of its conditions with the bounds that it reaches as equations.
-    pub(crate) fn count_descents(&mut self, program: &mut impl Nlp, solution: &SolverResult) {
-        if !solution.status.is_optimal() || self.objective <= self.zero {
-            return;
-        }
-        let held = Held::nothing(solution.x.len(), solution.constraints.len());
-        let kernel = Kernel::new(program, (&solution.x, &solution.costates), &held);
-        if let Err(NoSensitivity::NoMinimum(descents)) = kernel {
-            self.descents = descents;
-        }
-    }
-
     /// The status of a solution with this gap: what is not known to be the least objective is acceptable.
     pub(crate) fn status(&self, found: Status) -> Status {
         match found {
-            Status::Solved if !self.is_closed() || self.descents > 0 => Status::Acceptable,
+            Status::Solved if !self.is_closed() || !self.is_minimum => Status::Acceptable,
             found => found,
         }
     }
@@ -132,11 +120,8 @@ impl Gap {
     pub(crate) fn warning(&self, solution: &SolverResult) -> Option<String> {
         let is_optimal = solution.status.is_optimal();
         let objective = solution.objective;
-        let stationary = (is_optimal && self.descents > 0).then(|| {
-            format!(
-                "a stationary point, but no minimum to second order: the objective falls along {} independent directions",
-                self.descents
-            )
+        let stationary = (is_optimal && !self.is_minimum).then(|| {
+            "a stationary point that is not known to be a minimum: the objective falls along some motions to second order".to_owned()
         });
         let is_wide = is_optimal && !self.is_closed();
         stationary.or_else(|| is_wide.then(|| {
@@ -146,6 +131,12 @@ impl Gap {
             )
         }))
     }
+}
+
+/// Returns true if the last step towards a solution needed no regularisation.
+fn is_minimum(solution: &SolverResult) -> bool {
+    let last = solution.iterations.last();
+    last.is_none_or(|last| last.regularization <= 0.0)
 }
 
 /// Returns true if a point keeps the rows to a tolerance and has a smaller objective than a solution.

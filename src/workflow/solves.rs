@@ -185,8 +185,7 @@ impl Solves<'_, '_> {
                 break;
             }
         }
-        gap.count_descents(self.solver.program_mut(), &solution);
-        tracing::info!(left = gap.left, descents = gap.descents, "confirmed");
+        tracing::info!(left = gap.left, "end");
         solution.status = gap.status(solution.status);
         Ok((solution, gap))
     }

@@ -8,6 +8,7 @@ mod amount_limits;
 mod between_instants;
 mod closed_form;
 mod codesign;
+mod confirmed;
 mod controller;
 mod creep;
 mod delays;

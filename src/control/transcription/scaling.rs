@@ -15,7 +15,7 @@ use std::mem;
 /// With these 34 kept problems take 1.0 of the iterations that the fixed units of earlier versions needed; with 0.1 and 1 they take 1.1.
 const USUAL: f64 = 0.3;
 const LEFT: f64 = 0.1;
-/// A bound below this part of what a variable changes a quantity by is no scale of it.
+/// A bound below this part of what a variable changes a quantity by is no scale of it, nor is an objective below this part of what inputs cost.
 const SMALL: f64 = 0.01;
 
 impl Transcription<'_> {
@@ -82,17 +82,18 @@ impl Transcription<'_> {
         self.workspace.point.fill(f64::NAN);
     }
 
-    /// Size of the objective: the larger one of its values at the guess and there with a part of the largest inputs all the time; where both are
-    /// zero, what it costs that every variable changes by its scale.
+    /// Size of the objective: its value at the guess, or where that is a small part of it the value with usual inputs all the time, or where both are
+    /// zero what it costs that every variable changes by its scale.
     fn objective_size(&mut self, x: &[f64]) -> f64 {
         let mut driven = x.to_vec();
         for input in &self.layout.unknowns.inputs {
             driven[input.column] = USUAL;
         }
         self.bounds.keep(&mut driven);
-        let size = self.objective(x).abs().max(self.objective(&driven).abs());
-        match size > 0.0 {
-            true => size,
+        let [of_guess, of_inputs] = [x, &driven].map(|x| self.objective(x).abs());
+        match of_guess > SMALL * of_inputs {
+            true => of_guess,
+            false if of_inputs > 0.0 => of_inputs,
             false => self.objective_curvature_at(x),
         }
     }
