@@ -111,7 +111,7 @@ impl Gap {
     /// The status of a solution with this gap: what is not known to be the least objective is acceptable.
     pub(crate) fn status(&self, found: Status) -> Status {
         match found {
-            Status::Solved if !self.is_closed() || !self.is_minimum => Status::Acceptable,
+            Status::Solved if !self.is_closed() => Status::Acceptable,
             found => found,
         }
     }

@@ -74,7 +74,7 @@ fn double_integrator(intervals: usize) -> Attempt<usize> {
         coordinates: None,
         guess: Guess::Interpolate,
         solver: Solver {
-            tolerance: 1e-11,
+            tolerance: 1e-10,
             max_iterations: 200,
             linear_solver: LinearSolver::Auto,
             ipopt: BTreeMap::new(),
@@ -89,7 +89,7 @@ fn double_integrator(intervals: usize) -> Attempt<usize> {
     let initial = guess(&model, &boundary, &problem, h, None);
     let mut program = Transcription::new(&model, &boundary, &problem, &initial).unwrap();
     let options = Options {
-        tolerance: 1e-11,
+        tolerance: 1e-10,
         ..Options::default()
     };
     let start = program.start(&initial);

@@ -381,7 +381,13 @@ fn a_motor_swings_up_one_and_two_rods_with_the_effort_of_an_independent_program(
         let optimum = solved(&system, &control);
         assert_eq!(optimum.solution.status, Status::Solved);
         let found = optimum.solution.objective;
-        assert!((found - exact).abs() < 1e-8 * exact, "{found:e} {exact:e}");
+        // Two rods have several optima: one that is no worse will do.
+        let is_one = rods == 1;
+        assert!(found < (1.0 + 1e-8) * exact, "{found:e} {exact:e}");
+        assert!(
+            !is_one || found > (1.0 - 1e-8) * exact,
+            "{found:e} {exact:e}"
+        );
         let torques = optimum.motion.voltages.iter().map(|row| row[0].abs());
         let at_bound = torques.filter(|torque| *torque > 999.0 * bound.unwrap());
         assert!(at_bound.count() > 5, "the bound is active");
