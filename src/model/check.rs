@@ -258,12 +258,6 @@ impl System {
                 positive(name, "prestretch", stretch)?;
             }
             positive(name, "length", muscle.length())?;
-            require(
-                muscle.from.body != muscle.to.body,
-                name,
-                || "one body at both ends".to_owned(),
-                "two bodies, or a body and the ground",
-            )?;
             if let Fidelity::FiniteElements(Discretisation {
                 first_side: Some(side),
                 ..

@@ -49,10 +49,7 @@ pub(super) fn moves(load: &Load, presolved: &Presolved) -> bool {
     match load.on {
         LoadPlace::Point { at, .. } => presolved.carrier(at.body).is_some(),
         LoadPlace::Joint(joint) => presolved.joint(joint).is_some(),
-        LoadPlace::Muscle(muscle) => {
-            let muscle = &presolved.system.muscles[muscle];
-            muscle.from.body.or(muscle.to.body).is_some()
-        }
+        LoadPlace::Muscle(_) => true,
         LoadPlace::Block { block, .. } => !presolved.immobile.solids[block],
     }
 }

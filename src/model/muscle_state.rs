@@ -42,17 +42,14 @@ pub struct SourceFlow {
 }
 
 impl Model {
-    /// The lumped muscles that can move or have a voltage.
+    /// The lumped muscles.
     pub fn muscle_readings(&self) -> Vec<MuscleReading> {
         let lumped = self.system.muscles.iter().enumerate();
         let lumped = lumped.filter(|(_, muscle)| muscle.fidelity == Fidelity::Lumped);
-        let readings = lumped.filter_map(|(m, muscle)| {
-            let drive = self.drive(m);
-            (self.presolved.moves(muscle) || drive.is_some()).then(|| MuscleReading {
-                muscle: m,
-                branches: self.branches_of(m),
-                drive,
-            })
+        let readings = lumped.map(|(m, _)| MuscleReading {
+            muscle: m,
+            branches: self.branches_of(m),
+            drive: self.drive(m),
         });
         readings.collect()
     }

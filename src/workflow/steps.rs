@@ -60,11 +60,9 @@ pub(crate) fn warning(
     task: &Simulation,
 ) -> Option<String> {
     let Some(error) = error else {
-        return (discrete.intervals() > 0).then(|| {
-            format!(
-                "the error of so few steps cannot be estimated; {} would be enough",
-                task.solving.integrator.order() + 1
-            )
+        let enough = task.solving.integrator.order() + 1;
+        return (1..enough).contains(&discrete.intervals()).then(|| {
+            format!("the error of so few steps cannot be estimated; {enough} would be enough")
         });
     };
     let (relative, step) = (error.relative(), rounded(error.step));

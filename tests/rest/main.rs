@@ -4,6 +4,7 @@
 mod common;
 
 mod ball_joint;
+mod blocked;
 mod domain;
 mod front_door;
 mod prestretch;

@@ -49,13 +49,6 @@ pub(crate) fn muscle(
             .key("at")
             .wrong(found, "another place than \"from\""));
     }
-    if from.body == to.body {
-        let found = format!("{:?}, where the muscle starts too", spec.to.body);
-        return Err(scope
-            .key("to")
-            .key("body")
-            .wrong(found, "another body than \"from\""));
-    }
     let fidelity = match &spec.first_side {
         Some(side) => turned(fidelity, side, to.at - from.at, &scope.key("first_side"))?,
         None => fidelity,
