@@ -49,7 +49,7 @@ pub(crate) enum Command {
     },
     /// Run a simulation problem forward in time; control problems are run by solve.
     Simulate(InTime),
-    /// Find the static equilibrium of a problem, or of any scene under given voltages.
+    /// Find a stable static equilibrium of a problem, or of any scene under given voltages; exit status 1 where none is found.
     Equilibrium {
         #[command(flatten)]
         problem: Problem,

@@ -19,8 +19,8 @@ use crate::app::request::{CommandInput, CommandOutput};
 use crate::app::seconds::Seconds;
 use crate::app::summary::{MEASURED, Summary};
 use crate::control::problem::{AtRest, Task};
-use crate::dynamics::observations;
 use crate::dynamics::trajectory::Observations;
+use crate::dynamics::{UNSTABLE, observations};
 use crate::files::{Loaded, driven_voltages, read_problem, read_system};
 use crate::ipopt::interrupt;
 use crate::model::{Model, Response, System};
@@ -114,9 +114,12 @@ pub(super) fn at(
     let origin = request.origin(false);
     let mut files = FileSet::in_folder(&folder);
     let written = fields::write(&mut files, model, discrete, &origin)?;
-    let status = loss.map_or("at_rest", status);
+    let status = loss.map_or(result.found.status(), status);
     let mut summary = Summary::new(request, status, model.coordinates.name());
-    summary.message = loss.map(|loss| lost(&still.rest, loss, &folder));
+    summary.message = match loss {
+        Some(loss) => Some(lost(&still.rest, *loss, &folder)),
+        None => (status == UNSTABLE).then(|| still.rest.verdict()),
+    };
     summary.domain.clone_from(&result.outside);
     summary.notes.clone_from(&result.remarks);
     summary.plan = Plan::from_model(model, None, MEASURED);
@@ -131,6 +134,7 @@ pub(super) fn at(
     let rows = rows(&still.rest, status);
     summary.rest = Some(still.rest);
     let title = match loss {
+        None if status == UNSTABLE => "An unstable equilibrium",
         None => "Static equilibrium",
         Some(_) => "The last equilibrium",
     };
@@ -179,14 +183,15 @@ impl Still {
     }
 }
 
-/// The answer of the command; an equilibrium that was lost has a message.
+/// The answer of the command; an equilibrium that is unstable or was lost has a message.
 fn command_output(summary: &Summary, model: &Model, rest: &Rest, folder: &Path) -> CommandOutput {
     let message = summary.message.iter().cloned();
     let is_solved = summary.message.is_none();
     CommandOutput {
         is_solved,
-        result: match is_solved {
-            true => format!("{}, {}", text(model, rest), folder.display()),
+        result: match summary.status == UNSTABLE {
+            _ if is_solved => format!("{}, {}", text(model, rest), folder.display()),
+            true => format!("unstable equilibrium, {}", folder.display()),
             false => "no equilibrium".to_owned(),
         },
         notes: message.chain(summary.notes.lines()).collect(),

@@ -32,20 +32,20 @@ pub(super) struct Rest {
     markers: BTreeMap<String, [f64; 3]>,
     /// Stretch of each lumped muscle.
     stretches: BTreeMap<String, f64>,
-    /// Eigenvalues of the stiffness in joint coordinates, N m/rad for angles, N/m for displacements; where there are both, those
-    /// in rad and mm, in N mm.
+    /// Eigenvalues of the stiffness in joint coordinates, N m/rad for angles, N/m for displacements; where there are both, N mm for each rad and
+    /// each length of the system.
     stiffness: Vec<f64>,
     /// Motion of the softest mode, and the cause of its softness.
     #[serde(skip_serializing_if = "Option::is_none")]
     softest_mode: Option<Softest>,
     /// True if the equilibrium is stable, by them or by the inertia of the tangent; nothing where that is not known.
     is_stable: Option<bool>,
-    /// Number of directions in which the potential energy falls, by the inertia of the tangent.
+    /// Number of directions in which a disturbance grows.
     unstable_directions: Option<usize>,
     /// The lowest mode, where it decided without factors: then directions are those that were found.
     #[serde(skip_serializing_if = "Option::is_none")]
     lowest_mode: Option<Lowest>,
-    /// `growing_loads`, `path_continued` or `energy_minimum`.
+    /// `growing_loads`, `path_continued` or `damped_motion`.
     route: &'static str,
     /// State at which the path of growing loads loses its stable equilibrium, if this one does not lie on it.
     #[serde(skip_serializing_if = "Option::is_none")]
@@ -65,7 +65,7 @@ pub(super) struct Rest {
 struct Softest {
     /// Parts that move most.
     moves: String,
-    /// `voltages`, `weight` or `elastic_forces`; absent where nothing takes from the elastic stiffness.
+    /// `voltages`, `loads` (weights too) or `elastic_forces`; absent where nothing takes from the elastic stiffness.
     #[serde(skip_serializing_if = "Option::is_none")]
     softened_by: Option<&'static str>,
 }
@@ -94,7 +94,7 @@ impl Lowest {
 /// A loss of the stable equilibrium under a growing load.
 #[derive(Debug, Serialize)]
 struct Lost {
-    /// `weight` or `voltages`.
+    /// `loads`, which are weights too, or `voltages`.
     load: &'static str,
     /// Fraction of the load.
     fraction: f64,
@@ -109,7 +109,7 @@ pub(super) fn status(loss: StabilityLoss) -> &'static str {
 
 fn load(load: Load) -> (&'static str, &'static str) {
     match load {
-        Load::Weight => ("weight", "weights"),
+        Load::Forces => ("loads", "loads"),
         Load::Voltages => ("voltages", "voltages"),
     }
 }
@@ -143,7 +143,10 @@ pub(super) fn describe(
     let (factor, unit) = match (slides, turns) {
         (false, _) => (1e-3, ("N mm/rad", 1e3)),
         (true, false) => (1e3, ("N/mm", 1e-3)),
-        (true, true) => (1.0, ("N mm, coordinates in rad and mm", 1.0)),
+        (true, true) => (
+            1.0,
+            ("N mm, coordinates in rad and lengths of the system", 1.0),
+        ),
     };
     let stretches = observed.columns.iter().filter_map(|column| {
         let muscle = column.name.strip_suffix("_stretch")?;
@@ -153,7 +156,7 @@ pub(super) fn describe(
     Rest {
         voltages: driven.map(|(s, v)| (s.name.clone(), *v)).collect(),
         fraction: failure.map(|loss| match loss.load {
-            Load::Weight => 0.0,
+            Load::Forces => 0.0,
             Load::Voltages => loss.fraction,
         }),
         largest_nominal_field: None,
@@ -173,7 +176,7 @@ pub(super) fn describe(
             moves: mode.moves.clone(),
             softened_by: mode.softening.map(|softening| match softening {
                 Softening::Voltages => "voltages",
-                Softening::Weight => "weight",
+                Softening::Loads => "loads",
                 Softening::Elastic => "elastic_forces",
             }),
         }),
@@ -182,7 +185,7 @@ pub(super) fn describe(
         route: match (failure, found.route) {
             (Some(_), _) | (None, Route::Loads) => "growing_loads",
             (None, Route::Beyond(_)) => "path_continued",
-            (None, Route::Minimum(_)) => "energy_minimum",
+            (None, Route::DampedMotion(_)) => "damped_motion",
         },
         lost: failure.or(found.loss()).map(|loss| Lost {
             load: load(loss.load).0,
@@ -221,7 +224,7 @@ impl Rest {
     }
 
     /// `stable equilibrium`, and how it was found.
-    fn verdict(&self) -> String {
+    pub(super) fn verdict(&self) -> String {
         let mut text = match self.is_stable {
             Some(true) => "stable equilibrium",
             Some(false) => "unstable equilibrium",
@@ -231,7 +234,7 @@ impl Rest {
         if let (Some(false), Some(count @ 1..)) = (self.is_stable, self.unstable_directions) {
             let cause = match self.softest_mode.as_ref().and_then(|mode| mode.softened_by) {
                 Some("voltages") => "pull-in",
-                Some("weight") => "collapse under weight",
+                Some("loads") => "collapse under load",
                 _ => "buckling",
             };
             let directions = match count {
@@ -240,11 +243,11 @@ impl Rest {
             };
             text.push_str(&match &self.lowest_mode {
                 None => format!(
-                    ": the potential energy falls in {directions} ({cause}); no stable one was found on the path of growing \
-                     loads, on its continuation, or by descent of the potential energy from them"
+                    ": a disturbance grows in {directions} ({cause}); no stable one was found on the path of growing loads, on its \
+                     continuation, or by damped motion from them"
                 ),
                 Some(_) => format!(
-                    ": the potential energy falls in at least {directions} ({cause}); a stable one was not sought, for which \
+                    ": a disturbance grows in at least {directions} ({cause}); a stable one was not sought, for which \
                      the matrix is too large to be factorised"
                 ),
             });
@@ -262,10 +265,10 @@ impl Rest {
         if let (Some(lost), false) = (&self.lost, self.route == "growing_loads") {
             let place = match self.route {
                 "path_continued" => "on the continued path",
-                _ => "at a minimum of the potential energy",
+                _ => "by damped motion from an unstable state",
             };
             let (what, kind) = match lost.load {
-                "weight" => ("weights", lost.kind),
+                "loads" => ("loads", lost.kind),
                 _ => ("voltages", lost.kind),
             };
             let kind = kind.replace('_', " ").replace("pull in", "pull-in");
@@ -284,7 +287,7 @@ impl Rest {
 /// One line: the kind of loss, its loads, the parts that give way, and the last state.
 pub(super) fn lost(rest: &Rest, loss: StabilityLoss, folder: &Path) -> String {
     let mut text = format!(
-        "no equilibrium was found, neither on the path of growing loads nor by descent of the potential energy from it: {} at {:.6} % of the {}",
+        "no equilibrium was found, neither on the path of growing loads nor by damped motion from it: {} at {:.6} % of the {}",
         kind(loss),
         100.0 * loss.fraction,
         load(loss.load).1

@@ -172,7 +172,7 @@ pub enum EquilibriumError {
     Stopped(Status),
     /// There is no equilibrium to start from.
     #[error(
-        "no equilibrium was found without voltages: neither Newton's method from the reference nor minima of the potential energy lead to one"
+        "no equilibrium was found without voltages: neither Newton's method nor damped motion from the reference leads to one"
     )]
     NoStart,
     /// Joints that neither a muscle nor a block nor a weight holds.
@@ -281,7 +281,7 @@ fn hint(
 
 fn grown(load: Load) -> &'static str {
     match load {
-        Load::Weight => "weights",
+        Load::Forces => "loads",
         Load::Voltages => "voltages",
     }
 }
@@ -297,7 +297,7 @@ fn moved(last: &Equilibrium) -> String {
 fn why(kind: Option<Instability>) -> &'static str {
     match kind {
         Some(Instability::PullIn) => "pull-in: a limit point",
-        Some(Instability::Collapse) => "collapse under weight: a limit point",
+        Some(Instability::Collapse) => "collapse under load: a limit point",
         Some(Instability::Buckling) => "buckling: another path branches off",
         None => "pull-in or a limit point",
     }

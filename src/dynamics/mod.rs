@@ -64,7 +64,7 @@ pub use drive::Drive;
 pub use equations::Equations;
 pub use equilibrium::{
     Continuation, Equilibrium, Instability, Load, LowestMode, Mode, Route, Softening,
-    StabilityLoss, continuation, equilibrium, lowest_mode, stable_equilibrium,
+    StabilityLoss, UNSTABLE, continuation, equilibrium, lowest_mode, stable_equilibrium,
     stable_equilibrium_by,
 };
 pub use error::{EquilibriumError, StepError};

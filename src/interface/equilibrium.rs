@@ -46,7 +46,7 @@ impl Equilibrium {
     ///
     /// # Errors
     /// The system makes no sense, an input is not one of it, growing loads lose stability ([`Error::StabilityLost`] has the last equilibrium
-    /// before), or there is no equilibrium at all.
+    /// before), no stable equilibrium was found ([`Error::Unstable`] has an unstable one), or there is no equilibrium at all.
     pub fn find(&self, system: &System) -> Result<Motion> {
         let system = &system.checked()?;
         let mut voltages = vec![0.0; system.sources().len()];
@@ -81,6 +81,9 @@ impl Equilibrium {
             remarks: result.remarks.0,
         };
         match result.loss {
+            None if result.found.is_stable() == Some(false) => Err(Error::Unstable {
+                motion: Box::new(motion),
+            }),
             None => Ok(motion),
             Some(loss) => Err(Error::StabilityLost {
                 fraction: loss.fraction,

@@ -41,6 +41,12 @@ pub enum Error {
         /// The last equilibrium, a motion of one instant.
         motion: Box<Motion>,
     },
+    /// No stable equilibrium was found; an unstable one is kept.
+    #[error("no stable equilibrium was found: a disturbance of the one that was found grows")]
+    Unstable {
+        /// The unstable equilibrium, a motion of one instant.
+        motion: Box<Motion>,
+    },
     /// A step of a simulation failed; the motion so far is kept.
     #[error("{source}")]
     Step {

@@ -20,6 +20,10 @@ use crate::workflow::stalled;
 use crate::workflow::stretch_range;
 use std::time::Instant;
 
+/// What the eigenvalues of a stiffness without symmetry leave open.
+const FLUTTER: &str = "loads follow what they act on, and stability is that of strongly damped motion: with little damping the state may \
+                       flutter; simulate a disturbed motion to see whether it returns";
+
 /// Reason why there is no equilibrium.
 #[derive(Debug, Error)]
 pub enum EquilibriumTaskError {
@@ -90,6 +94,7 @@ pub fn equilibrium(
     remarks.warn("outside_domain", domain::note(&outside, false));
     let beyond = out_of_range(&model, &discrete);
     remarks.warn("outside_range", stretch_range::warning(&beyond, false));
+    remarks.warn("may_flutter", found.may_flutter.then(|| FLUTTER.to_owned()));
     if let Some((_, fallbacks)) = found.on_grids {
         remarks.warn("multigrid_stalled", stalled::warning(fallbacks));
         let is_unknown = found.is_stable().is_none();

@@ -11,3 +11,4 @@ mod prestretch;
 mod prestretched_elements;
 mod stable;
 mod trunk;
+mod unstable_beside;

@@ -186,7 +186,7 @@ fn the_lower_of_two_equilibria_is_not_told_before_both_are_known() {
     let rest = || stable_equilibrium(&model, &start, &model.scalars(&none));
     let (whole, asked) = within(u64::MAX, rest);
     let whole = whole.unwrap();
-    assert!(matches!(whole.route, Route::Minimum(_)));
+    assert!(matches!(whole.route, Route::DampedMotion(_)));
     for allowed in asked - 12..asked {
         let (stopped, _) = within(allowed, rest);
         let is_stopped = matches!(stopped, Err(EquilibriumError::Stopped(_)));

@@ -31,7 +31,7 @@ pub fn equilibrium(
 ) -> Result<Equilibrium, EquilibriumError> {
     let mut statics = begin(model, voltages, MultigridUse::WhereFaster)?;
     let mut state = unloaded(&mut statics, start, voltages)?;
-    for load in [Load::Weight, Load::Voltages] {
+    for load in [Load::Forces, Load::Voltages] {
         let ramp = Ramp { load, voltages };
         let grown = grow(&mut statics, state, ramp)?;
         if grown.fraction < 1.0 {
@@ -106,7 +106,7 @@ pub(super) fn grow(
 ) -> Result<Grown, EquilibriumError> {
     let is_there = match ramp.load {
         // All of the weight acts already where nothing else holds the system.
-        Load::Weight => statics.has_weight() && statics.weight < 1.0,
+        Load::Forces => statics.has_weight() && statics.weight < 1.0,
         Load::Voltages => statics.is_driven(ramp.voltages),
     };
     // Blocks bend far within few updates, and have no states of rest far from their path.
@@ -116,7 +116,7 @@ pub(super) fn grow(
     let mut is_lost = false;
     // At zero voltage nothing depends on the fraction to first order.
     let mut slope = match ramp.load {
-        Load::Weight if is_there => {
+        Load::Forces if is_there => {
             let voltages = ramp.apply(statics, 0.0);
             statics.evaluate(&state, &voltages);
             statics.factor().ok().map(|()| slope(statics, ramp, 0.0))

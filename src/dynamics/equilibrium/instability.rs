@@ -3,9 +3,9 @@
 /// Load that grows along a path.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Load {
-    /// The weights, without voltages.
-    Weight,
-    /// The voltages, under all weights.
+    /// The weights and the loads, without voltages.
+    Forces,
+    /// The voltages, under all weights and loads.
     Voltages,
 }
 
@@ -14,7 +14,7 @@ pub enum Load {
 pub enum Instability {
     /// The path turns back: beyond this voltage there is no equilibrium nearby (pull-in).
     PullIn,
-    /// The path turns back under growing weights: the robot collapses.
+    /// The path turns back under growing weights or loads: the robot collapses.
     Collapse,
     /// The path goes on, but another one branches off and is preferred (buckling).
     Buckling,
@@ -34,7 +34,7 @@ impl Instability {
     pub fn words(self) -> &'static str {
         match self {
             Self::PullIn => "pull-in",
-            Self::Collapse => "collapse under weight",
+            Self::Collapse => "collapse under load",
             Self::Buckling => "buckling",
         }
     }
@@ -42,7 +42,7 @@ impl Instability {
     /// Returns the instability at a limit point of a load.
     pub(super) fn of_turn(load: Load) -> Self {
         match load {
-            Load::Weight => Self::Collapse,
+            Load::Forces => Self::Collapse,
             Load::Voltages => Self::PullIn,
         }
     }

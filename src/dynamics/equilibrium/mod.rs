@@ -1,20 +1,20 @@
 //! Static equilibria: under growing loads, along paths, and their stability.
 //!
-//! - `statics`: Newton on the rows of rest; `static_matrix`, `static_solution`: their matrix and its solvers; `rest_state`, `states`: their unknowns; `settle`, `minimum`, `relaxation`: states that Newton's method does not reach.
+//! - `statics`: Newton on the rows of rest; `static_matrix`, `static_solution`: their matrix and its solvers; `rest_state`, `states`: their unknowns; `settle`, `relaxation`: states that Newton's method does not reach.
 //! - `instability`, `ramp`, `growth`: loads that grow; `arc_length`: the path of equilibria by arc length; `load_path`: its points.
 //! - `in_joints`: equilibria in redundant coordinates by way of joint coordinates.
-//! - `result`, `mode`, `softest_mode`, `stability`: a state of rest and its softest mode; `examined`, `lowest_mode`: its lowest mode without factors; `slowest_mode`: its slowest vibration; `stable`: the
+//! - `result`, `mode`, `softest_mode`, `stability`: a state of rest and its softest mode; `growing_motions`: its stability under loads that follow what they act on; `examined`, `lowest_mode`: its lowest mode without factors; `slowest_mode`: its slowest vibration; `stable`: the
 //!   stable one.
 
 mod arc_length;
 mod examined;
 mod growing;
+mod growing_motions;
 mod growth;
 mod in_joints;
 mod instability;
 mod load_path;
 mod lowest_mode;
-mod minimum;
 mod mode;
 mod ramp;
 mod relaxation;
@@ -37,5 +37,5 @@ pub use instability::{Instability, Load};
 pub use load_path::{Continuation, continuation};
 pub use lowest_mode::lowest_mode;
 pub use mode::{Mode, Softening};
-pub use result::{Equilibrium, Route, StabilityLoss};
+pub use result::{Equilibrium, Route, StabilityLoss, UNSTABLE};
 pub use stable::{stable_equilibrium, stable_equilibrium_by};

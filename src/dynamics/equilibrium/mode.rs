@@ -5,8 +5,8 @@
 pub enum Softening {
     /// The forces of voltages, as in pull-in.
     Voltages,
-    /// Weights, as in collapse.
-    Weight,
+    /// Weights and loads, as in collapse.
+    Loads,
     /// Elastic forces, as in buckling.
     Elastic,
 }

@@ -15,7 +15,7 @@ impl Ramp<'_> {
     /// Lets a fraction of the weights act; returns the voltages of a fraction.
     pub(super) fn apply(&self, statics: &mut Statics<'_>, fraction: f64) -> Vec<f64> {
         let (weight, part) = match self.load {
-            Load::Weight => (fraction, 0.0),
+            Load::Forces => (fraction, 0.0),
             Load::Voltages => (1.0, fraction),
         };
         statics.weight = weight;
@@ -33,7 +33,7 @@ impl Ramp<'_> {
     /// Adds the derivative of the rows by the fraction, at the state evaluated last.
     pub(super) fn add(&self, statics: &Statics<'_>, rows: &mut [f64]) {
         match self.load {
-            Load::Weight => statics.add_weight(rows),
+            Load::Forces => statics.add_weight(rows),
             Load::Voltages => {
                 let variables = &statics.model.variables;
                 let change = variables.inputs_where(self.voltages, |role| role == Role::Voltage);
@@ -45,7 +45,7 @@ impl Ramp<'_> {
     /// Derivative of the fraction by the part of the way at a fraction.
     pub(super) fn slope(&self, fraction: f64) -> f64 {
         match self.load {
-            Load::Weight => 1.0,
+            Load::Forces => 1.0,
             Load::Voltages => 0.5 / fraction,
         }
     }
@@ -62,7 +62,7 @@ impl Ramp<'_> {
     /// The fraction at a part of the way that a path takes: forces of voltages grow with their squares.
     pub(super) fn fraction(&self, part: f64) -> f64 {
         match self.load {
-            Load::Weight => part,
+            Load::Forces => part,
             Load::Voltages => part.sqrt(),
         }
     }

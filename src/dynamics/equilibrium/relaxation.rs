@@ -1,9 +1,8 @@
 //! Overdamped motion from a state to rest, all loads acting: B q̇ = f(q), with the forces f and B of the scales of the coordinates.
 //!
-//! Implicit Euler steps with one Newton iteration each, (B/Δt − ∂f/∂q) Δq = f, as long as Δt admits: the matrix is positive definite and
-//! the step short (pseudo-transient continuation). Forces need no potential: loads may follow what they act on.
+//! Implicit Euler steps with one Newton iteration each, (B/Δt − ∂f/∂q) Δq = f, as long as Δt admits: no motion grows by the matrix, and the
+//! step is short (pseudo-transient continuation). Forces need no potential: loads may follow what they act on.
 
-use crate::dynamics::equilibrium::minimum::COLLAPSED;
 use crate::dynamics::equilibrium::rest_state::RestState;
 use crate::dynamics::equilibrium::statics::Statics;
 use crate::dynamics::singular_configurations::{reversed, shortest};
@@ -17,8 +16,11 @@ const LONGEST: f64 = 0.1;
 const UPDATE: f64 = 1e-9;
 /// Part of the damping and of the longest step at which the damping changes.
 const CUT: f64 = 0.25;
-/// Damping below this part of the largest stiffness is none.
-const NONE: f64 = 1e-9;
+/// Damping below this part of the largest stiffness is none, and beyond its inverse nothing moves. Bent blocks of square sections are so soft
+/// when they turn about their axis.
+const NONE: f64 = 1e-13;
+/// Muscles shorter than this part of their length have collapsed.
+const COLLAPSED: f64 = 0.03;
 
 /// The state at which the overdamped motion from another comes to rest; `None` where it does not.
 pub(super) fn relax(
@@ -35,7 +37,7 @@ pub(super) fn relax(
     let largest = statics.largest_stiffness();
     let mut damping = largest;
     for _ in 0..STEPS {
-        if interrupt::stop().is_some() {
+        if interrupt::stop().is_some() || damping * NONE > largest {
             return None;
         }
         statics.iterations += 1;

@@ -5,6 +5,9 @@ use crate::dynamics::equilibrium::instability::{Instability, Load};
 use crate::dynamics::equilibrium::mode::Mode;
 use crate::sparse::multigrid::MultigridReport;
 
+/// The status of an unstable equilibrium.
+pub const UNSTABLE: &str = "unstable";
+
 /// A state of rest.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Equilibrium {
@@ -12,12 +15,14 @@ pub struct Equilibrium {
     pub z: Vec<f64>,
     /// Voltages and potentials.
     pub scalars: Vec<f64>,
-    /// Eigenvalues of the stiffness in joint coordinates, ascending, in N mm/rad or N/mm; empty in redundant coordinates
-    /// and for elastic blocks.
+    /// Eigenvalues of the stiffness in joint coordinates, ascending, in N mm/rad or N/mm, where there are both in N mm for each rad and each
+    /// length of the system; their real parts under loads that follow what they act on. Empty in redundant coordinates and for elastic blocks.
     pub stiffness: Vec<f64>,
-    /// Number of directions in which the potential energy falls, by the inertia of the tangent or, without factors, of those that were found;
-    /// `None` where neither gives it.
+    /// Number of directions in which a disturbance grows, by the inertia of the tangent, by its eigenvalues under loads that follow what they
+    /// act on, or, without factors, of those that were found; `None` where none of these gives it.
     pub unstable: Option<usize>,
+    /// True where loads follow what they act on and only damped motion surely returns: the symmetric part of the stiffness is not positive definite.
+    pub may_flutter: bool,
     /// The lowest mode, where it decided without factors.
     pub lowest: Option<LowestMode>,
     /// The softest mode; `None` at the points of a path, and where nothing moves.
@@ -37,8 +42,8 @@ pub enum Route {
     Loads,
     /// On the path that goes on beyond the point where growing loads lose their equilibrium, and comes back to all loads.
     Beyond(StabilityLoss),
-    /// At a minimum of the potential energy, by descent from a state where the path ends or is unstable.
-    Minimum(StabilityLoss),
+    /// Where damped motion comes to rest, from a state where the path ends or is unstable.
+    DampedMotion(StabilityLoss),
 }
 
 /// State at which the path of growing loads loses its stable equilibrium.
@@ -61,11 +66,19 @@ impl Equilibrium {
         }
     }
 
+    /// The word in files.
+    pub fn status(&self) -> &'static str {
+        match self.is_stable() {
+            Some(false) => UNSTABLE,
+            Some(true) | None => "at_rest",
+        }
+    }
+
     /// Returns the state at which growing loads lose the stable equilibrium, if it does not lie on their path.
     pub fn loss(&self) -> Option<StabilityLoss> {
         match self.route {
             Route::Loads => None,
-            Route::Beyond(loss) | Route::Minimum(loss) => Some(loss),
+            Route::Beyond(loss) | Route::DampedMotion(loss) => Some(loss),
         }
     }
 }

@@ -1,6 +1,7 @@
 //! The softest mode of a state of rest: the direction along which its potential energy rises least or falls, the parts that move,
 //! and the cause of its softness.
 
+use crate::dynamics::equilibrium::growing_motions::eigenvalues;
 use crate::dynamics::equilibrium::mode::{Mode, Softening};
 use crate::dynamics::equilibrium::rest_state::RestState;
 use crate::dynamics::equilibrium::statics::Statics;
@@ -28,39 +29,58 @@ fn is_small(model: &Model) -> bool {
     map.multipliers == 0 && joints_alone && (1..=EIGENVALUES).contains(&map.unknowns())
 }
 
-/// Eigenvalues and vectors of the stiffness of a small system in joint coordinates, at the state evaluated and factorised last;
-/// ascending.
-fn eigenpairs(statics: &Statics<'_>) -> Option<(Vec<f64>, Vec<f64>)> {
+/// The stiffness of a small system in joint coordinates, by the scales of the free ones, at the state evaluated and factorised last.
+fn scaled(statics: &Statics<'_>) -> Option<(DMatrix<f64>, Vec<usize>)> {
     let model = statics.model;
     if !is_small(model) {
         return None;
     }
     let n = model.action.map.coordinates;
-    let mut matrix = DMatrix::<f64>::zeros(n, n);
-    for ((row, col), value) in statics.entries() {
-        matrix[(row, col)] -= value / model.multiplier_time;
-    }
     let free: Vec<usize> = (0..n).filter(|&i| !model.is_prescribed(i)).collect();
     if free.is_empty() {
         return None;
     }
-    let matrix = matrix.select_rows(&free).select_columns(&free);
-    // Loads that follow what they act on: their symmetric part decides.
-    let pairs = SymmetricEigen::new(0.5 * (&matrix + matrix.transpose()));
-    let mut order: Vec<usize> = (0..free.len()).collect();
-    order.sort_by(|&i, &j| pairs.eigenvalues[i].total_cmp(&pairs.eigenvalues[j]));
-    let mut lowest = vec![0.0; n];
-    for (&i, value) in free.iter().zip(pairs.eigenvectors.column(order[0]).iter()) {
-        lowest[i] = *value;
+    let mut matrix = DMatrix::<f64>::zeros(n, n);
+    for ((row, col), value) in statics.entries() {
+        let scale = statics.scales()[row] * statics.scales()[col];
+        matrix[(row, col)] -= scale * value / model.multiplier_time;
     }
-    let values = order.iter().map(|&i| pairs.eigenvalues[i]).collect();
-    Some((values, lowest))
+    Some((matrix.select_rows(&free).select_columns(&free), free))
 }
 
-/// Eigenvalues of the stiffness in joint coordinates of the state evaluated and factorised last, ascending; empty for other
-/// coordinates.
+/// Eigenvalues of the stiffness in joint coordinates of the state evaluated and factorised last, ascending, by rad and by mm, or by lengths of
+/// the system where there are both; of a stiffness without symmetry their real parts. Empty for other coordinates.
 pub(super) fn stiffness(statics: &Statics<'_>) -> Vec<f64> {
-    eigenpairs(statics).map_or_else(Vec::new, |(values, _)| values)
+    let Some((matrix, free)) = scaled(statics) else {
+        return Vec::new();
+    };
+    let first = statics.scales()[free[0]];
+    let is_mixed = free.iter().any(|&i| statics.scales()[i] != first);
+    let unit = if is_mixed { 1.0 } else { first * first };
+    let mut values: Vec<f64> = match &statics.inertia.symmetric_part {
+        None => SymmetricEigen::new(matrix).eigenvalues.as_slice().to_vec(),
+        Some(_) => {
+            let values = eigenvalues(matrix).unwrap_or_default();
+            values.iter().map(|value| value.re).collect()
+        }
+    };
+    values.sort_by(f64::total_cmp);
+    values.iter().map(|value| value / unit).collect()
+}
+
+/// The eigenvector of the lowest eigenvalue of the stiffness of a small system with potential energy.
+fn lowest(statics: &Statics<'_>) -> Option<Vec<f64>> {
+    if statics.inertia.symmetric_part.is_some() {
+        return None;
+    }
+    let (matrix, free) = scaled(statics)?;
+    let pairs = SymmetricEigen::new(matrix);
+    let (least, _) = pairs.eigenvalues.argmin();
+    let mut lowest = vec![0.0; statics.scales().len()];
+    for (&i, value) in free.iter().zip(pairs.eigenvectors.column(least).iter()) {
+        lowest[i] = statics.scales()[i] * value;
+    }
+    Some(lowest)
 }
 
 /// The softest mode of the state evaluated and factorised last.
@@ -69,8 +89,8 @@ pub(super) fn softest_mode(
     state: &RestState,
     voltages: &[f64],
 ) -> Option<Mode> {
-    let direction = match eigenpairs(statics) {
-        Some((_, lowest)) => lowest,
+    let direction = match lowest(statics) {
+        Some(lowest) => lowest,
         None if statics.is_iterated() => statics.lowest_mode()?.direction.clone(),
         None => inverse_iteration(statics)?,
     };
@@ -157,7 +177,7 @@ fn softening(
     }
     let parts = [
         (Softening::Voltages, all - mechanical),
-        (Softening::Weight, mechanical - elastic),
+        (Softening::Loads, mechanical - elastic),
         (Softening::Elastic, elastic),
     ];
     let least = parts.into_iter().min_by(|a, b| a.1.total_cmp(&b.1));

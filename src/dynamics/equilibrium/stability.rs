@@ -41,11 +41,14 @@ impl Equilibrium {
         statics.evaluate(state, voltages);
         let is_known = statics.factor().is_ok();
         let unstable = is_known.then(|| statics.unstable_anyhow()).flatten();
+        let follows = statics.inertia.symmetric_part.is_some();
+        let may_flutter = follows && unstable == Some(0) && statics.falling() != Some(0);
         Self {
             z: statics.configuration(state),
             scalars: voltages.iter().chain(&state[m..]).copied().collect(),
             stiffness: stiffness(statics),
             unstable,
+            may_flutter,
             lowest: statics.lowest_mode().cloned(),
             softest: None,
             route,

@@ -2,8 +2,8 @@
 //!
 //! 1. on the path of growing loads, the weights first, then the voltages;
 //! 2. where that path turns back or is unstable, on its continuation by arc length, where all loads act again;
-//! 3. at a minimum of the potential energy, by descent from the unstable states met, from where the path is lost, and from
-//!    where no load acts, to either side of their softest modes.
+//! 3. where damped motion comes to rest, from the unstable states met, from where the path is lost, and from where no load acts, to
+//!    either side of their softest modes.
 //!
 //! The first stable one is the answer.
 
@@ -11,7 +11,6 @@ use crate::dynamics::equilibrium::arc_length::{LimitPoint, PathEnd, crossings, p
 use crate::dynamics::equilibrium::growth::{Grown, at_limit, begin, grow, unloaded};
 use crate::dynamics::equilibrium::in_joints;
 use crate::dynamics::equilibrium::instability::Load;
-use crate::dynamics::equilibrium::minimum::minimise;
 use crate::dynamics::equilibrium::ramp::Ramp;
 use crate::dynamics::equilibrium::relaxation::relax;
 use crate::dynamics::equilibrium::rest_state::RestState;
@@ -28,6 +27,8 @@ const STEPS: [usize; 2] = [300, 40];
 const PUSH: f64 = 0.05;
 /// Largest number of halvings of a push where it has no energy.
 const HALVINGS: usize = 8;
+/// Relative difference of the energies of two states alike.
+const ALIKE: f64 = 1e-9;
 /// Stiffness below this part of the largest is none.
 const ROUND_OFF: f64 = 1e-13;
 
@@ -92,9 +93,9 @@ fn found(
                 kind: last.loss().and_then(|l| l.kind),
             };
             let state = statics.state_without_field(&last.z);
-            let found = descend(&mut statics, &[state], voltages)?;
+            let found = come_to_rest(&mut statics, &[state], voltages)?;
             let found = found.ok_or(error)?;
-            let route = Route::Minimum(loss);
+            let route = Route::DampedMotion(loss);
             Ok(Equilibrium::new(&mut statics, &found, voltages, route))
         }
         (weighed, false) => {
@@ -128,7 +129,7 @@ fn under_weight(
     is_last: bool,
 ) -> Result<(RestState, Route), EquilibriumError> {
     let ramp = Ramp {
-        load: Load::Weight,
+        load: Load::Forces,
         voltages: none,
     };
     let begun = match unloaded(statics, start, none) {
@@ -149,12 +150,12 @@ fn under_weight(
     };
     statics.weight = 1.0;
     let loss = StabilityLoss {
-        load: Load::Weight,
+        load: Load::Forces,
         fraction: 0.0,
         kind: None,
     };
-    match descend(statics, &from, none)? {
-        Some(found) => Ok((found, Route::Minimum(loss))),
+    match come_to_rest(statics, &from, none)? {
+        Some(found) => Ok((found, Route::DampedMotion(loss))),
         None => match begun {
             Ok(state) => Ok((state, Route::Loads)),
             Err(error) => Err(without_stiffness(statics, start, none).unwrap_or(error)),
@@ -256,13 +257,10 @@ fn under(
         }
     }
     met.extend(limit.map(|LimitPoint { state, .. }| state));
-    // Blocks are large, and have no states of rest far from their path.
-    if statics.model.action.map.of_nodes.is_empty() {
-        met.extend([before, rest]);
-    }
+    met.extend([before, rest]);
     ramp.apply(statics, 1.0);
-    if let Some(found) = descend(statics, &met, &voltages)? {
-        return Ok((found, Route::Minimum(loss)));
+    if let Some(found) = come_to_rest(statics, &met, &voltages)? {
+        return Ok((found, Route::DampedMotion(loss)));
     }
     ramp.apply(statics, 1.0);
     match is_reached {
@@ -278,38 +276,29 @@ fn is_stable(statics: &mut Statics<'_>, state: &RestState, voltages: &[f64]) -> 
     statics.unstable_anyhow().map(|count| count == 0)
 }
 
-/// A way from a state to one of rest under all loads.
-type Way = fn(&mut Statics<'_>, &RestState, &[f64]) -> Option<RestState>;
-
-/// A stable equilibrium that descent or, without blocks, overdamped motion from the first of some states finds.
+/// The first stable equilibrium to which damped motion leads from one of some states.
 ///
 /// # Errors
 /// It was stopped.
-fn descend(
+fn come_to_rest(
     statics: &mut Statics<'_>,
     from: &[RestState],
     voltages: &[f64],
 ) -> Result<Option<RestState>, EquilibriumError> {
-    let ways: &[Way] = match statics.model.action.map.of_nodes.is_empty() {
-        true => &[relax, minimise],
-        false => &[minimise],
-    };
-    for &way in ways {
-        for state in from {
-            if let Some(found) = lowest(statics, state, voltages, way)? {
-                return Ok(Some(found));
-            }
+    for state in from {
+        if let Some(found) = beside(statics, state, voltages)? {
+            return Ok(Some(found));
         }
     }
     Ok(None)
 }
 
-/// The stable equilibrium of least potential energy to which a way leads from a state, pushed to either side along its softest mode.
-fn lowest(
+/// The stable equilibrium to which damped motion leads from a state, pushed to either side along its softest mode; where both sides lead to
+/// one, that of less potential energy.
+fn beside(
     statics: &mut Statics<'_>,
     state: &RestState,
     voltages: &[f64],
-    way: Way,
 ) -> Result<Option<RestState>, EquilibriumError> {
     if statics.is_iterated() {
         return Ok(None);
@@ -323,10 +312,9 @@ fn lowest(
     };
     let mut lowest: Option<(RestState, f64)> = None;
     for side in [PUSH, -PUSH] {
-        let Some(pushed) = pushed(statics, state, voltages, &mode.direction, side) else {
-            continue;
-        };
-        let Some(mut found) = way(statics, &pushed, voltages) else {
+        let pushed = pushed(statics, state, voltages, &mode.direction, side);
+        let rests = pushed.and_then(|pushed| relax(statics, &pushed, voltages));
+        let Some(mut found) = rests else {
             continue;
         };
         statics.weight = 1.0;
@@ -337,7 +325,9 @@ fn lowest(
             continue;
         }
         let energy = statics.energy(&found, voltages);
-        if lowest.as_ref().is_none_or(|(_, least)| energy < *least) {
+        // Of two sides alike the first one counts, whatever rounding says.
+        let is_lower = |least: f64| least - energy > ALIKE * least.abs();
+        if lowest.as_ref().is_none_or(|(_, least)| is_lower(*least)) {
             lowest = Some((found, energy));
         }
     }

@@ -20,28 +20,24 @@ const RESIDUAL: f64 = 1e-6;
 impl Statics<'_> {
     /// Takes the tangent of the state evaluated last; factorises it where it is solved so.
     pub(super) fn factor(&mut self) -> Result<(), Singular> {
-        if let Some(part) = &mut self.inertia.symmetric_part {
-            // Where it is singular, it gives no number of negative pivots.
-            let _ = part.factor(&self.values);
-        }
-        let done = self.matrix.factor_unless(&self.values, &|| false);
-        done.expect("it is never time to stop")
+        self.factor_with(0.0)
     }
 
-    /// The same with a stiffness σ in N mm for each rad, and each length of the system.
+    /// The same with a stiffness σ in N mm for each rad, and each length of the system; an iteration has no inertia, for which it is added.
     pub(super) fn factor_with(&mut self, sigma: f64) -> Result<(), Singular> {
-        // An iteration has no inertia, for which stiffness is added.
-        if self.is_iterated() {
-            return self.factor();
-        }
+        self.sigma = sigma;
         let n = self.model.action.map.coordinates;
         let h = self.model.multiplier_time;
         for (value, scale) in self.values[self.added..].iter_mut().zip(&self.scales[..n]) {
             *value = -h * sigma / (scale * scale);
         }
-        let outcome = self.factor();
+        if let Some(part) = &mut self.inertia.symmetric_part {
+            // Where it is singular, it gives no number of negative pivots.
+            let _ = part.factor(&self.values);
+        }
+        let done = self.matrix.factor_unless(&self.values, &|| false);
         self.values[self.added..].fill(0.0);
-        outcome
+        done.expect("it is never time to stop")
     }
 
     /// Solves with the tangent taken last, in place; what is prescribed does not move.
@@ -115,12 +111,21 @@ impl Statics<'_> {
         (self.multigrid.levels > 0).then_some((self.multigrid, self.fallbacks))
     }
 
-    /// Number of directions in which the potential energy of the state evaluated and factorised last falls, potentials
-    /// following; `None` where the factorisation does not give them.
+    /// Number of directions in which a disturbance of the state evaluated and factorised last grows, potentials following; `None`
+    /// where the factorisation does not give them.
+    pub(super) fn unstable(&mut self) -> Option<usize> {
+        let falling = self.falling();
+        match (falling, &self.inertia.symmetric_part) {
+            (Some(0), _) | (_, None) => falling,
+            (_, Some(_)) => self.growing(),
+        }
+    }
+
+    /// Number of negative eigenvalues of the stiffness, of its symmetric part where it has no symmetry.
     ///
     /// The tangent is −h S with S the saddle of coordinates, multipliers and potentials: each multiplier has one negative
     /// eigenvalue of S, potentials have those of their own block, what remains belongs to the coordinates.
-    pub(super) fn unstable(&mut self) -> Option<usize> {
+    pub(super) fn falling(&mut self) -> Option<usize> {
         let part = self.inertia.symmetric_part.as_ref();
         let tangent = part.or_else(|| self.matrix.direct())?;
         let positive = tangent.negative_pivots()?;

@@ -6,8 +6,8 @@
 //! part of them is a part of these forces; loads are inputs, of which the same part acts. A stiffness σ on every coordinate may be
 //! added to the tangent, which makes any state's tangent that of a minimum.
 //!
-//! Loads that follow what they act on have no potential, and the tangent no symmetry: then its symmetric part decides whether a
-//! state is stable. Where that part is positive no displacement gains energy from springs and loads.
+//! Loads that follow what they act on have no potential, and the tangent no symmetry: then its eigenvalues decide whether a state is
+//! stable (`growing_motions`).
 
 use crate::coordinates::{Configuration, Interval, Scratch};
 use crate::dynamics::equilibrium::examined::Examined;
@@ -77,6 +77,8 @@ pub(super) struct Statics<'m> {
     /// Counts of an iteration that solves, and of the systems for which factors took over.
     pub(super) multigrid: MultigridReport,
     pub(super) fallbacks: usize,
+    /// Stiffness σ that was added to the tangent taken last.
+    pub(super) sigma: f64,
     /// Rows, then the Newton update.
     pub(super) residual: Vec<f64>,
     pub(super) scales: Vec<f64>,
@@ -118,6 +120,7 @@ impl<'m> Statics<'m> {
             examined: Examined::default(),
             multigrid: MultigridReport::default(),
             fallbacks: 0,
+            sigma: 0.0,
             residual: vec![0.0; size],
             scales: model.sizes(),
             charted: map.charted(),
