@@ -9,6 +9,7 @@ mod domain;
 mod front_door;
 mod prestretch;
 mod prestretched_elements;
+mod similar;
 mod stable;
 mod trunk;
 mod unstable_beside;
