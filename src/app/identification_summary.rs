@@ -2,7 +2,7 @@
 
 use serde::Serialize;
 
-use crate::app::identification_verdict::{prediction, product, verdict, words};
+use crate::app::identification_verdict::{is_plain, prediction, product, verdict, words};
 use crate::control::problem;
 use crate::identify::{Experiment, FoundStart, HeldOut, Identified, Undetermined, Whiteness};
 use crate::math::significant;
@@ -67,7 +67,7 @@ struct Combination {
     text: String,
     /// Powers by which the constants change together.
     powers: Vec<Power>,
-    /// The product that is determined.
+    /// The product that is determined, where its powers are plain ones.
     #[serde(skip_serializing_if = "Option::is_none")]
     determined: Option<Determined>,
 }
@@ -238,16 +238,20 @@ impl Identification {
                     power,
                 })
                 .collect(),
-            determined: one.determined.as_ref().map(|known| {
-                let powers = known.powers.iter();
-                let si = powers.map(|&(j, power)| units[j].factor.powf(power));
-                let value = known.value * si.product::<f64>();
-                Determined {
-                    product: product(task, &known.powers),
-                    value,
-                    standard_error: (value * known.deviation).abs(),
-                }
-            }),
+            determined: one
+                .determined
+                .as_ref()
+                .filter(|known| is_plain(known))
+                .map(|known| {
+                    let powers = known.powers.iter();
+                    let si = powers.map(|&(j, power)| units[j].factor.powf(power));
+                    let value = known.value * si.product::<f64>();
+                    Determined {
+                        product: product(task, &known.powers),
+                        value,
+                        standard_error: (value * known.deviation).abs(),
+                    }
+                }),
         };
         let largest = found.bias.largest();
         Self {

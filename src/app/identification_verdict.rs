@@ -1,7 +1,7 @@
 //! Verdicts on an identification: its status, and remarks in words.
 
 use crate::control::problem::{Identification, Recording};
-use crate::identify::{Ended, HeldOut, Identified, NONE, Undetermined};
+use crate::identify::{Ended, HeldOut, Identified, NONE, Product, Undetermined};
 use crate::math::significant;
 use crate::workflow::Remarks;
 
@@ -28,26 +28,48 @@ pub(super) fn product(task: &Identification, powers: &[(usize, f64)]) -> String 
     list.join(" · ")
 }
 
-/// Constants that are not determined, and what is.
+/// Constants that are not determined alone, and what is determined of them near the estimate.
 pub(super) fn words(task: &Identification, one: &Undetermined) -> String {
-    let names: Vec<&str> = one
-        .powers
-        .iter()
-        .map(|&(j, _)| task.parameters[j].name.as_str())
-        .collect();
-    match &one.determined {
-        Some(known) => format!(
-            "the data determine {} alone, and not {}",
-            product(task, &known.powers),
+    let name = |j: usize| task.parameters[j].name.as_str();
+    let names: Vec<&str> = one.constants.iter().map(|&j| name(j)).collect();
+    let [only] = names[..] else {
+        let text = format!(
+            "the data determine {} only in combination",
             names.join(" and ")
-        ),
-        None if names.len() == 1 => format!("the data do not determine {}", names[0]),
-        None => format!(
-            "the data do not determine {}: nothing tells changes apart in which they grow as {}",
-            names.join(", "),
-            product(task, &one.powers)
-        ),
-    }
+        );
+        return match &one.determined {
+            Some(known) => format!("{text}: {}", relative(known, name)),
+            None => text,
+        };
+    };
+    format!("the data do not determine {only}")
+}
+
+/// The sum of relative changes of two constants that is determined.
+fn relative<'a>(known: &Product, name: impl Fn(usize) -> &'a str) -> String {
+    let [(a, _), (b, factor)] = known.powers[..] else {
+        return String::new();
+    };
+    let sign = if factor < 0.0 { "minus" } else { "plus" };
+    let times = match (factor.abs() * 1e3).round() / 1e3 {
+        1.0 => "that".to_owned(),
+        _ => format!("{} times that", significant(factor.abs(), 3)),
+    };
+    format!(
+        "near the estimate they know the relative change of {} {sign} {times} of {} within ± {} % (one standard error)",
+        name(a),
+        name(b),
+        significant(100.0 * known.deviation, 2)
+    )
+}
+
+/// Greatest exponent of a product of powers that says something, and its reciprocal.
+const PLAIN: f64 = 4.0;
+
+/// Returns true if a product of powers says more than the sum of relative changes does.
+pub(super) fn is_plain(known: &Product) -> bool {
+    let mut powers = known.powers.iter().map(|(_, power)| power.abs());
+    powers.all(|power| (PLAIN.recip()..=PLAIN).contains(&power))
 }
 
 /// Status of a result, in one word.

@@ -5,44 +5,48 @@
 
 use crate::control::problem::Identification;
 use crate::identify::fit::Fit;
-use nalgebra::{DMatrix, DVector};
+use nalgebra::DMatrix;
 use statrs::distribution::{ContinuousCDF, FisherSnedecor, Normal, StudentsT};
 
 /// Singular values below this part of the largest are round-off.
 const ROUND_OFF: f64 = 1e-7;
 /// Probability of the intervals.
 pub(super) const PROBABILITY: f64 = 0.95;
-/// Part of a constant in a combination that is not determined, below which the constant is.
+/// Part of a constant in a combination that is not determined, below which it is not named with it.
 const PART: f64 = 0.02;
+/// Variance of a constant, relative to that which is left where constants at bounds are known, beyond which the bounds decide its value.
+const BY_BOUNDS: f64 = 10.0;
 
 /// A combination of constants that the data do not determine.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Undetermined {
     /// Powers of the constants, of which the largest is 1: along `θ_j → θ_j s^{power_j}` for all j nothing changes.
     pub powers: Vec<(usize, f64)>,
+    /// Those of them that are not determined.
+    pub constants: Vec<usize>,
     /// Relative standard deviation of a change along it; infinite where nothing changes at all.
     pub deviation: f64,
-    /// The product that is determined, where only one combination of these constants is not.
+    /// What is determined of two constants, where only one combination of them is not.
     pub determined: Option<Product>,
 }
 
-/// A product of powers of constants that the data determine.
+/// A combination of two constants that the data determine: the sum of the factors times relative changes, which is the logarithm of a product of powers.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Product {
-    /// Powers of the constants.
+    /// Factors of the relative changes, the first one 1.
     pub powers: Vec<(usize, f64)>,
-    /// Its value, by the units of the constants.
+    /// The product of these powers, by the units of the constants.
     pub value: f64,
-    /// Its relative standard deviation.
+    /// Standard deviation of the sum, which is the relative one of the product.
     pub deviation: f64,
 }
 
 /// Information of a fit on the constants.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Information {
-    /// Covariance of the constants in the squares of their units; zero of those at bounds or not determined.
+    /// Covariance of the constants in the squares of their units, whatever the others are, without what nothing tells at all; zero of those at bounds.
     pub covariance: DMatrix<f64>,
-    /// True for constants that the data determine.
+    /// True for constants that the data determine: by their own intervals, all others being unknown.
     pub is_determined: Vec<bool>,
     /// Combinations that they do not determine.
     pub undetermined: Vec<Undetermined>,
@@ -83,56 +87,47 @@ impl Information {
         let constants = values.len();
         let scales = scales(task, values);
         // A bound tells nothing of the data: what they determine is asked of all constants.
-        let free: Vec<usize> = (0..constants).collect();
         let inside = is_held.iter().filter(|held| !**held).count();
-        let mut own = DMatrix::zeros(weighted.nrows(), free.len());
-        for (column, &j) in free.iter().enumerate() {
-            own.set_column(column, &(weighted.column(j) * scales[j]));
+        let mut own = weighted.columns(0, constants).into_owned();
+        for (mut column, scale) in own.column_iter_mut().zip(&scales) {
+            column *= *scale;
         }
         let starts = weighted.columns(constants, weighted.ncols() - constants);
         let (factor, ellipsoid) = quantiles(inside, freedom);
         let [singular, directions] = without(own, &starts.into_owned());
-        let largest = singular.amax();
-        let deviation = |k: usize| match singular[k] <= ROUND_OFF * largest {
-            true => f64::INFINITY,
-            false => singular[k].recip(),
+        let least = ROUND_OFF * singular.amax();
+        let (known, open): (Vec<usize>, Vec<usize>) =
+            (0..constants).partition(|&k| singular[k] > least);
+        let relative = by_directions(&directions, &known, |k| singular[k].recip());
+        let unknown = by_directions(&directions, &open, |_| least.recip());
+        let by_bounds = by_bounds(&relative, is_held);
+        let is_determined = |j: usize| {
+            let variance = relative[(j, j)];
+            unknown[(j, j)] <= variance && factor * variance.sqrt() < 1.0 && !by_bounds[j]
         };
-        let (is_open, is_known): (Vec<usize>, Vec<usize>) =
-            (0..free.len()).partition(|&k| factor * deviation(k) >= 1.0);
-        let finite = (0..free.len()).map(deviation).filter(|d| d.is_finite());
+        let is_determined: Vec<bool> = (0..constants).map(is_determined).collect();
+        let is_inside = |i: usize, j: usize| !is_held[i] && !is_held[j];
+        let covariance = |i: usize, j: usize| match is_inside(i, j) {
+            true => relative[(i, j)] * scales[i] * scales[j],
+            false => 0.0,
+        };
+        let deviation = |k: usize| match singular[k] > least {
+            true => singular[k].recip(),
+            false => f64::INFINITY,
+        };
+        let is_wide = |&k: &usize| factor * deviation(k) >= 1.0;
+        let wide = (0..constants).filter(is_wide).map(|k| (k, deviation(k)));
+        let undetermined = combinations(&directions, wide, (&is_determined, &relative));
         let mut out = Self {
-            covariance: DMatrix::zeros(constants, constants),
-            is_determined: vec![true; constants],
-            undetermined: Vec::new(),
+            covariance: DMatrix::from_fn(constants, constants, covariance),
+            is_determined,
+            undetermined,
             factor,
             ellipsoid,
-            finite_variance: finite.map(|d: f64| d * d).sum(),
+            finite_variance: known.iter().map(|&k| singular[k].powi(-2)).sum(),
         };
-        let part = |j: usize, k: usize| directions[(j, k)];
-        for (column, &j) in free.iter().enumerate() {
-            out.is_determined[j] = is_open.iter().all(|&k| part(column, k).abs() < PART);
-        }
-        for (a, &i) in free.iter().enumerate() {
-            for (b, &j) in free.iter().enumerate() {
-                let is_inside = !is_held[i] && !is_held[j];
-                if is_inside && out.is_determined[i] && out.is_determined[j] {
-                    let of = |&k: &usize| part(a, k) * part(b, k) * deviation(k).powi(2);
-                    let sum: f64 = is_known.iter().map(of).sum();
-                    out.covariance[(i, j)] = sum * scales[i] * scales[j];
-                }
-            }
-        }
-        for &k in &is_open {
-            let powers = directions.column(k).into_owned();
-            out.undetermined.push(Undetermined {
-                powers: named(&powers, &free),
-                deviation: deviation(k),
-                determined: None,
-            });
-        }
         if let [only] = &mut out.undetermined[..] {
-            let known = (&directions, &is_known[..]);
-            only.determined = product(only, (&free, values), known, deviation);
+            only.determined = product(only, values, (&directions, &known), deviation);
         }
         out
     }
@@ -211,8 +206,73 @@ fn without(own: DMatrix<f64>, starts: &DMatrix<f64>) -> [DMatrix<f64>; 2] {
     ]
 }
 
+/// Σ of the squares of some directions times deviations.
+fn by_directions(
+    directions: &DMatrix<f64>,
+    which: &[usize],
+    deviation: impl Fn(usize) -> f64,
+) -> DMatrix<f64> {
+    let count = directions.nrows();
+    let mut out = DMatrix::zeros(count, count);
+    for &k in which {
+        let scaled = directions.column(k) * deviation(k);
+        out += &scaled * scaled.transpose();
+    }
+    out
+}
+
+/// Constants of which most of the variance is that of constants at bounds.
+fn by_bounds(covariance: &DMatrix<f64>, is_held: &[bool]) -> Vec<bool> {
+    let held: Vec<usize> = (0..is_held.len()).filter(|&j| is_held[j]).collect();
+    let of_held = covariance.select_rows(&held).select_columns(&held);
+    let Some(factors) = of_held.cholesky() else {
+        return vec![!held.is_empty(); is_held.len()];
+    };
+    let is_by_bounds = |j: usize| {
+        let with = covariance.select_rows(&held).column(j).into_owned();
+        let made_up = with.dot(&factors.solve(&with));
+        let variance = covariance[(j, j)];
+        !is_held[j] && variance > BY_BOUNDS * (variance - made_up)
+    };
+    (0..is_held.len()).map(is_by_bounds).collect()
+}
+
+/// Combinations that are not determined: directions with a wide deviation, and single constants that none of them names.
+fn combinations(
+    directions: &DMatrix<f64>,
+    wide: impl Iterator<Item = (usize, f64)>,
+    (is_determined, covariance): (&[bool], &DMatrix<f64>),
+) -> Vec<Undetermined> {
+    let mut out: Vec<Undetermined> = Vec::new();
+    for (k, deviation) in wide {
+        let powers = named(directions.column(k).as_slice());
+        let names = powers.iter().map(|&(j, _)| j);
+        let constants: Vec<usize> = names.filter(|&j| !is_determined[j]).collect();
+        if !constants.is_empty() {
+            out.push(Undetermined {
+                powers,
+                constants,
+                deviation,
+                determined: None,
+            });
+        }
+    }
+    let is_left = |&j: &usize| {
+        let is_named = out.iter().any(|one| one.constants.contains(&j));
+        !is_determined[j] && !is_named
+    };
+    let left: Vec<usize> = (0..is_determined.len()).filter(is_left).collect();
+    out.extend(left.into_iter().map(|j| Undetermined {
+        powers: vec![(j, 1.0)],
+        constants: vec![j],
+        deviation: covariance[(j, j)].sqrt(),
+        determined: None,
+    }));
+    out
+}
+
 /// The powers of constants in a direction, of which the largest is 1.
-fn named(direction: &DVector<f64>, free: &[usize]) -> Vec<(usize, f64)> {
+fn named(direction: &[f64]) -> Vec<(usize, f64)> {
     let largest = direction
         .iter()
         .copied()
@@ -220,31 +280,28 @@ fn named(direction: &DVector<f64>, free: &[usize]) -> Vec<(usize, f64)> {
             true => b,
             false => a,
         });
-    let powers = free.iter().zip(direction.iter());
-    let powers = powers.map(|(&j, power)| (j, power / largest));
+    let powers = direction.iter().map(|power| power / largest).enumerate();
     powers.filter(|(_, power)| power.abs() >= PART).collect()
 }
 
-/// The product of two constants that is determined where only one combination of them is not.
+/// What is determined of two constants where only one combination of them is not.
 fn product(
     open: &Undetermined,
-    (free, values): (&[usize], &[f64]),
+    values: &[f64],
     (directions, known): (&DMatrix<f64>, &[usize]),
     deviation: impl Fn(usize) -> f64,
 ) -> Option<Product> {
-    let [(a, p), (b, q)] = open.powers[..] else {
+    let ([(a, p), (b, q)], 2) = (&open.powers[..], open.constants.len()) else {
         return None;
     };
     // Across the direction, with a first power of one.
-    let powers = vec![(a, 1.0), (b, -p / q)];
+    let powers = vec![(*a, 1.0), (*b, -p / q)];
     let value = powers
         .iter()
         .map(|&(j, power)| values[j].powf(power))
         .product();
-    let place = |j: usize| free.iter().position(|&other| other == j);
-    let (i, j) = (place(a)?, place(b)?);
     let of = |&k: &usize| {
-        let change = directions[(i, k)] - p / q * directions[(j, k)];
+        let change = directions[(*a, k)] - p / q * directions[(*b, k)];
         (change * deviation(k)).powi(2)
     };
     let variance: f64 = known.iter().map(of).sum();

@@ -4,6 +4,7 @@
 mod common;
 
 mod assessed;
+mod coverage;
 mod derivatives;
 mod forces;
 mod front;
