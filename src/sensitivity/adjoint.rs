@@ -13,6 +13,7 @@ use crate::sensitivity::conditions::entries;
 use crate::sensitivity::direction::Direction;
 use crate::sensitivity::error::NoSensitivity;
 use crate::sensitivity::kernel::{Change, Derivative, Kernel, WEAK, dot, sizes};
+use crate::sensitivity::linear::{EXACT, largest};
 use crate::sensitivity::margins::Of;
 
 /// A linear outcome: factors of variables and of multipliers of constraints.
@@ -150,9 +151,26 @@ impl<N: Nlp> Kernel<N> {
             let terms = sizes(&of.given, &change.given)
                 + sizes(&of.slopes, &change.slopes)
                 + sizes(&of.rows, &change.rows);
-            self.objective(direction, [change.envelope, of.by(&change)], terms)
+            let ways = [change.envelope, of.by(&change)];
+            self.objective(direction, ways, [terms, self.rounding(&of, &change)])
         };
         directions.iter().map(derivative).collect()
+    }
+}
+
+impl<N: Nlp> Kernel<N> {
+    /// Round-off of a derivative by an adjoint, whose unknowns are known up to a part of the largest.
+    fn rounding(&self, of: &Adjoint, change: &Change) -> f64 {
+        let conditions = &self.conditions;
+        let unknown = largest(&of.slopes).max(largest(&of.rows));
+        let given = |i: &u32| change.given[*i as usize].abs();
+        let curved = entries(&conditions.hessian, &conditions.hessian_values)
+            .map(|(row, col, value)| value.abs() * (given(row) + given(col)));
+        let linear = entries(&conditions.jacobian, &conditions.jacobian_values)
+            .map(|(_, col, value)| value.abs() * given(col));
+        let direct = change.slopes.iter().chain(&change.rows);
+        let sum = curved.chain(linear).sum::<f64>() + direct.map(|value| value.abs()).sum::<f64>();
+        EXACT * unknown * sum
     }
 }
 

@@ -48,6 +48,8 @@ pub fn gradients(
         |opened, kernel, directions, rows| {
             let of = |one: &OutcomeOf| outcome(one, (opened, kernel.program(), rows));
             let list = outcomes.iter().map(of).collect::<Result<Vec<_>, _>>()?;
+            let directions = directions.iter().cloned().collect::<Result<Vec<_>, _>>()?;
+            let directions = &directions[..];
             let backward = list.len() + 1;
             let one_sided = match backward < directions.len() {
                 true => kernel.one_sided(directions),

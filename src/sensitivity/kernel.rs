@@ -6,7 +6,7 @@ use crate::sensitivity::active_set::{Place, of_constraints, of_variables};
 use crate::sensitivity::conditions::Conditions;
 use crate::sensitivity::direction::{Direction, Held, Side};
 use crate::sensitivity::error::NoSensitivity;
-use crate::sensitivity::linear::{Linear, largest};
+use crate::sensitivity::linear::{EXACT, Linear, largest};
 use crate::sensitivity::margins::{At, Changes, Of};
 use crate::sensitivity::range::{Margin, Range};
 
@@ -284,21 +284,24 @@ impl<N: Nlp> Kernel<N> {
         }
     }
 
-    /// The derivative of the objective by multipliers, where that along the change of the optimum does not contradict; both differ by rounding as large
-    /// as `terms`.
+    /// The derivative of the objective by multipliers, where that along the change of the optimum does not contradict: both are one up to a part of
+    /// their `terms`. A linear system is solved up to a part of its largest unknowns; derivatives that differ by no more than this `rounding` are zero
+    /// where they are no larger.
     pub(super) fn objective(
         &self,
         direction: &Direction,
         [envelope, along]: [f64; 2],
-        terms: f64,
+        [terms, rounding]: [f64; 2],
     ) -> Result<f64, NoSensitivity> {
         let scale = self.conditions.scale;
         let size = terms + envelope.abs() + (direction.objective * scale).abs();
         let difference = (envelope - along).abs();
-        let [envelope, along] = [envelope, along].map(|v| v / scale + direction.objective);
-        match difference <= SAME * size {
-            true => Ok(envelope),
-            false => Err(NoSensitivity::Contradicts(envelope, along)),
+        let of = |value: f64| value / scale + direction.objective;
+        match (difference <= SAME * size, difference <= rounding) {
+            (true, _) => Ok(of(envelope)),
+            (false, true) if envelope.abs() <= rounding => Ok(of(0.0)),
+            (false, true) => Ok(of(envelope)),
+            (false, false) => Err(NoSensitivity::Contradicts(of(envelope), of(along))),
         }
     }
 
@@ -324,7 +327,8 @@ impl<N: Nlp> Kernel<N> {
         dx.iter_mut().zip(&given).for_each(|(x, given)| *x += given);
         let gradient = &self.conditions.gradient;
         let along = [envelope, dot(gradient, &dx)];
-        let objective = self.objective(direction, along, sizes(gradient, &dx))?;
+        let rounding = EXACT * gradient.iter().map(|value| value.abs()).sum::<f64>() * largest(&dx);
+        let objective = self.objective(direction, along, [sizes(gradient, &dx), rounding])?;
         let at = self.at();
         let margins = at.margins(Changes {
             x: &dx,

@@ -8,7 +8,7 @@ use crate::sensitivity::error::NoSensitivity;
 /// Steps of refinement.
 const REFINED: usize = 3;
 /// Residual of a solution, relative to the terms of its equations, that is that of rounding.
-const EXACT: f64 = 1e-9;
+pub(super) const EXACT: f64 = 1e-9;
 
 /// The system with its factors.
 #[derive(Debug)]

@@ -39,5 +39,5 @@ pub use direction::{Direction, Held, Side};
 pub use error::NoSensitivity;
 pub use gradients::{Gradients, gradients};
 pub use kernel::{Derivative, Kernel};
-pub use optimum::{Sensitivity, sensitivities};
+pub use optimum::{Refusal, Sensitivity, sensitivities};
 pub use range::{End, Range};

@@ -39,15 +39,18 @@ pub struct Sensitivity {
     pub weak: Vec<String>,
 }
 
-/// Derivatives of the optimum of a problem by the numbers that it names.
+/// A number by which the optimum has no derivative, and why.
+pub type Refusal = (String, NoSensitivity);
+
+/// Derivatives of the optimum of a problem by the numbers that it names, and those of them by which there is none.
 ///
 /// # Errors
-/// The derivatives do not exist, or are not known to be right.
+/// There are no derivatives at all.
 pub fn sensitivities(
     system: &System,
     control: &Control,
     motion: &Solution,
-) -> Result<Vec<Sensitivity>, NoSensitivity> {
+) -> Result<(Vec<Sensitivity>, Vec<Refusal>), NoSensitivity> {
     with_kernel(
         system,
         control,
@@ -56,13 +59,18 @@ pub fn sensitivities(
             let instants = opened.initial.discrete.z.iter();
             let markers = instants.map(|z| MarkerSlopes::new(&opened.model, z));
             let markers: Vec<MarkerSlopes> = markers.collect();
-            let mut list = Vec::new();
+            let (mut list, mut refused) = (Vec::new(), Vec::new());
             for (varied, direction) in opened.control.varied.iter().zip(directions) {
-                let derivative = kernel.along(direction)?;
-                let at = (opened, kernel.program(), rows);
-                list.push(sensitivity(varied, (&derivative, &markers), at));
+                let found = direction.as_ref().map_err(NoSensitivity::clone);
+                match found.and_then(|direction| kernel.along(direction)) {
+                    Ok(derivative) => {
+                        let at = (opened, kernel.program(), rows);
+                        list.push(sensitivity(varied, (&derivative, &markers), at));
+                    }
+                    Err(reason) => refused.push((varied.name.clone(), reason)),
+                }
             }
-            Ok(list)
+            Ok((list, refused))
         },
     )
 }
@@ -75,7 +83,7 @@ pub(super) fn with_kernel<T>(
     go_on: impl FnOnce(
         &Opened,
         &mut Kernel<Transcription<'_>>,
-        &[Direction],
+        &[Result<Direction, NoSensitivity>],
         &[usize],
     ) -> Result<T, NoSensitivity>,
 ) -> Result<T, NoSensitivity> {
@@ -90,8 +98,7 @@ pub(super) fn with_kernel<T>(
         let at = (kernel.program(), &mapped.held, &point[..]);
         let directions = Directions::new(&opened, at, &control.start)?;
         let all = opened.control.varied.iter();
-        let all = all.map(|varied| directions.of(varied));
-        all.collect::<Result<Vec<_>, _>>()?
+        all.map(|varied| directions.of(varied)).collect::<Vec<_>>()
     };
     go_on(&opened, &mut kernel, &directions, &mapped.rows)
 }

@@ -150,7 +150,12 @@ fn add_sensitivities(system: &System, control: &Control, result: &mut SolveResul
         (false, _) => Err(NoSensitivity::Refused("no optimum was found".to_owned())),
         (true, []) => {
             let list = sensitivities(system, control, motion);
-            list.map(|list| result.sensitivities = list)
+            list.map(|(list, refused)| {
+                result.sensitivities = list;
+                let one = |(name, reason)| format!("no sensitivity to {name}: {reason}");
+                let texts = refused.into_iter().map(one);
+                result.remarks.warn("no_sensitivities", texts);
+            })
         }
         (true, outcomes) => {
             let found = gradients(system, control, motion, outcomes);

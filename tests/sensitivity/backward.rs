@@ -63,7 +63,7 @@ fn between(motion: &Solution, source: usize) -> usize {
 fn few_outcomes_by_many_numbers() {
     let base = problem("pair", &changes(&NUMBERS));
     let motion = optimum(&base, None).motion;
-    let forward = sensitivities(&base.0, &base.1, &motion).unwrap();
+    let forward = sensitivities(&base.0, &base.1, &motion).unwrap().0;
     let last = motion.voltages.len();
     assert!((motion.times[1] - H).abs() < 1e-9);
     let interval = between(&motion, 1);
@@ -118,7 +118,7 @@ fn few_outcomes_by_many_numbers() {
 fn many_outcomes_by_few_numbers() {
     let base = problem("pair", &changes(&NUMBERS[3..5]));
     let motion = optimum(&base, None).motion;
-    let forward = sensitivities(&base.0, &base.1, &motion).unwrap();
+    let forward = sensitivities(&base.0, &base.1, &motion).unwrap().0;
     let instants = 0..motion.voltages.len();
     let joint = |k: usize| OutcomeOf::Joint {
         joint: 0,

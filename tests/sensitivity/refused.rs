@@ -1,7 +1,7 @@
 //! Numbers by which an optimum is not differentiated, because what follows from them is not known.
 
-use crate::resolved::problem;
-use proboscis::sensitivity::check;
+use crate::resolved::{optimum, problem};
+use proboscis::sensitivity::{check, sensitivities};
 
 /// The reason why a number of a changed pair of muscles is refused, if it is.
 fn refusal(changes: &[&str], number: &str) -> Option<String> {
@@ -49,4 +49,38 @@ fn a_start_that_branches_remember_is_refused() {
     let branch = "scene.materials.silicone.maxwell=[{\"shear_modulus\": \"20 kPa\", \"relaxation_time\": \"50 ms\"}]";
     let reason = refusal(&[ANGLES, branch], "start.joint_angles.joint1").unwrap();
     assert!(reason.contains("memory"), "{reason}");
+}
+
+#[test]
+fn a_number_that_is_refused_leaves_the_others() {
+    let changes = [
+        REDUNDANT,
+        "control.goal={\"joint_angles\": {\"joint1\": 0.1}, \"hold\": \"none\"}",
+        "control.sensitivity={\"goal.joint_angles.joint1\": {}, \"materials.silicone.shear_modulus\": {}}",
+    ];
+    let changes = changes.map(str::to_owned);
+    let base = problem("pair", &changes);
+    let motion = optimum(&base, None).motion;
+    let (found, refused) = sensitivities(&base.0, &base.1, &motion).unwrap();
+    let [(name, _)] = &refused[..] else {
+        panic!("{refused:?}");
+    };
+    assert_eq!(name, "goal.joint_angles.joint1");
+    let [of_modulus] = &found[..] else {
+        panic!("{} numbers", found.len());
+    };
+    // The same in joint coordinates, where both exist.
+    let changes = changes.map(|one| one.replace("redundant", "reduced"));
+    let base = problem("pair", &changes);
+    let motion = optimum(&base, None).motion;
+    let (both, refused) = sensitivities(&base.0, &base.1, &motion).unwrap();
+    assert!(refused.is_empty(), "{refused:?}");
+    let same = both
+        .iter()
+        .find(|one| one.varied == of_modulus.varied)
+        .unwrap();
+    assert!(of_modulus.objective != 0.0);
+    let difference = (of_modulus.objective - same.objective).abs();
+    // Both optima are found up to the tolerance of the solver.
+    assert!(difference < 1e-5 * same.objective.abs(), "{difference}");
 }

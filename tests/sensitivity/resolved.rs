@@ -66,8 +66,9 @@ fn check(name: &str, extra: &[&str], numbers: &[Beside<'_>], tolerance: f64) {
     asked.push(format!("control.sensitivity={{{list}}}"));
     let base = problem(name, &asked);
     let found = optimum(&base, None);
-    let by = sensitivities(&base.0, &base.1, &found.motion)
+    let (by, refused) = sensitivities(&base.0, &base.1, &found.motion)
         .unwrap_or_else(|error| panic!("{name}: {error}"));
+    assert!(refused.is_empty(), "{name}: {refused:?}");
     assert_eq!(by.len(), numbers.len());
     for number in numbers {
         let mut list = by.iter();

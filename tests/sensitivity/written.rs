@@ -9,9 +9,13 @@ use std::path::{Path, PathBuf};
 
 /// Solves the kept problem with changes into a folder; its summary.
 fn solved(folder: &Path, changes: &[&str]) -> Value {
+    solved_from("problems/pair_sensitivity.json", folder, changes)
+}
+
+fn solved_from(problem: &str, folder: &Path, changes: &[&str]) -> Value {
     let input = CommandInput {
         command: "solve".to_owned(),
-        input: Path::new(env!("CARGO_MANIFEST_DIR")).join("problems/pair_sensitivity.json"),
+        input: Path::new(env!("CARGO_MANIFEST_DIR")).join(problem),
         set: changes.iter().map(|&change| change.to_owned()).collect(),
         output: Some(PathBuf::from(folder)),
         max_seconds: None,
@@ -163,4 +167,22 @@ fn the_library_differentiates_too() {
 fn greatest(list: impl Iterator<Item = f64>) -> (usize, f64) {
     let all = list.enumerate();
     all.reduce(|a, b| if b.1 > a.1 { b } else { a }).unwrap()
+}
+
+/// The muscle rests: its resistor has no effect, whatever rounding leaves of its charge.
+#[test]
+fn a_number_without_effect_has_the_derivative_zero_beside_others() {
+    let folder = tempfile::tempdir().unwrap();
+    let both =
+        "control.sensitivity={\"muscles.u01.circuit.resistance\": {}, \"bodies.b0.mass\": {}}";
+    let problem = "tests/trust/62_sensitivity_of_a_muscle_at_rest.json";
+    let summary = solved_from(problem, folder.path(), &[both]);
+    let list = summary["sensitivities"].as_array().expect("a list");
+    let elasticity = |name: &str| {
+        let one = list.iter().find(|one| one["name"] == name).expect(name);
+        let [by, value] = ["objective", "value"].map(|key| one[key].as_f64().unwrap());
+        by * value / summary["objective"].as_f64().unwrap()
+    };
+    assert!(elasticity("muscles.u01.circuit.resistance").abs() < 1e-12);
+    assert!(elasticity("bodies.b0.mass").abs() > 1e-3);
 }
