@@ -145,7 +145,8 @@ impl<'l> Controller<'l> {
 
     /// Writes the inputs that act at a time in ms, with the corrections that act from another one on, by input of the law.
     pub fn inputs(&mut self, from: f64, time: f64, out: &mut [f64]) {
-        while self.count > 0 && self.waiting[self.first].0 <= from + 1e-9 * (1.0 + from.abs()) {
+        let law = self.law;
+        while self.count > 0 && self.waiting[self.first].0 <= from + 1e-9 * (law.h + from.abs()) {
             self.correction.copy_from_slice(&self.waiting[self.first].1);
             self.first = (self.first + 1) % self.waiting.len();
             self.count -= 1;

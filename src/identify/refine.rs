@@ -183,7 +183,8 @@ fn fixed_starts(
         let mut values = guesses.clone();
         values[j] = match parameter.guess < parameter.upper {
             true => {
-                0.5 * (parameter.guess + parameter.upper.min(2.0 * parameter.guess.abs() + 1.0))
+                let further = parameter.guess + parameter.size();
+                0.5 * (parameter.guess + parameter.upper.min(further))
             }
             false => parameter.lower,
         };
@@ -214,7 +215,9 @@ pub fn first_model(system: &System, task: &Identification) -> Result<Model, Iden
     check(system, task)?;
     let guesses: Vec<f64> = task.parameters.iter().map(|p| p.guess).collect();
     let recording = &task.recordings[0];
-    let grid = [recording.duration().max(1.0), 4.0];
+    // A single state of rest has no duration.
+    let duration = Some(recording.duration()).filter(|duration| *duration > 0.0);
+    let grid = [duration.unwrap_or(1.0), 4.0];
     Ok(Setup::new(system, task, recording, &guesses, grid)?.model)
 }
 

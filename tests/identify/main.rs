@@ -18,6 +18,7 @@ mod ratio;
 mod recovered;
 mod refused;
 mod rest;
+mod similar;
 mod solids;
 mod statistics;
 mod verdicts;

@@ -7,7 +7,7 @@ use crate::dynamics::Linearisation;
 use crate::workflow::regulator::design::{Design, State};
 use nalgebra::{DMatrix, DVector};
 
-/// Most iterations, and a change of all entries of the state that ends them.
+/// Most iterations, and a change of all coordinates, relative to their typical sizes, that ends them.
 const ITERATIONS: usize = 20;
 const SMALL: f64 = 1e-10;
 
@@ -19,6 +19,7 @@ impl Design<'_> {
         inputs: &[f64],
     ) -> Option<State> {
         let mut state = self.goal().clone();
+        let sizes = self.model.sizes();
         if self.model.memory().next().is_none() {
             return Some(state);
         }
@@ -34,9 +35,12 @@ impl Design<'_> {
             own.for_each(|(&i, change)| state.z[i] += change);
             let own = self.momenta.iter().zip(momenta);
             own.for_each(|(&i, change)| state.momentum[i] += change);
-            let size = change.amax();
-            if size < SMALL || !size.is_finite() {
-                return size.is_finite().then_some(state);
+            if !change.iter().all(|value| value.is_finite()) {
+                return None;
+            }
+            let mut own = self.coordinates.iter().zip(places);
+            if own.all(|(&i, change)| change.abs() < SMALL * sizes[i]) {
+                return Some(state);
             }
         }
         None
