@@ -367,8 +367,8 @@ class Rotation(TypedDict):
 
 
 class SignalCsv(TypedDict):
-    """Values at times, from a CSV file: one line of headers such as `muscle1 [kV]`, SI units where a header has none; lines that begin with `#`
-    are comments.
+    """Values at times, from a CSV file: one line of headers such as `muscle1 [kV]`, SI units where a header has none, which a note says; lines
+    that begin with `#` are comments.
     """
 
     file: Text
@@ -376,6 +376,9 @@ class SignalCsv(TypedDict):
 
     time: NotRequired[Text]
     """Header of the times, with or without its unit."""
+
+    time_offset: NotRequired[Quantity]
+    """Time in that column which is 0 of the motion, SI unit s; 0 where not written, or that of a recording of the same file."""
 
     values: Text
     """Header of the values, with or without its unit."""
@@ -1372,8 +1375,8 @@ class Recording(TypedDict):
     """Voltages, loads and start."""
 
     file: NotRequired[Text]
-    """Path of the CSV file, relative to the problem or to the current folder: one line of headers such as `tip [mm]`, SI units where a header has
-    none; lines that begin with `#` are comments, empty cells are gaps.
+    """Path of the CSV file, relative to the problem or to the current folder: one line of headers such as `tip [mm]`, `tip (mm)` or `tip_mm`, SI
+    units where a header has none, which a note says; lines that begin with `#` are comments, empty cells are gaps.
     """
 
     held_out: NotRequired[bool]
@@ -1390,6 +1393,11 @@ class Recording(TypedDict):
 
     time: NotRequired[Text]
     """Header of the times, which begin with the motion at 0; `time` where not written."""
+
+    time_offset: NotRequired[Quantity]
+    """Time in that column at which the motion begins, SI unit s, which all times lose, also those of inputs from the same file that have no
+    `time_offset` of their own; 0 where not written. A motion whose readings begin late needs it.
+    """
 
 
 class Region(TypedDict):

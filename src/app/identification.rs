@@ -44,6 +44,7 @@ pub(super) fn run(
     let status = stopped.map_or_else(|| status(&found), Status::word);
     let mut summary = Summary::new(request, status, None);
     summary.notes = remarks(task, &found);
+    summary.notes.note("units", loaded.notes.clone());
     if stopped.is_some() {
         let text = "it was stopped: constants and intervals are those of the last step of a fit on the last grid";
         summary.notes.warn("stopped", [text.to_owned()]);

@@ -70,6 +70,7 @@ pub(super) fn motions(
     }
     write(request, &mut summary, &folder, began)?;
     let mut output = command_output(motions, &result, (&summary, &each), &folder);
+    output.notes.extend(loaded.note_lines());
     if MIGHT_GO_ON.contains(&&*summary.status) {
         output
             .notes

@@ -298,9 +298,9 @@ fn summarise(
     summary.energies = EnergySummary::new(&assessment.exchange);
     summary.notes.clone_from(&assessment.remarks);
     summary.closed_loop.clone_from(&ended.closed_loop);
-    summary
-        .notes
-        .warn("disturbance", run.left_out.iter().cloned());
+    summary.notes.note("units", run.loaded.notes.clone());
+    let left_out = run.left_out.iter().cloned();
+    summary.notes.warn("disturbance", left_out);
 }
 
 /// Writes tables, figures and page, next to the solution that the voltages come from, and adds what they show to the summary.

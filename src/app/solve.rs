@@ -77,6 +77,7 @@ pub(super) fn control(
     unfinished::done(&folder);
     let violated = &result.optimum.violated;
     let mut output = command_output(&summary, control.is_refined, violated, &folder);
+    output.notes.extend(loaded.note_lines());
     if MIGHT_GO_ON.contains(&&*summary.status) {
         output
             .notes

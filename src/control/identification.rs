@@ -109,6 +109,13 @@ pub struct Reading {
     pub deviation: f64,
 }
 
+/// Returns true if readings begin later than any two of them are apart: whether the motion begins with the first one is then a question.
+pub fn begin_late(times: &[f64]) -> bool {
+    let apart = times.windows(2).map(|pair| pair[1] - pair[0]);
+    let longest = apart.fold(f64::NEG_INFINITY, f64::max);
+    times.len() > 1 && times[0] > longest
+}
+
 impl Recording {
     /// Its system and the constants that are sought of it.
     pub fn of<'a>(

@@ -7,6 +7,7 @@ pub use crate::control::energy_cost::{EnergyCost, SourceEnergy};
 pub use crate::control::goal::{Orientation, Place};
 pub use crate::control::identification::{
     ChangedScene, Channel, Identification, Prior, Reading, Recording, Regime, SoughtStart,
+    begin_late,
 };
 pub use crate::control::inputs::{Afterwards, Voltages, absent_loads};
 pub use crate::control::path_constraint::{PathConstraint, Side};

@@ -2,9 +2,10 @@
 
 use csv::{ReaderBuilder, StringRecord, Trim};
 
+use crate::files::header::Header;
 use crate::files::json::error::SceneError;
 use crate::files::json::scope::Scope;
-use crate::files::units::quantity::{PhysicalQuantity, Quantity};
+use crate::files::units::quantity::{Kind, PhysicalQuantity, Quantity};
 use std::collections::BTreeMap;
 use std::fs::File;
 
@@ -14,14 +15,6 @@ pub(crate) struct Columns {
     place: String,
     headers: StringRecord,
     rows: Vec<StringRecord>,
-}
-
-/// Name and unit of a header; a column without a unit is in SI units.
-fn parts(header: &str) -> (&str, Option<&str>) {
-    let unit = header
-        .strip_suffix(']')
-        .and_then(|head| head.rsplit_once('['));
-    unit.map_or((header, None), |(name, unit)| (name.trim_end(), Some(unit)))
 }
 
 /// A cell without the apostrophe that keeps a spreadsheet from taking a text for a formula.
@@ -93,41 +86,50 @@ impl Columns {
         (&self.headers, &self.rows)
     }
 
-    /// The column with a header, or with a header of this name and any unit; an empty cell is a mistake.
+    /// The column of a kind with a header, or with a header of this name and any unit; an empty cell is a mistake.
     pub(crate) fn column<M: PhysicalQuantity>(
         &self,
-        name: &str,
+        (name, kind): (&str, &Kind),
         scope: &Scope<'_>,
     ) -> Result<Vec<Quantity<M>>, SceneError> {
-        let at = self.place(name, scope)?;
-        let read = |row: &StringRecord| self.cell(row, at, scope);
+        let (at, unit) = self.place((name, kind), scope)?;
+        let read = |row: &StringRecord| self.cell(row, (at, unit.as_deref()), scope);
         self.rows.iter().map(read).collect()
     }
 
     /// The same, where an empty cell is a gap.
     pub(crate) fn with_gaps<M: PhysicalQuantity>(
         &self,
-        name: &str,
+        (name, kind): (&str, &Kind),
         scope: &Scope<'_>,
     ) -> Result<Vec<Option<Quantity<M>>>, SceneError> {
-        let at = self.place(name, scope)?;
+        let (at, unit) = self.place((name, kind), scope)?;
         let read = |row: &StringRecord| {
             let is_gap = row[at].is_empty();
-            (!is_gap).then(|| self.cell(row, at, scope)).transpose()
+            (!is_gap)
+                .then(|| self.cell(row, (at, unit.as_deref()), scope))
+                .transpose()
         };
         self.rows.iter().map(read).collect()
     }
 
-    /// Place of the column with a header.
-    fn place(&self, name: &str, scope: &Scope<'_>) -> Result<usize, SceneError> {
-        let at = |is_it: &dyn Fn(&str) -> bool| {
-            let headers = self.headers.iter().enumerate();
+    /// Place and unit of the column with a header. A note tells which unit is taken where the header has none.
+    fn place(
+        &self,
+        (name, kind): (&str, &Kind),
+        scope: &Scope<'_>,
+    ) -> Result<(usize, Option<String>), SceneError> {
+        let headers: Vec<Header<'_>> = (self.headers.iter())
+            .map(|header| Header::new(header, kind))
+            .collect();
+        let at = |is_it: &dyn Fn(&Header<'_>) -> bool| {
+            let headers = headers.iter().enumerate();
             let found = headers.filter(|(_, header)| is_it(header));
             found.map(|(at, _)| at).collect::<Vec<_>>()
         };
-        let mut columns = at(&|header| header == name);
+        let mut columns = at(&|header| header.whole == name);
         if columns.is_empty() {
-            columns = at(&|header| parts(header).0 == name);
+            columns = at(&|header| header.name == name);
         }
         if columns.len() > 1 {
             let found = format!("{} columns {name:?} in {}", columns.len(), self.place);
@@ -135,24 +137,36 @@ impl Columns {
         }
         let Some(&at) = columns.first() else {
             let file = &self.place;
-            let candidates = self.headers.iter().map(|header| parts(header).0);
+            let candidates = headers.iter().map(|header| header.name);
             let listed: Vec<&str> = self.headers.iter().take(20).collect();
             let expected = format!("a column of {file}, such as {}", listed.join(", "));
             return Err(scope
                 .document
                 .wrong_name(&scope.place, name, &expected, candidates));
         };
-        Ok(at)
+        let header = &headers[at];
+        let unit = header.unit().map_err(|found| {
+            let found = format!("the header {:?} of {}, {found}", header.whole, self.place);
+            let expected = format!("{}, as \"{} [{}]\"", kind.name, header.name, kind.symbol());
+            scope.wrong(found, expected)
+        })?;
+        let taken = kind.symbol();
+        if unit.is_none() && !taken.is_empty() {
+            let column = format!("{:?} of {}", header.whole, self.place);
+            scope
+                .document
+                .note(format!("the header {column} has no unit: {taken} is taken"));
+        }
+        Ok((at, unit.map(str::to_owned)))
     }
 
     /// A cell in the unit of its column.
     fn cell<M: PhysicalQuantity>(
         &self,
         row: &StringRecord,
-        at: usize,
+        (at, unit): (usize, Option<&str>),
         scope: &Scope<'_>,
     ) -> Result<Quantity<M>, SceneError> {
-        let (_, unit) = parts(&self.headers[at]);
         let cell = &row[at];
         let quantity = match unit {
             _ if cell.trim().is_empty() => Err("an empty cell".to_owned()),

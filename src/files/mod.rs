@@ -6,12 +6,13 @@
 //! - [`study`], [`sweep`]: types of a study of variants of a problem, or a sweep of them; `changes`: their overrides.
 //! - `feedback`: laws of controllers.
 //! - [`solution`]: motions that later runs start from; [`npz`]: arrays of long ones; [`continuation`]: motions that go on.
-//! - [`urdf`]: robots of ROS; [`stl`]: surfaces; `columns`: columns of CSV files; `typed`: scenes and voltages named on the command line.
+//! - [`urdf`]: robots of ROS; [`stl`]: surfaces; `columns`, `header`: columns of CSV files; `typed`: scenes and voltages named on the command line.
 
 pub(crate) mod changes;
 mod columns;
 pub mod continuation;
 pub mod feedback;
+mod header;
 pub mod json;
 pub mod npz;
 pub mod problem;
@@ -81,9 +82,16 @@ pub struct Loaded {
     pub scene: String,
     /// That of the problem.
     pub problem: String,
+    /// What was taken for granted: units of columns that name none.
+    pub notes: Vec<String>,
 }
 
 impl Loaded {
+    /// The notes as lines of a message.
+    pub(crate) fn note_lines(&self) -> impl Iterator<Item = String> + '_ {
+        self.notes.iter().map(|note| format!("note: {note}"))
+    }
+
     /// The text of an object of the problem without one of its keys; `null` where there is no such object.
     pub(crate) fn entry_without(&self, entry: &str, key: &str) -> String {
         let text = &self.problem;
@@ -191,6 +199,9 @@ fn with_changed_scenes(document: &Document, of_scene: &[Override]) -> Result<Loa
         let changed = alone(document.clone(), &all, &of.set);
         let changed = changed.map_err(|error| of.changes.at_fault(error, &document.path))?;
         of.add(&mut loaded.task, (changed.system, changed.task), document)?;
+        let notes = changed.notes.into_iter();
+        let further: Vec<_> = notes.filter(|note| !loaded.notes.contains(note)).collect();
+        loaded.notes.extend(further);
     }
     let texts = [&*loaded.problem, &*loaded.scene];
     loaded.disturbed = disturbed(document, of_scene, texts, |document, of_scene| {
@@ -263,7 +274,9 @@ fn alone(
     })?;
     let output = shown(&problem, &task, &system, &scope)?;
     let feedback = feedback(&problem, &task, &system, &scope)?;
+    let documents = [Some(&document), apart.as_ref()].into_iter().flatten();
     Ok(Loaded {
+        notes: documents.flat_map(Document::notes).collect(),
         task,
         output,
         feedback,

@@ -1,14 +1,14 @@
 //! Identification: constants fitted to recordings.
 
 use crate::control::problem::{
-    self, ChangedScene, Channel, Prior, Reading, Regime, SoughtStart, Voltages,
+    self, ChangedScene, Channel, Prior, Reading, Regime, SoughtStart, Voltages, begin_late,
 };
 use crate::identify::{Identified, identify};
 use crate::interface::error::{Result, require, source};
 use crate::interface::handle::Handle;
 use crate::interface::input::Input;
 use crate::interface::state::State;
-use crate::math::{Signal, Vector};
+use crate::math::{Signal, Vector, in_order};
 use crate::model::components::{Load, Spring, Tendon};
 use crate::model::system::{Joint, Marker, Muscle};
 use crate::model::{Parameter, Pulling, Quantity, System};
@@ -32,6 +32,7 @@ pub struct Recording {
     sought_start: SoughtStart,
     is_held_out: bool,
     inputs: Vec<(Input, Signal)>,
+    time_offset: Option<f64>,
     channels: Vec<Channel>,
 }
 
@@ -68,7 +69,17 @@ impl Recording {
             sought_start: SoughtStart::Nothing,
             is_held_out: false,
             inputs: Vec::new(),
+            time_offset: None,
             channels: Vec::new(),
+        }
+    }
+
+    /// Time in ms of the readings at which the motion begins, 0 where it is not said; readings that begin late need it.
+    pub fn time_offset(self, time: f64) -> Self {
+        let time_offset = Some(time);
+        Self {
+            time_offset,
+            ..self
         }
     }
 
@@ -187,7 +198,18 @@ impl Recording {
             require(signal.is_sound(), "recording", found, expected)?;
             signals[source(input, system)?] = signal.clone();
         }
-        let all = self.channels.iter().flat_map(|one| &one.readings);
+        let mut channels = self.channels.clone();
+        let begin = self.time_offset.unwrap_or(0.0);
+        let all = channels.iter_mut().flat_map(|one| &mut one.readings);
+        all.for_each(|reading| reading.time -= begin);
+        let times = channels.iter().flat_map(|one| &one.readings);
+        let times = in_order(times.map(|reading| reading.time));
+        let is_open = self.time_offset.is_none() && self.regime == Regime::Motion;
+        let found = || format!("{} ms at the first reading", times[0]);
+        let expected = "a \"time_offset\": that time if the motion begins then, or 0";
+        let is_late = is_open && begin_late(&times);
+        require(!is_late, "recording", found, expected)?;
+        let all = channels.iter().flat_map(|one| &one.readings);
         for reading in all {
             let numbers = [reading.time, reading.value];
             let holds = numbers.iter().all(|x| x.is_finite()) && reading.time >= 0.0;
@@ -207,7 +229,7 @@ impl Recording {
             sought_start: self.sought_start,
             is_held_out: self.is_held_out,
             voltages: Voltages::Signals(signals),
-            channels: self.channels.clone(),
+            channels,
             scene: scene.map(|system| {
                 Box::new(ChangedScene {
                     system,

@@ -7,6 +7,7 @@ mod body_meshes;
 mod extremes;
 mod free;
 mod fuzz_reader;
+mod headers;
 mod meaning;
 mod measured_costs;
 mod motions;

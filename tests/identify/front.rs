@@ -28,11 +28,17 @@ fn readings(mass: f64) -> Vec<(f64, f64)> {
 fn tensions_and_a_payload_tell_constants_by_the_front_door() {
     let (system, slide, spring, cart) = loaded(1e-6);
     let start = || State::Joints(vec![(slide, mm(5.0))]);
+    // On a clock at which the motion begins after a second.
+    let late = || readings(MASS).into_iter().map(|(t, x)| (1e3 + t, x));
     let pull = |(t, x): (f64, f64)| (t, STIFFNESS * x);
     let alone = Recording::new("alone")
         .start(start())
-        .joint(slide, readings(MASS), mm(0.001))
-        .tension(spring, readings(MASS).into_iter().map(pull), 0.0002);
+        .joint(slide, late(), mm(0.001))
+        .tension(spring, late().map(pull), 0.0002);
+    let open = Identification::of([]).recording(alone.clone()).run(&system);
+    let error = open.unwrap_err().to_string();
+    assert!(error.contains("time_offset"), "{error}");
+    let alone = alone.time_offset(1e3);
     let (other, ..) = loaded(30.0);
     let with_load = Recording::new("loaded")
         .of(other)

@@ -1,6 +1,7 @@
 //! A JSON file as text and as values: reading, overrides, and errors with their place in it.
 
 use serde::de::DeserializeOwned;
+use std::cell::RefCell;
 use std::ops::Range;
 use std::path::{Path, PathBuf};
 
@@ -26,6 +27,8 @@ pub(crate) struct Document {
     text: String,
     /// The same with overrides, and with parts from another file.
     changed: Option<String>,
+    /// What was taken for granted while it was read.
+    notes: RefCell<Vec<String>>,
 }
 
 /// A place that was set.
@@ -75,7 +78,21 @@ impl Document {
             moved: Vec::new(),
             text: String::new(),
             changed: None,
+            notes: RefCell::default(),
         }
+    }
+
+    /// Adds a note on what is taken for granted, once.
+    pub(crate) fn note(&self, text: String) {
+        let mut notes = self.notes.borrow_mut();
+        if !notes.contains(&text) {
+            notes.push(text);
+        }
+    }
+
+    /// The notes.
+    pub(crate) fn notes(&self) -> Vec<String> {
+        self.notes.borrow().clone()
     }
 
     /// Takes a text for that of a file, which need not exist.

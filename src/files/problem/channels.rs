@@ -131,7 +131,9 @@ impl Measured {
         source: &Source<'_>,
         scope: &Scope<'_>,
     ) -> Result<Vec<Option<f64>>, SceneError> {
-        let column = source.columns.with_gaps::<MeasuredSize>(header, scope)?;
+        let column = source
+            .columns
+            .with_gaps::<MeasuredSize>((header, &self.kind), scope)?;
         let value = |written: Option<Written<MeasuredSize>>| {
             let read = written.map(|written| written.value_as(&self.kind));
             let read = read.transpose();
@@ -147,7 +149,9 @@ fn weights(
     source: &Source<'_>,
     scope: &Scope<'_>,
 ) -> Result<Vec<Option<f64>>, SceneError> {
-    let column = source.columns.with_gaps::<Ratio>(header, scope)?;
+    let column = source
+        .columns
+        .with_gaps::<Ratio>((header, &Ratio::kind()), scope)?;
     let deviation = |weight: Option<Written<Ratio>>| Some(weight?.value().sqrt().recip());
     Ok(column.into_iter().map(deviation).collect())
 }

@@ -1,6 +1,8 @@
 //! Conversion of an identification in a problem file to its task.
 
-use crate::control::problem::{Identification, Reading, Recording, Regime, SoughtStart};
+use crate::control::problem::{
+    Identification, Reading, Recording, Regime, SoughtStart, begin_late,
+};
 use crate::files::columns::Columns;
 use crate::files::json::error::SceneError;
 use crate::files::json::scope::Scope;
@@ -13,7 +15,9 @@ use crate::files::problem::priors::priors;
 use crate::files::problem::spec_identify::{
     CandidateSpec, ExperimentSpec, IdentifySpec, MeasuredSpec, RecordingSpec, SoughtStartSpec,
 };
+use crate::files::problem::spec_voltages::VoltagesSpec;
 use crate::files::scene::constants::WrittenScene;
+use crate::files::signal::spec::{SignalCsvSpec, SignalSpec};
 use crate::files::units::quantity::{Quantity, Time};
 use crate::model::system::System;
 
@@ -139,13 +143,30 @@ fn measured(
         .collect()
 }
 
+/// Voltages, loads and start of a recording; inputs from its own file are on its clock.
+fn on_its_clock(spec: &RecordingSpec) -> ExperimentSpec {
+    let mut out = spec.experiment.clone();
+    let own = |csv: &mut SignalCsvSpec| {
+        if csv.time_offset.is_none() && spec.file.as_ref() == Some(&csv.file) {
+            csv.time_offset.clone_from(&spec.time_offset);
+        }
+    };
+    if let VoltagesSpec::Signals(voltages) = &mut out.voltages {
+        let csv = voltages.values_mut().filter_map(SignalSpec::csv_mut);
+        csv.for_each(own);
+    }
+    let csv = out.loads.values_mut().filter_map(SignalSpec::csv_mut);
+    csv.for_each(own);
+    out
+}
+
 fn recording(
     spec: &RecordingSpec,
     system: &System,
     scope: &Scope<'_>,
 ) -> Result<Recording, SceneError> {
     let place = scope.key("experiment");
-    let mut out = experiment(&spec.name, &spec.experiment, system, &place)?;
+    let mut out = experiment(&spec.name, &on_its_clock(spec), system, &place)?;
     out.is_held_out = spec.held_out;
     let (from, columns) = columns(spec, scope)?;
     let times = times((from, &columns), spec, scope)?;
@@ -186,14 +207,14 @@ fn columns(spec: &RecordingSpec, scope: &Scope<'_>) -> Result<(&'static str, Col
     Ok((from, read()?))
 }
 
-/// Times in ms of all rows.
+/// Times in ms of all rows from the begin of the motion on.
 fn times(
     (from, columns): (&str, &Columns),
     spec: &RecordingSpec,
     scope: &Scope<'_>,
 ) -> Result<Vec<f64>, SceneError> {
     let place = scope.key("time");
-    let written = columns.column::<Time>(&spec.time, &place)?;
+    let written = columns.column::<Time>((&spec.time, &Time::kind()), &place)?;
     let times: Vec<f64> = written.iter().map(Quantity::value).collect();
     if times.is_empty() {
         let expected = "one line or more below the headers";
@@ -203,9 +224,24 @@ fn times(
         let found = format!("{} after {}", written[k + 1], written[k]);
         return Err(place.wrong(found, "increasing times"));
     }
-    match times[0] < 0.0 {
-        true => Err(place.wrong(written[0].to_string(), "times from 0 on")),
-        false => Ok(times),
+    let first = &written[0];
+    let offset = spec.time_offset.as_ref();
+    if offset.is_none() && !spec.experiment.at_rest && begin_late(&times) {
+        let found =
+            format!("{first} at the first reading, which leaves open when the motion begins");
+        let expected = format!(
+            "\"time_offset\": {first} beside \"time\" if the motion begins with the first reading, or \"time_offset\": 0 if it begins at time 0 of the column"
+        );
+        return Err(place.wrong(found, expected));
+    }
+    let begin = offset.map_or(0.0, Quantity::value);
+    match (times[0] < begin, offset) {
+        (false, _) => Ok(times.iter().map(|time| time - begin).collect()),
+        (true, None) => Err(place.wrong(first.to_string(), "times from 0 on")),
+        (true, Some(offset)) => {
+            let expected = format!("a time no later than {first}, that of the first reading");
+            Err(scope.key("time_offset").wrong(offset.to_string(), expected))
+        }
     }
 }
 

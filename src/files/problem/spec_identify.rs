@@ -100,8 +100,8 @@ pub struct PriorSpec {
 pub struct RecordingSpec {
     /// Unique name.
     pub name: String,
-    /// Path of the CSV file, relative to the problem or to the current folder: one line of headers such as `tip [mm]`, SI units where a header
-    /// has none; lines that begin with `#` are comments, empty cells are gaps.
+    /// Path of the CSV file, relative to the problem or to the current folder: one line of headers such as `tip [mm]`, `tip (mm)` or `tip_mm`,
+    /// SI units where a header has none, which a note says; lines that begin with `#` are comments, empty cells are gaps.
     #[serde(default)]
     pub file: Option<String>,
     /// Columns of numbers by such headers in place of a file; `null` is a gap.
@@ -110,6 +110,10 @@ pub struct RecordingSpec {
     /// Header of the times, which begin with the motion at 0; `time` where not written.
     #[serde(default = "time")]
     pub time: String,
+    /// Time in that column at which the motion begins, SI unit s, which all times lose, also those of inputs from the same file that have no
+    /// `time_offset` of their own; 0 where not written. A motion whose readings begin late needs it.
+    #[serde(default)]
+    pub time_offset: Option<Quantity<Time>>,
     /// Quantities that the columns measure.
     pub measured: Vec<MeasuredSpec>,
     /// Voltages, loads and start.

@@ -116,14 +116,18 @@ fn of_csv<M: FollowedInTime>(
 ) -> Result<Signal, SceneError> {
     let columns = Columns::read(&spec.file, &scope.key("file"))?;
     let [time, values] = ["time", "values"].map(|key| scope.key(key));
-    let times = columns.column::<Time>(&spec.time, &time)?;
-    let column = columns.column::<M>(&spec.values, &values)?;
-    linear(
+    let times = columns.column::<Time>((&spec.time, &Time::kind()), &time)?;
+    let column = columns.column::<M>((&spec.values, kind), &values)?;
+    let mut signal = linear(
         (&times, &|_| time.clone()),
         (&column, &|_| values.clone()),
         kind,
         [&time, &values],
-    )
+    )?;
+    if let (Signal::Table { times, .. }, Some(offset)) = (&mut signal, &spec.time_offset) {
+        times.iter_mut().for_each(|time| *time -= offset.value());
+    }
+    Ok(signal)
 }
 
 /// Quantities, and the place of each.

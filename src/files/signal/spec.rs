@@ -80,8 +80,8 @@ pub struct SignalTableSpec<M: FollowedInTime> {
     pub values: Vec<Quantity<M>>,
 }
 
-/// Values at times, from a CSV file: one line of headers such as `muscle1 [kV]`, SI units where a header has none; lines that
-/// begin with `#` are comments.
+/// Values at times, from a CSV file: one line of headers such as `muscle1 [kV]`, SI units where a header has none, which a note
+/// says; lines that begin with `#` are comments.
 #[derive(Clone, Debug, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct SignalCsvSpec {
@@ -90,6 +90,9 @@ pub struct SignalCsvSpec {
     /// Header of the times, with or without its unit.
     #[serde(default = "time")]
     pub time: String,
+    /// Time in that column which is 0 of the motion, SI unit s; 0 where not written, or that of a recording of the same file.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub time_offset: Option<Quantity<Time>>,
     /// Header of the values, with or without its unit.
     pub values: String,
 }
@@ -97,6 +100,16 @@ pub struct SignalCsvSpec {
 /// The usual header of times.
 fn time() -> String {
     "time".to_owned()
+}
+
+impl<M: FollowedInTime> SignalSpec<M> {
+    /// The columns of a file that it is read from, where it is.
+    pub(crate) fn csv_mut(&mut self) -> Option<&mut SignalCsvSpec> {
+        match self {
+            Self::Constant(_) => None,
+            Self::Function(function) => function.csv.as_mut(),
+        }
+    }
 }
 
 /// A measure that may be a function of time.

@@ -10,7 +10,7 @@ use uom::si;
 
 use crate::files::units::dimension;
 use crate::files::units::unit::{Dimension, Unit, scale};
-use crate::files::units::written::{Written, parts};
+use crate::files::units::written::{Written, parts, symbol};
 
 /// A kind of quantity: its name, an example, and the dimensions it is written in.
 #[derive(Clone, Debug)]
@@ -27,6 +27,16 @@ impl Kind {
     /// Name and example, for messages.
     pub fn expected(&self) -> String {
         format!("{}, such as {}", self.name, self.example)
+    }
+
+    /// Returns true if a unit of this dimension is one of this kind.
+    pub(crate) fn is_in(&self, dimension: Dimension) -> bool {
+        self.dimensions.contains(&dimension)
+    }
+
+    /// Symbol of the SI unit; empty of a plain number.
+    pub(crate) fn symbol(&self) -> String {
+        symbol(self.dimensions[0])
     }
 }
 
@@ -223,10 +233,7 @@ impl<M: PhysicalQuantity> Quantity<M> {
     /// The text is no number with a unit that is known here.
     pub fn try_from_text(text: &str) -> Result<Self, String> {
         let (_, unit) = parts(text)?;
-        if !M::kinds()
-            .iter()
-            .any(|kind| kind.dimensions.contains(&unit.dimension))
-        {
+        if !M::kinds().iter().any(|kind| kind.is_in(unit.dimension)) {
             return Err(format!("{text:?}, which is {}", describe(unit.dimension)));
         }
         Self {
@@ -272,7 +279,7 @@ impl<M: PhysicalQuantity> Quantity<M> {
     pub fn value_as(&self, kind: &Kind) -> Result<f64, String> {
         let (_, unit) = self.written.parts();
         match unit {
-            Some(unit) if !kind.dimensions.contains(&unit.dimension) => {
+            Some(unit) if !kind.is_in(unit.dimension) => {
                 Err(format!("{self}, which is {}", describe(unit.dimension)))
             }
             _ => Ok(self.converted(kind)),
@@ -379,10 +386,10 @@ impl<M: PhysicalQuantity> JsonSchema for Quantity<M> {
 }
 
 /// Describes a quantity of this dimension in words.
-fn describe(dimension: Dimension) -> String {
+pub(crate) fn describe(dimension: Dimension) -> String {
     named_kinds()
         .into_iter()
-        .find(|kind| kind.dimensions.contains(&dimension))
+        .find(|kind| kind.is_in(dimension))
         .map_or_else(
             || match dimension.to_string() {
                 unit if unit.is_empty() => "a plain number".to_owned(),

@@ -1,6 +1,6 @@
 //! A quantity as it is written: a number, or a string of a number with a unit.
 
-use crate::files::units::unit::{Unit, scale};
+use crate::files::units::unit::{Dimension, Unit, scale};
 
 /// Written value: a number in SI units, or a string with a unit. It takes 16 bytes, and lists of many thousands are read.
 #[derive(Clone, Debug, PartialEq)]
@@ -61,7 +61,7 @@ fn split_number(text: &str) -> (&str, &str) {
 }
 
 /// Symbols of units of the International System, by which quantities are written in tables.
-const SYMBOLS: [&str; 21] = [
+const SYMBOLS: [&str; 25] = [
     "m",
     "kg",
     "s",
@@ -82,15 +82,23 @@ const SYMBOLS: [&str; 21] = [
     "N/m",
     "N",
     "m^2",
-    "J",
+    "N m",
+    "N/m^3",
+    "C",
+    "C/m^2",
+    "A",
 ];
+
+/// Symbol of the unit of a dimension in the International System.
+pub(super) fn symbol(dimension: Dimension) -> String {
+    let named = |symbol: &&&str| Unit::parse(symbol).is_some_and(|one| one.dimension == dimension);
+    let symbol = SYMBOLS.iter().find(named);
+    symbol.map_or_else(|| dimension.to_string(), |symbol| (*symbol).to_owned())
+}
 
 /// Value and unit in the International System of a text such as `80 kPa`; none where it is no number with a unit.
 pub(crate) fn si(text: &str) -> Option<(f64, String)> {
     let (number, unit) = parts(text).ok()?;
-    let dimension = unit.dimension;
-    let named = |symbol: &&&str| Unit::parse(symbol).is_some_and(|one| one.dimension == dimension);
-    let symbol = SYMBOLS.iter().find(named);
-    let symbol = symbol.map_or_else(|| dimension.to_string(), |symbol| (*symbol).to_owned());
-    Some((scale(number * unit.factor, unit.exponent), symbol))
+    let value = scale(number * unit.factor, unit.exponent);
+    Some((value, symbol(unit.dimension)))
 }
