@@ -33,6 +33,11 @@ pub fn resolve_start(
             check_muscles(model, &z, place)?;
             let rate = |one: &Prescribed| one.motion.derivatives(0.0)[1];
             let of_joints = prescribed::by_joint(model, named_rates, rate, (place, "rate"))?;
+            // In closed loops joints move with the rest.
+            let of_joints = match model.has_loops() {
+                true => vec![0.0; of_joints.len()],
+                false => of_joints,
+            };
             let rates = model.rates_at(&joints, &of_joints, velocities);
             let rates = rates.map_err(|body| BoundaryError::Follows {
                 place,

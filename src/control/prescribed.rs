@@ -63,14 +63,19 @@ pub(super) fn at_rest(
     z: Vec<f64>,
     place: &'static str,
 ) -> Result<Start, BoundaryError> {
-    match model.rates_at_rest(0.0, &model.action.map.placed(&z)) {
+    let rates = model.rates_at_rest(0.0, &model.action.map.placed(&z));
+    let carried = rates.map(|rates| match model.has_loops() {
+        true => model.node_rates().unwrap_or_else(|| vec![0.0; rates.len()]),
+        false => rates,
+    });
+    match carried {
         Some(rates) => in_loops((model, place), z, rates, (BTreeMap::new(), &[])),
         None => Ok(Start::at_rest(model, z)),
     }
 }
 
-/// A start at coordinates with the rates of joints that are named or prescribed and of bodies that are named; those of closed loops follow from
-/// them.
+/// A start at coordinates with rates; in closed loops these are of nodes and named bodies, and the others follow from them and from those of joints that
+/// are named or prescribed.
 ///
 /// # Errors
 /// The rates open a loop.

@@ -120,10 +120,9 @@ impl<'m> Kinetic<'m> {
     }
 
     /// Right-hand sides of what is not prescribed: momenta and constraints, less those of the prescribed rates.
-    fn without(&self, momentum: &[f64], prescribed: &[f64]) -> Vec<f64> {
+    pub(super) fn without(&self, momentum: &[f64], prescribed: &[f64]) -> Vec<f64> {
         let mut right = momentum.to_vec();
         right.resize(prescribed.len(), 0.0);
-        self.model.strains().for_each(|i| right[i] = 0.0);
         if !self.model.prescribed.is_empty() {
             let (same, n) = (&self.model.action.layout().same, momentum.len());
             for ((i, j), value) in same.entries().zip(&self.values) {
@@ -131,9 +130,15 @@ impl<'m> Kinetic<'m> {
                     right[i] -= value * prescribed[j];
                 }
             }
-            self.model.hold(&mut right);
         }
+        self.hold(&mut right);
         right
+    }
+
+    /// Lets a right-hand side do nothing to coordinates that are prescribed or have no inertia.
+    pub(super) fn hold(&self, right: &mut [f64]) {
+        self.model.strains().for_each(|i| right[i] = 0.0);
+        self.model.hold(right);
     }
 
     fn solved(&mut self, right: &[f64]) -> Option<Vec<f64>> {

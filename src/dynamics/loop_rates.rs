@@ -1,15 +1,16 @@
 //! Rates of a system with closed loops: those that a state names, completed so that no loop opens.
 //!
-//! With v₀ the rates at which all joints of the tree rest but those that are named, v = v₀ + d has the least
+//! With the rates w of nodes and of bodies that are named, at which all joints rest, the rates v have the least
 //!
 //! ```text
-//! ½ dᵀ M d     with  Gᵀ v = 0,   Jᵀ v = r
+//! ½ (v − w)ᵀ M (v − w)     with  Gᵀ v = 0,   Jᵀ v = r
 //! ```
 //!
-//! of the gradients G of the constraints and J of what is named, joint coordinates and bodies, with the rates r: with d = d₀ + D ν,
+//! of the gradients G of the constraints and J of what is named, joint coordinates and bodies, with the rates r: where w is zero it is the kinetic
+//! energy. With v₀ = w + p of the rates p of prescribed coordinates, v = v₀ + d₀ + D ν and
 //!
 //! ```text
-//! M d₀ + G μ₀ = 0,  Gᵀ d₀ = −Gᵀ v₀;      M D + G μ = J,  Gᵀ D = 0;      (Jᵀ D) ν = r − Jᵀ (v₀ + d₀).
+//! M d₀ + G μ₀ = −M p,  Gᵀ d₀ = −Gᵀ v₀;      M D + G μ = J,  Gᵀ D = 0;      (Jᵀ D) ν = r − Jᵀ (v₀ + d₀).
 //! ```
 
 use crate::coordinates::Configuration;
@@ -24,7 +25,7 @@ const DEPENDENT: f64 = 1e-10;
 /// Corrections of rates by squares of gradients, each with half of the digits.
 const CORRECTIONS: usize = 3;
 
-/// Rates v of the coordinates at coordinates `z`, completed from v₀ and the rates of joints that are named; named bodies keep those of v₀.
+/// Rates v of the coordinates at coordinates `z`, completed from those of nodes and named bodies, `rates`, and of joints that are named.
 ///
 /// # Errors
 /// The constraint, joint or body that the named rates violate most.
@@ -41,10 +42,13 @@ pub fn rates_in_loops(
     let mut instant = model.action.map.placed(z);
     let mut kinetic = Kinetic::new(model);
     kinetic.assemble(&mut instant);
+    let mut prescribed = vec![0.0; rates.len()];
+    model.prescribe_rates(0.0, &mut prescribed);
     let mut problem = Problem {
         named: of_joints(model, &mut instant, joints),
         wanted: DVector::from_iterator(joints.len(), joints.iter().map(|(_, rate)| *rate)),
-        given: DVector::from_vec(rates),
+        prescribed: DVector::from_vec(prescribed),
+        carried: DVector::from_vec(rates),
     };
     let joints = joints.iter().map(|&(j, _)| &model.system.joints[j].name);
     let mut names: Vec<&String> = joints.collect();
@@ -57,7 +61,7 @@ pub fn rates_in_loops(
     let exact = problem.by_factors(&mut kinetic, model.action.map.unknowns());
     let found = exact.filter(|found| problem.gaps(&kinetic, found).amax() <= OPEN * found.amax());
     let found = found.or_else(|| problem.by_squares(&kinetic));
-    let found = found.unwrap_or_else(|| problem.given.clone());
+    let found = found.unwrap_or_else(|| problem.carried.clone());
     let gaps = problem.gaps(&kinetic, &found);
     let worst = gaps.iamax();
     if gaps[worst].abs() <= OPEN * found.amax() {
@@ -75,28 +79,37 @@ struct Problem {
     named: DMatrix<f64>,
     /// r.
     wanted: DVector<f64>,
-    /// v₀.
-    given: DVector<f64>,
+    /// p.
+    prescribed: DVector<f64>,
+    /// w.
+    carried: DVector<f64>,
 }
 
 impl Problem {
-    /// Names the rate that a coordinate has in v₀.
+    /// Names the rate that a coordinate has in w.
     fn keep(&mut self, coordinate: usize) {
         let count = self.wanted.len();
         let named = std::mem::replace(&mut self.named, DMatrix::zeros(0, 0));
         self.named = named.insert_column(count, 0.0);
         self.named[(coordinate, count)] = 1.0;
         let wanted = std::mem::replace(&mut self.wanted, DVector::zeros(0));
-        self.wanted = wanted.push(self.given[coordinate]);
+        self.wanted = wanted.push(self.carried[coordinate]);
     }
 
     /// v by the factors of the bordered masses; `None` where these have no inverse.
     fn by_factors(&self, kinetic: &mut Kinetic<'_>, unknowns: usize) -> Option<DVector<f64>> {
         kinetic.factor()?;
-        let n = self.given.len();
-        let mut right = kinetic.opening(self.given.as_slice());
-        right.iter_mut().for_each(|value| *value = -*value);
-        let mut found = &self.given + DVector::from_vec(kinetic.solve(&right)?);
+        let n = self.carried.len();
+        let mut prescribed = self.prescribed.as_slice().to_vec();
+        prescribed.resize(unknowns, 0.0);
+        let mut right = kinetic.without(&vec![0.0; n], &prescribed);
+        let opening = kinetic.opening(self.carried.as_slice());
+        right
+            .iter_mut()
+            .zip(opening)
+            .for_each(|(value, rate)| *value -= rate);
+        let mut found = &self.carried + &self.prescribed;
+        found += DVector::from_vec(kinetic.solve(&right)?);
         if self.wanted.is_empty() {
             return Some(found);
         }
@@ -105,6 +118,7 @@ impl Problem {
             right.clear();
             right.extend(gradient.iter());
             right.resize(unknowns, 0.0);
+            kinetic.hold(&mut right);
             pulls.set_column(k, &DVector::from_vec(kinetic.solve(&right)?));
         }
         let left = &self.wanted - self.named.tr_mul(&found);
@@ -130,10 +144,10 @@ impl Problem {
             column /= size;
             *wanted /= size;
         }
-        let mut found = self.given.clone();
+        let mut found = &self.carried + &self.prescribed;
         for _ in 0..CORRECTIONS {
             let left = &wanted - gradients.tr_mul(&found);
-            let pull = &mass * (&self.given - &found);
+            let pull = &mass * (&self.carried - &found);
             let step = constrained((&mass, &gradients), [pull.as_slice(), left.as_slice()]);
             found += DVector::from_vec(step);
         }

@@ -1,15 +1,17 @@
 //! Rates of closed loops at a start: completed from those of one joint, against plane geometry.
 
 use crate::closed_loop::{AXIAL, bar};
+use crate::common::random::Random;
 use crate::common::{column, motion, placed};
 use crate::redundant_loops::plane_four_bar;
-use nalgebra::{Matrix2, Rotation3, Vector2, Vector3};
+use nalgebra::{DMatrix, DVector, Matrix2, Rotation3, Vector2, Vector3};
 use proboscis::control::problem::BoundaryState;
 use proboscis::control::resolve_start;
 use proboscis::dynamics::observations;
 use proboscis::files::read_problem;
 use proboscis::model::Model;
 use proboscis::model::system::JointKind;
+use serde_json::json;
 use std::collections::BTreeMap;
 use std::path::Path;
 
@@ -154,4 +156,171 @@ fn a_prescribed_crank_starts_its_slider() {
         (rates[1].abs() - slider).abs() < 1e-10,
         "{rates:?} {slider}"
     );
+}
+
+/// A plane linkage: points of its joints and the two bodies of each, of which none is the ground, and centre, mass and inertia of its bodies.
+struct Linkage {
+    joints: Vec<(Vector2<f64>, Option<usize>, usize)>,
+    bodies: Vec<(Vector2<f64>, f64, f64)>,
+}
+
+impl Linkage {
+    /// A four-bar with a second loop on its coupler, and a pendulum on it.
+    fn random(random: &mut Random) -> Self {
+        let near = |random: &mut Random, x: f64, y: f64| {
+            Vector2::new(x, y) + 8.0 * Vector2::new(random.unit(), random.unit())
+        };
+        let mut at = |x, y| near(random, x, y);
+        let points = [
+            (at(0.0, 0.0), None, 0),
+            (at(5.0, 40.0), Some(0), 1),
+            (at(60.0, 45.0), Some(1), 2),
+            (at(70.0, -5.0), None, 2),
+            (at(40.0, 50.0), Some(1), 3),
+            (at(45.0, 90.0), Some(3), 4),
+            (at(100.0, 60.0), None, 4),
+            (at(30.0, 45.0), Some(1), 5),
+        ];
+        let joints = points.to_vec();
+        let bodies = (0..6).map(|body| {
+            let own = joints
+                .iter()
+                .filter(|joint| joint.1 == Some(body) || joint.2 == body);
+            let own: Vec<Vector2<f64>> = own.map(|joint| joint.0).collect();
+            let mean = own.iter().sum::<Vector2<f64>>() / own.len() as f64;
+            let centre = mean + 5.0 * Vector2::new(random.unit(), random.unit());
+            (centre, random.between(5.0, 30.0), random.between(1e3, 1e4))
+        });
+        let bodies = bodies.collect();
+        Self { joints, bodies }
+    }
+
+    /// Rate of each joint with the least kinetic energy, where those of some are given: by the velocity and the turn of every body as unknowns and
+    /// two conditions at each joint.
+    fn least(&self, given: &[(usize, f64)]) -> Vec<f64> {
+        let (unknowns, conditions) = (3 * self.bodies.len(), 2 * self.joints.len() + given.len());
+        let mut matrix = DMatrix::zeros(unknowns + conditions, unknowns + conditions);
+        let mut right = DVector::zeros(unknowns + conditions);
+        for (b, &(_, mass, inertia)) in self.bodies.iter().enumerate() {
+            for (i, value) in [mass, mass, inertia].into_iter().enumerate() {
+                matrix[(3 * b + i, 3 * b + i)] = value;
+            }
+        }
+        let mut set = |row: usize, column: usize, value: f64| {
+            matrix[(unknowns + row, column)] = value;
+            matrix[(column, unknowns + row)] = value;
+        };
+        for (j, &(point, parent, child)) in self.joints.iter().enumerate() {
+            for (body, sign) in [(Some(child), 1.0), (parent, -1.0)] {
+                let Some(body) = body else { continue };
+                let arm = point - self.bodies[body].0;
+                for (axis, turn) in [-arm.y, arm.x].into_iter().enumerate() {
+                    set(2 * j + axis, 3 * body + axis, sign);
+                    set(2 * j + axis, 3 * body + 2, sign * turn);
+                }
+            }
+        }
+        for (k, &(j, rate)) in given.iter().enumerate() {
+            let (_, parent, child) = self.joints[j];
+            let row = 2 * self.joints.len() + k;
+            set(row, 3 * child + 2, 1.0);
+            if let Some(parent) = parent {
+                set(row, 3 * parent + 2, -1.0);
+            }
+            right[unknowns + row] = rate;
+        }
+        let found = matrix.lu().solve(&right).unwrap();
+        let turn = |body: Option<usize>| body.map_or(0.0, |body| found[3 * body + 2]);
+        let rates = self.joints.iter();
+        rates
+            .map(|&(_, parent, child)| turn(Some(child)) - turn(parent))
+            .collect()
+    }
+
+    /// The linkage as a scene whose joints are in some order, some of them from the child to the parent, where `motions` prescribes rates.
+    fn model(&self, order: &[usize], turned: &[bool], motions: &[(usize, f64)]) -> Model {
+        let name = |body: Option<usize>| body.map_or("ground".to_owned(), |b| format!("b{b}"));
+        let place = |at: Vector2<f64>| json!([1e-3 * at.x, 1e-3 * at.y, 0.0]);
+        let joints = order.iter().map(|&j| {
+            let (at, parent, child) = self.joints[j];
+            let ends = match parent {
+                Some(parent) if turned[j] => [name(Some(child)), name(Some(parent))],
+                _ => [name(parent), name(Some(child))],
+            };
+            let mut joint = json!({
+                "name": format!("j{j}"), "revolute": { "axis": [0, 0, 1] }, "at": place(at), "parent": ends[0], "child": ends[1],
+            });
+            if let Some((_, rate)) = motions.iter().find(|motion| motion.0 == j) {
+                let amplitude = rate / std::f64::consts::TAU;
+                joint["motion"] = json!({ "sine": { "amplitude": amplitude, "period": 1e-3 } });
+            }
+            joint
+        });
+        let bodies = self.bodies.iter().enumerate().map(|(b, &(centre, mass, inertia))| {
+            json!({
+                "name": name(Some(b)), "mass": 1e-3 * mass, "position": place(centre), "sphere": { "radius": "5 mm" },
+                "inertia": [1e-9 * inertia, 1e-9 * inertia, 1e-9 * inertia],
+            })
+        });
+        let scene = json!({ "name": "linkage", "bodies": bodies.collect::<Vec<_>>(), "joints": joints.collect::<Vec<_>>() });
+        let system = crate::component_files::read(&scene.to_string()).unwrap();
+        Model::new(system, None, 1.0, &[]).unwrap()
+    }
+}
+
+/// Rates of the joints of a linkage at the start, whatever the order of the joints, have the least kinetic energy.
+#[test]
+fn open_rates_have_the_least_kinetic_energy_in_every_order_of_joints() {
+    let mut random = Random(62);
+    for _ in 0..12 {
+        let linkage = Linkage::random(&mut random);
+        let count = linkage.joints.len();
+        for (named, motions) in [
+            (vec![(0, 0.004)], vec![]),
+            (vec![(4, -0.003)], vec![]),
+            (vec![(7, 0.005)], vec![]),
+            (vec![(5, 0.002), (7, 0.001)], vec![]),
+            (vec![], vec![(3, 0.004)]),
+            (vec![(6, 0.002)], vec![(7, 0.003)]),
+        ] {
+            let given: Vec<(usize, f64)> = named.iter().chain(&motions).copied().collect();
+            // The linkage has two degrees of freedom and the pendulum.
+            let expected = linkage.least(&given);
+            let mut order: Vec<usize> = (0..count).collect();
+            order.sort_by_key(|_| (1e9 * random.unit()) as i64);
+            let turned: Vec<bool> = (0..count).map(|_| random.unit() > 0.3).collect();
+            let turned: Vec<bool> = match motions.is_empty() {
+                true => turned,
+                false => vec![false; count],
+            };
+            let model = linkage.model(&order, &turned, &motions);
+            assert!(model.has_loops());
+            let sign = |j: usize| match linkage.joints[j].1 {
+                Some(_) if turned[j] => -1.0,
+                _ => 1.0,
+            };
+            let place = |j: usize| order.iter().position(|&o| o == j).unwrap();
+            let named: Vec<_> = named
+                .iter()
+                .map(|&(j, rate)| (place(j), sign(j) * rate))
+                .collect();
+            let start = resolve_start(&model, &start(&named), "start").unwrap();
+            let mut instant = placed(&model, &start.z);
+            let found = start.rates.unwrap();
+            instant.l[..found.len()].copy_from_slice(&found);
+            let size = expected
+                .iter()
+                .fold(0.0_f64, |size, rate| size.max(rate.abs()));
+            let moving = model.moving_joints();
+            assert!(moving.len() >= 6);
+            for j in (0..count).filter(|&j| moving.contains(&place(j))) {
+                let rate = sign(j) * model.joint_rate(place(j), &instant);
+                let off = (rate - expected[j]).abs();
+                assert!(
+                    off < 1e-9 * size,
+                    "{given:?} {order:?} joint {j}: {rate} {expected:?}"
+                );
+            }
+        }
+    }
 }
