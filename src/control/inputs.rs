@@ -68,6 +68,28 @@ impl Voltages {
         }
     }
 
+    /// Returns true if they are constant between the ends of rows.
+    pub fn are_constant_by_rows(&self) -> bool {
+        match self {
+            Self::Constant(_) => true,
+            Self::Sampled { others, .. } => others.values().all(Signal::is_constant),
+            Self::Signals(signals) => signals.iter().all(Signal::is_constant),
+        }
+    }
+
+    /// Rates per ms of the voltages of the sources at a time in ms.
+    pub fn rates(&self, time: f64) -> Vec<f64> {
+        let rate = |signal: &Signal| signal.derivatives(time)[1];
+        match self {
+            Self::Constant(row) => vec![0.0; row.len()],
+            Self::Signals(signals) => signals.iter().map(rate).collect(),
+            Self::Sampled { rows, others, .. } => {
+                let of = |source| others.get(&source).map_or(0.0, rate);
+                (0..rows[0].len()).map(of).collect()
+            }
+        }
+    }
+
     /// A function of time for each source; constants where all of them are.
     pub fn of_signals(signals: Vec<Signal>) -> Self {
         let constants: Option<Vec<f64>> = signals.iter().map(Signal::constant).collect();

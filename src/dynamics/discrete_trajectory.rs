@@ -1,5 +1,6 @@
 //! The record of a motion: coordinates, momenta and voltages on a time grid.
 
+use crate::dynamics::drive::Inputs;
 use crate::dynamics::interval_energies::Work;
 use crate::dynamics::step_report::StepperReport;
 use crate::dynamics::step_state::StepState;
@@ -19,7 +20,9 @@ pub struct DiscreteTrajectory {
     pub begun: f64,
     /// Voltages of each interval in V and potentials in their unit, by scalar of the interval.
     pub scalars: Vec<Vec<f64>>,
-    /// The same after the last interval, where the inputs that hold the end of the motion were found with it.
+    /// Inputs at both ends of each interval; empty where they are constant in all of them.
+    pub ends: Vec<[Inputs; 2]>,
+    /// Scalars after the last interval, where the inputs that hold the end of the motion were found with it.
     pub held: Option<Vec<f64>>,
     /// Times at which energies and momenta are read.
     pub reading: Reading,

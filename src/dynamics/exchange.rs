@@ -1,10 +1,10 @@
 //! Electrical energy from the sources and mechanical work of their muscles, summed from the start of a motion.
 //!
-//! The voltage `V_k` of interval k acts on a lumped muscle of the capacitance C(x) (docs/theory.md, 3.5). Charge flows at instant k,
-//! where the voltage changes, and while the length changes from `x_k` to `x_{k+1}`:
+//! The voltage goes from `V_a` to `V_b` in an interval in which a lumped muscle changes its capacitance from `C_a` to `C_b` (docs/theory.md, 3.5);
+//! charge flows within the interval, and at an instant where the voltage switches from V₋ to V₊:
 //!
 //! ```text
-//! electrical energy  V_k (C_{k+1} V_k − C_k V_{k−1}),     mechanical work  ½ V_k² (C_{k+1} − C_k).
+//! electrical energy  ½ (V_a + V_b) (C_b V_b − C_a V_a)  and  V₊ C (V₊ − V₋),     mechanical work  ½ V_a V_b (C_b − C_a).
 //! ```
 //!
 //! Behind a resistor the charge Q is known at the instants. The source supplies its energy, of which the resistor takes a part:
@@ -79,7 +79,10 @@ impl EnergyExchange {
                     let charges = motion.charges.get(&source);
                     let [electrical_energy, mechanical_work] = match charges {
                         Some(charges) => through_resistor(&capacitances, charges, voltages),
-                        None => sums(&capacitances, voltages, [before, after]),
+                        None => {
+                            let voltages = motion.voltages_at_ends(source);
+                            sums(&capacitances, voltages, [before, after])
+                        }
                     };
                     let mut energies = SourceEnergies {
                         source,
@@ -219,16 +222,17 @@ fn lengths(system: &System, motion: &Trajectory, muscle: usize) -> Vec<f64> {
 /// Electrical energy and mechanical work from the start to each instant.
 fn sums(
     capacitances: &[f64],
-    voltages: impl Iterator<Item = f64>,
+    voltages: impl Iterator<Item = [f64; 2]>,
     [before, after]: [Option<f64>; 2],
 ) -> [Vec<f64>; 2] {
     let mut sums = [vec![0.0], vec![0.0]];
     let [mut electrical, mut mechanical] = [0.0; 2];
     let mut last = before.unwrap_or(0.0);
-    for (c, voltage) in capacitances.windows(2).zip(voltages) {
-        electrical += voltage * (c[1] * voltage - c[0] * last);
-        mechanical += 0.5 * voltage * voltage * (c[1] - c[0]);
-        last = voltage;
+    for (c, [from, to]) in capacitances.windows(2).zip(voltages) {
+        electrical += from * c[0] * (from - last);
+        electrical += 0.5 * (from + to) * (c[1] * to - c[0] * from);
+        mechanical += 0.5 * from * to * (c[1] - c[0]);
+        last = to;
         sums[0].push(electrical);
         sums[1].push(mechanical);
     }

@@ -17,6 +17,7 @@
 
 mod anderson;
 mod at_instant;
+mod column_names;
 mod contraction;
 mod controlled;
 mod discrete_trajectory;
@@ -42,6 +43,7 @@ mod pieces;
 mod reactions;
 mod resolution;
 mod resume;
+mod sides;
 mod simulate;
 mod singular_configurations;
 mod solving;
@@ -60,7 +62,7 @@ mod updates;
 
 pub use discrete_trajectory::{DiscreteTrajectory, Reading};
 pub use domain::{OutOfDomain, largest_stretch, out_of_domain};
-pub use drive::Drive;
+pub use drive::{Drive, Inputs};
 pub use equations::Equations;
 pub use equilibrium::{
     Continuation, Equilibrium, Instability, Load, LowestMode, Mode, Route, Softening,

@@ -1,9 +1,9 @@
 //! Observations along a motion: stretches, charges, energies, momenta, constraints and states of parts, one row per instant.
 //!
 //! Every row holds what is so at its instant. The midpoint rule sees charges, energies and rates in the middle of intervals: between
-//! two of them they are interpolated linearly (where voltages switch, that is the mean of both sides). Row 0 is read at q₀ with
-//! the rates of its momenta, the last row at q_N under the last voltages with the rates of p_N; all of it is of second order.
-//! For a method whose energies are those at instants ([`Reading::Instants`]), every row is read like row 0.
+//! two of them they are interpolated linearly. The first and the last row are read at q₀ and q_N under the inputs there, with the rates of
+//! their momenta; all of it is of second order. For a method whose energies are those at instants ([`Reading::Instants`]), every row is read
+//! so, under the inputs of both sides of the instant ([`sides`]), with the order of the method.
 //!
 //! The momenta are those at the instant: between the ends the mean of the momentum maps of p⁻ = −D₁L_d − f⁻ of the interval that
 //! begins there and of p⁺ = D₂L_d + f⁺ of the one that ends there, of second order. Where no joint holds the system to the ground both
@@ -11,17 +11,19 @@
 
 use crate::coordinates::{Configuration, Interval, Scratch};
 use crate::dynamics::at_instant::AtInstant;
+use crate::dynamics::column_names::{columns, works};
 use crate::dynamics::discrete_trajectory::{DiscreteTrajectory, Reading};
-use crate::dynamics::interval_energies::energies;
+use crate::dynamics::interval_energies::{Work, energies};
 use crate::dynamics::momenta::{Places, momentum_maps, moving, vector_momenta};
 use crate::dynamics::part_columns::PartColumns;
 use crate::dynamics::pieces::{PIECE, in_pieces};
 use crate::dynamics::reactions::reactions;
-use crate::dynamics::to_instants::{Last, Momenta, means, to_instants};
+use crate::dynamics::sides::{Side, sides};
+use crate::dynamics::to_instants::{Momenta, State, means, to_instants};
 use crate::dynamics::trajectory::{Column, Observations, Trajectory};
 use crate::functional::{Order, TermKind};
 use crate::math::{IsOver, Stopped, Vector};
-use crate::model::{Model, Role, SolidBlock};
+use crate::model::Model;
 use std::ops::Range;
 
 /// All that is observed along a motion, time, joint coordinates and markers first.
@@ -68,7 +70,7 @@ fn by_rows(
         instants.map(row).collect()
     })?;
     let mut observer = Observer::new(model);
-    let mut columns = observer.columns();
+    let mut columns = columns(model, &observer.parts);
     for column in &mut columns {
         column.values.reserve_exact(count);
     }
@@ -79,7 +81,7 @@ fn by_rows(
     }
     let [of_intervals, of_momenta] = [observer.of_intervals(), observer.of_momenta()];
     let of_parts = columns.len() - observer.parts.columns(model).len()..columns.len();
-    for (column, (kind, _)) in columns[of_intervals.end..].iter_mut().zip(observer.works()) {
+    for (column, (kind, _)) in columns[of_intervals.end..].iter_mut().zip(works(model)) {
         let is_lost = kind == TermKind::Dissipation;
         let (mut sum, sign) = (0.0, if is_lost { -1.0 } else { 1.0 });
         for work in &mut column.values {
@@ -88,15 +90,14 @@ fn by_rows(
         }
     }
     if discrete.reading == Reading::Intervals && discrete.times.len() > 1 {
-        let (mut last, times) = (observer.last(discrete), &discrete.times);
+        let (last, times) = (observer.last(discrete), &discrete.times);
         to_instants(times, &mut columns[of_intervals], &last.of_intervals());
-        let (parts, of) = (&mut columns[of_parts.clone()], (model, discrete));
-        observer.parts.to_instants(of, parts, &mut last.parts);
+        to_instants(times, &mut columns[of_parts.clone()], &last.parts);
         let before: Vec<_> = rows.iter().map(|row| row.before).collect();
         means(&discrete.times, &mut columns[of_momenta], &before, &last);
     }
     for (k, row) in rows.iter().enumerate() {
-        for (column, added) in columns[of_parts.clone()].iter_mut().zip(&row.switched) {
+        for (column, added) in columns[of_parts.clone()].iter_mut().zip(&row.charging) {
             column.values[k] += added;
         }
     }
@@ -109,8 +110,8 @@ struct Row {
     values: Vec<f64>,
     /// Momenta at the instant before, as that interval sees them.
     before: Momenta,
-    /// Additions to the last columns by charges that flow at the instant.
-    switched: Vec<f64>,
+    /// Additions to the last columns by voltages that change.
+    charging: Vec<f64>,
 }
 
 /// The storage to observe one instant after the other.
@@ -148,7 +149,7 @@ impl<'m> Observer<'m> {
 
     /// The columns that the midpoint rule sees in the middle of intervals.
     fn of_intervals(&self) -> Range<usize> {
-        let columns = self.columns();
+        let columns = columns(self.model, &self.parts);
         let total = columns.iter().position(|c| c.name == "total_energy");
         let total = total.expect("there is a total energy");
         self.model.system.muscles.len()..total + 1
@@ -156,157 +157,82 @@ impl<'m> Observer<'m> {
 
     /// Columns of the momenta.
     fn of_momenta(&self) -> Range<usize> {
-        let columns = self.columns();
+        let columns = columns(self.model, &self.parts);
         let first = columns.iter().position(|c| c.name == "linear_momentum_x");
         let first = first.expect("there is a momentum");
         first..first + 6
     }
 
-    /// Charges and energies at the last instant under the last voltages, and the momenta there.
-    fn last(&mut self, discrete: &DiscreteTrajectory) -> Last {
-        let (model, end) = (self.model, discrete.intervals());
-        let scalars = &discrete.scalars[end - 1];
+    /// Values at the last instant.
+    fn last(&mut self, discrete: &DiscreteTrajectory) -> State {
+        let end = discrete.intervals();
         self.here.z.copy_from_slice(&discrete.z[end]);
-        model.action.map.place(&mut self.here);
+        self.model.action.map.place(&mut self.here);
+        self.state(discrete, end, &sides(self.model, discrete, end))
+    }
+
+    /// Values at instant k, which is placed, by the inputs of its sides.
+    fn state(&mut self, discrete: &DiscreteTrajectory, k: usize, sides: &[Side]) -> State {
+        let model = self.model;
         self.before.clone_from(&self.here);
-        let potential = energies(model, &self.here, &self.here, scalars, 1.0).potential;
-        let immobile = model.solids.iter();
-        let immobile = immobile.flat_map(|block| block.immobile_charges(&self.here.x, scalars));
-        let mut charges: Vec<f64> = immobile.collect();
-        charges.extend(self.interval(scalars, 1.0));
-        let (kinetic, momenta) = self.moves(discrete, end);
-        Last {
+        let [mut charges, mut potential] = [Vec::new(), Vec::new()];
+        for Side {
+            scalars, weight, ..
+        } in sides
+        {
+            let of = energies(model, &self.here, &self.here, scalars, 1.0).potential;
+            add(&mut potential, *weight, &of);
+            let immobile = model.solids.iter();
+            let immobile = immobile.flat_map(|one| one.immobile_charges(&self.here.x, scalars));
+            let mut of: Vec<f64> = immobile.collect();
+            of.extend(self.interval(scalars, 1.0));
+            add(&mut charges, *weight, &of);
+        }
+        let (kinetic, momenta) = self.moves(discrete, k);
+        let mut parts = Vec::new();
+        for Side {
+            scalars, weight, ..
+        } in sides
+        {
+            let of = self.parts.values(model, &self.here, scalars);
+            add(&mut parts, *weight, &of);
+        }
+        let none = vec![Vector::zeros(); momenta.len()];
+        let momenta = self.maps(&self.here, &momenta, &none);
+        State {
             charges,
             kinetic,
             potential,
-            parts: self.parts.values(model, &self.here, scalars),
-            momenta: self.maps(&self.here, &momenta, &vec![Vector::zeros(); momenta.len()]),
+            momenta,
+            parts,
         }
-    }
-
-    /// Kinds of work that are done, each with the name of its sum.
-    fn works(&self) -> impl Iterator<Item = (TermKind, &'static str)> {
-        let terms = &self.model.action.intervals.terms;
-        let has = |kind| terms.iter().any(|term| term.kind() == kind);
-        let all = [
-            (TermKind::Dissipation, "dissipated_energy"),
-            (TermKind::AppliedWork, "following_load_work"),
-        ];
-        all.into_iter().filter(move |(kind, _)| has(*kind))
-    }
-
-    /// Names and units, in the order of [`Self::row`].
-    fn columns(&self) -> Vec<Column> {
-        let mut columns = Vec::new();
-        let mut add = |name: String, unit: &'static str| {
-            columns.push(Column {
-                name,
-                unit,
-                values: Vec::new(),
-            });
-        };
-        let system = &self.model.system;
-        for muscle in &system.muscles {
-            add(format!("{}_stretch", muscle.name), "");
-        }
-        let electrodes = self
-            .model
-            .solids
-            .iter()
-            .flat_map(SolidBlock::immobile_electrodes);
-        for (block, electrode) in electrodes {
-            add(format!("{block}_{electrode}_charge"), "mC");
-        }
-        for voltage in self.model.variables.with(Role::Voltage) {
-            let name = voltage.name.replace('.', "_");
-            add(format!("{name}_charge"), "mC");
-        }
-        add("kinetic_energy".to_owned(), "N mm");
-        for term in &self.model.action.intervals.terms {
-            if term.kind() == TermKind::Potential {
-                for part in term.energy_parts() {
-                    add(format!("{}_energy", part.replace(' ', "_")), "N mm");
-                }
-            }
-        }
-        add("total_energy".to_owned(), "N mm");
-        for (_, name) in self.works() {
-            add(name.to_owned(), "N mm");
-        }
-        for (name, unit) in [("linear_momentum", "N ms"), ("angular_momentum", "N mm ms")] {
-            for axis in ["x", "y", "z"] {
-                add(format!("{name}_{axis}"), unit);
-            }
-        }
-        add("constraint_violation".to_owned(), "");
-        for component in system.components.iter() {
-            for (quantity, unit) in component.columns() {
-                add(format!("{}_{quantity}", component.name()), unit);
-            }
-        }
-        for name in self.model.viscous_stretches() {
-            add(name, "");
-        }
-        for name in self.model.electrodes() {
-            add(name, "V");
-        }
-        columns.extend(self.parts.columns(self.model));
-        columns
     }
 
     /// Returns the observations at instant k.
     fn row(&mut self, discrete: &DiscreteTrajectory, k: usize) -> Row {
         let model = self.model;
-        let none = vec![0.0; model.action.intervals.scalars];
-        let scalars = discrete.scalars.get(k.saturating_sub(1)).unwrap_or(&none);
         self.here.z.copy_from_slice(&discrete.z[k]);
         model.action.map.place(&mut self.here);
-        let is_at_instant = k == 0 || discrete.reading == Reading::Instants;
-        let h = match is_at_instant {
-            true => {
-                self.before = self.here.clone();
-                1.0
-            }
-            false => discrete.times[k] - discrete.times[k - 1],
-        };
-        let mut energies = energies(model, &self.before, &self.here, scalars, h);
-        if discrete.reading == Reading::Instants {
-            let works = k.checked_sub(1).and_then(|k| discrete.works.get(k));
-            energies.work = works.copied().unwrap_or_default();
-        }
-        let charges = self.interval(scalars, h);
-        let ([before, momenta], parts) = match is_at_instant {
-            true => {
-                let momenta;
-                (energies.kinetic, momenta) = self.moves(discrete, k);
-                let none = vec![Vector::zeros(); momenta.len()];
-                let maps = [[0.0; 6], self.maps(&self.here, &momenta, &none)];
-                (maps, self.parts.values(model, &self.here, scalars))
-            }
-            false => {
-                let ends = [&self.before, &self.here];
-                let parts = self.parts.of_interval(model, ends, (scalars, h));
-                (self.of_interval(h), parts)
+        let sides = sides(model, discrete, k);
+        let interval = k.checked_sub(1);
+        let (state, before, work) = match (interval, discrete.reading) {
+            (Some(interval), Reading::Intervals) => self.of_interval(discrete, interval),
+            _ => {
+                let work = interval.and_then(|interval| discrete.works.get(interval));
+                let work = work.copied().unwrap_or_default();
+                (self.state(discrete, k, &sides), [0.0; 6], work)
             }
         };
 
         let mut row = Vec::new();
         let muscles = model.spans.iter().zip(&model.system.muscles);
         row.extend(muscles.map(|(&span, m)| self.here.x[span].norm() / m.length()));
-        let ends = self.before.x.iter().zip(&self.here.x);
-        let middles: Vec<Vector> = ends.map(|(a, b)| (a + b) * 0.5).collect();
-        for block in &model.solids {
-            row.extend(block.immobile_charges(&middles, scalars));
-        }
-        row.extend(charges);
-        row.push(energies.kinetic);
-        row.extend(&energies.potential);
-        row.push(energies.total());
-        row.extend(self.works().map(|(kind, _)| match kind {
-            TermKind::AppliedWork => energies.work.applied,
-            _ => energies.work.dissipation,
+        row.extend(state.of_intervals());
+        row.extend(works(model).map(|(kind, _)| match kind {
+            TermKind::AppliedWork => work.applied,
+            _ => work.dissipation,
         }));
-        row.extend(momenta);
+        row.extend(state.momenta);
         row.push(self.violation());
         if model.system.components.iter().next().is_some() {
             let bodies = model.poses(&self.here);
@@ -319,15 +245,58 @@ impl<'m> Observer<'m> {
         }
         let viscous = model.viscous_coordinates();
         row.extend(viscous.map(|coordinate| self.here.z[coordinate].exp()));
-        row.extend(model.electrode_voltages(&self.here, scalars));
-        row.extend(parts);
-        let switched = self.parts.switched(model, &self.here, (discrete, k));
+        let mut voltages = Vec::new();
+        for Side {
+            scalars, weight, ..
+        } in &sides
+        {
+            add(
+                &mut voltages,
+                *weight,
+                &model.electrode_voltages(&self.here, scalars),
+            );
+        }
+        row.extend(voltages);
+        row.extend(state.parts);
+        let time = interval.map_or(0.0, |interval| {
+            let next = discrete.times.get(k + 1).unwrap_or(&discrete.times[k]);
+            0.5 * (next - discrete.times[interval])
+        });
+        let charging = self.parts.charging(model, &self.here, (&sides, time));
         std::mem::swap(&mut self.before, &mut self.here);
         Row {
             values: row,
             before,
-            switched,
+            charging,
         }
+    }
+
+    /// Values in the middle of an interval, at whose end the system is placed, with the momenta at this end; the momenta at its start, and the work
+    /// over it.
+    fn of_interval(
+        &mut self,
+        discrete: &DiscreteTrajectory,
+        interval: usize,
+    ) -> (State, Momenta, Work) {
+        let (model, scalars) = (self.model, &discrete.scalars[interval]);
+        let h = discrete.times[interval + 1] - discrete.times[interval];
+        let energies = energies(model, &self.before, &self.here, scalars, h);
+        let ends = self.before.x.iter().zip(&self.here.x);
+        let middles: Vec<Vector> = ends.map(|(a, b)| (a + b) * 0.5).collect();
+        let immobile = model.solids.iter();
+        let immobile = immobile.flat_map(|block| block.immobile_charges(&middles, scalars));
+        let mut charges: Vec<f64> = immobile.collect();
+        charges.extend(self.interval(scalars, h));
+        let [before, momenta] = self.momenta_of_interval(h);
+        let ends = [&self.before, &self.here];
+        let state = State {
+            charges,
+            kinetic: energies.kinetic,
+            potential: energies.potential,
+            momenta,
+            parts: self.parts.of_interval(model, ends, (scalars, h)),
+        };
+        (state, before, energies.work)
     }
 
     /// Kinetic energy ½ p·v at instant k, and the momenta of all vectors with its rates v.
@@ -343,7 +312,7 @@ impl<'m> Observer<'m> {
     }
 
     /// The momentum maps of p⁻ at the beginning of the interval that ends here, and of p⁺ at its end, from the forces of the interval.
-    fn of_interval(&self, h: f64) -> [Momenta; 2] {
+    fn momenta_of_interval(&self, h: f64) -> [Momenta; 2] {
         let ends = || self.before.x.iter().zip(&self.here.x);
         let middles: Vec<Vector> = ends().map(|(a, b)| (a + b) * 0.5).collect();
         let rates: Vec<Vector> = ends().map(|(a, b)| (b - a) / h).collect();
@@ -395,5 +364,13 @@ impl<'m> Observer<'m> {
         let rows = &self.scratch.instant.plain.rows;
         let kept = rows.iter().fold(0.0_f64, |m, row| m.max(row.abs())) / model.multiplier_time;
         kept.max(model.loop_violation(&self.here))
+    }
+}
+
+/// Adds `weight` times some values to a list, which is empty before the first.
+fn add(list: &mut Vec<f64>, weight: f64, values: &[f64]) {
+    list.resize(values.len(), 0.0);
+    for (sum, value) in list.iter_mut().zip(values) {
+        *sum += weight * value;
     }
 }

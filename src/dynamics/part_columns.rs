@@ -1,12 +1,11 @@
 //! Columns of the parts of a system in motion: rates of joints, speeds of markers, tensions and fields of muscles, currents and powers of their sources,
 //! powers of loads. What does not exist has no column.
 //!
-//! Within an interval the voltage V of a source is constant, and its current is `V Ċ`. Where the voltage changes between two intervals,
-//! the charge `C (V₂ − V₁)` flows at an instant; it counts as a current over the half intervals beside the instant.
+//! The current of a source of the voltage V is `V Ċ + C V̇`, of which the second part is added at instants. Where the voltage switches between
+//! two intervals, the charge `C (V₂ − V₁)` flows at an instant; it counts as a current over the half intervals beside the instant.
 
 use crate::coordinates::Configuration;
-use crate::dynamics::discrete_trajectory::DiscreteTrajectory;
-use crate::dynamics::to_instants::{beyond_middles, to_instants};
+use crate::dynamics::sides::Side;
 use crate::dynamics::trajectory::Column;
 use crate::math::Vector;
 use crate::model::{Model, MuscleReading, joint_unit};
@@ -75,29 +74,6 @@ impl PartColumns {
         columns
     }
 
-    /// Turns values in the middle of intervals into values at the rows, of which `last` holds the last ones; the potentials of electrodes behind
-    /// resistors are known within intervals only and are extrapolated to both ends.
-    pub(super) fn to_instants(
-        &self,
-        (model, discrete): (&Model, &DiscreteTrajectory),
-        columns: &mut [Column],
-        last: &mut [f64],
-    ) {
-        let circuits = &model.electrode_circuits;
-        let first = columns.len() - self.loads.len() - 3 * circuits.len();
-        let scalars = [0, discrete.intervals() - 1].map(|k| &discrete.scalars[k]);
-        for (c, circuit) in circuits.iter().enumerate() {
-            let first = first + 3 * c;
-            let across = beyond_middles(&discrete.times, &columns[first].values);
-            let [start, end] = [0, 1].map(|i| circuit.flow(across[i], scalars[i]));
-            for i in 0..3 {
-                columns[first + i].values[0] = start[i];
-                last[first + i] = end[i];
-            }
-        }
-        to_instants(&discrete.times, columns, last);
-    }
-
     /// Values at a placed configuration with the rates `l` of its coordinates and `w` of its vectors, and the scalars there.
     pub(super) fn values(&self, model: &Model, at: &Configuration, scalars: &[f64]) -> Vec<f64> {
         let rates = self.joints.iter().map(|&j| model.joint_rate(j, at));
@@ -143,24 +119,29 @@ impl PartColumns {
         values
     }
 
-    /// Additions to the values at placed instant k by charges that flow at it.
-    pub(super) fn switched(
+    /// Additions to the values at a placed instant with these sides by the charges of sources whose voltages change; `time` is half of both intervals
+    /// beside it.
+    pub(super) fn charging(
         &self,
         model: &Model,
         here: &Configuration,
-        (discrete, k): (&DiscreteTrajectory, usize),
+        (sides, time): (&[Side], f64),
     ) -> Vec<f64> {
         let mut added = vec![0.0; self.joints.len() + self.markers.len()];
-        let beside = k.checked_sub(1).filter(|_| k < discrete.intervals());
         for reading in &self.muscles {
             added.extend([0.0].iter().chain(reading.has_voltage().then_some(&0.0)));
             if reading.has_source() {
-                added.extend(beside.map_or([0.0; 2], |before| {
-                    let time = 0.5 * (discrete.times[k + 1] - discrete.times[before]);
-                    let scalars = [before, k].map(|k| discrete.scalars[k].as_slice());
-                    let flow = reading.switched(model, here, scalars);
-                    flow.map(|flow| flow / time)
-                }));
+                let mut flow = [0.0; 2];
+                for side in sides {
+                    let charging = reading.charging(model, here, [&side.scalars, &side.rates]);
+                    flow = [0, 1].map(|i| flow[i] + side.weight * charging[i]);
+                }
+                if let [before, after] = sides {
+                    let both = [&before.scalars[..], &after.scalars[..]];
+                    let switched = reading.switched(model, here, both);
+                    flow = [0, 1].map(|i| flow[i] + switched[i] / time);
+                }
+                added.extend(flow);
             }
         }
         let others = 3 * model.electrode_circuits.len() + self.loads.len();

@@ -241,6 +241,7 @@ impl DiscreteTrajectory {
             && have(&self.z, map.instant().z.len())
             && have(&self.momenta, n)
             && have(&self.scalars, model.action.intervals.scalars)
+            && (self.ends.is_empty() || self.ends.len() == intervals)
             && self.rates.as_ref().is_none_or(|rates| rates.len() == n)
             && self.z.iter().all(|z| map.has_unit_charts(z))
     }
@@ -254,6 +255,7 @@ impl DiscreteTrajectory {
         let inputs = stepper.equations().model().variables.inputs();
         scalars[inputs].copy_from_slice(&drive.at(step, 0.5));
         self.scalars.push(scalars);
+        self.ends.extend(drive.ends(step));
         self.works.extend(stepper.work());
         stepper.keep(&mut self.end);
     }

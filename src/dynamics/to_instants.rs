@@ -5,9 +5,9 @@ use crate::dynamics::trajectory::Column;
 /// Linear and angular momentum by axis.
 pub(super) type Momenta = [f64; 6];
 
-/// Values at the last instant.
+/// Values at one instant.
 #[derive(Debug)]
-pub(super) struct Last {
+pub(super) struct State {
     pub(super) charges: Vec<f64>,
     pub(super) kinetic: f64,
     pub(super) potential: Vec<f64>,
@@ -16,7 +16,7 @@ pub(super) struct Last {
     pub(super) parts: Vec<f64>,
 }
 
-impl Last {
+impl State {
     /// Charges, kinetic, potential and total energy, in the order of their columns.
     pub(super) fn of_intervals(&self) -> Vec<f64> {
         let total = self.kinetic + self.potential.iter().sum::<f64>();
@@ -40,23 +40,9 @@ pub(super) fn to_instants(times: &[f64], columns: &mut [Column], last: &[f64]) {
     }
 }
 
-/// Values at the first and last row, extrapolated from those in the middle of the intervals that end at the rows.
-pub(super) fn beyond_middles(times: &[f64], middles: &[f64]) -> [f64; 2] {
-    let end = times.len() - 1;
-    let length = |k: usize| times[k] - times[k - 1];
-    let beyond = |k: usize, other: usize| {
-        let part = length(k) / (length(k) + length(other));
-        middles[k] + part * (middles[k] - middles[other])
-    };
-    match end {
-        1 => [middles[1]; 2],
-        _ => [beyond(1, 2), beyond(end, end - 1)],
-    }
-}
-
 /// Turns momenta as the interval before each row sees them into means of both intervals next to it, each weighted by the length of
 /// the other, so that a constant reaction cancels; `before` holds what the interval that ends at a row sees at the row before.
-pub(super) fn means(times: &[f64], columns: &mut [Column], before: &[Momenta], last: &Last) {
+pub(super) fn means(times: &[f64], columns: &mut [Column], before: &[Momenta], last: &State) {
     let end = times.len() - 1;
     for (i, column) in columns.iter_mut().enumerate() {
         for k in 1..end {

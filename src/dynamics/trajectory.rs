@@ -4,6 +4,7 @@ use nalgebra::Vector3;
 use std::collections::BTreeMap;
 
 use crate::dynamics::discrete_trajectory::DiscreteTrajectory;
+use crate::dynamics::drive::Inputs;
 use crate::kinematics::Pose;
 use crate::model::system::{Attachment, Joint, JointKind, System};
 use crate::model::{Model, Time, nearest_turn};
@@ -21,6 +22,8 @@ pub struct Trajectory {
     pub marks: Vec<Vec<Vector3<f64>>>,
     /// Voltages in V and loads in N or N mm, per interval and source.
     pub voltages: Vec<Vec<f64>>,
+    /// The same at both ends of each interval, where they vary within intervals; otherwise empty.
+    pub ends: Vec<[Vec<f64>; 2]>,
     /// Charge in mC of each muscle behind a circuit, per instant.
     pub charges: BTreeMap<usize, Vec<f64>>,
 }
@@ -52,6 +55,9 @@ impl Trajectory {
         }
         let rows = discrete.scalars.iter();
         trajectory.voltages = rows.map(|scalars| by_source(model, scalars)).collect();
+        let at_end = |of: &Inputs| by_source(model, &model.variables.scalars(&of.values));
+        let ends = discrete.ends.iter();
+        trajectory.ends = ends.map(|ends| ends.each_ref().map(at_end)).collect();
         trajectory
     }
 
@@ -69,6 +75,15 @@ impl Trajectory {
     pub fn voltages(&self, system: &System) -> impl Iterator<Item = &[f64]> {
         let first = system.first_load();
         self.voltages.iter().map(move |row| &row[..first])
+    }
+
+    /// Voltage of a source at both ends of each interval.
+    pub fn voltages_at_ends(&self, source: usize) -> impl Iterator<Item = [f64; 2]> {
+        let constant = self.voltages.iter().enumerate();
+        constant.map(move |(k, row)| match self.ends.get(k) {
+            Some(ends) => ends.each_ref().map(|row| row[source]),
+            None => [row[source]; 2],
+        })
     }
 
     /// Number N of intervals.

@@ -6,7 +6,7 @@
 use std::io;
 use std::path::Path;
 
-use crate::dynamics::{DiscreteTrajectory, StepState, StepperReport, TangentState, Work};
+use crate::dynamics::{DiscreteTrajectory, Inputs, StepState, StepperReport, TangentState, Work};
 
 use crate::files::npz::{self, Array, Npz, NpzError, NpzWriter};
 use crate::sparse::MethodState;
@@ -52,6 +52,14 @@ pub fn bytes(discrete: &DiscreteTrajectory, problem: &str) -> io::Result<Vec<u8>
     arrays.rows("z", &discrete.z);
     arrays.rows("momenta", &discrete.momenta);
     arrays.rows("scalars", &discrete.scalars);
+    let ends = |part: fn(&Inputs) -> &Vec<f64>| -> Vec<Vec<f64>> {
+        let ends = discrete.ends.iter().flatten();
+        ends.map(part).cloned().collect()
+    };
+    if !discrete.ends.is_empty() {
+        arrays.rows("input_ends", &ends(|inputs| &inputs.values));
+        arrays.rows("input_rates", &ends(|inputs| &inputs.rates));
+    }
     let works = |part: fn(&Work) -> f64| discrete.works.iter().map(part).collect::<Vec<_>>();
     arrays.list("works", &works(|work| work.dissipation));
     arrays.list("applied_works", &works(|work| work.applied));
@@ -126,6 +134,7 @@ pub fn read(path: &Path) -> Result<Continuation, ContinuationError> {
         z: rows(&mut file, "z")?,
         momenta: rows(&mut file, "momenta")?,
         scalars: rows(&mut file, "scalars")?,
+        ends: ends(&mut file)?,
         works: works
             .map(|(dissipation, applied)| Work {
                 applied,
@@ -142,6 +151,21 @@ pub fn read(path: &Path) -> Result<Continuation, ContinuationError> {
         return Err(ContinuationError::Missing("a motion of one step or more"));
     }
     Ok(Continuation { discrete, problem })
+}
+
+/// Inputs at the ends of intervals; none where they are constant.
+fn ends(file: &mut Npz) -> Result<Vec<[Inputs; 2]>, ContinuationError> {
+    if !file.arrays.contains_key("input_ends") {
+        return Ok(Vec::new());
+    }
+    let values = rows(file, "input_ends")?.into_iter();
+    let rates = rows(file, "input_rates")?.into_iter();
+    let mut all = values.zip(rates);
+    let mut next = || {
+        let (values, rates) = all.next()?;
+        Some(Inputs { values, rates })
+    };
+    Ok(std::iter::from_fn(|| Some([next()?, next()?])).collect())
 }
 
 fn state(file: &mut Npz) -> Result<StepState, ContinuationError> {

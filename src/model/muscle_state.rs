@@ -127,18 +127,36 @@ impl MuscleReading {
         Some(SourceFlow { current, power })
     }
 
-    /// Charge and energy that the source supplies where its voltage changes between two intervals, in mC and mJ, at a placed instant:
-    /// `C (V₂ − V₁)` and `½ C (V₂² − V₁²)`; none through a resistor.
+    /// Current in A and power in W that charge it while its voltage changes at a rate, at a placed instant: `C V̇` and `C V V̇`; none through
+    /// a resistor.
+    pub fn charging(
+        &self,
+        model: &Model,
+        at: &Configuration,
+        [scalars, rates]: [&[f64]; 2],
+    ) -> [f64; 2] {
+        let Some(Drive::Source(scalar)) = self.drive else {
+            return [0.0; 2];
+        };
+        let current = self.capacitance(model, at) * rates[scalar];
+        [current, scalars[scalar] * current]
+    }
+
+    /// Charge and energy that the source supplies where its voltage switches, in mC and mJ, at a placed instant: `C (V₂ − V₁)` and
+    /// `½ C (V₂² − V₁²)`; none through a resistor.
     pub fn switched(&self, model: &Model, at: &Configuration, scalars: [&[f64]; 2]) -> [f64; 2] {
         let Some(Drive::Source(scalar)) = self.drive else {
             return [0.0; 2];
         };
-        let of = &model.system.muscles[self.muscle];
-        let length = at.x[model.spans[self.muscle]].norm();
-        let capacitance = capacitance(of).map_or(0.0, |c| c.at_length(length));
         let [before, after] = scalars.map(|scalars| scalars[scalar]);
-        let charge = capacitance * (after - before);
+        let charge = self.capacitance(model, at) * (after - before);
         [charge, 0.5 * charge * (after + before)]
+    }
+
+    fn capacitance(&self, model: &Model, at: &Configuration) -> f64 {
+        let length = at.x[model.spans[self.muscle]].norm();
+        let of = capacitance(&model.system.muscles[self.muscle]);
+        of.map_or(0.0, |of| of.at_length(length))
     }
 }
 

@@ -55,6 +55,7 @@ impl Sampled {
             poses: self.pick(&full.poses),
             marks: self.pick(&full.marks),
             voltages: self.instants.windows(2).map(mean).collect(),
+            ends: Vec::new(),
             charges: full
                 .charges
                 .iter()

@@ -6,8 +6,8 @@ use std::time::Instant;
 use crate::control::problem::{BoundaryState, Simulation, Voltages};
 use crate::control::resolve_start;
 use crate::dynamics::{
-    DiscreteTrajectory, Drive, Integrator, Lengths, Solving, StepControl, StepError, StepState,
-    TimeGrid, go_on,
+    DiscreteTrajectory, Drive, Inputs, Integrator, Lengths, Solving, StepControl, StepError,
+    StepState, TimeGrid, go_on,
 };
 use crate::ipopt::{Status, interrupt};
 use crate::math::in_order;
@@ -210,5 +210,16 @@ impl Drive for Driven<'_> {
         let time = from + part * (to - from);
         let within = time.max(from + rounding).min(to - rounding);
         self.model.scalars(&self.voltages.at(within))
+    }
+
+    fn ends(&self, [from, to]: [f64; 2]) -> Option<[Inputs; 2]> {
+        if self.voltages.are_constant_by_rows() {
+            return None;
+        }
+        let rounding = 4.0 * f64::EPSILON * to.abs().max(from.abs());
+        Some([from + rounding, to - rounding].map(|time| Inputs {
+            values: self.model.scalars(&self.voltages.at(time)),
+            rates: self.model.scalars(&self.voltages.rates(time)),
+        }))
     }
 }

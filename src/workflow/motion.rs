@@ -98,6 +98,7 @@ pub fn trajectory(model: &Model, solved: &Solution) -> Trajectory {
         poses: solved.poses.clone(),
         marks: marks(model, &solved.z),
         voltages: solved.voltages.clone(),
+        ends: Vec::new(),
         charges: model.circuit_charges(&solved.z),
     }
 }

@@ -6,7 +6,9 @@
 
 use std::ops::ControlFlow;
 
-use crate::dynamics::{DiscreteTrajectory, Drive, Lengths, Solving, StepControl, StepError, go_on};
+use crate::dynamics::{
+    DiscreteTrajectory, Drive, Inputs, Lengths, Solving, StepControl, StepError, go_on,
+};
 use crate::ipopt::{Status, interrupt};
 use crate::model::Model;
 use crate::workflow::confirmed::EstimatedError;
@@ -239,6 +241,10 @@ struct Shared<'a>(&'a dyn Drive);
 impl Drive for Shared<'_> {
     fn at(&self, step: [f64; 2], part: f64) -> Vec<f64> {
         self.0.at(step, part)
+    }
+
+    fn ends(&self, step: [f64; 2]) -> Option<[Inputs; 2]> {
+        self.0.ends(step)
     }
 }
 

@@ -294,3 +294,13 @@ pub(crate) fn columns(observations: &Observations, name: &str) -> Vec<Vector3<f6
         .map(|((&x, &y), &z)| Vector3::new(x, y, z))
         .collect()
 }
+
+/// System and task of a problem file with the scene in it.
+pub(crate) fn problem(problem: &Value) -> (System, proboscis::control::problem::Task) {
+    let folder = tempfile::tempdir().unwrap();
+    let path = folder.path().join("problem.json");
+    std::fs::write(&path, problem.to_string()).unwrap();
+    let read = proboscis::files::read_problem(&path, &[]);
+    let loaded = read.unwrap_or_else(|error| panic!("{error}\n{problem}"));
+    (loaded.system, loaded.task)
+}

@@ -5,6 +5,7 @@ mod common;
 
 mod charge;
 mod closed_loop;
+mod columns;
 mod component_files;
 mod components;
 mod conserve;
