@@ -17,8 +17,19 @@ const ROUNDING: f64 = 1e-11;
 pub struct EstimatedError {
     /// Its greatest distance from the exact motion, in rad and lengths of the system.
     pub error: f64,
+    /// The same of its points alone, in mm.
+    pub place: f64,
     /// True if a second refinement shows the order of the method.
     pub is_confirmed: bool,
+}
+
+/// Greatest distance between two motions.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(crate) struct Apart {
+    /// In rad and lengths of the system.
+    pub(crate) size: f64,
+    /// Of points, in mm.
+    pub(crate) place: f64,
 }
 
 impl EstimatedError {
@@ -29,23 +40,26 @@ impl EstimatedError {
 
     /// Of the finest of three motions, each in steps of half the length: from the distance `before` between the first two and `last`
     /// between the last two.
-    pub(crate) fn of_finest(before: f64, last: f64) -> Self {
-        let ratio = before / last;
-        let is_rounding = before.max(last) < ROUNDING;
+    pub(crate) fn of_finest(before: Apart, last: Apart) -> Self {
+        let ratio = before.size / last.size;
+        let is_rounding = before.size.max(last.size) < ROUNDING;
+        let part = match ratio.is_finite() {
+            true => 1.0 / (ratio.clamp(1.5, 4.0) - 1.0),
+            false => 1.0,
+        };
         Self {
-            error: match ratio.is_finite() {
-                true => last / (ratio.clamp(1.5, 4.0) - 1.0),
-                false => last,
-            },
+            error: part * last.size,
+            place: part * last.place,
             is_confirmed: is_rounding || OF_ORDER_TWO.contains(&ratio),
         }
     }
 
     /// Of the first of three motions.
-    pub(crate) fn of_first(before: f64, last: f64) -> Self {
+    pub(crate) fn of_first(before: Apart, last: Apart) -> Self {
         let finest = Self::of_finest(before, last);
         Self {
-            error: finest.error + last + before,
+            error: finest.error + last.size + before.size,
+            place: finest.place + last.place + before.place,
             ..finest
         }
     }

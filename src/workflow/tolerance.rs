@@ -6,14 +6,16 @@
 
 use std::ops::ControlFlow;
 
+use crate::dynamics::trajectory::Trajectory;
 use crate::dynamics::{
-    DiscreteTrajectory, Drive, Inputs, Lengths, Solving, StepControl, StepError, go_on,
+    DiscreteTrajectory, Drive, Inputs, Lengths, Solving, StepControl, StepError, distance_between,
+    go_on,
 };
 use crate::ipopt::{Status, interrupt};
 use crate::model::Model;
-use crate::workflow::confirmed::EstimatedError;
+use crate::workflow::confirmed::{Apart, EstimatedError};
 use crate::workflow::distance::Distance;
-use crate::workflow::motion::solved;
+use crate::workflow::motion::solved_of;
 
 /// Largest number of times that a motion is begun again with a tighter tolerance.
 const AGAIN: usize = 4;
@@ -170,7 +172,8 @@ impl ByTolerance<'_> {
         let quarters = halved(&halves);
         let Some(in_quarters) = self.repeated(discrete, &quarters) else {
             return Some(EstimatedError {
-                error: 4.0 / 3.0 * before,
+                error: 4.0 / 3.0 * before.size,
+                place: 4.0 / 3.0 * before.place,
                 is_confirmed: false,
             });
         };
@@ -209,14 +212,18 @@ impl ByTolerance<'_> {
         fine: &DiscreteTrajectory,
         places: &[usize],
         coarse: &DiscreteTrajectory,
-    ) -> f64 {
+    ) -> Apart {
         let model = self.model;
-        let [fine, coarse] = [fine, coarse].map(|discrete| solved(model, discrete, None));
+        let [of_fine, of_coarse] = [fine, coarse].map(|one| Trajectory::from_discrete(model, one));
+        let place = distance_between(model, (fine, &of_fine), places, (coarse, &of_coarse));
+        let fine = solved_of(model, fine, of_fine, None);
+        let coarse = solved_of(model, coarse, of_coarse, None);
         let each = places.iter().enumerate();
         let distances = each.map(|(k, &place)| Distance::between(model, &fine, place, &coarse, k));
-        distances
+        let size = distances
             .fold(Distance::default(), Distance::max)
-            .size(model)
+            .size(model);
+        Apart { size, place }
     }
 }
 
@@ -278,7 +285,7 @@ fn are_doubled(finer: &[f64], coarser: &[f64]) -> bool {
 }
 
 /// Times with one in the middle of each two.
-fn halved(times: &[f64]) -> Vec<f64> {
+pub(super) fn halved(times: &[f64]) -> Vec<f64> {
     let first = times.first().copied();
     let others = times
         .windows(2)
