@@ -82,7 +82,7 @@ impl Planning<'_> {
 
     /// The inputs that act from a time on: those of the motion before the first.
     fn inputs(&mut self, from: f64, law: &Law, inputs: &mut [f64]) {
-        let now = from + 1e-9 * (1.0 + from.abs());
+        let now = from + 1e-9 * (law.h + from.abs());
         while self.waiting.front().is_some_and(|(acts, _)| *acts <= now) {
             self.acting = self.waiting.pop_front().map(|(_, values)| values);
         }
@@ -214,11 +214,11 @@ impl<'a> Loop<'a> {
         let last = discrete.intervals();
         let time = discrete.times[last];
         let state = &mut *self.state.borrow_mut();
-        if time < state.next - 1e-9 * (1.0 + time) {
+        let sample = self.task.sample;
+        if time < state.next - 1e-9 * (sample + time) {
             return;
         }
         // The first multiple of the sample behind this time.
-        let sample = self.task.sample;
         state.next = sample * ((time / sample + 1e-6).floor() + 1.0);
         let rates = rates_of_momentum(
             self.model,
