@@ -2,6 +2,9 @@
 
 #[path = "../common/mod.rs"]
 mod common;
+#[allow(dead_code, reason = "a module of another program of tests")]
+#[path = "../adversary/robots.rs"]
+mod robots;
 
 mod charge;
 mod closed_loop;
@@ -11,6 +14,7 @@ mod components;
 mod conserve;
 mod dissipation;
 mod elastic_laws;
+mod estimates;
 mod exchange;
 mod four_bars;
 mod free_robots;

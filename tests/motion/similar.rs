@@ -1,7 +1,16 @@
 //! Similar robots have similar motions.
 
+use crate::common::problem;
 use crate::common::similar::Scales;
+use crate::robots::{Parts, Robot, robot};
+use proboscis::control::problem::Task;
+use proboscis::dynamics::trajectory::{Column, Trajectory};
+use proboscis::dynamics::{DiscreteTrajectory, observations};
+use proboscis::model::Model;
+use proboscis::tasks::simulate::{SimulationRequest, simulate};
+use proboscis::workflow::Simulated;
 use serde_json::{Value, json};
+use std::ops::ControlFlow;
 
 const SCALES: Scales = Scales {
     mass: 2.0,
@@ -99,6 +108,131 @@ fn every_number_with_a_unit_of_the_schema_is_known() {
         for (name, definition) in schema["$defs"].as_object().unwrap() {
             let has_unit = definition["type"] == json!(["number", "string"]);
             assert!(!has_unit || SCALES.knows(name), "{name}");
+        }
+    }
+}
+
+/// A robot under voltages of its muscles that vary, and under its loads.
+pub(crate) fn moving(seed: u64, simulate: &Value) -> Value {
+    let parts = Parts {
+        weight: seed % 3 > 0,
+        ball_joints: seed % 2 == 0,
+        tendons: true,
+        viscosity: seed % 4 > 0,
+        bodies: 2,
+    };
+    let Robot {
+        mut scene,
+        voltages,
+        loads,
+    } = robot(seed, parts);
+    scene["materials"]["m"]["dielectric"] = json!("ideal");
+    let sine = |volts: f64| json!({ "sine": { "mean": volts, "amplitude": 0.5 * volts, "period": "50 ms" } });
+    let voltages = voltages
+        .iter()
+        .map(|(name, volts)| (name.clone(), sine(*volts)));
+    let loads = loads.iter().map(|(name, size)| match name.as_str() {
+        "motor" => (name.clone(), json!(format!("{size} mN m"))),
+        _ => (name.clone(), json!(format!("{size} N"))),
+    });
+    let mut simulate = simulate.clone();
+    simulate["voltages"] = voltages.collect();
+    simulate["loads"] = loads.collect();
+    json!({ "scene": scene, "simulate": simulate })
+}
+
+/// A simulation as it is compared with that of a similar robot.
+struct Seen {
+    columns: Vec<Column>,
+    counts: [usize; 3],
+    error: Option<f64>,
+    codes: Vec<String>,
+}
+
+fn seen(file: &Value) -> Seen {
+    let (system, task) = problem(file);
+    let Task::Simulate(task) = task else {
+        panic!("a simulation")
+    };
+    let request = SimulationRequest::default();
+    let go_on = &mut |_: usize, _: &Model, _: &DiscreteTrajectory| ControlFlow::Continue(());
+    let result = simulate(&system, &task, request, go_on).unwrap();
+    let Simulated {
+        model, discrete, ..
+    } = &result.simulated;
+    let trajectory = Trajectory::from_discrete(model, discrete);
+    let assessment = result.assess(&system, &task, &trajectory);
+    let remarks = assessment.remarks.0.iter();
+    let report = discrete.report;
+    Seen {
+        columns: observations(model, discrete).columns,
+        counts: [report.steps, report.iterations, report.halved],
+        error: result.simulated.error.map(|error| error.error),
+        codes: remarks.map(|remark| remark.code.to_string()).collect(),
+    }
+}
+
+/// From robots of 50 mm, 40 g and 1 kV to some of 1 mg and of 10 kg: steps, iterations, warnings and dimensionless numbers stay. The factors are
+/// powers of two, so that rounding is the same.
+#[test]
+fn similar_robots_have_similar_motions() {
+    let to = |mass: i32, length: i32, time: i32, permittivity: i32| {
+        let [mass, length, time, permittivity] =
+            [mass, length, time, permittivity].map(|power| 2.0_f64.powi(power));
+        let Scales { voltage, .. } = Scales::in_vacuum(mass, length, time);
+        let voltage = voltage / permittivity.sqrt();
+        Scales {
+            mass,
+            length,
+            time,
+            voltage,
+        }
+    };
+    let pairs = [to(-15, -5, -4, 0), to(8, 4, 12, 2), to(-3, 3, 2, 4)];
+    for (seed, simulate) in [
+        (1, json!({ "duration": "40 ms", "step": "1 ms" })),
+        (
+            2,
+            json!({ "duration": "40 ms", "step": "2 ms", "integrator": { "galerkin": 2 } }),
+        ),
+        (3, json!({ "duration": "30 ms" })),
+        (4, json!({ "duration": "30 ms", "tolerance": 1e-4 })),
+        (
+            6,
+            json!({ "duration": "40 ms", "step": "8 ms", "coordinates": "redundant" }),
+        ),
+        (
+            7,
+            json!({ "duration": "40 ms", "step": "4 ms", "integrator": "implicit_euler" }),
+        ),
+        (9, json!({ "duration": "40 ms", "step": "20 ms" })),
+    ] {
+        let file = moving(seed, &simulate);
+        let own = seen(&file);
+        assert!(own.counts[0] > 1, "{seed}");
+        for scales in &pairs {
+            let other = seen(&scales.problem(&file));
+            assert_eq!(own.counts, other.counts, "{seed} {simulate} {scales:?}");
+            assert_eq!(own.codes, other.codes, "{seed} {simulate} {scales:?}");
+            let errors = [own.error, other.error].map(Option::unwrap_or_default);
+            assert!(
+                (errors[0] - errors[1]).abs() <= 1e-9 * errors[0],
+                "{errors:?}"
+            );
+            for (own, other) in own.columns.iter().zip(&other.columns) {
+                let factor = scales.of_unit(own.unit);
+                let size = own.values.iter().fold(0.0_f64, |size, x| size.max(x.abs()));
+                for (a, b) in own.values.iter().zip(&other.values) {
+                    let apart = (a - b / factor).abs();
+                    // Of a constraint that closes, rounding alone is left.
+                    let is_rounding = own.name == "constraint_violation" && size < 1e-9;
+                    assert!(
+                        apart <= 1e-9 * size || is_rounding,
+                        "{seed} {scales:?} {}: {a} {b}",
+                        own.name
+                    );
+                }
+            }
         }
     }
 }
