@@ -75,7 +75,8 @@ test-browser:
 	@.ci/install --browser
 	@tests/browser/run
 
-wheel: install-deps
+wheel:
+	@.ci/install --wheel
 	@python/wheel
 
 docs: install-deps
