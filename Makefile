@@ -13,7 +13,7 @@ MOTIONS := fe_trunk clamped_stack_step bending_actuator_step free_flight creepin
 FUZZ_SECONDS := 600
 ADVERSARY_SECONDS := 600
 
-.PHONY: help trunk blocks gallery build test test-python test-other-ipopt test-browser wheel docs fuzz adversary compare-solvers check audit bench studies install-deps try-fresh clean
+.PHONY: help trunk blocks gallery build test test-python test-debian-13 test-browser wheel docs fuzz adversary compare-solvers check audit bench studies install-deps try-fresh clean
 
 help:
 	@echo 'make trunk         solve the elephant trunk, let it swing under constant voltages, and say where the pictures are'
@@ -21,7 +21,7 @@ help:
 	@echo 'make gallery       rewrite the results that the README shows, $(GALLERY)'
 	@echo 'make test          run the tests'
 	@echo 'make test-python   build and test the Python package, in an environment of its own (Python 3.10 or later with venv)'
-	@echo 'make test-other-ipopt  what calls Ipopt, with Ipopt 3.14 out of a Python package, beside that of the system'
+	@echo 'make test-debian-13  what calls Ipopt or MUMPS, in a root of Debian 13 (debootstrap, as root; kept in ~/.cache)'
 	@echo 'make test-browser  pages in a real Chromium; pictures of them in target/browser'
 	@echo 'make wheel         build the wheel that needs no package of the system, in target/wheels'
 	@echo 'make docs          pages of the Python package, in target/python/docs'
@@ -32,7 +32,7 @@ help:
 	@echo 'make audit         licences, sources and known vulnerabilities of all crates, by cargo-deny (installed where it is missing)'
 	@echo 'make bench         measure; rewrite the tables of benches/README.md'
 	@echo 'make studies       what accuracy costs, hard cases, effects, random goals, warm starts, a peer: rewrite their pages in $(GALLERY)'
-	@echo 'make try-fresh     run both commands of the README in bare roots of Debian (debootstrap, as root)'
+	@echo 'make try-fresh     run both commands of the README, and make the wheel, in bare roots of Debian (debootstrap, as root)'
 	@echo 'make install-deps  install what is missing (make trunk and make test do so by themselves)'
 	@echo 'make clean         remove what was built'
 
@@ -62,13 +62,13 @@ test: install-deps
 test-python: install-deps
 	@python/test
 
-# The dependencies are those of other tests, and a library that is not optimised, in a quarter of the time, is kept apart from theirs.
-# What does not call Ipopt, and what calls it thousands of times, is left to the tests of the system's.
-# Cargo before 1.91 does not know the first variable, and builds the dependencies too.
-test-other-ipopt: install-deps
-	@PKG_CONFIG_PATH=$$(.ci/other-ipopt) && export PKG_CONFIG_PATH && target=$${CARGO_TARGET_DIR:-target} && \
-	  CARGO_BUILD_BUILD_DIR=$$target CARGO_TARGET_DIR=$$target/other-ipopt/build \
-	  $(CARGO) test --locked $(TEST_PACKAGES) --config 'profile.dev.package.proboscis.opt-level=0' --test solver -- \
+# Links `tests/units`, which compiles files of the library again, and runs what calls Ipopt or MUMPS, but not thousands of times. The dependencies are
+# those of other tests, built by this machine first: what Debian 13 builds may need its C library. The library is not optimised, in a quarter of the
+# time, and kept apart from theirs. Cargo before 1.91 does not know the first variable, and builds the dependencies too.
+test-debian-13: install-deps
+	@$(CARGO) test --locked $(TEST_PACKAGES) --no-run
+	@export CARGO_BUILD_BUILD_DIR=$${CARGO_TARGET_DIR:-target} && export CARGO_TARGET_DIR=$$CARGO_BUILD_BUILD_DIR/debian-13 && \
+	  .ci/in-debian-13 $(CARGO) test --locked $(TEST_PACKAGES) --config 'profile.dev.package.proboscis.opt-level=0' --test solver --test units -- \
 	  ipopt again:: linear_solver:: ma57_adapter:: mpi:: one_mumps:: stopped::a_limit sparse::threads --skip random_goals
 
 test-browser:
