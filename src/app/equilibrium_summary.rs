@@ -118,6 +118,9 @@ fn kind(loss: StabilityLoss) -> &'static str {
     loss.kind.map_or("a limit point", Instability::words)
 }
 
+/// Unit of stiffness where coordinates are angles and places.
+const MIXED: &str = "N mm, coordinates in rad and lengths of the system";
+
 /// Describes an equilibrium; the last one where growing loads lose it.
 pub(super) fn describe(
     model: &Model,
@@ -143,10 +146,7 @@ pub(super) fn describe(
     let (factor, unit) = match (slides, turns) {
         (false, _) => (1e-3, ("N mm/rad", 1e3)),
         (true, false) => (1e3, ("N/mm", 1e-3)),
-        (true, true) => (
-            1.0,
-            ("N mm, coordinates in rad and lengths of the system", 1.0),
-        ),
+        (true, true) => (1.0, (MIXED, 1.0)),
     };
     let stretches = observed.columns.iter().filter_map(|column| {
         let muscle = column.name.strip_suffix("_stretch")?;

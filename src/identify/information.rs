@@ -26,7 +26,7 @@ pub struct Undetermined {
     pub constants: Vec<usize>,
     /// Relative standard deviation of a change along it; infinite where nothing changes at all.
     pub deviation: f64,
-    /// What is determined of two constants, where only one combination of them is not.
+    /// The combination that is determined of two constants, where only one combination of them is not.
     pub determined: Option<Product>,
 }
 

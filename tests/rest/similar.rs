@@ -50,7 +50,7 @@ fn found(written: &Value, voltage: f64) -> (Model, Result<Equilibrium, Equilibri
 }
 
 /// The state, and the word and the fraction of its route.
-fn told(found: Result<Equilibrium, EquilibriumError>) -> (Equilibrium, String, f64) {
+fn outcome(found: Result<Equilibrium, EquilibriumError>) -> (Equilibrium, String, f64) {
     let word = |route: &Route| {
         format!("{route:?}")
             .split(['(', ' '])
@@ -85,7 +85,7 @@ fn similar_robots_rest_alike() {
         (stack(), 9000.0),
     ] {
         let (first, rest) = found(&scene, voltage);
-        let (rest, route, fraction) = told(rest);
+        let (rest, route, fraction) = outcome(rest);
         routes.push(route.clone());
         for _ in 0..8 {
             let mut factor = |low: f64, high: f64| 10_f64.powf(random.between(low, high));
@@ -96,7 +96,7 @@ fn similar_robots_rest_alike() {
             // No permittivity is below that of vacuum.
             scales.voltage *= factor(-1.0, 0.3);
             let (model, twin) = found(&scales.scene(&scene), voltage * scales.voltage);
-            let (twin, other, at) = told(twin);
+            let (twin, other, at) = outcome(twin);
             let name = first.system.name.as_str();
             assert_eq!((&other, twin.unstable), (&route, rest.unstable), "{name}");
             assert!((at - fraction).abs() < 1e-9, "{name}: {at} {fraction}");
