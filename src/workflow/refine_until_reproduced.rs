@@ -5,6 +5,7 @@ use std::ops::ControlFlow;
 use crate::control::problem::Control;
 use crate::model::System;
 use crate::workflow::error::WorkflowError;
+use crate::workflow::further::is_infeasible;
 use crate::workflow::grid_solves::{GridSolves, VARIABLES};
 use crate::workflow::iterate::Iterate;
 use crate::workflow::optimum::{Optimum, SolveLimits};
@@ -23,6 +24,30 @@ pub struct RefinedOptimum {
     pub note: Option<String>,
 }
 
+/// Multiple of the intervals that is tried before a problem is called infeasible.
+const FINER: usize = 2;
+
+/// The optimum on a finer grid of a problem for which its own grid has none: intervals that do not resolve the motion may leave none.
+fn on_finer(
+    solves: &mut GridSolves<'_>,
+    control: &Control,
+    optimum: &Optimum,
+) -> Option<RefinedOptimum> {
+    let is_tried = is_infeasible(optimum.solution.status)
+        && !solves.is_over()
+        && FINER * optimum.solution.x.len() <= VARIABLES;
+    let intervals = FINER * control.intervals;
+    let found = is_tried.then(|| solves.solve(intervals, None))?.ok()?;
+    found.is_solved().then(|| RefinedOptimum {
+        optimum: found,
+        iterations: solves.iterations,
+        note: Some(format!(
+            "on {} intervals no motion keeps goal and limits; on {intervals} intervals this one does",
+            control.intervals
+        )),
+    })
+}
+
 /// Solves a control problem on its own grid; where the optimum is not reproduced, on finer ones, each from the optimum
 /// before, then from the guess of the problem.
 ///
@@ -36,6 +61,9 @@ pub(crate) fn reproduced(
 ) -> Result<RefinedOptimum, WorkflowError> {
     let mut solves = GridSolves::new(system, control, allowed, observer);
     let mut optimum = solves.solve(control.intervals, None)?;
+    if let Some(found) = on_finer(&mut solves, control, &optimum) {
+        return Ok(found);
+    }
     let Some(cause) = optimum.cause() else {
         return Ok(RefinedOptimum {
             optimum,

@@ -88,8 +88,10 @@ fn double_integrator(intervals: usize) -> Attempt<usize> {
     boundary.rest = [Some(vec![0.0]), Some(vec![0.0])];
     let initial = guess(&model, &boundary, &problem, h, None);
     let mut program = Transcription::new(&model, &boundary, &problem, &initial).unwrap();
+    // The program does not know the size of a force that is none of its inputs.
     let options = Options {
         tolerance: 1e-10,
+        objective_scale: Some(TIME.powi(3) / (12.0 * (MASS * GOAL).powi(2))),
         ..Options::default()
     };
     let start = program.start(&initial);

@@ -189,7 +189,7 @@ fn a_kink_and_a_limit_of_iterations_are_explained() {
         &kept("tendon_finger_control"),
         &[
             &change,
-            "control.intervals=40",
+            "control.intervals=60",
             "control.solver.max_iterations=55",
         ],
         &out,

@@ -53,17 +53,32 @@ fn a_limit_of_iterations_is_explained_by_a_duration_that_can_be_solved() {
     }
 }
 
-/// Phases of the starts after the first one.
-const LATER: [&str; 4] = [
-    "looking for the shortest motion",
-    "a second, displaced initial guess",
-    "looking for the slowest mode",
-    "looking for a slow motion",
+/// Phases of the starts after the first one, each with a problem that comes to it: the shortest motion of the trunk is longer, and nothing is displaced.
+const LATER: [(&str, &str, &[&str]); 4] = [
+    ("looking for the shortest motion", TRUNK, &SHORT),
+    (
+        "a second, displaced initial guess",
+        "tendon_finger_control",
+        &KINKED,
+    ),
+    ("looking for the slowest mode", TRUNK, &SHORT),
+    (
+        "looking for a slow motion",
+        "tendon_finger_control",
+        &KINKED,
+    ),
+];
+/// Changes with which the tendon of the finger grows taut at a kink.
+const KINKED: [&str; 3] = [
+    "scene.tendons[0].smoothing=null",
+    "control.intervals=60",
+    "control.solver.max_iterations=55",
 ];
 
 /// Solves until some questions after the beginning of a phase; returns the result and the questions after the end of the time.
-fn stopped_in(phase: &'static str, after: u64) -> (Optimum, u64) {
-    let (system, control) = control(TRUNK, &SHORT.map(str::to_owned));
+fn stopped_in(phase: &'static str, (name, changes): (&str, &[&str]), after: u64) -> (Optimum, u64) {
+    let changes: Vec<String> = changes.iter().map(|&change| change.to_owned()).collect();
+    let (system, control) = control(name, &changes);
     let questions = Questions::allowed(u64::MAX);
     let over = Rc::new(Cell::new(0));
     let (asked, end) = (questions.clone(), over.clone());
@@ -85,13 +100,13 @@ fn stopped_in(phase: &'static str, after: u64) -> (Optimum, u64) {
 
 #[test]
 fn other_starts_stop_at_the_next_question_and_leave_the_first_one() {
-    for phase in LATER {
+    for (phase, name, changes) in LATER {
         for after in [0, 20] {
-            let (found, late) = stopped_in(phase, after);
+            let (found, late) = stopped_in(phase, (name, changes), after);
             println!("{phase}, {after}: {late} questions after the end");
             assert_eq!(found.word(), "time_limit", "{phase}");
             assert_eq!(found.solution.status, Status::IterationLimit);
-            assert!(found.motion.intervals() == 40 && !found.violated.is_empty());
+            assert!(found.motion.intervals() >= 40 && !found.violated.is_empty());
             assert!(!matches!(found.shortest, Shortest::NotUpTo(_)));
             // One for each piece of work that is not begun any more.
             assert!(late < 30, "{phase}: {late} questions after the end");
