@@ -230,30 +230,9 @@ impl Identification {
         let pair =
             |i, j| (has_interval(i) && has_interval(j)).then(|| information.correlation(i, j));
         let rows = (0..count).map(|i| (0..count).map(|j| pair(i, j)).collect());
-        let combination = |one: &Undetermined| Combination {
-            text: words(task, one),
-            powers: (one.powers.iter())
-                .map(|&(j, power)| Power {
-                    name: task.parameters[j].name.clone(),
-                    power,
-                })
-                .collect(),
-            determined: one
-                .determined
-                .as_ref()
-                .filter(|known| is_plain(known))
-                .map(|known| {
-                    let powers = known.powers.iter();
-                    let si = powers.map(|&(j, power)| units[j].factor.powf(power));
-                    let value = known.value * si.product::<f64>();
-                    Determined {
-                        product: product(task, &known.powers),
-                        value,
-                        standard_error: (value * known.deviation).abs(),
-                    }
-                }),
-        };
+        let combination = |one: &Undetermined| Combination::new(task, one, &units);
         let largest = found.bias.largest();
+        let doubled = |&r: &usize| 2 * found.grid.intervals[r];
         Self {
             constants: task.parameters.iter().enumerate().map(constant).collect(),
             correlation: rows.collect(),
@@ -263,11 +242,7 @@ impl Identification {
             reduced_chi_square: found.fit.sum() / found.fit.freedom().max(1) as f64,
             p: found.p,
             grid: GridBias {
-                intervals: found
-                    .fitted
-                    .iter()
-                    .map(|&r| 2 * found.grid.intervals[r])
-                    .collect(),
+                intervals: found.fitted.iter().map(doubled).collect(),
                 halvings: found.bias.halvings,
                 largest_change: largest.is_finite().then_some(largest),
                 confirmed: found.bias.is_confirmed,
@@ -329,6 +304,34 @@ impl Identification {
             lines.push(format!("next experiment: {}", best.name));
         }
         lines.join("\n")
+    }
+}
+
+impl Combination {
+    fn new(task: &problem::Identification, one: &Undetermined, units: &[SiUnit]) -> Self {
+        let name = |j: usize| task.parameters[j].name.clone();
+        let power = |&(j, power): &(usize, f64)| Power {
+            name: name(j),
+            power,
+        };
+        Self {
+            text: words(task, one),
+            powers: one.powers.iter().map(power).collect(),
+            determined: one
+                .determined
+                .as_ref()
+                .filter(|known| is_plain(known))
+                .map(|known| {
+                    let powers = known.powers.iter();
+                    let si = powers.map(|&(j, power)| units[j].factor.powf(power));
+                    let value = known.value * si.product::<f64>();
+                    Determined {
+                        product: product(task, &known.powers),
+                        value,
+                        standard_error: (value * known.deviation).abs(),
+                    }
+                }),
+        }
     }
 }
 

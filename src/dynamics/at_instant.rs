@@ -80,7 +80,7 @@ impl<'m> AtInstant<'m> {
         }
         let time = discrete.begun + discrete.times[k];
         let is_constrained = model.action.map.multipliers > 0;
-        if discrete.reading == Reading::Instants || is_constrained {
+        if discrete.reading != Reading::Intervals || is_constrained {
             let kinetic = self.kinetic.get_or_insert_with(|| Kinetic::new(model));
             if let Some(rates) = kinetic.rates(here, time, momentum) {
                 return rates;

@@ -44,6 +44,8 @@ pub enum Reading {
     Intervals,
     /// At instants, by their momenta.
     Instants,
+    /// At instants, each with the inputs and potentials of the interval that ends there: equilibria.
+    States,
 }
 
 impl DiscreteTrajectory {

@@ -58,7 +58,7 @@ fn by_rows(
     let piece = match discrete.reading {
         Reading::Intervals => PIECE,
         // The factorisation of the masses keeps its order from the first instant on.
-        Reading::Instants => count.max(1),
+        Reading::Instants | Reading::States => count.max(1),
     };
     let rows = in_pieces(count, piece, |instants| {
         let mut observer = Observer::new(model);

@@ -13,7 +13,7 @@ use crate::model::{JOINT_DAMPING, JointSection, Model};
 pub(super) fn reactions(model: &Model, discrete: &DiscreteTrajectory) -> Vec<Column> {
     let sections = match discrete.reading {
         Reading::Intervals => model.joint_sections(),
-        Reading::Instants => Vec::new(),
+        Reading::Instants | Reading::States => Vec::new(),
     };
     if sections.is_empty() {
         return Vec::new();

@@ -44,6 +44,9 @@ pub(super) fn sides(model: &Model, discrete: &DiscreteTrajectory, k: usize) -> V
             weight,
         }
     };
+    if discrete.reading == Reading::States {
+        return vec![side(k.max(1) - 1, 1, 1.0)];
+    }
     if k > 0 && k < count {
         let [before, after] = [length(k - 1), length(k)];
         let part = after / (before + after);
@@ -72,7 +75,7 @@ fn extrapolate(model: &Model, discrete: &DiscreteTrajectory, k: usize, side: &mu
     }
     let at = |interval: usize| match discrete.reading {
         Reading::Intervals => 0.5 * (discrete.times[interval] + discrete.times[interval + 1]),
-        Reading::Instants => discrete.times[interval + 1],
+        Reading::Instants | Reading::States => discrete.times[interval + 1],
     };
     let [near, far] = if k == 0 {
         [0, 1]

@@ -284,7 +284,7 @@ fn named(direction: &[f64]) -> Vec<(usize, f64)> {
     powers.filter(|(_, power)| power.abs() >= PART).collect()
 }
 
-/// What is determined of two constants where only one combination of them is not.
+/// The combination that is determined of two constants where only one combination of them is not.
 fn product(
     open: &Undetermined,
     values: &[f64],

@@ -20,7 +20,7 @@ use crate::workflow::stalled;
 use crate::workflow::stretch_range;
 use std::time::Instant;
 
-/// What the eigenvalues of a stiffness without symmetry leave open.
+/// Remark on what the eigenvalues of a stiffness without symmetry leave open.
 const FLUTTER: &str = "loads follow what they act on, and stability is that of strongly damped motion: with little damping the state may \
                        flutter; simulate a disturbed motion to see whether it returns";
 

@@ -141,6 +141,8 @@ fn numbers(program: &mut Transcription<'_>, model: &Model, x: &[f64]) -> Numbers
     let names: Vec<String> = (0..rows).map(|r| program.constraint_name(r)).collect();
     let columns: Vec<Column> = program.unknowns().columns.clone();
     let scales: Vec<f64> = (0..rows).map(|r| program.row_scale(r)).collect();
+    // Sizes of inputs follow from constants: variables are compared in the units inside.
+    let units: Vec<f64> = (0..x.len()).map(|c| program.variable_scale(c)).collect();
     let is_parameter = |c: usize| columns[c].of(&model.variables).role == Role::Parameter;
     let variables: Vec<String> = (0..x.len()).map(|c| program.variable_name(c)).collect();
     let mut g = vec![0.0; rows];
@@ -156,7 +158,7 @@ fn numbers(program: &mut Transcription<'_>, model: &Model, x: &[f64]) -> Numbers
     for ((&r, &c), value) in places.rows.iter().zip(&places.cols).zip(&list) {
         if !is_parameter(c as usize) {
             let key = (names[r as usize].clone(), variables[c as usize].clone());
-            *jacobian.entry(key).or_insert(0.0) += value / scales[r as usize];
+            *jacobian.entry(key).or_insert(0.0) += value / (scales[r as usize] * units[c as usize]);
         }
     }
     // Costates of the unscaled rows are the same in both programs.
@@ -171,7 +173,8 @@ fn numbers(program: &mut Transcription<'_>, model: &Model, x: &[f64]) -> Numbers
             let mut key = [variables[r as usize].clone(), variables[c as usize].clone()];
             key.sort();
             let [a, b] = key;
-            *hessian.entry((a, b)).or_insert(0.0) += value;
+            *hessian.entry((a, b)).or_insert(0.0) +=
+                value / (units[r as usize] * units[c as usize]);
         }
     }
     (g, [jacobian, hessian])

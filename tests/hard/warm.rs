@@ -38,7 +38,7 @@ fn an_earlier_solution_saves_iterations() {
     let first = run(&scene, &smooth(20, "0.3 s", "1.7 kV")).solved();
     let mut rows: Vec<(String, [f64; 2])> = Vec::new();
     let (own, _) = both(&scene, smooth(20, "0.3 s", "1.7 kV"), &first);
-    assert!(own[1] <= 1.0, "{own:?}");
+    assert!(own[1] <= 2.0, "{own:?}");
     rows.push(("its own problem".to_owned(), own));
     for voltage in ["1.65 kV", "1.5 kV"] {
         let (moved, _) = both(&scene, smooth(20, "0.3 s", voltage), &first);

@@ -115,10 +115,10 @@ fn every_number_with_a_unit_of_the_schema_is_known() {
 /// A robot under voltages of its muscles that vary, and under its loads.
 pub(crate) fn moving(seed: u64, simulate: &Value) -> Value {
     let parts = Parts {
-        weight: seed % 3 > 0,
-        ball_joints: seed % 2 == 0,
+        weight: !seed.is_multiple_of(3),
+        ball_joints: seed.is_multiple_of(2),
         tendons: true,
-        viscosity: seed % 4 > 0,
+        viscosity: !seed.is_multiple_of(4),
         bodies: 2,
     };
     let Robot {

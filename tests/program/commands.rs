@@ -83,7 +83,7 @@ fn a_solved_problem_leaves_what_is_promised() {
     );
     assert_eq!(status, 0);
     assert!(
-        out.starts_with("solved: objective 0.0464461, ") && out.lines().count() == 1,
+        out.starts_with("solved: objective 0.046446126, ") && out.lines().count() == 1,
         "{out}"
     );
     assert!(out.ends_with("results/pair\n"), "{out}");

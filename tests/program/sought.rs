@@ -53,7 +53,7 @@ fn the_arm_of_two_muscles_is_found() {
     let (status, out, err) = run(here, &["solve", problem, "-o", "again", "--set", guess]);
     assert_eq!(status, 0, "{out}{err}");
     let again = summary(here, "again");
-    assert!(again["iterations"].as_u64().unwrap() <= 3, "{again}");
+    assert!(again["iterations"].as_u64().unwrap() <= 4, "{again}");
     assert!((objective(&again) - least).abs() < 1e-8 * least);
     // Its voltages belong to that arm.
     let scene = read(here.join(problem))["scene"].to_string();

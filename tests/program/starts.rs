@@ -26,7 +26,8 @@ fn the_best_of_several_starts_is_kept_and_can_be_solved_again_alone() {
     assert_eq!(status, 0, "{out}");
     let first = out.lines().next().unwrap();
     assert!(
-        first.starts_with("solved: objective 0.0464461, 4 of 4 starts solved, 1 distinct optimum"),
+        first
+            .starts_with("solved: objective 0.046446126, 4 of 4 starts solved, 1 distinct optimum"),
         "{out}"
     );
     assert_eq!(out.lines().count(), 2 + 4);
@@ -75,7 +76,7 @@ fn the_best_of_several_starts_is_kept_and_can_be_solved_again_alone() {
             .lines()
             .nth(5)
             .unwrap()
-            .starts_with("4,7004,solved,0.0464461"),
+            .starts_with("4,7004,solved,0.046446126"),
         "{table}"
     );
 
