@@ -159,7 +159,7 @@ fn up_to(discrete: &DiscreteTrajectory, k: usize) -> DiscreteTrajectory {
         z: discrete.z[..=k].to_vec(),
         momenta: discrete.momenta[..=k].to_vec(),
         scalars: discrete.scalars[..k].to_vec(),
-        reading: Reading::Instants,
+        reading: Reading::States,
         ..DiscreteTrajectory::default()
     }
 }
@@ -197,7 +197,7 @@ impl<'a> EquilibriumPath<'a> {
                 .collect(),
             momenta: vec![vec![0.0; model.coordinate_count()]; stops.len() + 1],
             scalars: stops.iter().map(|stop| stop.rest.scalars.clone()).collect(),
-            reading: Reading::Instants,
+            reading: Reading::States,
             ..DiscreteTrajectory::default()
         };
         Self {

@@ -13,7 +13,7 @@ pub(super) struct Header<'a> {
     unit: Written<'a>,
 }
 
-/// What stands for the unit of a header.
+/// Text that stands for the unit of a header.
 #[derive(Debug)]
 enum Written<'a> {
     /// Nothing.
@@ -79,7 +79,7 @@ fn splits(whole: &str) -> Vec<(&str, &str)> {
         .collect()
 }
 
-/// What stands before the brackets at the end of a text, and within them.
+/// Text before the brackets at its end, and within them.
 fn bracketed(text: &str) -> Option<(&str, &str)> {
     let last = text.chars().next_back()?;
     let (open, close) = BRACKETS.into_iter().find(|&(_, close)| close == last)?;

@@ -82,7 +82,7 @@ pub struct Loaded {
     pub scene: String,
     /// That of the problem.
     pub problem: String,
-    /// What was taken for granted: units of columns that name none.
+    /// Notes on units that were taken for granted: those of columns that name none.
     pub notes: Vec<String>,
 }
 

@@ -76,7 +76,7 @@ fn the_best_of_several_starts_is_kept_and_can_be_solved_again_alone() {
             .lines()
             .nth(5)
             .unwrap()
-            .starts_with("4,7004,solved,0.046446126"),
+            .starts_with("4,7004,solved,0.0464461"),
         "{table}"
     );
 

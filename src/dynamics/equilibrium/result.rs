@@ -42,7 +42,7 @@ pub enum Route {
     Loads,
     /// On the path that goes on beyond the point where growing loads lose their equilibrium, and comes back to all loads.
     Beyond(StabilityLoss),
-    /// Where damped motion comes to rest, from a state where the path ends or is unstable.
+    /// State at which damped motion comes to rest, from one where the path ends or is unstable.
     DampedMotion(StabilityLoss),
 }
 

@@ -27,7 +27,7 @@ pub(crate) struct Document {
     text: String,
     /// The same with overrides, and with parts from another file.
     changed: Option<String>,
-    /// What was taken for granted while it was read.
+    /// Notes on units that were taken for granted while it was read.
     notes: RefCell<Vec<String>>,
 }
 
