@@ -101,7 +101,9 @@ fn stopped_in(phase: &'static str, (name, changes): (&str, &[&str]), after: u64)
 #[test]
 fn other_starts_stop_at_the_next_question_and_leave_the_first_one() {
     for (phase, name, changes) in LATER {
-        for after in [0, 1] {
+        // The later starts of the finger are short.
+        let afters: &[u64] = if name == TRUNK { &[0, 2] } else { &[0] };
+        for &after in afters {
             let (found, late) = stopped_in(phase, (name, changes), after);
             println!("{phase}, {after}: {late} questions after the end");
             assert_eq!(found.word(), "time_limit", "{phase}");
