@@ -4,8 +4,8 @@
 //! momentum of the start in row 0 and rest at the goal in row N, constraints where coordinates leave any, then limits.
 //! The Jacobian is ∇²Ŝ, the Hessian of the Lagrangian ∇³Ŝ along the costates plus objective and limits, both exact.
 //!
-//! Rows, limits, multipliers and the objective are scaled by magnitudes of derivatives at the guess, inputs by their bounds, lengths by the length
-//! of the system, and the interval length by its guess, so that one tolerance means the same everywhere: no scale is a number of its own.
+//! Rows, limits and multipliers are scaled by magnitudes of derivatives at the guess, the objective by its value there, inputs by their bounds, lengths
+//! by the length of the system, and the interval length by its guess, so that one tolerance means the same everywhere.
 //!
 //! A [`Transcription`] has constant parts, `layout` (unknowns, equations, limits), `objective` and `structure` (entries of the derivatives),
 //! and one that every evaluation changes, `workspace`. Its methods are in `program` (the trait [`Nlp`]), `point`, `interval_pass`, `scaling`,

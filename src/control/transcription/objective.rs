@@ -18,7 +18,7 @@ pub(super) struct Objective {
     pub(super) energies: Vec<EnergyRow>,
     /// Voltages and loads of an interval.
     pub(super) inputs: Vec<CostInput>,
-    /// Factor that brings the objective near 1, which follows from its derivatives at the guess.
+    /// Factor that brings the objective near 1, which follows from its value at the guess.
     pub(super) scale: f64,
 }
 
