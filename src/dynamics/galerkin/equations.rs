@@ -5,7 +5,7 @@ use crate::dynamics::drive::Drive;
 use crate::dynamics::equations::Equations;
 use crate::dynamics::galerkin::lobatto::lagrange;
 use crate::dynamics::galerkin::rule::Rule;
-use crate::dynamics::galerkin::state::{GalerkinEquations, between};
+use crate::dynamics::galerkin::state::GalerkinEquations;
 use crate::dynamics::interval_energies::Work;
 use crate::dynamics::momenta::vector_momenta;
 use crate::functional::{NodeBlocks, Order};
@@ -19,6 +19,9 @@ impl Equations for GalerkinEquations<'_> {
         for sample in &mut self.samples {
             let voltages = drive.at(step, sample.weights.part);
             sample.scalars[inputs.clone()].copy_from_slice(&voltages);
+        }
+        if self.dissipates {
+            self.middle[inputs].copy_from_slice(&drive.at(step, 0.5));
         }
     }
 
@@ -186,15 +189,7 @@ impl Equations for GalerkinEquations<'_> {
             return false;
         }
         if self.dissipates {
-            let mut work = Work::default();
-            for point in &self.samples {
-                let [a, b] = &point.x;
-                let sample = between([a, b], &point.scalars, h);
-                for term in &model.action.intervals.terms {
-                    work.add(point.weights.quadrature, term.as_ref(), &sample);
-                }
-            }
-            self.work = Some(work);
+            self.work = Some(self.work_of_step(h));
         }
         let momenta: Vec<Vector> = match &mut self.rule {
             Rule::Galerkin(_) => {

@@ -51,6 +51,11 @@ impl Massless {
         }
     }
 
+    /// The vectors of the coordinates without mass.
+    pub(super) fn vectors(&self) -> &[usize] {
+        &self.vectors
+    }
+
     /// Weight of the forces of a side of a sample on the end in the rows of a point; `None` where they have none.
     fn weight(&self, weights: &Weights, side: usize, row: usize) -> Option<f64> {
         let share = self.shares.get(row)?;

@@ -19,7 +19,7 @@ use crate::math::Vector;
 use crate::model::Model;
 use crate::sparse::Symmetry;
 
-/// The part of the first step after which the first acceleration is read from the rates.
+/// The part of the first step after which the first acceleration is read from the rates; twice it where mass is missing.
 pub(super) const FIRST: f64 = 0.01;
 
 /// One sample of the sum over an interval.
@@ -58,6 +58,8 @@ pub struct GalerkinEquations<'m> {
     /// Multipliers, and scalars with an equation, before an attempt.
     pub(super) saved: (Vec<Vec<f64>>, Vec<Vec<f64>>),
     pub(super) dissipates: bool,
+    /// Scalars in the middle of the step, for the work over a step of one point.
+    pub(super) middle: Vec<f64>,
     pub(super) massless: Massless,
     pub(super) work: Option<Work>,
 }
@@ -79,11 +81,17 @@ impl<'m> Steps<GalerkinEquations<'m>> {
             Integrator::Galerkin { degree } => Rule::Galerkin(Lobatto::new(degree)),
             Integrator::ImplicitEuler => Rule::Euler(moving(model, start).1),
             Integrator::GeneralisedAlpha { spectral_radius } => {
-                let (v, p) = moving(model, start);
+                let (mut v, p) = moving(model, start);
                 let first = FIRST * h;
                 let mut euler = Self::with(model, start, Rule::Euler(p), solving);
                 euler.go([0.0, first], first, drive)?;
                 let rates = euler.equations().last_rates();
+                euler.go([first, 2.0 * first], first, drive)?;
+                let later = euler.equations().last_rates();
+                // No momentum tells the rates of vectors without mass: those of two steps are extrapolated.
+                for &i in euler.equations().massless.vectors() {
+                    v[i] = rates[i] * 2.0 - later[i];
+                }
                 let a = rates.iter().zip(&v).map(|(after, v)| (after - v) / first);
                 let a = a.collect();
                 Rule::Alpha(Alpha::new(spectral_radius, v, a))
@@ -134,6 +142,7 @@ impl<'m> Steps<GalerkinEquations<'m>> {
             multipliers,
             massless: Massless::new(model, &rule),
             dissipates: terms.any(|e| e.kind().is_virtual_work()),
+            middle: vec![0.0; action.intervals.scalars],
             work: None,
             rule,
             points,
@@ -209,6 +218,34 @@ impl GalerkinEquations<'_> {
             let sample = between([a, b], &point.scalars, h);
             action.intervals.evaluate(order, &sample, &mut point.out);
         }
+    }
+
+    /// Work over the step that has been made: by the quadrature of the method, of one point by the midpoint rule.
+    pub(super) fn work_of_step(&self, h: f64) -> Work {
+        let mut work = Work::default();
+        let mut add = |weight: f64, [a, b]: [&[Vector]; 2], scalars: &[f64]| {
+            let sample = between([a, b], scalars, h);
+            for term in &self.model.action.intervals.terms {
+                work.add(weight, term.as_ref(), &sample);
+            }
+        };
+        match &self.rule {
+            Rule::Galerkin(_) => {
+                for StagePoint {
+                    weights,
+                    x,
+                    scalars,
+                    ..
+                } in &self.samples
+                {
+                    add(weights.quadrature, [&x[0], &x[1]], scalars);
+                }
+            }
+            Rule::Euler(_) | Rule::Alpha(_) => {
+                add(1.0, [&self.points[0].x, &self.points[1].x], &self.middle);
+            }
+        }
+        work
     }
 
     /// Forces of all samples on the rows of a point.
