@@ -54,6 +54,12 @@ impl Status {
         matches!(self, Self::Solved | Self::Acceptable)
     }
 
+    /// True if the optimality conditions hold to a tolerance, or as far as rounding allows.
+    #[must_use]
+    pub const fn is_stationary(self) -> bool {
+        self.is_optimal() || matches!(self, Self::SearchDirectionTooSmall)
+    }
+
     /// One word in snake case, for `summary.json`.
     #[must_use]
     pub const fn word(self) -> &'static str {

@@ -23,6 +23,8 @@ const ZERO: f64 = 1e-15;
 const LEAST: f64 = 1e-14;
 /// Factor of a tolerance that was too large.
 const SMALLER: f64 = 1e-2;
+/// Ipopt ends at steps below this part of all variables.
+const TINY_STEP: f64 = 10.0 * f64::EPSILON;
 /// Fall of the barrier parameter between two solves after which what the second one gained bounds what is left.
 const FALL: f64 = 10.0;
 
@@ -33,6 +35,10 @@ pub(crate) struct Gap {
     pub(crate) left: f64,
     /// True unless the last step needed more curvature than the Lagrangian has along the equations: its matrix had another inertia than at a minimum.
     is_minimum: bool,
+    /// True if the rows hold to the tolerance of the program.
+    is_feasible: bool,
+    /// Violation of the rows that is allowed.
+    allowed: f64,
     objective: f64,
     /// Part of the objective that may be left.
     part: f64,
@@ -50,6 +56,8 @@ impl Gap {
         Self {
             left: bound(program, solution),
             is_minimum: is_minimum(solution),
+            is_feasible: is_feasible(program, solution, tolerance),
+            allowed: tolerance,
             objective: solution.objective.abs(),
             part: PART.max(tolerance),
             zero,
@@ -101,6 +109,7 @@ impl Gap {
         Self {
             left: bound(program, solution).min(gained),
             is_minimum: is_minimum(solution),
+            is_feasible: is_feasible(program, solution, self.allowed),
             objective: solution.objective.abs(),
             scale,
             tolerance: options.tolerance,
@@ -108,11 +117,14 @@ impl Gap {
         }
     }
 
-    /// The status of a solution with this gap: what is not known to be the least objective is acceptable.
+    /// The status of a solution with this gap: what is not known to be the least objective is acceptable. Rounding may keep a solver from its
+    /// tolerance where the objective is the least one all the same.
     pub(crate) fn status(&self, found: Status) -> Status {
-        match found {
-            Status::Solved if !self.is_closed() => Status::Acceptable,
-            found => found,
+        match found.is_stationary() {
+            true if !self.is_feasible => found,
+            true if self.is_closed() => Status::Solved,
+            true => Status::Acceptable,
+            false => found,
         }
     }
 
@@ -139,15 +151,10 @@ fn is_minimum(solution: &SolverResult) -> bool {
     last.is_none_or(|last| last.regularization <= 0.0)
 }
 
-/// Returns true if a point keeps the rows to a tolerance and has a smaller objective than a solution.
-pub(crate) fn is_better(
-    program: &impl Nlp,
-    solution: &SolverResult,
-    other: &SolverResult,
-    tolerance: f64,
-) -> bool {
-    other.objective < solution.objective
-        && program.constraints().violation(&other.constraints) <= tolerance
+/// Returns true if a point keeps the rows to a tolerance.
+pub(crate) fn is_feasible(program: &impl Nlp, solution: &SolverResult, tolerance: f64) -> bool {
+    let violation = program.constraints().violation(&solution.constraints);
+    violation <= tolerance
 }
 
 /// A bound of what the objective of a solution lies above its least value, to first order.
@@ -162,12 +169,17 @@ pub(crate) fn bound(program: &mut impl Nlp, solution: &SolverResult) -> f64 {
         slopes[col as usize] += value * costates.constraints[row as usize];
     }
     let Bounds { lower, upper } = program.variables();
+    // Newton's step of a search direction that is too small is this part of a variable and its scale.
+    let step = |x: f64| match solution.status {
+        Status::SearchDirectionTooSmall => TINY_STEP * (1.0 + x.abs()),
+        _ => 1.0,
+    };
     let of_variable = |i: usize| {
         let slope = slopes[i] - costates.lower[i] + costates.upper[i];
         let of_bounds = product(costates.lower[i], x[i] - lower[i])
             + product(costates.upper[i], upper[i] - x[i]);
         match lower[i] < upper[i] {
-            true => slope.abs() + of_bounds,
+            true => slope.abs() * step(x[i]) + of_bounds,
             false => 0.0,
         }
     };

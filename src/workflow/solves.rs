@@ -153,7 +153,7 @@ impl Solves<'_, '_> {
         let tolerance = self.options.tolerance;
         let mut gap = Gap::new(self.solver.program_mut(), &solution, tolerance);
         for _ in 0..CONFIRMING {
-            let is_done = gap.is_closed() || !solution.status.is_optimal();
+            let is_done = gap.is_closed() || !solution.status.is_stationary();
             let next = gap.next(&solution, &self.options);
             let next = next.filter(|_| !is_done && interrupt::stop().is_none());
             let Some(mut options) = next else {
@@ -166,22 +166,25 @@ impl Solves<'_, '_> {
             let program = self.solver.program_mut();
             let (status, objective) = (again.status, again.objective);
             // Rounding may keep a solve from its tolerance at a point that is better all the same.
-            let is_better = gap::is_better(program, &solution, &again, self.options.tolerance);
-            if status.is_solved() || is_better {
-                gap = gap.after(program, (&solution, &again), &options);
+            let is_as_good = status.is_stationary() || objective < solution.objective;
+            let is_feasible = gap::is_feasible(program, &again, tolerance);
+            if !status.is_optimal() && !(is_as_good && is_feasible) {
+                break;
             }
+            gap = gap.after(program, (&solution, &again), &options);
             tracing::info!(?status, objective, left = gap.left, "confirmation");
-            solution = match is_better && !status.is_solved() {
-                true => one_of_both(
-                    solution,
-                    SolverResult {
-                        status: Status::Acceptable,
-                        ..again
-                    },
-                ),
-                false => one_of_both(solution, again),
+            let status_of = |status: Status| match status {
+                Status::Solved => status,
+                _ => Status::Acceptable,
             };
-            if !status.is_solved() {
+            solution = one_of_both(
+                solution,
+                SolverResult {
+                    status: status_of(status),
+                    ..again
+                },
+            );
+            if !status.is_optimal() {
                 break;
             }
         }
