@@ -5,7 +5,7 @@
 
 use crate::control::problem::Identification;
 use crate::identify::fit::Fit;
-use nalgebra::DMatrix;
+use nalgebra::{DMatrix, DVector};
 use statrs::distribution::{ContinuousCDF, FisherSnedecor, Normal, StudentsT};
 
 /// Singular values below this part of the largest are round-off.
@@ -14,8 +14,8 @@ const ROUND_OFF: f64 = 1e-7;
 pub(super) const PROBABILITY: f64 = 0.95;
 /// Part of a constant in a combination that is not determined, below which it is not named with it.
 const PART: f64 = 0.02;
-/// Variance of a constant, relative to that which is left where constants at bounds are known, beyond which the bounds decide its value.
-const BY_BOUNDS: f64 = 10.0;
+/// Variance of a constant, relative to that which is left where others are known, beyond which these decide its value.
+const BY_OTHERS: f64 = 10.0;
 
 /// A combination of constants that the data do not determine.
 #[derive(Clone, Debug, PartialEq)]
@@ -33,7 +33,7 @@ pub struct Undetermined {
 /// A combination of two constants that the data determine: the sum of the factors times relative changes, which is the logarithm of a product of powers.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Product {
-    /// Factors of the relative changes, the first one 1.
+    /// Factors of the relative changes, the first and largest one 1.
     pub powers: Vec<(usize, f64)>,
     /// The product of these powers, by the units of the constants.
     pub value: f64,
@@ -100,12 +100,18 @@ impl Information {
             (0..constants).partition(|&k| singular[k] > least);
         let relative = by_directions(&directions, &known, |k| singular[k].recip());
         let unknown = by_directions(&directions, &open, |_| least.recip());
-        let by_bounds = by_bounds(&relative, is_held);
-        let is_determined = |j: usize| {
+        let is_wide = |j: usize| {
             let variance = relative[(j, j)];
-            unknown[(j, j)] <= variance && factor * variance.sqrt() < 1.0 && !by_bounds[j]
+            unknown[(j, j)] > variance || factor * variance.sqrt() >= 1.0
         };
-        let is_determined: Vec<bool> = (0..constants).map(is_determined).collect();
+        let is_wide: Vec<bool> = (0..constants).map(is_wide).collect();
+        let open: Vec<usize> = (0..constants)
+            .filter(|&j| is_held[j] || is_wide[j])
+            .collect();
+        let by_others = by_others(&relative, &open);
+        let is_determined: Vec<bool> = (0..constants)
+            .map(|j| !is_wide[j] && !by_others[j])
+            .collect();
         let is_inside = |i: usize, j: usize| !is_held[i] && !is_held[j];
         let covariance = |i: usize, j: usize| match is_inside(i, j) {
             true => relative[(i, j)] * scales[i] * scales[j],
@@ -115,8 +121,8 @@ impl Information {
             true => singular[k].recip(),
             false => f64::INFINITY,
         };
-        let is_wide = |&k: &usize| factor * deviation(k) >= 1.0;
-        let wide = (0..constants).filter(is_wide).map(|k| (k, deviation(k)));
+        let wide = (0..constants).map(|k| (k, deviation(k)));
+        let wide = wide.filter(|(_, deviation)| factor * deviation >= 1.0);
         let undetermined = combinations(&directions, wide, (&is_determined, &relative));
         let mut out = Self {
             covariance: DMatrix::from_fn(constants, constants, covariance),
@@ -221,20 +227,30 @@ fn by_directions(
     out
 }
 
-/// Constants of which most of the variance is that of constants at bounds.
-fn by_bounds(covariance: &DMatrix<f64>, is_held: &[bool]) -> Vec<bool> {
-    let held: Vec<usize> = (0..is_held.len()).filter(|&j| is_held[j]).collect();
-    let of_held = covariance.select_rows(&held).select_columns(&held);
-    let Some(factors) = of_held.cholesky() else {
-        return vec![!held.is_empty(); is_held.len()];
+/// True for constants of which most of the variance is that of others that are open: at bounds, or with a wide interval of their own.
+fn by_others(covariance: &DMatrix<f64>, open: &[usize]) -> Vec<bool> {
+    if open.is_empty() {
+        return vec![false; covariance.nrows()];
+    }
+    let deviations = covariance.diagonal().map(f64::sqrt);
+    let correlation = |i: usize, j: usize| {
+        let size = deviations[i] * deviations[j];
+        if size > 0.0 {
+            covariance[(i, j)] / size
+        } else {
+            0.0
+        }
     };
-    let is_by_bounds = |j: usize| {
-        let with = covariance.select_rows(&held).column(j).into_owned();
-        let made_up = with.dot(&factors.solve(&with));
-        let variance = covariance[(j, j)];
-        !is_held[j] && variance > BY_BOUNDS * (variance - made_up)
+    let of_open = DMatrix::from_fn(open.len(), open.len(), |i, j| correlation(open[i], open[j]));
+    let inverse = of_open
+        .pseudo_inverse(ROUND_OFF)
+        .expect("a tolerance above zero");
+    let is_by_others = |j: usize| {
+        let with = DVector::from_fn(open.len(), |i, _| correlation(open[i], j));
+        let left = 1.0 - with.dot(&(&inverse * &with));
+        !open.contains(&j) && BY_OTHERS * left < 1.0
     };
-    (0..is_held.len()).map(is_by_bounds).collect()
+    (0..deviations.len()).map(is_by_others).collect()
 }
 
 /// Combinations that are not determined: directions with a wide deviation, and single constants that none of them names.
@@ -294,7 +310,12 @@ fn product(
     let ([(a, p), (b, q)], 2) = (&open.powers[..], open.constants.len()) else {
         return None;
     };
-    // Across the direction, with a first power of one.
+    // Across the direction, with a first power of one that is the largest, about.
+    let [(a, p), (b, q)] = if p.abs() > (1.0 + PART) * q.abs() {
+        [(b, q), (a, p)]
+    } else {
+        [(a, p), (b, q)]
+    };
     let powers = vec![(*a, 1.0), (*b, -p / q)];
     let value = powers
         .iter()
