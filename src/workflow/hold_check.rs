@@ -100,12 +100,14 @@ fn unstable(boundary: &BoundaryConditions) -> Option<String> {
     let softest = rest.stiffness.first().map_or(String::new(), |value| {
         format!(", the stiffness of its softest mode is {value:.3e} N mm/rad")
     });
-    let count = rest.stiffness.iter().filter(|&&value| value <= 0.0).count();
-    let count = if count > 0 {
-        count
-    } else {
-        rest.unstable.unwrap_or(1)
+    // An indifferent equilibrium, as of a cart that nothing holds, is kept where it is.
+    let count = match rest.stiffness.is_empty() {
+        true => rest.unstable.unwrap_or(1),
+        false => rest.stiffness.iter().filter(|value| **value < 0.0).count(),
     };
+    if count == 0 {
+        return None;
+    }
     let noun = if count == 1 {
         "direction"
     } else {

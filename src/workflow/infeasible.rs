@@ -223,10 +223,10 @@ fn durations(control: &Control, optimum: &Optimum) -> Vec<String> {
     let mut lines = Vec::new();
     match optimum.shortest {
         Shortest::Longer(ms) => lines.push(format!(
-            "change: a longer duration; with the duration free{} the shortest motion found takes {} s",
+            "change: a longer duration{}; with the duration free the shortest motion found takes {} s",
             match control.waypoints.is_empty() {
                 true => "",
-                false => ", and the times of waypoints in proportion,",
+                false => ", and the times of waypoints in proportion",
             },
             no_smaller(ms / 1e3, 3)
         )),
