@@ -6,8 +6,10 @@
 mod common;
 
 mod motions;
+mod optima;
 mod rest;
 mod robots;
+mod similar;
 mod twins;
 mod verdicts;
 

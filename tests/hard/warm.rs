@@ -50,12 +50,12 @@ fn an_earlier_solution_saves_iterations() {
     let mut earlier = first;
     for intervals in [40, 80, 160] {
         let (finer, warm) = both(&scene, smooth(intervals, "0.3 s", "1.7 kV"), &earlier);
-        assert!(finer[1] <= 16.0, "{intervals}: {finer:?}");
+        assert!(finer[1] <= 14.0, "{intervals}: {finer:?}");
         rows.push((format!("{intervals} intervals from half as many"), finer));
         earlier = warm;
     }
     let [cold, warm] = [0, 1].map(|i| rows.iter().map(|row| row.1[i]).sum::<f64>());
-    assert!(1.5 * warm < cold, "{warm} and {cold} iterations");
+    assert!(2.0 * warm < cold, "{warm} and {cold} iterations");
     let curve = |name: &str, i: usize| {
         let points = rows.iter().enumerate();
         let points = points.map(|(k, row)| [k as f64 + 1.0, row.1[i]]).collect();
@@ -72,7 +72,7 @@ fn an_earlier_solution_saves_iterations() {
         name: "warm-start",
         title: "A start from a solution of another goal, duration or grid",
         law: "The trunk of two segments with smooth voltages has the same optimum from the guess and from a solution of a related problem, to \
-              1e-6. The solution itself needs two iterations at most, another goal 12, the next grid 16, and all of them two thirds.",
+              1e-6. The solution itself needs two iterations at most, another goal 12, the next grid 14, and all of them less than half.",
         verdict: Verdict::Answer,
         seen: rows.iter().enumerate().map(told).collect(),
         x: Axis::linear("problem, as listed", Extent::Padded),
