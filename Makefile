@@ -12,8 +12,9 @@ MOTIONS := fe_trunk clamped_stack_step bending_actuator_step free_flight creepin
 
 FUZZ_SECONDS := 600
 ADVERSARY_SECONDS := 600
+AGAINST := HEAD~1
 
-.PHONY: help trunk blocks gallery build test test-python test-debian-13 test-browser wheel docs fuzz adversary compare-solvers check audit bench studies install-deps try-fresh clean
+.PHONY: help trunk blocks gallery build test test-python test-debian-13 test-browser wheel docs fuzz adversary compare-solvers check audit bench guard studies install-deps try-fresh clean
 
 help:
 	@echo 'make trunk         solve the elephant trunk, let it swing under constant voltages, and say where the pictures are'
@@ -31,6 +32,7 @@ help:
 	@echo 'make check         formatting, lints, documentation'
 	@echo 'make audit         licences, sources and known vulnerabilities of all crates, by cargo-deny (installed where it is missing)'
 	@echo 'make bench         measure; rewrite the tables of benches/README.md'
+	@echo 'make guard         results and times of all kept problems beside those of another commit, AGAINST=$(AGAINST)'
 	@echo 'make studies       what accuracy costs, hard cases, effects, random goals, warm starts, a peer: rewrite their pages in $(GALLERY)'
 	@echo 'make try-fresh     run both commands of the README, and make the wheel, in bare roots of Debian (debootstrap, as root)'
 	@echo 'make install-deps  install what is missing (make trunk and make test do so by themselves)'
@@ -103,6 +105,9 @@ check: install-deps
 
 audit:
 	@.ci/audit
+
+guard: install-deps
+	@benches/guard.py $(AGAINST)
 
 bench: install-deps
 	@$(CARGO) bench --locked --bench transcription --bench step
