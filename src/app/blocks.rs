@@ -1,12 +1,12 @@
 //! Elastic blocks in numbers: their sizes, and the charges of their electrodes at the end.
 
-use std::collections::{BTreeMap, BTreeSet};
-
-use serde::Serialize;
-
+use crate::dynamics::EnergyExchange;
 use crate::dynamics::trajectory::Observations;
 use crate::kinematics::Carrier;
+use crate::math::significant;
 use crate::model::{Model, Role, SolidBlock};
+use serde::Serialize;
+use std::collections::{BTreeMap, BTreeSet};
 
 /// A block, or a muscle of finite elements.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize)]
@@ -104,5 +104,41 @@ impl BlockSize {
             unknowns: block.vectors.iter().map(coordinates).sum(),
             potentials: potentials.len(),
         }
+    }
+}
+
+/// Sums over all sources from the start to the end of a motion, in J.
+#[derive(Debug, Serialize)]
+pub(super) struct EnergySummary {
+    /// Electrical energy from the sources.
+    electrical_energy: f64,
+    /// Work of the electrical forces.
+    mechanical_work: f64,
+}
+
+impl EnergySummary {
+    /// Of a motion; none without sources, or where one drives finite elements.
+    pub(super) fn new(exchange: &EnergyExchange) -> Option<Self> {
+        let last = |sums: Vec<f64>| sums.last().copied().unwrap_or(0.0) / 1e3;
+        let [electrical_energy, mechanical_work] = exchange.totals()?.map(last);
+        Some(Self {
+            electrical_energy,
+            mechanical_work,
+        })
+    }
+
+    /// Rows of the table of the page.
+    pub(super) fn rows(&self) -> [(String, String); 2] {
+        let row = |name: &str, energy: f64| {
+            let value = format!("{} mJ", significant(1e3 * energy, 5));
+            (name.to_owned(), value)
+        };
+        [
+            row("electrical energy from the sources", self.electrical_energy),
+            row(
+                "mechanical work of the electrical forces",
+                self.mechanical_work,
+            ),
+        ]
     }
 }

@@ -8,15 +8,15 @@ use crate::app::equilibrium_summary::at_rest;
 use crate::app::equilibrium_summary::{Rest, describe, lost, rows, status, text};
 use crate::app::error::CommandError;
 use crate::app::fields;
-use crate::app::folder::make_folder_of;
+use crate::app::foreign::make_folder_of;
 use crate::app::foreign::refuse_foreign;
+use crate::app::no_equilibrium::no_equilibrium;
 use crate::app::no_equilibrium::refused;
-use crate::app::other_task::no_equilibrium;
 use crate::app::page;
 use crate::app::path;
 use crate::app::progress::Progress;
 use crate::app::request::{CommandInput, CommandOutput};
-use crate::app::seconds::Seconds;
+use crate::app::summary::Seconds;
 use crate::app::summary::{MEASURED, Summary};
 use crate::control::problem::{AtRest, Task};
 use crate::dynamics::trajectory::Observations;
@@ -29,7 +29,7 @@ use crate::report::skins::Skins;
 use crate::report::{Run, write_still};
 use crate::tasks::{self, EquilibriumResult, EquilibriumTaskError};
 use crate::workflow::effects::Plan;
-use crate::workflow::phase::phase;
+use crate::workflow::remark::phase;
 
 /// The equilibrium that a problem asks for; under voltages such as `muscle2=1.7kV` that of a scene, or of the scene of any
 /// problem.

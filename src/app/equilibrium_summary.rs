@@ -5,7 +5,7 @@ use std::path::Path;
 
 use serde::Serialize;
 
-use crate::app::multigrid_summary::MultigridCounts;
+use crate::app::linear_systems::MultigridCounts;
 use crate::dynamics::trajectory::{Column, Observations, Trajectory};
 use crate::dynamics::{
     DiscreteTrajectory, Equilibrium, Instability, Load, LowestMode, Route, Softening, StabilityLoss,

@@ -1,12 +1,12 @@
 //! Detection of results of another problem in the folder to which results are to be written.
 
-use std::fs;
-use std::path::{Component, Path, PathBuf};
-
-use serde::Deserialize;
-
 use crate::app::error::CommandError;
 use crate::app::request::CommandInput;
+use crate::report::atomic;
+use crate::report::atomic::WriteError;
+use serde::Deserialize;
+use std::fs;
+use std::path::{Component, Path, PathBuf};
 
 /// Entries of a summary that name the source of its results.
 #[derive(Deserialize)]
@@ -73,4 +73,24 @@ fn plain(path: &Path) -> PathBuf {
         }
     }
     plain
+}
+
+/// Makes the folder of the results of a run, and warns where those of another problem are replaced.
+pub(super) fn make_folder_of(request: &CommandInput) -> Result<PathBuf, WriteError> {
+    if let Some(words) = replaced(request) {
+        tracing::warn!("{words}");
+    }
+    let folder = request.folder();
+    make_folder(&folder)?;
+    Ok(folder)
+}
+
+/// Makes the folder of the results, or removes the files that killed runs left half written.
+pub(crate) fn make_folder(folder: &Path) -> Result<(), WriteError> {
+    fs::create_dir_all(folder).map_err(|cause| WriteError {
+        path: folder.to_owned(),
+        cause,
+    })?;
+    atomic::tidy(folder);
+    Ok(())
 }

@@ -1,12 +1,9 @@
 //! An identification from file to folder.
 
-use std::time::Instant;
-
 use crate::app::error::CommandError;
-use crate::app::folder::make_folder_of;
+use crate::app::foreign::make_folder_of;
 use crate::app::identification_page;
 use crate::app::identification_summary::Identification;
-use crate::app::identification_table::table;
 use crate::app::identification_verdict::{remarks, status};
 use crate::app::left_out::EARLIER;
 use crate::app::request::{CommandInput, CommandOutput, PageWanted};
@@ -17,7 +14,8 @@ use crate::identify::{Ended, Identified, IdentifyError, found_starts, identify};
 use crate::ipopt::{Status, interrupt};
 use crate::report::file_set::FileSet;
 use crate::report::table::cells_csv;
-use crate::workflow::phase::phase;
+use crate::workflow::remark::phase;
+use std::time::Instant;
 
 /// Fits the constants of a task to its recordings and writes the folder.
 pub(super) fn run(
@@ -93,4 +91,40 @@ fn refused(request: &CommandInput, error: &IdentifyError) -> CommandError {
         place: place.to_owned(),
         reason: error.to_string(),
     }
+}
+
+/// All readings with their predictions as rows of cells, in SI units.
+pub(super) fn table(task: &problem::Identification, found: &Identified) -> Vec<Vec<String>> {
+    let header = [
+        "recording",
+        "quantity",
+        "unit",
+        "time [s]",
+        "measured",
+        "predicted",
+        "residual",
+        "standard deviation",
+        "held out",
+    ];
+    let mut rows = vec![header.map(str::to_owned).to_vec()];
+    let held_out = found.held_out.iter().flat_map(|one| &one.series);
+    for one in found.series.iter().chain(held_out) {
+        let recording = &task.recordings[one.recording];
+        let channel = &recording.channels[one.channel];
+        let (symbol, factor) = channel.unit;
+        for k in 0..one.times.len() {
+            let (measured, predicted) = (one.measured[k], one.predicted[k]);
+            let numbers = [measured, predicted, measured - predicted, one.deviations[k]];
+            let mut row = vec![
+                recording.name.clone(),
+                channel.name.clone(),
+                symbol.to_owned(),
+                format!("{}", one.times[k] / 1e3),
+            ];
+            row.extend(numbers.map(|number| format!("{}", factor * number)));
+            row.push(recording.is_held_out.to_string());
+            rows.push(row);
+        }
+    }
+    rows
 }

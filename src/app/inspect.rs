@@ -1,32 +1,31 @@
 //! Inspection of a problem before it is solved: its terms, unknowns, equations and nonzeros.
 
-use std::collections::BTreeMap;
-
-use serde::Serialize;
-
 use crate::app::blocks::BlockSizes;
 use crate::app::error::CommandError;
-use crate::app::folder::make_folder;
-use crate::app::length_unit_check;
+use crate::app::foreign::make_folder;
 use crate::app::messages::key;
 use crate::app::program::joined;
 use crate::app::request::{CommandInput, CommandOutput};
-use crate::app::sparsity;
 use crate::app::task::read;
 use crate::control::problem::{Control, Task};
 use crate::control::{Motion, Motions};
 use crate::identify;
+use crate::mesh::triangulated::Surface;
 use crate::model::system::{Body, Shape};
 use crate::model::{Loops, Model, Role, System};
-use crate::nlp::Nlp;
-use crate::report::atomic;
-use crate::report::table;
+use crate::nlp::{Entries, Nlp};
+use crate::report::canvas::{Align, Stroke};
+use crate::report::origin::Origin;
+use crate::report::{atomic, canvas, style, table};
 use crate::sparse::Symmetry;
-use crate::tasks::moved_markers::moved_markers;
+use crate::tasks::check::moved_markers;
 use crate::workflow::WorkflowError;
 use crate::workflow::effects::Plan;
-use crate::workflow::prepare::{Counted, Prepared, prepare};
+use crate::workflow::prepare_together::{Counted, Prepared, prepare};
 use crate::workflow::resolve::resolve;
+use nalgebra::Vector3;
+use serde::Serialize;
+use std::collections::BTreeMap;
 
 /// The plan: model terms in numbers, their reasons, and absent terms; with sizes; with a folder also pictures of Jacobian and Hessian.
 ///
@@ -156,7 +155,7 @@ fn of_model(model: &Model, control: Option<&Control>) -> Inspected {
         missing(&plan),
         left_out(&model.loops),
         numbers(&sizes),
-        length_unit_check::lines(system),
+        unit_questions(system),
         meshed_bodies(system)
     );
     Inspected {
@@ -296,12 +295,12 @@ fn of_control(
             ("hessian.svg", "Hessian", variables, &hessian),
         ];
         for (file, name, rows, entries) in pictures {
-            let shape = sparsity::MatrixSize {
+            let shape = MatrixSize {
                 name,
                 rows,
                 columns: variables,
             };
-            let svg = sparsity::svg(shape, entries, &origin);
+            let svg = sparsity_svg(shape, entries, &origin);
             atomic::write(&folder.join(file), svg.as_bytes())?;
         }
     }
@@ -380,4 +379,152 @@ fn numbers(sizes: &[(&str, usize)]) -> String {
         .map(|(name, count)| vec![(*name).to_owned(), count.to_string()])
         .collect();
     table::aligned(&rows)
+}
+
+/// Longer side of the picture in pt.
+const SIDE: f64 = 420.0;
+/// Margin in pt; the title stands in the upper one.
+const MARGIN: f64 = 26.0;
+/// Cells along the longer side at most: more entries than that share cells.
+const CELLS: usize = 420;
+
+/// Name and size of a matrix.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct MatrixSize<'a> {
+    pub(super) name: &'a str,
+    pub(super) rows: usize,
+    pub(super) columns: usize,
+}
+
+/// An SVG of the entries of a matrix, rows downwards.
+pub(super) fn sparsity_svg(shape: MatrixSize<'_>, entries: &Entries, origin: &Origin) -> String {
+    let MatrixSize {
+        name,
+        rows,
+        columns,
+    } = shape;
+    let longest = rows.max(columns).max(1);
+    // A cell holds `share` rows and columns.
+    let share = longest.div_ceil(CELLS);
+    let cell = SIDE / longest.div_ceil(share) as f64;
+    let size = [columns, rows].map(|count| count.div_ceil(share) as f64 * cell);
+    let mut cells: Vec<(usize, usize)> = entries
+        .rows
+        .iter()
+        .zip(&entries.cols)
+        .map(|(&row, &col)| (row as usize / share, col as usize / share))
+        .collect();
+    cells.sort_unstable();
+    cells.dedup();
+    let sheet = size.map(|side| side + 2.0 * MARGIN);
+    canvas::svg(sheet, origin, |canvas| {
+        let corner = |row: f64, col: f64| [MARGIN + col * cell, MARGIN + row * cell];
+        for (row, col) in cells {
+            let (row, col) = (row as f64, col as f64);
+            let square = [
+                corner(row, col),
+                corner(row, col + 1.0),
+                corner(row + 1.0, col + 1.0),
+                corner(row + 1.0, col),
+            ];
+            canvas.fill(&square, style::hue(0), 1.0);
+        }
+        let [width, height] = size;
+        let frame = [[0.0, 0.0], [width, 0.0], [width, height], [0.0, height]];
+        let frame = frame.map(|p| p.map(|x| x + MARGIN));
+        canvas.outline(&frame, Stroke::solid(style::INK, 0.8));
+        let title = format!("{name}: {rows} × {columns}, {} entries", entries.rows.len());
+        let place = [MARGIN, 0.5 * MARGIN];
+        canvas.text(place, &title, style::TICK_SIZE, style::INK, Align::Left);
+    })
+}
+
+/// Robots larger than this, in mm, get a question about their unit.
+const HUGE: f64 = 5e3;
+/// Robots smaller than this, in mm, get a question about their unit.
+const TINY: f64 = 0.1;
+
+/// Lower and upper corner in mm of the box around some places; `(+∞, −∞)` for none.
+type Corners = (Vector3<f64>, Vector3<f64>);
+
+/// Lines about the size of the robot and of its meshes in the reference configuration.
+pub(super) fn unit_questions(system: &System) -> String {
+    let all = around(places(system));
+    if all.0.x > all.1.x {
+        return String::new();
+    }
+    let mut text = format!("extent of the robot: {}\n", dimensions(all));
+    for solid in &system.solids {
+        let corners = around(solid.mesh.nodes.iter().copied());
+        text.push_str(&format!(
+            "extent of {}: {}\n",
+            solid.name,
+            dimensions(corners)
+        ));
+    }
+    let largest = (all.1 - all.0).max();
+    if !(TINY..=HUGE).contains(&largest) {
+        let length = match largest > HUGE {
+            true => format!("{} m long", rounded(largest / 1e3)),
+            false => format!("{} µm long", rounded(largest * 1e3)),
+        };
+        text.push_str(&format!(
+            "note: the robot is {length}; are the units right? A number without a unit is in m, and so is a mesh file without \"unit\"\n"
+        ));
+    }
+    text
+}
+
+fn dimensions((lower, upper): Corners) -> String {
+    let [x, y, z] = [0, 1, 2].map(|axis| rounded(upper[axis] - lower[axis]));
+    let least = 1e-9 * (upper - lower).max();
+    let [a, b, c] = [0, 1, 2].map(|axis| match lower[axis] {
+        place if place.abs() < least => 0.0,
+        place => rounded(place),
+    });
+    format!("{x} × {y} × {z} mm from ({a}, {b}, {c}) mm")
+}
+
+/// Four digits.
+fn rounded(value: f64) -> f64 {
+    format!("{value:.3e}").parse().unwrap_or(value) + 0.0
+}
+
+fn around(places: impl IntoIterator<Item = Vector3<f64>>) -> Corners {
+    let start = (
+        Vector3::repeat(f64::INFINITY),
+        Vector3::repeat(f64::NEG_INFINITY),
+    );
+    places
+        .into_iter()
+        .fold(start, |(lower, upper), x| (lower.inf(&x), upper.sup(&x)))
+}
+
+/// Corners of boxes around bodies, ends of muscles, joints and nodes.
+fn places(system: &System) -> impl Iterator<Item = Vector3<f64>> + '_ {
+    let bodies = system.bodies.iter().flat_map(|body| {
+        let half = match body.shape {
+            Shape::Surface(_) => {
+                let mut surface = Surface::default();
+                body.shape.add_to(&mut surface, &body.pose());
+                let (lower, upper) = surface.bounds();
+                return [lower, upper];
+            }
+            Shape::Cylinder { length, radius } => Vector3::new(radius, radius, 0.5 * length),
+            Shape::Box { size } => Vector3::from(size) / 2.0,
+            Shape::Sphere { radius } => Vector3::repeat(radius),
+            Shape::None => Vector3::zeros(),
+        };
+        let reach = body.directors.abs() * half;
+        [body.centre - reach, body.centre + reach]
+    });
+    let ends = system.muscles.iter().flat_map(|m| [m.from.at, m.to.at]);
+    let joints = system.joints.iter().map(|joint| joint.at);
+    let components = system.components.iter();
+    let points = components.flat_map(|component| component.points().into_iter().map(|p| p.at));
+    let nodes = system
+        .solids
+        .iter()
+        .flat_map(|s| s.mesh.nodes.iter().copied());
+    bodies.chain(ends).chain(joints).chain(points).chain(nodes)
 }

@@ -1,17 +1,12 @@
 //! Several motions from file to folder: each in a folder of its own within that of the results, and what they have in common.
 
-use std::collections::BTreeMap;
-use std::path::{Path, PathBuf};
-use std::time::Instant;
-
 use crate::app::error::CommandError;
-use crate::app::folder::{make_folder, make_folder_of};
+use crate::app::foreign::{make_folder, make_folder_of};
 use crate::app::left_out::{EARLIER, STOPPED};
 use crate::app::messages::counted;
 use crate::app::motions_summary::MotionsSummary;
 use crate::app::progress::Reached;
 use crate::app::request::{CommandInput, CommandOutput, PageWanted};
-use crate::app::side_by_side;
 use crate::app::solve::{MIGHT_GO_ON, write_result};
 use crate::app::solve_page::describe;
 use crate::app::summary::Summary;
@@ -19,8 +14,15 @@ use crate::app::{fields, iterates, resume_file, solution_file, unfinished};
 use crate::control::Motions;
 use crate::files::Loaded;
 use crate::math::significant;
+use crate::report::atomic;
 use crate::report::file_set::FileSet;
+use crate::report::origin::Origin;
+use crate::report::page::compared;
 use crate::tasks::{MotionsResult, solve_motions};
+use std::collections::BTreeMap;
+use std::fs;
+use std::path::{Path, PathBuf};
+use std::time::Instant;
 
 /// Solves for several motions and writes their folders, solved or not.
 pub(super) fn motions(
@@ -93,14 +95,14 @@ fn write(
     let pages: Vec<PathBuf> = pages.collect();
     let are_written = pages
         .iter()
-        .all(|folder| folder.join(side_by_side::PAGE).is_file());
+        .all(|folder| folder.join(SIDE_BY_SIDE).is_file());
     if request.page == PageWanted::Written && are_written {
         let own = summary.motions.iter();
         let own: Vec<String> = own
-            .map(|one| format!("{}/{}", one.folder, side_by_side::PAGE))
+            .map(|one| format!("{}/{}", one.folder, SIDE_BY_SIDE))
             .collect();
-        let page = side_by_side::html(&request.command, &pages, &own)?;
-        files.add(side_by_side::PAGE, page.as_bytes())?;
+        let page = side_by_side(&request.command, &pages, &own)?;
+        files.add(SIDE_BY_SIDE, page.as_bytes())?;
     }
     summary.seconds.total = began.elapsed().as_secs_f64();
     files.add("summary.json", summary.text().as_bytes())?;
@@ -162,4 +164,91 @@ fn command_output(
         ),
         notes,
     }
+}
+
+/// Name of the page of a result.
+pub(super) const SIDE_BY_SIDE: &str = "report.html";
+
+/// Writes `report.html` into `output`, which compares the results of some folders.
+///
+/// # Errors
+/// A folder has no page of a result, or the page cannot be written.
+pub fn compare(
+    command: &str,
+    folders: &[PathBuf],
+    output: &Path,
+) -> Result<CommandOutput, CommandError> {
+    let page = side_by_side(command, folders, &[])?;
+    // Its own page would be replaced by that of all.
+    let place = |folder: &Path| fs::canonicalize(folder).ok();
+    let is_own = |folder: &&PathBuf| place(folder).is_some_and(|it| place(output) == Some(it));
+    if let Some(own) = folders.iter().find(is_own) {
+        return Err(CommandError::Option {
+            option: "--output",
+            reason: format!(
+                "found {}, one of the results, expected another folder: its report.html is that of a run",
+                own.display()
+            ),
+        });
+    }
+    make_folder(output)?;
+    let file = output.join(SIDE_BY_SIDE);
+    atomic::write(&file, page.as_bytes())?;
+    Ok(CommandOutput {
+        is_solved: true,
+        result: file.display().to_string(),
+        notes: Vec::new(),
+    })
+}
+
+/// The page that compares the results of some folders, whose names lead to `pages` of their own.
+///
+/// # Errors
+/// A folder has no page of a result.
+pub(super) fn side_by_side(
+    command: &str,
+    folders: &[PathBuf],
+    pages: &[String],
+) -> Result<String, CommandError> {
+    let wrong = |reason| CommandError::Option {
+        option: "RESULT",
+        reason,
+    };
+    let mut results = Vec::new();
+    for (folder, name) in folders.iter().zip(names(folders)) {
+        let file = folder.join(SIDE_BY_SIDE);
+        let html = fs::read_to_string(&file).map_err(|cause| {
+            wrong(format!(
+                "cannot read {}: {cause}; a run writes it unless --no-report is given",
+                file.display()
+            ))
+        })?;
+        let data = compared::data(&html).ok_or_else(|| {
+            wrong(format!(
+                "{} is no whole page of a result of this version",
+                file.display()
+            ))
+        })?;
+        results.push((name, data));
+    }
+    let origin = Origin {
+        command: command.to_owned(),
+        version: Origin::program(),
+        ..Origin::default()
+    };
+    Ok(compared::html(&results, pages, &origin))
+}
+
+/// The last parts of the paths where all differ, otherwise the whole paths.
+fn names(folders: &[PathBuf]) -> Vec<String> {
+    let last = |folder: &PathBuf| Some(folder.file_name()?.to_string_lossy().into_owned());
+    let names: Option<Vec<String>> = folders.iter().map(last).collect();
+    let differ = |all: &Vec<String>| (1..all.len()).all(|i| !all[..i].contains(&all[i]));
+    let whole = || {
+        folders
+            .iter()
+            .map(|folder| folder.display().to_string())
+            .collect()
+    };
+    names.filter(differ).unwrap_or_else(whole)
 }

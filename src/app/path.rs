@@ -7,14 +7,14 @@ use std::time::Instant;
 use crate::app::equilibrium_summary::at_rest;
 use crate::app::error::CommandError;
 use crate::app::fields;
-use crate::app::folder::make_folder_of;
+use crate::app::foreign::make_folder_of;
 use crate::app::left_out::plan;
 use crate::app::messages::counted;
 use crate::app::no_equilibrium::refused;
 use crate::app::page;
 use crate::app::path_summary::PathSummary;
 use crate::app::request::{CommandInput, CommandOutput};
-use crate::app::seconds::Seconds;
+use crate::app::summary::Seconds;
 use crate::app::summary::Summary;
 use crate::control::problem::AtRest;
 use crate::dynamics::trajectory::{Column, Observations, Trajectory};
@@ -34,7 +34,7 @@ use crate::report::style::Dash;
 use crate::report::{Branch, PageContent, Run, style, write_still};
 use crate::tasks::equilibrium::model_at_rest;
 use crate::workflow::domain;
-use crate::workflow::phase::phase;
+use crate::workflow::remark::phase;
 
 /// Follows the path for `points` equilibria and writes `path.csv`, `path.svg`, the fields, and figure and page of the last
 /// equilibrium before stability is lost, or of the last one.

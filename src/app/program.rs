@@ -10,7 +10,7 @@ use crate::app::task::read;
 use crate::control::problem::{Control, InCommon, Task};
 use crate::model::System;
 use crate::nlp::Nlp;
-use crate::workflow::prepare::Counted;
+use crate::workflow::prepare_together::Counted;
 use crate::workflow::prepare_together::{
     MotionAsked, PreparedTogether, prepare_together, program_motions, resolve_each,
 };

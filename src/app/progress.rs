@@ -1,14 +1,14 @@
 //! Progress on standard error: the phase of work before there is anything to count, the iterations of a solve, the steps of a
 //! simulation.
 
-use std::cell::RefCell;
-use std::time::Instant;
-
-use indicatif::{ProgressBar, ProgressDrawTarget, ProgressStyle};
-
-use crate::app::ticker::Ticker;
 use crate::ipopt::Iteration;
 use crate::workflow::listen_to_phases;
+use indicatif::{ProgressBar, ProgressDrawTarget, ProgressStyle};
+use std::cell::RefCell;
+use std::sync::mpsc;
+use std::sync::mpsc::{RecvTimeoutError, Sender};
+use std::thread;
+use std::time::{Duration, Instant};
 
 /// Display of progress.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -184,4 +184,33 @@ fn target(bar: ProgressBar, shown: ProgressDisplay) -> ProgressBar {
 
 fn style(template: &str) -> ProgressStyle {
     ProgressStyle::with_template(template).expect("the template is well formed")
+}
+
+/// Time between two pictures of the line.
+const PERIOD: Duration = Duration::from_millis(120);
+
+/// A thread that draws a line again and again, until it is dropped.
+#[derive(Debug)]
+pub(super) struct Ticker {
+    /// Nothing is ever sent: the thread notices that it is gone.
+    _alive: Sender<()>,
+}
+
+impl Ticker {
+    /// Draws a line; none where no thread can be had, and then it is drawn at the next message.
+    pub(super) fn for_bar(bar: &ProgressBar) -> Option<Self> {
+        let (alive, gone) = mpsc::channel();
+        let bar = bar.downgrade();
+        let draw = move || {
+            while gone.recv_timeout(PERIOD) == Err(RecvTimeoutError::Timeout) {
+                match bar.upgrade() {
+                    Some(bar) if bar.is_finished() => {}
+                    Some(bar) => bar.tick(),
+                    None => return,
+                }
+            }
+        };
+        let thread = thread::Builder::new().spawn(draw);
+        thread.is_ok().then_some(Self { _alive: alive })
+    }
 }

@@ -1,15 +1,13 @@
 //! The files of a result as they were written: their sizes and hashes, which a record in their folder keeps.
 
-use std::collections::BTreeMap;
-use std::fs;
-use std::io;
-use std::path::Path;
-
-use serde::{Deserialize, Serialize};
-
-use crate::app::content_hash::digest_of;
 use crate::workflow::Remarks;
 use crate::workflow::remark::STOPPED_EARLY;
+use serde::{Deserialize, Serialize};
+use sha2::{Digest, Sha256};
+use std::collections::BTreeMap;
+use std::fmt::Write;
+use std::path::Path;
+use std::{fmt, fs, io};
 
 /// Statuses that may be otherwise the next time.
 const UNFINISHED: [&str; 5] = [
@@ -127,5 +125,37 @@ impl FileRecords {
                 Err(cause) => Some(format!("{name} cannot be read ({cause})")),
             }
         })
+    }
+}
+
+/// Hexadecimal digits of the hash of a formatted text.
+pub(crate) fn digest(written: fmt::Arguments<'_>, digits: usize) -> String {
+    let mut hash = Hash(Sha256::new());
+    write!(hash, "{written}").expect("a hash takes everything");
+    let mut text = hexadecimal(&hash.0.finalize());
+    text.truncate(digits);
+    text
+}
+
+/// All hexadecimal digits of the SHA-256 of bytes.
+pub(crate) fn digest_of(bytes: &[u8]) -> String {
+    hexadecimal(&Sha256::digest(bytes))
+}
+
+fn hexadecimal(bytes: &[u8]) -> String {
+    let mut text = String::with_capacity(2 * bytes.len());
+    for byte in bytes {
+        write!(text, "{byte:02x}").expect("room for digits");
+    }
+    text
+}
+
+/// Writer that hashes its input piece by piece.
+struct Hash(Sha256);
+
+impl Write for Hash {
+    fn write_str(&mut self, text: &str) -> fmt::Result {
+        self.0.update(text.as_bytes());
+        Ok(())
     }
 }

@@ -4,8 +4,8 @@ use std::path::{Path, PathBuf};
 
 use serde_json::{Value, json};
 
-use crate::app::content_hash::digest;
 use crate::app::error::CommandError;
+use crate::app::record::digest;
 use crate::app::request::CommandInput;
 use crate::app::solution_file;
 use crate::control::problem::{Simulation, Task};

@@ -1,44 +1,42 @@
 //! A simulation from file to folder.
 
-use std::io;
-use std::path::{Path, PathBuf};
-use std::time::Instant;
-
 use crate::app::blocks::BlockSizes;
-use crate::app::comparison::{self, Comparison};
+use crate::app::blocks::EnergySummary;
+use crate::app::comparison::Comparison;
 use crate::app::displayed_motion::{DisplayedMotion, Motion};
-use crate::app::energy_summary::EnergySummary;
 use crate::app::error::CommandError;
-use crate::app::fields;
 use crate::app::left_out::{STOPPED, leave_out, plan, time_to_write};
 use crate::app::messages::counted;
-use crate::app::page;
 use crate::app::progress::{Progress, Reached};
 use crate::app::request::{CommandInput, CommandOutput};
-use crate::app::resume_file;
-use crate::app::seconds::Seconds;
-use crate::app::simulation_page::{held, rows};
-use crate::app::solution_file;
-use crate::app::summary::{self, Summary};
-use crate::app::unfinished::{self, Unfinished};
-use crate::control::problem::Simulation;
+use crate::app::summary::Seconds;
+use crate::app::summary::Summary;
+use crate::app::unfinished::Unfinished;
+use crate::app::{comparison, fields, page, resume_file, solution_file, summary, unfinished};
+use crate::control::problem::{Afterwards, Simulation, Voltages};
 use crate::dynamics::trajectory::{Observations, Trajectory};
 use crate::dynamics::{DiscreteTrajectory, LocalError, observed};
 use crate::files::Loaded;
-use crate::ipopt::interrupt::{self, TimeLimit};
+use crate::ipopt::interrupt;
+use crate::ipopt::interrupt::TimeLimit;
 use crate::math::{join, shortest};
 use crate::model::Model;
+use crate::report;
 use crate::report::atomic::WriteError;
 use crate::report::file_set::FileSet;
 use crate::report::origin::Origin;
-use crate::report::{self, write_run};
-use crate::tasks::{self, Assessment, SimulationRequest, SimulationResult};
-use crate::workflow::Simulated;
+use crate::report::write_run;
+use crate::tasks;
+use crate::tasks::{Assessment, SimulationRequest, SimulationResult};
 use crate::workflow::closed_loop::DisturbedLoop;
 use crate::workflow::effects::Plan;
 use crate::workflow::integrate::grid;
 use crate::workflow::motion::{solved, solved_of};
-use crate::workflow::phase::phase;
+use crate::workflow::remark::phase;
+use crate::workflow::{Simulated, steps};
+use std::io;
+use std::path::{Path, PathBuf};
+use std::time::Instant;
 
 /// Simulates and writes the folder; a motion that ends early is kept as far as it went.
 pub(super) fn simulation(
@@ -396,5 +394,64 @@ fn command_output(
             folder.display()
         ),
         notes,
+    }
+}
+
+/// Rows of the page; `neglected` is the sum of the local errors of the steps.
+pub(super) fn rows(
+    summary: &Summary,
+    task: &Simulation,
+    (model, discrete): (&Model, &DiscreteTrajectory),
+    neglected: Option<LocalError>,
+) -> Vec<(String, String)> {
+    let reached = discrete.times[discrete.intervals()];
+    let row = |name: &str, value: String| (name.to_owned(), value);
+    let mut rows = vec![
+        row("status", summary.status.replace('_', " ")),
+        row("steps", steps::counted(discrete, task)),
+        row("duration", format!("{} s", reached / 1e3)),
+        row("method", method(task)),
+        row("coordinates", model.coordinates.name().to_owned()),
+        row("computing time", format!("{:.3} s", summary.seconds.total)),
+    ];
+    rows.extend(summary.energies.iter().flat_map(EnergySummary::rows));
+    rows.extend(summary.accuracy.iter().flat_map(|a| {
+        let told = |(name, error): (&&str, &f64)| {
+            (format!("estimated error, {name}"), format!("{error:.1e}"))
+        };
+        a.estimate.iter().map(told)
+    }));
+    rows.extend(neglected.map(|error| {
+        let words = format!(
+            "{:.2e} m, {:.2} % of the path",
+            error.error / 1e3,
+            100.0 * error.relative()
+        );
+        row("sum of the local errors of the steps", words)
+    }));
+    rows
+}
+
+/// The method of a simulation in words.
+fn method(task: &Simulation) -> String {
+    let name = task.solving.integrator.name();
+    match task.tolerance {
+        Some(tolerance) => format!(
+            "{name}, steps by a tolerance of {tolerance:e} (unequal steps keep momentum maps, not the energy over long times)"
+        ),
+        None => name,
+    }
+}
+
+/// Voltages in V that the solution or table says to hold from the end of the motion on, which it reached.
+pub(super) fn held(task: &Simulation, reached: f64) -> Option<&[f64]> {
+    match &task.voltages {
+        Voltages::Sampled {
+            ends,
+            rows,
+            afterwards: Afterwards::Held,
+            ..
+        } if reached >= ends[ends.len() - 1] * (1.0 - 1e-9) => rows.last().map(Vec::as_slice),
+        _ => None,
     }
 }

@@ -4,8 +4,8 @@ use std::path::Path;
 use std::time::Instant;
 
 use crate::app::blocks::BlockSizes;
+use crate::app::blocks::EnergySummary;
 use crate::app::displayed_motion::{DisplayedMotion, Motion};
-use crate::app::energy_summary::EnergySummary;
 use crate::app::error::CommandError;
 use crate::app::feedback_files;
 use crate::app::fields;

@@ -1,6 +1,6 @@
 //! Texts of the page of a control problem: rows of its table, the convergence of the solver, the goal.
 
-use crate::app::energy_summary::EnergySummary;
+use crate::app::blocks::EnergySummary;
 use crate::app::sensitivity_summary::SensitivitySummary;
 use crate::app::summary::{Program, Summary};
 use crate::control::BoundaryConditions;
@@ -13,9 +13,9 @@ use crate::model::{Model, Quantity};
 use crate::report::axes::{Axis, Extent};
 use crate::report::lines::{LinePlot, Series};
 use crate::report::style;
-use crate::tasks::tracking_messages;
+use crate::tasks::solve_messages;
+use crate::workflow::active::Violation;
 use crate::workflow::tracking::Tracked;
-use crate::workflow::violations::Violation;
 use nalgebra::Vector3;
 use std::collections::BTreeMap;
 
@@ -199,5 +199,5 @@ pub(super) fn goal(model: &Model, boundary: &BoundaryConditions) -> Option<Vec<P
 fn tracking_row(of: &Tracked) -> (String, String) {
     let Tracked { kind, name, .. } = of;
     let key = format!("deviation of {kind} {name} from its path");
-    (key, tracking_messages::words(of))
+    (key, solve_messages::deviation_words(of))
 }

@@ -7,15 +7,15 @@ use crate::app::left_out::STOPPED;
 use crate::app::linear_systems::LinearSystems;
 use crate::app::messages::counted;
 use crate::app::request::CommandOutput;
-use crate::app::seconds::Seconds;
 use crate::app::solve_page::describe;
+use crate::app::summary::Seconds;
 use crate::app::summary::{Evaluations, PerInterval, Program, SoughtValue, Summary};
 use crate::control::problem::Control;
 use crate::math::significant;
 use crate::model::System;
 use crate::tasks::SolveResult;
+use crate::workflow::active::Violation;
 use crate::workflow::optimum::Optimum;
-use crate::workflow::violations::Violation;
 
 /// The program of an optimum in numbers.
 pub(super) fn program(system: &System, control: &Control, result: &SolveResult) -> Program {

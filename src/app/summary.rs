@@ -1,21 +1,16 @@
 //! `summary.json`: the problem, its status, its size and its times.
 
-use std::fs;
-
-use serde::Serialize;
-
 use crate::app::blocks::BlockSizes;
+use crate::app::blocks::EnergySummary;
 use crate::app::comparison::Comparison;
 use crate::app::displayed_motion::ShownPart;
-use crate::app::energy_summary::EnergySummary;
 use crate::app::equilibrium_summary::Rest;
 use crate::app::error::CommandError;
 use crate::app::identification_summary::Identification;
 use crate::app::linear_systems::LinearSystems;
-use crate::app::multigrid_summary::MultigridCounts;
+use crate::app::linear_systems::MultigridCounts;
 use crate::app::path_summary::PathSummary;
 use crate::app::request::CommandInput;
-use crate::app::seconds::Seconds;
 use crate::app::sensitivity_summary::SensitivitySummary;
 use crate::control::problem;
 use crate::dynamics::{DiscreteTrajectory, LocalError};
@@ -26,16 +21,19 @@ use crate::model::FoundParameter;
 use crate::report::atomic::WriteError;
 use crate::report::file_set::FileSet;
 use crate::workflow::accuracy::Accuracy;
-use crate::workflow::afterwards::Afterwards;
+use crate::workflow::active::Violation;
 use crate::workflow::closed_loop::ClosedLoop;
 use crate::workflow::domain::Outside;
 use crate::workflow::effects::Plan;
-use crate::workflow::final_values::FinalValue;
+use crate::workflow::hold_check::Afterwards;
 use crate::workflow::period::Repeated;
 use crate::workflow::regulator::RegulatorReport;
 use crate::workflow::resimulate::Resimulation;
-use crate::workflow::violations::Violation;
+use crate::workflow::tracking::FinalValue;
 use crate::workflow::{EstimatedError, Remarks, Tracked};
+use serde::Serialize;
+use std::fs;
+use std::time::Instant;
 
 /// Time in s that goes into measuring each effect for it.
 pub(super) const MEASURED: f64 = 2e-4;
@@ -380,5 +378,31 @@ impl Summary {
     /// Its text.
     pub(super) fn text(&self) -> String {
         lay_out(&serde_json::to_string(self).expect("numbers and names are JSON"))
+    }
+}
+
+/// Wall time in s.
+#[derive(Clone, Copy, Debug, Default, Serialize)]
+pub(super) struct Seconds {
+    /// Seconds from reading to the last file but the summary.
+    pub(super) total: f64,
+    /// Seconds of these for output: tables, figures, page.
+    pub(super) writing: f64,
+    /// Before the solver or the first step.
+    pub(super) setup: f64,
+    /// In Ipopt without the callbacks, or in the steps of a simulation.
+    pub(super) solver: f64,
+    pub(super) objective: f64,
+    pub(super) gradient: f64,
+    pub(super) constraints: f64,
+    pub(super) jacobian: f64,
+    pub(super) hessian: f64,
+}
+
+impl Seconds {
+    /// The files are written, since `writing`; the run began at `began`.
+    pub(super) fn wrote(&mut self, began: Instant, writing: Instant) {
+        self.total = began.elapsed().as_secs_f64();
+        self.writing = writing.elapsed().as_secs_f64();
     }
 }

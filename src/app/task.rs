@@ -9,7 +9,7 @@ use crate::app::foreign::refuse_foreign;
 use crate::app::identification;
 use crate::app::motions;
 use crate::app::no_equilibrium;
-use crate::app::other_task::refuse_all_but_motions;
+use crate::app::no_equilibrium::refuse_all_but_motions;
 use crate::app::page::asked;
 use crate::app::progress::{Progress, Reached};
 use crate::app::request::{CommandInput, CommandOutput};
@@ -23,7 +23,7 @@ use crate::files::solution::SolutionFile;
 use crate::files::{Loaded, read_problem, read_problem_text};
 use crate::workflow::accuracy::AccuracyTarget;
 use crate::workflow::memory::{self, Occasion};
-use crate::workflow::phase::phase;
+use crate::workflow::remark::phase;
 
 /// Runs the task of a problem: optimal control, simulation, equilibrium or identification.
 ///

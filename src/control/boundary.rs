@@ -1,24 +1,31 @@
 //! Start and goal: the coordinates that they give, the equations that they add, and the voltages at rest.
+//!
+//! Inputs that hold a goal, sought with the motion: the goal is a state of rest, and one interval behind the motion keeps it.
+//!
+//! In an interval whose ends have the same coordinates q nothing moves, and both discrete forces are the static ones, −h/2 ∂V/∂q(q, u).
+//! With the rest of the motion before it, the balances of the instants N and N + 1 say that q is an equilibrium under the inputs u of that interval:
+//!
+//! ```text
+//! D₂L_d(q_{N−1}, q_N) + D₁L_d(q_N, q_N; u) = 0,     D₂L_d(q_N, q_N; u) = 0.
+//! ```
 
+use crate::control::boundary_conditions::rest_at;
 use crate::control::boundary_conditions::{BoundaryConditions, Rests, TerminalState};
-use crate::control::bounded_quantity::When;
-use crate::control::endpoint_checks;
+use crate::control::bounded_quantity::{BoundedQuantity, When};
 use crate::control::energy_cost::{EnergyCost, resisted, sources};
 use crate::control::error::BoundaryError;
-use crate::control::given_rates;
 use crate::control::given_state::{check_muscles, resolve_start};
-use crate::control::goal_rows;
+use crate::control::goal::instant_at;
 use crate::control::limits::{Length, Limits};
-use crate::control::off_grid::{off_grid, without_steps};
-use crate::control::periodic;
-use crate::control::prescribed::{self, at_rest};
-use crate::control::problem::{BoundaryState, Control, Duration, Rest};
-use crate::control::rest::rest_at;
-use crate::control::sought;
-use crate::control::sought_hold;
-use crate::control::transcription::count::overdetermined;
+use crate::control::prescribed::at_rest;
+use crate::control::problem::{
+    BoundaryState, Control, Duration, During, PathConstraint, Rest, SoughtHold,
+};
 use crate::control::transcription::layout::Layout;
+use crate::control::transcription::structure::overdetermined;
+use crate::control::{endpoint_checks, goal_rows, periodic, prescribed, sought};
 use crate::dynamics::{Equilibrium, Start};
+use crate::math::shortest;
 use crate::model::{Analysis, Coordinates, Graph, Model, Presolved, Quantity, System};
 
 impl BoundaryConditions {
@@ -101,7 +108,7 @@ impl BoundaryConditions {
             ..with_quantities(analysis, &limits, (control, system))
         };
         let mut model = Model::of_presolved(system.clone(), analysis, presolved)?;
-        sought_hold::check(&model, control)?;
+        check_sought_hold(&model, control)?;
         periodic::check(&model, control)?;
         let rests = rests_at(&control.goal);
         prescribed::check_end_of_motions(&model, control, rests != Rests::Nothing)?;
@@ -143,7 +150,7 @@ impl BoundaryConditions {
             boundary.goal.coordinates.fill(None);
         }
         endpoint_checks::check(&model, &boundary, control, scalars)?;
-        given_rates::check(system, control, &boundary.rest)?;
+        prescribed::check_given_rates(system, control, &boundary.rest)?;
         Ok((model, boundary))
     }
 }
@@ -312,4 +319,120 @@ fn all_joints_given(system: &System, goal: &BoundaryState) -> bool {
     let named = |(j, c): (usize, &Option<usize>)| c.is_none() || angles.contains_key(&j);
     Graph::new(system).has_one_coordinate_a_joint(system)
         && coordinates.iter().enumerate().all(named)
+}
+
+/// Parts of an interval by which a waypoint may miss an instant.
+const OFF: f64 = 1e-6;
+
+/// Verb of the notes about waypoints.
+const REACHED: &str = "is reached";
+
+/// Notes about waypoints and limits at a time that lie between two instants.
+pub(super) fn off_grid(control: &Control) -> Vec<String> {
+    let count = control.intervals;
+    let note = |name: String, part: f64, verb: &str| {
+        let k = instant_at(part, count);
+        let at = match control.duration {
+            Duration::Given(duration) => {
+                let time = k as f64 / count as f64 * duration / 1e3;
+                format!("{} s", shortest(time, 4))
+            }
+            Duration::Free { .. } => format!("instant {k} of {count}"),
+        };
+        ((part * count as f64 - k as f64).abs() > OFF)
+            .then(|| format!("{name} lies between two instants: it {verb} at {at}"))
+    };
+    let exact = control.waypoints.iter();
+    let exact = exact.filter_map(|waypoint| note(waypoint.name.clone(), waypoint.part, REACHED));
+    let costs = control.objective.quantities.iter();
+    let near = costs.filter_map(|cost| match cost.during {
+        During::At(part) => note(
+            format!("waypoint at {} of the duration", shortest(part, 6)),
+            part,
+            REACHED,
+        ),
+        During::Motion | During::End => None,
+    });
+    let limits = control.limits.iter().filter_map(|limit| match *limit {
+        PathConstraint::Once { part, .. } => note(
+            format!("limit at {} of the duration", shortest(part, 6)),
+            part,
+            "holds",
+        ),
+        _ => None,
+    });
+    let mut notes: Vec<String> = exact.chain(near).chain(limits).collect();
+    notes.dedup();
+    notes
+}
+
+/// Notes about limits of steps between intervals, of which one interval has none.
+pub(super) fn without_steps(control: &Control, limits: &Limits) -> Vec<String> {
+    let steps = limits.list.iter().filter(|_| control.intervals == 1);
+    let steps = steps.filter(|bounded| bounded.quantity.before().is_some());
+    let note = |bounded: &BoundedQuantity| {
+        let name = &bounded.name;
+        format!(
+            "the {name} is limited from one interval to the next: one interval has no such step"
+        )
+    };
+    let mut notes: Vec<String> = steps.map(note).collect();
+    notes.dedup();
+    notes
+}
+
+impl Control {
+    /// Returns true if the inputs that hold the goal are sought with the motion.
+    pub fn seeks_hold(&self) -> bool {
+        self.sought_hold == SoughtHold::Always
+    }
+
+    /// Returns true if the goal names places or joint coordinates and no voltages that hold it.
+    pub fn names_no_hold(&self) -> bool {
+        match &self.goal {
+            BoundaryState::JointAngles { .. } => true,
+            BoundaryState::Markers { hold, .. } => hold.is_none(),
+            _ => false,
+        }
+    }
+}
+
+/// The reason why nothing that holds a goal can be sought: nodes and what muscles remember have no rest of their own there.
+pub(crate) fn obstacle(model: &Model, control: &Control) -> Option<&'static str> {
+    if !control.names_no_hold() {
+        return Some(
+            "inputs that hold a goal are sought for places or joint coordinates without given ones",
+        );
+    }
+    if !model.solids.is_empty() {
+        return Some(
+            "\"find\" is for lumped muscles: a few voltages cannot hold every node of an elastic block where the motion leaves it; name the voltages",
+        );
+    }
+    let from = match control.duration {
+        Duration::Given(end) => end,
+        Duration::Free { min, .. } => min,
+    };
+    let mut functions = (0..model.sources.len()).filter_map(|source| control.function(source));
+    if functions.any(|function| function.constant_within([from, f64::INFINITY]).is_none()) {
+        return Some(
+            "\"find\" is for given inputs that are constant from the end on: nothing rests under one that goes on",
+        );
+    }
+    model.creeps().then_some(
+        "\"find\" is for muscles that do not creep: no constant voltages keep a stretch that relaxes",
+    )
+}
+
+/// Refuses to seek what holds a goal where nothing can.
+pub(super) fn check_sought_hold(model: &Model, control: &Control) -> Result<(), BoundaryError> {
+    let reason = match control.seeks_hold() {
+        true => obstacle(model, control),
+        false => None,
+    };
+    reason.map_or(Ok(()), |reason| {
+        Err(BoundaryError::Hold {
+            reason: reason.to_owned(),
+        })
+    })
 }

@@ -1,9 +1,9 @@
 //! States that a problem gives: coordinates and momenta of a start, and checks of coordinates.
 
+use crate::control::boundary_conditions::rest_at;
 use crate::control::error::BoundaryError;
 use crate::control::prescribed::{self, at_rest};
 use crate::control::problem::BoundaryState;
-use crate::control::rest::rest_at;
 use crate::dynamics::{Start, muscle_without_length, part_beyond_law};
 use crate::functional::Order;
 use crate::model::{Model, Prescribed, Role};

@@ -1,14 +1,20 @@
 //! Initial guess of the solver: interpolated between start and goal, simulated, or an earlier solution.
 
 use crate::control::boundary_conditions::BoundaryConditions;
+use crate::control::identification::{Costates, Solution};
 use crate::control::mesh_match::other_mesh;
 use crate::control::problem::{Control, Guess};
-use crate::control::resample::{self, Grids};
-use crate::control::solution::{Costates, Solution};
-use crate::control::uniform_grid::on_uniform_grid;
+use crate::control::resample;
+use crate::control::resample::Grids;
+use crate::coordinates::CoordinateMap;
 use crate::dynamics::{DiscreteTrajectory, simulate};
 use crate::model::{Coordinates, Graph, Model, Role};
+use std::borrow::Cow;
+use std::error::Error;
+use std::fmt::Debug;
 use std::ops::ControlFlow;
+use std::path::Path;
+use std::sync::Arc;
 
 /// Added to the rest voltages, as a part of their size: at zero the motion does not depend on a voltage to first order.
 const LIFT: f64 = 0.1;
@@ -277,4 +283,132 @@ fn scalars(model: &Model, solved: &Solution, grids: Grids, intervals: usize) -> 
         scalars
     };
     (0..intervals).map(at).collect()
+}
+
+/// Deviation of an instant, in mean steps, that is rounding.
+const ROUNDING: f64 = 1e-6;
+
+/// The motion as it is where its steps are equal, otherwise at as many equal ones: coordinates along lines, voltages and
+/// potentials of the step that the middle of an interval is in; costates belong to other rows and are left out. `map` is
+/// what the coordinates mean, where they are those of the model.
+pub(super) fn on_uniform_grid<'s>(
+    solved: &'s Solution,
+    map: Option<&CoordinateMap>,
+) -> Cow<'s, Solution> {
+    let intervals = solved.intervals();
+    let end = solved.times[intervals];
+    let time = |k: f64| end * k / intervals as f64;
+    let is_even =
+        |(k, &t): (usize, &f64)| (t - time(k as f64)).abs() <= ROUNDING * end / intervals as f64;
+    if solved.times.iter().enumerate().all(is_even) {
+        return Cow::Borrowed(solved);
+    }
+    let step_at = |time: f64| {
+        let after = solved.times.partition_point(|&t| t <= time);
+        after.clamp(1, intervals) - 1
+    };
+    let along = |rows: &[Vec<f64>]| -> Vec<Vec<f64>> {
+        let row = |k: usize| {
+            let at = time(k as f64);
+            let i = step_at(at);
+            let part = (at - solved.times[i]) / (solved.times[i + 1] - solved.times[i]);
+            let ends = rows[i].iter().zip(&rows[i + 1]);
+            ends.map(|(a, b)| a + part * (b - a)).collect()
+        };
+        (0..=intervals).map(row).collect()
+    };
+    let configurations = || {
+        let mut z = along(&solved.z);
+        let Some(map) = map else {
+            return z;
+        };
+        for (k, z) in z.iter_mut().enumerate() {
+            let at = time(k as f64);
+            let i = step_at(at);
+            let part = (at - solved.times[i]) / (solved.times[i + 1] - solved.times[i]);
+            let ends = [(1.0 - part, &*solved.z[i]), (part, &*solved.z[i + 1])];
+            map.mean_of_charts(&ends, z);
+        }
+        z
+    };
+    let within = |rows: &[Vec<f64>]| -> Vec<Vec<f64>> {
+        let row = |k: usize| rows.get(step_at(time(k as f64 + 0.5))).cloned();
+        (0..intervals).filter_map(row).collect()
+    };
+    let near = |k: usize| {
+        let at = time(k as f64);
+        let i = step_at(at);
+        i + usize::from(2.0 * at > solved.times[i] + solved.times[i + 1])
+    };
+    Cow::Owned(Solution {
+        coordinates: solved.coordinates,
+        multiplier_time: solved.multiplier_time,
+        hold: solved.hold.clone(),
+        meshes: solved.meshes.clone(),
+        parameters: solved.parameters.clone(),
+        times: (0..=intervals).map(|k| time(k as f64)).collect(),
+        joints: along(&solved.joints),
+        poses: (0..=intervals)
+            .filter_map(|k| solved.poses.get(near(k)).cloned())
+            .collect(),
+        z: configurations(),
+        momentum: solved.momentum.clone(),
+        voltages: within(&solved.voltages),
+        potentials: within(&solved.potentials),
+        costates: None,
+        barrier: None,
+    })
+}
+
+/// Source of an earlier solution.
+pub trait EarlierSolution: Debug + Send + Sync {
+    /// The solution, for this model.
+    ///
+    /// # Errors
+    /// It cannot be read, or belongs to another system.
+    fn solution(&self, model: &Model) -> Result<Cow<'_, Solution>, Box<dyn Error + Send + Sync>>;
+
+    /// The file that it is read from; none where it is in memory.
+    fn file(&self) -> Option<&Path> {
+        None
+    }
+}
+
+impl EarlierSolution for Solution {
+    fn solution(&self, _: &Model) -> Result<Cow<'_, Solution>, Box<dyn Error + Send + Sync>> {
+        Ok(Cow::Borrowed(self))
+    }
+}
+
+/// A shared earlier solution; two are equal where they are the same one.
+#[derive(Clone, Debug)]
+pub struct Earlier(Arc<dyn EarlierSolution>);
+
+impl Earlier {
+    /// Shares it.
+    pub fn new(earlier: impl EarlierSolution + 'static) -> Self {
+        Self(Arc::new(earlier))
+    }
+
+    /// The solution, for this model.
+    ///
+    /// # Errors
+    /// As of [`EarlierSolution::solution`].
+    pub fn solution(
+        &self,
+        model: &Model,
+    ) -> Result<Cow<'_, Solution>, Box<dyn Error + Send + Sync>> {
+        self.0.solution(model)
+    }
+
+    /// The file that it is read from; none where it is in memory.
+    pub fn file(&self) -> Option<&Path> {
+        self.0.file()
+    }
+}
+
+impl PartialEq for Earlier {
+    fn eq(&self, other: &Self) -> bool {
+        Arc::ptr_eq(&self.0, &other.0)
+    }
 }

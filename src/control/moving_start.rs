@@ -5,9 +5,9 @@
 //! together.
 
 use crate::control::boundary_conditions::MomentumSlopes;
+use crate::control::boundary_conditions::with_values;
 use crate::control::given_state::resolve_start;
 use crate::control::problem::BoundaryState;
-use crate::control::rest::with_values;
 use crate::dynamics::Start;
 use crate::functional::TermKind;
 use crate::model::{Model, Parameter, Role};

@@ -1,10 +1,12 @@
 //! Path limits of a problem along a motion of a robot, the one of the problem or another with joints, muscles and markers of the same names.
 
+use crate::control::BoundaryConditions;
 use crate::control::bounded_quantity::BoundedQuantity;
 use crate::control::limits::{Length, Limits, largest};
-use crate::control::measured_values::value;
 use crate::control::problem::PathConstraint;
+use crate::control::transcription::Site;
 use crate::dynamics::DiscreteTrajectory;
+use crate::functional::Sample;
 use crate::model::system::{Fidelity, Muscle};
 use crate::model::{Analysis, Model, ModelError, Quantity, System};
 
@@ -186,4 +188,42 @@ impl PathConstraint {
         }
         Some(out)
     }
+}
+
+/// Value and plain unit of the quantity of cost number `index` at instant `k` of a motion, or in the interval before it; none where the model
+/// does not measure it.
+pub fn measured_value(
+    (model, boundary): (&Model, &BoundaryConditions),
+    (index, quantity): (usize, &Quantity),
+    motion: &DiscreteTrajectory,
+    k: usize,
+) -> Option<(f64, &'static str)> {
+    let place = boundary.limits.quantities().len() + index;
+    let (value, h) = value(model, (place, quantity), motion, k)?;
+    let quantity = quantity.clone().with_interval(h);
+    Some(quantity.plain(value, &model.system))
+}
+
+/// The value of measured quantity number `place`, and the length in ms of the interval; 1 of what is measured at instants.
+pub(super) fn value(
+    model: &Model,
+    (place, quantity): (usize, &Quantity),
+    motion: &DiscreteTrajectory,
+    k: usize,
+) -> Option<(f64, f64)> {
+    let site = Site::from_quantity(quantity);
+    let measure = site.measure(model, (*model.measured.get(place)?)?);
+    let first = k.checked_sub(site.sides() - 1)?;
+    let [before, here] = [first, k].map(|k| model.action.map.placed(&motion.z[k]));
+    let h = match site {
+        Site::Instants => 1.0,
+        Site::Intervals => motion.times[k] - motion.times[first],
+    };
+    let scalars = motion.scalars.get(first).map_or(&[][..], Vec::as_slice);
+    let sample = Sample {
+        vectors: [&before.x, &here.x],
+        h,
+        ..Sample::of_instant(&before.x, scalars)
+    };
+    Some((measure.value(&sample), h))
 }

@@ -1,10 +1,17 @@
 //! Prescribed joint coordinates at start and goal: their values and rates there, and what contradicts them.
+//!
+//! Functions of time that a problem gives, where the duration may be an unknown.
+//!
+//! With a given duration their values are data. With a free one the times of instants and intervals follow from the interval length, and so
+//! do the values; without jumps they have derivatives.
 
 use crate::control::error::BoundaryError;
-use crate::control::problem::{BoundaryState, Control};
+use crate::control::goal::instant_at;
+use crate::control::numbering::Column;
+use crate::control::problem::{BoundaryState, Control, Duration, PathConstraint, Voltages};
 use crate::dynamics::{Start, rates_in_loops};
-use crate::math::{shortest, significant};
-use crate::model::{Model, Prescribed, joint_unit};
+use crate::math::{Signal, shortest, significant};
+use crate::model::{Model, Prescribed, System, Time, joint_unit};
 use std::collections::BTreeMap;
 
 /// Parts of a radian or of the length of the system by which a state may miss a prescribed value.
@@ -163,4 +170,144 @@ pub(super) fn at_goal(
         given[one.coordinate] = Some(value);
     }
     Ok(())
+}
+
+/// Relative rounding of a rate.
+const ROUNDING: f64 = 1e-8;
+
+/// Refuses a given voltage that breaks a limit of its rate. `rest` are the inputs before the start and after the end, where these are known; the
+/// steps from them and to them take half an interval.
+pub(super) fn check_given_rates(
+    system: &System,
+    control: &Control,
+    rest: &[Option<Vec<f64>>; 2],
+) -> Result<(), BoundaryError> {
+    if !matches!(control.duration, Duration::Given(_)) {
+        return Ok(());
+    }
+    let broken = |limit| broken(limit, (system, control), rest);
+    match control.limits.iter().find_map(broken) {
+        Some(reason) => Err(BoundaryError::Limit {
+            place: "limits",
+            reason,
+        }),
+        None => Ok(()),
+    }
+}
+
+/// The message of a limit that a given voltage breaks.
+fn broken(
+    limit: &PathConstraint,
+    (system, control): (&System, &Control),
+    rest: &[Option<Vec<f64>>; 2],
+) -> Option<String> {
+    let (limit, part) = limit.with_part();
+    let PathConstraint::VoltageRate { source, min, max } = *limit else {
+        return None;
+    };
+    if !control.is_given(source) {
+        return None;
+    }
+    let mut steps = steps(control, source, rest);
+    if let Some(part) = part {
+        let time = instant_at(part, control.intervals) as f64 * 2.0 * control.middle(0);
+        let apart = |step: &(f64, f64)| (step.0 - time).abs();
+        steps.sort_by(|a, b| apart(a).total_cmp(&apart(b)));
+        steps.truncate(1);
+    }
+    let is_out = |rate: f64| {
+        let rounding = ROUNDING * rate.abs();
+        rate < min - rounding || rate > max + rounding
+    };
+    let (time, rate) = steps.into_iter().find(|(_, rate)| is_out(*rate))?;
+    let (side, bound) = match rate < min {
+        true => ("at least", min),
+        false => ("at most", max),
+    };
+    let source = &system.sources()[source];
+    let [rate, bound] = [rate, bound].map(|rate| significant(rate * 1e3, 5));
+    let (name, unit, time) = (&source.name, source.kind.unit(), shortest(time, 6));
+    Some(format!(
+        "the rate of the given voltage of {name} is {rate} {unit}/s at {time} ms, \
+         and its limit is {side} {bound} {unit}/s"
+    ))
+}
+
+/// Times in ms and rates of the steps of a given voltage between the middles of intervals, and from rest and to it.
+fn steps(control: &Control, source: usize, rest: &[Option<Vec<f64>>; 2]) -> Vec<(f64, f64)> {
+    let last = control.intervals - 1;
+    let at = |k: usize| control.given_voltage(source, control.middle(k));
+    let voltages: Vec<f64> = (0..=last).filter_map(at).collect();
+    let h = 2.0 * control.middle(0);
+    let end = h * control.intervals as f64;
+    let [before, after] = rest
+        .each_ref()
+        .map(|row| row.as_ref().map(|row| row[source]));
+    let (first_one, last_one) = (voltages[0], voltages[last]);
+    let mut steps = Vec::new();
+    if control.goal == BoundaryState::Periodic {
+        steps.push((0.0, (first_one - last_one) / h));
+    }
+    steps.extend(before.map(|before| (0.0, 2.0 * (first_one - before) / h)));
+    let within = voltages.windows(2).zip(1..);
+    steps.extend(within.map(|(pair, k)| (f64::from(k) * h, (pair[1] - pair[0]) / h)));
+    steps.extend(after.map(|after| (end, 2.0 * (after - last_one) / h)));
+    steps
+}
+
+impl Duration {
+    /// Time in ms of a jump of a function of time, where it is after the start and before the longest of several durations.
+    pub fn jump(self, function: &Signal) -> Option<f64> {
+        match self {
+            Self::Given(_) => None,
+            Self::Free { max, .. } => function.jump().filter(|&time| 0.0 < time && time < max),
+        }
+    }
+
+    /// Value of a function of time at the end; `None` where it differs from duration to duration.
+    pub fn final_value(self, function: &Signal) -> Option<f64> {
+        match self {
+            Self::Given(end) => Some(function.at(end)),
+            Self::Free { min, max, .. } => function.constant_within([min, max]),
+        }
+    }
+}
+
+impl Control {
+    /// The function of time that gives the input of a source, where one that is not constant does.
+    pub fn function(&self, source: usize) -> Option<&Signal> {
+        let of_course = || match &self.course {
+            Some(Voltages::Signals(signals)) if self.is_given(source) => signals.get(source),
+            _ => None,
+        };
+        let function = self.given.get(&source).or_else(of_course);
+        function.filter(|function| !function.is_constant())
+    }
+
+    /// Returns true if an input is a function of a time that is an unknown.
+    pub fn follows_time(&self, source: usize) -> bool {
+        matches!(self.duration, Duration::Free { .. }) && self.function(source).is_some()
+    }
+
+    /// The function of time that the variable of a column follows, where the time is an unknown.
+    pub(in crate::control) fn followed<'a>(
+        &'a self,
+        model: &'a Model,
+        column: Column,
+    ) -> Option<&'a Signal> {
+        let Duration::Free { .. } = self.duration else {
+            return None;
+        };
+        match column {
+            Column::Instant { i, .. } => {
+                let mut motions = model.prescribed.iter();
+                let one = motions.find(|one| one.coordinate == i)?;
+                Some(&one.motion).filter(|motion| !motion.is_constant())
+            }
+            Column::Interval { s, .. } => {
+                self.function(model.variables.of(Time::Interval)[s].source?)
+            }
+            Column::Parameter { .. } | Column::Horizon => None,
+        }
+    }
 }

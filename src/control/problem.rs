@@ -1,20 +1,6 @@
 //! Tasks of a problem: simulation, equilibrium, control, identification. Units g, mm, ms, N, V.
 
 use crate::control::Earlier;
-pub use crate::control::boundary_state::{BoundaryState, Hold, Rest, SoughtHold};
-pub use crate::control::duration::Duration;
-pub use crate::control::energy_cost::{EnergyCost, SourceEnergy};
-pub use crate::control::goal::{Orientation, Place};
-pub use crate::control::identification::{
-    ChangedScene, Channel, Identification, Prior, Reading, Recording, Regime, SoughtStart,
-    begin_late,
-};
-pub use crate::control::inputs::{Afterwards, Voltages, absent_loads};
-pub use crate::control::path_constraint::{PathConstraint, Side};
-pub use crate::control::quantity_cost::{CostFunction, During, Objective, QuantityCost};
-pub use crate::control::regulator::{Noise, Observation, Regulator};
-pub use crate::control::varied::{OutcomeOf, Varied, VariedOf, WeightOf};
-pub use crate::control::waypoint::{Waypoint, instant_at};
 use crate::dynamics::Solving;
 use crate::feedback::Law;
 use crate::ipopt::{LinearSolver, OptionValue};
@@ -25,6 +11,20 @@ use std::borrow::Cow;
 use std::collections::BTreeMap;
 use std::path::PathBuf;
 use std::sync::Arc;
+
+pub use crate::control::boundary_state::{BoundaryState, Hold, Rest, SoughtHold};
+pub use crate::control::energy_cost::{CostFunction, During, Objective, QuantityCost};
+pub use crate::control::energy_cost::{EnergyCost, SourceEnergy};
+pub use crate::control::goal::{Orientation, Place};
+pub use crate::control::goal::{Waypoint, instant_at};
+pub use crate::control::identification::{
+    ChangedScene, Channel, Identification, Prior, Reading, Recording, Regime, SoughtStart,
+    begin_late,
+};
+pub use crate::control::inputs::{Afterwards, Voltages, absent_loads};
+pub use crate::control::path_constraint::{PathConstraint, Side};
+pub use crate::control::regulator::{Noise, Observation, Regulator};
+pub use crate::control::varied::{OutcomeOf, Varied, VariedOf, WeightOf};
 
 /// A task with everything resolved: one voltage per muscle, indices for names.
 #[derive(Clone, Debug, PartialEq)]
@@ -357,4 +357,38 @@ impl Simulation {
     pub const TOLERANCE: f64 = 1e-3;
     /// The first step that a tolerance controls, as a part of the duration.
     pub const FIRST: f64 = 1e-2;
+}
+
+/// Final time of a control problem in ms.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Duration {
+    /// Given.
+    Given(f64),
+    /// Free between bounds.
+    Free {
+        /// Lower bound.
+        min: f64,
+        /// Upper bound.
+        max: f64,
+        /// Value at which the solver starts.
+        guess: f64,
+    },
+}
+
+impl Duration {
+    /// Returns the value at which the solver starts.
+    pub fn first(self) -> f64 {
+        match self {
+            Self::Given(duration) => duration,
+            Self::Free { guess, .. } => guess,
+        }
+    }
+
+    /// The duration allowed that is nearest to `other`.
+    pub fn nearest(self, other: f64) -> f64 {
+        match self {
+            Self::Given(duration) => duration,
+            Self::Free { min, max, .. } => other.clamp(min, max),
+        }
+    }
 }

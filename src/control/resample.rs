@@ -5,9 +5,9 @@
 //! of path limits, of bounds and of functions of time. A finer grid has more and smaller ones.
 
 use crate::control::boundary_conditions::BoundaryConditions;
+use crate::control::identification::{Costates, Solution};
 use crate::control::numbering::{Column, Row};
 use crate::control::problem::Control;
-use crate::control::solution::{Costates, Solution};
 use crate::control::transcription::layout::Layout;
 use crate::coordinates::CoordinateMap;
 use crate::model::{Model, Role};

@@ -1,12 +1,12 @@
 //! Sought parameters where they may not act, and states of rest that depend on one.
 
+use crate::control::boundary_conditions::rest_with;
 use crate::control::boundary_conditions::{BoundaryConditions, MomentumSlopes, Rests};
 use crate::control::bounded_quantity::{BoundedQuantity, When};
 use crate::control::error::BoundaryError;
 use crate::control::limits::Limits;
 use crate::control::moving_start::{momentum_slopes, of_masses};
 use crate::control::problem::{BoundaryState, Control};
-use crate::control::rest::rest_with;
 use crate::dynamics::Start;
 use crate::functional::Stencil;
 use crate::model::{

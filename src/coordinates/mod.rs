@@ -16,20 +16,17 @@
 
 mod charts;
 mod configuration;
-mod interval;
-mod laid;
 mod map;
 mod pattern;
 mod pull_back;
 mod reduced;
-mod scratch;
 mod tree;
 
 pub use configuration::Configuration;
-pub use interval::Interval;
 pub use map::{CoordinateMap, Dependence, NodePlace};
 pub use pattern::{BlockPattern, StepPattern};
 pub use pull_back::Destination;
+pub use reduced::Interval;
 pub use reduced::Reduced;
-pub use scratch::Scratch;
+pub use reduced::Scratch;
 pub use tree::{CHART, LANES, Link, LinkKind, Tree};

@@ -1,16 +1,14 @@
 //! A functional as a function of coordinates.
 
 use crate::coordinates::configuration::Configuration;
-use crate::coordinates::interval::Interval;
-use crate::coordinates::laid::Laid;
 use crate::coordinates::map::CoordinateMap;
 use crate::coordinates::pattern::StepPattern;
-use crate::coordinates::pull_back::Destination;
-use crate::coordinates::scratch::{Carried, Scratch};
+use crate::coordinates::pull_back::{Destination, PullBack, Site};
 use crate::functional::{
-    BlockMask, Blocks, Functional, Horizon, NodeBlocks, Order, Outer, Sample, SumDerivatives,
+    BlockMask, Blocks, Functional, Horizon, NodeBlocks, Order, Outer, Output, Sample,
+    SumDerivatives,
 };
-use crate::math::Vector;
+use crate::math::{Matrix, Vector};
 use std::sync::OnceLock;
 
 /// Sums over intervals and instants as functions of the coordinates z of the instants and the scalars of the intervals.
@@ -382,5 +380,144 @@ impl Reduced {
 fn add(sum: &mut [Vector], list: &[Vector]) {
     for (s, v) in sum.iter_mut().zip(list) {
         *s += v;
+    }
+}
+
+/// Entries and the way to them, laid down where they are asked for.
+#[derive(Debug)]
+pub(super) struct Laid {
+    pub(super) intervals: PullBack,
+    pub(super) instants: PullBack,
+    pub(super) curvature: Vec<[usize; 2]>,
+    pub(super) layout: StepPattern,
+}
+
+impl Laid {
+    pub(super) fn new(map: &CoordinateMap, intervals: &Functional, instants: &Functional) -> Self {
+        let mut layout = StepPattern {
+            unknowns: map.unknowns(),
+            interval_scalars: intervals.scalars,
+            ..StepPattern::default()
+        };
+        let mut plan =
+            |sum: &Functional, site| PullBack::new(sum.couplings(), map, &mut layout, site);
+        let intervals = plan(intervals, Site::Intervals);
+        let instants = plan(instants, Site::Instants);
+        let entries = map.tree.iter().flat_map(|tree| tree.curvature_entries());
+        let curvature = entries
+            .map(|(i, k)| [layout.same.slot(i, k), layout.same.slot(k, i)])
+            .collect();
+        layout.shrink_to_fit();
+        Self {
+            intervals,
+            instants,
+            curvature,
+            layout,
+        }
+    }
+}
+
+/// Input of an evaluation on one interval, in addition to its two instants.
+#[derive(Clone, Copy, Debug)]
+pub struct Interval<'a> {
+    /// Scalars, such as voltages and potentials.
+    pub scalars: &'a [f64],
+    /// Their rates along the direction; read at order `Third` only.
+    pub along: &'a [f64],
+    /// Length in ms.
+    pub h: f64,
+    /// Interval length as a given number or an argument.
+    pub horizon: Horizon,
+    /// Blocks that are asked for.
+    pub sides: BlockMask,
+    /// Functions of the measures of the site.
+    pub outer: &'a [Outer],
+}
+
+impl<'a> Interval<'a> {
+    /// A given interval, all blocks.
+    pub fn given(scalars: &'a [f64], h: f64) -> Self {
+        Self {
+            scalars,
+            along: &[],
+            h,
+            horizon: Horizon::Given,
+            sides: BlockMask::ALL,
+            outer: &[],
+        }
+    }
+
+    /// Returns the input of terms on this interval.
+    pub fn sample(&self, [a, b]: [&'a Configuration; 2]) -> Sample<'a> {
+        Sample {
+            vectors: [&a.x, &b.x],
+            along: [&a.w, &b.w],
+            scalars: self.scalars,
+            scalars_along: self.along,
+            h: self.h,
+            horizon: self.horizon,
+            sides: self.sides,
+            outer: self.outer,
+        }
+    }
+}
+
+/// Storage that one evaluation needs, allocated once for each thread.
+///
+/// In a sweep over a horizon the blocks of an instant are summed over both neighbouring intervals before they are pulled
+/// back: [`Scratch::carry`] after each interval, and [`Reduced::pull_back_last`](crate::coordinates::Reduced::pull_back_last) at the end.
+#[derive(Clone, Debug)]
+pub struct Scratch {
+    /// Derivatives of the last interval.
+    pub interval: Output,
+    /// Derivatives of the last instant.
+    pub instant: Output,
+    pub(super) carried: [Carried; 2],
+    pub(super) local: Vec<f64>,
+}
+
+/// Blocks (k+1, k+1) of the interval before.
+#[derive(Clone, Debug)]
+pub(super) struct Carried {
+    full: Vec<Matrix>,
+    isotropic: Vec<f64>,
+}
+
+impl Carried {
+    pub(super) fn new(blocks: &Blocks) -> Self {
+        Self {
+            full: vec![Matrix::zeros(); blocks.full.len()],
+            isotropic: vec![0.0; blocks.isotropic.len()],
+        }
+    }
+
+    /// Adds the carried blocks to those of the first instant, and takes those of the second.
+    fn exchange(&mut self, blocks: &mut Blocks) {
+        for (carried, block) in self.full.iter_mut().zip(&mut blocks.full) {
+            block[0] += std::mem::replace(carried, block[3]);
+        }
+        for (carried, block) in self.isotropic.iter_mut().zip(&mut blocks.isotropic) {
+            block[0] += std::mem::replace(carried, block[3]);
+        }
+    }
+}
+
+impl Scratch {
+    /// Forgets carried blocks, before a sweep.
+    pub fn start(&mut self) {
+        for carried in &mut self.carried {
+            carried.full.fill(Matrix::zeros());
+            carried.isotropic.fill(0.0);
+        }
+    }
+
+    /// Moves the blocks of the second instant of the interval evaluated last to the next interval.
+    pub fn carry(&mut self, order: Order) {
+        if order >= Order::Hessian {
+            self.carried[0].exchange(&mut self.interval.plain.blocks);
+        }
+        if order == Order::Third {
+            self.carried[1].exchange(&mut self.interval.contracted.blocks);
+        }
     }
 }

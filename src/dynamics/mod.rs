@@ -15,15 +15,9 @@
 //! - `statics`, `weights`: the rows of rest; `growing`: these by loads; `ramp`, `growth`, `load_path`: paths of rest under growing loads; `minimum`: minima
 //!   of the potential energy; `stable`: a stable equilibrium by all of these; `softest_mode`: its softest mode.
 
-mod anderson;
-mod at_instant;
-mod column_names;
 mod contraction;
-mod controlled;
 mod discrete_trajectory;
 mod domain;
-mod drive;
-mod equations;
 mod equilibrium;
 mod error;
 mod exchange;
@@ -35,35 +29,27 @@ mod kinetic;
 mod local_error;
 mod loop_rates;
 mod midpoint;
-mod midpoint_matrix;
 mod momenta;
 mod observe;
 mod part_columns;
-mod pieces;
 mod reactions;
 mod resolution;
 mod resume;
-mod sides;
 mod simulate;
 mod singular_configurations;
 mod solving;
-mod start;
 mod state_space;
 mod step_matrix;
-mod step_report;
 mod step_solution;
 mod step_state;
 mod stepper;
-mod stretch_range;
 mod tangent;
-mod to_instants;
 pub mod trajectory;
 mod updates;
 
 pub use discrete_trajectory::{DiscreteTrajectory, Reading};
 pub use domain::{OutOfDomain, largest_stretch, out_of_domain};
-pub use drive::{Drive, Inputs};
-pub use equations::Equations;
+pub use domain::{OutOfRange, out_of_range};
 pub use equilibrium::{
     Continuation, Equilibrium, Instability, Load, LowestMode, Mode, Route, Softening,
     StabilityLoss, UNSTABLE, continuation, equilibrium, lowest_mode, stable_equilibrium,
@@ -77,6 +63,7 @@ pub use interval_energies::{Energies, Work, energies};
 pub use local_error::{LocalError, distance_between, local_error, local_error_of};
 pub use loop_rates::rates_in_loops;
 pub use midpoint::{Midpoint, Stepper};
+pub use momenta::Start;
 pub use momenta::{last_momentum, rates_of_momentum};
 pub use observe::{observations, observed};
 pub use resolution::Balance;
@@ -84,12 +71,12 @@ pub use simulate::{Lengths, StepControl, TimeGrid, go_on, simulate, simulate_by,
 pub use singular_configurations::{
     BeyondLaw, muscle_without_length, part_beyond_law, reversed_muscle,
 };
+pub use solving::{Drive, Inputs};
 pub use solving::{Integrator, MultigridUse, Newton, Solving};
-pub use start::Start;
 pub use state_space::{
     LinearStep, Linearisation, NoState, StepInput, momentum_derivatives, step_inputs,
 };
-pub use step_report::StepperReport;
+pub use step_state::StepperReport;
 pub use step_state::{StepState, TangentState};
+pub use stepper::Equations;
 pub use stepper::Steps;
-pub use stretch_range::{OutOfRange, out_of_range};

@@ -10,20 +10,18 @@
 //! are equal; otherwise the impulses of its reactions over half a step to either side lie between them, and the mean has neither.
 
 use crate::coordinates::{Configuration, Interval, Scratch};
-use crate::dynamics::at_instant::AtInstant;
-use crate::dynamics::column_names::{columns, works};
 use crate::dynamics::discrete_trajectory::{DiscreteTrajectory, Reading};
+use crate::dynamics::discrete_trajectory::{Side, sides};
 use crate::dynamics::interval_energies::{Work, energies};
 use crate::dynamics::momenta::{Places, momentum_maps, moving, vector_momenta};
+use crate::dynamics::part_columns::AtInstant;
 use crate::dynamics::part_columns::PartColumns;
-use crate::dynamics::pieces::{PIECE, in_pieces};
 use crate::dynamics::reactions::reactions;
-use crate::dynamics::sides::{Side, sides};
-use crate::dynamics::to_instants::{Momenta, State, means, to_instants};
 use crate::dynamics::trajectory::{Column, Observations, Trajectory};
 use crate::functional::{Order, TermKind};
-use crate::math::{IsOver, Stopped, Vector};
-use crate::model::Model;
+use crate::math::{IsOver, Stopped, Vector, has_pool};
+use crate::model::{Model, Role, SolidBlock};
+use rayon::prelude::*;
 use std::ops::Range;
 
 /// All that is observed along a motion, time, joint coordinates and markers first.
@@ -373,4 +371,149 @@ fn add(list: &mut Vec<f64>, weight: f64, values: &[f64]) {
     for (sum, value) in list.iter_mut().zip(values) {
         *sum += weight * value;
     }
+}
+
+/// Instants that one thread observes in a row.
+pub(super) const PIECE: usize = 256;
+
+/// Rows `0..count` in order, made by pieces of a length.
+///
+/// # Errors
+/// One of the pieces was stopped.
+pub(super) fn in_pieces<T: Send>(
+    count: usize,
+    piece: usize,
+    make: impl Fn(Range<usize>) -> Result<Vec<T>, Stopped> + Sync,
+) -> Result<Vec<T>, Stopped> {
+    let made = |i: usize| make(i * piece..count.min((i + 1) * piece));
+    let pieces = 0..count.div_ceil(piece);
+    let rows: Vec<Vec<T>> = match has_pool() {
+        true => {
+            let pieces = pieces.into_par_iter().with_max_len(1);
+            pieces.map(made).collect::<Result<_, _>>()
+        }
+        false => pieces.map(made).collect(),
+    }?;
+    Ok(rows.into_iter().flatten().collect())
+}
+
+/// Linear and angular momentum by axis.
+pub(super) type Momenta = [f64; 6];
+
+/// Values at one instant.
+#[derive(Debug)]
+pub(super) struct State {
+    pub(super) charges: Vec<f64>,
+    pub(super) kinetic: f64,
+    pub(super) potential: Vec<f64>,
+    pub(super) momenta: Momenta,
+    /// Values of the [parts](crate::dynamics::part_columns::PartColumns).
+    pub(super) parts: Vec<f64>,
+}
+
+impl State {
+    /// Charges, kinetic, potential and total energy, in the order of their columns.
+    pub(super) fn of_intervals(&self) -> Vec<f64> {
+        let total = self.kinetic + self.potential.iter().sum::<f64>();
+        let values = self.charges.iter().copied().chain([self.kinetic]);
+        let values = values.chain(self.potential.iter().copied());
+        values.chain([total]).collect()
+    }
+}
+
+/// Turns values in the middle of the intervals that end at the rows into values at the rows; `last` holds those of the last one.
+pub(super) fn to_instants(times: &[f64], columns: &mut [Column], last: &[f64]) {
+    let end = times.len() - 1;
+    let length = |k: usize| times[k] - times[k - 1];
+    for (column, value) in columns.iter_mut().zip(last) {
+        for k in 1..end {
+            let (before, after) = (length(k), length(k + 1));
+            let sum = column.values[k] * after + column.values[k + 1] * before;
+            column.values[k] = sum / (before + after);
+        }
+        column.values[end] = *value;
+    }
+}
+
+/// Turns momenta as the interval before each row sees them into means of both intervals next to it, each weighted by the length of
+/// the other, so that a constant reaction cancels; `before` holds what the interval that ends at a row sees at the row before.
+pub(super) fn means(times: &[f64], columns: &mut [Column], before: &[Momenta], last: &State) {
+    let end = times.len() - 1;
+    for (i, column) in columns.iter_mut().enumerate() {
+        for k in 1..end {
+            let [earlier, later] = [times[k] - times[k - 1], times[k + 1] - times[k]];
+            let sum = column.values[k] * later + before[k + 1][i] * earlier;
+            column.values[k] = sum / (earlier + later);
+        }
+        column.values[end] = last.momenta[i];
+    }
+}
+
+/// Names and units of the columns, in the order of the values of a row.
+pub(super) fn columns(model: &Model, parts: &PartColumns) -> Vec<Column> {
+    let mut columns = Vec::new();
+    let mut add = |name: String, unit: &'static str| {
+        columns.push(Column {
+            name,
+            unit,
+            values: Vec::new(),
+        });
+    };
+    let system = &model.system;
+    for muscle in &system.muscles {
+        add(format!("{}_stretch", muscle.name), "");
+    }
+    let electrodes = model
+        .solids
+        .iter()
+        .flat_map(SolidBlock::immobile_electrodes);
+    for (block, electrode) in electrodes {
+        add(format!("{block}_{electrode}_charge"), "mC");
+    }
+    for voltage in model.variables.with(Role::Voltage) {
+        let name = voltage.name.replace('.', "_");
+        add(format!("{name}_charge"), "mC");
+    }
+    add("kinetic_energy".to_owned(), "N mm");
+    for term in &model.action.intervals.terms {
+        if term.kind() == TermKind::Potential {
+            for part in term.energy_parts() {
+                add(format!("{}_energy", part.replace(' ', "_")), "N mm");
+            }
+        }
+    }
+    add("total_energy".to_owned(), "N mm");
+    for (_, name) in works(model) {
+        add(name.to_owned(), "N mm");
+    }
+    for (name, unit) in [("linear_momentum", "N ms"), ("angular_momentum", "N mm ms")] {
+        for axis in ["x", "y", "z"] {
+            add(format!("{name}_{axis}"), unit);
+        }
+    }
+    add("constraint_violation".to_owned(), "");
+    for component in system.components.iter() {
+        for (quantity, unit) in component.columns() {
+            add(format!("{}_{quantity}", component.name()), unit);
+        }
+    }
+    for name in model.viscous_stretches() {
+        add(name, "");
+    }
+    for name in model.electrodes() {
+        add(name, "V");
+    }
+    columns.extend(parts.columns(model));
+    columns
+}
+
+/// Kinds of work that are done, each with the name of its sum.
+pub(super) fn works(model: &Model) -> impl Iterator<Item = (TermKind, &'static str)> {
+    let terms = &model.action.intervals.terms;
+    let has = |kind| terms.iter().any(|term| term.kind() == kind);
+    let all = [
+        (TermKind::Dissipation, "dissipated_energy"),
+        (TermKind::AppliedWork, "following_load_work"),
+    ];
+    all.into_iter().filter(move |(kind, _)| has(*kind))
 }

@@ -1,9 +1,9 @@
 //! Conversion between a stepper and the state from which it is resumed.
 
-use crate::dynamics::equations::Equations;
 use crate::dynamics::solving::Newton;
-use crate::dynamics::step_report::StepperReport;
 use crate::dynamics::step_state::StepState;
+use crate::dynamics::step_state::StepperReport;
+use crate::dynamics::stepper::Equations;
 use crate::dynamics::stepper::Steps;
 
 impl<E: Equations> Steps<E> {

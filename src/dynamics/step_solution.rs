@@ -1,13 +1,13 @@
 //! Solution of the linear systems of a step: by factors, or by an iteration, for which factors take over where it does not converge.
 
-use crate::dynamics::equations::Equations;
 use crate::dynamics::error::StepError;
 use crate::dynamics::step_matrix::StepMatrix;
+use crate::dynamics::stepper::Equations;
 use crate::dynamics::stepper::Steps;
 use crate::functional::Order;
 use crate::ipopt::Status;
 use crate::ipopt::interrupt::{self, TimeLimit};
-use crate::math::memory::available;
+use crate::math::join::available;
 use crate::model::Model;
 use std::time::Instant;
 

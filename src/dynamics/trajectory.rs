@@ -4,7 +4,7 @@ use nalgebra::Vector3;
 use std::collections::BTreeMap;
 
 use crate::dynamics::discrete_trajectory::DiscreteTrajectory;
-use crate::dynamics::drive::Inputs;
+use crate::dynamics::solving::Inputs;
 use crate::kinematics::Pose;
 use crate::model::system::{Attachment, Joint, JointKind, System};
 use crate::model::{Model, Time, nearest_turn};

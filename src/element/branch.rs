@@ -15,11 +15,11 @@
 //! ∂²W/∂x_i∂q_m = s { ∂r_i/∂q_m − ⅓ ∂θ/∂q_m g_i }            ∂²W/∂q_m∂q_n = ½ s ∂²θ/∂q_m∂q_n.
 //! ```
 
-use super::algebra::{Nine, Three, apply, apply_plain, dot, scale, sums, transpose};
 use super::branch_local::{COORDINATES, Output};
 use super::geometry::ElementGeometry;
-use super::kinematics::{Kinematics, load};
+use super::geometry::{Kinematics, load};
 use super::number::Points;
+use super::number::{Nine, Three, apply, apply_plain, dot, scale, sums, transpose};
 
 /// Quantities at the Gauss points that energy, gradient and tangent share.
 #[expect(non_snake_case, reason = "notation of the law")]

@@ -17,19 +17,15 @@
     reason = "nodes and components are the indices of the formulas"
 )]
 
-mod algebra;
 mod branch;
 mod branch_local;
-mod charged;
 mod dilatation;
 mod dispatch;
 mod dual;
 mod elastomer;
-mod field_point;
 mod fields;
 mod geometry;
 mod isochoric;
-mod kinematics;
 mod lanes;
 mod law;
 mod local;
@@ -38,17 +34,16 @@ mod number;
 mod state;
 mod variations;
 mod viscosity;
-mod viscous_local;
 
 pub use branch_local::{BranchLocal, COORDINATES};
 pub use dilatation::{Dilatation, second_derivatives_of_volume};
 pub use elastomer::Elastomer;
-pub use field_point::{FieldPoint, SpatialField};
 pub use fields::Fields;
+pub use fields::{FieldPoint, SpatialField};
 pub use geometry::{ElementGeometry, Inverted};
 pub use isochoric::{ElementLaw, IsochoricLaw};
 pub use law::{Dielectric, ElectricDerivatives, Field, Passive, Volume};
 pub use local::Local;
 pub use maxwell_spring::{MaxwellSpring, ViscousStrains, relaxed};
 pub use viscosity::Viscosity;
-pub use viscous_local::{ViscousContraction, ViscousLocal};
+pub use viscosity::{ViscousContraction, ViscousLocal};

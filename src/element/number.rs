@@ -3,6 +3,10 @@
 //! A formula of an element is written once over [`Points`]. Over [`Lanes`](super::lanes::Lanes) it is evaluated at all Gauss points side by
 //! side; over dual numbers of lanes, [`Dual`](super::dual::Dual), its result carries the derivative along a direction of its arguments.
 //! [`dispatch`](super::dispatch::dispatch()) chooses the widest vector unit of the machine at run time.
+//!
+//! Vectors and linear maps of space over the numbers of a formula.
+//!
+//! Written out, without `array::map`: a closure that is not inlined leaves the vector unit, and costs more than its work.
 
 use std::ops::{Add, Mul, Neg, Sub};
 
@@ -94,4 +98,103 @@ impl Real for f64 {
             Self::NAN
         }
     }
+}
+
+/// A vector of space.
+pub(super) type Three<N> = [N; 3];
+/// A linear map of space, by rows.
+pub(super) type Nine<N> = [[N; 3]; 3];
+
+/// a·b.
+#[inline(always)]
+pub(super) fn dot<N: Real>(a: Three<N>, b: Three<N>) -> N {
+    (a[0] * b[0])
+        .plus_product(a[1], b[1])
+        .plus_product(a[2], b[2])
+}
+
+/// a × b.
+#[inline(always)]
+pub(super) fn cross<N: Real>(a: Three<N>, b: Three<N>) -> Three<N> {
+    [
+        (a[1] * b[2]).minus_product(a[2], b[1]),
+        (a[2] * b[0]).minus_product(a[0], b[2]),
+        (a[0] * b[1]).minus_product(a[1], b[0]),
+    ]
+}
+
+/// c a.
+#[inline(always)]
+pub(super) fn scale<N: Real>(a: Three<N>, c: N) -> Three<N> {
+    [a[0] * c, a[1] * c, a[2] * c]
+}
+
+/// c M.
+#[inline(always)]
+pub(super) fn scale_all<N: Real>(m: &Nine<N>, c: N) -> Nine<N> {
+    [scale(m[0], c), scale(m[1], c), scale(m[2], c)]
+}
+
+/// M a.
+#[inline(always)]
+pub(super) fn apply<N: Real>(m: &Nine<N>, a: Three<N>) -> Three<N> {
+    [dot(m[0], a), dot(m[1], a), dot(m[2], a)]
+}
+
+/// Mᵀ.
+#[inline(always)]
+pub(super) fn transpose<N: Real>(m: &Nine<N>) -> Nine<N> {
+    [
+        [m[0][0], m[1][0], m[2][0]],
+        [m[0][1], m[1][1], m[2][1]],
+        [m[0][2], m[1][2], m[2][2]],
+    ]
+}
+
+/// M a of a vector of the reference configuration.
+#[inline(always)]
+pub(super) fn apply_plain<N: Points>(m: &Nine<N>, a: Three<N::Plain>) -> Three<N> {
+    [dot_plain(m[0], a), dot_plain(m[1], a), dot_plain(m[2], a)]
+}
+
+/// a·b with a vector of the reference configuration.
+#[inline(always)]
+pub(super) fn dot_plain<N: Points>(a: Three<N>, b: Three<N::Plain>) -> N {
+    a[0].times(b[0])
+        .plus_times(a[1], b[1])
+        .plus_times(a[2], b[2])
+}
+
+/// cof F, whose rows are cross products of the rows of F.
+#[inline(always)]
+pub(super) fn cofactor<N: Real>(f: &Nine<N>) -> Nine<N> {
+    [cross(f[1], f[2]), cross(f[2], f[0]), cross(f[0], f[1])]
+}
+
+/// The sums of a vector over the Gauss points.
+#[inline(always)]
+pub(super) fn sums<N: Points>(a: Three<N>) -> Three<N::Uniform> {
+    [a[0].sum(), a[1].sum(), a[2].sum()]
+}
+
+/// A B.
+#[inline(always)]
+pub(super) fn product<N: Real>(a: &Nine<N>, b: &Nine<N>) -> Nine<N> {
+    let b = transpose(b);
+    [apply(&b, a[0]), apply(&b, a[1]), apply(&b, a[2])]
+}
+
+/// A:B.
+#[inline(always)]
+pub(super) fn contracted<N: Real>(a: &Nine<N>, b: &Nine<N>) -> N {
+    dot(a[0], b[0]) + dot(a[1], b[1]) + dot(a[2], b[2])
+}
+
+/// ½ (A + Aᵀ).
+#[inline(always)]
+pub(super) fn symmetric<N: Real>(a: &Nine<N>) -> Nine<N> {
+    let xy = (a[0][1] + a[1][0]).scaled(0.5);
+    let yz = (a[1][2] + a[2][1]).scaled(0.5);
+    let zx = (a[2][0] + a[0][2]).scaled(0.5);
+    [[a[0][0], xy, zx], [xy, a[1][1], yz], [zx, yz, a[2][2]]]
 }

@@ -1,10 +1,10 @@
 //! A law and its state at the Gauss points, as the variations of the energy read them.
 
-use super::algebra::Three;
 use super::geometry::ElementGeometry;
 use super::isochoric::IsochoricLaw;
 use super::law::{Dielectric, Volume};
 use super::number::Points;
+use super::number::Three;
 
 /// A law and the state at which it is evaluated.
 pub(super) struct ElementState<'a, N: Points, const NODES: usize> {

@@ -17,16 +17,15 @@
 //!                      + ½ (g_i·g_j)(lᵀY + Yᵀl) + ½ l_j⊗Y_i + ½ Y_j⊗l_i }.
 //! ```
 
-use super::algebra::{
+use crate::element::dispatch::{Task, dispatch};
+use crate::element::geometry::ElementGeometry;
+use crate::element::geometry::{Kinematics, gradient_of, load};
+use crate::element::lanes::Lanes;
+use crate::element::number::{
     Nine, Three, apply, apply_plain, contracted, dot, product, scale, scale_all, sums, symmetric,
     transpose,
 };
-use super::dispatch::{Task, dispatch};
-use super::geometry::ElementGeometry;
-use super::kinematics::{Kinematics, gradient_of, load};
-use super::lanes::Lanes;
-use super::number::{Points, Real};
-use super::viscous_local::{ViscousContraction, ViscousLocal};
+use crate::element::number::{Points, Real};
 use crate::math::{Matrix, Vector};
 use pulp::Simd;
 
@@ -377,4 +376,52 @@ fn vector(a: [f64; 3]) -> Vector {
 #[inline(always)]
 fn matrix([a, b, c]: &Nine<f64>) -> Matrix {
     Matrix::new(a[0], a[1], a[2], b[0], b[1], b[2], c[0], c[1], c[2])
+}
+
+/// Viscous forces of one element and their derivatives.
+#[derive(Clone, Debug)]
+pub struct ViscousLocal<const NODES: usize = 8> {
+    /// f_i in N, which balance external forces as ∂W/∂x_i do: the virtual work on the nodes is −Σ δx_i·f_i.
+    pub forces: [Vector; NODES],
+    /// ∂f_i/∂x_j in N/mm, rows belong to i; not symmetric.
+    pub by_place: [[Matrix; NODES]; NODES],
+    /// ∂f_i/∂v_j in N ms/mm, rows belong to i; symmetric, both triangles are filled.
+    pub by_velocity: [[Matrix; NODES]; NODES],
+}
+
+/// s = Σ y_i·f_i(x, v) of one element for given y_i, and its derivatives; ∂²s/∂v∂v is zero.
+#[derive(Clone, Debug)]
+pub struct ViscousContraction<const NODES: usize = 8> {
+    /// s.
+    pub value: f64,
+    /// ∂s/∂x_i.
+    pub by_place: [Vector; NODES],
+    /// ∂s/∂v_i.
+    pub by_velocity: [Vector; NODES],
+    /// ∂²s/∂x_i∂x_j, rows belong to i; both triangles are filled.
+    pub place_place: [[Matrix; NODES]; NODES],
+    /// ∂²s/∂x_i∂v_j, rows belong to i; not symmetric.
+    pub place_velocity: [[Matrix; NODES]; NODES],
+}
+
+impl<const NODES: usize> Default for ViscousLocal<NODES> {
+    fn default() -> Self {
+        Self {
+            forces: [Vector::zeros(); NODES],
+            by_place: [[Matrix::zeros(); NODES]; NODES],
+            by_velocity: [[Matrix::zeros(); NODES]; NODES],
+        }
+    }
+}
+
+impl<const NODES: usize> Default for ViscousContraction<NODES> {
+    fn default() -> Self {
+        Self {
+            value: 0.0,
+            by_place: [Vector::zeros(); NODES],
+            by_velocity: [Vector::zeros(); NODES],
+            place_place: [[Matrix::zeros(); NODES]; NODES],
+            place_velocity: [[Matrix::zeros(); NODES]; NODES],
+        }
+    }
 }

@@ -1,19 +1,12 @@
 //! Energies and virtual works: pure formulas, without index, mesh or time.
 
 mod along_span;
-mod capacitance;
 mod charge;
 mod charge_limit;
 mod constraint;
-mod damper;
 mod elastic_law;
-mod gravity;
-mod joint_spring;
-mod joint_stops;
 mod kinetic;
 mod limit;
-mod load;
-mod maxwell;
 mod maxwell_damper;
 mod muscle;
 mod of_square;
@@ -21,36 +14,35 @@ mod one_sided;
 mod polynomial;
 mod span_tension;
 mod spring;
-mod tendon;
 mod viscosity;
 
 pub use along_span::AlongSpan;
-pub use capacitance::Capacitance;
+pub use charge::Capacitance;
 pub use charge::{FlowingCharge, GivenCharge};
 pub use charge_limit::{
     FlowingChargeField, GivenChargeField, MeanCharge, PotentialDrop, SourceCurrent, SourcePower,
     StoredEnergy, VoltageAcross,
 };
 pub use constraint::{Coincidence, Orthogonality};
-pub use damper::{AngularDamper, CoordinateDamper, LinearDamper};
 pub use elastic_law::{ElasticLaw, Elasticity, Fault, NeoHooke};
-pub use gravity::Gravity;
-pub use joint_spring::{CoordinateSpring, JointAngle, JointDisplacement};
-pub use joint_stops::CoordinateStops;
+pub use kinetic::Gravity;
+pub use kinetic::{DeadLoad, FollowingForce, SurfaceCharge};
 pub use kinetic::{KineticCoupling, KineticEnergy};
 pub use limit::{
     Angle, AngleStep, Multiple, OutsideBox, PeakExcess, PositionComponent, Projection,
     ProjectionStep, SquaredDistance, SquaredField,
 };
-pub use load::{DeadLoad, FollowingForce, SurfaceCharge};
-pub use maxwell::MaxwellCell;
+pub use maxwell_damper::MaxwellCell;
 pub use maxwell_damper::{DamperDerivatives, MaxwellDamper};
 pub use muscle::{DielectricCell, ElasticCell, SectionInertia};
 pub use of_square::OfSquare;
+pub use one_sided::Cable;
+pub use one_sided::CoordinateStops;
 pub use polynomial::Polynomial;
 pub use span_tension::SpanTension;
+pub use spring::{CoordinateSpring, JointAngle, JointDisplacement};
 pub use spring::{LinearSpring, SpanDamper};
-pub use tendon::Cable;
+pub use viscosity::{AngularDamper, CoordinateDamper, LinearDamper};
 pub use viscosity::{ViscousCell, ViscousTension};
 
 use crate::math::{Local, Number};

@@ -5,20 +5,16 @@
 //!   against them; `estimate`: an observer at work; `controller`: inputs from measured states, step by step.
 
 mod controller;
-mod estimate;
 mod held;
-mod lasting;
 mod law;
 mod observer;
-mod radius;
-mod riccati;
 
 pub use controller::Controller;
-pub use estimate::Estimate;
+pub use controller::Estimate;
+pub use held::spectral_radius;
+pub(crate) use held::symmetric;
+pub use held::{Costs, RiccatiStep, riccati_step};
 pub use held::{HeldGain, NotHeld, held_gain};
-pub use lasting::{Forced, Lasting};
 pub use law::{Integral, Law, LawInput, Measured, Memory, Point};
 pub use observer::{Filter, Observer, Reading};
-pub use radius::spectral_radius;
-pub(crate) use riccati::symmetric;
-pub use riccati::{Costs, RiccatiStep, riccati_step};
+pub use observer::{Forced, Lasting};

@@ -1,33 +1,33 @@
 //! Optimal control problems.
 
+use crate::control;
 use crate::control::problem::{
-    self, Duration, Guess, Hold, InCommon, Objective, OutcomeOf, PathConstraint, QuantityCost,
-    Solver, SoughtHold, Varied,
+    Ahead, Combined, Duration, Guess, Hold, InCommon, Objective, OutcomeOf, PathConstraint,
+    QuantityCost, Regulator, Solver, SoughtHold, Varied,
 };
-use crate::control::{Earlier, EarlierSolution};
+use crate::control::{Earlier, EarlierSolution, Motions, problem};
 use crate::interface::cost_checks::{check_costs, check_energies, check_limits, check_waypoints};
 use crate::interface::error::{Result, require, source};
-use crate::interface::handle::Handle;
-use crate::interface::input::Input;
-use crate::interface::optimum::Optimum;
+use crate::interface::handle::{Handle, Input};
+use crate::interface::motion::Optimum;
 use crate::interface::state::State;
 use crate::math::{Signal, shortest};
 use crate::model::components::Load;
 use crate::model::system::Source;
 use crate::model::{Parameter, System};
 use crate::nlp::Nlp;
-use crate::tasks::{self, SolveRequest};
-use crate::workflow::Iterate;
-use crate::workflow::memory::{self, Occasion};
+use crate::tasks;
+use crate::tasks::SolveRequest;
+use crate::workflow::memory::Occasion;
 use crate::workflow::optimum::SolveLimits;
-use crate::workflow::prepare::Counted;
 use crate::workflow::prepare_together::{
-    MotionAsked, PreparedTogether, prepare_together, program_motions,
+    Counted, MotionAsked, PreparedTogether, prepare_together, program_motions,
 };
+use crate::workflow::receding::Horizon;
 use crate::workflow::resolve::resolve;
+use crate::workflow::{Iterate, memory};
 use std::collections::BTreeMap;
-use std::ops::ControlFlow;
-use std::ops::RangeInclusive;
+use std::ops::{ControlFlow, RangeInclusive};
 
 /// An optimal control problem: voltages and loads that steer a system from rest to rest, or along a path.
 #[derive(Clone, Debug)]
@@ -352,5 +352,103 @@ impl Control {
         let absent: Vec<_> = problem::absent_loads(system, is_named).collect();
         given.extend(absent);
         Ok(given)
+    }
+}
+
+impl Control {
+    /// Solves the problem, for controllers that plan anew over a horizon of a number of its intervals, with the usual costs of deviations.
+    ///
+    /// # Errors
+    /// As of [`solve`](Self::solve); no optimum was found, nothing holds the goal, or the problem has something that is not offered.
+    pub fn horizon(&self, system: &System, intervals: usize) -> Result<Horizon> {
+        require(
+            intervals > 0,
+            "horizon",
+            || "0 intervals".to_owned(),
+            "1 or more",
+        )?;
+        require(
+            intervals <= Ahead::MOST_INTERVALS,
+            "horizon",
+            || format!("{intervals} intervals"),
+            "no more than 10000",
+        )?;
+        let system = system.checked()?;
+        let ahead = Ahead {
+            control: self.resolve(&system)?,
+            regulator: Regulator::default(),
+            system,
+            intervals,
+        };
+        Ok(Horizon::solved(&ahead).map_err(|error| error.at("horizon", ""))?)
+    }
+}
+
+/// Motions that are optimised together: parameters of the same names are one, and the objective is the sum of theirs, or the [greatest](Self::worst).
+#[derive(Clone, Debug, Default)]
+pub struct Together<'a> {
+    motions: Vec<(&'a System, &'a Control)>,
+    shared: Vec<Input>,
+    combined: Combined,
+}
+
+impl<'a> Together<'a> {
+    /// No motion yet.
+    pub fn new() -> Self {
+        Self::default()
+    }
+
+    /// Adds a motion of a system.
+    pub fn motion(mut self, system: &'a System, control: &'a Control) -> Self {
+        self.motions.push((system, control));
+        self
+    }
+
+    /// Seeks the input of a part once for all motions, which have then one given duration and one number of intervals.
+    pub fn shared_input(mut self, input: impl Into<Input>) -> Self {
+        self.shared.push(input.into());
+        self
+    }
+
+    /// Minimises the greatest of the objectives in place of their sum.
+    pub fn worst(self) -> Self {
+        let combined = Combined::Worst;
+        Self { combined, ..self }
+    }
+
+    /// Solves; each motion is verified as one by itself, and solved again on a finer grid where a simulation under its inputs does not reproduce it.
+    ///
+    /// # Errors
+    /// As of [`Control::solve`], or something cannot be the same in all motions. A problem without a solution is no error: see
+    /// [`Optimum::is_solved`] of each.
+    pub fn solve(&self) -> Result<Vec<Optimum>> {
+        let found = || "none".to_owned();
+        require(!self.motions.is_empty(), "motions", found, "one or more")?;
+        let mut list = Vec::new();
+        for (number, (system, control)) in self.motions.iter().enumerate() {
+            let system = system.checked()?;
+            list.push(control::Motion {
+                name: format!("motion{}", number + 1),
+                control: control.resolve(&system)?,
+                system,
+            });
+        }
+        let sources = list[0].system.sources();
+        let name = |input: &Input| {
+            let found = input.source(&list[0].system);
+            let words = || format!("{input:?}");
+            let expected = "a muscle, driven electrode or load of all systems";
+            require(found.is_some(), "shared inputs", words, expected)?;
+            Ok(sources[found.unwrap_or_default()].name.clone())
+        };
+        let shared_inputs = self.shared.iter().map(name).collect::<Result<_>>()?;
+        let motions = Motions {
+            list,
+            shared_inputs,
+            combined: self.combined,
+        };
+        let go_on = &mut |_: usize, _: &Iterate<'_>| ControlFlow::Continue(());
+        let found = tasks::solve_motions(&motions, SolveRequest::default(), go_on)?;
+        Ok(found.list.into_iter().map(Optimum::from_result).collect())
     }
 }

@@ -2,7 +2,7 @@
 
 use crate::dynamics::{EquilibriumError, StepError};
 use crate::identify::IdentifyError;
-use crate::interface::input::Input;
+use crate::interface::handle::Input;
 use crate::interface::motion::Motion;
 use crate::model::{System, SystemError};
 use crate::workflow::WorkflowError;

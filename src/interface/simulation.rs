@@ -5,7 +5,7 @@ use crate::dynamics::trajectory::Trajectory;
 use crate::dynamics::{DiscreteTrajectory, Integrator, Newton, Solving};
 use crate::interface::error::{Error, Result, require, source};
 use crate::interface::handle::Handle;
-use crate::interface::input::Input;
+use crate::interface::handle::Input;
 use crate::interface::motion::Motion;
 use crate::interface::state::State;
 use crate::ipopt::interrupt;

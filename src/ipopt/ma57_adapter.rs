@@ -15,7 +15,7 @@ use std::sync::OnceLock;
 
 use crate::ipopt::ffi;
 use crate::ipopt::loaded::Loaded;
-use crate::ipopt::no_stages::NoStages;
+use crate::ipopt::option_value::NoStages;
 use crate::ipopt::session::with_current;
 
 /// Numbers in `info`, in `icntl` and in `cntl`.

@@ -4,22 +4,15 @@
 //! more, one runs at a time in a process and a second call waits; an observer or an [`Nlp`] must not call [`solve`] itself then.
 
 mod declarations;
-mod error;
 mod evaluation;
 mod ffi;
 pub mod interrupt;
 mod iterate;
-mod known_bounds;
-mod linear_report;
-mod linear_solver;
 mod loaded;
 mod ma57_adapter;
-mod no_stages;
 mod option_value;
 mod options;
-mod record;
 mod session;
-mod signals;
 mod solution;
 mod solver;
 mod squares;
@@ -30,19 +23,19 @@ use std::ops::ControlFlow;
 
 use crate::nlp::Nlp;
 
-pub use error::IpoptError;
 pub use iterate::{Before, Reached};
-pub use linear_report::{LinearReport, StagesReport};
-pub use linear_solver::LinearSolver;
 #[doc(hidden)]
 pub use ma57_adapter::functions_of_ma57;
-pub use no_stages::{NoStages, VERSION};
 pub use option_value::OptionValue;
+pub use option_value::{NoStages, VERSION};
+pub use options::LinearSolver;
 pub use options::{MUMPS_ORDERING, Options, Start};
 pub use solution::{Evaluations, Iteration, Multipliers, Seconds, SolverResult, StartingPoint};
+pub use solver::IpoptError;
 pub use solver::Solver;
 pub(crate) use squares::{InSquares, Squares};
 pub use status::Status;
+pub use status::{LinearReport, StagesReport};
 
 /// Solves `nlp` from `start`, once: see [`Solver::solve`].
 ///

@@ -1,6 +1,7 @@
 //! Values of Ipopt's options.
 
 use std::fmt;
+use thiserror::Error;
 
 /// A value of an Ipopt option.
 #[derive(Clone, Debug, PartialEq)]
@@ -21,4 +22,18 @@ impl fmt::Display for OptionValue {
             Self::Text(value) => write!(f, "\"{value}\""),
         }
     }
+}
+
+/// Version of the Ipopt that the program was built with.
+pub const VERSION: &str = env!("PROBOSCIS_IPOPT");
+
+/// Reason why this Ipopt does not take the linear solver along the horizon.
+#[derive(Clone, Copy, Debug, Error, PartialEq, Eq)]
+pub enum NoStages {
+    /// Nothing can be in the place of MA57.
+    #[error("this Ipopt ({VERSION}) was built to load no linear solvers")]
+    WithoutMa57,
+    /// Nothing takes the functions.
+    #[error("this Ipopt ({VERSION}) shows no function that takes a linear solver")]
+    WithoutSetter,
 }

@@ -2,7 +2,7 @@
 
 use std::ops::AddAssign;
 
-use crate::ipopt::linear_report::LinearReport;
+use crate::ipopt::status::LinearReport;
 use crate::ipopt::status::Status;
 
 /// Multipliers of constraints and bounds, in the sign convention of Ipopt:

@@ -1,24 +1,28 @@
 //! Solves of one program, one after the other.
+//!
+//! The bounds that Ipopt knows.
+//!
+//! An equation g = b is passed to it as g − b = 0, so that b may move while Ipopt keeps what it knows. Given b, Ipopt would subtract it itself,
+//! with the same bits.
 
-use std::fmt;
-use std::mem;
-use std::ops::ControlFlow;
-
-use crate::ipopt::error::IpoptError;
 use crate::ipopt::evaluation::{Asked, Evaluator, Structures};
 use crate::ipopt::ffi::Problem;
-use crate::ipopt::interrupt;
 use crate::ipopt::iterate::Reached;
-use crate::ipopt::known_bounds::KnownBounds;
-use crate::ipopt::options::{self, Options, Start};
-use crate::ipopt::record::Record;
+use crate::ipopt::iterate::Record;
+use crate::ipopt::option_value::NoStages;
+use crate::ipopt::option_value::OptionValue;
+use crate::ipopt::options::{Options, Start};
 use crate::ipopt::session::Session;
 use crate::ipopt::solution::{Iteration, SolverResult, StartingPoint};
 use crate::ipopt::squares::{InSquares, Squares};
 use crate::ipopt::status::Status;
 use crate::ipopt::warm_start_centring::centre;
-use crate::nlp::{Entries, Nlp};
+use crate::ipopt::{interrupt, options};
+use crate::nlp::{Bounds, Entries, Nlp};
 use crate::sparse::mumps;
+use std::ops::ControlFlow;
+use std::{fmt, mem};
+use thiserror::Error;
 
 /// A program that is solved again and again.
 ///
@@ -352,4 +356,107 @@ fn check_structure(entries: &Entries, rows: usize, cols: usize, matrix: &str) {
         below(&entries.rows, rows) && below(&entries.cols, cols),
         "{matrix} of {rows} rows and {cols} columns"
     );
+}
+
+/// Reason why Ipopt could not be called.
+#[derive(Clone, Debug, Error, PartialEq)]
+pub enum IpoptError {
+    /// Ipopt does not know the option, or the value is of another kind or out of range.
+    ///
+    /// Ipopt then writes a line of its own to standard output, where it is silent otherwise.
+    #[error("Ipopt rejects the option {name} = {value}{}", hint(.nearest.as_deref()))]
+    OptionRejected {
+        /// Name of the option.
+        name: String,
+        /// The value given.
+        value: OptionValue,
+        /// The known option with the most similar name; none if the name is known, so that the value must be wrong.
+        nearest: Option<String>,
+    },
+    /// This Ipopt takes no linear solver but those that it was built with.
+    #[error("{0}: write \"auto\" or \"mumps\"")]
+    NoStages(#[from] NoStages),
+    /// Ipopt takes no problem without variables, nor constraints without any entry in their Jacobian.
+    #[error(
+        "Ipopt cannot work on {variables} variables and {constraints} constraints with {entries} entries in their Jacobian"
+    )]
+    ProblemNotCreated {
+        /// Number of variables.
+        variables: usize,
+        /// Number of constraints.
+        constraints: usize,
+        /// Number of entries of the Jacobian.
+        entries: usize,
+    },
+    /// OpenBLAS, which MUMPS calls, would wait for memory for ever.
+    #[error("{}", mumps::NO_ROOM)]
+    NoRoom,
+    /// MPI, which a parallel MUMPS needs, would end the process.
+    #[error("{}", mumps::NO_THREADS)]
+    NoThreads,
+}
+
+fn hint(nearest: Option<&str>) -> String {
+    nearest.map_or_else(String::new, |nearest| format!("; did you mean {nearest}?"))
+}
+
+/// Bounds as Ipopt knows them.
+#[derive(Debug, Default)]
+pub(super) struct KnownBounds {
+    pub(super) variables: Bounds,
+    /// Of the constraints less their right-hand sides.
+    pub(super) constraints: Bounds,
+    /// b of an equation, 0 of an inequality.
+    pub(super) right: Vec<f64>,
+}
+
+impl KnownBounds {
+    /// Takes the bounds of a program, and returns true if Ipopt needs others than before.
+    pub(super) fn take(&mut self, variables: &Bounds, constraints: &Bounds) -> bool {
+        let Bounds { lower, upper } = constraints;
+        let is_equation = |low: f64, high: f64| low == high && low.is_finite();
+        let rights = lower
+            .iter()
+            .zip(upper)
+            .map(|(&low, &high)| match is_equation(low, high) {
+                true => low,
+                false => 0.0,
+            });
+        self.right.clear();
+        self.right.extend(rights);
+        let known = &mut self.constraints;
+        let are_known = self.variables == *variables
+            && known
+                .lower
+                .iter()
+                .copied()
+                .eq(differences(lower, &self.right))
+            && known
+                .upper
+                .iter()
+                .copied()
+                .eq(differences(upper, &self.right));
+        if !are_known {
+            self.variables.clone_from(variables);
+            for (known, bounds) in [(&mut known.lower, lower), (&mut known.upper, upper)] {
+                known.clear();
+                known.extend(differences(bounds, &self.right));
+            }
+        }
+        !are_known
+    }
+
+    /// Returns true if there are as many equations as free variables.
+    pub(super) fn is_square(&self) -> bool {
+        let equal = |bounds: &Bounds| {
+            let pairs = bounds.lower.iter().zip(&bounds.upper);
+            pairs.filter(|(lower, upper)| lower == upper).count()
+        };
+        self.variables.lower.len() - equal(&self.variables) == equal(&self.constraints)
+    }
+}
+
+/// Bounds less the right-hand sides.
+fn differences<'a>(bounds: &'a [f64], right: &'a [f64]) -> impl Iterator<Item = f64> + 'a {
+    bounds.iter().zip(right).map(|(bound, right)| bound - right)
 }

@@ -5,7 +5,7 @@
 
 use super::eliminable_groups::Group;
 use super::graph::Graph;
-use super::progress::Progress;
+use super::graph::Progress;
 use crate::math::Stopped;
 
 const NONE: u32 = u32::MAX;

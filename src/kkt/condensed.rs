@@ -10,22 +10,23 @@
 //! and by Haynsworth's law the inertia is that of R with one negative and one positive eigenvalue for each equation. Where equations have a
 //! diagonal E and states no curvature of their own, `s = s₀ + S w − A_D⁻¹ E y` and `y = A_D⁻ᵀ (r_s − W w)`: R has `Wᵀ A_D⁻¹ E A_D⁻ᵀ W` in addition, with W
 //! the rows of `H S + Kᵀ` of the states determined.
+//!
+//! Work in two halves, on two threads where it is long.
+//!
+//! The halves depend on the system alone, so that factors are the same for any number of threads.
 
-use std::ops::Range;
-
+use crate::kkt::block_lu::{BlockLu, Room};
+use crate::kkt::condense::Condensation;
+use crate::kkt::envelope::{Block, Item};
+use crate::kkt::graph::Progress;
+use crate::kkt::inertia::Inertia;
+use crate::kkt::numeric::{Factors, Outcome};
+use crate::kkt::pivot::Rules;
+use crate::kkt::reduce::{Reduce, Weights};
+use crate::kkt::update::Product;
+use crate::math::{Stopped, join_if};
 use pulp::Arch;
-
-use super::block::{Block, Item};
-use super::block_lu::{BlockLu, Room};
-use super::condense::Condensation;
-use super::inertia::Inertia;
-use super::numeric::{Factors, Outcome};
-use super::pivot::Rules;
-use super::products::Product;
-use super::progress::Progress;
-use super::reduce::{Reduce, Weights};
-use super::two_threads::{halves, middle};
-use crate::math::Stopped;
+use std::ops::Range;
 
 /// Greatest response of a state against the greatest direct one. Beyond, what is left of R are errors of rounding;
 /// free motions of a thousand stages stay below.
@@ -312,4 +313,26 @@ impl Condensed {
 fn of_rows<'a>(items: &'a [Item], rows: &Range<usize>) -> &'a [Item] {
     let before = |row: usize| items.partition_point(|item| (item.row as usize) < row);
     &items[before(rows.start)..before(rows.end)]
+}
+
+/// Multiplications below which a second core is not worth being woken: some milliseconds.
+const MUCH: usize = 1 << 23;
+
+/// Does both halves of this number of multiplications.
+pub(super) fn halves<A: Send, B: Send>(
+    multiplications: usize,
+    a: impl FnOnce() -> A + Send,
+    b: impl FnOnce() -> B + Send,
+) -> (A, B) {
+    join_if(multiplications >= MUCH, a, b)
+}
+
+/// Returns the number of items of the first half, of items with these costs.
+pub(super) fn middle(costs: impl Iterator<Item = f64> + Clone) -> usize {
+    let half = 0.5 * costs.clone().sum::<f64>();
+    let sums = costs.scan(0.0, |sum, cost| {
+        *sum += cost;
+        Some(*sum)
+    });
+    sums.take_while(|sum| *sum <= half).count()
 }

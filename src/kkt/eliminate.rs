@@ -6,8 +6,8 @@
 use pulp::{Simd, WithSimd};
 
 use super::dense::Dense;
+use super::graph::Progress;
 use super::pivot::{Pivot, Rules};
-use super::progress::Progress;
 use super::update::{Packed, Panel, update};
 use crate::math::Stopped;
 
@@ -135,8 +135,8 @@ impl Eliminate<'_, '_, '_> {
 #[cfg(test)]
 mod tests {
     use super::{Count, Dense, Eliminate, Rules, Workspace};
+    use crate::kkt::graph::Progress;
     use crate::kkt::lanes::padded;
-    use crate::kkt::progress::Progress;
     use crate::math::Random;
     use nalgebra::DMatrix;
     use pulp::Arch;

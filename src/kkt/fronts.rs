@@ -3,8 +3,8 @@
 use std::ops::Range;
 
 use super::graph::Graph;
+use super::graph::Progress;
 use super::order::{self, Unknown};
-use super::progress::Progress;
 use super::tree::{self, Node};
 use crate::math::Stopped;
 

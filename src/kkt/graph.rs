@@ -1,7 +1,6 @@
 //! The graph of a symmetric matrix: the pairs of unknowns that share an entry.
 
-use super::progress::Progress;
-use crate::math::Stopped;
+use crate::math::{IsOver, Stopped};
 
 /// Neighbours of each unknown in ascending order, itself left out.
 #[derive(Clone, Debug)]
@@ -90,5 +89,42 @@ impl Graph {
     /// Returns the offsets of the neighbours of each unknown, with the end of the last, and all neighbours.
     pub(super) fn lists(&self) -> (&[u32], &[u32]) {
         (&self.starts, &self.neighbours)
+    }
+}
+
+/// Multiplications between two questions, or numbers read: some milliseconds at most, and more than a small system takes.
+const BETWEEN: usize = 1 << 22;
+
+/// Asks for a stop: at the beginning, then after so much work that a question costs nothing against it.
+pub(super) struct Progress<'a> {
+    is_over: IsOver<'a>,
+    /// Multiplications since the last question.
+    since: usize,
+}
+
+impl<'a> Progress<'a> {
+    pub(super) fn new(is_over: IsOver<'a>) -> Self {
+        Self {
+            is_over,
+            since: BETWEEN,
+        }
+    }
+
+    /// Announces the number of multiplications that come next, or of numbers to be read.
+    pub(super) fn add(&mut self, multiplications: usize) -> Result<(), Stopped> {
+        if self.since >= BETWEEN {
+            self.since = 0;
+            if (self.is_over)() {
+                return Err(Stopped);
+            }
+        }
+        self.since += multiplications;
+        Ok(())
+    }
+
+    /// Progress of each half of the next work, which are done in parallel.
+    pub(super) fn halves(&self) -> [Self; 2] {
+        let Self { is_over, since } = *self;
+        [0, 1].map(|_| Self { is_over, since })
     }
 }

@@ -26,7 +26,6 @@
 
 mod accuracy_check;
 mod bandwidth_order;
-mod block;
 mod block_lu;
 mod block_solve;
 mod condense;
@@ -42,21 +41,14 @@ mod lanes;
 mod numeric;
 mod order;
 mod pivot;
-mod pivot_strategy;
-mod plan;
-mod products;
-mod progress;
 mod reduce;
-mod scales;
-mod solve;
 mod solver;
 mod substitute;
 mod tree;
-mod two_threads;
 mod update;
 
 pub use crate::math::Stopped;
+pub use condense::Plan;
 pub use inertia::Inertia;
 pub use order::Unknown;
-pub use plan::Plan;
 pub use solver::{Solver, Statistics};

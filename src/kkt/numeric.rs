@@ -5,10 +5,10 @@ use pulp::Arch;
 use super::dense::Dense;
 use super::eliminate::{Count, Eliminate, Workspace};
 use super::fronts::{Front, Fronts};
+use super::graph::Progress;
 use super::inertia::Inertia;
 use super::lanes::padded;
 use super::pivot::Rules;
-use super::progress::Progress;
 use crate::math::Stopped;
 
 /// Rows of a leaf of one column that is eliminated without a front.

@@ -5,10 +5,10 @@ use faer::linalg::matmul::matmul;
 use faer::{Accum, MatMut, MatRef, Par};
 use pulp::Arch;
 
-use super::block::Block;
 use super::block_lu::BlockLu;
-use super::products::Curvature;
-use super::progress::Progress;
+use super::envelope::Block;
+use super::graph::Progress;
+use super::update::Curvature;
 use crate::math::Stopped;
 
 /// Blocks one behind the other, whose responses are known.

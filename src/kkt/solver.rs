@@ -8,16 +8,19 @@
 //!   not bear, or that grows along the horizon, is factored as it is.
 //! * Long work asks now and then whether it is to stop; there are no factors then.
 //! * Zero pivots are counted in an equilibrated matrix under the strictest rule.
+//!
+//! Equilibration: factors of rows and columns that bring the largest entry of each near one (Ruiz, 2001).
+//!
+//! They are powers of two, so that scaling does not round.
 
-use super::accuracy_check::Trial;
-use super::condensed::Condensed;
-use super::inertia::Inertia;
-use super::numeric::{Factors, Outcome};
-use super::pivot_strategy::PivotStrategy;
-use super::plan::Plan;
-use super::progress::Progress;
-use super::scales::Scales;
-use super::solve::solve;
+use crate::kkt::accuracy_check::Trial;
+use crate::kkt::condense::Plan;
+use crate::kkt::condensed::Condensed;
+use crate::kkt::graph::Progress;
+use crate::kkt::inertia::Inertia;
+use crate::kkt::numeric::{Factors, Outcome};
+use crate::kkt::pivot::Rules;
+use crate::kkt::substitute::solve;
 use crate::math::{IsOver, Stopped};
 
 /// Delays, as a part of the unknowns, that call for scales.
@@ -394,4 +397,95 @@ fn begin(plan: &Plan) -> PivotStrategy {
         true => PivotStrategy::Scaled,
         false => PivotStrategy::Plain,
     }
+}
+
+/// Threshold of pivots for each [`PivotStrategy`].
+const THRESHOLDS: [f64; 5] = [0.1, 1e-8, 1e-4, 1e-2, 0.1];
+/// Largest entry of a column that counts as zero: of a matrix as it is, and of an equilibrated one.
+const ZEROS: [f64; 2] = [1e-20, 1e-14];
+
+/// Strategy of a factorisation: condensed, of the matrix as it is, or equilibrated and under stricter and stricter rules for pivots.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, PartialOrd, Ord)]
+pub(super) enum PivotStrategy {
+    Condensed,
+    #[default]
+    Plain,
+    Scaled,
+    Careful,
+    Strict,
+}
+
+impl PivotStrategy {
+    /// Returns the next stricter strategy.
+    pub(super) const fn stricter(self) -> Self {
+        match self {
+            Self::Condensed | Self::Plain => Self::Scaled,
+            Self::Scaled => Self::Careful,
+            Self::Careful | Self::Strict => Self::Strict,
+        }
+    }
+
+    /// Returns the rules by which pivots are accepted.
+    pub(super) fn rules(self) -> Rules {
+        Rules {
+            threshold: THRESHOLDS[self as usize],
+            zero: ZEROS[usize::from(self != Self::Plain)],
+        }
+    }
+}
+
+/// Sweeps; one is not enough for stiff systems, more hardly change anything.
+const SWEEPS: usize = 3;
+
+/// Factors of the unknowns.
+#[derive(Clone, Debug, Default)]
+pub(super) struct Scales {
+    factors: Vec<f64>,
+    largest: Vec<f64>,
+}
+
+impl Scales {
+    /// Finds the factors of a matrix.
+    pub(super) fn find(&mut self, order: usize, (rows, cols): (&[u32], &[u32]), entries: &[f64]) {
+        self.factors.clear();
+        self.factors.resize(order, 1.0);
+        self.largest.resize(order, 0.0);
+        for _ in 0..SWEEPS {
+            self.largest.fill(0.0);
+            for ((&row, &col), entry) in rows.iter().zip(cols).zip(entries) {
+                let (row, col) = (row as usize, col as usize);
+                let entry = (entry * self.factors[row] * self.factors[col]).abs();
+                self.largest[row] = self.largest[row].max(entry);
+                self.largest[col] = self.largest[col].max(entry);
+            }
+            for (factor, &largest) in self.factors.iter_mut().zip(&self.largest) {
+                if largest > 0.0 {
+                    *factor *= inverse_root(largest);
+                }
+            }
+        }
+    }
+
+    /// The scaled entries.
+    pub(super) fn scale(&self, (rows, cols): (&[u32], &[u32]), entries: &[f64], to: &mut Vec<f64>) {
+        to.clear();
+        let places = rows.iter().zip(cols).zip(entries);
+        to.extend(places.map(|((&row, &col), entry)| {
+            entry * self.factors[row as usize] * self.factors[col as usize]
+        }));
+    }
+
+    /// Multiplies a right-hand side or a solution.
+    pub(super) fn apply(&self, x: &mut [f64]) {
+        for (x, factor) in x.iter_mut().zip(&self.factors) {
+            *x *= factor;
+        }
+    }
+}
+
+/// The power of two next to `1/√x`, for x > 0.
+fn inverse_root(x: f64) -> f64 {
+    let exponent = ((x.to_bits() >> 52) & 0x7ff) as i64 - 1023;
+    let half = (exponent + (exponent & 1)) / 2;
+    f64::from_bits(((1023 - half) as u64) << 52)
 }

@@ -4,8 +4,8 @@
 //! of its parent where that stores no further zeros, or few of them (amalgamation of Duff and Reid, 1983).
 
 use super::graph::Graph;
+use super::graph::Progress;
 use super::order::Elimination;
-use super::progress::Progress;
 use crate::math::Stopped;
 
 /// Nodes with fewer columns than this are joined as long as the zeros stay below its square.

@@ -1,6 +1,6 @@
 //! Derivatives of one element, read block by block, whatever its arity.
 
-use crate::math::{Jet, Number};
+use crate::math::{Jet, Matrix, Number};
 use nalgebra::{Matrix3, SMatrix, SVector, Vector3};
 
 /// First and second derivatives of a scalar E of one element by its arguments: vectors x_i, then scalars s.
@@ -113,5 +113,35 @@ impl<T: Number, const M: usize, const ORDER: usize> Local<T> for Jet<M, ORDER, T
     #[inline(always)]
     fn along<const NV: usize>(&self) -> impl Derivatives<T> {
         OfJet::<T, M, NV>(&self.gradient_w, &self.hessian_w)
+    }
+}
+
+/// A bound of the largest eigenvalue of a symmetric matrix, which two equal lower ones attain: its mean and √(2/3) times the norm of the rest.
+pub fn largest_eigenvalue_bound(a: &Matrix) -> f64 {
+    let mean = a.trace() / 3.0;
+    let rest = a - Matrix::from_diagonal_element(mean);
+    mean + (2.0_f64 / 3.0).sqrt() * rest.norm()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::largest_eigenvalue_bound;
+    use crate::math::Matrix;
+    use nalgebra::SymmetricEigen;
+
+    #[test]
+    fn no_eigenvalue_is_beyond_the_bound() {
+        let mut tight = 0;
+        for case in 0..200 {
+            let f = Matrix::from_fn(|i, j| (1.7 * (9 * case + 3 * i + j) as f64).sin());
+            let c = f.transpose() * f;
+            let largest = SymmetricEigen::new(c).eigenvalues.max();
+            let bound = largest_eigenvalue_bound(&c);
+            assert!(largest > 0.1 && bound >= largest * (1.0 - 1e-14), "{c}");
+            tight += usize::from(bound < 1.1 * largest);
+        }
+        assert!(tight > 20, "{tight}");
+        let two_equal = Matrix::from_diagonal(&[0.3, 2.5, 0.3].into());
+        assert!((largest_eigenvalue_bound(&two_equal) - 2.5).abs() < 1e-15);
     }
 }

@@ -77,3 +77,19 @@ mod tests {
         assert!(alone > 100 && together > 100, "{alone} {together}");
     }
 }
+
+/// The work has no result, because it was time to stop.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, thiserror::Error)]
+#[error("stopped before the end")]
+pub struct Stopped;
+
+/// Callback that returns true when work is to stop; called on any thread.
+pub type IsOver<'a> = &'a (dyn Fn() -> bool + Sync);
+
+/// A number of which large meshes have tens of millions.
+///
+/// # Panics
+/// It is too large for that.
+pub(crate) fn compact_index(i: usize) -> u32 {
+    u32::try_from(i).expect("entries can be counted")
+}

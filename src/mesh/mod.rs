@@ -3,15 +3,12 @@
 //! Meshes come from planes ([`grid`]) or from a file ([`gmsh`]); [`Mesh::check`] says whether elements can be integrated.
 //! [`triangulated`]: surfaces of triangles; [`enclosed`]: solids within them.
 
-mod box_grid;
 pub mod enclosed;
 pub mod error;
-mod geometry;
+pub mod geometry;
 pub mod gmsh;
 pub mod grid;
 pub mod quality;
-mod surface;
-pub mod topology;
 pub mod triangulated;
 
 use nalgebra::Vector3;

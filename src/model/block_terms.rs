@@ -5,12 +5,12 @@ use crate::energy::{NeoHooke, Polynomial};
 use crate::functional::ViscousElement;
 use crate::model::constant::MaterialConstant;
 use crate::model::internal::Internals;
-use crate::model::members::{Member, OfKind};
 use crate::model::solid_block::SolidBlock;
 use crate::model::solids::Solids;
 use crate::model::sought::Read;
 use crate::model::sought_elements::ElementOf;
 use crate::model::terms::Terms;
+use crate::model::terms::{Member, OfKind};
 
 const INERTIA: &str = "block inertia";
 /// Elasticity and electroelasticity.

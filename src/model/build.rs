@@ -1,32 +1,39 @@
 //! Construction of the model of a system: presolve, coordinates, terms and constraints, measures.
 
 use crate::coordinates::{CoordinateMap, Reduced};
-use crate::functional::{Functional, Term};
+use crate::energy::{CoordinateSpring, CoordinateStops, Polynomial};
+use crate::functional::{Element, Functional, Law, Term};
 use crate::kinematics::{MaterialVector, Pose, Vectors};
+use crate::math::{Matrix, Number};
+use crate::mesh::grid::Grid;
 use crate::model::analysis::{Analysis, Coordinates};
-use crate::model::components::Load;
-use crate::model::components::{body, circuit, electrode_circuit, muscle};
+use crate::model::components::{Load, body, circuit, electrode_circuit, muscle};
+use crate::model::constant::Constant;
 use crate::model::error::ModelError;
 use crate::model::graph::Graph;
 use crate::model::internal::Internals;
-use crate::model::interval_variables::interval_variables;
-use crate::model::joints::JointReading;
+use crate::model::joints::{JointReading, triad};
 use crate::model::loops::Loops;
-use crate::model::measures::{self, Measures};
+use crate::model::measures::Measures;
 use crate::model::model::{Model, length};
 use crate::model::named::Named;
 use crate::model::no_terms::{carriers, no_terms};
+use crate::model::plan::rank;
 use crate::model::plan::{LeftOut, Present};
-use crate::model::presolved::Presolved;
+use crate::model::presolved::{Presolved, clamp};
 use crate::model::quantity::Quantity;
 use crate::model::solids::{Circuits, Solids};
 use crate::model::sought::Sought;
-use crate::model::system::{Attachment, Body, Marker, Muscle, System};
-use crate::model::term_order::rank;
+use crate::model::system::{
+    Attachment, Body, Discretisation, Electrode, Fidelity, Glue, JointSpring, JointStops, Marker,
+    Muscle, Potential, Solid, Source, System,
+};
+use crate::model::terms::{Terms, mid};
 use crate::model::variables::{Role, Size, Time, Variable, Variables};
 use crate::model::{
-    blocks, constraints, dampers, field_extent, joint_springs, loads, plan, prescribed, tree_drifts,
+    constraints, field_extent, joint_constraints, loads, measures, plan, prescribed, tree_drifts,
 };
+use nalgebra::Vector3;
 use std::collections::BTreeSet;
 use std::sync::Arc;
 
@@ -72,7 +79,7 @@ impl Model {
     ) -> Result<Self, ModelError> {
         let inputs = acting(&system, &presolved, &analysis);
         let reached = reached(&system, &analysis, &inputs);
-        let solids = blocks::blocks(&mut presolved);
+        let solids = blocks(&mut presolved);
         let rest = &presolved.system;
         let coordinates = Self::choose(rest, analysis.coordinates)?;
         let (graph, reference) = (Graph::new(rest), poses(rest));
@@ -280,8 +287,13 @@ impl Construction<'_> {
             Some(_) => "nothing that moves has a mass",
         };
         terms.without(plan::GRAVITY, no_weight);
-        dampers::build(self.presolved, self.reference, self.coordinates, &mut terms);
-        joint_springs::build(self.presolved, self.internals, &mut terms);
+        joint_constraints::build_dampers(
+            self.presolved,
+            self.reference,
+            self.coordinates,
+            &mut terms,
+        );
+        add_joint_springs(self.presolved, self.internals, &mut terms);
         loads::build(
             system,
             (self.presolved, self.internals, self.blocks),
@@ -381,5 +393,167 @@ impl Construction<'_> {
         multipliers
             .into_iter()
             .for_each(|name| _ = variables.add(multiplier(name)));
+    }
+}
+
+/// Voltages, loads and parameters, the first scalars of an interval.
+pub(super) fn interval_variables(
+    inputs: &[usize],
+    sources: &[Source],
+    analysis: &Analysis,
+) -> Variables {
+    let mut variables = Variables::default();
+    for &source in inputs {
+        let Source { name, kind, .. } = &sources[source];
+        variables.add(Variable::input(source, *kind, name.clone()));
+    }
+    for parameter in &analysis.parameters {
+        variables.add(Variable::parameter(parameter.name.clone()));
+    }
+    variables
+}
+
+const ELASTICITY: &str = "joint elasticity";
+const STOPS: &str = "joint stops";
+
+/// Elasticity of a joint.
+#[derive(Clone)]
+struct Elasticity {
+    stiffness: Polynomial,
+    rest: Polynomial,
+}
+
+impl Law<3> for Elasticity {
+    type Formula<T: Number> = CoordinateSpring<T>;
+
+    fn formula<T: Number>(&self, parameters: &[T]) -> CoordinateSpring<T> {
+        CoordinateSpring {
+            stiffness: self.stiffness.at(parameters),
+            rest: self.rest.at(parameters),
+        }
+    }
+}
+
+/// Springs and stops of the joints of a presolved system.
+pub(super) fn add_joint_springs(
+    presolved: &Presolved,
+    internals: &Internals,
+    terms: &mut Terms<'_>,
+) {
+    let joints = presolved.system.joints.iter().zip(&presolved.joints);
+    for (index, (joint, &of_scene)) in joints.enumerate() {
+        if let (Some(spring), Some(coordinate)) = (joint.spring, internals.joint(index)) {
+            let JointSpring { stiffness, rest } = spring;
+            let mut read = terms.sought().read();
+            let law = Elasticity {
+                stiffness: read.constant(Constant::JointStiffness(of_scene), stiffness),
+                rest: read.constant(Constant::JointRest(of_scene), rest),
+            };
+            let coordinate = terms.vector(coordinate);
+            let element = read.element(law, [mid(coordinate)], []);
+            terms.add_law((ELASTICITY, "stiffness of"), &joint.name, element);
+        }
+        if let (Some(stops), Some(coordinate)) = (joint.stops, internals.joint(index)) {
+            let JointStops {
+                stiffness,
+                at,
+                smoothing,
+            } = stops;
+            let energy = CoordinateStops {
+                stiffness,
+                at,
+                smoothing,
+            };
+            let element = Element {
+                energy,
+                vectors: [mid(terms.vector(coordinate))],
+                scalars: [],
+            };
+            terms.add::<_, 3, 1, 0>(STOPS, "stops of", &joint.name, element);
+        }
+    }
+    terms.without(ELASTICITY, "no joint that moves names a stiffness");
+    terms.without(STOPS, "no joint that moves names stops");
+}
+
+/// All blocks, those of the scene taken out of the presolved system; every node of a muscle that nothing moves is held.
+pub(super) fn blocks(presolved: &mut Presolved) -> Vec<Solid> {
+    let of_scene = std::mem::take(&mut presolved.system.solids);
+    let (system, immobile) = (&presolved.system, &presolved.immobile);
+    let muscles = system.muscles.iter().enumerate();
+    let of_muscles = muscles.filter_map(|(source, muscle)| match muscle.fidelity {
+        Fidelity::Lumped => None,
+        Fidelity::FiniteElements(discretisation) => {
+            let mut solid = block(source, muscle, &discretisation);
+            if immobile.muscles[source] {
+                clamp(&mut solid);
+            }
+            Some(solid)
+        }
+    });
+    of_scene.into_iter().chain(of_muscles).collect()
+}
+
+/// A muscle as a pile of layers, glued to both bodies. A layer of the model stands for many of the muscle: its voltage is
+/// larger by the ratio of thicknesses, so that the field is the same.
+fn block(source: usize, muscle: &Muscle, discretisation: &Discretisation) -> Solid {
+    let Discretisation {
+        elements,
+        layers,
+        element,
+        first_side,
+    } = *discretisation;
+    let span = muscle.to.at - muscle.from.at;
+    let (length, axis) = (span.norm(), span.normalize());
+    let first = match first_side {
+        Some(side) => (side - axis * axis.dot(&side)).normalize(),
+        None => triad(&axis)[0],
+    };
+    let frame = Matrix::from_columns(&[first, axis.cross(&first), axis]);
+    let stretches = muscle.stretches();
+    let across = stretches.map_or(1.0, |[across, _]| across);
+    let [a, b] = muscle.cross_section.map(|side| side * across);
+    let corner = Vector3::new(-0.5 * a, -0.5 * b, 0.0);
+    let grid = Grid::uniform(corner, Vector3::new(a, b, length), elements);
+    let mesh = grid.mesh();
+    let electrode = |layer: usize| {
+        let place = length * layer as f64 / layers as f64;
+        let driven = layer % 2 == 1;
+        Electrode {
+            name: format!("electrode{}", layer + 1),
+            nodes: mesh.nodes_on_plane(2, place, 1e-9 * length),
+            potential: match driven {
+                true => Potential::Driven {
+                    source,
+                    factor: muscle.length() / layers as f64 / muscle.layer_thickness,
+                },
+                false => Potential::Given(0.0),
+            },
+            circuit: None,
+        }
+    };
+    let is_dielectric = muscle.material.electric.is_some();
+    let glue = |face: &str, body: Option<usize>| Glue {
+        nodes: mesh.sets[face].clone(),
+        body,
+    };
+    Solid {
+        name: muscle.name.clone(),
+        materials: vec![muscle.material],
+        element,
+        electrodes: match is_dielectric {
+            true => (0..=layers).map(electrode).collect(),
+            false => Vec::new(),
+        },
+        supports: Vec::new(),
+        glued: vec![
+            glue("z_min", muscle.from.body),
+            glue("z_max", muscle.to.body),
+        ],
+        velocities: Vec::new(),
+        prestretch: stretches.map(|[across, along]| {
+            frame * Matrix::from_diagonal(&[across, across, along].into()) * frame.transpose()
+        }),
+        mesh: mesh.transformed(|x| muscle.from.at + frame * x),
     }
 }

@@ -2,7 +2,7 @@
 //! voltage.
 
 use crate::energy::{Multiple, PositionComponent};
-use crate::functional::{Law, Measure, Stencil, VectorArg};
+use crate::functional::{Law, Measure, Sample, Stencil, Term, TermKind, VectorArg};
 use crate::kinematics::Vectors;
 use crate::math::Vector;
 use crate::model::components::capacitance;
@@ -14,8 +14,11 @@ use crate::model::components::muscle_laws::{Flowing, OfCapacitance};
 use crate::model::constant::Constant;
 use crate::model::electrode_circuits::ElectrodeCircuit;
 use crate::model::internal::InternalKind;
+use crate::model::loads::LOADS;
 use crate::model::measures::{Known, Shape, instant, interval, read};
+use crate::model::model::Model;
 use crate::model::quantity::Quantity;
+use crate::model::system::InputKind;
 
 /// A muscle behind a resistor: its constants, the electric energy of its charge, and the vectors of its span and of its charge.
 struct Charged<'a> {
@@ -180,5 +183,45 @@ impl Known<'_> {
         };
         let vectors = vectors.map(|vector| read(vector, Stencil::Mid));
         Some((of, current, vectors, voltage))
+    }
+}
+
+impl Model {
+    /// Sources that are loads of a force or torque that acts on what moves, each with its scalar of the intervals.
+    pub fn working_loads(&self) -> Vec<(usize, usize)> {
+        let sources = self.sources.iter().enumerate();
+        let forces = sources.filter(|(_, source)| match source.kind {
+            InputKind::Force | InputKind::Torque | InputKind::Traction | InputKind::BodyForce => {
+                true
+            }
+            InputKind::Voltage | InputKind::SurfaceCharge | InputKind::Charge => false,
+        });
+        forces
+            .filter_map(|(source, _)| Some((source, self.variables.input(source)?)))
+            .collect()
+    }
+
+    /// Power in W of the load with a scalar, at places x of the vectors with their rates.
+    pub fn load_power(&self, scalar: usize, [x, rates]: [&[Vector]; 2], scalars: &[f64]) -> f64 {
+        let mut alone = vec![0.0; scalars.len()];
+        alone[scalar] = scalars[scalar];
+        // An interval of 1 ms with these places in its middle and these rates.
+        let at =
+            |part: f64| -> Vec<Vector> { x.iter().zip(rates).map(|(x, v)| x + v * part).collect() };
+        let (a, b) = (at(-0.5), at(0.5));
+        let sample = |vectors| Sample {
+            vectors,
+            ..Sample::of_instant(&a, &alone)
+        };
+        let power = |term: &dyn Term| match term.kind() {
+            TermKind::AppliedWork => term.energy(&sample([&a, &b])),
+            // The potential is linear in places.
+            TermKind::Potential if term.name() == LOADS => {
+                term.energy(&sample([&a, &a])) - term.energy(&sample([&b, &b]))
+            }
+            _ => 0.0,
+        };
+        let terms = self.action.intervals.terms.iter();
+        terms.map(|term| power(term.as_ref())).sum()
     }
 }

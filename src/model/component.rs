@@ -1,8 +1,8 @@
 //! Component of a scene: the parts that it connects, the terms of the action that it makes and their reasons, and its
 //! observations.
 
-use crate::model::attachment::Attachment;
-use crate::model::system_error::SystemError;
+use crate::model::bodies::Attachment;
+use crate::model::error::SystemError;
 use crate::model::terms::Terms;
 use nalgebra::Vector3;
 use std::fmt::Debug;

@@ -9,21 +9,24 @@ use crate::functional::{
     Measure, Stencil, Term, VectorArg,
 };
 use crate::kinematics::{MaterialVector, Pose, Vectors};
-use crate::math::Vector;
+use crate::math::{Jet, Number, Vector};
 use crate::model::analysis::Analysis;
 use crate::model::components::capacitance;
+use crate::model::components::measured_laws::GivenField;
+use crate::model::components::muscle_constants::MuscleConstants;
+use crate::model::components::muscle_laws::{PointMass, RestVolume};
 use crate::model::electrode_circuits::ElectrodeCircuit;
 use crate::model::internal::Internals;
 use crate::model::joints::{JointCoordinate, JointReading};
-use crate::model::muscle_amount::amount_measure;
 use crate::model::no_terms::no_terms;
 use crate::model::presolved::Presolved;
 use crate::model::quantity::{FieldPlace, Quantity};
 use crate::model::solid_block::SolidBlock;
 use crate::model::sought::Sought;
-use crate::model::system::System;
+use crate::model::system::{Amount, System};
 use crate::model::terms::Terms;
 use crate::model::variables::{Role, Variables};
+use nalgebra::SVector;
 use std::sync::Arc;
 
 /// V in a kV.
@@ -330,4 +333,128 @@ pub(super) fn interval<E: Energy<M> + 'static, const M: usize, const NV: usize, 
         vectors: vectors.map(|(vector, stencil)| read(vector, stencil)),
         scalars,
     })
+}
+
+/// A number without arguments.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Constant<T>(T);
+
+impl<T: Number> Energy<0, T> for Constant<T> {
+    type Local<const ORDER: usize> = Jet<0, ORDER, T>;
+
+    fn at<const ORDER: usize>(&self, _: &SVector<T, 0>, _: &SVector<T, 0>) -> Jet<0, ORDER, T> {
+        Jet::constant(self.0)
+    }
+}
+
+/// Amount of one muscle.
+#[derive(Clone)]
+enum OfMuscle {
+    Volume(RestVolume),
+    Mass(PointMass),
+}
+
+impl Law<0> for OfMuscle {
+    type Formula<T: Number> = Constant<T>;
+
+    fn formula<T: Number>(&self, parameters: &[T]) -> Constant<T> {
+        Constant(match self {
+            Self::Volume(law) => law.volume(parameters),
+            Self::Mass(law) => law.mass(parameters),
+        })
+    }
+}
+
+/// The measure of an amount of muscles; none where no sought constant moves it.
+pub(super) fn amount_measure(
+    quantity: &Quantity,
+    (system, sought): (&System, &Sought),
+) -> Option<Box<dyn Measure>> {
+    let Quantity::OfMuscles {
+        muscles,
+        amount,
+        unit,
+    } = quantity
+    else {
+        return None;
+    };
+    let element = |&m: &usize| {
+        let of = (&system.muscles[m], m);
+        let mut constants =
+            MuscleConstants::new(of, (sought.read(), [0.0; 2]), [None; 2], |_| 0).still();
+        let law = match amount {
+            Amount::Volume => OfMuscle::Volume(constants.volume()),
+            Amount::Mass => OfMuscle::Mass(constants.mass(1.0)?),
+        };
+        Some(constants.element(law, [], []))
+    };
+    let elements: Vec<_> = muscles.iter().filter_map(element).collect();
+    let is_moved = elements.iter().any(|one| !one.parameters.is_empty());
+    is_moved.then(|| -> Box<dyn Measure> {
+        let group = Group::<Laws<OfMuscle, 0, 0, 0>>::intervals("measure", 1.0 / unit, elements);
+        Box::new(group)
+    })
+}
+
+impl Known<'_> {
+    /// Squared stretch of a muscle, at the instants or at a place of the intervals.
+    pub(super) fn stretch(
+        &self,
+        muscle: usize,
+        at: Option<Stencil>,
+        shape: Shape,
+        vectors: &mut Vectors,
+    ) -> Box<dyn Measure> {
+        let span = self.span(muscle, vectors);
+        match at {
+            None => {
+                let stretch = MuscleConstants::given(&self.presolved.system.muscles[muscle]);
+                instant(shape, stretch.stretch().formula(&[]), [span])
+            }
+            Some(at) => {
+                let of = self.muscle(muscle, vectors);
+                let stretch = of.stretch();
+                shape.law::<_, 3, 1, 0>(of.element(stretch, [read(span, at)], []))
+            }
+        }
+    }
+
+    /// Squared field of a lumped muscle over the one of its `limit`.
+    pub(super) fn muscle_field(
+        &self,
+        muscle: usize,
+        (limit, at): (f64, Stencil),
+        shape: Shape,
+        vectors: &mut Vectors,
+    ) -> Option<Box<dyn Measure>> {
+        let span = [read(self.span(muscle, vectors), at)];
+        let mut of = self.muscle(muscle, vectors);
+        if let Some(source) = self.system.charge_of(muscle) {
+            let charge = [self.variables.input(source)?];
+            let capacitance = of.capacitance()?;
+            let field = GivenField { capacitance, limit };
+            return Some(shape.law(of.element(field, span, charge)));
+        }
+        let voltage = [self.variables.input(muscle)?];
+        let field = of.field(limit);
+        Some(shape.law(of.element(field, span, voltage)))
+    }
+
+    /// The constants of a muscle, whose span is the first vector of an element.
+    pub(super) fn muscle(&self, index: usize, vectors: &mut Vectors) -> MuscleConstants<'_> {
+        let muscle = &self.presolved.system.muscles[index];
+        let read = self.sought.read();
+        let bodies = [muscle.from.body, muscle.to.body];
+        MuscleConstants::new((muscle, index), (read, [-1.0, 1.0]), bodies, |moved| {
+            vectors.index(moved)
+        })
+    }
+
+    /// Vector of the span of a muscle.
+    pub(super) fn span(&self, muscle: usize, vectors: &mut Vectors) -> usize {
+        let muscle = &self.presolved.system.muscles[muscle];
+        let [from, to] = [&muscle.from, &muscle.to]
+            .map(|a| MaterialVector::point(a.body, &a.at, self.reference));
+        vectors.index(MaterialVector::span(&from, &to))
+    }
 }

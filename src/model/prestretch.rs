@@ -10,8 +10,8 @@ use crate::element::{
 use crate::energy::{ElasticLaw, NeoHooke};
 use crate::math::Vector;
 use crate::mesh::grid::Grid;
+use crate::model::error::{SystemError, require};
 use crate::model::system::{Material, Muscle, Solid};
-use crate::model::system_error::{SystemError, require};
 
 /// Bisections of the interval of stretches across, after which its ends are neighbouring numbers.
 const BISECTIONS: usize = 100;

@@ -1,11 +1,23 @@
 //! Measure of the force with which a spring or a tendon pulls its ends together: the forces of its own terms along its span.
 
-use crate::functional::{Displacement, Impulse, Measure, Term, TermKind};
+use crate::energy::NeoHooke;
+use crate::functional::{
+    CurvedSum, Displacement, Impulse, Law, LawElement, Measure, Stencil, Sum, Term, TermKind,
+    VectorArg,
+};
 use crate::kinematics::Vectors;
-use crate::model::components::Kind;
-use crate::model::measures::Known;
-use crate::model::quantity::Pulling;
-use crate::model::term_order::rank;
+use crate::math::Vector;
+use crate::model::components::measured_laws::{Tension, ViscousForce};
+use crate::model::components::muscle_constants::MuscleConstants;
+use crate::model::components::muscle_laws::{ElasticConstants, Flowing, Given};
+use crate::model::components::{Kind, capacitance};
+use crate::model::internal::InternalKind;
+use crate::model::joint_constraints::DAMPING;
+use crate::model::joint_sections::JointSection;
+use crate::model::measures::{Known, Shape, read};
+use crate::model::plan::rank;
+use crate::model::quantity::{Pulling, Reaction};
+use crate::model::system::Fidelity;
 use crate::model::variables::Time;
 use std::sync::Arc;
 
@@ -45,5 +57,151 @@ impl Known<'_> {
         let pulling: Vec<_> = pulling.collect();
         let measure = Impulse::new(&pulling, counts, displacement, 0);
         (!pulling.is_empty()).then(|| Box::new(measure) as Box<dyn Measure>)
+    }
+}
+
+impl Known<'_> {
+    /// Impulse of a joint along a direction, or its moment about the joint, at the start of an interval, or minus that at its end.
+    pub(super) fn reaction(
+        &self,
+        (joint, of): (usize, Reaction),
+        (along, at): (Vector, Stencil),
+        vectors: &mut Vectors,
+    ) -> Option<Box<dyn Measure>> {
+        let kept = self.presolved.joint(joint).filter(|_| !self.is_glued)?;
+        let section = JointSection::new((self.system, self.presolved), self.reference, kept)?;
+        let (side, direction) = match at {
+            Stencil::Next => (1, -along),
+            _ => (0, along),
+        };
+        let displacement = match of {
+            Reaction::Force => {
+                let moved = vectors.list().iter();
+                let moved = moved.map(|vector| section.displacement(vector, &direction));
+                Displacement::Shift(moved.collect())
+            }
+            Reaction::Torque if !section.has_torque => return None,
+            Reaction::Torque => {
+                let turns = section.turns(vectors);
+                Displacement::Turn {
+                    axis: direction,
+                    turns,
+                }
+            }
+        };
+        let terms = self.terms.iter().filter(|term| term.name() != DAMPING);
+        let counts = [
+            vectors.list().len(),
+            self.variables.of(Time::Interval).len(),
+        ];
+        let terms: Vec<_> = terms.collect();
+        Some(Box::new(Impulse::new(&terms, counts, displacement, side)))
+    }
+}
+
+/// The parts of a tension in a unit in N.
+struct Parts {
+    unit: f64,
+    list: Vec<Box<dyn Measure>>,
+}
+
+impl Parts {
+    fn add<L: Law<M>, const M: usize, const NV: usize, const NS: usize>(
+        &mut self,
+        element: LawElement<L, NV, NS>,
+    ) {
+        let part = Shape::Linear.scaled_law(1.0 / self.unit, element);
+        self.list.push(part);
+    }
+
+    /// Adds the force of elasticity, with that of a voltage, by a law of elasticity.
+    fn add_cell<L: ElasticConstants>(
+        &mut self,
+        mut of: MuscleConstants<'_>,
+        law: L,
+        span: VectorArg,
+        voltage: Option<usize>,
+    ) {
+        match (of.muscle().material.electric, voltage) {
+            (Some(electric), Some(voltage)) => {
+                let energy = Tension(of.driven(electric, law));
+                self.add::<_, 4, 1, 1>(of.element(energy, [span], [voltage]));
+            }
+            _ => {
+                let energy = Tension(of.elastic(law));
+                self.add::<_, 3, 1, 0>(of.element(energy, [span], []));
+            }
+        }
+    }
+}
+
+impl Known<'_> {
+    /// Tension of a lumped muscle that moves or has a voltage, in a unit in N, in the middle of the intervals.
+    pub(super) fn tension(
+        &self,
+        index: usize,
+        (unit, shape): (f64, Shape),
+        vectors: &mut Vectors,
+    ) -> Option<Box<dyn Measure>> {
+        let muscle = &self.presolved.system.muscles[index];
+        let charge = self.internals.vector(InternalKind::Charge(index));
+        let given = self.system.charge_of(index);
+        let given = given.and_then(|source| self.variables.input(source));
+        let voltage = self.variables.input(index).filter(|_| charge.is_none());
+        let is_changed = charge.is_some() || given.is_some() || voltage.is_some();
+        if muscle.fidelity != Fidelity::Lumped || !(is_changed || self.presolved.moves(muscle)) {
+            return None;
+        }
+        let of = self.muscle(index, vectors);
+        let span = self.span(index, vectors);
+        let [middle, rate] = [Stencil::Mid, Stencil::Rate].map(|stencil| read(span, stencil));
+        let mut parts = Parts {
+            unit,
+            list: Vec::new(),
+        };
+        match muscle.material.law {
+            None => parts.add_cell(of.clone(), NeoHooke, middle, voltage),
+            Some(law) => {
+                let mut of = of.clone();
+                let law = of.law(law);
+                parts.add_cell(of, law, middle, voltage);
+            }
+        }
+        let mut electric = of.clone();
+        if let Some((charge, law)) = charge.zip(electric.capacitance()) {
+            let unit = capacitance(muscle)?.unit_of_charge();
+            let energy = Tension(Flowing {
+                capacitance: law,
+                unit,
+            });
+            let vectors = [middle, read(vectors.index(charge), Stencil::Mid)];
+            parts.add::<_, 6, 2, 0>(electric.element(energy, vectors, []));
+        }
+        let mut electric = of.clone();
+        if let Some((charge, capacitance)) = given.zip(electric.capacitance()) {
+            let energy = Tension(Given(capacitance));
+            parts.add::<_, 4, 1, 1>(electric.element(energy, [middle], [charge]));
+        }
+        for (branch, constants) in muscle.material.maxwell.list().iter().enumerate() {
+            let kind = InternalKind::Branch {
+                muscle: index,
+                branch,
+            };
+            if let Some(viscous) = self.internals.vector(kind) {
+                let mut of = of.clone();
+                let energy = Tension(of.branch_spring(branch, constants));
+                let vectors = [middle, read(vectors.index(viscous), Stencil::Mid)];
+                parts.add::<_, 6, 2, 0>(of.element(energy, vectors, []));
+            }
+        }
+        if let Some(viscosity) = muscle.material.viscosity {
+            let mut of = of;
+            let force = ViscousForce(of.viscous(viscosity));
+            parts.add::<_, 6, 2, 0>(of.element(force, [middle, rate], []));
+        }
+        Some(match shape {
+            Shape::Linear => Box::new(Sum::new(parts.list)),
+            Shape::Curved => Box::new(CurvedSum::new(parts.list)),
+        })
     }
 }

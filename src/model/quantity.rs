@@ -2,9 +2,7 @@
 
 use crate::functional::Stencil;
 use crate::math::Vector;
-use crate::model::amount::Amount;
-pub use crate::model::quantity_parts::{FieldPlace, Pulling, Reaction, Region};
-use crate::model::system::{JointKind, System};
+use crate::model::system::{Amount, JointKind, System};
 use crate::model::variables::Size;
 use std::f64::consts::TAU;
 use std::sync::Arc;
@@ -339,5 +337,210 @@ pub fn joint_unit(system: &System, joint: usize) -> &'static str {
     match system.joints[joint].kind {
         JointKind::Prismatic { .. } => "mm",
         _ => "rad",
+    }
+}
+
+/// A region of space in mm.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Region {
+    /// Box between two corners.
+    Box {
+        /// Lower corner.
+        min: Vector,
+        /// Upper corner.
+        max: Vector,
+    },
+    /// Ball.
+    Sphere {
+        /// Centre.
+        centre: Vector,
+        /// Radius.
+        radius: f64,
+    },
+}
+
+/// Place where a true electric field is read.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum FieldPlace {
+    /// In a lumped muscle.
+    Muscle(usize),
+    /// At a point of a finite element.
+    Element {
+        /// Block: those of the scene, then those of the muscles of finite elements.
+        block: usize,
+        /// Element of its mesh.
+        element: usize,
+        /// Gauss point; the centre where there is none.
+        point: Option<usize>,
+    },
+}
+
+/// Force or torque that a joint transmits along a direction.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Reaction {
+    /// Force in N.
+    Force,
+    /// Torque in N mm about the point of the joint.
+    Torque,
+}
+
+/// A part between points that pulls its ends together; a lumped muscle has a quantity of its own.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Pulling {
+    /// A spring with its damper.
+    Spring(usize),
+    /// A tendon.
+    Tendon(usize),
+}
+
+/// A milliampere in A.
+pub const MILLIAMPERE: f64 = 1e-3;
+
+impl Quantity {
+    /// Tension of a lumped muscle in N.
+    pub fn tension(muscle: usize) -> Self {
+        Self::Tension { muscle, unit: 1.0 }
+    }
+
+    /// Current of the source of a muscle behind a resistor in mA.
+    pub fn current(muscle: usize) -> Self {
+        let unit = MILLIAMPERE;
+        Self::SourceCurrent { muscle, unit }
+    }
+
+    /// Power of the source of a muscle behind a resistor in W.
+    pub fn power(muscle: usize) -> Self {
+        Self::SourcePower { muscle, unit: 1.0 }
+    }
+
+    /// Squared field of a lumped muscle in (V/µm)², of one behind a resistor at the instants.
+    pub fn squared_field(muscle: usize, is_behind_resistor: bool) -> Self {
+        let limit = MEGAVOLT_PER_METRE;
+        match is_behind_resistor {
+            true => Self::ChargedField {
+                muscle,
+                limit,
+                at: None,
+            },
+            false => Self::SquaredField {
+                place: FieldPlace::Muscle(muscle),
+                limit,
+                at: Stencil::Mid,
+            },
+        }
+    }
+
+    /// Rate of the coordinate of a joint.
+    pub fn joint_rate(joint: usize) -> Self {
+        Self::JointStep { joint, h: 1.0 }
+    }
+
+    /// Squared speed of a marker in (m/s)².
+    pub fn squared_speed(marker: usize) -> Self {
+        let limit = 1.0;
+        Self::SquaredSpeed { marker, limit }
+    }
+}
+
+impl Quantity {
+    /// Returns true if it is measured in the intervals rather than at the instants.
+    pub fn is_of_intervals(&self) -> bool {
+        matches!(
+            self,
+            Self::SquaredStretch { at: Some(_), .. }
+                | Self::ChargedField { at: Some(_), .. }
+                | Self::MarkerPlace { at: Some(_), .. }
+                | Self::MarkerRegion { at: Some(_), .. }
+                | Self::SquaredField { .. }
+                | Self::MarkerStep { .. }
+                | Self::SquaredSpeed { .. }
+                | Self::JointStep { .. }
+                | Self::PeakVoltage { .. }
+                | Self::PeakExcess { .. }
+                | Self::OfMuscles { .. }
+                | Self::SourceCurrent { .. }
+                | Self::SourcePower { .. }
+                | Self::Tension { .. }
+                | Self::VoltageStep { .. }
+                | Self::ChargeStep { .. }
+                | Self::EnergyStep { .. }
+                | Self::ReactionStep { .. }
+                | Self::PullStep(_)
+                | Self::MeanCharge { .. }
+                | Self::ElectrodeVoltage { .. }
+        )
+    }
+
+    /// Returns true if it is read from the inputs of an interval, and of a state of rest under them as well; one of three of a field.
+    pub fn is_of_held_inputs(&self) -> bool {
+        match self {
+            Self::SquaredField { at, .. } => *at == Stencil::Here,
+            Self::SourceCurrent { .. }
+            | Self::SourcePower { .. }
+            | Self::Tension { .. }
+            | Self::MeanCharge { .. }
+            | Self::ElectrodeVoltage { .. } => true,
+            _ => false,
+        }
+    }
+
+    /// Returns true if its values are steps within intervals, whose rates they are over the length of the interval.
+    pub fn is_step(&self) -> bool {
+        matches!(
+            self,
+            Self::JointStep { .. } | Self::MarkerStep { .. } | Self::PullStep(_)
+        )
+    }
+
+    /// The same quantity of the instants, measured at the start or end of the intervals, where it may read sought constants; none of one that
+    /// is not offered there.
+    pub fn in_intervals(&self, at: Stencil) -> Option<Self> {
+        let at = Some(at);
+        match *self {
+            Self::SquaredStretch { muscle, .. } => Some(Self::SquaredStretch { muscle, at }),
+            Self::ChargedField { muscle, limit, .. } => {
+                Some(Self::ChargedField { muscle, limit, at })
+            }
+            Self::MarkerPlace { marker, axis, .. } => Some(Self::MarkerPlace { marker, axis, at }),
+            Self::MarkerRegion { marker, region, .. } => {
+                Some(Self::MarkerRegion { marker, region, at })
+            }
+            _ => None,
+        }
+    }
+
+    /// Returns the noun of its time, in front of the number of the instant or interval.
+    pub fn when(&self) -> &'static str {
+        match self {
+            Self::SquaredField { at, .. } => match at {
+                Stencil::Here => "at the start of interval",
+                Stencil::Next => "at the end of interval",
+                _ => "in the middle of interval",
+            },
+            Self::SquaredStretch { at, .. }
+            | Self::ChargedField { at, .. }
+            | Self::MarkerPlace { at, .. }
+            | Self::MarkerRegion { at, .. } => match at {
+                Some(Stencil::Next) => "at the end of interval",
+                _ => "at instant",
+            },
+            Self::MarkerStep { .. }
+            | Self::SquaredSpeed { .. }
+            | Self::JointStep { .. }
+            | Self::PeakVoltage { .. }
+            | Self::PeakExcess { .. }
+            | Self::OfMuscles { .. }
+            | Self::SourceCurrent { .. }
+            | Self::SourcePower { .. }
+            | Self::Tension { .. }
+            | Self::PullStep(_)
+            | Self::MeanCharge { .. }
+            | Self::ElectrodeVoltage { .. } => "in interval",
+            Self::VoltageStep { .. }
+            | Self::ChargeStep { .. }
+            | Self::EnergyStep { .. }
+            | Self::ReactionStep { .. } => "before interval",
+            _ => "at instant",
+        }
     }
 }

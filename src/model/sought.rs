@@ -5,7 +5,7 @@ use crate::functional::{LawElement, Move, VectorArg};
 use crate::kinematics::MaterialVector;
 use crate::math::Vector;
 use crate::model::constant::{Constant, Follower, Parameter};
-use crate::model::drift::{Drifts, pruned};
+use crate::model::constant::{Drifts, pruned};
 use std::sync::Arc;
 
 /// The sought parameters of a model.

@@ -1,18 +1,16 @@
 //! The system of a scene: bodies, joints, muscles and markers in g, mm, ms, N, V, names resolved.
 
-pub use crate::energy::ElasticLaw;
 use crate::math::Signal;
 use crate::mesh::Mesh;
-pub use crate::model::attachment::Attachment;
+use crate::model::components::{BlockLoad, Components, Load, LoadPlace};
+use nalgebra::{Matrix3, Vector3};
+
+pub use crate::energy::ElasticLaw;
+pub use crate::model::bodies::Attachment;
 pub use crate::model::bodies::{Body, Shape, directors_along, is_diagonal, principal};
 pub use crate::model::circuit::Circuit;
-use crate::model::components::{BlockLoad, Components, Load, LoadPlace};
-pub use crate::model::joint_elasticity::{JointSpring, JointStops};
-pub use crate::model::joint_kind::JointKind;
-pub use crate::model::material::{ElectricConstants, Material, VACUUM_PERMITTIVITY};
+pub use crate::model::circuit::{InputKind, Source, voltage_sources};
 pub use crate::model::maxwell::{MaxwellBranch, MaxwellBranches};
-pub use crate::model::source::{InputKind, Source, voltage_sources};
-use nalgebra::{Matrix3, Vector3};
 
 /// A mechanical system; `None` for a body index is the ground.
 #[derive(Clone, Debug, PartialEq)]
@@ -385,5 +383,171 @@ pub fn number_sources(solids: &mut [Solid], first: usize) {
             *source = next;
             next += 1;
         }
+    }
+}
+
+/// A linear spring of a joint coordinate.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct JointSpring {
+    /// Stiffness: N mm/rad for an angle, N/mm for a displacement.
+    pub stiffness: f64,
+    /// Coordinate without force in rad or mm; zero is the reference configuration.
+    pub rest: f64,
+}
+
+/// Elastic stops of a joint coordinate.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct JointStops {
+    /// Lowest and highest coordinate without force, in rad or mm; infinite where there is no stop.
+    pub at: [f64; 2],
+    /// Stiffness beyond: N mm/rad for an angle, N/mm for a displacement.
+    pub stiffness: f64,
+    /// Width around a stop over which the stiffness grows, in rad or mm; zero where it jumps.
+    pub smoothing: f64,
+}
+
+impl JointStops {
+    /// Distance in rad or mm by which a coordinate is beyond a stop; negative between the stops.
+    pub fn beyond(&self, coordinate: f64) -> f64 {
+        (self.at[0] - coordinate).max(coordinate - self.at[1])
+    }
+}
+
+/// Motion that a joint permits.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub enum JointKind {
+    /// Rotation about a unit axis.
+    Revolute {
+        /// Unit axis in the ground frame.
+        axis: Vector3<f64>,
+    },
+    /// Translation along a unit axis.
+    Prismatic {
+        /// Unit axis in the ground frame.
+        axis: Vector3<f64>,
+    },
+    /// Rotation about a unit axis of the parent, then about a unit axis of the child perpendicular to it.
+    Universal {
+        /// Both axes in the ground frame.
+        axes: [Vector3<f64>; 2],
+    },
+    /// Translation along a unit axis and rotation about it.
+    Cylindrical {
+        /// Unit axis in the ground frame.
+        axis: Vector3<f64>,
+    },
+    /// Translation in a plane and rotation about its unit normal.
+    Planar {
+        /// Unit normal in the ground frame.
+        normal: Vector3<f64>,
+    },
+    /// Rotation about a point.
+    Spherical,
+    /// Anything: the child is as free as without the joint.
+    Floating,
+    /// Nothing.
+    #[default]
+    Fixed,
+}
+
+/// A dielectric elastomer. What is `None` leaves no trace.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct Material {
+    /// Density in g/mm³.
+    pub density: Option<f64>,
+    /// Shear modulus μ of small strains in MPa.
+    pub shear_modulus: f64,
+    /// Law of elasticity other than the neo-Hookean one.
+    pub law: Option<ElasticLaw>,
+    /// First Lamé constant λ in MPa; finite elements need it, lumped muscles keep their volume and do not read it.
+    pub lame_lambda: Option<f64>,
+    /// Electric constants.
+    pub electric: Option<ElectricConstants>,
+    /// Viscosity η in MPa ms, σ_vis = η d.
+    pub viscosity: Option<f64>,
+    /// Maxwell branches.
+    pub maxwell: MaxwellBranches,
+    /// Smallest and largest stretch for which the constants hold, for warnings.
+    pub stretch_range: Option<[f64; 2]>,
+}
+
+/// Constants of the electric energy c₁ E·E + c₂ C:(E⊗E) − ½ ε J C⁻¹:(E⊗E), in N/V².
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct ElectricConstants {
+    /// c₁.
+    pub c1: f64,
+    /// c₂.
+    pub c2: f64,
+    /// Permittivity ε of the last term: vacuum's, or the whole of an ideal dielectric.
+    pub permittivity: f64,
+}
+
+/// Permittivity of vacuum in N/V² (F/m), CODATA value in the decimals of the reference solutions.
+pub const VACUUM_PERMITTIVITY: f64 = 8.854_187_817e-12;
+
+impl Material {
+    /// λ = 2 μ ν/(1 − 2 ν) of a shear modulus and a Poisson ratio.
+    pub fn first_lame_constant(shear_modulus: f64, poisson_ratio: f64) -> f64 {
+        2.0 * shear_modulus * poisson_ratio / (1.0 - 2.0 * poisson_ratio)
+    }
+}
+
+impl ElectricConstants {
+    /// A dielectric of this relative permittivity whose polarisation is linear in the reference field.
+    pub fn first_order(ratio: f64) -> Self {
+        Self {
+            c1: -(ratio - 1.0) * VACUUM_PERMITTIVITY,
+            c2: (ratio - 1.0) * VACUUM_PERMITTIVITY / 2.0,
+            permittivity: VACUUM_PERMITTIVITY,
+        }
+    }
+
+    /// An ideal dielectric of this relative permittivity.
+    pub fn ideal(ratio: f64) -> Self {
+        Self {
+            c1: 0.0,
+            c2: 0.0,
+            permittivity: ratio * VACUUM_PERMITTIVITY,
+        }
+    }
+}
+
+/// Volume or mass of muscles.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Amount {
+    /// Volume in mm³.
+    Volume,
+    /// Mass in g; muscles without a density have none.
+    Mass,
+}
+
+impl Amount {
+    /// Words for messages.
+    pub fn words(self, muscles: &[usize], system: &System) -> String {
+        let what = match self {
+            Self::Volume => "volume",
+            Self::Mass => "mass",
+        };
+        match muscles {
+            [one] => format!("{what} of {}", system.muscles[*one].name),
+            several => format!("{what} of {} muscles", several.len()),
+        }
+    }
+
+    /// Unit for messages, and its size in mm³ or g.
+    pub const fn unit(self) -> (&'static str, f64) {
+        match self {
+            Self::Volume => ("cm^3", 1e3),
+            Self::Mass => ("g", 1.0),
+        }
+    }
+
+    /// Value of given muscles, in mm³ or g.
+    pub fn of(self, muscles: &[usize], system: &System) -> f64 {
+        let one = |muscle: &Muscle| match self {
+            Self::Volume => muscle.volume(),
+            Self::Mass => muscle.mass().unwrap_or(0.0),
+        };
+        muscles.iter().map(|&m| one(&system.muscles[m])).sum()
     }
 }

@@ -12,8 +12,8 @@
 
 use crate::kinematics::{MaterialVector, Pose};
 use crate::math::Vector;
+use crate::model::constant::Drifts;
 use crate::model::constant::{Constant, Parameter};
-use crate::model::drift::Drifts;
 use crate::model::graph::Graph;
 use crate::model::presolved::{BodyLocation, Presolved};
 use crate::model::system::System;

@@ -3,9 +3,7 @@ pub mod atomic;
 pub mod axes;
 pub mod body;
 pub mod canvas;
-pub mod colour_bar;
 mod drawing;
-pub mod electrodes;
 pub mod file_set;
 mod frame;
 pub mod gltf;
@@ -86,7 +84,7 @@ fn tables_and_figures(run: &Run<'_>) -> Vec<(&'static str, String)> {
         ..
     } = *run;
     let view = run.figures.view;
-    let coloured = &*electrodes::coloured(system, trajectory, observations);
+    let coloured = &*solids::coloured(system, trajectory, observations);
     let mut motions: Vec<_> = run.comparison.into_iter().collect();
     motions.push((run.name, trajectory));
 

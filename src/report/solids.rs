@@ -1,11 +1,15 @@
 //! Bodies and muscles as solids in space: the geometry that figures and page share.
+//!
+//! Voltages that colour muscles in pictures: those of their electrodes.
+//!
+//! They are those of the sources but for muscles with a charge, whose voltage is an observation at the instants.
 
-use nalgebra::Vector3;
-
-use crate::dynamics::trajectory::Trajectory;
+use crate::dynamics::trajectory::{Column, Observations, Trajectory};
 use crate::kinematics::Pose;
 use crate::mesh::triangulated::faces_of_box;
 use crate::model::system::{Attachment, System};
+use nalgebra::Vector3;
+use std::borrow::Cow;
 
 /// A box that may be skewed: corner `i` is at + or − along edge `j` as bit `j` of `i` is set or not.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -116,4 +120,26 @@ pub(super) fn slice(
         .filter(|(a, b)| (at(a) - height) * (at(b) - height) < 0.0)
         .map(|(a, b)| a + (b - a) * ((height - at(&a)) / (at(&b) - at(&a))))
         .collect()
+}
+
+/// The motion with the voltages of the electrodes at the end of each interval.
+pub fn coloured<'t>(
+    system: &System,
+    trajectory: &'t Trajectory,
+    observations: &Observations,
+) -> Cow<'t, Trajectory> {
+    let mut out = Cow::Borrowed(trajectory);
+    let charged = (0..system.muscles.len()).filter(|&m| !system.has_source_voltage(m));
+    for muscle in charged {
+        let name = format!("{}_voltage", system.muscles[muscle].name);
+        let is_own = |column: &&Column| column.name == name;
+        let Some(column) = observations.columns.iter().find(is_own) else {
+            continue;
+        };
+        let rows = out.to_mut().voltages.iter_mut();
+        for (row, voltage) in rows.zip(column.values.iter().skip(1)) {
+            row[muscle] = *voltage;
+        }
+    }
+    out
 }

@@ -8,10 +8,10 @@
 //! ```
 
 use crate::nlp::Nlp;
+use crate::sensitivity::active_set::Direction;
 use crate::sensitivity::active_set::Place;
+use crate::sensitivity::check::NoSensitivity;
 use crate::sensitivity::conditions::entries;
-use crate::sensitivity::direction::Direction;
-use crate::sensitivity::error::NoSensitivity;
 use crate::sensitivity::kernel::{Change, Derivative, Kernel, WEAK, dot, sizes};
 use crate::sensitivity::linear::{EXACT, largest};
 use crate::sensitivity::margins::Of;

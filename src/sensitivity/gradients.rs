@@ -7,11 +7,11 @@
 use crate::control::problem::{Control, OutcomeOf, Varied};
 use crate::control::{Column, Solution, Transcription};
 use crate::model::{Coordinates, Role, System, Time};
+use crate::sensitivity::active_set::Direction;
 use crate::sensitivity::adjoint::Outcome;
-use crate::sensitivity::direction::Direction;
-use crate::sensitivity::error::NoSensitivity;
+use crate::sensitivity::check::NoSensitivity;
 use crate::sensitivity::kernel::Kernel;
-use crate::sensitivity::marker_slopes::MarkerSlopes;
+use crate::sensitivity::margins::MarkerSlopes;
 use crate::sensitivity::opened::Opened;
 use crate::sensitivity::optimum::{is_place, with_kernel};
 

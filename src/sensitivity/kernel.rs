@@ -2,10 +2,10 @@
 
 use crate::ipopt::Multipliers;
 use crate::nlp::Nlp;
+use crate::sensitivity::active_set::{Direction, Held, Side};
 use crate::sensitivity::active_set::{Place, of_constraints, of_variables};
+use crate::sensitivity::check::NoSensitivity;
 use crate::sensitivity::conditions::Conditions;
-use crate::sensitivity::direction::{Direction, Held, Side};
-use crate::sensitivity::error::NoSensitivity;
 use crate::sensitivity::linear::{EXACT, Linear, largest};
 use crate::sensitivity::margins::{At, Changes, Of};
 use crate::sensitivity::range::{Margin, Range};

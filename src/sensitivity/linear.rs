@@ -3,7 +3,7 @@
 use crate::kkt::{Plan, Solver, Unknown};
 use crate::nlp::{Entries, Stage};
 use crate::sensitivity::active_set::Place;
-use crate::sensitivity::error::NoSensitivity;
+use crate::sensitivity::check::NoSensitivity;
 
 /// Steps of refinement.
 const REFINED: usize = 3;

@@ -9,9 +9,9 @@ use crate::dynamics::Equilibrium;
 use crate::ipopt::Multipliers;
 use crate::model::{Model, Parameter, Role, System};
 use crate::nlp::Nlp;
+use crate::sensitivity::active_set::Held;
 use crate::sensitivity::active_set::Place;
-use crate::sensitivity::direction::Held;
-use crate::sensitivity::error::NoSensitivity;
+use crate::sensitivity::check::NoSensitivity;
 use crate::sensitivity::kernel::Kernel;
 
 /// A state of rest with its voltages.

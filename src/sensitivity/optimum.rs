@@ -3,11 +3,11 @@
 use crate::control::problem::{Control, Varied, VariedOf};
 use crate::control::{Column, Solution, Transcription};
 use crate::model::{Coordinates, Model, Role, System, Time};
-use crate::sensitivity::direction::Direction;
+use crate::sensitivity::active_set::Direction;
+use crate::sensitivity::check::NoSensitivity;
 use crate::sensitivity::directions::Directions;
-use crate::sensitivity::error::NoSensitivity;
 use crate::sensitivity::kernel::{Derivative, Kernel};
-use crate::sensitivity::marker_slopes::MarkerSlopes;
+use crate::sensitivity::margins::MarkerSlopes;
 use crate::sensitivity::opened::Opened;
 use crate::sensitivity::range::Range;
 use nalgebra::Vector3;

@@ -10,9 +10,9 @@ use std::sync::Arc;
 use std::time::Instant;
 
 use crate::math::{IsOver, Stopped};
-use crate::sparse::backend::Backend;
 use crate::sparse::dissection::Places;
 use crate::sparse::fronts::Fronts;
+use crate::sparse::pattern::Backend;
 use crate::sparse::pattern::Pattern;
 use crate::sparse::{Factorisation, Precision, Singular, Symmetry};
 

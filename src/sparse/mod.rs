@@ -2,25 +2,20 @@
 //!
 //! [`Direct`] lays the pattern, scales, checks and refines; a [`Factorisation`] is what it does so with.
 
-mod backend;
-mod dense;
 mod direct;
 mod dissection;
 mod factorisation;
 mod faer;
 mod fronts;
-mod method_state;
 pub mod multigrid;
 pub(crate) mod mumps;
 mod pattern;
-mod precision;
 mod scaling;
-mod symmetry;
 
-pub use backend::{Backend, DENSE};
 pub use direct::Direct;
 pub use dissection::Places;
+pub use factorisation::MethodState;
 pub use factorisation::{Factorisation, Singular};
-pub use method_state::MethodState;
-pub use precision::Precision;
-pub use symmetry::Symmetry;
+pub use pattern::Symmetry;
+pub use pattern::{Backend, DENSE};
+pub use scaling::Precision;

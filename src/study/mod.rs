@@ -8,21 +8,17 @@
 
 pub mod compare;
 pub mod conclusion;
-pub mod cost_at_accuracy;
-mod diagram;
 pub mod limit;
 pub mod measure;
 pub mod outcome;
 mod page;
 pub mod read;
 mod record;
-mod request;
 pub mod schedule;
 mod sizes;
-mod table;
-mod words;
+pub mod table;
 
-pub use request::StudyRequest;
+pub use record::StudyRequest;
 
 use std::path::Path;
 use std::time::Instant;
@@ -96,7 +92,7 @@ fn write(
     let (mut figures, mut plots) = (Vec::new(), Vec::new());
     for judged in judged {
         let name = format!("{}.svg", judged.measure.key());
-        let plot = diagram::plot(study, results, judged);
+        let plot = page::plot_diagram(study, results, judged);
         if let Some(plot) = &plot {
             put(&name, &plot.svg(&origin))?;
         }

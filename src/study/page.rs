@@ -1,16 +1,18 @@
 //! `study.md`: the figures of a study and their meaning.
 
-use std::fmt::Write;
-
 use crate::math::significant;
+use crate::report::axes::Axis;
+use crate::report::lines::{LinePlot, Mark, Series};
 use crate::report::origin::Origin;
+use crate::report::style;
 use crate::study::compare::{Judged, common};
-use crate::study::cost_at_accuracy;
 use crate::study::limit::How;
 use crate::study::measure::{StudyMeasure, Unit};
 use crate::study::read::Study;
 use crate::study::record::{command, machine, of_reference};
 use crate::study::schedule::Results;
+use crate::study::table;
+use std::fmt::Write;
 
 /// The page; `figures` are the names of those written, by measure.
 pub(super) fn markdown(
@@ -90,7 +92,7 @@ fn how_it_was_run(results: &Results<'_>) -> String {
 fn cost_table(study: &Study, results: &Results<'_>, judged: &[Judged]) -> Option<String> {
     let mut rows = String::new();
     for judged in judged.iter().filter(|judged| judged.measure.has_order()) {
-        for at_accuracy in cost_at_accuracy::costs_at_accuracy(results, judged) {
+        for at_accuracy in table::costs_at_accuracy(results, judged) {
             let Some(cheapest) = at_accuracy.cheapest() else {
                 continue;
             };
@@ -112,10 +114,10 @@ fn cost_table(study: &Study, results: &Results<'_>, judged: &[Judged]) -> Option
                     format!(
                         "{:.0e}, {}",
                         at_accuracy.accuracy,
-                        cost_at_accuracy::error_text(unit, at_accuracy.error)
+                        table::error_text(unit, at_accuracy.error)
                     )
                 }
-                Unit::Relative => cost_at_accuracy::error_text(unit, at_accuracy.error),
+                Unit::Relative => table::error_text(unit, at_accuracy.error),
             };
             writeln!(
                 rows,
@@ -224,4 +226,49 @@ fn again(study: &Study, results: &Results<'_>) -> String {
     }
     text.push_str("```");
     text
+}
+
+/// The diagram of one measure; none where no error is above zero.
+///
+/// The legend names the observed order; the first and the last point of a curve are labelled with the refined value.
+pub(super) fn plot_diagram(
+    study: &Study,
+    results: &Results<'_>,
+    judged: &Judged,
+) -> Option<LinePlot> {
+    let mut series = Vec::new();
+    for (m, (method, points)) in study.methods.iter().zip(&results.methods).enumerate() {
+        let drawn = points.iter().enumerate().filter_map(|(k, done)| {
+            let place = [done.median()?, judged.known(m, k)?];
+            Some((place, done.point.label.clone()))
+        });
+        let (places, mut labels): (Vec<_>, Vec<_>) = drawn.unzip();
+        if places.is_empty() {
+            continue;
+        }
+        let last = labels.len() - 1;
+        for (k, label) in labels.iter_mut().enumerate() {
+            if k != 0 && k != last {
+                label.clear();
+            }
+        }
+        let name = match judged.orders[m] {
+            Some(order) => format!("{}, order {order:.1}", method.name),
+            None => method.name.clone(),
+        };
+        let curve = Series::curve(name, places, style::hue(m));
+        series.push(curve.marked(Mark::Disc).labelled(labels));
+    }
+    if series.is_empty() {
+        return None;
+    }
+    let unit = judged.measure.unit().suffix();
+    Some(LinePlot {
+        frame: [400.0, 290.0],
+        ..LinePlot::new(
+            Axis::log("median time of a solution [s]"),
+            Axis::log(format!("{}{unit}", judged.measure.label())),
+            series,
+        )
+    })
 }

@@ -1,22 +1,21 @@
 //! `study.json`: every point with its input, its seconds and its errors, and the references of these; SI units.
 
-use serde::Serialize;
-use std::collections::BTreeMap;
-use std::path::Path;
-
+use crate::app::ProgressDisplay;
 use crate::files::lay_out;
 use crate::ipopt;
-use crate::report::atomic::{self, WriteError};
+use crate::report::atomic::WriteError;
 use crate::report::origin::Origin;
-use crate::report::shell;
+use crate::report::{atomic, shell};
 use crate::study::compare::{Judged, common};
 use crate::study::limit::{How, SequenceLimit};
 use crate::study::measure::{StudyMeasure, StudyTask};
 use crate::study::outcome::FINER;
 use crate::study::read::{Method, Study, StudyPoint};
-use crate::study::request::StudyRequest;
 use crate::study::schedule::{Done, Results};
 use crate::workflow::parallel_map::cores;
+use serde::Serialize;
+use std::collections::BTreeMap;
+use std::path::{Path, PathBuf};
 
 /// The file.
 #[derive(Debug, Serialize)]
@@ -286,5 +285,30 @@ pub(super) fn machine() -> Machine {
         processor: name.map(|(_, name)| name.trim().to_owned()),
         cores: cores(),
         system: format!("{} {}", std::env::consts::OS, std::env::consts::ARCH),
+    }
+}
+
+/// A command on a study file.
+#[derive(Clone, Debug)]
+pub struct StudyRequest {
+    /// The command as typed.
+    pub command: String,
+    /// The study file as typed.
+    pub input: PathBuf,
+    /// Folder for the results; `results/studies/<name of the study>` where not given.
+    pub output: Option<PathBuf>,
+    /// Timed runs of each point, in place of those of the file.
+    pub runs: Option<usize>,
+    /// Display of progress.
+    pub progress: ProgressDisplay,
+}
+
+impl StudyRequest {
+    /// Folder for the results.
+    pub fn folder(&self) -> PathBuf {
+        self.output.clone().unwrap_or_else(|| {
+            let stem = self.input.file_stem().unwrap_or_default();
+            PathBuf::from("results/studies").join(stem)
+        })
     }
 }

@@ -1,27 +1,24 @@
 //! The derivatives of a problem against differences, at its guess moved by noise.
 
-use std::collections::{BTreeMap, HashMap};
-use std::time::Instant;
-
-use serde::Serialize;
-
 use crate::control::problem::{
     BoundaryState, Control, Duration, Guess, Objective, Simulation, Solver, SoughtHold, Task,
     Voltages,
 };
 use crate::control::{Column, Motion, Motions, Row, Transcription};
-use crate::ipopt::LinearSolver;
-use crate::ipopt::interrupt::{self, TimeLimit};
-use crate::math::{Random, Signal};
+use crate::ipopt::interrupt::TimeLimit;
+use crate::ipopt::{LinearSolver, interrupt};
+use crate::math::{Random, Signal, shortest};
 use crate::mesh::Mesh;
 use crate::model::{Coordinates, Model, System};
-use crate::nlp::Nlp;
-use crate::nlp::differences::{self, DifferenceVariables, Matrix, WrongEntry};
-use crate::workflow::WorkflowError;
-use crate::workflow::effects;
+use crate::nlp::differences::{DifferenceVariables, Matrix, WrongEntry};
+use crate::nlp::{Nlp, differences};
 use crate::workflow::optimum::seconds_left;
-use crate::workflow::prepare::{Counted, Prepared, prepare};
+use crate::workflow::prepare_together::{Counted, Prepared, prepare};
 use crate::workflow::resolve::resolve;
+use crate::workflow::{WorkflowError, effects};
+use serde::Serialize;
+use std::collections::{BTreeMap, HashMap};
+use std::time::Instant;
 
 /// Noise on each variable, relative to its size.
 const NOISE: f64 = 1e-2;
@@ -349,4 +346,25 @@ fn as_control(task: Task, system: &System) -> Control {
             }
         }
     }
+}
+
+/// Part of the distance of a node from the origin, or mm, within which a marker is at it.
+const AT: f64 = 1e-6;
+
+/// A line for each marker of a block that is not written at a node: it is the nearest one.
+pub(crate) fn moved_markers(system: &System) -> Vec<String> {
+    let of_blocks = system.markers.iter().filter_map(|marker| {
+        let mesh = &system.solids[marker.solid?].mesh;
+        let node = mesh.nodes[mesh.nearest_node(&marker.point.at)?];
+        let distance = (node - marker.point.at).norm();
+        let [x, y, z] = [node.x, node.y, node.z].map(|value| shortest(value + 0.0, 6));
+        (distance > AT * node.norm().max(1.0)).then(|| {
+            format!(
+                "marker {} is the node at [{x} mm, {y} mm, {z} mm], {} mm from the place that is written",
+                marker.name,
+                shortest(distance, 3)
+            )
+        })
+    });
+    of_blocks.collect()
 }

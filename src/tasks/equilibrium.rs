@@ -10,14 +10,13 @@ use crate::dynamics::{
 };
 use crate::ipopt::interrupt;
 use crate::model::{Model, System};
-use crate::tasks::moved_markers::moved_markers;
+use crate::tasks::check::moved_markers;
 use crate::workflow::WorkflowError;
 use crate::workflow::domain::{self, Outside};
+use crate::workflow::infeasible;
 use crate::workflow::memory::{self, Occasion};
-use crate::workflow::phase::phase;
 use crate::workflow::remark::Remarks;
-use crate::workflow::stalled;
-use crate::workflow::stretch_range;
+use crate::workflow::remark::phase;
 use std::time::Instant;
 
 /// Remark on what the eigenvalues of a stiffness without symmetry leave open.
@@ -93,12 +92,15 @@ pub fn equilibrium(
     remarks.warn("singular_loops", model.loops.warning.clone());
     remarks.warn("outside_domain", domain::note(&outside, false));
     let beyond = out_of_range(&model, &discrete);
-    remarks.warn("outside_range", stretch_range::warning(&beyond, false));
+    remarks.warn(
+        "outside_range",
+        domain::stretch_range_warning(&beyond, false),
+    );
     remarks.warn("may_flutter", found.may_flutter.then(|| FLUTTER.to_owned()));
     if let Some((_, fallbacks)) = found.on_grids {
-        remarks.warn("multigrid_stalled", stalled::warning(fallbacks));
+        remarks.warn("multigrid_stalled", infeasible::stalled_warning(fallbacks));
         let is_unknown = found.is_stable().is_none();
-        let undecided = || stalled::undecided(interrupt::stop());
+        let undecided = || infeasible::undecided(interrupt::stop());
         remarks.warn("stability_unknown", is_unknown.then(undecided));
     }
     Ok(EquilibriumResult {

@@ -9,7 +9,7 @@ use crate::tasks::grid::{Found, SolveRequest};
 use crate::tasks::held_goal::{NOT_FOUND, UNFINISHED, held, is_kept, is_left};
 use crate::tasks::solve::{SolveResult, assessed};
 use crate::tasks::solve_messages;
-use crate::tasks::verdict::Verdict;
+use crate::tasks::solve_messages::Verdict;
 use crate::workflow::accuracy::{Accuracy, AccuracyTarget};
 use crate::workflow::further::stopped;
 use crate::workflow::memory::{self, Occasion};

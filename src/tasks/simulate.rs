@@ -1,31 +1,25 @@
 //! A simulation: its motion, and the assessment of it.
 
-use std::ops::ControlFlow;
-use std::sync::Arc;
-
-use crate::control::problem::{FeedbackControl, Simulation};
+use crate::control::problem::{Afterwards, FeedbackControl, Simulation, Voltages};
 use crate::dynamics::trajectory::Trajectory;
 use crate::dynamics::{
     DiscreteTrajectory, EnergyExchange, LocalError, local_error_of, out_of_domain, out_of_range,
 };
 use crate::ipopt::{Status, interrupt};
+use crate::math::significant;
 use crate::model::{Model, System};
-use crate::tasks::moved_markers::moved_markers;
-use crate::tasks::simulation_messages::{afterwards, timing};
-use crate::workflow::WorkflowError;
+use crate::tasks::check::moved_markers;
 use crate::workflow::accuracy::{Accuracy, AccuracyTarget};
 use crate::workflow::closed_loop::ClosedLoop;
-use crate::workflow::domain::{self, Outside};
+use crate::workflow::domain::Outside;
 use crate::workflow::grids::integrate_to;
 use crate::workflow::integrate::{Simulated, grid, integrate_on};
-use crate::workflow::longer_steps;
 use crate::workflow::loop_limits::LoopLimits;
-use crate::workflow::memory::{self, Occasion};
+use crate::workflow::memory::Occasion;
 use crate::workflow::remark::{Remarks, STOPPED_EARLY};
-use crate::workflow::stalled;
-use crate::workflow::steps;
-use crate::workflow::stops;
-use crate::workflow::stretch_range;
+use crate::workflow::{WorkflowError, domain, infeasible, longer_steps, memory, steps};
+use std::ops::ControlFlow;
+use std::sync::Arc;
 
 /// Options of a simulation in addition to its problem.
 #[derive(Debug, Default)]
@@ -122,8 +116,11 @@ impl SimulationResult {
         remarks.note("step_divided", steps::divided(task));
         remarks.warn("outside_domain", domain::note(&outside, true));
         let beyond = out_of_range(model, discrete);
-        remarks.warn("outside_range", stretch_range::warning(&beyond, true));
-        remarks.note("stops", stops::notes(system, trajectory));
+        remarks.warn(
+            "outside_range",
+            domain::stretch_range_warning(&beyond, true),
+        );
+        remarks.note("stops", infeasible::stop_notes(system, trajectory));
         remarks.warn("coarse_steps", steps::warning(neglected, discrete, task));
         remarks.warn("tolerance_exceeded", steps::beyond(*error, task));
         let unconfirmed = self
@@ -133,7 +130,7 @@ impl SimulationResult {
         remarks.warn(STOPPED_EARLY, unconfirmed.map(steps::unconfirmed));
         remarks.warn(
             "multigrid_stalled",
-            stalled::warning(discrete.report.fallbacks),
+            infeasible::stalled_warning(discrete.report.fallbacks),
         );
         remarks.warn("energy_balance", steps::unbalanced(discrete));
         remarks.warn("energy_balance", steps::unchecked(model, task));
@@ -239,4 +236,62 @@ fn closed_loop(
         out.limits = LoopLimits::new(ahead, (system, task), discrete)?;
     }
     Ok((Some(out), stopped))
+}
+
+/// Notes the voltages after the end of the solution from which a simulation takes them, where it goes on for longer.
+pub(super) fn afterwards(task: &Simulation) -> Option<String> {
+    let Voltages::Sampled {
+        ends,
+        afterwards,
+        solution,
+        ..
+    } = &task.voltages
+    else {
+        return None;
+    };
+    let end = ends[ends.len() - 1];
+    let named = solution.as_ref().map(|path| path.display().to_string());
+    let of_solution = named.is_some();
+    let source = named.unwrap_or_else(|| "the table".to_owned());
+    (task.duration > end * (1.0 + 1e-9)).then(|| match afterwards {
+        Afterwards::Held if of_solution => {
+            format!("after {} s the voltages that hold the goal of {source} are held", end / 1e3)
+        }
+        Afterwards::Held => format!("after {} s the voltages of \"hold\" are held", end / 1e3),
+        Afterwards::OfLastInterval if of_solution => format!(
+            "after {} s the voltages of the last interval are held: {source} has no \"hold\", voltages that hold its goal",
+            end / 1e3
+        ),
+        Afterwards::OfLastInterval => format!(
+            "after {} s the voltages of the last interval are held: {source} has no \"hold\"",
+            end / 1e3
+        ),
+    })
+}
+
+/// Warnings that a controller samples or acts in other times than those for which its gains are.
+pub(super) fn timing(task: &Simulation) -> Vec<String> {
+    // What plans anew does so in its own times.
+    let controller = task.controller.as_ref();
+    let Some(controller) = controller.filter(|one| one.ahead.is_none()) else {
+        return Vec::new();
+    };
+    let law = &controller.law;
+    let predicted = law.delay as f64 * law.h;
+    let of = |what: &str, time: f64, of_gains: f64| {
+        let seconds = |ms: f64| significant(1e-3 * ms, 4);
+        let differs = (time - of_gains).abs() > 1e-9 * law.h;
+        differs.then(|| {
+            format!(
+                "the {what} of the controller is {} s, and that of its gains {} s: nothing says that the loop is stable",
+                seconds(time),
+                seconds(of_gains)
+            )
+        })
+    };
+    let both = [
+        of("time between samples", controller.sample, law.h),
+        of("delay", controller.delay, predicted),
+    ];
+    both.into_iter().flatten().collect()
 }

@@ -8,20 +8,18 @@ use crate::dynamics::trajectory::Trajectory;
 use crate::dynamics::{DiscreteTrajectory, EnergyExchange, out_of_domain, out_of_range};
 use crate::model::System;
 use crate::sensitivity::{self, Gradients, NoSensitivity, Sensitivity, gradients, sensitivities};
+use crate::tasks::check::moved_markers;
 use crate::tasks::grid::{Found, SolveRequest};
 use crate::tasks::held_goal::{HeldGoal, solve_and_hold};
-use crate::tasks::moved_markers::moved_markers;
+use crate::tasks::solve_messages::Verdict;
 use crate::tasks::solve_messages::{self, carried, ends, restarted};
-use crate::tasks::tracking_messages;
-use crate::tasks::verdict::Verdict;
 use crate::workflow::Iterate;
 use crate::workflow::WorkflowError;
 use crate::workflow::accuracy::Accuracy;
 use crate::workflow::domain::{self, Outside};
-use crate::workflow::final_values::{FinalValue, final_values};
-use crate::workflow::found_hold;
 use crate::workflow::further::is_unreached;
 use crate::workflow::hold_check::{self, free_end};
+use crate::workflow::infeasible;
 use crate::workflow::infeasible::explain;
 use crate::workflow::loop_limits::LoopLimits;
 use crate::workflow::memory::{self, Occasion};
@@ -30,8 +28,7 @@ use crate::workflow::optimum::Optimum;
 use crate::workflow::period::Repeated;
 use crate::workflow::remark::{Remarks, STOPPED_EARLY};
 use crate::workflow::resimulate::Resimulation;
-use crate::workflow::stops;
-use crate::workflow::stretch_range;
+use crate::workflow::tracking::{FinalValue, final_values};
 use crate::workflow::tracking::{Tracked, followed};
 
 /// An optimal motion, or the last iterate of a solve that found none.
@@ -199,7 +196,7 @@ fn remarks(
         let held = optimum.boundary.rest[1].as_deref();
         remarks.note(
             "hold",
-            held.map(|held| found_hold::note(&optimum.model, held)),
+            held.map(|held| hold_check::note_found(&optimum.model, held)),
         );
     }
     remarks.note("linear_solver", optimum.solution.linear.note());
@@ -210,12 +207,15 @@ fn remarks(
     remarks.note("second_start", optimum.restarted.map(restarted));
     remarks.warn("outside_domain", domain::note(&result.outside, true));
     let beyond = out_of_range(&optimum.model, &result.discrete);
-    remarks.warn("outside_range", stretch_range::warning(&beyond, true));
+    remarks.warn(
+        "outside_range",
+        domain::stretch_range_warning(&beyond, true),
+    );
     remarks.note(
         "stops",
-        stops::notes(&optimum.model.system, &result.trajectory),
+        infeasible::stop_notes(&optimum.model.system, &result.trajectory),
     );
-    remarks.note("tracking", tracking_messages::notes(&result.tracking));
+    remarks.note("tracking", solve_messages::tracking_notes(&result.tracking));
     remarks.note("waypoint_value", ends(&result.waypoint_values));
     remarks.note("final_value", ends(&result.final_values));
     remarks

@@ -1,11 +1,13 @@
 //! Messages about the end of a solve.
 
 use crate::control::Carried;
+use crate::control::problem::{Control, Hold};
 use crate::ipopt::Status;
 use crate::math::{shortest, significant};
 use crate::model::Model;
-use crate::workflow::final_values::FinalValue;
-use crate::workflow::optimum::Restarted;
+use crate::workflow::optimum::{Optimum, Restarted};
+use crate::workflow::reasons::Cause;
+use crate::workflow::tracking::{FinalValue, Tracked};
 
 /// Maximum number of final values listed.
 const TOLD: usize = 6;
@@ -134,4 +136,88 @@ fn end(value: &FinalValue) -> String {
         shown(value.deviation),
         shown(value.asked)
     )
+}
+
+/// The verdict on a motion.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Verdict {
+    /// Its status: `solved`, `not_reproduced`, `not_held`, `infeasible`, ….
+    pub word: &'static str,
+    /// True if the motion is what was asked for.
+    pub is_solved: bool,
+    /// Reason why it is not, in words.
+    pub message: Option<String>,
+}
+
+impl Verdict {
+    /// The verdict on an optimum whose end is not kept for a reason, if any.
+    pub(super) fn from_optimum(
+        control: &Control,
+        optimum: &Optimum,
+        not_kept: Option<&str>,
+    ) -> Self {
+        let Optimum {
+            model, boundary, ..
+        } = optimum;
+        let refuted = optimum.reversed.map(|(k, m)| unresolved(model, k, m));
+        let refuted = refuted.or_else(|| optimum.cause().map(Cause::message));
+        let is_interrupted = optimum.stopped == Some(Status::Interrupted);
+        let mut is_solved = optimum.is_solved() && !is_interrupted;
+        let mut word = optimum.word();
+        let has_to_hold = is_solved && control.hold == Hold::Required;
+        let not_held = not_kept.filter(|_| has_to_hold).map(str::to_owned);
+        if not_held.is_some() {
+            (is_solved, word) = (false, "not_held");
+        }
+        let mut message = refuted.or(not_held);
+        if message.is_none() && !is_solved {
+            let status = optimum.solution.status;
+            message = Some(match optimum.stopped {
+                Some(stopped) => stopped_after(status, stopped),
+                None => meaning(status).to_owned(),
+            });
+        }
+        if let (Some(message), false) = (&mut message, optimum.meets_equations()) {
+            message.push_str(&redundancy(&model.redundant_constraints(&boundary.start.z)));
+        }
+        Self {
+            word,
+            is_solved,
+            message,
+        }
+    }
+}
+
+/// Most joints that notes name one by one.
+const NAMED: usize = 3;
+
+/// Deviations in words.
+pub(crate) fn deviation_words(of: &Tracked) -> String {
+    let shown = |value: f64| match of.unit {
+        "m" => format!("{} mm", significant(1e3 * value, 3)),
+        unit => format!("{} {unit}", significant(value, 3)),
+    };
+    let [rms, most] = [of.error.rms, of.error.maximum].map(shown);
+    format!("{rms} rms and at most {most}")
+}
+
+/// Lines about the tracking errors of a motion; of many joints the worst.
+pub(crate) fn tracking_notes(tracked: &[Tracked]) -> Vec<String> {
+    let joints = tracked.iter().filter(|one| one.kind == "joint");
+    let count = joints.clone().count();
+    let worst = joints.max_by(|a, b| a.error.maximum.total_cmp(&b.error.maximum));
+    let line = |one: &Tracked| {
+        let Tracked {
+            kind, name, error, ..
+        } = one;
+        let time = significant(error.time_of_maximum, 3);
+        let words = deviation_words(one);
+        format!("{kind} {name} deviates from its path by {words} (at {time} s)")
+    };
+    let is_told = |one: &&Tracked| one.kind == "marker" || count <= NAMED;
+    let mut lines: Vec<String> = tracked.iter().filter(is_told).map(line).collect();
+    if let Some(worst) = worst.filter(|_| count > NAMED) {
+        lines.push(format!("of {count} joints that follow, {}", line(worst)));
+    }
+    lines
 }

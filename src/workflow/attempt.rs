@@ -1,34 +1,32 @@
 //! A control problem solved from one start: boundary, guess, program, solver.
 
-use std::ops::ControlFlow;
-use std::time::Instant;
-
-use crate::control::problem::{Control, InCommon};
+use crate::control::problem::{Control, Duration, InCommon};
 use crate::control::{BoundaryConditions, Carried, Costates, Solution, Transcription};
 use crate::dynamics::{DiscreteTrajectory, reversed_muscle};
-use crate::ipopt::{Options, Solver, SolverResult, Status, interrupt};
+use crate::ipopt::{OptionValue, Options, Solver, SolverResult, Status, interrupt};
 use crate::kinematics::Pose;
-use crate::model::{Model, System};
+use crate::model::{Coordinates, Model, System};
 use crate::nlp::Nlp;
 use crate::nlp::joined::{Joined, Places};
 use crate::workflow::active::{Active, active};
+use crate::workflow::active::{Violation, violations};
 use crate::workflow::error::WorkflowError;
-use crate::workflow::found_hold;
-use crate::workflow::gap::{self, Gap};
-use crate::workflow::iterate::Iterate;
+use crate::workflow::gap::Gap;
+use crate::workflow::motion::Iterate;
 use crate::workflow::motion::solved;
 use crate::workflow::optimum::{Optimum, Shortest, SolveLimits};
-use crate::workflow::ordering::ordering;
-use crate::workflow::period;
-use crate::workflow::phase::phase;
-use crate::workflow::prepare::Counted;
+use crate::workflow::prepare_together::Counted;
 use crate::workflow::prepare_together::{
     MotionAsked, PreparedTogether, prepare_together, program_motions, resolve_each,
 };
+use crate::workflow::remark::phase;
 use crate::workflow::resimulate::{Resimulation, resimulate};
 use crate::workflow::resolve::with_found;
 use crate::workflow::solves::{Solves, multipliers_of};
-use crate::workflow::violations::{Violation, violations};
+use crate::workflow::{gap, hold_check, period};
+use std::collections::BTreeMap;
+use std::ops::ControlFlow;
+use std::time::Instant;
 
 /// Maximum number of rows named when a problem has no solution.
 const NAMED: usize = 5;
@@ -376,7 +374,7 @@ impl Verification {
         control: &Control,
         (discrete, motion): (&DiscreteTrajectory, &Solution),
     ) -> Self {
-        found_hold::keep(model, boundary, discrete);
+        hold_check::keep_found(model, boundary, discrete);
         period::begin(control, boundary, motion);
         let reversed = reversed_muscle(model, discrete);
         if reversed.is_some() {
@@ -395,4 +393,25 @@ impl Verification {
             tested: began.elapsed().as_secs_f64(),
         }
     }
+}
+
+/// Options of Ipopt, with the ordering of MUMPS that was fastest for the kind of program, unless the problem names one.
+///
+/// Approximate minimum degree (0) where each instant is a small dense block or the duration is given; minimum fill (2)
+/// where a free duration couples all instants of a redundant program; nested dissection of SCOTCH (3) for the meshes of elastic
+/// blocks. Measurements: `benches/README.md`.
+pub(super) fn ordering(model: &Model, control: &Control) -> BTreeMap<String, OptionValue> {
+    let free = matches!(control.duration, Duration::Free { .. });
+    let ordering = if !model.action.map.of_nodes.is_empty() {
+        3
+    } else if free && model.coordinates == Coordinates::Redundant {
+        2
+    } else {
+        0
+    };
+    let mut options = control.solver.ipopt.clone();
+    options
+        .entry("mumps_pivot_order".to_owned())
+        .or_insert(OptionValue::Integer(ordering));
+    options
 }

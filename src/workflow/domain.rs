@@ -1,8 +1,7 @@
 //! Muscles outside the domain of the first-order dielectric, in one note and in `summary.json`.
 
+use crate::dynamics::{OutOfDomain, OutOfRange};
 use serde::Serialize;
-
-use crate::dynamics::OutOfDomain;
 
 /// Most muscles and blocks that are written out.
 const LISTED: usize = 4;
@@ -56,6 +55,33 @@ pub(crate) fn note(list: &[Outside], moves: bool) -> Option<String> {
     };
     Some(format!(
         "outside the domain of the first-order dielectric, where charge and stiffness turn negative: {}{more}",
+        named.join("; ")
+    ))
+}
+
+/// One warning; with times where there is a motion.
+pub(crate) fn stretch_range_warning(list: &[OutOfRange], moves: bool) -> Option<String> {
+    if list.is_empty() {
+        return None;
+    }
+    let one = |out: &OutOfRange| {
+        let when = match moves {
+            true => format!(" at {:.4} s", out.time / 1e3),
+            false => String::new(),
+        };
+        let [low, high] = out.range;
+        format!(
+            "{} has a stretch of {:.4}{when} (they hold from {low} to {high})",
+            out.name, out.stretch
+        )
+    };
+    let named: Vec<String> = list.iter().take(LISTED).map(one).collect();
+    let more = match list.len().saturating_sub(LISTED) {
+        0 => String::new(),
+        more => format!("; and {more} more"),
+    };
+    Some(format!(
+        "outside the range of stretch for which the constants of the material hold: {}{more}",
         named.join("; ")
     ))
 }

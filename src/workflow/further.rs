@@ -8,7 +8,7 @@ use crate::control::problem::{Control, Guess, Voltages};
 use crate::ipopt::{SolverResult, Status, interrupt};
 use crate::model::System;
 use crate::workflow::attempt::attempt;
-use crate::workflow::iterate::Iterate;
+use crate::workflow::motion::Iterate;
 use crate::workflow::optimum::{Optimum, SolveLimits, seconds_left};
 
 /// Iterations of the second start; an optimum is found from it soon or not at all.

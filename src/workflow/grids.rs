@@ -1,21 +1,20 @@
 //! Control problems and simulations on as fine a grid as an accuracy needs.
 
-use std::ops::ControlFlow;
-use std::time::Instant;
-
 use crate::control::problem::{Control, Duration, Simulation, Voltages};
 use crate::dynamics::DiscreteTrajectory;
-use crate::ipopt::interrupt;
+use crate::ipopt::{Status, interrupt};
 use crate::model::{Model, System};
 use crate::workflow::accuracy::{AccuracyTarget, Attempt, Refined, refine};
 use crate::workflow::error::WorkflowError;
 use crate::workflow::estimate::ErrorSample;
 use crate::workflow::further::stopped;
 use crate::workflow::integrate::{Simulated, grid, integrate};
-use crate::workflow::iterate::Iterate;
 use crate::workflow::motion;
+use crate::workflow::motion::Iterate;
 use crate::workflow::optimise::optimise;
 use crate::workflow::optimum::{Optimum, SolveLimits, seconds_left};
+use std::ops::ControlFlow;
+use std::time::Instant;
 
 /// The solver's tolerance as a part of the accuracy asked for, where the problem names no smaller one.
 pub(super) const SOLVER: f64 = 1e-2;
@@ -169,4 +168,80 @@ fn response(optimum: &Optimum, optimal: &ErrorSample) -> f64 {
     half.map_or(f64::INFINITY, |discrete| {
         optimal.deviation(&ErrorSample::of_motion(&optimum.model, discrete))
     })
+}
+
+/// No grid has more variables than this.
+pub(super) const VARIABLES: usize = 2_000_000;
+
+/// Observer of the iterates on a number of intervals.
+pub(super) type GridObserver<'a> = &'a mut dyn FnMut(usize, &Iterate<'_>) -> ControlFlow<()>;
+
+/// The solves so far.
+pub(super) struct GridSolves<'a> {
+    system: &'a System,
+    control: &'a Control,
+    allowed: SolveLimits,
+    observer: GridObserver<'a>,
+    began: Instant,
+    /// Iterations of all of them.
+    pub(super) iterations: usize,
+}
+
+impl<'a> GridSolves<'a> {
+    pub(super) fn new(
+        system: &'a System,
+        control: &'a Control,
+        allowed: SolveLimits,
+        observer: GridObserver<'a>,
+    ) -> Self {
+        Self {
+            system,
+            control,
+            allowed,
+            observer,
+            began: Instant::now(),
+            iterations: 0,
+        }
+    }
+
+    /// Seconds left of those allowed.
+    fn left(&self) -> Option<f64> {
+        seconds_left(self.allowed.seconds, self.began)
+    }
+
+    /// Returns the reason why no further grid may be begun, if there is one.
+    pub(super) fn stopped(&self) -> Option<Status> {
+        stopped(self.left())
+    }
+
+    /// Returns true if no further grid may be begun.
+    pub(super) fn is_over(&self) -> bool {
+        self.stopped().is_some()
+    }
+
+    /// Solves on a number of intervals, from an earlier optimum or from the guess of the problem.
+    ///
+    /// # Errors
+    /// As of [`optimise`].
+    pub(super) fn solve(
+        &mut self,
+        intervals: usize,
+        earlier: Option<&Optimum>,
+    ) -> Result<Optimum, WorkflowError> {
+        let control = Control {
+            intervals,
+            ..self.control.clone()
+        };
+        let limits = SolveLimits {
+            seconds: self.left(),
+            ..self.allowed
+        };
+        let earlier = earlier.map(|optimum| &optimum.motion);
+        let observer = &mut self.observer;
+        let found = optimise(self.system, &control, earlier, limits, &mut |iterate| {
+            observer(intervals, iterate)
+        })?;
+        self.iterations += found.solution.iterations.len().saturating_sub(1);
+        Ok(found)
+    }
 }

@@ -1,10 +1,18 @@
 //! Check that the end of a motion can be kept: before the solve by known values, and after it by a simulation.
 
-use crate::control::BoundaryConditions;
 use crate::control::problem::{BoundaryState, Control, Hold};
-use crate::model::Model;
+use crate::control::{BoundaryConditions, Rests, Solution};
+use crate::dynamics::trajectory::{Trajectory, by_source};
+use crate::dynamics::{DiscreteTrajectory, Equilibrium, Start};
+use crate::math::significant;
+use crate::model::system::Source;
+use crate::model::{Model, joint_unit};
+use crate::workflow::distance::Distance;
 use crate::workflow::error::WorkflowError;
+use crate::workflow::held::{Held, held, is_small};
+use crate::workflow::motion::trajectory;
 use crate::workflow::resimulate::Resimulation;
+use serde::Serialize;
 
 /// Refuses an end that has to be held and is known not to be: its voltages are not known, or beyond their bounds, or the
 /// goal is unstable under them.
@@ -116,4 +124,224 @@ fn unstable(boundary: &BoundaryConditions) -> Option<String> {
     Some(format!(
         "it is an unstable equilibrium, in {count} {noun}{softest}"
     ))
+}
+
+/// A part of the largest input that holds a goal; smaller ones are not named.
+const HARDLY: f64 = 1e-3;
+
+/// Makes the goal of a motion the state of rest that it is, under the inputs that were found with it or that the goal names.
+///
+/// Its stability is known where the coordinates are free of constraints.
+pub(crate) fn keep_found(
+    model: &Model,
+    boundary: &mut BoundaryConditions,
+    motion: &DiscreteTrajectory,
+) {
+    let Some(z) = motion.z.last() else {
+        return;
+    };
+    let held = match &motion.held {
+        Some(found) => {
+            boundary.rest[1] = Some(by_source(model, found));
+            found.clone()
+        }
+        None => match named(model, boundary) {
+            Some(named) => named,
+            None => return,
+        },
+    };
+    if model.action.map.multipliers == 0 {
+        boundary.goal.rest = Some(Equilibrium::of_state(model, z, &held));
+    }
+}
+
+/// Scalars of an interval with the inputs under which all of the system rests at a goal whose state was found; none where potentials follow from
+/// them, or the goal was known to be an equilibrium.
+fn named(model: &Model, boundary: &BoundaryConditions) -> Option<Vec<f64>> {
+    let goal = &boundary.goal;
+    let is_open = goal.rest.is_none() && goal.rests == Rests::Everything;
+    let inputs = boundary.rest[1].as_ref().filter(|_| is_open)?;
+    let scalars = model.variables.scalars(&model.scalars(inputs));
+    let [_, others] = model.variables.split(&scalars);
+    others.is_empty().then_some(scalars)
+}
+
+/// Names the inputs that were found and hold the goal, without those that are hardly any.
+pub(crate) fn note_found(model: &Model, held: &[f64]) -> String {
+    let counted = |(source, value): (&Source, &f64)| {
+        let (unit, size) = source.kind.counted();
+        (source.name.clone(), value / size, unit)
+    };
+    let all: Vec<_> = model.sources.iter().zip(held).map(counted).collect();
+    let largest = all
+        .iter()
+        .fold(0.0, |most: f64, (_, value, _)| most.max(value.abs()));
+    let named = all
+        .iter()
+        .filter(|(_, value, _)| value.abs() > HARDLY * largest);
+    let named =
+        named.map(|(name, value, unit)| format!("{name} {} {unit}", significant(*value, 4)));
+    let named: Vec<String> = named.collect();
+    match named.is_empty() {
+        true => "the goal was found to be held without any voltage or load".to_owned(),
+        false => format!(
+            "the goal is held by inputs that were found with the motion: {}",
+            named.join(", ")
+        ),
+    }
+}
+
+/// Maximum number of parts of the goal listed.
+const TOLD: usize = 3;
+
+/// The motion after the goal, under the voltages of the last interval.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct Afterwards {
+    /// Time that was simulated in s.
+    pub seconds: f64,
+    /// Departure from each part of the goal, the farthest first.
+    pub goal: Vec<Departure>,
+    /// Greatest drift of the system from the last optimal instant.
+    pub drift: Distance,
+    /// Reason why the simulation ended early.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub failure: Option<String>,
+    /// True if the system stays at its goal.
+    pub is_held: bool,
+}
+
+/// Departure from a part of a goal.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct Departure {
+    /// The marker or the joint.
+    pub name: String,
+    /// Greatest deviation from the goal.
+    pub deviation: f64,
+    /// Unit of the deviation: m or rad.
+    pub unit: &'static str,
+    /// Time at which it is greatest, in s after the end.
+    pub time: f64,
+}
+
+/// Simulates on from the end of a motion, with the length of its path, to a goal that names places or joint coordinates and no voltages that hold it.
+pub(crate) fn afterwards(
+    model: &Model,
+    control: &Control,
+    optimal: &Solution,
+    path_length: Distance,
+) -> Option<Afterwards> {
+    let is_named = control.names_no_hold() && !control.seeks_hold();
+    let n = optimal.intervals();
+    let end = Start {
+        z: optimal.z.get(n)?.clone(),
+        momentum: optimal.momentum.clone(),
+        rates: None,
+        time: *optimal.times.get(n)?,
+    };
+    let last = optimal.voltages.last()?;
+    if !is_named || end.momentum.len() != model.coordinate_count() {
+        return None;
+    }
+    let Held {
+        motion,
+        drift,
+        failure,
+    } = held(model, &end, optimal, last);
+    Some(Afterwards {
+        seconds: motion.times[motion.intervals()] / 1e3,
+        goal: departures(model, &control.goal, &trajectory(model, &motion)),
+        is_held: failure.is_none() && is_small(drift, path_length, model),
+        drift,
+        failure: failure.map(|error| error.to_string()),
+    })
+}
+
+/// Returns the departures from the parts of a goal along a motion that begins there.
+fn departures(model: &Model, goal: &BoundaryState, motion: &Trajectory) -> Vec<Departure> {
+    let system = &model.system;
+    let farthest = |name: &str, unit: &'static str, far: &dyn Fn(usize) -> f64| {
+        let instants = 0..motion.times.len();
+        let each = instants.map(|k| (far(k), motion.times[k] / 1e3));
+        let (deviation, time) = each.fold((0.0, 0.0), |a, b| if b.0 > a.0 { b } else { a });
+        Departure {
+            name: name.to_owned(),
+            deviation,
+            unit,
+            time,
+        }
+    };
+    let mut list: Vec<Departure> = match goal {
+        BoundaryState::Markers { places, .. } => {
+            let all = places.iter();
+            all.map(|(&m, place)| {
+                let far = |k: usize| place.distance(&motion.marks[k][m]) / 1e3;
+                farthest(&system.markers[m].name, "m", &far)
+            })
+            .collect()
+        }
+        BoundaryState::JointAngles { angles, .. } => {
+            let all = angles.iter();
+            all.map(|(&j, &value)| {
+                let before = system.joints[..j].iter();
+                let column = before.filter(|joint| joint.has_coordinate()).count();
+                let (unit, scale) = match joint_unit(system, j) {
+                    "mm" => ("m", 1e-3),
+                    unit => (unit, 1.0),
+                };
+                let far = |k: usize| (motion.joints[k][column] - value).abs() * scale;
+                farthest(&system.joints[j].name, unit, &far)
+            })
+            .collect()
+        }
+        _ => Vec::new(),
+    };
+    list.sort_by(|a, b| b.deviation.total_cmp(&a.deviation));
+    list
+}
+
+impl Departure {
+    /// In words, lengths in mm and angles in degrees.
+    fn message(&self) -> String {
+        let Self { name, time, .. } = self;
+        let far = match self.unit {
+            "m" => format!("{} mm", significant(1e3 * self.deviation, 3)),
+            _ => format!("{}°", significant(self.deviation.to_degrees(), 3)),
+        };
+        format!(
+            "{name} is up to {far} from its goal ({} s after the end)",
+            significant(*time, 2)
+        )
+    }
+}
+
+impl Afterwards {
+    /// That nothing holds the goal, where it is left; with the advice to seek inputs that hold it where these `can_be_sought`.
+    pub(crate) fn warning(&self, can_be_sought: bool) -> Option<String> {
+        if self.is_held {
+            return None;
+        }
+        let mut far: Vec<String> = self
+            .goal
+            .iter()
+            .take(TOLD)
+            .map(Departure::message)
+            .collect();
+        far.push(format!("the system moves by {}", self.drift));
+        far.extend(
+            self.failure
+                .iter()
+                .map(|failure| format!("the motion ends early: {failure}")),
+        );
+        let advice = match can_be_sought {
+            false => "\"rest_at_voltages\", or \"markers\" with \"hold\"",
+            true => {
+                "\"rest_at_voltages\", \"markers\" with \"hold\", or \"hold\": \"find\", which seeks the voltages of markers and joint angles"
+            }
+        };
+        Some(format!(
+            "nothing holds the goal: with the last inputs held on for {} s, {}; for an end that stays take {advice}",
+            significant(self.seconds, 3),
+            far.join(", ")
+        ))
+    }
 }

@@ -1,19 +1,18 @@
 //! Explanation of an infeasible control problem by its closest motion, with the changes that may help.
 
-use std::ops::ControlFlow;
-
 use crate::control::problem::{BoundaryState, Control, Duration};
 use crate::control::{BoundaryConditions, Place, Rests};
 use crate::coordinates::Configuration;
 use crate::dynamics::simulate;
+use crate::dynamics::trajectory::Trajectory;
 use crate::ipopt::Status;
 use crate::kinematics::Pose;
 use crate::math::{no_smaller, significant};
 use crate::model::components::Tendon;
 use crate::model::system::JointKind;
-use crate::model::{Component, Model, joint_unit};
-use crate::workflow::optimum::Optimum;
-use crate::workflow::optimum::Shortest;
+use crate::model::{Component, Model, System, joint_unit};
+use crate::workflow::optimum::{Optimum, Shortest};
+use std::ops::ControlFlow;
 
 /// Maximum number of bounds listed.
 const TOLD: usize = 6;
@@ -256,4 +255,52 @@ fn durations(control: &Control, optimum: &Optimum) -> Vec<String> {
         ));
     }
     lines
+}
+
+/// The warning where a direct solver took over from an iteration.
+pub(crate) fn stalled_warning(fallbacks: usize) -> Option<String> {
+    (fallbacks > 0).then(|| {
+        "the iteration with multigrid did not converge, and a direct solver took over: \"linear_solver\": \"faer\" takes it from the start"
+            .to_owned()
+    })
+}
+
+/// The warning where an equilibrium was found without factors, whose inertia would prove its stability, and the lowest mode does not; as it was
+/// `stopped` perhaps.
+pub(crate) fn undecided(stopped: Option<Status>) -> String {
+    match stopped {
+        Some(status) => format!(
+            "stability is not known: the search for the lowest mode was stopped ({})",
+            status.word().replace('_', " ")
+        ),
+        None => "stability is not known: the matrix is too large to be factorised, and the lowest mode was not found within a bound that decides"
+            .to_owned(),
+    }
+}
+
+/// For each joint that passes a stop, how far and when.
+pub(crate) fn stop_notes(system: &System, motion: &Trajectory) -> Vec<String> {
+    let joints = system.joints.iter().filter(|joint| joint.has_coordinate());
+    let units = motion.coordinates(system);
+    let passed = joints
+        .zip(units)
+        .enumerate()
+        .filter_map(|(u, (joint, of))| {
+            let stops = joint.stops?;
+            let beyond = motion.joints.iter().map(|row| stops.beyond(row[u]));
+            let (k, far) = beyond.enumerate().max_by(|a, b| a.1.total_cmp(&b.1))?;
+            let (far, unit) = match of.unit {
+                "rad" => (far.to_degrees(), "deg"),
+                other => (far, other),
+            };
+            (far > 0.0).then(|| {
+                format!(
+                    "{} is pressed into its stop by up to {} {unit}, at {} s",
+                    joint.name,
+                    significant(far, 3),
+                    significant(motion.times[k] / 1e3, 4)
+                )
+            })
+        });
+    passed.collect()
 }

@@ -12,11 +12,11 @@ use crate::dynamics::{
 use crate::ipopt::{Status, interrupt};
 use crate::math::in_order;
 use crate::model::{Model, System};
-use crate::workflow::confirmed::EstimatedError;
 use crate::workflow::control_loop::{Counts, Loop, horizon};
 use crate::workflow::error::WorkflowError;
 use crate::workflow::memory;
-use crate::workflow::phase::phase;
+use crate::workflow::remark::phase;
+use crate::workflow::tolerance::EstimatedError;
 use crate::workflow::tolerance::{ByTolerance, Found};
 
 /// A simulation and how it ended.

@@ -1,7 +1,7 @@
 //! Lower bounds of the memory that a run needs, checked before it begins.
 
 use crate::dynamics::Solving;
-use crate::math::memory::{available, readable};
+use crate::math::join::{available, readable};
 use crate::model::system::{Fidelity, Material};
 use crate::model::{Model, System, Time, has_nodes_alone};
 use crate::workflow::error::WorkflowError;

@@ -1,13 +1,14 @@
 //! Conversion of coordinates and multipliers to poses, joint coordinates and voltages by muscle.
 
-use std::collections::BTreeMap;
-
 use crate::control::{Costates, Solution};
 use crate::dynamics::trajectory::{Trajectory, by_source};
 use crate::dynamics::{DiscreteTrajectory, last_momentum};
+use crate::ipopt::Iteration;
 use crate::math::Vector;
 use crate::model::system::Joint;
 use crate::model::{FoundParameter, Model, Role};
+use std::collections::BTreeMap;
+use std::fmt;
 
 /// Returns the solution that is stored of a motion.
 pub fn solved(
@@ -146,5 +147,27 @@ pub(crate) fn discrete_trajectory(model: &Model, kept: &Solution) -> DiscreteTra
         z: kept.z.clone(),
         scalars: scalars(model, kept),
         ..DiscreteTrajectory::default()
+    }
+}
+
+/// Gives the motions of an iterate by their numbers.
+pub type IterateMotions<'a> = &'a dyn Fn(usize) -> Solution;
+
+/// An iterate of the solver.
+pub struct Iterate<'a> {
+    /// Report of the solver on it.
+    pub report: &'a Iteration,
+    /// The models, one for each motion.
+    pub models: &'a [&'a Model],
+    /// Its motions.
+    pub motions: IterateMotions<'a>,
+    /// Report of the solver on the iterate before, and the motions of that one with their costates, with which a later solve goes on; where they
+    /// are known.
+    pub before: Option<(&'a Iteration, IterateMotions<'a>)>,
+}
+
+impl fmt::Debug for Iterate<'_> {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        self.report.fmt(f)
     }
 }

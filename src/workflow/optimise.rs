@@ -9,7 +9,7 @@ use crate::model::System;
 use crate::workflow::attempt::attempt;
 use crate::workflow::error::WorkflowError;
 use crate::workflow::further::is_unreached;
-use crate::workflow::iterate::Iterate;
+use crate::workflow::motion::Iterate;
 use crate::workflow::optimum::{Optimum, SolveLimits, seconds_left};
 use crate::workflow::retry_displaced::second_starts;
 

@@ -5,12 +5,12 @@ use crate::control::{BoundaryConditions, Carried, Solution};
 use crate::ipopt::{SolverResult, Status};
 use crate::model::Model;
 use crate::workflow::active::Active;
-use crate::workflow::afterwards::{Afterwards, afterwards};
-use crate::workflow::cause::Cause;
+use crate::workflow::active::Violation;
 use crate::workflow::distance::Distance;
+use crate::workflow::hold_check::{Afterwards, afterwards};
 use crate::workflow::period::{Repeated, repeated};
+use crate::workflow::reasons::Cause;
 use crate::workflow::resimulate::Resimulation;
-use crate::workflow::violations::Violation;
 use std::time::Instant;
 
 /// Limits of a solve, in place of those of its problem.

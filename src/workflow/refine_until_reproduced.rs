@@ -6,8 +6,8 @@ use crate::control::problem::Control;
 use crate::model::System;
 use crate::workflow::error::WorkflowError;
 use crate::workflow::further::is_infeasible;
-use crate::workflow::grid_solves::{GridSolves, VARIABLES};
-use crate::workflow::iterate::Iterate;
+use crate::workflow::grids::{GridSolves, VARIABLES};
+use crate::workflow::motion::Iterate;
 use crate::workflow::optimum::{Optimum, SolveLimits};
 
 /// Multiples of the intervals of the problem that are tried.

@@ -1,9 +1,9 @@
 //! Remarks on a result: warnings and notes, each with a code by which programs find it and a text for people.
 
-use std::borrow::Cow;
-use std::fmt;
-
 use serde::{Deserialize, Serialize};
+use std::borrow::Cow;
+use std::cell::RefCell;
+use std::fmt;
 
 /// The code of a warning on a result that another attempt may find better, since this one was stopped.
 pub(crate) const STOPPED_EARLY: &str = "stopped_early";
@@ -82,4 +82,25 @@ impl Remarks {
     pub fn lines(&self) -> impl Iterator<Item = String> {
         self.0.iter().map(Remark::to_string)
     }
+}
+
+type Listener = Box<dyn Fn(&'static str)>;
+
+thread_local! {
+    /// Listener to the phases of this thread.
+    static LISTENER: RefCell<Option<Listener>> = const { RefCell::new(None) };
+}
+
+/// Makes this thread report its phases to `listener`: building the model, finding the start, ….
+pub fn listen_to_phases(listener: impl Fn(&'static str) + 'static) {
+    LISTENER.replace(Some(Box::new(listener)));
+}
+
+/// Reports the phase that begins now.
+pub(crate) fn phase(doing: &'static str) {
+    LISTENER.with_borrow(|listener| {
+        if let Some(listener) = listener {
+            listener(doing);
+        }
+    });
 }

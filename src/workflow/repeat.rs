@@ -9,9 +9,9 @@ use crate::ipopt::interrupt;
 use crate::math::Signal;
 use crate::model::Model;
 use crate::model::system::JointKind;
-use crate::workflow::cause::Cause;
 use crate::workflow::distance::Distance;
 use crate::workflow::motion::solved;
+use crate::workflow::reasons::Cause;
 
 /// A distance that grows by this factor within one step is no growth of rounding.
 const JUMP: f64 = 1e3;

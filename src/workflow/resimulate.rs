@@ -13,9 +13,9 @@ use crate::control::problem::Control;
 use crate::control::{BoundaryConditions, Solution};
 use crate::dynamics::{DiscreteTrajectory, Start, StepError};
 use crate::model::{Model, OPEN};
-use crate::workflow::cause::Cause;
 use crate::workflow::distance::Distance;
 use crate::workflow::held::{self, DURATIONS, Held, constant, held};
+use crate::workflow::reasons::Cause;
 use crate::workflow::repeat::Repeat;
 
 /// Distance from the optimum on its own grid that counts as none, in rad and lengths of the system, and in tolerances of the

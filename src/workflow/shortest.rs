@@ -7,9 +7,9 @@ use crate::control::problem::{Control, Duration, Objective, Voltages};
 use crate::ipopt::Status;
 use crate::math::Signal;
 use crate::model::{Model, Role};
-use crate::workflow::combined::put_after;
+use crate::workflow::coupled::put_after;
 use crate::workflow::further::{Further, ITERATIONS, displaced, is_infeasible};
-use crate::workflow::iterate::Iterate;
+use crate::workflow::motion::Iterate;
 use crate::workflow::optimum::{Optimum, Shortest};
 
 /// Largest free duration and the first one, as multiples of the given one.

@@ -1,26 +1,26 @@
 //! The solves of a program one after another: the first one, others with new charts of its rotations, others that confirm
 //! the objective.
 
-use std::ops::ControlFlow;
-use std::time::Instant;
-
 use crate::control::problem::Combined;
 use crate::control::{BoundaryError, Carried, InitialGuess, RestProgram, Solution, Transcription};
+use crate::dynamics::DiscreteTrajectory;
 use crate::ipopt::{
     Iteration, Multipliers, Options, Reached, Solver, SolverResult, Start, StartingPoint, Status,
     interrupt,
 };
 use crate::model::Model;
 use crate::nlp::joined::{Joined, Places, SharedVariable};
-use crate::workflow::combined::one_of_both;
+use crate::workflow::coupled::one_of_both;
 use crate::workflow::error::WorkflowError;
-use crate::workflow::gap::{self, Gap};
-use crate::workflow::iterate::Iterate;
+use crate::workflow::gap;
+use crate::workflow::gap::Gap;
+use crate::workflow::motion::Iterate;
 use crate::workflow::motion::solved;
 use crate::workflow::optimum::seconds_left;
-use crate::workflow::phase::phase;
 use crate::workflow::program_motion::{ProgramMotion, states_of_rest};
-use crate::workflow::recentre::recentred;
+use crate::workflow::remark::phase;
+use std::ops::ControlFlow;
+use std::time::Instant;
 
 /// Maximum numbers of repeated solves with other charts of its rotations, and with the objective scaled by its size.
 const CHARTS: usize = 4;
@@ -260,4 +260,29 @@ fn joined_point(places: &Places, points: &[StartingPoint]) -> StartingPoint {
             upper: of(|one| &one.upper, &all),
         }),
     }
+}
+
+/// A rotation that ends farther from its chart, in rad, is solved again with a chart where it ended.
+const FAR: f64 = std::f64::consts::FRAC_PI_3;
+
+/// The motion with charts where its bodies are, where it ends far from those that it has.
+pub(crate) fn recentred(model: &Model, discrete: &DiscreteTrajectory) -> Option<InitialGuess> {
+    let map = &model.action.map;
+    let is_far = |z: &Vec<f64>| map.angle_from_charts(z) > FAR;
+    discrete.z.iter().any(is_far).then(|| {
+        let z = discrete.z.iter().map(|z| {
+            let mut instant = map.placed(z);
+            map.recentre(&mut instant);
+            instant.z
+        });
+        InitialGuess {
+            discrete: DiscreteTrajectory {
+                z: z.collect(),
+                ..discrete.clone()
+            },
+            h: discrete.times[1],
+            costates: None,
+            carried: Carried::default(),
+        }
+    })
 }

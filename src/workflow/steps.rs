@@ -5,8 +5,8 @@ use crate::dynamics::{DiscreteTrajectory, Integrator, LocalError};
 use crate::ipopt::Status;
 use crate::math::{shortest, significant};
 use crate::model::Model;
-use crate::workflow::confirmed::EstimatedError;
 use crate::workflow::integrate::grid;
+use crate::workflow::tolerance::EstimatedError;
 
 /// Part of the path beyond which the estimated error of a motion is warned of.
 const FINE: f64 = 0.01;

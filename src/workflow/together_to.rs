@@ -10,7 +10,7 @@ use crate::workflow::attempt::FoundTogether;
 use crate::workflow::error::WorkflowError;
 use crate::workflow::estimate::ErrorSample;
 use crate::workflow::grids::{OF_CONTROL, SOLVER, sample, stop};
-use crate::workflow::iterate::Iterate;
+use crate::workflow::motion::Iterate;
 use crate::workflow::optimum::SolveLimits;
 use crate::workflow::together::{Solves, Together};
 

@@ -8,8 +8,8 @@ use std::ops::ControlFlow;
 use crate::control::problem::Control;
 use crate::model::System;
 use crate::workflow::error::WorkflowError;
-use crate::workflow::grid_solves::{GridSolves, VARIABLES};
-use crate::workflow::iterate::Iterate;
+use crate::workflow::grids::{GridSolves, VARIABLES};
+use crate::workflow::motion::Iterate;
 use crate::workflow::optimum::{Optimum, SolveLimits};
 use crate::workflow::refine_until_reproduced::RefinedOptimum;
 

@@ -4,7 +4,7 @@ use proboscis::dynamics::trajectory::{Column, Observations, Trajectory};
 use proboscis::math::Vector;
 use proboscis::model::System;
 use proboscis::model::system::{Attachment, Circuit, Fidelity, Material, Muscle};
-use proboscis::report::electrodes::coloured;
+use proboscis::report::solids::coloured;
 use std::borrow::Cow;
 
 #[test]

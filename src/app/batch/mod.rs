@@ -6,8 +6,6 @@
 mod end;
 mod hyperqueue;
 mod launch;
-mod parent;
-mod plan;
 mod processes;
 mod threads;
 
@@ -17,8 +15,8 @@ use crate::app::error::CommandError;
 use crate::workflow::parallel_map::cores;
 pub use end::RunIn;
 pub(crate) use end::{RunEnd, Said, task_runs_at_once};
-pub use parent::end_with_parent;
-pub(crate) use plan::Batch;
+pub(crate) use launch::Batch;
+pub use launch::end_with_parent;
 
 /// Runs all of a batch; `told` is called at each end, in the thread that calls, and may let no other one begin.
 ///

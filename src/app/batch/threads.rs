@@ -5,7 +5,7 @@ use std::sync::atomic::{AtomicBool, Ordering};
 use std::time::Instant;
 
 use super::end::{RunEnd, Said};
-use super::plan::Batch;
+use super::launch::Batch;
 use crate::app::error::CommandError;
 use crate::app::request::CommandInput;
 use crate::app::task;

@@ -15,7 +15,7 @@ use std::time::Instant;
 
 use crate::app::batch::{Batch, RunIn, run_all, task_runs_at_once};
 use crate::app::error::CommandError;
-use crate::app::folder::{make_folder, make_folder_of};
+use crate::app::foreign::{make_folder, make_folder_of};
 use crate::app::messages::key;
 use crate::app::no_equilibrium;
 use crate::app::progress::Progress;

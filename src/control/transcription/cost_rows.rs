@@ -9,11 +9,9 @@
 //! Of the rate of a quantity whose step in an interval is m it is e = g m/h − r(t) with the factor g of the unit. A cost of m itself, as the
 //! energy from a source of the power m, is w φ m.
 
-use crate::control::energy_cost::{EnergyCost, resisted};
-use crate::control::quantity_cost::{CostFunction, During, QuantityCost};
+use crate::control::energy_cost::{CostFunction, During, EnergyCost, QuantityCost, resisted};
+use crate::control::goal::instant_at;
 use crate::control::transcription::limit_rows::Site;
-use crate::control::transcription::units::MILLISECOND;
-use crate::control::waypoint::instant_at;
 use crate::coordinates::Reduced;
 use crate::functional::{Outer, Sample};
 use crate::math::Signal;
@@ -202,3 +200,6 @@ pub(super) fn fill_costs(
         };
     }
 }
+
+/// s in a ms.
+pub(super) const MILLISECOND: f64 = 1e-3;

@@ -1,12 +1,12 @@
 //! One sweep over the horizon: forces, and second derivatives into the values.
 
 use crate::control::transcription::Transcription;
+use crate::control::transcription::cost_rows::MILLISECOND;
 use crate::control::transcription::kinematic_state::Placed;
 use crate::control::transcription::limit_rows::Site;
 use crate::control::transcription::segment::{
     Segment, SegmentWorkspace, Shared, instant_of, needed,
 };
-use crate::control::transcription::units::MILLISECOND;
 use crate::coordinates::{Configuration, Reduced};
 use crate::functional::{BlockMask, Horizon, Order, Sample};
 use crate::ipopt::interrupt;

@@ -1,16 +1,16 @@
 //! Unknowns, equations and limits of a horizon, laid out without their values.
 
-use std::ops::Range;
-
 use crate::control::boundary_conditions::{BoundaryConditions, Rests};
+use crate::control::bounded_quantity::BoundedQuantity;
+use crate::control::numbering::Span;
 use crate::control::numbering::{Column, Numbering, Row, Twin};
 use crate::control::problem::{BoundaryState, Control, Duration};
-use crate::control::span::Span;
 use crate::control::transcription::limit_rows::{LimitRow, Site, limit_rows};
 use crate::control::transcription::time_rows::TimeRows;
 use crate::coordinates::{Configuration, CoordinateMap};
 use crate::functional::Horizon;
 use crate::model::{Model, Role};
+use std::ops::Range;
 
 /// Number of intervals from which on a horizon is evaluated in two stretches.
 const TWO_STRETCHES: usize = 16;
@@ -198,4 +198,25 @@ pub(in crate::control) struct LimitSite {
     pub(in crate::control) at: Range<usize>,
     /// Its first row.
     pub(in crate::control) first: usize,
+}
+
+/// The variables and equations that the program of a control problem has.
+#[derive(Clone, Debug)]
+pub struct Outline {
+    /// Columns and rows.
+    pub unknowns: Numbering,
+    /// Limits and goals, to which rows refer.
+    pub limits: Vec<BoundedQuantity>,
+}
+
+impl Outline {
+    /// The outline of the program of a problem.
+    pub fn new(model: &Model, boundary: &BoundaryConditions, control: &Control) -> Self {
+        let layout = Layout::new(model, boundary, control, control.intervals);
+        let limits = layout.limits.into_iter().map(|limit| limit.bounded);
+        Self {
+            limits: limits.collect(),
+            unknowns: layout.unknowns,
+        }
+    }
 }

@@ -1,10 +1,11 @@
 //! Limits and goals as rows behind the equations of motion.
 
 use crate::control::bounded_quantity::{BoundedQuantity, When};
-use crate::control::numbering::Numbering;
-use crate::control::span::Span;
+use crate::control::goal::instant_at;
+use crate::control::numbering::Span;
+use crate::control::numbering::{Column, Numbering};
+use crate::control::transcription::Transcription;
 use crate::control::transcription::step::Step;
-use crate::control::waypoint::instant_at;
 use crate::coordinates::{CoordinateMap, Reduced};
 use crate::functional::{Functional, Measure, Outer};
 use crate::model::{Model, Quantity, Role, Time};
@@ -284,5 +285,43 @@ pub(super) fn fill_limits(
                 }
             }
         }
+    }
+}
+
+impl Transcription<'_> {
+    /// Columns of voltages between zero and a bound that enter by their squares alone: sources that drive lumped muscles and nothing else,
+    /// where the objective has no rate and no energy.
+    pub(super) fn voltages_by_squares(&self) -> Vec<usize> {
+        if !self.objective.cost.is_of_squares() || !self.objective.energies.is_empty() {
+            return Vec::new();
+        }
+        let model = self.model;
+        let terms = model.action.intervals.terms.iter();
+        let limits = self.layout.limits.iter();
+        let limits = limits.filter(|limit| limit.site == Site::Intervals);
+        let others = terms
+            .flat_map(|term| term.not_by_squares())
+            .chain(
+                limits.flat_map(|limit| limit.site.measure(model, limit.measure).not_by_squares()),
+            )
+            .chain(
+                self.objective
+                    .quantities
+                    .iter()
+                    .flat_map(|cost| cost.scalars.clone()),
+            );
+        let others: Vec<usize> = others.collect();
+        let is_square = |&i: &usize| {
+            let column = self.layout.unknowns.columns[i];
+            let (low, high) = (self.bounds.lower[i], self.bounds.upper[i]);
+            let is_voltage = column.of(&model.variables).role == Role::Voltage;
+            let Column::Interval { s, .. } = column else {
+                return false;
+            };
+            is_voltage && low == 0.0 && high > 0.0 && high.is_finite() && !others.contains(&s)
+        };
+        (0..self.layout.unknowns.columns.len())
+            .filter(is_square)
+            .collect()
     }
 }

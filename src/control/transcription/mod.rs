@@ -13,7 +13,6 @@
 
 mod cost_rows;
 mod costs;
-pub(super) mod count;
 mod energies;
 mod energy_rows;
 mod interval_pass;
@@ -21,19 +20,13 @@ mod kinematic_state;
 pub(super) mod layout;
 mod limit_rows;
 mod limit_values;
-mod objective;
-mod outline;
 mod point;
 mod program;
 mod scaling;
 mod segment;
-mod squares;
-mod start_momentum;
 mod step;
-mod structure;
+pub(super) mod structure;
 mod time_rows;
-mod time_values;
-mod units;
 mod update_endpoints;
 mod workspace;
 
@@ -46,13 +39,13 @@ use crate::control::problem::{self, Control};
 use crate::functional::{BlockMask, ParameterOrder};
 use crate::model::Model;
 use crate::nlp::{Bounds, Nlp};
-use count::overdetermined;
+use costs::Objective;
 use layout::Layout;
+pub use layout::Outline;
 pub(super) use limit_rows::Site;
-use objective::Objective;
-pub use outline::Outline;
-use start_momentum::StartMomentum;
 use structure::Structure;
+use structure::overdetermined;
+use update_endpoints::StartMomentum;
 use workspace::Workspace;
 
 /// A control problem as a nonlinear program.

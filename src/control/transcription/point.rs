@@ -1,8 +1,8 @@
 //! Conversion between motions and points of the program.
 
 use crate::control::guess::InitialGuess;
+use crate::control::identification::Costates;
 use crate::control::numbering::{Column, Row, Twin};
-use crate::control::solution::Costates;
 use crate::control::transcription::Transcription;
 use crate::control::transcription::kinematic_state::Placed;
 use crate::coordinates::Configuration;

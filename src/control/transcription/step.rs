@@ -1,6 +1,6 @@
 //! Steps of quantities between neighbouring intervals: what limits of rates of voltages, of currents and of powers bound.
 
-use crate::control::span::Span;
+use crate::control::numbering::Span;
 use crate::model::{Model, Quantity};
 use std::ops::Range;
 

@@ -2,12 +2,11 @@
 
 use crate::coordinates::pattern::StepPattern;
 use crate::coordinates::pull_back::destination::{Destination, Site};
-use crate::coordinates::pull_back::dispatch::{Task, dispatch};
 use crate::coordinates::pull_back::group::Group;
 use crate::coordinates::pull_back::pair::{BlockKind, Pair};
-use crate::coordinates::tree::TangentColumns;
+use crate::coordinates::tree::{LANES, TangentColumns};
 use crate::functional::{BlockMask, Blocks};
-use pulp::Simd;
+use pulp::{Arch, Scalar, Simd, WithSimd};
 use rustc_hash::FxHashMap;
 
 /// Groups of pairs by the supports of both vectors.
@@ -172,4 +171,30 @@ impl Task for ContractedTask<'_> {
             }
         }
     }
+}
+
+/// Work that is compiled for each vector unit.
+pub(super) trait Task {
+    /// Does it; a register has a part of [`LANES`] numbers.
+    fn run<S: Simd>(self, unit: S);
+}
+
+struct Padded<T>(T);
+
+impl<T: Task> WithSimd for Padded<T> {
+    type Output = ();
+
+    #[inline(always)]
+    fn with_simd<S: Simd>(self, unit: S) {
+        match LANES % S::F64_LANES {
+            0 => self.0.run(unit),
+            _ => self.0.run(Scalar::new()),
+        }
+    }
+}
+
+/// Does a task with the vector unit of this machine.
+#[inline]
+pub(super) fn dispatch<T: Task>(task: T) {
+    Arch::new().dispatch(Padded(task));
 }

@@ -2,11 +2,9 @@
 
 mod articulated;
 mod destination;
-mod dispatch;
 mod group;
 mod images;
 mod joined;
-mod linear;
 mod mixed;
 mod pair;
 mod product;
@@ -18,9 +16,9 @@ use crate::functional::{BlockMask, Couplings, SumDerivatives};
 use crate::math::compact_index;
 use articulated::{BlockDestination, Ends, Groups};
 pub use destination::Destination;
+use destination::Linear;
 pub(super) use destination::Site;
 use joined::Joined;
-use linear::Linear;
 use mixed::Mixed;
 use pair::{BlockKind, Pair};
 

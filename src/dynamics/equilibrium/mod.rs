@@ -8,34 +8,27 @@
 
 mod arc_length;
 mod examined;
-mod growing;
 mod growing_motions;
 mod growth;
-mod in_joints;
 mod instability;
 mod load_path;
-mod lowest_mode;
-mod mode;
 mod ramp;
 mod relaxation;
 mod rest_state;
 mod result;
-mod settle;
 mod slowest_mode;
 mod softest_mode;
 mod stability;
 mod stable;
-mod states;
 mod static_matrix;
 mod static_solution;
 mod statics;
-mod weights;
 
 pub use examined::LowestMode;
 pub use growth::equilibrium;
 pub use instability::{Instability, Load};
 pub use load_path::{Continuation, continuation};
-pub use lowest_mode::lowest_mode;
-pub use mode::{Mode, Softening};
 pub use result::{Equilibrium, Route, StabilityLoss, UNSTABLE};
+pub use softest_mode::lowest_mode;
+pub use softest_mode::{Mode, Softening};
 pub use stable::{stable_equilibrium, stable_equilibrium_by};

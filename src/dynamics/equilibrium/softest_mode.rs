@@ -1,14 +1,17 @@
 //! The softest mode of a state of rest: the direction along which its potential energy rises least or falls, the parts that move,
 //! and the cause of its softness.
 
+use crate::dynamics::equilibrium::examined::{Examined, LowestMode};
 use crate::dynamics::equilibrium::growing_motions::eigenvalues;
-use crate::dynamics::equilibrium::mode::{Mode, Softening};
 use crate::dynamics::equilibrium::rest_state::RestState;
 use crate::dynamics::equilibrium::statics::Statics;
+use crate::dynamics::solving::MultigridUse;
+use crate::dynamics::step_matrix::StepMatrix;
 use crate::ipopt::interrupt;
 use crate::math::Random;
 use crate::model::system::Fidelity;
 use crate::model::{Coordinates, Freedom, Model, Screw};
+use crate::sparse::multigrid::LowestModes;
 use nalgebra::{DMatrix, SymmetricEigen};
 
 /// Number of coordinates up to which the eigenvalues of the stiffness are computed.
@@ -251,4 +254,94 @@ fn moves(model: &Model, z: &[f64], direction: &[f64]) -> String {
         words.push(format!("stretch of {} (at {stretch:.4})", muscle.name));
     }
     words.join(", ")
+}
+
+/// Cause of a soft mode: the smallest of the three parts of its stiffness.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Softening {
+    /// The forces of voltages, as in pull-in.
+    Voltages,
+    /// Weights and loads, as in collapse.
+    Loads,
+    /// Elastic forces, as in buckling.
+    Elastic,
+}
+
+/// The softest mode of a state of rest.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Mode {
+    /// Change of each coordinate; the largest is 1 (rad, or lengths of the system).
+    pub direction: Vec<f64>,
+    /// Parts that move most, in words: joints, or bodies, or a node of a block, then the muscle whose stretch changes most.
+    pub moves: String,
+    /// Cause of its softness; `None` where nothing takes from the elastic stiffness along it.
+    pub softening: Option<Softening>,
+}
+
+/// The lowest mode of a model at a state of rest: `z` of coordinates, `scalars` of voltages and potentials; `None` where something else than
+/// nodes of blocks moves, or it is not found.
+pub fn lowest_mode(model: &Model, z: &[f64], scalars: &[f64]) -> Option<LowestMode> {
+    let [inputs, others] = model.variables.split(scalars);
+    let mut statics = Statics::by(model, inputs, Some(MultigridUse::Always));
+    let state = statics.state(z, others);
+    statics.evaluate(&state, inputs);
+    statics.factor().ok()?;
+    statics.find_lowest_mode();
+    statics.lowest_mode().cloned()
+}
+
+impl Statics<'_> {
+    /// Finds the lowest mode at the state evaluated and taken last, where an iteration solves and it is not known already.
+    pub(super) fn find_lowest_mode(&mut self) {
+        let at = self.place_of_mode();
+        let factor = -1.0 / self.model.multiplier_time;
+        let StepMatrix::Grids(grids) = &mut self.matrix else {
+            return;
+        };
+        if at == self.examined.at {
+            return;
+        }
+        let found = grids.lowest_modes(factor, &|| interrupt::stop().is_some());
+        self.multigrid.add(grids.counted());
+        let count = self.model.action.map.coordinates;
+        let found = found.ok().flatten().map(|modes| {
+            let unstable = modes.below_zero();
+            let LowestModes {
+                quotients,
+                bounds,
+                iterations,
+                lowest: mut direction,
+                ..
+            } = modes;
+            direction.truncate(count);
+            LowestMode {
+                stiffness: quotients[0],
+                bound: bounds[0],
+                unstable,
+                iterations,
+                direction,
+            }
+        });
+        self.examined = Examined { at, found };
+    }
+
+    /// The lowest mode of the state evaluated last, where it was found.
+    pub(super) fn lowest_mode(&self) -> Option<&LowestMode> {
+        let found = self.examined.found.as_ref().filter(|_| self.is_iterated());
+        found.filter(|_| self.place_of_mode() == self.examined.at)
+    }
+
+    /// Number of directions in which the potential energy of the state evaluated and taken last falls, by factors or by the lowest mode.
+    pub(super) fn unstable_anyhow(&mut self) -> Option<usize> {
+        if !self.is_iterated() {
+            return self.unstable();
+        }
+        self.find_lowest_mode();
+        self.lowest_mode()?.unstable
+    }
+
+    /// All that the stiffness depends on.
+    fn place_of_mode(&self) -> Vec<f64> {
+        [&self.a.z[..], &self.scalars, &[self.weight]].concat()
+    }
 }

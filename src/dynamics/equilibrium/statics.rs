@@ -13,7 +13,6 @@ use crate::coordinates::{Configuration, Interval, Scratch};
 use crate::dynamics::equilibrium::examined::Examined;
 use crate::dynamics::equilibrium::rest_state::RestState;
 use crate::dynamics::equilibrium::static_matrix::{Inertia, matrix, places, turned_pairs};
-use crate::dynamics::equilibrium::weights::weights;
 use crate::dynamics::error::EquilibriumError;
 use crate::dynamics::solving::MultigridUse;
 use crate::dynamics::step_matrix::StepMatrix;
@@ -365,4 +364,20 @@ impl<'m> Statics<'m> {
         let weight = |scale: &f64| 1.0 / (scale * scale * count);
         self.scales.iter().map(weight).collect()
     }
+}
+
+/// Weights on the vectors over the time of the multipliers, as rows of rest read them.
+pub(super) fn weights(model: &Model) -> Vec<Vector> {
+    let map = &model.action.map;
+    let instant = map.placed(&vec![0.0; map.unknowns()]);
+    let scalars = vec![0.0; model.action.intervals.scalars];
+    let interval = Interval::given(&scalars, model.multiplier_time);
+    let sample = interval.sample([&instant, &instant]);
+    let mut out = model.action.intervals.output(Order::Gradient);
+    let terms = model.action.intervals.terms.iter();
+    for weight in terms.filter(|term| term.is_weight()) {
+        weight.evaluate(Order::Gradient, &sample, &[], &mut out);
+    }
+    let [here, there] = &out.plain.forces;
+    here.iter().zip(there).map(|(a, b)| a + b).collect()
 }

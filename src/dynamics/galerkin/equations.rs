@@ -1,13 +1,13 @@
 //! The equations of a step of every rule.
 
 use crate::coordinates::Configuration;
-use crate::dynamics::drive::Drive;
-use crate::dynamics::equations::Equations;
 use crate::dynamics::galerkin::lobatto::lagrange;
 use crate::dynamics::galerkin::rule::Rule;
 use crate::dynamics::galerkin::state::GalerkinEquations;
 use crate::dynamics::interval_energies::Work;
 use crate::dynamics::momenta::vector_momenta;
+use crate::dynamics::solving::Drive;
+use crate::dynamics::stepper::Equations;
 use crate::functional::{NodeBlocks, Order};
 use crate::math::Vector;
 use crate::model::Model;

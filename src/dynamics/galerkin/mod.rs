@@ -8,7 +8,6 @@
 mod equations;
 mod jacobian_positions;
 mod lobatto;
-mod massless;
 mod rule;
 mod state;
 mod tangent;

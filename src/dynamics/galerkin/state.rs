@@ -1,17 +1,17 @@
 //! State at one instant and the storage of the equations of a step.
 
 use crate::coordinates::{Configuration, Scratch};
-use crate::dynamics::drive::Drive;
 use crate::dynamics::error::StepError;
 use crate::dynamics::galerkin::jacobian_positions::Places;
 use crate::dynamics::galerkin::lobatto::Lobatto;
-use crate::dynamics::galerkin::massless::Massless;
+use crate::dynamics::galerkin::rule::Massless;
 use crate::dynamics::galerkin::rule::{Alpha, Rule, Weights};
 use crate::dynamics::interval_energies::Work;
 use crate::dynamics::kinetic::masses;
+use crate::dynamics::momenta::Start;
 use crate::dynamics::momenta::{rates, vector_momenta};
+use crate::dynamics::solving::Drive;
 use crate::dynamics::solving::{Integrator, Solving};
-use crate::dynamics::start::Start;
 use crate::dynamics::step_matrix::StepMatrix;
 use crate::dynamics::stepper::Steps;
 use crate::functional::{BlockMask, Blocks, Horizon, Order, Output, Sample, SumDerivatives};

@@ -4,18 +4,16 @@
 //! The reader keeps the path itself: a deserializer around it would compile every type of a file once more. For the same reason a type
 //! that asks for one kind of value is given the code of this kind alone.
 
+use crate::files::json::locate::{JsonPath, Step};
+use crate::files::json::scan::{Scanner, string};
 use serde::Deserialize;
 use serde::de::{
     DeserializeOwned, DeserializeSeed, Deserializer, EnumAccess, Error as _, Expected, MapAccess,
     SeqAccess, Unexpected, VariantAccess, Visitor,
 };
-use serde_json::Error;
+use serde_json::{Error, Number};
 use std::borrow::Cow;
 use std::ops::Range;
-
-use crate::files::json::locate::{JsonPath, Step};
-use crate::files::json::scan::{Scanner, string};
-use crate::files::json::token::{Key, Token, visit};
 
 /// Reads the value of a JSON text.
 ///
@@ -390,5 +388,89 @@ impl<'a> VariantAccess<'a> for Content<'_, 'a> {
         visitor: V,
     ) -> Result<V::Value, Error> {
         self.taken("struct variant")?.object(visitor)
+    }
+}
+
+/// A value, or that entries follow.
+pub(super) enum Token<'a> {
+    Object,
+    List,
+    Text(Cow<'a, str>),
+    Null,
+    Bool(bool),
+    Number(Number),
+}
+
+impl Token<'_> {
+    /// The error of a value of this kind where something else is expected.
+    pub(super) fn unexpected(&self, expected: &dyn Expected) -> Error {
+        let found = match self {
+            Token::Object => Unexpected::Map,
+            Token::List => Unexpected::Seq,
+            Token::Text(text) => Unexpected::Str(text),
+            Token::Null => Unexpected::Unit,
+            Token::Bool(value) => Unexpected::Bool(*value),
+            Token::Number(number) => match (number.as_u64(), number.as_i64()) {
+                (Some(number), _) => Unexpected::Unsigned(number),
+                (None, Some(number)) => Unexpected::Signed(number),
+                (None, None) => Unexpected::Float(number.as_f64().unwrap_or_default()),
+            },
+        };
+        Error::invalid_type(found, expected)
+    }
+}
+
+impl<'a> Token<'a> {
+    pub(super) fn null<V: Visitor<'a>>(self, visitor: V) -> Result<V::Value, Error> {
+        match self {
+            Token::Null => visitor.visit_unit(),
+            other => Err(other.unexpected(&visitor)),
+        }
+    }
+
+    pub(super) fn boolean<V: Visitor<'a>>(self, visitor: V) -> Result<V::Value, Error> {
+        match self {
+            Token::Bool(value) => visitor.visit_bool(value),
+            other => Err(other.unexpected(&visitor)),
+        }
+    }
+
+    pub(super) fn number<V: Visitor<'a>>(self, visitor: V) -> Result<V::Value, Error> {
+        match self {
+            Token::Number(number) => number.deserialize_any(visitor),
+            other => Err(other.unexpected(&visitor)),
+        }
+    }
+
+    pub(super) fn text<V: Visitor<'a>>(self, visitor: V) -> Result<V::Value, Error> {
+        match self {
+            Token::Text(text) => visit(text, visitor),
+            other => Err(other.unexpected(&visitor)),
+        }
+    }
+}
+
+/// Visits the string of a text.
+pub(super) fn visit<'a, V: Visitor<'a>>(text: Cow<'a, str>, visitor: V) -> Result<V::Value, Error> {
+    match text {
+        Cow::Borrowed(text) => visitor.visit_borrowed_str(text),
+        Cow::Owned(text) => visitor.visit_string(text),
+    }
+}
+
+/// The word of a variant.
+pub(super) struct Key<'a>(pub(super) Cow<'a, str>);
+
+impl<'a> Deserializer<'a> for Key<'a> {
+    type Error = Error;
+
+    fn deserialize_any<V: Visitor<'a>>(self, visitor: V) -> Result<V::Value, Error> {
+        visit(self.0, visitor)
+    }
+
+    serde::forward_to_deserialize_any! {
+        <W: Visitor<'a>>
+        bool i8 i16 i32 i64 i128 u8 u16 u32 u64 u128 f32 f64 char str string bytes byte_buf option
+        unit unit_struct newtype_struct seq tuple tuple_struct map struct enum identifier ignored_any
     }
 }

@@ -7,7 +7,7 @@ use std::io::{self, Read};
 use std::path::Path;
 use std::sync::{Mutex, PoisonError};
 
-use crate::math::memory::{available, readable};
+use crate::math::join::{available, readable};
 
 /// Bytes of memory that reading takes for each byte of a file: its text, a copy with overrides, and 16 bytes for a number or a text in a list,
 /// which has 4 bytes or more in the file.

@@ -1,38 +1,39 @@
 //! Conversion of the control entry of a problem file to its task.
 
+use crate::control::Earlier;
 use crate::control::problem::{
-    BoundaryState, Control, Duration, Objective, Solver, SourceEnergy, Voltages, absent_loads,
+    BoundaryState, Control, Duration, EnergyCost, Guess, Objective, Solver, SourceEnergy, Voltages,
+    absent_loads,
 };
 use crate::files::json::error::SceneError;
 use crate::files::json::scope::Scope;
-use crate::files::problem::amount_limits::amount_costs;
 use crate::files::problem::coordinates::{coordinates, count};
-use crate::files::problem::energies::energies;
 use crate::files::problem::free::parameters;
 use crate::files::problem::goal::goal_state;
-use crate::files::problem::guess::{guess, unwritten};
 use crate::files::problem::limits::limits;
 use crate::files::problem::loads::{check_end, load, load_bounds, loads};
 use crate::files::problem::motions::check_alone;
 use crate::files::problem::sensitivity::with_varied;
+use crate::files::problem::source_limits::amount_costs;
 use crate::files::problem::spec_control::{
-    ControlSolverSpec, ControlSpec, DurationSpec, IntervalsSpec, IntervalsWord, ObjectiveSpec,
-    OptionSpec, SolverSpec,
+    ControlSolverSpec, ControlSpec, DurationSpec, GuessSpec, IntervalsSpec, IntervalsWord,
+    ObjectiveSpec, OptionSpec, SolverSpec,
 };
-use crate::files::problem::spec_states::sought_hold;
+use crate::files::problem::spec_energies::EnergySpec;
 use crate::files::problem::spec_voltages::VoltagesSpec;
+use crate::files::problem::state::sought_hold;
 use crate::files::problem::state::{ELECTRIC_KEYS, driven, start_state};
 use crate::files::problem::track::{at_the_end, track};
-use crate::files::problem::voltages::over_time;
+use crate::files::problem::voltages::{SOLUTION_PATH, over_time};
 use crate::files::problem::waypoints::waypoints;
 use crate::files::scene::constants::WrittenScene;
 use crate::files::scene::graph::tree_freedoms;
 use crate::files::signal::signal;
+use crate::files::solution::SolutionFile;
 use crate::files::units::quantity::Voltage;
 use crate::ipopt::{LinearSolver, OptionValue};
-use crate::math::Signal;
-use crate::math::shortest;
-use crate::model::system::{Fidelity, Muscle, System};
+use crate::math::{Random, Signal, shortest};
+use crate::model::system::{Fidelity, Muscle, Source, System};
 use std::collections::BTreeMap;
 
 /// Most intervals of a control problem; a slip of the pen asks for more.
@@ -395,4 +396,123 @@ fn linear_solver(spec: &SolverSpec, scope: &Scope<'_>) -> Result<LinearSolver, S
         ControlSolverSpec::Stages => LinearSolver::Stages,
         ControlSolverSpec::Mumps => LinearSolver::Mumps,
     })
+}
+
+/// Names that an energy may have, for messages: the charge of an electrode of finite elements is not known at instants.
+const LUMPED: &str =
+    "lumped muscles: all sources, or those that \"sources\" names beside the \"weight\"";
+
+/// The costs that one weight stands for; none where it is zero.
+pub(crate) fn energies(
+    spec: &EnergySpec,
+    energy: SourceEnergy,
+    system: &System,
+    scope: &Scope<'_>,
+) -> Result<Vec<EnergyCost>, SceneError> {
+    let sources = system.sources();
+    let cost = |source: usize, weight: f64, place: &Scope<'_>| {
+        let cost = EnergyCost {
+            source,
+            energy,
+            weight,
+        };
+        let muscle = system.muscles.get(source);
+        let what = match muscle.and_then(|muscle| muscle.circuit) {
+            Some(circuit) if circuit.resistance.is_none() => "leaks and has no resistor",
+            Some(_) => "has a resistor",
+            None => "drives finite elements",
+        };
+        let found = || format!("{:?}, which {what}", sources[source].name);
+        match cost.exists(system) {
+            true => Ok(cost),
+            false => Err(place.wrong(found(), LUMPED)),
+        }
+    };
+    match spec {
+        EnergySpec::All(weight) => {
+            let weight = scope.weight(*weight)?;
+            let takes = |s: &usize| sources[*s].takes_voltage && weight > 0.0;
+            let all = (0..sources.len()).filter(takes);
+            all.map(|source| cost(source, weight, scope)).collect()
+        }
+        EnergySpec::Named(spec) => {
+            let weight = scope.key("weight").weight(spec.weight)?;
+            let list = scope.key("sources");
+            if spec.sources.is_empty() {
+                return Err(list.wrong("no source", "one source or more"));
+            }
+            let mut costs: Vec<EnergyCost> = Vec::new();
+            for (index, name) in spec.sources.iter().enumerate() {
+                let place = list.index(index);
+                let source = driven(name, &sources, &place)?;
+                if costs.iter().any(|cost| cost.source == source) {
+                    return Err(place.wrong(format!("{name:?} again"), "each source once"));
+                }
+                costs.push(cost(source, weight, &place)?);
+            }
+            costs.retain(|cost| cost.weight > 0.0);
+            Ok(costs)
+        }
+    }
+}
+
+pub(crate) fn guess(
+    spec: &GuessSpec,
+    system: &System,
+    bounds: [f64; 2],
+    scope: &Scope<'_>,
+) -> Result<Guess, SceneError> {
+    let GuessSpec::Object(spec) = spec else {
+        return Ok(Guess::Interpolate);
+    };
+    type Build<'a> = Box<dyn FnOnce() -> Result<Guess, SceneError> + 'a>;
+    let simulate = spec.simulate.as_ref().map(|simulate| -> Build<'_> {
+        let scope = scope.key("simulate").key("voltages");
+        Box::new(move || over_time(&simulate.voltages, system, &scope).map(Guess::Simulate))
+    });
+    let solution = spec.solution.as_ref().map(|solution| -> Build<'_> {
+        let scope = scope.key("solution");
+        Box::new(move || {
+            let path = scope.solution_file(solution, SOLUTION_PATH)?;
+            Ok(Guess::Solution(Earlier::new(SolutionFile(path))))
+        })
+    });
+    let random = spec.random.as_ref().map(|random| -> Build<'_> {
+        Box::new(|| {
+            let voltages = drawn(random.seed, system, bounds);
+            Ok(Guess::Simulate(Voltages::Constant(voltages)))
+        })
+    });
+    let build = scope.exactly_one([
+        ("simulate", simulate),
+        ("solution", solution),
+        ("random", random),
+    ])?;
+    build()
+}
+
+/// The guess where none is written: of elastic blocks the motion under the voltages that hold the goal, where they are named, as the goal lacks the
+/// places of nodes to interpolate between.
+pub(crate) fn unwritten(goal: &BoundaryState, system: &System) -> Guess {
+    let of_muscles = system
+        .muscles
+        .iter()
+        .any(|m| m.fidelity != Fidelity::Lumped);
+    let has_elements = of_muscles || !system.solids.is_empty();
+    match goal {
+        BoundaryState::Markers {
+            hold: Some(hold), ..
+        } if has_elements => Guess::Simulate(Voltages::Constant(hold.clone())),
+        _ => Guess::Interpolate,
+    }
+}
+
+/// A voltage within the bounds for each source that takes one, drawn at random.
+pub(crate) fn drawn(seed: u64, system: &System, [lower, upper]: [f64; 2]) -> Vec<f64> {
+    let mut random = Random::new(seed);
+    let draw = |source: &Source| match source.takes_voltage {
+        true => random.between(lower, upper),
+        false => 0.0,
+    };
+    system.sources().iter().map(draw).collect()
 }

@@ -2,10 +2,11 @@
 
 use crate::files::json::error::SceneError;
 use crate::files::json::scope::Scope;
-use crate::files::problem::spec_coordinates::CoordinatesSpec;
 use crate::files::scene::graph::tree_freedoms;
 use crate::model::Coordinates;
 use crate::model::system::System;
+use schemars::JsonSchema;
+use serde::Deserialize;
 
 /// A number of things from one to a limit.
 pub(crate) fn count(
@@ -38,4 +39,14 @@ pub(crate) fn coordinates(
         }
         Some(CoordinatesSpec::Reduced) => Ok(Some(Coordinates::Reduced)),
     }
+}
+
+/// Coordinates in which a problem is solved; reduced where the joints form a tree, unless written.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Deserialize, JsonSchema)]
+#[serde(rename_all = "snake_case")]
+pub enum CoordinatesSpec {
+    /// Independent joint coordinates.
+    Reduced,
+    /// Directors with multipliers.
+    Redundant,
 }

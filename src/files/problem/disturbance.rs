@@ -7,8 +7,8 @@ use crate::files::json::error::SceneError;
 use crate::files::json::locate::{JsonPath, Step};
 use crate::files::json::scope::Scope;
 use crate::files::json::set::{Override, value_at};
+use crate::files::problem::feedback::DisturbanceSpec;
 use crate::files::problem::spec::ProblemSpec;
-use crate::files::problem::spec_feedback::DisturbanceSpec;
 use crate::model::System;
 use serde_json::Value;
 

@@ -1,19 +1,18 @@
 //! Conversion of the sought constants of a problem file to parameters.
 
-use serde::Deserialize;
-use std::collections::BTreeMap;
-use std::path::Path;
-
-use serde_json::Value;
-
 use crate::control::PEAK_VOLTAGE;
 use crate::files::json::document::Document;
 use crate::files::json::error::SceneError;
 use crate::files::json::locate::JsonPath;
 use crate::files::json::scope::Scope;
-use crate::files::problem::spec_free::{FreeMap, FreeSpec};
 use crate::files::scene::constants::{NoConstant, SceneConstant, WrittenScene};
+use crate::files::units::quantity::{Quantity, SoughtConstant};
 use crate::model::{Constant, NotSought, Parameter, check_parameters, unit_of};
+use schemars::JsonSchema;
+use serde::Deserialize;
+use serde_json::Value;
+use std::collections::BTreeMap;
+use std::path::Path;
 
 /// The parameters of a problem.
 pub(crate) fn parameters(
@@ -164,3 +163,22 @@ pub(crate) fn check_solution(
     }
     Ok(())
 }
+
+/// A constant that is sought between bounds.
+#[derive(Clone, Debug, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct FreeSpec {
+    /// Lower bound, in the unit of the constant.
+    pub min: Quantity<SoughtConstant>,
+    /// Upper bound.
+    pub max: Quantity<SoughtConstant>,
+    /// Value at which the solver starts; the value of the scene where not written.
+    #[serde(default)]
+    pub guess: Option<Quantity<SoughtConstant>>,
+    /// Other constants by their paths that are this one times a number.
+    #[serde(default)]
+    pub also: BTreeMap<String, f64>,
+}
+
+/// Sought constants by their paths in the scene.
+pub type FreeMap = BTreeMap<String, FreeSpec>;

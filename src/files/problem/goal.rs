@@ -5,10 +5,8 @@ use std::collections::BTreeMap;
 use crate::control::problem::{BoundaryState, Orientation, Place, Rest};
 use crate::files::json::error::SceneError;
 use crate::files::json::scope::Scope;
-use crate::files::problem::spec_states::{
-    GoalSpec, GoalWord, HeldSpec, OrientationSpec, RestGoalSpec,
-};
 use crate::files::problem::spec_voltages::VoltageMap;
+use crate::files::problem::state::{GoalSpec, GoalWord, HeldSpec, OrientationSpec, RestGoalSpec};
 use crate::files::problem::state::{by_joint, moving_marker, voltages};
 use crate::files::scene::names::names;
 use crate::files::scene::point::PartialPoint;

@@ -3,25 +3,25 @@
 use crate::control::problem::{PathConstraint, Side};
 use crate::files::json::error::SceneError;
 use crate::files::json::scope::Scope;
-use crate::files::problem::amount_limits::amount_limit;
 use crate::files::problem::bounds::check_bounds;
-use crate::files::problem::reaction_limits::{reaction_force, reaction_torque};
+use crate::files::problem::source_limits::amount_limit;
 use crate::files::problem::source_limits::{bounds, source_limits};
 use crate::files::problem::spec_limits::{
-    ElectricFieldLimitSpec, LimitSpec, MarkerLimitSpec, MarkerSpeedLimitSpec, RegionSpec,
-    StretchLimitSpec, TensionLimitSpec,
+    ElectricFieldLimitSpec, LimitSpec, MarkerLimitSpec, MarkerSpeedLimitSpec,
+    ReactionForceLimitSpec, ReactionTorqueLimitSpec, RegionSpec, StretchLimitSpec,
+    TensionLimitSpec,
 };
 use crate::files::problem::spec_source_limits::All;
 use crate::files::problem::state::{
     ELECTRIC_KEYS, joint_value, joint_with_coordinate, moving_marker,
 };
 use crate::files::scene::names::names;
-use crate::files::scene::point::vector;
+use crate::files::scene::point::{unit_axis, vector};
 use crate::files::units::quantity::{
     Angle, AngularVelocity, Kind, Length, PhysicalQuantity, Quantity, Velocity,
 };
-use crate::model::Region;
 use crate::model::system::{Fidelity, System};
+use crate::model::{Reaction, Region};
 
 /// Keys of an entry, each with itself where it is written.
 macro_rules! written {
@@ -366,4 +366,48 @@ fn region(spec: &RegionSpec, scope: &Scope<'_>) -> Result<Region, SceneError> {
         }
         (None, None) => Err(scope.wrong("no region", "\"box\" or \"sphere\"")),
     }
+}
+
+pub(super) fn reaction_force(
+    spec: &ReactionForceLimitSpec,
+    system: &System,
+    scope: &Scope<'_>,
+) -> Result<PathConstraint, SceneError> {
+    let [min, max] = bounds([&spec.min, &spec.max], scope)?;
+    Ok(PathConstraint::Reaction {
+        joint: joint(&spec.joint, system, scope)?,
+        of: Reaction::Force,
+        along: unit_axis(&spec.along, &scope.key("along"))?,
+        min,
+        max,
+    })
+}
+
+pub(super) fn reaction_torque(
+    spec: &ReactionTorqueLimitSpec,
+    system: &System,
+    scope: &Scope<'_>,
+) -> Result<PathConstraint, SceneError> {
+    let joint = joint(&spec.joint, system, scope)?;
+    if !system.joints[joint].has_torque() {
+        let found = format!("{:?}, a spherical joint", spec.joint);
+        let expected = "a joint that transmits a torque";
+        return Err(scope.key("joint").wrong(found, expected));
+    }
+    let [min, max] = bounds([&spec.min, &spec.max], scope)?;
+    Ok(PathConstraint::Reaction {
+        joint,
+        of: Reaction::Torque,
+        along: unit_axis(&spec.about, &scope.key("about"))?,
+        min,
+        max,
+    })
+}
+
+/// Index of a joint.
+fn joint(name: &str, system: &System, scope: &Scope<'_>) -> Result<usize, SceneError> {
+    let joints = names(&system.joints, |joint| &joint.name);
+    scope
+        .key("joint")
+        .find(name, &joints, "the name of a joint")
 }

@@ -3,6 +3,9 @@
 use crate::control::problem::{BoundaryState, Duration, Voltages};
 use crate::files::json::error::SceneError;
 use crate::files::json::scope::Scope;
+use crate::files::problem::spec_voltages::VoltagesSpec;
+use crate::files::problem::state::{StartSpec, start_state};
+use crate::files::problem::voltages::over_time;
 use crate::files::signal::signal;
 use crate::files::signal::spec::SignalSpec;
 use crate::files::units::quantity::{
@@ -128,4 +131,25 @@ pub(crate) fn check_end(
         }
         None => Ok(()),
     }
+}
+
+/// Start and inputs of a motion under given ones: at rest in the reference configuration where no start is written.
+pub(crate) fn driven(
+    start: Option<&StartSpec>,
+    (voltages, loads): (&VoltagesSpec, &LoadMap),
+    system: &System,
+    scope: &Scope<'_>,
+) -> Result<(BoundaryState, Voltages), SceneError> {
+    let mut start = match start {
+        Some(start) => start_state(start, system, &scope.key("start"))?,
+        None => BoundaryState::JointAngles {
+            angles: BTreeMap::new(),
+            rates: BTreeMap::new(),
+            velocities: Default::default(),
+        },
+    };
+    let voltages = over_time(voltages, system, &scope.key("voltages"))?;
+    let (voltages, loads) = with_loads(voltages, loads, system, &scope.key("loads"))?;
+    load(&mut start, &loads, 0.0);
+    Ok((start, voltages))
 }

@@ -2,9 +2,11 @@
 
 use crate::files::json::error::SceneError;
 use crate::files::json::scope::Scope;
-use crate::files::problem::spec_output::OutputSpec;
 use crate::files::scene::names::names;
+use crate::files::units::quantity::{Quantity, Time};
 use crate::model::system::System;
+use schemars::JsonSchema;
+use serde::Deserialize;
 
 /// Part of a motion that tables, figures and page show.
 #[derive(Clone, Debug, Default, PartialEq)]
@@ -107,4 +109,19 @@ impl Output {
         };
         column == "time" || quantities.iter().any(|name| of_kind(name) || of_name(name))
     }
+}
+
+/// Part of a motion that tables, figures and page show; all of it stays in the solution.
+#[derive(Clone, Debug, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct OutputSpec {
+    /// Time between the instants shown, SI unit s: those nearest to its multiples. Where not written all, and of a long motion so many that
+    /// nothing is lost to the eye.
+    #[serde(default)]
+    pub every: Option<Quantity<Time>>,
+    /// Columns of `trajectory.csv`: `joints`, `rates`, `speeds`, `reactions`, `markers`, `stretches`, `tensions`, `fields`, `charges`, `currents`,
+    /// `powers`, `energies`, `momenta`, `constraint_violation`, or all of a joint, marker, muscle, block, spring, tendon or load by its name. All where
+    /// not written.
+    #[serde(default)]
+    pub quantities: Option<Vec<String>>,
 }

@@ -1,18 +1,25 @@
 //! Conversion of the simulation entry of a problem file to its task.
 
 use crate::control::problem::Simulation;
-use crate::dynamics::{Integrator, Newton, Solving};
+use crate::dynamics::{Integrator, MultigridUse, Newton, Solving};
 use crate::feedback::Law;
+use crate::files::json::either::{Either, ScalarOrObject, scalar_or_object};
 use crate::files::json::error::SceneError;
 use crate::files::json::scope::Scope;
-use crate::files::problem::coordinates::coordinates;
-use crate::files::problem::driven::driven;
-use crate::files::problem::feedback::controller;
-use crate::files::problem::spec_integrator::integrator;
-use crate::files::problem::spec_simulate::{LinearSolverSpec, SimulateSpec, StepSpec};
+use crate::files::problem::coordinates::{CoordinatesSpec, coordinates};
+use crate::files::problem::feedback::{ControllerSpec, controller};
+use crate::files::problem::loads::{LoadMap, driven};
 use crate::files::problem::spec_voltages::VoltagesSpec;
+use crate::files::problem::state::StartSpec;
+use crate::files::units::quantity::{Quantity, Time};
 use crate::math::shortest;
 use crate::model::system::System;
+use crate::sparse::Backend;
+use schemars::JsonSchema;
+use serde::de::{Error, IntoDeserializer, Visitor};
+use serde::{Deserialize, Deserializer};
+use std::fmt;
+use std::marker::PhantomData;
 
 /// Tolerances below this ask for more than rounding allows.
 pub(crate) const LEAST_TOLERANCE: f64 = 1e-9;
@@ -141,4 +148,243 @@ pub(crate) fn step(
         return Err(place.wrong(found, format!("no more than {MOST_STEPS:.0e} steps")));
     }
     Ok((step, None))
+}
+
+/// A forward simulation.
+#[derive(Clone, Debug, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct SimulateSpec {
+    /// Length, SI unit s.
+    pub duration: Quantity<Time>,
+    /// Step, SI unit s, or `"auto"`, as where it is not written: steps as short as the tolerance needs, by the midpoint rule.
+    #[serde(default)]
+    pub step: Option<StepSpec>,
+    /// Sum of the estimated local errors that `"auto"` allows over the duration, of angles in rad, of lengths relative to the
+    /// robot's size; 1e-3 where not written.
+    #[serde(default)]
+    pub tolerance: Option<f64>,
+    /// Constant voltages, those of a solution, or a table; 0 where not written.
+    #[serde(default)]
+    pub voltages: VoltagesSpec,
+    /// Loads by name, constant or functions of time, SI units N, N m, Pa, N/m³ and C/m²; 0 where not named.
+    #[serde(default)]
+    pub loads: LoadMap,
+    /// A controller that gives the voltages which it has gains for.
+    #[serde(default)]
+    pub controller: Option<ControllerSpec>,
+    /// Start of the motion; the reference configuration at rest where not written.
+    #[serde(default)]
+    pub start: Option<StartSpec>,
+    /// Coordinates.
+    #[serde(default)]
+    pub coordinates: Option<CoordinatesSpec>,
+    /// The method; the midpoint variational integrator where not written.
+    #[serde(default)]
+    pub integrator: Option<IntegratorSpec>,
+    /// Occasions at which the tangent of a step is factorised; where not written `modified` with finite elements, otherwise `full`.
+    #[serde(default)]
+    pub newton: Option<NewtonSpec>,
+    /// Method by which its linear systems are solved; `auto` where not written.
+    #[serde(default)]
+    pub linear_solver: Option<LinearSolverSpec>,
+}
+
+/// Length of the steps.
+#[derive(Clone, Debug, JsonSchema)]
+#[serde(untagged)]
+pub enum StepSpec {
+    /// `"auto"`.
+    Word(StepWord),
+    /// A length of time.
+    Given(Quantity<Time>),
+}
+
+/// Steps of no given length.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, JsonSchema)]
+#[serde(rename_all = "snake_case")]
+pub enum StepWord {
+    /// By an estimate of their local error.
+    Auto,
+}
+
+impl<'de> Deserialize<'de> for StepSpec {
+    fn deserialize<D: Deserializer<'de>>(deserializer: D) -> Result<Self, D::Error> {
+        deserializer.deserialize_any(StepVisitor)
+    }
+}
+
+struct StepVisitor;
+
+impl Visitor<'_> for StepVisitor {
+    type Value = StepSpec;
+
+    fn expecting(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.write_str("a time, such as \"10 ms\", or \"auto\"")
+    }
+
+    fn visit_str<E: Error>(self, text: &str) -> Result<StepSpec, E> {
+        match text {
+            "auto" => Ok(StepSpec::Word(StepWord::Auto)),
+            _ => Quantity::deserialize(text.into_deserializer()).map(StepSpec::Given),
+        }
+    }
+
+    fn visit_f64<E: Error>(self, number: f64) -> Result<StepSpec, E> {
+        Quantity::deserialize(number.into_deserializer()).map(StepSpec::Given)
+    }
+
+    fn visit_u64<E: Error>(self, number: u64) -> Result<StepSpec, E> {
+        self.visit_f64(number as f64)
+    }
+
+    fn visit_i64<E: Error>(self, number: i64) -> Result<StepSpec, E> {
+        self.visit_f64(number as f64)
+    }
+}
+
+/// Occasions at which the tangent of a step is factorised.
+#[derive(Clone, Copy, Debug, Deserialize, JsonSchema)]
+#[serde(rename_all = "snake_case")]
+pub enum NewtonSpec {
+    /// In every iteration.
+    Full,
+    /// Modified Newton, only where the last factorisation converges too slowly: for large meshes, whose factorisation is the cost.
+    Modified,
+    /// The former name of `modified`.
+    Reused,
+}
+
+impl From<NewtonSpec> for Newton {
+    fn from(spec: NewtonSpec) -> Self {
+        match spec {
+            NewtonSpec::Full => Self::Full,
+            NewtonSpec::Modified | NewtonSpec::Reused => Self::Modified,
+        }
+    }
+}
+
+/// Method by which linear systems with the tangent are solved.
+#[derive(Clone, Copy, Debug, Deserialize, JsonSchema)]
+#[serde(rename_all = "snake_case")]
+pub enum LinearSolverSpec {
+    /// The one that is fastest as a rule.
+    Auto,
+    /// LDLᵀ or LU of faer.
+    Faer,
+    /// LDLᵀ or LU of MUMPS.
+    Mumps,
+    /// GMRES with multigrid, for blocks beside which nothing moves.
+    Multigrid,
+}
+
+impl LinearSolverSpec {
+    /// The factorisation that is named, and the use of multigrid.
+    pub(crate) fn taken(self) -> (Option<Backend>, MultigridUse) {
+        match self {
+            Self::Auto => (None, MultigridUse::WhereFaster),
+            Self::Faer => (Some(Backend::Faer), MultigridUse::WhereFaster),
+            Self::Mumps => (Some(Backend::Mumps), MultigridUse::WhereFaster),
+            Self::Multigrid => (None, MultigridUse::Always),
+        }
+    }
+}
+
+/// Degree beyond which rounding takes what the order gives.
+const HIGHEST: usize = 8;
+/// Spectral radius of the word alone.
+const RADIUS: f64 = 0.8;
+
+/// A method by its name.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Deserialize, JsonSchema)]
+#[serde(rename_all = "snake_case")]
+pub enum IntegratorWord {
+    /// The midpoint variational integrator, order 2.
+    Midpoint,
+    /// Implicit Euler, order 1; damps.
+    ImplicitEuler,
+    /// Generalised α with the spectral radius 0.8, order 2; damps fast oscillations.
+    GeneralisedAlpha,
+}
+
+/// A method with its parameter: exactly one of the two.
+#[derive(Clone, Debug, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct IntegratorObject {
+    /// Degree, from 1 to 8, of a Galerkin variational integrator with Lobatto points, order 2 × degree.
+    #[serde(default)]
+    pub galerkin: Option<usize>,
+    /// Spectral radius at infinity, from 0 to 1, of the generalised-α method.
+    #[serde(default)]
+    pub generalised_alpha: Option<f64>,
+}
+
+/// A word or an object.
+#[derive(Clone, Debug, JsonSchema)]
+#[serde(untagged)]
+pub enum IntegratorSpec {
+    /// By name.
+    Word(IntegratorWord),
+    /// With its parameter.
+    Object(IntegratorObject),
+}
+
+scalar_or_object! {
+    IntegratorSpec: IntegratorWord = Self::Word, IntegratorObject = Self::Object,
+        "\"midpoint\", \"implicit_euler\", \"generalised_alpha\" or an object with \"galerkin\" or \"generalised_alpha\"";
+}
+
+/// The method of a simulation.
+pub(crate) fn integrator(
+    spec: Option<&IntegratorSpec>,
+    system: &System,
+    scope: &Scope<'_>,
+) -> Result<Integrator, SceneError> {
+    let method = match spec {
+        None => Integrator::Midpoint,
+        Some(IntegratorSpec::Word(word)) => match word {
+            IntegratorWord::Midpoint => Integrator::Midpoint,
+            IntegratorWord::ImplicitEuler => Integrator::ImplicitEuler,
+            IntegratorWord::GeneralisedAlpha => Integrator::GeneralisedAlpha {
+                spectral_radius: RADIUS,
+            },
+        },
+        Some(IntegratorSpec::Object(object)) => with_parameter(object, scope)?,
+    };
+    let changes = system.muscles.iter().find(|muscle| muscle.section_inertia);
+    match (method, changes) {
+        (Integrator::GeneralisedAlpha { .. }, Some(muscle)) => {
+            let found = format!(
+                "\"generalised_alpha\", though \"section_inertia\" of {} is not constant",
+                muscle.name
+            );
+            Err(scope.wrong(found, "another method"))
+        }
+        _ => Ok(method),
+    }
+}
+
+fn with_parameter(object: &IntegratorObject, scope: &Scope<'_>) -> Result<Integrator, SceneError> {
+    match (object.galerkin, object.generalised_alpha) {
+        (Some(degree), None) if (1..=HIGHEST).contains(&degree) => {
+            Ok(Integrator::Galerkin { degree })
+        }
+        (Some(degree), None) => {
+            let expected = format!("a degree from 1 to {HIGHEST}");
+            Err(scope.key("galerkin").wrong(degree.to_string(), expected))
+        }
+        (None, Some(radius)) if (0.0..=1.0).contains(&radius) => Ok(Integrator::GeneralisedAlpha {
+            spectral_radius: radius,
+        }),
+        (None, Some(radius)) => {
+            let place = scope.key("generalised_alpha");
+            Err(place.wrong(radius.to_string(), "a spectral radius from 0 to 1"))
+        }
+        (galerkin, generalised_alpha) => {
+            let there = [
+                ("galerkin", galerkin.map(|_| ())),
+                ("generalised_alpha", generalised_alpha.map(|_| ())),
+            ];
+            scope.exactly_one(there).map(|()| Integrator::Midpoint)
+        }
+    }
 }

@@ -6,12 +6,12 @@ use std::collections::BTreeMap;
 use std::marker::PhantomData;
 
 use crate::files::json::either::{Either, ScalarOrObject, scalar_or_object};
+use crate::files::problem::coordinates::CoordinatesSpec;
+use crate::files::problem::feedback::FeedbackSpec;
+use crate::files::problem::output::OutputSpec;
+use crate::files::problem::simulation::SimulateSpec;
 use crate::files::problem::spec_control::ControlSpec;
-use crate::files::problem::spec_coordinates::CoordinatesSpec;
-use crate::files::problem::spec_feedback::FeedbackSpec;
 use crate::files::problem::spec_identify::IdentifySpec;
-use crate::files::problem::spec_output::OutputSpec;
-use crate::files::problem::spec_simulate::SimulateSpec;
 use crate::files::problem::spec_voltages::VoltageMap;
 use crate::files::scene::spec::SceneSpec;
 use crate::files::units::quantity::{LoadSize, Quantity};

@@ -1,15 +1,15 @@
 //! A control problem as it is written.
 
 use crate::files::json::either::{Either, ScalarOrObject, scalar_or_object};
+use crate::files::problem::coordinates::CoordinatesSpec;
+use crate::files::problem::free::FreeMap;
 use crate::files::problem::loads::{LoadBounds, LoadMap};
-use crate::files::problem::spec_coordinates::CoordinatesSpec;
+use crate::files::problem::sensitivity::SensitivityMap;
 use crate::files::problem::spec_energies::EnergySpec;
-use crate::files::problem::spec_free::FreeMap;
 use crate::files::problem::spec_limits::LimitSpec;
-use crate::files::problem::spec_sensitivity::SensitivityMap;
-use crate::files::problem::spec_states::{GoalSpec, HoldSpec, StartSpec};
 use crate::files::problem::spec_track::{FinalSpec, TrackSpec};
 use crate::files::problem::spec_voltages::VoltagesSpec;
+use crate::files::problem::state::{GoalSpec, HoldSpec, StartSpec};
 use crate::files::problem::waypoints::WaypointSpec;
 use crate::files::study::ChangesSpec;
 use crate::files::units::quantity::{Quantity, Time, Voltage};

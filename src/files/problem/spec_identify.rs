@@ -1,10 +1,10 @@
 //! An identification as it is written: sought constants, recordings, and candidates for the next experiment.
 
+use crate::files::problem::coordinates::CoordinatesSpec;
+use crate::files::problem::free::FreeMap;
 use crate::files::problem::loads::LoadMap;
-use crate::files::problem::spec_coordinates::CoordinatesSpec;
-use crate::files::problem::spec_free::FreeMap;
-use crate::files::problem::spec_states::StartSpec;
 use crate::files::problem::spec_voltages::VoltagesSpec;
+use crate::files::problem::state::StartSpec;
 use crate::files::study::ChangesSpec;
 use crate::files::units::quantity::{Angle, AngularVelocity, Kind, Length, Velocity};
 use crate::files::units::quantity::{Charge, Current, Force, Power, Torque, Voltage};

@@ -1,21 +1,24 @@
 //! Conversion of states and voltages of a problem file to indices and one voltage per source.
 
-use nalgebra::Vector3;
-use std::collections::BTreeMap;
-
-use crate::control::problem::{BoundaryState, Rest};
+use crate::control::problem::{BoundaryState, Hold, Rest, SoughtHold};
+use crate::files::json::either::{Either, ScalarOrObject, scalar_or_object};
 use crate::files::json::error::SceneError;
 use crate::files::json::scope::Scope;
 use crate::files::problem::end_of::end_of;
-use crate::files::problem::spec_states::{BodyVelocitySpec, StartSpec};
 use crate::files::problem::spec_voltages::VoltageMap;
 use crate::files::scene::names::names;
-use crate::files::scene::point::vector;
+use crate::files::scene::point::{PartialPoint, vector};
 use crate::files::units::quantity::{
-    Angle, AngularVelocity, Kind, Length, PhysicalQuantity, Quantity, Velocity,
+    Angle, AngularVelocity, JointCoordinate, JointRate, Kind, Length, PhysicalQuantity, Quantity,
+    Velocity,
 };
 use crate::model::Graph;
 use crate::model::system::{JointKind, Source, System, voltage_sources};
+use nalgebra::Vector3;
+use schemars::JsonSchema;
+use serde::{Deserialize, Deserializer};
+use std::collections::BTreeMap;
+use std::marker::PhantomData;
 
 /// Expected name of a voltage, for messages.
 pub(crate) const A_SOURCE: &str = "the name of a muscle or of a driven electrode (block.electrode)";
@@ -211,4 +214,183 @@ pub(crate) fn joint_value<M: PhysicalQuantity>(
     };
     let value = quantity.value_as(kind);
     value.map_err(|found| scope.wrong(found, kind.expected()))
+}
+
+/// A state at the start: exactly one of `rest_at_voltages`, `end_of` and joint coordinates.
+#[derive(Clone, Debug, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct StartSpec {
+    /// Static equilibrium under these voltages, SI unit V; 0 where not named.
+    #[serde(default)]
+    pub rest_at_voltages: Option<VoltageMap>,
+    /// The end of another motion of the same robot, configuration and momentum: the path of the folder of its result, relative to this file or
+    /// to the current folder. Time begins at zero.
+    #[serde(default)]
+    pub end_of: Option<String>,
+    /// Joint coordinates by joint, SI unit rad or m; 0 where not named.
+    #[serde(default)]
+    pub joint_angles: Option<BTreeMap<String, Quantity<JointCoordinate>>>,
+    /// Rates of joint coordinates by joint, SI unit rad/s or m/s; 0 where not named.
+    #[serde(default)]
+    pub joint_rates: Option<BTreeMap<String, Quantity<JointRate>>>,
+    /// Velocities by body, of bodies that are free or hang on a spherical or floating joint; with what the joints before them do where not
+    /// named.
+    #[serde(default)]
+    pub body_velocities: Option<BTreeMap<String, BodyVelocitySpec>>,
+}
+
+/// The velocity of a body at the start, in the ground frame.
+#[derive(Clone, Debug, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct BodyVelocitySpec {
+    /// Velocity of the centre of mass, SI unit m/s; 0 where not written. On a spherical joint it follows from `angular`.
+    #[serde(default)]
+    pub linear: Option<[Quantity<Velocity>; 3]>,
+    /// Angular velocity, SI unit rad/s; 0 where not written.
+    #[serde(default)]
+    pub angular: Option<[Quantity<AngularVelocity>; 3]>,
+}
+
+/// `"free"`, `"periodic"`, or a state at the end, at rest.
+#[derive(Clone, Debug, JsonSchema)]
+#[serde(untagged)]
+pub enum GoalSpec {
+    /// Anything, in motion or at rest, or the start, which is sought.
+    Word(GoalWord),
+    /// A state of rest.
+    Rest(Box<RestGoalSpec>),
+}
+
+/// A word of a goal.
+#[derive(Clone, Copy, Debug, Deserialize, JsonSchema)]
+#[serde(rename_all = "snake_case")]
+pub enum GoalWord {
+    /// Anything, in motion or at rest.
+    Free,
+    /// The start, which is sought: the motion is periodic.
+    Periodic,
+}
+
+scalar_or_object! {
+    GoalSpec: GoalWord = Self::Word, Box<RestGoalSpec> = Self::Rest,
+        "\"free\", \"periodic\", or an object with \"rest_at_voltages\", \"joint_angles\", \"markers\" or \"orientations\"";
+    HeldSpec: HeldWord = Self::Word, VoltageMap = Self::Given,
+        "\"find\", \"none\", or voltages by name";
+}
+
+/// The search for voltages that hold a goal.
+pub(crate) fn sought_hold(goal: Option<&GoalSpec>) -> SoughtHold {
+    let Some(GoalSpec::Rest(rest)) = goal else {
+        return SoughtHold::default();
+    };
+    match rest.hold {
+        Some(HeldSpec::Word(HeldWord::Find)) => SoughtHold::Always,
+        Some(HeldSpec::Word(HeldWord::None)) => SoughtHold::Never,
+        Some(HeldSpec::Given(_)) | None => SoughtHold::default(),
+    }
+}
+
+/// A state at the end, at rest: `rest_at_voltages`, or `joint_angles`, or `markers` and `orientations`.
+#[derive(Clone, Debug, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct RestGoalSpec {
+    /// Static equilibrium under these voltages, SI unit V; 0 where not named.
+    #[serde(default)]
+    pub rest_at_voltages: Option<VoltageMap>,
+    /// Joint coordinates by joint, SI unit rad or m; free where not named.
+    #[serde(default)]
+    pub joint_angles: Option<BTreeMap<String, Quantity<JointCoordinate>>>,
+    /// Positions by marker, SI unit m; directions that are `null` are free.
+    #[serde(default)]
+    pub markers: Option<BTreeMap<String, PartialPoint>>,
+    /// Orientations by body.
+    #[serde(default)]
+    pub orientations: Option<BTreeMap<String, OrientationSpec>>,
+    /// Part that comes to rest at an equilibrium, at positions of markers and at orientations: `everything`, or `bodies` and these markers alone,
+    /// also called `markers`. Where not written everything, or, of elastic blocks that have more coordinates than the voltages can bring to rest, bodies
+    /// and these markers.
+    #[serde(default)]
+    pub rest: Option<RestSpec>,
+    /// Voltages that are held after positions of markers and orientations are reached, SI unit V; 0 where not named. Of elastic blocks the motion
+    /// under them is the guess, where no other is written. `"find"`: they are sought with the motion, so that the goal is an equilibrium; also of
+    /// `joint_angles`, for lumped muscles. Where not written they are sought if the motion leaves its goal under the last voltages; `"none"`: they
+    /// are not.
+    #[serde(default)]
+    pub hold: Option<HeldSpec>,
+}
+
+/// Voltages that are held after a goal.
+#[derive(Clone, Debug, JsonSchema)]
+#[serde(untagged)]
+pub enum HeldSpec {
+    /// Sought with the motion, or not at all.
+    Word(HeldWord),
+    /// Given ones.
+    Given(VoltageMap),
+}
+
+/// Voltages that are not given.
+#[derive(Clone, Copy, Debug, Deserialize, JsonSchema)]
+#[serde(rename_all = "snake_case")]
+pub enum HeldWord {
+    /// Sought with the motion.
+    Find,
+    /// Not sought.
+    None,
+}
+
+/// An orientation of a body: `axis` with exactly one of `towards` and `angle`.
+#[derive(Clone, Debug, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct OrientationSpec {
+    /// A direction of the ground frame, of any length: with `towards` one that moves with the body, as it is in the reference
+    /// configuration; with `angle` the axis about which the body is turned.
+    pub axis: [f64; 3],
+    /// Direction of the ground frame, of any length, to which `axis` points.
+    #[serde(default)]
+    pub towards: Option<[f64; 3]>,
+    /// Angle by which the body is turned from its reference configuration, SI unit rad.
+    #[serde(default)]
+    pub angle: Option<Quantity<Angle>>,
+}
+
+/// Part that comes to rest at a goal.
+#[derive(Clone, Copy, Debug, Deserialize, JsonSchema)]
+#[serde(rename_all = "snake_case")]
+pub enum RestSpec {
+    /// Every coordinate.
+    Everything,
+    /// Bodies and the markers of the goal.
+    Bodies,
+    /// The same.
+    Markers,
+}
+
+/// Treatment of a goal that cannot be kept.
+#[derive(Clone, Copy, Debug, Default, Deserialize, JsonSchema)]
+#[serde(rename_all = "snake_case")]
+pub enum HoldSpec {
+    /// A line says so.
+    #[default]
+    Reported,
+    /// It is no solution.
+    Required,
+}
+
+impl From<HoldSpec> for Hold {
+    fn from(spec: HoldSpec) -> Self {
+        match spec {
+            HoldSpec::Reported => Self::Reported,
+            HoldSpec::Required => Self::Required,
+        }
+    }
+}
+
+impl From<RestSpec> for Rest {
+    fn from(spec: RestSpec) -> Self {
+        match spec {
+            RestSpec::Everything => Self::Everything,
+            RestSpec::Bodies | RestSpec::Markers => Self::Bodies,
+        }
+    }
 }

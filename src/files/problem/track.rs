@@ -4,7 +4,7 @@ use crate::control::problem::{CostFunction, During, QuantityCost};
 use crate::files::json::error::SceneError;
 use crate::files::json::scope::Scope;
 use crate::files::problem::measured::Measured;
-use crate::files::problem::solution_joints;
+use crate::files::problem::solution_document::solution_document;
 use crate::files::problem::spec_track::{
     FinalJointSpec, FinalMarkerSpec, FinalSpec, TrackJointSpec, TrackJointsSpec, TrackMarkerSpec,
     TrackSpec,
@@ -16,6 +16,9 @@ use crate::files::units::quantity::{Angle, Length};
 use crate::math::Signal;
 use crate::model::system::System;
 use crate::model::{Quantity, joint_unit};
+use serde::Deserialize;
+use std::collections::BTreeMap;
+use std::path::Path;
 
 /// Possible entries of a specification by their keys, each with its key.
 macro_rules! entries {
@@ -28,7 +31,7 @@ macro_rules! entries {
 }
 
 /// A path that an entry names.
-enum Path<'a> {
+enum Along<'a> {
     Marker(&'a TrackMarkerSpec),
     Joint(&'a TrackJointSpec),
     Joints(&'a TrackJointsSpec),
@@ -42,22 +45,22 @@ pub(crate) fn track(
     scope: &Scope<'_>,
 ) -> Result<Vec<QuantityCost>, SceneError> {
     let (key, path) = scope.exactly_one(entries! { spec,
-        marker: Path::Marker;
-        joint: Path::Joint;
-        joints: Path::Joints;
-        tension: |one| Path::Measured(Measured::Tension(one));
-        electric_field: |one| Path::Measured(Measured::Field(one));
-        current: |one| Path::Measured(Measured::Current(one));
-        power: |one| Path::Measured(Measured::Power(one));
-        joint_rate: |one| Path::Measured(Measured::JointRate(one));
-        marker_speed: |one| Path::Measured(Measured::MarkerSpeed(one));
+        marker: Along::Marker;
+        joint: Along::Joint;
+        joints: Along::Joints;
+        tension: |one| Along::Measured(Measured::Tension(one));
+        electric_field: |one| Along::Measured(Measured::Field(one));
+        current: |one| Along::Measured(Measured::Current(one));
+        power: |one| Along::Measured(Measured::Power(one));
+        joint_rate: |one| Along::Measured(Measured::JointRate(one));
+        marker_speed: |one| Along::Measured(Measured::MarkerSpeed(one));
     })?;
     let scope = scope.key(key);
     match path {
-        Path::Marker(spec) => of_marker(spec, system, &scope),
-        Path::Joint(spec) => of_joint(spec, system, &scope),
-        Path::Joints(spec) => of_joints(spec, system, &scope),
-        Path::Measured(spec) => spec.costs(During::Motion, system, &scope),
+        Along::Marker(spec) => of_marker(spec, system, &scope),
+        Along::Joint(spec) => of_joint(spec, system, &scope),
+        Along::Joints(spec) => of_joints(spec, system, &scope),
+        Along::Measured(spec) => spec.costs(During::Motion, system, &scope),
     }
 }
 
@@ -112,7 +115,7 @@ fn of_joints(
     let place = scope.key("solution");
     let weight = weight(spec.weight, scope)?;
     let path = place.solution_file(&spec.solution, SOLUTION_PATH)?;
-    let joints = solution_joints::read(&path, system)?;
+    let joints = read_solution_joints(&path, system)?;
     if joints.is_empty() {
         let found = "a scene without a revolute or prismatic joint";
         return Err(place.wrong(found, "joints that follow the solution"));
@@ -202,4 +205,67 @@ fn weight(spec: Option<f64>, scope: &Scope<'_>) -> Result<f64, SceneError> {
             .key("weight")
             .wrong(weight.to_string(), "a positive weight")),
     }
+}
+
+/// Entries that are read of a solution: coordinates in rad or m by joint, one per instant.
+#[derive(Debug, Deserialize)]
+struct SolutionRecord {
+    /// Instants in s.
+    time: Vec<f64>,
+    #[serde(default)]
+    joints: Option<Coordinates>,
+    #[serde(default)]
+    configuration: Option<Configuration>,
+}
+
+type Coordinates = BTreeMap<String, Vec<f64>>;
+
+#[derive(Debug, Deserialize)]
+struct Configuration {
+    joints: Coordinates,
+}
+
+/// The coordinate of each joint of a solution by index, linear between its instants.
+pub(crate) fn read_solution_joints(
+    path: &Path,
+    system: &System,
+) -> Result<Vec<(usize, Signal)>, SceneError> {
+    let document = &solution_document(path, |name| {
+        name == "time" || name.starts_with("configuration/joints/")
+    })?;
+    let solution: SolutionRecord = document.parse()?;
+    let scope = Scope::of(document);
+    let place = scope.key("time");
+    let times: Vec<f64> = solution.time.iter().map(|time| 1e3 * time).collect();
+    if times.is_empty() {
+        return Err(place.wrong("no instant", "one or more"));
+    }
+    place.increasing(&times)?;
+    let (joints, place) = match (solution.configuration, solution.joints) {
+        (Some(configuration), _) => (
+            configuration.joints,
+            scope.key("configuration").key("joints"),
+        ),
+        (None, Some(joints)) => (joints, scope.key("joints")),
+        (None, None) => {
+            return Err(scope.wrong("neither of them", "\"configuration\" or \"joints\""));
+        }
+    };
+    let signal = |(name, values): (String, Vec<f64>)| {
+        let place = place.key(&name);
+        let joint = joint_with_coordinate(&name, system, &place)?;
+        if values.len() != times.len() {
+            let found = format!("{} values", values.len());
+            let expected = format!("{}, one for each instant", times.len());
+            return Err(place.wrong(found, expected));
+        }
+        let unit = match joint_unit(system, joint) {
+            "mm" => 1e3,
+            _ => 1.0,
+        };
+        let values = values.into_iter().map(|value| unit * value).collect();
+        let times = times.clone();
+        Ok((joint, Signal::Table { times, values }))
+    };
+    joints.into_iter().map(signal).collect()
 }

@@ -4,7 +4,7 @@ use crate::control::problem::{Duration, QuantityCost, Waypoint};
 use crate::files::json::error::SceneError;
 use crate::files::json::scope::Scope;
 use crate::files::problem::goal::places;
-use crate::files::problem::spec_states::OrientationSpec;
+use crate::files::problem::state::OrientationSpec;
 use crate::files::problem::state::by_joint;
 use crate::files::scene::point::PartialPoint;
 use crate::files::units::quantity::{Angle, JointCoordinate, Length, Quantity, Time};

@@ -1,26 +1,26 @@
 //! Conversion of a scene file to its system: names resolved and everything checked.
 
-use std::cell::Cell;
-
 use crate::files::json::error::SceneError;
 use crate::files::json::scope::Scope;
 use crate::files::scene::body::body;
-use crate::files::scene::component_lists::{check_component_names, components};
-use crate::files::scene::components::load;
+use crate::files::scene::components::spring::{built, check_unique};
+use crate::files::scene::components::{component_lists, load};
 use crate::files::scene::expand::{add_named, expanded};
 use crate::files::scene::graph::check_connected;
 use crate::files::scene::joint::joint;
-use crate::files::scene::marker::marker;
 use crate::files::scene::material::materials;
 use crate::files::scene::muscle::{MOST_ELEMENTS, fidelity, layer, muscle, positive_sides};
-use crate::files::scene::named_entries::NamedEntries;
-use crate::files::scene::names::{find_material, names};
-use crate::files::scene::point::unit_axis;
-use crate::files::scene::point::vector;
+use crate::files::scene::names::NamedEntries;
+use crate::files::scene::names::{attachment, find_material, names};
+use crate::files::scene::nodes::place;
+use crate::files::scene::point::{unit_axis, vector};
 use crate::files::scene::solid::solid;
-use crate::files::scene::spec::{ChainSpec, SceneSpec};
-use crate::model::components::{Load, LoadPlace};
-use crate::model::system::{Material, System, number_sources};
+use crate::files::scene::spec::{ChainSpec, MarkerSpec, SceneSpec};
+use crate::mesh::Mesh;
+use crate::model::components::{Components, Load, LoadPlace};
+use crate::model::system::{Attachment, Marker, Material, Solid, System, number_sources};
+use nalgebra::Vector3;
+use std::cell::Cell;
 
 /// Longest chain that the shorthand writes out.
 pub(crate) const LONGEST_CHAIN: usize = 1000;
@@ -204,4 +204,118 @@ fn check_chain(
         layer(&pair.layer_thickness, rest_length, &scope)?;
     }
     Ok(())
+}
+
+/// Defines what visits all lists.
+macro_rules! visits {
+    ($($(#[$about:meta])* $list:ident: $spec:ty,)*) => {
+        /// The components that are written, beside these loads.
+        pub(crate) fn components(
+            scene: &SceneSpec,
+            loads: Vec<Load>,
+            bodies: &[String],
+            scope: &Scope<'_>,
+        ) -> Result<Components, SceneError> {
+            Ok(Components {
+                $($list: built(&scene.$list, &list(scope, stringify!($list)), bodies)?,)*
+                loads,
+                others: Vec::new(),
+            })
+        }
+
+        /// Checks that no two components have one name.
+        pub(crate) fn check_component_names(
+            scene: &SceneSpec,
+            scope: &Scope<'_>,
+        ) -> Result<(), SceneError> {
+            let mut names = Vec::new();
+            $(check_unique(&scene.$list, &list(scope, stringify!($list)), &mut names)?;)*
+            Ok(())
+        }
+    };
+}
+
+component_lists!(visits);
+
+/// A list of which a chain writes nothing.
+fn list<'a>(scope: &Scope<'a>, name: &str) -> NamedEntries<'a> {
+    NamedEntries::new(scope, name, usize::MAX)
+}
+
+/// The marker that is written.
+pub(crate) fn marker(
+    spec: &MarkerSpec,
+    bodies: &[String],
+    solids: &[Solid],
+    scope: &Scope<'_>,
+) -> Result<Marker, SceneError> {
+    scope.exactly_one([
+        ("body", spec.body.as_ref().map(|_| ())),
+        ("solid", spec.solid.as_ref().map(|_| ())),
+    ])?;
+    let name = spec.name.clone();
+    let Some(solid) = &spec.solid else {
+        let body = spec.body.as_deref().unwrap_or_default();
+        return Ok(Marker {
+            name,
+            point: attachment(body, &spec.at, bodies, scope)?,
+            solid: None,
+        });
+    };
+    let all = names(solids, |solid| &solid.name);
+    let solid = scope
+        .key("solid")
+        .find(solid, &all, "the name of a block")?;
+    let at = vector(&spec.at);
+    let mesh = &solids[solid].mesh;
+    let (node, distance) = nearest(mesh, &at);
+    if distance.is_nan() || distance > size_at(mesh, node) {
+        let found = format!(
+            "{}, which is {distance:.3} mm away from the nearest node, at {}",
+            place(&at),
+            place(&mesh.nodes[node])
+        );
+        let expected = "a place no farther from the block than the size of an element";
+        return Err(scope.key("at").wrong(found, expected));
+    }
+    Ok(Marker {
+        name,
+        point: Attachment { body: None, at },
+        solid: Some(solid),
+    })
+}
+
+/// The node nearest to a place, and its distance in mm.
+fn nearest(mesh: &Mesh, at: &Vector3<f64>) -> (usize, f64) {
+    let distances = mesh.nodes.iter().map(|node| (node - at).norm());
+    let nearest = distances
+        .enumerate()
+        .min_by(|(_, a), (_, b)| a.total_cmp(b));
+    nearest.expect("a checked mesh has nodes")
+}
+
+/// The longest edge in mm of the elements at a node.
+fn size_at(mesh: &Mesh, node: usize) -> f64 {
+    const EDGES: [[usize; 2]; 12] = [
+        [0, 1],
+        [1, 2],
+        [2, 3],
+        [3, 0],
+        [4, 5],
+        [5, 6],
+        [6, 7],
+        [7, 4],
+        [0, 4],
+        [1, 5],
+        [2, 6],
+        [3, 7],
+    ];
+    let around = mesh
+        .hexahedra
+        .iter()
+        .filter(|corners| corners.contains(&node));
+    around
+        .flat_map(|corners| EDGES.map(|[a, b]| mesh.nodes[corners[a]] - mesh.nodes[corners[b]]))
+        .map(|edge| edge.norm())
+        .fold(0.0, f64::max)
 }

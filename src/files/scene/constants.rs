@@ -12,7 +12,7 @@ use crate::files::json::scope::Scope;
 use crate::files::json::set::Override;
 use crate::files::scene::build::build_scene;
 use crate::files::scene::expand::{add_named, expanded};
-use crate::files::scene::named_materials::named_material;
+use crate::files::scene::material::named_material;
 use crate::files::scene::spec::SceneSpec;
 use crate::files::study::ChangesSpec;
 use crate::model::system::System;

@@ -2,13 +2,13 @@
 
 use nalgebra::Vector3;
 
-use crate::files::scene::named_materials::named_material;
+use crate::files::scene::joint::{AxisSpec, JointSpec};
+use crate::files::scene::material::named_material;
 use crate::files::scene::point::direction;
 use crate::files::scene::point::{Point, PointSpec};
 use crate::files::scene::spec::{
     BodySpec, ChainSpec, CylinderSpec, MarkerSpec, MuscleSpec, SceneSpec,
 };
-use crate::files::scene::spec_joints::{AxisSpec, JointSpec};
 use crate::files::units::quantity::Quantity;
 
 /// The same scene without shorthand; the parts of the chain come after those that are written.

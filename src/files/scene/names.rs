@@ -3,7 +3,7 @@
 use crate::energy::ElasticLaw;
 use crate::files::json::error::SceneError;
 use crate::files::json::scope::{Scope, list};
-use crate::files::scene::named_materials::named_materials;
+use crate::files::scene::material::named_materials;
 use crate::files::scene::point::{Point, vector};
 use crate::model::system::{Attachment, Material};
 
@@ -83,4 +83,44 @@ pub(crate) fn find_body(
     Err(scope
         .document
         .wrong_name(&scope.place, name, expected, or_ground))
+}
+
+/// One list of the scene; entries beyond the written ones come from the chain.
+pub(super) struct NamedEntries<'a> {
+    list: Scope<'a>,
+    chain: Scope<'a>,
+    written: usize,
+}
+
+impl<'a> NamedEntries<'a> {
+    pub(super) fn new(scene: &Scope<'a>, list: &str, written: usize) -> Self {
+        Self {
+            list: scene.key(list),
+            chain: scene.key("chain"),
+            written,
+        }
+    }
+
+    pub(super) fn scope(&self, index: usize) -> Scope<'a> {
+        match index {
+            index if index < self.written => self.list.index(index),
+            _ => self.chain.clone(),
+        }
+    }
+
+    pub(super) fn unique(&self, names: &[String], reserved: &[&str]) -> Result<(), SceneError> {
+        self.list.unique(names, reserved, |index| match index {
+            index if index < self.written => self.scope(index).key("name"),
+            _ => self.scope(index),
+        })
+    }
+
+    pub(super) fn build<S, T>(
+        &self,
+        specs: &[S],
+        build: impl Fn(&S, &Scope<'a>) -> Result<T, SceneError>,
+    ) -> Result<Vec<T>, SceneError> {
+        let build = |(index, spec)| build(spec, &self.scope(index));
+        specs.iter().enumerate().map(build).collect()
+    }
 }

@@ -1,8 +1,5 @@
 //! Conversion of an elastic block of a scene file to nodes, materials, electrodes, supports, velocities and prestretch.
 
-use nalgebra::Vector3;
-use std::collections::BTreeMap;
-
 use crate::files::json::error::SceneError;
 use crate::files::json::scope::{Scope, list};
 use crate::files::problem::state::ELECTRIC_KEYS;
@@ -12,10 +9,14 @@ use crate::files::scene::muscle::element_kind;
 use crate::files::scene::names::{find_body, find_compressible};
 use crate::files::scene::nodes::{extent, face, nodes, place};
 use crate::files::scene::point::vector;
-use crate::files::scene::prestretch::prestretch;
-use crate::files::scene::spec_solids::{AxisName, FixedSpec, SolidSpec, VelocitySpec};
+use crate::files::scene::spec_solids::{
+    AxisName, FixedSpec, PrestretchSpec, SolidSpec, VelocitySpec,
+};
+use crate::math::Matrix;
 use crate::mesh::Mesh;
 use crate::model::system::{Glue, Material, Solid, Support};
+use nalgebra::Vector3;
+use std::collections::BTreeMap;
 
 /// The block that is written; the voltages of its electrodes count from zero.
 pub(crate) fn solid(
@@ -186,4 +187,29 @@ fn velocities(spec: &VelocitySpec, mesh: &Mesh) -> Vec<Vector3<f64>> {
         linear + angular.cross(&arm) + rate.component_mul(&arm)
     };
     mesh.nodes.iter().map(velocity).collect()
+}
+
+pub(super) fn prestretch(
+    spec: Option<&PrestretchSpec>,
+    scope: &Scope<'_>,
+) -> Result<Option<Matrix>, SceneError> {
+    let Some(spec) = spec else {
+        return Ok(None);
+    };
+    let written = [("x", spec.x), ("y", spec.y), ("z", spec.z)];
+    for (axis, stretch) in written {
+        if let Some(stretch) = stretch.filter(|stretch| !(*stretch > 0.0 && stretch.is_finite())) {
+            return Err(scope
+                .key(axis)
+                .wrong(stretch.to_string(), "a positive stretch"));
+        }
+    }
+    let given = || written.iter().filter_map(|(_, stretch)| *stretch);
+    let others = 3 - given().count();
+    if others == 3 {
+        return Err(scope.wrong("no stretch", "\"x\", \"y\" or \"z\", or several of them"));
+    }
+    let other = given().product::<f64>().powf(-1.0 / others.max(1) as f64);
+    let stretches = written.map(|(_, stretch)| stretch.unwrap_or(other));
+    Ok(Some(Matrix::from_diagonal(&stretches.into())))
 }

@@ -6,9 +6,9 @@ use std::collections::BTreeMap;
 
 use crate::files::scene::circuit::CircuitSpec;
 use crate::files::scene::components::{LoadSpec, SpringSpec, TendonSpec, component_lists};
+use crate::files::scene::joint::JointSpec;
+use crate::files::scene::material::MaterialSpec;
 use crate::files::scene::point::{Point, PointSpec};
-use crate::files::scene::spec_joints::JointSpec;
-use crate::files::scene::spec_material::MaterialSpec;
 use crate::files::scene::spec_solids::{ElementSpec, SolidSpec};
 use crate::files::units::quantity::{
     Acceleration, Angle, Density, Length, Mass, MomentOfInertia, Quantity,

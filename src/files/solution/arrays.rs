@@ -10,7 +10,7 @@ use serde_json::{Map, Value};
 
 use crate::files::json::scan::Scanner;
 use crate::files::npz::{self, NpzError, NpzWriter};
-use crate::files::solution::error::Reason;
+use crate::files::solution::record::Reason;
 use crate::files::solution::record::{ArraysOf, File};
 
 /// Names of arrays that end with a name of the scene.

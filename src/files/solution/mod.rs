@@ -12,12 +12,11 @@
 //! - `record`: the types; `write`, `read`: conversion between a solution and the file; `arrays`: the file next to it; `error`: its errors.
 
 mod arrays;
-mod error;
 mod read;
 mod record;
 mod write;
 
 pub(crate) use arrays::{complete, file_beside};
-pub use error::{Reason, SolutionError};
 pub use read::{SolutionFile, read};
+pub use record::{Reason, SolutionError};
 pub use write::{Written, written};

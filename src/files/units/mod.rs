@@ -1,6 +1,5 @@
 //! Numbers with units, converted once to g, mm, ms, N, MPa, V.
 
-mod dimension;
 pub mod quantity;
 pub(crate) mod unit;
 mod written;

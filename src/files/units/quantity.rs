@@ -1,5 +1,7 @@
 //! Quantities as written in JSON: numbers in SI units or strings with a unit, converted once to g, mm, ms, N, MPa, V.
 
+use crate::files::units::unit::{Dimension, Unit, scale};
+use crate::files::units::written::{Written, parts, symbol};
 use schemars::{JsonSchema, Schema, SchemaGenerator, json_schema};
 use serde::de::{Error, Unexpected, Visitor};
 use serde::{Deserialize, Deserializer, Serialize, Serializer};
@@ -7,10 +9,8 @@ use std::borrow::Cow;
 use std::fmt;
 use std::marker::PhantomData;
 use uom::si;
-
-use crate::files::units::dimension;
-use crate::files::units::unit::{Dimension, Unit, scale};
-use crate::files::units::written::{Written, parts, symbol};
+use uom::si::ISQ;
+use uom::typenum::{N1, N2, N4, P1, P2, Z0};
 
 /// A kind of quantity: its name, an example, and the dimensions it is written in.
 #[derive(Clone, Debug)]
@@ -134,7 +134,7 @@ measures! {
     /// Torque: N m, N mm inside.
     Torque: si::energy::Dimension, [0], "a torque", "\"0.2 N m\"";
     /// Force for a volume: N/m³, N/mm³ inside.
-    ForceDensity: dimension::Weight, [0], "a force for a volume", "\"10 kN/m^3\"";
+    ForceDensity: Weight, [0], "a force for a volume", "\"10 kN/m^3\"";
     /// Charge for an area: C/m², mC/mm² inside.
     ChargeDensity: si::electric_charge_areal_density::Dimension, [0], "a charge for an area", "\"0.2 mC/m^2\"";
     /// Charge: C, mC inside.
@@ -144,7 +144,7 @@ measures! {
     /// Power: W.
     Power: si::power::Dimension, [0], "a power", "\"0.5 W\"";
     /// Rate of a voltage: V/s, V/ms inside.
-    VoltageRate: dimension::VoltageRate, [0], "a rate of a voltage", "\"10 kV/s\"";
+    VoltageRate: VoltageRateDimension, [0], "a rate of a voltage", "\"10 kV/s\"";
     /// Electrical resistance: Ω.
     Resistance: si::electrical_resistance::Dimension, [0], "a resistance", "\"10 MOhm\"";
 }
@@ -398,3 +398,9 @@ pub(crate) fn describe(dimension: Dimension) -> String {
             |kind| kind.name.to_owned(),
         )
 }
+
+/// Of a force for a volume.
+pub(super) type Weight = ISQ<N2, P1, N2, Z0, Z0, Z0, Z0>;
+
+/// Of the rate of a voltage.
+type VoltageRateDimension = ISQ<P2, P1, N4, N1, Z0, Z0, Z0>;

@@ -3,12 +3,12 @@
 use crate::energy::{LinearSpring, Polynomial, SpanDamper};
 use crate::functional::Law;
 use crate::math::Number;
-use crate::model::attachment::Attachment;
+use crate::model::bodies::Attachment;
 use crate::model::component::Component;
 use crate::model::components::kind::Kind;
 use crate::model::constant::Constant;
+use crate::model::error::{SystemError, positive, require};
 use crate::model::sought::{MovedPoint, Read};
-use crate::model::system_error::{SystemError, positive, require};
 use crate::model::terms::{Terms, mid, rate};
 use nalgebra::Vector3;
 

@@ -2,12 +2,12 @@
 
 use crate::energy::Cable;
 use crate::functional::Path;
-use crate::model::attachment::Attachment;
+use crate::model::bodies::Attachment;
 use crate::model::component::Component;
 use crate::model::components::kind::Kind;
 use crate::model::constant::Constant;
+use crate::model::error::{SystemError, positive, require};
 use crate::model::sought::{MovedPoint, Read};
-use crate::model::system_error::{SystemError, positive, require};
 use crate::model::terms::Terms;
 use nalgebra::Vector3;
 

@@ -6,16 +6,15 @@
 //! before, so that the linear systems stay one chain that falls into pieces but for the border; where programs share a variable of a stage,
 //! such as the input of an interval, it is one stage. One program alone keeps its numbers, bit by bit.
 
-mod part;
 mod places;
 mod worst;
 
 use std::fmt;
 
 use crate::nlp::{Bounds, Entries, Nlp, Stage};
-use part::{Part, each};
 pub use places::{Places, SharedVariable};
 use worst::Worst;
+use worst::{Part, each};
 
 /// Several programs as one.
 pub struct Joined<N> {

@@ -6,7 +6,6 @@
 //! with a morph target for each instant, of which the weights are 0 and 1: between instants their points move on straight lines.
 
 mod document;
-mod shapes;
 
 use nalgebra::{Matrix3, Rotation3, UnitQuaternion, Vector3};
 
@@ -15,7 +14,7 @@ use crate::kinematics::Pose;
 use crate::model::system::{Marker, Shape, System};
 use crate::report::drawing::{lumped, marker_colour};
 use crate::report::gltf::document::{Document, Mode, Moving, Placed};
-use crate::report::gltf::shapes::{METRE, body, cube, sphere, triangles};
+use crate::report::gltf::document::{METRE, body, cube, sphere, triangles};
 use crate::report::load_arrows::LoadArrows;
 use crate::report::origin::Origin;
 use crate::report::skins::{Skins, shown};

@@ -6,7 +6,7 @@ use crate::dynamics::trajectory::Column;
 use crate::model::system::{InputKind, System};
 use crate::report::axes::Scale;
 use crate::report::lines::{Aspect, LinePlot, Mark, Series};
-use crate::report::page::numbers::numbers;
+use crate::report::page::scene::numbers;
 use crate::report::style::{self, Dash};
 use crate::report::{PageContent, Run, inputs, joints, sources, tip_path, tracking};
 

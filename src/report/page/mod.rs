@@ -7,7 +7,6 @@ mod charts;
 mod code;
 pub mod compared;
 mod disturbance;
-mod numbers;
 mod scene;
 
 use serde_json::{Value, json};

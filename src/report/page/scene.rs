@@ -1,21 +1,18 @@
 //! Moving parts of a page: bodies and lumped muscles as solids that are moved, elastic blocks as surfaces whose corners move.
 
-use nalgebra::Vector3;
-use serde_json::{Value, json};
-
 use crate::kinematics::Pose;
 use crate::mesh::triangulated::Surface;
 use crate::model::system::{Attachment, Joint, JointKind, Marker};
-use crate::report::Run;
 use crate::report::drawing::lumped;
-use crate::report::electrodes;
 use crate::report::frame::{ground_plate, held_faces};
 use crate::report::load_arrows::LoadArrows;
-use crate::report::page::numbers::{indices, numbers, places};
 use crate::report::skins::{Skin, shown};
 use crate::report::solids::Prism;
-use crate::report::style;
-use crate::report::ties;
+use crate::report::{Run, solids, style, ties};
+use base64::Engine;
+use base64::engine::general_purpose::STANDARD;
+use nalgebra::Vector3;
+use serde_json::{Value, json};
 
 /// Length in mm of the axis that shows the direction of a joint.
 const AXIS: f64 = 1.0;
@@ -24,7 +21,7 @@ const POINTS: usize = 2000;
 
 /// The scene of a run at the instants shown.
 pub(super) fn scene(run: &Run<'_>) -> Value {
-    let coloured = electrodes::coloured(run.system, run.trajectory, run.observations);
+    let coloured = solids::coloured(run.system, run.trajectory, run.observations);
     let run = &Run {
         trajectory: &coloured,
         ..*run
@@ -281,4 +278,29 @@ fn chosen(count: usize) -> impl Iterator<Item = usize> + Clone {
     let last = count.saturating_sub(1);
     let most = last.min(POINTS);
     (0..=most).map(move |i| (i * last) / most.max(1))
+}
+
+/// Numbers in single precision; NaN stays NaN.
+pub(super) fn numbers(values: impl IntoIterator<Item = f64>) -> Value {
+    let bytes = values
+        .into_iter()
+        .flat_map(|value| (value as f32).to_le_bytes());
+    STANDARD.encode(bytes.collect::<Vec<u8>>()).into()
+}
+
+/// Indices below 2³².
+pub(super) fn indices(values: impl IntoIterator<Item = usize>) -> Value {
+    let bytes = values
+        .into_iter()
+        .flat_map(|value| (value as u32).to_le_bytes());
+    STANDARD.encode(bytes.collect::<Vec<u8>>()).into()
+}
+
+/// Coordinates of places in mm, one after the other.
+pub(super) fn places<'a>(places: impl IntoIterator<Item = &'a Vector3<f64>>) -> Value {
+    numbers(
+        places
+            .into_iter()
+            .flat_map(|place| [place.x, place.y, place.z]),
+    )
 }

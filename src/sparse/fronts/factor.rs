@@ -1,17 +1,16 @@
 //! Factorisation: each front takes the updates of those below it, eliminates its own rows and leaves its update.
 
+use crate::math::{IsOver, join_if};
+use crate::sparse::fronts::tree::{Front, STRIP, Tree};
+use crate::sparse::{Precision, Singular};
 use faer::dyn_stack::{MemBuffer, MemStack};
 use faer::linalg::cholesky::ldlt::factor::{cholesky_in_place, cholesky_in_place_scratch};
 use faer::linalg::matmul::triangular::{BlockStructure, matmul};
 use faer::linalg::triangular_solve::solve_unit_lower_triangular_in_place;
 use faer::prelude::{Reborrow, ReborrowMut};
+use faer::traits::RealField;
 use faer::traits::ext::ComplexFieldExt;
 use faer::{Accum, MatMut, Par};
-
-use crate::math::{IsOver, join_if};
-use crate::sparse::Singular;
-use crate::sparse::fronts::number::Number;
-use crate::sparse::fronts::tree::{Front, STRIP, Tree};
 
 /// A factorisation of one matrix.
 pub(super) struct Elimination<'a> {
@@ -182,5 +181,45 @@ fn assemble<T: Number>(
         for (value, &row) in column.iter().zip(&below.above[j..]) {
             to[row as usize - skipped] += *value;
         }
+    }
+}
+
+/// A number of a factor.
+pub(crate) trait Number: RealField + Copy + Default {
+    /// Its precision.
+    const PRECISION: Precision;
+    /// LDLᵀ with such numbers, as a table names it.
+    const LDLT: &'static str;
+
+    /// The nearest number.
+    fn near(value: f64) -> Self;
+
+    /// The number in double precision.
+    fn value(self) -> f64;
+}
+
+impl Number for f64 {
+    const PRECISION: Precision = Precision::Double;
+    const LDLT: &'static str = "LDLᵀ by fronts";
+
+    fn near(value: f64) -> Self {
+        value
+    }
+
+    fn value(self) -> f64 {
+        self
+    }
+}
+
+impl Number for f32 {
+    const PRECISION: Precision = Precision::Single;
+    const LDLT: &'static str = "LDLᵀ by fronts in single precision";
+
+    fn near(value: f64) -> Self {
+        value as Self
+    }
+
+    fn value(self) -> f64 {
+        self.into()
     }
 }

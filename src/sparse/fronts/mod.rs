@@ -6,7 +6,6 @@
 //! pattern alone, so that factors have the same bits on any number of cores.
 
 mod factor;
-mod number;
 mod solve;
 mod tree;
 
@@ -18,8 +17,8 @@ use crate::sparse::mumps::Mumps;
 use crate::sparse::pattern::Pattern;
 use crate::sparse::{Factorisation, Precision, Singular};
 
+use factor::Number;
 use factor::{Elimination, Undone};
-use number::Number;
 use solve::Passage;
 use tree::Tree;
 

@@ -10,7 +10,7 @@ use faer::{Accum, MatRef, Par};
 
 use crate::math::join_if;
 use crate::sparse::faer::column;
-use crate::sparse::fronts::number::Number;
+use crate::sparse::fronts::factor::Number;
 use crate::sparse::fronts::tree::{Front, Tree};
 
 /// One right-hand side on its way through a subtree.

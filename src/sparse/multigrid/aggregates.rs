@@ -4,9 +4,9 @@
 //! size.
 
 use crate::sparse::multigrid::block_rows::BlockRows;
-use crate::sparse::multigrid::field::Block;
+use crate::sparse::multigrid::node_grid::Block;
 use crate::sparse::multigrid::node_grid::COMPONENTS;
-use crate::sparse::multigrid::node_mesh::distance;
+use crate::sparse::multigrid::triangles::distance;
 
 /// Distance of neighbours, relative to that of the nearest one, up to which they are strongly coupled.
 const NEAR: f64 = 2.2;

@@ -5,8 +5,8 @@
 use crate::math::join;
 use crate::sparse::multigrid::aggregates::{Aggregates, Rigid};
 use crate::sparse::multigrid::block_rows::BlockRows;
-use crate::sparse::multigrid::field::{Block, add_product, add_transposed_product};
 use crate::sparse::multigrid::mesh_matrix::MeshMatrix;
+use crate::sparse::multigrid::node_grid::{Block, add_product, add_transposed_product};
 use std::ops::Range;
 
 /// Transfer to a coarser level.

@@ -1,11 +1,11 @@
 //! The grids of a box, from the finest to the coarsest.
 
 use crate::sparse::multigrid::axis::coarsening;
-use crate::sparse::multigrid::field::Block;
 use crate::sparse::multigrid::galerkin::{coarse_matrix, correct, restrict};
-use crate::sparse::multigrid::grid_level::GridLevel;
 use crate::sparse::multigrid::hierarchy::{COARSEST, Hierarchy};
 use crate::sparse::multigrid::level::Level;
+use crate::sparse::multigrid::node_grid::Block;
+use crate::sparse::multigrid::node_grid::GridLevel;
 use crate::sparse::multigrid::node_grid::{
     COMPONENTS, NEIGHBOURS, NodeGrid, free_components, indices, node_at, offsets,
 };

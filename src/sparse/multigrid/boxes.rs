@@ -3,16 +3,16 @@
 use crate::math::join;
 use crate::sparse::Singular;
 use crate::sparse::multigrid::block_rows::BlockRows;
-use crate::sparse::multigrid::element_volume::{VolumePlaces, corners};
-use crate::sparse::multigrid::field::{Block, Field};
 use crate::sparse::multigrid::hierarchy::Hierarchy;
 use crate::sparse::multigrid::krylov::Operator;
 use crate::sparse::multigrid::level::Level;
 use crate::sparse::multigrid::mesh_level::MeshLevel;
+use crate::sparse::multigrid::node_grid::{Block, Field};
 use crate::sparse::multigrid::node_grid::{
     COMPONENTS, ENTRIES, NEIGHBOURS, NodeBlock, NodeGrid, offsets,
 };
-use crate::sparse::multigrid::node_mesh::{BlockPlaces, NodeMesh};
+use crate::sparse::multigrid::node_grid::{VolumePlaces, corners};
+use crate::sparse::multigrid::triangles::{BlockPlaces, NodeMesh};
 use crate::sparse::multigrid::volumes::{Volumes, scale_of_mean};
 use std::ops::Range;
 use std::sync::Arc;

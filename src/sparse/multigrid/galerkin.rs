@@ -2,8 +2,8 @@
 
 use crate::math::join;
 use crate::sparse::multigrid::axis::Axis;
-use crate::sparse::multigrid::field::Block;
 use crate::sparse::multigrid::level::Level;
+use crate::sparse::multigrid::node_grid::Block;
 use crate::sparse::multigrid::node_grid::{COMPONENTS, OWN, indices, neighbour, node_at, offsets};
 use crate::sparse::multigrid::triangles::{Row, Rows};
 

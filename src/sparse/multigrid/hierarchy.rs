@@ -1,7 +1,7 @@
 //! Levels from the finest to the coarsest, and one V-cycle through them.
 
-use crate::sparse::multigrid::grid_level::GridLevel;
 use crate::sparse::multigrid::node_grid::COMPONENTS;
+use crate::sparse::multigrid::node_grid::GridLevel;
 use crate::sparse::{Direct, Singular};
 
 /// A level of so few nodes is solved directly.

@@ -4,7 +4,7 @@
 
 use crate::math::join;
 use crate::sparse::multigrid::axis::Axis;
-use crate::sparse::multigrid::field::{Block, Field, inverse_of};
+use crate::sparse::multigrid::node_grid::{Block, Field, inverse_of};
 use crate::sparse::multigrid::node_grid::{COMPONENTS, NEIGHBOURS, offsets};
 use crate::sparse::multigrid::pressures::Pressures;
 use crate::sparse::multigrid::slab::{Equations, Slab, slabs, split};

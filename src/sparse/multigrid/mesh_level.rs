@@ -4,13 +4,13 @@ use crate::math::join;
 use crate::sparse::multigrid::aggregates::Points;
 use crate::sparse::multigrid::aggregation::Aggregation;
 use crate::sparse::multigrid::block_rows::BlockRows;
-use crate::sparse::multigrid::field::{Block, add, add_transposed, inverse_of};
-use crate::sparse::multigrid::grid_level::GridLevel;
 use crate::sparse::multigrid::hierarchy::{COARSEST, Hierarchy};
 use crate::sparse::multigrid::mesh_matrix::MeshMatrix;
 use crate::sparse::multigrid::mesh_pressures::MeshPressures;
+use crate::sparse::multigrid::node_grid::GridLevel;
+use crate::sparse::multigrid::node_grid::{Block, add, add_transposed, inverse_of};
 use crate::sparse::multigrid::node_grid::{COMPONENTS, free_components};
-use crate::sparse::multigrid::node_mesh::NodeMesh;
+use crate::sparse::multigrid::triangles::NodeMesh;
 use std::sync::Arc;
 
 /// Products by which the largest eigenvalue of D⁻¹ A is estimated.

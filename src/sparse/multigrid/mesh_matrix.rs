@@ -1,7 +1,7 @@
 //! The matrix of one level of a mesh in single precision, with the pattern of its rows.
 
 use crate::sparse::multigrid::block_rows::BlockRows;
-use crate::sparse::multigrid::field::Block;
+use crate::sparse::multigrid::node_grid::Block;
 use crate::sparse::multigrid::triangles::{Rows, Triangles};
 use std::ops::Range;
 use std::sync::Arc;

@@ -6,10 +6,10 @@
 use crate::sparse::multigrid::aggregates::Points;
 use crate::sparse::multigrid::aggregation::Aggregation;
 use crate::sparse::multigrid::block_rows::BlockRows;
-use crate::sparse::multigrid::field::{Block, add};
 use crate::sparse::multigrid::node_grid::COMPONENTS;
-use crate::sparse::multigrid::node_mesh::NodeMesh;
+use crate::sparse::multigrid::node_grid::{Block, add};
 use crate::sparse::multigrid::pressure_correction::{Lists, Schur, correct};
+use crate::sparse::multigrid::triangles::NodeMesh;
 
 /// Values of the components of a node.
 type AtNode = [f32; COMPONENTS];
@@ -180,7 +180,7 @@ impl MeshPressures {
                 let node = self.pattern.column(place);
                 let (mut moved, mut turned) = (AtNode::default(), AtNode::default());
                 add(&mut moved, &blocks[node], &self.slopes[place]);
-                super::field::add_transposed(&mut turned, &blocks[node], &self.slopes[place]);
+                super::node_grid::add_transposed(&mut turned, &blocks[node], &self.slopes[place]);
                 for [other, there] in &self.of_nodes[node] {
                     let slopes = &self.slopes[*there as usize];
                     let both = moved.iter().zip(&turned).map(|(a, b)| 0.5 * (a + b));

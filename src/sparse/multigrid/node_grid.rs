@@ -1,5 +1,8 @@
 //! A box grid of nodes with the unknowns at each node.
 
+use nalgebra::Matrix4;
+use rustc_hash::FxHashMap;
+
 /// Components of a node: three displacements and a potential.
 pub(super) const COMPONENTS: usize = 4;
 /// Entries of a block.
@@ -118,4 +121,261 @@ pub(super) fn offsets([n_x, n_y, _]: [usize; 3]) -> [isize; NEIGHBOURS] {
         let step = |divisor: usize| (place / divisor % 3) as isize - 1;
         step(1) + n_x * step(3) + n_xy * step(9)
     })
+}
+
+/// Corners of an element; the bits of the number of one say which it is along each axis.
+pub(super) const CORNERS: usize = 8;
+
+/// The volume of an element: its derivatives b by the places of the corners, and the factor of b bᵀ in the matrix.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct ElementVolume {
+    /// Derivatives by corner and component; zero where a value is given.
+    pub slopes: [[f64; COMPONENTS]; CORNERS],
+    /// The factor.
+    pub factor: f64,
+}
+
+/// Distance in the numbering of nodes to each corner of an element from its first one.
+pub(super) fn corners([n_x, n_y, _]: [usize; 3]) -> [usize; CORNERS] {
+    std::array::from_fn(|corner| (corner & 1) + n_x * ((corner >> 1 & 1) + n_y * (corner >> 2)))
+}
+
+/// Position among the neighbours of a corner of another corner of the same element.
+pub(super) fn neighbour_of(corner: usize, other: usize) -> usize {
+    let step = |axis: usize| (other >> axis & 1) as isize - (corner >> axis & 1) as isize;
+    (OWN as isize + step(0) + 3 * step(1) + 9 * step(2)) as usize
+}
+
+/// Position in the number of a corner of each node of an element, which are listed around its lower face, then around its upper one.
+const CORNER_OF: [usize; CORNERS] = [0, 1, 3, 2, 4, 5, 7, 6];
+/// In place of a node that does not move.
+const STILL: u32 = u32::MAX;
+
+/// Nodes of a part at the corners of its elements.
+#[derive(Debug)]
+pub(super) enum VolumePlaces {
+    /// Those of a box count like their first nodes; distances to the corners.
+    Box([usize; CORNERS]),
+    /// Nodes by corner, and elements by their nodes that move.
+    Mesh(Vec<[u32; CORNERS]>, FxHashMap<[u32; CORNERS], Vec<u32>>),
+}
+
+impl VolumePlaces {
+    /// Of a mesh of elements, whose nodes have a bit for each component without a given value.
+    pub(super) fn of_mesh(elements: &[[u32; CORNERS]], free: &[u8]) -> Self {
+        let mut by_nodes = FxHashMap::<_, Vec<u32>>::default();
+        let mut list = Vec::with_capacity(elements.len());
+        for (element, nodes) in elements.iter().enumerate() {
+            let mut corners = [0; CORNERS];
+            for (node, corner) in nodes.iter().zip(CORNER_OF) {
+                corners[corner] = *node;
+            }
+            list.push(corners);
+            let moving = corners.map(|node| (free[node as usize] & 0b111 != 0).then_some(node));
+            by_nodes
+                .entry(key(&moving))
+                .or_default()
+                .push(element as u32);
+        }
+        Self::Mesh(list, by_nodes)
+    }
+
+    /// Nodes at the corners of an element.
+    #[inline(always)]
+    pub(super) fn corners(&self, element: usize) -> [usize; CORNERS] {
+        match self {
+            Self::Box(steps) => steps.map(|step| element + step),
+            Self::Mesh(list, _) => list[element].map(|node| node as usize),
+        }
+    }
+
+    /// The element of a box of which a node is a corner; `None` where there is none, and of a mesh.
+    pub(super) fn of_corner(&self, node: usize, corner: usize) -> Option<usize> {
+        match self {
+            Self::Box(steps) => node.checked_sub(steps[corner]),
+            Self::Mesh(..) => None,
+        }
+    }
+
+    /// The element with these nodes that move, by corner; of several that are still to be found any will do.
+    pub(super) fn find(
+        &self,
+        moving: &[Option<u32>; CORNERS],
+        is_free: impl Fn(&usize) -> bool,
+    ) -> Option<usize> {
+        match self {
+            Self::Box(steps) => {
+                let known = moving.iter().zip(steps);
+                let mut known = known.filter_map(|(node, step)| Some((*node)? as usize - step));
+                known.next()
+            }
+            Self::Mesh(_, by_nodes) => {
+                let found = by_nodes.get(&key(moving))?.iter();
+                found.map(|&element| element as usize).find(is_free)
+            }
+        }
+    }
+}
+
+/// Nodes that move in ascending order.
+fn key(moving: &[Option<u32>; CORNERS]) -> [u32; CORNERS] {
+    let mut nodes = moving.map(|node| node.unwrap_or(STILL));
+    nodes.sort_unstable();
+    nodes
+}
+
+impl ElementVolume {
+    /// Its change along a vector, with the nodes at its corners.
+    #[inline(always)]
+    pub(super) fn along(&self, corners: &[usize; CORNERS], x: &[f32]) -> f64 {
+        let mut sum = 0.0;
+        for (slopes, corner) in self.slopes.iter().zip(corners) {
+            let there = &x[COMPONENTS * corner..][..COMPONENTS];
+            for (slope, x) in slopes.iter().zip(there) {
+                sum += slope * f64::from(*x);
+            }
+        }
+        sum
+    }
+}
+
+/// A block of the matrix, by column.
+pub(super) type Block = [f32; COMPONENTS * COMPONENTS];
+
+/// Values at the nodes: as a rule those of the components in single precision.
+#[derive(Clone, Debug)]
+pub(super) struct Field<T = [f32; COMPONENTS]> {
+    pub(super) values: Vec<T>,
+    pub(super) margin: usize,
+}
+
+impl<T: Copy + Default> Field<T> {
+    /// Zero at all nodes of a grid.
+    pub(super) fn new([n_x, n_y, n_z]: [usize; 3]) -> Self {
+        let margin = n_x * n_y + n_x + 1;
+        Self {
+            values: vec![T::default(); n_x * n_y * n_z + 2 * margin],
+            margin,
+        }
+    }
+
+    /// Zero at so many nodes of a mesh, whose neighbours all have a place.
+    pub(super) fn of_mesh(count: usize) -> Self {
+        Self {
+            values: vec![T::default(); count],
+            margin: 0,
+        }
+    }
+
+    /// The nodes without the margins.
+    pub(super) fn nodes(&self) -> &[T] {
+        &self.values[self.margin..self.values.len() - self.margin]
+    }
+
+    /// The nodes without the margins.
+    pub(super) fn nodes_mut(&mut self) -> &mut [T] {
+        let end = self.values.len() - self.margin;
+        &mut self.values[self.margin..end]
+    }
+}
+
+/// Adds a block times a vector.
+#[inline(always)]
+pub(super) fn add(sum: &mut [f32; COMPONENTS], block: &Block, x: &[f32; COMPONENTS]) {
+    for (column, x) in block.chunks_exact(COMPONENTS).zip(x) {
+        for (sum, entry) in sum.iter_mut().zip(column) {
+            *sum += entry * x;
+        }
+    }
+}
+
+/// The inverse of a block on the diagonal, in which rows and columns of given values are zero; `None` where it is singular.
+pub(super) fn inverse_of(block: &Block) -> Option<Block> {
+    let mut own = Matrix4::from_fn(|row, col| f64::from(block[COMPONENTS * col + row]));
+    // Of given values the whole row is zero.
+    let given = [0, 1, 2, 3].map(|component| own[(component, component)] == 0.0);
+    for component in (0..COMPONENTS).filter(|&c| given[c]) {
+        own[(component, component)] = 1.0;
+    }
+    let mut found = own.try_inverse()?;
+    for component in (0..COMPONENTS).filter(|&c| given[c]) {
+        found[(component, component)] = 0.0;
+    }
+    let mut inverse = Block::default();
+    for (entry, value) in inverse.iter_mut().zip(found.iter()) {
+        *entry = *value as f32;
+    }
+    let is_finite = inverse.iter().all(|entry| entry.is_finite());
+    is_finite.then_some(inverse)
+}
+
+/// Adds the transpose of a block times a vector.
+#[inline(always)]
+pub(super) fn add_transposed(sum: &mut [f32; COMPONENTS], block: &Block, x: &[f32; COMPONENTS]) {
+    for (column, sum) in block.chunks_exact(COMPONENTS).zip(sum) {
+        for (x, entry) in x.iter().zip(column) {
+            *sum += entry * x;
+        }
+    }
+}
+
+/// Adds the product of two blocks.
+#[inline(always)]
+pub(super) fn add_product(sum: &mut Block, a: &Block, b: &Block) {
+    for column in 0..COMPONENTS {
+        for middle in 0..COMPONENTS {
+            let factor = b[COMPONENTS * column + middle];
+            for row in 0..COMPONENTS {
+                sum[COMPONENTS * column + row] += a[COMPONENTS * middle + row] * factor;
+            }
+        }
+    }
+}
+
+/// Adds the product of the transpose of a block and another one.
+#[inline(always)]
+pub(super) fn add_transposed_product(sum: &mut Block, a: &Block, b: &Block) {
+    let mut turned = Block::default();
+    for column in 0..COMPONENTS {
+        for row in 0..COMPONENTS {
+            turned[COMPONENTS * column + row] = a[COMPONENTS * row + column];
+        }
+    }
+    add_product(sum, &turned, b);
+}
+
+/// A level with its matrix in single precision, and the transfer to the next coarser one.
+pub(super) trait GridLevel {
+    /// Inverts the diagonal blocks; returns the node whose block is singular, if there is one.
+    fn invert(&mut self) -> Result<(), usize>;
+
+    /// Makes the matrix of the next coarser level.
+    fn coarsen(&mut self, coarse: &mut Self);
+
+    /// A forward sweep from zero, then what it leaves of the right-hand side.
+    fn sweep_down(&mut self);
+
+    /// Makes what is left the right-hand side of the next coarser level.
+    fn restrict(&self, coarse: &mut Self);
+
+    /// Adds the solution of the next coarser level.
+    fn correct(&mut self, coarse: &Self);
+
+    /// A backward sweep.
+    fn sweep_up(&mut self);
+
+    /// For each node, a bit for each component without a given value.
+    fn free(&self) -> &[u8];
+
+    /// The right-hand side, as the coarsest level is solved for it.
+    fn condensed_rhs(&mut self) -> &[[f32; COMPONENTS]];
+
+    /// Takes the solution of the coarsest level.
+    fn take_solution(&mut self, x: impl Iterator<Item = [f32; COMPONENTS]>);
+
+    /// Calls `visit` with row, column and value of each entry of the matrix, in a fixed order.
+    fn visit(&self, visit: &mut dyn FnMut(usize, usize, f64));
+
+    /// Bytes of its matrix and what belongs to it.
+    fn bytes(&self) -> usize;
 }

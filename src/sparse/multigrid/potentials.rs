@@ -3,10 +3,10 @@
 use crate::math::{IsOver, Stopped};
 use crate::sparse::Singular;
 use crate::sparse::multigrid::boxes::Parts;
-use crate::sparse::multigrid::field::{Block, Field};
 use crate::sparse::multigrid::hierarchy::Hierarchy;
 use crate::sparse::multigrid::level::Level;
 use crate::sparse::multigrid::mesh_level::MeshLevel;
+use crate::sparse::multigrid::node_grid::{Block, Field};
 use crate::sparse::multigrid::node_grid::{COMPONENTS, ENTRIES, NEIGHBOURS, offsets};
 
 /// Component of the potential.

@@ -14,9 +14,9 @@
 //! Elements count like their first nodes; there is none where a node is a last one along an axis.
 
 use crate::sparse::multigrid::axis::Axis;
-use crate::sparse::multigrid::element_volume::{CORNERS, corners, neighbour_of};
-use crate::sparse::multigrid::field::{Block, Field};
+use crate::sparse::multigrid::node_grid::{Block, Field};
 use crate::sparse::multigrid::node_grid::{COMPONENTS, NEIGHBOURS, OWN, indices, node_at};
+use crate::sparse::multigrid::node_grid::{CORNERS, corners, neighbour_of};
 use crate::sparse::multigrid::pressure_correction::{Lists, Schur, correct};
 
 /// Rows of neighbours, three in each.
@@ -284,7 +284,7 @@ impl Pressures {
         forces.values.fill([0.0; COMPONENTS]);
         Self::subtract((&self.slopes, &self.corners), &self.correction, forces);
         for ((x, force), block) in x.nodes_mut().iter_mut().zip(forces.nodes()).zip(blocks) {
-            super::field::add(x, block, force);
+            super::node_grid::add(x, block, force);
         }
     }
 

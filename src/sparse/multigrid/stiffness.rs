@@ -5,9 +5,9 @@
 use crate::math::{IsOver, Random, Stopped, join};
 use crate::sparse::Singular;
 use crate::sparse::multigrid::boxes::Parts;
-use crate::sparse::multigrid::field::Field;
 use crate::sparse::multigrid::krylov::Krylov;
 use crate::sparse::multigrid::lobpcg::{AtNode, COUNT, Pairs, SymmetricMatrix, lowest};
+use crate::sparse::multigrid::node_grid::Field;
 use crate::sparse::multigrid::node_grid::{COMPONENTS, ENTRIES, NEIGHBOURS, NodeBlock, offsets};
 use crate::sparse::multigrid::potentials::{POTENTIAL, Potentials};
 

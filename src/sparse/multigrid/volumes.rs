@@ -3,12 +3,10 @@
 //! With the derivatives b of a volume and the factor k of b bᵀ in the matrix, a pressure p stands for k b·u: rows of displacements have
 //! b (p − k b·u) in addition, and p has the row b·u − p/k. Vectors hold the pressures behind the components of all nodes.
 
-use crate::sparse::multigrid::element_volume::{
-    CORNERS, ElementVolume, VolumePlaces, neighbour_of,
-};
 use crate::sparse::multigrid::level::Level;
 use crate::sparse::multigrid::mesh_level::MeshLevel;
 use crate::sparse::multigrid::node_grid::{COMPONENTS, ENTRIES, NEIGHBOURS, NodeBlock};
+use crate::sparse::multigrid::node_grid::{CORNERS, ElementVolume, VolumePlaces, neighbour_of};
 use std::ops::Range;
 
 /// The power of two, which rounds nothing, that makes a mean of squares one.

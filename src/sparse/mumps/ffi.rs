@@ -6,13 +6,12 @@
 
 #![expect(unsafe_code, reason = "C interface of MUMPS")]
 
-use std::ffi::{CStr, c_char, c_int};
-use std::fmt;
-use std::ptr::{self, NonNull};
-use std::slice;
-
 use crate::sparse::Symmetry;
-use crate::sparse::mumps::lock::exclusive;
+use crate::sparse::mumps::libraries::use_one_thread;
+use parking_lot::{ReentrantMutex, ReentrantMutexGuard};
+use std::ffi::{CStr, c_char, c_int};
+use std::ptr::NonNull;
+use std::{fmt, ptr, slice};
 
 /// `DMUMPS_STRUC_C`, which `instance.c` looks into.
 #[repr(C)]
@@ -201,4 +200,29 @@ impl fmt::Debug for Instance {
             .field("nnz", &self.rows.len())
             .finish_non_exhaustive()
     }
+}
+
+static LOCK: ReentrantMutex<()> = ReentrantMutex::new(());
+
+/// While it exists, no other thread calls MUMPS or Ipopt.
+pub(crate) struct Exclusive {
+    _guard: ReentrantMutexGuard<'static, ()>,
+}
+
+impl fmt::Debug for Exclusive {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.write_str("Exclusive")
+    }
+}
+
+/// Waits until no other thread is in MUMPS or Ipopt.
+///
+/// One thread may ask twice: what Ipopt calls back may use MUMPS, since Ipopt itself is not in MUMPS then. But such a callback
+/// must not wait for another thread that does.
+pub(crate) fn exclusive() -> Exclusive {
+    let guard = LOCK.lock();
+    use_one_thread();
+    #[cfg(mpi)]
+    crate::sparse::mumps::mpi::start();
+    Exclusive { _guard: guard }
 }

@@ -5,16 +5,15 @@
 
 mod ffi;
 mod libraries;
-mod lock;
 #[cfg(mpi)]
 mod mpi;
 
 use crate::sparse::pattern::Pattern;
 use crate::sparse::{Factorisation, Singular, Symmetry};
 
+pub(crate) use ffi::{Exclusive, exclusive};
 use ffi::{Instance, Job};
 pub(crate) use libraries::has_room;
-pub(crate) use lock::{Exclusive, exclusive};
 #[cfg(mpi)]
 pub(crate) use mpi::has_threads;
 

@@ -17,9 +17,8 @@
 //! rest is one substitution. If the matrix has not as many negative eigenvalues as there are equations, the curvature of the equations is left out,
 //! and that once: the work is bounded.
 
-use crate::kkt::{Plan, Solver};
+use crate::kkt::{Plan, Solver, Unknown};
 use crate::nlp::{Bounds, Entries, Nlp};
-use crate::workflow::receding::matrix::{Matrix, held, kinds};
 
 /// A point starts no nearer to its bounds than this part of their distance, or of one.
 const INSIDE: f64 = 1e-4;
@@ -306,4 +305,78 @@ impl<N: Nlp> Iteration<N> {
         self.program
             .constraint(&self.x[..self.columns], &mut self.g);
     }
+}
+
+/// Rows and columns of the matrix.
+#[derive(Default)]
+pub(super) struct Matrix {
+    pub(super) rows: Vec<u32>,
+    pub(super) cols: Vec<u32>,
+}
+
+impl Matrix {
+    pub(super) fn push(&mut self, row: usize, col: usize) {
+        self.rows.push(row as u32);
+        self.cols.push(col as u32);
+    }
+
+    /// Adds the entries whose row and column are unknowns; returns which they are.
+    pub(super) fn add(
+        &mut self,
+        entries: &Entries,
+        (rows, cols): (&[Option<usize>], &[Option<usize>]),
+    ) -> Vec<usize> {
+        let mut kept = Vec::new();
+        for (entry, (&row, &col)) in entries.rows.iter().zip(&entries.cols).enumerate() {
+            if let (Some(row), Some(col)) = (rows[row as usize], cols[col as usize]) {
+                self.push(row, col);
+                kept.push(entry);
+            }
+        }
+        kept
+    }
+}
+
+/// Entries in the row of an unknown by a held variable; of a symmetric matrix in either triangle.
+pub(super) fn held(
+    entries: &Entries,
+    (rows, cols): (&[Option<usize>], &[Option<usize>]),
+    is_symmetric: bool,
+) -> Vec<(usize, usize, usize)> {
+    let mut out = Vec::new();
+    for (entry, (&row, &col)) in entries.rows.iter().zip(&entries.cols).enumerate() {
+        let (row, col) = (row as usize, col as usize);
+        match (rows[row], cols[col]) {
+            (Some(number), None) => out.push((number, col, entry)),
+            (None, Some(number)) if is_symmetric => out.push((number, row, entry)),
+            _ => {}
+        }
+    }
+    out
+}
+
+/// Kinds of the unknowns along the horizon.
+pub(super) fn kinds(
+    program: &impl Nlp,
+    (unknowns, rows): (&[Option<usize>], &[Option<usize>]),
+    slacks: &[Option<usize>],
+    columns: usize,
+) -> Option<Vec<Unknown>> {
+    let stages = program.stages()?;
+    let mut kinds = Vec::new();
+    for (i, number) in unknowns.iter().enumerate() {
+        if number.is_some() {
+            let stage = stages.get(i).filter(|_| i < columns);
+            kinds.push(stage.map_or(Unknown::Slack, |&stage| stage.into()));
+        }
+    }
+    for (number, slack) in rows.iter().zip(slacks) {
+        if number.is_some() {
+            kinds.push(match slack {
+                Some(_) => Unknown::Inequality,
+                None => Unknown::Equality,
+            });
+        }
+    }
+    Some(kinds)
 }

@@ -12,16 +12,12 @@ mod costs;
 mod horizon;
 mod iteration;
 mod layout;
-mod matrix;
-mod no_horizon;
 mod program;
 mod reference;
-mod shift;
-mod source;
 mod state;
 
 pub use controller::{Answer, RecedingHorizon};
 pub use horizon::Horizon;
+pub use horizon::NoHorizon;
 pub use iteration::Residual;
-pub use no_horizon::NoHorizon;
-pub use source::Source;
+pub use state::Source;

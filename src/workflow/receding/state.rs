@@ -1,7 +1,6 @@
 //! The state from which a plan begins: as it was measured or found by the observer, and predicted over the delay by the inputs that were sent.
 
 use crate::feedback::{Estimate, Law};
-use crate::workflow::receding::source::Source;
 
 /// The state where a plan begins.
 #[derive(Debug)]
@@ -137,6 +136,43 @@ impl<'h> Predicted<'h> {
             let (wanted, [low, high], _) = input.wanted(point.inputs[i], self.correction[i]);
             let kept = wanted.clamp(low, high);
             *to = if input.is_squared { kept.sqrt() } else { kept };
+        }
+    }
+}
+
+/// Origin of the inputs of a step.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Source {
+    /// The plan, with what was measured.
+    Plan,
+    /// The plan as it was: nothing was measured in time.
+    Late,
+    /// The plan as it was: what was measured is no state of the system.
+    Unusable,
+    /// The plan as it was: its iteration failed.
+    Kept,
+    /// The law of the regulator: the plan has failed, and begins anew.
+    Regulator,
+}
+
+impl Source {
+    /// All of them.
+    pub const ALL: [Self; 5] = [
+        Self::Plan,
+        Self::Late,
+        Self::Unusable,
+        Self::Kept,
+        Self::Regulator,
+    ];
+
+    /// Its name in a word.
+    pub fn word(self) -> &'static str {
+        match self {
+            Self::Plan => "plan",
+            Self::Late => "late",
+            Self::Unusable => "unusable",
+            Self::Kept => "kept",
+            Self::Regulator => "regulator",
         }
     }
 }

@@ -2,28 +2,25 @@
 //!
 //! The state of the recursion is that of the discrete equations, coordinates and momenta, with the integrals that are asked for.
 
-mod check;
 mod design;
 mod lasting;
 mod law;
 mod observer;
-mod rates;
 mod regulated;
-mod rest;
 
 use crate::control::problem::{Control, Regulator};
 use crate::dynamics::{DiscreteTrajectory, Linearisation};
 use crate::feedback::{Costs, HeldGain, NotHeld, spectral_radius};
 use crate::ipopt::interrupt;
 use crate::model::Model;
-use crate::workflow::regulator::check::reproduced;
 use crate::workflow::regulator::design::Design;
 use crate::workflow::regulator::lasting::Against;
+use crate::workflow::regulator::observer::reproduced;
 pub(crate) use design::rate_weight;
 pub(crate) use law::remembered;
 use nalgebra::DMatrix;
-pub use rates::WholeCosts;
 pub(crate) use regulated::NOTHING_HOLDS;
+pub use regulated::WholeCosts;
 pub use regulated::{NoRegulator, Regulated, RegulatedStep, RegulatorReport, Reproduced};
 
 /// The regulator of a motion with a momentum at its start, whose goal is held by `rest` voltages, by source, where it is.

@@ -1,22 +1,22 @@
 //! Record of a job until all its ends are collected: its name, and the folder of each of its tasks.
 
-use std::collections::BTreeMap;
-use std::ffi::OsString;
-use std::fs;
-use std::path::{self, Path, PathBuf};
-use std::process;
-use std::time::{SystemTime, UNIX_EPOCH};
-
-use serde::{Deserialize, Serialize};
-use serde_json::Value;
-
-use super::client::{ask, tell};
-use super::task::Task;
+use crate::app::batch::end::{RunEnd, Said, of_status};
 use crate::app::batch::launch::words;
 use crate::app::error::CommandError;
-use crate::app::folder::make_folder;
+use crate::app::foreign::make_folder;
 use crate::app::request::CommandInput;
-use crate::report::atomic::{self, WriteError};
+use crate::report::atomic;
+use crate::report::atomic::WriteError;
+use serde::{Deserialize, Serialize};
+use serde_json::Value;
+use std::collections::BTreeMap;
+use std::ffi::{OsStr, OsString};
+use std::io::ErrorKind;
+use std::os::unix::process::CommandExt;
+use std::path::{Path, PathBuf};
+use std::process::{Command, Output, Stdio};
+use std::time::{SystemTime, UNIX_EPOCH};
+use std::{fs, path, process};
 
 /// Folder within that of the results.
 const FOLDER: &str = "hyperqueue";
@@ -153,4 +153,127 @@ fn line(command: &CommandInput) -> Result<String, CommandError> {
         quoted.push(format!("'{}'", word.replace('\'', r"'\''")));
     }
     Ok(quoted.join(" "))
+}
+
+/// Task as the server reports it.
+#[derive(Debug, Deserialize)]
+pub(super) struct Task {
+    /// Its number in the job.
+    pub(super) id: usize,
+    state: String,
+    /// Reason why it failed.
+    #[serde(default)]
+    error: Option<String>,
+}
+
+impl Task {
+    /// Returns true if it has ended for good.
+    pub(super) fn has_ended(&self) -> bool {
+        !matches!(self.state.as_str(), "waiting" | "running")
+    }
+
+    /// Returns its end, with what it wrote to standard error in the file `standard_error`, and its results in `folder`; none where it was
+    /// cancelled.
+    pub(super) fn end(&self, standard_error: &Path, folder: &Path) -> Option<RunEnd> {
+        let words = fs::read_to_string(standard_error).unwrap_or_default();
+        let said = match (self.state.as_str(), self.exit_status()) {
+            ("finished", _) => Said::Solved,
+            ("failed", Some(status)) => of_status(Some(status), &words),
+            ("failed", None) => Said::Failed(self.error.clone().unwrap_or(words)),
+            _ => return None,
+        };
+        Some(RunEnd {
+            said,
+            seconds: seconds(folder),
+        })
+    }
+
+    /// The exit status that is in the words of the server; none where a signal ended it, or its worker was lost.
+    fn exit_status(&self) -> Option<i32> {
+        let (_, after) = self.error.as_ref()?.split_once("exit code ")?;
+        let end = after.find(|c: char| !c.is_ascii_digit());
+        after[..end.unwrap_or(after.len())].parse().ok()
+    }
+}
+
+/// Wall time in s that a solve wrote into its summary.
+fn seconds(folder: &Path) -> f64 {
+    let text = fs::read_to_string(folder.join("summary.json")).unwrap_or_default();
+    let summary: Value = serde_json::from_str(&text).unwrap_or_default();
+    let total = summary.pointer("/seconds/total");
+    total.and_then(Value::as_f64).unwrap_or(0.0)
+}
+
+/// The command.
+const PROGRAM: &str = "hq";
+
+/// Checks that there is a server that answers.
+///
+/// # Errors
+/// There is none, or the command `hq` is not there.
+pub(in crate::app::batch) fn check() -> Result<(), CommandError> {
+    let refused = |reason: String| CommandError::Option {
+        option: "--engine hyperqueue",
+        reason,
+    };
+    match output(&["job", "list"]) {
+        Ok(output) if output.status.success() => Ok(()),
+        Ok(output) => {
+            let why = message(&output);
+            Err(refused(format!(
+                "no server of HyperQueue answers ({why}); \"hq server start\" starts one, and HQ_SERVER_DIR names its folder"
+            )))
+        }
+        Err(cause) if cause.kind() == ErrorKind::NotFound => Err(refused(format!(
+            "expected the command {PROGRAM:?} of HyperQueue on the PATH, found none"
+        ))),
+        Err(cause) => Err(refused(format!("cannot run {PROGRAM:?}: {cause}"))),
+    }
+}
+
+/// Returns the answer of the server.
+///
+/// # Errors
+/// It does not, or not in JSON.
+pub(super) fn ask(arguments: &[impl AsRef<OsStr>]) -> Result<Value, CommandError> {
+    let output = output(arguments).map_err(|cause| CommandError::Engine(cause.to_string()))?;
+    let answer = serde_json::from_slice(&output.stdout).ok();
+    answer
+        .filter(|_| output.status.success())
+        .ok_or_else(|| CommandError::Engine(message(&output)))
+}
+
+/// Asks for what has no answer.
+///
+/// # Errors
+/// The server refuses it, or there is none any more.
+pub(super) fn tell(arguments: &[impl AsRef<OsStr>]) -> Result<(), CommandError> {
+    let output = output(arguments).map_err(|cause| CommandError::Engine(cause.to_string()))?;
+    match output.status.success() {
+        true => Ok(()),
+        false => Err(CommandError::Engine(message(&output))),
+    }
+}
+
+fn output(arguments: &[impl AsRef<OsStr>]) -> std::io::Result<Output> {
+    Command::new(PROGRAM)
+        .args(["--output-mode", "json"])
+        .args(arguments)
+        .stdin(Stdio::null())
+        // Ctrl-C is for the program that asks.
+        .process_group(0)
+        .output()
+}
+
+/// Returns its message after a failure, without a trace of its calls.
+fn message(output: &Output) -> String {
+    let told = [&output.stdout, &output.stderr].map(|bytes| String::from_utf8_lossy(bytes));
+    let error = told.iter().find_map(|text| {
+        let parsed: Value = serde_json::from_str(text).ok()?;
+        Some(parsed.get("error")?.as_str()?.to_owned())
+    });
+    let text = error.unwrap_or_else(|| told.concat());
+    let text = text.split("Stack backtrace").next().unwrap_or_default();
+    let words: Vec<&str> = text.split_whitespace().collect();
+    words.join(" ")
 }

@@ -6,9 +6,7 @@
 //! ended, waits for what runs, and submits only what is in no job. A task that the server begins once more, after a loss of its journal, finds
 //! its own record and does nothing.
 
-mod client;
 mod job;
-mod task;
 
 use std::collections::BTreeMap;
 use std::ops::ControlFlow;
@@ -16,11 +14,11 @@ use std::thread;
 use std::time::{Duration, Instant};
 
 use super::end::RunEnd;
-use super::plan::Batch;
+use super::launch::Batch;
 use crate::app::error::CommandError;
 use crate::app::request::CommandInput;
-pub(super) use client::check;
 use job::Job;
+pub(super) use job::check;
 
 /// Least time between two questions to the server.
 const PATIENCE: Duration = Duration::from_millis(200);

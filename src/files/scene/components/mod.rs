@@ -1,8 +1,7 @@
 //! Components of a scene with one file for each kind: its type as written, and the conversion to a component.
 
-pub(super) mod component_spec;
 mod load;
-mod spring;
+pub(super) mod spring;
 mod tendon;
 
 pub use load::LoadSpec;

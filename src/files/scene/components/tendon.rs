@@ -2,7 +2,7 @@
 
 use crate::files::json::error::SceneError;
 use crate::files::json::scope::Scope;
-use crate::files::scene::components::component_spec::ComponentSpec;
+use crate::files::scene::components::spring::ComponentSpec;
 use crate::files::scene::names::attachment;
 use crate::files::scene::point::PointSpec;
 use crate::files::units::quantity::{Length, Quantity, Stiffness};
