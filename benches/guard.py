@@ -1,5 +1,5 @@
 #!/usr/bin/env python3
-"""Compares results and times of this program with those of another commit: `make guard AGAINST=v0.1.0`.
+"""Compares results and times of this program with those of another commit: `make guard AGAINST=HEAD~3`.
 
 Every kept problem is run by both programs, built alike on this machine. Tables, solutions and summaries are compared number by number, times left
 out; then the schemas and what Python offers. Twelve problems are timed in turn. The other commit is built in a worktree, target/guard/base.
