@@ -2,12 +2,11 @@
 
 mod common;
 
-use std::env;
 use std::io::{self, BufRead, BufReader};
 use std::ops::ControlFlow;
 use std::process::{Command, Stdio};
-use std::thread;
 use std::time::Duration;
+use std::{env, thread};
 
 use common::programs::{HS071_START, hs071};
 use common::signals::Listening as _;

@@ -20,7 +20,7 @@ pub fn check(request: &CommandInput) -> Result<CommandOutput, CommandError> {
     })
 }
 
-/// The same as numbers; a `text` stands for that of the problem file, which then only names it and the folder that paths are relative to.
+/// Returns the same as numbers. The problem may be given as `text`; the path is then used for messages and relative paths.
 ///
 /// # Errors
 /// As of [`check`].

@@ -11,13 +11,12 @@ use crate::files::npz::NpzWriter;
 use crate::files::problem::output::Output;
 use crate::math::join;
 use crate::model::{Model, System};
-use crate::report::Run;
 use crate::report::atomic::WriteError;
 use crate::report::file_set::FileSet;
 use crate::report::origin::Origin;
 use crate::report::sampled::{Sampled, thinned};
 use crate::report::skins::Skins;
-use crate::report::table;
+use crate::report::{Run, table};
 use crate::workflow::Tracked;
 
 /// The complete tables of a long motion.

@@ -1,8 +1,7 @@
-//! A result that is made once: a folder that holds it already, whole, is left as it is.
+//! Skips a run whose complete result exists.
 
 use crate::app::error::CommandError;
-use crate::app::record::{Ending, FileRecords, Found, OF_RUN};
-use crate::app::record::{digest, digest_of};
+use crate::app::record::{Ending, FileRecords, Found, OF_RUN, digest, digest_of};
 use crate::app::request::{CommandInput, CommandOutput};
 use crate::app::task::{read, run};
 use crate::control::problem::{Control, Guess, Task};

@@ -6,16 +6,14 @@ use std::time::Instant;
 
 use crate::app::equilibrium_summary::at_rest;
 use crate::app::error::CommandError;
-use crate::app::fields;
 use crate::app::foreign::make_folder_of;
 use crate::app::left_out::plan;
 use crate::app::messages::counted;
 use crate::app::no_equilibrium::refused;
-use crate::app::page;
 use crate::app::path_summary::PathSummary;
 use crate::app::request::{CommandInput, CommandOutput};
-use crate::app::summary::Seconds;
-use crate::app::summary::Summary;
+use crate::app::summary::{Seconds, Summary};
+use crate::app::{fields, page};
 use crate::control::problem::AtRest;
 use crate::dynamics::trajectory::{Column, Observations, Trajectory};
 use crate::dynamics::{

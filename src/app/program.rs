@@ -10,9 +10,8 @@ use crate::app::task::read;
 use crate::control::problem::{Control, InCommon, Task};
 use crate::model::System;
 use crate::nlp::Nlp;
-use crate::workflow::prepare_together::Counted;
 use crate::workflow::prepare_together::{
-    MotionAsked, PreparedTogether, prepare_together, program_motions, resolve_each,
+    Counted, MotionAsked, PreparedTogether, prepare_together, program_motions, resolve_each,
 };
 
 /// Checks the text of a problem as if it stood in the file `input`, which need not exist: paths in it are relative to that file. Returns what it asks

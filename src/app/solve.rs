@@ -3,24 +3,17 @@
 use std::path::Path;
 use std::time::Instant;
 
-use crate::app::blocks::BlockSizes;
-use crate::app::blocks::EnergySummary;
+use crate::app::blocks::{BlockSizes, EnergySummary};
 use crate::app::displayed_motion::{DisplayedMotion, Motion};
 use crate::app::error::CommandError;
-use crate::app::feedback_files;
-use crate::app::fields;
-use crate::app::iterates;
 use crate::app::left_out::{leave_out, time_to_write};
-use crate::app::page;
 use crate::app::progress::Reached;
 use crate::app::request::{CommandInput, CommandOutput};
-use crate::app::resume_file;
 use crate::app::sensitivity_summary::SensitivitySummary;
-use crate::app::solution_file;
 use crate::app::solve_page::{convergence, goal, rows, targets, waypoints};
 use crate::app::solve_summary::{command_output, program, seconds};
 use crate::app::summary::{MEASURED, Summary};
-use crate::app::unfinished;
+use crate::app::{feedback_files, fields, iterates, page, resume_file, solution_file, unfinished};
 use crate::control::problem::{Control, Regulator};
 use crate::dynamics::observations;
 use crate::files::Loaded;

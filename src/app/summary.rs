@@ -1,14 +1,12 @@
 //! `summary.json`: the problem, its status, its size and its times.
 
-use crate::app::blocks::BlockSizes;
-use crate::app::blocks::EnergySummary;
+use crate::app::blocks::{BlockSizes, EnergySummary};
 use crate::app::comparison::Comparison;
 use crate::app::displayed_motion::ShownPart;
 use crate::app::equilibrium_summary::Rest;
 use crate::app::error::CommandError;
 use crate::app::identification_summary::Identification;
-use crate::app::linear_systems::LinearSystems;
-use crate::app::linear_systems::MultigridCounts;
+use crate::app::linear_systems::{LinearSystems, MultigridCounts};
 use crate::app::path_summary::PathSummary;
 use crate::app::request::CommandInput;
 use crate::app::sensitivity_summary::SensitivitySummary;

@@ -3,22 +3,17 @@
 use std::path::Path;
 use std::time::Instant;
 
-use crate::app::equilibrium;
 use crate::app::error::CommandError;
 use crate::app::foreign::refuse_foreign;
-use crate::app::identification;
-use crate::app::motions;
-use crate::app::no_equilibrium;
 use crate::app::no_equilibrium::refuse_all_but_motions;
 use crate::app::page::asked;
 use crate::app::progress::{Progress, Reached};
 use crate::app::request::{CommandInput, CommandOutput};
-use crate::app::resume_file;
-use crate::app::simulation;
-use crate::app::solve;
-use crate::control::Earlier;
-use crate::control::Motions;
+use crate::app::{
+    equilibrium, identification, motions, no_equilibrium, resume_file, simulation, solve,
+};
 use crate::control::problem::{BoundaryState, Guess, Task};
+use crate::control::{Earlier, Motions};
 use crate::files::solution::SolutionFile;
 use crate::files::{Loaded, read_problem, read_problem_text};
 use crate::workflow::accuracy::AccuracyTarget;
@@ -41,9 +36,8 @@ pub fn simulate(request: &CommandInput) -> Result<CommandOutput, CommandError> {
     run_checked(request, None, &mut |_| {}, refuse_all_but_motions)
 }
 
-/// The same; a `text` stands for that of the problem file, which then only names it and the folder that paths are relative to. `observer`
-/// hears of every iteration of a solve and every step of a simulation; who wants to end it makes a
-/// [request](crate::ipopt::interrupt::StopRequest).
+/// Like [`run`], with the problem given as `text`; the path is then used for messages and relative paths. `observer` receives every iteration of a
+/// solve and every step of a simulation. To stop it, use a [request](crate::ipopt::interrupt::StopRequest).
 ///
 /// # Errors
 /// As of [`run`].

@@ -9,8 +9,7 @@
 //! D₂L_d(q_{N−1}, q_N) + D₁L_d(q_N, q_N; u) = 0,     D₂L_d(q_N, q_N; u) = 0.
 //! ```
 
-use crate::control::boundary_conditions::rest_at;
-use crate::control::boundary_conditions::{BoundaryConditions, Rests, TerminalState};
+use crate::control::boundary_conditions::{BoundaryConditions, Rests, TerminalState, rest_at};
 use crate::control::bounded_quantity::{BoundedQuantity, When};
 use crate::control::energy_cost::{EnergyCost, resisted, sources};
 use crate::control::error::BoundaryError;

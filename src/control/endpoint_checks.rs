@@ -3,8 +3,7 @@
 use crate::control::boundary_conditions::BoundaryConditions;
 use crate::control::bounded_quantity::{BoundedQuantity, When};
 use crate::control::error::BoundaryError;
-use crate::control::goal::Place;
-use crate::control::goal::instant_at;
+use crate::control::goal::{Place, instant_at};
 use crate::control::limits::{Limits, largest};
 use crate::control::problem::{BoundaryState, Control, PathConstraint};
 use crate::control::transcription::Site;
@@ -96,7 +95,7 @@ pub(super) fn check(
     Ok(())
 }
 
-/// Returns true of quantities that are rates, or counted from the interval before.
+/// True for rates and for differences between neighbouring intervals.
 fn is_of_rate(bounded: &BoundedQuantity) -> bool {
     let quantity = &bounded.quantity;
     let is_mean = matches!(

@@ -6,8 +6,7 @@ use crate::control::goal::{Orientation, Place, Product};
 use crate::control::limits::Limits;
 use crate::control::transcription::Site;
 use crate::functional::Sample;
-use crate::math::Random;
-use crate::math::Vector;
+use crate::math::{Random, Vector};
 use crate::model::{Coordinates, Model, Quantity, System};
 use std::collections::BTreeMap;
 

@@ -197,7 +197,7 @@ impl Limits {
         self.add(quantity, [lower, square(max)], name);
     }
 
-    /// Adds a limit that holds at a part of the duration alone; of a field at the instant, under the voltages of the interval before.
+    /// Adds a limit at one time t/T. A field limit uses the voltage of the preceding interval.
     fn add_once(&mut self, limit: &PathConstraint, part: f64, system: &System, length: Length) {
         let mut own = Self::default();
         own.add_limit(limit, (system, true, length));

@@ -4,8 +4,7 @@
 //! of a parameter tell its slope, a third one that it is a straight line, and one with all parameters changed that it is linear in them
 //! together.
 
-use crate::control::boundary_conditions::MomentumSlopes;
-use crate::control::boundary_conditions::with_values;
+use crate::control::boundary_conditions::{MomentumSlopes, with_values};
 use crate::control::given_state::resolve_start;
 use crate::control::problem::BoundaryState;
 use crate::dynamics::Start;

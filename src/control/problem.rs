@@ -285,7 +285,7 @@ impl Motions {
         out
     }
 
-    /// The first motion whose instants are not those of the first one, or not given: no input can be the same in both.
+    /// The first motion whose time grid differs from that of motion 0 or is free; inputs cannot be shared with it.
     pub fn other_grid(&self) -> Option<&Motion> {
         let grid = |motion: &Motion| match motion.control.duration {
             Duration::Given(duration) => {

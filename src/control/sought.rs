@@ -1,7 +1,6 @@
 //! Sought parameters where they may not act, and states of rest that depend on one.
 
-use crate::control::boundary_conditions::rest_with;
-use crate::control::boundary_conditions::{BoundaryConditions, MomentumSlopes, Rests};
+use crate::control::boundary_conditions::{BoundaryConditions, MomentumSlopes, Rests, rest_with};
 use crate::control::bounded_quantity::{BoundedQuantity, When};
 use crate::control::error::BoundaryError;
 use crate::control::limits::Limits;

@@ -7,8 +7,7 @@
 
 use crate::dynamics::interval_energies::Work;
 use crate::dynamics::solving::Inputs;
-use crate::dynamics::step_state::StepState;
-use crate::dynamics::step_state::StepperReport;
+use crate::dynamics::step_state::{StepState, StepperReport};
 use crate::model::Model;
 
 /// N + 1 instants and N intervals.

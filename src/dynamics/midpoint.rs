@@ -11,11 +11,9 @@
 use crate::coordinates::{Configuration as Place, Interval, Scratch};
 use crate::dynamics::grid_tangent::GridTangent;
 use crate::dynamics::resolution::{Balance, typical_energy};
-use crate::dynamics::solving::Drive;
-use crate::dynamics::solving::{MultigridUse, Newton, Solving};
+use crate::dynamics::solving::{Drive, MultigridUse, Newton, Solving};
 use crate::dynamics::step_matrix::StepMatrix;
-use crate::dynamics::stepper::Equations;
-use crate::dynamics::stepper::Steps;
+use crate::dynamics::stepper::{Equations, Steps};
 use crate::dynamics::tangent::{EntryList, Tangent};
 use crate::functional::{BlockMask, NodeBlocks, Order};
 use crate::math::Vector;

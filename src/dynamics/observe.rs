@@ -10,12 +10,10 @@
 //! are equal; otherwise the impulses of its reactions over half a step to either side lie between them, and the mean has neither.
 
 use crate::coordinates::{Configuration, Interval, Scratch};
-use crate::dynamics::discrete_trajectory::{DiscreteTrajectory, Reading};
-use crate::dynamics::discrete_trajectory::{Side, sides};
+use crate::dynamics::discrete_trajectory::{DiscreteTrajectory, Reading, Side, sides};
 use crate::dynamics::interval_energies::{Work, energies};
 use crate::dynamics::momenta::{Places, momentum_maps, moving, vector_momenta};
-use crate::dynamics::part_columns::AtInstant;
-use crate::dynamics::part_columns::PartColumns;
+use crate::dynamics::part_columns::{AtInstant, PartColumns};
 use crate::dynamics::reactions::reactions;
 use crate::dynamics::trajectory::{Column, Observations, Trajectory};
 use crate::functional::{Order, TermKind};

@@ -1,10 +1,8 @@
 //! Conversion between a stepper and the state from which it is resumed.
 
 use crate::dynamics::solving::Newton;
-use crate::dynamics::step_state::StepState;
-use crate::dynamics::step_state::StepperReport;
-use crate::dynamics::stepper::Equations;
-use crate::dynamics::stepper::Steps;
+use crate::dynamics::step_state::{StepState, StepperReport};
+use crate::dynamics::stepper::{Equations, Steps};
 
 impl<E: Equations> Steps<E> {
     /// Writes the state at the end of a step.

@@ -3,8 +3,7 @@
 use crate::dynamics::discrete_trajectory::{DiscreteTrajectory, Reading};
 use crate::dynamics::momenta::Start;
 use crate::dynamics::solving::{Drive, Integrator, Solving};
-use crate::dynamics::stepper::Equations;
-use crate::dynamics::stepper::Steps;
+use crate::dynamics::stepper::{Equations, Steps};
 use crate::dynamics::{StepError, Stepper};
 use crate::model::{Model, OPEN};
 use std::ops::ControlFlow;

@@ -2,8 +2,7 @@
 
 use crate::dynamics::error::StepError;
 use crate::dynamics::step_matrix::StepMatrix;
-use crate::dynamics::stepper::Equations;
-use crate::dynamics::stepper::Steps;
+use crate::dynamics::stepper::{Equations, Steps};
 use crate::functional::Order;
 use crate::ipopt::Status;
 use crate::ipopt::interrupt::{self, TimeLimit};

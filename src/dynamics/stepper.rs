@@ -147,10 +147,10 @@ impl<E: Equations> Steps<E> {
                     multipliers.get_or_insert_with(|| self.equations.multipliers().to_vec());
                 }
                 Err(stopped @ StepError::Stopped { .. }) => return Err(stopped),
-                // What an old tangent could not do, a new one may.
+                // Retry with a fresh tangent.
                 Err(_) if std::mem::take(&mut self.stale) => self.factored = None,
                 Err(ref error) if self.make_exact_after(error) => self.factored = None,
-                // Each factor has shown what it loses, so that precision comes last.
+                // Switch to double precision last: errors of single precision were already checked for each factorisation.
                 Err(_) if halvings == HALVINGS && self.updates.make_double() => {
                     self.factored = None;
                     (part, halvings) = (h - done, 0);
@@ -417,7 +417,7 @@ pub trait Equations {
         0.0
     }
 
-    /// Hands over all numbers from which the next steps follow, list by list, always in the same order; what `visit` writes is then the state.
+    /// Visits (and may overwrite) the complete state, list by list in a fixed order, for checkpoints.
     fn visit_state(&mut self, visit: &mut dyn FnMut(&'static str, &mut [f64]));
 
     /// Updates the equations after a change of the state.

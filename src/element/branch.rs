@@ -16,10 +16,8 @@
 //! ```
 
 use super::branch_local::{COORDINATES, Output};
-use super::geometry::ElementGeometry;
-use super::geometry::{Kinematics, load};
-use super::number::Points;
-use super::number::{Nine, Three, apply, apply_plain, dot, scale, sums, transpose};
+use super::geometry::{ElementGeometry, Kinematics, load};
+use super::number::{Nine, Points, Three, apply, apply_plain, dot, scale, sums, transpose};
 
 /// Quantities at the Gauss points that energy, gradient and tangent share.
 #[expect(non_snake_case, reason = "notation of the law")]

@@ -11,8 +11,7 @@
 //!                      − 8/3 (r_i⊗g_j + g_i⊗r_j) + I₂ (16/9 g_i⊗g_j + 4/3 g_j⊗g_i) }.
 //! ```
 
-use super::number::{Nine, Three, apply, contracted, dot, product, scale, transpose};
-use super::number::{Points, Real};
+use super::number::{Nine, Points, Real, Three, apply, contracted, dot, product, scale, transpose};
 use crate::energy::{ElasticLaw, NeoHooke};
 use std::fmt::Debug;
 

@@ -3,8 +3,7 @@
 use super::geometry::ElementGeometry;
 use super::isochoric::IsochoricLaw;
 use super::law::{Dielectric, Volume};
-use super::number::Points;
-use super::number::Three;
+use super::number::{Points, Three};
 
 /// A law and the state at which it is evaluated.
 pub(super) struct ElementState<'a, N: Points, const NODES: usize> {

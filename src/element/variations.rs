@@ -25,9 +25,8 @@ use crate::element::isochoric::Isochoric;
 use crate::element::law::{Dielectric, Volume};
 use crate::element::local::Output;
 use crate::element::number::{
-    Nine, Three, apply, apply_plain, cross, dot, dot_plain, scale, sums, transpose,
+    Nine, Points, Real, Three, apply, apply_plain, cross, dot, dot_plain, scale, sums, transpose,
 };
-use crate::element::number::{Points, Real};
 use crate::element::state::{ElectricField, ElementState};
 
 /// Quantities at the Gauss points that energy, gradient and tangent share.

@@ -18,14 +18,12 @@
 //! ```
 
 use crate::element::dispatch::{Task, dispatch};
-use crate::element::geometry::ElementGeometry;
-use crate::element::geometry::{Kinematics, gradient_of, load};
+use crate::element::geometry::{ElementGeometry, Kinematics, gradient_of, load};
 use crate::element::lanes::Lanes;
 use crate::element::number::{
-    Nine, Three, apply, apply_plain, contracted, dot, product, scale, scale_all, sums, symmetric,
-    transpose,
+    Nine, Points, Real, Three, apply, apply_plain, contracted, dot, product, scale, scale_all,
+    sums, symmetric, transpose,
 };
-use crate::element::number::{Points, Real};
 use crate::math::{Matrix, Vector};
 use pulp::Simd;
 

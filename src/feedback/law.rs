@@ -3,8 +3,7 @@
 //! `u = u₀ − K (x − x₀)` with the inputs u₀ and the state x₀ of the motion: coordinates, their rates, and time integrals of deviations.
 //! An input that acts by its square is u = V². Gains hold over an interval of the motion, or for the time after its end.
 
-use crate::feedback::observer::Forced;
-use crate::feedback::observer::Observer;
+use crate::feedback::observer::{Forced, Observer};
 use nalgebra::DMatrix;
 
 /// A quantity that is measured: a coordinate or the rate of one.

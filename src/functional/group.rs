@@ -56,7 +56,7 @@ impl<K: Kernel> Group<K> {
         }
     }
 
-    /// Hands over the couplings of the elements.
+    /// Visits the couplings of the elements.
     pub(super) fn hand_over(&self, to: &mut dyn FnMut(Option<Coupling>)) {
         // Multipliers do not meet in second derivatives.
         let has_scalars = self.site == Site::Intervals;

@@ -36,7 +36,7 @@ pub trait Kernel: Debug + Send + Sync + 'static {
     /// One element.
     type Element: Clone + Send + Sync;
 
-    /// Storage in which [`prepare`](Self::prepare) keeps data of one element; `()` where nothing is worth it.
+    /// Storage in which [`prepare`](Self::prepare) keeps data of one element; `()` if nothing is cached.
     type Storage: Debug + Default + Send + Sync;
 
     /// Polynomial degree of E: derivatives above it vanish and are never asked for.

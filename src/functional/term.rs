@@ -106,7 +106,7 @@ pub trait Term: Debug + Send + Sync {
     /// Returns the number of elements.
     fn elements(&self) -> usize;
 
-    /// Hands over the couplings of the elements in the order in which their slots are read; nothing for arguments that do not couple.
+    /// Visits the coupled argument pairs of all elements, in the order in which `evaluate` reads their slots; `None` for uncoupled pairs.
     fn couple(&self, to: &mut dyn FnMut(Option<Coupling>));
 
     /// The elements that read one of some vectors as a term; none where there are no such elements.

@@ -4,8 +4,7 @@ use crate::control::problem::{BoundaryState, Identification, Recording, Regime};
 use crate::identify::error::IdentifyError;
 use crate::identify::experiments::{Experiment, check_deviations};
 use crate::identify::fit::{Fit, fit};
-use crate::identify::held_out::{HeldOut, LEVEL};
-use crate::identify::held_out::{Whiteness, ljung_box};
+use crate::identify::held_out::{HeldOut, LEVEL, Whiteness, ljung_box};
 use crate::identify::information::Information;
 use crate::identify::likelihood::Rises;
 use crate::identify::prediction::{Grid, count_of_start};
@@ -25,7 +24,7 @@ pub const NONE: f64 = 1e-8;
 const RANK: f64 = 1e-8;
 /// Relative change of a start below which it is the same.
 const SAME: f64 = 1e-9;
-/// Halvings that the grid lacks on which the ends of intervals are predicted: it is cheaper, and differences of predictions are alike.
+/// Confidence limits are checked on a grid coarser by this many halvings.
 const COARSER: usize = 2;
 /// Most halvings of the steps, and most intervals of a recording.
 const HALVINGS: usize = 10;

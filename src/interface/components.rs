@@ -2,12 +2,11 @@
 
 use crate::interface::handle::{Carrier, Handle, Part, named};
 use crate::interface::parts::attachment;
-use crate::model::Component;
-use crate::model::System;
 use crate::model::components::{
     BlockLoad, Components, Faces, Kind, Load, LoadPlace, Other, Spring,
 };
 use crate::model::system::{Body, Joint, Muscle, Solid};
+use crate::model::{Component, System};
 use nalgebra::Vector3;
 use std::sync::Arc;
 

@@ -3,8 +3,7 @@
 use crate::control::problem::AtRest;
 use crate::dynamics::EnergyExchange;
 use crate::interface::error::{Error, Result, require, source};
-use crate::interface::handle::Handle;
-use crate::interface::handle::Input;
+use crate::interface::handle::{Handle, Input};
 use crate::interface::motion::Motion;
 use crate::model::components::Load;
 use crate::model::{NO_BRANCHES, Response, System};

@@ -5,8 +5,7 @@ use crate::control::problem::{
 };
 use crate::identify::{Identified, identify};
 use crate::interface::error::{Result, require, source};
-use crate::interface::handle::Handle;
-use crate::interface::handle::Input;
+use crate::interface::handle::{Handle, Input};
 use crate::interface::state::State;
 use crate::math::{Signal, Vector, in_order};
 use crate::model::components::{Load, Spring, Tendon};

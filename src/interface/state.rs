@@ -2,8 +2,7 @@
 
 use crate::control::problem::{BoundaryState, Orientation, Place, Rest};
 use crate::interface::error::{Result, require, source};
-use crate::interface::handle::Handle;
-use crate::interface::handle::Input;
+use crate::interface::handle::{Handle, Input};
 use crate::model::System;
 use crate::model::system::{Body, Joint, Marker};
 use nalgebra::Vector3;

@@ -5,8 +5,7 @@ use std::ops::ControlFlow;
 use std::time::Instant;
 
 use crate::ipopt::interrupt::{self, Watch};
-use crate::ipopt::iterate::Record;
-use crate::ipopt::iterate::{Before, Reached};
+use crate::ipopt::iterate::{Before, Reached, Record};
 use crate::ipopt::session;
 use crate::ipopt::solution::Iteration;
 use crate::ipopt::squares::Squares;

@@ -8,10 +8,9 @@
 #![expect(unsafe_code, reason = "C interface of Ipopt")]
 
 use std::ffi::{CStr, c_int, c_uint, c_void};
-use std::mem;
 use std::ptr::NonNull;
-use std::slice;
 use std::sync::OnceLock;
+use std::{mem, slice};
 
 use crate::ipopt::ffi;
 use crate::ipopt::loaded::Loaded;

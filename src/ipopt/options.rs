@@ -1,8 +1,7 @@
 //! Options of a solve: tolerance, limits, kind of start, and any option of Ipopt by name.
 
 use crate::ipopt::ma57_adapter;
-use crate::ipopt::option_value::NoStages;
-use crate::ipopt::option_value::OptionValue;
+use crate::ipopt::option_value::{NoStages, OptionValue};
 use std::collections::BTreeMap;
 
 /// Ordering of the linear solver's elimination unless `mumps_pivot_order` says otherwise: approximate minimum fill.

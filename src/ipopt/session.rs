@@ -10,8 +10,7 @@ use std::panic::{AssertUnwindSafe, catch_unwind};
 use std::time::Instant;
 
 use crate::ipopt::interrupt::{self, TimeLimit};
-use crate::ipopt::status::StagesReport;
-use crate::ipopt::status::Status;
+use crate::ipopt::status::{StagesReport, Status};
 use crate::kkt::{Inertia, Plan, Solver, Stopped, Unknown};
 use crate::nlp::{Bounds, Stage};
 

@@ -2,8 +2,7 @@
 
 use std::ops::AddAssign;
 
-use crate::ipopt::status::LinearReport;
-use crate::ipopt::status::Status;
+use crate::ipopt::status::{LinearReport, Status};
 
 /// Multipliers of constraints and bounds, in the sign convention of Ipopt:
 /// ∇f(x) + Σ yᵢ ∇gᵢ(x) − z_L + z_U = 0 with z_L, z_U ≥ 0.

@@ -7,10 +7,8 @@
 
 use crate::ipopt::evaluation::{Asked, Evaluator, Structures};
 use crate::ipopt::ffi::Problem;
-use crate::ipopt::iterate::Reached;
-use crate::ipopt::iterate::Record;
-use crate::ipopt::option_value::NoStages;
-use crate::ipopt::option_value::OptionValue;
+use crate::ipopt::iterate::{Reached, Record};
+use crate::ipopt::option_value::{NoStages, OptionValue};
 use crate::ipopt::options::{Options, Start};
 use crate::ipopt::session::Session;
 use crate::ipopt::solution::{Iteration, SolverResult, StartingPoint};

@@ -151,7 +151,7 @@ impl<N: Nlp> InSquares<N> {
         }
     }
 
-    /// Takes over the bounds of the program. That at zero is at what Ipopt relaxes it by, to zero.
+    /// Copies the bounds of the program. A lower bound of zero is raised by Ipopt's relaxation, so that the relaxed bound is zero.
     pub(super) fn take_bounds(&mut self, relaxed: f64) {
         let (given, Bounds { lower, upper }) = (self.program.variables(), &mut self.bounds);
         lower.clone_from(&given.lower);

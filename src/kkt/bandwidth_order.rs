@@ -4,8 +4,7 @@
 //! unknowns in the order in which they appear in them.
 
 use super::eliminable_groups::Group;
-use super::graph::Graph;
-use super::graph::Progress;
+use super::graph::{Graph, Progress};
 use crate::math::Stopped;
 
 const NONE: u32 = u32::MAX;

@@ -2,8 +2,7 @@
 
 use std::ops::Range;
 
-use super::graph::Graph;
-use super::graph::Progress;
+use super::graph::{Graph, Progress};
 use super::order::{self, Unknown};
 use super::tree::{self, Node};
 use crate::math::Stopped;

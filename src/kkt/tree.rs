@@ -3,8 +3,7 @@
 //! The elimination tree of Liu (1990) is walked from its leaves. Each column gathers the rows of its children; a child joins the node
 //! of its parent where that stores no further zeros, or few of them (amalgamation of Duff and Reid, 1983).
 
-use super::graph::Graph;
-use super::graph::Progress;
+use super::graph::{Graph, Progress};
 use super::order::Elimination;
 use crate::math::Stopped;
 

@@ -9,8 +9,7 @@ use crate::model::solid_block::SolidBlock;
 use crate::model::solids::Solids;
 use crate::model::sought::Read;
 use crate::model::sought_elements::ElementOf;
-use crate::model::terms::Terms;
-use crate::model::terms::{Member, OfKind};
+use crate::model::terms::{Member, OfKind, Terms};
 
 const INERTIA: &str = "block inertia";
 /// Elasticity and electroelasticity.

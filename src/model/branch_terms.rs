@@ -13,8 +13,7 @@ use crate::model::maxwell::{MaxwellBranch, Response};
 use crate::model::model::Model;
 use crate::model::solid_block::SolidBlock;
 use crate::model::solids::Solids;
-use crate::model::terms::Formula;
-use crate::model::terms::{Terms, UNRELAXED, mid, rate};
+use crate::model::terms::{Formula, Terms, UNRELAXED, mid, rate};
 use std::sync::Arc;
 
 const MAXWELL: [&str; 2] = ["block maxwell elasticity", "block maxwell viscosity"];

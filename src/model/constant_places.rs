@@ -95,7 +95,7 @@ fn circuit(system: &mut System, source: usize) -> Option<&mut Circuit> {
 }
 
 impl Constant {
-    /// Its place in the system; none of a constant that a part lacks, or that is no number of its own.
+    /// Its place in the system; `None` if the part does not define the constant.
     fn place(self, system: &mut System) -> Option<&mut f64> {
         match self {
             Self::Material(of, constant) => return constant.place(of.material(system)?),
@@ -150,7 +150,7 @@ impl Constant {
         }
     }
 
-    /// Its value in a system; none of a constant that a part lacks.
+    /// Its value in a system; `None` if the part does not define the constant.
     pub fn value(self, system: &mut System) -> Option<f64> {
         self.place(system).map(|place| *place)
     }

@@ -31,7 +31,7 @@ pub(super) struct Internal {
 pub(super) enum InternalKind {
     /// The coordinate of a joint of the presolved system.
     Joint(usize),
-    /// The logarithm of the viscous stretch of a Maxwell branch of a muscle: what the muscle remembers. A constant stretch relaxes it.
+    /// The logarithm of the viscous stretch of a Maxwell branch of a muscle: an internal variable that relaxes under constant stretch.
     Branch {
         /// The muscle.
         muscle: usize,

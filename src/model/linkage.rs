@@ -2,8 +2,7 @@
 
 use crate::coordinates::CoordinateMap;
 use crate::kinematics::{Pose, Vectors};
-use crate::math::Random;
-use crate::math::Vector;
+use crate::math::{Random, Vector};
 use crate::model::graph::Graph;
 use crate::model::joint_constraints::{JointConstraints, Product};
 use crate::model::system::System;

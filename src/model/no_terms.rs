@@ -1,4 +1,4 @@
-//! Terms of a scene, of which there are none yet.
+//! Creates an empty collection of terms.
 
 use crate::kinematics::{Pose, Vectors};
 use crate::model::analysis::Analysis;

@@ -51,7 +51,7 @@ pub enum Quantity {
         muscle: usize,
         /// E in V/mm.
         limit: f64,
-        /// As of a stretch.
+        /// Same as `SquaredStretch::at`.
         at: Option<Stencil>,
     },
     /// Current of the source of a muscle, or of electrodes, behind a resistor in the middle of the intervals.
@@ -145,7 +145,7 @@ pub enum Quantity {
         marker: usize,
         /// Component 0, 1 or 2.
         axis: usize,
-        /// As of a stretch.
+        /// Same as `SquaredStretch::at`.
         at: Option<Stencil>,
     },
     /// Step of a component of the place of a marker in an interval, in mm.
@@ -492,8 +492,7 @@ impl Quantity {
         )
     }
 
-    /// The same quantity of the instants, measured at the start or end of the intervals, where it may read sought constants; none of one that
-    /// is not offered there.
+    /// The same quantity evaluated at interval ends, so that it may depend on free parameters; `None` if unsupported.
     pub fn in_intervals(&self, at: Stencil) -> Option<Self> {
         let at = Some(at);
         match *self {

@@ -4,8 +4,7 @@ use crate::energy::Polynomial;
 use crate::functional::{LawElement, Move, VectorArg};
 use crate::kinematics::MaterialVector;
 use crate::math::Vector;
-use crate::model::constant::{Constant, Follower, Parameter};
-use crate::model::constant::{Drifts, pruned};
+use crate::model::constant::{Constant, Drifts, Follower, Parameter, pruned};
 use std::sync::Arc;
 
 /// The sought parameters of a model.

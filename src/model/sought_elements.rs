@@ -7,8 +7,7 @@ use crate::functional::{FiniteElement, VariedElement};
 use crate::model::constant::MaterialConstant;
 use crate::model::solid_block::SolidBlock;
 use crate::model::sought::Read;
-use crate::model::terms::Terms;
-use crate::model::terms::{Member, OfKind};
+use crate::model::terms::{Member, OfKind, Terms};
 
 /// Constants of an energy beside those of its law of elasticity, in all of which it is linear: μ, λ, c₁, c₂ and ε.
 const LINEAR: [MaterialConstant; 5] = [

@@ -12,8 +12,7 @@
 
 use crate::kinematics::{MaterialVector, Pose};
 use crate::math::Vector;
-use crate::model::constant::Drifts;
-use crate::model::constant::{Constant, Parameter};
+use crate::model::constant::{Constant, Drifts, Parameter};
 use crate::model::graph::Graph;
 use crate::model::presolved::{BodyLocation, Presolved};
 use crate::model::system::System;

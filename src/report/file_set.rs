@@ -4,11 +4,10 @@
 //! of an earlier result of the same folder is removed. Between the two, a kill or a loss of power leaves a folder without a summary.
 
 use std::collections::BTreeSet;
-use std::fs;
 use std::io::{self, ErrorKind};
 use std::path::{Path, PathBuf};
 use std::sync::atomic::{AtomicUsize, Ordering};
-use std::thread;
+use std::{fs, thread};
 
 use tempfile::NamedTempFile;
 

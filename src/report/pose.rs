@@ -5,15 +5,13 @@ use nalgebra::Vector3;
 use crate::dynamics::trajectory::Trajectory;
 use crate::model::system::System;
 use crate::report::body::Tint;
-use crate::report::canvas;
 use crate::report::drawing::{Drawing, marker_colour};
 use crate::report::frame::{ground_plate, points, reference};
-use crate::report::legend::colour_bar;
-use crate::report::legend::{self, LegendSymbol};
+use crate::report::legend::{self, LegendSymbol, colour_bar};
 use crate::report::origin::Origin;
 use crate::report::skins::Skins;
-use crate::report::style;
 use crate::report::viewpoint::Viewpoint;
+use crate::report::{canvas, style};
 
 /// Most width and height of the drawing in pt.
 const MOST: [f64; 2] = [400.0, 440.0];

@@ -6,14 +6,13 @@ use crate::report::body::Tint;
 use crate::report::canvas::{self, Align};
 use crate::report::drawing::Drawing;
 use crate::report::frame::{ground_plate, points};
-use crate::report::legend;
 use crate::report::legend::colour_bar;
 use crate::report::origin::Origin;
 use crate::report::pose::{is_charged, time};
 use crate::report::skins::Skins;
-use crate::report::style;
 use crate::report::view::View;
 use crate::report::viewpoint::Viewpoint;
+use crate::report::{legend, style};
 
 /// Maximum number of stills.
 const MOST: usize = 6;

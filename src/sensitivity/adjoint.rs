@@ -8,8 +8,7 @@
 //! ```
 
 use crate::nlp::Nlp;
-use crate::sensitivity::active_set::Direction;
-use crate::sensitivity::active_set::Place;
+use crate::sensitivity::active_set::{Direction, Place};
 use crate::sensitivity::check::NoSensitivity;
 use crate::sensitivity::conditions::entries;
 use crate::sensitivity::kernel::{Change, Derivative, Kernel, WEAK, dot, sizes};

@@ -1,9 +1,8 @@
-//! Derivatives of an optimum of any program by columns that are held in it, by bounds, and by what a caller differentiates himself.
+//! Derivatives of the solution of a program with respect to fixed variables, bounds and user-supplied parameter derivatives.
 
 use crate::ipopt::Multipliers;
 use crate::nlp::Nlp;
-use crate::sensitivity::active_set::{Direction, Held, Side};
-use crate::sensitivity::active_set::{Place, of_constraints, of_variables};
+use crate::sensitivity::active_set::{Direction, Held, Place, Side, of_constraints, of_variables};
 use crate::sensitivity::check::NoSensitivity;
 use crate::sensitivity::conditions::Conditions;
 use crate::sensitivity::linear::{EXACT, Linear, largest};

@@ -9,8 +9,7 @@ use crate::dynamics::Equilibrium;
 use crate::ipopt::Multipliers;
 use crate::model::{Model, Parameter, Role, System};
 use crate::nlp::Nlp;
-use crate::sensitivity::active_set::Held;
-use crate::sensitivity::active_set::Place;
+use crate::sensitivity::active_set::{Held, Place};
 use crate::sensitivity::check::NoSensitivity;
 use crate::sensitivity::kernel::Kernel;
 

@@ -14,14 +14,9 @@ use crate::ipopt::interrupt;
 use crate::model::Model;
 use crate::study::measure::StudyMeasure;
 use crate::study::read::StudyPoint;
-use crate::workflow::Cause;
-use crate::workflow::Iterate;
-use crate::workflow::Optimum;
-use crate::workflow::Simulated;
-use crate::workflow::SolveLimits;
-use crate::workflow::integrate;
-use crate::workflow::optimise;
-use crate::workflow::trajectory;
+use crate::workflow::{
+    Cause, Iterate, Optimum, Simulated, SolveLimits, integrate, optimise, trajectory,
+};
 
 /// Refinement factor of the grid on which optimal voltages are verified.
 pub const FINER: usize = 16;

@@ -11,12 +11,10 @@ use crate::dynamics::{
 use crate::ipopt::interrupt;
 use crate::model::{Model, System};
 use crate::tasks::check::moved_markers;
-use crate::workflow::WorkflowError;
 use crate::workflow::domain::{self, Outside};
-use crate::workflow::infeasible;
 use crate::workflow::memory::{self, Occasion};
-use crate::workflow::remark::Remarks;
-use crate::workflow::remark::phase;
+use crate::workflow::remark::{Remarks, phase};
+use crate::workflow::{WorkflowError, infeasible};
 use std::time::Instant;
 
 /// Remark on what the eigenvalues of a stiffness without symmetry leave open.

@@ -4,13 +4,12 @@ use std::ops::ControlFlow;
 
 use crate::control::problem::Control;
 use crate::model::System;
-use crate::workflow::Iterate;
-use crate::workflow::WorkflowError;
 use crate::workflow::accuracy::{Accuracy, AccuracyTarget, Refined};
 use crate::workflow::grids::optimise_to;
 use crate::workflow::optimum::{Optimum, SolveLimits};
 use crate::workflow::refine_until_reproduced::{RefinedOptimum, reproduced};
 use crate::workflow::verified::{ACCURACY, verified};
+use crate::workflow::{Iterate, WorkflowError};
 
 /// Options of a solve in addition to its problem.
 #[derive(Clone, Copy, Debug, Default)]

@@ -8,11 +8,9 @@ use crate::control::problem::{Control, Guess, SoughtHold};
 use crate::control::{Earlier, hold_obstacle};
 use crate::model::System;
 use crate::tasks::grid::{Found, SolveRequest, find};
-use crate::workflow::Iterate;
-use crate::workflow::WorkflowError;
 use crate::workflow::further::stopped;
-use crate::workflow::hold_check;
 use crate::workflow::optimum::{Optimum, SolveLimits, seconds_left};
+use crate::workflow::{Iterate, WorkflowError, hold_check};
 
 /// Notes that no inputs that hold a goal were found, and that there was no time for it.
 pub(super) const NOT_FOUND: &str = "no inputs within the bounds were found that hold the goal";

@@ -283,7 +283,7 @@ pub(super) fn timing(task: &Simulation) -> Vec<String> {
         let differs = (time - of_gains).abs() > 1e-9 * law.h;
         differs.then(|| {
             format!(
-                "the {what} of the controller is {} s, and that of its gains {} s: nothing says that the loop is stable",
+                "the controller runs with a {what} of {} s, its gains were designed for {} s; stability is not guaranteed",
                 seconds(time),
                 seconds(of_gains)
             )

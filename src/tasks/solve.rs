@@ -11,15 +11,11 @@ use crate::sensitivity::{self, Gradients, NoSensitivity, Sensitivity, gradients,
 use crate::tasks::check::moved_markers;
 use crate::tasks::grid::{Found, SolveRequest};
 use crate::tasks::held_goal::{HeldGoal, solve_and_hold};
-use crate::tasks::solve_messages::Verdict;
-use crate::tasks::solve_messages::{self, carried, ends, restarted};
-use crate::workflow::Iterate;
-use crate::workflow::WorkflowError;
+use crate::tasks::solve_messages::{self, Verdict, carried, ends, restarted};
 use crate::workflow::accuracy::Accuracy;
 use crate::workflow::domain::{self, Outside};
 use crate::workflow::further::is_unreached;
 use crate::workflow::hold_check::{self, free_end};
-use crate::workflow::infeasible;
 use crate::workflow::infeasible::explain;
 use crate::workflow::loop_limits::LoopLimits;
 use crate::workflow::memory::{self, Occasion};
@@ -28,8 +24,8 @@ use crate::workflow::optimum::Optimum;
 use crate::workflow::period::Repeated;
 use crate::workflow::remark::{Remarks, STOPPED_EARLY};
 use crate::workflow::resimulate::Resimulation;
-use crate::workflow::tracking::{FinalValue, final_values};
-use crate::workflow::tracking::{Tracked, followed};
+use crate::workflow::tracking::{FinalValue, Tracked, final_values, followed};
+use crate::workflow::{Iterate, WorkflowError, infeasible};
 
 /// An optimal motion, or the last iterate of a solve that found none.
 #[derive(Debug)]

@@ -8,16 +8,13 @@ use crate::kinematics::Pose;
 use crate::model::{Coordinates, Model, System};
 use crate::nlp::Nlp;
 use crate::nlp::joined::{Joined, Places};
-use crate::workflow::active::{Active, active};
-use crate::workflow::active::{Violation, violations};
+use crate::workflow::active::{Active, Violation, active, violations};
 use crate::workflow::error::WorkflowError;
 use crate::workflow::gap::Gap;
-use crate::workflow::motion::Iterate;
-use crate::workflow::motion::solved;
+use crate::workflow::motion::{Iterate, solved};
 use crate::workflow::optimum::{Optimum, Shortest, SolveLimits};
-use crate::workflow::prepare_together::Counted;
 use crate::workflow::prepare_together::{
-    MotionAsked, PreparedTogether, prepare_together, program_motions, resolve_each,
+    Counted, MotionAsked, PreparedTogether, prepare_together, program_motions, resolve_each,
 };
 use crate::workflow::remark::phase;
 use crate::workflow::resimulate::{Resimulation, resimulate};

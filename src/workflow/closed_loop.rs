@@ -312,7 +312,7 @@ impl ClosedLoop {
         let (count, samples) = (self.samples_at_lower_bound, self.samples);
         (count > 0 && self.plans.is_none()).then(|| {
             format!(
-                "in {count} of {samples} samples the controller wanted an input below its lower bound: a muscle cannot push"
+                "the controller saturated at the lower bound of an input in {count} of {samples} samples: a muscle cannot push"
             )
         })
     }

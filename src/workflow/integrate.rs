@@ -16,8 +16,7 @@ use crate::workflow::control_loop::{Counts, Loop, horizon};
 use crate::workflow::error::WorkflowError;
 use crate::workflow::memory;
 use crate::workflow::remark::phase;
-use crate::workflow::tolerance::EstimatedError;
-use crate::workflow::tolerance::{ByTolerance, Found};
+use crate::workflow::tolerance::{ByTolerance, EstimatedError, Found};
 
 /// A simulation and how it ended.
 #[derive(Debug)]

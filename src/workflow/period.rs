@@ -91,7 +91,7 @@ impl Repeated {
     pub(crate) fn note(&self) -> Option<String> {
         let Self { periods, drift, .. } = self;
         self.comes_back.then(|| {
-            format!("the motion is periodic: in {periods} periods under the same inputs it departs from itself by {drift}")
+            format!("the motion is periodic: after {periods} periods under the same inputs the state has drifted by {drift}")
         })
     }
 
@@ -104,7 +104,7 @@ impl Repeated {
         });
         (!self.comes_back).then(|| {
             format!(
-                "the periodic motion is not stable: in {} periods under the same inputs it departs from itself by {drift}{early}",
+                "the periodic motion is not stable: after {} periods under the same inputs the state has drifted by {drift}{early}",
                 significant(*periods as f64, 3)
             )
         })

@@ -6,7 +6,7 @@ use crate::model::{BodyLocation, Model};
 use crate::workflow::distance::Distance;
 use serde::Serialize;
 
-/// Something that a scene or a problem could call for and does not.
+/// A model term that is inactive, with its reason.
 #[derive(Clone, Debug, PartialEq, Eq, Serialize)]
 pub struct Absent {
     /// Name of the effect, or of the part that is no unknown.

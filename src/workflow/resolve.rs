@@ -48,7 +48,7 @@ pub(crate) fn with_found(
     if model.action.map.unknowns() != sought.action.map.unknowns() {
         return Err(WorkflowError::Problem {
             place: "control.free".to_owned(),
-            reason: "with the values found other parts of the system move than with the guesses; take other guesses"
+            reason: "the identified values change which bodies can move; start from other guesses"
                 .to_owned(),
         });
     }

@@ -22,8 +22,8 @@ pub(crate) fn unbalanced(discrete: &DiscreteTrajectory) -> Option<String> {
     let step = rounded(discrete.times.last()? / count.max(1) as f64);
     (count > 0 && part.abs() > BALANCED).then(|| {
         format!(
-            "the steps of {step} ms {} {} mJ, {:.0} % of the energy that moves at most: shorter steps keep the balance",
-            if part > 0.0 { "make" } else { "lose" },
+            "time steps of {step} ms {} {} mJ of numerical energy ({:.0} % of the peak exchange); use shorter steps",
+            if part > 0.0 { "add" } else { "remove" },
             significant(report.made.abs(), 3),
             100.0 * part.abs()
         )

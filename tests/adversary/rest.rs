@@ -1,8 +1,7 @@
 //! States of rest of random robots: the same in every form of the same robot, for every step, and whatever its masses.
 
 use crate::robots::{Parts, Robot, robot, system};
-use crate::seeds;
-use crate::twins;
+use crate::{seeds, twins};
 use nalgebra::{Matrix3, Rotation3, Vector3};
 use proboscis::dynamics::stable_equilibrium;
 use proboscis::model::{Coordinates, Model};

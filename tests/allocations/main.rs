@@ -4,13 +4,11 @@
 mod common;
 mod controllers;
 
-use common::boxes;
 use common::cases::{all_limits, control, hold, rest_to_rest};
 use common::counting::{ASKED, BEGUN, Counting, IS_OURS, KEPT, MOST};
-use common::sought;
 use common::systems::branched;
 use common::tracked::{energies, tracked};
-use common::trunk;
+use common::{boxes, sought, trunk};
 use controllers::{allocations_of_a_controller, allocations_of_a_law};
 use proboscis::control::problem::{BoundaryState, Control, Duration, Objective, Rest};
 use proboscis::control::{BoundaryConditions, Transcription, guess};

@@ -5,9 +5,7 @@ use proboscis::control::problem::Task;
 use proboscis::dynamics::simulate;
 use proboscis::files::read_problem;
 use proboscis::ipopt::Status;
-use proboscis::workflow::Iterate;
-use proboscis::workflow::SolveLimits;
-use proboscis::workflow::optimise;
+use proboscis::workflow::{Iterate, SolveLimits, optimise};
 use std::ops::ControlFlow;
 
 /// Statuses with which a solve of a well-posed problem may end.

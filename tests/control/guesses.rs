@@ -5,10 +5,7 @@ use proboscis::control::problem::{Control, Duration, Guess, Task};
 use proboscis::control::{BoundaryConditions, InitialGuess, Solution, guess};
 use proboscis::files::read_problem;
 use proboscis::model::{Coordinates, System};
-use proboscis::workflow::SolveLimits;
-use proboscis::workflow::integrate;
-use proboscis::workflow::optimise;
-use proboscis::workflow::solved;
+use proboscis::workflow::{SolveLimits, integrate, optimise, solved};
 use std::ops::ControlFlow;
 use tempfile::tempdir;
 

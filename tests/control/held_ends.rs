@@ -1,8 +1,7 @@
 //! Ends that are held, and those that cannot be.
 
 use crate::verdicts::{control, kept, output_of, read, request, trust};
-use proboscis::app::CommandInput;
-use proboscis::app::run;
+use proboscis::app::{CommandInput, run};
 use proboscis::control::BoundaryConditions;
 use proboscis::files::solution;
 use std::fs;

@@ -8,10 +8,7 @@ use proboscis::control::{
 };
 use proboscis::files::read_problem;
 use proboscis::model::Coordinates;
-use proboscis::workflow::Iterate;
-use proboscis::workflow::Optimum;
-use proboscis::workflow::SolveLimits;
-use proboscis::workflow::optimise;
+use proboscis::workflow::{Iterate, Optimum, SolveLimits, optimise};
 use std::collections::BTreeMap;
 use std::ops::ControlFlow;
 use std::path::Path;

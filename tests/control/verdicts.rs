@@ -1,20 +1,13 @@
 //! Verdicts on optima: guesses that change no condition of the problem, violations that are numbers, voltages that hold.
 
-use proboscis::app::CommandInput;
-use proboscis::app::CommandOutput;
-use proboscis::app::run;
-use proboscis::app::{PageWanted, ProgressDisplay};
+use proboscis::app::{CommandInput, CommandOutput, PageWanted, ProgressDisplay, run};
 use proboscis::control::problem::{Control, Task};
 use proboscis::files::read_problem;
 use proboscis::math::Random;
 use proboscis::model::System;
 use proboscis::nlp::Bounds;
 use proboscis::report::Figures;
-use proboscis::workflow::Cause;
-use proboscis::workflow::SolveLimits;
-use proboscis::workflow::integrate;
-use proboscis::workflow::optimise;
-use proboscis::workflow::solved;
+use proboscis::workflow::{Cause, SolveLimits, integrate, optimise, solved};
 use serde_json::Value;
 use std::fs;
 use std::ops::ControlFlow;

@@ -2,9 +2,7 @@
 
 use crate::scene::{Case, PROBLEM, SCENE, check, folder, mistake};
 use proboscis::control::problem::{BoundaryState, PathConstraint, Rest, Task};
-use proboscis::files::expand;
-use proboscis::files::read_problem;
-use proboscis::files::read_scene;
+use proboscis::files::{expand, read_problem, read_scene};
 use proboscis::model::system::{JointKind, Shape, System, VACUUM_PERMITTIVITY};
 use std::fs;
 use std::path::Path;

@@ -2,9 +2,7 @@
 
 use crate::scene::{Case, check, folder, mistake};
 use proboscis::control::problem::Task;
-use proboscis::files::expand;
-use proboscis::files::read_problem;
-use proboscis::files::read_scene;
+use proboscis::files::{expand, read_problem, read_scene};
 use proboscis::model::system::{ElementKind, Potential};
 use std::fs;
 

@@ -12,8 +12,7 @@ use proboscis::dynamics::{
 use proboscis::files::read_problem;
 use proboscis::model::system::JointKind;
 use proboscis::model::{Coordinates, Model};
-use proboscis::workflow::Simulated;
-use proboscis::workflow::integrate;
+use proboscis::workflow::{Simulated, integrate};
 use serde_json::{Value, json};
 use std::fs;
 use std::ops::ControlFlow;

@@ -12,9 +12,7 @@ use proboscis::dynamics::trajectory::Trajectory;
 use proboscis::model::system::{JointKind, System};
 use proboscis::model::{Coordinates, Model};
 use proboscis::nlp::differences;
-use proboscis::workflow::Iterate;
-use proboscis::workflow::SolveLimits;
-use proboscis::workflow::optimise;
+use proboscis::workflow::{Iterate, SolveLimits, optimise};
 use std::collections::BTreeMap;
 use std::ops::ControlFlow;
 

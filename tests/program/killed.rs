@@ -3,13 +3,11 @@
 use crate::output::arrays;
 use crate::runs::{problem, read, run};
 use std::collections::BTreeMap;
-use std::fs;
 use std::io::{BufRead, BufReader};
-use std::mem;
 use std::path::{Path, PathBuf};
 use std::process::{Command, Stdio};
-use std::thread;
 use std::time::Duration;
+use std::{fs, mem, thread};
 
 /// The arrays of the iterate that is kept in a folder, in the file that it names; also of a run that goes on.
 fn kept(results: &Path) -> BTreeMap<String, Vec<f64>> {

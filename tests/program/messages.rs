@@ -12,11 +12,10 @@ use proboscis::ipopt::{Options, StartingPoint, Status, interrupt, solve};
 use proboscis::model::Model;
 use proboscis::nlp::Nlp;
 use proboscis::nlp::differences::{DifferenceVariables, TOLERANCE, check_along};
-use std::fs;
 use std::ops::ControlFlow;
 use std::process::{Command, Stdio};
-use std::thread;
 use std::time::Duration;
+use std::{fs, thread};
 
 /// A column of few elements.
 const SMALL: [&str; 4] = [

@@ -7,9 +7,8 @@ use proboscis::app::{
 };
 use proboscis::ipopt::interrupt::{self, Questions, StopRequest};
 use proboscis::report::Figures;
-use std::fs;
 use std::path::{Path, PathBuf};
-use std::thread;
+use std::{fs, thread};
 
 /// A file that does not exist, beside the kept problems.
 fn nowhere() -> PathBuf {

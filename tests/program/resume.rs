@@ -3,11 +3,10 @@
 use crate::commands::summary;
 use crate::runs::{problem, read, run, run_with_input, workshop};
 use serde_json::Value;
-use std::fs;
 use std::path::Path;
 use std::process::{Command, Stdio};
-use std::thread;
 use std::time::Duration;
+use std::{fs, thread};
 
 /// The state of a motion, and all rows of its table.
 fn kept(folder: &Path) -> (Value, String) {

@@ -4,15 +4,13 @@ use crate::common::signals::Listening as _;
 use crate::runs::run;
 use proboscis::control::problem::Task;
 use proboscis::files::read_problem;
-use proboscis::workflow::integrate;
-use proboscis::workflow::trajectory;
+use proboscis::workflow::{integrate, trajectory};
 use serde_json::{Value, json};
-use std::fs;
 use std::ops::ControlFlow;
 use std::path::Path;
 use std::process::Stdio;
-use std::thread;
 use std::time::Duration;
+use std::{fs, thread};
 use tempfile::TempDir;
 
 /// A wheel of 1 kg and 0.1 m that is slowed down by its hub: θ(t) = ω I/c (1 − exp(−c t/I)) with I = m r²/2.

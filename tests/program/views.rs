@@ -6,11 +6,10 @@ use crate::runs::{problem, run, write_motion};
 use nalgebra::{Matrix3, Rotation3, Unit, Vector3};
 use proboscis::dynamics::trajectory::Trajectory;
 use proboscis::model::system::System;
-use proboscis::report::Figures;
 use proboscis::report::skins::Skins;
-use proboscis::report::style;
 use proboscis::report::view::{View, hull};
 use proboscis::report::viewpoint::Viewpoint;
+use proboscis::report::{Figures, style};
 use std::fs;
 
 type Vector = Vector3<f64>;

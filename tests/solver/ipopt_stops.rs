@@ -4,11 +4,10 @@ use crate::common::programs::{HS071_OPTIMUM, HS071_START, Program, bounds, hs071
 use crate::ipopt::{from, run};
 use proboscis::ipopt::interrupt::{self, Questions};
 use proboscis::ipopt::{Iteration, Multipliers, Options, Reached, Status, solve};
-use std::fs;
 use std::ops::ControlFlow;
 use std::panic::{AssertUnwindSafe, catch_unwind};
 use std::process::Command;
-use std::thread;
+use std::{fs, thread};
 
 /// hs071 whose named function panics at its `k`-th call.
 fn panicking(function: &'static str, k: usize) -> Program {

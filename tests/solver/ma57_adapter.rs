@@ -6,11 +6,10 @@ use crate::common::programs::{HS071_START, hs071};
 use crate::ipopt::run;
 use proboscis::ipopt::{LinearSolver, Options, Status, functions_of_ma57};
 use std::ffi::{c_int, c_void};
-use std::mem;
 use std::panic::{AssertUnwindSafe, catch_unwind};
 use std::ptr::null_mut;
 use std::sync::{Arc, Mutex};
-use std::thread;
+use std::{mem, thread};
 
 type Integers = *mut c_int;
 type Numbers = *mut f64;

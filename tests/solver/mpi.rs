@@ -5,10 +5,9 @@
 use crate::common::programs::{HS071_START, hs071};
 use crate::ipopt::run;
 use proboscis::ipopt::{LinearSolver, Options, Status};
-use std::env;
 use std::ffi::{c_int, c_void};
-use std::mem;
 use std::process::Command;
+use std::{env, mem};
 
 const CHILD: &str = "PROBOSCIS_START_OF_MPI";
 

@@ -13,6 +13,7 @@ mod heads;
 mod lengths;
 mod numbering;
 mod presolved;
+mod ratchet;
 mod roles;
 mod sources;
 mod trace;

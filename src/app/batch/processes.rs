@@ -10,8 +10,7 @@ use std::time::{Duration, Instant};
 use rustix::process::{Pid, Signal, kill_process};
 
 use super::end::{RunEnd, Said, of_status};
-use super::launch::Batch;
-use super::launch::{Running, launch};
+use super::launch::{Batch, Running, launch};
 use crate::app::error::CommandError;
 use crate::ipopt::interrupt;
 use crate::report::atomic::WriteError;

@@ -2,8 +2,7 @@
 
 use crate::control::boundary_conditions::{BoundaryConditions, Rests};
 use crate::control::bounded_quantity::BoundedQuantity;
-use crate::control::numbering::Span;
-use crate::control::numbering::{Column, Numbering, Row, Twin};
+use crate::control::numbering::{Column, Numbering, Row, Span, Twin};
 use crate::control::problem::{BoundaryState, Control, Duration};
 use crate::control::transcription::limit_rows::{LimitRow, Site, limit_rows};
 use crate::control::transcription::time_rows::TimeRows;

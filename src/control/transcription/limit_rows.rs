@@ -2,8 +2,7 @@
 
 use crate::control::bounded_quantity::{BoundedQuantity, When};
 use crate::control::goal::instant_at;
-use crate::control::numbering::Span;
-use crate::control::numbering::{Column, Numbering};
+use crate::control::numbering::{Column, Numbering, Span};
 use crate::control::transcription::Transcription;
 use crate::control::transcription::step::Step;
 use crate::coordinates::{CoordinateMap, Reduced};

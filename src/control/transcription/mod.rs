@@ -43,8 +43,7 @@ use costs::Objective;
 use layout::Layout;
 pub use layout::Outline;
 pub(super) use limit_rows::Site;
-use structure::Structure;
-use structure::overdetermined;
+use structure::{Structure, overdetermined};
 use update_endpoints::StartMomentum;
 use workspace::Workspace;
 

@@ -21,8 +21,7 @@ use crate::files::problem::spec_control::{
 };
 use crate::files::problem::spec_energies::EnergySpec;
 use crate::files::problem::spec_voltages::VoltagesSpec;
-use crate::files::problem::state::sought_hold;
-use crate::files::problem::state::{ELECTRIC_KEYS, driven, start_state};
+use crate::files::problem::state::{ELECTRIC_KEYS, driven, sought_hold, start_state};
 use crate::files::problem::track::{at_the_end, track};
 use crate::files::problem::voltages::{SOLUTION_PATH, over_time};
 use crate::files::problem::waypoints::waypoints;

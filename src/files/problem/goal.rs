@@ -6,11 +6,11 @@ use crate::control::problem::{BoundaryState, Orientation, Place, Rest};
 use crate::files::json::error::SceneError;
 use crate::files::json::scope::Scope;
 use crate::files::problem::spec_voltages::VoltageMap;
-use crate::files::problem::state::{GoalSpec, GoalWord, HeldSpec, OrientationSpec, RestGoalSpec};
-use crate::files::problem::state::{by_joint, moving_marker, voltages};
+use crate::files::problem::state::{
+    GoalSpec, GoalWord, HeldSpec, OrientationSpec, RestGoalSpec, by_joint, moving_marker, voltages,
+};
 use crate::files::scene::names::names;
-use crate::files::scene::point::PartialPoint;
-use crate::files::scene::point::unit_axis;
+use crate::files::scene::point::{PartialPoint, unit_axis};
 use crate::files::units::quantity::{Angle, Length, Quantity};
 use crate::model::system::System;
 

@@ -9,8 +9,7 @@ use crate::files::json::locate::JsonPath;
 use crate::files::json::scope::Scope;
 use crate::files::problem::channels::{Measured, Source};
 use crate::files::problem::coordinates::{coordinates, count};
-use crate::files::problem::free::FreeMap;
-use crate::files::problem::free::parameters;
+use crate::files::problem::free::{FreeMap, parameters};
 use crate::files::problem::loads::driven;
 use crate::files::problem::spec_identify::{
     CandidateSpec, ExperimentSpec, IdentifySpec, InputConstantsSpec, MeasuredSpec, PriorSpec,

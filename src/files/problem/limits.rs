@@ -4,8 +4,7 @@ use crate::control::problem::{PathConstraint, Side};
 use crate::files::json::error::SceneError;
 use crate::files::json::scope::Scope;
 use crate::files::problem::bounds::check_bounds;
-use crate::files::problem::source_limits::amount_limit;
-use crate::files::problem::source_limits::{bounds, source_limits};
+use crate::files::problem::source_limits::{amount_limit, bounds, source_limits};
 use crate::files::problem::spec_limits::{
     ElectricFieldLimitSpec, LimitSpec, MarkerLimitSpec, MarkerSpeedLimitSpec,
     ReactionForceLimitSpec, ReactionTorqueLimitSpec, RegionSpec, StretchLimitSpec,
@@ -211,7 +210,7 @@ fn tensions(
     Ok(muscles.into_iter().map(limit).collect())
 }
 
-/// Choice of a limit of fields that means no part, for messages.
+/// Error text of a field limit without a part.
 const NOTHING: &str = "nothing that a field reaches";
 
 fn electric_field(

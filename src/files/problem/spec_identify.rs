@@ -6,9 +6,10 @@ use crate::files::problem::loads::LoadMap;
 use crate::files::problem::spec_voltages::VoltagesSpec;
 use crate::files::problem::state::StartSpec;
 use crate::files::study::ChangesSpec;
-use crate::files::units::quantity::{Angle, AngularVelocity, Kind, Length, Velocity};
-use crate::files::units::quantity::{Charge, Current, Force, Power, Torque, Voltage};
-use crate::files::units::quantity::{PhysicalQuantity, Quantity, Ratio, SoughtConstant, Time};
+use crate::files::units::quantity::{
+    Angle, AngularVelocity, Charge, Current, Force, Kind, Length, PhysicalQuantity, Power,
+    Quantity, Ratio, SoughtConstant, Time, Torque, Velocity, Voltage,
+};
 use schemars::JsonSchema;
 use serde::Deserialize;
 use std::collections::BTreeMap;

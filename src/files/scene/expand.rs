@@ -4,8 +4,7 @@ use nalgebra::Vector3;
 
 use crate::files::scene::joint::{AxisSpec, JointSpec};
 use crate::files::scene::material::named_material;
-use crate::files::scene::point::direction;
-use crate::files::scene::point::{Point, PointSpec};
+use crate::files::scene::point::{Point, PointSpec, direction};
 use crate::files::scene::spec::{
     BodySpec, ChainSpec, CylinderSpec, MarkerSpec, MuscleSpec, SceneSpec,
 };

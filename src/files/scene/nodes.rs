@@ -4,8 +4,7 @@ use nalgebra::Vector3;
 
 use crate::files::json::error::SceneError;
 use crate::files::json::scope::{Scope, list};
-use crate::files::scene::point::CornersSpec;
-use crate::files::scene::point::vector;
+use crate::files::scene::point::{CornersSpec, vector};
 use crate::files::scene::spec_solids::PlaneSpec;
 use crate::mesh::Mesh;
 

@@ -10,8 +10,7 @@ use std::marker::PhantomData;
 
 use crate::files::json::either::{Either, ScalarOrObject, scalar_or_object};
 use crate::files::scene::circuit::CircuitSpec;
-use crate::files::scene::point::CornersSpec;
-use crate::files::scene::point::Point;
+use crate::files::scene::point::{CornersSpec, Point};
 use crate::files::units::quantity::{AngularVelocity, Length, Quantity, Rate, Velocity, Voltage};
 
 /// An elastic block of hexahedra: a `box` or a `mesh`, of one `material` or of `materials` by region.

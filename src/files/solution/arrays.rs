@@ -1,17 +1,14 @@
 //! The arrays of a long solution in a file of their own.
 
-use std::fs;
-use std::io;
-use std::mem;
 use std::path::Path;
+use std::{fs, io, mem};
 
 use serde::Deserialize;
 use serde_json::{Map, Value};
 
 use crate::files::json::scan::Scanner;
 use crate::files::npz::{self, NpzError, NpzWriter};
-use crate::files::solution::record::Reason;
-use crate::files::solution::record::{ArraysOf, File};
+use crate::files::solution::record::{ArraysOf, File, Reason};
 
 /// Names of arrays that end with a name of the scene.
 const OF_NAMES: [&str; 3] = ["voltages/", "loads/", "configuration/joints/"];

@@ -11,9 +11,8 @@ use crate::files::json::reader;
 use crate::files::json::source::{NoBytes, check_json, of_file, unmarked};
 use crate::files::solution::arrays::complete;
 use crate::files::solution::record::{
-    Body, ConfigurationRecord, File, METRE, SECOND, StateRecord, unit,
+    Body, ConfigurationRecord, File, METRE, Reason, SECOND, SolutionError, StateRecord, unit,
 };
-use crate::files::solution::record::{Reason, SolutionError};
 use crate::kinematics::Pose;
 use crate::math::Matrix;
 use crate::model::system::{Joint, Source, System};

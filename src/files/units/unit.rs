@@ -1,9 +1,8 @@
 //! Units as text: prefix × unit × power, joined by products and quotients, over the dimensions of uom.
 
 use std::fmt;
-use uom::Conversion;
-use uom::si;
 use uom::typenum::Integer;
+use uom::{Conversion, si};
 
 /// Exponents of length, mass, time, current, temperature, amount and luminous intensity, then of the radian.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]

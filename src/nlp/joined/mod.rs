@@ -3,7 +3,7 @@
 //! In place of their sum the greatest objective may be minimised, by a bound of all of them that is one more variable.
 //!
 //! Variables and constraints come program by program, those that are shared behind all others. Stages of a program lie behind those of the one
-//! before, so that the linear systems stay one chain that falls into pieces but for the border; where programs share a variable of a stage,
+//! before, so that the matrix is block-diagonal with a common border; where programs share a variable of a stage,
 //! such as the input of an interval, it is one stage. One program alone keeps its numbers, bit by bit.
 
 mod places;
@@ -13,8 +13,7 @@ use std::fmt;
 
 use crate::nlp::{Bounds, Entries, Nlp, Stage};
 pub use places::{Places, SharedVariable};
-use worst::Worst;
-use worst::{Part, each};
+use worst::{Part, Worst, each};
 
 /// Several programs as one.
 pub struct Joined<N> {

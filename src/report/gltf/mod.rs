@@ -13,14 +13,14 @@ use crate::dynamics::trajectory::Trajectory;
 use crate::kinematics::Pose;
 use crate::model::system::{Marker, Shape, System};
 use crate::report::drawing::{lumped, marker_colour};
-use crate::report::gltf::document::{Document, Mode, Moving, Placed};
-use crate::report::gltf::document::{METRE, body, cube, sphere, triangles};
+use crate::report::gltf::document::{
+    Document, METRE, Mode, Moving, Placed, body, cube, sphere, triangles,
+};
 use crate::report::load_arrows::LoadArrows;
 use crate::report::origin::Origin;
 use crate::report::skins::{Skins, shown};
 use crate::report::solids::Prism;
-use crate::report::style;
-use crate::report::ties;
+use crate::report::{style, ties};
 
 /// Opacity of bodies, so that muscles within show.
 const GLASS: f32 = 0.35;

@@ -17,8 +17,7 @@ use crate::sparse::mumps::Mumps;
 use crate::sparse::pattern::Pattern;
 use crate::sparse::{Factorisation, Precision, Singular};
 
-use factor::Number;
-use factor::{Elimination, Undone};
+use factor::{Elimination, Number, Undone};
 use solve::Passage;
 use tree::Tree;
 

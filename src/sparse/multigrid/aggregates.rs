@@ -4,8 +4,7 @@
 //! size.
 
 use crate::sparse::multigrid::block_rows::BlockRows;
-use crate::sparse::multigrid::node_grid::Block;
-use crate::sparse::multigrid::node_grid::COMPONENTS;
+use crate::sparse::multigrid::node_grid::{Block, COMPONENTS};
 use crate::sparse::multigrid::triangles::distance;
 
 /// Distance of neighbours, relative to that of the nearest one, up to which they are strongly coupled.

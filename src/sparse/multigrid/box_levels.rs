@@ -4,10 +4,8 @@ use crate::sparse::multigrid::axis::coarsening;
 use crate::sparse::multigrid::galerkin::{coarse_matrix, correct, restrict};
 use crate::sparse::multigrid::hierarchy::{COARSEST, Hierarchy};
 use crate::sparse::multigrid::level::Level;
-use crate::sparse::multigrid::node_grid::Block;
-use crate::sparse::multigrid::node_grid::GridLevel;
 use crate::sparse::multigrid::node_grid::{
-    COMPONENTS, NEIGHBOURS, NodeGrid, free_components, indices, node_at, offsets,
+    Block, COMPONENTS, GridLevel, NEIGHBOURS, NodeGrid, free_components, indices, node_at, offsets,
 };
 use crate::sparse::multigrid::pressures::Pressures;
 

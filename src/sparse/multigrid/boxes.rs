@@ -7,11 +7,10 @@ use crate::sparse::multigrid::hierarchy::Hierarchy;
 use crate::sparse::multigrid::krylov::Operator;
 use crate::sparse::multigrid::level::Level;
 use crate::sparse::multigrid::mesh_level::MeshLevel;
-use crate::sparse::multigrid::node_grid::{Block, Field};
 use crate::sparse::multigrid::node_grid::{
-    COMPONENTS, ENTRIES, NEIGHBOURS, NodeBlock, NodeGrid, offsets,
+    Block, COMPONENTS, ENTRIES, Field, NEIGHBOURS, NodeBlock, NodeGrid, VolumePlaces, corners,
+    offsets,
 };
-use crate::sparse::multigrid::node_grid::{VolumePlaces, corners};
 use crate::sparse::multigrid::triangles::{BlockPlaces, NodeMesh};
 use crate::sparse::multigrid::volumes::{Volumes, scale_of_mean};
 use std::ops::Range;

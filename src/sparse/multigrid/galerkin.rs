@@ -3,8 +3,9 @@
 use crate::math::join;
 use crate::sparse::multigrid::axis::Axis;
 use crate::sparse::multigrid::level::Level;
-use crate::sparse::multigrid::node_grid::Block;
-use crate::sparse::multigrid::node_grid::{COMPONENTS, OWN, indices, neighbour, node_at, offsets};
+use crate::sparse::multigrid::node_grid::{
+    Block, COMPONENTS, OWN, indices, neighbour, node_at, offsets,
+};
 use crate::sparse::multigrid::triangles::{Row, Rows};
 
 /// Most fine planes that a coarse node and its neighbours of the fine grid are in, along an axis.

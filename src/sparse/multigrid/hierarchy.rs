@@ -1,7 +1,6 @@
 //! Levels from the finest to the coarsest, and one V-cycle through them.
 
-use crate::sparse::multigrid::node_grid::COMPONENTS;
-use crate::sparse::multigrid::node_grid::GridLevel;
+use crate::sparse::multigrid::node_grid::{COMPONENTS, GridLevel};
 use crate::sparse::{Direct, Singular};
 
 /// A level of so few nodes is solved directly.

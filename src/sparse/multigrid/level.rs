@@ -4,8 +4,9 @@
 
 use crate::math::join;
 use crate::sparse::multigrid::axis::Axis;
-use crate::sparse::multigrid::node_grid::{Block, Field, inverse_of};
-use crate::sparse::multigrid::node_grid::{COMPONENTS, NEIGHBOURS, offsets};
+use crate::sparse::multigrid::node_grid::{
+    Block, COMPONENTS, Field, NEIGHBOURS, inverse_of, offsets,
+};
 use crate::sparse::multigrid::pressures::Pressures;
 use crate::sparse::multigrid::slab::{Equations, Slab, slabs, split};
 use crate::sparse::multigrid::triangles::Triangles;

@@ -7,9 +7,9 @@ use crate::sparse::multigrid::block_rows::BlockRows;
 use crate::sparse::multigrid::hierarchy::{COARSEST, Hierarchy};
 use crate::sparse::multigrid::mesh_matrix::MeshMatrix;
 use crate::sparse::multigrid::mesh_pressures::MeshPressures;
-use crate::sparse::multigrid::node_grid::GridLevel;
-use crate::sparse::multigrid::node_grid::{Block, add, add_transposed, inverse_of};
-use crate::sparse::multigrid::node_grid::{COMPONENTS, free_components};
+use crate::sparse::multigrid::node_grid::{
+    Block, COMPONENTS, GridLevel, add, add_transposed, free_components, inverse_of,
+};
 use crate::sparse::multigrid::triangles::NodeMesh;
 use std::sync::Arc;
 

@@ -6,8 +6,7 @@
 use crate::sparse::multigrid::aggregates::Points;
 use crate::sparse::multigrid::aggregation::Aggregation;
 use crate::sparse::multigrid::block_rows::BlockRows;
-use crate::sparse::multigrid::node_grid::COMPONENTS;
-use crate::sparse::multigrid::node_grid::{Block, add};
+use crate::sparse::multigrid::node_grid::{Block, COMPONENTS, add};
 use crate::sparse::multigrid::pressure_correction::{Lists, Schur, correct};
 use crate::sparse::multigrid::triangles::NodeMesh;
 

@@ -6,8 +6,7 @@ use crate::sparse::multigrid::boxes::Parts;
 use crate::sparse::multigrid::hierarchy::Hierarchy;
 use crate::sparse::multigrid::level::Level;
 use crate::sparse::multigrid::mesh_level::MeshLevel;
-use crate::sparse::multigrid::node_grid::{Block, Field};
-use crate::sparse::multigrid::node_grid::{COMPONENTS, ENTRIES, NEIGHBOURS, offsets};
+use crate::sparse::multigrid::node_grid::{Block, COMPONENTS, ENTRIES, Field, NEIGHBOURS, offsets};
 
 /// Component of the potential.
 pub(super) const POTENTIAL: usize = COMPONENTS - 1;

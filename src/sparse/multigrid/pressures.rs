@@ -14,9 +14,9 @@
 //! Elements count like their first nodes; there is none where a node is a last one along an axis.
 
 use crate::sparse::multigrid::axis::Axis;
-use crate::sparse::multigrid::node_grid::{Block, Field};
-use crate::sparse::multigrid::node_grid::{COMPONENTS, NEIGHBOURS, OWN, indices, node_at};
-use crate::sparse::multigrid::node_grid::{CORNERS, corners, neighbour_of};
+use crate::sparse::multigrid::node_grid::{
+    Block, COMPONENTS, CORNERS, Field, NEIGHBOURS, OWN, corners, indices, neighbour_of, node_at,
+};
 use crate::sparse::multigrid::pressure_correction::{Lists, Schur, correct};
 
 /// Rows of neighbours, three in each.

@@ -2,8 +2,7 @@
 //!
 //! Slabs follow from the grid alone, so that results are the same for any number of threads.
 
-use crate::sparse::multigrid::node_grid::{Block, Field, add};
-use crate::sparse::multigrid::node_grid::{COMPONENTS, NEIGHBOURS, OWN};
+use crate::sparse::multigrid::node_grid::{Block, COMPONENTS, Field, NEIGHBOURS, OWN, add};
 use crate::sparse::multigrid::triangles::Triangles;
 use std::ops::Range;
 

@@ -7,9 +7,8 @@ use crate::math::{IsOver, Stopped};
 use crate::sparse::Singular;
 use crate::sparse::multigrid::boxes::Parts;
 use crate::sparse::multigrid::krylov::{Iterated, Krylov, norm};
-use crate::sparse::multigrid::node_grid::ElementVolume;
 use crate::sparse::multigrid::node_grid::{
-    COMPONENTS, ENTRIES, GridNode, NodeBlock, NodeGrid, PLANES, indices,
+    COMPONENTS, ENTRIES, ElementVolume, GridNode, NodeBlock, NodeGrid, PLANES, indices,
 };
 use crate::sparse::multigrid::stiffness::{LowestModes, Workspace, lowest_modes};
 use crate::sparse::multigrid::triangles::{BlockPlaces, NodeMesh};

@@ -7,8 +7,9 @@ use crate::sparse::Singular;
 use crate::sparse::multigrid::boxes::Parts;
 use crate::sparse::multigrid::krylov::Krylov;
 use crate::sparse::multigrid::lobpcg::{AtNode, COUNT, Pairs, SymmetricMatrix, lowest};
-use crate::sparse::multigrid::node_grid::Field;
-use crate::sparse::multigrid::node_grid::{COMPONENTS, ENTRIES, NEIGHBOURS, NodeBlock, offsets};
+use crate::sparse::multigrid::node_grid::{
+    COMPONENTS, ENTRIES, Field, NEIGHBOURS, NodeBlock, offsets,
+};
 use crate::sparse::multigrid::potentials::{POTENTIAL, Potentials};
 
 /// Rounding of a product, relative to the largest entry of the diagonal.

@@ -5,8 +5,9 @@
 
 use crate::sparse::multigrid::level::Level;
 use crate::sparse::multigrid::mesh_level::MeshLevel;
-use crate::sparse::multigrid::node_grid::{COMPONENTS, ENTRIES, NEIGHBOURS, NodeBlock};
-use crate::sparse::multigrid::node_grid::{CORNERS, ElementVolume, VolumePlaces, neighbour_of};
+use crate::sparse::multigrid::node_grid::{
+    COMPONENTS, CORNERS, ENTRIES, ElementVolume, NEIGHBOURS, NodeBlock, VolumePlaces, neighbour_of,
+};
 use std::ops::Range;
 
 /// The power of two, which rounds nothing, that makes a mean of squares one.

@@ -5,12 +5,10 @@
     reason = "C interfaces of OpenBLAS and SCOTCH, and the environment"
 )]
 
-use std::env;
 use std::ffi::{CStr, c_int, c_void};
-use std::hint;
-use std::mem;
 use std::ptr::NonNull;
 use std::sync::{LazyLock, Once};
+use std::{env, hint, mem};
 
 /// Environment variable that SCOTCH reads.
 const SCOTCH_THREADS: &str = "SCOTCH_PTHREAD_NUMBER";

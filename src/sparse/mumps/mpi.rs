@@ -9,11 +9,10 @@
 #![expect(unsafe_code, reason = "C interface of MPI")]
 
 use std::ffi::{CStr, c_char, c_int, c_void};
-use std::mem;
 use std::ptr::{NonNull, null_mut};
 use std::sync::Once;
 use std::sync::atomic::{AtomicBool, Ordering};
-use std::thread;
+use std::{mem, thread};
 
 use crate::sparse::mumps::libraries::loaded;
 

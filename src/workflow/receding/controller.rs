@@ -25,8 +25,7 @@ use crate::workflow::receding::horizon::Horizon;
 use crate::workflow::receding::iteration::{Iteration, Residual};
 use crate::workflow::receding::layout::{Between, places};
 use crate::workflow::receding::program::Program;
-use crate::workflow::receding::state::Predicted;
-use crate::workflow::receding::state::Source;
+use crate::workflow::receding::state::{Predicted, Source};
 use std::hash::Hash;
 
 /// The barrier parameter, as a part of the weight of inputs.

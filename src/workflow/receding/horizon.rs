@@ -13,8 +13,7 @@ use crate::ipopt::{IpoptError, Options, StartingPoint, Status, interrupt, solve}
 use crate::model::{Model, System, Time};
 use crate::nlp::Nlp;
 use crate::workflow::error::WorkflowError;
-use crate::workflow::motion::Iterate;
-use crate::workflow::motion::discrete_trajectory;
+use crate::workflow::motion::{Iterate, discrete_trajectory};
 use crate::workflow::optimise::optimise;
 use crate::workflow::optimum::SolveLimits;
 use crate::workflow::receding::program::Program;
@@ -53,8 +52,8 @@ pub struct Horizon {
 }
 
 impl Horizon {
-    /// Of an optimal motion of a problem with a momentum at its start, whose goal is held by `rest` voltages, by source: the horizon has a number of
-    /// intervals, each as long as those of the motion. Integrals are not offered: lasting forces of an observer do their work.
+    /// Creates the horizon of a reference motion, with a number of intervals as long as those of the motion. `momentum`: initial momentum; `rest`:
+    /// voltages that hold the goal, by source. Integrals are not offered: constant disturbances of an observer do their work.
     ///
     /// # Errors
     /// There is none.

@@ -229,7 +229,7 @@ impl<'a> Design<'a> {
                 .view((0, 0), (coordinates, coordinates))
                 .into_owned(),
             gain: DMatrix::zeros(u, size),
-            // Forces that last are not integrated beside.
+            // Integral states have no constant-disturbance input.
             by_forces: by_forces.clone(),
             lasting: None,
         }
