@@ -18,7 +18,7 @@ ROOT = Path(__file__).resolve().parent.parent
 GUARD = ROOT / "target/guard"
 BASE = GUARD / "base"
 # What says how long a run took, by which program and where.
-LEFT_OUT = {"seconds", "versions", "interval_microseconds", "command", "input", "memory", "created"}
+LEFT_OUT = {"seconds", "versions", "interval_microseconds", "microseconds", "command", "input", "memory", "created"}
 TIMED = (
     "elephant_trunk elephant_trunk_effort elephant_trunk_constant pair pair_time pair_receding swing_up codesign_pair "
     "fe_bending_control fe_trunk bending_actuator recorded_pair"
