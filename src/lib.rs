@@ -92,6 +92,8 @@ pub mod report;
 pub mod sensitivity;
 #[cfg_attr(not(internals), doc(hidden))]
 pub mod sparse;
+#[cfg_attr(not(internals), doc(hidden))]
+pub mod stop;
 #[cfg(feature = "cli")]
 #[cfg_attr(not(internals), doc(hidden))]
 pub mod study;

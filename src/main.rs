@@ -17,7 +17,7 @@ use clap::{CommandFactory, Parser};
 use clap_complete::Shell;
 use proboscis::app::{self, CommandError, CommandInput, CommandOutput, Template};
 use proboscis::files::{lines, message, note, printable_json};
-use proboscis::ipopt::interrupt;
+use proboscis::stop;
 use proboscis::study::study;
 use proboscis::sweep::sweep;
 use tracing::Level;
@@ -31,7 +31,7 @@ const NAME: &str = "proboscis";
 fn main() -> ExitCode {
     #[cfg(target_os = "linux")]
     one_core::end();
-    let kept = interrupt::outlive_file_limit();
+    let kept = stop::outlive_file_limit();
     let arguments = match Arguments::try_parse() {
         Ok(arguments) => arguments,
         Err(other) => return helped(&other),
@@ -141,18 +141,18 @@ fn answer(command: Command) -> Result<CommandOutput, CommandError> {
             ..input.request()
         }),
         Command::Check { input, max_seconds } => {
-            interrupt::install(tell);
+            stop::install(tell);
             app::check(&CommandInput {
                 max_seconds,
                 ..input.request()
             })
         }
         Command::Study(variants) => {
-            interrupt::install(tell);
+            stop::install(tell);
             study(&variants.request())
         }
         Command::Sweep(variants) => {
-            interrupt::install(tell);
+            stop::install(tell);
             sweep(&variants.request())
         }
         Command::Report { results, output } => app::compare(&typed(), &results, &output),
@@ -210,7 +210,7 @@ fn output_of(
     request: &CommandInput,
     run: impl FnOnce(&CommandInput) -> Result<CommandOutput, CommandError>,
 ) -> Result<CommandOutput, CommandError> {
-    interrupt::install(tell);
+    stop::install(tell);
     let output = match run(request) {
         // What was found is told in the summary, which is written.
         Err(error @ (CommandError::NoEquilibrium { .. } | CommandError::Unsolved { .. }))

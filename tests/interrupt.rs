@@ -10,15 +10,17 @@ use std::{env, thread};
 
 use common::programs::{HS071_START, hs071};
 use common::signals::Listening as _;
-use proboscis::ipopt::{Options, StartingPoint, Status, interrupt, solve};
+use proboscis::ipopt::{Options, StartingPoint, solve};
+use proboscis::nlp::Status;
+use proboscis::stop;
 
 /// Run in a process of its own by the next test: solves until interrupted, then waits for the second Ctrl-C.
 #[test]
 #[ignore = "part of another test"]
 fn solves_until_interrupted() {
-    interrupt::install(|words| println!("{words}"));
-    interrupt::install(|_| panic!("only the first one counts"));
-    assert!(!interrupt::requested());
+    stop::install(|words| println!("{words}"));
+    stop::install(|_| panic!("only the first one counts"));
+    assert!(!stop::requested());
     println!("\nready");
     let start = StartingPoint {
         x: HS071_START.to_vec(),
@@ -36,7 +38,7 @@ fn solves_until_interrupted() {
             break;
         }
     }
-    assert!(interrupt::requested());
+    assert!(stop::requested());
     println!("\nstopped");
     // Until the second one, or until nobody waits for it.
     io::copy(&mut io::stdin().lock(), &mut io::sink()).expect("an input without an end");

@@ -6,7 +6,7 @@ use std::thread::{self, JoinHandle};
 use std::time::{Duration, Instant};
 
 use proboscis::app::{CommandError, CommandOutput, Reached};
-use proboscis::ipopt::interrupt::{self, StopRequest};
+use proboscis::stop::{self, StopRequest};
 use proboscis::workflow::parallel_map;
 use pyo3::exceptions::PyKeyboardInterrupt;
 use pyo3::prelude::*;
@@ -107,7 +107,7 @@ pub(crate) fn supervised(
     let (go_on, wait) = mpsc::channel::<()>();
     let (request_to_stop, is_observed) = (stop.clone(), observer.is_some());
     let work = move || {
-        interrupt::listen(&request_to_stop);
+        stop::listen(&request_to_stop);
         // `tell` ends with this thread, and with it the waiting of the other one.
         let ended = tell;
         work(&mut |reached| {

@@ -6,7 +6,7 @@ use std::sync::mpsc::{self, Sender};
 
 use numpy::{IntoPyArray, PyArray1, PyReadonlyArray1};
 use proboscis::app::{FileHorizon, SiController};
-use proboscis::ipopt::interrupt::{self, StopRequest};
+use proboscis::stop::{self, StopRequest};
 use proboscis::workflow::parallel_map;
 use pyo3::prelude::*;
 
@@ -35,7 +35,7 @@ impl Controller {
         let stop = StopRequest::default();
         let request = stop.clone();
         let work = move || {
-            interrupt::listen(&request);
+            stop::listen(&request);
             let horizon = match FileHorizon::new(&input, Some(&text), intervals) {
                 Ok(horizon) => horizon,
                 Err(mistake) => {

@@ -7,8 +7,8 @@ use std::sync::mpsc::{self, Receiver, RecvTimeoutError, Sender};
 use numpy::{IntoPyArray, PyArray1, PyReadonlyArray1};
 use proboscis::Nlp;
 use proboscis::app::with_program;
-use proboscis::ipopt::interrupt::{self, StopRequest};
 use proboscis::nlp::{Bounds, Entries};
+use proboscis::stop::{self, StopRequest};
 use proboscis::workflow::parallel_map;
 use pyo3::prelude::*;
 
@@ -99,7 +99,7 @@ impl Program {
         let stop = StopRequest::default();
         let request = stop.clone();
         let work = move || {
-            interrupt::listen(&request);
+            stop::listen(&request);
             let failed = tell.clone();
             let ended = with_program(&input, &text, move |program, start| {
                 let (n, m) = (start.len(), program.constraints().lower.len());

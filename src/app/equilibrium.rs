@@ -16,11 +16,11 @@ use crate::control::problem::{AtRest, Task};
 use crate::dynamics::trajectory::Observations;
 use crate::dynamics::{UNSTABLE, observations};
 use crate::files::{Loaded, driven_voltages, read_problem, read_system};
-use crate::ipopt::interrupt;
 use crate::model::{Model, Response, System};
 use crate::report::file_set::FileSet;
 use crate::report::skins::Skins;
 use crate::report::{Run, write_still};
+use crate::stop;
 use crate::tasks::{self, EquilibriumResult, EquilibriumTaskError};
 use crate::workflow::effects::Plan;
 use crate::workflow::remark::phase;
@@ -82,7 +82,7 @@ pub(super) fn at(
 ) -> Result<CommandOutput, CommandError> {
     let read = began.elapsed().as_secs_f64();
     let left = |seconds| seconds - read;
-    let watch = interrupt::watch(request.max_seconds.map(left));
+    let watch = stop::watch(request.max_seconds.map(left));
     if let Some(points) = task.path {
         return path::follow((request, asked), system, task, points, began);
     }

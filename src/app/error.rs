@@ -8,7 +8,7 @@ use thiserror::Error;
 
 use crate::files::SceneError;
 use crate::files::urdf::UrdfError;
-use crate::ipopt::Status;
+use crate::nlp::Status;
 use crate::report::atomic::WriteError;
 use crate::workflow::WorkflowError;
 

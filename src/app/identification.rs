@@ -11,9 +11,10 @@ use crate::app::summary::Summary;
 use crate::control::problem;
 use crate::files::Loaded;
 use crate::identify::{Ended, Identified, IdentifyError, found_starts, identify};
-use crate::ipopt::{Status, interrupt};
+use crate::nlp::Status;
 use crate::report::file_set::FileSet;
 use crate::report::table::cells_csv;
+use crate::stop;
 use crate::workflow::remark::phase;
 use std::time::Instant;
 
@@ -25,7 +26,7 @@ pub(super) fn run(
     began: Instant,
 ) -> Result<CommandOutput, CommandError> {
     let read = began.elapsed().as_secs_f64();
-    let watch = interrupt::watch(request.max_seconds.map(|seconds| seconds - read));
+    let watch = stop::watch(request.max_seconds.map(|seconds| seconds - read));
     phase("fitting");
     let found = identify(&loaded.system, task, &mut |fit, grid| {
         tracing::debug!(intervals = ?grid.intervals, sum = fit.sum(), "fitted");
@@ -34,7 +35,7 @@ pub(super) fn run(
     let starts = found_starts(&loaded.system, task, &found);
     let starts = starts.map_err(|error| refused(request, &error))?;
     let is_complete = found.fit.ended == Ended::Converged && found.bias.is_confirmed;
-    let stopped = interrupt::stop().filter(|_| !is_complete);
+    let stopped = stop::reason().filter(|_| !is_complete);
     drop(watch);
     let folder = make_folder_of(request)?;
     let writing = Instant::now();
@@ -78,7 +79,7 @@ fn is_solved(found: &Identified) -> bool {
 
 fn refused(request: &CommandInput, error: &IdentifyError) -> CommandError {
     // What is interrupted may end in other errors too.
-    if let Some(status) = interrupt::stop() {
+    if let Some(status) = stop::reason() {
         return CommandError::Stopped(status);
     }
     let place = match error {

@@ -5,10 +5,10 @@ use std::time::Instant;
 use crate::app::fields;
 use crate::app::request::CommandInput;
 use crate::app::summary::{MEASURED, Summary};
-use crate::ipopt::Status;
-use crate::ipopt::interrupt::TimeLimit;
 use crate::model::Model;
+use crate::nlp::Status;
 use crate::report::file_set::FileSet;
+use crate::stop::TimeLimit;
 use crate::workflow::effects::Plan;
 
 /// Files that an earlier result of the folder may have.

@@ -20,8 +20,8 @@ use crate::dynamics::{
     Continuation, DiscreteTrajectory, Equilibrium, Instability, Reading, continuation,
     observations, out_of_domain,
 };
-use crate::ipopt::{Status, interrupt};
 use crate::model::{Model, Role, System};
+use crate::nlp::Status;
 use crate::report::atomic::WriteError;
 use crate::report::axes::{Axis, Extent};
 use crate::report::file_set::FileSet;
@@ -30,6 +30,7 @@ use crate::report::origin::Origin;
 use crate::report::skins::Skins;
 use crate::report::style::Dash;
 use crate::report::{Branch, PageContent, Run, style, write_still};
+use crate::stop;
 use crate::tasks::equilibrium::model_at_rest;
 use crate::workflow::domain;
 use crate::workflow::remark::phase;
@@ -51,7 +52,7 @@ pub(super) fn follow(
         Ok(found) => found,
         Err(error) => return refused(request, &error, "no equilibrium to start from"),
     };
-    let stopped = interrupt::stop();
+    let stopped = stop::reason();
     let folder = make_folder_of(request)?;
     let origin = request.origin(false);
     let path = EquilibriumPath::new(&model, &found);

@@ -15,14 +15,14 @@ use crate::control::problem::{Afterwards, Simulation, Voltages};
 use crate::dynamics::trajectory::{Observations, Trajectory};
 use crate::dynamics::{DiscreteTrajectory, LocalError, observed};
 use crate::files::Loaded;
-use crate::ipopt::interrupt;
-use crate::ipopt::interrupt::TimeLimit;
 use crate::math::{join, shortest};
 use crate::model::Model;
 use crate::report::atomic::WriteError;
 use crate::report::file_set::FileSet;
 use crate::report::origin::Origin;
 use crate::report::write_run;
+use crate::stop;
+use crate::stop::TimeLimit;
 use crate::tasks::{Assessment, SimulationRequest, SimulationResult};
 use crate::workflow::closed_loop::DisturbedLoop;
 use crate::workflow::effects::Plan;
@@ -227,7 +227,7 @@ fn observe(
                 fields::write(files, model, discrete, origin)
             };
             let assess = || {
-                let _watch = interrupt::watch_by(limit.clone());
+                let _watch = stop::watch_by(limit.clone());
                 ended.assess(&run.loaded.system, run.task, &trajectory)
             };
             let (written, assessment) = join(write, assess);

@@ -18,12 +18,12 @@ use crate::control::problem::{Control, Regulator};
 use crate::dynamics::observations;
 use crate::files::Loaded;
 use crate::files::problem::output::Output;
-use crate::ipopt::interrupt;
 use crate::model::System;
 use crate::report::atomic::WriteError;
 use crate::report::file_set::FileSet;
 use crate::report::origin::Origin;
 use crate::report::{Run, sensitivities, write_run};
+use crate::stop;
 use crate::tasks::{self, SolveResult};
 use crate::workflow::effects::Plan;
 use crate::workflow::motion::{solved, trajectory};
@@ -112,7 +112,7 @@ pub(super) fn write_result(
     solution_file::add(&mut files, &optimum.model, &optimum.motion)?;
     let (limit, kept) = (time_to_write(request, began), files.count());
     files.limit(&limit);
-    let watch = interrupt::watch_by(limit.clone());
+    let watch = stop::watch_by(limit.clone());
     let shown = ((control, feedback), result, output);
     if let Err(error) = write_files((request, asked), shown, &mut summary, &mut files) {
         let status = limit.reached().ok_or(error)?;

@@ -37,7 +37,7 @@ pub fn simulate(request: &CommandInput) -> Result<CommandOutput, CommandError> {
 }
 
 /// Like [`run`], with the problem given as `text`; the path is then used for messages and relative paths. `observer` receives every iteration of a
-/// solve and every step of a simulation. To stop it, use a [request](crate::ipopt::interrupt::StopRequest).
+/// solve and every step of a simulation. To stop it, use a [request](crate::stop::StopRequest).
 ///
 /// # Errors
 /// As of [`run`].

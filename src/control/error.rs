@@ -1,8 +1,8 @@
 //! Errors of control problems that are not well posed.
 
 use crate::dynamics::{BeyondLaw, EquilibriumError};
-use crate::ipopt::Status;
 use crate::model::ModelError;
+use crate::nlp::Status;
 use thiserror::Error;
 
 /// A control problem is not well posed.

@@ -29,9 +29,10 @@ use crate::control::limits::Limits;
 use crate::control::problem::{BoundaryState, Control, PathConstraint};
 use crate::control::transcription::Transcription;
 use crate::dynamics::{DiscreteTrajectory, Start};
-use crate::ipopt::{Multipliers, StartingPoint};
+use crate::ipopt::StartingPoint;
 use crate::math::Signal;
 use crate::model::{Constant, Model, Parameter, Quantity, Role, System};
+use crate::nlp::Multipliers;
 use crate::nlp::Nlp;
 
 /// A state of rest whose coordinates are unknowns.

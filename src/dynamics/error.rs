@@ -2,7 +2,8 @@
 
 use crate::dynamics::equilibrium::{Equilibrium, Instability, Load};
 use crate::dynamics::singular_configurations::{BeyondLaw, NOTHING};
-use crate::ipopt::{Status, interrupt};
+use crate::nlp::Status;
+use crate::stop;
 use thiserror::Error;
 
 /// A step forward in time failed and was not accepted.
@@ -218,12 +219,12 @@ impl EquilibriumError {
     /// # Errors
     /// It is to stop.
     pub(super) fn heed_stops() -> Result<(), Self> {
-        interrupt::stop().map_or(Ok(()), |status| Err(Self::Stopped(status)))
+        stop::reason().map_or(Ok(()), |status| Err(Self::Stopped(status)))
     }
 
     /// The stop, where this thread was to stop: a way that was stopped ends like one that leads nowhere.
     pub(super) fn unless_stopped(self) -> Self {
-        interrupt::stop().map_or(self, Self::Stopped)
+        stop::reason().map_or(self, Self::Stopped)
     }
 }
 

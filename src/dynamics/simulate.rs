@@ -15,7 +15,7 @@ const AT_JUMPS: f64 = 1e-3;
 
 /// Integrates `steps` steps of `h` ms under the voltages of a drive.
 ///
-/// After each step `observer` sees the motion so far and may end it; so may a [watch](crate::ipopt::interrupt::watch), within a
+/// After each step `observer` sees the motion so far and may end it; so may a [watch](crate::stop::watch), within a
 /// step too.
 ///
 /// The trajectory ends where a step fails; the error says why.

@@ -4,10 +4,10 @@ use crate::dynamics::error::StepError;
 use crate::dynamics::step_matrix::StepMatrix;
 use crate::dynamics::stepper::{Equations, Steps};
 use crate::functional::Order;
-use crate::ipopt::Status;
-use crate::ipopt::interrupt::{self, TimeLimit};
 use crate::math::join::available;
 use crate::model::Model;
+use crate::nlp::Status;
+use crate::stop::{self, TimeLimit};
 use std::time::Instant;
 
 /// Bytes of factors for each unknown of a block of `MEASURED` unknowns; they grow with the cube root of the number.
@@ -33,7 +33,7 @@ impl<E: Equations> Steps<E> {
     /// Takes the tangent evaluated last, and factorises it where it is solved so.
     pub(super) fn factor(&mut self, h: f64) -> Result<(), StepError> {
         let began = Instant::now();
-        let limit = interrupt::limit();
+        let limit = stop::limit();
         let reached = || limit.as_ref().and_then(TimeLimit::reached);
         let values = self.equations.values();
         let done = self.updates.factor_unless(values, &|| reached().is_some());
@@ -90,7 +90,7 @@ impl<E: Equations> Steps<E> {
     /// Solves for an update; `None` where the iteration does not converge.
     fn solve_once(&mut self, h: f64) -> Result<Option<f64>, StepError> {
         let began = Instant::now();
-        let limit = interrupt::limit();
+        let limit = stop::limit();
         let reached = || limit.as_ref().and_then(TimeLimit::reached);
         let solved = self
             .updates
@@ -112,7 +112,7 @@ impl<E: Equations> Steps<E> {
 
     /// Brings potentials that are far from Gauss's law to it before anything moves; returns true if it did so.
     pub(super) fn place_potentials(&mut self, h: f64) -> Result<bool, StepError> {
-        let limit = interrupt::limit();
+        let limit = stop::limit();
         let reached = || limit.as_ref().and_then(TimeLimit::reached);
         let Some(grids) = self.updates.matrix.grids_mut() else {
             return Ok(false);

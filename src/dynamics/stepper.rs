@@ -12,8 +12,9 @@ use crate::dynamics::step_matrix::StepMatrix;
 use crate::dynamics::step_state::StepperReport;
 use crate::dynamics::updates::Updates;
 use crate::functional::{NodeBlocks, Order};
-use crate::ipopt::{Status, interrupt};
 use crate::model::Model;
+use crate::nlp::Status;
+use crate::stop;
 use std::time::Instant;
 
 /// Limit of Newton iterations in one step.
@@ -268,7 +269,7 @@ impl<E: Equations> Steps<E> {
 
     /// Returns an error if it is time to stop.
     fn go_on(&mut self, h: f64) -> Result<(), StepError> {
-        match interrupt::stop() {
+        match stop::reason() {
             Some(status) => Err(self.stopped(h, status)),
             None => Ok(()),
         }

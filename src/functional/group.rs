@@ -6,8 +6,8 @@ use crate::functional::slots::Slots;
 use crate::functional::{
     Coupling, Horizon, Kernel, Order, Output, Sample, Scatter, Term, TermKind, slots,
 };
-use crate::ipopt::interrupt;
 use crate::math::{Derivatives, Vector, has_pool, join};
+use crate::stop;
 use rayon::prelude::*;
 use std::fmt;
 use std::ops::Range;
@@ -300,7 +300,7 @@ impl<K: Kernel> Term for Group<K> {
         let is_free =
             K::BY_DURATION && sample.horizon == Horizon::Free && self.site == Site::Intervals;
         let is_at_nodes = out.plain.nodes.is_some();
-        let goes_on = || !(is_at_nodes && interrupt::stop().is_some());
+        let goes_on = || !(is_at_nodes && stop::reason().is_some());
         let is_whole = self.each(order, sample, slots, goes_on, |element, places, storage| {
             if let Some(nodes) = out
                 .plain

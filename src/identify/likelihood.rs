@@ -9,8 +9,8 @@ use crate::identify::error::IdentifyError;
 use crate::identify::fit::Fit;
 use crate::identify::information::Information;
 use crate::identify::prediction::{Grid, predict};
-use crate::ipopt::interrupt;
 use crate::model::System;
+use crate::stop;
 use nalgebra::{DMatrix, DVector};
 
 /// Part of half an interval that has to lie within the bounds.
@@ -52,7 +52,7 @@ impl Rises {
         for j in 0..task.parameters.len() {
             let half = information.half(j);
             let is_known = information.is_determined[j] && half > 0.0;
-            if !is_known || interrupt::stop().is_some() {
+            if !is_known || stop::reason().is_some() {
                 out.push([None; 2]);
                 continue;
             }

@@ -11,8 +11,8 @@ use crate::identify::prediction::{Grid, count_of_start};
 use crate::identify::residuals::{Data, Series};
 use crate::identify::setup::Setup;
 use crate::identify::unknowns::Unknowns;
-use crate::ipopt::interrupt;
 use crate::model::{Model, System, check_parameters};
+use crate::stop;
 use nalgebra::{DMatrix, DVector};
 use statrs::distribution::{ChiSquared, ContinuousCDF};
 
@@ -299,7 +299,7 @@ fn refined(
         bias.changes.fill(0.0);
     }
     while !bias.is_confirmed && bias.halvings < HALVINGS {
-        if interrupt::stop().is_some() {
+        if stop::reason().is_some() {
             break;
         }
         let finer = grid.halved();

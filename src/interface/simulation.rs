@@ -7,10 +7,10 @@ use crate::interface::error::{Error, Result, require, source};
 use crate::interface::handle::{Handle, Input};
 use crate::interface::motion::Motion;
 use crate::interface::state::State;
-use crate::ipopt::interrupt;
 use crate::math::Signal;
 use crate::model::components::Load;
 use crate::model::{Model, System};
+use crate::stop;
 use crate::tasks::{self, SimulationRequest};
 use crate::workflow::Simulated;
 use std::ops::ControlFlow;
@@ -72,13 +72,12 @@ impl Simulation {
     ///
     /// # Errors
     /// System or simulation make no sense, a step fails, or Ctrl-C is pressed where
-    /// [`interrupt`](crate::ipopt::interrupt) listens.
+    /// [`interrupt`](crate::stop) listens.
     pub fn run(&self, system: &System) -> Result<Motion> {
         let system = &system.checked()?;
         let task = self.resolve(system)?;
         let request = SimulationRequest::default();
-        let go_on = &mut |_: usize, _: &Model, _: &DiscreteTrajectory| match interrupt::requested()
-        {
+        let go_on = &mut |_: usize, _: &Model, _: &DiscreteTrajectory| match stop::requested() {
             true => ControlFlow::Break(()),
             false => ControlFlow::Continue(()),
         };

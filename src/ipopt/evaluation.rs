@@ -4,13 +4,13 @@ use std::mem;
 use std::ops::ControlFlow;
 use std::time::Instant;
 
-use crate::ipopt::interrupt::{self, Watch};
 use crate::ipopt::iterate::{Before, Reached, Record};
 use crate::ipopt::session;
 use crate::ipopt::solution::Iteration;
-use crate::ipopt::squares::Squares;
-use crate::ipopt::status::Status;
+use crate::nlp::Status;
+use crate::nlp::squares::Squares;
 use crate::nlp::{Entries, Nlp};
+use crate::stop::{self, Watch};
 
 /// Answers the questions of Ipopt about one nonlinear program.
 ///
@@ -60,7 +60,7 @@ impl<'a> Evaluator<'a> {
         Self {
             asked,
             began: Instant::now(),
-            _watch: interrupt::watch(max_seconds),
+            _watch: stop::watch(max_seconds),
             record,
         }
     }
@@ -203,7 +203,7 @@ impl<'a> Evaluator<'a> {
 
     /// Returns true if it is time to stop, and remembers that.
     fn is_stopped(&mut self) -> bool {
-        self.record.stopped = self.record.stopped.or_else(interrupt::stop);
+        self.record.stopped = self.record.stopped.or_else(stop::reason);
         self.record.stopped.is_some()
     }
 

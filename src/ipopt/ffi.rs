@@ -15,7 +15,8 @@ use crate::ipopt::declarations::{
 };
 use crate::ipopt::evaluation::Evaluator;
 use crate::ipopt::option_value::OptionValue;
-use crate::ipopt::solution::{Iteration, Multipliers};
+use crate::ipopt::solution::Iteration;
+use crate::nlp::Multipliers;
 use crate::nlp::{Bounds, Entries};
 use crate::sparse::mumps::{self, Exclusive};
 

@@ -1,9 +1,10 @@
 //! An iterate as an observer sees it, and the data of the one before.
 
-use crate::ipopt::solution::{Evaluations, Iteration, Multipliers, Seconds};
-use crate::ipopt::squares::Squares;
-use crate::ipopt::status::Status;
+use crate::ipopt::solution::{Evaluations, Iteration, Seconds};
 use crate::nlp::Bounds;
+use crate::nlp::Multipliers;
+use crate::nlp::Status;
+use crate::nlp::squares::Squares;
 
 /// An accepted iterate.
 #[derive(Debug)]

@@ -6,8 +6,8 @@
 mod declarations;
 mod evaluation;
 mod ffi;
-pub mod interrupt;
 mod iterate;
+mod linear_report;
 mod loaded;
 mod ma57_adapter;
 mod option_value;
@@ -15,8 +15,6 @@ mod options;
 mod session;
 mod solution;
 mod solver;
-mod squares;
-mod status;
 mod warm_start_centring;
 
 use std::ops::ControlFlow;
@@ -24,18 +22,16 @@ use std::ops::ControlFlow;
 use crate::nlp::Nlp;
 
 pub use iterate::{Before, Reached};
+pub use linear_report::{LinearReport, StagesReport};
 #[doc(hidden)]
 pub use ma57_adapter::functions_of_ma57;
 pub use option_value::OptionValue;
 pub use option_value::{NoStages, VERSION};
 pub use options::LinearSolver;
 pub use options::{MUMPS_ORDERING, Options, Start};
-pub use solution::{Evaluations, Iteration, Multipliers, Seconds, SolverResult, StartingPoint};
+pub use solution::{Evaluations, Iteration, Seconds, SolverResult, StartingPoint};
 pub use solver::IpoptError;
 pub use solver::Solver;
-pub(crate) use squares::{InSquares, Squares};
-pub use status::Status;
-pub use status::{LinearReport, StagesReport};
 
 /// Solves `nlp` from `start`, once: see [`Solver::solve`].
 ///

@@ -9,10 +9,11 @@ use std::ffi::c_int;
 use std::panic::{AssertUnwindSafe, catch_unwind};
 use std::time::Instant;
 
-use crate::ipopt::interrupt::{self, TimeLimit};
-use crate::ipopt::status::{StagesReport, Status};
+use crate::ipopt::linear_report::StagesReport;
 use crate::kkt::{Inertia, Plan, Solver, Stopped, Unknown};
+use crate::nlp::Status;
 use crate::nlp::{Bounds, Stage};
+use crate::stop::{self, TimeLimit};
 
 thread_local! {
     static CURRENT: RefCell<Option<Session>> = const { RefCell::new(None) };
@@ -100,7 +101,7 @@ impl Session {
             None => {
                 self.report.analyses += 1;
                 let (rows, cols): (Vec<_>, Vec<_>) = from_zero(rows).zip(from_zero(cols)).unzip();
-                let limit = interrupt::limit();
+                let limit = stop::limit();
                 let is_over = || limit.as_ref().and_then(TimeLimit::reached).is_some();
                 let of_unknowns = unknowns.map(Vec::as_slice);
                 match Plan::new_unless(order, &rows, &cols, of_unknowns, &is_over) {
@@ -109,7 +110,7 @@ impl Session {
                         unknowns: unknowns.cloned(),
                     },
                     Err(Stopped) => {
-                        self.report.stopped = interrupt::stop();
+                        self.report.stopped = stop::reason();
                         return None;
                     }
                 }
@@ -123,7 +124,7 @@ impl Session {
     ///
     /// Ipopt 3.11 repeats its request for ever if a matrix with NaN is reported as singular: the factorisation of such a matrix fails.
     pub(super) fn factor(&mut self, entries: &[f64], tolerance: f64) -> Option<Inertia> {
-        self.report.stopped = self.report.stopped.or_else(interrupt::stop);
+        self.report.stopped = self.report.stopped.or_else(stop::reason);
         if self.report.stopped.is_some() || !entries.iter().all(|entry| entry.is_finite()) {
             return None;
         }
@@ -133,11 +134,11 @@ impl Session {
             solver.improve();
         }
         self.tolerance = tolerance;
-        let limit = interrupt::limit();
+        let limit = stop::limit();
         let is_over = || limit.as_ref().and_then(TimeLimit::reached).is_some();
         let factored = solver.factor_unless(entries, &is_over);
         if factored.is_err() {
-            self.report.stopped = interrupt::stop();
+            self.report.stopped = stop::reason();
         }
         let seconds = began.elapsed().as_secs_f64();
         self.report.factorisation += seconds;

@@ -9,15 +9,16 @@ use crate::ipopt::evaluation::{Asked, Evaluator, Structures};
 use crate::ipopt::ffi::Problem;
 use crate::ipopt::iterate::{Reached, Record};
 use crate::ipopt::option_value::{NoStages, OptionValue};
+use crate::ipopt::options;
 use crate::ipopt::options::{Options, Start};
 use crate::ipopt::session::Session;
 use crate::ipopt::solution::{Iteration, SolverResult, StartingPoint};
-use crate::ipopt::squares::{InSquares, Squares};
-use crate::ipopt::status::Status;
 use crate::ipopt::warm_start_centring::centre;
-use crate::ipopt::{interrupt, options};
+use crate::nlp::Status;
+use crate::nlp::squares::{InSquares, Squares};
 use crate::nlp::{Bounds, Entries, Nlp};
 use crate::sparse::mumps;
+use crate::stop;
 use std::ops::ControlFlow;
 use std::{fmt, mem};
 use thiserror::Error;
@@ -201,7 +202,7 @@ impl<N: Nlp> Solver<N> {
         evaluator.end();
         // MUMPS is there for others until the next solve.
         self.problem = self.session.is_some().then_some(problem);
-        let _unwatched = interrupt::unwatched();
+        let _unwatched = stop::unwatched();
         let within = stages.and_then(|stages| stages.stopped);
         let stopped = self.record.stopped.or(within);
         let status = Status::from_code(code);

@@ -13,7 +13,7 @@
 //! a range.
 
 use crate::ipopt::evaluation::Structures;
-use crate::ipopt::solution::Multipliers;
+use crate::nlp::Multipliers;
 use crate::nlp::{Bounds, Nlp};
 
 /// Range of the barrier parameter.

@@ -11,9 +11,9 @@ use std::{fs, thread};
 
 use tempfile::NamedTempFile;
 
-use crate::ipopt::interrupt::TimeLimit;
 use crate::math::Stopped;
 use crate::report::atomic::{self, WriteError};
+use crate::stop::TimeLimit;
 
 /// Files that are brought to the disk at a time: the disk then writes many of them at once.
 const AT_ONCE: usize = 8;

@@ -6,8 +6,8 @@ use crate::control::{
     Solution, Transcription, guess, rest_at,
 };
 use crate::dynamics::Equilibrium;
-use crate::ipopt::Multipliers;
 use crate::model::{Model, Parameter, Role, System};
+use crate::nlp::Multipliers;
 use crate::nlp::Nlp;
 use crate::sensitivity::active_set::{Held, Place};
 use crate::sensitivity::check::NoSensitivity;

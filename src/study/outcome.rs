@@ -10,8 +10,8 @@ use crate::app::CommandError;
 use crate::control::problem::{AtRest, Control, Simulation, Task, Voltages};
 use crate::dynamics::trajectory::{Observations, Trajectory};
 use crate::dynamics::{EquilibriumError, observations, simulate, stable_equilibrium};
-use crate::ipopt::interrupt;
 use crate::model::Model;
+use crate::stop;
 use crate::study::measure::StudyMeasure;
 use crate::study::read::StudyPoint;
 use crate::workflow::{
@@ -147,7 +147,7 @@ fn motion(
 ) -> (RunOutcome, Option<Observed>) {
     let mut interrupted = false;
     let found = integrate(&point.loaded.system, task, |_, _| {
-        interrupted = interrupt::requested();
+        interrupted = stop::requested();
         match interrupted {
             true => ControlFlow::Break(()),
             false => ControlFlow::Continue(()),

@@ -4,7 +4,7 @@
 use indicatif::ProgressBar;
 
 use crate::app::{ProgressDisplay, progress_bar};
-use crate::ipopt::interrupt;
+use crate::stop;
 use crate::study::outcome::{INTERRUPTED, Observed, RunOutcome, run};
 use crate::study::read::{Reference, Study, StudyPoint};
 
@@ -54,7 +54,7 @@ fn extra(study: &Study) -> &[StudyPoint] {
 pub(super) fn look<'a>(study: &'a Study, bar: &ProgressBar) -> Results<'a> {
     let look = |name: &str, point: &'a StudyPoint| {
         bar.set_message(format!("{name}, {}", point.label));
-        let (first, seen) = match interrupt::requested() {
+        let (first, seen) = match stop::requested() {
             true => (not_run(), None),
             false => run(point, Some(&study.markers)),
         };
@@ -76,7 +76,7 @@ pub(super) fn look<'a>(study: &'a Study, bar: &ProgressBar) -> Results<'a> {
     Results {
         methods,
         reference,
-        is_interrupted: interrupt::requested(),
+        is_interrupted: stop::requested(),
     }
 }
 
@@ -92,7 +92,7 @@ pub(super) fn time(study: &Study, results: &mut Results<'_>, runs: usize, bar: &
     for done in results.methods.iter_mut().flatten() {
         done.seconds.sort_by(f64::total_cmp);
     }
-    results.is_interrupted = interrupt::requested();
+    results.is_interrupted = stop::requested();
 }
 
 fn not_run() -> RunOutcome {
@@ -107,7 +107,7 @@ fn not_run() -> RunOutcome {
 impl Done<'_> {
     /// One timed run, of a point that has an answer.
     fn time(&mut self, name: &str, bar: &ProgressBar) {
-        if self.first.is_solved && !interrupt::requested() {
+        if self.first.is_solved && !stop::requested() {
             bar.set_message(format!("{name}, {}", self.point.label));
             let (ended, _) = run(self.point, None);
             if ended.is_solved {

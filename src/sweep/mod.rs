@@ -22,10 +22,10 @@ use crate::app::{
     check_run_in, make_folder, run_all,
 };
 use crate::ipopt;
-use crate::ipopt::interrupt;
 use crate::report::origin::Origin;
 use crate::report::table::cells_csv;
 use crate::report::{Figures, atomic};
+use crate::stop;
 use crate::sweep::read::{Sweep, Variant, read_sweep};
 use crate::sweep::variant_record::VariantRecord;
 
@@ -218,7 +218,7 @@ fn command_output(
     let own = ends.iter().enumerate();
     let mut own = own.filter(|(index, _)| shard.has(*index));
     let is_complete = own.all(|(_, end)| !end.is_unfinished());
-    if interrupt::requested() {
+    if stop::requested() {
         notes.push("interrupted; the same command goes on".to_owned());
     }
     let before = match before.found {

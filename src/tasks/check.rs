@@ -5,13 +5,14 @@ use crate::control::problem::{
     Voltages,
 };
 use crate::control::{Column, Motion, Motions, Row, Transcription};
-use crate::ipopt::interrupt::TimeLimit;
-use crate::ipopt::{LinearSolver, interrupt};
+use crate::ipopt::LinearSolver;
 use crate::math::{Random, Signal, shortest};
 use crate::mesh::Mesh;
 use crate::model::{Coordinates, Model, System};
 use crate::nlp::differences::{DifferenceVariables, Matrix, WrongEntry};
 use crate::nlp::{Nlp, differences};
+use crate::stop;
+use crate::stop::TimeLimit;
 use crate::workflow::optimum::seconds_left;
 use crate::workflow::prepare_together::{Counted, Prepared, prepare};
 use crate::workflow::resolve::resolve;
@@ -95,7 +96,7 @@ pub fn check(
     if let Task::Motions(motions) = task {
         return all_motions(*motions, seconds);
     }
-    let watch = interrupt::watch(seconds);
+    let watch = stop::watch(seconds);
     let control = as_control(task, system);
     let resolved = resolve(system, &control).map_err(WorkflowError::unless_stopped);
     let (model, boundary) = resolved?;
@@ -113,7 +114,7 @@ pub fn check(
         sizes: &sizes,
     };
     // What is evaluated while it becomes time to stop would be there in part, and seem to be wrong.
-    let limit = interrupt::limit();
+    let limit = stop::limit();
     drop(watch);
     let mut stopped = None;
     let report = differences::check_along(&mut program, &x, along, SEED, || {

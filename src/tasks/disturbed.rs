@@ -1,7 +1,8 @@
 //! Closed loops with parts of their disturbance.
 
 use crate::control::problem::Disturbed;
-use crate::ipopt::{Status, interrupt};
+use crate::nlp::Status;
+use crate::stop;
 use crate::tasks::simulate::{SimulationRequest, SimulationResult, simulate};
 use crate::workflow::WorkflowError;
 use crate::workflow::closed_loop::DisturbedLoop;
@@ -36,7 +37,7 @@ pub fn disturbed(
     if whole.closed_loop.is_none() {
         return Ok(out);
     }
-    let go_on = &mut |_: usize, _: &_, _: &_| match interrupt::stop() {
+    let go_on = &mut |_: usize, _: &_, _: &_| match stop::reason() {
         Some(_) => ControlFlow::Break(()),
         None => ControlFlow::Continue(()),
     };

@@ -8,8 +8,8 @@ use crate::dynamics::{
     self, DiscreteTrajectory, Equilibrium, StabilityLoss, out_of_domain, out_of_range,
     stable_equilibrium,
 };
-use crate::ipopt::interrupt;
 use crate::model::{Model, System};
+use crate::stop;
 use crate::tasks::check::moved_markers;
 use crate::workflow::domain::{self, Outside};
 use crate::workflow::memory::{self, Occasion};
@@ -98,7 +98,7 @@ pub fn equilibrium(
     if let Some((_, fallbacks)) = found.on_grids {
         remarks.warn("multigrid_stalled", infeasible::stalled_warning(fallbacks));
         let is_unknown = found.is_stable().is_none();
-        let undecided = || infeasible::undecided(interrupt::stop());
+        let undecided = || infeasible::undecided(stop::reason());
         remarks.warn("stability_unknown", is_unknown.then(undecided));
     }
     Ok(EquilibriumResult {

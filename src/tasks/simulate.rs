@@ -5,9 +5,10 @@ use crate::dynamics::trajectory::Trajectory;
 use crate::dynamics::{
     DiscreteTrajectory, EnergyExchange, LocalError, local_error_of, out_of_domain, out_of_range,
 };
-use crate::ipopt::{Status, interrupt};
 use crate::math::significant;
 use crate::model::{Model, System};
+use crate::nlp::Status;
+use crate::stop;
 use crate::tasks::check::moved_markers;
 use crate::workflow::accuracy::{Accuracy, AccuracyTarget};
 use crate::workflow::closed_loop::ClosedLoop;
@@ -160,7 +161,7 @@ pub fn simulate(
         begun,
         seconds,
     } = request;
-    let watch = interrupt::watch(seconds);
+    let watch = stop::watch(seconds);
     let (simulated, accuracy) = match wanted {
         None => {
             let (steps, _) = grid(task);
@@ -177,7 +178,7 @@ pub fn simulate(
     };
     // A finer grid that was stopped leaves the motion on the one before as it is.
     let is_early = ends_early(&simulated.discrete, task);
-    let stopped = interrupt::stop().filter(|_| is_early);
+    let stopped = stop::reason().filter(|_| is_early);
     let (closed_loop, without) = match stopped {
         None => closed_loop(system, task, &simulated)?,
         Some(_) => (None, None),
@@ -214,7 +215,7 @@ fn closed_loop(
         })),
         ..task.clone()
     };
-    let open = integrate_on(system, &open, None, |_, _| match interrupt::stop() {
+    let open = integrate_on(system, &open, None, |_, _| match stop::reason() {
         Some(_) => ControlFlow::Break(()),
         None => ControlFlow::Continue(()),
     });
@@ -223,7 +224,7 @@ fn closed_loop(
         open => open?,
     };
     let is_early = ends_early(&open.discrete, task);
-    let stopped = interrupt::stop().filter(|_| is_early);
+    let stopped = stop::reason().filter(|_| is_early);
     let reason =
         stopped.map(|status| format!("it was stopped ({})", status.word().replace('_', " ")));
     let failure = open.failure.map(|failure| failure.to_string());
@@ -232,7 +233,7 @@ fn closed_loop(
     let counts = samples.clone();
     let mut out = ClosedLoop::new(model, counts, discrete, open);
     if let Some(ahead) = &controller.ahead {
-        let _unwatched = interrupt::unwatched();
+        let _unwatched = stop::unwatched();
         out.limits = LoopLimits::new(ahead, (system, task), discrete)?;
     }
     Ok((Some(out), stopped))

@@ -2,9 +2,9 @@
 
 use crate::control::Carried;
 use crate::control::problem::{Control, Hold};
-use crate::ipopt::Status;
 use crate::math::{shortest, significant};
 use crate::model::Model;
+use crate::nlp::Status;
 use crate::workflow::optimum::{Optimum, Restarted};
 use crate::workflow::reasons::Cause;
 use crate::workflow::tracking::{FinalValue, Tracked};

@@ -3,11 +3,13 @@
 use crate::control::problem::{Control, Duration, InCommon};
 use crate::control::{BoundaryConditions, Carried, Costates, Solution, Transcription};
 use crate::dynamics::{DiscreteTrajectory, reversed_muscle};
-use crate::ipopt::{OptionValue, Options, Solver, SolverResult, Status, interrupt};
+use crate::ipopt::{OptionValue, Options, Solver, SolverResult};
 use crate::kinematics::Pose;
 use crate::model::{Coordinates, Model, System};
 use crate::nlp::Nlp;
+use crate::nlp::Status;
 use crate::nlp::joined::{Joined, Places};
+use crate::stop;
 use crate::workflow::active::{Active, Violation, active, violations};
 use crate::workflow::error::WorkflowError;
 use crate::workflow::gap::Gap;
@@ -80,7 +82,7 @@ pub(crate) fn attempt_together(
     observer: &mut dyn FnMut(&Iterate<'_>) -> ControlFlow<()>,
 ) -> Result<FoundTogether, WorkflowError> {
     let began = Instant::now();
-    let watch = interrupt::watch(allowed.seconds);
+    let watch = stop::watch(allowed.seconds);
     phase("building the model, finding start and goal");
     let resolved = resolve_each(asked).map_err(WorkflowError::unless_stopped)?;
     phase("building the program");
@@ -116,7 +118,7 @@ pub(crate) fn attempt_together(
     let solution = solves.recentre(solution)?;
     let (solution, gap) = solves.confirm(solution)?;
     let program = solves.solver.into_program();
-    let cut_short = interrupt::stop().filter(|_| solution.status == Status::Acceptable);
+    let cut_short = stop::reason().filter(|_| solution.status == Status::Acceptable);
     drop(watch);
     let whole = WholeProgram::new(&program, &solution, gap);
     let places = program.places().clone();

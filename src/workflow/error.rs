@@ -6,8 +6,10 @@ use thiserror::Error;
 
 use crate::control::BoundaryError;
 use crate::dynamics::EquilibriumError;
-use crate::ipopt::{IpoptError, Status, interrupt};
+use crate::ipopt::IpoptError;
 use crate::model::ModelError;
+use crate::nlp::Status;
+use crate::stop;
 
 /// Hint at the start of a robot that nothing holds.
 const FLOATS: &str =
@@ -51,7 +53,7 @@ pub enum WorkflowError {
 impl WorkflowError {
     /// The stop, where this thread was to stop: what is cut short may seem wrong.
     pub(crate) fn unless_stopped(self) -> Self {
-        interrupt::stop().map_or(self, Self::Stopped)
+        stop::reason().map_or(self, Self::Stopped)
     }
 
     /// Start or goal of a problem that does not exist; `task` is its key in the file.

@@ -5,8 +5,10 @@ use std::time::Instant;
 
 use crate::control::Solution;
 use crate::control::problem::{Control, Guess, Voltages};
-use crate::ipopt::{SolverResult, Status, interrupt};
+use crate::ipopt::SolverResult;
 use crate::model::System;
+use crate::nlp::Status;
+use crate::stop;
 use crate::workflow::attempt::attempt;
 use crate::workflow::motion::Iterate;
 use crate::workflow::optimum::{Optimum, SolveLimits, seconds_left};
@@ -30,11 +32,11 @@ pub(crate) fn is_unreached(solution: &SolverResult) -> bool {
 
 /// Returns the reason why no further solve may be begun with these seconds left, if there is one.
 pub(crate) fn stopped(left: Option<f64>) -> Option<Status> {
-    if interrupt::requested() {
+    if stop::requested() {
         return Some(Status::Interrupted);
     }
     let is_late = left.is_some_and(|seconds| seconds <= 0.0);
-    interrupt::stop().or(is_late.then_some(Status::TimeLimit))
+    stop::reason().or(is_late.then_some(Status::TimeLimit))
 }
 
 /// The problem with another guess: the motion under the voltages of the goal, or half of the largest ones; interpolated where it
@@ -85,7 +87,7 @@ impl Further<'_> {
 
     /// Does a piece of work that asks whether it is to stop.
     pub(crate) fn within<T>(&self, work: impl FnOnce() -> T) -> T {
-        let _watch = interrupt::watch(self.seconds());
+        let _watch = stop::watch(self.seconds());
         work()
     }
 

@@ -12,7 +12,8 @@
 //! that is more. Where the bound is wide all the same, as with many bounds that are not reached, two solves decide between which the barrier
 //! parameter falls by ten or more: f is linear in it near the end, so that what is left is less than what the second one gained.
 
-use crate::ipopt::{Options, SolverResult, Start, Status};
+use crate::ipopt::{Options, SolverResult, Start};
+use crate::nlp::Status;
 use crate::nlp::{Bounds, Nlp};
 
 /// The objective of a solution is this part of itself above its least value at most, unless a larger tolerance is asked for.

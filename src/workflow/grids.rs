@@ -2,8 +2,9 @@
 
 use crate::control::problem::{Control, Duration, Simulation, Voltages};
 use crate::dynamics::DiscreteTrajectory;
-use crate::ipopt::{Status, interrupt};
 use crate::model::{Model, System};
+use crate::nlp::Status;
+use crate::stop;
 use crate::workflow::accuracy::{AccuracyTarget, Attempt, Refined, refine};
 use crate::workflow::error::WorkflowError;
 use crate::workflow::estimate::ErrorSample;
@@ -137,7 +138,7 @@ pub fn integrate_to(
 /// Returns the reason why no other run may begin.
 pub(super) fn stop(seconds: Option<f64>) -> Option<&'static str> {
     match seconds {
-        _ if interrupt::requested() => Some("interrupted"),
+        _ if stop::requested() => Some("interrupted"),
         Some(seconds) if seconds <= 0.0 => Some("time_limit"),
         _ => None,
     }

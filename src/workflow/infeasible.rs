@@ -5,12 +5,12 @@ use crate::control::{BoundaryConditions, Place, Rests};
 use crate::coordinates::Configuration;
 use crate::dynamics::simulate;
 use crate::dynamics::trajectory::Trajectory;
-use crate::ipopt::Status;
 use crate::kinematics::Pose;
 use crate::math::{no_smaller, significant};
 use crate::model::components::Tendon;
 use crate::model::system::JointKind;
 use crate::model::{Component, Model, System, joint_unit};
+use crate::nlp::Status;
 use crate::workflow::optimum::{Optimum, Shortest};
 use std::ops::ControlFlow;
 

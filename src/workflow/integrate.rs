@@ -9,9 +9,10 @@ use crate::dynamics::{
     DiscreteTrajectory, Drive, Inputs, Integrator, Lengths, Solving, StepControl, StepError,
     StepState, TimeGrid, go_on,
 };
-use crate::ipopt::{Status, interrupt};
 use crate::math::in_order;
 use crate::model::{Model, System};
+use crate::nlp::Status;
+use crate::stop;
 use crate::workflow::control_loop::{Counts, Loop, horizon};
 use crate::workflow::error::WorkflowError;
 use crate::workflow::memory;
@@ -84,7 +85,7 @@ pub fn integrate_on(
         memory::of_motion(&model, steps)?;
     }
     has_solver(&model, task.solving)?;
-    if let Some(status) = interrupt::stop() {
+    if let Some(status) = stop::reason() {
         return Err(WorkflowError::Stopped(status));
     }
     phase("finding the start");

@@ -2,8 +2,9 @@
 
 use crate::control::problem::Control;
 use crate::control::{BoundaryConditions, Carried, Solution};
-use crate::ipopt::{SolverResult, Status};
+use crate::ipopt::SolverResult;
 use crate::model::Model;
+use crate::nlp::Status;
 use crate::workflow::active::{Active, Violation};
 use crate::workflow::distance::Distance;
 use crate::workflow::hold_check::{Afterwards, afterwards};

@@ -9,8 +9,8 @@ use std::thread::{self, JoinHandle};
 
 use rayon::ThreadPoolBuilder;
 
-use crate::ipopt::interrupt;
 pub use crate::math::cores;
+use crate::stop;
 
 /// Bytes of the stack of a thread: those that a main thread has.
 const STACK: usize = 8 << 20;
@@ -31,7 +31,7 @@ pub fn parallel_map<T: Sync, A: Send>(
     let threads = threads.clamp(1, items.len().max(1));
     let share = (cores() / threads).max(1);
     let next = AtomicUsize::new(0);
-    let request = interrupt::request();
+    let request = stop::request();
     let take = || {
         let index = next.fetch_add(1, Ordering::Relaxed);
         let item = items.get(index)?;
@@ -50,7 +50,7 @@ pub fn parallel_map<T: Sync, A: Send>(
             let request = &request;
             let work = move || {
                 let all = || {
-                    interrupt::listen(request);
+                    stop::listen(request);
                     std::iter::from_fn(take).for_each(|one| sender.send(one).unwrap_or(()));
                 };
                 on_cores(share, all);

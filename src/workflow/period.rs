@@ -7,9 +7,9 @@ use serde::Serialize;
 use crate::control::problem::{BoundaryState, Control};
 use crate::control::{BoundaryConditions, Solution};
 use crate::dynamics::{Start, StepError, simulate};
-use crate::ipopt::interrupt;
 use crate::math::significant;
 use crate::model::Model;
+use crate::stop;
 use crate::workflow::distance::Distance;
 use crate::workflow::held::is_small;
 use crate::workflow::motion::solved;
@@ -64,7 +64,7 @@ pub(crate) fn repeated(
         let k = (0.5 * (from + to) / h) as usize % n;
         model.scalars(&optimal.voltages[k])
     };
-    let go_on = |_: &_| match interrupt::stop() {
+    let go_on = |_: &_| match stop::reason() {
         Some(_) => ControlFlow::Break(()),
         None => ControlFlow::Continue(()),
     };

@@ -5,10 +5,10 @@ use std::ops::ControlFlow;
 use crate::control::Solution;
 use crate::control::problem::Control;
 use crate::dynamics::{DiscreteTrajectory, Start, simulate};
-use crate::ipopt::interrupt;
 use crate::math::Signal;
 use crate::model::Model;
 use crate::model::system::JointKind;
+use crate::stop;
 use crate::workflow::distance::Distance;
 use crate::workflow::motion::solved;
 use crate::workflow::reasons::Cause;
@@ -135,7 +135,7 @@ fn turns(model: &Model, motion: &Solution, k: usize) -> Option<(String, f64)> {
 
 /// Goes on unless Ctrl-C asks to stop.
 pub(crate) fn go_on() -> ControlFlow<()> {
-    match interrupt::requested() {
+    match stop::requested() {
         true => ControlFlow::Break(()),
         false => ControlFlow::Continue(()),
     }

@@ -4,9 +4,9 @@ use std::ops::ControlFlow;
 
 use crate::control::Solution;
 use crate::control::problem::{Control, Duration, Objective, Voltages};
-use crate::ipopt::Status;
 use crate::math::Signal;
 use crate::model::{Model, Role};
+use crate::nlp::Status;
 use crate::workflow::coupled::put_after;
 use crate::workflow::further::{Further, ITERATIONS, displaced, is_infeasible};
 use crate::workflow::motion::Iterate;

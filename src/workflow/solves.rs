@@ -4,12 +4,11 @@
 use crate::control::problem::Combined;
 use crate::control::{BoundaryError, Carried, InitialGuess, RestProgram, Solution, Transcription};
 use crate::dynamics::DiscreteTrajectory;
-use crate::ipopt::{
-    Iteration, Multipliers, Options, Reached, Solver, SolverResult, Start, StartingPoint, Status,
-    interrupt,
-};
+use crate::ipopt::{Iteration, Options, Reached, Solver, SolverResult, Start, StartingPoint};
 use crate::model::Model;
 use crate::nlp::joined::{Joined, Places, SharedVariable};
+use crate::nlp::{Multipliers, Status};
+use crate::stop;
 use crate::workflow::coupled::one_of_both;
 use crate::workflow::error::WorkflowError;
 use crate::workflow::gap;
@@ -86,7 +85,7 @@ impl Solves<'_, '_> {
         mut solution: SolverResult,
     ) -> Result<SolverResult, WorkflowError> {
         for _ in 0..CHARTS {
-            let Some(initial) = self.far(&solution).filter(|_| interrupt::stop().is_none()) else {
+            let Some(initial) = self.far(&solution).filter(|_| stop::reason().is_none()) else {
                 break;
             };
             phase("solving again, from the state that the first solution reached");
@@ -154,7 +153,7 @@ impl Solves<'_, '_> {
         for _ in 0..CONFIRMING {
             let is_done = gap.is_closed() || !solution.status.is_stationary();
             let next = gap.next(&solution, &self.options);
-            let next = next.filter(|_| !is_done && interrupt::stop().is_none());
+            let next = next.filter(|_| !is_done && stop::reason().is_none());
             let Some(mut options) = next else {
                 break;
             };

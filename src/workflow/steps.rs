@@ -2,9 +2,9 @@
 
 use crate::control::problem::Simulation;
 use crate::dynamics::{DiscreteTrajectory, Integrator, LocalError};
-use crate::ipopt::Status;
 use crate::math::{shortest, significant};
 use crate::model::Model;
+use crate::nlp::Status;
 use crate::workflow::integrate::grid;
 use crate::workflow::tolerance::EstimatedError;
 

@@ -5,7 +5,7 @@ use std::time::Instant;
 
 use crate::control::problem::Control;
 use crate::control::{Motions, Solution};
-use crate::ipopt::Status;
+use crate::nlp::Status;
 use crate::workflow::attempt::{FoundTogether, WholeProgram, attempt_together};
 use crate::workflow::error::WorkflowError;
 use crate::workflow::further::{displaced, is_unreached, stopped};

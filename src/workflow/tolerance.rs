@@ -16,8 +16,9 @@ use crate::dynamics::{
     DiscreteTrajectory, Drive, Inputs, Lengths, Solving, StepControl, StepError, distance_between,
     go_on,
 };
-use crate::ipopt::{Status, interrupt};
 use crate::model::Model;
+use crate::nlp::Status;
+use crate::stop;
 use crate::workflow::distance::Distance;
 use crate::workflow::motion::solved_of;
 use std::ops::{ControlFlow, RangeInclusive};
@@ -95,7 +96,7 @@ impl ByTolerance<'_> {
             again.end.tolerance = Some(used * factor);
             let tighter = self.go_on(again, Lengths::Controlled(control), &mut observer);
             let is_whole = tighter.0.times.last() == found.discrete.times.last();
-            if !is_whole && interrupt::stop().is_none() {
+            if !is_whole && stop::reason().is_none() {
                 // Steps that short fail: the motion before is the best there is.
                 return found;
             }
@@ -113,7 +114,7 @@ impl ByTolerance<'_> {
         let is_below = |error: &EstimatedError| error.is_below(self.control.tolerance);
         let stopped = match error.as_ref().is_some_and(is_below) {
             true => None,
-            false => interrupt::stop(),
+            false => stop::reason(),
         };
         Found {
             error: error.filter(|error| error.is_confirmed || stopped.is_none()),

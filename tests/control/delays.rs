@@ -4,8 +4,8 @@ use crate::common::receding::problem;
 use crate::common::robot::Robot;
 use proboscis::control::problem::Regulator;
 use proboscis::feedback::{Controller, Law};
-use proboscis::ipopt::interrupt::{self, Questions};
 use proboscis::model::Model;
+use proboscis::stop::{self, Questions};
 use proboscis::tasks::{SolveRequest, solve};
 use proboscis::workflow::Iterate;
 use proboscis::workflow::regulator::{NoRegulator, regulator};
@@ -88,7 +88,7 @@ fn a_stop_among_the_gains_is_no_singular_step() {
     let optimum = &found.optimum;
     let run = |allowed: u64| {
         let questions = Questions::allowed(allowed);
-        let _watch = interrupt::watch_questions(&questions);
+        let _watch = stop::watch_questions(&questions);
         let task = Regulator::default();
         let rest = optimum.boundary.rest[1].as_deref();
         let momentum = &optimum.boundary.start.momentum;

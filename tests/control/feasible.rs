@@ -102,7 +102,7 @@ fn law(
 
 /// Scale of the rows of coordinate i: scaled over unscaled costates.
 fn momentum_scale(program: &mut Transcription<'_>, x: &[f64], i: usize) -> f64 {
-    let mut costates = proboscis::ipopt::Multipliers {
+    let mut costates = proboscis::nlp::Multipliers {
         constraints: vec![0.0; program.unknowns().rows.len()],
         lower: vec![0.0; x.len()],
         upper: vec![0.0; x.len()],

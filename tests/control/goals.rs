@@ -4,7 +4,7 @@ use crate::common::random_goals::{Goal, Goals, Kind, trunk};
 use proboscis::control::problem::Task;
 use proboscis::dynamics::simulate;
 use proboscis::files::read_problem;
-use proboscis::ipopt::Status;
+use proboscis::nlp::Status;
 use proboscis::workflow::{Iterate, SolveLimits, optimise};
 use std::ops::ControlFlow;
 

@@ -3,7 +3,7 @@
 use proboscis::System;
 use proboscis::control::problem::{Control, Task};
 use proboscis::files::read_problem;
-use proboscis::ipopt::Status;
+use proboscis::nlp::Status;
 use proboscis::prelude::{Body, GROUND, Joint, Load, Simulation, State, X};
 use proboscis::workflow::{Optimum, SolveLimits, optimise};
 use std::ops::ControlFlow;

@@ -7,10 +7,10 @@ use proboscis::control::problem::{
 };
 use proboscis::dynamics::simulate;
 use proboscis::files::read_problem;
-use proboscis::ipopt::Status;
-use proboscis::ipopt::interrupt::{self, Questions};
 use proboscis::model::system::{MaxwellBranch, MaxwellBranches};
+use proboscis::nlp::Status;
 use proboscis::prelude::{Body, GROUND, Joint, Load, State, System, X};
+use proboscis::stop::{self, Questions};
 use proboscis::tasks::{SolveRequest, solve};
 use std::collections::BTreeMap;
 use std::ops::ControlFlow;
@@ -238,7 +238,7 @@ fn a_stop_between_periods_is_no_drift() {
     let (system, control) = pair(&[]);
     let within = |allowed: u64| {
         let questions = Questions::allowed(allowed);
-        let watch = interrupt::watch_questions(&questions);
+        let watch = stop::watch_questions(&questions);
         let request = SolveRequest::default();
         let result = solve(&system, &control, request, &mut |_, _| {
             ControlFlow::Continue(())

@@ -2,9 +2,9 @@
 
 use crate::loads::{cart, loaded, solved};
 use proboscis::control::problem::{BoundaryState, Control, Duration};
-use proboscis::ipopt::Status;
 use proboscis::math::Signal;
 use proboscis::model::system::{Joint, JointKind};
+use proboscis::nlp::Status;
 use proboscis::workflow::{SolveLimits, optimise};
 use proboscis::{Body, System};
 use std::ops::ControlFlow;

@@ -6,7 +6,7 @@ use crate::loads::{assert_refused, loaded, solved};
 use proboscis::control::problem::{BoundaryState, Control, SoughtHold, Task};
 use proboscis::dynamics::stable_equilibrium;
 use proboscis::files::{read_problem, solution};
-use proboscis::ipopt::Status;
+use proboscis::nlp::Status;
 use proboscis::prelude::{Body, GROUND, Joint, Load, State, System, X};
 use proboscis::tasks::{SolveRequest, SolveResult, solve};
 use std::collections::BTreeMap;

@@ -4,8 +4,8 @@ use crate::verdicts::{control, kept, output_of, read};
 use proboscis::control::problem::Task;
 use proboscis::dynamics::trajectory::Trajectory;
 use proboscis::files::read_problem;
-use proboscis::ipopt::Status;
-use proboscis::ipopt::interrupt::{self, Questions};
+use proboscis::nlp::Status;
+use proboscis::stop::{self, Questions};
 use proboscis::tasks::{
     SimulationRequest, SimulationResult, SolveRequest, SolveResult, simulate, solve,
 };
@@ -88,7 +88,7 @@ fn stopped_in(phase: &'static str, (name, changes): (&str, &[&str]), after: u64)
             end.set(asked.asked() + after);
         }
     });
-    let watch = interrupt::watch_questions(&questions);
+    let watch = stop::watch_questions(&questions);
     let found = optimise(&system, &control, None, SolveLimits::default(), &mut |_| {
         ControlFlow::Continue(())
     });
@@ -128,7 +128,7 @@ fn a_stop_between_grids_keeps_the_result_so_far() {
             asked.end_after(0);
         }
     });
-    let watch = interrupt::watch_questions(&questions);
+    let watch = stop::watch_questions(&questions);
     let limits = SolveLimits::default();
     // No grid is fine enough for this.
     let found = verified(&system, &control, 1e-9, limits, &mut |_, _| {
@@ -156,7 +156,7 @@ fn an_optimum_to_a_weaker_tolerance_tells_of_the_stop() {
                 asked.end_after(u64::MAX >> 1);
             }
         });
-        let _watch = interrupt::watch_questions(&questions);
+        let _watch = stop::watch_questions(&questions);
         let mut last = 0;
         let found = solve(&system, &control, SolveRequest::default(), &mut |_, _| {
             last = questions.asked();
@@ -195,7 +195,7 @@ fn a_motion_whose_error_is_not_confirmed_tells_of_the_stop() {
     };
     let run = |allowed: u64| {
         let questions = Questions::allowed(allowed);
-        let _watch = interrupt::watch_questions(&questions);
+        let _watch = stop::watch_questions(&questions);
         let go_on = &mut |_: usize, _: &_, _: &_| ControlFlow::Continue(());
         let found = simulate(&loaded.system, task, SimulationRequest::default(), go_on);
         (found.unwrap(), questions.asked())
@@ -233,11 +233,11 @@ fn stops_are_no_errors() {
         let loaded = kept(name);
         for count in (0..counts).step_by(7) {
             let questions = Questions::allowed(count);
-            let watch = interrupt::watch_questions(&questions);
+            let watch = stop::watch_questions(&questions);
             let found = match &loaded.task {
                 Task::Simulate(task) => {
                     let request = SimulationRequest::default();
-                    let go_on = &mut |_: usize, _: &_, _: &_| match interrupt::stop() {
+                    let go_on = &mut |_: usize, _: &_, _: &_| match stop::reason() {
                         Some(_) => ControlFlow::Break(()),
                         None => ControlFlow::Continue(()),
                     };

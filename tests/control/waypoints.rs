@@ -4,7 +4,7 @@ use crate::loads::{assert_refused, cart, solved};
 use nalgebra::Vector3;
 use proboscis::control::problem::{Control, Duration, Task, Waypoint};
 use proboscis::files::read_problem;
-use proboscis::ipopt::Status;
+use proboscis::nlp::Status;
 use proboscis::prelude::{Body, GROUND, Joint, Load, State, System, X};
 use proboscis::tasks::{SolveRequest, solve};
 use proboscis::workflow::{Iterate, Optimum};

@@ -7,7 +7,7 @@ use proboscis::System;
 use proboscis::control::problem::{Simulation, Task};
 use proboscis::dynamics::{DiscreteTrajectory, StepError};
 use proboscis::files::read_problem;
-use proboscis::ipopt::interrupt::{self, Questions};
+use proboscis::stop::{self, Questions};
 use proboscis::workflow::{Simulated, integrate, integrate_on};
 
 /// A kept simulation with overrides.
@@ -190,7 +190,7 @@ fn stop_within_steps(solver: &str, duration: &str) {
     let (system, task) = simulation("clamped_stack_step", &set);
     let watched = |begun: Option<DiscreteTrajectory>, allowed| {
         let questions = Questions::allowed(allowed);
-        let watch = interrupt::watch_questions(&questions);
+        let watch = stop::watch_questions(&questions);
         let run = integrate_on(&system, &task, begun, |_, _| ControlFlow::Continue(()));
         drop(watch);
         (run, questions.asked())

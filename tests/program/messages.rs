@@ -7,11 +7,13 @@ use proboscis::control::problem::Task;
 use proboscis::control::{BoundaryConditions, Transcription, guess};
 use proboscis::dynamics::{Start, simulate};
 use proboscis::files::read_problem;
-use proboscis::ipopt::interrupt::Questions;
-use proboscis::ipopt::{Options, StartingPoint, Status, interrupt, solve};
+use proboscis::ipopt::{Options, StartingPoint, solve};
 use proboscis::model::Model;
 use proboscis::nlp::Nlp;
+use proboscis::nlp::Status;
 use proboscis::nlp::differences::{DifferenceVariables, TOLERANCE, check_along};
+use proboscis::stop;
+use proboscis::stop::Questions;
 use std::ops::ControlFlow;
 use std::process::{Command, Stdio};
 use std::time::Duration;
@@ -42,17 +44,17 @@ fn a_step_is_stopped_between_its_iterations() {
 
     let (discrete, failure) = steps();
     assert!(failure.is_none() && discrete.intervals() == 3);
-    let watch = interrupt::watch(Some(0.0));
+    let watch = stop::watch(Some(0.0));
     let (discrete, failure) = steps();
     assert!(failure.is_none(), "{failure:?}");
     assert_eq!((discrete.intervals(), discrete.report.iterations), (0, 0));
     // Whoever watches inside for longer is stopped all the same.
-    let inner = interrupt::watch(Some(1e9));
-    assert_eq!(interrupt::stop(), Some(Status::TimeLimit));
+    let inner = stop::watch(Some(1e9));
+    assert_eq!(stop::reason(), Some(Status::TimeLimit));
     drop(inner);
     drop(watch);
-    assert_eq!(interrupt::stop(), None);
-    let _watch = interrupt::watch(Some(1e300));
+    assert_eq!(stop::reason(), None);
+    let _watch = stop::watch(Some(1e300));
     assert_eq!(steps().0.intervals(), 3);
 }
 
@@ -73,7 +75,7 @@ fn a_solve_is_stopped_at_the_next_question() {
     };
     let options = Options::default();
     let mut go_on = |_: &_, _: &proboscis::ipopt::Reached<'_>| ControlFlow::Continue(());
-    let _watch = interrupt::watch_questions(&questions);
+    let _watch = stop::watch_questions(&questions);
     let solution = solve(&mut program, &start, &options, &mut go_on).unwrap();
     assert_eq!(solution.status, Status::TimeLimit);
     assert_eq!(solution.evaluations.hessian, 1);
@@ -104,13 +106,13 @@ fn a_program_that_was_stopped_is_evaluated_anew() {
     };
     let expected = values(&mut fresh);
     assert!(expected.iter().all(|v| v.is_finite()) && expected.iter().any(|v| *v != 0.0));
-    let watch = interrupt::watch(Some(0.0));
+    let watch = stop::watch(Some(0.0));
     assert_ne!(values(&mut stopped), expected);
     drop(watch);
     assert_eq!(values(&mut stopped), expected);
 
     // No time at all, watched from outside too: the start comes back with what it violates.
-    let _watch = interrupt::watch(Some(0.0));
+    let _watch = stop::watch(Some(0.0));
     let options = Options {
         max_seconds: Some(0.0),
         ..Options::default()

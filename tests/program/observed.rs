@@ -5,8 +5,8 @@ use proboscis::app::{
     CommandInput, CommandOutput, PageWanted, ProgressDisplay, Reached, RunIn, changed_text,
     check_text, checked, inspected, run_observed, solve_text_from_starts, with_program,
 };
-use proboscis::ipopt::interrupt::{self, Questions, StopRequest};
 use proboscis::report::Figures;
+use proboscis::stop::{self, Questions, StopRequest};
 use std::path::{Path, PathBuf};
 use std::{fs, thread};
 
@@ -73,13 +73,13 @@ fn a_request_stops_the_thread_that_listens_and_no_other() {
     let request = StopRequest::default();
     let listening = thread::scope(|scope| {
         let stopped = scope.spawn(|| {
-            interrupt::listen(&request);
+            stop::listen(&request);
             let mut stop = |reached: Reached<'_>| match reached {
                 Reached::Iteration(_, report) if report.iteration == 3 => request.make(),
                 _ => {}
             };
             let told = solve("pair", None, &folder.path().join("stopped"), &mut stop);
-            (told, interrupt::requested())
+            (told, stop::requested())
         });
         stopped.join().unwrap()
     });
@@ -87,7 +87,7 @@ fn a_request_stops_the_thread_that_listens_and_no_other() {
     let summary = read(folder.path().join("stopped/summary.json"));
     assert_eq!(summary["status"], "interrupted");
     assert_eq!(summary["iterations"], 3);
-    assert!(!interrupt::requested());
+    assert!(!stop::requested());
     let again = solve("pair", None, &folder.path().join("again"), &mut |_| {});
     assert!(again.is_solved);
 }
@@ -99,7 +99,7 @@ fn a_request_stops_a_motion_after_a_step() {
     let mut times = Vec::new();
     thread::scope(|scope| {
         scope.spawn(|| {
-            interrupt::listen(&request);
+            stop::listen(&request);
             let mut stop = |reached: Reached<'_>| match reached {
                 Reached::Step(step, time) => {
                     times.push(time);
@@ -156,7 +156,7 @@ fn writing_ends_with_the_time_and_goes_on_from_what_is_kept() {
             Reached::Step(step, _) if step == last => questions.end_after(0),
             _ => {}
         };
-        let watch = interrupt::watch_questions(&questions);
+        let watch = stop::watch_questions(&questions);
         let told = solve("pair_constant", None, &out, &mut stop);
         drop(watch);
         let summary = read(out.join("summary.json"));
@@ -182,7 +182,7 @@ fn an_optimum_is_kept_where_its_writing_is_stopped() {
     let folder = tempfile::tempdir().unwrap();
     let [whole, out] = ["whole", "out"].map(|name| folder.path().join(name));
     let run = |out: &Path, questions: &Questions| {
-        let _watch = interrupt::watch_questions(questions);
+        let _watch = stop::watch_questions(questions);
         solve("pair", None, out, &mut |_| {})
     };
     let all = Questions::allowed(u64::MAX);
@@ -299,7 +299,7 @@ fn a_request_stops_the_solves_that_a_thread_has_begun() {
     let folder = tempfile::tempdir().unwrap();
     let asked = request(nowhere(), folder.path());
     let starts = |request: &StopRequest| {
-        interrupt::listen(request);
+        stop::listen(request);
         solve_text_from_starts(&asked, Some(&text("pair")), 3, 1, RunIn::Here).unwrap()
     };
     let [before, none] = [StopRequest::default(), StopRequest::default()];

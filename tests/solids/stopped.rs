@@ -9,9 +9,9 @@ use proboscis::dynamics::{
     stable_equilibrium, stable_equilibrium_by,
 };
 use proboscis::files::read_system;
-use proboscis::ipopt::interrupt::{self, Questions};
 use proboscis::model::Model;
 use proboscis::model::system::{ElementKind, System};
+use proboscis::stop::{self, Questions};
 use std::path::Path;
 
 const STEP: f64 = 0.5;
@@ -30,7 +30,7 @@ fn block(viscosity: Option<f64>) -> (System, u64) {
 /// What a function returns within a time of so many questions, and the questions that it asked.
 fn within<T>(allowed: u64, work: impl FnOnce() -> T) -> (T, u64) {
     let questions = Questions::allowed(allowed);
-    let watch = interrupt::watch_questions(&questions);
+    let watch = stop::watch_questions(&questions);
     let found = work();
     drop(watch);
     (found, questions.asked())

@@ -7,8 +7,9 @@ use crate::ipopt::run;
 use proboscis::control::{BoundaryConditions, Transcription, guess};
 use proboscis::ipopt::{
     IpoptError, Iteration, LinearSolver, Options, Reached, Solver, SolverResult, Start,
-    StartingPoint, Status,
+    StartingPoint,
 };
+use proboscis::nlp::Status;
 use std::ops::ControlFlow;
 use std::panic::{AssertUnwindSafe, catch_unwind};
 

@@ -7,10 +7,11 @@ use proboscis::control::{BoundaryConditions, InitialGuess, Transcription, guess}
 use proboscis::dynamics::{DiscreteTrajectory, Start, StepError, simulate};
 use proboscis::functional::{Coupling, Order, Output, Sample, Term, TermKind};
 use proboscis::ipopt::{
-    self, Iteration, LinearSolver, Options, Reached, SolverResult, StartingPoint, Status,
+    self, Iteration, LinearSolver, Options, Reached, SolverResult, StartingPoint,
 };
 use proboscis::math::Vector;
 use proboscis::model::{Coordinates, Model};
+use proboscis::nlp::Status;
 use proboscis::nlp::{Bounds, Entries, Nlp};
 use std::cell::Cell;
 use std::collections::BTreeMap;

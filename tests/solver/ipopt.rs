@@ -8,10 +8,10 @@ use crate::common::programs::{
     HS071_OPTIMUM, HS071_START, bounds, hs071, one_variable, rosenbrock,
 };
 use proboscis::ipopt::{
-    IpoptError, Iteration, Multipliers, OptionValue, Options, Reached, SolverResult, Start,
-    StartingPoint, Status, solve,
+    IpoptError, Iteration, OptionValue, Options, Reached, SolverResult, Start, StartingPoint, solve,
 };
 use proboscis::nlp::{Bounds, Nlp};
+use proboscis::nlp::{Multipliers, Status};
 
 pub(crate) fn from(x: &[f64]) -> StartingPoint {
     StartingPoint {

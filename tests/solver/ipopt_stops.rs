@@ -2,8 +2,9 @@
 
 use crate::common::programs::{HS071_OPTIMUM, HS071_START, Program, bounds, hs071, rosenbrock};
 use crate::ipopt::{from, run};
-use proboscis::ipopt::interrupt::{self, Questions};
-use proboscis::ipopt::{Iteration, Multipliers, Options, Reached, Status, solve};
+use proboscis::ipopt::{Iteration, Options, Reached, solve};
+use proboscis::nlp::{Multipliers, Status};
+use proboscis::stop::{self, Questions};
 use std::ops::ControlFlow;
 use std::panic::{AssertUnwindSafe, catch_unwind};
 use std::process::Command;
@@ -212,7 +213,7 @@ fn the_better_of_the_last_two_points_is_returned() {
 fn time_is_limited_at_any_question() {
     let solved = |allowed| {
         let questions = Questions::allowed(allowed);
-        let watch = interrupt::watch_questions(&questions);
+        let watch = stop::watch_questions(&questions);
         let solution = run(&mut rosenbrock(), &[-1.2, 1.0], &Options::default());
         drop(watch);
         (solution, questions.asked())

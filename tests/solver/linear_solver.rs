@@ -8,11 +8,10 @@ use crate::ipopt::run;
 use proboscis::control::problem::{Control, Duration, Objective, PathConstraint, Task};
 use proboscis::control::{BoundaryConditions, Transcription, guess};
 use proboscis::files::read_problem;
-use proboscis::ipopt::{
-    LinearReport, LinearSolver, NoStages, OptionValue, Options, SolverResult, Status,
-};
+use proboscis::ipopt::{LinearReport, LinearSolver, NoStages, OptionValue, Options, SolverResult};
 use proboscis::model::Coordinates;
 use proboscis::model::system::System;
+use proboscis::nlp::Status;
 use std::panic::{AssertUnwindSafe, catch_unwind};
 use std::thread;
 

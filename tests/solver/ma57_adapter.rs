@@ -4,7 +4,8 @@
 
 use crate::common::programs::{HS071_START, hs071};
 use crate::ipopt::run;
-use proboscis::ipopt::{LinearSolver, Options, Status, functions_of_ma57};
+use proboscis::ipopt::{LinearSolver, Options, functions_of_ma57};
+use proboscis::nlp::Status;
 use std::ffi::{c_int, c_void};
 use std::panic::{AssertUnwindSafe, catch_unwind};
 use std::ptr::null_mut;

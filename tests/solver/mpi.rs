@@ -4,7 +4,8 @@
 
 use crate::common::programs::{HS071_START, hs071};
 use crate::ipopt::run;
-use proboscis::ipopt::{LinearSolver, Options, Status};
+use proboscis::ipopt::{LinearSolver, Options};
+use proboscis::nlp::Status;
 use std::ffi::{c_int, c_void};
 use std::process::Command;
 use std::{env, mem};

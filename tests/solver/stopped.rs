@@ -4,9 +4,10 @@ use crate::common::programs::{Program, bounds};
 use crate::horizon::{Horizon, System};
 use crate::ipopt::from;
 use crate::matrices::Random;
-use proboscis::ipopt::interrupt::{self, Questions};
-use proboscis::ipopt::{Iteration, Options, Reached, Solver, Status};
+use proboscis::ipopt::{Iteration, Options, Reached, Solver};
 use proboscis::kkt::{Plan, Solver as Factors, Stopped};
+use proboscis::nlp::Status;
+use proboscis::stop::{self, Questions};
 use std::cell::RefCell;
 use std::ops::ControlFlow;
 use std::rc::Rc;
@@ -228,7 +229,7 @@ fn a_limit_within_a_factorisation_leaves_the_last_iterate() {
 
     let questions = Questions::allowed(u64::MAX);
     *answer.lock().unwrap() = Some((LAST + 1, questions.clone()));
-    let watch = interrupt::watch_questions(&questions);
+    let watch = stop::watch_questions(&questions);
     let stopped = solver.solve(&point, &mut observer(&heard, usize::MAX));
     let stopped = stopped.unwrap().clone();
     drop(watch);

@@ -3,9 +3,10 @@
 use crate::sources::sources;
 
 /// Floors from the ground up; folders of one line do not know each other.
-const FLOORS: [&[&str]; 15] = [
+const FLOORS: [&[&str]; 16] = [
     &["math"],
     &["mesh", "sparse", "kkt", "nlp", "feedback"],
+    &["stop"],
     &["energy", "ipopt"],
     &["kinematics", "element"],
     &["functional"],

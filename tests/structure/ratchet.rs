@@ -5,7 +5,7 @@ use std::collections::BTreeMap;
 
 /// Most lines, by fifties, and most files of each folder of `src`; the first is what lies above all folders.
 const SIZES: [(&str, usize, usize); 26] = [
-    (".", 1100, 7),
+    (".", 1400, 8),
     ("app", 9600, 55),
     ("control", 10350, 52),
     ("coordinates", 3500, 19),
@@ -17,13 +17,13 @@ const SIZES: [(&str, usize, usize); 26] = [
     ("functional", 5700, 26),
     ("identify", 3350, 17),
     ("interface", 3050, 17),
-    ("ipopt", 3450, 16),
+    ("ipopt", 2750, 14),
     ("kinematics", 250, 2),
     ("kkt", 4900, 23),
     ("math", 1350, 8),
     ("mesh", 1750, 14),
     ("model", 13700, 64),
-    ("nlp", 1500, 7),
+    ("nlp", 1900, 10),
     ("report", 6800, 43),
     ("sensitivity", 2650, 13),
     ("sparse", 8300, 42),

@@ -8,9 +8,9 @@
 use crate::app::batch::end::RunIn;
 use crate::app::progress::ProgressDisplay;
 use crate::app::request::{CommandInput, PageWanted};
-use crate::ipopt::interrupt;
 use crate::report::shell;
 use crate::report::viewpoint::Viewpoint;
+use crate::stop;
 use std::ffi::OsString;
 use std::fs::File;
 use std::path::Path;
@@ -140,7 +140,7 @@ impl Batch<'_> {
 
     /// Returns true if there is time left and Ctrl-C was not pressed.
     pub(super) fn may_go_on(&self) -> bool {
-        !interrupt::requested() && self.left().is_none_or(|left| left > 0.0)
+        !stop::requested() && self.left().is_none_or(|left| left > 0.0)
     }
 
     /// Seconds that are left.

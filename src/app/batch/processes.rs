@@ -12,8 +12,8 @@ use rustix::process::{Pid, Signal, kill_process};
 use super::end::{RunEnd, Said, of_status};
 use super::launch::{Batch, Running, launch};
 use crate::app::error::CommandError;
-use crate::ipopt::interrupt;
 use crate::report::atomic::WriteError;
+use crate::stop;
 use crate::workflow::parallel_map::cores;
 
 /// Time between two looks at the processes.
@@ -44,7 +44,7 @@ pub(super) fn run_all(
     let mut is_over = false;
     let mut stop_at = None;
     loop {
-        if interrupt::requested() && stop_at.is_none() {
+        if stop::requested() && stop_at.is_none() {
             stop_at = Some(Instant::now() + GRACE);
             running.0.iter().for_each(|one| ask_to_stop(&one.child));
         }

@@ -4,7 +4,7 @@ use super::rank::Rank;
 use super::start::{Start, folder_of};
 use crate::app::batch::{RunEnd, Said};
 use crate::app::error::CommandError;
-use crate::ipopt::interrupt;
+use crate::stop;
 use crate::workflow::remark::Remarks;
 use serde::{Deserialize, Serialize};
 use std::collections::BTreeMap;
@@ -130,7 +130,7 @@ impl Ended {
         RunEnd { said, seconds }: RunEnd,
         folder: &Path,
     ) -> Result<Self, CommandError> {
-        let failed = |message: String| match interrupt::requested() {
+        let failed = |message: String| match stop::requested() {
             true => Self::without_files(start, "interrupted", seconds),
             false => Self {
                 message: Some(message).filter(|message| !message.is_empty()),

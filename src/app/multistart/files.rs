@@ -7,11 +7,11 @@ use crate::app::error::CommandError;
 use crate::app::foreign::make_folder;
 use crate::app::request::{CommandInput, CommandOutput};
 use crate::files::{lay_out, printable};
-use crate::ipopt::interrupt;
 use crate::math::significant;
 use crate::report::atomic::{self, WriteError};
 use crate::report::file_set::FileSet;
 use crate::report::table::{aligned, cells_csv};
+use crate::stop;
 use serde::Serialize;
 use std::fs;
 use std::io::ErrorKind;
@@ -62,7 +62,7 @@ pub(super) fn write(
     if let Some(best) = best {
         copy(&folder_of(folder, best.start), folder, &section)?;
     }
-    let is_stopped = interrupt::requested();
+    let is_stopped = stop::requested();
     let is_solved = solved > 0 && !is_stopped;
     let counts = format!(
         "{solved} of {} starts solved, {distinct} distinct {}, {seconds:.2} s, {}",

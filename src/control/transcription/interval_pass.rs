@@ -9,8 +9,8 @@ use crate::control::transcription::segment::{
 };
 use crate::coordinates::{Configuration, Reduced};
 use crate::functional::{BlockMask, Horizon, Order, Sample};
-use crate::ipopt::interrupt;
 use crate::math::{Vector, join_if};
+use crate::stop;
 
 /// Second derivatives of a horizon from which on its stretches are evaluated at once: with fewer, a second core saves less than it
 /// costs to wake it and to read what it wrote.
@@ -131,7 +131,7 @@ impl<'m> Transcription<'m> {
         let (action, last) = (&model.action, layout.intervals);
         let stride = stride(action);
         let (rows, costates) = workspace.rows.split_at_mut((last + 1) * stride);
-        let limit = interrupt::limit();
+        let limit = stop::limit();
         let mut pass = Pass {
             shared: Shared {
                 action,
@@ -172,7 +172,7 @@ impl<'m> Transcription<'m> {
             workspace.values[action.layout().horizon_square_at(last)] = square;
         }
         // A sweep that was stopped has placed some instants only.
-        workspace.placed = match interrupt::stop() {
+        workspace.placed = match stop::reason() {
             Some(_) => Placed::Nothing,
             None => workspace.placed.max(needed(order)),
         };

@@ -8,6 +8,7 @@ use crate::control::transcription::kinematic_state::Placed;
 use crate::coordinates::Configuration;
 use crate::dynamics::DiscreteTrajectory;
 use crate::ipopt;
+use crate::nlp::Multipliers;
 
 /// Decoder of points to motions and costates: given values together with the variables.
 #[derive(Clone, Debug)]
@@ -57,7 +58,7 @@ impl Decoder {
     }
 
     /// Unscaled costates of a point.
-    pub fn costates(&self, costates: &ipopt::Multipliers) -> Costates {
+    pub fn costates(&self, costates: &Multipliers) -> Costates {
         unscaled(costates, &self.row_scales, &self.scales)
     }
 }
@@ -127,20 +128,16 @@ impl Transcription<'_> {
                 && c.lower.len() == x.len()
                 && c.upper.len() == x.len()
         };
-        let costates = initial
-            .costates
-            .as_ref()
-            .filter(fits)
-            .map(|c| ipopt::Multipliers {
-                constraints: divide(&c.rows, &self.row_scales),
-                lower: times(&c.lower, &self.variable_scales),
-                upper: times(&c.upper, &self.variable_scales),
-            });
+        let costates = initial.costates.as_ref().filter(fits).map(|c| Multipliers {
+            constraints: divide(&c.rows, &self.row_scales),
+            lower: times(&c.lower, &self.variable_scales),
+            upper: times(&c.upper, &self.variable_scales),
+        });
         ipopt::StartingPoint { x, costates }
     }
 
     /// Unscaled costates of a solution.
-    pub fn costates(&self, costates: &ipopt::Multipliers) -> Costates {
+    pub fn costates(&self, costates: &Multipliers) -> Costates {
         unscaled(costates, &self.row_scales, &self.variable_scales)
     }
 
@@ -211,7 +208,7 @@ impl Transcription<'_> {
 }
 
 /// Costates without the scales of rows and variables.
-fn unscaled(costates: &ipopt::Multipliers, rows: &[f64], variables: &[f64]) -> Costates {
+fn unscaled(costates: &Multipliers, rows: &[f64], variables: &[f64]) -> Costates {
     Costates {
         rows: times(&costates.constraints, rows),
         lower: divide(&costates.lower, variables),

@@ -10,8 +10,8 @@ use crate::control::transcription::kinematic_state::Placed;
 use crate::control::transcription::limit_rows::{LimitRow, Site, fill_limits};
 use crate::coordinates::{Configuration, Interval, Reduced, Scratch};
 use crate::functional::{BlockMask, Horizon, Order, Outer, Sample};
-use crate::ipopt::interrupt::TimeLimit;
 use crate::math::Vector;
+use crate::stop::TimeLimit;
 
 /// Data that all stretches read.
 #[derive(Clone, Copy, Debug)]

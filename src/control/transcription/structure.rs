@@ -6,9 +6,9 @@ use crate::control::transcription::costs::{CostInput, Objective};
 use crate::control::transcription::energy_rows::Jump;
 use crate::control::transcription::layout::Layout;
 use crate::control::transcription::limit_rows::LimitRow;
-use crate::ipopt::interrupt;
 use crate::model::{Model, Role};
 use crate::nlp::Entries;
+use crate::stop;
 use std::collections::BTreeMap;
 
 /// An entry of a matrix of the program: where its value is found, and its scale.
@@ -262,7 +262,7 @@ fn jumps(layout: &Layout, objective: &Objective, entries: &mut Entries) -> Vec<J
 
 /// Returns an error if it is time to stop.
 fn go_on() -> Result<(), BoundaryError> {
-    match interrupt::stop() {
+    match stop::reason() {
         Some(status) => Err(BoundaryError::Stopped(status)),
         None => Ok(()),
     }

@@ -9,7 +9,7 @@ use crate::dynamics::equilibrium::ramp::Ramp;
 use crate::dynamics::equilibrium::rest_state::RestState;
 use crate::dynamics::equilibrium::statics::{NewtonOutcome, Statics, UpdateRange};
 use crate::dynamics::singular_configurations::shortest;
-use crate::ipopt::interrupt;
+use crate::stop;
 
 /// Limit of corrections in one step.
 const CORRECTIONS: usize = 12;
@@ -78,7 +78,7 @@ impl Path<'_, '_> {
     /// Evaluates and factorises at a state; returns −K⁻¹ b.
     fn linearise(&mut self, state: &RestState, fraction: f64) -> Option<Vec<f64>> {
         // A path that is to stop ends like one that cannot go on.
-        if interrupt::stop().is_some() {
+        if stop::reason().is_some() {
             return None;
         }
         let voltages = self.ramp.apply(self.statics, fraction);

@@ -6,9 +6,9 @@
 
 use crate::dynamics::equilibrium::statics::Statics;
 use crate::dynamics::step_matrix::StepMatrix;
-use crate::ipopt::interrupt;
 use crate::math::{Random, Vector};
 use crate::model::Role;
+use crate::stop;
 use nalgebra::{Complex, DMatrix, DVector, Schur};
 
 /// Largest dimension of a Krylov space, and the dimensions after which its eigenvalues are compared.
@@ -52,7 +52,7 @@ impl Statics<'_> {
         let mut projected = DMatrix::<f64>::zeros(most + 1, most);
         let mut before: Option<(usize, f64)> = None;
         for j in 0..most {
-            if interrupt::stop().is_some() {
+            if stop::reason().is_some() {
                 return None;
             }
             let mut next = self.inverse(&basis[j]);

@@ -7,8 +7,8 @@ use crate::dynamics::equilibrium::result::{Equilibrium, Route};
 use crate::dynamics::equilibrium::stable::stable_equilibrium;
 use crate::dynamics::equilibrium::statics::Statics;
 use crate::dynamics::error::EquilibriumError;
-use crate::ipopt::interrupt;
 use crate::model::Model;
+use crate::stop;
 
 /// Equilibria along a path.
 #[derive(Clone, Debug)]
@@ -65,7 +65,7 @@ pub fn continuation(
         let index = out.points.len() - 1;
         let limit = path.lost(&here, step, &next);
         // A search that was stopped ends elsewhere than where stability is lost.
-        if interrupt::stop().is_some() {
+        if stop::reason().is_some() {
             break;
         }
         let mut rest = |point: &PathPoint| {

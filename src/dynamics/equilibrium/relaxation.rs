@@ -8,8 +8,8 @@ use crate::dynamics::equilibrium::rest_state::RestState;
 use crate::dynamics::equilibrium::statics::{ITERATIONS, Statics};
 use crate::dynamics::singular_configurations::{reversed, shortest};
 use crate::functional::{Order, TermKind};
-use crate::ipopt::interrupt;
 use crate::math::Vector;
+use crate::stop;
 
 /// Limit of steps.
 const STEPS: usize = 1000;
@@ -40,7 +40,7 @@ pub(super) fn relax(
     let largest = statics.largest_stiffness();
     let mut damping = largest;
     for _ in 0..STEPS {
-        if interrupt::stop().is_some() || damping * NONE > largest {
+        if stop::reason().is_some() || damping * NONE > largest {
             return None;
         }
         statics.iterations += 1;

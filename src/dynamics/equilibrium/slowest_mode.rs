@@ -5,9 +5,9 @@
 
 use crate::dynamics::equilibrium::result::Equilibrium;
 use crate::dynamics::equilibrium::statics::Statics;
-use crate::ipopt::interrupt;
 use crate::math::Random;
 use crate::model::Model;
+use crate::stop;
 use std::f64::consts::TAU;
 
 /// Maximum number of iterations, and the relative change of ω² that ends them.
@@ -35,7 +35,7 @@ impl Equilibrium {
         let mut momentum = model.action.momentum(&mut instant, &first);
         let mut last = 0.0;
         for _ in 0..STEPS {
-            if interrupt::stop().is_some() {
+            if stop::reason().is_some() {
                 return None;
             }
             // The tangent is −h K.

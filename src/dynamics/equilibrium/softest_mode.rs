@@ -7,11 +7,11 @@ use crate::dynamics::equilibrium::rest_state::RestState;
 use crate::dynamics::equilibrium::statics::Statics;
 use crate::dynamics::solving::MultigridUse;
 use crate::dynamics::step_matrix::StepMatrix;
-use crate::ipopt::interrupt;
 use crate::math::Random;
 use crate::model::system::Fidelity;
 use crate::model::{Coordinates, Freedom, Model, Screw};
 use crate::sparse::multigrid::LowestModes;
+use crate::stop;
 use nalgebra::{DMatrix, SymmetricEigen};
 
 /// Number of coordinates up to which the eigenvalues of the stiffness are computed.
@@ -175,7 +175,7 @@ fn softening(
     statics.weight = weight;
     statics.evaluate(state, voltages);
     // Sums over a part of the elements say nothing.
-    if statics.is_iterated() && interrupt::stop().is_some() {
+    if statics.is_iterated() && stop::reason().is_some() {
         return None;
     }
     let parts = [
@@ -301,7 +301,7 @@ impl Statics<'_> {
         if at == self.examined.at {
             return;
         }
-        let found = grids.lowest_modes(factor, &|| interrupt::stop().is_some());
+        let found = grids.lowest_modes(factor, &|| stop::reason().is_some());
         self.multigrid.add(grids.counted());
         let count = self.model.action.map.coordinates;
         let found = found.ok().flatten().map(|modes| {

@@ -8,9 +8,9 @@ use crate::dynamics::grid_tangent::{GridTangent, Iterated};
 use crate::dynamics::step_matrix::StepMatrix;
 use crate::dynamics::step_solution::is_affordable;
 use crate::dynamics::tangent::Tangent;
-use crate::ipopt::interrupt;
 use crate::sparse::Singular;
 use crate::sparse::multigrid::MultigridReport;
+use crate::stop;
 
 /// Most unknowns whose matrix is factorised for its inertia after an iteration has found the state.
 const EXAMINED: usize = 100_000;
@@ -43,14 +43,14 @@ impl Statics<'_> {
     /// Solves with the tangent taken last, in place; what is prescribed does not move.
     pub(super) fn solve(&mut self, rhs: &mut [f64]) {
         self.solve_by(rhs, |grids, rhs| {
-            grids.solve(rhs, RESIDUAL, &|| interrupt::stop().is_some())
+            grids.solve(rhs, RESIDUAL, &|| stop::reason().is_some())
         });
     }
 
     /// Solves for an update of Newton's method, in place, as accurately as it deserves.
     pub(super) fn solve_for_update(&mut self, residual: &mut [f64]) {
         self.solve_by(residual, |grids, rhs| {
-            grids.solve_for_update(rhs, &|| interrupt::stop().is_some())
+            grids.solve_for_update(rhs, &|| stop::reason().is_some())
         });
     }
 
@@ -145,7 +145,7 @@ impl Statics<'_> {
     pub(super) fn potentials(&mut self) -> Option<Vec<f64>> {
         let m = self.model.action.map.unknowns();
         if let Some(grids) = self.matrix.grids_mut() {
-            let is_over = || interrupt::stop().is_some();
+            let is_over = || stop::reason().is_some();
             let found = grids.potentials_to_law(&self.residual, &is_over);
             self.multigrid.add(grids.counted());
             return Some(found.ok()??.split_off(m));

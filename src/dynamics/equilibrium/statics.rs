@@ -17,10 +17,10 @@ use crate::dynamics::error::EquilibriumError;
 use crate::dynamics::solving::MultigridUse;
 use crate::dynamics::step_matrix::StepMatrix;
 use crate::functional::Order;
-use crate::ipopt::interrupt;
 use crate::math::Vector;
 use crate::model::{Model, OPEN, Role};
 use crate::sparse::multigrid::MultigridReport;
+use crate::stop;
 
 /// Limit of Newton iterations.
 pub(super) const ITERATIONS: usize = 30;
@@ -317,7 +317,7 @@ impl<'m> Statics<'m> {
             }
             let mut update = std::mem::take(&mut self.residual);
             self.solve_for_update(&mut update);
-            if let Some(status) = interrupt::stop() {
+            if let Some(status) = stop::reason() {
                 self.residual = update;
                 return Err(EquilibriumError::Stopped(status));
             }

@@ -18,9 +18,9 @@
 
 use crate::control::{Column, Row};
 use crate::coordinates::Configuration;
-use crate::ipopt::interrupt;
 use crate::math::Vector;
 use crate::nlp::Nlp;
+use crate::stop;
 use crate::workflow::receding::horizon::Horizon;
 use crate::workflow::receding::iteration::{Iteration, Residual};
 use crate::workflow::receding::layout::{Between, places};
@@ -154,7 +154,7 @@ impl<'h> RecedingHorizon<'h> {
                 gradient,
             } = self.residual;
             let is_met = equations < SMALL && gradient < SMALL;
-            if self.prepared != Some(true) || is_met || interrupt::stop().is_some() {
+            if self.prepared != Some(true) || is_met || stop::reason().is_some() {
                 break;
             }
             self.iteration

@@ -9,9 +9,11 @@ use crate::control::{
 };
 use crate::dynamics::{DiscreteTrajectory, Linearisation, NoState, Start, step_inputs};
 use crate::feedback::Law;
-use crate::ipopt::{IpoptError, Options, StartingPoint, Status, interrupt, solve};
+use crate::ipopt::{IpoptError, Options, StartingPoint, solve};
 use crate::model::{Model, System, Time};
 use crate::nlp::Nlp;
+use crate::nlp::Status;
+use crate::stop;
 use crate::workflow::error::WorkflowError;
 use crate::workflow::motion::{Iterate, discrete_trajectory};
 use crate::workflow::optimise::optimise;
@@ -147,7 +149,7 @@ impl Horizon {
             error @ WorkflowError::NoEquilibrium { .. } => NoHorizon::Unsolved(error.to_string()),
             error => NoHorizon::Program(error.to_string()),
         })?;
-        if let Some(status) = optimum.stopped.or_else(interrupt::stop) {
+        if let Some(status) = optimum.stopped.or_else(stop::reason) {
             return Err(NoHorizon::Stopped(status));
         }
         if !optimum.is_solved() {
@@ -238,7 +240,7 @@ impl Horizon {
     pub(super) fn program(&self) -> Program<'_> {
         let guess = self.guess();
         // A moment's work that stays whole when it is time to stop.
-        let _unwatched = interrupt::unwatched();
+        let _unwatched = stop::unwatched();
         let program = Transcription::of_any(&self.model, &self.boundary, &self.control, &guess);
         // Nothing stops it, and nothing else is an error.
         let program = program.expect("a program whose equations are not counted");

@@ -5,8 +5,8 @@ use std::hash::Hash;
 use rustc_hash::FxHashMap;
 
 use crate::control::{Column, Transcription};
-use crate::ipopt::Squares;
 use crate::nlp::Nlp;
+use crate::nlp::squares::Squares;
 
 /// An input of an interval: its column, with its value as it acts.
 #[derive(Clone, Copy, Debug)]

@@ -9,7 +9,7 @@
 //! of the regulator in short steps, a number of them in each interval, under the same inputs: these are one column.
 
 use crate::control::{Column, Row, Transcription};
-use crate::ipopt::{InSquares, Squares};
+use crate::nlp::squares::{InSquares, Squares};
 use crate::nlp::{Bounds, Entries, Nlp, Stage};
 use crate::workflow::receding::layout::{Between, Layout, between, held_over_parts};
 use crate::workflow::receding::reference::Reference;

@@ -11,8 +11,8 @@ mod regulated;
 use crate::control::problem::{Control, Regulator};
 use crate::dynamics::{DiscreteTrajectory, Linearisation};
 use crate::feedback::{Costs, HeldGain, NotHeld, spectral_radius};
-use crate::ipopt::interrupt;
 use crate::model::Model;
+use crate::stop;
 use crate::workflow::regulator::design::Design;
 use crate::workflow::regulator::lasting::Against;
 use crate::workflow::regulator::observer::reproduced;
@@ -70,7 +70,7 @@ impl Design<'_> {
             let inputs = self.model.variables.split(&self.discrete.scalars[k])[0];
             let step = self.linearised(&mut linearisation, &part[0], inputs);
             // What is stopped has no result either.
-            if interrupt::stop().is_some() {
+            if stop::reason().is_some() {
                 return Err(NoRegulator::Stopped);
             }
             let step = step.ok_or(NoRegulator::Singular(k))?;
@@ -81,7 +81,7 @@ impl Design<'_> {
         if let Some(rest) = rest {
             match self.held(&mut linearisation, rest) {
                 Ok(found) => held = Some(found),
-                Err(_) if interrupt::stop().is_some() => return Err(NoRegulator::Stopped),
+                Err(_) if stop::reason().is_some() => return Err(NoRegulator::Stopped),
                 Err(reason) => not_held = Some(reason),
             }
         }

@@ -11,7 +11,7 @@
 //!
 //! Programs and observers of iterates see x alone.
 
-use crate::ipopt::solution::Multipliers;
+use crate::nlp::Multipliers;
 use crate::nlp::{Bounds, Entries, Nlp, Stage};
 
 /// Least w, for slopes that are finite.
@@ -26,7 +26,7 @@ pub(crate) struct Squares {
 
 impl Squares {
     /// Those of a program.
-    pub(super) fn from_program(program: &impl Nlp) -> Self {
+    pub(crate) fn from_program(program: &impl Nlp) -> Self {
         Self::of(program, program.squares())
     }
 
@@ -58,7 +58,7 @@ impl Squares {
     }
 
     /// x of the unknowns, in a place of its own where it is another point.
-    pub(super) fn point<'a>(&self, w: &'a [f64], place: &'a mut Vec<f64>) -> &'a [f64] {
+    pub(crate) fn point<'a>(&self, w: &'a [f64], place: &'a mut Vec<f64>) -> &'a [f64] {
         if self.list.is_empty() {
             return w;
         }
@@ -93,7 +93,7 @@ impl Squares {
     }
 
     /// Multipliers of the bounds of the unknowns become those of x.
-    pub(super) fn of_roots(&self, x: &[f64], multipliers: &mut Multipliers) {
+    pub(crate) fn of_roots(&self, x: &[f64], multipliers: &mut Multipliers) {
         for &(i, u) in &self.list {
             let s = slope(x[i], u);
             multipliers.lower[i] /= s;
@@ -152,7 +152,7 @@ impl<N: Nlp> InSquares<N> {
     }
 
     /// Copies the bounds of the program. A lower bound of zero is raised by Ipopt's relaxation, so that the relaxed bound is zero.
-    pub(super) fn take_bounds(&mut self, relaxed: f64) {
+    pub(crate) fn take_bounds(&mut self, relaxed: f64) {
         let (given, Bounds { lower, upper }) = (self.program.variables(), &mut self.bounds);
         lower.clone_from(&given.lower);
         upper.clone_from(&given.upper);

@@ -1,13 +1,13 @@
 //! Requests to stop: Ctrl-C, a request of another thread, or a time limit.
 //!
-//! Long work calls [`stop`] between its parts: Newton iterations, factorisations, intervals, the evaluations of Ipopt. A request is
+//! Long work calls [`reason`] between its parts: Newton iterations, factorisations, intervals, the evaluations of Ipopt. A request is
 //! answered while a [`Watch`] lasts, so that what is known can be written afterwards.
 //!
 //! Signals that ask for a stop: Ctrl-C, the end of a session, the end that a system asks for.
 //!
-//! They are recorded without a thread, since there may be none; callers of [`interrupt`](super::interrupt) see them.
+//! They are recorded without a thread, since there may be none; callers of [`reason`] see them.
 
-use crate::ipopt::status::Status;
+use crate::nlp::Status;
 use signal_hook::consts::{SIGINT, SIGTERM};
 use signal_hook::flag;
 use std::cell::RefCell;
@@ -161,7 +161,7 @@ pub fn limit() -> Option<TimeLimit> {
 
 /// Returns the reason for which this thread is to stop now, if there is one; never without a [`Watch`].
 #[must_use]
-pub fn stop() -> Option<Status> {
+pub fn reason() -> Option<Status> {
     LIMIT.with_borrow(|limit| limit.as_ref()?.reached())
 }
 
@@ -277,7 +277,7 @@ fn stop_at(signal: c_int) -> io::Result<()> {
 }
 
 /// Returns true if a signal has asked for a stop, and writes the message once.
-pub(super) fn have_asked() -> bool {
+fn have_asked() -> bool {
     let have = REQUESTED.load(Ordering::Relaxed);
     if have
         && !TOLD.swap(true, Ordering::Relaxed)
