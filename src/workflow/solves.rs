@@ -166,7 +166,7 @@ impl Solves<'_, '_> {
             // Rounding may keep a solve from its tolerance at a point that is better all the same.
             let is_as_good = status.is_stationary() || objective < solution.objective;
             let is_feasible = gap::is_feasible(program, &again, tolerance);
-            if !status.is_optimal() && !(is_as_good && is_feasible) {
+            if !(status.is_optimal() || is_as_good && is_feasible) {
                 break;
             }
             gap = gap.after(program, (&solution, &again), &options);

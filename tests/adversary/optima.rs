@@ -223,7 +223,7 @@ fn problem(draw: &mut Draw) -> Value {
         }
         2 => {
             objective["final"] =
-                json!([{ "joint": { "joint": joint, "at": target, "weight": weight } }])
+                json!([{ "joint": { "joint": joint, "at": target, "weight": weight } }]);
         }
         _ => {
             let along = json!({ "sine": { "amplitude": target, "period": duration } });
@@ -255,20 +255,22 @@ fn measured(draw: &mut Draw, objective: &mut Value, effort: f64, robot: &Robot) 
     };
     match (draw.of(8), robot.has_resistors) {
         (0, true) => {
-            track(json!({ "power": { "source": "u0l", "weight": draw.power(-6.0, 12.0) } }))
+            track(json!({ "power": { "source": "u0l", "weight": draw.power(-6.0, 12.0) } }));
         }
         (1, true) => {
-            track(json!({ "current": { "source": "u0l", "weight": draw.power(-6.0, 8.0) } }))
+            track(json!({ "current": { "source": "u0l", "weight": draw.power(-6.0, 8.0) } }));
         }
         (2, _) => track(json!({ "tension": { "muscle": "u0l", "weight": draw.power(-3.0, 6.0) } })),
         (3, _) => {
-            track(json!({ "electric_field": { "muscle": "u0l", "weight": draw.power(-6.0, 3.0) } }))
+            track(
+                json!({ "electric_field": { "muscle": "u0l", "weight": draw.power(-6.0, 3.0) } }),
+            );
         }
         (4, _) => {
-            objective["rate"] = json!(effort * robot.duration.powi(2) * draw.power(-3.0, 0.0))
+            objective["rate"] = json!(effort * robot.duration.powi(2) * draw.power(-3.0, 0.0));
         }
         (5, _) => {
-            objective["peak_voltage"] = json!(effort * robot.duration * draw.power(-2.0, 2.0))
+            objective["peak_voltage"] = json!(effort * robot.duration * draw.power(-2.0, 2.0));
         }
         (6, _) => objective["electrical_energy"] = json!(draw.power(-3.0, 6.0)),
         (7, false) => objective["mechanical_work"] = json!(draw.power(-3.0, 6.0)),

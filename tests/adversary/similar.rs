@@ -148,7 +148,7 @@ fn apart(scales: &Scales, one: &Outcome, other: &Outcome) -> (f64, String) {
             .zip(others)
             .map(|(a, b)| (a - b / factor).abs());
         let difference = differences.fold(0.0, f64::max) / of_unit;
-        if name != "constraint_violation" && !(difference <= worst.0) {
+        if name != "constraint_violation" && (difference.is_nan() || difference > worst.0) {
             worst = (difference, name.clone());
         }
     }
@@ -177,7 +177,8 @@ fn similar_problems_have_similar_results_at_all_scales() {
             "{seed} {name}: {} {} {:?}, {} {} {:?}; {column} {difference:.1e}, objective {off:.1e}",
             one.status, one.iterations, one.told, other.status, other.iterations, other.told
         );
-        if !same || !(difference <= tolerance && off <= tolerance) {
+        let is_similar = same && difference <= tolerance && off <= tolerance;
+        if !is_similar {
             failures.push(format!("{seed} {name} {scales:?}"));
         }
     });

@@ -42,7 +42,7 @@ fn a_mass_thrown_at_a_muscle_never_comes_out_behind_it() {
             );
             let total = motion.column("total_energy");
             let kept = total[total.len() - 1] / total[0];
-            let told = motion.err.contains("the steps of");
+            let told = motion.err.contains("of numerical energy");
             assert!(speed > 50.0 || (kept - 1.0).abs() < 0.02, "{speed}: {kept}");
             assert!(told || (kept - 1.0).abs() < 0.02, "{speed}: {kept}");
             seen.push(format!(
