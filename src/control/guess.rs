@@ -1,6 +1,7 @@
 //! Initial guess of the solver: interpolated between start and goal, simulated, or an earlier solution.
 
 use crate::control::boundary_conditions::BoundaryConditions;
+use crate::control::earlier::EarlierSolution;
 use crate::control::identification::{Costates, Solution};
 use crate::control::mesh_match::other_mesh;
 use crate::control::problem::{Control, Guess};
@@ -13,8 +14,6 @@ use std::borrow::Cow;
 use std::error::Error;
 use std::fmt::Debug;
 use std::ops::ControlFlow;
-use std::path::Path;
-use std::sync::Arc;
 
 /// Added to the rest voltages, as a part of their size: at zero the motion does not depend on a voltage to first order.
 const LIFT: f64 = 0.1;
@@ -360,55 +359,8 @@ pub(super) fn on_uniform_grid<'s>(
     })
 }
 
-/// Source of an earlier solution.
-pub trait EarlierSolution: Debug + Send + Sync {
-    /// The solution, for this model.
-    ///
-    /// # Errors
-    /// It cannot be read, or belongs to another system.
-    fn solution(&self, model: &Model) -> Result<Cow<'_, Solution>, Box<dyn Error + Send + Sync>>;
-
-    /// The file that it is read from; none where it is in memory.
-    fn file(&self) -> Option<&Path> {
-        None
-    }
-}
-
 impl EarlierSolution for Solution {
     fn solution(&self, _: &Model) -> Result<Cow<'_, Solution>, Box<dyn Error + Send + Sync>> {
         Ok(Cow::Borrowed(self))
-    }
-}
-
-/// A shared earlier solution; two are equal where they are the same one.
-#[derive(Clone, Debug)]
-pub struct Earlier(Arc<dyn EarlierSolution>);
-
-impl Earlier {
-    /// Shares it.
-    pub fn new(earlier: impl EarlierSolution + 'static) -> Self {
-        Self(Arc::new(earlier))
-    }
-
-    /// The solution, for this model.
-    ///
-    /// # Errors
-    /// As of [`EarlierSolution::solution`].
-    pub fn solution(
-        &self,
-        model: &Model,
-    ) -> Result<Cow<'_, Solution>, Box<dyn Error + Send + Sync>> {
-        self.0.solution(model)
-    }
-
-    /// The file that it is read from; none where it is in memory.
-    pub fn file(&self) -> Option<&Path> {
-        self.0.file()
-    }
-}
-
-impl PartialEq for Earlier {
-    fn eq(&self, other: &Self) -> bool {
-        Arc::ptr_eq(&self.0, &other.0)
     }
 }

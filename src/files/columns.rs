@@ -1,21 +1,12 @@
 //! Columns of a CSV file or of a problem, with the units of their headers: `muscle1 [kV]`.
 
-use crate::files::Loaded;
 use crate::files::header::Header;
-use crate::files::json::document::Document;
-use crate::files::json::error::{Mistake, SceneError, nearest};
-use crate::files::json::locate::Step;
+use crate::files::json::error::SceneError;
 use crate::files::json::scope::Scope;
-use crate::files::json::set::{Override, resolved};
-use crate::files::problem::state::A_SOURCE;
-use crate::files::scene::build::build_scene;
-use crate::files::units::quantity::{Kind, PhysicalQuantity, Quantity, Voltage};
-use crate::model::system::{Source, System};
+use crate::files::units::quantity::{Kind, PhysicalQuantity, Quantity};
 use csv::{ReaderBuilder, StringRecord, Trim};
-use serde_json::Value;
 use std::collections::BTreeMap;
 use std::fs::File;
-use std::path::Path;
 
 /// Columns; of a CSV file those of one line of headers, in which lines that begin with `#` are comments.
 pub(crate) struct Columns {
@@ -190,89 +181,4 @@ impl Columns {
             scope.wrong(place, Quantity::<M>::expected())
         })
     }
-}
-
-/// Refuses overrides of which two are of one place; where a list is made, the later one counts.
-///
-/// # Errors
-/// There are two, or one is no override.
-pub fn each_once(overrides: &[String]) -> Result<(), SceneError> {
-    Override::check(overrides, |change| change.place.clone())
-}
-
-/// Refuses overrides of which two are of one place of the problem that was read with them: an entry of a list has an index and a name.
-///
-/// # Errors
-/// There are two.
-pub fn each_entry_once(overrides: &[String], loaded: &Loaded) -> Result<(), SceneError> {
-    Override::check(overrides, |change| match change.in_scene() {
-        Some(inside) => {
-            let mut place = resolved(&loaded.scene, &inside.place);
-            place.0.insert(0, Step::Key("scene".to_owned()));
-            place
-        }
-        None => resolved(&loaded.problem, &change.place),
-    })
-}
-
-/// The system of a scene file, or of the scene of a problem file, with overrides as for the file itself.
-///
-/// # Errors
-/// The file, its scene or an override is wrong.
-pub fn read_system(path: &Path, overrides: &[String]) -> Result<System, SceneError> {
-    let mut document = Document::read_typed(path)?;
-    if document.entry("scene").is_some() {
-        return Ok(crate::files::read_problem(path, overrides)?.system);
-    }
-    for written in overrides {
-        let change = Override::parse(written)?;
-        change.in_scene().unwrap_or(change).apply(&mut document)?;
-    }
-    build_scene(&document.parse()?, &Scope::of(&document))
-}
-
-/// One voltage per source in V from words such as `muscle2=1.7kV`, 0 where not named.
-///
-/// # Errors
-/// A source does not exist or takes no voltage, or a voltage is none.
-pub fn driven_voltages(words: &[String], system: &System) -> Result<Vec<f64>, SceneError> {
-    let sources = system.sources();
-    let mut voltages = vec![None; sources.len()];
-    let mistake = |word: &str, expected: String, nearest: Option<String>| -> SceneError {
-        Mistake {
-            file: "command line".to_owned(),
-            path: "--voltages".to_owned(),
-            found: format!("{word:?}"),
-            expected,
-            nearest,
-            source: None,
-            overridden: None,
-        }
-        .into()
-    };
-    for word in words.iter().filter(|word| !word.trim().is_empty()) {
-        let expected = || "muscle=voltage, such as muscle2=1.7kV".to_owned();
-        let (name, value) = word
-            .split_once('=')
-            .ok_or_else(|| mistake(word, expected(), None))?;
-        let name = name.trim();
-        let named = |source: &Source| source.name == name && source.takes_voltage;
-        let source = sources.iter().position(named).ok_or_else(|| {
-            let nearest = nearest(name, sources.iter().map(|source| source.name.as_str()));
-            let expected = format!("{A_SOURCE} that takes a voltage");
-            mistake(name, expected, nearest.filter(|other| other != name))
-        })?;
-        let value = value.trim();
-        let json = serde_json::from_str(value).unwrap_or_else(|_| Value::from(value));
-        let quantity: Quantity<Voltage> = serde_json::from_value(json)
-            .map_err(|_| mistake(word, Quantity::<Voltage>::expected(), None))?;
-        if voltages[source].replace(quantity.value()).is_some() {
-            let expected = format!("one voltage of {name:?}");
-            return Err(mistake(word, expected, None));
-        }
-    }
-    Ok(voltages
-        .into_iter()
-        .map(Option::unwrap_or_default)
-        .collect())
 }

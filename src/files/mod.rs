@@ -22,11 +22,11 @@ pub mod solution;
 pub mod stl;
 pub mod study;
 pub mod sweep;
+mod typed;
 pub mod units;
 pub mod urdf;
 
 pub(crate) use columns::Columns;
-pub use columns::{driven_voltages, each_entry_once, each_once, read_system};
 pub(crate) use json::document::Document;
 pub use json::error::{SceneError, lines, message, note, printable, printable_json};
 pub(crate) use json::layout::lay_out;
@@ -37,6 +37,7 @@ pub(crate) use json::source::is_standard_input;
 pub(crate) use scene::build::LONGEST_CHAIN;
 pub use scene::material::named_materials;
 pub use scene::trunk::new_trunk;
+pub use typed::{driven_voltages, each_entry_once, each_once, read_system};
 pub(crate) use units::si;
 
 use serde_json::Value;

@@ -1,5 +1,6 @@
 //! Optimal control problems.
 
+use crate::control;
 use crate::control::problem::{
     Ahead, Combined, Duration, Guess, Hold, InCommon, Objective, OutcomeOf, PathConstraint,
     QuantityCost, Regulator, Solver, SoughtHold, Varied,
@@ -15,6 +16,7 @@ use crate::model::components::Load;
 use crate::model::system::Source;
 use crate::model::{Parameter, System};
 use crate::nlp::Nlp;
+use crate::tasks;
 use crate::tasks::SolveRequest;
 use crate::workflow::memory::Occasion;
 use crate::workflow::optimum::SolveLimits;
@@ -24,7 +26,6 @@ use crate::workflow::prepare_together::{
 use crate::workflow::receding::Horizon;
 use crate::workflow::resolve::resolve;
 use crate::workflow::{Iterate, memory};
-use crate::{control, tasks};
 use std::collections::BTreeMap;
 use std::ops::{ControlFlow, RangeInclusive};
 

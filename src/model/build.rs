@@ -18,7 +18,7 @@ use crate::model::measures::Measures;
 use crate::model::model::{Model, length};
 use crate::model::named::Named;
 use crate::model::no_terms::{carriers, no_terms};
-use crate::model::plan::{LeftOut, Present, rank};
+use crate::model::plan::{LeftOut, Present};
 use crate::model::presolved::{Presolved, clamp};
 use crate::model::quantity::Quantity;
 use crate::model::solids::{Circuits, Solids};
@@ -27,6 +27,7 @@ use crate::model::system::{
     Attachment, Body, Discretisation, Electrode, Fidelity, Glue, JointSpring, JointStops, Marker,
     Muscle, Potential, Solid, Source, System,
 };
+use crate::model::term_order::rank;
 use crate::model::terms::{Terms, mid};
 use crate::model::variables::{Role, Size, Time, Variable, Variables};
 use crate::model::{

@@ -49,6 +49,7 @@ mod sought;
 mod sought_elements;
 mod states;
 pub mod system;
+pub mod term_order;
 mod terms;
 mod tree_drifts;
 mod variables;

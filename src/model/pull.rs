@@ -15,9 +15,9 @@ use crate::model::internal::InternalKind;
 use crate::model::joint_constraints::DAMPING;
 use crate::model::joint_sections::JointSection;
 use crate::model::measures::{Known, Shape, read};
-use crate::model::plan::rank;
 use crate::model::quantity::{Pulling, Reaction};
 use crate::model::system::Fidelity;
+use crate::model::term_order::rank;
 use crate::model::variables::Time;
 use std::sync::Arc;
 

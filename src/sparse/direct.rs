@@ -10,9 +10,10 @@ use std::sync::Arc;
 use std::time::Instant;
 
 use crate::math::{IsOver, Stopped};
+use crate::sparse::backend::Backend;
 use crate::sparse::dissection::Places;
 use crate::sparse::fronts::Fronts;
-use crate::sparse::pattern::{Backend, Pattern};
+use crate::sparse::pattern::Pattern;
 use crate::sparse::{Factorisation, Precision, Singular, Symmetry};
 
 /// Above this size, factors for an iteration are in single precision, as `benches/block.rs` measures.

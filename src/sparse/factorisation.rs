@@ -2,8 +2,8 @@
 
 use crate::math::{IsOver, Stopped};
 use crate::sparse::Precision;
+use crate::sparse::backend::Backend;
 use crate::sparse::direct::Direct;
-use crate::sparse::pattern::Backend;
 use std::fmt::Debug;
 use thiserror::Error;
 

@@ -2,6 +2,7 @@
 //!
 //! [`Direct`] lays the pattern, scales, checks and refines; a [`Factorisation`] is what it does so with.
 
+mod backend;
 mod direct;
 mod dissection;
 mod factorisation;
@@ -12,10 +13,10 @@ pub(crate) mod mumps;
 mod pattern;
 mod scaling;
 
+pub use backend::{Backend, DENSE};
 pub use direct::Direct;
 pub use dissection::Places;
 pub use factorisation::MethodState;
 pub use factorisation::{Factorisation, Singular};
 pub use pattern::Symmetry;
-pub use pattern::{Backend, DENSE};
 pub use scaling::Precision;

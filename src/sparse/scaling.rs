@@ -1,8 +1,8 @@
 //! Scales of rows and columns: equations and unknowns in different units meet one criterion of singularity.
 
 use crate::sparse::Symmetry;
+use crate::sparse::backend::Backend;
 use crate::sparse::direct::Direct;
-use crate::sparse::pattern::Backend;
 
 /// Scaling of rows and columns ends when their largest entries are between this and its inverse, or after this number of
 /// rounds.

@@ -82,7 +82,7 @@ fn steps_between_resolved_and_absurd_are_told() {
         let words = run
             .err
             .lines()
-            .find(|line| line.contains("of numerical energy"))
+            .find(|line| line.contains("the steps of"))
             .unwrap_or("no word");
         assert_eq!(relative > 0.01, words != "no word", "{step}: {}", run.err);
         seen.push(format!(

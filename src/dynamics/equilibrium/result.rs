@@ -2,8 +2,8 @@
 
 use crate::dynamics::equilibrium::examined::LowestMode;
 use crate::dynamics::equilibrium::instability::{Instability, Load};
+use crate::dynamics::equilibrium::mode::Mode;
 use crate::dynamics::equilibrium::rest_state::RestState;
-use crate::dynamics::equilibrium::softest_mode::Mode;
 use crate::dynamics::equilibrium::static_matrix::turned_pairs;
 use crate::dynamics::equilibrium::statics::Statics;
 use crate::sparse::multigrid::MultigridReport;

@@ -3,6 +3,7 @@
 
 use crate::dynamics::equilibrium::examined::{Examined, LowestMode};
 use crate::dynamics::equilibrium::growing_motions::eigenvalues;
+use crate::dynamics::equilibrium::mode::{Mode, Softening};
 use crate::dynamics::equilibrium::rest_state::RestState;
 use crate::dynamics::equilibrium::statics::Statics;
 use crate::dynamics::solving::MultigridUse;
@@ -16,12 +17,16 @@ use nalgebra::{DMatrix, SymmetricEigen};
 
 /// Number of coordinates up to which the eigenvalues of the stiffness are computed.
 const EIGENVALUES: usize = 100;
+
 /// Steps of the inverse iteration for larger systems.
 const STEPS: usize = 30;
+
 /// Parts of the largest motion below this are not named.
 const NAMED: f64 = 0.5;
+
 /// Maximum number of parts named.
 const LISTED: usize = 3;
+
 /// Parts of the stiffness below this of the elastic one are rounding.
 const ROUNDING: f64 = 1e-9;
 
@@ -254,28 +259,6 @@ fn moves(model: &Model, z: &[f64], direction: &[f64]) -> String {
         words.push(format!("stretch of {} (at {stretch:.4})", muscle.name));
     }
     words.join(", ")
-}
-
-/// Cause of a soft mode: the smallest of the three parts of its stiffness.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Softening {
-    /// The forces of voltages, as in pull-in.
-    Voltages,
-    /// Weights and loads, as in collapse.
-    Loads,
-    /// Elastic forces, as in buckling.
-    Elastic,
-}
-
-/// The softest mode of a state of rest.
-#[derive(Clone, Debug, PartialEq)]
-pub struct Mode {
-    /// Change of each coordinate; the largest is 1 (rad, or lengths of the system).
-    pub direction: Vec<f64>,
-    /// Parts that move most, in words: joints, or bodies, or a node of a block, then the muscle whose stretch changes most.
-    pub moves: String,
-    /// Cause of its softness; `None` where nothing takes from the elastic stiffness along it.
-    pub softening: Option<Softening>,
 }
 
 /// The lowest mode of a model at a state of rest: `z` of coordinates, `scalars` of voltages and potentials; `None` where something else than
