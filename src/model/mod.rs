@@ -52,6 +52,7 @@ pub mod system;
 pub mod term_order;
 mod terms;
 mod tree_drifts;
+mod unknown_positions;
 mod variables;
 mod weight;
 

@@ -20,13 +20,17 @@ mod kinematic_state;
 pub(super) mod layout;
 mod limit_rows;
 mod limit_values;
+mod objective;
 mod point;
 mod program;
 mod scaling;
 mod segment;
+mod squares;
+mod start_momentum;
 mod step;
 pub(super) mod structure;
 mod time_rows;
+mod time_values;
 mod update_endpoints;
 mod workspace;
 
@@ -39,12 +43,12 @@ use crate::control::problem::{self, Control};
 use crate::functional::{BlockMask, ParameterOrder};
 use crate::model::Model;
 use crate::nlp::{Bounds, Nlp};
-use costs::Objective;
 use layout::Layout;
 pub use layout::Outline;
 pub(super) use limit_rows::Site;
+use objective::Objective;
+use start_momentum::StartMomentum;
 use structure::{Structure, overdetermined};
-use update_endpoints::StartMomentum;
 use workspace::Workspace;
 
 /// A control problem as a nonlinear program.

@@ -4,7 +4,7 @@ use crate::control::bounded_quantity::{BoundedQuantity, When};
 use crate::control::numbering::{Column, Row};
 use crate::control::transcription::Transcription;
 use crate::control::transcription::cost_rows::MILLISECOND;
-use crate::control::transcription::costs::Objective;
+use crate::control::transcription::objective::Objective;
 use crate::control::transcription::workspace::Workspace;
 use crate::functional::Order;
 use crate::model::Role;

@@ -21,6 +21,7 @@ mod slowest_mode;
 mod softest_mode;
 mod stability;
 mod stable;
+mod states;
 mod static_matrix;
 mod static_solution;
 mod statics;
