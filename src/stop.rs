@@ -233,7 +233,7 @@ const ASKING: [c_int; 3] = [SIGINT, SIGTERM, signal_hook::consts::SIGHUP];
 #[cfg(not(unix))]
 const ASKING: [c_int; 2] = [SIGINT, SIGTERM];
 
-/// Makes signals end the solves of this process with [`Status::Interrupted`](super::Status::Interrupted): Ctrl-C (SIGINT), SIGTERM and SIGHUP, each of
+/// Makes signals end the solves of this process with [`Status::Interrupted`]: Ctrl-C (SIGINT), SIGTERM and SIGHUP, each of
 /// which ends the process when it comes again, with exit status 128 plus its number, and SIGXCPU, which comes when a limit of computing time
 /// is near. `tell` writes a message for the user. Signals that the process was started to ignore, as by `nohup`, it ignores.
 ///

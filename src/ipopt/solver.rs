@@ -115,7 +115,7 @@ impl<N: Nlp> Solver<N> {
 
     /// Solves the program from `start`.
     ///
-    /// `observer` is called with every iterate, and may ask to stop; so may Ctrl-C, see [`interrupt`]. A panic of program or observer
+    /// `observer` is called with every iterate, and may ask to stop; so may Ctrl-C, see [`stop`](crate::stop). A panic of program or observer
     /// goes on when Ipopt has returned.
     ///
     /// # Errors
