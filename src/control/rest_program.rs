@@ -32,8 +32,7 @@ use crate::dynamics::{DiscreteTrajectory, Start};
 use crate::ipopt::StartingPoint;
 use crate::math::Signal;
 use crate::model::{Constant, Model, Parameter, Quantity, Role, System};
-use crate::nlp::Multipliers;
-use crate::nlp::Nlp;
+use crate::nlp::{Multipliers, Nlp};
 
 /// A state of rest whose coordinates are unknowns.
 #[derive(Debug)]

@@ -105,10 +105,10 @@ impl Information {
             unknown[(j, j)] > variance || factor * variance.sqrt() >= 1.0
         };
         let is_wide: Vec<bool> = (0..constants).map(is_wide).collect();
-        let open: Vec<usize> = (0..constants)
+        let vague: Vec<usize> = (0..constants)
             .filter(|&j| is_held[j] || is_wide[j])
             .collect();
-        let by_others = by_others(&relative, &open);
+        let by_others = by_others(&relative, &vague);
         let is_determined: Vec<bool> = (0..constants)
             .map(|j| !is_wide[j] && !by_others[j])
             .collect();

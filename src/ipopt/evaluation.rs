@@ -7,9 +7,8 @@ use std::time::Instant;
 use crate::ipopt::iterate::{Before, Reached, Record};
 use crate::ipopt::session;
 use crate::ipopt::solution::Iteration;
-use crate::nlp::Status;
 use crate::nlp::squares::Squares;
-use crate::nlp::{Entries, Nlp};
+use crate::nlp::{Entries, Nlp, Status};
 use crate::stop::{self, Watch};
 
 /// Answers the questions of Ipopt about one nonlinear program.

@@ -16,8 +16,7 @@ use crate::ipopt::declarations::{
 use crate::ipopt::evaluation::Evaluator;
 use crate::ipopt::option_value::OptionValue;
 use crate::ipopt::solution::Iteration;
-use crate::nlp::Multipliers;
-use crate::nlp::{Bounds, Entries};
+use crate::nlp::{Bounds, Entries, Multipliers};
 use crate::sparse::mumps::{self, Exclusive};
 
 /// A problem known to Ipopt, for any number of solves; while one exists that uses MUMPS, no other thread has such a one or calls MUMPS.

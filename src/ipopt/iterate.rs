@@ -1,10 +1,8 @@
 //! An iterate as an observer sees it, and the data of the one before.
 
 use crate::ipopt::solution::{Evaluations, Iteration, Seconds};
-use crate::nlp::Bounds;
-use crate::nlp::Multipliers;
-use crate::nlp::Status;
 use crate::nlp::squares::Squares;
+use crate::nlp::{Bounds, Multipliers, Status};
 
 /// An accepted iterate.
 #[derive(Debug)]

@@ -11,8 +11,7 @@ use std::time::Instant;
 
 use crate::ipopt::linear_report::StagesReport;
 use crate::kkt::{Inertia, Plan, Solver, Stopped, Unknown};
-use crate::nlp::Status;
-use crate::nlp::{Bounds, Stage};
+use crate::nlp::{Bounds, Stage, Status};
 use crate::stop::{self, TimeLimit};
 
 thread_local! {

@@ -1,10 +1,9 @@
 //! Starting point, iterations and result of a solve.
 
-use crate::nlp::Multipliers;
+use crate::nlp::{Multipliers, Status};
 use std::ops::AddAssign;
 
 use crate::ipopt::linear_report::LinearReport;
-use crate::nlp::Status;
 
 /// A point to start from.
 #[derive(Clone, Debug, Default, PartialEq)]

@@ -13,8 +13,7 @@
 //! a range.
 
 use crate::ipopt::evaluation::Structures;
-use crate::nlp::Multipliers;
-use crate::nlp::{Bounds, Nlp};
+use crate::nlp::{Bounds, Multipliers, Nlp};
 
 /// Range of the barrier parameter.
 ///

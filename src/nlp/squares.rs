@@ -11,8 +11,7 @@
 //!
 //! Programs and observers of iterates see x alone.
 
-use crate::nlp::Multipliers;
-use crate::nlp::{Bounds, Entries, Nlp, Stage};
+use crate::nlp::{Bounds, Entries, Multipliers, Nlp, Stage};
 
 /// Least w, for slopes that are finite.
 const LEAST: f64 = 1e-18;

@@ -1,8 +1,7 @@
 //! The conditions of an optimum at a point, over the squares of those variables that enter by squares alone.
 
-use crate::nlp::Multipliers;
 use crate::nlp::squares::{InSquares, Squares};
-use crate::nlp::{Bounds, Entries, Nlp, Stage};
+use crate::nlp::{Bounds, Entries, Multipliers, Nlp, Stage};
 
 /// A program at a point with multipliers, and its derivatives there.
 #[derive(Debug)]

@@ -1,7 +1,6 @@
 //! Derivatives of the solution of a program with respect to fixed variables, bounds and user-supplied parameter derivatives.
 
-use crate::nlp::Multipliers;
-use crate::nlp::Nlp;
+use crate::nlp::{Multipliers, Nlp};
 use crate::sensitivity::active_set::{Direction, Held, Place, Side, of_constraints, of_variables};
 use crate::sensitivity::check::NoSensitivity;
 use crate::sensitivity::conditions::Conditions;

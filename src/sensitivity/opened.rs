@@ -7,8 +7,7 @@ use crate::control::{
 };
 use crate::dynamics::Equilibrium;
 use crate::model::{Model, Parameter, Role, System};
-use crate::nlp::Multipliers;
-use crate::nlp::Nlp;
+use crate::nlp::{Multipliers, Nlp};
 use crate::sensitivity::active_set::{Held, Place};
 use crate::sensitivity::check::NoSensitivity;
 use crate::sensitivity::kernel::Kernel;

@@ -10,11 +10,11 @@
 //!
 //! tells whether it is so. Then the program is solved again from there, with the objective scaled by its own size, or by what may be left of it where
 //! that is more. Where the bound is wide all the same, as with many bounds that are not reached, two solves decide between which the barrier
-//! parameter falls by ten or more: f is linear in it near the end, so that what is left is less than what the second one gained.
+//! parameter falls by ten or more: f is linear in it near the end, so that what is left is less than what the second one gained. Where rounding
+//! ends a solve at a search direction that is too small, that direction bounds the change of each variable in place of its scale.
 
 use crate::ipopt::{Options, SolverResult, Start};
-use crate::nlp::Status;
-use crate::nlp::{Bounds, Nlp};
+use crate::nlp::{Bounds, Nlp, Status};
 
 /// The objective of a solution is this part of itself above its least value at most, unless a larger tolerance is asked for.
 const PART: f64 = 1e-6;
@@ -37,7 +37,7 @@ pub(crate) struct Gap {
     /// True unless the last step needed more curvature than the Lagrangian has along the equations: its matrix had another inertia than at a minimum.
     is_minimum: bool,
     /// True if the rows hold to the tolerance of the program.
-    is_feasible: bool,
+    pub(crate) is_feasible: bool,
     /// Violation of the rows that is allowed.
     allowed: f64,
     objective: f64,
@@ -153,7 +153,7 @@ fn is_minimum(solution: &SolverResult) -> bool {
 }
 
 /// Returns true if a point keeps the rows to a tolerance.
-pub(crate) fn is_feasible(program: &impl Nlp, solution: &SolverResult, tolerance: f64) -> bool {
+fn is_feasible(program: &impl Nlp, solution: &SolverResult, tolerance: f64) -> bool {
     let violation = program.constraints().violation(&solution.constraints);
     violation <= tolerance
 }

@@ -11,7 +11,6 @@ use crate::nlp::{Multipliers, Status};
 use crate::stop;
 use crate::workflow::coupled::one_of_both;
 use crate::workflow::error::WorkflowError;
-use crate::workflow::gap;
 use crate::workflow::gap::Gap;
 use crate::workflow::motion::{Iterate, solved};
 use crate::workflow::optimum::seconds_left;
@@ -165,23 +164,21 @@ impl Solves<'_, '_> {
             let (status, objective) = (again.status, again.objective);
             // Rounding may keep a solve from its tolerance at a point that is better all the same.
             let is_as_good = status.is_stationary() || objective < solution.objective;
-            let is_feasible = gap::is_feasible(program, &again, tolerance);
-            if !(status.is_optimal() || is_as_good && is_feasible) {
+            let found = gap.after(program, (&solution, &again), &options);
+            if !(status.is_optimal() || is_as_good && found.is_feasible) {
                 break;
             }
-            gap = gap.after(program, (&solution, &again), &options);
+            gap = found;
             tracing::info!(?status, objective, left = gap.left, "confirmation");
-            let status_of = |status: Status| match status {
+            let kept = match status {
                 Status::Solved => status,
                 _ => Status::Acceptable,
             };
-            solution = one_of_both(
-                solution,
-                SolverResult {
-                    status: status_of(status),
-                    ..again
-                },
-            );
+            let again = SolverResult {
+                status: kept,
+                ..again
+            };
+            solution = one_of_both(solution, again);
             if !status.is_optimal() {
                 break;
             }

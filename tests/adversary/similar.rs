@@ -1,13 +1,13 @@
 //! Similar problems of every task: the same verdict, notes and iterations, and the same columns in units of the robot, from robots of milligrams and
 //! millimetres to those of kilograms and metres.
 
-use crate::common::similar::Scales;
+use crate::common::similar::{Scales, problem_of};
 use crate::seeds;
 use assert_cmd::Command;
 use proboscis::math::Random;
 use serde_json::Value;
 use std::fs;
-use std::path::{Path, PathBuf};
+use std::path::PathBuf;
 use tempfile::TempDir;
 
 /// Kept problems whose numbers all have units, and the largest difference of a column relative to its size.
@@ -38,21 +38,6 @@ struct Outcome {
     objective: Option<f64>,
     /// Columns with units.
     columns: Vec<(String, String, Vec<f64>)>,
-}
-
-/// A kept problem with its scene and without paths.
-fn kept(name: &str) -> Value {
-    let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("problems");
-    let read = |path: &Path| -> Value {
-        serde_json::from_str(&fs::read_to_string(path).unwrap()).unwrap()
-    };
-    let mut problem = read(&folder.join(name).with_extension("json"));
-    if let Some(scene) = problem["scene"].as_str() {
-        problem["scene"] = read(&folder.join(scene));
-    }
-    problem.as_object_mut().unwrap().remove("$schema");
-    problem["scene"].as_object_mut().unwrap().remove("$schema");
-    problem
 }
 
 /// A run of the program.
@@ -164,7 +149,7 @@ fn similar_problems_have_similar_results_at_all_scales() {
         // Densities that no material has are refused.
         let (length, time) = (power(-1.7, 1.3), power(-2.3, 2.7));
         let scales = Scales::in_vacuum(length.powi(3) * power(-1.5, 1.8), length, time);
-        let problem = kept(name);
+        let problem = problem_of(&format!("problems/{name}.json"));
         let one = outcome(task, &problem);
         let other = outcome(task, &scales.problem(&problem));
         let (difference, column) = apart(&scales, &one, &other);

@@ -6,6 +6,8 @@
 
 use proboscis::files::schema;
 use serde_json::{Map, Value};
+use std::fs;
+use std::path::Path;
 
 /// Factors of the four base units.
 #[derive(Clone, Copy, Debug)]
@@ -351,4 +353,19 @@ impl Scaler {
         };
         has_kind && value.as_object().is_none_or(names)
     }
+}
+
+/// A problem of a file of this repository with its scene, without references to schemas.
+pub fn problem_of(path: &str) -> Value {
+    let path = Path::new(env!("CARGO_MANIFEST_DIR")).join(path);
+    let read = |path: &Path| -> Value {
+        serde_json::from_str(&fs::read_to_string(path).unwrap()).unwrap()
+    };
+    let mut problem = read(&path);
+    if let Some(scene) = problem["scene"].as_str() {
+        problem["scene"] = read(&path.parent().unwrap().join(scene));
+    }
+    problem.as_object_mut().unwrap().remove("$schema");
+    problem["scene"].as_object_mut().unwrap().remove("$schema");
+    problem
 }

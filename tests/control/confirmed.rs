@@ -1,11 +1,9 @@
 //! "solved" means that no smaller objective is near, whatever its size, and similar problems have similar optima.
 
-use crate::common::similar::Scales;
+use crate::common::similar::{Scales, problem_of};
 use crate::limits::run;
 use proboscis::math::Random;
 use serde_json::{Value, json};
-use std::fs;
-use std::path::Path;
 
 /// Objectives of "solved" optima may lie this part above the least one: that of the product, and what its bounds are relaxed by.
 const NEAR: f64 = 2e-6;
@@ -107,21 +105,6 @@ fn the_least_effort_is_found_under_bounds_of_any_width() {
             "{number}: {found} for {least}, bounds {width}"
         );
     }
-}
-
-/// A problem of a file of the tests with its scene.
-fn problem_of(path: &str) -> Value {
-    let path = Path::new(env!("CARGO_MANIFEST_DIR")).join(path);
-    let read = |path: &Path| -> Value {
-        serde_json::from_str(&fs::read_to_string(path).unwrap()).unwrap()
-    };
-    let mut problem = read(&path);
-    if let Some(scene) = problem["scene"].as_str() {
-        problem["scene"] = read(&path.parent().unwrap().join(scene));
-    }
-    problem.as_object_mut().unwrap().remove("$schema");
-    problem["scene"].as_object_mut().unwrap().remove("$schema");
-    problem
 }
 
 #[test]

@@ -8,8 +8,7 @@ use nalgebra::Vector3;
 use proboscis::control::problem::{BoundaryState, Control, PathConstraint, Rest};
 use proboscis::control::{BoundaryConditions, Transcription, guess, rest_programs};
 use proboscis::model::{MaterialConstant, MaxwellBranch, MaxwellBranches, System, with_parameters};
-use proboscis::nlp::Status;
-use proboscis::nlp::differences;
+use proboscis::nlp::{Status, differences};
 use proboscis::workflow::{Optimum, SolveLimits, optimise};
 use std::ops::ControlFlow;
 

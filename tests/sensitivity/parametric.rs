@@ -1,8 +1,7 @@
 //! The parametric example of sIPOPT (Pirnay, López-Negrete and Biegler 2012, section 3) and small programs with closed forms.
 
 use proboscis::ipopt::{Options, StartingPoint, solve};
-use proboscis::nlp::Multipliers;
-use proboscis::nlp::{Bounds, Entries, Nlp};
+use proboscis::nlp::{Bounds, Entries, Multipliers, Nlp};
 use proboscis::sensitivity::{Direction, Held, Kernel, NoSensitivity, Outcome, Side};
 use std::ops::ControlFlow;
 

@@ -11,8 +11,7 @@ use proboscis::ipopt::{
 };
 use proboscis::math::Vector;
 use proboscis::model::{Coordinates, Model};
-use proboscis::nlp::Status;
-use proboscis::nlp::{Bounds, Entries, Nlp};
+use proboscis::nlp::{Bounds, Entries, Nlp, Status};
 use std::cell::Cell;
 use std::collections::BTreeMap;
 use std::ops::ControlFlow;

@@ -10,8 +10,7 @@ use crate::common::programs::{
 use proboscis::ipopt::{
     IpoptError, Iteration, OptionValue, Options, Reached, SolverResult, Start, StartingPoint, solve,
 };
-use proboscis::nlp::{Bounds, Nlp};
-use proboscis::nlp::{Multipliers, Status};
+use proboscis::nlp::{Bounds, Multipliers, Nlp, Status};
 
 pub(crate) fn from(x: &[f64]) -> StartingPoint {
     StartingPoint {

@@ -20,7 +20,7 @@ impl Equations for GalerkinEquations<'_> {
             let voltages = drive.at(step, sample.weights.part);
             sample.scalars[inputs.clone()].copy_from_slice(&voltages);
         }
-        if self.dissipates {
+        if self.dissipates && !matches!(self.rule, Rule::Galerkin(_)) {
             self.middle[inputs].copy_from_slice(&drive.at(step, 0.5));
         }
     }

@@ -11,8 +11,7 @@ use crate::dynamics::{DiscreteTrajectory, Linearisation, NoState, Start, step_in
 use crate::feedback::Law;
 use crate::ipopt::{IpoptError, Options, StartingPoint, solve};
 use crate::model::{Model, System, Time};
-use crate::nlp::Nlp;
-use crate::nlp::Status;
+use crate::nlp::{Nlp, Status};
 use crate::stop;
 use crate::workflow::error::WorkflowError;
 use crate::workflow::motion::{Iterate, discrete_trajectory};
