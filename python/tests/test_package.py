@@ -8,6 +8,7 @@ import subprocess
 import sys
 import threading
 import time
+from collections.abc import Callable
 from concurrent.futures import ThreadPoolExecutor
 from pathlib import Path
 from typing import Any
@@ -258,6 +259,16 @@ def long_simulation() -> pb.Problem:
     return pb.Problem.from_dict(content, folder=PROBLEMS)
 
 
+def press_at(step: int) -> Callable[[pb.Step], None]:
+    """Ctrl-C at a step: what is written of so few is there in time on a slow machine too."""
+
+    def press(at: pb.Step) -> None:
+        if at.step == step:
+            os.kill(os.getpid(), signal.SIGINT)
+
+    return press
+
+
 def ctrl_c_after(seconds: float) -> threading.Thread:
     def press() -> None:
         time.sleep(seconds)
@@ -271,10 +282,8 @@ def ctrl_c_after(seconds: float) -> threading.Thread:
 def test_ctrl_c_ends_a_run_in_good_order() -> None:
     simulation = long_simulation()
     before = signal.getsignal(signal.SIGINT)
-    thread = ctrl_c_after(0.5)
     with pytest.raises(KeyboardInterrupt) as caught:
-        simulation.simulate()
-    thread.join()
+        simulation.simulate(on_step=press_at(100))
     result: Any = getattr(caught.value, "result")
     assert result.status == "interrupted" and not result.is_solved
     assert 1 < len(result.time) < 1_000_000 and result.joint("joint1").shape == result.time.shape
@@ -285,7 +294,7 @@ def test_ctrl_c_ends_a_run_in_good_order() -> None:
 
 def test_time_is_limited() -> None:
     result = long_simulation().simulate(max_seconds=0.3)
-    assert result.status == "time_limit" and not result.is_solved and len(result.time) > 1
+    assert result.status == "time_limit" and not result.is_solved and result.summary["simulation"]["steps"] > 1
 
 
 def test_solves_run_at_once_in_threads(pair: pb.Problem, optimum: pb.Result) -> None:
@@ -324,10 +333,8 @@ def test_others_run_while_a_run_does() -> None:
 def test_ctrl_c_does_not_wait_for_what_cannot_stop(tmp_path: Path) -> None:
     """The result is waited for where it is asked for, and only there."""
     simulation = long_simulation()
-    thread = ctrl_c_after(0.5)
     with pytest.raises(pb.Interrupted) as caught:
-        simulation.simulate(output=tmp_path / "kept")
-    thread.join()
+        simulation.simulate(on_step=press_at(100), output=tmp_path / "kept")
     result = caught.value.result
     assert caught.value.result is result and result.folder == tmp_path / "kept"
     assert result.status == "interrupted" and len(result.time) > 1
