@@ -19,7 +19,7 @@ use crate::functional::{BlockMask, NodeBlocks, Order};
 use crate::math::Vector;
 use crate::model::Model;
 use crate::sparse::{Backend, DENSE};
-use std::slice;
+use std::{iter, slice};
 
 /// Steps of the midpoint rule.
 pub type Stepper<'m> = Steps<Midpoint<'m>>;
@@ -262,14 +262,10 @@ impl Equations for Midpoint<'_> {
         };
         let action = &model.action;
         action.evaluate_interval(Order::Gradient, [here, next], &interval, scratch);
-        let forces = &scratch.interval.plain.forces;
-        Some(Balance::new(
-            model,
-            *typical_energy,
-            [here, next],
-            &interval,
-            forces,
-        ))
+        let ends = [&*here, &*next];
+        let parts = iter::once((1.0, interval.sample(ends), &scratch.interval.plain.forces));
+        let ends = ends.map(|at| interval.sample([at, at]));
+        Some(Balance::new(model, (*typical_energy, 0.0), ends, parts))
     }
 
     /// h³ u‴/12 with the third derivative of the last three rates; before the first step the system moved as at its start.

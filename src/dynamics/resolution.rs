@@ -5,12 +5,13 @@
 //! after whole turns. Over a step the potential energy V changes by V(x₁) − V(x₀), while the forces at the middle do the work
 //! −∇V(x̄)·(x₁ − x₀). Their sum is the energy that the step makes or loses, of third order in the step and exactly zero where V
 //! is quadratic, however fast the oscillation. Voltages are constant within a step and supply nothing there; dissipation
-//! takes as much as it does work.
+//! takes as much as it does work. A Galerkin method of degree s sums the work of the forces by its quadrature, along its polynomial and, where
+//! inputs change within the step, along the polynomial through them: the error is of order 2s + 1, and zero where V is quadratic too.
 
-use crate::coordinates::{Configuration, Interval};
+use crate::coordinates::Configuration;
 use crate::dynamics::error::StepError;
 use crate::dynamics::interval_energies::Work;
-use crate::functional::TermKind;
+use crate::functional::{Sample, TermKind};
 use crate::math::Vector;
 use crate::model::Model;
 use std::f64::consts::PI;
@@ -20,58 +21,67 @@ const PART: f64 = 0.25;
 /// Relative size of energies that is rounding.
 const ROUNDING: f64 = 1e-9;
 
-/// The energy of one step of the midpoint rule, in mJ.
+/// The energy of one step of the midpoint rule or a Galerkin method, in mJ.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Balance {
     /// Energy that is made (or lost, where negative).
     made: f64,
     /// Energy in motion: kinetic at the middle, change of the potential, dissipation.
     exchanged: f64,
+    /// Work of forces without a potential.
+    work: Work,
     /// Size of the energies that were subtracted from each other, those of single elements included.
     size: f64,
 }
 
+/// A point of the quadrature over a step: its weight, what the terms read there and the forces on the vectors at both ends.
+pub(super) type Part<'a> = (f64, Sample<'a>, &'a [Vec<Vector>; 2]);
+
 impl Balance {
-    /// Of the step between two placed instants; `forces` are those on the vectors at both ends, `typical` the energy of
-    /// [`typical_energy`].
-    pub(super) fn new(
+    /// Of a step from one end to the other, whose equations are a sum over some parts; `typical` is the energy of [`typical_energy`], `supplied`
+    /// what inputs that change within the step add to the potential energy.
+    pub(super) fn new<'a>(
         model: &Model,
-        typical: f64,
-        ends: [&Configuration; 2],
-        interval: &Interval<'_>,
-        forces: &[Vec<Vector>; 2],
+        (typical, supplied): (f64, f64),
+        ends: [Sample<'_>; 2],
+        parts: impl Iterator<Item = Part<'a>>,
     ) -> Self {
-        let [start, end] = ends;
-        let sample = interval.sample(ends);
-        let (mut kinetic, mut change, mut size) = (0.0, 0.0, 0.0_f64);
-        let mut work = Work::default();
-        for term in &model.action.intervals.terms {
-            work.add(1.0, term.as_ref(), &sample);
-            match term.kind() {
-                TermKind::Kinetic => kinetic += term.energy(&sample),
-                TermKind::AppliedWork | TermKind::Dissipation => {}
-                TermKind::Potential => {
-                    let energy = |at| term.energy(&interval.sample([at, at]));
-                    let (before, after) = (energy(start), energy(end));
-                    change += after - before;
-                    size += before.abs() + after.abs();
-                }
-                TermKind::Constraint => {}
-            }
+        let terms = &model.action.intervals.terms;
+        let (mut change, mut size) = (-supplied, 0.0_f64);
+        for term in terms.iter().filter(|t| t.kind() == TermKind::Potential) {
+            let [before, after] = ends.map(|end| term.energy(&end));
+            change += after - before;
+            size += before.abs() + after.abs();
         }
-        let [a, b] = forces;
-        let ways = start.x.iter().zip(&end.x).map(|(x, y)| y - x);
-        let of_forces: f64 = ways
-            .zip(a.iter().zip(b))
-            .map(|(displacement, (a, b))| displacement.dot(&(a + b)))
-            .sum();
-        // The forces of an interval carry its length, those without a potential included.
-        let lost = of_forces / interval.h - (work.applied + work.dissipation);
+        let (mut kinetic, mut of_forces) = (0.0, 0.0);
+        let mut work = Work::default();
+        for (weight, sample, [a, b]) in parts {
+            for term in terms {
+                work.add(weight, term.as_ref(), &sample);
+                if term.kind() == TermKind::Kinetic {
+                    kinetic += weight * term.energy(&sample);
+                }
+            }
+            let [start, end] = sample.vectors;
+            let ways = start.iter().zip(end).map(|(x, y)| y - x);
+            let done = ways
+                .zip(a.iter().zip(b))
+                .map(|(displacement, (a, b))| displacement.dot(&(a + b)));
+            // The forces of an interval carry its length, those without a potential included.
+            of_forces += weight * done.sum::<f64>() / sample.h;
+        }
+        let lost = of_forces - (work.applied + work.dissipation);
         Self {
             made: change + lost,
             exchanged: kinetic + change.abs() + work.applied.abs() + work.dissipation.abs(),
             size: typical + size + kinetic,
+            work,
         }
+    }
+
+    /// Work of forces without a potential over the step.
+    pub(super) fn work(&self) -> Work {
+        self.work
     }
 
     /// Energy that the step makes, or loses where negative.

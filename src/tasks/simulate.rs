@@ -134,7 +134,6 @@ impl SimulationResult {
             infeasible::stalled_warning(discrete.report.fallbacks),
         );
         remarks.warn("energy_balance", steps::unbalanced(discrete));
-        remarks.warn("energy_balance", steps::unchecked(model, task));
         Assessment {
             exchange: EnergyExchange::new(&model.system, trajectory, ends),
             neglected,

@@ -1,9 +1,8 @@
 //! Warnings about the steps of a simulation that do not resolve its motion, with steps that would.
 
 use crate::control::problem::Simulation;
-use crate::dynamics::{DiscreteTrajectory, Integrator, LocalError};
+use crate::dynamics::{DiscreteTrajectory, LocalError};
 use crate::math::{shortest, significant};
-use crate::model::Model;
 use crate::nlp::Status;
 use crate::workflow::integrate::grid;
 use crate::workflow::tolerance::EstimatedError;
@@ -28,16 +27,6 @@ pub(crate) fn unbalanced(discrete: &DiscreteTrajectory) -> Option<String> {
             100.0 * part.abs()
         )
     })
-}
-
-/// A warning where a method does not check its energy balance and fast vibrations of a mesh may grow.
-pub(crate) fn unchecked(model: &Model, task: &Simulation) -> Option<String> {
-    let is_galerkin = matches!(task.solving.integrator, Integrator::Galerkin { .. });
-    (is_galerkin && !model.solids.is_empty()).then_some(
-        "the energy balance of Galerkin methods is not checked, and vibrations of finite elements that no step resolves may grow: \
-         compare with the midpoint rule"
-            .to_owned(),
-    )
 }
 
 /// The step that is taken where the one that is written does not divide the duration.

@@ -3,9 +3,10 @@
 use crate::coordinates::Configuration;
 use crate::dynamics::galerkin::lobatto::lagrange;
 use crate::dynamics::galerkin::rule::Rule;
-use crate::dynamics::galerkin::state::GalerkinEquations;
+use crate::dynamics::galerkin::state::{GalerkinEquations, between};
 use crate::dynamics::interval_energies::Work;
 use crate::dynamics::momenta::vector_momenta;
+use crate::dynamics::resolution::Balance;
 use crate::dynamics::solving::Drive;
 use crate::dynamics::stepper::Equations;
 use crate::functional::{NodeBlocks, Order};
@@ -148,6 +149,33 @@ impl Equations for GalerkinEquations<'_> {
         [&self.points[0], &self.points[self.points.len() - 1]]
     }
 
+    fn balance(&mut self, h: f64) -> Option<Balance> {
+        if !matches!(self.rule, Rule::Galerkin(_)) {
+            return None;
+        }
+        self.sample(Order::Gradient, h);
+        let energies = (self.typical_energy, self.supplied(h));
+        let last = self.points.len() - 1;
+        let ends = [0, last].map(|i| {
+            between(
+                [&self.points[i].x; 2].map(|x| x.as_slice()),
+                &self.samples[i].scalars,
+                h,
+            )
+        });
+        let parts = self.samples.iter().map(|point| {
+            let [a, b] = &point.x;
+            (
+                point.weights.quadrature,
+                between([a, b], &point.scalars, h),
+                &point.out.plain.forces,
+            )
+        });
+        let balance = Balance::new(self.model, energies, ends, parts);
+        self.work = self.dissipates.then(|| balance.work());
+        Some(balance)
+    }
+
     fn visit_state(&mut self, visit: &mut dyn FnMut(&'static str, &mut [f64])) {
         visit("time", slice::from_mut(&mut self.time));
         visit("z", &mut self.points[0].z);
@@ -177,7 +205,11 @@ impl Equations for GalerkinEquations<'_> {
     }
 
     fn accept(&mut self, h: f64) -> bool {
-        self.sample(Order::Gradient, h);
+        // The balance of energy of a Galerkin method has read them.
+        let has_balance = matches!(self.rule, Rule::Galerkin(_));
+        if !has_balance {
+            self.sample(Order::Gradient, h);
+        }
         let model = self.model;
         let last = self.points.len() - 1;
         let forces = self
@@ -188,7 +220,7 @@ impl Equations for GalerkinEquations<'_> {
         if !forces.into_iter().all(|f| f.iter().all(|c| c.is_finite())) {
             return false;
         }
-        if self.dissipates {
+        if self.dissipates && !has_balance {
             self.work = Some(self.work_of_step(h));
         }
         let momenta: Vec<Vector> = match &mut self.rule {

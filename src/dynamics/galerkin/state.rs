@@ -8,10 +8,13 @@ use crate::dynamics::galerkin::rule::{Alpha, Massless, Rule, Weights};
 use crate::dynamics::interval_energies::Work;
 use crate::dynamics::kinetic::masses;
 use crate::dynamics::momenta::{Start, rates, vector_momenta};
+use crate::dynamics::resolution::typical_energy;
 use crate::dynamics::solving::{Drive, Integrator, Solving};
 use crate::dynamics::step_matrix::StepMatrix;
 use crate::dynamics::stepper::Steps;
-use crate::functional::{BlockMask, Blocks, Horizon, Order, Output, Sample, SumDerivatives};
+use crate::functional::{
+    BlockMask, Blocks, Horizon, Order, Output, Sample, SumDerivatives, TermKind,
+};
 use crate::math::Vector;
 use crate::model::Model;
 use crate::sparse::Symmetry;
@@ -59,6 +62,10 @@ pub struct GalerkinEquations<'m> {
     pub(super) middle: Vec<f64>,
     pub(super) massless: Massless,
     pub(super) work: Option<Work>,
+    /// Energy that is typical of the system, in mJ.
+    pub(super) typical_energy: f64,
+    /// Derivatives of the potentials at a sample, where inputs change within a step.
+    pub(super) potentials: Output,
 }
 
 impl<'m> Steps<GalerkinEquations<'m>> {
@@ -141,6 +148,8 @@ impl<'m> Steps<GalerkinEquations<'m>> {
             dissipates: terms.any(|e| e.kind().is_virtual_work()),
             middle: vec![0.0; action.intervals.scalars],
             work: None,
+            typical_energy: typical_energy(model),
+            potentials: action.intervals.output(Order::Gradient),
             rule,
             points,
             samples,
@@ -217,32 +226,47 @@ impl GalerkinEquations<'_> {
         }
     }
 
-    /// Work over the step that has been made: by the quadrature of the method, of one point by the midpoint rule.
+    /// Work over the step that has been made by the midpoint rule, of a method of one point.
     pub(super) fn work_of_step(&self, h: f64) -> Work {
         let mut work = Work::default();
-        let mut add = |weight: f64, [a, b]: [&[Vector]; 2], scalars: &[f64]| {
-            let sample = between([a, b], scalars, h);
-            for term in &self.model.action.intervals.terms {
-                work.add(weight, term.as_ref(), &sample);
-            }
-        };
-        match &self.rule {
-            Rule::Galerkin(_) => {
-                for StagePoint {
-                    weights,
-                    x,
-                    scalars,
-                    ..
-                } in &self.samples
-                {
-                    add(weights.quadrature, [&x[0], &x[1]], scalars);
-                }
-            }
-            Rule::Euler(_) | Rule::Alpha(_) => {
-                add(1.0, [&self.points[0].x, &self.points[1].x], &self.middle);
-            }
+        let [start, end] = [&self.points[0].x, &self.points[1].x];
+        let sample = between([start, end], &self.middle, h);
+        for term in &self.model.action.intervals.terms {
+            work.add(1.0, term.as_ref(), &sample);
         }
         work
+    }
+
+    /// Energy that inputs which change within a step of a Galerkin method add to the potentials of its samples: `∫ ∂V/∂u u̇ dt` by the
+    /// quadrature of the step.
+    pub(super) fn supplied(&mut self, h: f64) -> f64 {
+        let (Rule::Galerkin(lobatto), samples) = (&self.rule, &self.samples) else {
+            return 0.0;
+        };
+        let inputs = self.model.variables.inputs();
+        let change = |scalar: usize, slopes: &[f64]| -> f64 {
+            let first = samples[0].scalars[scalar];
+            let values = samples.iter().map(|sample| sample.scalars[scalar] - first);
+            values.zip(slopes).map(|(value, slope)| value * slope).sum()
+        };
+        let mut supplied = 0.0;
+        for (point, slopes) in samples.iter().zip(&lobatto.derivatives) {
+            if inputs.clone().all(|input| change(input, slopes) == 0.0) {
+                continue;
+            }
+            self.potentials.plain.clear(false);
+            let [a, b] = &point.x;
+            let sample = between([a, b], &point.scalars, h);
+            let terms = self.model.action.intervals.terms.iter();
+            for term in terms.filter(|term| term.kind() == TermKind::Potential) {
+                term.evaluate(Order::Gradient, &sample, &[], &mut self.potentials);
+            }
+            let rows = &self.potentials.plain.rows;
+            let by_inputs = inputs.clone().map(|i| rows[i] * change(i, slopes));
+            // The action has the potentials with the opposite sign, times the length of the step.
+            supplied -= point.weights.quadrature * by_inputs.sum::<f64>() / h;
+        }
+        supplied
     }
 
     /// Forces of all samples on the rows of a point.
