@@ -294,7 +294,7 @@ def test_ctrl_c_ends_a_run_in_good_order() -> None:
 
 def test_time_is_limited() -> None:
     result = long_simulation().simulate(max_seconds=0.3)
-    assert result.status == "time_limit" and not result.is_solved and result.summary["simulation"]["steps"] > 1
+    assert result.status == "time_limit" and not result.is_solved and result.summary["steps"] > 1
 
 
 def test_solves_run_at_once_in_threads(pair: pb.Problem, optimum: pb.Result) -> None:

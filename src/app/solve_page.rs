@@ -9,7 +9,7 @@ use crate::dynamics::trajectory::Trajectory;
 use crate::ipopt::Iteration;
 use crate::kinematics::Pose;
 use crate::math::significant;
-use crate::model::{Model, Quantity};
+use crate::model::{Model, What};
 use crate::report::axes::{Axis, Extent};
 use crate::report::lines::{LinePlot, Series};
 use crate::report::style;
@@ -133,9 +133,7 @@ pub(super) fn targets(control: &Control, motion: &Trajectory) -> Vec<(usize, Vec
         let CostFunction::Square { reference } = &cost.function else {
             continue;
         };
-        if let (&Quantity::MarkerPlace { marker, axis, .. }, During::End) =
-            (&cost.quantity, cost.during)
-        {
+        if let (&What::Place { marker, axis }, During::End) = (&cost.quantity.what, cost.during) {
             let place = &mut places.entry(marker).or_default().0[axis];
             place.get_or_insert_with(|| reference.at(motion.times[last]));
         }
@@ -160,8 +158,8 @@ pub(super) fn waypoints(control: &Control, motion: &Trajectory) -> Vec<(usize, V
         let CostFunction::Square { reference } = &cost.function else {
             continue;
         };
-        if let (&Quantity::MarkerPlace { marker, axis, .. }, During::At(part)) =
-            (&cost.quantity, cost.during)
+        if let (&What::Place { marker, axis }, During::At(part)) =
+            (&cost.quantity.what, cost.during)
         {
             let k = instant(part);
             let place = &mut places.entry((k, marker)).or_default().0[axis];

@@ -17,15 +17,13 @@ use crate::control::given_state::{check_muscles, resolve_start};
 use crate::control::goal::instant_at;
 use crate::control::limits::{Length, Limits};
 use crate::control::prescribed::at_rest;
-use crate::control::problem::{
-    BoundaryState, Control, Duration, During, PathConstraint, Rest, SoughtHold,
-};
+use crate::control::problem::{BoundaryState, Control, Duration, During, Rest, SoughtHold};
 use crate::control::transcription::layout::Layout;
 use crate::control::transcription::structure::overdetermined;
 use crate::control::{endpoint_checks, goal_rows, periodic, prescribed, sought};
 use crate::dynamics::{Equilibrium, Start};
 use crate::math::shortest;
-use crate::model::{Analysis, Coordinates, Graph, Model, Presolved, Quantity, System};
+use crate::model::{Analysis, Coordinates, Graph, Model, Presolved, Quantity, System, What};
 
 impl BoundaryConditions {
     /// Builds the model of a control problem and resolves its start and goal.
@@ -180,7 +178,7 @@ fn limits_with_goal(system: &System, control: &Control, redundant: bool) -> Limi
         {
             for (&joint, &near) in angles {
                 let name = format!("goal of {}", system.joints[joint].name);
-                let quantity = Quantity::Joint { joint, near };
+                let quantity = Quantity::joint(joint, near);
                 limits.add_equality(When::Goal, quantity, near, name);
             }
         }
@@ -192,7 +190,7 @@ fn limits_with_goal(system: &System, control: &Control, redundant: bool) -> Limi
         goal_rows::add_orientations(&mut limits, system, &waypoint.orientations, at);
         for (&joint, &near) in &waypoint.angles {
             let name = format!("{} coordinate of {}", at.1, system.joints[joint].name);
-            limits.add_equality(at.0, Quantity::Joint { joint, near }, near, name);
+            limits.add_equality(at.0, Quantity::joint(joint, near), near, name);
         }
     }
     sought::in_intervals(&mut limits, control);
@@ -213,7 +211,7 @@ fn with_quantities(
     let energies = &control.objective.energies;
     quantities.extend(resisted(energies, system).map(EnergyCost::power));
     let charged = sources(energies, system).into_iter();
-    quantities.extend(charged.map(|muscle| Quantity::Capacitance { muscle }));
+    quantities.extend(charged.map(|muscle| Quantity::of(What::Capacitance(muscle))));
     Analysis {
         curved,
         quantities,
@@ -352,13 +350,10 @@ pub(super) fn off_grid(control: &Control) -> Vec<String> {
         ),
         During::Motion | During::End => None,
     });
-    let limits = control.limits.iter().filter_map(|limit| match *limit {
-        PathConstraint::Once { part, .. } => note(
-            format!("limit at {} of the duration", shortest(part, 6)),
-            part,
-            "holds",
-        ),
-        _ => None,
+    let limits = control.limits.iter().filter_map(|limit| {
+        let part = limit.part?;
+        let name = format!("limit at {} of the duration", shortest(part, 6));
+        note(name, part, "holds")
     });
     let mut notes: Vec<String> = exact.chain(near).chain(limits).collect();
     notes.dedup();

@@ -4,15 +4,14 @@ use crate::control::boundary_conditions::BoundaryConditions;
 use crate::control::bounded_quantity::{BoundedQuantity, When};
 use crate::control::error::BoundaryError;
 use crate::control::goal::{Place, instant_at};
-use crate::control::limits::{Limits, largest};
-use crate::control::problem::{BoundaryState, Control, PathConstraint};
+use crate::control::problem::{BoundaryState, Control, Limit};
 use crate::control::transcription::Site;
 use crate::coordinates::Configuration;
 use crate::dynamics::BeyondLaw;
 use crate::energy::{Energy, OutsideBox, SquaredDistance};
 use crate::functional::Sample;
 use crate::math::{Local, significant};
-use crate::model::{Coordinates, Model, Quantity, Region, Role, System, Time, Variable};
+use crate::model::{Coordinates, Model, Of, Quantity, Region, Role, Time, Variable, What};
 use nalgebra::Vector3;
 use std::collections::BTreeMap;
 
@@ -65,8 +64,8 @@ pub(super) fn check(
         let is_goal = place == "goal";
         let is_there =
             |part: f64| is_goal && instant_at(part, control.intervals) == control.intervals;
-        let mut limits = control.limits.iter().map(PathConstraint::with_part);
-        let of_joints = limits.find_map(|(limit, part)| match part.is_none_or(is_there) {
+        let mut limits = control.limits.iter();
+        let of_joints = limits.find_map(|limit| match limit.part.is_none_or(is_there) {
             true => end.joint(limit),
             false => None,
         });
@@ -98,10 +97,8 @@ pub(super) fn check(
 /// True for rates and for differences between neighbouring intervals.
 fn is_of_rate(bounded: &BoundedQuantity) -> bool {
     let quantity = &bounded.quantity;
-    let is_mean = matches!(
-        quantity,
-        Quantity::JointStep { .. } | Quantity::SquaredSpeed { .. }
-    );
+    let is_place = matches!(quantity.what, What::Place { .. });
+    let is_mean = matches!(quantity.what, What::Speed(_)) || (quantity.is_step() && !is_place);
     is_mean || bounded.rate.is_some() || quantity.before().is_some()
 }
 
@@ -162,12 +159,10 @@ impl<'a> End<'a> {
     }
 
     /// Returns the message of a joint limit that it breaks.
-    fn joint(&self, limit: &PathConstraint) -> Option<String> {
-        let PathConstraint::JointAngle { joint, min, max } = *limit else {
-            return None;
-        };
+    fn joint(&self, limit: &Limit) -> Option<String> {
+        let joint = limit.joint()?;
         let value = self.joint_coordinate(joint)?;
-        of_joint(joint, min, max, self.model).broken(value, &self.model.system)
+        of_joint(joint, limit.bounds(), self.model).broken(value, &self.model.system)
     }
 
     /// The coordinate of a joint, where it is known.
@@ -190,17 +185,18 @@ impl<'a> End<'a> {
 
     /// The value of a limited quantity.
     fn value(&self, bounded: &BoundedQuantity, measure: Option<usize>) -> Option<f64> {
-        match bounded.quantity {
+        match bounded.quantity.what {
+            _ if bounded.quantity.of != Of::Value => {}
             // Limits of the path are checked by themselves, whatever the coordinates.
-            Quantity::Joint { .. } if bounded.when == When::Everywhere => return None,
-            Quantity::Joint { joint, .. } => return self.joint_coordinate(joint),
-            Quantity::MarkerPlace { marker, axis, .. } => {
+            What::Joint { .. } if bounded.when == When::Everywhere => return None,
+            What::Joint { joint, .. } => return self.joint_coordinate(joint),
+            What::Place { marker, axis } => {
                 let given = self.places.get(&marker).and_then(|place| place.0[axis]);
                 if given.is_some() {
                     return given;
                 }
             }
-            Quantity::MarkerRegion { marker, region, .. } => {
+            What::Region { marker, region } => {
                 if let Some(place) = self.places.get(&marker).and_then(Place::whole) {
                     return Some(region_value(&region, &place));
                 }
@@ -221,9 +217,9 @@ impl<'a> End<'a> {
 }
 
 /// A joint limit as a bounded quantity, whatever the coordinates.
-fn of_joint(joint: usize, lower: f64, upper: f64, model: &Model) -> BoundedQuantity {
+fn of_joint(joint: usize, [lower, upper]: [f64; 2], model: &Model) -> BoundedQuantity {
     BoundedQuantity {
-        quantity: Quantity::Joint { joint, near: 0.0 },
+        quantity: Quantity::joint(joint, 0.0),
         lower,
         upper,
         rate: None,
@@ -236,7 +232,7 @@ fn of_joint(joint: usize, lower: f64, upper: f64, model: &Model) -> BoundedQuant
 fn unknown_reaction(model: &Model, boundary: &BoundaryConditions) -> Option<String> {
     let mut limits = boundary.limits.list.iter().zip(&model.measured);
     let is_unknown = |(bounded, measure): &(&BoundedQuantity, &Option<usize>)| {
-        matches!(bounded.quantity, Quantity::ReactionStep { .. }) && measure.is_none()
+        matches!(bounded.quantity.what, What::Reaction { .. }) && measure.is_none()
     };
     let (bounded, _) = limits.find(is_unknown)?;
     Some(format!(
@@ -246,12 +242,12 @@ fn unknown_reaction(model: &Model, boundary: &BoundaryConditions) -> Option<Stri
 }
 
 /// The message of a limit of a stretch at which the law of the muscle has no energy.
-fn beyond_law(model: &Model, limit: &PathConstraint) -> Option<String> {
-    let PathConstraint::Stretch { muscle, min, max } = *limit else {
+fn beyond_law(model: &Model, limit: &Limit) -> Option<String> {
+    let What::Stretch(muscle) = limit.what else {
         return None;
     };
     let muscle = &model.system.muscles[muscle];
-    let mut bounds = [min, max].into_iter();
+    let mut bounds = limit.bounds().into_iter();
     let beyond = bounds.find_map(|bound| match bound > 0.0 && bound.is_finite() {
         true => BeyondLaw::at(muscle, bound),
         false => None,
@@ -265,13 +261,12 @@ fn contradiction(
     boundary: &BoundaryConditions,
     control: &Control,
 ) -> Option<String> {
-    let joints = control.limits.iter().filter_map(|limit| match *limit {
-        PathConstraint::JointAngle { joint, min, max } => Some(of_joint(joint, min, max, model)),
-        _ => None,
-    });
-    let is_path = |b: &&BoundedQuantity| {
-        b.when == When::Everywhere && !matches!(b.quantity, Quantity::Joint { .. })
+    let along = control.limits.iter().filter(|limit| limit.part.is_none());
+    let joints = along.filter_map(|limit| Some(of_joint(limit.joint()?, limit.bounds(), model)));
+    let is_joint = |quantity: &Quantity| {
+        matches!(quantity.what, What::Joint { .. }) && quantity.of == Of::Value
     };
+    let is_path = |b: &&BoundedQuantity| b.when == When::Everywhere && !is_joint(&b.quantity);
     let others = boundary.limits.list.iter().filter(is_path).cloned();
     let all: Vec<BoundedQuantity> = joints.chain(others).collect();
     let below = all.iter().filter(|bounded| bounded.lower.is_finite());
@@ -309,38 +304,6 @@ fn region_value(region: &Region, place: &Vector3<f64>) -> f64 {
     }
 }
 
-impl Limits {
-    /// Adds a limit of the volume or mass of muscles: one row, at the end.
-    pub(super) fn add_amount(&mut self, limit: &PathConstraint, system: &System) {
-        let PathConstraint::OfMuscles {
-            muscles,
-            amount,
-            min,
-            max,
-        } = limit
-        else {
-            return;
-        };
-        let bounds = [*min, *max];
-        let unit = largest(bounds).unwrap_or(1.0);
-        let quantity = Quantity::OfMuscles {
-            muscles: muscles.clone(),
-            amount: *amount,
-            unit,
-        };
-        let name = amount.words(muscles, system);
-        let [lower, upper] = bounds.map(|bound| bound / unit);
-        self.list.push(BoundedQuantity {
-            quantity,
-            lower,
-            upper,
-            rate: None,
-            when: When::At(1.0),
-            name,
-        });
-    }
-}
-
 /// Refuses limits of given amounts that these break, and costs of given amounts.
 pub(super) fn given_amounts(
     model: &Model,
@@ -350,15 +313,10 @@ pub(super) fn given_amounts(
     let is_given = |measure: &Option<usize>| measure.is_none();
     let limits = boundary.limits.list.iter().zip(&model.measured);
     for (bounded, _) in limits.filter(|(_, measure)| is_given(measure)) {
-        let Quantity::OfMuscles {
-            muscles,
-            amount,
-            unit,
-        } = &bounded.quantity
-        else {
+        let What::Amount { muscles, amount } = &bounded.quantity.what else {
             continue;
         };
-        let value = amount.of(muscles, &model.system) / unit;
+        let value = amount.of(muscles, &model.system) / bounded.quantity.unit;
         if let Some(broken) = bounded.broken(value, &model.system) {
             return Err(BoundaryError::Limit {
                 place: "limits",
@@ -369,10 +327,7 @@ pub(super) fn given_amounts(
     let costs = &control.objective.quantities;
     let measures = &model.measured[boundary.limits.quantities().len()..];
     for (cost, _) in costs.iter().zip(measures).filter(|(_, m)| is_given(m)) {
-        if let Quantity::OfMuscles {
-            muscles, amount, ..
-        } = &cost.quantity
-        {
+        if let What::Amount { muscles, amount } = &cost.quantity.what {
             let words = amount.words(muscles, &model.system);
             return Err(BoundaryError::Limit {
                 place: "objective",

@@ -3,7 +3,7 @@
 use crate::math::Signal;
 use crate::model::components::capacitance;
 use crate::model::system::{InputKind, Muscle};
-use crate::model::{Quantity, System};
+use crate::model::{Quantity, System, What};
 
 /// An energy of one source that is minimised (docs/theory.md, 3.5).
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -44,8 +44,7 @@ impl EnergyCost {
 
     /// The power of its source in W, through a resistor.
     pub(super) fn power(&self) -> Quantity {
-        let muscle = self.source;
-        Quantity::SourcePower { muscle, unit: 1.0 }
+        Quantity::power(self.source)
     }
 }
 
@@ -153,7 +152,7 @@ impl Objective {
 impl QuantityCost {
     /// Unit of the cost, without the weight.
     fn unit(&self, system: &System) -> String {
-        if let Quantity::OfMuscles { amount, .. } = self.quantity {
+        if let What::Amount { amount, .. } = self.quantity.what {
             return amount.unit().0.to_owned();
         }
         let squared = match self.quantity.plain(0.0, system).1 {

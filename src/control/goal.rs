@@ -151,7 +151,7 @@ impl Waypoint {
             given.map(move |(axis, value)| (Quantity::marker_place(marker, axis), value))
         });
         let angles = self.angles.iter();
-        let angles = angles.map(|(&joint, &value)| (Quantity::Joint { joint, near: 0.0 }, value));
+        let angles = angles.map(|(&joint, &value)| (Quantity::joint(joint, 0.0), value));
         places.chain(angles).map(cost).collect()
     }
 }

@@ -7,7 +7,7 @@ use crate::control::limits::Limits;
 use crate::control::transcription::Site;
 use crate::functional::Sample;
 use crate::math::{Random, Vector};
-use crate::model::{Coordinates, Model, Quantity, System};
+use crate::model::{Coordinates, Model, Quantity, System, What};
 use std::collections::BTreeMap;
 
 const AXES: [&str; 3] = ["x", "y", "z"];
@@ -46,7 +46,7 @@ pub(super) fn add_rest<'p>(
         let name = &system.markers[marker].name;
         for axis in (0..3).filter(|&axis| !system.holds_marker(marker, axis)) {
             let name = format!("rest at the goal, {} of marker {name}", AXES[axis]);
-            let quantity = Quantity::MarkerStep { marker, axis };
+            let quantity = Quantity::step(What::Place { marker, axis }, 1.0);
             limits.add_equality(When::Goal, quantity, 0.0, name);
         }
     }
@@ -67,7 +67,7 @@ pub(super) fn add_orientations(
             is_acute,
         } in orientation.products()
         {
-            let quantity = Quantity::Direction { body, axis, along };
+            let quantity = Quantity::of(What::Direction { body, axis, along });
             match is_acute {
                 true => limits.add_lower(when, quantity, 0.0, name.clone()),
                 false => limits.add_equality(when, quantity, 0.0, name.clone()),
@@ -90,7 +90,7 @@ pub(super) fn leave_out_constant(
         return Ok(());
     }
     for (index, bounded) in limits.list.iter().enumerate() {
-        let is_direction = matches!(bounded.quantity, Quantity::Direction { .. });
+        let is_direction = matches!(bounded.quantity.what, What::Direction { .. });
         let Some(measure) = model.measured[index] else {
             continue;
         };

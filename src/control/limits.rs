@@ -1,10 +1,8 @@
 //! Path limits and goals as bounded quantities at instants and in intervals.
 
 use crate::control::bounded_quantity::{BoundedQuantity, When};
-use crate::control::problem::{PathConstraint, Side};
-use crate::functional::Stencil;
-use crate::model::{FieldPlace, Quantity, Reaction, Region, System};
-use nalgebra::Vector3;
+use crate::control::problem::Limit;
+use crate::model::{At, FieldPlace, Of, Pulling, Quantity, Region, System, What};
 
 /// Length of the intervals, by which steps are rates.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -13,13 +11,6 @@ pub struct Length {
     pub h: f64,
     /// True if it is an unknown.
     pub is_free: bool,
-}
-
-/// Measure of a source.
-#[derive(Clone, Copy, Debug, PartialEq)]
-enum Flow {
-    Current,
-    Power,
 }
 
 /// All bounded quantities of a problem.
@@ -32,184 +23,99 @@ pub struct Limits {
 /// Σ ξ¹⁶ ≥ 3 holds only outside the box.
 const OUTSIDE_BOX: f64 = 3.0;
 /// Times at which fields are bounded: where the voltages of an interval act, and at the instants, where those of both neighbours do.
-const TIMES: [Stencil; 3] = [Stencil::Here, Stencil::Mid, Stencil::Next];
+const TIMES: [At; 3] = [At::Start, At::Middle, At::End];
 
 impl Limits {
     /// The path limits of a problem. Joint limits become measures only where `measure_joints`; in joint coordinates they are bounds of
     /// variables.
-    pub fn new(
-        limits: &[PathConstraint],
-        system: &System,
-        measure_joints: bool,
-        length: Length,
-    ) -> Self {
+    pub fn new(limits: &[Limit], system: &System, measure_joints: bool, length: Length) -> Self {
         let mut out = Self::default();
-        let data = (system, measure_joints, length);
-        limits.iter().for_each(|limit| out.add_limit(limit, data));
+        for limit in limits {
+            // Those with a column of their own are its bounds.
+            let is_column = |joint: usize| !measure_joints && system.joints[joint].motion.is_none();
+            if limit.part.is_some() || !limit.joint().is_some_and(is_column) {
+                out.add_limit(limit, system, length);
+            }
+        }
         out
     }
 
-    /// Adds the quantities that a limit bounds.
-    fn add_limit(
-        &mut self,
-        limit: &PathConstraint,
-        (system, measure_joints, length): (&System, bool, Length),
-    ) {
-        let out = self;
-        match *limit {
-            PathConstraint::Once { part, ref limit } => {
-                out.add_once(limit, part, system, length);
-            }
-            PathConstraint::JointAngle { joint, min, max } => {
-                // Without a column of its own, in which bounds would stand.
-                if measure_joints || system.joints[joint].motion.is_some() {
-                    out.add_joint(joint, [min, max], system);
-                }
-            }
-            PathConstraint::JointRate { joint, min, max } => {
-                let name = format!("rate of {}", system.joints[joint].name);
-                let quantity = Quantity::JointStep { joint, h: length.h };
-                out.add_rate(quantity, [min, max], name, length);
-            }
-            PathConstraint::Stretch { muscle, min, max } => {
-                let name = format!("stretch of {}", system.muscles[muscle].name);
-                let quantity = Quantity::SquaredStretch { muscle, at: None };
-                out.add(quantity, [min * min, max * max], name);
-            }
-            PathConstraint::Tension { muscle, min, max } => {
-                out.add_tension(muscle, [min, max], system);
-            }
-            PathConstraint::ElectricField { muscle, max } => {
-                out.add_muscle_field(muscle, max, system);
-            }
-            PathConstraint::Current { muscle, min, max } => {
-                out.add_source((Flow::Current, muscle), [min, max], system, length);
-            }
-            PathConstraint::Power { muscle, min, max } => {
-                out.add_source((Flow::Power, muscle), [min, max], system, length);
-            }
-            PathConstraint::BlockField { block, region, max } => {
-                out.add_block_field(block, region, max, system);
-            }
-            PathConstraint::VoltageRate { source, min, max } => {
-                let name = format!("rate of the voltage of {}", system.sources()[source].name);
-                out.add_voltage_rate(source, [min, max], name, length);
-            }
-            PathConstraint::Reaction {
-                joint,
-                of,
-                along,
-                min,
-                max,
-            } => out.add_reaction((joint, of), along, ([min, max], system), length),
-            PathConstraint::MarkerSpeed { marker, min, max } => {
-                let name = format!("speed of marker {}", system.markers[marker].name);
-                out.add_speed(marker, [min, max], name);
-            }
-            PathConstraint::PeakVoltage {
-                source,
-                parameter,
-                unit,
-            } => {
-                let name = format!("peak voltage of {}", system.sources()[source].name);
-                let quantity = Quantity::PeakExcess {
-                    source,
-                    parameter,
-                    unit,
-                };
-                out.add(quantity, [f64::NEG_INFINITY, 0.0], name);
-            }
-            PathConstraint::OfMuscles { .. } => out.add_amount(limit, system),
-            PathConstraint::Marker {
-                marker,
-                region,
-                side,
-            } => out.add_region(marker, region, side, system),
-        }
-    }
-
-    /// Adds a limit of the tension of a muscle.
-    fn add_tension(&mut self, muscle: usize, [min, max]: [f64; 2], system: &System) {
-        let of = &system.muscles[muscle];
-        let unit = largest([min, max]).unwrap_or(of.shear_force());
-        let quantity = Quantity::Tension { muscle, unit };
-        let name = format!("tension of {}", of.name);
-        self.add(quantity, [min / unit, max / unit], name);
-    }
-
-    /// Adds a limit of the field of a muscle.
-    fn add_muscle_field(&mut self, muscle: usize, limit: f64, system: &System) {
-        let of = &system.muscles[muscle];
-        let name = format!("electric field of {}", of.name);
-        match of.is_behind_resistor() {
-            true => {
-                let at = None;
-                let quantity = Quantity::ChargedField { muscle, limit, at };
-                self.add(quantity, [f64::NEG_INFINITY, 1.0], name);
-            }
-            false => self.add_field(FieldPlace::Muscle(muscle), limit, &name),
-        }
-    }
-
-    /// Adds a limit of the rate of a voltage.
-    fn add_voltage_rate(&mut self, source: usize, bounds: [f64; 2], name: String, length: Length) {
-        let h = length.h;
-        let unit = h * largest(bounds).unwrap_or(1.0);
-        let quantity = Quantity::VoltageStep { source, unit, h };
-        self.add_rate(quantity, bounds, name, length);
-    }
-
-    /// Adds a limit of the force or torque that a joint transmits.
-    fn add_reaction(
-        &mut self,
-        (joint, of): (usize, Reaction),
-        along: Vector3<f64>,
-        (bounds, system): ([f64; 2], &System),
-        length: Length,
-    ) {
-        let h = length.h;
-        let what = match of {
-            Reaction::Force => "force",
-            Reaction::Torque => "torque",
+    /// Adds the quantities that a limit bounds; at a single time a field under the voltages of the interval before it.
+    fn add_limit(&mut self, limit: &Limit, system: &System, length: Length) {
+        let first = self.list.len();
+        self.add_everywhere(limit, system, length);
+        let Some(part) = limit.part else {
+            return;
         };
-        let name = format!("reaction {what} of {}", system.joints[joint].name);
-        let quantity = Quantity::ReactionStep {
-            joint,
-            of,
-            along,
-            at: Stencil::Here,
-            unit: h * largest(bounds).unwrap_or(1.0),
-            h,
-        };
-        self.add_rate(quantity, bounds, name, length);
-    }
-
-    /// Adds a limit of the speed of a marker.
-    fn add_speed(&mut self, marker: usize, [min, max]: [f64; 2], name: String) {
-        let limit = largest([min, max]).unwrap_or(1.0);
-        let square = |bound: f64| (bound / limit).powi(2);
-        let lower = if min > 0.0 {
-            square(min)
-        } else {
-            f64::NEG_INFINITY
-        };
-        let quantity = Quantity::SquaredSpeed { marker, limit };
-        self.add(quantity, [lower, square(max)], name);
-    }
-
-    /// Adds a limit at one time t/T. A field limit uses the voltage of the preceding interval.
-    fn add_once(&mut self, limit: &PathConstraint, part: f64, system: &System, length: Length) {
-        let mut own = Self::default();
-        own.add_limit(limit, (system, true, length));
-        let is_then = |quantity: &Quantity| match quantity {
-            Quantity::SquaredField { at, .. } => *at == Stencil::Next,
-            _ => true,
-        };
-        own.list.retain(|bounded| is_then(&bounded.quantity));
-        for bounded in &mut own.list {
+        let mut own = self.list.split_off(first);
+        own.retain(|one| {
+            !matches!(one.quantity.what, What::Field(_)) || one.quantity.at == At::End
+        });
+        for bounded in &mut own {
             bounded.when = When::At(part);
         }
-        self.list.append(&mut own.list);
+        self.list.append(&mut own);
+    }
+
+    fn add_everywhere(&mut self, limit: &Limit, system: &System, length: Length) {
+        let (what, h) = (limit.what.clone(), length.h);
+        let bounds @ [min, max] = limit.bounds();
+        let name = what.words(limit.of, system);
+        let largest = largest(bounds);
+        let unit = largest.unwrap_or(1.0);
+        match what {
+            What::Joint { joint, .. } if limit.of == Of::Value => {
+                self.add_joint(joint, bounds, system);
+            }
+            What::Joint { .. } => self.add_rate(Quantity::step(what, h), bounds, name, length),
+            What::Tension(Pulling::Muscle(muscle)) => {
+                let unit = largest.unwrap_or(system.muscles[muscle].shear_force());
+                self.add_in(Quantity::of(what), unit, bounds, name);
+            }
+            What::Tension(_) => self.add_rate(Quantity::step(what, h), bounds, name, length),
+            What::Stretch(_) => {
+                let squares = [min.max(0.0), max].map(|bound| bound * bound);
+                self.add(Quantity::of(what), squares, name);
+            }
+            What::Speed(_) => {
+                let square = |bound: f64| (bound / unit).powi(2);
+                let lower = if min > 0.0 {
+                    square(min)
+                } else {
+                    f64::NEG_INFINITY
+                };
+                let quantity = Quantity::of(what).in_unit(unit);
+                self.add(quantity, [lower, square(max)], name);
+            }
+            What::Field(FieldPlace::Block { block, region }) => {
+                self.add_block_field(block, region, max, system);
+            }
+            What::Field(FieldPlace::Muscle(muscle))
+                if system.muscles[muscle].is_behind_resistor() =>
+            {
+                let quantity = Quantity::of(What::ChargedField(muscle)).in_unit(max);
+                self.add(quantity, [f64::NEG_INFINITY, 1.0], name);
+            }
+            What::Field(place) => self.add_field(place, max, &name),
+            What::Current(source) | What::Power(source) => {
+                self.add_source((limit, source), name, system, length);
+            }
+            What::Voltage(_) | What::Reaction { .. } => {
+                self.add_rate(Quantity::jump(what, h * unit, h), bounds, name, length);
+            }
+            What::Region { marker, region } => self.add_region((marker, region), bounds, system),
+            What::Amount { .. } => {
+                self.add_in(Quantity::of(what), unit, bounds, name);
+                self.list.last_mut().expect("it was added").when = When::At(1.0);
+            }
+            _ => self.add(Quantity::of(what), bounds, name),
+        }
+    }
+
+    /// Adds a limit whose rows are in a unit.
+    fn add_in(&mut self, quantity: Quantity, unit: f64, bounds: [f64; 2], name: String) {
+        let bounds = bounds.map(|bound| bound / unit);
+        self.add(quantity.in_unit(unit), bounds, name);
     }
 
     /// Adds a limit.
@@ -245,39 +151,26 @@ impl Limits {
     /// the middle of an interval to that of the next one.
     fn add_source(
         &mut self,
-        (flow, muscle): (Flow, usize),
-        bounds: [f64; 2],
+        (limit, muscle): (&Limit, usize),
+        name: String,
         system: &System,
         length: Length,
     ) {
-        let h = length.h;
-        let what = match flow {
-            Flow::Current => "current",
-            Flow::Power => "power",
-        };
-        let name = format!("{what} of {}", system.muscles[muscle].name);
+        let (h, bounds) = (length.h, limit.bounds());
+        let is_power = matches!(limit.what, What::Power(_));
+        let largest = largest(bounds);
         if system.muscles[muscle].is_behind_resistor() {
-            let typical = system.short_circuit(muscle)[flow as usize];
-            let unit = largest(bounds).unwrap_or(typical);
-            let quantity = match flow {
-                Flow::Current => Quantity::SourceCurrent { muscle, unit },
-                Flow::Power => Quantity::SourcePower { muscle, unit },
-            };
-            return self.add(quantity, bounds.map(|bound| bound / unit), name);
+            let typical = system.short_circuit(muscle)[usize::from(is_power)];
+            let quantity = Quantity::of(limit.what.clone());
+            return self.add_in(quantity, largest.unwrap_or(typical), bounds, name);
         }
-        let typical = system.charging(muscle)[flow as usize];
-        let unit = largest(bounds).map_or(typical, |largest| h * largest);
-        let at = Stencil::Next;
-        let quantity = match flow {
-            Flow::Current => Quantity::ChargeStep { muscle, unit, h },
-            Flow::Power => Quantity::EnergyStep {
-                muscle,
-                at,
-                unit,
-                h,
-            },
+        let typical = system.charging(muscle)[usize::from(is_power)];
+        let unit = largest.map_or(typical, |largest| h * largest);
+        let what = match is_power {
+            false => What::MeanCharge(muscle),
+            true => What::Energy(muscle),
         };
-        self.add_rate(quantity, bounds, name, length);
+        self.add_rate(Quantity::jump(what, unit, h), bounds, name, length);
     }
 
     /// Adds a limit of a joint that is measured.
@@ -287,13 +180,13 @@ impl Limits {
             _ => 0.0,
         };
         let name = format!("limit of {}", system.joints[joint].name);
-        self.add(Quantity::Joint { joint, near }, [min, max], name);
+        self.add(Quantity::joint(joint, near), [min, max], name);
     }
 
     /// Adds a limit of a field at all times at which it is bounded.
     fn add_field(&mut self, place: FieldPlace, limit: f64, name: &str) {
         for at in TIMES {
-            let quantity = Quantity::SquaredField { place, limit, at };
+            let quantity = Quantity::of(What::Field(place)).at(at).in_unit(limit);
             self.add(quantity, [f64::NEG_INFINITY, 1.0], name.to_owned());
         }
     }
@@ -316,30 +209,30 @@ impl Limits {
         }
     }
 
-    /// Adds the limits that keep a marker inside or outside a region.
-    fn add_region(&mut self, marker: usize, region: Region, side: Side, system: &System) {
+    /// Adds the limits that keep a marker inside a region, as far as its relative place 1, or outside it.
+    fn add_region(&mut self, (marker, region): (usize, Region), bounds: [f64; 2], system: &System) {
         let name = &system.markers[marker].name;
-        let at = None;
-        let in_region = Quantity::MarkerRegion { marker, region, at };
-        match (region, side) {
-            (Region::Box { min, max }, Side::Inside) => {
+        let in_region = Quantity::of(What::Region { marker, region });
+        let is_inside = bounds[1].is_finite();
+        match region {
+            Region::Box { min, max } if is_inside => {
                 for (axis, letter) in ["x", "y", "z"].into_iter().enumerate() {
                     let name = format!("{letter} of marker {name} inside its box");
                     let quantity = Quantity::marker_place(marker, axis);
                     self.add(quantity, [min[axis], max[axis]], name);
                 }
             }
-            (Region::Box { .. }, Side::Outside) => {
+            Region::Box { .. } => {
                 let name = format!("marker {name} outside its box");
                 self.add(in_region, [OUTSIDE_BOX, f64::INFINITY], name);
             }
-            (Region::Sphere { .. }, Side::Inside) => {
-                let name = format!("marker {name} inside its sphere");
-                self.add(in_region, [f64::NEG_INFINITY, 1.0], name);
-            }
-            (Region::Sphere { .. }, Side::Outside) => {
-                let name = format!("marker {name} outside its sphere");
-                self.add(in_region, [1.0, f64::INFINITY], name);
+            Region::Sphere { .. } => {
+                let side = if is_inside { "inside" } else { "outside" };
+                self.add(
+                    in_region,
+                    bounds,
+                    format!("marker {name} {side} its sphere"),
+                );
             }
         }
     }

@@ -3,12 +3,11 @@
 use crate::control::BoundaryConditions;
 use crate::control::bounded_quantity::BoundedQuantity;
 use crate::control::limits::{Length, Limits, largest};
-use crate::control::problem::PathConstraint;
+use crate::control::problem::Limit;
 use crate::control::transcription::Site;
 use crate::dynamics::DiscreteTrajectory;
 use crate::functional::Sample;
-use crate::model::system::{Fidelity, Muscle};
-use crate::model::{Analysis, Model, ModelError, Quantity, System};
+use crate::model::{Analysis, Model, ModelError, Quantity, System, What};
 
 /// A limit beyond which a motion goes, there where it does so most.
 #[derive(Clone, Debug, PartialEq)]
@@ -43,7 +42,7 @@ pub struct LimitsAlong {
 /// # Errors
 /// There is no model of the system that measures them.
 pub fn limits_along(
-    (of, limits): (&System, &[PathConstraint]),
+    (of, limits): (&System, &[Limit]),
     (system, analysis): (&System, Analysis),
     motion: &DiscreteTrajectory,
 ) -> Result<LimitsAlong, ModelError> {
@@ -74,7 +73,7 @@ pub fn limits_along(
     for (place, bounded) in list.list.iter().enumerate() {
         let before = bounded.other_before().and_then(|_| others.next());
         // Steps of voltages, and what flows with them, are those of the program.
-        let is_reaction = matches!(bounded.quantity, Quantity::ReactionStep { .. });
+        let is_reaction = matches!(bounded.quantity.what, What::Reaction { .. });
         if bounded.quantity.before().is_some() && !is_reaction {
             if out.left_out.last() != Some(&bounded.name) {
                 out.left_out.push(bounded.name.clone());
@@ -124,8 +123,9 @@ fn along(
     k: usize,
 ) -> Option<f64> {
     // An angle as it has turned, whatever the branch that a measure would take.
-    if let Quantity::Joint { joint, .. } = bounded.quantity {
-        let own = model.joint_readings[joint].coordinate?;
+    if let (What::Joint { joint, .. }, false) = (&bounded.quantity.what, bounded.quantity.is_step())
+    {
+        let own = model.joint_readings[*joint].coordinate?;
         return Some(motion.z[k][own]);
     }
     value(model, (place, &bounded.quantity), motion, k).map(|(value, _)| value)
@@ -155,38 +155,6 @@ impl LimitsAlong {
             Some(known) if passed.part > known.part => *known = passed,
             Some(_) => {}
         }
-    }
-}
-
-impl PathConstraint {
-    /// The limit of another system whose joints, muscles, sources and markers have the same names; none where it has not what is limited.
-    fn of_other(&self, from: &System, to: &System) -> Option<Self> {
-        let mut out = self.clone();
-        match &mut out {
-            Self::JointAngle { joint, .. }
-            | Self::JointRate { joint, .. }
-            | Self::Reaction { joint, .. } => {
-                let name = &from.joints[*joint].name;
-                *joint = to.joints.iter().position(|one| one.name == *name)?;
-            }
-            Self::Stretch { muscle, .. }
-            | Self::Tension { muscle, .. }
-            | Self::ElectricField { muscle, .. }
-            | Self::Current { muscle, .. }
-            | Self::Power { muscle, .. } => {
-                let name = &from.muscles[*muscle].name;
-                let is_own = |one: &Muscle| one.name == *name && one.fidelity == Fidelity::Lumped;
-                *muscle = to.muscles.iter().position(is_own)?;
-            }
-            Self::Marker { marker, .. } | Self::MarkerSpeed { marker, .. } => {
-                let name = &from.markers[*marker].name;
-                *marker = to.markers.iter().position(|one| one.name == *name)?;
-            }
-            Self::BlockField { .. } if from.solids == to.solids && from.muscles == to.muscles => {}
-            // Steps between intervals, sought constants and single times belong to the intervals of a problem.
-            _ => return None,
-        }
-        Some(out)
     }
 }
 

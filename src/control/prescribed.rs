@@ -8,10 +8,10 @@
 use crate::control::error::BoundaryError;
 use crate::control::goal::instant_at;
 use crate::control::numbering::Column;
-use crate::control::problem::{BoundaryState, Control, Duration, PathConstraint, Voltages};
+use crate::control::problem::{BoundaryState, Control, Duration, Limit, Voltages};
 use crate::dynamics::{Start, rates_in_loops};
 use crate::math::{Signal, shortest, significant};
-use crate::model::{Model, Prescribed, System, Time, joint_unit};
+use crate::model::{Model, Prescribed, System, Time, What, joint_unit};
 use std::collections::BTreeMap;
 
 /// Parts of a radian or of the length of the system by which a state may miss a prescribed value.
@@ -197,19 +197,19 @@ pub(super) fn check_given_rates(
 
 /// The message of a limit that a given voltage breaks.
 fn broken(
-    limit: &PathConstraint,
+    limit: &Limit,
     (system, control): (&System, &Control),
     rest: &[Option<Vec<f64>>; 2],
 ) -> Option<String> {
-    let (limit, part) = limit.with_part();
-    let PathConstraint::VoltageRate { source, min, max } = *limit else {
+    let What::Voltage(source) = limit.what else {
         return None;
     };
+    let [min, max] = limit.bounds();
     if !control.is_given(source) {
         return None;
     }
     let mut steps = steps(control, source, rest);
-    if let Some(part) = part {
+    if let Some(part) = limit.part {
         let time = instant_at(part, control.intervals) as f64 * 2.0 * control.middle(0);
         let apart = |step: &(f64, f64)| (step.0 - time).abs();
         steps.sort_by(|a, b| apart(a).total_cmp(&apart(b)));

@@ -22,7 +22,7 @@ pub use crate::control::identification::{
     begin_late,
 };
 pub use crate::control::inputs::{Afterwards, Voltages, absent_loads};
-pub use crate::control::path_constraint::{PathConstraint, Side};
+pub use crate::control::limit::Limit;
 pub use crate::control::regulator::{Noise, Observation, Regulator};
 pub use crate::control::varied::{OutcomeOf, Varied, VariedOf, WeightOf};
 
@@ -157,7 +157,7 @@ pub struct Control {
     /// Objective that is minimised.
     pub objective: Objective,
     /// Path limits.
-    pub limits: Vec<PathConstraint>,
+    pub limits: Vec<Limit>,
     /// Places, orientations and coordinates on the way of the motion.
     pub waypoints: Vec<Waypoint>,
     /// `None`: reduced where the joints form a tree.
@@ -270,7 +270,7 @@ impl Motions {
     pub fn with_limits_once(&self) -> Cow<'_, Self> {
         let mut out = Cow::Borrowed(self);
         for (number, motion) in self.list.iter().enumerate() {
-            let is_known = |limit: &PathConstraint| {
+            let is_known = |limit: &Limit| {
                 let mut before = self.list[..number].iter();
                 before.any(|one| {
                     one.control.limits.contains(limit)

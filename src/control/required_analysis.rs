@@ -6,11 +6,11 @@
 use std::collections::{BTreeMap, BTreeSet};
 
 use crate::control::problem::{
-    AtRest, BoundaryState, Control, Orientation, PathConstraint, Place, Simulation,
+    AtRest, BoundaryState, Control, Limit, Orientation, Place, Simulation,
 };
 use crate::feedback::Law;
 use crate::model::system::{Attachment, Muscle, System};
-use crate::model::{Analysis, InitiallyMoving};
+use crate::model::{Analysis, InitiallyMoving, PartKind, What};
 
 impl Simulation {
     /// The analysis of a motion in steps of `step` ms.
@@ -55,7 +55,10 @@ impl Control {
                 .get(s)
                 .is_some_and(Muscle::is_behind_resistor)
         };
-        let limited = self.limits.iter().filter_map(PathConstraint::source);
+        let limited = self.limits.iter().filter_map(|limit| match limit.what {
+            What::Current(source) | What::Power(source) => Some(source),
+            _ => None,
+        });
         let costs = self.objective.quantities.iter();
         let measured: Vec<usize> = limited
             .chain(costs.filter_map(|cost| cost.quantity.source()))
@@ -172,29 +175,34 @@ impl<'a> Named<'a> {
         self.initially_moving.bodies.extend(orientations.keys());
     }
 
-    fn of_limit(&mut self, limit: &PathConstraint) {
-        match *limit {
-            PathConstraint::Once { ref limit, .. } => self.of_limit(limit),
-            PathConstraint::JointAngle { joint, .. }
-            | PathConstraint::JointRate { joint, .. }
-            | PathConstraint::Reaction { joint, .. } => {
-                self.of_joint(joint);
-            }
-            PathConstraint::Stretch { muscle, .. } | PathConstraint::Tension { muscle, .. } => {
-                let muscle = &self.system.muscles[muscle];
-                self.of_point(&muscle.from);
-                self.of_point(&muscle.to);
-            }
-            // A field without voltage is none.
-            PathConstraint::ElectricField { .. }
-            | PathConstraint::BlockField { .. }
-            | PathConstraint::PeakVoltage { .. }
-            | PathConstraint::OfMuscles { .. }
-            | PathConstraint::VoltageRate { .. }
-            | PathConstraint::Current { .. }
-            | PathConstraint::Power { .. } => {}
-            PathConstraint::Marker { marker, .. } | PathConstraint::MarkerSpeed { marker, .. } => {
-                self.of_marker(marker);
+    /// A limit of what moves. A field without voltage is none, and sources move what they move.
+    fn of_limit(&mut self, limit: &Limit) {
+        if matches!(limit.what, What::Field(_) | What::Amount { .. }) {
+            return;
+        }
+        for (kind, part) in limit.what.parts() {
+            let components = &self.system.components;
+            match kind {
+                PartKind::Joint => self.of_joint(part),
+                PartKind::Marker => self.of_marker(part),
+                PartKind::Body => self.initially_moving.bodies.extend([part]),
+                PartKind::Muscle => {
+                    let muscle = &self.system.muscles[part];
+                    [muscle.from, muscle.to]
+                        .iter()
+                        .for_each(|end| self.of_point(end));
+                }
+                PartKind::Spring => {
+                    let spring = &components.springs[part];
+                    [spring.from, spring.to]
+                        .iter()
+                        .for_each(|end| self.of_point(end));
+                }
+                PartKind::Tendon => {
+                    let through = components.tendons[part].through.iter();
+                    through.for_each(|point| self.of_point(point));
+                }
+                PartKind::Source | PartKind::Block => {}
             }
         }
     }

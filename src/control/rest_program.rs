@@ -26,12 +26,12 @@ use crate::control::error::BoundaryError;
 use crate::control::guess::{Carried, InitialGuess};
 use crate::control::inputs::Voltages;
 use crate::control::limits::Limits;
-use crate::control::problem::{BoundaryState, Control, PathConstraint};
+use crate::control::problem::{BoundaryState, Control, Limit};
 use crate::control::transcription::Transcription;
 use crate::dynamics::{DiscreteTrajectory, Start};
 use crate::ipopt::StartingPoint;
 use crate::math::Signal;
-use crate::model::{Constant, Model, Parameter, Quantity, Role, System};
+use crate::model::{Constant, Model, Parameter, Quantity, Role, System, What};
 use crate::nlp::{Multipliers, Nlp};
 
 /// A state of rest whose coordinates are unknowns.
@@ -180,14 +180,17 @@ impl Control {
             upper,
             guess: if upper.is_finite() { upper } else { unit },
         });
-        let limit = |source| PathConstraint::PeakVoltage {
-            source,
-            parameter,
-            unit,
+        let limit = |source| {
+            let what = What::PeakExcess {
+                source,
+                parameter,
+                unit,
+            };
+            Limit::below(what, 0.0)
         };
         self.limits.extend(sought.into_iter().map(limit));
         self.objective.quantities.push(QuantityCost {
-            quantity: Quantity::PeakVoltage { parameter },
+            quantity: Quantity::of(What::PeakVoltage(parameter)),
             weight,
             function: CostFunction::Square {
                 reference: Signal::Constant(0.0),

@@ -7,10 +7,9 @@ use crate::control::limits::Limits;
 use crate::control::moving_start::{momentum_slopes, of_masses};
 use crate::control::problem::{BoundaryState, Control};
 use crate::dynamics::Start;
-use crate::functional::Stencil;
 use crate::model::{
-    Constant, Coordinates, MaterialConstant, Model, NotSought, Parameter, Quantity, Role, System,
-    check_parameters, with_parameters,
+    At, Constant, Coordinates, MaterialConstant, Model, NotSought, Parameter, PartKind, Quantity,
+    Role, System, What, check_parameters, with_parameters,
 };
 
 /// A state of rest that moves by less, relative to the size of its coordinates, does not depend on a parameter.
@@ -41,20 +40,22 @@ fn reads(quantity: &Quantity, parameter: &Parameter) -> bool {
         constants.any(|c| c.muscle() == Some(muscle) && is_read(c))
     };
     let is_length = |c: Constant| matches!(c, Constant::End(..) | Constant::Prestretch(_));
-    match *quantity {
-        Quantity::SquaredStretch { muscle, at: None } => follows(muscle, is_length),
-        Quantity::ChargedField {
-            muscle, at: None, ..
+    let is_of_instants = quantity.at == At::Instant;
+    let is_of_marker = |&(kind, _): &(PartKind, usize)| kind == PartKind::Marker;
+    match &quantity.what {
+        &What::Stretch(muscle) if is_of_instants => follows(muscle, is_length),
+        &(What::ChargedField(muscle) | What::Capacitance(muscle)) if is_of_instants => {
+            follows(muscle, |c| {
+                use MaterialConstant::{C1, C2, Permittivity};
+                let is_electric = matches!(c, Constant::Material(_, C1 | C2 | Permittivity));
+                c.is_shape() || is_electric || matches!(c, Constant::Layer(_))
+            })
         }
-        | Quantity::Capacitance { muscle } => follows(muscle, |c| {
-            use MaterialConstant::{C1, C2, Permittivity};
-            let is_electric = matches!(c, Constant::Material(_, C1 | C2 | Permittivity));
-            c.is_shape() || is_electric || matches!(c, Constant::Layer(_))
-        }),
-        Quantity::MarkerPlace { at: None, .. } | Quantity::MarkerRegion { at: None, .. } => {
+        what if is_of_instants && what.parts().iter().any(is_of_marker) => {
             parameter.constants.iter().any(|c| c.constant.is_place())
         }
-        Quantity::ReactionStep { .. } | Quantity::PullStep(_) | Quantity::Charge { .. } => true,
+        What::Reaction { .. } | What::Charge(_) => true,
+        What::Tension(_) => quantity.is_step(),
         _ => false,
     }
 }
@@ -71,7 +72,7 @@ pub(crate) fn ends_that_read(
     {
         return None;
     }
-    let [start, end] = [Stencil::Here, Stencil::Next].map(|at| quantity.in_intervals(at));
+    let [start, end] = [At::Start, At::End].map(|at| quantity.in_intervals(at));
     Some([start?, end?])
 }
 
@@ -223,7 +224,7 @@ pub(super) fn moving_start(
 fn steps_from_rest(boundary: &BoundaryConditions, place: &str) -> Option<String> {
     let mut limits = boundary.limits.list.iter();
     let reads = |quantity: &Quantity| {
-        !matches!(quantity, Quantity::VoltageStep { .. }) && quantity.before().is_some()
+        !matches!(quantity.what, What::Voltage(_)) && quantity.before().is_some()
     };
     let limit = limits.find(|one| reads(&one.quantity))?;
     Some(format!(

@@ -10,7 +10,9 @@ use crate::control::{
 use crate::dynamics::{Equilibrium, IndependentChanges, Start};
 use crate::identify::drive::{Drive, Inputs};
 use crate::identify::error::IdentifyError;
-use crate::model::{Analysis, Coordinates, Model, Parameter, Quantity, System, with_parameters};
+use crate::model::{
+    Analysis, Coordinates, Model, Parameter, Quantity, System, What, with_parameters,
+};
 use nalgebra::{DMatrix, DVector};
 use std::borrow::Cow;
 
@@ -238,15 +240,13 @@ impl Recording {
 /// Returns true of forces, charges, currents, powers and voltages, which are none where they have no measure.
 fn lasts(quantity: &Quantity) -> bool {
     matches!(
-        quantity,
-        Quantity::Tension { .. }
-            | Quantity::PullStep(_)
-            | Quantity::ReactionStep { .. }
-            | Quantity::Charge { .. }
-            | Quantity::MeanCharge { .. }
-            | Quantity::ElectrodeVoltage { .. }
-            | Quantity::SourceCurrent { .. }
-            | Quantity::SourcePower { .. }
-            | Quantity::ChargeStep { .. }
+        quantity.what,
+        What::Tension(_)
+            | What::Reaction { .. }
+            | What::Charge(_)
+            | What::MeanCharge(_)
+            | What::ElectrodeVoltage(_)
+            | What::Current(_)
+            | What::Power(_)
     )
 }

@@ -2,8 +2,8 @@
 
 use crate::control;
 use crate::control::problem::{
-    Ahead, Combined, Duration, Guess, Hold, InCommon, Objective, OutcomeOf, PathConstraint,
-    QuantityCost, Regulator, Solver, SoughtHold, Varied,
+    Ahead, Combined, Duration, Guess, Hold, InCommon, Limit, Objective, OutcomeOf, QuantityCost,
+    Regulator, Solver, SoughtHold, Varied,
 };
 use crate::control::{Earlier, EarlierSolution, Motions, problem};
 use crate::interface::cost_checks::{check_costs, check_energies, check_limits, check_waypoints};
@@ -40,7 +40,7 @@ pub struct Control {
     voltage_bounds: [f64; 2],
     load_bounds: Vec<(Handle<Load>, [f64; 2])>,
     pub(super) objective: Objective,
-    pub(super) limits: Vec<PathConstraint>,
+    pub(super) limits: Vec<Limit>,
     pub(super) waypoints: Vec<problem::Waypoint>,
     voltages: Vec<(Input, Signal)>,
     parameters: Vec<Parameter>,

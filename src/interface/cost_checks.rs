@@ -1,11 +1,9 @@
 //! Checks of the costs, limits and waypoints of a control problem against its system.
 
-use crate::control::problem::{
-    CostFunction, During, EnergyCost, PathConstraint, QuantityCost, Waypoint,
-};
+use crate::control::problem::{CostFunction, During, EnergyCost, Limit, QuantityCost, Waypoint};
 use crate::interface::error::{Result, require};
-use crate::model::system::{Fidelity, Joint, Muscle};
-use crate::model::{Quantity, Reaction, System};
+use crate::model::system::{Joint, Muscle};
+use crate::model::{System, What};
 
 /// Refuses costs of parts that the system does not have, and weights and functions of time that are not finite.
 pub(super) fn check_costs(
@@ -13,25 +11,13 @@ pub(super) fn check_costs(
     system: &System,
 ) -> Result<()> {
     for cost in costs {
-        let exists = match cost.quantity {
-            Quantity::Joint { joint, .. } | Quantity::JointStep { joint, .. } => {
-                let joint = system.joints.get(joint);
-                joint.is_some_and(Joint::has_coordinate)
-            }
-            Quantity::MarkerPlace { marker, axis, .. } => marker < system.markers.len() && axis < 3,
-            Quantity::SquaredSpeed { marker, .. } => marker < system.markers.len(),
-            Quantity::Tension { muscle, .. } => {
-                let muscle = system.muscles.get(muscle);
-                muscle.is_some_and(|m| m.fidelity == Fidelity::Lumped)
-            }
-            Quantity::SourceCurrent { muscle, .. } | Quantity::SourcePower { muscle, .. } => {
-                let muscle = system.muscles.get(muscle);
-                muscle.is_some_and(Muscle::is_behind_resistor)
-            }
-            Quantity::OfMuscles { ref muscles, .. } => are_lumped(muscles, system),
-            ref quantity if quantity.before().is_some() => false,
-            _ => true,
+        let quantity = &cost.quantity;
+        let is_behind = |source: usize| {
+            let muscle = system.muscles.get(source);
+            muscle.is_some_and(Muscle::is_behind_resistor)
         };
+        let is_single = quantity.before().is_none() && quantity.source().is_none_or(is_behind);
+        let exists = quantity.what.exists(system) && is_single;
         let is_followed = match &cost.function {
             CostFunction::Square { reference } => reference.is_sound(),
             CostFunction::Itself => true,
@@ -48,15 +34,6 @@ pub(super) fn check_costs(
     Ok(())
 }
 
-/// Returns true if these are lumped muscles, one or more.
-fn are_lumped(muscles: &[usize], system: &System) -> bool {
-    let is_lumped = |&m: &usize| {
-        let muscle = system.muscles.get(m);
-        muscle.is_some_and(|muscle| muscle.fidelity == Fidelity::Lumped)
-    };
-    !muscles.is_empty() && muscles.iter().all(is_lumped)
-}
-
 /// Refuses energies of parts that are no lumped muscles, and weights that are not positive.
 pub(super) fn check_energies(costs: &[EnergyCost], system: &System) -> Result<()> {
     for cost in costs {
@@ -69,62 +46,12 @@ pub(super) fn check_energies(costs: &[EnergyCost], system: &System) -> Result<()
 }
 
 /// Refuses limits of parts that the system does not have, and those that leave nothing.
-pub(super) fn check_limits(limits: &[PathConstraint], system: &System) -> Result<()> {
+pub(super) fn check_limits(limits: &[Limit], system: &System) -> Result<()> {
     for limit in limits {
-        let holds = match *limit {
-            PathConstraint::Once { part, ref limit } => {
-                check_limits(std::slice::from_ref(limit), system)?;
-                part > 0.0 && part <= 1.0
-            }
-            PathConstraint::Reaction {
-                joint,
-                of,
-                along,
-                min,
-                max,
-            } => {
-                let is_unit = (along.norm() - 1.0).abs() < 1e-9;
-                let joint = system.joints.get(joint);
-                let is_known = |joint: &Joint| of == Reaction::Force || joint.has_torque();
-                joint.is_some_and(is_known) && is_unit && min <= max
-            }
-            PathConstraint::MarkerSpeed { marker, min, max } => {
-                marker < system.markers.len() && min <= max
-            }
-            PathConstraint::ElectricField { muscle, max } => {
-                muscle < system.muscles.len() && max > 0.0
-            }
-            PathConstraint::VoltageRate { source, min, max } => {
-                let sources = system.sources();
-                sources.get(source).is_some_and(|s| s.takes_voltage) && min <= max
-            }
-            PathConstraint::Current { muscle, min, max }
-            | PathConstraint::Power { muscle, min, max } => {
-                let muscle = system.muscles.get(muscle);
-                muscle.is_some_and(Muscle::has_measured_current) && min <= max
-            }
-            PathConstraint::Tension { muscle, min, max } => {
-                let muscle = system.muscles.get(muscle);
-                muscle.is_some_and(|m| m.fidelity == Fidelity::Lumped) && min <= max
-            }
-            PathConstraint::OfMuscles {
-                ref muscles,
-                min,
-                max,
-                ..
-            } => are_lumped(muscles, system) && min <= max,
-            PathConstraint::Stretch { muscle, min, max } => {
-                muscle < system.muscles.len() && min <= max
-            }
-            PathConstraint::JointAngle { joint, min, max }
-            | PathConstraint::JointRate { joint, min, max } => {
-                let joint = system.joints.get(joint);
-                joint.is_some_and(Joint::has_coordinate) && min <= max
-            }
-            PathConstraint::BlockField { .. }
-            | PathConstraint::PeakVoltage { .. }
-            | PathConstraint::Marker { .. } => true,
-        };
+        let is_then = limit.part.is_none_or(|part| part > 0.0 && part <= 1.0);
+        let has_field = !matches!(limit.what, What::Field(_)) || limit.max > 0.0;
+        let leaves = limit.min <= limit.max && has_field;
+        let holds = limit.what.exists(system) && leaves && is_then;
         let found = || format!("{limit:?}");
         require(holds, "limit", found, "a range of a part of the system")?;
     }

@@ -164,8 +164,7 @@ impl Control {
 }
 
 fn of_joint(joint: Handle<Joint>) -> Quantity {
-    let joint = joint.index();
-    Quantity::Joint { joint, near: 0.0 }
+    Quantity::joint(joint.index(), 0.0)
 }
 
 /// A waypoint without places so far.

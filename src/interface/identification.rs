@@ -41,19 +41,19 @@ pub struct Tension(Quantity);
 
 impl From<Handle<Muscle>> for Tension {
     fn from(muscle: Handle<Muscle>) -> Self {
-        Self(Quantity::tension(muscle.index()))
+        Self(Quantity::tension(Pulling::Muscle(muscle.index())))
     }
 }
 
 impl From<Handle<Spring>> for Tension {
     fn from(spring: Handle<Spring>) -> Self {
-        Self(Quantity::PullStep(Pulling::Spring(spring.index())))
+        Self(Quantity::tension(Pulling::Spring(spring.index())))
     }
 }
 
 impl From<Handle<Tendon>> for Tension {
     fn from(tendon: Handle<Tendon>) -> Self {
-        Self(Quantity::PullStep(Pulling::Tendon(tendon.index())))
+        Self(Quantity::tension(Pulling::Tendon(tendon.index())))
     }
 }
 
@@ -134,8 +134,7 @@ impl Recording {
         readings: impl IntoIterator<Item = (f64, f64)>,
         deviation: impl Into<Option<f64>>,
     ) -> Self {
-        let joint = joint.index();
-        let quantity = Quantity::Joint { joint, near: 0.0 };
+        let quantity = Quantity::joint(joint.index(), 0.0);
         self.measured(vec![(1.0, quantity)], readings, deviation)
     }
 

@@ -1,19 +1,19 @@
 //! Limits of optimal control problems.
 
-use crate::control::problem::PathConstraint;
+use crate::control::problem::Limit;
 use crate::interface::control::Control;
 use crate::interface::handle::Handle;
 use crate::math::Vector;
-use crate::model::Reaction;
 use crate::model::system::{Joint, Marker, Muscle};
+use crate::model::{FieldPlace, Plane, Pulling, Reaction, What};
 use std::ops::RangeInclusive;
 
 impl Control {
     /// Greatest true electric field of muscles in V/mm.
     pub fn field_below(mut self, muscles: &[Handle<Muscle>], max: f64) -> Self {
-        let limit = |muscle: &Handle<Muscle>| PathConstraint::ElectricField {
-            muscle: muscle.index(),
-            max,
+        let limit = |muscle: &Handle<Muscle>| {
+            let place = FieldPlace::Muscle(muscle.index());
+            Limit::below(What::Field(place), max)
         };
         self.limits.extend(muscles.iter().map(limit));
         self
@@ -21,45 +21,43 @@ impl Control {
 
     /// Range of the stretch of a muscle.
     pub fn stretch_within(self, muscle: Handle<Muscle>, range: RangeInclusive<f64>) -> Self {
-        let (muscle, (min, max)) = (muscle.index(), range.into_inner());
-        self.limited(PathConstraint::Stretch { muscle, min, max })
+        self.limited(Limit::new(What::Stretch(muscle.index()), bounds(range)))
     }
 
     /// Range of the force in N with which a lumped muscle pulls its ends together, in the middle of the intervals.
     pub fn tension_within(self, muscle: Handle<Muscle>, range: RangeInclusive<f64>) -> Self {
-        let (muscle, (min, max)) = (muscle.index(), range.into_inner());
-        self.limited(PathConstraint::Tension { muscle, min, max })
+        self.limited(Limit::new(
+            What::Tension(Pulling::Muscle(muscle.index())),
+            bounds(range),
+        ))
     }
 
     /// Range of the coordinate of a joint in rad or mm.
     pub fn joint_within(self, joint: Handle<Joint>, range: RangeInclusive<f64>) -> Self {
-        let (joint, (min, max)) = (joint.index(), range.into_inner());
-        self.limited(PathConstraint::JointAngle { joint, min, max })
+        let (joint, near) = (joint.index(), 0.0);
+        self.limited(Limit::new(What::Joint { joint, near }, bounds(range)))
     }
 
     /// Range of the mean rate of the coordinate of a joint in each interval in rad/ms or mm/ms.
     pub fn joint_rate_within(self, joint: Handle<Joint>, range: RangeInclusive<f64>) -> Self {
-        let (joint, (min, max)) = (joint.index(), range.into_inner());
-        self.limited(PathConstraint::JointRate { joint, min, max })
+        let (joint, near) = (joint.index(), 0.0);
+        self.limited(Limit::of_rate(What::Joint { joint, near }, bounds(range)))
     }
 
     /// Range of the current in A of the source of a lumped muscle: behind a resistor its mean in each interval, otherwise that between the
     /// middles of neighbouring intervals.
     pub fn current_within(self, muscle: Handle<Muscle>, range: RangeInclusive<f64>) -> Self {
-        let (muscle, (min, max)) = (muscle.index(), range.into_inner());
-        self.limited(PathConstraint::Current { muscle, min, max })
+        self.limited(Limit::new(What::Current(muscle.index()), bounds(range)))
     }
 
     /// Range of the rate of the voltage of a muscle in V/ms between the middles of neighbouring intervals.
     pub fn voltage_rate_within(self, muscle: Handle<Muscle>, range: RangeInclusive<f64>) -> Self {
-        let (source, (min, max)) = (muscle.index(), range.into_inner());
-        self.limited(PathConstraint::VoltageRate { source, min, max })
+        self.limited(Limit::of_rate(What::Voltage(muscle.index()), bounds(range)))
     }
 
     /// Range of the power in W of the source of a lumped muscle, at the times of a current.
     pub fn power_within(self, muscle: Handle<Muscle>, range: RangeInclusive<f64>) -> Self {
-        let (muscle, (min, max)) = (muscle.index(), range.into_inner());
-        self.limited(PathConstraint::Power { muscle, min, max })
+        self.limited(Limit::new(What::Power(muscle.index()), bounds(range)))
     }
 
     /// Range in N of the component, along a unit vector of the ground frame, of the force from the parent of a joint on its child, at the
@@ -90,20 +88,27 @@ impl Control {
         along: Vector,
         range: RangeInclusive<f64>,
     ) -> Self {
-        let (joint, (min, max)) = (joint.index(), range.into_inner());
-        self.limited(PathConstraint::Reaction {
-            joint,
-            of,
-            along,
-            min,
-            max,
-        })
+        let joint = joint.index();
+        self.limited(Limit::new(
+            What::Reaction { joint, of, along },
+            bounds(range),
+        ))
     }
 
     /// Range of the size of the mean velocity of a marker in each interval in mm/ms.
     pub fn marker_speed_within(self, marker: Handle<Marker>, range: RangeInclusive<f64>) -> Self {
-        let (marker, (min, max)) = (marker.index(), range.into_inner());
-        self.limited(PathConstraint::MarkerSpeed { marker, min, max })
+        self.limited(Limit::new(What::Speed(marker.index()), bounds(range)))
+    }
+
+    /// Range of the distance in mm of a marker from a plane that is fixed to a body or the ground, on the side of its normal.
+    pub fn clearance_within(
+        self,
+        marker: Handle<Marker>,
+        plane: Plane,
+        range: RangeInclusive<f64>,
+    ) -> Self {
+        let marker = marker.index();
+        self.limited(Limit::new(What::Clearance { marker, plane }, bounds(range)))
     }
 
     /// Makes the limit that was added last hold only at a part of the duration, above 0 and at most 1, the end: at the instant nearest to it, or in
@@ -115,8 +120,13 @@ impl Control {
         self
     }
 
-    fn limited(mut self, limit: PathConstraint) -> Self {
+    fn limited(mut self, limit: Limit) -> Self {
         self.limits.push(limit);
         self
     }
+}
+
+fn bounds(range: RangeInclusive<f64>) -> [f64; 2] {
+    let (min, max) = range.into_inner();
+    [min, max]
 }

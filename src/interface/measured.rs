@@ -6,8 +6,8 @@ use crate::control::problem::{CostFunction, During, QuantityCost};
 use crate::interface::control::Control;
 use crate::interface::handle::Handle;
 use crate::math::Signal;
-use crate::model::Quantity;
 use crate::model::system::{Joint, Marker, Muscle};
+use crate::model::{Pulling, Quantity};
 
 impl Control {
     /// The tension of a lumped muscle follows a function of time in N: minimises ∫ (T − r)² dt in N² s, with a weight.
@@ -18,7 +18,7 @@ impl Control {
         weight: f64,
     ) -> Self {
         self.measured(
-            Quantity::tension(muscle.index()),
+            Quantity::tension(Pulling::Muscle(muscle.index())),
             Some(along.into()),
             weight,
         )

@@ -19,6 +19,7 @@ use crate::model::measures::{Known, Shape, instant, interval, read};
 use crate::model::model::Model;
 use crate::model::quantity::Quantity;
 use crate::model::system::InputKind;
+use crate::model::what::{At, What};
 
 /// A muscle behind a resistor: its constants, the electric energy of its charge, and the vectors of its span and of its charge.
 struct Charged<'a> {
@@ -35,8 +36,10 @@ impl Known<'_> {
         shape: Shape,
         vectors: &mut Vectors,
     ) -> Option<Box<dyn Measure>> {
-        Some(match *quantity {
-            Quantity::ChargedField { muscle, limit, at } => {
+        let (unit, at) = (quantity.unit, quantity.at.stencil());
+        Some(match quantity.what {
+            What::ChargedField(muscle) => {
+                let limit = unit;
                 let Charged {
                     of,
                     energy: Flowing { capacitance, unit },
@@ -44,32 +47,30 @@ impl Known<'_> {
                 } = self.charged(muscle, vectors)?;
                 let field = GivenField { capacitance, limit };
                 let field = FlowingField { field, unit };
-                match at {
-                    None => instant(shape, field.formula(&[]), [span, charge]),
-                    Some(at) => {
-                        shape.law(of.element(field, [read(span, at), read(charge, at)], []))
-                    }
+                match quantity.at {
+                    At::Instant => instant(shape, field.formula(&[]), [span, charge]),
+                    _ => shape.law(of.element(field, [read(span, at), read(charge, at)], [])),
                 }
             }
-            Quantity::Charge { source } => return self.charge(source, shape, vectors),
-            Quantity::ElectrodeVoltage { source } => return self.across(source, shape, vectors),
-            Quantity::SourceCurrent { muscle, unit } => {
-                if let Some(of) = self.electrodes(muscle) {
+            What::Charge(source) => return self.charge(source, shape, vectors),
+            What::ElectrodeVoltage(source) => return self.across(source, shape, vectors),
+            What::Current(source) => {
+                if let Some(of) = self.electrodes(source) {
                     return self.electrode_current((of, unit), shape);
                 }
-                let (of, current, read, voltage) = self.source_current(muscle, unit, vectors)?;
+                let (of, current, read, voltage) = self.source_current(source, unit, vectors)?;
                 shape.law(of.element(current, read, [voltage]))
             }
-            Quantity::SourcePower { muscle, unit } => {
+            What::Power(muscle) => {
                 let (of, current, read, voltage) = self.source_current(muscle, unit, vectors)?;
                 shape.law(of.element(Power(current), read, [voltage]))
             }
-            Quantity::MeanCharge { muscle } | Quantity::ChargeStep { muscle, .. } => {
+            What::MeanCharge(muscle) => {
                 let (of, capacitance, span, voltage) = self.direct(muscle, vectors)?;
                 let ends = [Stencil::Here, Stencil::Next].map(|at| read(span, at));
                 shape.law(of.element(Mean(capacitance), ends, [voltage]))
             }
-            Quantity::EnergyStep { muscle, at, .. } => {
+            What::Energy(muscle) => {
                 let (of, capacitance, span, voltage) = self.direct(muscle, vectors)?;
                 shape.law(of.element(Stored(capacitance), [read(span, at)], [voltage]))
             }

@@ -1,13 +1,14 @@
 //! Measures of markers: places, regions and velocities.
 
-use crate::energy::{OutsideBox, PositionComponent, SquaredDistance};
+use crate::energy::{OutsideBox, PositionComponent, Projection, SquaredDistance};
 use crate::functional::{Law, Measure, Stencil};
-use crate::kinematics::Vectors;
+use crate::kinematics::{MaterialVector, Vectors};
 use crate::math::{Number, Vector};
 use crate::model::constant::Constant;
 use crate::model::measures::{Known, Shape, instant, read};
-use crate::model::quantity::{Quantity, Region};
+use crate::model::quantity::Quantity;
 use crate::model::sought::{MovedPoint, Read};
+use crate::model::what::{At, Of, Region, What};
 
 /// A component of a place.
 #[derive(Clone)]
@@ -68,7 +69,7 @@ impl Places {
 }
 
 impl Known<'_> {
-    /// Place or velocity of a marker.
+    /// Place, velocity or clearance of a marker.
     pub(super) fn of_marker(
         &self,
         quantity: &Quantity,
@@ -80,28 +81,35 @@ impl Known<'_> {
             let normal = Vector::ith(axis, 1.0);
             Component(PositionComponent { origin, normal })
         };
-        let mut places = |marker: usize, at: Option<Stencil>| Places {
+        let times = match (&quantity.what, quantity.of, quantity.at) {
+            (What::Speed(_), ..) => Some(Stencil::Rate),
+            (_, Of::Step, _) => Some(Stencil::Difference),
+            (_, _, At::Instant) => None,
+            (_, _, at) => Some(at.stencil()),
+        };
+        let mut places = |marker: usize| Places {
             marker: self.markers[marker],
-            at: at.map(|at| (at, self.moved_marker(marker, vectors))),
+            at: times.map(|at| (at, self.moved_marker(marker, vectors))),
             shape,
         };
-        Some(match *quantity {
-            Quantity::MarkerPlace { marker, axis, at } => places(marker, at).of(component(axis)),
+        Some(match quantity.what {
+            What::Place { marker, axis } => places(marker).of(component(axis)),
             // At most one inside a sphere, at least three only outside a box.
-            Quantity::MarkerRegion { marker, region, at } => match region {
-                Region::Sphere { centre, radius } => {
-                    places(marker, at).of(Distance(centre, radius))
-                }
+            What::Region { marker, region } => match region {
+                Region::Sphere { centre, radius } => places(marker).of(Distance(centre, radius)),
                 Region::Box { min, max } => {
                     let (centre, half) = ((min + max) * 0.5, (max - min) * 0.5);
-                    places(marker, at).of(Boxed(OutsideBox { centre, half }))
+                    places(marker).of(Boxed(OutsideBox { centre, half }))
                 }
             },
-            Quantity::MarkerStep { marker, axis } => {
-                places(marker, Some(Stencil::Difference)).of(component(axis))
-            }
-            Quantity::SquaredSpeed { marker, limit } => {
-                places(marker, Some(Stencil::Rate)).of(Distance(origin, limit))
+            What::Speed(marker) => places(marker).of(Distance(origin, quantity.unit)),
+            What::Clearance { marker, plane } => {
+                let body = self.presolved.carrier(plane.body);
+                let normal = MaterialVector::direction(body, &plane.normal, self.reference);
+                let foot = MaterialVector::point(body, &plane.point, self.reference);
+                let place = vectors.list()[self.markers[marker]].clone();
+                let read = [normal, MaterialVector::span(&foot, &place)];
+                instant(shape, Projection, read.map(|vector| vectors.index(vector)))
             }
             _ => return None,
         })

@@ -20,12 +20,13 @@ use crate::model::internal::Internals;
 use crate::model::joints::{JointCoordinate, JointReading};
 use crate::model::no_terms::no_terms;
 use crate::model::presolved::Presolved;
-use crate::model::quantity::{FieldPlace, Quantity};
+use crate::model::quantity::Quantity;
 use crate::model::solid_block::SolidBlock;
 use crate::model::sought::Sought;
 use crate::model::system::{Amount, System};
 use crate::model::terms::Terms;
 use crate::model::variables::{Role, Variables};
+use crate::model::what::{At, FieldPlace, Pulling, What};
 use nalgebra::SVector;
 use std::sync::Arc;
 
@@ -97,36 +98,37 @@ impl Known<'_> {
         shape: Shape,
         vectors: &mut Vectors,
     ) -> Option<Box<dyn Measure>> {
-        let origin = Vector::zeros();
-        Some(match *quantity {
-            Quantity::Joint { joint, near } => return self.joint(joint, near, shape, vectors),
-            Quantity::JointStep { joint, .. } => return self.joint_step(joint, shape, vectors),
-            Quantity::SquaredStretch { muscle, at } => self.stretch(muscle, at, shape, vectors),
-            Quantity::Capacitance { muscle } => {
+        let (unit, at) = (quantity.unit, quantity.at);
+        Some(match quantity.what {
+            What::Joint { joint, .. } if quantity.is_step() => {
+                return self.joint_step(joint, shape, vectors);
+            }
+            What::Joint { joint, near } => return self.joint(joint, near, shape, vectors),
+            What::Stretch(muscle) => self.stretch(muscle, at, shape, vectors),
+            What::Capacitance(muscle) => {
                 self.variables.input(muscle)?;
                 let energy = capacitance(&self.presolved.system.muscles[muscle])?;
                 instant(shape, energy, [self.span(muscle, vectors)])
             }
-            Quantity::MarkerPlace { .. }
-            | Quantity::MarkerRegion { .. }
-            | Quantity::MarkerStep { .. }
-            | Quantity::SquaredSpeed { .. } => return self.of_marker(quantity, shape, vectors),
-            Quantity::Direction { body, axis, along } => {
+            What::Place { .. } | What::Region { .. } | What::Clearance { .. } | What::Speed(_) => {
+                return self.of_marker(quantity, shape, vectors);
+            }
+            What::Direction { body, axis, along } => {
                 let body = self.presolved.carrier(Some(body));
                 let direction = MaterialVector::direction(body, &axis, self.reference);
-                let normal = along;
+                let (origin, normal) = (Vector::zeros(), along);
                 let component = PositionComponent { origin, normal };
                 instant(shape, component, [vectors.index(direction)])
             }
-            Quantity::PeakVoltage { parameter } => {
+            What::PeakVoltage(parameter) => {
                 let multiple = Multiple { unit: KILOVOLT };
                 interval::<_, 1, 0, 1>(shape, multiple, [], [self.parameter(parameter)?])
             }
-            Quantity::VoltageStep { source, .. } => {
+            What::Voltage(source) => {
                 let voltage = [self.variables.input(source)?];
                 interval::<_, 1, 0, 1>(shape, Multiple { unit: 1.0 }, [], voltage)
             }
-            Quantity::PeakExcess {
+            What::PeakExcess {
                 source,
                 parameter,
                 unit,
@@ -134,38 +136,32 @@ impl Known<'_> {
                 let scalars = [self.variables.input(source)?, self.parameter(parameter)?];
                 interval::<_, 2, 0, 2>(shape, PeakExcess { unit }, [], scalars)
             }
-            Quantity::OfMuscles { .. } => {
-                return amount_measure(quantity, (self.system, &self.sought));
-            }
-            Quantity::ChargedField { .. }
-            | Quantity::SourceCurrent { .. }
-            | Quantity::SourcePower { .. }
-            | Quantity::ChargeStep { .. }
-            | Quantity::Charge { .. }
-            | Quantity::MeanCharge { .. }
-            | Quantity::ElectrodeVoltage { .. }
-            | Quantity::EnergyStep { .. } => return self.of_charge(quantity, shape, vectors),
-            Quantity::PullStep(part) => return self.pull(part, vectors),
-            Quantity::ReactionStep {
-                joint,
-                of,
-                along,
-                at,
-                ..
-            } => return self.reaction((joint, of), (along, at), vectors),
-            Quantity::Tension { muscle, unit } => {
+            What::Amount { .. } => return amount_measure(quantity, (self.system, &self.sought)),
+            What::ChargedField(_)
+            | What::Current(_)
+            | What::Power(_)
+            | What::Charge(_)
+            | What::MeanCharge(_)
+            | What::ElectrodeVoltage(_)
+            | What::Energy(_) => return self.of_charge(quantity, shape, vectors),
+            What::Tension(Pulling::Muscle(muscle)) => {
                 return self.tension(muscle, (unit, shape), vectors);
             }
-            Quantity::SquaredField { place, limit, at } => match place {
-                FieldPlace::Muscle(muscle) => {
-                    return self.muscle_field(muscle, (limit, at), shape, vectors);
-                }
-                FieldPlace::Element {
-                    block,
-                    element,
-                    point,
-                } => return self.element_field(block, (element, point), (limit, at), shape),
-            },
+            What::Tension(part) => return self.pull(part, vectors),
+            What::Reaction { joint, of, along } => {
+                return self.reaction((joint, of), (along, at.stencil()), vectors);
+            }
+            What::Field(FieldPlace::Muscle(muscle)) => {
+                return self.muscle_field(muscle, (unit, at.stencil()), shape, vectors);
+            }
+            What::Field(FieldPlace::Element {
+                block,
+                element,
+                point,
+            }) => {
+                return self.element_field(block, (element, point), (unit, at.stencil()), shape);
+            }
+            What::Field(FieldPlace::Block { .. }) => return None,
         })
     }
 
@@ -370,12 +366,7 @@ pub(super) fn amount_measure(
     quantity: &Quantity,
     (system, sought): (&System, &Sought),
 ) -> Option<Box<dyn Measure>> {
-    let Quantity::OfMuscles {
-        muscles,
-        amount,
-        unit,
-    } = quantity
-    else {
+    let What::Amount { muscles, amount } = &quantity.what else {
         return None;
     };
     let element = |&m: &usize| {
@@ -391,7 +382,8 @@ pub(super) fn amount_measure(
     let elements: Vec<_> = muscles.iter().filter_map(element).collect();
     let is_moved = elements.iter().any(|one| !one.parameters.is_empty());
     is_moved.then(|| -> Box<dyn Measure> {
-        let group = Group::<Laws<OfMuscle, 0, 0, 0>>::intervals("measure", 1.0 / unit, elements);
+        let group =
+            Group::<Laws<OfMuscle, 0, 0, 0>>::intervals("measure", 1.0 / quantity.unit, elements);
         Box::new(group)
     })
 }
@@ -401,20 +393,20 @@ impl Known<'_> {
     pub(super) fn stretch(
         &self,
         muscle: usize,
-        at: Option<Stencil>,
+        at: At,
         shape: Shape,
         vectors: &mut Vectors,
     ) -> Box<dyn Measure> {
         let span = self.span(muscle, vectors);
         match at {
-            None => {
+            At::Instant => {
                 let stretch = MuscleConstants::given(&self.presolved.system.muscles[muscle]);
                 instant(shape, stretch.stretch().formula(&[]), [span])
             }
-            Some(at) => {
+            at => {
                 let of = self.muscle(muscle, vectors);
-                let stretch = of.stretch();
-                shape.law::<_, 3, 1, 0>(of.element(stretch, [read(span, at)], []))
+                let (stretch, span) = (of.stretch(), read(span, at.stencil()));
+                shape.law::<_, 3, 1, 0>(of.element(stretch, [span], []))
             }
         }
     }

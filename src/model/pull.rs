@@ -15,18 +15,19 @@ use crate::model::internal::InternalKind;
 use crate::model::joint_constraints::DAMPING;
 use crate::model::joint_sections::JointSection;
 use crate::model::measures::{Known, Shape, read};
-use crate::model::quantity::{Pulling, Reaction};
 use crate::model::system::Fidelity;
 use crate::model::term_order::rank;
 use crate::model::variables::Time;
+use crate::model::what::{Pulling, Reaction};
 use std::sync::Arc;
 
 impl Known<'_> {
-    /// Impulse of the forces of a part along its span in an interval; none where nothing changes its length.
+    /// Impulse of the forces of a spring or tendon along its span in an interval; none where nothing changes its length.
     pub(super) fn pull(&self, part: Pulling, vectors: &mut Vectors) -> Option<Box<dyn Measure>> {
         let mut terms = self.no_terms(vectors);
         let components = &self.system.components;
         let (span, factor) = match part {
+            Pulling::Muscle(_) => return None,
             Pulling::Spring(index) => {
                 let spring = &components.springs[index];
                 let span = terms.span(&spring.from, &spring.to)?;

@@ -1,6 +1,6 @@
 //! Active bounds and limits of a point, with their numbers of rows.
 
-use crate::control::problem::{Control, Duration, PathConstraint};
+use crate::control::problem::{Control, Duration};
 use crate::control::{BoundedQuantity, Column, Row, Transcription};
 use crate::math::significant;
 use crate::model::{JointReading, Model, Parameter, Role, Size, System, joint_unit};
@@ -107,15 +107,15 @@ impl ActiveLimits {
             return;
         };
         for limit in &control.limits {
-            let PathConstraint::JointAngle { joint: j, min, max } = *limit else {
+            if limit.joint() != Some(joint) || limit.part.is_some() {
                 continue;
-            };
+            }
             let (name, unit) = (
                 &model.system.joints[joint].name,
                 joint_unit(&model.system, joint),
             );
-            for (bound, is_reached) in [min, max].into_iter().zip(side) {
-                if j == joint && bound.is_finite() {
+            for (bound, is_reached) in limit.bounds().into_iter().zip(side) {
+                if bound.is_finite() {
                     let value = significant(bound, 4);
                     let what = format!("{name} at its limit of {value} {unit}");
                     self.add(what, is_reached, "instant", false);

@@ -1,8 +1,8 @@
 //! Model and boundary of a control problem, also with the parameters put in that were found.
 
-use crate::control::problem::{Control, PathConstraint, QuantityCost};
+use crate::control::problem::{Control, QuantityCost};
 use crate::control::{BoundaryConditions, Solution};
-use crate::model::{Model, Quantity, System, with_parameters};
+use crate::model::{Model, System, What, with_parameters};
 use crate::workflow::error::WorkflowError;
 use crate::workflow::hold_check;
 
@@ -32,10 +32,10 @@ pub(crate) fn with_found(
     let values: Vec<f64> = motion.parameters.iter().map(|found| found.value).collect();
     let mut objective = control.objective.clone();
     // What nothing changes any more is no cost and no limit: a point that breaks one is an iterate, and the program says so.
-    let amounts = |cost: &QuantityCost| matches!(cost.quantity, Quantity::OfMuscles { .. });
+    let amounts = |cost: &QuantityCost| matches!(cost.quantity.what, What::Amount { .. });
     objective.quantities.retain(|cost| !amounts(cost));
     let mut limits = control.limits.clone();
-    limits.retain(|limit| !matches!(limit, PathConstraint::OfMuscles { .. }));
+    limits.retain(|limit| !matches!(limit.what, What::Amount { .. }));
     let given = Control {
         parameters: Vec::new(),
         objective,

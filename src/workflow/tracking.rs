@@ -6,7 +6,7 @@ use crate::dynamics::DiscreteTrajectory;
 use crate::dynamics::trajectory::Trajectory;
 use crate::math::Signal;
 use crate::model::system::{Joint, System};
-use crate::model::{Quantity, joint_unit};
+use crate::model::{What, joint_unit};
 use crate::workflow::optimum::Optimum;
 use serde::Serialize;
 
@@ -106,9 +106,9 @@ pub fn tracked(
             .filter_map(|c| path(system, c, motion))
             .collect();
         let deviation = deviations(&paths);
-        let (kind, name, unit) = match (of_marker(group[0]), &group[0].quantity) {
+        let (kind, name, unit) = match (of_marker(group[0]), &group[0].quantity.what) {
             (Some(m), _) => ("marker", &system.markers[m].name, "m"),
-            (None, &Quantity::Joint { joint, .. }) => {
+            (None, &What::Joint { joint, .. }) if !group[0].quantity.is_step() => {
                 let unit = if joint_unit(system, joint) == "mm" {
                     "m"
                 } else {
@@ -205,8 +205,8 @@ impl Tracked {
 }
 
 fn of_marker(cost: &QuantityCost) -> Option<usize> {
-    match cost.quantity {
-        Quantity::MarkerPlace { marker, .. } => Some(marker),
+    match cost.quantity.what {
+        What::Place { marker, .. } => Some(marker),
         _ => None,
     }
 }
@@ -220,13 +220,13 @@ pub(crate) fn path(
     let CostFunction::Square { reference } = &cost.function else {
         return None;
     };
-    let (name, axis, value): (String, Option<usize>, Vec<f64>) = match cost.quantity {
-        Quantity::MarkerPlace { marker, axis, .. } => {
+    let (name, axis, value): (String, Option<usize>, Vec<f64>) = match cost.quantity.what {
+        What::Place { marker, axis } => {
             let name = format!("{}_{}", system.markers[marker].name, ["x", "y", "z"][axis]);
             let marks = motion.marks.iter().map(|places| places[marker][axis]);
             (name, Some(axis), marks.collect())
         }
-        Quantity::Joint { joint, .. } => {
+        What::Joint { joint, .. } if !cost.quantity.is_step() => {
             let before = system.joints[..joint].iter();
             let column = before.filter(|j| Joint::has_coordinate(j)).count();
             let values = motion.joints.iter().map(|row| row[column]);

@@ -14,12 +14,13 @@ use super::tracked::{energies, tracked};
 use super::trunk;
 use nalgebra::Vector3;
 use proboscis::control::problem::{
-    BoundaryState, Control, Duration, Guess, Objective, Orientation, PathConstraint, Place, Rest,
-    Solver, SoughtHold,
+    BoundaryState, Control, Duration, Guess, Limit, Objective, Orientation, Place, Rest, Solver,
+    SoughtHold,
 };
 use proboscis::math::Signal;
 use proboscis::model::Coordinates;
 use proboscis::model::system::{ElectricConstants, Material, System, VACUUM_PERMITTIVITY};
+use proboscis::model::{FieldPlace, What};
 use std::collections::BTreeMap;
 
 /// A system and what is asked of it.
@@ -296,17 +297,11 @@ pub fn cases() -> Vec<Case> {
         case("blocks, marker at rest, free time", blocks(), &|c| {
             c.duration = free;
             c.objective = every_objective();
-            let field = |block: usize, region: Option<usize>| PathConstraint::BlockField {
-                block,
-                region,
-                max: 1e4,
+            let field = |block: usize, region: Option<usize>| {
+                Limit::below(What::Field(FieldPlace::Block { block, region }), 1e4)
             };
             c.limits = vec![
-                PathConstraint::Stretch {
-                    muscle: 0,
-                    min: 0.7,
-                    max: 1.2,
-                },
+                Limit::new(What::Stretch(0), [0.7, 1.2]),
                 field(0, Some(0)),
                 field(1, None),
             ];

@@ -3,9 +3,8 @@
 use proboscis::control::problem::{
     CostFunction, During, EnergyCost, Objective, QuantityCost, SourceEnergy,
 };
-use proboscis::functional::Stencil;
 use proboscis::math::Signal;
-use proboscis::model::{FieldPlace, Quantity};
+use proboscis::model::{FieldPlace, Pulling, Quantity, What};
 
 /// Signals of each kind about a mean, changing within some ms.
 pub fn signals(mean: f64, size: f64) -> [Signal; 4] {
@@ -53,7 +52,7 @@ pub fn tracked(markers: &[usize], joints: &[(usize, bool)]) -> Objective {
     for (i, &(joint, is_angle)) in joints.iter().enumerate() {
         let size = if is_angle { 0.3 } else { 4.0 };
         let reference = signals(0.0, size)[i % 4].clone();
-        let quantity = Quantity::Joint { joint, near: 0.0 };
+        let quantity = Quantity::joint(joint, 0.0);
         quantities.push(square(quantity, 20.0, reference));
     }
     Objective {
@@ -83,12 +82,12 @@ pub fn measured(
 ) -> Vec<QuantityCost> {
     let mut costs = Vec::new();
     for (i, &muscle) in muscles.iter().enumerate() {
-        let quantity = Quantity::Tension { muscle, unit: 0.5 };
+        let quantity = Quantity::tension(Pulling::Muscle(muscle)).in_unit(0.5);
         costs.push(square(quantity, 0.3, signals(1.0, 0.7)[i % 4].clone()));
     }
     for (i, &(joint, is_angle)) in joints.iter().enumerate() {
         let size = if is_angle { 5.0 } else { 0.4 };
-        let quantity = Quantity::JointStep { joint, h: 1.0 };
+        let quantity = Quantity::joint_rate(joint);
         costs.push(square(
             quantity,
             0.2,
@@ -96,12 +95,12 @@ pub fn measured(
         ));
     }
     for &marker in markers {
-        costs.push(itself(Quantity::SquaredSpeed { marker, limit: 0.5 }, 0.4));
+        costs.push(itself(Quantity::squared_speed(marker).in_unit(0.5), 0.4));
     }
     for &muscle in fields {
         let place = FieldPlace::Muscle(muscle);
-        let (limit, at) = (2e4, Stencil::Mid);
-        costs.push(itself(Quantity::SquaredField { place, limit, at }, 2.0));
+        let limit = 2e4;
+        costs.push(itself(Quantity::of(What::Field(place)).in_unit(limit), 2.0));
     }
     for cost in costs.iter_mut().skip(2).step_by(3) {
         cost.during = During::End;
@@ -111,13 +110,9 @@ pub fn measured(
 
 /// Costs of current, power and field of a muscle behind a resistor.
 pub fn measured_source(muscle: usize) -> Vec<QuantityCost> {
-    let current = Quantity::SourceCurrent { muscle, unit: 2e-5 };
-    let power = Quantity::SourcePower { muscle, unit: 0.03 };
-    let field = Quantity::ChargedField {
-        muscle,
-        limit: 4e4,
-        at: None,
-    };
+    let current = Quantity::of(What::Current(muscle)).in_unit(2e-5);
+    let power = Quantity::power(muscle).in_unit(0.03);
+    let field = Quantity::of(What::ChargedField(muscle)).in_unit(4e4);
     let mut end = square(power.clone(), 1.0, Signal::Constant(0.2));
     end.during = During::End;
     vec![

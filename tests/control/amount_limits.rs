@@ -4,11 +4,11 @@ use crate::common::cases::joints;
 use crate::motions::{motion, together};
 use crate::optimality::{Optimum, solve};
 use crate::sought::{arm, pair, turn};
-use proboscis::control::problem::{Control, CostFunction, During, PathConstraint, QuantityCost};
+use proboscis::control::problem::{Control, CostFunction, During, Limit, QuantityCost};
 use proboscis::control::{BoundaryConditions, BoundaryError, Row};
 use proboscis::ipopt::Start;
 use proboscis::model::system::System;
-use proboscis::model::{Amount, Constant, Follower, Parameter, Quantity, Role};
+use proboscis::model::{Amount, Constant, Follower, Parameter, Quantity, Role, What};
 use proboscis::workflow::{Iterate, SolveLimits, optimise};
 use std::ops::ControlFlow;
 use std::sync::Arc;
@@ -27,17 +27,18 @@ fn width() -> Parameter {
     }
 }
 
-fn volume(min: f64, max: f64) -> PathConstraint {
-    PathConstraint::OfMuscles {
-        muscles: Arc::from([0, 1]),
-        amount: Amount::Volume,
-        min,
-        max,
-    }
+fn volume(min: f64, max: f64) -> Limit {
+    Limit::new(
+        What::Amount {
+            muscles: Arc::from([0, 1]),
+            amount: Amount::Volume,
+        },
+        [min, max],
+    )
 }
 
 /// Least effort with a sought arm and width, and limits.
-fn designed(system: &System, limits: &[PathConstraint]) -> Control {
+fn designed(system: &System, limits: &[Limit]) -> Control {
     Control {
         parameters: vec![arm([4.0, 60.0], 15.0), width()],
         limits: limits.to_vec(),
@@ -65,7 +66,7 @@ fn a_bound_of_the_volume_is_kept_and_its_multiplier_is_the_slope_of_the_effort()
     // Unlimited, the muscles take all the width that they may have.
     assert!((best / 60.0 - 1.0).abs() < 1e-6, "{best}");
     let most = 0.3 * best * PER_WIDTH;
-    let with = |limit: PathConstraint| {
+    let with = |limit: Limit| {
         let from = Some((&free.discrete, free.h, None));
         solve(&system, &designed(&system, &[limit]), from, Start::PRIMAL)
     };
@@ -103,21 +104,21 @@ fn a_bound_of_the_volume_is_kept_and_its_multiplier_is_the_slope_of_the_effort()
         "{prescribed}"
     );
     // As a cost with the weight of the multiplier the volume has the same optimum.
-    let costly = |factor: f64, limits: &[PathConstraint]| {
+    let costly = |factor: f64, limits: &[Limit]| {
         let mut control = designed(&system, limits);
         control.objective.quantities.push(QuantityCost {
-            quantity: Quantity::OfMuscles {
+            quantity: Quantity::of(What::Amount {
                 muscles: Arc::from([0, 1]),
                 amount: Amount::Volume,
-                unit: 1e3,
-            },
+            })
+            .in_unit(1e3),
             weight: factor * multiplier / (most / 1e3),
             function: CostFunction::Itself,
             during: During::End,
         });
         control
     };
-    let paid = |factor: f64, limits: &[PathConstraint]| {
+    let paid = |factor: f64, limits: &[Limit]| {
         let from = Some((&limited.discrete, limited.h, None));
         found(&solve(
             &system,
@@ -142,12 +143,12 @@ fn a_bound_of_the_volume_is_kept_and_its_multiplier_is_the_slope_of_the_effort()
 #[test]
 fn motions_with_one_design_have_one_row() {
     let system = pair();
-    let control = |angle: f64, limits: &[PathConstraint]| Control {
+    let control = |angle: f64, limits: &[Limit]| Control {
         goal: joints(&[(0, angle)]),
         ..designed(&system, limits)
     };
     let limit = [volume(f64::NEG_INFINITY, 9.0 * PER_WIDTH)];
-    let of = |second: &[PathConstraint], system_of_second: &System| {
+    let of = |second: &[Limit], system_of_second: &System| {
         let first = motion("far", &system, control(0.2, &limit));
         let near = motion("near", system_of_second, control(-0.1, second));
         together(vec![first, near], &[])
@@ -180,7 +181,7 @@ fn motions_with_one_design_have_one_row() {
 #[test]
 fn a_given_volume_keeps_its_limit_without_a_row_or_is_refused() {
     let system = pair();
-    let with = |limit: PathConstraint| Control {
+    let with = |limit: Limit| Control {
         parameters: vec![],
         ..designed(&system, &[limit])
     };
@@ -201,11 +202,11 @@ fn a_given_volume_keeps_its_limit_without_a_row_or_is_refused() {
     assert_eq!(reason, told);
     let mut paid = turn(&system);
     paid.objective.quantities.push(QuantityCost {
-        quantity: Quantity::OfMuscles {
+        quantity: Quantity::of(What::Amount {
             muscles: Arc::from([1]),
             amount: Amount::Volume,
-            unit: 1e3,
-        },
+        })
+        .in_unit(1e3),
         weight: 1.0,
         function: CostFunction::Itself,
         during: During::End,

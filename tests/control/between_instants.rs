@@ -1,8 +1,9 @@
 //! Limits that an optimum keeps at its instants and in its intervals, and passes between them.
 
 use crate::sought::{pair, turn};
-use proboscis::control::problem::{Control, PathConstraint};
+use proboscis::control::problem::{Control, Limit};
 use proboscis::dynamics::simulate;
+use proboscis::model::What;
 use proboscis::tasks::{SolveRequest, SolveResult, solve};
 use proboscis::workflow::Iterate;
 use std::ops::ControlFlow;
@@ -14,11 +15,13 @@ fn limited(intervals: usize) -> (SolveResult, f64) {
     let system = pair();
     let control = Control {
         intervals,
-        limits: vec![PathConstraint::JointRate {
-            joint: 0,
-            min: -FASTEST,
-            max: FASTEST,
-        }],
+        limits: vec![Limit::of_rate(
+            What::Joint {
+                joint: 0,
+                near: 0.0,
+            },
+            [-FASTEST, FASTEST],
+        )],
         ..turn(&system)
     };
     let go_on = &mut |_: usize, _: &Iterate<'_>| ControlFlow::Continue(());

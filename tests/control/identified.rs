@@ -72,7 +72,7 @@ fn measured(system: &System) -> Vec<Signal> {
 
 fn identification(system: &System) -> Control {
     let cost = |(joint, reference): (usize, Signal)| QuantityCost {
-        quantity: Quantity::Joint { joint, near: 0.0 },
+        quantity: Quantity::joint(joint, 0.0),
         weight: 1.0,
         function: CostFunction::Square { reference },
         during: During::Motion,

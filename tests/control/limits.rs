@@ -62,7 +62,7 @@ impl Ran {
 }
 
 /// A trunk with a goal and limits.
-fn trunk(segments: usize, goal: Value, limits: Value) -> Value {
+pub(crate) fn trunk(segments: usize, goal: Value, limits: Value) -> Value {
     json!({
         "scene": {
             "name": "pair",

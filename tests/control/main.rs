@@ -6,6 +6,7 @@ mod common;
 mod accuracy;
 mod amount_limits;
 mod between_instants;
+mod clearance;
 mod closed_form;
 mod codesign;
 mod confirmed;

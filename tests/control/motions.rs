@@ -74,10 +74,7 @@ fn fitted(system: &System, intervals: usize, period: f64, upper: [f64; 2]) -> Co
         parameters: material(system, upper),
         objective: Objective {
             quantities: vec![QuantityCost {
-                quantity: Quantity::Joint {
-                    joint: 0,
-                    near: 0.0,
-                },
+                quantity: Quantity::joint(0, 0.0),
                 weight: 1.0,
                 function: CostFunction::Square { reference },
                 during: During::Motion,

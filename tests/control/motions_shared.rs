@@ -32,10 +32,7 @@ pub(crate) fn steered(system: &System) -> Control {
         objective: Objective {
             effort: 1.0,
             quantities: vec![QuantityCost {
-                quantity: Quantity::Joint {
-                    joint: 0,
-                    near: 0.0,
-                },
+                quantity: Quantity::joint(0, 0.0),
                 weight: 1e3,
                 function: CostFunction::Square {
                     reference: Signal::Constant(0.1),

@@ -2,12 +2,13 @@
 
 use crate::common::cases::{joints, rest_to_rest};
 use crate::common::trunk;
-use proboscis::control::problem::{Control, Duration, Objective, PathConstraint, Task};
+use proboscis::control::problem::{Control, Duration, Limit, Objective, Task};
 use proboscis::control::{
     BoundaryConditions, Column, Costates, InitialGuess, Row, Transcription, guess,
 };
 use proboscis::files::read_problem;
 use proboscis::model::Coordinates;
+use proboscis::model::{FieldPlace, What};
 use proboscis::workflow::{Iterate, Optimum, SolveLimits, optimise};
 use std::collections::BTreeMap;
 use std::ops::ControlFlow;
@@ -28,10 +29,7 @@ fn problem(coordinates: Coordinates, intervals: usize) -> Control {
             guess: 110.0,
         },
         voltage_bounds: [0.0, 1350.0],
-        limits: vec![PathConstraint::ElectricField {
-            muscle: 2,
-            max: 2.6e4,
-        }],
+        limits: vec![Limit::below(What::Field(FieldPlace::Muscle(2)), 2.6e4)],
         // Without known voltages after the goal there is no last jump, which a finer grid makes dearer.
         goal: joints(&[(0, 0.15), (1, 0.13)]),
         ..rest_to_rest(2, intervals, 110.0)

@@ -5,11 +5,13 @@ use crate::common::tracked::energies;
 use crate::common::trunk;
 use crate::optimality::{Optimum, solve};
 use proboscis::State;
-use proboscis::control::problem::{BoundaryState, Control, Duration, PathConstraint, Rest};
+use proboscis::control::problem::{BoundaryState, Control, Duration, Limit, Rest};
 use proboscis::control::{BoundaryConditions, BoundaryError};
 use proboscis::ipopt::Start;
 use proboscis::model::system::{Discretisation, ElementKind, Fidelity, System};
-use proboscis::model::{Constant, Coordinates, Follower, MaterialConstant, Role, with_parameters};
+use proboscis::model::{
+    Constant, Coordinates, Follower, MaterialConstant, Role, What, with_parameters,
+};
 use proboscis::prelude::{
     Body, GROUND, Joint, Material, Muscle, Parameter, X, g, kpa, kv, mm, ms, um,
 };
@@ -142,11 +144,7 @@ fn a_free_arm_keeps_a_limit_of_a_stretch_that_it_changes() {
     let best = solve(&system, &free, None, Start::Cold);
     let (longer, without) = largest(&best);
     let max = 1.0 + 0.7 * (without - 1.0);
-    let limit = |muscle| PathConstraint::Stretch {
-        muscle,
-        min: 0.2,
-        max,
-    };
+    let limit = |muscle| Limit::new(What::Stretch(muscle), [0.2, max]);
     let limited = Control {
         limits: vec![limit(0), limit(1)],
         ..free.clone()
@@ -237,33 +235,21 @@ fn parameters_are_refused_where_they_may_not_act() {
     };
     says(at_rest, "state of rest at the start depends on it");
     // Steps of charges from there are not offered, those of voltages are.
-    let limited = |limit: PathConstraint| Control {
+    let limited = |limit: Limit| Control {
         start: BoundaryState::RestAtVoltages(vec![0.0, 900.0], Rest::Everything),
         limits: vec![limit],
         ..with(vec![modulus()])
     };
     let (min, max) = (-1e3, 1e3);
     says(
-        limited(PathConstraint::Current {
-            muscle: 1,
-            min,
-            max,
-        }),
+        limited(Limit::new(What::Current(1), [min, max])),
         "is counted from there",
     );
     says(
-        limited(PathConstraint::Power {
-            muscle: 1,
-            min,
-            max,
-        }),
+        limited(Limit::new(What::Power(1), [min, max])),
         "is counted from there",
     );
-    let rate = limited(PathConstraint::VoltageRate {
-        source: 1,
-        min,
-        max,
-    });
+    let rate = limited(Limit::of_rate(What::Voltage(1), [min, max]));
     assert!(BoundaryConditions::resolve(&system, &rate, 10.0).is_ok());
     // Energies of a muscle whose capacitance depends on one; not on its modulus, nor that of another muscle.
     let paid = |source: usize, parameter: Parameter| {

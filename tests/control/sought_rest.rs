@@ -5,9 +5,11 @@ use crate::common::sought::of_all_muscles;
 use crate::optimality::guessed_step;
 use crate::sought::{arm, pair, turn};
 use nalgebra::Vector3;
-use proboscis::control::problem::{BoundaryState, Control, PathConstraint, Rest};
+use proboscis::control::problem::{BoundaryState, Control, Limit, Rest};
 use proboscis::control::{BoundaryConditions, Transcription, guess, rest_programs};
-use proboscis::model::{MaterialConstant, MaxwellBranch, MaxwellBranches, System, with_parameters};
+use proboscis::model::{
+    FieldPlace, MaterialConstant, MaxwellBranch, MaxwellBranches, System, What, with_parameters,
+};
 use proboscis::nlp::{Status, differences};
 use proboscis::workflow::{Optimum, SolveLimits, optimise};
 use std::ops::ControlFlow;
@@ -177,7 +179,7 @@ fn a_field_at_rest_that_an_arm_changes_keeps_its_limit() {
         ..problem()
     };
     let limited = |max: f64, control: &Control| Control {
-        limits: vec![PathConstraint::ElectricField { muscle: 1, max }],
+        limits: vec![Limit::below(What::Field(FieldPlace::Muscle(1)), max)],
         ..control.clone()
     };
     // A problem with the arm given refuses a goal that breaks the limit.

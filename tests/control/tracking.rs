@@ -31,7 +31,7 @@ fn free(system: &System, intervals: usize) -> Control {
 }
 
 fn joint(joint: usize) -> Quantity {
-    Quantity::Joint { joint, near: 0.0 }
+    Quantity::joint(joint, 0.0)
 }
 
 /// Place of the tip of a motion at an instant, from the pose of the last body.

@@ -3,9 +3,9 @@
 
 use crate::common::random::Random;
 use crate::common::sought::{problem, robot};
-use proboscis::control::problem::{Control, CostFunction, During, PathConstraint, QuantityCost};
+use proboscis::control::problem::{Control, CostFunction, During, Limit, QuantityCost};
 use proboscis::control::{BoundaryConditions, Transcription, guess};
-use proboscis::model::{Amount, Coordinates, Model, Quantity, Role, System, with_parameters};
+use proboscis::model::{Amount, Coordinates, Model, Quantity, Role, System, What, with_parameters};
 use proboscis::nlp::{Nlp, differences};
 use std::sync::Arc;
 
@@ -40,11 +40,17 @@ fn limited(coordinates: Coordinates, is_free: bool, weight: f64) -> (System, Con
     // Those that shape the muscles, and one that does not.
     let kept = ["width", "arm", "end", "density", "viscosity"];
     plain.parameters.retain(|one| kept.contains(&&*one.name));
-    let of = |(amount, muscles): (Amount, &[usize])| PathConstraint::OfMuscles {
-        muscles: Arc::from(muscles),
-        amount,
-        min: 0.5 * naive(&system, amount, muscles),
-        max: 0.9 * naive(&system, amount, muscles),
+    let of = |(amount, muscles): (Amount, &[usize])| {
+        Limit::new(
+            What::Amount {
+                muscles: Arc::from(muscles),
+                amount,
+            },
+            [
+                0.5 * naive(&system, amount, muscles),
+                0.9 * naive(&system, amount, muscles),
+            ],
+        )
     };
     let mut control = Control {
         coordinates: Some(coordinates),
@@ -53,11 +59,11 @@ fn limited(coordinates: Coordinates, is_free: bool, weight: f64) -> (System, Con
     };
     if weight > 0.0 {
         control.objective.quantities.push(QuantityCost {
-            quantity: Quantity::OfMuscles {
+            quantity: Quantity::of(What::Amount {
                 muscles: Arc::from([0, 2]),
                 amount: Amount::Volume,
-                unit: 1e3,
-            },
+            })
+            .in_unit(1e3),
             weight,
             function: CostFunction::Itself,
             during: During::End,

@@ -10,7 +10,7 @@ use proboscis::control::problem::{Control, CostFunction, Duration, During, Quant
 use proboscis::control::{BoundaryConditions, Transcription, guess};
 use proboscis::math::Signal;
 use proboscis::model::system::System;
-use proboscis::model::{Coordinates, Model, Quantity};
+use proboscis::model::{Coordinates, Model, Quantity, What};
 use proboscis::nlp::Nlp;
 use std::f64::consts::{PI, TAU};
 
@@ -54,11 +54,9 @@ fn deviation(system: &System, model: &Model, z: &[f64], cost: &QuantityCost, t: 
     let CostFunction::Square { reference } = &cost.function else {
         unreachable!("not squared here");
     };
-    match cost.quantity {
-        Quantity::MarkerPlace {
-            marker: m, axis, ..
-        } => marker(system, model, z, m)[axis] - follow(reference, t),
-        Quantity::Joint { joint, .. } => {
+    match cost.quantity.what {
+        What::Place { marker: m, axis } => marker(system, model, z, m)[axis] - follow(reference, t),
+        What::Joint { joint, .. } => {
             let instant = model.action.map.placed(z);
             let value = model.joints(&instant, &vec![0.0; model.joint_readings.len()])[joint];
             let e = value - follow(reference, t);
@@ -235,10 +233,7 @@ fn signals_have_the_derivatives_of_their_values() {
 
 #[test]
 fn an_angle_is_compared_without_its_full_turns() {
-    let quantity = Quantity::Joint {
-        joint: 0,
-        near: 0.0,
-    };
+    let quantity = Quantity::joint(0, 0.0);
     let value = |by: f64| {
         let mut control = control(&branched(), 3);
         control.objective = tracked(&[], &[(0, true)]);

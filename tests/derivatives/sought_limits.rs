@@ -4,12 +4,13 @@ use crate::common::sought::{lengthened, problem, wired};
 use crate::sought::{H, noisy};
 use nalgebra::Vector3;
 use proboscis::control::problem::{
-    BoundaryState, Control, CostFunction, During, PathConstraint, Place, QuantityCost, Rest, Side,
+    BoundaryState, Control, CostFunction, During, Limit, Place, QuantityCost, Rest,
 };
 use proboscis::control::{BoundaryConditions, Row, Transcription, guess};
 use proboscis::math::Signal;
 use proboscis::model::{
-    Constant, Coordinates, Model, Quantity, Region, Role, System, with_parameters,
+    Constant, Coordinates, FieldPlace, Model, Pulling, Quantity, Region, Role, System, What,
+    with_parameters,
 };
 use proboscis::nlp::{Nlp, differences};
 
@@ -22,19 +23,15 @@ fn bounded() -> (System, Control) {
     let [min, max] = far;
     let flows = (0..2).flat_map(|muscle| {
         [
-            PathConstraint::Current { muscle, min, max },
-            PathConstraint::Power { muscle, min, max },
+            Limit::new(What::Current(muscle), [min, max]),
+            Limit::new(What::Power(muscle), [min, max]),
         ]
     });
     let of_muscles = (0..4).flat_map(|muscle| {
         [
-            PathConstraint::Stretch {
-                muscle,
-                min: 0.2,
-                max: 5.0,
-            },
-            PathConstraint::ElectricField { muscle, max: 2e5 },
-            PathConstraint::Tension { muscle, min, max },
+            Limit::new(What::Stretch(muscle), [0.2, 5.0]),
+            Limit::below(What::Field(FieldPlace::Muscle(muscle)), 2e5),
+            Limit::new(What::Tension(Pulling::Muscle(muscle)), [min, max]),
         ]
     });
     let mut control = Control {
@@ -44,8 +41,8 @@ fn bounded() -> (System, Control) {
     };
     control.limits = of_muscles.chain(flows).collect();
     control.objective.quantities = [
-        (Quantity::tension(0), square(0.1)),
-        (Quantity::tension(1), square(0.0)),
+        (Quantity::tension(Pulling::Muscle(0)), square(0.1)),
+        (Quantity::tension(Pulling::Muscle(1)), square(0.0)),
         (Quantity::squared_field(2, false), CostFunction::Itself),
         (Quantity::current(1), square(0.02)),
     ]
@@ -124,25 +121,17 @@ fn markers_are_where_parameters_move_them() {
     let (min, max) = (Vector3::repeat(-500.0), Vector3::repeat(500.0));
     let centre = Vector3::new(400.0, 0.0, 0.0);
     let regions = [
-        (Region::Box { min, max }, Side::Inside),
+        (Region::Box { min, max }, [f64::NEG_INFINITY, 1.0]),
         (
             Region::Sphere {
                 centre,
                 radius: 20.0,
             },
-            Side::Outside,
+            [1.0, f64::INFINITY],
         ),
     ];
-    let limits = regions.map(|(region, side)| PathConstraint::Marker {
-        marker: 0,
-        region,
-        side,
-    });
-    let speed = PathConstraint::MarkerSpeed {
-        marker: 0,
-        min: 0.0,
-        max: 1e3,
-    };
+    let limits = regions.map(|(region, side)| Limit::new(What::Region { marker: 0, region }, side));
+    let speed = Limit::new(What::Speed(0), [0.0, 1e3]);
     let place = Place([Some(5.0), None, Some(3.0)]);
     let control = Control {
         parameters,

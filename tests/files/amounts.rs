@@ -1,9 +1,9 @@
 //! Limits and costs of volumes and masses of muscles as they are written, and their mistakes.
 
 use crate::scene::{Case, check, folder, mistake};
-use proboscis::control::problem::{Control, CostFunction, PathConstraint, Task};
+use proboscis::control::problem::{Control, CostFunction, Limit, Task};
 use proboscis::files::read_problem;
-use proboscis::model::{Amount, Quantity};
+use proboscis::model::{Amount, Quantity, What};
 
 /// A pair of muscles, of which one has no density.
 const PAIR: &str = r#"{
@@ -41,20 +41,19 @@ fn read(problem: &str) -> Control {
 #[test]
 fn amounts_are_read_in_their_units() {
     let control = read(PROBLEM);
-    let limit = |muscles: &[usize], amount, min, max| PathConstraint::OfMuscles {
-        muscles: muscles.into(),
-        amount,
-        min,
-        max,
+    let limit = |muscles: &[usize], amount, min, max| {
+        Limit::new(
+            What::Amount {
+                muscles: muscles.into(),
+                amount,
+            },
+            [min, max],
+        )
     };
-    let PathConstraint::OfMuscles { max, .. } = control.limits[0] else {
-        panic!("{:?}", control.limits);
-    };
+    let max = control.limits[0].max;
     assert!((max / 7e3 - 1.0).abs() < 1e-14, "{max}");
     let volume = limit(&[0, 1], Amount::Volume, f64::NEG_INFINITY, max);
-    let PathConstraint::OfMuscles { min, max, .. } = control.limits[1] else {
-        panic!("{:?}", control.limits);
-    };
+    let [min, max] = control.limits[1].bounds();
     assert!((min / 3.0 - 1.0).abs() < 1e-14 && (max / 4.5 - 1.0).abs() < 1e-14);
     assert_eq!(
         control.limits,
@@ -63,11 +62,11 @@ fn amounts_are_read_in_their_units() {
     let [cost] = &control.objective.quantities[..] else {
         panic!("one cost");
     };
-    let quantity = Quantity::OfMuscles {
+    let quantity = Quantity::of(What::Amount {
         muscles: [0, 1].into(),
         amount: Amount::Volume,
-        unit: 1e3,
-    };
+    })
+    .in_unit(1e3);
     assert_eq!((&cost.quantity, cost.weight), (&quantity, 0.5));
     assert_eq!(cost.function, CostFunction::Itself);
 }

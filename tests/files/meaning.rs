@@ -1,9 +1,10 @@
 //! Systems of scene files, chains written out included.
 
 use crate::scene::{Case, PROBLEM, SCENE, check, folder, mistake};
-use proboscis::control::problem::{BoundaryState, PathConstraint, Rest, Task};
+use proboscis::control::problem::{BoundaryState, Limit, Rest, Task};
 use proboscis::files::{expand, read_problem, read_scene};
 use proboscis::model::system::{JointKind, Shape, System, VACUUM_PERMITTIVITY};
+use proboscis::model::{FieldPlace, What};
 use std::fs;
 use std::path::Path;
 
@@ -66,10 +67,7 @@ fn a_scene_means_what_is_written() {
     );
     assert_eq!(
         control.limits[1..],
-        [PathConstraint::ElectricField {
-            muscle: 0,
-            max: 80_000.0
-        }]
+        [Limit::below(What::Field(FieldPlace::Muscle(0)), 80_000.0)]
     );
 
     let explicit = SCENE.replacen(

@@ -3,8 +3,7 @@
 use crate::objectives::{read, square, with};
 use crate::scene::{Case, SCENE, check, mistake};
 use proboscis::control::problem::{CostFunction, During, QuantityCost};
-use proboscis::functional::Stencil;
-use proboscis::model::{FieldPlace, Quantity};
+use proboscis::model::{FieldPlace, Pulling, Quantity, What};
 
 #[test]
 fn measured_quantities_are_costs_along_the_motion_or_at_its_end() {
@@ -18,7 +17,7 @@ fn measured_quantities_are_costs_along_the_motion_or_at_its_end() {
         { "joint_rate": { "joint": "joint2", "at": "0.2 m/s" } } ] }"#;
     let found = read(objective).objective;
     let muscle = 0;
-    let rate = |joint| Quantity::JointStep { joint, h: 1.0 };
+    let rate = |joint| Quantity::joint_rate(joint);
     let at = |cost: QuantityCost, during| QuantityCost { during, ..cost };
     let itself = |quantity, weight| QuantityCost {
         quantity,
@@ -26,18 +25,11 @@ fn measured_quantities_are_costs_along_the_motion_or_at_its_end() {
         function: CostFunction::Itself,
         during: During::End,
     };
-    let speed = Quantity::SquaredSpeed {
-        marker: 0,
-        limit: 1.0,
-    };
-    let field = Quantity::SquaredField {
-        place: FieldPlace::Muscle(muscle),
-        limit: 1e3,
-        at: Stencil::Mid,
-    };
+    let speed = Quantity::squared_speed(0);
+    let field = Quantity::of(What::Field(FieldPlace::Muscle(muscle))).in_unit(1e3);
     let right = std::f64::consts::FRAC_PI_2;
     let expected = [
-        square(Quantity::Tension { muscle, unit: 1.0 }, 3.0, 2.0.into()),
+        square(Quantity::tension(Pulling::Muscle(muscle)), 3.0, 2.0.into()),
         square(rate(0), 1.0, right.into()),
         square(rate(1), 1.0, 0.0.into()),
         itself(speed, 5.0),

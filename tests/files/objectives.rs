@@ -46,7 +46,7 @@ fn markers_and_joints_may_follow_functions_of_time() {
     let found = read(objective).objective;
     assert_eq!([found.effort, found.rate, found.duration], [0.0; 3]);
     let axis = |axis| Quantity::marker_place(0, axis);
-    let joint = |joint| Quantity::Joint { joint, near: 0.0 };
+    let joint = |joint| Quantity::joint(joint, 0.0);
     let right = std::f64::consts::FRAC_PI_2;
     let table = |times: &[f64], values: &[f64]| Signal::Table {
         times: times.to_vec(),
@@ -205,10 +205,7 @@ fn an_end_may_be_drawn_near_and_free() {
         ..square(quantity, weight, Signal::Constant(at))
     };
     let place = Quantity::marker_place(0, 1);
-    let joint = Quantity::Joint {
-        joint: 1,
-        near: 0.0,
-    };
+    let joint = Quantity::joint(1, 0.0);
     let expected = [cost(place, 3.0, 90.0), cost(joint, 1.0, 2.0)];
     assert_eq!(read(objective).objective.quantities, expected);
 

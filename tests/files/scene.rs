@@ -1,9 +1,10 @@
 //! Scene and problem files: every mistake is answered with its place, what was found and what is expected.
 
-use proboscis::control::problem::{Control, Duration, PathConstraint, Task};
+use proboscis::control::problem::{Control, Duration, Limit, Task};
 use proboscis::files::{SceneError, new_trunk, read_problem, schema};
 use proboscis::ipopt::LinearSolver;
 use proboscis::model::system::{Discretisation, ElementKind, Fidelity};
+use proboscis::model::{FieldPlace, What};
 use std::fs;
 use std::path::{Path, PathBuf};
 use tempfile::TempDir;
@@ -190,11 +191,13 @@ fn mistakes_in_a_muscle_of_finite_elements_name_place_found_and_expected() {
     let Task::Control(control) = &loaded.task else {
         panic!("a control problem")
     };
-    let expected = PathConstraint::BlockField {
-        block: 0,
-        region: None,
-        max: 80_000.0,
-    };
+    let expected = Limit::below(
+        What::Field(FieldPlace::Block {
+            block: 0,
+            region: None,
+        }),
+        80_000.0,
+    );
     assert_eq!(control.limits[1..], [expected]);
     let of_stretch = "control.limits=[{\"stretch\": {\"muscle\": \"muscle1\", \"min\": 0.5}}]";
     let (_folder, path) = folder(&elastic_scene(), PROBLEM);

@@ -77,7 +77,7 @@ fn an_oscillator_with_an_unknown_start_moves_as_its_derivatives_say() {
     let system = oscillator::system();
     let mut recording = oscillator::recording("free", [5.0, 0.1], (12, 200.0), None);
     recording.sought_start = SoughtStart::State;
-    let rate = Quantity::JointStep { joint: 0, h: 1.0 };
+    let rate = Quantity::joint_rate(0);
     recording
         .channels
         .push(channel(vec![(2.0, rate)], readings(7, 150.0)));
@@ -122,13 +122,7 @@ pub(crate) fn pair(
         phase: 0.3,
     };
     let mut channels = vec![channel(
-        vec![(
-            1.0,
-            Quantity::Joint {
-                joint: 0,
-                near: 0.0,
-            },
-        )],
+        vec![(1.0, Quantity::joint(0, 0.0))],
         readings(9, 120.0),
     )];
     if !system.markers.is_empty() {

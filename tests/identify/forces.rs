@@ -10,13 +10,12 @@ use proboscis::control::problem::{
     Channel, Identification, Recording, Regime, SoughtStart, Voltages,
 };
 use proboscis::dynamics::{observations, simulate};
-use proboscis::functional::Stencil;
 use proboscis::identify::{Ended, Fit, Grid, Unknowns, fit, predict};
 use proboscis::model::components::{Load, LoadPlace};
 use proboscis::model::system::ElectricConstants;
 use proboscis::model::{
     Constant, MaterialConstant, MaxwellBranch, MaxwellBranches, Model, Pulling, Quantity, Reaction,
-    System, with_parameters,
+    System, What, with_parameters,
 };
 
 /// A trunk of two segments with a spring, a damper and a tendon; a muscle with a Maxwell branch, one behind a resistor with a leak, one under a
@@ -37,54 +36,47 @@ fn system() -> System {
 }
 
 fn reaction(joint: usize, of: Reaction) -> Quantity {
-    Quantity::ReactionStep {
-        joint,
-        of,
-        along: Vector3::new(0.6, 0.0, 0.8),
-        at: Stencil::Here,
-        unit: 1.0,
-        h: 1.0,
-    }
+    Quantity::jump(
+        What::Reaction {
+            joint,
+            of,
+            along: Vector3::new(0.6, 0.0, 0.8),
+        },
+        1.0,
+        1.0,
+    )
 }
 
 /// Every quantity, with its column in tables and the factor of the column.
 fn quantities() -> Vec<(Quantity, Vec<(&'static str, f64)>)> {
-    let tension = |muscle, column| (Quantity::tension(muscle), vec![(column, 1.0)]);
-    let step = Quantity::ChargeStep {
-        muscle: 2,
-        unit: 1.0,
-        h: 1.0,
+    let tension = |muscle, column| {
+        (
+            Quantity::tension(Pulling::Muscle(muscle)),
+            vec![(column, 1.0)],
+        )
     };
-    let current = Quantity::SourceCurrent {
-        muscle: 1,
-        unit: 1.0,
-    };
+    let step = Quantity::jump(What::MeanCharge(2), 1.0, 1.0);
+    let current = Quantity::of(What::Current(1));
     vec![
         tension(0, "muscle1_tension"),
         tension(1, "muscle2_tension"),
         tension(2, "muscle3_tension"),
         tension(3, "muscle4_tension"),
         (
-            Quantity::PullStep(Pulling::Tendon(0)),
+            Quantity::tension(Pulling::Tendon(0)),
             vec![("cord_tension", 1.0)],
         ),
         (
-            Quantity::MeanCharge { muscle: 2 },
+            Quantity::of(What::MeanCharge(2)),
             vec![("muscle3_charge", 1.0)],
         ),
         (step, vec![("muscle3_current", 1.0)]),
         (current, vec![("muscle2_current", 1.0)]),
         (
-            Quantity::ElectrodeVoltage { source: 1 },
+            Quantity::of(What::ElectrodeVoltage(1)),
             vec![("muscle2_voltage", 1.0)],
         ),
-        (
-            Quantity::SourcePower {
-                muscle: 1,
-                unit: 1.0,
-            },
-            vec![("muscle2_power", 1.0)],
-        ),
+        (Quantity::power(1), vec![("muscle2_power", 1.0)]),
         (
             reaction(0, Reaction::Force),
             vec![("joint1_force_x", 0.6), ("joint1_force_z", 0.8)],
@@ -99,9 +91,9 @@ fn quantities() -> Vec<(Quantity, Vec<(&'static str, f64)>)> {
 /// Those that tables do not have: of a spring with a damper, and of a charge behind a resistor.
 fn others() -> [Quantity; 3] {
     [
-        Quantity::PullStep(Pulling::Spring(0)),
-        Quantity::PullStep(Pulling::Spring(1)),
-        Quantity::Charge { source: 1 },
+        Quantity::tension(Pulling::Spring(0)),
+        Quantity::tension(Pulling::Spring(1)),
+        Quantity::of(What::Charge(1)),
     ]
 }
 
@@ -244,17 +236,14 @@ fn forces_and_charges_are_those_of_tables() {
 #[test]
 fn constants_come_back_from_forces_and_from_circuits() {
     let pulls = [
-        Quantity::tension(0),
-        Quantity::PullStep(Pulling::Spring(0)),
-        Quantity::PullStep(Pulling::Tendon(0)),
+        Quantity::tension(Pulling::Muscle(0)),
+        Quantity::tension(Pulling::Spring(0)),
+        Quantity::tension(Pulling::Tendon(0)),
     ];
     let circuit = [
-        Quantity::SourceCurrent {
-            muscle: 1,
-            unit: 1.0,
-        },
-        Quantity::ElectrodeVoltage { source: 1 },
-        Quantity::MeanCharge { muscle: 2 },
+        Quantity::of(What::Current(1)),
+        Quantity::of(What::ElectrodeVoltage(1)),
+        Quantity::of(What::MeanCharge(2)),
     ];
     let of_forces = [
         "modulus",

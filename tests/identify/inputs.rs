@@ -135,7 +135,7 @@ fn a_delayed_motion_from_any_start_depends_on_gain_and_delay_as_derivatives_say(
     let mut open = base();
     open.sought_start = SoughtStart::State;
     let mut rates = base();
-    rates.channels[0].parts = vec![(1.0, Quantity::JointStep { joint: 0, h: 1.0 })];
+    rates.channels[0].parts = vec![(1.0, Quantity::joint_rate(0))];
     let of_start: [&[f64]; 3] = [&[], &[0.1, 0.4], &[]];
     for (recording, of_start) in [moving, open, rates].into_iter().zip(of_start) {
         let unknowns = Unknowns::of_values(&[0.22, 0.5, 1.1, 6.17], &[of_start]);

@@ -33,12 +33,8 @@ fn task(
         frequency: 0.012,
         phase: 0.3,
     };
-    let of_joint = |joint: usize| {
-        channel(
-            vec![(1.0, Quantity::Joint { joint, near: 0.0 })],
-            readings(7, 80.0),
-        )
-    };
+    let of_joint =
+        |joint: usize| channel(vec![(1.0, Quantity::joint(joint, 0.0))], readings(7, 80.0));
     let voltages = (0..system.sources().len()).map(|source| sine(900.0 - 100.0 * source as f64));
     Identification {
         parameters: vec![

@@ -82,13 +82,7 @@ pub(crate) fn joint(x: f64, v: f64) -> BoundaryState {
 pub(crate) fn slide(readings: Vec<Reading>, is_deviation_known: bool) -> Channel {
     Channel {
         name: "x".into(),
-        parts: vec![(
-            1.0,
-            Quantity::Joint {
-                joint: 0,
-                near: 0.0,
-            },
-        )],
+        parts: vec![(1.0, Quantity::joint(0, 0.0))],
         unit: ("m", 1e-3),
         is_deviation_known,
         readings,

@@ -40,10 +40,7 @@ fn task(
     };
     let voltages = [(900.0, 0.3), (1200.0, 1.0), (1100.0, 2.0), (600.0, 0.0)];
     let of_tip = |axis| Quantity::marker_place(tip, axis);
-    let turned = Quantity::Joint {
-        joint: 1,
-        near: 0.0,
-    };
+    let turned = Quantity::joint(1, 0.0);
     let recording = Recording {
         name: "tip".into(),
         scene: None,

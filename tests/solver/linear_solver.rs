@@ -5,11 +5,12 @@ use crate::common::programs::{HS071_OPTIMUM, HS071_START, hs071};
 use crate::common::random_goals::{self, Goals, Kind, Solved};
 use crate::common::trunk;
 use crate::ipopt::run;
-use proboscis::control::problem::{Control, Duration, Objective, PathConstraint, Task};
+use proboscis::control::problem::{Control, Duration, Limit, Objective, Task};
 use proboscis::control::{BoundaryConditions, Transcription, guess};
 use proboscis::files::read_problem;
 use proboscis::ipopt::{LinearReport, LinearSolver, NoStages, OptionValue, Options, SolverResult};
 use proboscis::model::Coordinates;
+use proboscis::model::What;
 use proboscis::model::system::System;
 use proboscis::nlp::Status;
 use std::panic::{AssertUnwindSafe, catch_unwind};
@@ -56,11 +57,13 @@ fn cases() -> Vec<(&'static str, System, Control)> {
         ..plain.clone()
     };
     let limited = Control {
-        limits: vec![PathConstraint::JointAngle {
-            joint: 0,
-            min: -0.6,
-            max: 0.7,
-        }],
+        limits: vec![Limit::new(
+            What::Joint {
+                joint: 0,
+                near: 0.0,
+            },
+            [-0.6, 0.7],
+        )],
         ..plain.clone()
     };
     vec![

@@ -6,9 +6,10 @@ use crate::common::systems::{GRAVITY, branched};
 use crate::trace::with_program;
 use proboscis::Signal;
 use proboscis::control::BoundaryConditions;
-use proboscis::control::problem::{BoundaryState, Control, PathConstraint, Rest};
+use proboscis::control::problem::{BoundaryState, Control, Limit, Rest};
 use proboscis::model::Coordinates;
 use proboscis::model::system::System;
+use proboscis::model::{FieldPlace, What};
 use proboscis::nlp::Nlp;
 
 /// All numbers of a program at a point near its guess: f, ∇f, g, ∇g and the Hessian.
@@ -88,10 +89,7 @@ fn absent_effects_change_no_bit() {
             s.joints[3].damping = Some(5.0);
         });
         same("the field of a passive muscle", &|_, c| {
-            c.limits = vec![PathConstraint::ElectricField {
-                muscle: 3,
-                max: 1e4,
-            }];
+            c.limits = vec![Limit::below(What::Field(FieldPlace::Muscle(3)), 1e4)];
         });
         same("markers", &|s, _| s.markers.clear());
         let passive = |muscle: usize| {

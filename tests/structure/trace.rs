@@ -6,11 +6,12 @@ use crate::common::random::Random;
 use crate::common::systems::{GRAVITY, branched};
 use crate::common::tracked::{energies, tracked};
 use crate::common::trunk;
-use proboscis::control::problem::{BoundaryState, Control, Duration, Objective, PathConstraint};
+use proboscis::control::problem::{BoundaryState, Control, Duration, Limit, Objective};
 use proboscis::control::{BoundaryConditions, Transcription, guess};
 use proboscis::math::Signal;
 use proboscis::model::Coordinates;
 use proboscis::model::system::{JointKind, System};
+use proboscis::model::{FieldPlace, What};
 use proboscis::nlp::Nlp;
 
 /// Sizes of a program.
@@ -219,11 +220,7 @@ fn effects_cost_what_they_add() {
         jacobian: plain.jacobian + 3 * inner,
         ..plain
     };
-    let limit = PathConstraint::Stretch {
-        muscle: 4,
-        min: 0.5,
-        max: 1.5,
-    };
+    let limit = Limit::new(What::Stretch(4), [0.5, 1.5]);
     assert_eq!(change(&|_, c| c.limits = vec![limit.clone()]), stretch);
     // Field of a muscle at joint 2: two angles at each end of each interval, or at one of them, and the voltage.
     let field = Counts {
@@ -231,17 +228,16 @@ fn effects_cost_what_they_add() {
         jacobian: plain.jacobian + 2 * inner * 2 + 2 * inner * 2 + 3 * intervals,
         ..plain
     };
-    let limit = PathConstraint::ElectricField {
-        muscle: 2,
-        max: 1e5,
-    };
+    let limit = Limit::below(What::Field(FieldPlace::Muscle(2)), 1e5);
     assert_eq!(change(&|_, c| c.limits = vec![limit.clone()]), field);
     // Joint limits are bounds of variables.
-    let limit = PathConstraint::JointAngle {
-        joint: 1,
-        min: -1.0,
-        max: 1.0,
-    };
+    let limit = Limit::new(
+        What::Joint {
+            joint: 1,
+            near: 0.0,
+        },
+        [-1.0, 1.0],
+    );
     assert_eq!(change(&|_, c| c.limits = vec![limit.clone()]), plain);
 }
 
@@ -249,7 +245,7 @@ fn effects_cost_what_they_add() {
 fn a_limit_has_rows_where_something_is_open() {
     let (n, intervals) = (3, 6);
     let (system, mut base) = (trunk(n), rest_to_rest(n, intervals, 100.0));
-    let limited = |base: &Control, limit: PathConstraint| {
+    let limited = |base: &Control, limit: Limit| {
         let mut control = base.clone();
         control.limits = vec![limit];
         let (all, plain) = (counts(&system, &control), counts(&system, base));
@@ -262,21 +258,14 @@ fn a_limit_has_rows_where_something_is_open() {
         velocities: Default::default(),
     };
     base.goal = given(&[0, 1]);
-    let stretch = |muscle: usize| PathConstraint::Stretch {
-        muscle,
-        min: 0.5,
-        max: 1.5,
-    };
+    let stretch = |muscle: usize| Limit::new(What::Stretch(muscle), [0.5, 1.5]);
     let inner = intervals - 1;
     assert_eq!(limited(&base, stretch(4)), (intervals, 3 * inner + 1));
     assert_eq!(limited(&base, stretch(2)), (inner, 2 * inner));
     // A voltage that is given leaves no row where start and goal give the places.
     base.goal = given(&[0, 1, 2]);
     base.given.insert(2, Signal::Constant(300.0));
-    let field = PathConstraint::ElectricField {
-        muscle: 2,
-        max: 1e5,
-    };
+    let field = Limit::below(What::Field(FieldPlace::Muscle(2)), 1e5);
     let rows = intervals + 2 * inner;
     assert_eq!(limited(&base, field), (rows, 8 * inner));
 }

@@ -6,7 +6,7 @@ use crate::control::numbering::{Numbering, Span};
 use crate::control::transcription::step::Step;
 use crate::coordinates::{CoordinateMap, Reduced};
 use crate::functional::{Functional, Measure, Outer};
-use crate::model::{Model, Quantity, Role, Time};
+use crate::model::{Model, Quantity, Role, Time, What};
 use std::ops::Range;
 
 /// Mark of a scalar among the entries of a gradient.
@@ -154,7 +154,7 @@ fn unchecked(
         open.end -= 1;
     }
     let is_prescribed = bounded.when == When::Everywhere && open.is_empty();
-    match is_prescribed && !matches!(bounded.quantity, Quantity::VoltageStep { .. }) {
+    match is_prescribed && !matches!(bounded.quantity.what, What::Voltage(_)) {
         true => at,
         false => open,
     }

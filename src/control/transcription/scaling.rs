@@ -1,7 +1,7 @@
 //! Scales of rows and variables, and bounds.
 
 use crate::control::numbering::{Column, Numbering, Row};
-use crate::control::problem::{Control, Duration, PathConstraint};
+use crate::control::problem::{Control, Duration};
 use crate::control::transcription::Transcription;
 use crate::control::transcription::layout::Layout;
 use crate::dynamics::DiscreteTrajectory;
@@ -168,10 +168,10 @@ impl Transcription<'_> {
         let mut upper = vec![f64::INFINITY; n];
         if self.model.coordinates == Coordinates::Reduced {
             for limit in &control.limits {
-                if let PathConstraint::JointAngle { joint, min, max } = *limit
+                if let (Some(joint), None) = (limit.joint(), limit.part)
                     && let Some(c) = self.model.joint_readings[joint].coordinate
                 {
-                    (lower[c], upper[c]) = (lower[c].max(min), upper[c].min(max));
+                    (lower[c], upper[c]) = (lower[c].max(limit.min), upper[c].min(limit.max));
                 }
             }
         }

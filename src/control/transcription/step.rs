@@ -1,7 +1,7 @@
 //! Steps of quantities between neighbouring intervals: what limits of rates of voltages, of currents and of powers bound.
 
 use crate::control::numbering::Span;
-use crate::model::{Model, Quantity};
+use crate::model::{Model, Quantity, What};
 use std::ops::Range;
 
 /// Step `f (m_k − n_{k−1})` from a quantity n of the interval before to a quantity m of an interval; both may be the same.
@@ -27,7 +27,7 @@ impl Step {
         (model, rest): (&Model, &[Option<Vec<f64>>; 2]),
         span: Span,
     ) -> Self {
-        let is_impulse = matches!(quantity, Quantity::ReactionStep { .. });
+        let is_impulse = matches!(quantity.what, What::Reaction { .. });
         Self {
             before,
             factor: 1.0 / quantity.step_unit(),

@@ -4,8 +4,7 @@ use crate::control::problem::{Channel, Reading};
 use crate::files::columns::Columns;
 use crate::files::json::error::SceneError;
 use crate::files::json::scope::Scope;
-use crate::files::problem::channel_quantities::What;
-use crate::files::problem::spec_identify::{MeasuredSize, MeasuredSpec};
+use crate::files::problem::quantities::keys::{MeasuredSize, MeasuredSpec};
 use crate::files::units::quantity::{Kind, Quantity as Written, Ratio};
 use crate::model::Quantity;
 use crate::model::system::System;
@@ -33,7 +32,7 @@ impl Measured {
         system: &System,
         scope: &Scope<'_>,
     ) -> Result<Self, SceneError> {
-        let what = What::new(spec, system, scope)?;
+        let what = spec.recorded(system, scope)?;
         let column = spec.column.as_ref();
         Ok(Self {
             column: column.unwrap_or(&what.of).clone(),

@@ -10,11 +10,11 @@ use crate::files::json::scope::Scope;
 use crate::files::problem::coordinates::{coordinates, count};
 use crate::files::problem::free::parameters;
 use crate::files::problem::goal::goal_state;
-use crate::files::problem::limits::limits;
 use crate::files::problem::loads::{check_end, load, load_bounds, loads};
 use crate::files::problem::motions::check_alone;
+use crate::files::problem::quantities::keys::{at_the_end, limits, track};
+use crate::files::problem::quantities::muscle::amount_costs;
 use crate::files::problem::sensitivity::with_varied;
-use crate::files::problem::source_limits::amount_costs;
 use crate::files::problem::spec_control::{
     ControlSolverSpec, ControlSpec, DurationSpec, GuessSpec, IntervalsSpec, IntervalsWord,
     ObjectiveSpec, OptionSpec, SolverSpec,
@@ -22,7 +22,6 @@ use crate::files::problem::spec_control::{
 use crate::files::problem::spec_energies::EnergySpec;
 use crate::files::problem::spec_voltages::VoltagesSpec;
 use crate::files::problem::state::{ELECTRIC_KEYS, driven, sought_hold, start_state};
-use crate::files::problem::track::{at_the_end, track};
 use crate::files::problem::voltages::{SOLUTION_PATH, over_time};
 use crate::files::problem::waypoints::waypoints;
 use crate::files::scene::constants::WrittenScene;

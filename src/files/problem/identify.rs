@@ -11,9 +11,10 @@ use crate::files::problem::channels::{Measured, Source};
 use crate::files::problem::coordinates::{coordinates, count};
 use crate::files::problem::free::{FreeMap, parameters};
 use crate::files::problem::loads::driven;
+use crate::files::problem::quantities::keys::MeasuredSpec;
 use crate::files::problem::spec_identify::{
-    CandidateSpec, ExperimentSpec, IdentifySpec, InputConstantsSpec, MeasuredSpec, PriorSpec,
-    RangeSpec, RecordingSpec, SoughtStartSpec,
+    CandidateSpec, ExperimentSpec, IdentifySpec, InputConstantsSpec, PriorSpec, RangeSpec,
+    RecordingSpec, SoughtStartSpec,
 };
 use crate::files::problem::spec_voltages::VoltagesSpec;
 use crate::files::scene::constants::WrittenScene;

@@ -3,13 +3,11 @@
 use crate::files::problem::coordinates::CoordinatesSpec;
 use crate::files::problem::free::FreeMap;
 use crate::files::problem::loads::LoadMap;
+use crate::files::problem::quantities::keys::MeasuredSpec;
 use crate::files::problem::spec_voltages::VoltagesSpec;
 use crate::files::problem::state::StartSpec;
 use crate::files::study::ChangesSpec;
-use crate::files::units::quantity::{
-    Angle, AngularVelocity, Charge, Current, Force, Kind, Length, PhysicalQuantity, Power,
-    Quantity, Ratio, SoughtConstant, Time, Torque, Velocity, Voltage,
-};
+use crate::files::units::quantity::{PhysicalQuantity, Quantity, Ratio, SoughtConstant, Time};
 use schemars::JsonSchema;
 use serde::Deserialize;
 use std::collections::BTreeMap;
@@ -182,85 +180,7 @@ pub enum SoughtStartSpec {
     State,
 }
 
-/// A measured quantity: exactly one of `joint`, `joint_rate`, `marker`, `tension`, `charge`, `current`, `power`, `voltage`, `reaction_force` and
-/// `reaction_torque`.
-#[derive(Clone, Debug, Deserialize, JsonSchema)]
-#[serde(deny_unknown_fields)]
-pub struct MeasuredSpec {
-    /// Coordinate of a revolute or prismatic joint.
-    #[serde(default)]
-    pub joint: Option<String>,
-    /// Rate of the coordinate of a revolute or prismatic joint.
-    #[serde(default)]
-    pub joint_rate: Option<String>,
-    /// Place of a marker along a direction.
-    #[serde(default)]
-    pub marker: Option<String>,
-    /// Force with which a lumped muscle, a spring or a tendon pulls its ends together, of all its laws, voltage and viscosity.
-    #[serde(default)]
-    pub tension: Option<String>,
-    /// Charge that a source has brought to a lumped muscle, or to electrodes behind a resistor.
-    #[serde(default)]
-    pub charge: Option<String>,
-    /// Current of a source: of a lumped muscle that does not leak, or of anything behind a resistor.
-    #[serde(default)]
-    pub current: Option<String>,
-    /// Electrical power of the source of a lumped muscle behind a resistor.
-    #[serde(default)]
-    pub power: Option<String>,
-    /// Voltage of the electrodes behind the resistor of a source.
-    #[serde(default)]
-    pub voltage: Option<String>,
-    /// Force from the parent of a joint on its child along a direction, as in limits; of joints in no loop.
-    #[serde(default)]
-    pub reaction_force: Option<String>,
-    /// Torque from the parent of a joint on its child about a direction, about the point of the joint.
-    #[serde(default)]
-    pub reaction_torque: Option<String>,
-    /// The direction of a place or a force, in the ground frame; its length does not matter.
-    #[serde(default)]
-    pub along: Option<[f64; 3]>,
-    /// The direction of a torque, in the ground frame; its length does not matter.
-    #[serde(default)]
-    pub about: Option<[f64; 3]>,
-    /// Header of the column, with or without its unit; the name of the joint, marker, part or source where not written.
-    #[serde(default)]
-    pub column: Option<String>,
-    /// Standard deviation of the readings, in a unit of the quantity; where neither it nor `deviations` is written, the residuals tell it.
-    #[serde(default)]
-    pub standard_deviation: Option<Quantity<MeasuredSize>>,
-    /// Header of a column with a standard deviation of each reading.
-    #[serde(default)]
-    pub deviations: Option<String>,
-    /// Header of a column with a weight of each reading: the variance of a reading is in inverse proportion to it.
-    #[serde(default)]
-    pub weights: Option<String>,
-}
-
 /// The usual header of times.
 fn time() -> String {
     "time".to_owned()
-}
-
-/// Size of a measured quantity, whose kind the quantity says.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub struct MeasuredSize;
-
-impl PhysicalQuantity for MeasuredSize {
-    const NAME: &'static str = "MeasuredSize";
-
-    fn kinds() -> Vec<Kind> {
-        vec![
-            Length::kind(),
-            Angle::kind(),
-            Velocity::kind(),
-            AngularVelocity::kind(),
-            Force::kind(),
-            Torque::kind(),
-            Charge::kind(),
-            Current::kind(),
-            Power::kind(),
-            Voltage::kind(),
-        ]
-    }
 }

@@ -1,8 +1,7 @@
 //! All that the controllers of a receding horizon share: model, motion to follow with its costs, and the law that they fall back to.
 
 use crate::control::problem::{
-    Ahead, BoundaryState, Control, Duration, Guess, Objective, PathConstraint, Regulator, Rest,
-    SoughtHold,
+    Ahead, BoundaryState, Control, Duration, Guess, Limit, Objective, Regulator, Rest, SoughtHold,
 };
 use crate::control::{
     BoundaryConditions, BoundaryError, Carried, InitialGuess, Rests, Transcription,
@@ -309,17 +308,7 @@ fn offered(model: &Model, control: &Control) -> Result<(), NoHorizon> {
     if control.goal == BoundaryState::Periodic {
         return not("a periodic motion");
     }
-    let is_of_steps = |limit: &PathConstraint| {
-        matches!(
-            limit,
-            PathConstraint::VoltageRate { .. }
-                | PathConstraint::Current { .. }
-                | PathConstraint::Power { .. }
-                | PathConstraint::Reaction { .. }
-                | PathConstraint::Once { .. }
-        )
-    };
-    match control.limits.iter().any(is_of_steps) {
+    match control.limits.iter().any(Limit::is_of_steps) {
         true => not("a limit of rates, currents, powers or reactions, or at a single time"),
         false => Ok(()),
     }

@@ -1,0 +1,336 @@
+//! Keys of the quantities that limits, costs and recordings name.
+
+use crate::control::problem::{During, Limit, QuantityCost};
+use crate::files::json::error::SceneError;
+use crate::files::json::scope::Scope;
+use crate::files::problem::quantities::entry::{CostEntry, LimitEntry, Named, PlaneSpec, Recorded};
+use crate::files::problem::quantities::joint::{
+    self, FinalJointSpec, JointAngleLimitSpec, JointRateCostSpec, JointRateLimitSpec,
+    ReactionForceLimitSpec, ReactionTorqueLimitSpec, TrackJointSpec, TrackJointsSpec,
+};
+use crate::files::problem::quantities::marker::{
+    self, ClearanceCostSpec, ClearanceLimitSpec, FinalMarkerSpec, MarkerLimitSpec,
+    MarkerSpeedCostSpec, MarkerSpeedLimitSpec, TrackMarkerSpec,
+};
+use crate::files::problem::quantities::muscle::{
+    self, ElectricFieldLimitSpec, FieldCostSpec, MuscleMassLimitSpec, MuscleVolumeLimitSpec,
+    StretchLimitSpec, TensionCostSpec, TensionLimitSpec,
+};
+use crate::files::problem::quantities::source::{
+    self, CurrentCostSpec, CurrentLimitSpec, PowerCostSpec, PowerLimitSpec, VoltageRateLimitSpec,
+};
+use crate::files::units::quantity::{
+    Angle, AngularVelocity, Charge, Current, Force, Kind, Length, PhysicalQuantity, Power,
+    Quantity as Written, Torque, Velocity, Voltage,
+};
+use crate::model::system::System;
+use schemars::JsonSchema;
+use serde::Deserialize;
+
+/// Declares an entry that has exactly one of some keys, beside others.
+macro_rules! one_of {
+    ($(#[$about:meta])* $name:ident: $entry:ident;
+     keys { $($(#[$doc:meta])* $key:ident: $spec:ty;)* }
+     beside { $($(#[$beside_doc:meta])* $beside:ident: $other:ty;)* }) => {
+        $(#[$about])*
+        #[derive(Clone, Debug, Deserialize, JsonSchema)]
+        #[serde(deny_unknown_fields)]
+        pub struct $name {
+            $($(#[$beside_doc])* #[serde(default)] pub $beside: Option<$other>,)*
+            $($(#[$doc])* #[serde(default)] pub $key: Option<$spec>,)*
+        }
+
+        impl $name {
+            /// The entry that is written, and its key.
+            fn entry(&self, scope: &Scope<'_>) -> Result<(&'static str, &dyn $entry), SceneError> {
+                scope.exactly_one([$((
+                    stringify!($key),
+                    self.$key.as_ref().map(|one| (stringify!($key), one as &dyn $entry)),
+                ),)*])
+            }
+        }
+    };
+}
+
+one_of! {
+    /// A path limit: exactly one of the keys but `part`. `min` and `max` may be equal with `part`: the quantity is then prescribed there.
+    LimitSpec: LimitEntry;
+    keys {
+        /// Limits of a joint coordinate.
+        joint_angle: JointAngleLimitSpec;
+        /// Limits of the rate of a joint coordinate.
+        joint_rate: JointRateLimitSpec;
+        /// Limits of the stretch of a muscle.
+        stretch: StretchLimitSpec;
+        /// Limits of the tension of lumped muscles.
+        tension: TensionLimitSpec;
+        /// Breakdown field of muscles or elastic blocks.
+        electric_field: ElectricFieldLimitSpec;
+        /// Region of a marker.
+        marker: MarkerLimitSpec;
+        /// Limits of the force that a joint transmits.
+        reaction_force: ReactionForceLimitSpec;
+        /// Limits of the torque that a joint transmits.
+        reaction_torque: ReactionTorqueLimitSpec;
+        /// Limits of the speed of a marker.
+        marker_speed: MarkerSpeedLimitSpec;
+        /// Limits of the current of sources.
+        current: CurrentLimitSpec;
+        /// Limits of the power of sources.
+        power: PowerLimitSpec;
+        /// Limits of the rate of the voltage of sources.
+        voltage_rate: VoltageRateLimitSpec;
+        /// Limits of the volume of muscles.
+        muscle_volume: MuscleVolumeLimitSpec;
+        /// Limits of the mass of muscles.
+        muscle_mass: MuscleMassLimitSpec;
+        /// Limits of the distance of a marker from a plane that is fixed to a body or the ground.
+        clearance: ClearanceLimitSpec;
+    }
+    beside {
+        /// Part of the duration, above 0 and at most 1, at which alone the limit holds: at the instant nearest to it, or in the interval before
+        /// that instant; 1 is the end. Where not written it holds from start to end.
+        part: f64;
+    }
+}
+
+one_of! {
+    /// Marker or joints that follow a reference, or a measured quantity whose squared deviation from a value, times `weight`, is integrated over the
+    /// time in s: exactly one of them.
+    TrackSpec: CostEntry;
+    keys {
+        /// A marker follows a path in time.
+        marker: TrackMarkerSpec;
+        /// The coordinate of a joint follows a function of time.
+        joint: TrackJointSpec;
+        /// The coordinates of all joints follow an earlier solution.
+        joints: TrackJointsSpec;
+        /// The tension of muscles along the motion.
+        tension: TensionCostSpec;
+        /// The true electric field of muscles along the motion.
+        electric_field: FieldCostSpec;
+        /// The current of sources along the motion.
+        current: CurrentCostSpec;
+        /// The power of sources along the motion.
+        power: PowerCostSpec;
+        /// The rate of a joint along the motion.
+        joint_rate: JointRateCostSpec;
+        /// The speed of a marker along the motion.
+        marker_speed: MarkerSpeedCostSpec;
+        /// The distance of a marker from a plane along the motion.
+        clearance: ClearanceCostSpec;
+    }
+    beside {}
+}
+
+one_of! {
+    /// Marker or joint that ends near a place, or a measured quantity that ends near a value, in the last interval: exactly one of them.
+    FinalSpec: CostEntry;
+    keys {
+        /// A marker ends near a place.
+        marker: FinalMarkerSpec;
+        /// The coordinate of a joint ends near a value.
+        joint: FinalJointSpec;
+        /// The tension of muscles at the end.
+        tension: TensionCostSpec;
+        /// The true electric field of muscles at the end.
+        electric_field: FieldCostSpec;
+        /// The current of sources at the end.
+        current: CurrentCostSpec;
+        /// The power of sources at the end.
+        power: PowerCostSpec;
+        /// The rate of a joint at the end.
+        joint_rate: JointRateCostSpec;
+        /// The speed of a marker at the end.
+        marker_speed: MarkerSpeedCostSpec;
+        /// The distance of a marker from a plane at the end.
+        clearance: ClearanceCostSpec;
+    }
+    beside {}
+}
+
+/// Declares a measured quantity of recordings: names by keys, and how each is read.
+macro_rules! recorded {
+    ($(#[$about:meta])* $name:ident;
+     keys { $($(#[$doc:meta])* $key:ident: $make:expr;)* }
+     beside { $($(#[$beside_doc:meta])* $beside:ident: $other:ty;)* }) => {
+        $(#[$about])*
+        #[derive(Clone, Debug, Deserialize, JsonSchema)]
+        #[serde(deny_unknown_fields)]
+        pub struct $name {
+            $($(#[$doc])* #[serde(default)] pub $key: Option<String>,)*
+            $($(#[$beside_doc])* #[serde(default)] pub $beside: Option<$other>,)*
+        }
+
+        impl $name {
+            /// The key that is written, its name, and how it is read.
+            fn entry(&self, scope: &Scope<'_>) -> Result<(&'static str, &str, Make), SceneError> {
+                scope.exactly_one([$((
+                    stringify!($key),
+                    self.$key.as_ref().map(|name| (stringify!($key), name.as_str(), $make as Make)),
+                ),)*])
+            }
+        }
+    };
+}
+
+/// Reads a quantity of a recording.
+type Make = fn(&Named<'_>) -> Result<Recorded, SceneError>;
+
+recorded! {
+    /// A measured quantity: exactly one of `joint`, `joint_rate`, `marker`, `tension`, `charge`, `current`, `power`, `voltage`, `reaction_force`,
+    /// `reaction_torque` and `clearance`.
+    MeasuredSpec;
+    keys {
+        /// Coordinate of a revolute or prismatic joint.
+        joint: joint::coordinate;
+        /// Rate of the coordinate of a revolute or prismatic joint.
+        joint_rate: joint::rate;
+        /// Place of a marker along a direction.
+        marker: marker::place;
+        /// Force with which a lumped muscle, a spring or a tendon pulls its ends together, of all its laws, voltage and viscosity.
+        tension: muscle::tension;
+        /// Charge that a source has brought to a lumped muscle, or to electrodes behind a resistor.
+        charge: source::charge;
+        /// Current of a source: of a lumped muscle that does not leak, or of anything behind a resistor.
+        current: source::current;
+        /// Electrical power of the source of a lumped muscle behind a resistor.
+        power: source::power;
+        /// Voltage of the electrodes behind the resistor of a source.
+        voltage: source::voltage;
+        /// Force from the parent of a joint on its child along a direction, as in limits; of joints in no loop.
+        reaction_force: joint::reaction_force;
+        /// Torque from the parent of a joint on its child about a direction, about the point of the joint.
+        reaction_torque: joint::reaction_torque;
+        /// Distance of a marker from a plane, on the side of its normal.
+        clearance: marker::distance;
+    }
+    beside {
+        /// The direction of a place or a force, in the ground frame; its length does not matter.
+        along: [f64; 3];
+        /// The direction of a torque, in the ground frame; its length does not matter.
+        about: [f64; 3];
+        /// The plane of a clearance.
+        from: PlaneSpec;
+        /// Header of the column, with or without its unit; the name of the joint, marker, part or source where not written.
+        column: String;
+        /// Standard deviation of the readings, in a unit of the quantity; where neither it nor `deviations` is written, the residuals tell it.
+        standard_deviation: Written<MeasuredSize>;
+        /// Header of a column with a standard deviation of each reading.
+        deviations: String;
+        /// Header of a column with a weight of each reading: the variance of a reading is in inverse proportion to it.
+        weights: String;
+    }
+}
+
+impl MeasuredSpec {
+    /// The quantity that is written.
+    pub(in crate::files::problem) fn recorded(
+        &self,
+        system: &System,
+        scope: &Scope<'_>,
+    ) -> Result<Recorded, SceneError> {
+        let (key, name, make) = self.entry(scope)?;
+        let beside = [
+            (
+                "along",
+                self.along.is_some(),
+                &["marker", "reaction_force"][..],
+            ),
+            ("about", self.about.is_some(), &["reaction_torque"]),
+            ("from", self.from.is_some(), &["clearance"]),
+        ];
+        for (other, is_written, of) in beside {
+            if is_written && !of.contains(&key) {
+                let found = if other == "from" {
+                    "a plane"
+                } else {
+                    "a direction"
+                };
+                let expected = format!("{found} of a {:?} alone", of[0]);
+                return Err(scope.key(other).wrong(found, expected));
+            }
+        }
+        make(&Named {
+            name,
+            along: self.along,
+            about: self.about,
+            from: self.from.as_ref(),
+            system,
+            place: &scope.key(key),
+            scope,
+        })
+    }
+}
+
+/// The limits of a list of entries.
+pub(crate) fn limits(
+    list: &[LimitSpec],
+    system: &System,
+    scope: &Scope<'_>,
+) -> Result<Vec<Limit>, SceneError> {
+    let mut limits = Vec::new();
+    for (index, spec) in list.iter().enumerate() {
+        let scope = scope.index(index);
+        let (key, entry) = spec.entry(&scope)?;
+        let own = entry.limits(system, &scope.key(key))?.into_iter();
+        let expected = match spec.part {
+            None => {
+                limits.extend(own);
+                continue;
+            }
+            Some(_) if entry.is_timeless() => "no part: constants are the same at all times",
+            Some(part) if part > 0.0 && part <= 1.0 => {
+                limits.extend(own.map(|limit| limit.at_part(part)));
+                continue;
+            }
+            Some(_) => "a part of the duration, above 0 and at most 1, the end",
+        };
+        let found = spec.part.unwrap_or_default().to_string();
+        return Err(scope.key("part").wrong(found, expected));
+    }
+    Ok(limits)
+}
+
+/// The costs along the motion that one entry stands for.
+pub(crate) fn track(
+    spec: &TrackSpec,
+    system: &System,
+    scope: &Scope<'_>,
+) -> Result<Vec<QuantityCost>, SceneError> {
+    let (key, entry) = spec.entry(scope)?;
+    entry.costs(During::Motion, system, &scope.key(key))
+}
+
+/// The costs of the end that one entry stands for.
+pub(crate) fn at_the_end(
+    spec: &FinalSpec,
+    system: &System,
+    scope: &Scope<'_>,
+) -> Result<Vec<QuantityCost>, SceneError> {
+    let (key, entry) = spec.entry(scope)?;
+    entry.costs(During::End, system, &scope.key(key))
+}
+
+/// Size of a measured quantity, whose kind the quantity says.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct MeasuredSize;
+
+impl PhysicalQuantity for MeasuredSize {
+    const NAME: &'static str = "MeasuredSize";
+
+    fn kinds() -> Vec<Kind> {
+        vec![
+            Length::kind(),
+            Angle::kind(),
+            Velocity::kind(),
+            AngularVelocity::kind(),
+            Force::kind(),
+            Torque::kind(),
+            Charge::kind(),
+            Current::kind(),
+            Power::kind(),
+            Voltage::kind(),
+        ]
+    }
+}
