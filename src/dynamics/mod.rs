@@ -3,7 +3,7 @@
 //! - `stepper`: Newton on the equations of one step; `midpoint`: those of the midpoint rule; `galerkin`: those of every other
 //!   method.
 //! - `updates`, `anderson`, `contraction`: updates of an iteration, with kept factors, and how they shrink.
-//! - `step_state`, `resume`: the state from which a motion is resumed.
+//! - `step_state`: the state from which a motion is resumed.
 //! - `domain`: where the first-order dielectric ends.
 //! - `resolution`, `singular_configurations`: which steps are refused; `local_error`: what those neglect that are not.
 //! - `simulate`, `discrete_trajectory`, `observe`, `pieces`, `part_columns`, `reactions`, `to_instants`, `at_instant`, `interval_energies`, `kinetic`: step after step,
@@ -24,7 +24,6 @@ mod exchange;
 mod galerkin;
 mod grid_tangent;
 mod independent;
-mod interval_energies;
 mod kinetic;
 mod local_error;
 mod loop_rates;
@@ -34,7 +33,6 @@ mod observe;
 mod part_columns;
 mod reactions;
 mod resolution;
-mod resume;
 mod simulate;
 mod singular_configurations;
 mod solving;
@@ -59,7 +57,6 @@ pub use error::{EquilibriumError, StepError};
 pub use exchange::{EnergyExchange, SourceEnergies};
 pub use galerkin::GalerkinEquations;
 pub use independent::IndependentChanges;
-pub use interval_energies::{Energies, Work, energies};
 pub use local_error::{LocalError, distance_between, local_error, local_error_of};
 pub use loop_rates::rates_in_loops;
 pub use midpoint::{Midpoint, Stepper};
@@ -67,6 +64,7 @@ pub use momenta::Start;
 pub use momenta::{last_momentum, rates_of_momentum};
 pub use observe::{observations, observed};
 pub use resolution::Balance;
+pub use resolution::{Energies, Work, energies};
 pub use simulate::{Lengths, StepControl, TimeGrid, go_on, simulate, simulate_by, simulate_within};
 pub use singular_configurations::{
     BeyondLaw, muscle_without_length, part_beyond_law, reversed_muscle,

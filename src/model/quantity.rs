@@ -8,11 +8,11 @@ use std::f64::consts::TAU;
 /// A quantity at some times.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Quantity {
-    /// What is measured.
+    /// Measured variable.
     pub what: What,
     /// Time at which it is read.
     pub at: At,
-    /// What of it is measured.
+    /// Its value, or a step of it.
     pub of: Of,
     /// Unit in which it is measured: a jump is measured in its own unit, of which the row is in this one.
     pub unit: f64,

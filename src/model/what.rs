@@ -1,11 +1,11 @@
-//! What a quantity measures, of which parts, and what it is called.
+//! Measured variables: their parts, times, units and names.
 
 use crate::functional::Stencil;
 use crate::math::Vector;
 use crate::model::system::{Amount, Fidelity, JointKind, Muscle, System};
 use std::sync::Arc;
 
-/// What is measured.
+/// Measured variable.
 #[derive(Clone, Debug, PartialEq)]
 pub enum What {
     /// Coordinate of a revolute joint (rad, in the branch nearest to `near`) or prismatic joint (mm).
@@ -125,7 +125,7 @@ impl At {
     }
 }
 
-/// What of a quantity is measured.
+/// Value or step of a measured variable.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Of {
     /// Its value.
@@ -344,7 +344,7 @@ impl What {
         })
     }
 
-    /// What it is called in limits, costs and recordings: `tension of muscle1`.
+    /// Its name in limits, costs and recordings: `tension of muscle1`.
     pub fn words(&self, of: Of, system: &System) -> String {
         let part = self
             .parts()

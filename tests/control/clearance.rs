@@ -28,6 +28,7 @@ fn columns(ran: &Ran, file: &str) -> impl Fn(&str) -> Vec<f64> + use<> {
     let text = std::fs::read_to_string(ran.folder.path().join("p").join(file)).unwrap();
     let lines: Vec<Vec<String>> = text
         .lines()
+        .filter(|line| !line.starts_with('#'))
         .map(|line| line.split(',').map(str::to_owned).collect())
         .collect();
     move |name| {

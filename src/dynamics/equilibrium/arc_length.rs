@@ -4,9 +4,8 @@
 //! path is K ẏ = −ḟ b. A step follows it by Δs and comes back to the path in the plane normal to it. The path has a
 //! limit point (pull-in) where ḟ = 0; where a pivot of K changes its sign elsewhere, it meets another path (buckling).
 
-use crate::dynamics::equilibrium::instability::Instability;
 use crate::dynamics::equilibrium::ramp::Ramp;
-use crate::dynamics::equilibrium::rest_state::RestState;
+use crate::dynamics::equilibrium::rest_state::{Instability, RestState};
 use crate::dynamics::equilibrium::statics::{NewtonOutcome, Statics, UpdateRange};
 use crate::dynamics::singular_configurations::shortest;
 use crate::stop;

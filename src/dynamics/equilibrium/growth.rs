@@ -2,9 +2,8 @@
 //! fails.
 
 use crate::dynamics::equilibrium::arc_length::{KINK, LimitPoint, PathEnd, STRAIGHT, path_end};
-use crate::dynamics::equilibrium::instability::Load;
 use crate::dynamics::equilibrium::ramp::Ramp;
-use crate::dynamics::equilibrium::rest_state::RestState;
+use crate::dynamics::equilibrium::rest_state::{Load, RestState};
 use crate::dynamics::equilibrium::result::{Equilibrium, Route, StabilityLoss};
 use crate::dynamics::equilibrium::statics::{NewtonOutcome, Statics, UpdateRange};
 use crate::dynamics::error::EquilibriumError;

@@ -1,8 +1,8 @@
 //! Equilibria along the path of growing voltages, past limit points.
 
 use crate::dynamics::equilibrium::arc_length::{FIRST, LARGEST, PathPoint, SMALLEST, path};
-use crate::dynamics::equilibrium::instability::{Instability, Load};
 use crate::dynamics::equilibrium::ramp::Ramp;
+use crate::dynamics::equilibrium::rest_state::{Instability, Load};
 use crate::dynamics::equilibrium::result::{Equilibrium, Route};
 use crate::dynamics::equilibrium::stable::stable_equilibrium;
 use crate::dynamics::equilibrium::statics::Statics;

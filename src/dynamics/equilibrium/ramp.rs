@@ -1,6 +1,6 @@
 //! Loads that grow along a path of equilibria: first the weights with the forces of the scene, then the voltages.
 
-use crate::dynamics::equilibrium::instability::Load;
+use crate::dynamics::equilibrium::rest_state::Load;
 use crate::dynamics::equilibrium::statics::Statics;
 use crate::model::Role;
 

@@ -132,7 +132,7 @@ impl Statics<'_> {
             a.z[..n].copy_from_slice(&state[..n]);
             // The gradients of the constraints alone: no multiplier bends them.
             a.z[n..m].fill(0.0);
-            a.z[m..].copy_from_slice(state.charts());
+            a.z[m..].copy_from_slice(&state.charts);
             action.map.place(a);
             a.forces.fill(Vector::zeros());
             self.values.fill(0.0);

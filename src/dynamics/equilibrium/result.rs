@@ -1,8 +1,6 @@
 //! A state of rest: its stiffness, and the route to it.
 
-use crate::dynamics::equilibrium::examined::LowestMode;
-use crate::dynamics::equilibrium::instability::{Instability, Load};
-use crate::dynamics::equilibrium::mode::Mode;
+use crate::dynamics::equilibrium::rest_state::{Instability, Load, LowestMode, Mode};
 use crate::sparse::multigrid::MultigridReport;
 
 /// The status of an unstable equilibrium.

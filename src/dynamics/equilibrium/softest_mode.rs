@@ -1,10 +1,8 @@
 //! The softest mode of a state of rest: the direction along which its potential energy rises least or falls, the parts that move,
 //! and the cause of its softness.
 
-use crate::dynamics::equilibrium::examined::{Examined, LowestMode};
 use crate::dynamics::equilibrium::growing_motions::eigenvalues;
-use crate::dynamics::equilibrium::mode::{Mode, Softening};
-use crate::dynamics::equilibrium::rest_state::RestState;
+use crate::dynamics::equilibrium::rest_state::{Examined, LowestMode, Mode, RestState, Softening};
 use crate::dynamics::equilibrium::statics::Statics;
 use crate::dynamics::solving::MultigridUse;
 use crate::dynamics::step_matrix::StepMatrix;

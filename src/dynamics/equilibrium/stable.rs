@@ -14,10 +14,9 @@
 
 use crate::dynamics::equilibrium::arc_length::{LimitPoint, PathEnd, crossings, path_end};
 use crate::dynamics::equilibrium::growth::{Grown, at_limit, begin, grow, unloaded};
-use crate::dynamics::equilibrium::instability::Load;
 use crate::dynamics::equilibrium::ramp::Ramp;
 use crate::dynamics::equilibrium::relaxation::relax;
-use crate::dynamics::equilibrium::rest_state::RestState;
+use crate::dynamics::equilibrium::rest_state::{Load, RestState};
 use crate::dynamics::equilibrium::result::{Equilibrium, Route, StabilityLoss};
 use crate::dynamics::equilibrium::softest_mode::softest_mode;
 use crate::dynamics::equilibrium::statics::{NewtonOutcome, Statics, UpdateRange};

@@ -317,7 +317,11 @@ pub(crate) fn objective(
     for (index, spec) in spec.at_the_end.iter().enumerate() {
         quantities.extend(at_the_end(spec, system, &scope.key("final").index(index))?);
     }
-    quantities.extend(amount_costs(spec, system, scope)?);
+    quantities.extend(amount_costs(
+        [spec.muscle_volume, spec.muscle_mass],
+        system,
+        scope,
+    )?);
     let mut of_sources = Vec::new();
     for (key, energy, weight) in [
         (

@@ -7,7 +7,6 @@ use crate::files::problem::quantities::entry::{
     All, CostEntry, LimitEntry, Named, Recorded, bounds, check_bounds, itself, limits_of, square,
     weight,
 };
-use crate::files::problem::spec_control::ObjectiveSpec;
 use crate::files::problem::state::ELECTRIC_KEYS;
 use crate::files::scene::names::names;
 use crate::files::units::quantity::{ElectricField, Force, Mass, Quantity as Written, Volume};
@@ -408,13 +407,13 @@ fn amount(
 
 /// The costs of the amounts of all lumped muscles that have a weight.
 pub(in crate::files::problem) fn amount_costs(
-    spec: &ObjectiveSpec,
+    [volume, mass]: [f64; 2],
     system: &System,
     scope: &Scope<'_>,
 ) -> Result<Vec<QuantityCost>, SceneError> {
     let weights = [
-        ("muscle_volume", Amount::Volume, spec.muscle_volume),
-        ("muscle_mass", Amount::Mass, spec.muscle_mass),
+        ("muscle_volume", Amount::Volume, volume),
+        ("muscle_mass", Amount::Mass, mass),
     ];
     let cost = |(key, amount, weight): (&str, Amount, f64)| {
         let muscles = lumped(amount, system, &scope.key(key))?.into();
