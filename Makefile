@@ -14,7 +14,7 @@ FUZZ_SECONDS := 600
 ADVERSARY_SECONDS := 600
 AGAINST := HEAD~1
 
-.PHONY: help trunk blocks gallery build test test-python test-debian-13 test-browser wheel docs fuzz adversary compare-solvers check audit bench guard studies install-deps try-fresh clean
+.PHONY: help trunk blocks gallery build test test-python test-debian-13 test-browser wheel docs fuzz adversary compare-solvers check bindings check-bindings audit bench guard studies install-deps try-fresh clean
 
 help:
 	@echo 'make trunk         solve the elephant trunk, let it swing under constant voltages, and say where the pictures are'
@@ -30,6 +30,7 @@ help:
 	@echo 'make adversary     random robots in many forms, with fresh seeds, for ADVERSARY_SECONDS=$(ADVERSARY_SECONDS)'
 	@echo 'make compare-solvers  200 random blocks and the kept problems of finite elements, by multigrid and by factors'
 	@echo 'make check         formatting, lints, documentation'
+	@echo 'make bindings      declarations of the C interface of Ipopt from its headers, by bindgen; make check-bindings compares them'
 	@echo 'make audit         licences, sources and known vulnerabilities of all crates, by cargo-deny (installed where it is missing)'
 	@echo 'make bench         measure; rewrite the tables of benches/README.md'
 	@echo 'make guard         results and times of all kept problems beside those of another commit, AGAINST=$(AGAINST)'
@@ -102,6 +103,12 @@ check: install-deps
 	@$(CARGO) clippy --quiet --locked --all-targets --no-deps --manifest-path python/Cargo.toml --target-dir "$${CARGO_TARGET_DIR:-target}" -- -D warnings
 	@RUSTDOCFLAGS='-D warnings' $(CARGO) doc --quiet --locked --no-deps --lib --examples
 	@RUSTDOCFLAGS='-D warnings --cfg internals' $(CARGO) doc --quiet --locked --no-deps --lib --examples
+
+bindings:
+	@.ci/bindings
+
+check-bindings:
+	@.ci/bindings --check
 
 audit:
 	@.ci/audit

@@ -1,4 +1,4 @@
-//! Finds Ipopt, the MUMPS it was linked with and the code of pages, holds the declarations of `src/ipopt/declarations.rs` against the header of Ipopt,
+//! Finds Ipopt, the MUMPS it was linked with and the code of pages, chooses the declarations in `src/ipopt` that agree with the header of Ipopt,
 //! compiles what knows the structure of MUMPS, and notes the versions that results name.
 
 use std::collections::BTreeSet;
@@ -12,6 +12,8 @@ use std::process::Command;
 const INSTALL: &str = "proboscis needs Ipopt with its C header: \
     install coinor-libipopt-dev (Debian, Ubuntu), coin-or-Ipopt-devel (Fedora) or ipopt (Homebrew), \
     and see that `pkg-config --cflags --libs ipopt` answers";
+/// Versions of Ipopt that brought a C interface; `make bindings` makes `src/ipopt/bindings_*` from their headers.
+const INTERFACES: [&str; 2] = ["3_11", "3_14"];
 
 /// Message when MUMPS or its header is missing.
 const INSTALL_MUMPS: &str = "proboscis needs the MUMPS that Ipopt uses, with its C header `dmumps_c.h`: \
@@ -62,7 +64,7 @@ fn libraries() -> Result<(), String> {
     println!("cargo::rustc-env=PROBOSCIS_IPOPT={}", ipopt.version);
     let library = Library::find("ipopt", &ipopt.link_paths).ok_or(INSTALL)?;
     library.link();
-    check_declarations(&ipopt)?;
+    choose_bindings(&ipopt)?;
 
     let told = ipopt.libs.iter().find(|name| name.contains("mumps"));
     let told = told.map_or(MUMPS, String::as_str);
@@ -175,30 +177,29 @@ fn read(bytes: &[u8]) -> Option<(Vec<String>, bool)> {
     Some((own(&library.libs), has_mumps))
 }
 
-/// Compiles the declarations of `src/ipopt/declarations.rs` beside those of the header.
-fn check_declarations(ipopt: &pkg_config::Library) -> Result<(), String> {
-    const DECLARATIONS: &str = "src/ipopt/header.c";
-    println!("cargo::rerun-if-changed={DECLARATIONS}");
-    // Up to 3.13 `Bool` is `int`, since 3.14 it is `bool`.
-    let mut numbers = ipopt.version.split('.').map(str::parse::<u32>);
-    let version = [numbers.next(), numbers.next()].map(|number| number?.ok());
-    let is_bool = version >= [Some(3), Some(14)];
-    if is_bool {
-        println!("cargo::rustc-cfg=ipopt_bool");
-    }
-    let compiled = cc::Build::new()
-        .file(DECLARATIONS)
-        .includes(&ipopt.include_paths)
-        .define("TRUTH", if is_bool { "bool" } else { "int" })
-        .flag("-Werror=incompatible-pointer-types")
-        .cargo_metadata(false)
-        .try_compile_intermediates();
-    match compiled {
-        Ok(_) => Ok(()),
-        Err(error) => Err(format!(
-            "{INSTALL} ({DECLARATIONS} does not compile: {error})"
-        )),
-    }
+/// Chooses the declarations that agree with the header of Ipopt: in C, from which those in Rust were made too, they compile after it.
+fn choose_bindings(ipopt: &pkg_config::Library) -> Result<(), String> {
+    let build = |interface: &str| {
+        let declarations = format!("src/ipopt/bindings_{interface}.c");
+        println!("cargo::rerun-if-changed={declarations}");
+        let mut build = cc::Build::new();
+        build.file(declarations).includes(&ipopt.include_paths);
+        build.cargo_metadata(false).cargo_warnings(false);
+        build
+    };
+    let missing = build(INTERFACES[0]).try_expand();
+    missing.map_err(|error| format!("{INSTALL} ({error})"))?;
+    let agrees = |interface: &&str| build(interface).try_compile_intermediates().is_ok();
+    let chosen = INTERFACES.into_iter().find(agrees).ok_or_else(|| {
+        let known = INTERFACES.join(" nor that of ").replace('_', ".");
+        format!(
+            "IpStdCInterface.h of Ipopt {} declares a C interface that is neither that of Ipopt {known}: \
+            src/ipopt/bindings_*.c do not compile after it",
+            ipopt.version
+        )
+    })?;
+    println!("cargo::rustc-cfg=ipopt_{chosen}");
+    Ok(())
 }
 
 /// Compiles the functions that know the structure of MUMPS, with the header of the one that is linked.

@@ -9,7 +9,7 @@ use std::panic::{AssertUnwindSafe, catch_unwind, resume_unwind};
 use std::ptr::{self, NonNull};
 use std::slice;
 
-use crate::ipopt::declarations::{
+use crate::ipopt::bindings::{
     AddIpoptIntOption, AddIpoptNumOption, AddIpoptStrOption, Bool, CreateIpoptProblem,
     FreeIpoptProblem, IpoptProblemInfo, IpoptSolve, SetIntermediateCallback,
 };
@@ -67,11 +67,11 @@ impl Problem {
                 count(jacobian)?,
                 count(hessian)?,
                 0,
-                objective,
-                constraint,
-                gradient,
-                self::jacobian,
-                self::hessian,
+                Some(objective),
+                Some(constraint),
+                Some(gradient),
+                Some(self::jacobian),
+                Some(self::hessian),
             )
         };
         let problem = Self {
@@ -81,7 +81,7 @@ impl Problem {
             _lock: lock,
         };
         // SAFETY: the handle is valid; the callback has the type that the header declares.
-        unsafe { SetIntermediateCallback(handle, iteration) };
+        unsafe { SetIntermediateCallback(handle, Some(iteration)) };
         Some(problem)
     }
 
