@@ -6,7 +6,7 @@ use crate::model::{FieldPlace, Of, System, What};
 /// Bounds of a quantity at every instant or in every interval, or at a single time.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Limit {
-    /// What is bounded, in its unit. A field is bounded in the intervals and at the instants, of a block at all of its points; current and power
+    /// Bounded variable, in its unit. A field is bounded in the intervals and at the instants, of a block at all of its points; current and power
     /// without a resistor from the middle of an interval to that of the next one; a reaction at the instants between intervals.
     pub what: What,
     /// Its value, or the rate of a joint coordinate (rad/ms or mm/ms, the mean in each interval) or of a voltage (V/ms between the middles of

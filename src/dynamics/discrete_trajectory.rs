@@ -5,7 +5,7 @@
 //! A quantity of the table is the mean of its values on both sides, each weighted by the length of the other interval. Where the inputs are
 //! continuous both are equal; where they switch it is a mean of both; where they are constant over intervals it is of second order.
 
-use crate::dynamics::resolution::Work;
+use crate::dynamics::energies::Work;
 use crate::dynamics::solving::Inputs;
 use crate::dynamics::step_state::{StepState, StepperReport};
 use crate::model::Model;

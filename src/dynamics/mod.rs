@@ -6,7 +6,7 @@
 //! - `step_state`: the state from which a motion is resumed.
 //! - `domain`: where the first-order dielectric ends.
 //! - `resolution`, `singular_configurations`: which steps are refused; `local_error`: what those neglect that are not.
-//! - `simulate`, `discrete_trajectory`, `observe`, `pieces`, `part_columns`, `reactions`, `to_instants`, `at_instant`, `interval_energies`, `kinetic`: step after step,
+//! - `simulate`, `discrete_trajectory`, `observe`, `part_columns`, `reactions`, `energies`, `kinetic`: step after step,
 //!   recorded and observed.
 //! - `state_space`: steps linearised by state and inputs.
 //! - `loop_rates`: rates of the joints of closed loops, completed from those that are named.
@@ -18,6 +18,7 @@
 mod contraction;
 mod discrete_trajectory;
 mod domain;
+mod energies;
 mod equilibrium;
 mod error;
 mod exchange;
@@ -48,6 +49,7 @@ mod updates;
 pub use discrete_trajectory::{DiscreteTrajectory, Reading};
 pub use domain::{OutOfDomain, largest_stretch, out_of_domain};
 pub use domain::{OutOfRange, out_of_range};
+pub use energies::{Energies, Work, energies};
 pub use equilibrium::{
     Continuation, Equilibrium, Instability, Load, LowestMode, Mode, Route, Softening,
     StabilityLoss, UNSTABLE, continuation, equilibrium, lowest_mode, stable_equilibrium,
@@ -64,7 +66,6 @@ pub use momenta::Start;
 pub use momenta::{last_momentum, rates_of_momentum};
 pub use observe::{observations, observed};
 pub use resolution::Balance;
-pub use resolution::{Energies, Work, energies};
 pub use simulate::{Lengths, StepControl, TimeGrid, go_on, simulate, simulate_by, simulate_within};
 pub use singular_configurations::{
     BeyondLaw, muscle_without_length, part_beyond_law, reversed_muscle,

@@ -11,10 +11,10 @@
 
 use crate::coordinates::{Configuration, Interval, Scratch};
 use crate::dynamics::discrete_trajectory::{DiscreteTrajectory, Reading, Side, sides};
+use crate::dynamics::energies::{Work, energies};
 use crate::dynamics::momenta::{Places, momentum_maps, moving, vector_momenta};
 use crate::dynamics::part_columns::{AtInstant, PartColumns};
 use crate::dynamics::reactions::reactions;
-use crate::dynamics::resolution::{Work, energies};
 use crate::dynamics::trajectory::{Column, Observations, Trajectory};
 use crate::functional::{Order, TermKind};
 use crate::math::{IsOver, Stopped, Vector, has_pool};

@@ -1,4 +1,4 @@
-//! Energies of an interval, and the resolution of a motion by a step: the turns of joints and bodies, and the balance of energy.
+//! Resolution of a motion by a step: the turns of joints and bodies, and the balance of energy.
 //!
 //! The midpoint rule reads forces at the middle of a step. What a joint or body does beyond that is seen at the ends alone:
 //! a free turn by θ is found from sin θ = h ω, which has other roots beyond a right angle, and a joint angle is the same
@@ -8,9 +8,10 @@
 //! takes as much as it does work. A Galerkin method of degree s sums the work of the forces by its quadrature, along its polynomial and, where
 //! inputs change within the step, along the polynomial through them: the error is of order 2s + 1, and zero where V is quadratic too.
 
-use crate::coordinates::{Configuration, Interval};
+use crate::coordinates::Configuration;
+use crate::dynamics::energies::Work;
 use crate::dynamics::error::StepError;
-use crate::functional::{Sample, Term, TermKind};
+use crate::functional::{Sample, TermKind};
 use crate::math::Vector;
 use crate::model::Model;
 use std::f64::consts::PI;
@@ -161,64 +162,4 @@ pub(super) fn turned(
         let angle = (0.5 * (trace - 1.0)).clamp(-1.0, 1.0).acos();
         (trace < 1.0).then(|| (format!("body \"{}\"", named.name), angle))
     })
-}
-
-/// Energies of one interval at its midpoint, in mJ.
-#[derive(Clone, Debug, Default, PartialEq)]
-pub struct Energies {
-    /// Kinetic energy.
-    pub kinetic: f64,
-    /// Potential energy of each term that has one, part by part, in the order of the terms.
-    pub potential: Vec<f64>,
-    /// Work that forces without a potential do over the interval.
-    pub work: Work,
-}
-
-/// Work of forces without a potential, in mJ.
-#[derive(Clone, Copy, Debug, Default, PartialEq)]
-pub struct Work {
-    /// Of loads that follow what they act on.
-    pub applied: f64,
-    /// Of forces that dissipate energy; not positive.
-    pub dissipation: f64,
-}
-
-impl Work {
-    /// Adds `weight` times the work of a term at a sample; nothing where the term has a potential.
-    pub fn add(&mut self, weight: f64, term: &dyn Term, sample: &Sample<'_>) {
-        match term.kind() {
-            TermKind::AppliedWork => self.applied += weight * term.energy(sample),
-            TermKind::Dissipation => self.dissipation += weight * term.energy(sample),
-            TermKind::Kinetic | TermKind::Potential | TermKind::Constraint => {}
-        }
-    }
-}
-
-impl Energies {
-    /// Kinetic plus potential energy.
-    pub fn total(&self) -> f64 {
-        self.kinetic + self.potential.iter().sum::<f64>()
-    }
-}
-
-/// Energies of the interval of `h` ms between two placed instants under voltages by scalar.
-pub fn energies(
-    model: &Model,
-    a: &Configuration,
-    b: &Configuration,
-    scalars: &[f64],
-    h: f64,
-) -> Energies {
-    let interval = Interval::given(scalars, h);
-    let sample = interval.sample([a, b]);
-    let mut energies = Energies::default();
-    for term in &model.action.intervals.terms {
-        energies.work.add(1.0, term.as_ref(), &sample);
-        match term.kind() {
-            TermKind::Kinetic => energies.kinetic += term.energy(&sample),
-            TermKind::Potential => term.energies(&sample, &mut energies.potential),
-            TermKind::AppliedWork | TermKind::Dissipation | TermKind::Constraint => {}
-        }
-    }
-    energies
 }

@@ -2,8 +2,9 @@
 
 use crate::coordinates::Configuration;
 use crate::dynamics::contraction::Verdict;
+use crate::dynamics::energies::Work;
 use crate::dynamics::error::StepError;
-use crate::dynamics::resolution::{Balance, Work, turned};
+use crate::dynamics::resolution::{Balance, turned};
 use crate::dynamics::singular_configurations;
 use crate::dynamics::singular_configurations::BeyondLaw;
 use crate::dynamics::solving::{Drive, Newton};

@@ -5,7 +5,7 @@ use crate::interface::control::Control;
 use crate::interface::handle::Handle;
 use crate::math::Vector;
 use crate::model::system::{Joint, Marker, Muscle};
-use crate::model::{FieldPlace, Plane, Pulling, Reaction, What};
+use crate::model::{FieldPlace, Pulling, Reaction, What};
 use std::ops::RangeInclusive;
 
 impl Control {
@@ -100,17 +100,6 @@ impl Control {
         self.limited(Limit::new(What::Speed(marker.index()), bounds(range)))
     }
 
-    /// Range of the distance in mm of a marker from a plane that is fixed to a body or the ground, on the side of its normal.
-    pub fn clearance_within(
-        self,
-        marker: Handle<Marker>,
-        plane: Plane,
-        range: RangeInclusive<f64>,
-    ) -> Self {
-        let marker = marker.index();
-        self.limited(Limit::new(What::Clearance { marker, plane }, bounds(range)))
-    }
-
     /// Makes the limit that was added last hold only at a part of the duration, above 0 and at most 1, the end: at the instant nearest to it, or in
     /// the interval before that instant. Nothing without a limit.
     pub fn only_at(mut self, part: f64) -> Self {
@@ -120,7 +109,8 @@ impl Control {
         self
     }
 
-    fn limited(mut self, limit: Limit) -> Self {
+    /// Adds a limit of any quantity, such as the clearance of a marker from a plane.
+    pub fn limited(mut self, limit: Limit) -> Self {
         self.limits.push(limit);
         self
     }

@@ -54,7 +54,7 @@ fn distances(ran: &Ran) -> Vec<f64> {
         let along = [0, 1, 2].map(|i| from(&head, i));
         let length = along.iter().map(|a| a * a).sum::<f64>().sqrt();
         let dot: f64 = (0..3).map(|i| from(&tip, i) * along[i]).sum();
-        1e3 * dot / length
+        dot / length
     };
     (0..foot[0].len()).map(at).collect()
 }
@@ -70,7 +70,7 @@ fn a_clearance_is_kept_followed_and_prescribed() {
         .fold(f64::INFINITY, f64::min);
     let most = distances_of_free.iter().copied().fold(0.0, f64::max);
     assert!(most - least > 1.0, "{least} {most}");
-    // Kept along the motion, at its end too: halfway between both.
+    // Prescribed in the middle of the motion.
     let middle = 0.5 * (distances_of_free[0] + distances_of_free[5]);
     let at = |value: f64| format!("{value} mm");
     let once = json!([{ "part": 0.5, "clearance": { "marker": "tip", "from": plane(), "min": at(middle), "max": at(middle) } }]);
@@ -78,7 +78,7 @@ fn a_clearance_is_kept_followed_and_prescribed() {
     met.is_solved();
     assert!((distances(&met)[5] - middle).abs() < 1e-6 * middle);
     assert!((distances_of_free[5] - middle).abs() > 1e-3);
-    // The largest distance of the free motion is cut by a twentieth of its range, where that is not at the ends.
+    // A start beyond it is refused by name.
     let beyond =
         json!([{ "clearance": { "marker": "tip", "from": plane(), "max": at(least - 1.0) } }]);
     let words = ["control.start", "clearance of marker tip", "at most"];
@@ -114,16 +114,16 @@ fn a_clearance_is_recorded() {
     let times = columns(&truth, "trajectory.csv")("time");
     problem.as_object_mut().unwrap().remove("simulate");
     problem["identify"] = json!({
-        "free": { "scene.materials.silicone.viscosity": { "min": "100 Pa s", "max": "5000 Pa s" } },
+        "free": { "materials.silicone.viscosity": { "min": "100 Pa s", "max": "5000 Pa s" } },
         "recordings": [{
             "name": "swing",
-            "columns": { "time [s]": times, "gap [mm]": distances(&truth) },
+            "columns": { "time [ms]": times, "gap [mm]": distances(&truth) },
             "measured": [{ "clearance": "tip", "from": plane(), "column": "gap", "standard_deviation": "1 um" }],
             "experiment": { "voltages": { "muscle1": "1.5 kV" } }
         }],
         "step": "2 ms"
     });
-    let found = run("identify", &problem, &[]);
+    let found = run("solve", &problem, &[]);
     found.is_solved();
     let summary = found.read("summary.json").to_string();
     assert!(summary.contains("viscosity"), "{summary}");
@@ -137,9 +137,9 @@ fn a_clearance_is_recorded() {
         wrong
     };
     let without = measured(json!({ "clearance": "tip", "column": "gap" }));
-    run("identify", &without, &[]).is_refused(&["measured[0].from", "no plane"]);
+    run("solve", &without, &[]).is_refused(&["measured[0].from", "no plane"]);
     let beside =
         measured(json!({ "marker": "tip", "along": [1, 0, 0], "from": plane(), "column": "gap" }));
-    run("identify", &beside, &[])
+    run("solve", &beside, &[])
         .is_refused(&["measured[0].from", "a plane of a \"clearance\" alone"]);
 }

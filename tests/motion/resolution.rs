@@ -6,7 +6,7 @@ use nalgebra::{Matrix3, Vector3};
 use proboscis::control::problem::{Simulation, Task};
 use proboscis::dynamics::trajectory::Trajectory;
 use proboscis::dynamics::{
-    DiscreteTrajectory, Integrator, LocalError, Solving, Start, local_error, observations,
+    DiscreteTrajectory, Drive, Integrator, LocalError, Solving, Start, local_error, observations,
     simulate_by,
 };
 use proboscis::files::read_problem;
@@ -198,6 +198,29 @@ fn what_is_simulated_without_a_word_is_right() {
 
 /// A mass on a slide between two muscles without viscosity, pushed at the start.
 fn slider(h: f64, integrator: Integrator, steps: usize) -> (Model, DiscreteTrajectory) {
+    driven_slider(h, integrator, steps, |_| 0.0)
+}
+
+/// A voltage in V as a function of the time in ms, within steps too.
+struct Driven<'a> {
+    model: &'a Model,
+    voltage: &'a dyn Fn(f64) -> f64,
+}
+
+impl Drive for Driven<'_> {
+    fn at(&self, [begin, end]: [f64; 2], part: f64) -> Vec<f64> {
+        let time = begin + part * (end - begin);
+        self.model.scalars(&[(self.voltage)(time)])
+    }
+}
+
+/// The same under a voltage in V, a function of the time in ms.
+fn driven_slider(
+    h: f64,
+    integrator: Integrator,
+    steps: usize,
+    voltage: impl Fn(f64) -> f64,
+) -> (Model, DiscreteTrajectory) {
     let slide = joint(
         "slide",
         JointKind::Prismatic { axis: Vector3::y() },
@@ -233,11 +256,34 @@ fn slider(h: f64, integrator: Integrator, steps: usize) -> (Model, DiscreteTraje
         &start,
         h,
         steps,
-        |_, _| model.scalars(&[0.0]),
+        Driven {
+            model: &model,
+            voltage: &voltage,
+        },
         go_on,
     );
     assert_eq!(failure, None);
     (model, discrete)
+}
+
+#[test]
+fn galerkin_methods_balance_their_energy_under_varying_voltages() {
+    let voltage = |time: f64| 1500.0 + 1000.0 * (0.05 * time).sin();
+    for degree in [2, 3] {
+        let integrator = Integrator::Galerkin { degree };
+        let made = |h: f64| {
+            let (_, discrete) = driven_slider(h, integrator, (240.0 / h) as usize, voltage);
+            let report = discrete.report;
+            assert!(report.exchanged > 1e-3);
+            (report.made / report.exchanged).abs()
+        };
+        // What the sources supply within a step is no energy that the step makes.
+        let [coarse, fine] = [made(12.0), made(6.0)];
+        println!("{degree}: {coarse:.2e} {fine:.2e}");
+        assert!(coarse < 0.02 && fine < coarse / 2_f64.powi(2 * degree as i32 - 1));
+        // Steps that resolve nothing make much, and that is told.
+        assert!(made(60.0) > 10.0 * coarse, "{}", made(60.0));
+    }
 }
 
 #[test]

@@ -1,11 +1,12 @@
 //! The equations of a step of every rule.
 
 use crate::coordinates::Configuration;
+use crate::dynamics::energies::{Work, energies};
 use crate::dynamics::galerkin::lobatto::lagrange;
 use crate::dynamics::galerkin::rule::Rule;
 use crate::dynamics::galerkin::state::{GalerkinEquations, between};
 use crate::dynamics::momenta::vector_momenta;
-use crate::dynamics::resolution::{Balance, Work};
+use crate::dynamics::resolution::Balance;
 use crate::dynamics::solving::Drive;
 use crate::dynamics::stepper::Equations;
 use crate::functional::{NodeBlocks, Order};
@@ -220,7 +221,8 @@ impl Equations for GalerkinEquations<'_> {
             return false;
         }
         if self.dissipates && !has_balance {
-            self.work = Some(self.work_of_step(h));
+            let [start, end] = self.ends();
+            self.work = Some(energies(self.model, start, end, &self.middle, h).work);
         }
         let momenta: Vec<Vector> = match &mut self.rule {
             Rule::Galerkin(_) => {

@@ -1,13 +1,14 @@
 //! State at one instant and the storage of the equations of a step.
 
 use crate::coordinates::{Configuration, Scratch};
+use crate::dynamics::energies::Work;
 use crate::dynamics::error::StepError;
 use crate::dynamics::galerkin::jacobian_positions::Places;
 use crate::dynamics::galerkin::lobatto::Lobatto;
 use crate::dynamics::galerkin::rule::{Alpha, Massless, Rule, Weights};
 use crate::dynamics::kinetic::masses;
 use crate::dynamics::momenta::{Start, rates, vector_momenta};
-use crate::dynamics::resolution::{Work, typical_energy};
+use crate::dynamics::resolution::typical_energy;
 use crate::dynamics::solving::{Drive, Integrator, Solving};
 use crate::dynamics::step_matrix::StepMatrix;
 use crate::dynamics::stepper::Steps;
@@ -223,17 +224,6 @@ impl GalerkinEquations<'_> {
             let sample = between([a, b], &point.scalars, h);
             action.intervals.evaluate(order, &sample, &mut point.out);
         }
-    }
-
-    /// Work over the step that has been made by the midpoint rule, of a method of one point.
-    pub(super) fn work_of_step(&self, h: f64) -> Work {
-        let mut work = Work::default();
-        let [start, end] = [&self.points[0].x, &self.points[1].x];
-        let sample = between([start, end], &self.middle, h);
-        for term in &self.model.action.intervals.terms {
-            work.add(1.0, term.as_ref(), &sample);
-        }
-        work
     }
 
     /// Energy that inputs which change within a step of a Galerkin method add to the potentials of its samples: `∫ ∂V/∂u u̇ dt` by the

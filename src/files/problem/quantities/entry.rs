@@ -1,4 +1,4 @@
-//! What entries of a problem file stand for: limits, costs, and quantities of recordings.
+//! Entries of limits, costs and recorded quantities in a problem file, and conversion of their parts.
 
 use crate::control::problem::{CostFunction, During, Limit, QuantityCost};
 use crate::files::json::error::SceneError;
