@@ -97,7 +97,7 @@ impl<'a> Directions<'a> {
                 Ok,
             ),
             VariedOf::GoalPlace { marker, axis } => Ok(self.of_goal_row(|bounded| {
-                bounded.quantity.what == (What::Place { marker, axis })
+                !bounded.quantity.is_step() && bounded.quantity.what == (What::Place { marker, axis })
             })),
             VariedOf::GoalVoltage(source) => self.of_rest_voltage(1, source),
             VariedOf::StartVoltage(source) => self.of_rest_voltage(0, source),
@@ -196,7 +196,10 @@ impl<'a> Directions<'a> {
             let column = self.of_end(1).find(|(_, i)| *i == c)?;
             return Some(self.of_held([(column.0, 1.0)]));
         }
-        let is_goal = |bounded: &BoundedQuantity| matches!(bounded.quantity.what, What::Joint { joint: j, .. } if j == joint);
+        let is_goal = |bounded: &BoundedQuantity| {
+            !bounded.quantity.is_step()
+                && matches!(bounded.quantity.what, What::Joint { joint: j, .. } if j == joint)
+        };
         let found = self.of_goal_row(is_goal);
         (!found.constraint_bounds.is_empty()).then_some(found)
     }

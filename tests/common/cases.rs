@@ -14,13 +14,13 @@ use super::tracked::{energies, tracked};
 use super::trunk;
 use nalgebra::Vector3;
 use proboscis::control::problem::{
-    BoundaryState, Control, Duration, Guess, Limit, Objective, Orientation, Place, Rest, Solver,
-    SoughtHold,
+    BoundaryState, Control, CostFunction, Duration, During, Guess, Limit, Objective, Orientation,
+    Place, QuantityCost, Rest, Solver, SoughtHold,
 };
 use proboscis::math::Signal;
 use proboscis::model::Coordinates;
 use proboscis::model::system::{ElectricConstants, Material, System, VACUUM_PERMITTIVITY};
-use proboscis::model::{FieldPlace, What};
+use proboscis::model::{FieldPlace, Pulling, Quantity, What};
 use std::collections::BTreeMap;
 
 /// A system and what is asked of it.
@@ -141,6 +141,31 @@ pub fn open_end() -> BoundaryState {
     }
 }
 
+/// Limits of the tensions of a spring and a tendon.
+fn pulls() -> Vec<Limit> {
+    let tension = |part, bounds| Limit::new(What::Tension(part), bounds);
+    vec![
+        tension(Pulling::Spring(0), [-3.0, 2.0]),
+        tension(Pulling::Tendon(0), [f64::NEG_INFINITY, 4.0]),
+    ]
+}
+
+/// Costs of these tensions, along the motion and at its end.
+fn pulled() -> [QuantityCost; 2] {
+    let cost = |part, during| QuantityCost {
+        quantity: Quantity::tension(part),
+        weight: 0.3,
+        function: CostFunction::Square {
+            reference: 0.4.into(),
+        },
+        during,
+    };
+    [
+        cost(Pulling::Spring(0), During::Motion),
+        cost(Pulling::Tendon(0), During::End),
+    ]
+}
+
 /// The list.
 pub fn cases() -> Vec<Case> {
     let case = |name, system: System, change: &dyn Fn(&mut Control)| {
@@ -225,6 +250,21 @@ pub fn cases() -> Vec<Case> {
             c.objective.rate = 0.3;
         }),
         case("springs and a tendon", tied(trunk(2)), &|_| {}),
+        case("springs and a tendon, tensions", tied(trunk(2)), &|c| {
+            c.limits = pulls();
+            c.objective = every_objective();
+            c.objective.quantities.extend(pulled());
+        }),
+        case(
+            "springs and a tendon, tensions, free time",
+            tied(trunk(2)),
+            &|c| {
+                c.limits = pulls();
+                c.objective = every_objective();
+                c.objective.quantities.extend(pulled());
+                c.duration = free;
+            },
+        ),
         case("springs and a tendon, free time", tied(trunk(2)), &|c| {
             c.duration = free;
             c.objective = every_objective();

@@ -11,7 +11,7 @@ use crate::files::problem::state::ELECTRIC_KEYS;
 use crate::files::scene::names::names;
 use crate::files::units::quantity::{ElectricField, Force, Mass, Quantity as Written, Volume};
 use crate::model::system::{Fidelity, System};
-use crate::model::{Amount, FieldPlace, Pulling, Quantity, What};
+use crate::model::{Amount, FieldPlace, PartKind, Pulling, Quantity, What};
 use schemars::JsonSchema;
 use serde::Deserialize;
 
@@ -29,11 +29,11 @@ pub struct StretchLimitSpec {
     pub max: Option<f64>,
 }
 
-/// Limits of the force with which one lumped muscle (`"muscle": name`) or each (`"muscles": "all"`) pulls its ends together, of elasticity,
-/// field, viscosity and Maxwell branches: `min`, `max` or both.
+/// Limits of the force with which one lumped muscle (`"muscle": name`), each (`"muscles": "all"`), a spring or a tendon pulls its ends
+/// together, by elasticity, field, viscosity and Maxwell branches: `min`, `max` or both.
 ///
 /// It bounds the tension in the middle of every interval, under the voltage there; the column of the table is its mean in both intervals
-/// beside an instant.
+/// beside an instant. Of springs and tendons it bounds the mean over every interval.
 #[derive(Clone, Debug, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct TensionLimitSpec {
@@ -43,6 +43,12 @@ pub struct TensionLimitSpec {
     /// All lumped muscles.
     #[serde(default)]
     pub muscles: Option<All>,
+    /// Name of a spring.
+    #[serde(default)]
+    pub spring: Option<String>,
+    /// Name of a tendon.
+    #[serde(default)]
+    pub tendon: Option<String>,
     /// Lower bound, SI unit N. With `0` the muscle is never slack.
     #[serde(default)]
     pub min: Option<Written<Force>>,
@@ -118,7 +124,7 @@ amount_limits! {
     MuscleMassLimitSpec: Mass, "kg";
 }
 
-/// The tension of one lumped muscle (`"muscle": name`) or of each (`"muscles": "all"`), in the middle of the intervals.
+/// The tension of one lumped muscle (`"muscle": name`), of each (`"muscles": "all"`), of a spring or of a tendon, in the intervals.
 #[derive(Clone, Debug, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct TensionCostSpec {
@@ -128,6 +134,12 @@ pub struct TensionCostSpec {
     /// All lumped muscles.
     #[serde(default)]
     pub muscles: Option<All>,
+    /// Name of a spring.
+    #[serde(default)]
+    pub spring: Option<String>,
+    /// Name of a tendon.
+    #[serde(default)]
+    pub tendon: Option<String>,
     /// Tension that is asked for, SI unit N; 0 where not written.
     #[serde(default)]
     pub at: Option<Written<Force>>,
@@ -182,6 +194,39 @@ fn lumped_muscles(
     }
 }
 
+/// The lumped muscles, the spring or the tendon of an entry.
+fn pulling(
+    muscles: (&Option<String>, Option<All>),
+    others: [&Option<String>; 2],
+    system: &System,
+    scope: &Scope<'_>,
+) -> Result<Vec<Pulling>, SceneError> {
+    let is_written = |of: &Option<String>| of.as_ref().map(|_| ());
+    scope.exactly_one([
+        ("muscle", is_written(muscles.0)),
+        ("muscles", muscles.1.map(|_| ())),
+        ("spring", is_written(others[0])),
+        ("tendon", is_written(others[1])),
+    ])?;
+    let kinds = [
+        (
+            "spring",
+            PartKind::Spring,
+            Pulling::Spring as fn(usize) -> Pulling,
+        ),
+        ("tendon", PartKind::Tendon, Pulling::Tendon),
+    ];
+    for ((key, kind, part), name) in kinds.into_iter().zip(others) {
+        if let Some(name) = name {
+            let expected = format!("the name of a {key}");
+            let index = scope.key(key).find(name, &kind.names(system), &expected)?;
+            return Ok(vec![part(index)]);
+        }
+    }
+    let muscles = lumped_muscles(muscles.0, muscles.1, system, scope)?;
+    Ok(muscles.into_iter().map(Pulling::Muscle).collect())
+}
+
 impl LimitEntry for StretchLimitSpec {
     fn limits(&self, system: &System, scope: &Scope<'_>) -> Result<Vec<Limit>, SceneError> {
         let muscles = names(&system.muscles, |muscle| &muscle.name);
@@ -202,9 +247,9 @@ impl LimitEntry for StretchLimitSpec {
 impl LimitEntry for TensionLimitSpec {
     fn limits(&self, system: &System, scope: &Scope<'_>) -> Result<Vec<Limit>, SceneError> {
         let bounds = bounds([&self.min, &self.max], scope)?;
-        let muscles = lumped_muscles(&self.muscle, self.muscles, system, scope)?;
-        let tension = |muscle| What::Tension(Pulling::Muscle(muscle));
-        Ok(limits_of(muscles.into_iter().map(tension), bounds))
+        let muscles = (&self.muscle, self.muscles);
+        let parts = pulling(muscles, [&self.spring, &self.tendon], system, scope)?;
+        Ok(limits_of(parts.into_iter().map(What::Tension), bounds))
     }
 }
 
@@ -317,10 +362,10 @@ impl CostEntry for TensionCostSpec {
     ) -> Result<Vec<QuantityCost>, SceneError> {
         let weight = weight(self.weight, scope)?;
         let at = self.at.as_ref().map_or(0.0, Written::value);
-        let muscles = lumped_muscles(&self.muscle, self.muscles, system, scope)?;
-        let tension = |muscle| Quantity::tension(Pulling::Muscle(muscle));
-        let cost = |muscle| square(tension(muscle), at, weight, during);
-        Ok(muscles.into_iter().map(cost).collect())
+        let muscles = (&self.muscle, self.muscles);
+        let parts = pulling(muscles, [&self.spring, &self.tendon], system, scope)?;
+        let cost = |part| square(Quantity::tension(part), at, weight, during);
+        Ok(parts.into_iter().map(cost).collect())
     }
 }
 
