@@ -3,9 +3,9 @@
 use crate::limits::{Ran, run, trunk};
 use serde_json::{Value, json};
 
-/// Foot and head of the normal (0.6, 0.8, 0) of a plane of the first segment, in mm in the reference configuration.
+/// Foot and head of the normal (0, 0.6, 0.8) of a plane of the first segment, in mm in the reference configuration.
 const FOOT: [f64; 3] = [-20.0, 30.0, 5.0];
-const NORMAL: [f64; 3] = [0.6, 0.8, 0.0];
+const NORMAL: [f64; 3] = [0.0, 0.6, 0.8];
 
 fn plane() -> Value {
     json!({ "body": "segment1", "point": FOOT.map(|x| format!("{x} mm")), "normal": NORMAL.map(|n| 5.0 * n) })
@@ -71,7 +71,7 @@ fn a_clearance_is_kept_followed_and_prescribed() {
     let most = distances_of_free.iter().copied().fold(0.0, f64::max);
     assert!(most - least > 1.0, "{least} {most}");
     // Prescribed in the middle of the motion.
-    let middle = 0.5 * (distances_of_free[0] + distances_of_free[5]);
+    let middle = 0.4 * least + 0.6 * most;
     let at = |value: f64| format!("{value} mm");
     let once = json!([{ "part": 0.5, "clearance": { "marker": "tip", "from": plane(), "min": at(middle), "max": at(middle) } }]);
     let met = run("solve", &bent(once), &[]);
@@ -95,7 +95,7 @@ fn a_clearance_is_kept_followed_and_prescribed() {
     };
     assert!(deviation(&near) < 0.9 * deviation(&free));
     let mut ended = bent(json!([]));
-    ended["control"]["goal"] = json!({ "free": true });
+    ended["control"].as_object_mut().unwrap().remove("goal");
     ended["control"]["objective"]["final"] = json!([{ "clearance": { "marker": "tip", "from": plane(), "at": at(middle), "weight": 1e9 } }]);
     let end = run("solve", &ended, &[]);
     end.is_solved();
@@ -105,7 +105,7 @@ fn a_clearance_is_kept_followed_and_prescribed() {
 #[test]
 fn a_clearance_is_recorded() {
     let simulated =
-        json!({ "duration": "0.2 s", "step": "2 ms", "voltages": { "muscle1": "1.5 kV" } });
+        json!({ "duration": "0.2 s", "step": "0.2 ms", "voltages": { "muscle3": "1.5 kV" } });
     let mut problem = bent(json!([]));
     problem.as_object_mut().unwrap().remove("control");
     problem["simulate"] = simulated;
@@ -118,17 +118,15 @@ fn a_clearance_is_recorded() {
         "recordings": [{
             "name": "swing",
             "columns": { "time [ms]": times, "gap [mm]": distances(&truth) },
-            "measured": [{ "clearance": "tip", "from": plane(), "column": "gap", "standard_deviation": "1 um" }],
-            "experiment": { "voltages": { "muscle1": "1.5 kV" } }
+            "measured": [{ "clearance": "tip", "from": plane(), "column": "gap", "standard_deviation": "10 um" }],
+            "experiment": { "voltages": { "muscle3": "1.5 kV" } }
         }],
         "step": "2 ms"
     });
     let found = run("solve", &problem, &[]);
     found.is_solved();
-    let summary = found.read("summary.json").to_string();
-    assert!(summary.contains("viscosity"), "{summary}");
-    let value = &found.read("summary.json")["identification"]["constants"][0]["value"];
-    let value = value.as_f64().unwrap_or_else(|| panic!("{summary}"));
+    let summary = found.read("summary.json");
+    let value = summary["constants"][0]["value"].as_f64().unwrap();
     assert!((value / 1e3 - 1.0).abs() < 1e-3, "{value}");
     // A plane belongs to a clearance, and is named where it is wrong.
     let measured = |entry: Value| {
