@@ -525,6 +525,30 @@ class Candidate(TypedDict):
     """Values that are other ones in the scene of this experiment, by their places."""
 
 
+ClearanceCost = TypedDict(
+    "ClearanceCost",
+    {
+        "at": "NotRequired[Quantity]",
+        "from": "Plane2",
+        "marker": "Text",
+        "weight": "NotRequired[float]",
+    },
+)
+"""The distance of a marker from a plane, on the side of its normal."""
+
+
+ClearanceLimit = TypedDict(
+    "ClearanceLimit",
+    {
+        "from": "Plane2",
+        "marker": "Text",
+        "max": "NotRequired[Quantity]",
+        "min": "NotRequired[Quantity]",
+    },
+)
+"""Limits of the distance of a marker from a plane, on the side of its normal: `min`, `max` or both."""
+
+
 Combined: TypeAlias = "Literal['sum', 'worst']"
 """The objective of several motions."""
 
@@ -707,6 +731,9 @@ class FinalMarker(TypedDict):
 
 class Final(TypedDict):
     """Marker or joint that ends near a place, or a measured quantity that ends near a value, in the last interval: exactly one of them."""
+
+    clearance: NotRequired[ClearanceCost]
+    """The distance of a marker from a plane at the end."""
 
     current: NotRequired[CurrentCost]
     """The current of sources at the end."""
@@ -917,6 +944,9 @@ class JointRateLimit(TypedDict):
 class Limit(TypedDict):
     """A path limit: exactly one of the keys but `part`. `min` and `max` may be equal with `part`: the quantity is then prescribed there."""
 
+    clearance: NotRequired[ClearanceLimit]
+    """Limits of the distance of a marker from a plane that is fixed to a body or the ground."""
+
     current: NotRequired[CurrentLimit]
     """Limits of the current of sources."""
 
@@ -1005,58 +1035,32 @@ class MarkerSpeedLimit(TypedDict):
     """Lower bound, SI unit m/s."""
 
 
-class Measured(TypedDict):
-    """A measured quantity: exactly one of `joint`, `joint_rate`, `marker`, `tension`, `charge`, `current`, `power`, `voltage`, `reaction_force`
-    and `reaction_torque`.
-    """
-
-    about: NotRequired[Sequence[float] | Numbers]
-    """The direction of a torque, in the ground frame; its length does not matter."""
-
-    along: NotRequired[Sequence[float] | Numbers]
-    """The direction of a place or a force, in the ground frame; its length does not matter."""
-
-    charge: NotRequired[Text]
-    """Charge that a source has brought to a lumped muscle, or to electrodes behind a resistor."""
-
-    column: NotRequired[Text]
-    """Header of the column, with or without its unit; the name of the joint, marker, part or source where not written."""
-
-    current: NotRequired[Text]
-    """Current of a source: of a lumped muscle that does not leak, or of anything behind a resistor."""
-
-    deviations: NotRequired[Text]
-    """Header of a column with a standard deviation of each reading."""
-
-    joint: NotRequired[Text]
-    """Coordinate of a revolute or prismatic joint."""
-
-    joint_rate: NotRequired[Text]
-    """Rate of the coordinate of a revolute or prismatic joint."""
-
-    marker: NotRequired[Text]
-    """Place of a marker along a direction."""
-
-    power: NotRequired[Text]
-    """Electrical power of the source of a lumped muscle behind a resistor."""
-
-    reaction_force: NotRequired[Text]
-    """Force from the parent of a joint on its child along a direction, as in limits; of joints in no loop."""
-
-    reaction_torque: NotRequired[Text]
-    """Torque from the parent of a joint on its child about a direction, about the point of the joint."""
-
-    standard_deviation: NotRequired[Quantity]
-    """Standard deviation of the readings, in a unit of the quantity; where neither it nor `deviations` is written, the residuals tell it."""
-
-    tension: NotRequired[Text]
-    """Force with which a lumped muscle, a spring or a tendon pulls its ends together, of all its laws, voltage and viscosity."""
-
-    voltage: NotRequired[Text]
-    """Voltage of the electrodes behind the resistor of a source."""
-
-    weights: NotRequired[Text]
-    """Header of a column with a weight of each reading: the variance of a reading is in inverse proportion to it."""
+Measured = TypedDict(
+    "Measured",
+    {
+        "about": "NotRequired[Sequence[float] | Numbers]",
+        "along": "NotRequired[Sequence[float] | Numbers]",
+        "charge": "NotRequired[Text]",
+        "clearance": "NotRequired[Text]",
+        "column": "NotRequired[Text]",
+        "current": "NotRequired[Text]",
+        "deviations": "NotRequired[Text]",
+        "from": "NotRequired[Plane2]",
+        "joint": "NotRequired[Text]",
+        "joint_rate": "NotRequired[Text]",
+        "marker": "NotRequired[Text]",
+        "power": "NotRequired[Text]",
+        "reaction_force": "NotRequired[Text]",
+        "reaction_torque": "NotRequired[Text]",
+        "standard_deviation": "NotRequired[Quantity]",
+        "tension": "NotRequired[Text]",
+        "voltage": "NotRequired[Text]",
+        "weights": "NotRequired[Text]",
+    },
+)
+"""A measured quantity: exactly one of `joint`, `joint_rate`, `marker`, `tension`, `charge`, `current`, `power`, `voltage`, `reaction_force`,
+`reaction_torque` and `clearance`.
+"""
 
 
 class Motion(TypedDict):
@@ -1255,6 +1259,19 @@ class Path(TypedDict):
 
     z: NotRequired[Signal]
     """Along z."""
+
+
+class Plane2(TypedDict):
+    """A plane that is fixed to a body, or to the ground where none is named."""
+
+    body: NotRequired[Text]
+    """Name of the body."""
+
+    normal: Sequence[float] | Numbers
+    """Its normal in the reference configuration, of any length; distances on its side are positive."""
+
+    point: Sequence[Quantity] | Numbers
+    """A point of the plane in the reference configuration, SI unit m."""
 
 
 class PowerCost(TypedDict):
@@ -1628,6 +1645,9 @@ class Track(TypedDict):
     """Marker or joints that follow a reference, or a measured quantity whose squared deviation from a value, times `weight`, is integrated over
     the time in s: exactly one of them.
     """
+
+    clearance: NotRequired[ClearanceCost]
+    """The distance of a marker from a plane along the motion."""
 
     current: NotRequired[CurrentCost]
     """The current of sources along the motion."""

@@ -9,7 +9,7 @@ const SIZES: [(&str, usize, usize); 26] = [
     ("app", 9600, 55),
     ("control", 10150, 57),
     ("coordinates", 3500, 19),
-    ("dynamics", 11100, 50),
+    ("dynamics", 11100, 51),
     ("element", 3600, 18),
     ("energy", 2200, 16),
     ("feedback", 850, 5),
