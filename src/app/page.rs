@@ -1,15 +1,14 @@
 //! Common texts of all pages: status, notes, and the problem.
 
 use crate::app::summary::Summary;
-use crate::files::{Loaded, compact, lay_out};
+use crate::files::{Loaded, lay_out};
 use crate::report::PageContent;
 
 /// Names and texts of problem and scene as they were read, overrides applied.
 pub(super) fn asked(loaded: &Loaded) -> Vec<(String, String)> {
-    let text = |written: &str| lay_out(&compact(written));
-    let mut documents = vec![("Problem".to_owned(), text(&loaded.problem))];
+    let mut documents = vec![("Problem".to_owned(), lay_out(&loaded.problem))];
     if loaded.scene_path.is_some() {
-        documents.push(("Scene".to_owned(), text(&loaded.scene)));
+        documents.push(("Scene".to_owned(), lay_out(&loaded.scene)));
     }
     documents
 }

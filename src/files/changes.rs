@@ -1,5 +1,6 @@
 //! Overrides that a study or a sweep writes, with the places that they are from.
 
+use crate::files::json::set::Override;
 use crate::files::study::ChangesSpec;
 use crate::files::{JsonPath, SceneError, Scope};
 use serde_json::Value;
@@ -35,6 +36,12 @@ impl<'a> Changes<'a> {
         self.words.push(format!("{key}={}", word(value)));
         self.from.push((place, scope));
         Ok(())
+    }
+
+    /// The overrides, as they are read again.
+    pub(crate) fn overrides(&self) -> Result<Vec<Override>, SceneError> {
+        let each = self.words.iter();
+        each.map(|written| Override::parse(written)).collect()
     }
 
     /// Moves an error of an override to its place in that file; any other stays where it is.

@@ -30,8 +30,7 @@ pub(crate) use columns::Columns;
 pub(crate) use json::document::Document;
 pub use json::error::{SceneError, lines, message, note, printable, printable_json};
 pub(crate) use json::layout::lay_out;
-pub(crate) use json::locate::JsonPath;
-pub(crate) use json::scan::compact;
+pub(crate) use json::path::JsonPath;
 pub(crate) use json::scope::Scope;
 pub(crate) use json::source::is_standard_input;
 pub(crate) use scene::build::LONGEST_CHAIN;
@@ -45,7 +44,6 @@ use std::path::{Path, PathBuf};
 
 use crate::control::Motion;
 use crate::control::problem::{Disturbed, Duration, Regulator, Task};
-use crate::files::json::scan::{Entry, Scanner, string};
 use crate::files::json::set::Override;
 use crate::files::problem::ahead::add_plan;
 use crate::files::problem::build::build_problem;
@@ -78,7 +76,7 @@ pub struct Loaded {
     pub disturbed: Vec<Disturbed>,
     /// File of the scene; `None` where the problem holds the scene itself.
     pub scene_path: Option<PathBuf>,
-    /// The JSON text of the scene as written, overrides applied.
+    /// The JSON text of the scene without blanks, overrides applied.
     pub scene: String,
     /// That of the problem.
     pub problem: String,
@@ -94,22 +92,12 @@ impl Loaded {
 
     /// The text of an object of the problem without one of its keys; `null` where there is no such object.
     pub(crate) fn entry_without(&self, entry: &str, key: &str) -> String {
-        let text = &self.problem;
-        let Some(found) = Scanner::of(text).entry(entry) else {
-            return "null".to_owned();
-        };
-        let inside = Scanner::from(text, found.value.start);
-        let is_key = |one: &Entry| {
-            let found = one.key.clone().and_then(|found| string(text, found));
-            found.as_deref() == Some(key)
-        };
-        let left = inside.entries().filter(|one| !is_key(one));
-        let written = |one: Entry| {
-            let start = one.key.map_or(one.value.start, |key| key.start);
-            &text[start..one.value.end]
-        };
-        let left: Vec<&str> = left.map(written).collect();
-        format!("{{{}}}", left.join(","))
+        let mut problem: Value = serde_json::from_str(&self.problem).unwrap_or_default();
+        let mut entry = problem[entry].take();
+        if let Some(entries) = entry.as_object_mut() {
+            entries.remove(key);
+        }
+        entry.to_string()
     }
 }
 
@@ -159,9 +147,7 @@ fn problem_of(
         changes,
     } in list
     {
-        let own = changes.words.iter().map(|written| Override::parse(written));
-        let own: Vec<Override> = own.collect::<Result<_, _>>()?;
-        let all: Vec<Override> = of_scene.iter().cloned().chain(own).collect();
+        let all = [&of_scene[..], &changes.overrides()?].concat();
         let loaded = alone(of_motion, &all, &ChangesSpec::default());
         let loaded = loaded.map_err(|error| changes.at_fault(error, &document.path))?;
         let Task::Control(control) = &loaded.task else {
@@ -182,7 +168,7 @@ fn problem_of(
     }
     Ok(Loaded {
         task: Task::Motions(Box::new(together(each, &document)?)),
-        problem: document.text().to_owned(),
+        problem: document.json().to_string(),
         ..first
     })
 }
@@ -192,10 +178,7 @@ fn with_changed_scenes(document: &Document, of_scene: &[Override]) -> Result<Loa
     let scenes = changed_scenes(document)?;
     let mut loaded = alone(document.clone(), of_scene, &ChangesSpec::default())?;
     for of in scenes {
-        let own = of.changes.words.iter();
-        let own = own.map(|written| Override::parse(written));
-        let own: Vec<Override> = own.collect::<Result<_, _>>()?;
-        let all: Vec<Override> = of_scene.iter().cloned().chain(own).collect();
+        let all = [of_scene, &of.changes.overrides()?].concat();
         let changed = alone(document.clone(), &all, &of.set);
         let changed = changed.map_err(|error| of.changes.at_fault(error, &document.path))?;
         of.add(&mut loaded.task, (changed.system, changed.task), document)?;
@@ -219,7 +202,7 @@ fn alone(
 ) -> Result<Loaded, SceneError> {
     let scene_apart = document
         .entry("scene")
-        .is_some_and(|scene| scene.starts_with('"'));
+        .is_some_and(|scene| scene.string().is_some());
     if !scene_apart {
         for change in of_scene {
             change.apply(&mut document)?;
@@ -234,7 +217,10 @@ fn alone(
             (
                 written,
                 system,
-                document.entry("scene").unwrap_or_default().to_owned(),
+                document
+                    .entry("scene")
+                    .map(|scene| scene.to_string())
+                    .unwrap_or_default(),
                 None,
                 None,
             )
@@ -250,7 +236,7 @@ fn alone(
             (
                 written,
                 system,
-                scene.text().to_owned(),
+                scene.json().to_string(),
                 Some(file),
                 Some(scene),
             )
@@ -284,7 +270,7 @@ fn alone(
         system,
         scene_path,
         scene,
-        problem: document.text().to_owned(),
+        problem: document.json().to_string(),
     })
 }
 

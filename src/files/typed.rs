@@ -3,7 +3,7 @@
 use crate::files::Loaded;
 use crate::files::json::document::Document;
 use crate::files::json::error::{Mistake, SceneError, nearest};
-use crate::files::json::locate::Step;
+use crate::files::json::path::Step;
 use crate::files::json::scope::Scope;
 use crate::files::json::set::{Override, resolved};
 use crate::files::problem::state::A_SOURCE;

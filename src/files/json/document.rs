@@ -1,43 +1,34 @@
-//! A JSON file as text and as values: reading, overrides, and errors with their place in it.
+//! A JSON file: reading, overrides, and errors with their place in it.
 
 use serde::de::DeserializeOwned;
+use std::borrow::Cow;
 use std::cell::RefCell;
+use std::collections::HashSet;
 use std::ops::Range;
 use std::path::{Path, PathBuf};
 
 use crate::files::json::error::{Excerpt, Mistake, SceneError, is_printable, nearest};
-use crate::files::json::locate::{JsonPath, around, find, repeated, wrong_string};
-use crate::files::json::reader::parse;
-use crate::files::json::scan::Scanner;
+use crate::files::json::path::JsonPath;
 use crate::files::json::source::{
     NoBytes, check_json, is_standard_input, of_file, of_standard_input, unmarked,
 };
-use crate::files::json::wording::wording;
+use crate::files::json::tree::{Json, Tree};
 
 /// A JSON file.
 #[derive(Clone, Debug)]
 pub(crate) struct Document {
     /// Path from which it was read.
     pub(crate) path: PathBuf,
-    /// Places set on the command line.
-    pub(crate) set: Vec<Set>,
-    /// Places of the text with overrides whose values stand elsewhere in the file, and where.
+    /// Places with values that stand elsewhere in the file, and where.
     pub(crate) moved: Vec<(JsonPath, JsonPath)>,
-    /// As it was read.
-    text: String,
-    /// The same with overrides, and with parts from another file.
-    changed: Option<String>,
+    /// Its values, with overrides and with parts from another file.
+    pub(crate) tree: Tree,
+    /// Bytes of the file; what is put into its tree stands behind them.
+    length: usize,
+    /// Places that were set as they were typed, with the bytes where their values stand.
+    set: Vec<(Range<usize>, JsonPath)>,
     /// Notes on units that were taken for granted while it was read.
     notes: RefCell<Vec<String>>,
-}
-
-/// A place that was set.
-#[derive(Clone, Debug)]
-pub(crate) struct Set {
-    /// In the document: the place itself, or the first one on the way to it that was not there.
-    pub(crate) place: JsonPath,
-    /// As it was typed.
-    pub(crate) typed: JsonPath,
 }
 
 impl Document {
@@ -55,29 +46,29 @@ impl Document {
     }
 
     fn from_bytes(path: &Path, bytes: Result<Vec<u8>, NoBytes>) -> Result<Self, SceneError> {
-        let document = Self::empty(path);
-        let whole = JsonPath::default();
+        let wrong = |found: String, expected: &str| {
+            Self::new(path, String::new()).mistake(&JsonPath::default(), found, expected)
+        };
         let bytes = bytes.map_err(|error| match error {
             NoBytes::Unreadable(error) => {
-                let found = format!("no readable file ({error})");
-                document.mistake(&whole, found, "a JSON file")
+                wrong(format!("no readable file ({error})"), "a JSON file")
             }
-            NoBytes::TooLarge(found, expected) => document.mistake(&whole, found, expected),
+            NoBytes::TooLarge(found, expected) => wrong(found, &expected),
         })?;
         let text = String::from_utf8(bytes).map_err(|error| {
             let found = format!("a file that is not UTF-8 text ({})", error.utf8_error());
-            document.mistake(&whole, found, "a JSON file")
+            wrong(found, "a JSON file")
         })?;
         Self::of_text(path, text)
     }
 
-    fn empty(path: &Path) -> Self {
+    fn new(path: &Path, text: String) -> Self {
         Self {
             path: path.to_owned(),
-            set: Vec::new(),
             moved: Vec::new(),
-            text: String::new(),
-            changed: None,
+            length: text.len(),
+            tree: Tree::of(text),
+            set: Vec::new(),
             notes: RefCell::default(),
         }
     }
@@ -97,33 +88,27 @@ impl Document {
 
     /// Takes a text for that of a file, which need not exist.
     pub(crate) fn of_text(path: &Path, text: String) -> Result<Self, SceneError> {
-        let mut document = Self::empty(path);
-        document.text = unmarked(text);
-        check_json(&document.text).map_err(|error| document.syntax_mistake(&error))?;
+        let document = Self::new(path, unmarked(text));
+        document.refuse_broken()?;
+        document.refuse_infinite()?;
         document.refuse_repeated_keys()?;
         Ok(document)
     }
 
-    /// The text, with overrides.
-    pub(crate) fn text(&self) -> &str {
-        self.changed.as_deref().unwrap_or(&self.text)
+    /// The whole.
+    pub(crate) fn json(&self) -> Json<'_> {
+        self.tree.json()
     }
 
-    /// The text of the value under a key, with overrides.
-    pub(crate) fn entry(&self, key: &str) -> Option<&str> {
-        let entry = Scanner::of(self.text()).entry(key)?;
-        Some(&self.text()[entry.value])
+    /// The value under a key.
+    pub(crate) fn entry(&self, key: &str) -> Option<Json<'_>> {
+        self.json().entry(key)
     }
 
-    /// Puts a text in place of some bytes of it; positions of mistakes stay those of the text that was read.
-    pub(crate) fn replace(&mut self, bytes: Range<usize>, by: &str) {
-        let text = self.text();
-        self.changed = Some([&text[..bytes.start], by, &text[bytes.end..]].concat());
-    }
-
-    /// Takes another text of the same document; positions of mistakes stay those of the text that was read.
-    pub(crate) fn complete(&mut self, text: String) {
-        self.changed = Some(text);
+    /// Puts a value in a place, which was typed.
+    pub(crate) fn set(&mut self, place: &JsonPath, value: &str, typed: &JsonPath) {
+        let bytes = self.tree.put(&place.0, value);
+        self.set.push((bytes, typed.clone()));
     }
 
     /// A path that is relative to this file.
@@ -137,16 +122,13 @@ impl Document {
     /// The values as a type, or the first error.
     pub(crate) fn parse<T: DeserializeOwned>(&self) -> Result<T, SceneError> {
         self.refuse_unprintable()?;
-        parse(self.text()).map_err(|(place, error)| {
-            let wording = wording(place.last_key(), &error.to_string());
-            let at_key = wording.at_key;
-            self.describe(
-                &place,
-                wording.found,
-                wording.expected,
-                wording.nearest,
-                at_key,
-            )
+        self.json().read().map_err(|misfit| {
+            let (place, is_key) = (misfit.place(), misfit.is_of_key());
+            Mistake {
+                nearest: misfit.nearest,
+                ..self.describe(&place, misfit.found, misfit.expected, is_key)
+            }
+            .into()
         })
     }
 
@@ -157,7 +139,7 @@ impl Document {
         found: impl Into<String>,
         expected: impl Into<String>,
     ) -> SceneError {
-        self.describe(place, found.into(), expected.into(), None, false)
+        self.describe(place, found, expected, false).into()
     }
 
     /// A wrong name at a place, with the nearest right one.
@@ -168,36 +150,57 @@ impl Document {
         expected: impl Into<String>,
         candidates: impl IntoIterator<Item = &'a str>,
     ) -> SceneError {
-        let (found, nearest) = (format!("{name:?}"), nearest(name, candidates));
         // A name that is a key of the file is pointed at there.
         let at_key = place.last_key() == Some(name);
-        self.describe(place, found, expected.into(), nearest, at_key)
+        Mistake {
+            nearest: nearest(name, candidates),
+            ..self.describe(place, format!("{name:?}"), expected, at_key)
+        }
+        .into()
     }
 
+    /// Describes a wrong value, or its key.
     fn describe(
         &self,
         place: &JsonPath,
-        found: String,
-        expected: String,
-        nearest: Option<String>,
+        found: impl Into<String>,
+        expected: impl Into<String>,
         at_key: bool,
-    ) -> SceneError {
-        let place = &self.in_file(place);
-        let mut set = self.set.iter().rev();
-        let overridden = set.find(|set| place.is_within(&set.place));
-        let overridden = overridden.map(|set| set.typed.clone());
-        let span = match overridden {
-            Some(_) => None,
-            None => self.span(place, at_key),
-        };
-        self.error(
-            place.to_string(),
-            found,
-            expected,
-            nearest,
-            span,
-            overridden,
-        )
+    ) -> Mistake {
+        let (span, overridden) = self.source(place, at_key);
+        Mistake {
+            file: self.path.display().to_string(),
+            path: self.in_file(place).to_string(),
+            found: found.into(),
+            expected: expected.into(),
+            nearest: None,
+            source: span.map(|span| self.excerpt(span)),
+            overridden: overridden.cloned(),
+        }
+    }
+
+    fn excerpt(&self, span: Range<usize>) -> Excerpt {
+        Excerpt::of(&self.tree.text()[..self.length], span)
+    }
+
+    /// Bytes in the file of a value (or its key), or of the nearest value around it; the place that was typed where it is an override.
+    fn source(&self, place: &JsonPath, at_key: bool) -> (Option<Range<usize>>, Option<&JsonPath>) {
+        let (mut at, mut found) = (self.json(), (None, None));
+        let mut steps = place.0.iter();
+        loop {
+            let (span, next) = (at.span(), steps.next());
+            let mut set = self.set.iter();
+            if span.start < self.length {
+                let is_key = at_key && next.is_none() && !at.written_key().is_empty();
+                found = (Some(if is_key { at.key_span() } else { span }), None);
+            } else if let Some((_, typed)) = set.find(|(bytes, _)| bytes.contains(&span.start)) {
+                found = (None, Some(typed));
+            }
+            match next.and_then(|step| at.step(step)) {
+                Some(inside) => at = inside,
+                None => return found,
+            }
+        }
     }
 
     /// The place in the file of a value that was moved.
@@ -209,99 +212,73 @@ impl Document {
         )
     }
 
-    fn error(
-        &self,
-        path: String,
-        found: String,
-        expected: String,
-        nearest: Option<String>,
-        span: Option<Range<usize>>,
-        overridden: Option<JsonPath>,
-    ) -> SceneError {
-        let file = self.path.display().to_string();
-        Mistake {
-            source: span.map(|span| Excerpt::of(&self.text, span)),
-            file,
-            path,
-            found,
-            expected,
-            nearest,
-            overridden,
+    /// A text that is no JSON has a line and a column, and the place of a number that is the reason.
+    fn refuse_broken(&self) -> Result<(), SceneError> {
+        let text = self.tree.text();
+        let Err(error) = check_json(text) else {
+            return Ok(());
+        };
+        if error.to_string().starts_with("number out of range") {
+            self.refuse_infinite()?;
         }
-        .into()
-    }
-
-    /// Bytes of a value (or its key), or of the nearest value around it.
-    fn span(&self, place: &JsonPath, at_key: bool) -> Option<Range<usize>> {
-        let mut place = place.clone();
-        let mut at_key = at_key;
-        loop {
-            if let Some(found) = find(&self.text, &place) {
-                return Some(found.key.filter(|_| at_key).unwrap_or(found.value));
-            }
-            place = place.parent()?;
-            at_key = false;
-        }
-    }
-
-    /// A text that is no JSON: line and column, and the path where a value is the reason.
-    fn syntax_mistake(&self, error: &serde_json::Error) -> SceneError {
-        let line_start = self
-            .text
+        let before = text
             .split_inclusive('\n')
-            .take(error.line().saturating_sub(1))
-            .map(str::len)
-            .sum::<usize>();
-        let mut at = (line_start + error.column().saturating_sub(1)).min(self.text.len());
-        while !self.text.is_char_boundary(at) {
+            .take(error.line().saturating_sub(1));
+        let line_start = before.map(str::len).sum::<usize>();
+        let mut at = (line_start + error.column().saturating_sub(1)).min(text.len());
+        while !text.is_char_boundary(at) {
             at -= 1;
         }
-        let is_infinite = error.to_string().starts_with("number out of range");
-        if is_infinite && let Some((place, range)) = around(&self.text, at) {
-            let written = &self.text[range];
-            return self.mistake(
+        let end = text[at..].chars().next().map_or(at, |c| at + c.len_utf8());
+        let found = format!("a mistake in the JSON text ({error})");
+        Err(Mistake {
+            source: Some(self.excerpt(at..end)),
+            ..self.describe(&JsonPath::default(), found, "JSON", false)
+        }
+        .into())
+    }
+
+    /// Numbers beyond all that are computed with have no place in a file.
+    fn refuse_infinite(&self) -> Result<(), SceneError> {
+        let infinite = self.json().find_map(&|one| {
+            let number = Some(one.written()).filter(|_| one.first() != Some('"'));
+            number.filter(|number| number.parse().is_ok_and(f64::is_infinite))
+        });
+        infinite.map_or(Ok(()), |(place, written)| {
+            Err(self.mistake(
                 &place,
                 format!("{written}, which is not finite"),
                 "a finite number",
-            );
-        }
-        let end = self.text[at..]
-            .chars()
-            .next()
-            .map_or(at, |c| at + c.len_utf8());
-        let found = format!("a mistake in the JSON text ({error})");
-        self.error(
-            String::new(),
-            found,
-            "JSON".into(),
-            None,
-            Some(at..end),
-            None,
-        )
+            ))
+        })
     }
 
     /// Names are shown in messages, figures, tables and pages: what cannot be printed has no place in any text.
     fn refuse_unprintable(&self) -> Result<(), SceneError> {
-        let Some(found) = wrong_string(self.text(), is_printable) else {
+        let is_wrong = |text: &Cow<'_, str>| !text.chars().all(is_printable);
+        let wrong = self.json().find_map(&|one| {
+            let key = one.key().filter(is_wrong).map(|key| (key, true));
+            key.or_else(|| Some((one.string().filter(is_wrong)?, false)))
+        });
+        let Some((place, (says, is_key))) = wrong else {
             return Ok(());
         };
-        let expected = "a text without control characters".to_owned();
-        Err(self.describe(
-            &found.place,
-            format!("the text {:?}", found.says),
-            expected,
-            None,
-            found.is_key,
-        ))
+        let found = format!("the text {says:?}");
+        let expected = "a text without control characters";
+        Err(self.describe(&place, found, expected, is_key).into())
     }
 
     /// JSON readers keep the last of two equal keys without a word; here that is an error.
     fn refuse_repeated_keys(&self) -> Result<(), SceneError> {
-        let Some((place, key)) = repeated(&self.text) else {
+        let repeated = self.json().find_map(&|one| {
+            let mut seen = HashSet::new();
+            let mut keys = one.parts().filter_map(Json::key);
+            keys.find(|key| !seen.insert(key.clone()))
+        });
+        let Some((place, key)) = repeated else {
             return Ok(());
         };
-        let what = format!("the key {:?} twice", place.last_key().unwrap_or_default());
-        let expected = "each key once".into();
-        Err(self.error(place.to_string(), what, expected, None, Some(key), None))
+        let (place, found) = (place.key(&key), format!("the key {key:?} twice"));
+        Err(self.describe(&place, found, "each key once", true).into())
     }
 }

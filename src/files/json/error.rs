@@ -5,7 +5,7 @@ use std::borrow::Cow;
 use std::fmt;
 use std::ops::Range;
 
-use crate::files::json::locate::JsonPath;
+use crate::files::json::path::JsonPath;
 
 /// An error in a file or in an override; [`fmt::Display`] is one readable line, [`SceneError::excerpt`] the text around it.
 #[derive(Clone, Debug)]

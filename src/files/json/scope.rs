@@ -6,7 +6,7 @@ use std::path::PathBuf;
 
 use crate::files::json::document::Document;
 use crate::files::json::error::SceneError;
-use crate::files::json::locate::JsonPath;
+use crate::files::json::path::JsonPath;
 use crate::files::units::quantity::{PhysicalQuantity, Quantity};
 
 /// A place in a document.
@@ -67,38 +67,34 @@ impl<'a> Scope<'a> {
 
     /// The same, or else in the current folder: results of earlier runs.
     pub(crate) fn file_or_result(&self, path: &str, expected: &str) -> Result<PathBuf, SceneError> {
-        let file = self.near(path).into_iter().find(|file| file.is_file());
-        file.ok_or_else(|| self.missing(path, "file", expected))
+        self.result(path, None, expected)
     }
 
     /// The `solution.json` that a path names, or that is in the folder that it names; in the same places.
     pub(crate) fn solution_file(&self, path: &str, expected: &str) -> Result<PathBuf, SceneError> {
-        let mut files = self
-            .near(path)
-            .into_iter()
-            .map(|place| match place.is_dir() {
-                true => place.join("solution.json"),
-                false => place,
-            });
-        let file = files.find(|file| file.is_file());
-        file.ok_or_else(|| self.missing(path, "solution.json", expected))
+        self.result(path, Some("solution.json"), expected)
     }
 
     /// The `feedback.json` that a path names, or that is in the folder that it names; in the same places.
     pub(crate) fn feedback_file(&self, path: &str) -> Result<PathBuf, SceneError> {
-        let named = |place: PathBuf| match place.is_dir() {
-            true => place.join("feedback.json"),
-            false => place,
-        };
-        let mut files = self.near(path).into_iter().map(named);
-        let file = files.find(|file| file.is_file());
         let expected = "the path of the feedback.json of an optimum, or of its folder";
-        file.ok_or_else(|| self.missing(path, "feedback.json", expected))
+        self.result(path, Some("feedback.json"), expected)
     }
 
-    /// Beside the document, and in the current folder.
-    fn near(&self, path: &str) -> [PathBuf; 2] {
-        [self.document.beside(path), PathBuf::from(path)]
+    /// A file beside the document or in the current folder, or the one of a name in a folder there.
+    fn result(
+        &self,
+        path: &str,
+        name: Option<&str>,
+        expected: &str,
+    ) -> Result<PathBuf, SceneError> {
+        let places = [self.document.beside(path), PathBuf::from(path)];
+        let mut files = places.into_iter().map(|place| match name {
+            Some(name) if place.is_dir() => place.join(name),
+            _ => place,
+        });
+        let file = files.find(|file| file.is_file());
+        file.ok_or_else(|| self.missing(path, name.unwrap_or("file"), expected))
     }
 
     fn missing(&self, path: &str, kind: &str, expected: &str) -> SceneError {

@@ -1,13 +1,13 @@
 //! Overrides from the command line: `control.intervals=80`, `scene.muscles[0].material=silicone`, `scene.springs.stay.stiffness=200`.
 
 use serde_json::Value;
-use std::ops::Range;
+use std::borrow::Cow;
 
-use crate::files::json::document::{Document, Set};
+use crate::files::json::document::Document;
 use crate::files::json::error::{Mistake, SceneError};
-use crate::files::json::locate::{JsonPath, Step};
-use crate::files::json::scan::{Scanner, string};
+use crate::files::json::path::{JsonPath, Step};
 use crate::files::json::scope::list;
+use crate::files::json::tree::{Json, Tree};
 
 /// Longest path of an override; files are not nested deeper.
 const DEEPEST: usize = 64;
@@ -80,21 +80,21 @@ impl Override {
 
     /// Puts the value in its place.
     pub(crate) fn apply(&self, document: &mut Document) -> Result<(), SceneError> {
-        let Slot {
-            place,
-            bytes,
-            missing,
-            wrong,
-        } = slot(document.text(), &self.place);
-        document.set.push(Set {
-            place,
-            typed: self.typed.clone(),
-        });
-        if let Some((found, expected)) = wrong {
-            let found = format!("{found} in {:?}", self.written);
-            return Err(document.mistake(&self.place, found, expected));
+        let way = Way::to(&self.place, document.json());
+        if let Some((found, expected)) = way.obstacle(&self.place) {
+            return Err(Mistake {
+                file: document.path.display().to_string(),
+                path: self.place.to_string(),
+                found: format!("{found} in {:?}", self.written),
+                expected,
+                nearest: None,
+                source: None,
+                overridden: Some(self.typed.clone()),
+            }
+            .into());
         }
-        document.replace(bytes, &missing.written(&self.value));
+        let place = way.whole();
+        document.set(&place, &self.value.to_string(), &self.typed);
         Ok(())
     }
 }
@@ -115,169 +115,118 @@ fn typed_wrong(place: Option<JsonPath>, found: String, expected: &str) -> SceneE
 
 /// The value in a place of a text, where there is one.
 pub(crate) fn value_at(text: &str, place: &JsonPath) -> Option<Value> {
-    let slot = slot(text, place);
-    let is_there = slot.wrong.is_none() && slot.missing.keys.is_empty();
-    is_there.then(|| serde_json::from_str(&text[slot.bytes]).ok())?
+    let tree = Tree::of(text.to_owned());
+    let way = Way::to(place, tree.json());
+    way.missing.is_empty().then(|| way.end.read().ok())?
 }
 
 /// A place of a text with the entries of lists by their indices.
 pub(crate) fn resolved(text: &str, place: &JsonPath) -> JsonPath {
-    let mut out = slot(text, place).place;
-    let known = out.0.len();
-    out.0.extend(place.0[known..].iter().cloned());
-    out
+    Way::to(place, Tree::of(text.to_owned()).json()).whole()
 }
 
 /// Parts of a scene for which a chain stands.
 const OF_CHAIN: [&str; 3] = ["bodies", "joints", "muscles"];
 
-/// Destination of a value.
-struct Slot {
-    /// The place itself, entries of lists by their indices, or the first place on the way to it that is not there yet.
-    place: JsonPath,
-    /// The bytes in whose place it is written.
-    bytes: Range<usize>,
-    missing: Missing,
-    /// Value that was found in place of a way there, and the value expected.
-    wrong: Option<(String, String)>,
+/// The way to a place, as far as there are values.
+struct Way<'a> {
+    /// The steps that are there, entries of lists by their indices.
+    steps: Vec<Step>,
+    /// The value to which they lead.
+    end: Json<'a>,
+    /// The other steps.
+    missing: &'a [Step],
 }
 
-/// Missing part of the way to a value.
-#[derive(Default)]
-struct Missing {
-    /// Keys, one inside the other.
-    keys: Vec<String>,
-    /// True if there are other keys next to the first one.
-    has_others: bool,
-}
-
-impl Missing {
-    /// The text that makes the way, and stands for the value at its end.
-    fn written(&self, value: &Value) -> String {
-        let key = |key: &String| format!("{}:", Value::from(key.as_str()));
-        let way: Vec<String> = self.keys.iter().map(key).collect();
-        let inside = self.keys.len().saturating_sub(1);
-        let comma = if self.has_others { "," } else { "" };
-        format!("{}{value}{}{comma}", way.join("{"), "}".repeat(inside))
-    }
-}
-
-/// Finds the destination of a value: a missing way is made, and a key that has no meaning is found when the file is read.
-fn slot(text: &str, place: &JsonPath) -> Slot {
-    let mut slot = Slot {
-        place: JsonPath::default(),
-        bytes: Scanner::of(text).value().unwrap_or_default(),
-        missing: Missing::default(),
-        wrong: None,
-    };
-    for (position, step) in place.0.iter().enumerate() {
-        let inside = Scanner::from(text, slot.bytes.start);
-        let opens = inside.peek();
-        let parent = match position {
-            0 => "the file".to_owned(),
-            _ => JsonPath(place.0[..position].to_vec()).to_string(),
+impl<'a> Way<'a> {
+    fn to(place: &'a JsonPath, whole: Json<'a>) -> Self {
+        let mut way = Self {
+            steps: Vec::new(),
+            end: whole,
+            missing: &place.0,
         };
-        let (here, value) = match (step, opens) {
-            (Step::Key(key), Some(b'{')) => (step.clone(), inside.entry(key)),
-            (Step::Key(key), Some(b'[')) => {
-                let index = index_of(text, inside, key);
-                let entry = index.and_then(|index| inside.entries().nth(index));
-                (index.map_or(step.clone(), Step::Index), entry)
-            }
-            (Step::Index(index), Some(b'[')) => (step.clone(), inside.entries().nth(*index)),
-            _ => (step.clone(), None),
-        };
-        slot.place.0.push(here);
-        match value {
-            Some(entry) => slot.bytes = entry.value,
-            None if opens == Some(b'{') && matches!(step, Step::Key(_)) => {
-                return slot.made(text, inside, &place.0[position..]);
-            }
-            None => {
-                slot.wrong = Some(no_way(text, inside, step, &parent));
-                return slot;
-            }
+        while let Some((step, further)) = way.missing.split_first() {
+            let index = step.key().and_then(|name| index_of(way.end, name));
+            let step = index.map_or_else(|| step.clone(), Step::Index);
+            let Some(next) = way.end.step(&step) else {
+                break;
+            };
+            way.steps.push(step);
+            (way.end, way.missing) = (next, further);
         }
+        way
     }
-    slot
-}
 
-impl Slot {
-    /// In an object without the first of these steps.
-    fn made(mut self, text: &str, object: Scanner<'_>, steps: &[Step]) -> Self {
-        if let [Step::Key(key), _, ..] = steps
+    /// The place with entries of lists by their indices.
+    fn whole(&self) -> JsonPath {
+        JsonPath([&self.steps[..], self.missing].concat())
+    }
+
+    /// The value found in place of a way, and the value expected: objects that are missing are made, and a key without a meaning is found
+    /// when the file is read.
+    fn obstacle(&self, place: &JsonPath) -> Option<(String, String)> {
+        self.missing.first()?;
+        let end = self.end;
+        let is_object = end.first() == Some('{');
+        if let ([Step::Key(key), _, ..], true) = (self.missing, is_object)
             && OF_CHAIN.contains(&key.as_str())
-            && object.entry("chain").is_some()
+            && end.entry("chain").is_some()
         {
             let found = format!("an entry of {key:?}, which a chain stands for,");
             let expected = "an entry of the chain, such as scene.chain.muscles.arm; `proboscis expand` writes its parts out";
-            self.wrong = Some((found, expected.to_owned()));
-            return self;
+            return Some((found, expected.to_owned()));
         }
-        for (position, step) in steps.iter().enumerate() {
-            match step {
-                Step::Key(key) => self.missing.keys.push(key.clone()),
-                Step::Index(index) => {
-                    let parent = JsonPath(steps[..position].to_vec());
-                    let expected = format!("no index, as {parent} is no list");
-                    self.wrong = Some((format!("the index {index}"), expected));
-                    return self;
-                }
+        let missing = match is_object {
+            true => self.missing.iter().position(|step| step.key().is_none())?,
+            false => 0,
+        };
+        let parent = match (missing, &place.0[..self.steps.len()]) {
+            (0, []) => "the file".to_owned(),
+            (0, there) => JsonPath(there.to_vec()).to_string(),
+            _ => JsonPath(self.missing[..missing].to_vec()).to_string(),
+        };
+        let is_list = end.first() == Some('[');
+        Some(match &self.missing[missing] {
+            Step::Key(key) if is_list => {
+                let names: Vec<_> = end.parts().filter_map(name_of).take(NAMES).collect();
+                let expected = match names.is_empty() {
+                    true => format!("no key, as {parent} is a list without names"),
+                    false => format!(
+                        "an index from 0 to {}, or a name in {parent}, such as {}",
+                        end.parts().len() - 1,
+                        list(names.iter())
+                    ),
+                };
+                (format!("the name {key:?}"), expected)
             }
-        }
-        self.missing.has_others = object.entries().next().is_some();
-        // Behind the brace.
-        let start = Scanner::from(text, self.bytes.start).at + 1;
-        self.bytes = start..start;
-        self
+            Step::Key(key) => {
+                let expected = format!("no key, as {parent} is no object");
+                (format!("the key {key:?}"), expected)
+            }
+            Step::Index(index) => {
+                let expected = match is_list {
+                    true => {
+                        let length = end.parts().len();
+                        format!("an index below {length}, the length of {parent}")
+                    }
+                    false => format!("no index, as {parent} is no list"),
+                };
+                (format!("the index {index}"), expected)
+            }
+        })
     }
-}
-
-/// The name of an object in a list.
-fn name_of<'a>(text: &'a str, object: Range<usize>) -> Option<std::borrow::Cow<'a, str>> {
-    let inside = Scanner::from(text, object.start);
-    (inside.peek() == Some(b'{')).then_some(())?;
-    string(text, inside.entry("name")?.value)
-}
-
-/// Index of the entry of a list that has a name.
-fn index_of(text: &str, list: Scanner<'_>, name: &str) -> Option<usize> {
-    let named = |range| name_of(text, range).as_deref() == Some(name);
-    list.entries().position(|entry| named(entry.value))
 }
 
 /// Maximum number of names of a list that are shown.
 const NAMES: usize = 20;
 
-/// Returns the value that was found in place of one that goes on as a step does, and the value expected.
-fn no_way(text: &str, inside: Scanner<'_>, step: &Step, parent: &str) -> (String, String) {
-    let is_list = inside.peek() == Some(b'[');
-    let length = inside.entries().count();
-    match step {
-        Step::Key(key) if is_list => {
-            let names = inside.entries().filter_map(|one| name_of(text, one.value));
-            let names: Vec<_> = names.take(NAMES).collect();
-            let expected = match (names.is_empty(), length) {
-                (true, _) => format!("no key, as {parent} is a list without names"),
-                (false, length) => format!(
-                    "an index from 0 to {}, or a name in {parent}, such as {}",
-                    length - 1,
-                    list(names.iter())
-                ),
-            };
-            (format!("the name {key:?}"), expected)
-        }
-        Step::Key(key) => {
-            let expected = format!("no key, as {parent} is no object");
-            (format!("the key {key:?}"), expected)
-        }
-        Step::Index(index) if is_list => {
-            let expected = format!("an index below {length}, the length of {parent}");
-            (format!("the index {index}"), expected)
-        }
-        Step::Index(index) => {
-            let expected = format!("no index, as {parent} is no list");
-            (format!("the index {index}"), expected)
-        }
-    }
+/// The name of an object in a list.
+fn name_of(object: Json<'_>) -> Option<Cow<'_, str>> {
+    object.entry("name")?.string()
+}
+
+/// Index of the entry of a list that has a name.
+fn index_of(list: Json<'_>, name: &str) -> Option<usize> {
+    let mut parts = list.parts().filter(|_| list.first() == Some('['));
+    parts.position(|part| name_of(part).as_deref() == Some(name))
 }

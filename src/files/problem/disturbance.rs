@@ -4,7 +4,7 @@ use crate::control::problem::{Disturbed, Task};
 use crate::files::changes::{Changes, word};
 use crate::files::json::document::Document;
 use crate::files::json::error::SceneError;
-use crate::files::json::locate::{JsonPath, Step};
+use crate::files::json::path::{JsonPath, Step};
 use crate::files::json::scope::Scope;
 use crate::files::json::set::{Override, value_at};
 use crate::files::problem::feedback::DisturbanceSpec;
@@ -48,8 +48,7 @@ pub(crate) fn disturbed(
             };
             changes.push(key, &value, place)?;
         }
-        let own = changes.words.iter().map(|written| Override::parse(written));
-        let own: Vec<Override> = own.collect::<Result<_, _>>()?;
+        let own = changes.overrides()?;
         let (in_scene, in_problem): (Vec<_>, Vec<_>) =
             own.into_iter().partition(|one| one.in_scene().is_some());
         let none = JsonPath::parse("simulate.controller.disturbance").expect("a path");

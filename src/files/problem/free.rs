@@ -3,7 +3,7 @@
 use crate::control::PEAK_VOLTAGE;
 use crate::files::json::document::Document;
 use crate::files::json::error::SceneError;
-use crate::files::json::locate::JsonPath;
+use crate::files::json::path::JsonPath;
 use crate::files::json::scope::Scope;
 use crate::files::scene::constants::{NoConstant, SceneConstant, WrittenScene};
 use crate::files::units::quantity::{Quantity, SoughtConstant};

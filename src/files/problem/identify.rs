@@ -5,7 +5,7 @@ use crate::control::problem::{
 };
 use crate::files::columns::Columns;
 use crate::files::json::error::SceneError;
-use crate::files::json::locate::JsonPath;
+use crate::files::json::path::JsonPath;
 use crate::files::json::scope::Scope;
 use crate::files::problem::channels::{Measured, Source};
 use crate::files::problem::coordinates::{coordinates, count};

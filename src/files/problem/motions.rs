@@ -9,9 +9,9 @@ use crate::control::{Motion, Motions};
 use crate::files::changes::Changes;
 use crate::files::json::document::Document;
 use crate::files::json::error::SceneError;
-use crate::files::json::locate::JsonPath;
-use crate::files::json::scan::{Entry, Scanner, string};
+use crate::files::json::path::JsonPath;
 use crate::files::json::scope::Scope;
+use crate::files::json::tree::Json;
 use crate::files::problem::spec_control::{COMMON, ControlSpec};
 
 /// Keys of a motion that are none of a control problem.
@@ -29,34 +29,27 @@ pub(crate) struct MotionDocument<'a> {
 
 /// The motions of a problem, if it has a list of them.
 pub(crate) fn motions(document: &Document) -> Result<Option<Vec<MotionDocument<'_>>>, SceneError> {
-    let text = document.text();
-    let control = Scanner::of(text)
-        .entry("control")
-        .filter(|entry| text[entry.value.clone()].starts_with('{'));
-    let Some(control) = control else {
+    let Some(control) = document.entry("control") else {
         return Ok(None);
     };
-    let inside = Scanner::from(text, control.value.start);
-    let Some(list) = inside.entry("motions") else {
+    let Some(list) = control.entry("motions") else {
         return Ok(None);
     };
-    if inside.entry("sensitivity").is_some() {
+    if control.entry("sensitivity").is_some() {
         let scope = Scope::of(document).key("control").key("sensitivity");
         let found = "sensitivities of several motions";
         return Err(scope.wrong(found, "a problem of one motion"));
     }
     let scope = Scope::of(document).key("control").key("motions");
-    let written = Scanner::from(text, list.value.start);
-    if written.peek() != Some(b'[') {
-        return Err(scope.wrong(&text[list.value], "a list of motions"));
+    if list.first() != Some('[') {
+        return Err(scope.wrong(list.to_string(), "a list of motions"));
     }
-    let entries: Vec<Entry> = written.entries().collect();
-    if entries.is_empty() {
+    if list.parts().len() == 0 {
         return Err(scope.wrong("no motion", "a list of one motion or more"));
     }
     let mut names = BTreeSet::new();
-    let each = entries.iter().enumerate().map(|(number, entry)| {
-        let motion = one(document, &control, (number, entry), &scope.index(number))?;
+    let each = list.parts().enumerate().map(|(number, written)| {
+        let motion = one(written, number, control, &scope.index(number))?;
         if !names.insert(motion.name.clone()) {
             let found = format!("{:?} a second time", motion.name);
             return Err(scope
@@ -71,57 +64,47 @@ pub(crate) fn motions(document: &Document) -> Result<Option<Vec<MotionDocument<'
 
 /// A motion by its entry in the list.
 fn one<'a>(
-    document: &'a Document,
-    control: &Entry,
-    (number, entry): (usize, &Entry),
+    motion: Json<'_>,
+    number: usize,
+    control: Json<'_>,
     scope: &Scope<'a>,
 ) -> Result<MotionDocument<'a>, SceneError> {
-    let text = document.text();
-    let motion = Scanner::from(text, entry.value.start);
-    if motion.peek() != Some(b'{') {
+    if motion.first() != Some('{') {
         return Err(scope.wrong(
-            &text[entry.value.clone()],
+            motion.to_string(),
             "a motion: an object with the keys that are other ones in it",
         ));
     }
-    let key = |entry: &Entry| {
-        entry
-            .key
-            .clone()
-            .and_then(|key| string(text, key))
-            .unwrap_or_default()
-            .into_owned()
-    };
-    let own: Vec<(String, Entry)> = motion.entries().map(|entry| (key(&entry), entry)).collect();
-    if let Some((key, _)) = own.iter().find(|(key, _)| COMMON.contains(&&**key)) {
+    let is_of =
+        |list: &[&str], entry: &Json<'_>| entry.key().is_some_and(|key| list.contains(&&*key));
+    if let Some(common) = motion.parts().find(|entry| is_of(&COMMON, entry)) {
+        let key = common.key().unwrap_or_default();
         let found = format!("the key {key:?} in a motion");
-        return Err(scope.key(key).wrong(
+        return Err(scope.key(&key).wrong(
             found,
             "it beside \"motions\": all of them have it in common",
         ));
     }
-    let has = |key: &str| own.iter().any(|(own, _)| own == key);
-    let shared = Scanner::from(text, control.value.start).entries();
-    let shared = shared.map(|entry| (key(&entry), entry));
-    let shared = shared.filter(|(key, _)| !OF_ALL.contains(&&**key) && !has(key));
-    let replaced = own.iter().filter(|(key, _)| !OWN.contains(&&**key));
-    let all = shared.chain(replaced.clone().cloned());
-    let all = all.map(|(key, entry)| format!("{}:{}", Value::from(key), &text[entry.value]));
-    let written = format!("{{{}}}", all.collect::<Vec<_>>().join(","));
-    let mut alone = document.clone();
-    alone.replace(control.value.clone(), &written);
-    let place = JsonPath::default().key("control");
-    for (key, _) in replaced {
-        alone.moved.push((place.key(key), scope.place.key(key)));
-    }
-    let value = |key: &str| {
-        let found = own.iter().find(|(own, _)| own == key);
-        found.and_then(|(_, entry)| serde_json::from_str(&text[entry.value.clone()]).ok())
+    let is_shared = |entry: &Json<'_>| {
+        let is_own = entry.key().is_some_and(|key| motion.entry(&key).is_some());
+        !is_own && !is_of(&OF_ALL, entry)
     };
+    let shared = control.parts().filter(is_shared);
+    let own = motion.parts().filter(|entry| !is_of(&OWN, entry));
+    let mut document = scope.document.clone();
+    let all = shared.chain(own.clone()).map(Json::node);
+    document.tree.set_entries("control", all.collect());
+    let place = JsonPath::default().key("control");
+    for key in own.filter_map(Json::key) {
+        document
+            .moved
+            .push((place.key(&key), scope.place.key(&key)));
+    }
+    let value = |key: &str| motion.entry(key)?.read().ok();
     Ok(MotionDocument {
         name: name(value("name"), number, &scope.key("name"))?,
-        document: alone,
         changes: changes(value("set"), &scope.key("set"))?,
+        document,
     })
 }
 
@@ -199,18 +182,12 @@ fn combined(written: Option<&str>, scope: &Scope<'_>) -> Result<Combined, SceneE
 pub(crate) fn together(list: Vec<Motion>, document: &Document) -> Result<Motions, SceneError> {
     let of_all = Scope::of(document).key("control");
     let scope = of_all.key("shared_inputs");
-    let text = document.text();
-    let control = Scanner::of(text).entry("control");
-    let key = |key: &str| {
-        let control = control.as_ref()?;
-        let entry = Scanner::from(text, control.value.start).entry(key)?;
-        Some(&text[entry.value])
-    };
+    let key = |key: &str| document.entry("control")?.entry(key);
     let shared_inputs: Vec<String> = match key("shared_inputs") {
         None => Vec::new(),
-        Some(written) => serde_json::from_str(written).map_err(|_| {
+        Some(written) => written.read().map_err(|_| {
             scope.wrong(
-                written,
+                written.to_string(),
                 "a list of names of muscles, driven electrodes and loads",
             )
         })?,
@@ -218,7 +195,7 @@ pub(crate) fn together(list: Vec<Motion>, document: &Document) -> Result<Motions
     let motions = Motions {
         list,
         shared_inputs,
-        combined: combined(key("combine"), &of_all.key("combine"))?,
+        combined: combined(key("combine").map(Json::written), &of_all.key("combine"))?,
     };
     scope.unique(&motions.shared_inputs, &[], |index| scope.index(index))?;
     for (index, name) in motions.shared_inputs.iter().enumerate() {

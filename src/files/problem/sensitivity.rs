@@ -2,7 +2,7 @@
 
 use crate::control::problem::{BoundaryState, Control, Duration, Varied, VariedOf, WeightOf};
 use crate::files::json::error::SceneError;
-use crate::files::json::locate::{JsonPath, Step};
+use crate::files::json::path::{JsonPath, Step};
 use crate::files::json::scope::Scope;
 use crate::files::problem::state::A_SOURCE;
 use crate::files::scene::constants::{SceneConstant, WrittenScene};

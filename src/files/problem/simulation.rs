@@ -3,7 +3,7 @@
 use crate::control::problem::Simulation;
 use crate::dynamics::{Integrator, MultigridUse, Newton, Solving};
 use crate::feedback::Law;
-use crate::files::json::either::{Either, ScalarOrObject, scalar_or_object};
+use crate::files::json::either::{Either, scalar_or_object};
 use crate::files::json::error::SceneError;
 use crate::files::json::scope::Scope;
 use crate::files::problem::coordinates::{CoordinatesSpec, coordinates};
@@ -19,7 +19,6 @@ use schemars::JsonSchema;
 use serde::de::{Error, IntoDeserializer, Visitor};
 use serde::{Deserialize, Deserializer};
 use std::fmt;
-use std::marker::PhantomData;
 
 /// Tolerances below this ask for more than rounding allows.
 pub(crate) const LEAST_TOLERANCE: f64 = 1e-9;

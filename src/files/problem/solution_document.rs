@@ -13,12 +13,8 @@ pub(crate) fn solution_document(
     is_wanted: impl Fn(&str) -> bool,
 ) -> Result<Document, SceneError> {
     let mut document = Document::read(path)?;
-    match complete(path, document.text(), is_wanted) {
-        Ok(None) => Ok(document),
-        Ok(Some(text)) => {
-            document.complete(text);
-            Ok(document)
-        }
+    match complete(path, &mut document.tree, is_wanted) {
+        Ok(()) => Ok(document),
         Err(reason) => Err(Scope::of(&document)
             .key("arrays")
             .wrong(reason.to_string(), "the file that was written with it")),

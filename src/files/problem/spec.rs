@@ -3,9 +3,8 @@
 use schemars::JsonSchema;
 use serde::{Deserialize, Deserializer};
 use std::collections::BTreeMap;
-use std::marker::PhantomData;
 
-use crate::files::json::either::{Either, ScalarOrObject, scalar_or_object};
+use crate::files::json::either::{Either, scalar_or_object};
 use crate::files::problem::coordinates::CoordinatesSpec;
 use crate::files::problem::feedback::FeedbackSpec;
 use crate::files::problem::output::OutputSpec;

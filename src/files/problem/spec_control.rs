@@ -1,6 +1,6 @@
 //! A control problem as it is written.
 
-use crate::files::json::either::{Either, ScalarOrObject, scalar_or_object};
+use crate::files::json::either::{Either, scalar_or_object};
 use crate::files::problem::coordinates::CoordinatesSpec;
 use crate::files::problem::free::FreeMap;
 use crate::files::problem::loads::{LoadBounds, LoadMap};
@@ -19,7 +19,6 @@ use serde_json::Value;
 use std::borrow::Cow;
 use std::collections::BTreeMap;
 use std::fmt;
-use std::marker::PhantomData;
 
 /// An optimal control problem.
 #[derive(Clone, Debug, Deserialize, JsonSchema)]

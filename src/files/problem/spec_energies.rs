@@ -1,9 +1,8 @@
 //! Weights of energies of sources as they are written.
 
-use crate::files::json::either::{Either, ScalarOrObject, scalar_or_object};
+use crate::files::json::either::{Either, scalar_or_object};
 use schemars::JsonSchema;
 use serde::{Deserialize, Deserializer};
-use std::marker::PhantomData;
 
 /// The weight of an energy of some sources.
 #[derive(Clone, Debug, Deserialize, JsonSchema)]

@@ -1,7 +1,7 @@
 //! Conversion of states and voltages of a problem file to indices and one voltage per source.
 
 use crate::control::problem::{BoundaryState, Hold, Rest, SoughtHold};
-use crate::files::json::either::{Either, ScalarOrObject, scalar_or_object};
+use crate::files::json::either::{Either, scalar_or_object};
 use crate::files::json::error::SceneError;
 use crate::files::json::scope::Scope;
 use crate::files::problem::end_of::end_of;
@@ -18,7 +18,6 @@ use nalgebra::Vector3;
 use schemars::JsonSchema;
 use serde::{Deserialize, Deserializer};
 use std::collections::BTreeMap;
-use std::marker::PhantomData;
 
 /// Expected name of a voltage, for messages.
 pub(crate) const A_SOURCE: &str = "the name of a muscle or of a driven electrode (block.electrode)";

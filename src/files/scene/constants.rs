@@ -7,7 +7,7 @@ use serde_json::Value;
 
 use crate::files::json::document::Document;
 use crate::files::json::error::SceneError;
-use crate::files::json::locate::{JsonPath, Step};
+use crate::files::json::path::{JsonPath, Step};
 use crate::files::json::scope::Scope;
 use crate::files::json::set::Override;
 use crate::files::scene::build::build_scene;

@@ -6,9 +6,8 @@ use serde::de::{Error, SeqAccess, Unexpected, Visitor};
 use serde::{Deserialize, Deserializer, Serialize};
 use std::collections::BTreeMap;
 use std::fmt;
-use std::marker::PhantomData;
 
-use crate::files::json::either::{Either, ScalarOrObject, scalar_or_object};
+use crate::files::json::either::{Either, scalar_or_object};
 use crate::files::scene::circuit::CircuitSpec;
 use crate::files::scene::point::{CornersSpec, Point};
 use crate::files::units::quantity::{AngularVelocity, Length, Quantity, Rate, Velocity, Voltage};

@@ -3,9 +3,8 @@
 use schemars::{JsonSchema, Schema, SchemaGenerator};
 use serde::{Deserialize, Deserializer, Serialize};
 use std::borrow::Cow;
-use std::marker::PhantomData;
 
-use crate::files::json::either::{Either, ScalarOrObject};
+use crate::files::json::either::Either;
 use crate::files::units::quantity::{
     Angle, JointCoordinate, Length, LoadSize, PhysicalQuantity, Quantity, Time, Voltage,
 };
@@ -118,23 +117,13 @@ pub trait FollowedInTime: PhysicalQuantity + JsonSchema {
     const EXPECTED: &'static str;
 }
 
-impl<'de, M: FollowedInTime> ScalarOrObject<'de> for SignalSpec<M> {
-    const EXPECTED: &'static str = M::EXPECTED;
-    type Scalar = Quantity<M>;
-    type Object = Box<FunctionSpec<M>>;
-
-    fn scalar(scalar: Quantity<M>) -> Self {
-        Self::Constant(scalar)
-    }
-
-    fn object(object: Box<FunctionSpec<M>>) -> Self {
-        Self::Function(object)
-    }
-}
-
 impl<'de, M: FollowedInTime> Deserialize<'de> for SignalSpec<M> {
     fn deserialize<D: Deserializer<'de>>(deserializer: D) -> Result<Self, D::Error> {
-        deserializer.deserialize_any(Either(PhantomData))
+        deserializer.deserialize_any(Either {
+            expected: M::EXPECTED,
+            scalar: Self::Constant,
+            object: Self::Function,
+        })
     }
 }
 

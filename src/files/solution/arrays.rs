@@ -4,9 +4,10 @@ use std::path::Path;
 use std::{fs, io, mem};
 
 use serde::Deserialize;
-use serde_json::{Map, Value};
+use serde_json::Value;
 
-use crate::files::json::scan::Scanner;
+use crate::files::json::path::Step;
+use crate::files::json::tree::{Json, Tree};
 use crate::files::npz::{self, NpzError, NpzWriter};
 use crate::files::solution::record::{ArraysOf, File, Reason};
 
@@ -75,56 +76,52 @@ pub(crate) fn file_beside(path: &Path) -> Option<String> {
     Some(read.arrays?.file)
 }
 
-/// The text of the solution at `path` with the arrays that are wanted where they would stand; `None` where it has no file of arrays.
+/// Puts the arrays that are wanted into the solution at `path`, where they would stand; it may have no file of arrays.
 ///
 /// # Errors
 /// The file cannot be used.
 pub(crate) fn complete(
     path: &Path,
-    text: &str,
+    solution: &mut Tree,
     is_wanted: impl Fn(&str) -> bool,
-) -> Result<Option<String>, Reason> {
-    if Scanner::of(text).entry("arrays").is_none() {
-        return Ok(None);
-    }
-    let mut solution: Value = serde_json::from_str(text).map_err(Reason::NoJson)?;
-    let Ok(WithArrays {
-        arrays: Some(arrays),
-    }) = WithArrays::deserialize(&solution)
-    else {
-        return Ok(None);
+) -> Result<(), Reason> {
+    let named = solution.json().entry("arrays").map(Json::read);
+    let Some(Ok(Some(ArraysOf { file, digits }))) = named else {
+        return Ok(());
     };
-    let path = path.with_file_name(&arrays.file);
+    let path = path.with_file_name(&file);
     let wrong = |cause: NpzError| Reason::Arrays {
         path: path.clone(),
         cause,
     };
     let read = npz::read(&path, is_wanted).map_err(wrong)?;
-    if read.digits != arrays.digits {
+    if read.digits != digits {
         return Err(Reason::OtherArrays(path));
     }
     // A motion without a source has voltages of none.
-    let root = &mut solution;
-    put(root, &["voltages"], Value::Object(Map::new()));
+    solution.put(&[Step::Key("voltages".to_owned())], "{}");
     for (name, array) in read.arrays {
-        put(root, &steps(&name), value(&array.shape, &array.values));
+        let value = value(&array.shape, &array.values).to_string();
+        solution.put(&steps(&name), &value);
     }
-    Ok(Some(solution.to_string()))
+    Ok(())
 }
 
 /// The keys that lead to an array.
-fn steps(name: &str) -> Vec<&str> {
+fn steps(name: &str) -> Vec<Step> {
     let of_name = OF_NAMES
         .iter()
         .find_map(|&of| Some((of, name.strip_prefix(of)?)));
     let of_body = name
         .strip_prefix(OF_BODIES)
         .and_then(|rest| rest.rsplit_once('/'));
-    match (of_name, of_body) {
+    let keys: Vec<&str> = match (of_name, of_body) {
         (Some((of, name)), _) => of.trim_end_matches('/').split('/').chain([name]).collect(),
         (None, Some((name, what))) => vec!["configuration", "bodies", name, what],
         (None, None) => name.split('/').collect(),
-    }
+    };
+    let key = |key: &str| Step::Key(key.to_owned());
+    keys.into_iter().map(key).collect()
 }
 
 /// Numbers in rows.
@@ -138,24 +135,4 @@ fn value(shape: &[usize], values: &[f64]) -> Value {
             (0..*rows).map(row).collect()
         }
     }
-}
-
-/// Puts an entry under keys.
-fn put(into: &mut Value, keys: &[&str], entry: Value) {
-    let Some((last, before)) = keys.split_last() else {
-        return;
-    };
-    let mut place = into;
-    for key in before {
-        place = object(place).entry(*key).or_insert(Value::Null);
-    }
-    object(place).insert((*last).to_owned(), entry);
-}
-
-/// A place as an object, empty where something else stood there.
-fn object(place: &mut Value) -> &mut Map<String, Value> {
-    if !place.is_object() {
-        *place = Value::Object(Map::new());
-    }
-    place.as_object_mut().expect("it is one now")
 }

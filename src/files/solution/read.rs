@@ -7,8 +7,8 @@ use std::io;
 use std::path::{Path, PathBuf};
 
 use crate::control::{Costates, EarlierSolution, Solution};
-use crate::files::json::reader;
 use crate::files::json::source::{NoBytes, check_json, of_file, unmarked};
+use crate::files::json::tree::Tree;
 use crate::files::solution::arrays::complete;
 use crate::files::solution::record::{
     Body, ConfigurationRecord, File, METRE, Reason, SECOND, SolutionError, StateRecord, unit,
@@ -54,12 +54,12 @@ fn read_file(path: &Path) -> Result<File, Reason> {
     })?;
     let utf8 = |error| io::Error::new(io::ErrorKind::InvalidData, error);
     let text = String::from_utf8(bytes).map_err(|error| Reason::Unreadable(utf8(error)))?;
-    let text = unmarked(text);
-    check_json(&text).map_err(Reason::NoJson)?;
-    let text = complete(path, &text, |_| true)?.unwrap_or(text);
-    reader::parse(&text).map_err(|(place, error)| Reason::NoSolution {
-        place: place.to_string(),
-        found: error.to_string(),
+    let mut solution = Tree::of(unmarked(text));
+    check_json(solution.text()).map_err(Reason::NoJson)?;
+    complete(path, &mut solution, |_| true)?;
+    solution.json().read().map_err(|misfit| Reason::NoSolution {
+        place: misfit.place().to_string(),
+        found: misfit.to_string(),
     })
 }
 
