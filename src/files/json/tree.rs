@@ -24,7 +24,7 @@ pub(crate) struct Node {
     /// Bytes of its key in an object, quotes included; empty elsewhere.
     key: Range<usize>,
     bytes: Range<usize>,
-    parts: Box<[Node]>,
+    parts: Box<[Self]>,
 }
 
 /// A value in its text.
