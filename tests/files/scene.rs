@@ -130,6 +130,7 @@ fn mistakes_in_a_scene_name_place_found_and_expected() {
         ("[\"15 mm\", \"20 mm\", 0]", "[\"15 mm\", \"-20 mm\", 0]", "muscles[0].to.at", "length zero", "another place", "-20 mm"),
         ("\"axis\": [0, 0, 2]", "\"axis\": [0, 0, 0]", "joints[0].revolute.axis", "[0.0, 0.0, 0.0]", "a direction", "[0, 0, 0]"),
         ("\"axis\": [0, 0, 2]", "\"axis\": [0, 0]", "joints[0].revolute.axis", "a list of length 2", "a list of 3 values", "[0, 0]"),
+        ("[\"10 mm\", \"10 mm\"]", "[1, 2, 3]", "muscles[0].cross_section", "a list of length 3", "a list of 2 values", "[1, 2, 3]"),
         ("\"revolute\": { \"axis\": [0, 0, 2] }", "\"revolute\": [[0, 0, 2]]", "joints[0].revolute", "a list", "an object", "[[0, 0, 2]]"),
         ("\"revolute\": { \"axis\": [0, 0, 2] }", "\"spherical\": {}, \"fixed\": {}", "joints[0]", "\"spherical\", \"fixed\"", "exactly one of", "joint1"),
         ("\"revolute\": { \"axis\": [0, 0, 2] }", "\"universal\": { \"axes\": [[0, 0, 2], [0, 1, 1]] }", "joints[0].universal.axes", "axes at 45 deg", "at 90 deg", "[0, 1, 1]"),
