@@ -117,7 +117,7 @@ pub use interface::{
     Part, Recording, Result, Simulation, State, Tension, Together,
 };
 pub use kinematics::Pose;
-pub use math::{Jet, Signal};
+pub use math::{Fault, Jet, Signal};
 pub use mesh::Mesh;
 pub use mesh::grid::Grid;
 pub use model::components::{Load, Spring, Tendon};

@@ -6,7 +6,7 @@
 //! I₁ = I + 2/√I,    I₂ = 2√I + 1/I,    Σ λᵃ = I^(a/2) + 2 I^(−a/4).
 //! ```
 
-use crate::math::{Jet, Number};
+use crate::math::{Fault, Jet, Number, rule, value};
 use nalgebra::{SVector, Vector1};
 use std::f64::consts::PI;
 use std::fmt::Debug;
@@ -103,65 +103,47 @@ impl<T> ElasticLaw<T> {
     }
 }
 
-/// A constant of a law without a meaning.
-#[derive(Clone, Debug, PartialEq, Eq)]
-pub struct Fault {
-    /// Name of the constant, that of files.
-    pub constant: &'static str,
-    /// Value that was found.
-    pub found: String,
-    /// Value that was expected.
-    pub expected: &'static str,
-}
-
 impl ElasticLaw {
-    /// The first constant without a meaning, if there is one.
-    pub fn fault(&self) -> Option<Fault> {
-        let fault = |holds: bool, constant, found: String, expected| {
-            (!holds).then_some(Fault {
-                constant,
-                found,
-                expected,
-            })
-        };
+    /// Its name in files.
+    fn name(&self) -> &'static str {
+        match self {
+            Self::Gent { .. } => "gent",
+            Self::MooneyRivlin { .. } => "mooney_rivlin",
+            Self::Yeoh { .. } => "yeoh",
+            Self::Ogden { .. } => "ogden",
+        }
+    }
+
+    /// Checks its constants.
+    ///
+    /// # Errors
+    /// The first one without a meaning.
+    pub fn check(&self) -> Result<(), Fault> {
         let part = |share: f64| {
             let expected = "a part of the shear modulus from 0 to 1";
-            fault(
-                (0.0..=1.0).contains(&share),
-                "share",
-                share.to_string(),
-                expected,
-            )
+            value((0.0..=1.0).contains(&share), "share", share, expected)
         };
-        match *self {
+        let checked = match *self {
             Self::Gent { limit } => {
                 let holds = limit > 0.0 && limit.is_finite();
-                fault(
-                    holds,
-                    "limit",
-                    limit.to_string(),
-                    "a positive number, Jm of Gent's law",
-                )
+                value(holds, "limit", limit, "a positive number, Jm of Gent's law")
             }
             Self::MooneyRivlin { share } => part(share),
             Self::Yeoh { c2, c3 } => {
                 let expected = "a finite stress, and an energy that grows without bound: c3 > 0, or c3 = 0 and c2 >= 0";
                 let grows = c3 > 0.0 || (c3 == 0.0 && c2 >= 0.0);
+                let holds = grows && c2.is_finite() && c3.is_finite();
                 let found = format!("{c3} MPa with c2 = {c2} MPa");
-                fault(
-                    grows && c2.is_finite() && c3.is_finite(),
-                    "c3",
-                    found,
-                    expected,
-                )
+                rule(holds, "c3", found, expected)
             }
             Self::Ogden { exponents, share } => {
                 let holds = exponents.iter().all(|a| *a != 0.0 && a.is_finite());
+                let found = format!("{exponents:?}");
                 let expected = "two numbers that are not zero";
-                fault(holds, "exponents", format!("{exponents:?}"), expected)
-                    .or_else(|| part(share))
+                rule(holds, "exponents", found, expected).and_then(|()| part(share))
             }
-        }
+        };
+        checked.map_err(|fault| fault.under(self.name()))
     }
 
     /// The stretches between which a muscle has an energy, where not all have one: the positive zeros of Λ³ − (3 + Jₘ) Λ + 2.

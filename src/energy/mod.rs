@@ -24,7 +24,7 @@ pub use charge_limit::{
     StoredEnergy, VoltageAcross,
 };
 pub use constraint::{Coincidence, Orthogonality};
-pub use elastic_law::{ElasticLaw, Elasticity, Fault, NeoHooke};
+pub use elastic_law::{ElasticLaw, Elasticity, NeoHooke};
 pub use kinetic::Gravity;
 pub use kinetic::{DeadLoad, FollowingForce, SurfaceCharge};
 pub use kinetic::{KineticCoupling, KineticEnergy};

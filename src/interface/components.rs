@@ -130,21 +130,6 @@ impl Load {
     pub fn charge_of(muscle: Handle<Muscle>) -> Self {
         Self::on(LoadPlace::Muscle(muscle.index()))
     }
-
-    /// A name of its own.
-    pub fn named(self, name: impl Into<String>) -> Self {
-        let name = name.into();
-        Self { name, ..self }
-    }
-}
-
-impl Part for Load {
-    fn join(mut self, system: &mut System) -> usize {
-        let loads = &mut system.components.loads;
-        self.name = named(self.name, "load", loads.len());
-        loads.push(self);
-        loads.len() - 1
-    }
 }
 
 impl Part for Arc<dyn Component> {

@@ -4,6 +4,7 @@ use crate::interface::handle::{Carrier, Handle, Part, named};
 use crate::math::{Matrix, Signal};
 use crate::mesh::Mesh;
 use crate::model::System;
+use crate::model::components::Load;
 use crate::model::system::{
     Attachment, Body, Circuit, Discretisation, ElementKind, Fidelity, Joint, JointKind,
     JointSpring, JointStops, Marker, Material, Muscle, Shape, Solid, Support, directors_along,
@@ -17,6 +18,39 @@ pub(super) fn attachment(carrier: impl Into<Carrier>, at: Vector3<f64>) -> Attac
         body: carrier.into().0,
         at,
     }
+}
+
+/// Declares parts by their lists in a system and the words that names are made of.
+macro_rules! parts {
+    ($($part:ident in $($list:ident).+: $word:literal;)*) => {
+        $(
+            impl $part {
+                /// A name of its own.
+                pub fn named(self, name: impl Into<String>) -> Self {
+                    let name = name.into();
+                    Self { name, ..self }
+                }
+            }
+
+            impl Part for $part {
+                fn join(mut self, system: &mut System) -> usize {
+                    let list = &mut system.$($list).+;
+                    self.name = named(self.name, $word, list.len());
+                    list.push(self);
+                    list.len() - 1
+                }
+            }
+        )*
+    };
+}
+
+parts! {
+    Body in bodies: "body";
+    Joint in joints: "joint";
+    Muscle in muscles: "muscle";
+    Solid in solids: "solid";
+    Marker in markers: "marker";
+    Load in components.loads: "load";
 }
 
 impl Body {
@@ -67,20 +101,6 @@ impl Body {
     pub fn along(self, axis: Vector3<f64>) -> Self {
         let directors = directors_along(&axis.normalize());
         Self { directors, ..self }
-    }
-
-    /// A name of its own.
-    pub fn named(self, name: impl Into<String>) -> Self {
-        let name = name.into();
-        Self { name, ..self }
-    }
-}
-
-impl Part for Body {
-    fn join(mut self, system: &mut System) -> usize {
-        self.name = named(self.name, "body", system.bodies.len());
-        system.bodies.push(self);
-        system.bodies.len() - 1
     }
 }
 
@@ -157,12 +177,6 @@ impl Joint {
         });
         Self { stops, ..self }
     }
-
-    /// A name of its own.
-    pub fn named(self, name: impl Into<String>) -> Self {
-        let name = name.into();
-        Self { name, ..self }
-    }
 }
 
 impl JointKind {
@@ -174,14 +188,6 @@ impl JointKind {
             child: child.index(),
             ..Joint::default()
         }
-    }
-}
-
-impl Part for Joint {
-    fn join(mut self, system: &mut System) -> usize {
-        self.name = named(self.name, "joint", system.joints.len());
-        system.joints.push(self);
-        system.joints.len() - 1
     }
 }
 
@@ -283,20 +289,6 @@ impl Muscle {
         }
         self
     }
-
-    /// A name of its own.
-    pub fn named(self, name: impl Into<String>) -> Self {
-        let name = name.into();
-        Self { name, ..self }
-    }
-}
-
-impl Part for Muscle {
-    fn join(mut self, system: &mut System) -> usize {
-        self.name = named(self.name, "muscle", system.muscles.len());
-        system.muscles.push(self);
-        system.muscles.len() - 1
-    }
 }
 
 impl Marker {
@@ -315,28 +307,6 @@ impl Marker {
             solid: Some(solid.index()),
             ..Self::on(super::GROUND, at)
         }
-    }
-
-    /// A name of its own.
-    pub fn named(self, name: impl Into<String>) -> Self {
-        let name = name.into();
-        Self { name, ..self }
-    }
-}
-
-impl Part for Marker {
-    fn join(mut self, system: &mut System) -> usize {
-        self.name = named(self.name, "marker", system.markers.len());
-        system.markers.push(self);
-        system.markers.len() - 1
-    }
-}
-
-impl Part for Solid {
-    fn join(mut self, system: &mut System) -> usize {
-        self.name = named(self.name, "solid", system.solids.len());
-        system.solids.push(self);
-        system.solids.len() - 1
     }
 }
 

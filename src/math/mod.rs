@@ -1,8 +1,9 @@
-//! Numbers that carry their derivatives, numbers drawn at random, numbers as people read them, disjoint sets of them, two
-//! computations at once, when to stop them, and the memory that is there for them.
+//! Numbers that carry their derivatives, numbers drawn at random, numbers as people read them, rules that they break, disjoint sets
+//! of them, two computations at once, when to stop them, and the memory that is there for them.
 
 mod derivatives;
 mod digits;
+mod fault;
 mod jet;
 pub(crate) mod join;
 mod number;
@@ -12,6 +13,7 @@ mod signal;
 pub use derivatives::largest_eigenvalue_bound;
 pub use derivatives::{Derivatives, Gradient, Local};
 pub use digits::{no_smaller, shortest, significant};
+pub use fault::{DIRECTION, Fault, not_negative, positive, rule, unique, value};
 pub use jet::Jet;
 pub use join::cores;
 pub(crate) use join::has_pool;

@@ -13,11 +13,6 @@ pub struct Circuit {
 }
 
 impl Circuit {
-    /// Its resistances in Ω.
-    pub fn parts(&self) -> impl Iterator<Item = f64> {
-        self.resistance.into_iter().chain(self.leakage)
-    }
-
     /// Part R_L/(R + R_L) of the voltage of the source that a leak behind a resistor leaves to the electrodes at rest; none where it is all.
     pub fn division(&self) -> Option<f64> {
         let (series, leak) = self.resistance.zip(self.leakage)?;
@@ -48,38 +43,6 @@ impl Circuit {
         let leaked = supplied - charge;
         let heats = [heat(self.resistance, supplied), heat(self.leakage, leaked)];
         (supplied, heats)
-    }
-}
-
-/// Leak of finite elements that nothing would read, and what is expected, for messages.
-const LONE_LEAK: [&str; 2] = [
-    "a leak without a resistor, which takes current from the source alone",
-    "\"resistance\" beside the \"leakage\" of finite elements, or no circuit",
-];
-
-/// Circuit without parts, and what is expected, for messages.
-const EMPTY_CIRCUIT: [&str; 2] = [
-    "a circuit without parts",
-    "\"resistance\", \"leakage\" or both",
-];
-
-/// Circuit that drives no charge, and what is expected, for messages.
-const NO_CIRCUIT: [&str; 2] = [
-    "a circuit of what it does not charge",
-    "a muscle with a permittivity, or a driven electrode",
-];
-
-impl Circuit {
-    /// Returns the reason why something cannot have this circuit, and what is expected: `is_driven` if a source charges it, `is_meshed` if it
-    /// consists of finite elements.
-    pub fn fault(&self, is_driven: bool, is_meshed: bool) -> Option<[&'static str; 2]> {
-        if *self == Self::default() {
-            return Some(EMPTY_CIRCUIT);
-        }
-        if !is_driven {
-            return Some(NO_CIRCUIT);
-        }
-        (is_meshed && self.resistance.is_none()).then_some(LONE_LEAK)
     }
 }
 

@@ -1,8 +1,8 @@
 //! Component of a scene: the parts that it connects, the terms of the action that it makes and their reasons, and its
 //! observations.
 
+use crate::math::Fault;
 use crate::model::bodies::Attachment;
-use crate::model::error::SystemError;
 use crate::model::terms::Terms;
 use nalgebra::Vector3;
 use std::fmt::Debug;
@@ -22,7 +22,7 @@ pub trait Component: Debug + Send + Sync {
     ///
     /// # Errors
     /// The first constant that makes no sense.
-    fn check(&self) -> Result<(), SystemError> {
+    fn check(&self) -> Result<(), Fault> {
         Ok(())
     }
 

@@ -1,5 +1,6 @@
 //! Errors of the construction of a model.
 
+use crate::math::Fault;
 use thiserror::Error;
 
 /// A system does not permit the analysis.
@@ -35,40 +36,21 @@ pub enum ModelError {
 
 /// A part of a system that makes no sense.
 #[derive(Clone, Debug, Error, PartialEq, Eq)]
-#[error("{part}: {found}, expected {expected}")]
+#[error("{list}.{}: found {}, expected {}", self.place(), fault.told(), fault.expected)]
 pub struct SystemError {
-    /// Name of the part.
-    pub part: String,
-    /// Value that was found.
-    pub found: String,
-    /// Value that was expected.
-    pub expected: String,
+    /// List of the system that has the part, such as `springs`.
+    pub list: &'static str,
+    /// Its index there.
+    pub index: usize,
+    /// Its name.
+    pub name: String,
+    /// The rule that does not hold.
+    pub fault: Box<Fault>,
 }
 
-/// Refuses a part unless a condition holds.
-pub(super) fn require(
-    holds: bool,
-    part: &str,
-    found: impl FnOnce() -> String,
-    expected: &str,
-) -> Result<(), SystemError> {
-    match holds {
-        true => Ok(()),
-        false => Err(SystemError {
-            part: part.to_owned(),
-            found: found(),
-            expected: expected.to_owned(),
-        }),
+impl SystemError {
+    /// The place of the fault in the list: `spring1.stiffness`.
+    fn place(&self) -> String {
+        self.fault.clone().under(&self.name).at
     }
-}
-
-/// Refuses a value that is not positive and finite.
-pub(super) fn positive(part: &str, what: &str, value: f64) -> Result<(), SystemError> {
-    let holds = value > 0.0 && value.is_finite();
-    require(
-        holds,
-        part,
-        || format!("{what} {value}"),
-        "a positive number",
-    )
 }

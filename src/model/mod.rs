@@ -58,7 +58,7 @@ mod weight;
 mod what;
 
 pub use analysis::{Analysis, Coordinates, InitiallyMoving};
-pub use check::{NO_CHARGE, NO_MUSCLE_CHARGE};
+pub use check::{MOST_ELEMENTS, check_axes, check_elements};
 pub use component::Component;
 pub use constant::{
     Constant, Follower, FoundParameter, MaterialConstant, MaterialOf, Parameter, SiUnit,

@@ -8,9 +8,8 @@ use crate::element::{
     Elastomer, ElementGeometry, ElementLaw, IsochoricLaw, Local, Passive, Volume,
 };
 use crate::energy::{ElasticLaw, NeoHooke};
-use crate::math::Vector;
+use crate::math::{Fault, Vector, rule};
 use crate::mesh::grid::Grid;
-use crate::model::error::{SystemError, require};
 use crate::model::system::{Material, Muscle, Solid};
 
 /// Bisections of the interval of stretches across, after which its ends are neighbouring numbers.
@@ -32,26 +31,24 @@ impl Solid {
         }
     }
 
-    /// Returns an error unless the stretch is symmetric and positive and its materials have an energy there.
-    pub(super) fn check_prestretch(&self) -> Result<(), SystemError> {
+    /// Checks that the stretch is symmetric and positive, and that its materials have an energy there.
+    pub(super) fn check_prestretch(&self) -> Result<(), Fault> {
         let Some(stretch) = self.prestretch else {
             return Ok(());
         };
         let is_symmetric = stretch.iter().all(|s| s.is_finite()) && stretch == stretch.transpose();
-        require(
-            is_symmetric && stretch.cholesky().is_some(),
-            &self.name,
-            || format!("the prestretch {:?}", stretch.as_slice()),
-            "a symmetric stretch with positive values",
-        )?;
+        let is_positive = is_symmetric && stretch.cholesky().is_some();
+        let found = format!("{:?}", stretch.as_slice());
+        let expected = "a symmetric stretch with positive values";
+        rule(is_positive, "prestretch", found, expected)?;
         let volume = stretch.determinant();
         let squares = stretch.norm_squared();
         let invariant = squares * volume.powf(-2.0 / 3.0) - 3.0;
         for law in self.materials.iter().filter_map(|material| material.law) {
             if let ElasticLaw::Gent { limit } = law {
+                let found = format!("a prestretch of I1 - 3 = {invariant:.4}");
                 let expected = format!("less than Gent's limit, I1 - 3 < {limit}");
-                let found = || format!("a prestretch of I1 - 3 = {invariant:.4}");
-                require(invariant < limit, &self.name, found, &expected)?;
+                rule(invariant < limit, "prestretch", found, &expected)?;
             }
         }
         Ok(())

@@ -16,6 +16,7 @@ mod npz;
 mod objectives;
 mod quantities;
 mod reference;
+mod rules;
 mod scene;
 mod schema_walk;
 mod sensitivity;

@@ -101,16 +101,16 @@ fn wrong_constants_of_components_are_refused() {
     let spring = |change: fn(&mut Spring)| {
         told(&|system: &mut System| change(&mut system.components.springs[0]))
     };
-    let wrong = "spring1: stiffness -1, expected a positive number";
+    let wrong = "springs.spring1.stiffness: found -1, expected zero or a positive value";
     assert_eq!(spring(|s| s.stiffness = Some(-1.0)), wrong);
-    assert!(spring(|s| s.damping = Some(f64::NAN)).contains("spring1: damping NaN"));
+    assert!(spring(|s| s.damping = Some(f64::NAN)).contains("spring1.damping: found NaN"));
     assert!(spring(|s| s.rest_length = -2.0).contains("zero or a positive length"));
-    assert!(spring(|s| s.to.at = s.from.at).contains("ends in two places"));
+    assert!(spring(|s| s.to.at = s.from.at).contains("spring1.to.at: found the place of"));
     let twin = |system: &mut System| {
         let twin = system.components.springs[0].clone();
         system.components.springs.push(twin);
     };
-    assert!(told(&twin).contains("spring1: a name that another part"));
+    assert!(told(&twin).contains("springs.spring1.name: found \"spring1\" a second time"));
 
     let tendon = |change: fn(&mut Tendon)| {
         told(&|system: &mut System| {
@@ -126,9 +126,9 @@ fn wrong_constants_of_components_are_refused() {
             system.components.tendons.push(tendon);
         })
     };
-    assert!(tendon(|t| t.stiffness = 0.0).contains("cable: stiffness 0"));
-    assert!(tendon(|t| t.rest_length = f64::INFINITY).contains("cable: rest length inf"));
+    assert!(tendon(|t| t.stiffness = 0.0).contains("cable.stiffness: found 0"));
+    assert!(tendon(|t| t.rest_length = f64::INFINITY).contains("cable.rest_length: found inf"));
     assert!(tendon(|t| t.smoothing = 101.0).contains("twice the rest length"));
-    assert!(tendon(|t| t.through.truncate(1)).contains("two points or more"));
-    assert!(tendon(|t| t.through[1] = t.through[0]).contains("the one before"));
+    assert!(tendon(|t| t.through.truncate(1)).contains("2 points or more"));
+    assert!(tendon(|t| t.through[1] = t.through[0]).contains("the point before"));
 }

@@ -128,6 +128,6 @@ fn the_section_of_a_muscle_turns_with_its_first_side() {
             element: ElementKind::Hex8,
         });
         let refused = sledge(1, fidelity).check().unwrap_err().to_string();
-        assert!(refused.contains("a first side along"), "{refused}");
+        assert!(refused.contains(", along the span"), "{refused}");
     }
 }

@@ -1,13 +1,16 @@
 //! A place in a document from which checks report, and the checks shared by scene and problem.
 
-use std::collections::HashSet;
+use schemars::JsonSchema;
+use serde::Serialize;
+use serde_json::Value;
 use std::fmt;
 use std::path::PathBuf;
 
 use crate::files::json::document::Document;
 use crate::files::json::error::SceneError;
-use crate::files::json::path::JsonPath;
-use crate::files::units::quantity::{PhysicalQuantity, Quantity};
+use crate::files::json::path::{JsonPath, Step};
+use crate::files::units::quantity::{PhysicalQuantity, Quantity, WRITTEN};
+use crate::math::{Fault, unique};
 
 /// A place in a document.
 #[derive(Clone)]
@@ -42,6 +45,40 @@ impl<'a> Scope<'a> {
         expected: impl Into<String>,
     ) -> SceneError {
         self.document.mistake(&self.place, found, expected)
+    }
+
+    /// The error of a fault of what is written here.
+    pub(crate) fn refuse<S: Serialize + JsonSchema>(
+        &self,
+        written: &S,
+        fault: &Fault,
+    ) -> SceneError {
+        self.refuse_in(written, &JsonPath::default(), fault)
+    }
+
+    /// The error of a fault of a part of what is written here.
+    pub(crate) fn refuse_in<S: Serialize + JsonSchema>(
+        &self,
+        written: &S,
+        part: &JsonPath,
+        fault: &Fault,
+    ) -> SceneError {
+        let at = JsonPath::parse(&fault.clone().under("part").at).unwrap_or_default();
+        let steps = part.0.iter().chain(at.0.iter().skip(1));
+        let place = steps
+            .clone()
+            .fold(self.place.clone(), |at, step| at.then(step.clone()));
+        let value = serde_json::to_value(written).ok();
+        let value = value.as_ref().and_then(|whole| entry(whole, steps.clone()));
+        let found = match (&fault.value, value.and_then(told)) {
+            (Some(_), Some(value)) => format!("{value}{}", fault.found),
+            _ => fault.told(),
+        };
+        let schema = schemars::schema_for!(S).to_value();
+        let kind = kind(&schema, steps).filter(|_| fault.expects_quantity());
+        let kind = kind.map_or_else(String::new, |kind| format!(": {kind}"));
+        let expected = format!("{}{kind}", fault.expected);
+        self.document.mistake(&place, found, expected)
     }
 
     /// Index of a name in a list.
@@ -170,22 +207,45 @@ impl<'a> Scope<'a> {
         reserved: &[&str],
         place: impl Fn(usize) -> Self,
     ) -> Result<(), SceneError> {
-        let mut seen = HashSet::new();
-        for (index, name) in names.iter().enumerate() {
-            let found = format!("{name:?}");
-            if name.is_empty() {
-                return Err(place(index).wrong(found, "a name"));
-            }
-            if reserved.contains(&name.as_str()) {
-                return Err(place(index).wrong(found, "a name that is not reserved"));
-            }
-            if !seen.insert(name) {
-                let found = format!("{found} a second time");
-                return Err(place(index).wrong(found, "a name that is not taken"));
-            }
-        }
-        Ok(())
+        unique(names, reserved)
+            .map_err(|(index, fault)| place(index).wrong(fault.found, fault.expected))
     }
+}
+
+/// The value at a place.
+fn entry<'v, 's>(whole: &'v Value, mut steps: impl Iterator<Item = &'s Step>) -> Option<&'v Value> {
+    steps.try_fold(whole, |value, step| match step {
+        Step::Key(key) => value.get(key),
+        Step::Index(index) => value.get(index),
+    })
+}
+
+/// A value as messages tell it: a number, a text or a list of numbers.
+fn told(value: &Value) -> Option<String> {
+    match value {
+        Value::Number(number) => Some(number.as_f64()?.to_string()),
+        Value::String(text) => Some(format!("{text:?}")),
+        Value::Array(list) => {
+            let numbers: Option<Vec<f64>> = list.iter().map(Value::as_f64).collect();
+            Some(format!("{:?}", numbers?))
+        }
+        _ => None,
+    }
+}
+
+/// The kind of the quantity at a place of what a schema describes.
+fn kind<'v, 's>(schema: &'v Value, mut steps: impl Iterator<Item = &'s Step>) -> Option<&'v str> {
+    let one = |entry: &'v Value| {
+        let entry = entry.pointer("/anyOf/0").unwrap_or(entry);
+        let named = entry.get("$ref").and_then(Value::as_str);
+        named.map_or(Some(entry), |name| schema.pointer(name.strip_prefix('#')?))
+    };
+    let entry = steps.try_fold(schema, |entry, step| match step {
+        Step::Key(key) => one(entry.get("properties")?.get(key)?),
+        Step::Index(_) => one(entry.get("items")?),
+    })?;
+    let described = entry.get("description")?.as_str()?;
+    described.strip_prefix(WRITTEN)?.strip_suffix('.')
 }
 
 /// Names in quotes, separated by commas.

@@ -12,9 +12,6 @@ use crate::kinematics::Pose;
 use crate::mesh::triangulated::Surface;
 use crate::model::system::{Body, Shape, directors_along, is_diagonal, principal};
 
-/// Rounding of moments that satisfy the triangle inequality with equality.
-const ROUNDING: f64 = 1e-12;
-
 /// The body that is written.
 pub(crate) fn body(spec: &BodySpec, scope: &Scope<'_>) -> Result<Body, SceneError> {
     check_keys(spec, scope)?;
@@ -42,13 +39,6 @@ pub(crate) fn body(spec: &BodySpec, scope: &Scope<'_>) -> Result<Body, SceneErro
         None => body.shape.inertia(mass),
         Some(_) => body.inertia,
     };
-    if !inertia
-        .iter()
-        .all(|moment| moment.is_finite() && *moment > 0.0)
-    {
-        let found = format!("a body with the moments of inertia {inertia:?} g mm^2");
-        return Err(scope.wrong(found, "a body of ordinary size"));
-    }
     Ok(Body {
         name: spec.name.clone(),
         mass,
@@ -150,8 +140,7 @@ fn position(spec: &BodySpec, scope: &Scope<'_>) -> Result<Vector3<f64>, SceneErr
 /// The mass in g.
 fn mass(spec: &BodySpec, shape: &Shape, scope: &Scope<'_>) -> Result<f64, SceneError> {
     let Some(density) = &spec.density else {
-        let mass = spec.mass.as_ref().expect("one of the two");
-        return scope.key("mass").positive(mass);
+        return Ok(spec.mass.as_ref().expect("one of the two").value());
     };
     let scope = scope.key("density");
     let density = scope.positive(density)?;
@@ -174,17 +163,6 @@ fn tensor(spec: &BodySpec, scope: &Scope<'_>) -> Result<Matrix3<f64>, SceneError
             tensor[(row, column)] = entry.value();
             tensor[(column, row)] = entry.value();
         }
-    }
-    let (moments, _) = principal(&tensor);
-    let moments = Vector3::from(moments);
-    let largest = moments.max();
-    if moments.min() <= 0.0 || moments.sum() - 2.0 * largest < -ROUNDING * largest {
-        let found = match &spec.products_of_inertia {
-            None => format!("{:?} g mm^2", moments.as_slice()),
-            Some(_) => format!("principal moments of {:?} g mm^2", moments.as_slice()),
-        };
-        let expected = "positive moments of which none is larger than the sum of the two others";
-        return Err(place.wrong(found, expected));
     }
     Ok(tensor)
 }

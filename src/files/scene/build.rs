@@ -1,23 +1,25 @@
 //! Conversion of a scene file to its system: names resolved and everything checked.
 
 use crate::files::json::error::SceneError;
+use crate::files::json::path::JsonPath;
 use crate::files::json::scope::Scope;
 use crate::files::scene::body::body;
-use crate::files::scene::components::spring::{built, check_unique};
+use crate::files::scene::components::spring::ComponentSpec;
 use crate::files::scene::components::{component_lists, load};
 use crate::files::scene::expand::{add_named, expanded};
 use crate::files::scene::graph::check_connected;
 use crate::files::scene::joint::joint;
 use crate::files::scene::material::materials;
-use crate::files::scene::muscle::{MOST_ELEMENTS, fidelity, layer, muscle, positive_sides};
-use crate::files::scene::names::{NamedEntries, attachment, find_material, names};
+use crate::files::scene::muscle::muscle;
+use crate::files::scene::names::{find_body, names};
 use crate::files::scene::nodes::place;
 use crate::files::scene::point::{unit_axis, vector};
 use crate::files::scene::solid::solid;
 use crate::files::scene::spec::{ChainSpec, MarkerSpec, SceneSpec};
 use crate::mesh::Mesh;
-use crate::model::components::{Components, Load, LoadPlace};
-use crate::model::system::{Attachment, Marker, Material, Solid, System, number_sources};
+use crate::model::MOST_ELEMENTS;
+use crate::model::components::{Components, Load};
+use crate::model::system::{Attachment, Marker, Solid, System, number_sources};
 use nalgebra::Vector3;
 use std::cell::Cell;
 
@@ -26,40 +28,39 @@ pub(crate) const LONGEST_CHAIN: usize = 1000;
 
 /// The system that a scene means.
 pub(crate) fn build_scene(scene: &SceneSpec, scope: &Scope<'_>) -> Result<System, SceneError> {
-    let mut scene = scene.clone();
-    add_named(&mut scene);
-    let materials = materials(&scene.materials, &scope.key("materials"))?;
+    let mut named = scene.clone();
+    add_named(&mut named);
+    let materials = materials(&named.materials, &scope.key("materials"))?;
     if let Some(chain) = &scene.chain {
-        check_chain(chain, &materials, &scope.key("chain"))?;
+        check_chain(chain, &scope.key("chain"))?;
     }
-    let lists = Lists::new(&scene, scope);
-    let scene = expanded(scene);
-    lists.check_names(&scene, scope)?;
+    let lists = Lists::new(scene, scope);
+    let scene = expanded(named);
+    check_names(&scene, &lists)?;
     let body_names = names(&scene.bodies, |body| &body.name);
 
     let elements = Elements::default();
-    let muscles = lists.muscles.build(&scene.muscles, |spec, scope| {
+    let muscles = lists.build("muscles", &scene.muscles, |spec, scope| {
         let muscle = muscle(spec, &body_names, &materials, scope)?;
         elements.add(muscle.fidelity.elements(), scope)?;
         Ok(muscle)
     })?;
-    let mut blocks = lists.solids.build(&scene.solids, |spec, scope| {
+    let mut blocks = lists.build("solids", &scene.solids, |spec, scope| {
         let solid = solid(spec, &body_names, &materials, scope)?;
         elements.add(solid.mesh.hexahedra.len(), scope)?;
         Ok(solid)
     })?;
     number_sources(&mut blocks, muscles.len());
-    let built_joints = lists
-        .joints
-        .build(&scene.joints, |spec, scope| joint(spec, &body_names, scope))?;
-    let loads = lists.loads.build(&scene.loads, |spec, scope| {
-        load(spec, (&body_names, &built_joints, &muscles, &blocks), scope)
+    let joints = lists.build("joints", &scene.joints, |spec, scope| {
+        joint(spec, &body_names, scope)
     })?;
-    check_charges(&loads, &lists)?;
+    let loads = lists.build("loads", &scene.loads, |spec, scope| {
+        load(spec, (&body_names, &joints, &muscles, &blocks), scope)
+    })?;
     let system = System {
-        bodies: lists.bodies.build(&scene.bodies, body)?,
+        bodies: lists.build("bodies", &scene.bodies, body)?,
         muscles,
-        markers: lists.markers.build(&scene.markers, |spec, scope| {
+        markers: lists.build("markers", &scene.markers, |spec, scope| {
             marker(spec, &body_names, &blocks, scope)
         })?,
         solids: blocks,
@@ -68,28 +69,38 @@ pub(crate) fn build_scene(scene: &SceneSpec, scope: &Scope<'_>) -> Result<System
             .as_ref()
             .map(vector)
             .filter(|g| g.norm() > 0.0),
-        components: components(&scene, loads, &body_names, scope)?,
-        joints: built_joints,
+        components: components(&scene, loads, &body_names, &lists)?,
+        joints,
         name: scene.name,
     };
+    lists.check(&system)?;
     check_connected(&scene.bodies, &system.joints, |index| {
-        lists.bodies.scope(index)
+        lists.scope("bodies", index)
     })?;
     let sources = names(&system.sources(), |source| &source.name);
     scope.unique(&sources, &[], |_| scope.key("solids"))?;
     Ok(system)
 }
 
-/// Checks that no muscle is charged twice.
-fn check_charges(loads: &[Load], lists: &Lists<'_>) -> Result<(), SceneError> {
-    for (index, load) in loads.iter().enumerate() {
-        let is_charge = matches!(load.on, LoadPlace::Muscle(_));
-        if is_charge && loads[..index].iter().any(|other| other.on == load.on) {
-            let place = lists.loads.scope(index).key("muscle");
-            return Err(place.wrong("a second charge of one muscle", "one charge for each"));
-        }
-    }
-    Ok(())
+/// Checks that names by which parts refer to each other and to files are unique.
+fn check_names(scene: &SceneSpec, lists: &Lists<'_>) -> Result<(), SceneError> {
+    let reserved = ["solution", "time", "voltages", "hold"];
+    let all: [(&str, Vec<String>, &[&str]); 4] = [
+        (
+            "bodies",
+            names(&scene.bodies, |body| &body.name),
+            &["ground"],
+        ),
+        ("joints", names(&scene.joints, |joint| &joint.name), &[]),
+        (
+            "muscles",
+            names(&scene.muscles, |muscle| &muscle.name),
+            &reserved,
+        ),
+        ("solids", names(&scene.solids, |solid| &solid.name), &[]),
+    ];
+    let mut all = all.iter();
+    all.try_for_each(|(list, names, reserved)| lists.unique(list, names, reserved))
 }
 
 /// Elements counted while a scene is built.
@@ -112,62 +123,82 @@ impl Elements {
     }
 }
 
-/// The named lists of a scene.
+/// The lists of a scene as it is written; entries beyond the written ones come from the chain.
 struct Lists<'a> {
-    bodies: NamedEntries<'a>,
-    joints: NamedEntries<'a>,
-    muscles: NamedEntries<'a>,
-    solids: NamedEntries<'a>,
-    markers: NamedEntries<'a>,
-    loads: NamedEntries<'a>,
+    scene: &'a SceneSpec,
+    scope: Scope<'a>,
 }
 
 impl<'a> Lists<'a> {
-    /// The lists of a scene as it is written.
-    fn new(scene: &SceneSpec, scope: &Scope<'a>) -> Self {
-        let list = |name: &str, written: usize| NamedEntries::new(scope, name, written);
-        Self {
-            bodies: list("bodies", scene.bodies.len()),
-            joints: list("joints", scene.joints.len()),
-            muscles: list("muscles", scene.muscles.len()),
-            solids: list("solids", scene.solids.len()),
-            markers: list("markers", scene.markers.len()),
-            loads: list("loads", scene.loads.len()),
+    fn new(scene: &'a SceneSpec, scope: &Scope<'a>) -> Self {
+        let scope = scope.clone();
+        Self { scene, scope }
+    }
+
+    /// Place of an entry of a list in the scene.
+    fn place(&self, list: &str, index: usize) -> JsonPath {
+        let written = match list {
+            "bodies" => self.scene.bodies.len(),
+            "joints" => self.scene.joints.len(),
+            "muscles" => self.scene.muscles.len(),
+            "markers" => self.scene.markers.len(),
+            // A chain writes nothing of the others.
+            _ => usize::MAX,
+        };
+        let root = JsonPath::default();
+        match index < written {
+            true => root.key(list).index(index),
+            false => root.key("chain"),
         }
     }
 
-    /// Checks that the names of the expanded scene are unique where they must be.
-    fn check_names(&self, scene: &SceneSpec, scope: &Scope<'_>) -> Result<(), SceneError> {
-        let bodies = names(&scene.bodies, |body| &body.name);
-        let joints = names(&scene.joints, |joint| &joint.name);
-        let muscles = names(&scene.muscles, |muscle| &muscle.name);
-        let solids = names(&scene.solids, |solid| &solid.name);
-        let markers = names(&scene.markers, |marker| &marker.name);
-        let loads = names(&scene.loads, |load| &load.name);
+    /// An entry of a list.
+    fn scope(&self, list: &str, index: usize) -> Scope<'a> {
+        let steps = self.place(list, index).0.into_iter();
+        let place = steps.fold(self.scope.place.clone(), |at, step| at.then(step));
+        Scope {
+            place,
+            ..self.scope
+        }
+    }
 
-        self.bodies.unique(&bodies, &["ground"])?;
-        self.joints.unique(&joints, &[])?;
-        let reserved = ["solution", "time", "voltages", "hold"];
-        self.muscles.unique(&muscles, &reserved)?;
-        check_component_names(scene, scope)?;
-        // Blocks and muscles share files and names of voltages.
-        let driven = [muscles, solids].concat();
-        let place = |index: usize| scope.key("solids").index(index - scene.muscles.len());
-        scope.unique(&driven, &[], |index| place(index).key("name"))?;
-        self.loads.unique(
-            &loads,
-            &driven.iter().map(String::as_str).collect::<Vec<_>>(),
-        )?;
-        self.markers.unique(&markers, &[])
+    /// Refuses names of a list that are empty, reserved or repeated.
+    fn unique(&self, list: &str, names: &[String], reserved: &[&str]) -> Result<(), SceneError> {
+        self.scope.unique(names, reserved, |index| {
+            let place = self.scope(list, index);
+            match place.place.last_key() {
+                None => place.key("name"),
+                Some(_) => place,
+            }
+        })
+    }
+
+    /// The parts of a list.
+    fn build<S, T>(
+        &self,
+        list: &str,
+        specs: &[S],
+        build: impl Fn(&S, &Scope<'a>) -> Result<T, SceneError>,
+    ) -> Result<Vec<T>, SceneError> {
+        let build = |(index, spec)| build(spec, &self.scope(list, index));
+        specs.iter().enumerate().map(build).collect()
+    }
+
+    /// Checks the rules of a system.
+    fn check(&self, system: &System) -> Result<(), SceneError> {
+        system.check().map_err(|error| {
+            let part = self.place(error.list, error.index);
+            let part = match (error.list, part.last_key()) {
+                ("muscles", Some("chain")) => part.key("muscles"),
+                _ => part,
+            };
+            self.scope.refuse_in(self.scene, &part, &error.fault)
+        })
     }
 }
 
 /// Checks the entries from which a chain is written out.
-fn check_chain(
-    chain: &ChainSpec,
-    materials: &[(String, Material)],
-    scope: &Scope<'_>,
-) -> Result<(), SceneError> {
+fn check_chain(chain: &ChainSpec, scope: &Scope<'_>) -> Result<(), SceneError> {
     if !(1..=LONGEST_CHAIN).contains(&chain.segments) {
         let expected = format!("a whole number from 1 to {LONGEST_CHAIN}");
         return Err(scope
@@ -191,16 +222,12 @@ fn check_chain(
     }
     if let Some(pair) = &chain.muscles {
         let scope = scope.key("muscles");
-        find_material(&pair.material, materials, &scope.key("material"))?;
-        fidelity(&pair.model(), materials, &scope)?;
         let arm = scope.key("arm").positive(&pair.arm)?;
         let rest_length = scope.key("rest_length").positive(&pair.rest_length)?;
         if !(reach + arm + rest_length).is_finite() {
             let found = format!("an arm of {} at a length of {}", pair.arm, pair.rest_length);
             return Err(scope.wrong(found, "muscles in finite places"));
         }
-        positive_sides(&pair.cross_section, rest_length, &scope)?;
-        layer(&pair.layer_thickness, rest_length, &scope)?;
     }
     Ok(())
 }
@@ -209,37 +236,24 @@ fn check_chain(
 macro_rules! visits {
     ($($(#[$about:meta])* $list:ident: $spec:ty,)*) => {
         /// The components that are written, beside these loads.
-        pub(crate) fn components(
+        fn components(
             scene: &SceneSpec,
             loads: Vec<Load>,
             bodies: &[String],
-            scope: &Scope<'_>,
+            lists: &Lists<'_>,
         ) -> Result<Components, SceneError> {
             Ok(Components {
-                $($list: built(&scene.$list, &list(scope, stringify!($list)), bodies)?,)*
+                $($list: lists.build(stringify!($list), &scene.$list, |spec, scope| {
+                    spec.component(bodies, scope)
+                })?,)*
                 loads,
                 others: Vec::new(),
             })
-        }
-
-        /// Checks that no two components have one name.
-        pub(crate) fn check_component_names(
-            scene: &SceneSpec,
-            scope: &Scope<'_>,
-        ) -> Result<(), SceneError> {
-            let mut names = Vec::new();
-            $(check_unique(&scene.$list, &list(scope, stringify!($list)), &mut names)?;)*
-            Ok(())
         }
     };
 }
 
 component_lists!(visits);
-
-/// A list of which a chain writes nothing.
-fn list<'a>(scope: &Scope<'a>, name: &str) -> NamedEntries<'a> {
-    NamedEntries::new(scope, name, usize::MAX)
-}
 
 /// The marker that is written.
 pub(crate) fn marker(
@@ -253,11 +267,13 @@ pub(crate) fn marker(
         ("solid", spec.solid.as_ref().map(|_| ())),
     ])?;
     let name = spec.name.clone();
+    let at = vector(&spec.at);
     let Some(solid) = &spec.solid else {
         let body = spec.body.as_deref().unwrap_or_default();
+        let body = find_body(body, bodies, &scope.key("body"))?;
         return Ok(Marker {
             name,
-            point: attachment(body, &spec.at, bodies, scope)?,
+            point: Attachment { body, at },
             solid: None,
         });
     };
@@ -265,7 +281,6 @@ pub(crate) fn marker(
     let solid = scope
         .key("solid")
         .find(solid, &all, "the name of a block")?;
-    let at = vector(&spec.at);
     let mesh = &solids[solid].mesh;
     let (node, distance) = nearest(mesh, &at);
     if distance.is_nan() || distance > size_at(mesh, node) {

@@ -4,10 +4,9 @@ use std::collections::BTreeMap;
 
 use crate::files::json::error::SceneError;
 use crate::files::json::scope::Scope;
-use crate::files::scene::circuit::{CircuitSpec, parts};
 use crate::files::scene::mesh::Meshed;
 use crate::files::scene::nodes::{AXES, extent, in_plane, nodes, place, planes_near};
-use crate::files::scene::spec_solids::{PotentialSpec, SolidSpec, StackSpec};
+use crate::files::scene::spec_solids::{CircuitSpec, PotentialSpec, SolidSpec, StackSpec};
 use crate::mesh::Mesh;
 use crate::model::system::{Circuit, Electrode, Potential};
 
@@ -65,13 +64,11 @@ fn circuit(
     is_driven: bool,
     scope: &Scope<'_>,
 ) -> Result<Option<Circuit>, SceneError> {
-    let (Some(spec), place) = (spec, scope.key("circuit")) else {
-        return Ok(None);
-    };
-    let circuit = parts(spec, &place)?;
-    match circuit.fault(is_driven, true) {
-        Some([found, expected]) => Err(place.wrong(found, expected)),
-        None => Ok(Some(circuit)),
+    let Some(spec) = spec else { return Ok(None) };
+    let circuit = spec.circuit();
+    match circuit.check(is_driven, true) {
+        Ok(()) => Ok(Some(circuit)),
+        Err(fault) => Err(scope.key("circuit").refuse(spec, &fault)),
     }
 }
 

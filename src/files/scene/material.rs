@@ -2,7 +2,8 @@
 
 use crate::files::json::error::SceneError;
 use crate::files::json::scope::Scope;
-use crate::files::scene::law::{LawSpec, law};
+use crate::files::scene::law::LawSpec;
+use crate::files::scene::objects::objects;
 use crate::files::units::quantity::{Density, Permittivity, Quantity, Stress, Time, Viscosity};
 use crate::model::MOST_BRANCHES;
 use crate::model::system::{
@@ -25,99 +26,46 @@ pub(crate) fn materials(
 }
 
 fn material(spec: &MaterialSpec, scope: &Scope<'_>) -> Result<Material, SceneError> {
-    let shear_modulus = scope.key("shear_modulus").positive(&spec.shear_modulus)?;
-    Ok(Material {
-        density: density(spec, scope)?,
-        shear_modulus,
-        law: match &spec.law {
-            None => None,
-            Some(written) => Some(law(written, &scope.key("law"))?),
-        },
-        lame_lambda: lame_lambda(spec, shear_modulus, scope)?,
+    let law = spec.law.as_ref().map(|law| law.law(&scope.key("law")));
+    let material = Material {
+        density: Quantity::present(&spec.density),
+        shear_modulus: spec.shear_modulus.value(),
+        law: law.transpose()?,
+        lame_lambda: lame_lambda(spec, scope)?,
         electric: electric(spec, scope)?,
-        viscosity: scope
-            .key("viscosity")
-            .absent_or_positive(spec.viscosity.as_ref())?,
+        viscosity: Quantity::present(&spec.viscosity),
         maxwell: maxwell(&spec.maxwell, &scope.key("maxwell"))?,
-        stretch_range: stretch_range(spec, scope)?,
-    })
-}
-
-fn stretch_range(spec: &MaterialSpec, scope: &Scope<'_>) -> Result<Option<[f64; 2]>, SceneError> {
-    match spec.stretch_range {
-        Some([low, high]) if !(low > 0.0 && low <= 1.0 && high >= 1.0) => {
-            let expected = "two stretches with 1 between them, such as [0.6, 2]";
-            let place = scope.key("stretch_range");
-            Err(place.wrong(format!("[{low}, {high}]"), expected))
-        }
-        range => Ok(range),
-    }
+        stretch_range: spec.stretch_range,
+    };
+    let checked = material.check();
+    checked.map_err(|fault| scope.refuse(spec, &fault))?;
+    Ok(material)
 }
 
 fn maxwell(specs: &[MaxwellSpec], scope: &Scope<'_>) -> Result<MaxwellBranches, SceneError> {
-    let branch = |(index, spec): (usize, &MaxwellSpec)| -> Result<_, SceneError> {
-        let place = scope.index(index);
-        Ok(MaxwellBranch {
-            shear_modulus: place.key("shear_modulus").positive(&spec.shear_modulus)?,
-            relaxation_time: place
-                .key("relaxation_time")
-                .positive(&spec.relaxation_time)?,
-        })
+    let branch = |spec: &MaxwellSpec| MaxwellBranch {
+        shear_modulus: spec.shear_modulus.value(),
+        relaxation_time: spec.relaxation_time.value(),
     };
-    let branches: Vec<_> = specs
-        .iter()
-        .enumerate()
-        .map(branch)
-        .collect::<Result<_, _>>()?;
+    let branches: Vec<_> = specs.iter().map(branch).collect();
     MaxwellBranches::new(&branches).ok_or_else(|| {
         let found = format!("{} branches", branches.len());
         scope.wrong(found, format!("{MOST_BRANCHES} branches at most"))
     })
 }
 
-/// Density in g/mm³ beyond that of any matter on earth: osmium has 0.02259.
-const DENSEST: f64 = 0.1;
-
-/// The density in g/mm³, where there is one.
-fn density(spec: &MaterialSpec, scope: &Scope<'_>) -> Result<Option<f64>, SceneError> {
-    let place = scope.key("density");
-    match (
-        &spec.density,
-        place.absent_or_positive(spec.density.as_ref())?,
-    ) {
-        (Some(written), Some(density)) if density > DENSEST => {
-            let expected =
-                "a density below 1e5 kg/m^3: that of silicone is \"1000 kg/m^3\", or \"1 g/cm^3\"";
-            Err(place.wrong(written.to_string(), expected))
-        }
-        (_, density) => Ok(density),
-    }
-}
-
 /// λ, or 2 μ ν/(1 − 2 ν), in MPa.
-fn lame_lambda(
-    spec: &MaterialSpec,
-    shear_modulus: f64,
-    scope: &Scope<'_>,
-) -> Result<Option<f64>, SceneError> {
+fn lame_lambda(spec: &MaterialSpec, scope: &Scope<'_>) -> Result<Option<f64>, SceneError> {
+    let shear_modulus = spec.shear_modulus.value();
     match (&spec.lame_lambda, spec.poisson_ratio) {
-        (None, None) => Ok(None),
-        (Some(lambda), None) => {
-            // The bulk modulus λ + 2 μ/3 is positive.
-            if lambda.value() > -2.0 / 3.0 * shear_modulus {
-                return Ok(Some(lambda.value()));
-            }
-            let expected = "a stress larger than -2/3 of the shear modulus";
-            Err(scope.key("lame_lambda").wrong(lambda.to_string(), expected))
-        }
+        (lambda, None) => Ok(lambda.as_ref().map(Quantity::value)),
         (None, Some(ratio)) if ratio > -1.0 && ratio < 0.5 => {
             Ok(Some(Material::first_lame_constant(shear_modulus, ratio)))
         }
         (None, Some(ratio)) => {
             let expected = "a number larger than -1 and smaller than 0.5";
-            Err(scope
-                .key("poisson_ratio")
-                .wrong(ratio.to_string(), expected))
+            let place = scope.key("poisson_ratio");
+            Err(place.wrong(ratio.to_string(), expected))
         }
         (Some(_), Some(_)) => {
             let found = "\"lame_lambda\" and \"poisson_ratio\"";
@@ -172,61 +120,47 @@ fn electric(
     }
 }
 
-/// A dielectric elastomer.
-#[derive(Clone, Debug, Serialize, Deserialize, JsonSchema)]
-#[serde(deny_unknown_fields)]
-pub struct MaterialSpec {
-    /// Source of the constants, for readers.
-    #[serde(default, skip_serializing_if = "Option::is_none")]
-    pub source: Option<String>,
-    /// Conditions under which the constants were measured and fitted, for readers.
-    #[serde(default, skip_serializing_if = "Option::is_none")]
-    pub conditions: Option<String>,
-    /// Smallest and largest stretch for which the constants hold; a lumped muscle beyond them is a warning.
-    #[serde(default, skip_serializing_if = "Option::is_none")]
-    pub stretch_range: Option<[f64; 2]>,
-    /// Density, SI unit kg/m³; without it muscles are massless.
-    #[serde(default, skip_serializing_if = "Option::is_none")]
-    pub density: Option<Quantity<Density>>,
-    /// Shear modulus μ of small strains, SI unit Pa.
-    pub shear_modulus: Quantity<Stress>,
-    /// Law of elasticity; the neo-Hookean one where not written.
-    #[serde(default, skip_serializing_if = "Option::is_none")]
-    pub law: Option<LawSpec>,
-    /// First Lamé constant λ, SI unit Pa; or give `poisson_ratio`. Finite elements need one of them.
-    #[serde(default, skip_serializing_if = "Option::is_none")]
-    pub lame_lambda: Option<Quantity<Stress>>,
-    /// Poisson's ratio, between −1 and 0.5; or give `lame_lambda`.
-    #[serde(default, skip_serializing_if = "Option::is_none")]
-    pub poisson_ratio: Option<f64>,
-    /// Relative permittivity, 1 or more; or give `c1` and `c2`; without either the material has no electric term.
-    #[serde(default, skip_serializing_if = "Option::is_none")]
-    pub relative_permittivity: Option<f64>,
-    /// Law by which `relative_permittivity` enters the energy; `first_order` where not written.
-    #[serde(default, skip_serializing_if = "Option::is_none")]
-    pub dielectric: Option<Dielectric>,
-    /// Constant of the term c₁ E·E, SI unit F/m = N/V².
-    #[serde(default, skip_serializing_if = "Option::is_none")]
-    pub c1: Option<Quantity<Permittivity>>,
-    /// Constant of the term c₂ C:(E⊗E), SI unit F/m = N/V².
-    #[serde(default, skip_serializing_if = "Option::is_none")]
-    pub c2: Option<Quantity<Permittivity>>,
-    /// Viscosity η in σ = η d, SI unit Pa s; without it no viscous force.
-    #[serde(default, skip_serializing_if = "Option::is_none")]
-    pub viscosity: Option<Quantity<Viscosity>>,
-    /// Maxwell branches, five at most: springs in series with dampers, in which stress relaxes.
-    #[serde(default, skip_serializing_if = "Vec::is_empty")]
-    pub maxwell: Vec<MaxwellSpec>,
-}
+objects! {
+    /// A dielectric elastomer.
+    pub struct MaterialSpec {
+        /// Source of the constants, for readers.
+        pub source: Option<String>,
+        /// Conditions under which the constants were measured and fitted, for readers.
+        pub conditions: Option<String>,
+        /// Smallest and largest stretch for which the constants hold; a lumped muscle beyond them is a warning.
+        pub stretch_range: Option<[f64; 2]>,
+        /// Density, SI unit kg/m³; without it muscles are massless.
+        pub density: Option<Quantity<Density>>,
+        /// Shear modulus μ of small strains, SI unit Pa.
+        pub shear_modulus: Quantity<Stress>,
+        /// Law of elasticity; the neo-Hookean one where not written.
+        pub law: Option<LawSpec>,
+        /// First Lamé constant λ, SI unit Pa; or give `poisson_ratio`. Finite elements need one of them.
+        pub lame_lambda: Option<Quantity<Stress>>,
+        /// Poisson's ratio, between −1 and 0.5; or give `lame_lambda`.
+        pub poisson_ratio: Option<f64>,
+        /// Relative permittivity, 1 or more; or give `c1` and `c2`; without either the material has no electric term.
+        pub relative_permittivity: Option<f64>,
+        /// Law by which `relative_permittivity` enters the energy; `first_order` where not written.
+        pub dielectric: Option<Dielectric>,
+        /// Constant of the term c₁ E·E, SI unit F/m = N/V².
+        pub c1: Option<Quantity<Permittivity>>,
+        /// Constant of the term c₂ C:(E⊗E), SI unit F/m = N/V².
+        pub c2: Option<Quantity<Permittivity>>,
+        /// Viscosity η in σ = η d, SI unit Pa s; without it no viscous force.
+        pub viscosity: Option<Quantity<Viscosity>>,
+        /// Maxwell branches, five at most: springs in series with dampers, in which stress relaxes.
+        #[serde(default, skip_serializing_if = "Vec::is_empty")]
+        pub maxwell: Vec<MaxwellSpec>,
+    }
 
-/// A Maxwell branch.
-#[derive(Clone, Debug, Serialize, Deserialize, JsonSchema)]
-#[serde(deny_unknown_fields)]
-pub struct MaxwellSpec {
-    /// Shear modulus μ₁ of its spring, SI unit Pa.
-    pub shear_modulus: Quantity<Stress>,
-    /// Relaxation time τ in which small stresses fall to 1/e, SI unit s.
-    pub relaxation_time: Quantity<Time>,
+    /// A Maxwell branch.
+    pub struct MaxwellSpec {
+        /// Shear modulus μ₁ of its spring, SI unit Pa.
+        pub shear_modulus: Quantity<Stress>,
+        /// Relaxation time τ in which small stresses fall to 1/e, SI unit s.
+        pub relaxation_time: Quantity<Time>,
+    }
 }
 
 /// Law by which the relative permittivity enters the energy.

@@ -4,12 +4,12 @@ use nalgebra::Vector3;
 
 use crate::files::json::error::SceneError;
 use crate::files::json::scope::Scope;
-use crate::files::scene::muscle::{MOST_ELEMENTS, check_elements};
 use crate::files::scene::point::vector;
 use crate::files::scene::spec_solids::{DivisionSpec, GridSpec, LayerSpec, SolidSpec};
 use crate::mesh::error::MeshError;
 use crate::mesh::grid::Grid;
 use crate::mesh::{Mesh, gmsh};
+use crate::model::{MOST_ELEMENTS, check_elements};
 
 /// Unit of a mesh file in mm where none is written: the metre.
 pub(crate) const DEFAULT_UNIT: f64 = 1e3;
@@ -92,7 +92,8 @@ fn boxed(spec: &GridSpec, scope: &Scope<'_>) -> Result<Meshed, SceneError> {
         };
     }
     let count = |layers: &Vec<(f64, usize)>| layers.iter().map(|layer| layer.1).sum();
-    check_elements(layers.each_ref().map(count), &scope)?;
+    let elements = check_elements(layers.each_ref().map(count));
+    elements.map_err(|fault| scope.refuse(&spec.elements, &fault))?;
     let grid = Grid::layers(corner, size, layers.clone()).map_err(|error| {
         let axis = match error {
             MeshError::Layers { axis, .. } => "xyz".find(axis).unwrap_or(0),

@@ -1,14 +1,13 @@
 //! The scene file: its types as written (`spec`, `spec_joints`, `spec_material`, `spec_solids`, `point`) and their conversion to a [`System`](crate::model::System).
 //!
 //! - `build`: the scene; `body`, `material`, `muscle`, `marker`: its parts; `components`: kinds of which each has one file for both, in the lists of `component_lists`.
-//! - `solid`, `mesh`, `electrodes`, `nodes`: elastic solids; `graph`: connections by joints; `names`: resolution of names; `named_entries`: lists with positions.
-//! - `law`: laws of elasticity of materials; `named_materials`: published constants; `circuit`: circuits of muscles.
+//! - `solid`, `mesh`, `electrodes`, `nodes`: elastic solids; `graph`: connections by joints; `names`: resolution of names.
+//! - `objects`: declaration of what is written; `law`: laws of elasticity of materials; `named_materials`: published constants.
 //! - `constants`: constants by their paths, as an optimisation may seek them.
 //! - `expand`: the shorthand of chains; `trunk`: a scene to begin with.
 
 pub(crate) mod body;
 pub(crate) mod build;
-mod circuit;
 pub mod components;
 pub(crate) mod constants;
 pub(crate) mod electrodes;
@@ -21,6 +20,7 @@ pub(crate) mod mesh;
 pub(crate) mod muscle;
 pub(crate) mod names;
 pub(crate) mod nodes;
+mod objects;
 pub mod point;
 pub(crate) mod solid;
 pub mod spec;

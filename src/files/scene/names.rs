@@ -4,7 +4,7 @@ use crate::energy::ElasticLaw;
 use crate::files::json::error::SceneError;
 use crate::files::json::scope::{Scope, list};
 use crate::files::scene::material::named_materials;
-use crate::files::scene::point::{Point, vector};
+use crate::files::scene::point::{PointSpec, vector};
 use crate::model::system::{Attachment, Material};
 
 /// Names of the entries of a list.
@@ -54,16 +54,17 @@ pub(crate) fn find_compressible(
     ))
 }
 
-/// A point of a body that is written under `body` and `at`.
-pub(crate) fn attachment(
-    body: &str,
-    at: &Point,
-    bodies: &[String],
-    scope: &Scope<'_>,
-) -> Result<Attachment, SceneError> {
-    let body = find_body(body, bodies, &scope.key("body"))?;
-    let at = vector(at);
-    Ok(Attachment { body, at })
+impl PointSpec {
+    /// The point.
+    pub(crate) fn attachment(
+        &self,
+        bodies: &[String],
+        scope: &Scope<'_>,
+    ) -> Result<Attachment, SceneError> {
+        let body = find_body(&self.body, bodies, &scope.key("body"))?;
+        let at = vector(&self.at);
+        Ok(Attachment { body, at })
+    }
 }
 
 /// Index of a body; `None` is the ground.
@@ -83,44 +84,4 @@ pub(crate) fn find_body(
     Err(scope
         .document
         .wrong_name(&scope.place, name, expected, or_ground))
-}
-
-/// One list of the scene; entries beyond the written ones come from the chain.
-pub(super) struct NamedEntries<'a> {
-    list: Scope<'a>,
-    chain: Scope<'a>,
-    written: usize,
-}
-
-impl<'a> NamedEntries<'a> {
-    pub(super) fn new(scene: &Scope<'a>, list: &str, written: usize) -> Self {
-        Self {
-            list: scene.key(list),
-            chain: scene.key("chain"),
-            written,
-        }
-    }
-
-    pub(super) fn scope(&self, index: usize) -> Scope<'a> {
-        match index {
-            index if index < self.written => self.list.index(index),
-            _ => self.chain.clone(),
-        }
-    }
-
-    pub(super) fn unique(&self, names: &[String], reserved: &[&str]) -> Result<(), SceneError> {
-        self.list.unique(names, reserved, |index| match index {
-            index if index < self.written => self.scope(index).key("name"),
-            _ => self.scope(index),
-        })
-    }
-
-    pub(super) fn build<S, T>(
-        &self,
-        specs: &[S],
-        build: impl Fn(&S, &Scope<'a>) -> Result<T, SceneError>,
-    ) -> Result<Vec<T>, SceneError> {
-        let build = |(index, spec)| build(spec, &self.scope(index));
-        specs.iter().enumerate().map(build).collect()
-    }
 }

@@ -24,18 +24,10 @@ pub(crate) fn nodes(
     mesh: &Mesh,
     scope: &Scope<'_>,
 ) -> Result<Vec<usize>, SceneError> {
-    type Nodes<'a> = Box<dyn FnOnce() -> Result<Vec<usize>, SceneError> + 'a>;
-    let of_face = name.map(|name| -> Nodes<'_> {
-        Box::new(|| face(name, mesh, &scope.key("face")).map(<[usize]>::to_vec))
-    });
-    let of_plane = plane.map(|plane| -> Nodes<'_> {
-        Box::new(|| nodes_in_plane(owner, plane, mesh, &scope.key("plane")))
-    });
-    let of_box = cuboid.map(|corners| -> Nodes<'_> {
-        Box::new(|| nodes_in_box(owner, corners, mesh, &scope.key("box")))
-    });
-    let nodes = scope.exactly_one([("face", of_face), ("plane", of_plane), ("box", of_box)])?;
-    nodes()
+    let of_face = name.map(|name| face(name, mesh, &scope.key("face")).map(<[usize]>::to_vec));
+    let of_plane = plane.map(|plane| nodes_in_plane(owner, plane, mesh, &scope.key("plane")));
+    let of_box = cuboid.map(|corners| nodes_in_box(owner, corners, mesh, &scope.key("box")));
+    scope.exactly_one([("face", of_face), ("plane", of_plane), ("box", of_box)])?
 }
 
 /// The nodes of a face or set whose name stands at `scope`.

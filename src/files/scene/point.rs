@@ -1,11 +1,10 @@
 //! Points and vectors as they are written.
 
 use nalgebra::Vector3;
-use schemars::JsonSchema;
-use serde::{Deserialize, Serialize};
 
 use crate::files::json::error::SceneError;
 use crate::files::json::scope::Scope;
+use crate::files::scene::objects::objects;
 use crate::files::units::quantity::{Length, PhysicalQuantity, Quantity};
 
 /// A point or a vector of lengths.
@@ -14,14 +13,14 @@ pub type Point = [Quantity<Length>; 3];
 /// A point of which some coordinates are given.
 pub type PartialPoint = [Option<Quantity<Length>>; 3];
 
-/// A material point of a body.
-#[derive(Clone, Debug, Serialize, Deserialize, JsonSchema)]
-#[serde(deny_unknown_fields)]
-pub struct PointSpec {
-    /// Name of the body, or `ground`.
-    pub body: String,
-    /// Place, SI unit m.
-    pub at: Point,
+objects! {
+    /// A material point of a body.
+    pub struct PointSpec {
+        /// Name of the body, or `ground`.
+        pub body: String,
+        /// Place, SI unit m.
+        pub at: Point,
+    }
 }
 
 /// A vector of quantities in the units inside.
@@ -29,14 +28,14 @@ pub(crate) fn vector<M: PhysicalQuantity>(entries: &[Quantity<M>; 3]) -> Vector3
     Vector3::from(entries.each_ref().map(Quantity::value))
 }
 
-/// Two corners of a box.
-#[derive(Clone, Debug, Serialize, Deserialize, JsonSchema)]
-#[serde(deny_unknown_fields)]
-pub struct CornersSpec {
-    /// Lower corner, SI unit m.
-    pub min: Point,
-    /// Upper corner, SI unit m.
-    pub max: Point,
+objects! {
+    /// Two corners of a box.
+    pub struct CornersSpec {
+        /// Lower corner, SI unit m.
+        pub min: Point,
+        /// Upper corner, SI unit m.
+        pub max: Point,
+    }
 }
 
 /// A direction of length one.

@@ -4,30 +4,28 @@ use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 use std::collections::BTreeMap;
 
-use crate::files::scene::circuit::CircuitSpec;
 use crate::files::scene::components::{LoadSpec, SpringSpec, TendonSpec, component_lists};
 use crate::files::scene::joint::JointSpec;
 use crate::files::scene::material::MaterialSpec;
+use crate::files::scene::objects::objects;
 use crate::files::scene::point::{Point, PointSpec};
-use crate::files::scene::spec_solids::{ElementSpec, SolidSpec};
+use crate::files::scene::spec_solids::{CircuitSpec, ElementSpec, SolidSpec};
 use crate::files::units::quantity::{
     Acceleration, Angle, Density, Length, Mass, MomentOfInertia, Quantity,
 };
 
 /// Declares the scene with the lists of components between points.
 macro_rules! scene {
-    ($($(#[$about:meta])* $list:ident: $spec:ty,)*) => {
+    ($($(#[$about:meta])* $list:ident: $spec:ty,)*) => { objects! {
         /// Scene. Positions and axes are given in the reference configuration, in the ground frame; parts that are not written do not exist.
-        #[derive(Clone, Debug, Default, Serialize, Deserialize, JsonSchema)]
-        #[serde(deny_unknown_fields)]
+        #[derive(Default)]
         pub struct SceneSpec {
             /// JSON Schema of this file, for editors.
-            #[serde(rename = "$schema", default, skip_serializing_if = "Option::is_none")]
+            #[serde(rename = "$schema")]
             pub schema: Option<String>,
             /// Name for captions.
             pub name: String,
             /// Elastomers by name.
-            #[serde(default, skip_serializing_if = "BTreeMap::is_empty")]
             pub materials: BTreeMap<String, MaterialSpec>,
             /// Rigid bodies; `ground` is there without being written.
             #[serde(default, skip_serializing_if = "Vec::is_empty")]
@@ -53,129 +51,100 @@ macro_rules! scene {
             #[serde(default, skip_serializing_if = "Vec::is_empty")]
             pub markers: Vec<MarkerSpec>,
             /// Acceleration of gravity, SI unit m/s².
-            #[serde(default, skip_serializing_if = "Option::is_none")]
             pub gravity: Option<[Quantity<Acceleration>; 3]>,
             /// Shorthand for a chain of segments with a pair of muscles at each joint.
-            #[serde(default, skip_serializing_if = "Option::is_none")]
             pub chain: Option<ChainSpec>,
         }
-    };
+    } };
 }
 
 component_lists!(scene);
 
-/// A rigid body: a mass or a density; one shape, or an explicit inertia, or both.
-#[derive(Clone, Debug, Serialize, Deserialize, JsonSchema)]
-#[serde(deny_unknown_fields)]
-pub struct BodySpec {
-    /// Unique name other than `ground`.
-    pub name: String,
-    /// Mass, SI unit kg.
-    #[serde(default, skip_serializing_if = "Option::is_none")]
-    pub mass: Option<Quantity<Mass>>,
-    /// Density of the shape, SI unit kg/m³, in place of the mass.
-    #[serde(default, skip_serializing_if = "Option::is_none")]
-    pub density: Option<Quantity<Density>>,
-    /// Solid cylinder.
-    #[serde(default, skip_serializing_if = "Option::is_none")]
-    pub cylinder: Option<CylinderSpec>,
-    /// Solid box with edges along the axes of the ground frame.
-    #[serde(rename = "box", default, skip_serializing_if = "Option::is_none")]
-    pub cuboid: Option<BoxSpec>,
-    /// Solid sphere.
-    #[serde(default, skip_serializing_if = "Option::is_none")]
-    pub sphere: Option<SphereSpec>,
-    /// Solid within a closed surface of triangles, from an STL file; beside `inertia` it is only drawn.
-    #[serde(default, skip_serializing_if = "Option::is_none")]
-    pub mesh: Option<BodyMeshSpec>,
-    /// Moments of inertia about the axes of the ground frame through the centre of mass, SI unit kg m²; overrides the shape's.
-    #[serde(default, skip_serializing_if = "Option::is_none")]
-    pub inertia: Option<[Quantity<MomentOfInertia>; 3]>,
-    /// Entries xy, xz, yz of the tensor of inertia whose diagonal is `inertia`, such as −∫ x y dm, SI unit kg m²; zero where not written.
-    #[serde(default, skip_serializing_if = "Option::is_none")]
-    pub products_of_inertia: Option<[Quantity<MomentOfInertia>; 3]>,
-    /// Centre of mass, SI unit m; of a `mesh` without `inertia` it follows from the surface, and is not written.
-    #[serde(default, skip_serializing_if = "Option::is_none")]
-    pub position: Option<Point>,
-    /// True if the body is free of the ground: no chain of joints leads there.
-    #[serde(default, skip_serializing_if = "std::ops::Not::not")]
-    pub free: bool,
-}
+objects! {
+    /// A rigid body: a mass or a density; one shape, or an explicit inertia, or both.
+    pub struct BodySpec {
+        /// Unique name other than `ground`.
+        pub name: String,
+        /// Mass, SI unit kg.
+        pub mass: Option<Quantity<Mass>>,
+        /// Density of the shape, SI unit kg/m³, in place of the mass.
+        pub density: Option<Quantity<Density>>,
+        /// Solid cylinder.
+        pub cylinder: Option<CylinderSpec>,
+        /// Solid box with edges along the axes of the ground frame.
+        #[serde(rename = "box")]
+        pub cuboid: Option<BoxSpec>,
+        /// Solid sphere.
+        pub sphere: Option<SphereSpec>,
+        /// Solid within a closed surface of triangles, from an STL file; beside `inertia` it is only drawn.
+        pub mesh: Option<BodyMeshSpec>,
+        /// Moments of inertia about the axes of the ground frame through the centre of mass, SI unit kg m²; overrides the shape's.
+        pub inertia: Option<[Quantity<MomentOfInertia>; 3]>,
+        /// Entries xy, xz, yz of the tensor of inertia whose diagonal is `inertia`, such as −∫ x y dm, SI unit kg m²; zero where not written.
+        pub products_of_inertia: Option<[Quantity<MomentOfInertia>; 3]>,
+        /// Centre of mass, SI unit m; of a `mesh` without `inertia` it follows from the surface, and is not written.
+        pub position: Option<Point>,
+        /// True if the body is free of the ground: no chain of joints leads there.
+        pub free: bool,
+    }
 
-/// A cylinder.
-#[derive(Clone, Debug, Serialize, Deserialize, JsonSchema)]
-#[serde(deny_unknown_fields)]
-pub struct CylinderSpec {
-    /// Length along the axis, SI unit m.
-    pub length: Quantity<Length>,
-    /// Radius, SI unit m.
-    pub radius: Quantity<Length>,
-    /// Direction of the axis, of any length.
-    pub axis: [f64; 3],
-}
+    /// A cylinder.
+    pub struct CylinderSpec {
+        /// Length along the axis, SI unit m.
+        pub length: Quantity<Length>,
+        /// Radius, SI unit m.
+        pub radius: Quantity<Length>,
+        /// Direction of the axis, of any length.
+        pub axis: [f64; 3],
+    }
 
-/// A box.
-#[derive(Clone, Debug, Serialize, Deserialize, JsonSchema)]
-#[serde(deny_unknown_fields)]
-pub struct BoxSpec {
-    /// Edge lengths along x, y, z, SI unit m.
-    pub size: Point,
-}
+    /// A box.
+    pub struct BoxSpec {
+        /// Edge lengths along x, y, z, SI unit m.
+        pub size: Point,
+    }
 
-/// A sphere.
-#[derive(Clone, Debug, Serialize, Deserialize, JsonSchema)]
-#[serde(deny_unknown_fields)]
-pub struct SphereSpec {
-    /// Radius, SI unit m.
-    pub radius: Quantity<Length>,
-}
+    /// A sphere.
+    pub struct SphereSpec {
+        /// Radius, SI unit m.
+        pub radius: Quantity<Length>,
+    }
 
-/// A surface from an STL file.
-#[derive(Clone, Debug, Serialize, Deserialize, JsonSchema)]
-#[serde(deny_unknown_fields)]
-pub struct BodyMeshSpec {
-    /// STL file, binary or text; its path is relative to the scene file.
-    pub file: String,
-    /// Length of its unit, SI unit m; 1 m where not written.
-    #[serde(default, skip_serializing_if = "Option::is_none")]
-    pub unit: Option<Quantity<Length>>,
-    /// Place of its origin, SI unit m; that of the ground frame where not written.
-    #[serde(default, skip_serializing_if = "Option::is_none")]
-    pub at: Option<Point>,
-    /// Rotation about its origin; where not written its axes are those of the ground frame.
-    #[serde(default, skip_serializing_if = "Option::is_none")]
-    pub rotation: Option<RotationSpec>,
-}
+    /// A surface from an STL file.
+    pub struct BodyMeshSpec {
+        /// STL file, binary or text; its path is relative to the scene file.
+        pub file: String,
+        /// Length of its unit, SI unit m; 1 m where not written.
+        pub unit: Option<Quantity<Length>>,
+        /// Place of its origin, SI unit m; that of the ground frame where not written.
+        pub at: Option<Point>,
+        /// Rotation about its origin; where not written its axes are those of the ground frame.
+        pub rotation: Option<RotationSpec>,
+    }
 
-/// A rotation.
-#[derive(Clone, Debug, Serialize, Deserialize, JsonSchema)]
-#[serde(deny_unknown_fields)]
-pub struct RotationSpec {
-    /// Direction of the axis, of any length.
-    pub axis: [f64; 3],
-    /// Angle by the right-hand rule, SI unit rad.
-    pub angle: Quantity<Angle>,
+    /// A rotation.
+    pub struct RotationSpec {
+        /// Direction of the axis, of any length.
+        pub axis: [f64; 3],
+        /// Angle by the right-hand rule, SI unit rad.
+        pub angle: Quantity<Angle>,
+    }
 }
 
 /// Declares the keys of stacked muscles: those that all have, and those of their places.
 macro_rules! stacked {
-    ($(#[$about:meta])* $name:ident { $($first:tt)* } { $($last:tt)* }) => {
+    ($(#[$about:meta])* $name:ident { $($first:tt)* } { $($last:tt)* }) => { objects! {
         $(#[$about])*
-        #[derive(Clone, Debug, Serialize, Deserialize, JsonSchema)]
-        #[serde(deny_unknown_fields)]
         pub struct $name {
             $($first)*
             /// Model; `lumped` where not written.
             #[serde(default)]
             pub model: MuscleModel,
             /// Elements along both sides of the cross-section and along the span; of `finite_elements` only.
-            #[serde(default, skip_serializing_if = "Option::is_none")]
             pub elements: Option<[usize; 3]>,
             /// Layers of the model along the span, a divisor of the elements there, which is its default; of `finite_elements` only.
-            #[serde(default, skip_serializing_if = "Option::is_none")]
             pub layers: Option<usize>,
             /// Kind of hexahedron; `hex8` where not written. Of `finite_elements` only.
-            #[serde(default, skip_serializing_if = "Option::is_none")]
             pub element: Option<ElementSpec>,
             /// Name of the material.
             pub material: String,
@@ -184,27 +153,12 @@ macro_rules! stacked {
             /// Thickness of one layer at rest, SI unit m.
             pub layer_thickness: Quantity<Length>,
             /// Stretch before it was glued between its ends; 1 where not written.
-            #[serde(default, skip_serializing_if = "Option::is_none")]
             pub prestretch: Option<f64>,
             /// Circuit between the source and the electrodes, of a lumped muscle; without it they have the voltage of the source.
-            #[serde(default, skip_serializing_if = "Option::is_none")]
             pub circuit: Option<CircuitSpec>,
             $($last)*
         }
-
-        impl $name {
-            /// The keys that say how it is modelled.
-            pub(crate) fn model(&self) -> ModelSpec<'_> {
-                ModelSpec {
-                    model: self.model,
-                    elements: self.elements,
-                    layers: self.layers,
-                    element: self.element,
-                    material: &self.material,
-                }
-            }
-        }
-    };
+    } };
 }
 
 stacked! {
@@ -219,10 +173,8 @@ stacked! {
         pub to: PointSpec,
         /// Direction of the first side of the cross-section, of which the part across the span counts; where not written perpendicular to the span
         /// and to the first of the axes x, y, z whose cosine with the span is below 0.6. Of `finite_elements` only.
-        #[serde(default, skip_serializing_if = "Option::is_none")]
         pub first_side: Option<[f64; 3]>,
         /// True if the inertia of the changing cross-section is taken into account.
-        #[serde(default, skip_serializing_if = "std::ops::Not::not")]
         pub section_inertia: bool,
     }
 }
@@ -237,15 +189,6 @@ stacked! {
     } {}
 }
 
-/// The keys of a muscle or of a pair that say how it is modelled.
-pub(crate) struct ModelSpec<'a> {
-    pub(crate) model: MuscleModel,
-    pub(crate) elements: Option<[usize; 3]>,
-    pub(crate) layers: Option<usize>,
-    pub(crate) element: Option<ElementSpec>,
-    pub(crate) material: &'a str,
-}
-
 /// Model of a muscle.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
 #[serde(rename_all = "snake_case")]
@@ -257,45 +200,39 @@ pub enum MuscleModel {
     FiniteElements,
 }
 
-/// A named material point of a body or of a block: exactly one of `body` and `solid`.
-#[derive(Clone, Debug, Serialize, Deserialize, JsonSchema)]
-#[serde(deny_unknown_fields)]
-pub struct MarkerSpec {
-    /// Unique name.
-    pub name: String,
-    /// Name of the body, or `ground`.
-    #[serde(default, skip_serializing_if = "Option::is_none")]
-    pub body: Option<String>,
-    /// Name of the block; its node nearest to the place is meant.
-    #[serde(default, skip_serializing_if = "Option::is_none")]
-    pub solid: Option<String>,
-    /// Place, SI unit m.
-    pub at: Point,
-}
+objects! {
+    /// A named material point of a body or of a block: exactly one of `body` and `solid`.
+    pub struct MarkerSpec {
+        /// Unique name.
+        pub name: String,
+        /// Name of the body, or `ground`.
+        pub body: Option<String>,
+        /// Name of the block; its node nearest to the place is meant.
+        pub solid: Option<String>,
+        /// Place, SI unit m.
+        pub at: Point,
+    }
 
-/// A chain from the origin along an axis: `segment1`…, `joint1`…, and `muscle1`…, two at each joint.
-///
-/// Joint i stands at (i − 1) lengths; the joint axes alternate by 90° about the long axis. Muscle 2i − 1 runs at `+arm`, muscle 2i at
-/// `−arm` off the long axis, from half a rest length below the joint to half a rest length above it.
-#[derive(Clone, Debug, Serialize, Deserialize, JsonSchema)]
-#[serde(deny_unknown_fields)]
-pub struct ChainSpec {
-    /// Number of segments.
-    pub segments: usize,
-    /// Length of a segment, SI unit m.
-    pub length: Quantity<Length>,
-    /// Radius of a segment, SI unit m.
-    pub radius: Quantity<Length>,
-    /// Mass of a segment, SI unit kg.
-    pub mass: Quantity<Mass>,
-    /// Long axis.
-    pub axis: [f64; 3],
-    /// Axis of the first joint, at right angles to the long axis.
-    pub first_joint_axis: [f64; 3],
-    /// Pair of muscles at each joint.
-    #[serde(default, skip_serializing_if = "Option::is_none")]
-    pub muscles: Option<PairSpec>,
-    /// Name of a marker at the end.
-    #[serde(default, skip_serializing_if = "Option::is_none")]
-    pub tip_marker: Option<String>,
+    /// A chain from the origin along an axis: `segment1`…, `joint1`…, and `muscle1`…, two at each joint.
+    ///
+    /// Joint i stands at (i − 1) lengths; the joint axes alternate by 90° about the long axis. Muscle 2i − 1 runs at `+arm`, muscle 2i at
+    /// `−arm` off the long axis, from half a rest length below the joint to half a rest length above it.
+    pub struct ChainSpec {
+        /// Number of segments.
+        pub segments: usize,
+        /// Length of a segment, SI unit m.
+        pub length: Quantity<Length>,
+        /// Radius of a segment, SI unit m.
+        pub radius: Quantity<Length>,
+        /// Mass of a segment, SI unit kg.
+        pub mass: Quantity<Mass>,
+        /// Long axis.
+        pub axis: [f64; 3],
+        /// Axis of the first joint, at right angles to the long axis.
+        pub first_joint_axis: [f64; 3],
+        /// Pair of muscles at each joint.
+        pub muscles: Option<PairSpec>,
+        /// Name of a marker at the end.
+        pub tip_marker: Option<String>,
+    }
 }

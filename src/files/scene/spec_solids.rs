@@ -1,4 +1,4 @@
-//! Elastic blocks as they are written: a part of the scene file.
+//! Elastic blocks and circuits as they are written: a part of the scene file.
 
 use schemars::JsonSchema;
 use serde::de::value::SeqAccessDeserializer;
@@ -8,54 +8,48 @@ use std::collections::BTreeMap;
 use std::fmt;
 
 use crate::files::json::either::{Either, scalar_or_object};
-use crate::files::scene::circuit::CircuitSpec;
+use crate::files::scene::objects::objects;
 use crate::files::scene::point::{CornersSpec, Point};
-use crate::files::units::quantity::{AngularVelocity, Length, Quantity, Rate, Velocity, Voltage};
+use crate::files::units::quantity::{
+    AngularVelocity, Length, Quantity, Rate, Resistance, Velocity, Voltage,
+};
+use crate::model::system::Circuit;
 
-/// An elastic block of hexahedra: a `box` or a `mesh`, of one `material` or of `materials` by region.
-///
-/// Faces are `x_min`, `x_max`, `y_min`, `y_max`, `z_min`, `z_max` of a box, and physical groups of a mesh.
-#[derive(Clone, Debug, Serialize, Deserialize, JsonSchema)]
-#[serde(deny_unknown_fields)]
-pub struct SolidSpec {
-    /// Unique name.
-    pub name: String,
-    /// Name of the material.
-    #[serde(default, skip_serializing_if = "Option::is_none")]
-    pub material: Option<String>,
-    /// Names of the materials by region.
-    #[serde(default, skip_serializing_if = "Option::is_none")]
-    pub materials: Option<BTreeMap<String, String>>,
-    /// Box with edges along the axes of the ground frame.
-    #[serde(rename = "box", default, skip_serializing_if = "Option::is_none")]
-    pub cuboid: Option<GridSpec>,
-    /// Path of a Gmsh file, relative to this file.
-    #[serde(default, skip_serializing_if = "Option::is_none")]
-    pub mesh: Option<String>,
-    /// Length of a unit of the Gmsh file, SI unit m; 1 m where not written.
-    #[serde(default, skip_serializing_if = "Option::is_none")]
-    pub unit: Option<Quantity<Length>>,
-    /// Kind of hexahedron; `hex8` where not written.
-    #[serde(default, skip_serializing_if = "Option::is_none")]
-    pub element: Option<ElementSpec>,
-    /// Electrodes; without any the block has no potential.
-    #[serde(default, skip_serializing_if = "Vec::is_empty")]
-    pub electrodes: Vec<ElectrodeSpec>,
-    /// Electrodes between the layers of a stack and at its ends, alternately grounded and driven.
-    #[serde(default, skip_serializing_if = "Option::is_none")]
-    pub stack: Option<StackSpec>,
-    /// Faces and other places that are held. A node that is glued as well moves with its body.
-    #[serde(default, skip_serializing_if = "Vec::is_empty")]
-    pub fixed: Vec<FixedSpec>,
-    /// Names of bodies by the faces that are glued to them; a face glued to `ground` is clamped.
-    #[serde(default, skip_serializing_if = "BTreeMap::is_empty")]
-    pub glued: BTreeMap<String, String>,
-    /// Velocity at the start; at rest where not written.
-    #[serde(default, skip_serializing_if = "Option::is_none")]
-    pub velocity: Option<VelocitySpec>,
-    /// Stretch before it was glued and held, by which the mesh differs from the block without stress; none where not written.
-    #[serde(default, skip_serializing_if = "Option::is_none")]
-    pub prestretch: Option<PrestretchSpec>,
+objects! {
+    /// An elastic block of hexahedra: a `box` or a `mesh`, of one `material` or of `materials` by region.
+    ///
+    /// Faces are `x_min`, `x_max`, `y_min`, `y_max`, `z_min`, `z_max` of a box, and physical groups of a mesh.
+    pub struct SolidSpec {
+        /// Unique name.
+        pub name: String,
+        /// Name of the material.
+        pub material: Option<String>,
+        /// Names of the materials by region.
+        pub materials: Option<BTreeMap<String, String>>,
+        /// Box with edges along the axes of the ground frame.
+        #[serde(rename = "box")]
+        pub cuboid: Option<GridSpec>,
+        /// Path of a Gmsh file, relative to this file.
+        pub mesh: Option<String>,
+        /// Length of a unit of the Gmsh file, SI unit m; 1 m where not written.
+        pub unit: Option<Quantity<Length>>,
+        /// Kind of hexahedron; `hex8` where not written.
+        pub element: Option<ElementSpec>,
+        /// Electrodes; without any the block has no potential.
+        #[serde(default, skip_serializing_if = "Vec::is_empty")]
+        pub electrodes: Vec<ElectrodeSpec>,
+        /// Electrodes between the layers of a stack and at its ends, alternately grounded and driven.
+        pub stack: Option<StackSpec>,
+        /// Faces and other places that are held. A node that is glued as well moves with its body.
+        #[serde(default, skip_serializing_if = "Vec::is_empty")]
+        pub fixed: Vec<FixedSpec>,
+        /// Names of bodies by the faces that are glued to them; a face glued to `ground` is clamped.
+        pub glued: BTreeMap<String, String>,
+        /// Velocity at the start; at rest where not written.
+        pub velocity: Option<VelocitySpec>,
+        /// Stretch before it was glued and held, by which the mesh differs from the block without stress; none where not written.
+        pub prestretch: Option<PrestretchSpec>,
+    }
 }
 
 impl SolidSpec {
@@ -66,19 +60,16 @@ impl SolidSpec {
     }
 }
 
-/// Stretches along the axes of the ground frame; those that are not written keep the volume.
-#[derive(Clone, Debug, Serialize, Deserialize, JsonSchema)]
-#[serde(deny_unknown_fields)]
-pub struct PrestretchSpec {
-    /// Stretch along x.
-    #[serde(default, skip_serializing_if = "Option::is_none")]
-    pub x: Option<f64>,
-    /// Stretch along y.
-    #[serde(default, skip_serializing_if = "Option::is_none")]
-    pub y: Option<f64>,
-    /// Stretch along z.
-    #[serde(default, skip_serializing_if = "Option::is_none")]
-    pub z: Option<f64>,
+objects! {
+    /// Stretches along the axes of the ground frame; those that are not written keep the volume.
+    pub struct PrestretchSpec {
+        /// Stretch along x.
+        pub x: Option<f64>,
+        /// Stretch along y.
+        pub y: Option<f64>,
+        /// Stretch along z.
+        pub z: Option<f64>,
+    }
 }
 
 /// Kind of hexahedron: its treatment of volume.
@@ -92,17 +83,16 @@ pub enum ElementSpec {
     Hex8Q1p0,
 }
 
-/// A box cut into hexahedra.
-#[derive(Clone, Debug, Serialize, Deserialize, JsonSchema)]
-#[serde(deny_unknown_fields)]
-pub struct GridSpec {
-    /// Lower corner, SI unit m; the origin where not written.
-    #[serde(default, skip_serializing_if = "Option::is_none")]
-    pub corner: Option<Point>,
-    /// Edge lengths along x, y, z, SI unit m.
-    pub size: Point,
-    /// Elements along x, y, z: a number, or a list of layers.
-    pub elements: [DivisionSpec; 3],
+objects! {
+    /// A box cut into hexahedra.
+    pub struct GridSpec {
+        /// Lower corner, SI unit m; the origin where not written.
+        pub corner: Option<Point>,
+        /// Edge lengths along x, y, z, SI unit m.
+        pub size: Point,
+        /// Elements along x, y, z: a number, or a list of layers.
+        pub elements: [DivisionSpec; 3],
+    }
 }
 
 /// Division of a direction of a box.
@@ -115,56 +105,45 @@ pub enum DivisionSpec {
     Layers(Vec<LayerSpec>),
 }
 
-/// A layer of a box.
-#[derive(Clone, Debug, Serialize, Deserialize, JsonSchema)]
-#[serde(deny_unknown_fields)]
-pub struct LayerSpec {
-    /// Thickness, SI unit m.
-    pub thickness: Quantity<Length>,
-    /// Elements through the thickness.
-    pub elements: usize,
-    /// Name of the region that the layer belongs to; in one direction only, and there for every layer.
-    #[serde(default, skip_serializing_if = "Option::is_none")]
-    pub region: Option<String>,
-}
+objects! {
+    /// A layer of a box.
+    pub struct LayerSpec {
+        /// Thickness, SI unit m.
+        pub thickness: Quantity<Length>,
+        /// Elements through the thickness.
+        pub elements: usize,
+        /// Name of the region that the layer belongs to; in one direction only, and there for every layer.
+        pub region: Option<String>,
+    }
 
-/// An electrode: nodes of one potential, at exactly one of `face`, `plane`, `box`.
-///
-/// Driven electrodes of one name are connected: they share the voltage `block.name`.
-#[derive(Clone, Debug, Serialize, Deserialize, JsonSchema)]
-#[serde(deny_unknown_fields)]
-pub struct ElectrodeSpec {
-    /// Name, unique in the block except for driven electrodes.
-    pub name: String,
-    /// All nodes of a face.
-    #[serde(default, skip_serializing_if = "Option::is_none")]
-    pub face: Option<String>,
-    /// All nodes of a plane.
-    #[serde(default, skip_serializing_if = "Option::is_none")]
-    pub plane: Option<PlaneSpec>,
-    /// All nodes in a box.
-    #[serde(rename = "box", default, skip_serializing_if = "Option::is_none")]
-    pub cuboid: Option<CornersSpec>,
-    /// Its potential.
-    pub potential: PotentialSpec,
-    /// Circuit between its source and a driven electrode.
-    #[serde(default, skip_serializing_if = "Option::is_none")]
-    pub circuit: Option<CircuitSpec>,
-}
+    /// An electrode: nodes of one potential, at exactly one of `face`, `plane`, `box`.
+    ///
+    /// Driven electrodes of one name are connected: they share the voltage `block.name`.
+    pub struct ElectrodeSpec {
+        /// Name, unique in the block except for driven electrodes.
+        pub name: String,
+        /// All nodes of a face.
+        pub face: Option<String>,
+        /// All nodes of a plane.
+        pub plane: Option<PlaneSpec>,
+        /// All nodes in a box.
+        #[serde(rename = "box")]
+        pub cuboid: Option<CornersSpec>,
+        /// Its potential.
+        pub potential: PotentialSpec,
+        /// Circuit between its source and a driven electrode.
+        pub circuit: Option<CircuitSpec>,
+    }
 
-/// A plane at right angles to an axis: exactly one of the three.
-#[derive(Clone, Debug, Serialize, Deserialize, JsonSchema)]
-#[serde(deny_unknown_fields)]
-pub struct PlaneSpec {
-    /// Place along x, SI unit m.
-    #[serde(default, skip_serializing_if = "Option::is_none")]
-    pub x: Option<Quantity<Length>>,
-    /// Place along y, SI unit m.
-    #[serde(default, skip_serializing_if = "Option::is_none")]
-    pub y: Option<Quantity<Length>>,
-    /// Place along z, SI unit m.
-    #[serde(default, skip_serializing_if = "Option::is_none")]
-    pub z: Option<Quantity<Length>>,
+    /// A plane at right angles to an axis: exactly one of the three.
+    pub struct PlaneSpec {
+        /// Place along x, SI unit m.
+        pub x: Option<Quantity<Length>>,
+        /// Place along y, SI unit m.
+        pub y: Option<Quantity<Length>>,
+        /// Place along z, SI unit m.
+        pub z: Option<Quantity<Length>>,
+    }
 }
 
 /// The potential of an electrode.
@@ -181,19 +160,18 @@ pub enum PotentialSpec {
     Given(Quantity<Voltage>),
 }
 
-/// Electrodes at all boundaries of equal layers, both ends included: grounded, driven, grounded…
-#[derive(Clone, Debug, Serialize, Deserialize, JsonSchema)]
-#[serde(deny_unknown_fields)]
-pub struct StackSpec {
-    /// Direction across the layers.
-    pub axis: AxisName,
-    /// Number of layers, a divisor of the elements along the axis.
-    pub layers: usize,
-    /// Name of the driven electrodes, whose voltage is `block.name`.
-    pub name: String,
-    /// Circuit between their source and the driven electrodes.
-    #[serde(default, skip_serializing_if = "Option::is_none")]
-    pub circuit: Option<CircuitSpec>,
+objects! {
+    /// Electrodes at all boundaries of equal layers, both ends included: grounded, driven, grounded…
+    pub struct StackSpec {
+        /// Direction across the layers.
+        pub axis: AxisName,
+        /// Number of layers, a divisor of the elements along the axis.
+        pub layers: usize,
+        /// Name of the driven electrodes, whose voltage is `block.name`.
+        pub name: String,
+        /// Circuit between their source and the driven electrodes.
+        pub circuit: Option<CircuitSpec>,
+    }
 }
 
 /// An axis of the ground frame.
@@ -225,40 +203,52 @@ pub enum FixedSpec {
     Held(Box<HeldSpec>),
 }
 
-/// A `face`, `plane` or `box` whose nodes are held in some directions: a roller is held in one.
-#[derive(Clone, Debug, Serialize, Deserialize, JsonSchema)]
-#[serde(deny_unknown_fields)]
-pub struct HeldSpec {
-    /// All nodes of a face.
-    #[serde(default, skip_serializing_if = "Option::is_none")]
-    pub face: Option<String>,
-    /// All nodes of a plane.
-    #[serde(default, skip_serializing_if = "Option::is_none")]
-    pub plane: Option<PlaneSpec>,
-    /// All nodes in a box.
-    #[serde(rename = "box", default, skip_serializing_if = "Option::is_none")]
-    pub cuboid: Option<CornersSpec>,
-    /// Directions in which it is held; all three where not written.
-    #[serde(default, skip_serializing_if = "Option::is_none")]
-    pub directions: Option<Vec<AxisName>>,
+objects! {
+    /// A `face`, `plane` or `box` whose nodes are held in some directions: a roller is held in one.
+    pub struct HeldSpec {
+        /// All nodes of a face.
+        pub face: Option<String>,
+        /// All nodes of a plane.
+        pub plane: Option<PlaneSpec>,
+        /// All nodes in a box.
+        #[serde(rename = "box")]
+        pub cuboid: Option<CornersSpec>,
+        /// Directions in which it is held; all three where not written.
+        pub directions: Option<Vec<AxisName>>,
+    }
+
+    /// A velocity v = v₀ + ω × (X − c) + diag(rate) (X − c) at the start.
+    pub struct VelocitySpec {
+        /// v₀, SI unit m/s.
+        pub linear: Option<[Quantity<Velocity>; 3]>,
+        /// ω, SI unit rad/s.
+        pub angular: Option<[Quantity<AngularVelocity>; 3]>,
+        /// c, SI unit m; the middle of the block where not written.
+        pub centre: Option<Point>,
+        /// Rate of stretch along x, y, z, SI unit 1/s.
+        pub stretch_rate: Option<[Quantity<Rate>; 3]>,
+    }
 }
 
-/// A velocity v = v₀ + ω × (X − c) + diag(rate) (X − c) at the start.
-#[derive(Clone, Debug, Serialize, Deserialize, JsonSchema)]
-#[serde(deny_unknown_fields)]
-pub struct VelocitySpec {
-    /// v₀, SI unit m/s.
-    #[serde(default, skip_serializing_if = "Option::is_none")]
-    pub linear: Option<[Quantity<Velocity>; 3]>,
-    /// ω, SI unit rad/s.
-    #[serde(default, skip_serializing_if = "Option::is_none")]
-    pub angular: Option<[Quantity<AngularVelocity>; 3]>,
-    /// c, SI unit m; the middle of the block where not written.
-    #[serde(default, skip_serializing_if = "Option::is_none")]
-    pub centre: Option<Point>,
-    /// Rate of stretch along x, y, z, SI unit 1/s.
-    #[serde(default, skip_serializing_if = "Option::is_none")]
-    pub stretch_rate: Option<[Quantity<Rate>; 3]>,
+objects! {
+    /// Circuit between a source and the electrodes of a muscle or a block: a resistor, a leak or both.
+    pub struct CircuitSpec {
+        /// Resistance in series, SI unit Ohm; without it the electrodes have the voltage of the source.
+        pub resistance: Option<Quantity<Resistance>>,
+        /// Resistance of a leak parallel to the electrodes, SI unit Ohm.
+        pub leakage: Option<Quantity<Resistance>>,
+    }
+}
+
+impl CircuitSpec {
+    /// The circuit.
+    pub(crate) fn circuit(&self) -> Circuit {
+        let of = |part: &Option<Quantity<Resistance>>| part.as_ref().map(Quantity::value);
+        Circuit {
+            resistance: of(&self.resistance),
+            leakage: of(&self.leakage),
+        }
+    }
 }
 
 scalar_or_object! {

@@ -26,27 +26,28 @@ pub(crate) fn signal<M: FollowedInTime>(
         SignalSpec::Constant(value) => return of_kind(value, kind, scope).map(Signal::Constant),
         SignalSpec::Function(function) => function.as_ref(),
     };
-    type Build<'a> = Box<dyn FnOnce() -> Result<Signal, SceneError> + 'a>;
-    let ramp = ramp
-        .as_ref()
-        .map(|spec| -> Build<'_> { Box::new(|| of_ramp(spec, kind, &scope.key("ramp"))) });
-    let sine = sine
-        .as_ref()
-        .map(|spec| -> Build<'_> { Box::new(|| of_sine(spec, kind, &scope.key("sine"))) });
-    let table = table
-        .as_ref()
-        .map(|spec| -> Build<'_> { Box::new(|| of_table(spec, kind, &scope.key("table"))) });
-    let csv = csv
-        .as_ref()
-        .map(|spec| -> Build<'_> { Box::new(|| of_csv::<M>(spec, kind, &scope.key("csv"))) });
-    let functions = [
-        ("ramp", ramp),
-        ("sine", sine),
-        ("table", table),
-        ("csv", csv),
-    ];
-    let build = scope.exactly_one(functions)?;
-    build()
+    let ramp = ramp.as_ref();
+    let sine = sine.as_ref();
+    let table = table.as_ref();
+    let csv = csv.as_ref();
+    scope.exactly_one([
+        (
+            "ramp",
+            ramp.map(|spec| of_ramp(spec, kind, &scope.key("ramp"))),
+        ),
+        (
+            "sine",
+            sine.map(|spec| of_sine(spec, kind, &scope.key("sine"))),
+        ),
+        (
+            "table",
+            table.map(|spec| of_table(spec, kind, &scope.key("table"))),
+        ),
+        (
+            "csv",
+            csv.map(|spec| of_csv::<M>(spec, kind, &scope.key("csv"))),
+        ),
+    ])?
 }
 
 /// A value of a kind in the units inside.

@@ -40,6 +40,9 @@ impl Kind {
     }
 }
 
+/// Description of quantities in the JSON Schema, before the kind.
+pub(crate) const WRITTEN: &str = "A number in SI units or a text with a unit: ";
+
 /// Quantity that a [`Quantity`] measures.
 pub trait PhysicalQuantity {
     /// Name of the measure in the JSON Schema.
@@ -272,6 +275,12 @@ impl<M: PhysicalQuantity> Quantity<M> {
         self.converted(&M::kinds()[0])
     }
 
+    /// Value in the units inside, where one is written; zero leaves no trace.
+    pub(crate) fn present(written: &Option<Self>) -> Option<f64> {
+        let value = written.as_ref().map(Self::value);
+        value.filter(|value| *value != 0.0)
+    }
+
     /// Value in the units inside, read as one kind; the error names the value found instead.
     ///
     /// # Errors
@@ -380,7 +389,7 @@ impl<M: PhysicalQuantity> JsonSchema for Quantity<M> {
     fn json_schema(_: &mut SchemaGenerator) -> Schema {
         json_schema!({
             "type": ["number", "string"],
-            "description": format!("A number in SI units or a text with a unit: {}.", Self::expected()),
+            "description": format!("{WRITTEN}{}.", Self::expected()),
         })
     }
 }

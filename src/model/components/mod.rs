@@ -45,9 +45,17 @@ macro_rules! kinds {
 
             /// All of them but loads, kind by kind.
             pub fn iter(&self) -> impl Iterator<Item = &dyn Component> {
+                self.listed().map(|(_, _, part)| part)
+            }
+
+            /// The same with the name of the list and the index in it.
+            pub(super) fn listed(&self) -> impl Iterator<Item = (&'static str, usize, &dyn Component)> {
                 let all = std::iter::empty();
-                $(let all = all.chain(self.$list.iter().map(|part| part as &dyn Component));)*
-                all.chain(self.others.iter().map(|other| other.0.as_ref()))
+                $(let all = all.chain(self.$list.iter().enumerate().map(|(index, part)| {
+                    (stringify!($list), index, part as &dyn Component)
+                }));)*
+                let others = self.others.iter().enumerate();
+                all.chain(others.map(|(index, other)| ("others", index, other.0.as_ref())))
             }
 
             /// Numbers of components of each kind.

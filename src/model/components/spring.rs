@@ -2,12 +2,11 @@
 
 use crate::energy::{LinearSpring, Polynomial, SpanDamper};
 use crate::functional::Law;
-use crate::math::Number;
+use crate::math::{Fault, Number, not_negative, rule};
 use crate::model::bodies::Attachment;
 use crate::model::component::Component;
 use crate::model::components::kind::Kind;
 use crate::model::constant::Constant;
-use crate::model::error::{SystemError, positive, require};
 use crate::model::sought::{MovedPoint, Read};
 use crate::model::terms::{Terms, mid, rate};
 use nalgebra::Vector3;
@@ -147,27 +146,18 @@ impl Component for Spring {
         vec![self.from, self.to]
     }
 
-    fn check(&self) -> Result<(), SystemError> {
-        if let Some(stiffness) = self.stiffness {
-            positive(&self.name, "stiffness", stiffness)?;
-        }
-        if let Some(damping) = self.damping {
-            positive(&self.name, "damping", damping)?;
-        }
-        let length = self.rest_length;
-        require(
-            length >= 0.0 && length.is_finite(),
-            &self.name,
-            || format!("rest length {length}"),
-            "zero or a positive length",
-        )?;
-        let needs_direction = self.damping.is_some() || self.stiffness.is_some() && length > 0.0;
-        require(
-            !needs_direction || self.length() > 0.0,
-            &self.name,
-            || "both ends in one place".to_owned(),
-            "ends in two places, as the force has no direction there",
-        )
+    fn check(&self) -> Result<(), Fault> {
+        not_negative("stiffness", self.stiffness.unwrap_or(0.0))?;
+        not_negative("damping", self.damping.unwrap_or(0.0))?;
+        let (rest, found) = (self.rest_length, format!("{} mm", self.rest_length));
+        let holds = rest >= 0.0 && rest.is_finite();
+        rule(holds, "rest_length", found, "zero or a positive length")?;
+        // The force of a spring with a rest length has no direction where the ends meet; nor has that of a damper.
+        let has_direction = self.damping.is_some() || self.stiffness.is_some() && rest > 0.0;
+        let expected =
+            "another place than \"from\", as the force along the span has no direction there";
+        let holds = !has_direction || self.length() > 0.0;
+        rule(holds, "to.at", "the place of \"from\"", expected)
     }
 
     fn is_prestressed(&self) -> bool {

@@ -2,11 +2,11 @@
 
 use crate::energy::Cable;
 use crate::functional::Path;
+use crate::math::{Fault, not_negative, positive, rule, value};
 use crate::model::bodies::Attachment;
 use crate::model::component::Component;
 use crate::model::components::kind::Kind;
 use crate::model::constant::Constant;
-use crate::model::error::{SystemError, positive, require};
 use crate::model::sought::{MovedPoint, Read};
 use crate::model::terms::Terms;
 use nalgebra::Vector3;
@@ -113,23 +113,27 @@ impl Component for Tendon {
         self.through.clone()
     }
 
-    fn check(&self) -> Result<(), SystemError> {
-        positive(&self.name, "stiffness", self.stiffness)?;
-        positive(&self.name, "rest length", self.rest_length)?;
-        let width = self.smoothing;
-        require(
-            (0.0..=2.0 * self.rest_length).contains(&width),
-            &self.name,
-            || format!("a smoothing of {width}"),
-            "zero or a positive width, at most twice the rest length",
+    fn check(&self) -> Result<(), Fault> {
+        let count = self.through.len();
+        rule(
+            count >= 2,
+            "through",
+            format_args!("{count} points"),
+            "2 points or more",
         )?;
-        let mut spans = self.through.windows(2);
-        require(
-            self.through.len() >= 2 && spans.all(|pair| pair[0].at != pair[1].at),
-            &self.name,
-            || format!("the points {:?}", self.through),
-            "two points or more, none of them in the place of the one before",
-        )
+        for (index, pair) in self.through.windows(2).enumerate() {
+            let at = format!("through[{}].at", index + 1);
+            let found = "the place of the point before";
+            let expected =
+                "another place than the point before, as the span has no direction there";
+            rule(pair[0].at != pair[1].at, at, found, expected)?;
+        }
+        positive("stiffness", self.stiffness)?;
+        positive("rest_length", self.rest_length)?;
+        let width = self.smoothing;
+        not_negative("smoothing", width)?;
+        let holds = width <= 2.0 * self.rest_length;
+        value(holds, "smoothing", width, "at most twice the rest length")
     }
 
     fn is_prestressed(&self) -> bool {

@@ -2,55 +2,46 @@
 
 use crate::files::json::error::SceneError;
 use crate::files::json::scope::Scope;
-use crate::files::scene::names::{attachment, names};
+use crate::files::scene::names::names;
 use crate::files::scene::nodes::nodes;
+use crate::files::scene::objects::objects;
 use crate::files::scene::point::{CornersSpec, PointSpec, unit_axis};
 use crate::files::scene::spec_solids::PlaneSpec;
 use crate::math::Vector;
 use crate::model::components::{BlockLoad, Faces, Load, LoadPlace};
 use crate::model::system::{Joint, Muscle, Solid, Support};
-use crate::model::{NO_CHARGE, NO_MUSCLE_CHARGE};
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
-/// A load, whose size a problem gives or seeks: a force at a `point`, a torque or force of a `joint`, such as that of a motor, the charge
-/// of a `muscle`, or a load of a `solid`.
-#[derive(Clone, Debug, Serialize, Deserialize, JsonSchema)]
-#[serde(deny_unknown_fields)]
-pub struct LoadSpec {
-    /// Name, unique among loads, muscles and blocks.
-    pub name: String,
-    /// Point of a body at which a force acts, with `direction`; or give `joint` or `solid`.
-    #[serde(default, skip_serializing_if = "Option::is_none")]
-    pub point: Option<PointSpec>,
-    /// Direction of the force or traction in the ground frame, in the reference configuration where it `follows`; its length is ignored.
-    #[serde(default, skip_serializing_if = "Option::is_none")]
-    pub direction: Option<[f64; 3]>,
-    /// Name of a revolute joint, about whose axis a torque acts on the child, or of a prismatic one, along whose axis a force acts.
-    #[serde(default, skip_serializing_if = "Option::is_none")]
-    pub joint: Option<String>,
-    /// Name of a lumped muscle whose electrodes have a given charge instead of a voltage.
-    #[serde(default, skip_serializing_if = "Option::is_none")]
-    pub muscle: Option<String>,
-    /// Name of an elastic block, with `kind`.
-    #[serde(default, skip_serializing_if = "Option::is_none")]
-    pub solid: Option<String>,
-    /// Kind of a load of a `solid`.
-    #[serde(default, skip_serializing_if = "Option::is_none")]
-    pub kind: Option<BlockLoadKind>,
-    /// Face on which it acts.
-    #[serde(default, skip_serializing_if = "Option::is_none")]
-    pub face: Option<String>,
-    /// Faces of the surface in a plane on which it acts.
-    #[serde(default, skip_serializing_if = "Option::is_none")]
-    pub plane: Option<PlaneSpec>,
-    /// Faces of the surface in a box on which it acts.
-    #[serde(rename = "box", default, skip_serializing_if = "Option::is_none")]
-    pub cuboid: Option<CornersSpec>,
-    /// True if a force turns with its body, or a pressure acts on the deformed faces along their normals; where not written, a pressure does
-    /// and a force does not.
-    #[serde(default, skip_serializing_if = "Option::is_none")]
-    pub follows: Option<bool>,
+objects! {
+    /// A load, whose size a problem gives or seeks: a force at a `point`, a torque or force of a `joint`, such as that of a motor, the charge
+    /// of a `muscle`, or a load of a `solid`.
+    pub struct LoadSpec {
+        /// Name, unique among loads, muscles and blocks.
+        pub name: String,
+        /// Point of a body at which a force acts, with `direction`; or give `joint` or `solid`.
+        pub point: Option<PointSpec>,
+        /// Direction of the force or traction in the ground frame, in the reference configuration where it `follows`; its length is ignored.
+        pub direction: Option<[f64; 3]>,
+        /// Name of a revolute joint, about whose axis a torque acts on the child, or of a prismatic one, along whose axis a force acts.
+        pub joint: Option<String>,
+        /// Name of a lumped muscle whose electrodes have a given charge instead of a voltage.
+        pub muscle: Option<String>,
+        /// Name of an elastic block, with `kind`.
+        pub solid: Option<String>,
+        /// Kind of a load of a `solid`.
+        pub kind: Option<BlockLoadKind>,
+        /// Face on which it acts.
+        pub face: Option<String>,
+        /// Faces of the surface in a plane on which it acts.
+        pub plane: Option<PlaneSpec>,
+        /// Faces of the surface in a box on which it acts.
+        #[serde(rename = "box")]
+        pub cuboid: Option<CornersSpec>,
+        /// True if a force turns with its body, or a pressure acts on the deformed faces along their normals; where not written, a pressure does
+        /// and a force does not.
+        pub follows: Option<bool>,
+    }
 }
 
 /// Kind of a load of an elastic block. Areas and volumes are those of the reference configuration but for a pressure that follows.
@@ -93,37 +84,20 @@ pub(crate) fn load(
     };
     spec.check_keys(is_of_solid, no_direction, scope)?;
     let on = match written {
-        Written::Point(point) => {
-            let place = scope.key("point");
-            let at = attachment(&point.body, &point.at, bodies, &place)?;
-            if at.body.is_none() {
-                let found = "\"ground\", which no force moves";
-                return Err(place.key("body").wrong(found, "the name of a body"));
-            }
-            LoadPlace::Point {
-                at,
-                direction: spec.direction(scope)?,
-                follows: spec.follows.unwrap_or(false),
-            }
-        }
+        Written::Point(point) => LoadPlace::Point {
+            at: point.attachment(bodies, &scope.key("point"))?,
+            direction: spec.direction(scope)?,
+            follows: spec.follows.unwrap_or(false),
+        },
         Written::Joint(name) => {
-            let place = scope.key("joint");
             let all = names(joints, |joint| &joint.name);
-            let index = place.find(name, &all, "the name of a joint")?;
-            if !joints[index].has_coordinate() {
-                let found = format!("{name:?}, which is neither revolute nor prismatic, or locked");
-                return Err(place.wrong(found, "a joint with one coordinate"));
-            }
-            LoadPlace::Joint(index)
+            let place = scope.key("joint");
+            LoadPlace::Joint(place.find(name, &all, "the name of a joint")?)
         }
         Written::Muscle(name) => {
-            let place = scope.key("muscle");
             let all = names(muscles, |muscle| &muscle.name);
-            let index = place.find(name, &all, "the name of a muscle")?;
-            if !muscles[index].takes_charge() {
-                return Err(place.wrong(NO_MUSCLE_CHARGE[0], NO_MUSCLE_CHARGE[1]));
-            }
-            LoadPlace::Muscle(index)
+            let place = scope.key("muscle");
+            LoadPlace::Muscle(place.find(name, &all, "the name of a muscle")?)
         }
         Written::Solid(name) => {
             let all = names(solids, |solid| &solid.name);
@@ -195,13 +169,7 @@ impl LoadSpec {
                 faces: self.faces(solid, scope)?,
                 follows: self.follows.unwrap_or(true),
             },
-            BlockLoadKind::SurfaceCharge => {
-                let faces = self.faces(solid, scope)?;
-                if !solid.takes_charge(&faces) {
-                    return Err(scope.wrong(NO_CHARGE[0], NO_CHARGE[1]));
-                }
-                BlockLoad::Charge(faces)
-            }
+            BlockLoadKind::SurfaceCharge => BlockLoad::Charge(self.faces(solid, scope)?),
             BlockLoadKind::BodyForce => BlockLoad::BodyForce(self.direction(scope)?),
         })
     }

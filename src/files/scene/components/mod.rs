@@ -1,4 +1,4 @@
-//! Components of a scene with one file for each kind: its type as written, and the conversion to a component.
+//! Components of a scene with one file for each kind: its type as written, and the conversion to a component, whose rules stand in the model.
 
 mod load;
 pub(super) mod spring;

@@ -1,0 +1,139 @@
+//! What a rule refuses: a place in a part, what was found there, and what is expected.
+
+use std::collections::HashSet;
+use std::fmt::Display;
+
+/// A rule of a part that does not hold.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Fault {
+    /// Place in the part by the keys of files, such as `to.at`; empty for the part as a whole.
+    pub at: String,
+    /// Value at that place, where it is the mistake; a file has it as it is written.
+    pub value: Option<String>,
+    /// What was found; behind a value what may be said of it, such as `, along the span`.
+    pub found: String,
+    /// What is expected.
+    pub expected: String,
+}
+
+/// Expectation of a value, to which a file adds the kind of quantity.
+const POSITIVE: &str = "a positive value";
+const NOT_NEGATIVE: &str = "zero or a positive value";
+
+/// Expectation of a direction.
+pub const DIRECTION: &str = "a direction, such as [0, 0, 1]";
+
+impl Fault {
+    /// What was found at a place is not what is expected.
+    pub fn new(at: impl Display, found: impl Display, expected: impl Display) -> Self {
+        Self {
+            at: at.to_string(),
+            value: None,
+            found: found.to_string(),
+            expected: expected.to_string(),
+        }
+    }
+
+    /// The value at a place is not what is expected; `why` may say more of it.
+    pub fn of(at: impl Display, value: impl Display, why: &str, expected: impl Display) -> Self {
+        Self {
+            value: Some(value.to_string()),
+            ..Self::new(at, why, expected)
+        }
+    }
+
+    /// The same of what has the part under a key.
+    pub fn under(mut self, key: &str) -> Self {
+        let dot = if self.at.is_empty() || self.at.starts_with('[') {
+            ""
+        } else {
+            "."
+        };
+        self.at = format!("{key}{dot}{}", self.at);
+        self
+    }
+
+    /// What was found, with the value as it is.
+    pub fn told(&self) -> String {
+        format!("{}{}", self.value.as_deref().unwrap_or(""), self.found)
+    }
+
+    /// Returns true if a kind of quantity belongs behind what is expected.
+    pub fn expects_quantity(&self) -> bool {
+        [POSITIVE, NOT_NEGATIVE].contains(&self.expected.as_str())
+    }
+}
+
+/// A rule: what was found at a place has to hold.
+///
+/// # Errors
+/// It does not.
+pub fn rule(
+    holds: bool,
+    at: impl Display,
+    found: impl Display,
+    expected: &str,
+) -> Result<(), Fault> {
+    match holds {
+        true => Ok(()),
+        false => Err(Fault::new(at, found, expected)),
+    }
+}
+
+/// A rule of the value at a place, which a file has as it is written.
+///
+/// # Errors
+/// It does not hold.
+pub fn value(
+    holds: bool,
+    at: impl Display,
+    value: impl Display,
+    expected: &str,
+) -> Result<(), Fault> {
+    match holds {
+        true => Ok(()),
+        false => Err(Fault::of(at, value, "", expected)),
+    }
+}
+
+/// A value that has to be positive and finite.
+///
+/// # Errors
+/// It is not.
+pub fn positive(at: impl Display, number: f64) -> Result<(), Fault> {
+    value(number > 0.0 && number.is_finite(), at, number, POSITIVE)
+}
+
+/// A value that has to be zero or positive, and finite.
+///
+/// # Errors
+/// It is not.
+pub fn not_negative(at: impl Display, number: f64) -> Result<(), Fault> {
+    value(
+        number >= 0.0 && number.is_finite(),
+        at,
+        number,
+        NOT_NEGATIVE,
+    )
+}
+
+/// Refuses a name that is empty, reserved, or that of an entry before it.
+///
+/// # Errors
+/// The index of the first such name.
+pub fn unique(names: &[impl AsRef<str>], reserved: &[&str]) -> Result<(), (usize, Fault)> {
+    let mut seen = HashSet::new();
+    for (index, name) in names.iter().map(AsRef::as_ref).enumerate() {
+        let [wrong, expected] = match name {
+            "" => ["", "a name"],
+            name if reserved.contains(&name) => ["", "a name that is not reserved"],
+            name if !seen.insert(name) => [" a second time", "a name that is not taken"],
+            _ => continue,
+        };
+        return Err((
+            index,
+            Fault::new("name", format!("{name:?}{wrong}"), expected),
+        ));
+    }
+    Ok(())
+}
