@@ -7,6 +7,7 @@
 //!
 //! They are recorded without a thread, since there may be none; callers of [`reason`] see them.
 
+use crate::math::{self, IsOver};
 use crate::nlp::Status;
 use signal_hook::consts::{SIGINT, SIGTERM};
 use signal_hook::flag;
@@ -16,6 +17,7 @@ use std::sync::atomic::{AtomicBool, AtomicU64, Ordering};
 use std::sync::{Arc, LazyLock, Once, OnceLock};
 use std::time::{Duration, Instant};
 use std::{fs, io};
+use thiserror::Error;
 
 thread_local! {
     static LIMIT: RefCell<Option<TimeLimit>> = const { RefCell::new(None) };
@@ -163,6 +165,35 @@ pub fn limit() -> Option<TimeLimit> {
 #[must_use]
 pub fn reason() -> Option<Status> {
     LIMIT.with_borrow(|limit| limit.as_ref()?.reached())
+}
+
+/// There is no result, because it was time to stop: [`Status::Interrupted`] or [`Status::TimeLimit`].
+#[derive(Clone, Copy, Debug, Error, PartialEq, Eq)]
+#[error("{}", .0.word().replace('_', " "))]
+pub struct Stopped(pub Status);
+
+/// Goes on, unless this thread is to stop.
+///
+/// # Errors
+/// It is to stop.
+pub fn check() -> Result<(), Stopped> {
+    reason().map_or(Ok(()), |status| Err(Stopped(status)))
+}
+
+/// The stop, where this thread is to stop, and else the error: what is cut short may seem wrong.
+pub fn unless_stopped<E: From<Stopped>>(error: E) -> E {
+    check().map_or_else(E::from, |()| error)
+}
+
+/// Calls what asks on any thread whether this one is to stop.
+///
+/// # Errors
+/// It stopped.
+pub fn heed<T>(work: impl FnOnce(IsOver<'_>) -> Result<T, math::Stopped>) -> Result<T, Stopped> {
+    let limit = limit();
+    let reached = || limit.as_ref().and_then(TimeLimit::reached);
+    let done = work(&|| reached().is_some());
+    done.map_err(|_| Stopped(reached().unwrap_or(Status::Interrupted)))
 }
 
 /// Watches over Ctrl-C and the time of this thread until it is dropped.

@@ -8,8 +8,8 @@ use thiserror::Error;
 
 use crate::files::SceneError;
 use crate::files::urdf::UrdfError;
-use crate::nlp::Status;
 use crate::report::atomic::WriteError;
+use crate::stop::Stopped;
 use crate::workflow::WorkflowError;
 
 /// A command ends without an answer.
@@ -71,8 +71,8 @@ pub enum CommandError {
         message: String,
     },
     /// Ctrl-C was pressed, or the time allowed is over, before there was anything to write.
-    #[error("stopped before the first result ({})", .0.word().replace('_', " "))]
-    Stopped(Status),
+    #[error("stopped before the first result ({0})")]
+    Stopped(#[from] Stopped),
     /// A file stands where a new one was to be written.
     #[error("{} exists already and is left as it is; choose another folder", .0.display())]
     Exists(PathBuf),
@@ -159,7 +159,7 @@ impl CommandError {
                 reason,
             },
             WorkflowError::Earlier(error) => Self::Earlier(error),
-            WorkflowError::Stopped(status) => Self::Stopped(status),
+            WorkflowError::Stopped(stopped) => stopped.into(),
         }
     }
 }

@@ -79,8 +79,8 @@ fn is_solved(found: &Identified) -> bool {
 
 fn refused(request: &CommandInput, error: &IdentifyError) -> CommandError {
     // What is interrupted may end in other errors too.
-    if let Some(status) = stop::reason() {
-        return CommandError::Stopped(status);
+    if let Err(stopped) = stop::check() {
+        return stopped.into();
     }
     let place = match error {
         IdentifyError::NotSought(_) | IdentifyError::Unread { .. } => "identify.free",

@@ -67,7 +67,7 @@ pub(super) fn refused(
                 reason: error.to_string(),
             });
         }
-        EquilibriumError::Stopped(status) => return Err(CommandError::Stopped(*status)),
+        EquilibriumError::Stopped(stopped) => return Err((*stopped).into()),
         _ => {}
     }
     write(request, STATUS, &error.to_string())?;

@@ -2,7 +2,7 @@
 
 use crate::dynamics::{BeyondLaw, EquilibriumError};
 use crate::model::ModelError;
-use crate::nlp::Status;
+use crate::stop::Stopped;
 use thiserror::Error;
 
 /// A control problem is not well posed.
@@ -118,8 +118,8 @@ pub enum BoundaryError {
         reason: String,
     },
     /// Ctrl-C was pressed, or the time allowed is over, before the problem was built.
-    #[error("stopped while the problem was built ({})", .0.word().replace('_', " "))]
-    Stopped(Status),
+    #[error("stopped while the problem was built ({0})")]
+    Stopped(#[from] Stopped),
     /// More equations than unknowns.
     #[error(
         "the problem is overdetermined: {equations} equations for {unknowns} unknowns. {}; {voltages} voltages are sought in \

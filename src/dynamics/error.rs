@@ -3,7 +3,7 @@
 use crate::dynamics::equilibrium::{Equilibrium, Instability, Load};
 use crate::dynamics::singular_configurations::{BeyondLaw, NOTHING};
 use crate::nlp::Status;
-use crate::stop;
+use crate::stop::Stopped;
 use thiserror::Error;
 
 /// A step forward in time failed and was not accepted.
@@ -169,8 +169,8 @@ pub enum EquilibriumError {
         last: Box<Equilibrium>,
     },
     /// Ctrl-C was pressed, or the time allowed is over.
-    #[error("stopped before an equilibrium was found ({})", .0.word().replace('_', " "))]
-    Stopped(Status),
+    #[error("stopped before an equilibrium was found ({0})")]
+    Stopped(#[from] Stopped),
     /// There is no equilibrium to start from.
     #[error(
         "no equilibrium was found without voltages: neither Newton's method nor damped motion from the reference leads to one"
@@ -211,21 +211,6 @@ pub enum EquilibriumError {
         /// Constraints that follow from the others.
         redundant: Vec<String>,
     },
-}
-
-impl EquilibriumError {
-    /// Goes on, unless this thread is to stop.
-    ///
-    /// # Errors
-    /// It is to stop.
-    pub(super) fn heed_stops() -> Result<(), Self> {
-        stop::reason().map_or(Ok(()), |status| Err(Self::Stopped(status)))
-    }
-
-    /// The stop, where this thread was to stop: a way that was stopped ends like one that leads nowhere.
-    pub(super) fn unless_stopped(self) -> Self {
-        stop::reason().map_or(self, Self::Stopped)
-    }
 }
 
 /// Names the redundant constraints, or else the likely cause.

@@ -6,8 +6,7 @@ use crate::dynamics::stepper::{Equations, Steps};
 use crate::functional::Order;
 use crate::math::join::available;
 use crate::model::Model;
-use crate::nlp::Status;
-use crate::stop::{self, TimeLimit};
+use crate::stop;
 use std::time::Instant;
 
 /// Bytes of factors for each unknown of a block of `MEASURED` unknowns; they grow with the cube root of the number.
@@ -33,16 +32,12 @@ impl<E: Equations> Steps<E> {
     /// Takes the tangent evaluated last, and factorises it where it is solved so.
     pub(super) fn factor(&mut self, h: f64) -> Result<(), StepError> {
         let began = Instant::now();
-        let limit = stop::limit();
-        let reached = || limit.as_ref().and_then(TimeLimit::reached);
         let values = self.equations.values();
-        let done = self.updates.factor_unless(values, &|| reached().is_some());
+        let done = stop::heed(|is_over| self.updates.factor_unless(values, is_over));
         self.report.factorisation += began.elapsed().as_secs_f64();
         let is_kept = self.updates.matrix.is_kept() && done == Ok(Ok(()));
         self.factored = is_kept.then_some(h);
-        let Ok(done) = done else {
-            return Err(self.stopped(h, reached().unwrap_or(Status::Interrupted)));
-        };
+        let done = done.map_err(|stopped| self.stopped(h, stopped))?;
         if self.updates.matrix.direct().is_some() {
             self.report.factorisations += 1;
         }
@@ -90,17 +85,11 @@ impl<E: Equations> Steps<E> {
     /// Solves for an update; `None` where the iteration does not converge.
     fn solve_once(&mut self, h: f64) -> Result<Option<f64>, StepError> {
         let began = Instant::now();
-        let limit = stop::limit();
-        let reached = || limit.as_ref().and_then(TimeLimit::reached);
-        let solved = self
-            .updates
-            .solve(&mut self.residual, &|| reached().is_some());
+        let solved = stop::heed(|is_over| self.updates.solve(&mut self.residual, is_over));
         self.report.solution += began.elapsed().as_secs_f64();
         self.count();
-        match solved {
-            Ok(size) => Ok(size.ok()),
-            Err(_) => Err(self.stopped(h, reached().unwrap_or(Status::Interrupted))),
-        }
+        let solved = solved.map_err(|stopped| self.stopped(h, stopped))?;
+        Ok(solved.ok())
     }
 
     /// Takes in the counts of the iterations.
@@ -112,20 +101,15 @@ impl<E: Equations> Steps<E> {
 
     /// Brings potentials that are far from Gauss's law to it before anything moves; returns true if it did so.
     pub(super) fn place_potentials(&mut self, h: f64) -> Result<bool, StepError> {
-        let limit = stop::limit();
-        let reached = || limit.as_ref().and_then(TimeLimit::reached);
         let Some(grids) = self.updates.matrix.grids_mut() else {
             return Ok(false);
         };
-        let update = grids.potentials_first(&self.residual, &|| reached().is_some());
+        let update = stop::heed(|is_over| grids.potentials_first(&self.residual, is_over));
         self.count();
-        match update {
-            Ok(None) => Ok(false),
-            Ok(Some(update)) => {
-                self.equations.update(&update);
-                Ok(true)
-            }
-            Err(_) => Err(self.stopped(h, reached().unwrap_or(Status::Interrupted))),
+        let update = update.map_err(|stopped| self.stopped(h, stopped))?;
+        if let Some(update) = &update {
+            self.equations.update(update);
         }
+        Ok(update.is_some())
     }
 }

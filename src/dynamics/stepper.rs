@@ -13,8 +13,7 @@ use crate::dynamics::step_state::{StepState, StepperReport};
 use crate::dynamics::updates::Updates;
 use crate::functional::{NodeBlocks, Order};
 use crate::model::Model;
-use crate::nlp::Status;
-use crate::stop;
+use crate::stop::{self, Stopped};
 use std::time::Instant;
 
 /// Limit of Newton iterations in one step.
@@ -269,13 +268,10 @@ impl<E: Equations> Steps<E> {
 
     /// Returns an error if it is time to stop.
     fn go_on(&mut self, h: f64) -> Result<(), StepError> {
-        match stop::reason() {
-            Some(status) => Err(self.stopped(h, status)),
-            None => Ok(()),
-        }
+        stop::check().map_err(|stopped| self.stopped(h, stopped))
     }
 
-    pub(super) fn stopped(&mut self, step: f64, status: Status) -> StepError {
+    pub(super) fn stopped(&mut self, step: f64, Stopped(status): Stopped) -> StepError {
         self.equations.restore();
         let time = self.equations.time();
         StepError::Stopped { time, step, status }

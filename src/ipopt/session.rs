@@ -10,9 +10,9 @@ use std::panic::{AssertUnwindSafe, catch_unwind};
 use std::time::Instant;
 
 use crate::ipopt::linear_report::StagesReport;
-use crate::kkt::{Inertia, Plan, Solver, Stopped, Unknown};
+use crate::kkt::{Inertia, Plan, Solver, Unknown};
 use crate::nlp::{Bounds, Stage, Status};
-use crate::stop::{self, TimeLimit};
+use crate::stop;
 
 thread_local! {
     static CURRENT: RefCell<Option<Session>> = const { RefCell::new(None) };
@@ -100,18 +100,14 @@ impl Session {
             None => {
                 self.report.analyses += 1;
                 let (rows, cols): (Vec<_>, Vec<_>) = from_zero(rows).zip(from_zero(cols)).unzip();
-                let limit = stop::limit();
-                let is_over = || limit.as_ref().and_then(TimeLimit::reached).is_some();
                 let of_unknowns = unknowns.map(Vec::as_slice);
-                match Plan::new_unless(order, &rows, &cols, of_unknowns, &is_over) {
-                    Ok(plan) => Kept {
-                        solver: Solver::new(plan),
-                        unknowns: unknowns.cloned(),
-                    },
-                    Err(Stopped) => {
-                        self.report.stopped = stop::reason();
-                        return None;
-                    }
+                let plan = stop::heed(|is_over| {
+                    Plan::new_unless(order, &rows, &cols, of_unknowns, is_over)
+                });
+                let plan = plan.map_err(|stopped| self.report.stopped = Some(stopped.0));
+                Kept {
+                    solver: Solver::new(plan.ok()?),
+                    unknowns: unknowns.cloned(),
                 }
             }
         });
@@ -133,12 +129,8 @@ impl Session {
             solver.improve();
         }
         self.tolerance = tolerance;
-        let limit = stop::limit();
-        let is_over = || limit.as_ref().and_then(TimeLimit::reached).is_some();
-        let factored = solver.factor_unless(entries, &is_over);
-        if factored.is_err() {
-            self.report.stopped = stop::reason();
-        }
+        let factored = stop::heed(|is_over| solver.factor_unless(entries, is_over));
+        let factored = factored.map_err(|stopped| self.report.stopped = Some(stopped.0));
         let seconds = began.elapsed().as_secs_f64();
         self.report.factorisation += seconds;
         if solver.is_whole() {

@@ -98,12 +98,11 @@ pub fn check(
     }
     let watch = stop::watch(seconds);
     let control = as_control(task, system);
-    let resolved = resolve(system, &control).map_err(WorkflowError::unless_stopped);
+    let resolved = resolve(system, &control).map_err(stop::unless_stopped);
     let (model, boundary) = resolved?;
     let Prepared {
         mut program, point, ..
-    } = prepare(&model, &boundary, &control, None, Counted::No)
-        .map_err(WorkflowError::unless_stopped)?;
+    } = prepare(&model, &boundary, &control, None, Counted::No).map_err(stop::unless_stopped)?;
     let sizes = sizes(&program, &model);
     let mut noise = Random::new(SEED);
     let mut moved = |(x, size): (&f64, &f64)| x + NOISE * size * noise.between(-1.0, 1.0);

@@ -2,7 +2,7 @@
 
 use crate::control::problem::Disturbed;
 use crate::nlp::Status;
-use crate::stop;
+use crate::stop::{self, Stopped};
 use crate::tasks::simulate::{SimulationRequest, SimulationResult, simulate};
 use crate::workflow::WorkflowError;
 use crate::workflow::closed_loop::DisturbedLoop;
@@ -37,9 +37,8 @@ pub fn disturbed(
     if whole.closed_loop.is_none() {
         return Ok(out);
     }
-    let go_on = &mut |_: usize, _: &_, _: &_| match stop::reason() {
-        Some(_) => ControlFlow::Break(()),
-        None => ControlFlow::Continue(()),
+    let go_on = &mut |_: usize, _: &_, _: &_| {
+        stop::check().map_or(ControlFlow::Break(()), ControlFlow::Continue)
     };
     for Disturbed { size, system, task } in parts {
         let simulated;
@@ -51,7 +50,7 @@ pub fn disturbed(
                     ..SimulationRequest::default()
                 };
                 match simulate(system, task, request, go_on) {
-                    Err(WorkflowError::Stopped(status)) => {
+                    Err(WorkflowError::Stopped(Stopped(status))) => {
                         out.left_out.push(not_whole(*size));
                         out.stopped = Some(status);
                         continue;

@@ -8,7 +8,7 @@ use crate::dynamics::{
 use crate::math::significant;
 use crate::model::{Model, System};
 use crate::nlp::Status;
-use crate::stop;
+use crate::stop::{self, Stopped};
 use crate::tasks::check::moved_markers;
 use crate::workflow::accuracy::{Accuracy, AccuracyTarget};
 use crate::workflow::closed_loop::ClosedLoop;
@@ -167,11 +167,11 @@ pub fn simulate(
             let observer =
                 |model: &Model, discrete: &DiscreteTrajectory| observer(steps, model, discrete);
             let simulated = integrate_on(system, task, begun, observer);
-            (simulated.map_err(WorkflowError::unless_stopped)?, None)
+            (simulated.map_err(stop::unless_stopped)?, None)
         }
         Some(wanted) => {
             let refined = integrate_to(system, task, wanted, seconds, observer);
-            let refined = refined.map_err(WorkflowError::unless_stopped)?;
+            let refined = refined.map_err(stop::unless_stopped)?;
             (refined.run, Some(refined.accuracy))
         }
     };
@@ -214,12 +214,11 @@ fn closed_loop(
         })),
         ..task.clone()
     };
-    let open = integrate_on(system, &open, None, |_, _| match stop::reason() {
-        Some(_) => ControlFlow::Break(()),
-        None => ControlFlow::Continue(()),
+    let open = integrate_on(system, &open, None, |_, _| {
+        stop::check().map_or(ControlFlow::Break(()), ControlFlow::Continue)
     });
-    let open = match open.map_err(WorkflowError::unless_stopped) {
-        Err(WorkflowError::Stopped(status)) => return Ok((None, Some(status))),
+    let open = match open.map_err(stop::unless_stopped) {
+        Err(WorkflowError::Stopped(Stopped(status))) => return Ok((None, Some(status))),
         open => open?,
     };
     let is_early = ends_early(&open.discrete, task);

@@ -83,7 +83,7 @@ pub(crate) fn attempt_together(
     let began = Instant::now();
     let watch = stop::watch(allowed.seconds);
     phase("building the model, finding start and goal");
-    let resolved = resolve_each(asked).map_err(WorkflowError::unless_stopped)?;
+    let resolved = resolve_each(asked).map_err(stop::unless_stopped)?;
     phase("building the program");
     let motions = program_motions(asked, &resolved);
     let PreparedTogether {
@@ -92,8 +92,7 @@ pub(crate) fn attempt_together(
         point,
         start,
         carried,
-    } = prepare_together(&motions, asked, in_common, Counted::Yes)
-        .map_err(WorkflowError::unless_stopped)?;
+    } = prepare_together(&motions, asked, in_common, Counted::Yes).map_err(stop::unless_stopped)?;
     let setup = began.elapsed().as_secs_f64();
     let first = motions[0];
     let options = Options {

@@ -8,8 +8,7 @@ use crate::control::BoundaryError;
 use crate::dynamics::EquilibriumError;
 use crate::ipopt::IpoptError;
 use crate::model::ModelError;
-use crate::nlp::Status;
-use crate::stop;
+use crate::stop::Stopped;
 
 /// Hint at the start of a robot that nothing holds.
 const FLOATS: &str =
@@ -46,16 +45,11 @@ pub enum WorkflowError {
     #[error(transparent)]
     Earlier(Box<dyn StdError + Send + Sync>),
     /// An interruption was asked for, or the time allowed is over, before there was a result.
-    #[error("stopped before the first result ({})", .0.word().replace('_', " "))]
-    Stopped(Status),
+    #[error("stopped before the first result ({0})")]
+    Stopped(#[from] Stopped),
 }
 
 impl WorkflowError {
-    /// The stop, where this thread was to stop: what is cut short may seem wrong.
-    pub(crate) fn unless_stopped(self) -> Self {
-        stop::reason().map_or(self, Self::Stopped)
-    }
-
     /// Start or goal of a problem that does not exist; `task` is its key in the file.
     pub(crate) fn boundary(task: &str, error: &BoundaryError) -> Self {
         let (key, reason) = match error {
@@ -67,10 +61,10 @@ impl WorkflowError {
             }
             BoundaryError::Model(source) => ("coordinates", source.to_string()),
             BoundaryError::NoEquilibrium {
-                source: EquilibriumError::Stopped(status),
+                source: EquilibriumError::Stopped(stopped),
                 ..
             }
-            | BoundaryError::Stopped(status) => return Self::Stopped(*status),
+            | BoundaryError::Stopped(stopped) => return (*stopped).into(),
             BoundaryError::Limit { place, reason }
             | BoundaryError::Prescribed { place, reason } => (*place, reason.clone()),
             BoundaryError::NoEquilibrium { place, source } => {

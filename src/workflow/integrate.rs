@@ -85,9 +85,7 @@ pub fn integrate_on(
         memory::of_motion(&model, steps)?;
     }
     has_solver(&model, task.solving)?;
-    if let Some(status) = stop::reason() {
-        return Err(WorkflowError::Stopped(status));
-    }
+    stop::check()?;
     phase("finding the start");
     let begun = begin(&model, task, begun)?;
     let setup = began.elapsed().as_secs_f64();

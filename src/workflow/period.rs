@@ -64,10 +64,7 @@ pub(crate) fn repeated(
         let k = (0.5 * (from + to) / h) as usize % n;
         model.scalars(&optimal.voltages[k])
     };
-    let go_on = |_: &_| match stop::reason() {
-        Some(_) => ControlFlow::Break(()),
-        None => ControlFlow::Continue(()),
-    };
+    let go_on = |_: &_| stop::check().map_or(ControlFlow::Break(()), ControlFlow::Continue);
     let (discrete, failure) = simulate(model, start, h, PERIODS * n, scalars, go_on);
     let failure = failure.filter(|error| !matches!(error, StepError::Stopped { .. }));
     let motion = solved(model, &discrete, None);

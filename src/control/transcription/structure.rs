@@ -52,7 +52,7 @@ impl Structure {
         let jacobian = jacobian(model, layout)?;
         let mut hessian = hessian(model, layout)?;
         let jumps = jumps(layout, objective, &mut hessian.entries);
-        go_on()?;
+        stop::check()?;
         Ok(Self {
             jacobian,
             hessian,
@@ -92,7 +92,7 @@ fn jacobian_candidates(model: &Model, layout: &Layout) -> Result<Vec<Candidate>,
     let (pattern, u) = (model.action.layout(), &layout.unknowns);
     let mut list = Vec::new();
     for k in 0..=layout.intervals {
-        go_on()?;
+        stop::check()?;
         for (slot, (i, j)) in pattern.same.entries().enumerate() {
             list.push((u.row(k, i), u.unknown(k, j), pattern.same_at(k) + slot));
         }
@@ -153,7 +153,7 @@ fn jacobian(model: &Model, layout: &Layout) -> Result<Matrix, BoundaryError> {
         variable.is_none_or(|variable| variable.role != Role::Multiplier)
     };
     let candidates = jacobian_candidates(model, layout)?;
-    go_on()?;
+    stop::check()?;
     let mut matrix = Matrix::default();
     for (row, col, place) in candidates {
         let (Some(row), Some(col)) = (row, col) else {
@@ -171,7 +171,7 @@ fn hessian_candidates(model: &Model, layout: &Layout) -> Result<Vec<Candidate>, 
     let (pattern, u) = (model.action.layout(), &layout.unknowns);
     let mut list = Vec::new();
     for k in 0..=layout.intervals {
-        go_on()?;
+        stop::check()?;
         let same = pattern.same.entries().enumerate();
         for (slot, (i, j)) in same.filter(|(_, (i, j))| i >= j) {
             list.push((u.unknown(k, i), u.unknown(k, j), pattern.same_at(k) + slot));
@@ -208,7 +208,7 @@ fn hessian_candidates(model: &Model, layout: &Layout) -> Result<Vec<Candidate>, 
 
 fn hessian(model: &Model, layout: &Layout) -> Result<Matrix, BoundaryError> {
     let candidates = hessian_candidates(model, layout)?;
-    go_on()?;
+    stop::check()?;
     let mut matrix = Matrix::default();
     for (row, col, place) in candidates {
         if let (Some(row), Some(col)) = (row, col) {
@@ -258,14 +258,6 @@ fn jumps(layout: &Layout, objective: &Objective, entries: &mut Entries) -> Vec<J
         }
     }
     jumps
-}
-
-/// Returns an error if it is time to stop.
-fn go_on() -> Result<(), BoundaryError> {
-    match stop::reason() {
-        Some(status) => Err(BoundaryError::Stopped(status)),
-        None => Ok(()),
-    }
 }
 
 /// That there are more equations than unknowns on a number of intervals, where it is so.

@@ -9,6 +9,7 @@ use crate::dynamics::equilibrium::statics::{NewtonOutcome, Statics, UpdateRange}
 use crate::dynamics::error::EquilibriumError;
 use crate::dynamics::solving::MultigridUse;
 use crate::model::{Floating, Model};
+use crate::stop;
 
 /// Part of a load that is tried first, in V² for voltages.
 const FIRST: f64 = 0.25;
@@ -36,7 +37,7 @@ pub fn equilibrium(
         if grown.fraction < 1.0 {
             statics.fall_back();
             let lost = at_limit(&mut statics, &grown.state, ramp, grown.fraction);
-            return Err(lost.unless_stopped());
+            return Err(stop::unless_stopped(lost));
         }
         state = grown.state;
     }
@@ -129,7 +130,7 @@ pub(super) fn grow(
         let fraction = ramp.fraction(target);
         let voltages = ramp.apply(statics, fraction);
         if ramp.load == Load::Voltages && statics.settle(&mut trial, &voltages).is_none() {
-            EquilibriumError::heed_stops()?;
+            stop::check()?;
             increment *= 0.5;
             continue;
         }

@@ -23,6 +23,7 @@ use crate::dynamics::equilibrium::statics::{NewtonOutcome, Statics, UpdateRange}
 use crate::dynamics::error::EquilibriumError;
 use crate::dynamics::solving::MultigridUse;
 use crate::model::{Analysis, Coordinates, Model};
+use crate::stop;
 
 /// Steps along a path beyond its limit point, and those for models with nodes.
 const STEPS: [usize; 2] = [300, 40];
@@ -59,7 +60,7 @@ pub fn stable_equilibrium_by(
     multigrid: MultigridUse,
 ) -> Result<Equilibrium, EquilibriumError> {
     let found = found(model, start, voltages, multigrid);
-    found.map_err(EquilibriumError::unless_stopped)
+    found.map_err(stop::unless_stopped)
 }
 
 /// The same, whose errors may be those of a way that was stopped.
@@ -335,7 +336,7 @@ fn beside(
         }
     }
     // One side that was not followed to its end may have the lower energy.
-    EquilibriumError::heed_stops()?;
+    stop::check()?;
     Ok(lowest.map(|(found, _)| found))
 }
 

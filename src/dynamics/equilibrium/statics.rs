@@ -301,10 +301,10 @@ impl<'m> Statics<'m> {
             grids.start();
         }
         for iteration in 0..ITERATIONS {
-            EquilibriumError::heed_stops()?;
+            stop::check()?;
             self.iterations += 1;
             self.evaluate(state, voltages);
-            EquilibriumError::heed_stops()?;
+            stop::check()?;
             if self.residual.iter().any(|r| !r.is_finite()) {
                 return Ok(NewtonOutcome::Failed);
             }
@@ -316,9 +316,9 @@ impl<'m> Statics<'m> {
             }
             let mut update = std::mem::take(&mut self.residual);
             self.solve_for_update(&mut update);
-            if let Some(status) = stop::reason() {
+            if let Err(stopped) = stop::check() {
                 self.residual = update;
-                return Err(EquilibriumError::Stopped(status));
+                return Err(stopped.into());
             }
             let size = self.size(&update);
             // Potentials follow from one update.

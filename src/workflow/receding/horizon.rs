@@ -11,7 +11,7 @@ use crate::feedback::Law;
 use crate::ipopt::{IpoptError, Options, StartingPoint, solve};
 use crate::model::{Model, System, Time};
 use crate::nlp::{Nlp, Status};
-use crate::stop;
+use crate::stop::{self, Stopped};
 use crate::workflow::error::WorkflowError;
 use crate::workflow::motion::{Iterate, discrete_trajectory};
 use crate::workflow::optimise::optimise;
@@ -142,13 +142,13 @@ impl Horizon {
         let limits = SolveLimits::default();
         let go_on = &mut |_: &Iterate<'_>| ControlFlow::Continue(());
         let optimum = optimise(system, control, None, limits, go_on);
-        let optimum = optimum.map_err(|error| match error.unless_stopped() {
-            WorkflowError::Stopped(status) => NoHorizon::Stopped(status),
+        let optimum = optimum.map_err(|error| match stop::unless_stopped(error) {
+            WorkflowError::Stopped(stopped) => NoHorizon::Stopped(stopped),
             error @ WorkflowError::NoEquilibrium { .. } => NoHorizon::Unsolved(error.to_string()),
             error => NoHorizon::Program(error.to_string()),
         })?;
         if let Some(status) = optimum.stopped.or_else(stop::reason) {
-            return Err(NoHorizon::Stopped(status));
+            return Err(NoHorizon::Stopped(Stopped(status)));
         }
         if !optimum.is_solved() {
             let word = optimum.word().replace('_', " ");
@@ -365,7 +365,7 @@ pub enum NoHorizon {
     /// The problem has no optimum that was found.
     Unsolved(String),
     /// It was time to stop.
-    Stopped(Status),
+    Stopped(Stopped),
 }
 
 impl fmt::Display for NoHorizon {
@@ -374,7 +374,7 @@ impl fmt::Display for NoHorizon {
             Self::Regulator(reason) => reason.fmt(f),
             Self::NotHeld(reason) => write!(f, "the goal is not held after the end: {reason}"),
             Self::Program(reason) | Self::Unsolved(reason) => f.write_str(reason),
-            Self::Stopped(status) => f.write_str(status.word()),
+            Self::Stopped(Stopped(status)) => f.write_str(status.word()),
             Self::NotOffered(what) => {
                 write!(f, "{what}, which a receding horizon does not take in")
             }
@@ -390,7 +390,7 @@ impl NoHorizon {
         let place = place.to_owned();
         let reason = format!("{words}{self}");
         match self {
-            Self::Stopped(status) => WorkflowError::Stopped(status),
+            Self::Stopped(stopped) => stopped.into(),
             Self::Unsolved(_) => WorkflowError::Unsolved { place, reason },
             _ => WorkflowError::Problem { place, reason },
         }

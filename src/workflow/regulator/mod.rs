@@ -70,9 +70,7 @@ impl Design<'_> {
             let inputs = self.model.variables.split(&self.discrete.scalars[k])[0];
             let step = self.linearised(&mut linearisation, &part[0], inputs);
             // What is stopped has no result either.
-            if stop::reason().is_some() {
-                return Err(NoRegulator::Stopped);
-            }
+            stop::check().map_err(|_| NoRegulator::Stopped)?;
             let step = step.ok_or(NoRegulator::Singular(k))?;
             steps.push(self.augmented(&step, &part[0]));
         }
