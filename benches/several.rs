@@ -3,7 +3,7 @@
 //! `cargo bench --bench several -- [GOALS]`: goals in one thread and in two, in turn, and how many more two solve in the same time.
 //! `cargo bench --bench several -- --again`: a goal that moves, by a solver that keeps its program.
 //! `cargo bench --bench several -- --copies`: copies of one motion in one program, against one of them.
-//! `cargo bench --bench several -- --constants`: one motion with ten sought constants of several kinds, against the same without.
+//! `cargo bench --bench several -- --constants`: one motion with ten free parameters of several kinds, against the same without.
 //! `cargo bench --bench several -- --minutes 10`: goals in four threads against one thread, bit by bit, with the memory of the process.
 
 #[path = "../tests/common/random_goals.rs"]
@@ -341,7 +341,7 @@ fn arms() -> String {
     format!("control.free={{{}}}", entries.join(","))
 }
 
-/// Ten sought constants, each of one muscle, against the same motion without.
+/// Ten free parameters, each of one muscle, against the same motion without.
 fn constants() {
     let goal = r#"control.goal={"joint_angles":{"joint1":0.2,"joint3":0.1},"hold":"none"}"#;
     let of_muscle = |what: &'static str| move |k: usize| format!("muscles.muscle{k}.{what}");

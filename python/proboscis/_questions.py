@@ -237,7 +237,7 @@ class Questions:
         * `recordings`: Recordings: those that constants are fitted to, and those that are held out to check their prediction.
         * `candidates`: Experiments that could be done next; the result ranks them by the variance that they leave.
         * `coordinates`: Coordinates.
-        * `free`: Sought constants by their paths in the scene, such as `"materials.silicone.shear_modulus"`, each between bounds.
+        * `free`: Free parameters by their paths in the scene, such as `"materials.silicone.shear_modulus"`, each between bounds.
         * `inputs`: Constants of the inputs that are sought: gains of sources, and their delays.
         * `priors`: Constants of `free` that are known beside the recordings, by their paths: each counts as one reading more.
         * `step`: Step of the first grid, SI unit s, which is halved until its bias is below a tenth of the standard errors; by the number of

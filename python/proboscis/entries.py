@@ -774,7 +774,7 @@ class FreeDuration(TypedDict):
 
 
 class Free(TypedDict):
-    """A constant that is sought between bounds."""
+    """A free parameter between bounds."""
 
     also: NotRequired[Mapping[Any, float]]
     """Other constants by their paths that are this one times a number."""
@@ -1125,7 +1125,7 @@ class Motion(TypedDict):
 
 
 class MuscleMassLimit(TypedDict):
-    """Limits of the mass of lumped muscles with a density, together, which follows from sought constants: `min`, `max` or both."""
+    """Limits of the mass of lumped muscles with a density, together, which follows from free parameters: `min`, `max` or both."""
 
     max: NotRequired[Quantity]
     """Upper bound, SI unit kg."""
@@ -1138,7 +1138,7 @@ class MuscleMassLimit(TypedDict):
 
 
 class MuscleVolumeLimit(TypedDict):
-    """Limits of the volume of lumped muscles at rest, together, which follows from sought constants: `min`, `max` or both."""
+    """Limits of the volume of lumped muscles at rest, together, which follows from free parameters: `min`, `max` or both."""
 
     max: NotRequired[Quantity]
     """Upper bound, SI unit m^3."""
@@ -1192,10 +1192,10 @@ class Objective(TypedDict):
     """Weight per J of the mechanical work of the electrical forces of lumped muscles, of all sources or of named ones."""
 
     muscle_mass: NotRequired[float]
-    """Weight per g of the mass of all lumped muscles with a density, which follows from sought constants."""
+    """Weight per g of the mass of all lumped muscles with a density, which follows from free parameters."""
 
     muscle_volume: NotRequired[float]
-    """Weight per cm³ of the volume of all lumped muscles at rest, which follows from sought constants."""
+    """Weight per cm³ of the volume of all lumped muscles at rest, which follows from free parameters."""
 
     peak_voltage: NotRequired[float]
     """Weight of the square of the peak voltage in kV: of the largest voltage of all sources that are sought, in all intervals."""
@@ -1214,7 +1214,7 @@ class Observer(TypedDict):
     """Of measured joint coordinates, by joint, SI unit rad or m."""
 
     lasting: NotRequired[float]
-    """Of the change in each interval of a lasting force on each joint, as a part of the greatest force of an input on it. These forces are then
+    """Of the change in each interval of a constant disturbance on each joint, as a part of the greatest force of an input on it. These forces are then
     found beside the state, and inputs hold the goal against them; without it none are. As many independent measurements are needed as there are
     joints.
     """
@@ -1897,7 +1897,7 @@ class Identify(TypedDict):
     """Coordinates."""
 
     free: NotRequired[Mapping[Any, Free]]
-    """Sought constants by their paths in the scene, such as `"materials.silicone.shear_modulus"`, each between bounds."""
+    """Free parameters by their paths in the scene, such as `"materials.silicone.shear_modulus"`, each between bounds."""
 
     inputs: NotRequired[InputConstants]
     """Constants of the inputs that are sought: gains of sources, and their delays."""

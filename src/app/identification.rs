@@ -1,11 +1,11 @@
 //! An identification from file to folder.
 
 use crate::app::error::CommandError;
-use crate::app::foreign::make_folder_of;
 use crate::app::identification_page;
 use crate::app::identification_summary::Identification;
 use crate::app::identification_verdict::{remarks, status};
-use crate::app::left_out::EARLIER;
+use crate::app::overwrite_check::make_folder_of;
+use crate::app::partial_result::EARLIER;
 use crate::app::request::{CommandInput, CommandOutput, PageWanted};
 use crate::app::summary::Summary;
 use crate::control::problem;

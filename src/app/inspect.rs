@@ -2,8 +2,8 @@
 
 use crate::app::blocks::BlockSizes;
 use crate::app::error::CommandError;
-use crate::app::foreign::make_folder;
 use crate::app::messages::key;
+use crate::app::overwrite_check::make_folder;
 use crate::app::program::joined;
 use crate::app::request::{CommandInput, CommandOutput};
 use crate::app::task::read;

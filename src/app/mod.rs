@@ -5,17 +5,19 @@
 //! - `inspect`, `sparsity`, `check`, `templates`: the other commands; `program`: entry points for other languages in place of files.
 //! - `solution_file`, `unfinished`, `summary`: JSON files; `fields`: those of elastic blocks; figures, tables and page are written by [`report`](crate::report).
 //! - `resume_file`: runs that go on from the result of another; `content_hash`, `identity`: content hash, and identity of problems.
-//! - `once`, `record`: a result that is made once, and the hashes of its files.
+//! - `cache`, `record`: a result that is made once, and the hashes of its files.
 //! - `displayed_motion`: part of a motion that tables, figures and page show.
 //! - `side_by_side`: several results on one page.
 //! - `accuracy_table`, `blocks`, `comparison`, `energy_summary`, `length_unit_check`: texts about a result.
 //! - `other_task`: messages where a problem asks for another command; `no_equilibrium`: the summary where there is no state of rest.
 //! - `sensitivity_summary`: sensitivities of an optimum; `receding`: a controller for other languages.
-//! - `page`, `simulation_page`, `solve_page`: texts of the page; `solve_summary`, `equilibrium_summary`, `messages`, `folder`, `foreign`, `progress`, `ticker`, `request`, `error`: common parts of commands.
+//! - `page`, `simulation_page`, `solve_page`: texts of the page; `solve_summary`, `equilibrium_summary`, `messages`, `folder`, `overwrite_check`, `progress`, `ticker`, `request`, `error`: common parts of commands.
 
 mod batch;
 mod blocks;
+mod cache;
 mod check;
+mod checkpoint;
 mod comparison;
 mod displayed_motion;
 mod equilibrium;
@@ -23,22 +25,20 @@ mod equilibrium_summary;
 mod error;
 mod feedback_files;
 mod fields;
-mod foreign;
 mod identification;
 mod identification_page;
 mod identification_summary;
 mod identification_verdict;
 mod inspect;
-mod iterates;
-mod left_out;
 mod linear_systems;
 mod messages;
 mod motions;
 mod motions_summary;
 mod multistart;
 mod no_equilibrium;
-mod once;
+mod overwrite_check;
 mod page;
+mod partial_result;
 mod path;
 mod path_summary;
 mod program;
@@ -61,15 +61,15 @@ mod unfinished;
 pub(crate) use batch::{Batch, RunEnd, Said, check_run_in, run_all, task_runs_at_once};
 pub use batch::{RunIn, end_with_parent};
 pub use blocks::{BlockSize, BlockSizes};
+pub(crate) use cache::Identity;
+pub use cache::run_once;
 pub use check::{check, checked};
 pub use equilibrium::equilibrium_of_file;
 pub use error::CommandError;
-pub(crate) use foreign::make_folder;
 pub use inspect::{Inspected, inspect, inspected};
 pub use motions::compare;
 pub use multistart::{solve_from_starts, solve_text_from_starts};
-pub(crate) use once::Identity;
-pub use once::run_once;
+pub(crate) use overwrite_check::make_folder;
 pub use program::{changed_text, check_text, with_program};
 pub(crate) use progress::{Progress, progress_bar};
 pub use progress::{ProgressDisplay, Reached};

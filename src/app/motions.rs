@@ -1,16 +1,16 @@
 //! Several motions from file to folder: each in a folder of its own within that of the results, and what they have in common.
 
 use crate::app::error::CommandError;
-use crate::app::foreign::{make_folder, make_folder_of};
-use crate::app::left_out::{EARLIER, STOPPED};
 use crate::app::messages::counted;
 use crate::app::motions_summary::MotionsSummary;
+use crate::app::overwrite_check::{make_folder, make_folder_of};
+use crate::app::partial_result::{EARLIER, STOPPED};
 use crate::app::progress::Reached;
 use crate::app::request::{CommandInput, CommandOutput, PageWanted};
 use crate::app::solve::{MIGHT_GO_ON, write_result};
 use crate::app::solve_page::describe;
 use crate::app::summary::Summary;
-use crate::app::{fields, iterates, resume_file, solution_file, unfinished};
+use crate::app::{checkpoint, fields, resume_file, solution_file, unfinished};
 use crate::control::Motions;
 use crate::files::Loaded;
 use crate::math::significant;
@@ -34,7 +34,7 @@ pub(super) fn motions(
 ) -> Result<CommandOutput, CommandError> {
     let read = began.elapsed().as_secs_f64();
     let results = request.folder();
-    let (result, folder) = iterates::solve(
+    let (result, folder) = checkpoint::solve(
         request,
         read,
         observer,

@@ -1,9 +1,9 @@
 //! Result of a run that finds no state of rest to begin with, to end with, or at all, or no optimum that its controller follows: its summary alone.
 
 use crate::app::error::CommandError;
-use crate::app::foreign::make_folder_of;
-use crate::app::left_out::EARLIER;
 use crate::app::messages::key;
+use crate::app::overwrite_check::make_folder_of;
+use crate::app::partial_result::EARLIER;
 use crate::app::request::{CommandInput, CommandOutput};
 use crate::app::summary::Summary;
 use crate::control::problem::Task;

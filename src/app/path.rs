@@ -6,10 +6,10 @@ use std::time::Instant;
 
 use crate::app::equilibrium_summary::at_rest;
 use crate::app::error::CommandError;
-use crate::app::foreign::make_folder_of;
-use crate::app::left_out::plan;
 use crate::app::messages::counted;
 use crate::app::no_equilibrium::refused;
+use crate::app::overwrite_check::make_folder_of;
+use crate::app::partial_result::plan;
 use crate::app::path_summary::PathSummary;
 use crate::app::request::{CommandInput, CommandOutput};
 use crate::app::summary::{Seconds, Summary};

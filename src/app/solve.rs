@@ -6,14 +6,16 @@ use std::time::Instant;
 use crate::app::blocks::{BlockSizes, EnergySummary};
 use crate::app::displayed_motion::{DisplayedMotion, Motion};
 use crate::app::error::CommandError;
-use crate::app::left_out::{leave_out, time_to_write};
+use crate::app::partial_result::{leave_out, time_to_write};
 use crate::app::progress::Reached;
 use crate::app::request::{CommandInput, CommandOutput};
 use crate::app::sensitivity_summary::SensitivitySummary;
 use crate::app::solve_page::{convergence, goal, rows, targets, waypoints};
 use crate::app::solve_summary::{command_output, program, seconds};
 use crate::app::summary::{MEASURED, Summary};
-use crate::app::{feedback_files, fields, iterates, page, resume_file, solution_file, unfinished};
+use crate::app::{
+    checkpoint, feedback_files, fields, page, resume_file, solution_file, unfinished,
+};
 use crate::control::problem::{Control, Regulator};
 use crate::dynamics::observations;
 use crate::files::Loaded;
@@ -51,7 +53,7 @@ pub(super) fn control(
 ) -> Result<CommandOutput, CommandError> {
     let read = began.elapsed().as_secs_f64();
     let system = &loaded.system;
-    let (result, folder) = iterates::solve(
+    let (result, folder) = checkpoint::solve(
         request,
         read,
         observer,

@@ -3,9 +3,9 @@
 use std::path::Path;
 use std::time::Instant;
 
-use crate::app::left_out::STOPPED;
 use crate::app::linear_systems::LinearSystems;
 use crate::app::messages::counted;
+use crate::app::partial_result::STOPPED;
 use crate::app::request::CommandOutput;
 use crate::app::solve_page::describe;
 use crate::app::summary::{Evaluations, PerInterval, Program, Seconds, SoughtValue, Summary};

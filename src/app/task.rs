@@ -4,8 +4,8 @@ use std::path::Path;
 use std::time::Instant;
 
 use crate::app::error::CommandError;
-use crate::app::foreign::refuse_foreign;
 use crate::app::no_equilibrium::refuse_all_but_motions;
+use crate::app::overwrite_check::refuse_foreign;
 use crate::app::page::asked;
 use crate::app::progress::{Progress, Reached};
 use crate::app::request::{CommandInput, CommandOutput};

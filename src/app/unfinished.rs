@@ -5,7 +5,7 @@ use std::ops::ControlFlow;
 use std::path::{Path, PathBuf};
 use std::time::{Duration, Instant};
 
-use crate::app::foreign::{make_folder, replaced};
+use crate::app::overwrite_check::{make_folder, replaced};
 use crate::app::request::CommandInput;
 use crate::app::{resume_file, solution_file};
 use crate::report::atomic::WriteError;

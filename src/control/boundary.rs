@@ -11,7 +11,7 @@
 
 use crate::control::boundary_conditions::{BoundaryConditions, Rests, TerminalState, rest_at};
 use crate::control::bounded_quantity::{BoundedQuantity, When};
-use crate::control::energy_cost::{EnergyCost, resisted, sources};
+use crate::control::costs::{EnergyCost, resisted, sources};
 use crate::control::error::BoundaryError;
 use crate::control::given_state::{check_muscles, resolve_start};
 use crate::control::goal::instant_at;
@@ -20,7 +20,7 @@ use crate::control::prescribed::at_rest;
 use crate::control::problem::{BoundaryState, Control, Duration, During, Rest, SoughtHold};
 use crate::control::transcription::layout::Layout;
 use crate::control::transcription::structure::overdetermined;
-use crate::control::{endpoint_checks, goal_rows, periodic, prescribed, sought};
+use crate::control::{endpoint_checks, free_parameters, goal_rows, periodic, prescribed};
 use crate::dynamics::{Equilibrium, Start};
 use crate::math::shortest;
 use crate::model::{Analysis, Coordinates, Graph, Model, Presolved, Quantity, System, What};
@@ -94,7 +94,7 @@ impl BoundaryConditions {
         h0: f64,
         are_held: bool,
     ) -> Result<(Model, Self), BoundaryError> {
-        let system = &sought::at_guess(system, control)?;
+        let system = &free_parameters::at_guess(system, control)?;
         let analysis = control.analysis(system, h0);
         let presolved = Presolved::new(system, &analysis);
         let coordinates = Model::choose(&presolved.system, control.coordinates)?;
@@ -141,8 +141,9 @@ impl BoundaryConditions {
             true => [None; 2],
             false => [start, rest.map(|rest| &rest.z[..])],
         };
-        boundary.sought_rest = sought::check(&model, control, &boundary, ends)?;
-        boundary.momentum_slopes = sought::moving_start(&model, control, &mut boundary.start)?;
+        boundary.sought_rest = free_parameters::check(&model, control, &boundary, ends)?;
+        boundary.momentum_slopes =
+            free_parameters::moving_start(&model, control, &mut boundary.start)?;
         if boundary.sought_rest[1] {
             boundary.goal.coordinates.fill(None);
         }
@@ -193,7 +194,7 @@ fn limits_with_goal(system: &System, control: &Control, redundant: bool) -> Limi
             limits.add_equality(at.0, Quantity::joint(joint, near), near, name);
         }
     }
-    sought::in_intervals(&mut limits, control);
+    free_parameters::in_intervals(&mut limits, control);
     limits
 }
 

@@ -16,7 +16,7 @@ pub struct BoundaryConditions {
     pub goal: TerminalState,
     /// Voltages at rest before the start and after the goal (V, one per muscle), where known.
     pub rest: [Option<Vec<f64>>; 2],
-    /// True of the start, and of the goal, where it is a state of rest that depends on sought constants: its coordinates are unknowns.
+    /// True of the start, and of the goal, where it is a state of rest that depends on free parameters: its coordinates are unknowns.
     pub sought_rest: [bool; 2],
     /// Limits and goal equations.
     pub limits: Limits,
@@ -92,7 +92,7 @@ impl TerminalState {
     }
 }
 
-/// The equilibrium under voltages (V, one per muscle), with sought parameters at their guesses and prescribed coordinates at a time in ms.
+/// The equilibrium under voltages (V, one per muscle), with free parameters at their guesses and prescribed coordinates at a time in ms.
 ///
 /// # Errors
 /// There is none.
@@ -122,7 +122,7 @@ pub(super) fn rest_with(
     equilibrium(&with_values(model, values)?, voltages, at)
 }
 
-/// The model without sought parameters, with values put in their places.
+/// The model without free parameters, with values put in their places.
 pub(super) fn with_values(model: &Model, values: &[f64]) -> Result<Model, ModelError> {
     let sought = &model.analysis;
     let system = with_parameters(&model.system, &sought.parameters, values);

@@ -320,7 +320,7 @@ pub(super) fn given_amounts(
         if let Some(broken) = bounded.broken(value, &model.system) {
             return Err(BoundaryError::Limit {
                 place: "limits",
-                reason: format!("{broken}; no constant that is sought changes it"),
+                reason: format!("{broken}; no free parameter changes it"),
             });
         }
     }
@@ -331,7 +331,7 @@ pub(super) fn given_amounts(
             let words = amount.words(muscles, &model.system);
             return Err(BoundaryError::Limit {
                 place: "objective",
-                reason: format!("no constant that is sought changes the {words}"),
+                reason: format!("no free parameter changes the {words}"),
             });
         }
     }

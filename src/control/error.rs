@@ -96,7 +96,7 @@ pub enum BoundaryError {
         part: BeyondLaw,
     },
     /// A parameter cannot be sought.
-    #[error("sought parameter \"{name}\": {reason}")]
+    #[error("free parameter \"{name}\": {reason}")]
     Parameter {
         /// Its name.
         name: String,

@@ -1,6 +1,6 @@
 //! Places and orientations at the end of a motion.
 
-use crate::control::energy_cost::{CostFunction, During, QuantityCost};
+use crate::control::costs::{CostFunction, During, QuantityCost};
 use crate::math::{Signal, Vector};
 use crate::model::Quantity;
 use nalgebra::{Rotation3, Unit};

@@ -6,7 +6,7 @@ use crate::kinematics::Pose;
 use crate::model::{Coordinates, FoundParameter, Parameter, Quantity, System};
 use std::collections::BTreeMap;
 
-/// Sought constants, and the recordings that tell of them.
+/// Free parameters, and the recordings that tell of them.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Identification {
     /// The constants.
@@ -60,7 +60,7 @@ pub struct Recording {
 pub struct ChangedScene {
     /// Its system.
     pub system: System,
-    /// The sought constants in it, in the order of the others.
+    /// The free parameters in it, in the order of the others.
     pub parameters: Vec<Parameter>,
 }
 
@@ -119,7 +119,7 @@ pub fn begin_late(times: &[f64]) -> bool {
 }
 
 impl Recording {
-    /// Its system and the constants that are sought of it.
+    /// Its system and the free parameters of it.
     pub fn of<'a>(
         &'a self,
         (system, parameters): (&'a System, &'a [Parameter]),

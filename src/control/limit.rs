@@ -97,7 +97,7 @@ impl Limit {
     /// The limit of another system whose parts have the same names; none where it has not what is limited.
     pub(super) fn of_other(&self, from: &System, to: &System) -> Option<Self> {
         let what = match self.what {
-            // Steps between intervals, sought constants and single times belong to the intervals of a problem.
+            // Steps between intervals, free parameters and single times belong to the intervals of a problem.
             What::Voltage(_) | What::PeakExcess { .. } | What::Amount { .. } => return None,
             _ if self.part.is_some() => return None,
             What::Field(FieldPlace::Block { .. }) => {

@@ -1,6 +1,6 @@
 //! Numbering of the columns and rows of a horizon: the one place that drops given values.
 //!
-//! Interleaved step by step: the variables of instant k, then those of interval k; sought parameters and the interval length last. A variable has a column
+//! Interleaved step by step: the variables of instant k, then those of interval k; free parameters and the interval length last. A variable has a column
 //! unless start, goal or problem give its value, and a row if its role has an equation; the constraints of an instant are rows
 //! only where one of its coordinates has a column.
 

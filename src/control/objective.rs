@@ -6,7 +6,7 @@
 //! f = a τ Σ_k |v_k|² + b/τ Σ_{k=0..N} |v_k − v_{k−1}|² + c N τ,     v_{−1}, v_N: rest voltages of start and goal.
 //! ```
 
-use crate::control::energy_cost::Objective;
+use crate::control::costs::Objective;
 use crate::control::numbering::Span;
 
 /// Weights of effort, rate and duration.

@@ -13,8 +13,8 @@ use std::path::PathBuf;
 use std::sync::Arc;
 
 pub use crate::control::boundary_state::{BoundaryState, Hold, Rest, SoughtHold};
-pub use crate::control::energy_cost::{CostFunction, During, Objective, QuantityCost};
-pub use crate::control::energy_cost::{EnergyCost, SourceEnergy};
+pub use crate::control::costs::{CostFunction, During, Objective, QuantityCost};
+pub use crate::control::costs::{EnergyCost, SourceEnergy};
 pub use crate::control::goal::{Orientation, Place};
 pub use crate::control::goal::{Waypoint, instant_at};
 pub use crate::control::identification::{
@@ -226,7 +226,7 @@ impl Control {
     }
 }
 
-/// Motions whose sought constants are the same, and the inputs that are the same in all of them.
+/// Motions whose free parameters are the same, and the inputs that are the same in all of them.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Motions {
     /// The motions.

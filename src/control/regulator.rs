@@ -37,7 +37,7 @@ pub struct Observation {
     pub inputs: f64,
     /// Of each rate, in 100 degrees/s or 100 mm/s.
     pub rates: f64,
-    /// Of the change of a lasting force on each joint, as a part of the greatest force of the inputs on it; `None`: no force lasts.
+    /// Of the change of a constant disturbance on each joint, as a part of the greatest force of the inputs on it; `None`: no force lasts.
     pub lasting: Option<f64>,
 }
 

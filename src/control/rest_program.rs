@@ -1,4 +1,4 @@
-//! A state of rest that depends on sought constants, as a program of its own: its coordinates q are unknowns, which the motion that starts
+//! A state of rest that depends on free parameters, as a program of its own: its coordinates q are unknowns, which the motion that starts
 //! or ends there shares.
 //!
 //! It has one interval whose ends are one instant, under given inputs u. Nothing moves in it, and the one balance of both ends says that
@@ -12,7 +12,7 @@
 //!
 //! The peak of the voltages as a cost, by its epigraph.
 //!
-//! One sought parameter s bounds all voltages that are sought, and its square is a final cost:
+//! One free parameter s bounds all voltages that are sought, and its square is a final cost:
 //!
 //! ```text
 //! minimise … + w s²   subject to   V_k² ≤ s²  of all sources and intervals k,   V in kV.
@@ -21,7 +21,7 @@
 use crate::control::boundary::is_set_at;
 use crate::control::boundary_conditions::BoundaryConditions;
 use crate::control::bounded_quantity::BoundedQuantity;
-use crate::control::energy_cost::{CostFunction, During, QuantityCost};
+use crate::control::costs::{CostFunction, During, QuantityCost};
 use crate::control::error::BoundaryError;
 use crate::control::guess::{Carried, InitialGuess};
 use crate::control::inputs::Voltages;
@@ -47,7 +47,7 @@ pub struct RestProgram<'m> {
     pub end: &'static str,
 }
 
-/// The states of rest at start and goal of a motion that depend on sought constants; `motion` is the program of the motion.
+/// The states of rest at start and goal of a motion that depend on free parameters; `motion` is the program of the motion.
 ///
 /// # Errors
 /// It is time to stop.

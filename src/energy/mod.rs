@@ -55,7 +55,7 @@ pub trait Energy<const M: usize, T: Number = f64>: Clone + Send + Sync {
     const DEGREE: usize = usize::MAX;
 
     /// Number of leading vectors that are virtual displacements: 0 for a potential; otherwise the scalar is a virtual work
-    /// δx·f, linear in them, whose scalar arguments are inputs or sought parameters.
+    /// δx·f, linear in them, whose scalar arguments are inputs or free parameters.
     const VIRTUAL: usize = 0;
 
     /// True if a virtual work is that of loads, which supply energy; otherwise its forces dissipate.

@@ -1,8 +1,8 @@
-//! Constants of formulas that follow from sought parameters.
+//! Constants of formulas that follow from free parameters.
 
 use crate::math::Number;
 
-/// A constant of a formula as a function of sought parameters π: `value + Σ (factor · π + a π² + b π³)`.
+/// A constant of a formula as a function of free parameters π: `value + Σ (factor · π + a π² + b π³)`.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Polynomial {
     /// The part that no parameter changes.

@@ -12,7 +12,7 @@ pub struct Controller<'l> {
     law: &'l Law,
     /// Delay in ms between a sample and its effect.
     delay: f64,
-    /// Numbers of the last sample that the gains read: deviations of measured quantities, lasting forces with the inputs against them, integrals, then the
+    /// Numbers of the last sample that the gains read: deviations of measured quantities, constant disturbances with the inputs against them, integrals, then the
     /// corrections that will act before the next one does.
     deviation: Vec<f64>,
     /// That of the observer, where there is one, and deviations of inputs.
@@ -257,7 +257,7 @@ impl<'l> Estimate<'l> {
         self.state.copy_from_slice(&self.expected);
     }
 
-    /// Deviations of the state, then the lasting forces.
+    /// Deviations of the state, then the constant disturbances.
     pub fn state(&self) -> &[f64] {
         &self.state
     }

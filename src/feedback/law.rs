@@ -81,7 +81,7 @@ pub struct Point {
     pub state: Vec<f64>,
     /// Inputs of the motion in the interval: V, N, N mm.
     pub inputs: Vec<f64>,
-    /// K: by input, over the measured quantities, then lasting forces and the inputs against them, then the integrals, then, interval by interval
+    /// K: by input, over the measured quantities, then constant disturbances and the inputs against them, then the integrals, then, interval by interval
     /// of the delay, the corrections of the inputs.
     pub gain: DMatrix<f64>,
     /// Correction whatever is measured, where a delay leads from the motion to the goal behind its end, which the motion does not quite reach; empty for none.
@@ -125,18 +125,18 @@ impl Law {
         self.observer.as_ref().map_or(own, |one| one.readings.len())
     }
 
-    /// Lasting forces that its observer finds; nothing without them.
+    /// Constant disturbances that its observer finds; nothing without them.
     pub fn lasting(&self) -> &[Forced] {
         let lasting = self.observer.as_ref().and_then(|one| one.lasting.as_ref());
         lasting.map_or(&[], |lasting| &lasting.on)
     }
 
-    /// Number of lasting forces that its observer finds.
+    /// Number of constant disturbances that its observer finds.
     pub fn forces(&self) -> usize {
         self.lasting().len()
     }
 
-    /// Number of inputs that act against lasting forces: all of them, or none without forces.
+    /// Number of inputs that act against constant disturbances: all of them, or none without forces.
     pub fn targets(&self) -> usize {
         if self.forces() > 0 { self.width() } else { 0 }
     }

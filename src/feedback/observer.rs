@@ -6,9 +6,9 @@
 //! x̂ = x̂⁻ + M (y − C x̂⁻),     x̂⁻₊ = A x̂ + B u.
 //! ```
 //!
-//! Lasting forces are entries of x behind the state.
+//! Constant disturbances are entries of x behind the state.
 //!
-//! Lasting forces that an observer finds, and the inputs that hold the goal against them.
+//! Constant disturbances that an observer finds, and the inputs that hold the goal against them.
 //!
 //! Of forces f on coordinates, which inputs u change by F u where the goal is held, the inputs against them are those within their bounds with the
 //! least `|F u + f|`, by a bounded number of sweeps of coordinate descent that begin at those of the last sample.
@@ -29,7 +29,7 @@ pub enum Reading {
 pub struct Filter {
     /// Readings of the motion at the start of the interval: rad, mm.
     pub readings: Vec<f64>,
-    /// A, over the measured quantities of the law, then the lasting forces.
+    /// A, over the measured quantities of the law, then the constant disturbances.
     pub by_state: DMatrix<f64>,
     /// B, over the inputs, or their squares.
     pub by_inputs: DMatrix<f64>,
@@ -82,12 +82,12 @@ pub struct Observer {
     pub held: Option<Filter>,
     /// State at the end of the motion as a deviation from the goal that is held behind it, and not quite reached; empty for none.
     pub jump: Vec<f64>,
-    /// Lasting forces that it finds.
+    /// Constant disturbances that it finds.
     pub lasting: Option<Lasting>,
 }
 
 impl Observer {
-    /// Number of lasting forces.
+    /// Number of constant disturbances.
     pub fn forces(&self) -> usize {
         self.lasting.as_ref().map_or(0, |lasting| lasting.on.len())
     }
@@ -105,7 +105,7 @@ const SWEEPS: usize = 50;
 /// Cost of an input relative to that of its forces: of inputs that do the same the smallest are found.
 const SMALL: f64 = 1e-9;
 
-/// A coordinate on which a lasting force acts.
+/// A coordinate on which a constant disturbance acts.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Forced {
     /// Its name.
@@ -114,7 +114,7 @@ pub struct Forced {
     pub is_length: bool,
 }
 
-/// Lasting forces that an observer finds beside the state.
+/// Constant disturbances that an observer finds beside the state.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Lasting {
     /// Coordinates on which they act.

@@ -1,4 +1,4 @@
-//! Derivatives of an element by sought parameters, and by the arguments of the element from those by the arguments of its formula.
+//! Derivatives of an element by free parameters, and by the arguments of the element from those by the arguments of its formula.
 
 use crate::functional::law::{LawElement, MOST_PARAMETERS, Move};
 use crate::math::{Derivatives, Matrix, Number, Vector};

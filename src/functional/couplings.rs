@@ -108,7 +108,7 @@ pub struct Blocks {
     pub scalars: Vec<f64>,
 }
 
-/// Order of the derivatives by sought parameters for which a reader asks: among second derivatives of a sum and their rates.
+/// Order of the derivatives by free parameters for which a reader asks: among second derivatives of a sum and their rates.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum ParameterOrder {
     /// None: they are left zero.
@@ -124,7 +124,7 @@ pub enum ParameterOrder {
 pub struct BlockMask {
     /// Blocks (k, k), (k, k+1), (k+1, k), (k+1, k+1).
     pub blocks: [bool; 4],
-    /// Those by sought parameters.
+    /// Those by free parameters.
     pub parameters: ParameterOrder,
 }
 

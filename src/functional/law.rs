@@ -1,4 +1,4 @@
-//! Laws: formulas whose constants are functions of sought parameters, and elements of them.
+//! Laws: formulas whose constants are functions of free parameters, and elements of them.
 
 use crate::energy::Energy;
 use crate::functional::{Element, VectorArg};

@@ -1,4 +1,4 @@
-//! Elements of a formula whose constants are functions of sought parameters, some of which move the points that it reads.
+//! Elements of a formula whose constants are functions of free parameters, some of which move the points that it reads.
 //!
 //! The formula is that of elements without parameters, over [`Dual`] numbers where derivatives by parameters are asked for. Parameters π have
 //! no equation, hence no direction, so that three derivatives are shared out. With the contraction D = ∇E·w,
@@ -26,7 +26,7 @@ pub struct Laws<L, const M: usize, const NV: usize, const NS: usize>(PhantomData
 
 impl<L, const M: usize, const NV: usize, const NS: usize> fmt::Debug for Laws<L, M, NV, NS> {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        write!(f, "formulas of {M} arguments with sought parameters")
+        write!(f, "formulas of {M} arguments with free parameters")
     }
 }
 

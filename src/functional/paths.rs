@@ -21,7 +21,7 @@ use crate::math::{Derivatives, HyperDual, Matrix, Number, Vector};
 use nalgebra::Vector3;
 use std::cell::Cell;
 
-/// A path and the energy of its length, whose constants may follow from sought parameters.
+/// A path and the energy of its length, whose constants may follow from free parameters.
 #[derive(Clone, Debug)]
 pub struct Path {
     /// Constants of the energy.

@@ -1,4 +1,4 @@
-//! Elements of any kind times constants that follow from sought parameters: `c(π) E` with a product `c` of constants.
+//! Elements of any kind times constants that follow from free parameters: `c(π) E` with a product `c` of constants.
 //!
 //! A constant in which an energy is linear needs no formula of numbers that carry derivatives: `∂/∂π_a` is `∂c/∂π_a E`, of the element with
 //! the constant one.
@@ -77,7 +77,7 @@ pub struct Scaled<K>(PhantomData<K>);
 
 impl<K> fmt::Debug for Scaled<K> {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        write!(f, "elements times sought constants")
+        write!(f, "elements times free parameters")
     }
 }
 

@@ -1,4 +1,4 @@
-//! Finite elements by Gent's law whose limit follows a sought parameter: energies W(x̄, Jₘ(π)), which are not linear in it.
+//! Finite elements by Gent's law whose limit follows a free parameter: energies W(x̄, Jₘ(π)), which are not linear in it.
 //!
 //! The derivatives of the law by its limit are laws themselves, so that those of an element by π are sums of elements:
 //! `∂W/∂π = J′ W_J` and `∂²W/∂π² = J′² W_JJ + J″ W_J`.

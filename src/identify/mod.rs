@@ -1,6 +1,6 @@
 //! Identification: constants fitted to recordings by least squares, with what the data say of them and what not.
 //!
-//! A recording is simulated on a grid by the midpoint rule (`setup`, `course`). The transcription of the same grid, with all inputs
+//! A recording is simulated on a grid by the midpoint rule (`setup`, `simulated`). The transcription of the same grid, with all inputs
 //! given, has the exact derivatives of its discrete equations `c(y, p) = 0` by motion and constants, so that the motion changes by
 //! `S = −(∂c/∂y)⁻¹ ∂c/∂p` (`sensitivity`). Readings are interpolated between instants (`interpolation`, `readout`), and predictions of
 //! two grids are extrapolated to steps of zero length (`prediction`). `fit` is the method of Levenberg and Marquardt, `information`
@@ -8,13 +8,12 @@
 //! `held_out` the checks, `experiments` what to measure next, `starts` the
 //! states at starts that were sought.
 
-mod course;
-mod drive;
 mod error;
 mod experiments;
 mod fit;
 mod held_out;
 mod information;
+mod input_constants;
 mod likelihood;
 mod prediction;
 mod readout;
@@ -22,6 +21,7 @@ mod refine;
 mod residuals;
 mod sensitivity;
 mod setup;
+mod simulated;
 mod starts;
 mod unknowns;
 

@@ -4,10 +4,10 @@
 //! fourth order, and so are its derivatives.
 
 use crate::control::problem::{Identification, Prior, Recording, Regime, SoughtStart};
-use crate::identify::course::{Point, readings};
 use crate::identify::error::IdentifyError;
 use crate::identify::readout::Values;
 use crate::identify::setup::Setup;
+use crate::identify::simulated::{Point, readings};
 use crate::identify::unknowns::Unknowns;
 use crate::math::{cores, has_pool};
 use crate::model::{Constant, System};

@@ -105,7 +105,7 @@ impl CourseDerivatives {
         read.sort_unstable();
         read.dedup();
         let parameters = setup.model.variables.range(Role::Parameter);
-        // A sought constant is a scalar of all intervals.
+        // A free parameter is a scalar of all intervals.
         let by_itself = DMatrix::from_fn(read.len(), count, |row, column| {
             let is_own = parameters.contains(&read[row]) && read[row] - parameters.start == column;
             f64::from(u8::from(is_own))

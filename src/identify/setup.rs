@@ -8,8 +8,8 @@ use crate::control::{
     resolve_start, rest_at,
 };
 use crate::dynamics::{Equilibrium, IndependentChanges, Start};
-use crate::identify::drive::{Drive, Inputs};
 use crate::identify::error::IdentifyError;
+use crate::identify::input_constants::{Drive, Inputs};
 use crate::model::{
     Analysis, Coordinates, Model, Parameter, Quantity, System, What, with_parameters,
 };

@@ -272,7 +272,7 @@ impl Control {
         let all = || "all voltages and loads".to_owned();
         let is_open = |s: usize| sources[s].acts() && !given.contains_key(&s);
         let open = !self.parameters.is_empty() || (0..sources.len()).any(is_open);
-        let expected = "a voltage or load to look for, or a sought parameter";
+        let expected = "a voltage or load to look for, or a free parameter";
         require(open, "control", all, expected)?;
         let weights = &self.objective;
         let weights = [

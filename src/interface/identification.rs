@@ -239,7 +239,7 @@ impl Recording {
 }
 
 impl Identification {
-    /// Of constants that are sought within their bounds; they have names, bounds and guesses as in a [`Control`](crate::Control).
+    /// Of free parameters within their bounds; they have names, bounds and guesses as in a [`Control`](crate::Control).
     pub fn of(parameters: impl IntoIterator<Item = Parameter>) -> Self {
         Self {
             parameters: parameters.into_iter().collect(),
@@ -321,7 +321,7 @@ impl Identification {
             let found = || format!("the prior {value} ± {deviation} of {name:?}");
             let holds = constant.is_some() && value.is_finite();
             let holds = holds && *deviation > 0.0 && deviation.is_finite();
-            let expected = "a finite value and a positive deviation of a sought constant";
+            let expected = "a finite value and a positive deviation of a free parameter";
             require(holds, "identification", found, expected)?;
             Ok(Prior {
                 constant: constant.unwrap_or_default(),

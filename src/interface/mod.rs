@@ -1,7 +1,7 @@
 //! The library as a program uses it: systems built part by part, simulated and steered in memory.
 //!
 //! - `handle`, `parts`, `components`, `material`: systems and their parts, with defaults; checked when they are used.
-//! - `input`, `state`, `sought`, `equilibrium`, `simulation`, `control`, `limits`, `costs`, `cost_checks`, `identification`, `receding`: the tasks of a system.
+//! - `input`, `state`, `free_parameters`, `equilibrium`, `simulation`, `control`, `limits`, `costs`, `cost_checks`, `identification`, `receding`: the tasks of a system.
 //! - `motion`, `optimum`, `error`: what comes back.
 
 mod components;
@@ -10,6 +10,7 @@ mod cost_checks;
 mod costs;
 mod equilibrium;
 mod error;
+mod free_parameters;
 mod handle;
 mod identification;
 mod limits;
@@ -18,7 +19,6 @@ mod measured;
 mod motion;
 mod parts;
 mod simulation;
-mod sought;
 mod state;
 
 pub use control::Control;

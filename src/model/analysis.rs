@@ -42,7 +42,7 @@ pub struct Analysis {
     pub quantities: Vec<Quantity>,
     /// Those of them, by index, of which a curved function is minimised.
     pub curved: BTreeSet<usize>,
-    /// Constants that are sought.
+    /// Constants that are free.
     pub parameters: Vec<Parameter>,
     /// True for a motion; a state of rest has neither inertia nor viscosity.
     pub of_motion: bool,
@@ -65,7 +65,7 @@ pub struct InitiallyMoving {
 }
 
 impl Analysis {
-    /// Returns true if a constant of some kind is sought.
+    /// Returns true if a constant of some kind is free.
     pub(super) fn is_sought(&self, is_meant: impl Fn(Constant) -> bool) -> bool {
         let mut constants = self.parameters.iter().flat_map(|p| &p.constants);
         constants.any(|follower| is_meant(follower.constant))

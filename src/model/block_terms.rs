@@ -4,11 +4,11 @@ use crate::element::{ElementLaw, Viscosity};
 use crate::energy::{NeoHooke, Polynomial};
 use crate::functional::ViscousElement;
 use crate::model::constant::MaterialConstant;
+use crate::model::free_parameters::Read;
 use crate::model::internal::Internals;
+use crate::model::parametric_elements::ElementOf;
 use crate::model::solid_block::SolidBlock;
 use crate::model::solids::Solids;
-use crate::model::sought::Read;
-use crate::model::sought_elements::ElementOf;
 use crate::model::terms::{Member, OfKind, Terms};
 
 const INERTIA: &str = "block inertia";
@@ -99,7 +99,7 @@ impl Solids {
     }
 }
 
-/// An element as it is given, or that of the constant one times constants some of which are sought.
+/// An element as it is given, or that of the constant one times constants some of which are free.
 pub(super) fn add_times<Kind, E: OfKind + Member<Kind>>(
     (term, why, of): (&'static str, &'static str, &str),
     (given, unit): (E, E),

@@ -10,6 +10,7 @@ use crate::model::analysis::{Analysis, Coordinates};
 use crate::model::components::{Load, body, circuit, electrode_circuit, muscle};
 use crate::model::constant::Constant;
 use crate::model::error::ModelError;
+use crate::model::free_parameters::Sought;
 use crate::model::graph::Graph;
 use crate::model::internal::Internals;
 use crate::model::joints::{JointReading, triad};
@@ -22,7 +23,6 @@ use crate::model::plan::{LeftOut, Present};
 use crate::model::presolved::{Presolved, clamp};
 use crate::model::quantity::Quantity;
 use crate::model::solids::{Circuits, Solids};
-use crate::model::sought::Sought;
 use crate::model::system::{
     Attachment, Body, Discretisation, Electrode, Fidelity, Glue, JointSpring, JointStops, Marker,
     Muscle, Potential, Solid, Source, System,
@@ -227,7 +227,7 @@ struct Construction<'a> {
 }
 
 impl Construction<'_> {
-    /// The sought parameters.
+    /// The free parameters.
     fn sought(&self, variables: &Variables) -> Sought {
         let parameters = &self.analysis.parameters;
         let of = (self.system, self.presolved);

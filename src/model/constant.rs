@@ -1,4 +1,4 @@
-//! Constants of components that may be sought, and parameters that they follow.
+//! Constants of components that may be free, and parameters that they follow.
 
 use crate::kinematics::{MaterialVector, Pose, VectorTerm};
 use crate::math::Vector;
@@ -88,7 +88,7 @@ pub enum Constant {
     MarkerPlace(usize, usize),
     /// A component, 0 to 2, of gravity in mm/ms².
     Gravity(usize),
-    /// No constant of a component: the largest voltage in V of sources that are sought, which quantities read.
+    /// No constant of a component: the largest voltage in V of sources that are free, which quantities read.
     PeakVoltage,
     /// No constant of a component: the factor between the input that a recording says of a source and that which acts.
     Gain(usize),
@@ -130,7 +130,7 @@ impl From<Constant> for Follower {
     }
 }
 
-/// A sought parameter: one variable that all its constants follow.
+/// A free parameter: one variable that all its constants follow.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Parameter {
     /// Name for messages and files: the path of the constant in the scene.

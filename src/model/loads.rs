@@ -6,11 +6,11 @@ use crate::math::{Number, Vector};
 use crate::model::components::muscle::{CHARGES as MUSCLE_CHARGES, constants};
 use crate::model::components::muscle_laws::Given;
 use crate::model::components::{BlockLoad, Load, LoadPlace};
+use crate::model::free_parameters::{MovedPoint, Read};
 use crate::model::internal::Internals;
 use crate::model::presolved::Presolved;
 use crate::model::solid_block::SolidBlock;
 use crate::model::solids::Solids;
-use crate::model::sought::{MovedPoint, Read};
 use crate::model::system::{Attachment, Muscle, System};
 use crate::model::terms::{Terms, mid};
 

@@ -5,9 +5,9 @@ use crate::functional::{Law, Measure, Stencil};
 use crate::kinematics::{MaterialVector, Vectors};
 use crate::math::{Number, Vector};
 use crate::model::constant::Constant;
+use crate::model::free_parameters::{MovedPoint, Read};
 use crate::model::measures::{Known, Shape, instant, read};
 use crate::model::quantity::Quantity;
-use crate::model::sought::{MovedPoint, Read};
 use crate::model::what::{At, Of, Region, What};
 
 /// A component of a place.

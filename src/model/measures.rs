@@ -16,13 +16,13 @@ use crate::model::components::measured_laws::GivenField;
 use crate::model::components::muscle_constants::MuscleConstants;
 use crate::model::components::muscle_laws::{PointMass, RestVolume};
 use crate::model::electrode_circuits::ElectrodeCircuit;
+use crate::model::free_parameters::Sought;
 use crate::model::internal::Internals;
 use crate::model::joints::{JointCoordinate, JointReading};
 use crate::model::no_terms::no_terms;
 use crate::model::presolved::Presolved;
 use crate::model::quantity::Quantity;
 use crate::model::solid_block::SolidBlock;
-use crate::model::sought::Sought;
 use crate::model::system::{Amount, System};
 use crate::model::terms::Terms;
 use crate::model::variables::{Role, Variables};
@@ -57,7 +57,7 @@ pub(super) struct Known<'a> {
     pub(super) circuits: &'a [ElectrodeCircuit],
     /// Terms of the intervals.
     pub(super) terms: &'a [Arc<dyn Term>],
-    /// The sought parameters.
+    /// The free parameters.
     pub(super) sought: Sought,
     /// True if constraints glue blocks to bodies, so that terms do not tell the forces on bodies.
     pub(super) is_glued: bool,
@@ -165,7 +165,7 @@ impl Known<'_> {
         })
     }
 
-    /// Scalar of a sought parameter; none where parameters are put in.
+    /// Scalar of a free parameter; none where parameters are put in.
     fn parameter(&self, parameter: usize) -> Option<usize> {
         self.variables.range(Role::Parameter).nth(parameter)
     }
@@ -361,7 +361,7 @@ impl Law<0> for OfMuscle {
     }
 }
 
-/// The measure of an amount of muscles; none where no sought constant moves it.
+/// The measure of an amount of muscles; none where no free parameter moves it.
 pub(super) fn amount_measure(
     quantity: &Quantity,
     (system, sought): (&System, &Sought),

@@ -339,7 +339,7 @@ impl Model {
         all.find(|(one, _)| *one == quantity)?.1.to_owned()
     }
 
-    /// Inputs of an interval from one voltage a source; sought parameters are at their guesses.
+    /// Inputs of an interval from one voltage a source; free parameters are at their guesses.
     pub fn scalars(&self, voltages: &[f64]) -> Vec<f64> {
         let voltages = self.variables.sources().map(|s| voltages[s]);
         let parameters = self.analysis.parameters.iter();
@@ -352,7 +352,7 @@ impl Model {
         source.map_or(InputKind::Voltage, |source| source.kind)
     }
 
-    /// The sought parameter that a variable is.
+    /// The free parameter that a variable is.
     ///
     /// # Panics
     /// It is no parameter.

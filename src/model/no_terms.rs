@@ -2,8 +2,8 @@
 
 use crate::kinematics::{Pose, Vectors};
 use crate::model::analysis::Analysis;
+use crate::model::free_parameters::Sought;
 use crate::model::presolved::Presolved;
-use crate::model::sought::Sought;
 use crate::model::system::System;
 use crate::model::terms::{Carriers, Terms};
 use crate::model::variables::Variables;

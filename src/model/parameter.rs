@@ -1,4 +1,4 @@
-//! Sought parameters in a system: their values put in the places of their constants, and the cases in which none can be sought.
+//! Free parameters in a system: their values put in the places of their constants, and the cases in which none can be free.
 
 use crate::model::constant::{Constant, Follower, FoundParameter, Parameter, SiUnit};
 use crate::model::graph::Graph;
@@ -29,7 +29,7 @@ fn moved_otherwise(system: &System) -> Option<&'static str> {
 }
 
 impl Constant {
-    /// Returns the reason why it cannot be sought, if there is one.
+    /// Returns the reason why it cannot be free, if there is one.
     fn obstacle(self, system: &mut System) -> Option<String> {
         if let Some(missing) = self.missing(system) {
             return Some(missing);
@@ -99,7 +99,7 @@ pub fn with_parameters(system: &System, parameters: &[Parameter], values: &[f64]
     system
 }
 
-/// A parameter that cannot be sought, and why.
+/// A parameter that cannot be free, and why.
 #[derive(Clone, Debug, PartialEq)]
 pub struct NotSought {
     /// Index of the parameter.
@@ -114,10 +114,10 @@ impl fmt::Display for NotSought {
     }
 }
 
-/// Returns the reason why a parameter cannot be sought, if there is one.
+/// Returns the reason why a parameter cannot be free, if there is one.
 ///
 /// # Errors
-/// A constant cannot be sought, follows two parameters, loses its meaning within the bounds, or the guess lies outside them.
+/// A constant cannot be free, follows two parameters, loses its meaning within the bounds, or the guess lies outside them.
 pub fn check(system: &System, parameters: &[Parameter]) -> Result<(), NotSought> {
     if parameters.is_empty() {
         return Ok(());

@@ -13,10 +13,10 @@ use crate::kinematics::{Carrier, MaterialVector, Pose, Vectors};
 use crate::math::Vector;
 use crate::model::bodies::Attachment;
 use crate::model::constant::Constant;
+use crate::model::free_parameters::{Read, Sought};
 use crate::model::maxwell::Response;
 use crate::model::plan;
 use crate::model::plan::{LeftOut, Present};
-use crate::model::sought::{Read, Sought};
 use crate::model::variables::Variables;
 use crate::model::weight::Weight;
 use std::any::Any;
@@ -141,7 +141,7 @@ impl<'a> Terms<'a> {
         MaterialVector::direction(body, direction, self.bodies.reference)
     }
 
-    /// The sought parameters.
+    /// The free parameters.
     pub fn sought(&self) -> &Sought {
         &self.sought
     }
@@ -203,7 +203,7 @@ impl<'a> Terms<'a> {
         self.collect::<Formula<M, false>, _>(term, why, of, element);
     }
 
-    /// Adds the formula of a law, like [`add`](Self::add); with the parameters that it reads where constants of it are sought.
+    /// Adds the formula of a law, like [`add`](Self::add); with the parameters that it reads where constants of it are free.
     pub fn add_law<L, const M: usize, const NV: usize, const NS: usize>(
         &mut self,
         (term, why): (&'static str, &'static str),
@@ -233,7 +233,7 @@ impl<'a> Terms<'a> {
         }
     }
 
-    /// Adds an element, of those that are no formulas of constants, times constants some of which are sought.
+    /// Adds an element, of those that are no formulas of constants, times constants some of which are free.
     pub(super) fn add_scaled<E: OfKind>(
         &mut self,
         term: &'static str,

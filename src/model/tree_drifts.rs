@@ -17,7 +17,7 @@ use crate::model::graph::Graph;
 use crate::model::presolved::{BodyLocation, Presolved};
 use crate::model::system::System;
 
-/// Drifts of the bodies of a scene and its presolved system; nothing where nothing is sought.
+/// Drifts of the bodies of a scene and its presolved system; nothing where nothing is free.
 pub(super) fn of_tree(
     parameters: &[Parameter],
     of: (&System, &Presolved),

@@ -29,7 +29,7 @@ pub enum Role {
     Voltage,
     /// Size of a load, in N or N mm: an input.
     Load,
-    /// Constant of the system that is sought, in its unit: an input with one value for all intervals, in each of which terms read it.
+    /// Constant of the system that is free, in its unit: an input with one value for all intervals, in each of which terms read it.
     Parameter,
     /// Electric potential of a node or a floating electrode, with Gauss's law.
     Potential,
@@ -115,7 +115,7 @@ impl Variable {
         }
     }
 
-    /// A sought parameter.
+    /// A free parameter.
     pub(super) fn parameter(name: String) -> Self {
         Self::with_role(Role::Parameter, name, Size::Unknown)
     }

@@ -1,4 +1,4 @@
-//! Weights and kinetic energies of masses, some of which are sought.
+//! Weights and kinetic energies of masses, some of which are free.
 
 use crate::energy::{Gravity, KineticCoupling, KineticEnergy, Polynomial};
 use crate::functional::Law;

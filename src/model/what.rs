@@ -81,9 +81,9 @@ pub enum What {
         /// b, a unit vector of the ground frame.
         along: Vector,
     },
-    /// A sought parameter that bounds voltages, by its index, in kV.
+    /// A free parameter that bounds voltages, by its index, in kV.
     PeakVoltage(usize),
-    /// V² − s² of the voltage V of a source and a sought parameter s.
+    /// V² − s² of the voltage V of a source and a free parameter s.
     PeakExcess {
         /// Source index.
         source: usize,

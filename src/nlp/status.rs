@@ -29,7 +29,7 @@ pub enum Status {
     StepFailed,
     /// A function or derivative could not be evaluated at a point where it has to exist.
     InvalidNumber,
-    /// There are more equality constraints than free variables.
+    /// There are more equality constraints tha free variables.
     TooFewDegreesOfFreedom,
     /// The options contradict each other or ask for something that this build of Ipopt does not have.
     InvalidOption,

@@ -17,7 +17,7 @@ use crate::model::{Coordinates, Model, Role, What};
 use crate::nlp::Nlp;
 use crate::sensitivity::active_set::{Direction, Held, Side};
 use crate::sensitivity::check::NoSensitivity;
-use crate::sensitivity::opened::Opened;
+use crate::sensitivity::with_parameters::Opened;
 use nalgebra::DMatrix;
 use std::collections::BTreeMap;
 

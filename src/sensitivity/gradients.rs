@@ -12,8 +12,8 @@ use crate::sensitivity::adjoint::Outcome;
 use crate::sensitivity::check::NoSensitivity;
 use crate::sensitivity::kernel::Kernel;
 use crate::sensitivity::margins::MarkerSlopes;
-use crate::sensitivity::opened::Opened;
 use crate::sensitivity::optimum::{is_place, with_kernel};
+use crate::sensitivity::with_parameters::Opened;
 
 /// Part of an interval before its start that counts as its own.
 const SNAP: f64 = 1e-6;

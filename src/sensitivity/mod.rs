@@ -13,7 +13,7 @@
 //! to first order.
 //!
 //! `kernel` knows any [`Nlp`](crate::nlp::Nlp), `conditions` what holds at its optimum, `linear` its linear system, `active_set` the bounds that are
-//! reached. `optimum` is the front for control problems: `opened` their program in which constants, start and goal are columns that are held,
+//! reached. `optimum` is the front for control problems: `with_parameters` their program in which constants, start and goal are columns that are held,
 //! `rest` how states of rest depend on constants, `directions` what changes with each number. `check` refuses numbers before the solve.
 
 mod active_set;
@@ -25,9 +25,9 @@ mod gradients;
 mod kernel;
 mod linear;
 mod margins;
-mod opened;
 mod optimum;
 mod range;
+mod with_parameters;
 
 pub use active_set::{Direction, Held, Side};
 pub use adjoint::{Adjoint, Outcome};

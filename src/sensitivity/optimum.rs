@@ -8,8 +8,8 @@ use crate::sensitivity::check::NoSensitivity;
 use crate::sensitivity::directions::Directions;
 use crate::sensitivity::kernel::{Derivative, Kernel};
 use crate::sensitivity::margins::MarkerSlopes;
-use crate::sensitivity::opened::Opened;
 use crate::sensitivity::range::Range;
+use crate::sensitivity::with_parameters::Opened;
 use nalgebra::Vector3;
 
 /// Derivatives of an optimum by one number of its problem, by the unit inside.

@@ -8,8 +8,8 @@ use crate::control::problem::{Control, Guess, SoughtHold};
 use crate::control::{Earlier, hold_obstacle};
 use crate::model::System;
 use crate::tasks::grid::{Found, SolveRequest, find};
-use crate::workflow::further::stopped;
 use crate::workflow::optimum::{Optimum, SolveLimits, seconds_left};
+use crate::workflow::restarts::stopped;
 use crate::workflow::{Iterate, WorkflowError, hold_check};
 
 /// Notes that no inputs that hold a goal were found, and that there was no time for it.

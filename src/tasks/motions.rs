@@ -11,10 +11,10 @@ use crate::tasks::solve::{SolveResult, assessed};
 use crate::tasks::solve_messages;
 use crate::tasks::solve_messages::Verdict;
 use crate::workflow::accuracy::{Accuracy, AccuracyTarget};
-use crate::workflow::further::stopped;
 use crate::workflow::memory::{self, Occasion};
 use crate::workflow::optimum::{SolveLimits, seconds_left};
 use crate::workflow::remark::STOPPED_EARLY;
+use crate::workflow::restarts::stopped;
 use crate::workflow::{
     ACCURACY, Iterate, Remarks, Together, WholeProgram, WorkflowError, optimise_together,
     optimise_together_to,

@@ -14,7 +14,6 @@ use crate::tasks::held_goal::{HeldGoal, solve_and_hold};
 use crate::tasks::solve_messages::{self, Verdict, carried, ends, restarted};
 use crate::workflow::accuracy::Accuracy;
 use crate::workflow::domain::{self, Outside};
-use crate::workflow::further::is_unreached;
 use crate::workflow::hold_check::{self, free_end};
 use crate::workflow::infeasible::explain;
 use crate::workflow::loop_limits::LoopLimits;
@@ -24,6 +23,7 @@ use crate::workflow::optimum::Optimum;
 use crate::workflow::period::Repeated;
 use crate::workflow::remark::{Remarks, STOPPED_EARLY};
 use crate::workflow::resimulate::Resimulation;
+use crate::workflow::restarts::is_unreached;
 use crate::workflow::tracking::{FinalValue, Tracked, final_values, followed};
 use crate::workflow::{Iterate, WorkflowError, infeasible};
 

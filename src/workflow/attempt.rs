@@ -66,7 +66,7 @@ pub(crate) fn attempt(
     Ok(found.optima.remove(0))
 }
 
-/// Solves the control problems of several motions as one program, in which sought constants and the named inputs are shared; the options of the solver
+/// Solves the control problems of several motions as one program, in which free parameters and the named inputs are shared; the options of the solver
 /// are those of the first one.
 ///
 /// # Errors

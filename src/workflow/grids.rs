@@ -8,12 +8,12 @@ use crate::stop;
 use crate::workflow::accuracy::{AccuracyTarget, Attempt, Refined, refine};
 use crate::workflow::error::WorkflowError;
 use crate::workflow::estimate::ErrorSample;
-use crate::workflow::further::stopped;
 use crate::workflow::integrate::{Simulated, grid, integrate};
 use crate::workflow::motion;
 use crate::workflow::motion::Iterate;
 use crate::workflow::optimise::optimise;
 use crate::workflow::optimum::{Optimum, SolveLimits, seconds_left};
+use crate::workflow::restarts::stopped;
 use std::ops::ControlFlow;
 use std::time::Instant;
 

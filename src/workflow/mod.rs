@@ -7,7 +7,7 @@
 //! - `resimulate`: verification of an optimum, by the `distance` of motions; `refine_until_reproduced`, `verified`: finer grids where it fails, by `grid_solves`; `gap`: duality gap of its
 //!  objective; `held`, `hold_check`, `found_hold`, `afterwards`, `period`: its end; `final_values`: deviations from final costs.
 //! - `recentre`: a motion with other charts.
-//! - `further`, `retry_displaced`, `shortest`, `combined`, `infeasible`, `active`, `violations`: attempts before a problem is called infeasible, and the explanation.
+//! - `restarts`, `retry_displaced`, `shortest`, `combined`, `infeasible`, `active`, `violations`: attempts before a problem is called infeasible, and the explanation.
 //! - `effects`, `coupled`, `reasons`, `stopwatch`: terms of a model, what they couple, their reasons and times; `memory`: a refusal of more than the machine has.
 //! - `steps`, `domain`: warnings of a motion: steps that do not resolve it, muscles outside the domain of their material; `longer_steps`: the error of
 //!   methods of high order.
@@ -26,7 +26,6 @@ pub(crate) mod domain;
 pub(crate) mod effects;
 mod error;
 pub mod estimate;
-pub(crate) mod further;
 pub(crate) mod gap;
 pub(crate) mod grids;
 pub(crate) mod held;
@@ -51,6 +50,7 @@ pub(crate) mod remark;
 pub(crate) mod repeat;
 pub(crate) mod resimulate;
 pub(crate) mod resolve;
+pub(crate) mod restarts;
 pub(crate) mod retry_displaced;
 mod shared_variables;
 pub(crate) mod shortest;

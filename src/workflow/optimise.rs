@@ -8,9 +8,9 @@ use crate::control::problem::Control;
 use crate::model::System;
 use crate::workflow::attempt::attempt;
 use crate::workflow::error::WorkflowError;
-use crate::workflow::further::is_unreached;
 use crate::workflow::motion::Iterate;
 use crate::workflow::optimum::{Optimum, SolveLimits, seconds_left};
+use crate::workflow::restarts::is_unreached;
 use crate::workflow::retry_displaced::second_starts;
 
 /// Solves a control problem, from an `earlier` solution where one is given; from its guess, and from others where that leads nowhere;

@@ -33,7 +33,7 @@ pub(crate) fn seconds_left(allowed: Option<f64>, began: Instant) -> Option<f64> 
 pub struct Optimum {
     /// The model, with the parameters that were found put in.
     pub model: Model,
-    /// The model of the program, where it has sought parameters.
+    /// The model of the program, where it has free parameters.
     pub sought: Option<Model>,
     /// Start and goal.
     pub boundary: BoundaryConditions,

@@ -5,10 +5,10 @@ use std::ops::ControlFlow;
 use crate::control::problem::Control;
 use crate::model::System;
 use crate::workflow::error::WorkflowError;
-use crate::workflow::further::is_infeasible;
 use crate::workflow::grids::{GridSolves, VARIABLES};
 use crate::workflow::motion::Iterate;
 use crate::workflow::optimum::{Optimum, SolveLimits};
+use crate::workflow::restarts::is_infeasible;
 
 /// Multiples of the intervals of the problem that are tried.
 const TIMES: [usize; 3] = [2, 4, 8];

@@ -8,10 +8,10 @@ use crate::control::problem::Control;
 use crate::dynamics::stable_equilibrium;
 use crate::model::System;
 use crate::workflow::coupled::{put_after, put_before};
-use crate::workflow::further::{Further, ITERATIONS, displaced};
 use crate::workflow::motion::Iterate;
 use crate::workflow::optimum::{Optimum, Restarted, Shortest, SolveLimits};
 use crate::workflow::remark::phase;
+use crate::workflow::restarts::{Further, ITERATIONS, displaced};
 use crate::workflow::shortest::{shortest, slow};
 
 /// Starts, in words.

@@ -1,4 +1,4 @@
-//! Variables that the programs of several motions and of their states of rest share: sought constants of the scene, inputs that are the same in
+//! Variables that the programs of several motions and of their states of rest share: free parameters of the scene, inputs that are the same in
 //! all motions, and coordinates of states of rest.
 
 use crate::control::{Column, PEAK_VOLTAGE, Transcription};
@@ -99,7 +99,7 @@ fn input(program: &Transcription<'_>, name: &str, k: usize) -> Option<usize> {
     (k < program.intervals()).then(|| program.unknowns().scalar(k, scalar))?
 }
 
-/// Sought constants of the scene with their columns.
+/// Free parameters of the scene with their columns.
 fn constants<'p>(program: &'p Transcription<'_>) -> Vec<(&'p Parameter, usize)> {
     let model = program.model();
     let constant = |(place, column): (usize, &Column)| match column {

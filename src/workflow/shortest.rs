@@ -8,9 +8,9 @@ use crate::math::Signal;
 use crate::model::{Model, Role};
 use crate::nlp::Status;
 use crate::workflow::coupled::put_after;
-use crate::workflow::further::{Further, ITERATIONS, displaced, is_infeasible};
 use crate::workflow::motion::Iterate;
 use crate::workflow::optimum::{Optimum, Shortest};
+use crate::workflow::restarts::{Further, ITERATIONS, displaced, is_infeasible};
 
 /// Largest free duration and the first one, as multiples of the given one.
 const LONGEST: f64 = 20.0;

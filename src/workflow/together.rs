@@ -8,12 +8,12 @@ use crate::control::{Motions, Solution};
 use crate::nlp::Status;
 use crate::workflow::attempt::{FoundTogether, WholeProgram, attempt_together};
 use crate::workflow::error::WorkflowError;
-use crate::workflow::further::{displaced, is_unreached, stopped};
 use crate::workflow::grids::VARIABLES;
 use crate::workflow::motion::Iterate;
 use crate::workflow::optimum::{Optimum, SolveLimits, seconds_left};
 use crate::workflow::prepare_together::MotionAsked;
 use crate::workflow::remark::phase;
+use crate::workflow::restarts::{displaced, is_unreached, stopped};
 use crate::workflow::verified::{GRIDS, factor, is_confirmed, unconfirmed};
 
 /// Greatest multiple of the intervals of a motion that names them.

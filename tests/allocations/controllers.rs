@@ -10,7 +10,7 @@ use proboscis::workflow::receding::{RecedingHorizon, Source};
 use std::sync::atomic::Ordering;
 
 /// Most allocations of a step of a receding horizon with its preparation, of states that are measured, missing and wrong: of the whole state, and
-/// with a delay and an observer that finds lasting forces.
+/// with a delay and an observer that finds constant disturbances.
 pub(crate) fn allocations_of_a_controller() -> usize {
     let whole = Regulator {
         step: 5.0,

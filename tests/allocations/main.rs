@@ -334,7 +334,7 @@ fn evaluations_allocate_nothing() {
             ..sought::problem(&sought::robot(), true, None)
         };
         for (name, system, control) in [
-            ("sought parameters, free time", sought::robot(), seeks),
+            ("free parameters, free time", sought::robot(), seeks),
             ("trunk", trunk(3), plain),
             ("trunk, long horizon", trunk(3), long),
             ("trunk, free time", trunk(3), timed),

@@ -1,7 +1,7 @@
 //! Similar problems: masses, lengths, times and voltages of a scene or problem file multiplied so that all dimensionless groups stay.
 //!
 //! The JSON Schema says which number has which unit; a text has its own. Plain numbers of joints count as angles, and their weights as
-//! weights of angles; a load or a sought constant is written with its unit. The permittivity of vacuum is no number of a file: with
+//! weights of angles; a load or a free parameter is written with its unit. The permittivity of vacuum is no number of a file: with
 //! [`Scales::in_vacuum`] it stays; with a voltage of its own the materials are `ideal`, and their `relative_permittivity` takes the factor.
 
 use proboscis::files::schema;

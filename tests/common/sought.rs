@@ -1,4 +1,4 @@
-//! A system whose components read sought parameters of every kind.
+//! A system whose components read free parameters of every kind.
 
 use super::cases::{control, joints};
 use super::systems::{blocks, branched, tied};

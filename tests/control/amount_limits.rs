@@ -1,4 +1,4 @@
-//! Limits and costs of the volume of muscles as sought constants decide it: the multiplier is the slope of the least effort by the bound.
+//! Limits and costs of the volume of muscles as free parameters decide it: the multiplier is the slope of the least effort by the bound.
 
 use crate::common::cases::joints;
 use crate::motions::{motion, together};
@@ -198,7 +198,7 @@ fn a_given_volume_keeps_its_limit_without_a_row_or_is_refused() {
         panic!("{refused:?}");
     };
     assert_eq!(place, "limits");
-    let told = "volume of 2 muscles is 8.0000 cm^3, and its limit is at most 7.2000 cm^3; no constant that is sought changes it";
+    let told = "volume of 2 muscles is 8.0000 cm^3, and its limit is at most 7.2000 cm^3; no free parameter changes it";
     assert_eq!(reason, told);
     let mut paid = turn(&system);
     paid.objective.quantities.push(QuantityCost {
@@ -215,13 +215,10 @@ fn a_given_volume_keeps_its_limit_without_a_row_or_is_refused() {
         panic!("a cost of what is given");
     };
     assert_eq!(place, "objective");
-    assert_eq!(
-        reason,
-        "no constant that is sought changes the volume of muscle2"
-    );
+    assert_eq!(reason, "no free parameter changes the volume of muscle2");
 }
 
-/// A limit that an iterate breaks, and that sought constants may keep, is none of a problem without these.
+/// A limit that an iterate breaks, and that free parameters may keep, is none of a problem without these.
 #[test]
 fn an_iterate_beyond_the_limit_of_a_volume_is_no_mistake_of_the_problem() {
     let system = pair();

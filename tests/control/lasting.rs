@@ -1,4 +1,4 @@
-//! Lasting forces: an observer finds a torque that acts, and gains and plans hold the goal against it, with and without a delay.
+//! Constant disturbances: an observer finds a torque that acts, and gains and plans hold the goal against it, with and without a delay.
 
 use crate::common::receding::{horizon, problem};
 use crate::common::robot::Robot;
@@ -113,7 +113,7 @@ fn stiffer(horizon: &Horizon, torque: f64, steps: usize) -> (Vec<Vec<f64>>, [f64
     (sent, [robot.z[0], goal.state[0]])
 }
 
-/// A robot that is 10 % stiffer and loaded ends at the goal, with a delay too; without lasting forces it does not.
+/// A robot that is 10 % stiffer and loaded ends at the goal, with a delay too; without constant disturbances it does not.
 #[test]
 fn plans_end_at_the_goal() {
     let pair = problem("pair.json", &[]);
@@ -189,7 +189,7 @@ fn by_gains(law: &Law, estimate: &Estimate<'_>, k: usize) -> Vec<f64> {
     out
 }
 
-/// Under a lasting force, too, the plan is that of the gains for small deviations, whatever the length of the horizon.
+/// Under a constant disturbance, too, the plan is that of the gains for small deviations, whatever the length of the horizon.
 #[test]
 fn gains_of_the_regulator_under_a_lasting_force() {
     let pair = problem("pair.json", &BETWEEN);

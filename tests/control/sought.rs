@@ -1,4 +1,4 @@
-//! Sought parameters in optimal control: a muscle arm between bounds, and where a parameter is refused.
+//! Free parameters in optimal control: a muscle arm between bounds, and where a parameter is refused.
 
 use crate::common::cases::{control, joints};
 use crate::common::tracked::energies;

@@ -1,4 +1,4 @@
-//! States of rest at start and goal that depend on sought constants: their coordinates are unknowns with equations of their own.
+//! States of rest at start and goal that depend on free parameters: their coordinates are unknowns with equations of their own.
 
 use crate::common::cases::joints;
 use crate::common::sought::of_all_muscles;

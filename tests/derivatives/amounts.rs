@@ -1,4 +1,4 @@
-//! Volume and mass of muscles as functions of sought constants: limits and costs against the system made anew with the values, and derivatives
+//! Volume and mass of muscles as functions of free parameters: limits and costs against the system made anew with the values, and derivatives
 //! against differences.
 
 use crate::common::random::Random;

@@ -1,5 +1,5 @@
-//! Sought parameters: derivatives against differences; and at any values of them the program is that of the system made anew
-//! with these values, which knows nothing of sought parameters.
+//! Free parameters: derivatives against differences; and at any values of them the program is that of the system made anew
+//! with these values, which knows nothing of free parameters.
 
 use crate::action::not_trivial;
 use crate::common::cases::joints;
@@ -14,7 +14,7 @@ use std::collections::HashMap;
 
 pub(crate) const H: f64 = 10.0;
 
-/// Systems with sought constants, of bodies and of finite elements, in both coordinates, with and without a free duration.
+/// Systems with free parameters, of bodies and of finite elements, in both coordinates, with and without a free duration.
 fn variants() -> Vec<(System, Control)> {
     let both = [Coordinates::Reduced, Coordinates::Redundant];
     let cases = both.into_iter().flat_map(|c| [(c, false), (c, true)]);

@@ -1,4 +1,4 @@
-//! Limits, goals and costs of quantities that read sought parameters: derivatives, and values of the system made anew.
+//! Limits, goals and costs of quantities that read free parameters: derivatives, and values of the system made anew.
 
 use crate::common::sought::{lengthened, problem, wired};
 use crate::sought::{H, noisy};

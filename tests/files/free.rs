@@ -1,4 +1,4 @@
-//! Sought constants as a problem names them, and its mistakes.
+//! Free parameters as a problem names them, and its mistakes.
 
 use crate::scene::{Case, check, control, folder, mistake};
 use proboscis::control::problem::{Control, Task};

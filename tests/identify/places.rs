@@ -1,4 +1,4 @@
-//! Places of joints, bodies and markers as sought constants.
+//! Places of joints, bodies and markers as free parameters.
 
 use crate::common::trunk;
 use crate::derivatives::{channel, compare, readings};

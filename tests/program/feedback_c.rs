@@ -131,7 +131,7 @@ fn by_c(folder: &Path, measured: &str) -> Vec<f64> {
         .collect()
 }
 
-/// An observer of the tip, also with lasting forces, and one of the joint.
+/// An observer of the tip, also with constant disturbances, and one of the joint.
 const TIP: &str = "feedback.observer={\"markers\":{\"tip\":\"0.1 mm\"}}";
 const LASTING: &str = "feedback.observer={\"markers\":{\"tip\":\"0.1 mm\"},\"lasting\":0.02}";
 const JOINT: &str = "feedback.observer={\"joints\":{\"joint1\":\"0.5 deg\"}}";

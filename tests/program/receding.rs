@@ -60,7 +60,7 @@ fn a_stiffer_pair_is_planned_anew() {
     }
 }
 
-/// With an observer of the tip, a delay and lasting forces it ends at the goal.
+/// With an observer of the tip, a delay and constant disturbances it ends at the goal.
 #[test]
 fn an_observed_pair_is_planned_over_a_delay() {
     let folder = workshop();

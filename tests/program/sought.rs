@@ -1,4 +1,4 @@
-//! Sought constants of a scene, from files to the words of the terminal.
+//! Free parameters of a scene, from files to the words of the terminal.
 
 use crate::commands::summary;
 use crate::runs::{read, run, workshop};

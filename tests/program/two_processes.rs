@@ -54,7 +54,7 @@ fn a_robot_of_finite_elements_in_another_process_ends_at_the_goal() {
     println!("{sources:?} {angle}");
     assert_eq!(sources, BTreeMap::from([("plan", 100)]));
     assert!((angle - GOAL).abs() < 2e-3, "{angle}");
-    // Without lasting forces it ends beside it: the robot is another one.
+    // Without constant disturbances it ends beside it: the robot is another one.
     let mut unaware = example::usual();
     let controller = r#"simulate.controller={"horizon":{"problem":"pair.json","intervals":10},"noise":{"angle":"0.01 deg"}}"#;
     *unaware.last_mut().unwrap() = controller.to_owned();

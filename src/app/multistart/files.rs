@@ -4,7 +4,7 @@ use super::ended::{Ended, best};
 use super::start::folder_of;
 use crate::app::batch::{Batch, RunIn};
 use crate::app::error::CommandError;
-use crate::app::foreign::make_folder;
+use crate::app::overwrite_check::make_folder;
 use crate::app::request::{CommandInput, CommandOutput};
 use crate::files::{lay_out, printable};
 use crate::math::significant;

@@ -15,9 +15,9 @@ use std::time::Instant;
 
 use crate::app::batch::{Batch, RunIn, run_all, task_runs_at_once};
 use crate::app::error::CommandError;
-use crate::app::foreign::{make_folder, make_folder_of};
 use crate::app::messages::key;
 use crate::app::no_equilibrium;
+use crate::app::overwrite_check::{make_folder, make_folder_of};
 use crate::app::progress::Progress;
 use crate::app::request::{CommandInput, CommandOutput};
 use crate::app::task::{read, refuse_replacing};

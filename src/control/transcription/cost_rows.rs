@@ -9,7 +9,7 @@
 //! Of the rate of a quantity whose step in an interval is m it is e = g m/h − r(t) with the factor g of the unit. A cost of m itself, as the
 //! energy from a source of the power m, is w φ m.
 
-use crate::control::energy_cost::{CostFunction, During, EnergyCost, QuantityCost, resisted};
+use crate::control::costs::{CostFunction, During, EnergyCost, QuantityCost, resisted};
 use crate::control::goal::instant_at;
 use crate::control::transcription::limit_rows::Site;
 use crate::coordinates::Reduced;

@@ -11,7 +11,7 @@
 //!
 //! where the voltages b that hold the goal are none, b = 0, if they are not known.
 
-use crate::control::energy_cost::{EnergyCost, SourceEnergy, sources};
+use crate::control::costs::{EnergyCost, SourceEnergy, sources};
 use crate::coordinates::StepPattern;
 use crate::functional::Outer;
 use crate::model::Model;

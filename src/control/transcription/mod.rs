@@ -146,7 +146,7 @@ impl<'m> Transcription<'m> {
         self.objective.cost.weigh(objective);
     }
 
-    /// Leaves entries of the Hessian by two sought parameters of elements zero, for one who holds all of them.
+    /// Leaves entries of the Hessian by two free parameters of elements zero, for one who holds all of them.
     pub fn hold_parameters(&mut self) {
         self.sides.parameters = ParameterOrder::First;
     }

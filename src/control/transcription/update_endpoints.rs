@@ -66,7 +66,7 @@ impl Transcription<'_> {
         let other = |reason: String| Err(BoundaryError::OtherProgram { reason });
         let BoundaryConditions { start, goal, .. } = boundary;
         if boundary.sought_rest != [false; 2] {
-            return other("a state of rest depends on a sought constant".to_owned());
+            return other("a state of rest depends on a free parameter".to_owned());
         }
         if start.z.len() != self.workspace.instants[0].z.len()
             || start.momentum.len() != self.momentum.given.len()

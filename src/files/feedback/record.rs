@@ -47,7 +47,7 @@ pub(super) struct ObserverRecord {
     pub(super) jump: Vec<f64>,
 }
 
-/// Lasting forces that the filter finds, and what inputs change of them at the goal.
+/// Constant disturbances that the filter finds, and what inputs change of them at the goal.
 #[derive(Debug, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub(super) struct LastingRecord {
@@ -56,7 +56,7 @@ pub(super) struct LastingRecord {
     pub(super) by_inputs: Vec<Vec<f64>>,
 }
 
-/// A lasting force on a coordinate: N m, N.
+/// A constant disturbance on a coordinate: N m, N.
 #[derive(Debug, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub(super) struct ForceRecord {
@@ -74,7 +74,7 @@ pub(super) enum ReadingRecord {
     Marker(String, usize),
 }
 
-/// The filter in an interval: readings, and the matrices A, B, C and M row by row, over what is measured and the lasting forces.
+/// The filter in an interval: readings, and the matrices A, B, C and M row by row, over what is measured and the constant disturbances.
 #[derive(Debug, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub(super) struct FilterRecord {
@@ -112,7 +112,7 @@ pub(super) struct InputRecord {
 pub(super) struct PointRecord {
     pub(super) state: Vec<f64>,
     pub(super) inputs: Vec<f64>,
-    /// A row for each input, over what is measured, then lasting forces and the changes of inputs against them, then the integrals, then the
+    /// A row for each input, over what is measured, then constant disturbances and the changes of inputs against them, then the integrals, then the
     /// corrections of the inputs in each interval of the delay.
     pub(super) gain: Vec<Vec<f64>>,
     /// Correction of each input whatever is measured, where a delay leads behind the end.
@@ -132,7 +132,7 @@ pub(crate) fn unit_of(measured: &Measured) -> (&'static str, f64) {
     }
 }
 
-/// Unit of a lasting force, and its factor from the units inside.
+/// Unit of a constant disturbance, and its factor from the units inside.
 pub(super) fn unit_of_force(is_length: bool) -> (&'static str, f64) {
     match is_length {
         true => ("N", 1.0),

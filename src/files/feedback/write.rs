@@ -194,7 +194,10 @@ pub fn law_csv(law: &Law, system: &System, head: &str) -> String {
     });
     let forces = law.lasting().iter().map(|force| {
         let unit = unit_of_force(force.is_length).0;
-        (format!("lasting force on {}", force.name), unit.to_owned())
+        (
+            format!("constant disturbance on {}", force.name),
+            unit.to_owned(),
+        )
     });
     let acting: Vec<(&str, &str, &str)> = law
         .inputs
@@ -204,7 +207,7 @@ pub fn law_csv(law: &Law, system: &System, head: &str) -> String {
         .collect();
     let against = acting.iter().take(law.targets());
     let against = against.map(|(name, unit, square)| {
-        let name = format!("{name}{square} against lasting forces");
+        let name = format!("{name}{square} against constant disturbances");
         (name, format!("{unit}{square}"))
     });
     let mut read: Vec<(String, String)> = names

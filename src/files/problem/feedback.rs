@@ -73,7 +73,8 @@ pub(crate) fn regulator(
     };
     let lasting = out.observer.as_ref().and_then(|one| one.lasting);
     if out.integral > 0.0 && lasting.is_some() {
-        let expected = "no integrals beside lasting forces of the observer, which do their work";
+        let expected =
+            "no integrals beside constant disturbances of the observer, which do their work";
         return Err(place
             .key("integral")
             .wrong(out.integral.to_string(), expected));
@@ -315,7 +316,7 @@ pub struct ObserverSpec {
     /// Of the rates of all coordinates, in 100 degrees/s or 100 mm/s, 0.1 where not written: pushes.
     #[serde(default)]
     pub rates: Option<f64>,
-    /// Of the change in each interval of a lasting force on each joint, as a part of the greatest force of an input on it. These forces are then found
+    /// Of the change in each interval of a constant disturbance on each joint, as a part of the greatest force of an input on it. These forces are then found
     /// beside the state, and inputs hold the goal against them; without it none are. As many independent measurements are needed as there are joints.
     #[serde(default)]
     pub lasting: Option<f64>,

@@ -1,4 +1,4 @@
-//! Conversion of the sought constants of a problem file to parameters.
+//! Conversion of the free parameters of a problem file to parameters.
 
 use crate::control::PEAK_VOLTAGE;
 use crate::files::json::document::Document;
@@ -164,7 +164,7 @@ pub(crate) fn check_solution(
     Ok(())
 }
 
-/// A constant that is sought between bounds.
+/// A free parameter between bounds.
 #[derive(Clone, Debug, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct FreeSpec {
@@ -180,5 +180,5 @@ pub struct FreeSpec {
     pub also: BTreeMap<String, f64>,
 }
 
-/// Sought constants by their paths in the scene.
+/// Free parameters by their paths in the scene.
 pub type FreeMap = BTreeMap<String, FreeSpec>;

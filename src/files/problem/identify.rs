@@ -282,7 +282,7 @@ fn candidate(
     Ok(out)
 }
 
-/// The priors of sought constants, by their paths.
+/// The priors of free parameters, by their paths.
 pub(super) fn priors(
     map: &BTreeMap<String, PriorSpec>,
     (parameters, free): (&[Parameter], &FreeMap),

@@ -2,12 +2,11 @@
 //!
 //! - `motions`: several motions of one problem, each as a problem of its own.
 //! - `build`: the problem; `control`, `simulation`, `identify`: its longer tasks; `channels`: what recordings measure; `changed_scenes`: scenes of some of them; `driven`: start and inputs of both motions.
-//! - `feedback`: gains along an optimum, and a controller that reads them; `ahead`: a problem that it plans anew; `disturbance`: the same simulation with parts of its disturbance.
+//! - `feedback`: gains along an optimum, and a controller that reads them; `receding`: a problem that it plans anew; `disturbance`: the same simulation with parts of its disturbance.
 //! - `state`, `end_of`, `goal`, `quantities`, `free`, `voltages`, `coordinates`: their parts; `output`: what is written of a motion; `solution_voltages`,
 //!   `solution_joints`, `solution_document`:
 //!   what is read of an earlier solution.
 
-pub(crate) mod ahead;
 pub(crate) mod build;
 pub(crate) mod changed_scenes;
 mod channels;
@@ -23,6 +22,7 @@ pub(crate) mod loads;
 pub(crate) mod motions;
 pub mod output;
 pub mod quantities;
+pub(crate) mod receding;
 pub mod sensitivity;
 pub mod simulation;
 pub(crate) mod solution_document;

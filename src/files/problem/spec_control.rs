@@ -248,10 +248,10 @@ pub struct ObjectiveSpec {
     /// Weight per J of the mechanical work of the electrical forces of lumped muscles, of all sources or of named ones.
     #[serde(default)]
     pub mechanical_work: EnergySpec,
-    /// Weight per cm³ of the volume of all lumped muscles at rest, which follows from sought constants.
+    /// Weight per cm³ of the volume of all lumped muscles at rest, which follows from free parameters.
     #[serde(default)]
     pub muscle_volume: f64,
-    /// Weight per g of the mass of all lumped muscles with a density, which follows from sought constants.
+    /// Weight per g of the mass of all lumped muscles with a density, which follows from free parameters.
     #[serde(default)]
     pub muscle_mass: f64,
     /// References of markers and joints in time.

@@ -1,4 +1,4 @@
-//! An identification as it is written: sought constants, recordings, and candidates for the next experiment.
+//! An identification as it is written: free parameters, recordings, and candidates for the next experiment.
 
 use crate::files::problem::coordinates::CoordinatesSpec;
 use crate::files::problem::free::FreeMap;
@@ -16,7 +16,7 @@ use std::collections::BTreeMap;
 #[derive(Clone, Debug, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct IdentifySpec {
-    /// Sought constants by their paths in the scene, such as `"materials.silicone.shear_modulus"`, each between bounds.
+    /// Free parameters by their paths in the scene, such as `"materials.silicone.shear_modulus"`, each between bounds.
     #[serde(default)]
     pub free: FreeMap,
     /// Constants of the inputs that are sought: gains of sources, and their delays.

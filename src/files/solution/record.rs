@@ -40,7 +40,7 @@ pub(super) struct File {
     /// Potentials of elastic blocks by interval, as multiples of their unit.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub(super) potentials: Vec<Vec<f64>>,
-    /// Sought parameters by their names, in SI units.
+    /// Free parameters by their names, in SI units.
     #[serde(default, skip_serializing_if = "BTreeMap::is_empty")]
     pub(super) parameters: BTreeMap<String, f64>,
     #[serde(default, skip_serializing_if = "Option::is_none")]

@@ -5,8 +5,8 @@ use crate::functional::Mass;
 use crate::kinematics::{MaterialVector, Pose};
 use crate::math::Vector;
 use crate::model::constant::Constant;
+use crate::model::free_parameters::{MovedPoint, Read};
 use crate::model::plan::GRAVITY;
-use crate::model::sought::{MovedPoint, Read};
 use crate::model::system::{Attachment, Body};
 use crate::model::terms::{Terms, mid, rate};
 use crate::model::weight::{Moving, Weight};
@@ -44,7 +44,7 @@ pub(in crate::model) fn build(bodies: &[Body], reference: &[Pose], terms: &mut T
     }
 }
 
-/// Inertia and weight by which bodies of the scene whose masses or places are sought differ from what they are given as: sums over them, so
+/// Inertia and weight by which bodies of the scene whose masses or places are free differ from what they are given as: sums over them, so
 /// that bodies that are welded to others need no other treatment.
 pub(in crate::model) fn build_sought(bodies: &[Body], terms: &mut Terms<'_>) {
     for (b, body) in bodies.iter().enumerate() {
@@ -103,7 +103,7 @@ fn point_mass(
     }
 }
 
-/// Kinetic energies of the directors of a body whose moments of inertia are sought.
+/// Kinetic energies of the directors of a body whose moments of inertia are free.
 fn turning((b, body): (usize, &Body), place: &Attachment, terms: &mut Terms<'_>) {
     for i in 0..3 {
         let mut read = terms.sought().read();

@@ -6,8 +6,8 @@ use crate::math::{Number, Vector};
 use crate::model::components::muscle::{CHARGES, capacitance, constants};
 use crate::model::components::muscle_laws::Flowing;
 use crate::model::constant::Constant;
+use crate::model::free_parameters::Read;
 use crate::model::internal::{InternalKind, Internals};
-use crate::model::sought::Read;
 use crate::model::system::Muscle;
 use crate::model::terms::{Terms, mid, rate};
 use nalgebra::Vector3;
@@ -64,7 +64,7 @@ fn circuit(
     }
 }
 
-/// A resistor in series with electrodes, and a leak parallel to them, whose resistances may be sought.
+/// A resistor in series with electrodes, and a leak parallel to them, whose resistances may be free.
 #[derive(Clone)]
 pub(super) struct Wires {
     source: usize,

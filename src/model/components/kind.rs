@@ -20,7 +20,7 @@ pub trait Kind: Component + Sized {
     /// Its unique name.
     fn name_mut(&mut self) -> &mut String;
 
-    /// Makes the terms of the part with this index in the list; an index is needed where its constants can be sought.
+    /// Makes the terms of the part with this index in the list; an index is needed where its constants can be free.
     fn build_at(&self, _index: usize, terms: &mut Terms<'_>) {
         self.build(terms);
     }

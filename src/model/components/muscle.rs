@@ -162,7 +162,7 @@ fn inertia((muscle, index): (&Muscle, usize), span: usize, terms: &mut Terms<'_>
     }
 }
 
-/// Adds the weight of a muscle whose mass is sought, or whose ends are, where there is gravity.
+/// Adds the weight of a muscle whose mass is free, or whose ends are, where there is gravity.
 fn sought_weight(of: (&Muscle, usize), middle: &MaterialVector, terms: &mut Terms<'_>) {
     let mut constants = by_parts(of, MIDDLE, terms);
     if let Some(weight) = constants.weight(terms) {

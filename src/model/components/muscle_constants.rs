@@ -1,4 +1,4 @@
-//! Constants of lumped muscles as laws read them: given, or following from sought parameters.
+//! Constants of lumped muscles as laws read them: given, or following from free parameters.
 
 use crate::energy::{ElasticLaw, NeoHooke, Polynomial};
 use crate::functional::{LawElement, VectorArg};
@@ -9,12 +9,12 @@ use crate::model::components::muscle_laws::{
     Shape, UnrelaxedSpring, Viscous, Weight,
 };
 use crate::model::constant::{Constant, MaterialConstant};
+use crate::model::free_parameters::{MovedPoint, Read};
 use crate::model::maxwell::MaxwellBranch;
-use crate::model::sought::{MovedPoint, Read};
 use crate::model::system::{ElectricConstants, Muscle};
 use crate::model::terms::Terms;
 
-/// A muscle whose constants are read: given, or following from sought parameters, which are noted.
+/// A muscle whose constants are read: given, or following from free parameters, which are noted.
 #[derive(Clone)]
 pub(in crate::model) struct MuscleConstants<'a> {
     muscle: &'a Muscle,

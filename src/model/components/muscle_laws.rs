@@ -1,4 +1,4 @@
-//! Laws of lumped muscles: formulas whose constants follow from geometry and material, and with them from sought parameters.
+//! Laws of lumped muscles: formulas whose constants follow from geometry and material, and with them from free parameters.
 
 use crate::energy::{
     Capacitance, CoordinateDamper, DielectricCell, ElasticCell, ElasticLaw, Elasticity,

@@ -7,7 +7,7 @@ use crate::model::bodies::Attachment;
 use crate::model::component::Component;
 use crate::model::components::kind::Kind;
 use crate::model::constant::Constant;
-use crate::model::sought::{MovedPoint, Read};
+use crate::model::free_parameters::{MovedPoint, Read};
 use crate::model::terms::{Terms, mid, rate};
 use nalgebra::Vector3;
 
@@ -68,7 +68,7 @@ impl Spring {
         (self.to.at - self.from.at).norm()
     }
 
-    /// Makes the terms; `index` is its place among the springs of the system, constants of which can be sought.
+    /// Makes the terms; `index` is its place among the springs of the system, constants of which can be free.
     fn add(&self, index: Option<usize>, terms: &mut Terms<'_>) {
         let Some(span) = terms.span(&self.from, &self.to) else {
             for term in [ELASTICITY, DAMPING] {

@@ -7,7 +7,7 @@ use crate::model::bodies::Attachment;
 use crate::model::component::Component;
 use crate::model::components::kind::Kind;
 use crate::model::constant::Constant;
-use crate::model::sought::{MovedPoint, Read};
+use crate::model::free_parameters::{MovedPoint, Read};
 use crate::model::terms::Terms;
 use nalgebra::Vector3;
 

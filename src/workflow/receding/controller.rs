@@ -14,7 +14,7 @@
 //!
 //! A step does a bounded amount of work and allocates nothing: one iteration, and up to three further ones where the bounds of limits cut it.
 //! `workflow/receding/state.rs` finds the state from readings, and predicts it over a delay:
-//! the plan begins where its inputs act. Lasting forces enter the plan with its preparation.
+//! the plan begins where its inputs act. Constant disturbances enter the plan with its preparation.
 
 use crate::control::{Column, Row};
 use crate::coordinates::Configuration;

@@ -47,7 +47,7 @@ pub struct Horizon {
     of_inputs: f64,
     /// Intervals from a measurement to its effect.
     delay: usize,
-    /// Coordinates on which lasting forces act.
+    /// Coordinates on which constant disturbances act.
     forced: Vec<usize>,
 }
 
@@ -282,7 +282,7 @@ impl Horizon {
     }
 }
 
-/// Coordinates on which the lasting forces of a law act.
+/// Coordinates on which the constant disturbances of a law act.
 fn forced(model: &Model, coordinates: &[usize], law: &Law) -> Vec<usize> {
     let named = |name: &str| {
         let mut all = coordinates.iter();
@@ -303,7 +303,7 @@ fn offered(model: &Model, control: &Control) -> Result<(), NoHorizon> {
         return not("a given input");
     }
     if !control.parameters.is_empty() {
-        return not("a sought constant");
+        return not("a free parameter");
     }
     if control.goal == BoundaryState::Periodic {
         return not("a periodic motion");

@@ -45,7 +45,7 @@ pub(super) struct Layout {
     pub(super) driven: Vec<Vec<InputColumn>>,
     /// Weight of the rates of each coordinate, for differences of a step.
     pub(super) rates: Vec<f64>,
-    /// Rows on which lasting forces act, with the scaled time of their action, and the number of the force.
+    /// Rows on which constant disturbances act, with the scaled time of their action, and the number of the force.
     pub(super) forced: Vec<(usize, f64, usize)>,
 }
 

@@ -42,11 +42,11 @@ pub(super) struct Program<'m> {
     pub(super) momentum: Vec<f64>,
     /// Deviations of the state at the end, and of coordinates, for one evaluation.
     pub(super) deviation: Vec<f64>,
-    /// Lasting forces with their effects.
+    /// Constant disturbances with their effects.
     pub(super) lasting: Lasting,
 }
 
-/// Lasting forces, with what they change of the motion that is followed.
+/// Constant disturbances, with what they change of the motion that is followed.
 #[derive(Clone, Debug)]
 pub(super) struct Lasting {
     /// The forces, then the changes of the inputs against them.
@@ -61,7 +61,7 @@ pub(super) struct Lasting {
 impl<'m> Program<'m> {
     /// The program of a transcription with an open start without momenta, and an end at rest with no coordinate given, in a number of steps for each
     /// interval. `state` are the coordinates of the state with the places of those that have momenta, `inputs` the scalars with those that act by their
-    /// squares, `rates` the weights of rates, `forced` the coordinates on which lasting forces act, in steps of h ms.
+    /// squares, `rates` the weights of rates, `forced` the coordinates on which constant disturbances act, in steps of h ms.
     pub(super) fn new(
         motion: Transcription<'m>,
         reference: &'m Reference,
@@ -228,7 +228,7 @@ impl<'m> Program<'m> {
         }
     }
 
-    /// Takes lasting forces, and the changes of inputs against them, for the horizon that begins now.
+    /// Takes constant disturbances, and the changes of inputs against them, for the horizon that begins now.
     pub(super) fn load(&mut self, forces: &[f64], against: &[f64]) {
         let end = self.reference.at(self.begin + self.layout.intervals);
         let (Some(rest), Some(slope)) = (&self.reference.rest, &end.slope) else {

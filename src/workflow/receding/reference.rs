@@ -17,7 +17,7 @@ pub(super) struct Point {
     pub(super) places: DMatrix<f64>,
     /// Cost of coordinates and momenta, as those of all time that follows.
     pub(super) end: DMatrix<f64>,
-    /// Slope of that cost by lasting forces and the inputs against them; none without such forces.
+    /// Slope of that cost by constant disturbances and the inputs against them; none without such forces.
     pub(super) slope: Option<DMatrix<f64>>,
 }
 
@@ -28,7 +28,7 @@ pub(super) struct Reference {
     points: Vec<Point>,
     /// Cost of each input, or of its square.
     pub(super) inputs: Vec<f64>,
-    /// Change of the state at rest by lasting forces and the inputs against them; none without such forces.
+    /// Change of the state at rest by constant disturbances and the inputs against them; none without such forces.
     pub(super) rest: Option<DMatrix<f64>>,
 }
 

@@ -40,7 +40,7 @@ impl<'h> Predicted<'h> {
         &self.values
     }
 
-    /// Lasting forces, and the changes of inputs against them.
+    /// Constant disturbances, and the changes of inputs against them.
     pub(super) fn lasting(&self) -> (&[f64], &[f64]) {
         match &self.estimates {
             Some([here, _]) => (&here.state()[self.law.measured.len()..], here.against()),

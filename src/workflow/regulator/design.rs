@@ -36,7 +36,7 @@ pub(super) struct Design<'a> {
     pub(super) momenta: Vec<usize>,
     /// Places of the coordinates that are integrated.
     pub(super) integrated: Vec<usize>,
-    /// Places of the coordinates, and of their momenta in the state, on which lasting forces act.
+    /// Places of the coordinates, and of their momenta in the state, on which constant disturbances act.
     pub(super) forced: Vec<[usize; 2]>,
     pub(super) h: f64,
     /// The state at rest that is held: at first the end of the optimum.
@@ -158,7 +158,7 @@ impl<'a> Design<'a> {
         })
     }
 
-    /// The linearised interval from a state under inputs: the product of its short steps, and E, the state after it by lasting forces on joints. In
+    /// The linearised interval from a state under inputs: the product of its short steps, and E, the state after it by constant disturbances on joints. In
     /// a step of h each adds h/2 to the momentum before it and h/2 to that after it.
     pub(super) fn linearised(
         &self,

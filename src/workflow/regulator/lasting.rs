@@ -1,4 +1,4 @@
-//! Gains over lasting forces on joints.
+//! Gains over constant disturbances on joints.
 //!
 //! Against forces f that last the goal is held by other inputs, ū more than those of the motion: they are found from f within bounds (`feedback::Lasting`).
 //! With w = (f, ū) the state at rest is X w, X = (1 − A)⁻¹ (E, B) at the goal. Deviations from these, ξ = x − X w and v = u − ū, follow
@@ -16,7 +16,7 @@ use crate::workflow::regulator::design::Design;
 use crate::workflow::regulator::regulated::{NoRegulator, RegulatedStep};
 use nalgebra::DMatrix;
 
-/// Lasting forces with their effects, backward in time.
+/// Constant disturbances with their effects, backward in time.
 pub(super) struct Against {
     /// X.
     pub(super) rest: DMatrix<f64>,
@@ -25,7 +25,7 @@ pub(super) struct Against {
 }
 
 impl Against {
-    /// That of the step at the held goal, whose gain it completes; `None` without lasting forces.
+    /// That of the step at the held goal, whose gain it completes; `None` without constant disturbances.
     ///
     /// # Errors
     /// The goal is not held, or nothing is at rest under a force.
@@ -38,14 +38,14 @@ impl Against {
             return Ok(None);
         }
         let held = held.ok_or_else(|| {
-            none("lasting forces are held against at the goal, and nothing holds it")
+            none("constant disturbances are held against at the goal, and nothing holds it")
         })?;
         let n = held.by_state.nrows();
         let left = DMatrix::identity(n, n) - &held.by_state;
         let rest = left.lu().solve(&acting(held));
         let rest = rest.filter(|rest| rest.iter().all(|value| value.is_finite()));
         let rest = rest.ok_or_else(|| {
-            none("a joint is free at the goal: a lasting force moves it for ever")
+            none("a joint is free at the goal: a constant disturbance moves it for ever")
         })?;
         let ahead = DMatrix::zeros(n, rest.ncols());
         held.lasting = Some([gain(held, &rest, None), ahead.clone()]);
@@ -80,13 +80,13 @@ impl Against {
         let (by_forces, by_inputs) =
             moved.columns_range_pair(..design.forced.len(), design.forced.len()..);
         let found = by_forces.into_owned().lu().solve(&by_inputs.into_owned());
-        let none = "a lasting force moves no joint at the goal";
+        let none = "a constant disturbance moves no joint at the goal";
         found.ok_or_else(|| NoRegulator::Observer(none.to_owned()))
     }
 }
 
 impl Design<'_> {
-    /// The lasting forces of an observer.
+    /// The constant disturbances of an observer.
     pub(super) fn lasting(&self, by_inputs: DMatrix<f64>) -> Lasting {
         let on = self.forced.iter().map(|&[place, _]| {
             let i = self.coordinates[place];
@@ -125,7 +125,7 @@ fn side_by_side(left: &DMatrix<f64>, right: &DMatrix<f64>) -> DMatrix<f64> {
     out
 }
 
-/// The step with lasting forces and the inputs against them as entries of its state.
+/// The step with constant disturbances and the inputs against them as entries of its state.
 pub(super) fn widened(step: &RegulatedStep) -> RegulatedStep {
     let Some([over_forces, _]) = &step.lasting else {
         return step.clone();

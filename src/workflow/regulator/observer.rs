@@ -1,6 +1,6 @@
 //! The observer of a regulator: a Kalman filter along the motion, from the covariances of what is measured and of what disturbs.
 //!
-//! Lasting forces on joints are entries of its state that change by chance. Its covariances P follow the Riccati recursion of `(Aᵀ, Cᵀ)` forward in time, from that of a robot which has done the first step for ever.
+//! Constant disturbances on joints are entries of its state that change by chance. Its covariances P follow the Riccati recursion of `(Aᵀ, Cᵀ)` forward in time, from that of a robot which has done the first step for ever.
 
 use crate::control::problem::{Observation, Regulator};
 use crate::dynamics::Linearisation;
@@ -175,7 +175,7 @@ impl Design<'_> {
         }
         match forces > 0 && held_gain([&own(&step.by_state), &output], &noise).is_ok() {
             true => format!(
-                "{forces} lasting forces, one on each joint, do not follow from what is measured; expected as many independent joints or components of markers, or no \"lasting\""
+                "{forces} constant disturbances, one on each joint, do not follow from what is measured; expected as many independent joints or components of markers, or no \"lasting\""
             ),
             false => NOT_SEEN.to_owned(),
         }
@@ -284,7 +284,7 @@ impl Design<'_> {
         }
     }
 
-    /// The readings of a state, and C, their derivatives by coordinates, rates and lasting forces.
+    /// The readings of a state, and C, their derivatives by coordinates, rates and constant disturbances.
     fn read(&self, observation: &Observation, at: &State, size: usize) -> (Vec<f64>, DMatrix<f64>) {
         let joints = observation.joints.len();
         let mut by_state = DMatrix::zeros(joints + 3 * observation.markers.len(), size);

@@ -51,7 +51,7 @@ pub struct Regulated {
     pub held: Option<(RegulatedStep, HeldGain)>,
     /// Cost of the state at the end of the motion.
     pub end_cost: DMatrix<f64>,
-    /// State at rest at the goal by lasting forces, and by the inputs against them; none without such forces.
+    /// State at rest at the goal by constant disturbances, and by the inputs against them; none without such forces.
     pub lasting: Option<DMatrix<f64>>,
     /// Reason why the goal is not held.
     pub not_held: Option<String>,
@@ -78,9 +78,9 @@ pub struct RegulatedStep {
     pub places: DMatrix<f64>,
     /// K, over the state.
     pub gain: DMatrix<f64>,
-    /// E, over lasting forces on joints; no columns without them.
+    /// E, over constant disturbances on joints; no columns without them.
     pub by_forces: DMatrix<f64>,
-    /// Of lasting forces and the inputs against them: the gain over them, and P at the start of the step.
+    /// Of constant disturbances and the inputs against them: the gain over them, and P at the start of the step.
     pub lasting: Option<[DMatrix<f64>; 2]>,
 }
 

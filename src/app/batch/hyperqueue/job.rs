@@ -3,7 +3,7 @@
 use crate::app::batch::end::{RunEnd, Said, of_status};
 use crate::app::batch::launch::words;
 use crate::app::error::CommandError;
-use crate::app::foreign::make_folder;
+use crate::app::overwrite_check::make_folder;
 use crate::app::request::CommandInput;
 use crate::report::atomic;
 use crate::report::atomic::WriteError;

@@ -118,9 +118,9 @@ macro_rules! amount_limits {
 }
 
 amount_limits! {
-    /// Limits of the volume of lumped muscles at rest, together, which follows from sought constants: `min`, `max` or both.
+    /// Limits of the volume of lumped muscles at rest, together, which follows from free parameters: `min`, `max` or both.
     MuscleVolumeLimitSpec: Volume, "m^3";
-    /// Limits of the mass of lumped muscles with a density, together, which follows from sought constants: `min`, `max` or both.
+    /// Limits of the mass of lumped muscles with a density, together, which follows from free parameters: `min`, `max` or both.
     MuscleMassLimitSpec: Mass, "kg";
 }
 

@@ -1,4 +1,4 @@
-//! Sought constants of the inputs of recordings: gains, and delays with which they act.
+//! Free parameters of the inputs of recordings: gains, and delays with which they act.
 //!
 //! The input of a source is `u(t) = g V(t − τ)`, of which a recording says V(t) from 0 on; before, it is that of the state of rest at the
 //! start, or V(0). An interval of length h around the time m has of a delayed input the mean
@@ -24,7 +24,7 @@ const GAUSS: [(f64, f64); 4] = [
     (0.930_568_155_797_026_3, 0.173_927_422_568_726_93),
 ];
 
-/// A sought constant at its value.
+/// A free parameter at its value.
 #[derive(Clone, Copy, Debug)]
 struct Sought {
     /// Index of the constant.

@@ -74,7 +74,7 @@ impl Opened {
         let (model, boundary) =
             BoundaryConditions::resolve(system, control, h0).map_err(refused)?;
         if boundary.sought_rest != [false; 2] {
-            let reason = "a state of rest depends on a sought constant, which is not offered";
+            let reason = "a state of rest depends on a free parameter, which is not offered";
             return Err(NoSensitivity::Refused(reason.to_owned()));
         }
         let solved = Outline::new(&model, &boundary, control);
@@ -303,7 +303,7 @@ fn approached(
     })
 }
 
-/// Sought parameters at the values that were found.
+/// Free parameters at the values that were found.
 fn found(parameters: &[Parameter], motion: &Solution) -> Vec<Parameter> {
     let at = |parameter: &Parameter| {
         let mut found = motion.parameters.iter();

@@ -1,12 +1,12 @@
-//! Elements of elastic blocks: as they are given, or where constants of their energies are sought, sums of products of constants and energies
+//! Elements of elastic blocks: as they are given, or where constants of their energies are free, sums of products of constants and energies
 //! that read none of them.
 
 use crate::element::{ElementLaw, IsochoricLaw};
 use crate::energy::{NeoHooke, Polynomial};
 use crate::functional::{FiniteElement, VariedElement};
 use crate::model::constant::MaterialConstant;
+use crate::model::free_parameters::Read;
 use crate::model::solid_block::SolidBlock;
-use crate::model::sought::Read;
 use crate::model::terms::{Member, OfKind, Terms};
 
 /// Constants of an energy beside those of its law of elasticity, in all of which it is linear: μ, λ, c₁, c₂ and ε.
@@ -37,7 +37,7 @@ pub(super) struct ElementOf<'a> {
     pub(super) names: [&'static str; 2],
 }
 
-/// Constants, some of which are sought, and what is read of them; no constants of an element that is itself.
+/// Constants, some of which are free, and what is read of them; no constants of an element that is itself.
 type Factors = (Vec<Polynomial>, Read);
 
 impl ElementOf<'_> {
@@ -93,7 +93,7 @@ impl ElementOf<'_> {
         }
     }
 
-    /// Adds the energy of a law of elasticity without λ, of which constants are sought.
+    /// Adds the energy of a law of elasticity without λ, of which constants are free.
     fn add_law<L: ElementLaw>(self, law: L, shear_modulus: f64, terms: &mut Terms<'_>) {
         let modulus = (LINEAR[0], shear_modulus);
         let unit = [1.0, 0.0, 0.0, 0.0, 0.0];

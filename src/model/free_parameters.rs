@@ -1,4 +1,4 @@
-//! Sought parameters as components read them.
+//! Free parameters as components read them.
 
 use crate::energy::Polynomial;
 use crate::functional::{LawElement, Move, VectorArg};
@@ -7,7 +7,7 @@ use crate::math::Vector;
 use crate::model::constant::{Constant, Drifts, Follower, Parameter, pruned};
 use std::sync::Arc;
 
-/// The sought parameters of a model.
+/// The free parameters of a model.
 #[derive(Clone, Debug)]
 pub struct Sought {
     parameters: Arc<[Parameter]>,
@@ -22,7 +22,7 @@ pub(super) struct MovedPoint<'a> {
     pub(super) weight: f64,
     /// The body of the presolved system that carries it; none is the ground.
     pub(super) body: Option<usize>,
-    /// The constants that are the components of its place, where they can be sought.
+    /// The constants that are the components of its place, where they can be free.
     pub(super) place: Option<&'a dyn Fn(usize) -> Constant>,
 }
 
@@ -45,7 +45,7 @@ impl Sought {
         pairs.find(|(_, follower)| follower.constant == constant)
     }
 
-    /// Returns true if a constant is sought.
+    /// Returns true if a constant is free.
     pub fn is_sought(&self, constant: Constant) -> bool {
         self.find(constant).is_some()
     }
@@ -69,7 +69,7 @@ pub struct Read {
 }
 
 impl Read {
-    /// A list where nothing is sought.
+    /// A list where nothing is free.
     pub fn nothing() -> Self {
         Sought::new(&[], 0, Drifts::default()).read()
     }
@@ -84,7 +84,7 @@ impl Read {
         (self.scalars, self.moves)
     }
 
-    /// Returns true if nothing that is sought was read.
+    /// Returns true if nothing that is free was read.
     pub fn is_empty(&self) -> bool {
         self.scalars.is_empty()
     }

@@ -1,4 +1,4 @@
-//! Sought parameters where they may not act, and states of rest that depend on one.
+//! Free parameters where they may not act, and states of rest that depend on one.
 
 use crate::control::boundary_conditions::{BoundaryConditions, MomentumSlopes, Rests, rest_with};
 use crate::control::bounded_quantity::{BoundedQuantity, When};
@@ -195,7 +195,7 @@ fn remembered_start(model: &Model, control: &Control) -> Result<(), BoundaryErro
     Ok(())
 }
 
-/// Changes of the momenta at a start that moves with sought parameters.
+/// Changes of the momenta at a start that moves with free parameters.
 ///
 /// # Errors
 /// They are no straight lines, or the start is the end of another motion, whose masses were others.
