@@ -71,7 +71,7 @@ pub(super) fn motions(
         summary.status.clone_from(&stopped.status);
     }
     write(request, &mut summary, &folder, began)?;
-    let mut output = command_output(motions, &result, (&summary, &each), &folder);
+    let mut output = command_output(motions, &result, &summary, &each, &folder);
     output.notes.extend(loaded.note_lines());
     if MIGHT_GO_ON.contains(&&*summary.status) {
         output
@@ -113,7 +113,8 @@ fn write(
 fn command_output(
     motions: &Motions,
     result: &MotionsResult,
-    (summary, each): (&MotionsSummary, &[Summary]),
+    summary: &MotionsSummary,
+    each: &[Summary],
     folder: &Path,
 ) -> CommandOutput {
     let mut is_solved = result.verdict.is_solved && !STOPPED.contains(&&*summary.status);

@@ -60,7 +60,7 @@ pub(super) fn simulation(
     let begun = from.map(|from| resume_file::begun(from, &problem, task));
     let begun = begun.transpose()?;
     let read = began.elapsed().as_secs_f64();
-    let (mut ended, folder) = integrate(&run, (begun, read), observer)?;
+    let (mut ended, folder) = integrate(&run, begun, read, observer)?;
     phase("writing");
     let (loops, left_out) = disturbed(&run, &mut ended)?;
     let run = Run {
@@ -74,11 +74,11 @@ pub(super) fn simulation(
     let (limit, kept) = (time_to_write(request, began), files.count());
     files.limit(&limit);
     let (plan, uncounted) = plan(&ended.simulated.model, ended.stopped.is_some());
-    let mut summary = summary_of((&run, read), &ended, &plan);
+    let mut summary = summary_of(&run, read, &ended, &plan);
     let written = write_all(&run, &ended, (&mut summary, asked), (&mut files, &limit));
     if let Err(error) = written {
         let status = limit.reached().ok_or(error)?;
-        summary = summary_of((&run, read), &ended, &plan);
+        summary = summary_of(&run, read, &ended, &plan);
         let status = ended.stopped.unwrap_or(status);
         leave_out(&mut summary, status, &mut files, kept);
     }
@@ -86,7 +86,7 @@ pub(super) fn simulation(
     summary.seconds.wrote(began, writing);
     summary.write(files)?;
     unfinished::done(&folder);
-    Ok(command_output(&run, (&ended, &folder), &summary))
+    Ok(command_output(&run, &ended, &folder, &summary))
 }
 
 /// Refuses an estimate by halved steps of a motion whose steps follow a tolerance.
@@ -135,7 +135,8 @@ fn disturbed(
 /// has ended; `read` are the seconds so far.
 fn integrate(
     run: &Run<'_>,
-    (begun, read): (Option<DiscreteTrajectory>, f64),
+    begun: Option<DiscreteTrajectory>,
+    read: f64,
     observer: &mut dyn FnMut(Reached<'_>),
 ) -> Result<(SimulationResult, PathBuf), CommandError> {
     let (request, task) = (run.request, run.task);
@@ -200,8 +201,8 @@ fn write_all(
 ) -> Result<(), WriteError> {
     let origin = run.request.origin(false);
     let observed = observe(run, ended, (files, limit), &origin)?;
-    summarise(run, (ended, &observed), summary);
-    write_pictures(run, (ended, &observed), (summary, asked), files, &origin)
+    summarise(run, ended, &observed, summary);
+    write_pictures(run, ended, &observed, summary, asked, files, &origin)
 }
 
 /// Observes and assesses a motion, and writes it with its fields at the same time.
@@ -254,7 +255,7 @@ fn observe(
 }
 
 /// The summary of a simulation that is neither observed nor assessed.
-fn summary_of((run, read): (&Run<'_>, f64), ended: &SimulationResult, plan: &Plan) -> Summary {
+fn summary_of(run: &Run<'_>, read: f64, ended: &SimulationResult, plan: &Plan) -> Summary {
     let simulated = &ended.simulated;
     let coordinates = simulated.model.coordinates.name();
     let mut summary = Summary::new(run.request, ended.word(), coordinates);
@@ -282,11 +283,7 @@ fn simulation_summary(
 }
 
 /// Adds what is observed of a simulation to its summary, and the notes on it.
-fn summarise(
-    run: &Run<'_>,
-    (ended, observed): (&SimulationResult, &Observed),
-    summary: &mut Summary,
-) {
+fn summarise(run: &Run<'_>, ended: &SimulationResult, observed: &Observed, summary: &mut Summary) {
     let assessment = &observed.assessment;
     summary.simulation = Some(simulation_summary(run, ended, assessment.neglected));
     summary.domain.clone_from(&assessment.outside);
@@ -302,8 +299,10 @@ fn summarise(
 /// Writes tables, figures and page, next to the solution that the voltages come from, and adds what they show to the summary.
 fn write_pictures(
     run: &Run<'_>,
-    (ended, observed): (&SimulationResult, &Observed),
-    (summary, asked): (&mut Summary, &[(String, String)]),
+    ended: &SimulationResult,
+    observed: &Observed,
+    summary: &mut Summary,
+    asked: &[(String, String)],
     files: &mut FileSet,
     origin: &Origin,
 ) -> Result<(), WriteError> {
@@ -358,7 +357,8 @@ fn write_pictures(
 /// The answer of the command.
 fn command_output(
     run: &Run<'_>,
-    (ended, folder): (&SimulationResult, &Path),
+    ended: &SimulationResult,
+    folder: &Path,
     summary: &Summary,
 ) -> CommandOutput {
     let mut notes: Vec<String> = summary.message.iter().cloned().collect();

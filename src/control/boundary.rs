@@ -102,7 +102,7 @@ impl BoundaryConditions {
         let limits = limits_with_goal(system, control, redundant);
         let analysis = Analysis {
             coordinates: Some(coordinates),
-            ..with_quantities(analysis, &limits, (control, system))
+            ..with_quantities(analysis, &limits, control, system)
         };
         let mut model = Model::of_presolved(system.clone(), analysis, presolved)?;
         check_sought_hold(&model, control)?;
@@ -202,7 +202,8 @@ fn limits_with_goal(system: &System, control: &Control, redundant: bool) -> Limi
 fn with_quantities(
     analysis: Analysis,
     limits: &Limits,
-    (control, system): (&Control, &System),
+    control: &Control,
+    system: &System,
 ) -> Analysis {
     let mut quantities = limits.quantities();
     let paid = &control.objective.quantities;

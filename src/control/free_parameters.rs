@@ -152,7 +152,7 @@ pub(super) fn check(
             continue;
         };
         for (index, parameter) in control.parameters.iter().enumerate() {
-            if depends_on(model, (at, voltages, z), index) {
+            if depends_on(model, at, voltages, z, index) {
                 *depends = true;
                 let reason = not_sought(model, boundary, at.0);
                 if let Some(reason) = reason.or_else(|| steps_from_rest(boundary, at.0)) {
@@ -252,7 +252,9 @@ fn not_sought(model: &Model, boundary: &BoundaryConditions, place: &str) -> Opti
 /// Returns true if a state of rest is another one, or none, where a parameter takes other values.
 fn depends_on(
     model: &Model,
-    (at, voltages, z): ((&'static str, f64), &[f64], &[f64]),
+    at: (&'static str, f64),
+    voltages: &[f64],
+    z: &[f64],
     index: usize,
 ) -> bool {
     let parameters = &model.analysis.parameters;

@@ -45,7 +45,7 @@ pub fn resolve_start(
             })?;
             let rates = model.rates_of_all(&rates, &of_joints);
             let bodies: Vec<usize> = velocities.keys().copied().collect();
-            prescribed::in_loops((model, place), z, rates, (named_rates.clone(), &bodies))
+            prescribed::in_loops(model, place, z, rates, named_rates.clone(), &bodies)
         }
         BoundaryState::EndOf(end) => {
             let start = end

@@ -99,10 +99,10 @@ impl ImplicitFunction {
         (count, start): (usize, Option<&StartDerivatives>),
     ) -> Option<DMatrix<f64>> {
         if start.is_none() && program.model().action.map.multipliers > 0 {
-            let (solver, _) = self.factored(program, x, (count, start))?;
+            let (solver, _) = self.factored(program, x, count, start)?;
             self.balance(program, x, solver);
         }
-        let (mut solver, mut right) = self.factored(program, x, (count, start))?;
+        let (mut solver, mut right) = self.factored(program, x, count, start)?;
         for mut column in right.column_iter_mut() {
             solver.solve(column.as_mut_slice());
         }
@@ -114,7 +114,8 @@ impl ImplicitFunction {
         &self,
         program: &mut Transcription<'_>,
         x: &[f64],
-        (count, start): (usize, Option<&StartDerivatives>),
+        count: usize,
+        start: Option<&StartDerivatives>,
     ) -> Option<(Direct, DMatrix<f64>)> {
         let entries = program.jacobian_structure();
         let mut values = vec![0.0; entries.rows.len()];

@@ -98,12 +98,12 @@ impl Limits {
             }
             What::Field(place) => self.add_field(place, max, &name),
             What::Current(source) | What::Power(source) => {
-                self.add_source((limit, source), name, system, length);
+                self.add_source(limit, source, name, system, length);
             }
             What::Voltage(_) | What::Reaction { .. } => {
                 self.add_rate(Quantity::jump(what, h * unit, h), bounds, name, length);
             }
-            What::Region { marker, region } => self.add_region((marker, region), bounds, system),
+            What::Region { marker, region } => self.add_region(marker, region, bounds, system),
             What::Amount { .. } => {
                 self.add_in(Quantity::of(what), unit, bounds, name);
                 self.list.last_mut().expect("it was added").when = When::At(1.0);
@@ -151,7 +151,8 @@ impl Limits {
     /// the middle of an interval to that of the next one.
     fn add_source(
         &mut self,
-        (limit, muscle): (&Limit, usize),
+        limit: &Limit,
+        muscle: usize,
         name: String,
         system: &System,
         length: Length,
@@ -210,7 +211,7 @@ impl Limits {
     }
 
     /// Adds the limits that keep a marker inside a region, as far as its relative place 1, or outside it.
-    fn add_region(&mut self, (marker, region): (usize, Region), bounds: [f64; 2], system: &System) {
+    fn add_region(&mut self, marker: usize, region: Region, bounds: [f64; 2], system: &System) {
         let name = &system.markers[marker].name;
         let in_region = Quantity::of(What::Region { marker, region });
         let is_inside = bounds[1].is_finite();

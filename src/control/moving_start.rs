@@ -34,12 +34,12 @@ pub fn momentum_slopes(
     }
     let start = &*start;
     let slopes = of_masses.into_iter().filter_map(|index| {
-        let found = by_parameter(model, (state, start), index);
+        let found = by_parameter(model, state, start, index);
         found.ok_or(index).transpose()
     });
     let slopes: Vec<MomentumSlopes> = slopes.collect::<Result<_, usize>>()?;
     match slopes.last() {
-        Some(last) if !are_linear(model, (state, start), &slopes) => Err(last.parameter),
+        Some(last) if !are_linear(model, state, start, &slopes) => Err(last.parameter),
         _ => Ok(slopes),
     }
 }
@@ -57,7 +57,8 @@ pub(super) fn of_masses(model: &Model) -> Vec<usize> {
 /// Returns true if the changes by all parameters add up.
 fn are_linear(
     model: &Model,
-    (state, start): (&BoundaryState, &Start),
+    state: &BoundaryState,
+    start: &Start,
     slopes: &[MomentumSlopes],
 ) -> bool {
     let parameters = &model.analysis.parameters;
@@ -108,7 +109,8 @@ fn room(parameter: &Parameter) -> f64 {
 /// The same by one parameter, nothing where they do not change; other parameters keep their guesses. None where they are no straight line.
 fn by_parameter(
     model: &Model,
-    (state, start): (&BoundaryState, &Start),
+    state: &BoundaryState,
+    start: &Start,
     index: usize,
 ) -> Option<Option<MomentumSlopes>> {
     let parameter = &model.analysis.parameters[index];

@@ -42,8 +42,10 @@ pub struct LimitsAlong {
 /// # Errors
 /// There is no model of the system that measures them.
 pub fn limits_along(
-    (of, limits): (&System, &[Limit]),
-    (system, analysis): (&System, Analysis),
+    of: &System,
+    limits: &[Limit],
+    system: &System,
+    analysis: Analysis,
     motion: &DiscreteTrajectory,
 ) -> Result<LimitsAlong, ModelError> {
     let mut out = LimitsAlong::default();

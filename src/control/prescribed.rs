@@ -32,7 +32,7 @@ pub(super) fn by_joint(
     let mut values = model.of_prescribed_joints(of);
     for (&joint, &found) in named {
         match model.prescribed.iter().find(|one| one.joint == joint) {
-            Some(one) => check(model, one, [found, values[joint]], (place, what))?,
+            Some(one) => check(model, one, [found, values[joint]], place, what)?,
             None => values[joint] = found,
         }
     }
@@ -44,7 +44,8 @@ fn check(
     model: &Model,
     one: &Prescribed,
     [found, value]: [f64; 2],
-    (place, what): (&'static str, &str),
+    place: &'static str,
+    what: &str,
 ) -> Result<(), BoundaryError> {
     let unit = joint_unit(&model.system, one.joint);
     let size = if unit == "mm" { model.length() } else { 1.0 };
@@ -76,7 +77,7 @@ pub(super) fn at_rest(
         false => rates,
     });
     match carried {
-        Some(rates) => in_loops((model, place), z, rates, (BTreeMap::new(), &[])),
+        Some(rates) => in_loops(model, place, z, rates, BTreeMap::new(), &[]),
         None => Ok(Start::at_rest(model, z)),
     }
 }
@@ -87,10 +88,12 @@ pub(super) fn at_rest(
 /// # Errors
 /// The rates open a loop.
 pub(super) fn in_loops(
-    (model, place): (&Model, &'static str),
+    model: &Model,
+    place: &'static str,
     z: Vec<f64>,
     rates: Vec<f64>,
-    (named, bodies): (BTreeMap<usize, f64>, &[usize]),
+    named: BTreeMap<usize, f64>,
+    bodies: &[usize],
 ) -> Result<Start, BoundaryError> {
     let moving = model.moving_joints();
     let mut joints = named;
@@ -98,7 +101,7 @@ pub(super) fn in_loops(
     joints.extend(prescribed.map(|one| (one.joint, one.motion.derivatives(0.0)[1])));
     let joints = joints.into_iter();
     let joints: Vec<(usize, f64)> = joints.filter(|(j, _)| moving.contains(j)).collect();
-    let rates = rates_in_loops(model, &z, rates, (&joints, bodies))
+    let rates = rates_in_loops(model, &z, rates, &joints, bodies)
         .map_err(|constraint| BoundaryError::OpenRates { place, constraint })?;
     Ok(Start::with_rates(model, z, &rates))
 }
@@ -111,7 +114,7 @@ pub(super) fn check_end(
 ) -> Result<(), BoundaryError> {
     let checked = |one: &Prescribed| {
         let values = [z[one.coordinate], one.motion.at(0.0)];
-        check(model, one, values, (place, "coordinate"))
+        check(model, one, values, place, "coordinate")
     };
     model.prescribed.iter().try_for_each(checked)
 }
@@ -165,7 +168,7 @@ pub(super) fn at_goal(
             continue;
         };
         if let Some(found) = given[one.coordinate] {
-            check(model, one, [found, value], ("goal", "coordinate"))?;
+            check(model, one, [found, value], "goal", "coordinate")?;
         }
         given[one.coordinate] = Some(value);
     }

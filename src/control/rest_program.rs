@@ -73,7 +73,7 @@ pub fn rest_programs<'m>(
         let limits = Limits {
             list: limits.collect(),
         };
-        let (program, point) = equations((model, limits), control, (z, voltages), h)?;
+        let (program, point) = equations(model, limits, control, z, voltages, h)?;
         // At the goal, what muscles remember may still relax.
         let is_free =
             |i: usize| end == 1 && model.is_memory(i) && !is_set_at(model, control, voltages, i);
@@ -105,9 +105,11 @@ pub fn rest_programs<'m>(
 
 /// The equations of an equilibrium near coordinates under voltages and its limits, with steps of `h` ms, and the point of these coordinates.
 fn equations<'m>(
-    (model, limits): (&'m Model, Limits),
+    model: &'m Model,
+    limits: Limits,
     control: &Control,
-    (z, voltages): (&[f64], &[f64]),
+    z: &[f64],
+    voltages: &[f64],
     h: f64,
 ) -> Result<(Transcription<'m>, StartingPoint), BoundaryError> {
     let inputs = Voltages::Constant(voltages.to_vec());

@@ -59,13 +59,14 @@ pub fn local_error(
     order: usize,
 ) -> Option<LocalError> {
     let motion = Trajectory::from_discrete(model, discrete);
-    local_error_of(model, (discrete, &motion), order)
+    local_error_of(model, discrete, &motion, order)
 }
 
 /// The same of a motion whose poses and markers are known.
 pub fn local_error_of(
     model: &Model,
-    (discrete, motion): (&DiscreteTrajectory, &Trajectory),
+    discrete: &DiscreteTrajectory,
+    motion: &Trajectory,
     order: usize,
 ) -> Option<LocalError> {
     let (steps, window) = (discrete.intervals(), order + 1);

@@ -33,7 +33,8 @@ pub fn rates_in_loops(
     model: &Model,
     z: &[f64],
     rates: Vec<f64>,
-    (joints, bodies): (&[(usize, f64)], &[usize]),
+    joints: &[(usize, f64)],
+    bodies: &[usize],
 ) -> Result<Vec<f64>, String> {
     let mut all = rates.iter().chain(joints.iter().map(|(_, rate)| rate));
     if !model.has_loops() || all.all(|rate| *rate == 0.0) {

@@ -23,14 +23,15 @@ pub(super) fn rates(
     time: f64,
     momentum: &[f64],
 ) -> Vec<f64> {
-    rates_by(model, instant, (time, momentum), DECOMPOSED)
+    rates_by(model, instant, time, momentum, DECOMPOSED)
 }
 
 /// The same, with a mass matrix that is decomposed up to a number of coordinates.
 fn rates_by(
     model: &Model,
     instant: &mut Configuration,
-    (time, momentum): (f64, &[f64]),
+    time: f64,
+    momentum: &[f64],
     decomposed: usize,
 ) -> Vec<f64> {
     if model.prescribed.is_empty() {
@@ -59,7 +60,7 @@ pub fn rates_of_momentum(model: &Model, z: &[f64], time: f64, momentum: &[f64]) 
     } else {
         0
     };
-    rates_by(model, &mut map.placed(z), (time, momentum), decomposed)
+    rates_by(model, &mut map.placed(z), time, momentum, decomposed)
 }
 
 /// The same where what is prescribed rests and has no momentum.

@@ -182,7 +182,7 @@ fn controlled(
             false => 0.0,
         };
         let allowed = [tolerance / duration, at_jump];
-        let step = match stepper.step_within([time, to], h, (LEAST * duration, allowed), drive) {
+        let step = match stepper.step_within([time, to], h, LEAST * duration, allowed, drive) {
             Ok(step) => step,
             Err(StepError::Stopped { .. }) => break,
             Err(error) => {
@@ -366,7 +366,8 @@ impl<E: Equations> Steps<E> {
         &mut self,
         [from, to]: [f64; 2],
         h: f64,
-        (least, allowed): (f64, [f64; 2]),
+        least: f64,
+        allowed: [f64; 2],
         drive: &dyn Drive,
     ) -> Result<Controlled, StepError> {
         self.allowed = Some(allowed);

@@ -28,7 +28,8 @@ impl<T: Number> Capacitance<T> {
     /// `(Q/(C E))²/I` of a charge Q and the voltage E that reaches a limit field at rest length.
     fn squared_field<const M: usize, const ORDER: usize>(
         &self,
-        (charge, voltage): (Jet<M, ORDER, T>, T),
+        charge: Jet<M, ORDER, T>,
+        voltage: T,
         p: &SVector<T, M>,
         w: &SVector<T, M>,
     ) -> Jet<M, ORDER, T> {
@@ -161,7 +162,7 @@ impl<T: Number> Energy<4, T> for GivenChargeField<T> {
 
     fn at<const ORDER: usize>(&self, p: &SVector<T, 4>, w: &SVector<T, 4>) -> Jet<4, ORDER, T> {
         let charge = Jet::argument(3, p, w);
-        self.capacitance.squared_field((charge, self.voltage), p, w)
+        self.capacitance.squared_field(charge, self.voltage, p, w)
     }
 }
 
@@ -183,6 +184,6 @@ impl<T: Number> Energy<6, T> for FlowingChargeField<T> {
             capacitance,
             voltage,
         } = self.field;
-        capacitance.squared_field((charge, voltage), p, w)
+        capacitance.squared_field(charge, voltage, p, w)
     }
 }

@@ -99,7 +99,8 @@ impl Columns {
     /// The same, where an empty cell is a gap.
     pub(crate) fn with_gaps<M: PhysicalQuantity>(
         &self,
-        (name, kind): (&str, &Kind),
+        name: &str,
+        kind: &Kind,
         scope: &Scope<'_>,
     ) -> Result<Vec<Option<Quantity<M>>>, SceneError> {
         let (at, unit) = self.place((name, kind), scope)?;

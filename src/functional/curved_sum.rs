@@ -50,7 +50,8 @@ impl CurvedSum {
     /// Adds the curvature times ∇m ∇mᵀ.
     fn add_square(
         &self,
-        (curvature, g): (f64, &Gradient),
+        curvature: f64,
+        g: &Gradient,
         sample: &Sample<'_>,
         slots: &[u32],
         out: &mut SumDerivatives,
@@ -159,7 +160,7 @@ impl Measure for CurvedSum {
             .for_each(|side| side.fill(Vector::zeros()));
         rows.fill(0.0);
         self.sum.gradient(sample, forces, rows);
-        self.add_square((outer.curvature, &g), sample, squares, out);
+        self.add_square(outer.curvature, &g, sample, squares, out);
     }
 }
 

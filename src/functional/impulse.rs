@@ -204,7 +204,8 @@ impl Impulse {
         &self,
         c: f64,
         from: &Blocks,
-        (slots, mask): (&mut impl Iterator<Item = usize>, &[bool; 4]),
+        slots: &mut impl Iterator<Item = usize>,
+        mask: &[bool; 4],
         to: &mut Blocks,
     ) {
         let side = self.side;
@@ -363,7 +364,7 @@ impl Measure for Impulse {
         for (from, slot) in own.blocks.scalars.iter().zip(&mut slots) {
             part.blocks.scalars[slot] += from * c;
         }
-        self.add_turned_blocks(c, &plain.blocks, (&mut slots, mask), &mut part.blocks);
+        self.add_turned_blocks(c, &plain.blocks, &mut slots, mask, &mut part.blocks);
         if let Some(((_, r, _), slot)) = self.span(sample).zip(slots.next()) {
             let m = self.product(&evaluation.along, &plain.forces);
             let across = Matrix::identity() - r * r.transpose() / r.norm_squared();

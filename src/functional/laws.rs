@@ -201,7 +201,8 @@ impl<L: Law<M>, const M: usize, const NV: usize, const NS: usize> Laws<L, M, NV,
     }
 
     fn of_element<'a, D: Derivatives>(
-        (element, values): (&'a LawElement<L, NV, NS>, &'a Values<f64>),
+        element: &'a LawElement<L, NV, NS>,
+        values: &'a Values<f64>,
         formula: D,
         by: &'a [ByParameter<NV, NS>],
     ) -> OfElement<'a, D, L, NV, NS> {
@@ -259,13 +260,13 @@ impl<L: Law<M>, const M: usize, const NV: usize, const NS: usize> Laws<L, M, NV,
         let both = [&mut by, &mut by_along];
         let at = (order, sample);
         let local = Self::evaluated::<ORDER>(element, at, S::OF_PARAMETERS, &values, both);
-        let plain = Self::of_element((element, &values), local.plain::<NV>(), &by);
+        let plain = Self::of_element(element, &values, local.plain::<NV>(), &by);
         if const { ORDER == 1 } {
             return to.plain(&Gradient(&plain));
         }
         to.plain(&plain);
         if const { ORDER == 3 } {
-            let along = Self::of_element((element, &values), local.along::<NV>(), &by_along);
+            let along = Self::of_element(element, &values, local.along::<NV>(), &by_along);
             to.along(&plain, &along);
         } else if const { ORDER == 2 && Self::VIRTUAL > 0 } && order == Order::Third {
             // At δx = w the virtual work itself is the contraction with the costates.

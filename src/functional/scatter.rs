@@ -66,7 +66,7 @@ impl<'a, K: Kernel> Places<'a, K> {
         part: &mut SumDerivatives,
     ) {
         if let Some(nodes) = &mut part.nodes {
-            return self.at_nodes(c, (rows, columns), d, nodes);
+            return self.at_nodes(c, rows, columns, d, nodes);
         }
         self.blocks(c, (rows.clone(), columns), d, part);
         let vectors = K::vectors(self.element);
@@ -100,7 +100,7 @@ impl<'a, K: Kernel> Places<'a, K> {
                     for l in 0..K::READINGS {
                         let (i, j) = (k * vectors + a, l * vectors + b);
                         if rows.contains(&i) && columns.contains(&j) && K::couples(i, j) {
-                            self.add_block(c, (i, j), &d.block(i, j), &mut sums);
+                            self.add_block(c, i, j, &d.block(i, j), &mut sums);
                         }
                     }
                 }
@@ -120,7 +120,7 @@ impl<'a, K: Kernel> Places<'a, K> {
 
     /// Adds c times the block of two arguments to the sums of the sides: rows of the instant `side / 2`, columns of `side % 2`.
     #[inline(always)]
-    fn add_block(&self, c: f64, (i, j): (usize, usize), block: &Matrix, sums: &mut [Matrix; 4]) {
+    fn add_block(&self, c: f64, i: usize, j: usize, block: &Matrix, sums: &mut [Matrix; 4]) {
         let weights = |i: usize| K::vector(self.element, i).stencil.weights(self.h);
         let (wi, wj) = (weights(i), weights(j));
         for (side, sum) in sums.iter_mut().enumerate() {
@@ -166,7 +166,8 @@ impl<'a, K: Kernel> Places<'a, K> {
     fn at_nodes<D: Derivatives>(
         &self,
         c: f64,
-        (rows, columns): (Range<usize>, Range<usize>),
+        rows: Range<usize>,
+        columns: Range<usize>,
         d: &D,
         nodes: &mut NodeBlocks,
     ) {

@@ -123,7 +123,7 @@ impl Information {
         };
         let wide = (0..constants).map(|k| (k, deviation(k)));
         let wide = wide.filter(|(_, deviation)| factor * deviation >= 1.0);
-        let undetermined = combinations(&directions, wide, (&is_determined, &relative));
+        let undetermined = combinations(&directions, wide, &is_determined, &relative);
         let mut out = Self {
             covariance: DMatrix::from_fn(constants, constants, covariance),
             is_determined,
@@ -257,7 +257,8 @@ fn by_others(covariance: &DMatrix<f64>, open: &[usize]) -> Vec<bool> {
 fn combinations(
     directions: &DMatrix<f64>,
     wide: impl Iterator<Item = (usize, f64)>,
-    (is_determined, covariance): (&[bool], &DMatrix<f64>),
+    is_determined: &[bool],
+    covariance: &DMatrix<f64>,
 ) -> Vec<Undetermined> {
     let mut out: Vec<Undetermined> = Vec::new();
     for (k, deviation) in wide {

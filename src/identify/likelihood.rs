@@ -59,7 +59,7 @@ impl Rises {
             let change = end(&jacobian, found, j) * half;
             let foretold = (&jacobian * &change).norm_squared();
             out.push([-1.0, 1.0].map(|side| {
-                let part = inside(task, estimate, (&change, side));
+                let part = inside(task, estimate, &change, side);
                 let moved = estimate.iter().zip(change.iter());
                 let moved: Vec<f64> = moved.map(|(x, d)| x + side * part * d).collect();
                 (part >= INSIDE).then(|| match predicted(&moved) {
@@ -110,7 +110,7 @@ fn end(jacobian: &DMatrix<f64>, found: &Fit, j: usize) -> DVector<f64> {
 }
 
 /// Greatest part of a change, at most all of it, by which constants stay within their bounds.
-fn inside(task: &Identification, values: &[f64], (change, side): (&DVector<f64>, f64)) -> f64 {
+fn inside(task: &Identification, values: &[f64], change: &DVector<f64>, side: f64) -> f64 {
     let pairs = task.parameters.iter().zip(values).zip(change.iter());
     let parts = pairs.map(|((parameter, value), by)| {
         let by = side * by;

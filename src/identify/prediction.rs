@@ -146,7 +146,8 @@ pub(super) fn count_of_start(
 
 /// The prediction of one recording, extrapolated.
 fn of_recording(
-    (system, task): (&System, &Identification),
+    system: &System,
+    task: &Identification,
     recording: &Recording,
     point: Point<'_>,
     intervals: usize,
@@ -178,7 +179,7 @@ pub fn predict(
             start: unknowns.of_start(r),
         };
         let recording = &task.recordings[r];
-        of_recording((system, task), recording, point, grid.intervals[r])
+        of_recording(system, task, recording, point, grid.intervals[r])
     };
     let parts: Vec<_> = match which.len() > 1 && cores() > 1 && has_pool() {
         true => which.par_iter().map(of).collect(),

@@ -166,7 +166,7 @@ impl Course<'_> {
                 ..Sample::of_instant(&here[0].x, scalars)
             };
             let mut row = RowDVector::zeros(columns);
-            self.differentiate(measure, (&sample, here), k, (&mut scratch, &mut row));
+            self.differentiate(measure, &sample, here, k, &mut scratch, &mut row);
             (measure.value(&sample), row)
         };
         (0..count).map(of).unzip()
@@ -176,9 +176,11 @@ impl Course<'_> {
     fn differentiate(
         &self,
         measure: &dyn Measure,
-        (sample, here): (&Sample<'_>, [&Configuration; 2]),
+        sample: &Sample<'_>,
+        here: [&Configuration; 2],
         k: usize,
-        (scratch, out): (&mut Scratch, &mut RowDVector<f64>),
+        scratch: &mut Scratch,
+        out: &mut RowDVector<f64>,
     ) {
         let map = &self.model.action.map;
         let part = &mut scratch.part;

@@ -112,7 +112,7 @@ pub fn identify(
         .filter(|&r| !task.recordings[r].is_held_out)
         .collect();
     let unknowns = begin(system, task, &fitted)?;
-    let (found, information, grids, bias) = refined((system, task), &fitted, unknowns, told)?;
+    let (found, information, grids, bias) = refined(system, task, &fitted, unknowns, told)?;
     let grid = grids.last().expect("the first one").clone();
     let coarser = &grids[grids.len().saturating_sub(1 + COARSER)];
     let rises = Rises::new((system, task), &fitted, (&found, &information), coarser)?;
@@ -275,7 +275,8 @@ fn begin(
 
 /// Fits on grids of halved steps, which are told, until constants change by less than a tenth of their standard errors.
 fn refined(
-    (system, task): (&System, &Identification),
+    system: &System,
+    task: &Identification,
     fitted: &[usize],
     unknowns: Unknowns,
     told: &mut dyn FnMut(&Fit, &Grid),
@@ -319,7 +320,7 @@ fn refined(
             ..before.clone()
         };
         let known = Information::of_fit(task, &alike);
-        bias.compare((&before, &known), (&found, &information));
+        bias.compare(&before, &known, &found, &information);
     }
     Ok((found, information, grids, bias))
 }
@@ -327,8 +328,10 @@ fn refined(
 impl Bias {
     fn compare(
         &mut self,
-        (before, known): (&Fit, &Information),
-        (after, information): (&Fit, &Information),
+        before: &Fit,
+        known: &Information,
+        after: &Fit,
+        information: &Information,
     ) {
         self.errors = 0.0;
         let mut is_none = information.is_determined.contains(&true);

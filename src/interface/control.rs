@@ -288,9 +288,9 @@ impl Control {
         let found = || format!("weights {weights:?} of effort, rate, time and peak");
         require(holds, "control", found, "weights of which one is positive")?;
         let is_periodic = self.goal == State::Periodic;
-        check_costs((costs, is_periodic), system)?;
+        check_costs(costs, is_periodic, system)?;
         check_energies(energies, system)?;
-        check_waypoints((&self.waypoints, is_periodic), system)?;
+        check_waypoints(&self.waypoints, is_periodic, system)?;
         check_limits(&self.limits, system)?;
         let control = problem::Control {
             duration: self.duration,

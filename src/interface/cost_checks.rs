@@ -7,7 +7,8 @@ use crate::model::{System, What};
 
 /// Refuses costs of parts that the system does not have, and weights and functions of time that are not finite.
 pub(super) fn check_costs(
-    (costs, is_periodic): (&[QuantityCost], bool),
+    costs: &[QuantityCost],
+    is_periodic: bool,
     system: &System,
 ) -> Result<()> {
     for cost in costs {
@@ -60,7 +61,8 @@ pub(super) fn check_limits(limits: &[Limit], system: &System) -> Result<()> {
 
 /// Refuses waypoints of parts that the system does not have, and those that are not on the way.
 pub(super) fn check_waypoints(
-    (waypoints, is_periodic): (&[Waypoint], bool),
+    waypoints: &[Waypoint],
+    is_periodic: bool,
     system: &System,
 ) -> Result<()> {
     for waypoint in waypoints {

@@ -68,7 +68,7 @@ impl Control {
         along: Vector,
         range: RangeInclusive<f64>,
     ) -> Self {
-        self.transmits_within((joint, Reaction::Force), along, range)
+        self.transmits_within(joint, Reaction::Force, along, range)
     }
 
     /// Range in N mm of the component, along a unit vector of the ground frame, of the torque from the parent of a joint on its child about the
@@ -79,12 +79,13 @@ impl Control {
         along: Vector,
         range: RangeInclusive<f64>,
     ) -> Self {
-        self.transmits_within((joint, Reaction::Torque), along, range)
+        self.transmits_within(joint, Reaction::Torque, along, range)
     }
 
     fn transmits_within(
         self,
-        (joint, of): (Handle<Joint>, Reaction),
+        joint: Handle<Joint>,
+        of: Reaction,
         along: Vector,
         range: RangeInclusive<f64>,
     ) -> Self {

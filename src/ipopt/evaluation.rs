@@ -169,7 +169,7 @@ impl<'a> Evaluator<'a> {
         let squares = self.asked.squares;
         let x = squares.point(&self.record.derivatives_at, now);
         let before = squares.point(&self.record.latest, before);
-        let before = Before::from_record(self.record, before, (bounds, squares), self.asked.scale);
+        let before = Before::from_record(self.record, before, bounds, squares, self.asked.scale);
         let reached = Reached { x, before };
         let verdict = timed(&mut seconds, || (self.asked.observer)(iteration, &reached));
         let record = &mut *self.record;

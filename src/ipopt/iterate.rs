@@ -33,7 +33,8 @@ impl<'a> Before<'a> {
     pub(super) fn from_record(
         record: &'a Record,
         x: &'a [f64],
-        (bounds, squares): (&'a Bounds, &'a Squares),
+        bounds: &'a Bounds,
+        squares: &'a Squares,
         scale: f64,
     ) -> Option<Self> {
         let report = record.iterations.last()?;

@@ -33,7 +33,7 @@ pub(super) fn centre(
     scale: f64,
     (x, costates): (&mut [f64], &mut Multipliers),
 ) {
-    let (slope, curvature) = slopes(nlp, structures, scale, (x, &costates.constraints));
+    let (slope, curvature) = slopes(nlp, structures, scale, x, &costates.constraints);
     let is_known = |list: &[f64]| list.iter().all(|v| v.is_finite());
     if !is_known(&slope) || !is_known(&curvature) {
         return;
@@ -95,7 +95,8 @@ fn slopes(
     nlp: &mut dyn Nlp,
     structures: &Structures,
     scale: f64,
-    (x, y): (&[f64], &[f64]),
+    x: &[f64],
+    y: &[f64],
 ) -> (Vec<f64>, Vec<f64>) {
     let Structures { jacobian, hessian } = structures;
     let mut slope = vec![0.0; x.len()];

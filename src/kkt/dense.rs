@@ -89,7 +89,7 @@ impl Dense<'_> {
             if s != 0.0 || t != 0.0 {
                 let from = j / GROUP * GROUP;
                 let target = &mut right[(j - q - 2) * stride + from..(j - q - 1) * stride];
-                subtract_two(unit, target, (&first[from..], s), (&second[from..], t));
+                subtract_two(unit, target, &first[from..], s, &second[from..], t);
             }
         }
         let rows = q + 2..self.order;

@@ -26,12 +26,7 @@ pub(super) fn subtract<S: Simd>(unit: S, y: &mut [f64], x: &[f64], s: f64) {
 
 /// `y ← y − s x − t z`.
 #[inline(always)]
-pub(super) fn subtract_two<S: Simd>(
-    unit: S,
-    y: &mut [f64],
-    (x, s): (&[f64], f64),
-    (z, t): (&[f64], f64),
-) {
+pub(super) fn subtract_two<S: Simd>(unit: S, y: &mut [f64], x: &[f64], s: f64, z: &[f64], t: f64) {
     let factors = [unit.splat_f64s(-s), unit.splat_f64s(-t)];
     let (ys, y) = S::as_mut_simd_f64s(y);
     let ((xs, x), (zs, z)) = (S::as_simd_f64s(x), S::as_simd_f64s(z));

@@ -49,14 +49,15 @@ impl Solids {
         }
         for (block, constant) in sought {
             let its = |block: &SolidBlock, e: usize| (of(block, e) == constant).then_some(1.0);
-            self.add_sought_inertia((&block.solid.name, constant), &its, terms);
+            self.add_sought_inertia(&block.solid.name, constant, &its, terms);
         }
     }
 
     /// Masses and weights of the elements that have a sought density, from those of the density one.
     fn add_sought_inertia(
         &self,
-        (name, constant): (&str, Constant),
+        name: &str,
+        constant: Constant,
         one: Density<'_>,
         terms: &mut Terms<'_>,
     ) {

@@ -57,9 +57,9 @@ impl Solids {
     fn add_elements(&self, terms: &mut Terms<'_>) {
         for (c, e) in self.elements() {
             match c.isochoric(e) {
-                None => add_element(c, e, (NeoHooke, NEO_HOOKEAN), terms),
+                None => add_element(c, e, NeoHooke, NEO_HOOKEAN, terms),
                 Some(law) => {
-                    add_element(c, e, (law, GENERAL), terms);
+                    add_element(c, e, law, GENERAL, terms);
                     for term in NEO_HOOKEAN {
                         terms.without(term, "every elastic block names a law of elasticity");
                     }
@@ -116,7 +116,8 @@ pub(super) fn add_times<Kind, E: OfKind + Member<Kind>>(
 fn add_element<L: ElementLaw>(
     c: &SolidBlock,
     e: usize,
-    (law, names): (L, [&'static str; 2]),
+    law: L,
+    names: [&'static str; 2],
     terms: &mut Terms<'_>,
 ) {
     match (c.is_dielectric[e], c.material(e).electric) {

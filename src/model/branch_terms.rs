@@ -24,7 +24,7 @@ impl Solids {
         for (b, c, e) in self.numbered() {
             for (branch, constants) in c.material(e).maxwell.list().iter().enumerate() {
                 if let Some(strains) = internals.strains(b, e, branch) {
-                    add_branch((c, e, branch), constants, strains, terms);
+                    add_branch(c, e, branch, constants, strains, terms);
                 } else if terms.is_instantaneous() {
                     let shape = Arc::new(c.reference_shape(e));
                     let element = |shear_modulus| FiniteElement {
@@ -56,7 +56,9 @@ impl Solids {
 
 /// One branch of an element: its spring, and the damper of each Gauss point.
 fn add_branch(
-    (c, e, branch): (&SolidBlock, usize, usize),
+    c: &SolidBlock,
+    e: usize,
+    branch: usize,
     &MaxwellBranch {
         shear_modulus,
         relaxation_time,

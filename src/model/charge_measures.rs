@@ -56,7 +56,7 @@ impl Known<'_> {
             What::ElectrodeVoltage(source) => return self.across(source, shape, vectors),
             What::Current(source) => {
                 if let Some(of) = self.electrodes(source) {
-                    return self.electrode_current((of, unit), shape);
+                    return self.electrode_current(of, unit, shape);
                 }
                 let (of, current, read, voltage) = self.source_current(source, unit, vectors)?;
                 shape.law(of.element(current, read, [voltage]))
@@ -125,7 +125,8 @@ impl Known<'_> {
     /// Current of the source of electrodes behind a resistor in a unit.
     fn electrode_current(
         &self,
-        (of, unit): (&ElectrodeCircuit, f64),
+        of: &ElectrodeCircuit,
+        unit: f64,
         shape: Shape,
     ) -> Option<Box<dyn Measure>> {
         let mut read = self.sought.read();

@@ -136,7 +136,7 @@ impl Known<'_> {
                 let scalars = [self.variables.input(source)?, self.parameter(parameter)?];
                 interval::<_, 2, 0, 2>(shape, PeakExcess { unit }, [], scalars)
             }
-            What::Amount { .. } => return amount_measure(quantity, (self.system, &self.sought)),
+            What::Amount { .. } => return amount_measure(quantity, self.system, &self.sought),
             What::ChargedField(_)
             | What::Current(_)
             | What::Power(_)
@@ -159,7 +159,7 @@ impl Known<'_> {
                 element,
                 point,
             }) => {
-                return self.element_field(block, (element, point), (unit, at.stencil()), shape);
+                return self.element_field(block, element, point, unit, at.stencil(), shape);
             }
             What::Field(FieldPlace::Block { .. }) => return None,
         })
@@ -229,8 +229,10 @@ impl Known<'_> {
     fn element_field(
         &self,
         block: usize,
-        (element, point): (usize, Option<usize>),
-        (limit, at): (f64, Stencil),
+        element: usize,
+        point: Option<usize>,
+        limit: f64,
+        at: Stencil,
         shape: Shape,
     ) -> Option<Box<dyn Measure>> {
         let block = &self.blocks[block];
@@ -364,7 +366,8 @@ impl Law<0> for OfMuscle {
 /// The measure of an amount of muscles; none where no free parameter moves it.
 pub(super) fn amount_measure(
     quantity: &Quantity,
-    (system, sought): (&System, &Sought),
+    system: &System,
+    sought: &Sought,
 ) -> Option<Box<dyn Measure>> {
     let What::Amount { muscles, amount } = &quantity.what else {
         return None;

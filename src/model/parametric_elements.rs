@@ -127,7 +127,7 @@ impl ElementOf<'_> {
                 let (limits, read) = self.product(&[(OF_LAWS[0], limit)], terms);
                 match (read.scalars().first(), limits.into_iter().next()) {
                     (Some(&parameter), Some(limit)) => {
-                        self.add_varied(law, (limit, parameter), factor, terms);
+                        self.add_varied(law, limit, parameter, factor, terms);
                     }
                     _ => self.add(law, unit, factor, terms),
                 }
@@ -142,7 +142,8 @@ impl ElementOf<'_> {
     fn add_varied(
         self,
         law: IsochoricLaw,
-        (limit, parameter): (Polynomial, usize),
+        limit: Polynomial,
+        parameter: usize,
         factor: Factors,
         terms: &mut Terms<'_>,
     ) {

@@ -50,7 +50,7 @@ fn drifts(
 ) -> Vec<MaterialVector> {
     let mut drifts = vec![MaterialVector::default(); reference.len()];
     for &body in graph.free() {
-        let moved = of_centre(parameter, (system, presolved), body);
+        let moved = of_centre(parameter, system, presolved, body);
         drifts[body] = step(
             &MaterialVector::default(),
             [None, Some(body)],
@@ -83,11 +83,7 @@ fn step(
 }
 
 /// Motion of the centre of mass of a body that floats, the mean over those that are welded to it.
-fn of_centre(
-    parameter: &Parameter,
-    (system, presolved): (&System, &Presolved),
-    body: usize,
-) -> Vector {
+fn of_centre(parameter: &Parameter, system: &System, presolved: &Presolved, body: usize) -> Vector {
     let (mut moved, mut mass) = (Vector::zeros(), 0.0);
     for (b, place) in presolved.bodies.iter().enumerate() {
         let (BodyLocation::Body(to) | BodyLocation::Welded { to, .. }) = *place else {

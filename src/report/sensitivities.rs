@@ -109,11 +109,11 @@ pub fn svg(list: &[Sensitivity], origin: &Origin) -> Option<String> {
     let height = ROW * bars.len() as f64 + 6.0;
     let size = [left + FRAME + MARGIN[2], MARGIN[0] + height + MARGIN[1]];
     Some(canvas::svg(size, origin, |canvas| {
-        draw(canvas, &bars, (left, height));
+        draw(canvas, &bars, left, height);
     }))
 }
 
-fn draw(canvas: &Canvas<'_>, bars: &[Bar<'_>], (left, height): (f64, f64)) {
+fn draw(canvas: &Canvas<'_>, bars: &[Bar<'_>], left: f64, height: f64) {
     let axis = Axis::linear("change of the objective", Extent::Padded);
     let range = axis.range(bars.iter().flat_map(|bar| [-bar.change, bar.change]));
     let at = |value: f64| left + FRAME * (value - range[0]) / (range[1] - range[0]);

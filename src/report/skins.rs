@@ -98,7 +98,7 @@ impl Skins {
                 let block = &model.solids[b];
                 let vectors = nodes.iter().map(|&n| instant.x[block.vectors[n]]);
                 skin.places.push(vectors.collect());
-                skin.observe((model, b), nodes, &instant, scalars);
+                skin.observe(model, b, nodes, &instant, scalars);
                 let potentials = match skin.muscle {
                     Some(muscle) => {
                         let s = model.variables.input(muscle);
@@ -162,7 +162,8 @@ impl Skin {
     /// Adds fields and stresses of an instant at the nodes that the corners are.
     fn observe(
         &mut self,
-        (model, number): (&Model, usize),
+        model: &Model,
+        number: usize,
         nodes: &[usize],
         at: &Configuration,
         scalars: &[f64],

@@ -70,7 +70,7 @@ impl<'a> Directions<'a> {
         };
         Ok(Self {
             rests: [of(0)?, of(1)?],
-            weights: of_weights(opened, (held, point))?,
+            weights: of_weights(opened, held, point)?,
             opened,
             program,
             held,
@@ -290,7 +290,8 @@ impl<'a> Directions<'a> {
 /// Directions of weights: the objective is linear in them, and its derivative by one is that with this weight alone. One program is built for all.
 fn of_weights(
     opened: &Opened,
-    (held, point): (&Held, &[f64]),
+    held: &Held,
+    point: &[f64],
 ) -> Result<Vec<(WeightOf, Direction)>, NoSensitivity> {
     let weight = |one: &Varied| match one.of {
         VariedOf::Weight(weight) => Some(weight),

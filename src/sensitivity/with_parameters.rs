@@ -78,7 +78,7 @@ impl Opened {
             return Err(NoSensitivity::Refused(reason.to_owned()));
         }
         let solved = Outline::new(&model, &boundary, control);
-        let at = approached((&model, &boundary), control, motion)?;
+        let at = approached(&model, &boundary, control, motion)?;
         let counts = (model.coordinate_count(), model.action.map.unknowns());
         let mut control = eased(control, &boundary);
         let constants = control.varied.iter().filter_map(Varied::parameter).cloned();
@@ -179,7 +179,7 @@ impl Opened {
         }
         let mut places = all.rows.iter().enumerate();
         for (number, row) in rows.iter().enumerate() {
-            let is_row = |one: &Row| self.is_same_row((row, one), program);
+            let is_row = |one: &Row| self.is_same_row(row, one, program);
             let place = places.find(|(_, one)| is_row(one));
             let (place, _) = place.ok_or_else(|| self.unknown_row(row))?;
             out.held.constraints[place] = false;
@@ -206,7 +206,7 @@ impl Opened {
         }
     }
 
-    fn is_same_row(&self, (solved, opened): (&Row, &Row), program: &Transcription<'_>) -> bool {
+    fn is_same_row(&self, solved: &Row, opened: &Row, program: &Transcription<'_>) -> bool {
         match (*solved, *opened) {
             (Row::Interval { k, s }, Row::Interval { .. }) => {
                 let Column::Interval { k, s } = self.shifted(Column::Interval { k, s }) else {
@@ -250,7 +250,8 @@ fn missing() -> NoSensitivity {
 
 /// The optimum of the solved program: where its conditions hold with the bounds that the solution has reached.
 fn approached(
-    (model, boundary): (&Model, &BoundaryConditions),
+    model: &Model,
+    boundary: &BoundaryConditions,
     control: &Control,
     motion: &Solution,
 ) -> Result<Approached, NoSensitivity> {

@@ -93,7 +93,7 @@ impl SimulationResult {
         let ends = [task.start.voltages(), None];
         let outside = domain::records(&out_of_domain(model, discrete));
         let neglected =
-            local_error_of(model, (discrete, trajectory), order).map(|local| match self.stopped {
+            local_error_of(model, discrete, trajectory, order).map(|local| match self.stopped {
                 None => longer_steps::confirmed(&self.simulated, task, trajectory, local),
                 Some(_) => local,
             });

@@ -125,11 +125,11 @@ pub(crate) fn attempt_together(
         let own = part_of(&places, number, &solution, &mut part);
         let discrete = part.decode(&own.x);
         let costates = part.costates(&own.costates);
-        let found = final_motion(motion.model, motion.boundary, (&discrete, costates), &own);
+        let found = final_motion(motion.model, motion.boundary, &discrete, costates, &own);
         let point = FinalPoint::new(&mut part, &own, motion.model, motion.control);
         ends.push((own, discrete, found, point));
     }
-    let mut optima = verified_optima(asked, resolved, ends, (setup, carried))?;
+    let mut optima = verified_optima(asked, resolved, ends, setup, carried)?;
     for optimum in &mut optima {
         optimum.cut_short = cut_short;
     }
@@ -145,7 +145,8 @@ fn verified_optima(
     asked: &[MotionAsked<'_>],
     resolved: Vec<(Model, BoundaryConditions)>,
     ends: Vec<End>,
-    (setup, carried): (f64, Vec<Carried>),
+    setup: f64,
+    carried: Vec<Carried>,
 ) -> Result<Vec<Optimum>, WorkflowError> {
     let all = asked.iter().zip(resolved).zip(ends).zip(carried);
     let optima = all.map(|(((one, resolved), end), carried)| {
@@ -281,7 +282,8 @@ fn options(model: &Model, control: &Control, allowed: SolveLimits) -> Options {
 fn final_motion(
     model: &Model,
     boundary: &BoundaryConditions,
-    (discrete, costates): (&DiscreteTrajectory, Costates),
+    discrete: &DiscreteTrajectory,
+    costates: Costates,
     solution: &SolverResult,
 ) -> Solution {
     let motion = solved(model, discrete, Some(costates));
@@ -383,7 +385,7 @@ impl Verification {
         phase("simulating under the optimal inputs");
         let began = Instant::now();
         let tolerance = control.solver.tolerance;
-        let resimulation = resimulate((model, control), &boundary.start, motion, tolerance);
+        let resimulation = resimulate(model, control, &boundary.start, motion, tolerance);
         Self {
             reversed,
             resimulation: Some(resimulation),

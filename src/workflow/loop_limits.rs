@@ -68,7 +68,7 @@ impl LoopLimits {
             return Ok(None);
         }
         let analysis = task.analysis(system, grid(task).1);
-        let found = limits_along((&of.system, limits), (system, analysis), motion);
+        let found = limits_along(&of.system, limits, system, analysis, motion);
         let found = found.map_err(|error| WorkflowError::boundary("simulate", &error.into()))?;
         Ok(Some(Self::of(found, SLIGHT)))
     }
@@ -85,7 +85,7 @@ impl LoopLimits {
             curved: BTreeSet::new(),
             ..optimum.model.analysis.clone()
         };
-        let found = limits_along((system, &control.limits), (system, analysis), motion);
+        let found = limits_along(system, &control.limits, system, analysis, motion);
         found.ok().map(|found| Self::of(found, BETWEEN))
     }
 

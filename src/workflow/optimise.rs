@@ -35,10 +35,6 @@ pub fn optimise(
         ..allowed
     };
     Ok(second_starts(
-        system,
-        control,
-        (first, earlier),
-        left,
-        observer,
+        system, control, first, earlier, left, observer,
     ))
 }

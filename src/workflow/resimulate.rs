@@ -92,7 +92,8 @@ fn open(model: &Model, optimal: &Solution, tolerance: f64) -> Option<Cause> {
 
 /// Simulates optimal voltages; what the solver of a `tolerance` leaves of its equations is no deviation.
 pub(crate) fn resimulate(
-    (model, control): (&Model, &Control),
+    model: &Model,
+    control: &Control,
     start: &Start,
     optimal: &Solution,
     tolerance: f64,
@@ -120,7 +121,7 @@ pub(crate) fn resimulate(
         true => own.greatest().over(path_length, model),
         false => 0.0_f64,
     };
-    if !out.refine((model, control), start, optimal, least) {
+    if !out.refine(model, control, start, optimal, least) {
         return out;
     }
     let last = own.discrete.z.len() - 1;
@@ -138,7 +139,8 @@ impl Resimulation {
     /// no step resolves may lie near by chance once. Returns true if no simulation ended early.
     fn refine(
         &mut self,
-        (model, control): (&Model, &Control),
+        model: &Model,
+        control: &Control,
         start: &Start,
         optimal: &Solution,
         least: f64,

@@ -25,7 +25,8 @@ const SLOW: &str = "a slow motion";
 pub(crate) fn second_starts(
     system: &System,
     control: &Control,
-    (first, earlier): (Optimum, Option<&Solution>),
+    first: Optimum,
+    earlier: Option<&Solution>,
     allowed: SolveLimits,
     observer: &mut dyn FnMut(&Iterate<'_>) -> ControlFlow<()>,
 ) -> Optimum {
@@ -35,7 +36,7 @@ pub(crate) fn second_starts(
         allowed,
         began: Instant::now(),
     };
-    let mut found = others(&further, (first, earlier), observer);
+    let mut found = others(&further, first, earlier, observer);
     if !found.meets_equations() {
         found = advised(&further, found, observer);
     }
@@ -48,7 +49,8 @@ pub(crate) fn second_starts(
 /// Solves from the shortest motion, and from a displaced guess.
 fn others(
     further: &Further<'_>,
-    (mut found, earlier): (Optimum, Option<&Solution>),
+    mut found: Optimum,
+    earlier: Option<&Solution>,
     observer: &mut dyn FnMut(&Iterate<'_>) -> ControlFlow<()>,
 ) -> Optimum {
     let control = further.control;

@@ -113,7 +113,7 @@ pub(crate) fn shortest(
     let starts = [(freed, earlier, iterations)].into_iter().chain(displaced);
     let mut said = Shortest::Unknown;
     for (problem, earlier, iterations) in starts {
-        let Some(found) = solved(further, first, (&problem, earlier), iterations) else {
+        let Some(found) = solved(further, first, &problem, earlier, iterations) else {
             break;
         };
         said = outcome(&found, given);
@@ -139,7 +139,7 @@ pub(crate) fn slow(
     if !fits(&problem) {
         return None;
     }
-    let found = solved(further, first, (&problem, None), ITERATIONS)?;
+    let found = solved(further, first, &problem, None, ITERATIONS)?;
     let said = outcome(&found, given);
     let is_start = is_as_given(&found, given);
     let is_told = matches!(said, Shortest::AsGiven | Shortest::Longer(_));
@@ -155,7 +155,8 @@ fn iterations(first: &Optimum) -> usize {
 fn solved(
     further: &Further<'_>,
     first: &mut Optimum,
-    (problem, earlier): (&Control, Option<&Solution>),
+    problem: &Control,
+    earlier: Option<&Solution>,
     iterations: usize,
 ) -> Option<Optimum> {
     if further.is_over() {

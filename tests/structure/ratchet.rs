@@ -5,24 +5,24 @@ use std::collections::BTreeMap;
 
 /// Most lines, by fifties, and most files of each folder of `src`; the first is what lies above all folders.
 const SIZES: [(&str, usize, usize); 26] = [
-    (".", 1400, 8),
+    (".", 1450, 8),
     ("app", 9600, 55),
     ("control", 10150, 57),
     ("coordinates", 3500, 19),
     ("dynamics", 11100, 51),
     ("element", 3600, 18),
-    ("energy", 2200, 16),
+    ("energy", 2150, 16),
     ("feedback", 850, 5),
-    ("files", 20250, 105),
+    ("files", 19200, 105),
     ("functional", 5700, 26),
     ("identify", 3350, 17),
-    ("interface", 2950, 17),
+    ("interface", 2900, 17),
     ("ipopt", 2950, 15),
     ("kinematics", 250, 2),
     ("kkt", 4900, 23),
-    ("math", 1350, 8),
+    ("math", 1500, 9),
     ("mesh", 1750, 14),
-    ("model", 13850, 67),
+    ("model", 13950, 67),
     ("nlp", 1900, 10),
     ("report", 6800, 43),
     ("sensitivity", 2650, 13),
@@ -33,7 +33,7 @@ const SIZES: [(&str, usize, usize); 26] = [
     ("workflow", 12700, 61),
 ];
 /// Most patterns of tuples with a type, such as `(a, b): (A, B)`, which should be structures with names.
-const TUPLES: usize = 447;
+const TUPLES: usize = 352;
 
 /// The number of patterns of tuples that have a type.
 fn tuples(text: &str) -> usize {

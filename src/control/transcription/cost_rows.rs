@@ -66,7 +66,8 @@ pub(super) struct Summand {
 /// `limits` limits and goals.
 pub(super) fn cost_rows(
     model: &Model,
-    (costs, energies): (&[QuantityCost], &[EnergyCost]),
+    costs: &[QuantityCost],
+    energies: &[EnergyCost],
     limits: usize,
     intervals: usize,
 ) -> Vec<CostRow> {

@@ -87,7 +87,7 @@ pub(super) fn limit_rows(
         let scalars = model.variables.of(Time::Interval);
         let is_input = |&s: &usize| scalars[s].role != Role::Parameter;
         let reads_inputs = reads.scalars().iter().any(is_input);
-        let single = sites((bounded.when, site), span, reads_inputs);
+        let single = sites(bounded.when, site, span, reads_inputs);
         let mut at = match &step {
             Some(step) => {
                 let is_given = |&i: &usize| unknowns.unknown(span.intervals, i).is_none();
@@ -194,7 +194,7 @@ fn entries(
 }
 
 /// Instants or intervals at which a quantity is bounded.
-fn sites((when, site): (When, Site), span: Span, reads_inputs: bool) -> Range<usize> {
+fn sites(when: When, site: Site, span: Span, reads_inputs: bool) -> Range<usize> {
     let Span {
         end,
         intervals,

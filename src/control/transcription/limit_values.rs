@@ -65,8 +65,8 @@ impl<'m> Transcription<'m> {
             let (limit, k) = self.layout.limit_rows[row];
             let is_step = self.layout.limits[limit].step.is_some();
             match is_step {
-                true => self.step_gradient(limit, (k, place), &mut part),
-                false => self.limit_gradient(limit, (k, place), &mut part),
+                true => self.step_gradient(limit, k, place, &mut part),
+                false => self.limit_gradient(limit, k, place, &mut part),
             }
             place += self.layout.limits[limit].entries.len();
         }
@@ -77,7 +77,8 @@ impl<'m> Transcription<'m> {
     fn limit_gradient(
         &mut self,
         limit: usize,
-        (k, mut place): (usize, usize),
+        k: usize,
+        mut place: usize,
         part: &mut SumDerivatives,
     ) {
         let map = &self.model.action.map;
@@ -118,7 +119,8 @@ impl<'m> Transcription<'m> {
     fn step_gradient(
         &mut self,
         limit: usize,
-        (k, place): (usize, usize),
+        k: usize,
+        place: usize,
         derivatives: &mut SumDerivatives,
     ) {
         let map = &self.model.action.map;

@@ -76,7 +76,8 @@ impl Objective {
             cost: Cost::new(objective, inputs.len(), layout.span(), ends),
             quantities: cost_rows(
                 model,
-                (paid, energies),
+                paid,
+                energies,
                 boundary.limits.quantities().len(),
                 layout.end,
             ),

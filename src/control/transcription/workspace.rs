@@ -54,7 +54,7 @@ impl Workspace {
         let map = &action.map;
         let scalars = given_scalars(model, control, layout);
         let scalar_count = model.variables.of(Time::Interval).len();
-        let inputs = input_values((model, control), &scalars, scalar_count, intervals);
+        let inputs = input_values(model, control, &scalars, scalar_count, intervals);
         let stride = map.unknowns() + scalar_count;
         let limits = layout.limit_rows.iter();
         let limit_entries: usize = limits.map(|&(l, _)| layout.limits[l].entries.len()).sum();
@@ -119,7 +119,8 @@ fn given_scalars(model: &Model, control: &Control, layout: &Layout) -> Vec<f64> 
 
 /// Inputs of all intervals in kV, N and N m, from `count` scalars of each.
 fn input_values(
-    (model, control): (&Model, &Control),
+    model: &Model,
+    control: &Control,
     scalars: &[f64],
     count: usize,
     intervals: usize,

@@ -102,7 +102,7 @@ impl Pairs {
             let h = h.isotropic[pair.slot as usize][side];
             let hw = hw.isotropic[pair.slot as usize][side] * c;
             let at = pair.first[1];
-            two_isotropic(unit, (hw, b.of(at)), (h, bl.of(at)), image);
+            two_isotropic(unit, hw, b.of(at), h, bl.of(at), image);
         }
     }
 }
@@ -146,12 +146,7 @@ fn isotropic<S: Simd>(unit: S, (c, b): (f64, &[f64]), image: &mut [f64]) {
 
 /// c b + d e.
 #[inline(always)]
-fn two_isotropic<S: Simd>(
-    unit: S,
-    (c, b): (f64, &[f64]),
-    (d, e): (f64, &[f64]),
-    image: &mut [f64],
-) {
+fn two_isotropic<S: Simd>(unit: S, c: f64, b: &[f64], d: f64, e: &[f64], image: &mut [f64]) {
     let (c, d) = (unit.splat_f64s(c), unit.splat_f64s(d));
     let sums = S::as_mut_simd_f64s(image).0.iter_mut();
     for (sum, (&b, &e)) in sums.zip(simd::<S>(b).iter().zip(simd::<S>(e))) {

@@ -132,7 +132,7 @@ impl Measured {
     ) -> Result<Vec<Option<f64>>, SceneError> {
         let column = source
             .columns
-            .with_gaps::<MeasuredSize>((header, &self.kind), scope)?;
+            .with_gaps::<MeasuredSize>(header, &self.kind, scope)?;
         let value = |written: Option<Written<MeasuredSize>>| {
             let read = written.map(|written| written.value_as(&self.kind));
             let read = read.transpose();
@@ -150,7 +150,7 @@ fn weights(
 ) -> Result<Vec<Option<f64>>, SceneError> {
     let column = source
         .columns
-        .with_gaps::<Ratio>((header, &Ratio::kind()), scope)?;
+        .with_gaps::<Ratio>(header, &Ratio::kind(), scope)?;
     let deviation = |weight: Option<Written<Ratio>>| Some(weight?.value().sqrt().recip());
     Ok(column.into_iter().map(deviation).collect())
 }

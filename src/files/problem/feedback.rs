@@ -159,7 +159,7 @@ pub(crate) fn controller(
     };
     let path = match (&spec.feedback, &spec.horizon) {
         (Some(path), None) => path,
-        (None, Some(horizon)) => return planning((spec, horizon), step, scope),
+        (None, Some(horizon)) => return planning(spec, horizon, step, scope),
         (both, _) => {
             let found = if both.is_some() { "both" } else { "neither" };
             let found = format!("{found} of \"feedback\" and \"horizon\"");
@@ -222,7 +222,8 @@ fn noise(of: &NoiseSpec, place: &Scope<'_>) -> Result<Noise, SceneError> {
 
 /// A controller that plans anew in each interval of a problem, which is read later.
 fn planning(
-    (spec, horizon): (&ControllerSpec, &HorizonSpec),
+    spec: &ControllerSpec,
+    horizon: &HorizonSpec,
     step: f64,
     scope: &Scope<'_>,
 ) -> Result<FeedbackControl, SceneError> {

@@ -66,7 +66,7 @@ fn varied(
         let is_of_problem =
             matches!(place.0.first(), Some(Step::Key(key)) if OF_PROBLEM.contains(&&**key));
         out.push(match is_of_problem {
-            true => of_problem((path, &place), spec, (control, scene.system), &scope)?,
+            true => of_problem(path, &place, spec, control, scene.system, &scope)?,
             false => of_scene((path, &place), spec, scene, &scope)?,
         });
     }
@@ -212,9 +212,11 @@ impl Unit {
 
 /// A number of the problem.
 fn of_problem(
-    (path, place): (&str, &JsonPath),
+    path: &str,
+    place: &JsonPath,
     spec: &SensitivitySpec,
-    (control, system): (&Control, &System),
+    control: &Control,
+    system: &System,
     scope: &Scope<'_>,
 ) -> Result<Varied, SceneError> {
     if !spec.also.is_empty() {

@@ -177,7 +177,7 @@ impl WrittenScene<'_> {
         let followers = self.followers(&place, &changes, [lower, upper])?;
         let found =
             match self.are_polynomials(&place, &followers, lower + APART * (upper - lower))? {
-                true => in_own_units(followers, (lower, upper), self.system),
+                true => in_own_units(followers, lower, upper, self.system),
                 false => None,
             };
         found.ok_or_else(|| {
@@ -335,7 +335,8 @@ impl Change {
 /// is linear, or one misses its value in the scene.
 fn in_own_units(
     mut followers: Vec<(Follower, f64)>,
-    (lower, upper): (f64, f64),
+    lower: f64,
+    upper: f64,
     system: &System,
 ) -> Option<SceneConstant> {
     let is_itself = |one: &Follower| {

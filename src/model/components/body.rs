@@ -65,21 +65,22 @@ pub(in crate::model) fn build_sought(bodies: &[Body], terms: &mut Terms<'_>) {
         let still = terms.sought().read();
         let more = |read: &mut Read| Sought::new(b, body, read).mass;
         if !moved.is_empty() {
-            point_mass((body, &place), still, |_| (-body.mass).into(), terms);
+            point_mass(body, &place, still, |_| (-body.mass).into(), terms);
             let whole = |read: &mut Read| more(read).scaled(1.0, body.mass);
-            point_mass((body, &place), moved, whole, terms);
+            point_mass(body, &place, moved, whole, terms);
         } else if !more(&mut still.clone()).is_given() {
-            point_mass((body, &place), still, more, terms);
+            point_mass(body, &place, still, more, terms);
         }
         if terms.is_of_motion() {
-            turning((b, body), &place, terms);
+            turning(b, body, &place, terms);
         }
     }
 }
 
 /// Weight and kinetic energy of a mass at the centre of a body.
 fn point_mass(
-    (body, place): (&Body, &Attachment),
+    body: &Body,
+    place: &Attachment,
     read: Read,
     mass: impl Fn(&mut Read) -> Polynomial,
     terms: &mut Terms<'_>,
@@ -104,7 +105,7 @@ fn point_mass(
 }
 
 /// Kinetic energies of the directors of a body whose moments of inertia are free.
-fn turning((b, body): (usize, &Body), place: &Attachment, terms: &mut Terms<'_>) {
+fn turning(b: usize, body: &Body, place: &Attachment, terms: &mut Terms<'_>) {
     for i in 0..3 {
         let mut read = terms.sought().read();
         let Sought { euler, .. } = Sought::new(b, body, &mut read);

@@ -60,7 +60,7 @@ fn circuit(
     }
     if let (Some(circuit), Some(series)) = (&muscle.circuit, series) {
         let wires = Wires::new((index, series), circuit.leakage, unit);
-        add_circuit(&muscle.name, (charge, terms.input(index)), wires, terms);
+        add_circuit(&muscle.name, charge, terms.input(index), wires, terms);
     }
 }
 
@@ -149,7 +149,8 @@ impl Law<6> for Resistor {
 /// Adds source and resistor of a charge in its unit, from the scalar of the voltage of the source.
 pub(super) fn add_circuit(
     name: &str,
-    (charge, voltage): (usize, Option<usize>),
+    charge: usize,
+    voltage: Option<usize>,
     wires: Wires,
     terms: &mut Terms<'_>,
 ) {
@@ -170,7 +171,8 @@ pub(super) fn add_voltage(
     term: &'static str,
     name: &str,
     charge: usize,
-    (factor, voltage): (f64, usize),
+    factor: f64,
+    voltage: usize,
     terms: &mut Terms<'_>,
 ) {
     let element = Element {

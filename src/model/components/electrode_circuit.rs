@@ -22,16 +22,10 @@ pub(in crate::model) fn build(
         };
         let (charge, unit) = (terms.vector(charge), of.unit_of_charge);
         let (potential, volts) = of.potential;
-        add_voltage(
-            CHARGES,
-            &of.name,
-            charge,
-            (-(unit * volts), potential),
-            terms,
-        );
+        add_voltage(CHARGES, &of.name, charge, -(unit * volts), potential, terms);
         let series = of.circuit.resistance.unwrap_or(0.0);
         let wires = Wires::new((of.source, series), of.circuit.leakage, unit);
-        add_circuit(&of.name, (charge, Some(of.input)), wires, terms);
+        add_circuit(&of.name, charge, Some(of.input), wires, terms);
     }
     terms.without(
         CHARGES,

@@ -198,8 +198,8 @@ pub(in crate::model) fn tension(
 ) -> f64 {
     let mut of = MuscleConstants::given(muscle);
     let mut force = match muscle.material.law {
-        None => potential_force((muscle, NeoHooke), r, voltage),
-        Some(law) => potential_force((muscle, law.map(|_, &c| c.into())), r, voltage),
+        None => potential_force(muscle, NeoHooke, r, voltage),
+        Some(law) => potential_force(muscle, law.map(|_, &c| c.into()), r, voltage),
     };
     let branches = muscle.material.maxwell.list().iter().enumerate();
     for ((branch, constants), z) in branches.zip(viscous) {
@@ -217,7 +217,8 @@ pub(in crate::model) fn tension(
 
 /// Elastic force and that of a voltage, by a law of elasticity.
 fn potential_force<L: ElasticConstants>(
-    (muscle, law): (&Muscle, L),
+    muscle: &Muscle,
+    law: L,
     r: &Vector,
     voltage: Option<f64>,
 ) -> Vector {

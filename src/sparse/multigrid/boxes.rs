@@ -266,8 +266,8 @@ impl Operator for Parts {
             let of_part = &x[own.clone()];
             let (lower, upper) = product[own].split_at_mut(COMPONENTS * half);
             join(
-                || multiply_rows((rows, blocks), of_part, 0, lower),
-                || multiply_rows((rows, blocks), of_part, half, upper),
+                || multiply_rows(rows, blocks, of_part, 0, lower),
+                || multiply_rows(rows, blocks, of_part, half, upper),
             );
             self.volumes.apply(part, nodes.start, x, product);
         }
@@ -368,7 +368,8 @@ fn multiply(
 
 /// Writes the products of the rows of a mesh from one on.
 fn multiply_rows(
-    (rows, blocks): (&BlockRows, &[NodeBlock]),
+    rows: &BlockRows,
+    blocks: &[NodeBlock],
     x: &[f32],
     first: usize,
     product: &mut [f64],

@@ -28,8 +28,8 @@ pub(super) fn coarse_matrix(fine: &Level, coarse: &mut Level) {
     let (counts, free) = (coarse.counts, &coarse.free);
     let [below, above] = coarse.matrix.rows_mut().split_at(half, [OWN * half; 2]);
     join(
-        || rows(fine, axes, (counts, free), 0, below),
-        || rows(fine, axes, (counts, free), half, above),
+        || rows(fine, axes, counts, free, 0, below),
+        || rows(fine, axes, counts, free, half, above),
     );
     if let (Some(from), Some(to)) = (&fine.pressures, &mut coarse.pressures) {
         from.coarsen(axes, to);
@@ -41,7 +41,8 @@ pub(super) fn coarse_matrix(fine: &Level, coarse: &mut Level) {
 fn rows(
     fine: &Level,
     axes: &[Axis; 3],
-    (counts, free): ([usize; 3], &[u8]),
+    counts: [usize; 3],
+    free: &[u8],
     first: usize,
     matrix: Rows<'_>,
 ) {

@@ -204,10 +204,10 @@ impl Pressures {
 
     /// Adds −Bᵀ p to a field.
     pub(super) fn subtract_forces(&self, to: &mut Field) {
-        Self::subtract((&self.slopes, &self.corners), &self.p, to);
+        Self::subtract(&self.slopes, &self.corners, &self.p, to);
     }
 
-    fn subtract((slopes, corners): (&[Slopes], &[usize; CORNERS]), p: &Field<f32>, to: &mut Field) {
+    fn subtract(slopes: &[Slopes], corners: &[usize; CORNERS], p: &Field<f32>, to: &mut Field) {
         for (element, (slopes, p)) in slopes.iter().zip(p.nodes()).enumerate() {
             for (slopes, corner) in slopes.iter().zip(corners) {
                 let there = &mut to.values[to.margin + element + corner];
@@ -282,7 +282,7 @@ impl Pressures {
             *p += q;
         }
         forces.values.fill([0.0; COMPONENTS]);
-        Self::subtract((&self.slopes, &self.corners), &self.correction, forces);
+        Self::subtract(&self.slopes, &self.corners, &self.correction, forces);
         for ((x, force), block) in x.nodes_mut().iter_mut().zip(forces.nodes()).zip(blocks) {
             super::node_grid::add(x, block, force);
         }

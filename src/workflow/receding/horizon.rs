@@ -71,7 +71,7 @@ impl Horizon {
         if task.integral > 0.0 {
             return Err(NoHorizon::NotOffered(INTEGRAL));
         }
-        let found = predicting((model, control, task), discrete, momentum, rest);
+        let found = predicting(model, control, task, discrete, momentum, rest);
         let found = found.map_err(NoHorizon::Regulator)?;
         let not_held = || {
             let reason = found.not_held.clone();

@@ -43,7 +43,9 @@ pub fn regulator(
 /// # Errors
 /// There is none.
 pub(crate) fn predicting(
-    (model, control, task): (&Model, &Control, &Regulator),
+    model: &Model,
+    control: &Control,
+    task: &Regulator,
     discrete: &DiscreteTrajectory,
     momentum: &[f64],
     rest: Option<&[f64]>,
