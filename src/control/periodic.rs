@@ -11,7 +11,7 @@ use crate::control::problem::{BoundaryState, Control, Duration};
 use crate::math::Signal;
 use crate::model::{Model, joint_unit};
 
-/// Parts of a radian or of the length of the system by which a prescribed motion may miss its start, and of these in a ms its rate.
+/// Parts of a radian or of the length of the system by which a prescribed motion may miss its start, and by which its rate may over the duration.
 const SAME: f64 = 1e-9;
 
 /// Refuses what has no meaning of a motion without a start, or does not repeat.
@@ -57,7 +57,8 @@ pub(super) fn check(model: &Model, control: &Control) -> Result<(), BoundaryErro
             _ => 1.0,
         };
         let [first, last] = [0.0, end].map(|time| one.motion.derivatives(time));
-        let changes = first.iter().zip(last).take(2).map(|(a, b)| (a - b).abs());
+        let pairs = first.iter().zip(last).zip([1.0, end]);
+        let changes = pairs.map(|((a, b), per)| (a - b).abs() * per);
         if changes.fold(0.0, f64::max) > SAME * size {
             let name = &model.system.joints[one.joint].name;
             return refused(format!(

@@ -5,6 +5,7 @@ mod common;
 
 mod absent;
 mod circles;
+mod constants;
 mod coupled;
 mod documents;
 mod floors;

@@ -11,7 +11,7 @@ use crate::dynamics::solving::MultigridUse;
 use crate::model::{Floating, Model};
 use crate::stop;
 
-/// Part of a load that is tried first, in V² for voltages.
+/// Part of a load that is tried first; of squared voltages.
 const FIRST: f64 = 0.25;
 /// Largest part of a predicted change by which it may be corrected, and the longest correction.
 const BEND: f64 = 0.25;
