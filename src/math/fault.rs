@@ -1,4 +1,4 @@
-//! What a rule refuses: a place in a part, what was found there, and what is expected.
+//! Faults of parts: the place in the part, the value found there, and the expectation.
 
 use std::collections::HashSet;
 use std::fmt::Display;
@@ -10,7 +10,7 @@ pub struct Fault {
     pub at: String,
     /// Value at that place, where it is the mistake; a file has it as it is written.
     pub value: Option<String>,
-    /// What was found; behind a value what may be said of it, such as `, along the span`.
+    /// Description of the value; behind a value what may be said of it, such as `, along the span`.
     pub found: String,
     /// What is expected.
     pub expected: String,
@@ -54,7 +54,7 @@ impl Fault {
     }
 
     /// What was found, with the value as it is.
-    pub fn told(&self) -> String {
+    pub fn finding(&self) -> String {
         format!("{}{}", self.value.as_deref().unwrap_or(""), self.found)
     }
 

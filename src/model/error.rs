@@ -36,7 +36,7 @@ pub enum ModelError {
 
 /// A part of a system that makes no sense.
 #[derive(Clone, Debug, Error, PartialEq, Eq)]
-#[error("{list}.{}: found {}, expected {}", self.place(), fault.told(), fault.expected)]
+#[error("{list}.{}: found {}, expected {}", self.place(), fault.finding(), fault.expected)]
 pub struct SystemError {
     /// List of the system that has the part, such as `springs`.
     pub list: &'static str,

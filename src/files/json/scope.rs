@@ -70,9 +70,9 @@ impl<'a> Scope<'a> {
             .fold(self.place.clone(), |at, step| at.then(step.clone()));
         let value = serde_json::to_value(written).ok();
         let value = value.as_ref().and_then(|whole| entry(whole, steps.clone()));
-        let found = match (&fault.value, value.and_then(told)) {
+        let found = match (&fault.value, value.and_then(text)) {
             (Some(_), Some(value)) => format!("{value}{}", fault.found),
-            _ => fault.told(),
+            _ => fault.finding(),
         };
         let schema = schemars::schema_for!(S).to_value();
         let kind = kind(&schema, steps).filter(|_| fault.expects_quantity());
@@ -220,8 +220,8 @@ fn entry<'v, 's>(whole: &'v Value, mut steps: impl Iterator<Item = &'s Step>) ->
     })
 }
 
-/// A value as messages tell it: a number, a text or a list of numbers.
-fn told(value: &Value) -> Option<String> {
+/// A value in messages: a number, a text or a list of numbers.
+fn text(value: &Value) -> Option<String> {
     match value {
         Value::Number(number) => Some(number.as_f64()?.to_string()),
         Value::String(text) => Some(format!("{text:?}")),

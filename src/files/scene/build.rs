@@ -187,12 +187,14 @@ impl<'a> Lists<'a> {
     /// Checks the rules of a system.
     fn check(&self, system: &System) -> Result<(), SceneError> {
         system.check().map_err(|error| {
-            let part = self.place(error.list, error.index);
-            let part = match (error.list, part.last_key()) {
-                ("muscles", Some("chain")) => part.key("muscles"),
-                _ => part,
-            };
-            self.scope.refuse_in(self.scene, &part, &error.fault)
+            let (mut part, mut fault) = (self.place(error.list, error.index), error.fault);
+            match (error.list, part.last_key()) {
+                // A chain makes the names of its parts.
+                (_, Some("chain")) if fault.at == "name" => fault.at.clear(),
+                ("muscles", Some("chain")) => part = part.key("muscles"),
+                _ => {}
+            }
+            self.scope.refuse_in(self.scene, &part, &fault)
         })
     }
 }
