@@ -208,7 +208,7 @@ fn what_makes_no_sense_is_refused() {
 
     let mut wrong = trunk.clone();
     wrong.bodies[2].mass = 0.0;
-    assert!(told(simulate(&wrong)).contains("segment3: mass 0"));
+    assert!(told(simulate(&wrong)).contains("segment3.mass: found 0"));
     let mut wrong = trunk.clone();
     wrong.joints[1].child = 17;
     assert!(told(simulate(&wrong)).contains("joint2: body 17 of 6"));
