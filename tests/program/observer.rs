@@ -280,7 +280,7 @@ fn wrong_observers_are_refused() {
         ),
         (
             "{\"joints\":{\"joint1\":\"1 deg\"},\"lasting\":0.1}",
-            &["weights.integral", "lasting"],
+            &["weights.integral", "constant disturbances"],
         ),
     ] {
         let set = format!("feedback.observer={observer}");
