@@ -12,7 +12,7 @@ pub struct Fault {
     pub value: Option<String>,
     /// Description of the value; behind a value what may be said of it, such as `, along the span`.
     pub found: String,
-    /// What is expected.
+    /// Expectation in place of it.
     pub expected: String,
 }
 
