@@ -17,8 +17,10 @@ pub(super) fn check_costs(
             let muscle = system.muscles.get(source);
             muscle.is_some_and(Muscle::is_behind_resistor)
         };
+        // An impulse is bounded, not squared.
+        let is_rate = !quantity.is_step() || quantity.rate_factor(system).is_some();
         let is_single = quantity.before().is_none() && quantity.source().is_none_or(is_behind);
-        let exists = quantity.what.exists(system) && is_single;
+        let exists = quantity.what.exists(system) && is_single && is_rate;
         let is_followed = match &cost.function {
             CostFunction::Square { reference } => reference.is_sound(),
             CostFunction::Itself => true,

@@ -273,7 +273,6 @@ impl Quantity {
                 "mm" => 1.0,
                 _ => 1e3,
             }),
-            (What::Tension(_), Of::Step) => Some(1.0),
             _ => None,
         }
     }

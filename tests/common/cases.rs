@@ -14,13 +14,13 @@ use super::tracked::{energies, tracked};
 use super::trunk;
 use nalgebra::Vector3;
 use proboscis::control::problem::{
-    BoundaryState, Control, CostFunction, Duration, During, Guess, Limit, Objective, Orientation,
-    Place, QuantityCost, Rest, Solver, SoughtHold,
+    BoundaryState, Control, Duration, Guess, Limit, Objective, Orientation, Place, Rest, Solver,
+    SoughtHold,
 };
 use proboscis::math::Signal;
 use proboscis::model::Coordinates;
 use proboscis::model::system::{ElectricConstants, Material, System, VACUUM_PERMITTIVITY};
-use proboscis::model::{FieldPlace, Pulling, Quantity, What};
+use proboscis::model::{FieldPlace, Pulling, What};
 use std::collections::BTreeMap;
 
 /// A system and what is asked of it.
@@ -150,22 +150,6 @@ fn pulls() -> Vec<Limit> {
     ]
 }
 
-/// Costs of these tensions, along the motion and at its end.
-fn pulled() -> [QuantityCost; 2] {
-    let cost = |part, during| QuantityCost {
-        quantity: Quantity::tension(part),
-        weight: 0.3,
-        function: CostFunction::Square {
-            reference: 0.4.into(),
-        },
-        during,
-    };
-    [
-        cost(Pulling::Spring(0), During::Motion),
-        cost(Pulling::Tendon(0), During::End),
-    ]
-}
-
 /// The list.
 pub fn cases() -> Vec<Case> {
     let case = |name, system: System, change: &dyn Fn(&mut Control)| {
@@ -253,7 +237,6 @@ pub fn cases() -> Vec<Case> {
         case("springs and a tendon, tensions", tied(trunk(2)), &|c| {
             c.limits = pulls();
             c.objective = every_objective();
-            c.objective.quantities.extend(pulled());
         }),
         case(
             "springs and a tendon, tensions, free time",
@@ -261,7 +244,6 @@ pub fn cases() -> Vec<Case> {
             &|c| {
                 c.limits = pulls();
                 c.objective = every_objective();
-                c.objective.quantities.extend(pulled());
                 c.duration = free;
             },
         ),

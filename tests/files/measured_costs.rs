@@ -49,7 +49,7 @@ fn measured_costs_that_make_no_sense_are_refused() {
         ("\"muscle\": \"muscle1\"", "\"muscle\": \"muscle9\"", "control.objective.track[0].tension.muscle", "\"muscle9\"", "the name of a muscle", "\"muscle9\""),
         ("\"2 N\"", "\"2 kPa\"", "control.objective.track[0].tension.at", "which is a stress", "a force", "2 kPa"),
         ("\"2 N\"", "1, \"weight\": 0", "control.objective.track[0].tension.weight", "0", "a positive weight", "0"),
-        ("\"muscle\": \"muscle1\", ", "", "control.objective.track[0].tension", "none of them", "exactly one of \"muscle\", \"muscles\", \"spring\", \"tendon\"", "{ \"at\""),
+        ("\"muscle\": \"muscle1\", ", "", "control.objective.track[0].tension", "none of them", "exactly one of \"muscle\", \"muscles\"", "{ \"at\""),
         (whole, "\"current\": { \"source\": \"muscle1\" }", "control.objective.track[0].current.source", "\"muscle1\", without a resistor", "a muscle with a \"resistance\"", "\"muscle1\""),
         (whole, "\"electric_field\": { \"muscle\": \"muscle2\" }", "control.objective.track[0].electric_field.muscle", "\"muscle2\", whose material has no electric term", "a muscle of", "\"muscle2\""),
         (whole, "\"joint_rate\": { \"joint\": \"joint2\", \"at\": \"3 deg/s\" }", "control.objective.track[0].joint_rate.at", "which is an angular velocity", "a velocity", "3 deg/s"),

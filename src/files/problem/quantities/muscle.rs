@@ -124,7 +124,7 @@ amount_limits! {
     MuscleMassLimitSpec: Mass, "kg";
 }
 
-/// The tension of one lumped muscle (`"muscle": name`), of each (`"muscles": "all"`), of a spring or of a tendon, in the intervals.
+/// The tension of one lumped muscle (`"muscle": name`) or of each (`"muscles": "all"`), in the middle of the intervals.
 #[derive(Clone, Debug, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct TensionCostSpec {
@@ -134,12 +134,6 @@ pub struct TensionCostSpec {
     /// All lumped muscles.
     #[serde(default)]
     pub muscles: Option<All>,
-    /// Name of a spring.
-    #[serde(default)]
-    pub spring: Option<String>,
-    /// Name of a tendon.
-    #[serde(default)]
-    pub tendon: Option<String>,
     /// Tension that is asked for, SI unit N; 0 where not written.
     #[serde(default)]
     pub at: Option<Written<Force>>,
@@ -362,10 +356,10 @@ impl CostEntry for TensionCostSpec {
     ) -> Result<Vec<QuantityCost>, SceneError> {
         let weight = weight(self.weight, scope)?;
         let at = self.at.as_ref().map_or(0.0, Written::value);
-        let muscles = (&self.muscle, self.muscles);
-        let parts = pulling(muscles, [&self.spring, &self.tendon], system, scope)?;
-        let cost = |part| square(Quantity::tension(part), at, weight, during);
-        Ok(parts.into_iter().map(cost).collect())
+        let muscles = lumped_muscles(&self.muscle, self.muscles, system, scope)?;
+        let tension = |muscle| Quantity::tension(Pulling::Muscle(muscle));
+        let cost = |muscle| square(tension(muscle), at, weight, during);
+        Ok(muscles.into_iter().map(cost).collect())
     }
 }
 
