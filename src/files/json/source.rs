@@ -9,11 +9,11 @@ use std::sync::{Mutex, PoisonError};
 
 use crate::math::join::{available, readable};
 
-/// Bytes of memory that reading takes for each byte of a file: its text, and for a value in a list, which has 4 bytes or more in the file, 48 bytes
+/// Bytes of memory that reading takes for each byte of a file: its text, and for a value in a list, which has 4 bytes or more in the file, 32 bytes
 /// of its node, half as many while the list grows, and 16 bytes of the number or the text that it is.
-const OF_BYTE: f64 = 24.0;
-/// Bytes of the largest file where the memory of the machine is not known.
-const LARGEST: u64 = 1 << 30;
+const OF_BYTE: f64 = 17.0;
+/// Bytes of the largest file where the memory of the machine is not known, and where it is: places in a text are numbers of 32 bits.
+const LARGEST: [u64; 2] = [1 << 30, 1 << 31];
 
 /// Bytes from standard input. A process reads it once: several starts have the same problem.
 static STANDARD_INPUT: Mutex<Option<Vec<u8>>> = Mutex::new(None);
@@ -54,7 +54,8 @@ pub(crate) fn of_standard_input() -> Result<Vec<u8>, NoBytes> {
 /// Reads all, if there is room for it; a `size` that is known is checked first.
 fn limited(from: impl Read, size: u64) -> Result<Vec<u8>, NoBytes> {
     let free = available();
-    let most = free.map_or(LARGEST, |free| (free / OF_BYTE) as u64);
+    let most = free.map_or(LARGEST[0], |free| (free / OF_BYTE) as u64);
+    let most = most.min(LARGEST[1]);
     let too_large = |found: String| {
         let of_memory = free.map_or_else(String::new, |free| {
             let free = readable(free);

@@ -22,9 +22,27 @@ pub(crate) struct Tree {
 #[derive(Clone, Debug)]
 pub(crate) struct Node {
     /// Bytes of its key in an object, quotes included; empty elsewhere.
-    key: Range<usize>,
-    bytes: Range<usize>,
+    key: Span,
+    bytes: Span,
     parts: Box<[Self]>,
+}
+
+/// Bytes of a text, which has fewer than 2³².
+#[derive(Clone, Copy, Debug)]
+struct Span {
+    start: u32,
+    end: u32,
+}
+
+impl Span {
+    fn new(bytes: Range<usize>) -> Self {
+        let [start, end] = [bytes.start, bytes.end].map(|at| at as u32);
+        Self { start, end }
+    }
+
+    fn range(self) -> Range<usize> {
+        self.start as usize..self.end as usize
+    }
 }
 
 /// A value in its text.
@@ -69,7 +87,7 @@ impl Tree {
             (node, rest) = (&mut node.parts[index], after);
         }
         let start = self.text.len();
-        let is_object = self.text[node.bytes.clone()].starts_with('{');
+        let is_object = self.text[node.bytes.range()].starts_with('{');
         let keys: Vec<Value> = rest.iter().filter_map(Step::key).map(Value::from).collect();
         for key in &keys {
             write!(self.text, "{{{key}:").expect("a text takes all");
@@ -81,7 +99,7 @@ impl Tree {
             let old = mem::take(&mut node.parts);
             node.parts = mem::take(&mut new.parts).into_iter().chain(old).collect();
         } else {
-            new.key = node.key.clone();
+            new.key = node.key;
             *node = new;
         }
         start..self.text.len()
@@ -106,7 +124,7 @@ impl Node {
 impl<'a> Json<'a> {
     /// The text of a string, number or word; of any other value as it was read.
     pub(crate) fn written(self) -> &'a str {
-        &self.text[self.node.bytes.clone()]
+        &self.text[self.node.bytes.range()]
     }
 
     /// The first character, which tells objects, lists, strings, numbers and words apart.
@@ -116,17 +134,17 @@ impl<'a> Json<'a> {
 
     /// The text of its key with quotes; empty in a list.
     pub(crate) fn written_key(self) -> &'a str {
-        &self.text[self.node.key.clone()]
+        &self.text[self.node.key.range()]
     }
 
     /// Its place in the text.
     pub(crate) fn span(self) -> Range<usize> {
-        self.node.bytes.clone()
+        self.node.bytes.range()
     }
 
     /// The place of its key in the text.
     pub(crate) fn key_span(self) -> Range<usize> {
-        self.node.key.clone()
+        self.node.key.range()
     }
 
     /// A copy of the value.
@@ -302,8 +320,10 @@ impl Scanner<'_> {
             }
             _ => drop(self.scalar()),
         }
-        let bytes = start..self.at;
-        let parts = parts.into();
-        Node { key, bytes, parts }
+        Node {
+            key: Span::new(key),
+            bytes: Span::new(start..self.at),
+            parts: parts.into(),
+        }
     }
 }
