@@ -1214,9 +1214,9 @@ class Observer(TypedDict):
     """Of measured joint coordinates, by joint, SI unit rad or m."""
 
     lasting: NotRequired[float]
-    """Of the change in each interval of a constant disturbance on each joint, as a part of the greatest force of an input on it. These forces are then
-    found beside the state, and inputs hold the goal against them; without it none are. As many independent measurements are needed as there are
-    joints.
+    """Of the change in each interval of a constant disturbance on each joint, as a part of the greatest force of an input on it. These forces are
+    then found beside the state, and inputs hold the goal against them; without it none are. As many independent measurements are needed as
+    there are joints.
     """
 
     markers: NotRequired[Mapping[Any, Quantity]]
@@ -1583,11 +1583,11 @@ class TensionCost(TypedDict):
 
 
 class TensionLimit(TypedDict):
-    """Limits of the force with which one lumped muscle (`"muscle": name`) or each (`"muscles": "all"`) pulls its ends together, of elasticity,
-    field, viscosity and Maxwell branches: `min`, `max` or both.
+    """Limits of the force with which one lumped muscle (`"muscle": name`), each (`"muscles": "all"`), a spring or a tendon pulls its ends
+    together, by elasticity, field, viscosity and Maxwell branches: `min`, `max` or both.
 
     It bounds the tension in the middle of every interval, under the voltage there; the column of the table is its mean in both intervals beside
-    an instant.
+    an instant. Of springs and tendons it bounds the mean over every interval.
     """
 
     max: NotRequired[Quantity]
@@ -1601,6 +1601,12 @@ class TensionLimit(TypedDict):
 
     muscles: NotRequired[All]
     """All lumped muscles."""
+
+    spring: NotRequired[Text]
+    """Name of a spring."""
+
+    tendon: NotRequired[Text]
+    """Name of a tendon."""
 
 
 class TrackJoint(TypedDict):
