@@ -24,7 +24,7 @@ const NOT_NEGATIVE: &str = "zero or a positive value";
 pub const DIRECTION: &str = "a direction, such as [0, 0, 1]";
 
 impl Fault {
-    /// What was found at a place is not what is expected.
+    /// A fault at a place by its description.
     pub fn new(at: impl Display, found: impl Display, expected: impl Display) -> Self {
         Self {
             at: at.to_string(),
@@ -53,7 +53,7 @@ impl Fault {
         self
     }
 
-    /// What was found, with the value as it is.
+    /// The description with the value as it is.
     pub fn finding(&self) -> String {
         format!("{}{}", self.value.as_deref().unwrap_or(""), self.found)
     }
