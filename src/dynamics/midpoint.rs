@@ -265,7 +265,7 @@ impl Equations for Midpoint<'_> {
         let ends = [&*here, &*next];
         let parts = iter::once((1.0, interval.sample(ends), &scratch.interval.plain.forces));
         let ends = ends.map(|at| interval.sample([at, at]));
-        Some(Balance::new(model, (*typical_energy, 0.0), ends, parts))
+        Some(Balance::new(model, *typical_energy, 0.0, ends, parts))
     }
 
     /// h³ u‴/12 with the third derivative of the last three rates; before the first step the system moved as at its start.

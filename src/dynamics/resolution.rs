@@ -42,7 +42,8 @@ impl Balance {
     /// what inputs that change within the step add to the potential energy.
     pub(super) fn new<'a>(
         model: &Model,
-        (typical, supplied): (f64, f64),
+        typical: f64,
+        supplied: f64,
         ends: [Sample<'_>; 2],
         parts: impl Iterator<Item = Part<'a>>,
     ) -> Self {

@@ -154,7 +154,7 @@ impl Equations for GalerkinEquations<'_> {
             return None;
         }
         self.sample(Order::Gradient, h);
-        let energies = (self.typical_energy, self.supplied(h));
+        let supplied = self.supplied(h);
         let last = self.points.len() - 1;
         let ends = [0, last].map(|i| {
             between(
@@ -171,7 +171,7 @@ impl Equations for GalerkinEquations<'_> {
                 &point.out.plain.forces,
             )
         });
-        let balance = Balance::new(self.model, energies, ends, parts);
+        let balance = Balance::new(self.model, self.typical_energy, supplied, ends, parts);
         self.work = self.dissipates.then(|| balance.work());
         Some(balance)
     }
