@@ -111,7 +111,10 @@ fn the_least_effort_is_found_under_bounds_of_any_width() {
 fn an_effort_that_a_final_cost_hides_is_the_least_one() {
     // The second one has two minima; which one is met depends on the version of Ipopt.
     for (path, minima) in [
-        ("tests/trust/final_cost_hides_effort.json", &[1.084_63e-9][..]),
+        (
+            "tests/trust/final_cost_hides_effort.json",
+            &[1.084_63e-9][..],
+        ),
         (
             "tests/trust/limits_tiny_objective_gap.json",
             &[1.122_21e-8, 1.127_55e-8],
