@@ -58,16 +58,11 @@ pub fn equilibrium_of_file(
             response,
             path: None,
         };
-        return at((request, &[]), &system, &task, began);
+        return at(request, None, &system, &task, began);
     }
     let loaded = read_problem(&request.input, &request.set)?;
     match &loaded.task {
-        Task::Equilibrium(task) => at(
-            (request, &page::asked(&loaded)),
-            &loaded.system,
-            task,
-            began,
-        ),
+        Task::Equilibrium(task) => at(request, Some(&loaded), &loaded.system, task, began),
         other => Err(no_equilibrium(request, other)),
     }
 }
@@ -75,7 +70,8 @@ pub fn equilibrium_of_file(
 /// Finds the equilibrium under voltages, or follows the path there, and writes the folder; where it is lost on the way there,
 /// the last one is kept.
 pub(super) fn at(
-    (request, asked): (&CommandInput, &[(String, String)]),
+    request: &CommandInput,
+    loaded: Option<&Loaded>,
     system: &System,
     task: &AtRest,
     began: Instant,
@@ -84,7 +80,7 @@ pub(super) fn at(
     let left = |seconds| seconds - read;
     let watch = stop::watch(request.max_seconds.map(left));
     if let Some(points) = task.path {
-        return path::follow((request, asked), system, task, points, began);
+        return path::follow(request, loaded, system, task, points, began);
     }
     let result = match tasks::equilibrium(system, task) {
         Ok(result) => result,
@@ -132,7 +128,7 @@ pub(super) fn at(
         None => "Static equilibrium",
         Some(_) => "The last equilibrium",
     };
-    let mut page = page::content(title, &summary, asked);
+    let mut page = page::content(title, &summary, loaded);
     page.rows = rows;
     let skins = Skins::new(model, discrete);
     let run = Run {

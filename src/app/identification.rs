@@ -20,7 +20,7 @@ use std::time::Instant;
 
 /// Fits the constants of a task to its recordings and writes the folder.
 pub(super) fn run(
-    (request, asked): (&CommandInput, &[(String, String)]),
+    request: &CommandInput,
     loaded: &Loaded,
     task: &problem::Identification,
     began: Instant,
@@ -58,7 +58,7 @@ pub(super) fn run(
         cells_csv(&table(task, &found), &origin).as_bytes(),
     )?;
     if request.page == PageWanted::Written {
-        let page = identification_page::html(task, &found, (&summary, asked), &origin);
+        let page = identification_page::html(task, loaded, &found, &summary, &origin);
         files.add("report.html", page.as_bytes())?;
     }
     summary.seconds.setup = read;

@@ -2,8 +2,10 @@
 
 use std::fmt::Write;
 
+use crate::app::page::asked;
 use crate::app::summary::Summary;
 use crate::control::problem::Identification;
+use crate::files::Loaded;
 use crate::identify::{Identified, Series};
 use crate::math::significant;
 use crate::report::axes::{Axis, Extent};
@@ -17,11 +19,12 @@ const STYLE: &str = "body{font-family:Helvetica,Arial,'Liberation Sans',sans-ser
 table{border-collapse:collapse;margin:1rem 0;display:block;overflow-x:auto}th{overflow-wrap:anywhere}td,th{border:1px solid #e6e8eb;padding:.3rem .6rem;text-align:left}\
 svg{max-width:100%;height:auto}pre{background:#f6f7f8;padding:1rem;overflow:auto}";
 
-/// The page; `asked` are the texts of problem and scene.
+/// The page, with the texts of problem and scene.
 pub(super) fn html(
     task: &Identification,
+    loaded: &Loaded,
     found: &Identified,
-    (summary, asked): (&Summary, &[(String, String)]),
+    summary: &Summary,
     origin: &Origin,
 ) -> String {
     let mut page = String::new();
@@ -56,7 +59,7 @@ pub(super) fn html(
         add(section(task, one, origin));
     }
     let documents = [("Summary".to_owned(), summary.text())];
-    for (name, text) in documents.iter().chain(asked) {
+    for (name, text) in documents.iter().chain(&asked(loaded)) {
         add(format!(
             "<details><summary>{}</summary><pre>{}</pre></details>",
             escape(name),

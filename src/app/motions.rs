@@ -7,7 +7,7 @@ use crate::app::overwrite_check::{make_folder, make_folder_of};
 use crate::app::partial_result::{EARLIER, STOPPED};
 use crate::app::progress::Reached;
 use crate::app::request::{CommandInput, CommandOutput, PageWanted};
-use crate::app::solve::{MIGHT_GO_ON, write_result};
+use crate::app::solve::{MIGHT_GO_ON, Solved};
 use crate::app::solve_page::describe;
 use crate::app::summary::Summary;
 use crate::app::{checkpoint, fields, resume_file, solution_file, unfinished};
@@ -26,7 +26,7 @@ use std::time::Instant;
 
 /// Solves for several motions and writes their folders, solved or not.
 pub(super) fn motions(
-    (request, asked): (&CommandInput, &[(String, String)]),
+    request: &CommandInput,
     loaded: &Loaded,
     motions: &Motions,
     began: Instant,
@@ -55,14 +55,15 @@ pub(super) fn motions(
             ..request.clone()
         };
         let folder = make_folder_of(&own)?;
-        let shown = (&motion.system, &motion.control, &loaded.output);
-        each.push(write_result(
-            (&own, asked),
-            (shown, None),
-            one,
-            (&folder, read),
-            began,
-        )?);
+        let solved = Solved {
+            request: &own,
+            loaded,
+            system: &motion.system,
+            control: &motion.control,
+            feedback: None,
+            result: one,
+        };
+        each.push(solved.write(&folder, read, began)?);
         unfinished::done(&folder);
     }
     let mut summary = MotionsSummary::new(request, motions, &result, &each);

@@ -13,10 +13,10 @@ pub(super) fn asked(loaded: &Loaded) -> Vec<(String, String)> {
     documents
 }
 
-/// Texts of a summary, before rows and plots; `asked` are the texts of problem and scene.
-pub(super) fn content(title: &str, summary: &Summary, asked: &[(String, String)]) -> PageContent {
+/// Texts of a summary, before rows and plots, and those of its problem, where there is a file of it.
+pub(super) fn content(title: &str, summary: &Summary, loaded: Option<&Loaded>) -> PageContent {
     let mut documents = vec![("Summary".to_owned(), summary.text())];
-    documents.extend_from_slice(asked);
+    documents.extend(loaded.into_iter().flat_map(asked));
     PageContent {
         title: title.to_owned(),
         is_solved: summary.message.is_none(),

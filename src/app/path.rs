@@ -20,6 +20,7 @@ use crate::dynamics::{
     Continuation, DiscreteTrajectory, Equilibrium, Instability, Reading, continuation,
     observations, out_of_domain,
 };
+use crate::files::Loaded;
 use crate::model::{Model, Role, System};
 use crate::nlp::Status;
 use crate::report::atomic::WriteError;
@@ -38,7 +39,8 @@ use crate::workflow::remark::phase;
 /// Follows the path for `points` equilibria and writes `path.csv`, `path.svg`, the fields, and figure and page of the last
 /// equilibrium before stability is lost, or of the last one.
 pub(super) fn follow(
-    (request, asked): (&CommandInput, &[(String, String)]),
+    request: &CommandInput,
+    loaded: Option<&Loaded>,
     system: &System,
     task: &AtRest,
     points: usize,
@@ -78,7 +80,7 @@ pub(super) fn follow(
         setup,
         ..Seconds::default()
     };
-    let mut page = page::content("Path of equilibria", &summary, asked);
+    let mut page = page::content("Path of equilibria", &summary, loaded);
     page.rows = rows;
     page.plots.push(("Path".to_owned(), plot));
     path.write(request, &page, &mut files, &origin)?;

@@ -38,7 +38,7 @@ use std::time::Instant;
 
 /// Simulates and writes the folder; a motion that ends early is kept as far as it went.
 pub(super) fn simulation(
-    (request, asked): (&CommandInput, &[(String, String)]),
+    request: &CommandInput,
     loaded: &Loaded,
     task: &Simulation,
     began: Instant,
@@ -75,7 +75,7 @@ pub(super) fn simulation(
     files.limit(&limit);
     let (plan, uncounted) = plan(&ended.simulated.model, ended.stopped.is_some());
     let mut summary = summary_of(&run, read, &ended, &plan);
-    let written = write_all(&run, &ended, (&mut summary, asked), (&mut files, &limit));
+    let written = write_all(&run, &ended, &mut summary, (&mut files, &limit));
     if let Err(error) = written {
         let status = limit.reached().ok_or(error)?;
         summary = summary_of(&run, read, &ended, &plan);
@@ -196,13 +196,13 @@ fn keep(run: &Run<'_>, ended: &SimulationResult, files: &mut FileSet) -> Result<
 fn write_all(
     run: &Run<'_>,
     ended: &SimulationResult,
-    (summary, asked): (&mut Summary, &[(String, String)]),
+    summary: &mut Summary,
     (files, limit): (&mut FileSet, &TimeLimit),
 ) -> Result<(), WriteError> {
     let origin = run.request.origin(false);
     let observed = observe(run, ended, (files, limit), &origin)?;
     summarise(run, ended, &observed, summary);
-    write_pictures(run, ended, &observed, summary, asked, files, &origin)
+    write_pictures(run, ended, &observed, summary, files, &origin)
 }
 
 /// Observes and assesses a motion, and writes it with its fields at the same time.
@@ -302,7 +302,6 @@ fn write_pictures(
     ended: &SimulationResult,
     observed: &Observed,
     summary: &mut Summary,
-    asked: &[(String, String)],
     files: &mut FileSet,
     origin: &Origin,
 ) -> Result<(), WriteError> {
@@ -330,7 +329,7 @@ fn write_pictures(
     let shown = DisplayedMotion::from_motion(motion, &run.loaded.output, true, files)?;
     summary.notes.note("shown", shown.notes.iter().cloned());
     summary.shown = shown.part;
-    let mut content = page::content("Simulation", summary, asked);
+    let mut content = page::content("Simulation", summary, Some(run.loaded));
     content.rows = rows(summary, task, (model, discrete), assessment.neglected);
     let earlier = earlier.map(|earlier| shown.beside(earlier));
     let closed = ended.closed_loop.as_ref();

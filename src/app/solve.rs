@@ -19,7 +19,6 @@ use crate::app::{
 use crate::control::problem::{Control, Regulator};
 use crate::dynamics::observations;
 use crate::files::Loaded;
-use crate::files::problem::output::Output;
 use crate::model::System;
 use crate::report::atomic::WriteError;
 use crate::report::file_set::FileSet;
@@ -45,7 +44,7 @@ pub(super) const MIGHT_GO_ON: [&str; 3] = ["interrupted", "time_limit", "iterati
 
 /// Solves a control problem and writes its folder, solved or not.
 pub(super) fn control(
-    (request, asked): (&CommandInput, &[(String, String)]),
+    request: &CommandInput,
     loaded: &Loaded,
     control: &Control,
     began: Instant,
@@ -60,15 +59,15 @@ pub(super) fn control(
         |path, models, found| solution_file::replace(path, models[0], &found(0)),
         |asked, observe| tasks::solve(system, control, asked, observe),
     )?;
-    let shown = (system, control, &loaded.output);
-    let feedback = loaded.feedback.as_ref();
-    let summary = write_result(
-        (request, asked),
-        (shown, feedback),
-        &result,
-        (&folder, read),
-        began,
-    )?;
+    let solved = Solved {
+        request,
+        loaded,
+        system,
+        control,
+        feedback: loaded.feedback.as_ref(),
+        result: &result,
+    };
+    let summary = solved.write(&folder, read, began)?;
     unfinished::done(&folder);
     let violated = &result.optimum.violated;
     let mut output = command_output(&summary, control.is_refined, violated, &folder);
@@ -81,49 +80,150 @@ pub(super) fn control(
     Ok(output)
 }
 
-/// A system, its problem, and the part of a motion that is shown.
-type Asked<'a> = (&'a System, &'a Control, &'a Output);
-/// A problem with the feedback along its optimum, its result, and the part of the motion that is shown.
-type Solved<'a> = (
-    (&'a Control, Option<&'a Regulator>),
-    &'a SolveResult,
-    &'a Output,
-);
+/// A motion of a problem, solved or not, with the feedback along it.
+pub(super) struct Solved<'a> {
+    pub(super) request: &'a CommandInput,
+    pub(super) loaded: &'a Loaded,
+    pub(super) system: &'a System,
+    pub(super) control: &'a Control,
+    pub(super) feedback: Option<&'a Regulator>,
+    pub(super) result: &'a SolveResult,
+}
 
-/// Writes the files of a result to a folder that exists, and its summary.
-pub(super) fn write_result(
-    (request, asked): (&CommandInput, &[(String, String)]),
-    ((system, control, output), feedback): (Asked<'_>, Option<&Regulator>),
-    result: &SolveResult,
-    (folder, read): (&Path, f64),
-    began: Instant,
-) -> Result<Summary, CommandError> {
-    let SolveResult {
-        optimum, verdict, ..
-    } = result;
-    let mut summary = Summary::new(request, verdict.word, optimum.model.coordinates.name());
-    summary.message.clone_from(&verdict.message);
-    summary.program = Some(program(system, control, result));
-    summary.accuracy.clone_from(&result.accuracy);
-    let model = optimum.sought.as_ref().unwrap_or(&optimum.model);
-    summary.plan = Plan::from_model(model, Some(control), MEASURED);
-    summary.seconds = seconds(optimum, read, began);
-    add_observed(&mut summary, result);
-    let writing = Instant::now();
-    let mut files = FileSet::in_folder(folder);
-    solution_file::add(&mut files, &optimum.model, &optimum.motion)?;
-    let (limit, kept) = (time_to_write(request, began), files.count());
-    files.limit(&limit);
-    let watch = stop::watch_by(limit.clone());
-    let shown = ((control, feedback), result, output);
-    if let Err(error) = write_files((request, asked), shown, &mut summary, &mut files) {
-        let status = limit.reached().ok_or(error)?;
-        leave_out(&mut summary, status, &mut files, kept);
+impl Solved<'_> {
+    /// Writes the files of a result to a folder that exists, and its summary; `read` are the seconds before the solve.
+    pub(super) fn write(
+        &self,
+        folder: &Path,
+        read: f64,
+        began: Instant,
+    ) -> Result<Summary, CommandError> {
+        let Self {
+            request,
+            system,
+            control,
+            result,
+            ..
+        } = *self;
+        let SolveResult {
+            optimum, verdict, ..
+        } = result;
+        let mut summary = Summary::new(request, verdict.word, optimum.model.coordinates.name());
+        summary.message.clone_from(&verdict.message);
+        summary.program = Some(program(system, control, result));
+        summary.accuracy.clone_from(&result.accuracy);
+        let model = optimum.sought.as_ref().unwrap_or(&optimum.model);
+        summary.plan = Plan::from_model(model, Some(control), MEASURED);
+        summary.seconds = seconds(optimum, read, began);
+        add_observed(&mut summary, result);
+        let writing = Instant::now();
+        let mut files = FileSet::in_folder(folder);
+        solution_file::add(&mut files, &optimum.model, &optimum.motion)?;
+        let (limit, kept) = (time_to_write(request, began), files.count());
+        files.limit(&limit);
+        let watch = stop::watch_by(limit.clone());
+        if let Err(error) = self.write_files(&mut summary, &mut files) {
+            let status = limit.reached().ok_or(error)?;
+            leave_out(&mut summary, status, &mut files, kept);
+        }
+        drop(watch);
+        summary.seconds.wrote(began, writing);
+        summary.write(files)?;
+        Ok(summary)
     }
-    drop(watch);
-    summary.seconds.wrote(began, writing);
-    summary.write(files)?;
-    Ok(summary)
+
+    /// Writes the fields of the motion, tables, figures and page, and adds what they hold to the summary.
+    fn write_files(&self, summary: &mut Summary, files: &mut FileSet) -> Result<(), WriteError> {
+        let Self {
+            request,
+            control,
+            feedback,
+            result,
+            ..
+        } = *self;
+        let SolveResult {
+            optimum,
+            discrete,
+            trajectory,
+            ..
+        } = result;
+        let model = &optimum.model;
+        let mut observed = observations(model, discrete);
+        let origin = request.origin(true);
+        feedback_files::add((control, feedback), result, (summary, files), &origin)?;
+        let written = fields::write(files, model, discrete, &origin)?;
+        summary.blocks = BlockSizes::from_model(model).map(|b| b.after(model, &observed, written));
+        observed.columns.extend(result.exchange.columns());
+        write_sensitivities(result, files, &origin)?;
+        let motion = Motion {
+            model,
+            discrete,
+            trajectory,
+            observations: &observed,
+        };
+        let shown = DisplayedMotion::from_motion(motion, &self.loaded.output, false, files)?;
+        summary.notes.note("shown", shown.notes.iter().cloned());
+        summary.shown = shown.part;
+        self.write_pictures(motion, &shown, summary, files, &origin)
+    }
+
+    /// Writes tables, figures and page, next to the motion under the voltages of the goal alone.
+    fn write_pictures(
+        &self,
+        motion: Motion<'_>,
+        shown: &DisplayedMotion,
+        summary: &Summary,
+        files: &mut FileSet,
+        origin: &Origin,
+    ) -> Result<(), WriteError> {
+        let Self {
+            request,
+            control,
+            result,
+            ..
+        } = *self;
+        let optimum = &result.optimum;
+        let Optimum {
+            model, boundary, ..
+        } = optimum;
+        let is_solved = summary.message.is_none();
+        let compared = is_solved
+            .then(|| under_constant_voltages(model, boundary, &optimum.motion, COMPARED))
+            .flatten()
+            .map(|(discrete, _)| trajectory(model, &solved(model, &discrete, None)))
+            .map(|other| shown.beside(other));
+        let goal = goal(model, boundary);
+        let mut content = page::content("Optimal control", summary, Some(self.loaded));
+        content.rows = rows(summary);
+        content
+            .plots
+            .push(convergence(&optimum.solution.iterations));
+        let list = &result.sensitivities;
+        let bars = sensitivities::bars_of_page(list).map(|plot| ("Sensitivities", plot));
+        let voltages = sensitivities::voltages(&model.system, &result.trajectory, list);
+        let voltages = voltages.map(|plot| ("Voltages with tolerances", plot));
+        let plots = bars.into_iter().chain(voltages);
+        content
+            .plots
+            .extend(plots.map(|(title, plot)| (title.to_owned(), plot)));
+        let run = Run {
+            name: match summary.status.as_str() {
+                _ if is_solved => "optimal voltages",
+                "not_reproduced" | "not_held" => "optimum",
+                _ => "last iterate",
+            },
+            comparison: compared.as_ref().map(|c| ("constant voltages", c)),
+            held: boundary.rest[1].as_deref().filter(|_| is_solved),
+            figures: request.figures,
+            tracked: &shown.tracked(&summary.tracking),
+            goal: goal.as_deref(),
+            targets: &targets(control, motion.trajectory),
+            waypoints: &waypoints(control, motion.trajectory),
+            page: request.page.of(&content),
+            ..shown.run(&model.system, origin)
+        };
+        write_run(files, &run)
+    }
 }
 
 /// Adds to the summary what was observed of an optimal motion.
@@ -139,46 +239,6 @@ fn add_observed(summary: &mut Summary, result: &SolveResult) {
     let warnings = summary.sensitivities.iter();
     let warnings: Vec<String> = warnings.filter_map(SensitivitySummary::warning).collect();
     summary.notes.warn("tolerance", warnings);
-}
-
-/// Writes the fields of the motion, tables, figures and page, and adds what they hold to the summary.
-fn write_files(
-    (request, asked): (&CommandInput, &[(String, String)]),
-    ((control, feedback), result, output): Solved<'_>,
-    summary: &mut Summary,
-    files: &mut FileSet,
-) -> Result<(), WriteError> {
-    let SolveResult {
-        optimum,
-        discrete,
-        trajectory,
-        ..
-    } = result;
-    let model = &optimum.model;
-    let mut observed = observations(model, discrete);
-    let origin = request.origin(true);
-    feedback_files::add((control, feedback), result, (summary, files), &origin)?;
-    let written = fields::write(files, model, discrete, &origin)?;
-    summary.blocks = BlockSizes::from_model(model).map(|b| b.after(model, &observed, written));
-    observed.columns.extend(result.exchange.columns());
-    write_sensitivities(result, files, &origin)?;
-    let motion = Motion {
-        model,
-        discrete,
-        trajectory,
-        observations: &observed,
-    };
-    let shown = DisplayedMotion::from_motion(motion, output, false, files)?;
-    summary.notes.note("shown", shown.notes.iter().cloned());
-    summary.shown = shown.part;
-    write_pictures(
-        (request, asked),
-        (control, result),
-        summary,
-        (motion, &shown),
-        files,
-        &origin,
-    )
 }
 
 /// Writes tables and figures of sensitivities, where there are any.
@@ -202,56 +262,4 @@ fn write_sensitivities(
         files.add("voltages_tolerances.svg", plot.svg(origin).as_bytes())?;
     }
     Ok(())
-}
-
-/// Writes tables, figures and page, next to the motion under the voltages of the goal alone.
-fn write_pictures(
-    (request, asked): (&CommandInput, &[(String, String)]),
-    (control, result): (&Control, &SolveResult),
-    summary: &Summary,
-    (motion, shown): (Motion<'_>, &DisplayedMotion),
-    files: &mut FileSet,
-    origin: &Origin,
-) -> Result<(), WriteError> {
-    let optimum = &result.optimum;
-    let Optimum {
-        model, boundary, ..
-    } = optimum;
-    let is_solved = summary.message.is_none();
-    let compared = is_solved
-        .then(|| under_constant_voltages(model, boundary, &optimum.motion, COMPARED))
-        .flatten()
-        .map(|(discrete, _)| trajectory(model, &solved(model, &discrete, None)))
-        .map(|other| shown.beside(other));
-    let goal = goal(model, boundary);
-    let mut content = page::content("Optimal control", summary, asked);
-    content.rows = rows(summary);
-    content
-        .plots
-        .push(convergence(&optimum.solution.iterations));
-    let list = &result.sensitivities;
-    let bars = sensitivities::bars_of_page(list).map(|plot| ("Sensitivities", plot));
-    let voltages = sensitivities::voltages(&model.system, &result.trajectory, list);
-    let voltages = voltages.map(|plot| ("Voltages with tolerances", plot));
-    let plots = bars.into_iter().chain(voltages);
-    content
-        .plots
-        .extend(plots.map(|(title, plot)| (title.to_owned(), plot)));
-    let run = Run {
-        name: match summary.status.as_str() {
-            _ if is_solved => "optimal voltages",
-            "not_reproduced" | "not_held" => "optimum",
-            _ => "last iterate",
-        },
-        comparison: compared.as_ref().map(|c| ("constant voltages", c)),
-        held: boundary.rest[1].as_deref().filter(|_| is_solved),
-        figures: request.figures,
-        tracked: &shown.tracked(&summary.tracking),
-        goal: goal.as_deref(),
-        targets: &targets(control, motion.trajectory),
-        waypoints: &waypoints(control, motion.trajectory),
-        page: request.page.of(&content),
-        ..shown.run(&model.system, origin)
-    };
-    write_run(files, &run)
 }

@@ -6,7 +6,6 @@ use std::time::Instant;
 use crate::app::error::CommandError;
 use crate::app::no_equilibrium::refuse_all_but_motions;
 use crate::app::overwrite_check::refuse_foreign;
-use crate::app::page::asked;
 use crate::app::progress::{Progress, Reached};
 use crate::app::request::{CommandInput, CommandOutput};
 use crate::app::{
@@ -62,7 +61,6 @@ fn run_checked(
     check(request, &loaded.task)?;
     refuse_unused(request, &loaded.task)?;
     refuse_replacing(request, &loaded.task)?;
-    let told = (request, &asked(&loaded)[..]);
     let answer = match &loaded.task {
         Task::Control(control) => {
             let mut control = control.clone();
@@ -70,7 +68,7 @@ fn run_checked(
                 let file = SolutionFile(resume_file::solution(folder)?);
                 control.guess = Guess::Solution(Earlier::new(file));
             }
-            solve::control(told, &loaded, &control, began, observer)
+            solve::control(request, &loaded, &control, began, observer)
         }
         Task::Motions(asked) => {
             let mut asked = asked.clone();
@@ -80,13 +78,15 @@ fn run_checked(
                     motion.control.guess = Guess::Solution(Earlier::new(file));
                 }
             }
-            motions::motions(told, &loaded, &asked, began, observer)
+            motions::motions(request, &loaded, &asked, began, observer)
         }
         Task::Simulate(simulation) => {
-            simulation::simulation(told, &loaded, simulation, began, observer)
+            simulation::simulation(request, &loaded, simulation, began, observer)
         }
-        Task::Equilibrium(task) => equilibrium::at(told, &loaded.system, task, began),
-        Task::Identify(task) => identification::run(told, &loaded, task, began),
+        Task::Equilibrium(task) => {
+            equilibrium::at(request, Some(&loaded), &loaded.system, task, began)
+        }
+        Task::Identify(task) => identification::run(request, &loaded, task, began),
     };
     no_equilibrium::kept(request, answer)
 }
