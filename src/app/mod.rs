@@ -1,17 +1,15 @@
 //! Commands: files in, files and messages out.
 //!
-//! - `solve`, `simulation`, `equilibrium`: the three tasks; `task` chooses the one of a file; `path`, `path_summary`: paths of equilibria.
+//! - `solve`, `motions`, `simulation`, `equilibrium`, `identification`: the tasks; `task` chooses the one of a file; `path`: paths of equilibria.
 //! - `batch`: several solves in parallel, in threads or processes; `multistart`: a control problem from several guesses.
-//! - `inspect`, `sparsity`, `check`, `templates`: the other commands; `program`: entry points for other languages in place of files.
-//! - `solution_file`, `unfinished`, `summary`: JSON files; `fields`: those of elastic blocks; figures, tables and page are written by [`report`](crate::report).
-//! - `resume_file`: runs that go on from the result of another; `content_hash`, `identity`: content hash, and identity of problems.
+//! - `inspect`, `check`, `templates`: the other commands; `program`, `receding`: entry points for other languages in place of files.
+//! - `solution_file`, `unfinished`, `summary`: JSON files; `feedback_files`, `fields`: those of gains and of elastic blocks; figures, tables and page are written by [`report`](crate::report).
+//! - `checkpoint`, `partial_result`, `resume_file`: what a stopped run leaves, and runs that go on from it.
 //! - `cache`, `record`: a result that is made once, and the hashes of its files.
-//! - `displayed_motion`: part of a motion that tables, figures and page show.
-//! - `side_by_side`: several results on one page.
-//! - `accuracy_table`, `blocks`, `comparison`, `energy_summary`, `length_unit_check`: texts about a result.
-//! - `other_task`: messages where a problem asks for another command; `no_equilibrium`: the summary where there is no state of rest.
-//! - `sensitivity_summary`: sensitivities of an optimum; `receding`: a controller for other languages.
-//! - `page`, `simulation_page`, `solve_page`: texts of the page; `solve_summary`, `equilibrium_summary`, `messages`, `folder`, `overwrite_check`, `progress`, `ticker`, `request`, `error`: common parts of commands.
+//! - `displayed_motion`: part of a motion that tables, figures and page show; `page`, `solve_page`, `identification_page`: texts of the page.
+//! - `blocks`, `comparison`, `linear_systems`, `path_summary`, `motions_summary`, `solve_summary`, `equilibrium_summary`, `sensitivity_summary`, `identification_summary`,
+//!   `identification_verdict`, `no_equilibrium`: texts about a result.
+//! - `messages`, `overwrite_check`, `progress`, `request`, `error`: common parts of commands.
 
 mod batch;
 mod blocks;

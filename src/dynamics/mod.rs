@@ -1,19 +1,17 @@
 //! Motion in time and rest: two readers of the discrete action.
 //!
 //! - `stepper`: Newton on the equations of one step; `midpoint`: those of the midpoint rule; `galerkin`: those of every other
-//!   method.
-//! - `updates`, `anderson`, `contraction`: updates of an iteration, with kept factors, and how they shrink.
-//! - `step_state`: the state from which a motion is resumed.
-//! - `domain`: where the first-order dielectric ends.
-//! - `resolution`, `singular_configurations`: which steps are refused; `local_error`: what those neglect that are not.
-//! - `simulate`, `discrete_trajectory`, `observe`, `part_columns`, `reactions`, `energies`, `kinetic`: step after step,
+//!   method; `step_state`: the state from which a motion is resumed.
+//! - `step_matrix`, `step_solution`, `grid_tangent`, `tangent`: the matrix of a step, by factors or by multigrid.
+//! - `updates`, `contraction`: updates of an iteration, with kept factors, and how they shrink; `solving`: settings of method and solution.
+//! - `simulate`, `discrete_trajectory`, `observe`, `trajectory`, `part_columns`, `reactions`, `momenta`, `energies`, `kinetic`: step after step,
 //!   recorded and observed.
-//! - `state_space`: steps linearised by state and inputs.
-//! - `loop_rates`: rates of the joints of closed loops, completed from those that are named.
-//! - `independent`: changes of coordinates that constraints leave free.
+//! - `resolution`, `singular_configurations`: steps that are refused; `local_error`: the error of those that are not; `domain`: the end of the
+//!   first-order dielectric.
 //! - `exchange`: electrical energy from the sources and mechanical work of their muscles.
-//! - `statics`, `weights`: the rows of rest; `growing`: these by loads; `ramp`, `growth`, `load_path`: paths of rest under growing loads; `minimum`: minima
-//!   of the potential energy; `stable`: a stable equilibrium by all of these; `softest_mode`: its softest mode.
+//! - `state_space`: steps linearised by state and inputs; `loop_rates`: rates of the joints of closed loops, completed from those that are named;
+//!   `independent`: changes of coordinates that constraints leave free.
+//! - `equilibrium`: states of rest.
 
 mod contraction;
 mod discrete_trajectory;

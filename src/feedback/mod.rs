@@ -1,8 +1,7 @@
 //! Feedback along a motion: gains of linear-quadratic regulators, and the controller that reads them.
 //!
-//! - `riccati`: one step of the Riccati recursion; `held`: its limit, by doubling; `radius`: whether a closed loop is stable.
-//! - `law`: a motion with gains, voltages and bounds; `observer`: its state from fewer quantities; `lasting`: forces that last, and inputs
-//!   against them; `estimate`: an observer at work; `controller`: inputs from measured states, step by step.
+//! - `held`: gains that hold a state, the limit of the Riccati recursion; `law`: a motion with gains, voltages and bounds.
+//! - `observer`: the state of a motion from fewer quantities; `controller`: inputs from measured states, step by step.
 
 mod controller;
 mod held;

@@ -2,9 +2,9 @@
 //!
 //! A recording is simulated on a grid by the midpoint rule (`setup`, `simulated`). The transcription of the same grid, with all inputs
 //! given, has the exact derivatives of its discrete equations `c(y, p) = 0` by motion and constants, so that the motion changes by
-//! `S = −(∂c/∂y)⁻¹ ∂c/∂p` (`sensitivity`). Readings are interpolated between instants (`interpolation`, `readout`), and predictions of
+//! `S = −(∂c/∂y)⁻¹ ∂c/∂p` (`sensitivity`). Readings are interpolated between instants (`readout`), and predictions of
 //! two grids are extrapolated to steps of zero length (`prediction`). `fit` is the method of Levenberg and Marquardt, `information`
-//! the covariance and what is not determined, `whiteness`, `likelihood` and
+//! the covariance and what is not determined, `residuals` the deviations, `likelihood` and
 //! `held_out` the checks, `experiments` what to measure next, `starts` the
 //! states at starts that were sought.
 

@@ -1,8 +1,8 @@
 //! The library as a program uses it: systems built part by part, simulated and steered in memory.
 //!
-//! - `handle`, `parts`, `components`, `material`: systems and their parts, with defaults; checked when they are used.
-//! - `input`, `state`, `free_parameters`, `equilibrium`, `simulation`, `control`, `limits`, `costs`, `cost_checks`, `identification`, `receding`: the tasks of a system.
-//! - `motion`, `optimum`, `error`: what comes back.
+//! - `handle`, `components`, `material`: systems and their parts, with defaults; checked when they are used.
+//! - `state`, `free_parameters`, `equilibrium`, `simulation`, `control`, `limits`, `costs`, `measured`, `cost_checks`, `identification`: the tasks of a system.
+//! - `motion`, `error`: results and errors.
 
 mod components;
 mod control;

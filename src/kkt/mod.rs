@@ -13,14 +13,13 @@
 //!
 //! | file | owns |
 //! |---|---|
-//! | `graph`, `order`, `tree`, `fronts`, `plan` | once for a pattern: order of elimination, fronts, where each entry goes |
+//! | `graph`, `order`, `tree`, `fronts` | once for a pattern: order of elimination, fronts, where each entry goes |
 //! | `pivot`, `dense`, `update`, `eliminate` | one dense front |
-//! | `numeric`, `solve`, `scales` | factors, solutions, equilibration |
-//! | `eliminable_groups`, `bandwidth_order`, `block`, `condense`, `condensed`, `reduce`, `products`, `substitute` | unknowns that equations determine, eliminated before all others |
+//! | `numeric`, `inertia` | factors, solutions, equilibration, signs of eigenvalues |
+//! | `eliminable_groups`, `bandwidth_order`, `condense`, `condensed`, `reduce`, `substitute` | unknowns that equations determine, eliminated before all others |
 //! | `envelope`, `block_lu`, `block_solve` | the equations of one group |
-//! | `solver`, `pivot_strategy` | when to scale, how strictly to pivot, whether the factors are good |
+//! | `solver` | when to scale, how strictly to pivot, whether the factors are good |
 //! | `accuracy_check` | how exact factors are, by a system solved with them |
-//! | `progress`, `two_threads` | whether a long factorisation is to go on, and that on two cores |
 //!
 //! After the first matrix nothing is allocated, unless more pivots are delayed than ever before.
 

@@ -14,7 +14,7 @@
 //!
 //! `kernel` knows any [`Nlp`](crate::nlp::Nlp), `conditions` what holds at its optimum, `linear` its linear system, `active_set` the bounds that are
 //! reached. `optimum` is the front for control problems: `with_parameters` their program in which constants, start and goal are columns that are held,
-//! `rest` how states of rest depend on constants, `directions` what changes with each number. `check` refuses numbers before the solve.
+//! `directions` what changes with each number. `check` refuses numbers before the solve.
 
 mod active_set;
 mod adjoint;

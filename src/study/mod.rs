@@ -1,10 +1,10 @@
 //! Work–precision studies: variants of one problem, timed and measured against the limit under refinement.
 //!
-//! - `request`: the command; `read`, `sizes`: the study file and all its problems; `measure`: measures of them.
+//! - `read`, `sizes`: the study file and all its problems; `measure`: measures of them.
 //! - `outcome`, `schedule`: one run, and all of them in rounds.
 //! - `limit`, `compare`: observed orders and Richardson's limits; errors of all points.
-//! - `cost_at_accuracy`, `conclusion`, `words`: costs of accuracies; the conclusion in words.
-//! - `table`, `diagram`, `record`, `page`: output.
+//! - `conclusion`: costs of accuracies, and the conclusion in words.
+//! - `table`, `record`, `page`: output.
 
 pub mod compare;
 pub mod conclusion;

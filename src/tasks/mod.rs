@@ -5,7 +5,7 @@
 //! - `disturbed`: a closed loop with parts of its disturbance.
 //! - `motions`: several control problems solved together.
 //! - `check`: the derivatives of a task against differences.
-//! - `verdict`: the verdict on an optimum. `solve_messages`, `tracking_messages`, `simulation_messages`, `moved_markers`: their texts.
+//! - `solve_messages`: texts of the verdict on an optimum.
 
 pub mod check;
 mod disturbed;

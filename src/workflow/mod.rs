@@ -1,14 +1,13 @@
 //! Tasks in memory: simulate, optimise, refine, verify.
 //!
-//! - `integrate`, `optimise`: a simulation, a control problem, with its result, the `optimum`; each `attempt` from one start, `prepare`d, by one of its `solves` or more; `error`: errors of tasks; `phase`: the present
-//!   phase of work; `remark`: warnings and notes.
-//! - `together`: several motions as one program, `prepare_together`, with `shared_variables`.
-//! - `grids`, `accuracy`, `estimate`: as finely as an accuracy needs.
-//! - `resimulate`: verification of an optimum, by the `distance` of motions; `refine_until_reproduced`, `verified`: finer grids where it fails, by `grid_solves`; `gap`: duality gap of its
-//!  objective; `held`, `hold_check`, `found_hold`, `afterwards`, `period`: its end; `final_values`: deviations from final costs.
-//! - `recentre`: a motion with other charts.
-//! - `restarts`, `retry_displaced`, `shortest`, `combined`, `infeasible`, `active`, `violations`: attempts before a problem is called infeasible, and the explanation.
-//! - `effects`, `coupled`, `reasons`, `stopwatch`: terms of a model, what they couple, their reasons and times; `memory`: a refusal of more than the machine has.
+//! - `integrate`, `optimise`: a simulation, a control problem, with its result, the `optimum`; each `attempt` from one start by one of its `solves` or more; `resolve`: its model and boundary; `error`: errors of tasks;
+//!   `remark`: warnings and notes.
+//! - `together`, `together_to`: several motions as one program, `program_motion`, `prepare_together`, with `shared_variables`.
+//! - `grids`, `accuracy`, `estimate`: as finely as an accuracy needs; `tolerance`: steps as short as a tolerance needs.
+//! - `resimulate`: verification of an optimum, by the `distance` of motions; `refine_until_reproduced`, `verified`: finer grids where it fails; `gap`: duality gap of its
+//!   objective; `held`, `hold_check`, `period`: its end; `repeat`: simulations with several steps for each interval.
+//! - `restarts`, `retry_displaced`, `shortest`, `infeasible`, `active`: attempts before a problem is called infeasible, and the explanation.
+//! - `effects`, `coupled`, `reasons`: terms of a model, what they couple, and their reasons; `memory`: a refusal of more than the machine has.
 //! - `steps`, `domain`: warnings of a motion: steps that do not resolve it, muscles outside the domain of their material; `longer_steps`: the error of
 //!   methods of high order.
 //! - `regulator`: feedback along an optimum; `receding`: a controller that plans anew; `control_loop`, `closed_loop`, `loop_limits`: a simulation under feedback.

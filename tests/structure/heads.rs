@@ -1,6 +1,7 @@
 //! Form of file heads and doc comments: a noun phrase or a verb, not a question.
 
 use crate::sources::sources;
+use std::path::Path;
 
 /// First words that make a question of a head or a doc comment.
 const QUESTIONS: [&str; 9] = [
@@ -34,6 +35,42 @@ fn heads_are_no_questions() {
         }
     }
     assert!(seen > 700, "{seen} heads");
+}
+
+/// Names that a list at the head of a folder explains: those before a colon, at the beginning of an entry or after a semicolon.
+fn explained(head: &str) -> Vec<&str> {
+    let parts = head.split("\n- ").skip(1).flat_map(|one| one.split("; "));
+    let named = parts.filter_map(|part| part.trim_start().split_once(": "));
+    let named = named.filter(|(names, _)| names.starts_with('`'));
+    named
+        .flat_map(|(names, _)| names.split('`').skip(1).step_by(2))
+        .collect()
+}
+
+#[test]
+fn files_that_heads_explain_exist() {
+    let mut seen = 0;
+    for source in sources("src") {
+        let Some(folder) = source.name.strip_suffix("mod.rs") else {
+            continue;
+        };
+        let lines = source.text.lines().map_while(|l| l.strip_prefix("//!"));
+        let lines: Vec<&str> = lines.map(|l| l.strip_prefix(' ').unwrap_or(l)).collect();
+        for name in explained(&lines.join("\n")) {
+            let path = Path::new(env!("CARGO_MANIFEST_DIR"))
+                .join("src")
+                .join(folder)
+                .join(name.trim_end_matches("_*"));
+            let is_there = path.is_dir() || path.with_extension("rs").is_file();
+            let is_ending = name.ends_with('*') || name.contains('.');
+            assert!(
+                is_there || is_ending,
+                "the head of src/{folder}mod.rs explains {name}"
+            );
+            seen += 1;
+        }
+    }
+    assert!(seen > 200, "{seen} files");
 }
 
 #[test]

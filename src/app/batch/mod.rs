@@ -1,7 +1,6 @@
 //! Several solves in parallel, as many as there are cores: the starts of a problem, or the variants of a sweep.
 //!
-//! - `plan`: the solves of a batch; `end`: the end of a solve; `launch`: a solve as typed, and a process of it.
-//! - `threads`, `processes`, `hyperqueue`: engines; `parent`: the end of a process with its parent.
+//! - `end`: the end of a solve; `launch`: a solve as typed, and a process of it; `threads`, `processes`, `hyperqueue`: engines.
 
 mod end;
 mod hyperqueue;

@@ -1,8 +1,7 @@
 //! Static equilibria: under growing loads, along paths, and their stability.
 //!
-//! - `statics`: Newton on the rows of rest; `static_matrix`, `static_solution`: their matrix and its solvers; `rest_state`: their unknowns, modes and instabilities; `settle`, `relaxation`: states that Newton's method does not reach.
+//! - `statics`: Newton on the rows of rest; `static_matrix`, `static_solution`: their matrix and its solvers; `rest_state`: their unknowns, modes and instabilities; `relaxation`: states that Newton's method does not reach.
 //! - `ramp`, `growth`: loads that grow; `arc_length`: the path of equilibria by arc length; `load_path`: its points.
-//! - `in_joints`: equilibria in redundant coordinates by way of joint coordinates.
 //! - `result`, `softest_mode`, `stability`: a state of rest, its softest mode and slowest vibration; `growing_motions`: its stability under loads that follow what they act on; `stable`: the
 //!   stable one.
 

@@ -1,6 +1,6 @@
 //! Steps with several points or samples: the equations of every [`Rule`].
 //!
-//! `rule` defines the methods, with the points of `lobatto` and the rows of `massless` vectors; `jacobian_positions` and `tangent` hold the derivatives.
+//! `rule` defines the methods, with the points of `lobatto`; `equations` and `state` are those of a step; `jacobian_positions` and `tangent` hold the derivatives.
 //!
 //! Unknowns of point ν = 1 … s are its coordinates and the multipliers of its rows; then come the scalars of each sample that have
 //! an equation, such as potentials with Gauss's law. Constraints hold at every point.

@@ -1,11 +1,10 @@
 //! The problem file: its types as written (`spec`, `spec_*`) and their conversion to a [`Task`](crate::control::problem::Task).
 //!
 //! - `motions`: several motions of one problem, each as a problem of its own.
-//! - `build`: the problem; `control`, `simulation`, `identify`: its longer tasks; `channels`: what recordings measure; `changed_scenes`: scenes of some of them; `driven`: start and inputs of both motions.
+//! - `build`: the problem; `control`, `simulation`, `identify`: its longer tasks; `channels`: what recordings measure; `changed_scenes`: scenes of some of them.
 //! - `feedback`: gains along an optimum, and a controller that reads them; `receding`: a problem that it plans anew; `disturbance`: the same simulation with parts of its disturbance.
-//! - `state`, `end_of`, `goal`, `quantities`, `free`, `voltages`, `coordinates`: their parts; `output`: what is written of a motion; `solution_voltages`,
-//!   `solution_joints`, `solution_document`:
-//!   what is read of an earlier solution.
+//! - `state`, `end_of`, `goal`, `waypoints`, `quantities`, `free`, `sensitivity`, `loads`, `voltages`, `coordinates`: their parts; `output`: what is written of a motion.
+//! - `solution_voltages`, `solution_document`: what is read of an earlier solution.
 
 pub(crate) mod build;
 pub(crate) mod changed_scenes;

@@ -1,8 +1,8 @@
-//! The scene file: its types as written (`spec`, `spec_joints`, `spec_material`, `spec_solids`, `point`) and their conversion to a [`System`](crate::model::System).
+//! The scene file: its types as written (`spec`, `spec_solids`, `point`) and their conversion to a [`System`](crate::model::System).
 //!
-//! - `build`: the scene; `body`, `material`, `muscle`, `marker`: its parts; `components`: kinds of which each has one file for both, in the lists of `component_lists`.
+//! - `build`: the scene; `body`, `joint`, `material`, `muscle`, `components`: its parts, each described and converted in one file.
 //! - `solid`, `mesh`, `electrodes`, `nodes`: elastic solids; `graph`: connections by joints; `names`: resolution of names.
-//! - `objects`: declaration of what is written; `law`: laws of elasticity of materials; `named_materials`: published constants.
+//! - `objects`: declaration of what is written; `law`: laws of elasticity of materials.
 //! - `constants`: constants by their paths, as an optimisation may seek them.
 //! - `expand`: the shorthand of chains; `trunk`: a scene to begin with.
 

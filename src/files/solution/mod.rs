@@ -9,7 +9,7 @@
 //! Of a long motion all arrays stand in `solution.npz` next to it, under the paths that they would have here: `state/z`,
 //! `voltages/muscle1`.
 //!
-//! - `record`: the types; `write`, `read`: conversion between a solution and the file; `arrays`: the file next to it; `error`: its errors.
+//! - `record`: the types; `write`, `read`: conversion between a solution and the file; `arrays`: the file next to it.
 
 mod arrays;
 mod read;

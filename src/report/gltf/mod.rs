@@ -1,6 +1,6 @@
 //! A motion as a file of glTF 2.0, which Blender and browsers show: `motion.gltf`, in m and s, y upwards.
 //!
-//! - `document`: numbers, meshes and nodes of such a file; `shapes`: their geometry.
+//! - `document`: numbers, meshes and nodes of such a file.
 //!
 //! Bodies, lumped muscles and markers are nodes that move, turn and stretch. Surfaces of elastic blocks, springs and tendons are meshes
 //! with a morph target for each instant, of which the weights are 0 and 1: between instants their points move on straight lines.

@@ -1,8 +1,8 @@
 //! A controller that plans anew in each interval: nonlinear model predictive control by real-time iterations.
 //!
-//! - `horizon`: all that controllers share, from an optimal motion and the costs of its regulator, or `no_horizon`; `reference`: the motion that is followed.
+//! - `horizon`: all that controllers share, from an optimal motion and the costs of its regulator; `reference`: the motion that is followed.
 //! - `program`: the nonlinear program of the next intervals, with its `layout` and `costs`.
-//! - `iteration`, `advance`: one iteration of it, in two parts, with its `matrix`; `shift`: the plan one interval later.
+//! - `iteration`, `advance`: one iteration of it, in two parts.
 //! - `state`: where a plan begins, from what is measured, over a delay and with an observer.
 //! - `controller`: inputs from what is measured, step by step, and what stands in where a step fails, by their `source`.
 

@@ -1,6 +1,6 @@
 //! Solves as tasks of a HyperQueue server, which hands them to its workers.
 //!
-//! - `client`: the command `hq`; `job`: what is kept of a job until all its ends are collected; `task`: how a task ended.
+//! - `job`: what is kept of a job until all its ends are collected.
 //!
 //! The server keeps a job when the program that submitted it is gone. The next call finds the job by its name, collects what has
 //! ended, waits for what runs, and submits only what is in no job. A task that the server begins once more, after a loss of its journal, finds
