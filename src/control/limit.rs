@@ -1,7 +1,7 @@
 //! Path limits of a problem: bounds of quantities along the motion, or at a single time.
 
-use crate::model::system::{Fidelity, Muscle};
-use crate::model::{FieldPlace, Of, PartKind, System, What};
+use crate::model::system::Muscle;
+use crate::model::{FieldPlace, Of, System, What};
 
 /// Bounds of a quantity at every instant or in every interval, or at a single time.
 #[derive(Clone, Debug, PartialEq)]
@@ -105,11 +105,7 @@ impl Limit {
             }
             _ => self.what.of_other(from, to),
         };
-        // A muscle of finite elements has no lumped one's stretch and field.
-        let is_meshed = |&(kind, index): &(PartKind, usize)| {
-            kind == PartKind::Muscle && to.muscles[index].fidelity != Fidelity::Lumped
-        };
-        let what = what.filter(|what| what.exists(to) && !what.parts().iter().any(is_meshed))?;
+        let what = what.filter(|what| what.exists(to))?;
         Some(Self {
             what,
             ..self.clone()

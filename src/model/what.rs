@@ -258,13 +258,18 @@ impl What {
         is_there.then_some(other)
     }
 
-    /// Returns true if the parts are there and have what is measured.
+    /// Returns true if the parts are there and have what is measured; only a lumped muscle has one stretch, field and tension.
     pub fn exists(&self, system: &System) -> bool {
-        let is_there = |(kind, index): (PartKind, usize)| index < kind.names(system).len();
+        let is_there = |(kind, index): (PartKind, usize)| match kind {
+            PartKind::Muscle => {
+                let muscle = system.muscles.get(index);
+                muscle.is_some_and(|muscle| muscle.fidelity == Fidelity::Lumped)
+            }
+            _ => index < kind.names(system).len(),
+        };
         if !self.parts().into_iter().all(is_there) {
             return false;
         }
-        let is_lumped = |m: usize| system.muscles[m].fidelity == Fidelity::Lumped;
         match *self {
             Self::Joint { joint, .. } => system.joints[joint].has_coordinate(),
             Self::Reaction { joint, of, along } => {
@@ -272,16 +277,13 @@ impl What {
                 is_known && (along.norm() - 1.0).abs() < UNIT
             }
             Self::Clearance { plane, .. } => (plane.normal.norm() - 1.0).abs() < UNIT,
-            Self::Tension(Pulling::Muscle(muscle)) => is_lumped(muscle),
             Self::Current(source) | Self::Power(source) => {
                 let muscle = system.muscles.get(source);
                 muscle.is_some_and(Muscle::has_measured_current)
             }
             Self::Voltage(source) => system.sources()[source].takes_voltage,
             Self::Place { axis, .. } => axis < 3,
-            Self::Amount { ref muscles, .. } => {
-                !muscles.is_empty() && muscles.iter().all(|&m| is_lumped(m))
-            }
+            Self::Amount { ref muscles, .. } => !muscles.is_empty(),
             _ => true,
         }
     }
