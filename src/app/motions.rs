@@ -7,10 +7,10 @@ use crate::app::overwrite_check::{make_folder, make_folder_of};
 use crate::app::partial_result::{EARLIER, STOPPED};
 use crate::app::progress::Reached;
 use crate::app::request::{CommandInput, CommandOutput, PageWanted};
-use crate::app::solve::{MIGHT_GO_ON, Solved};
+use crate::app::solve::{Solved, add_notes};
 use crate::app::solve_page::describe;
 use crate::app::summary::Summary;
-use crate::app::{checkpoint, fields, resume_file, solution_file, unfinished};
+use crate::app::{checkpoint, fields, solution_file, unfinished};
 use crate::control::Motions;
 use crate::files::Loaded;
 use crate::math::significant;
@@ -73,12 +73,7 @@ pub(super) fn motions(
     }
     write(request, &mut summary, &folder, began)?;
     let mut output = command_output(motions, &result, &summary, &each, &folder);
-    output.notes.extend(loaded.note_lines());
-    if MIGHT_GO_ON.contains(&&*summary.status) {
-        output
-            .notes
-            .extend(resume_file::command(request, &loaded.task));
-    }
+    add_notes(&mut output, request, loaded, &summary.status);
     Ok(output)
 }
 

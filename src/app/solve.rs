@@ -40,7 +40,7 @@ const SENSITIVITIES: [&str; 3] = [
     "voltages_tolerances.svg",
 ];
 /// Statuses of a solve that might have gone on.
-pub(super) const MIGHT_GO_ON: [&str; 3] = ["interrupted", "time_limit", "iteration_limit"];
+const MIGHT_GO_ON: [&str; 3] = ["interrupted", "time_limit", "iteration_limit"];
 
 /// Solves a control problem and writes its folder, solved or not.
 pub(super) fn control(
@@ -71,13 +71,22 @@ pub(super) fn control(
     unfinished::done(&folder);
     let violated = &result.optimum.violated;
     let mut output = command_output(&summary, control.is_refined, violated, &folder);
-    output.notes.extend(loaded.note_lines());
-    if MIGHT_GO_ON.contains(&&*summary.status) {
-        output
-            .notes
-            .extend(resume_file::command(request, &loaded.task));
-    }
+    add_notes(&mut output, request, loaded, &summary.status);
     Ok(output)
+}
+
+/// Adds the notes of the reading and, where the solve might have gone on, the command that resumes it.
+pub(super) fn add_notes(
+    output: &mut CommandOutput,
+    request: &CommandInput,
+    loaded: &Loaded,
+    status: &str,
+) {
+    output.notes.extend(loaded.note_lines());
+    if MIGHT_GO_ON.contains(&status) {
+        let command = resume_file::command(request, &loaded.task);
+        output.notes.extend(command);
+    }
 }
 
 /// A motion of a problem, solved or not, with the feedback along it.
@@ -98,19 +107,14 @@ impl Solved<'_> {
         read: f64,
         began: Instant,
     ) -> Result<Summary, CommandError> {
-        let Self {
-            request,
-            system,
-            control,
-            result,
-            ..
-        } = *self;
+        let (control, result) = (self.control, self.result);
         let SolveResult {
             optimum, verdict, ..
         } = result;
-        let mut summary = Summary::new(request, verdict.word, optimum.model.coordinates.name());
+        let mut summary =
+            Summary::new(self.request, verdict.word, optimum.model.coordinates.name());
         summary.message.clone_from(&verdict.message);
-        summary.program = Some(program(system, control, result));
+        summary.program = Some(program(self.system, control, result));
         summary.accuracy.clone_from(&result.accuracy);
         let model = optimum.sought.as_ref().unwrap_or(&optimum.model);
         summary.plan = Plan::from_model(model, Some(control), MEASURED);
@@ -119,7 +123,7 @@ impl Solved<'_> {
         let writing = Instant::now();
         let mut files = FileSet::in_folder(folder);
         solution_file::add(&mut files, &optimum.model, &optimum.motion)?;
-        let (limit, kept) = (time_to_write(request, began), files.count());
+        let (limit, kept) = (time_to_write(self.request, began), files.count());
         files.limit(&limit);
         let watch = stop::watch_by(limit.clone());
         if let Err(error) = self.write_files(&mut summary, &mut files) {
@@ -134,13 +138,7 @@ impl Solved<'_> {
 
     /// Writes the fields of the motion, tables, figures and page, and adds what they hold to the summary.
     fn write_files(&self, summary: &mut Summary, files: &mut FileSet) -> Result<(), WriteError> {
-        let Self {
-            request,
-            control,
-            feedback,
-            result,
-            ..
-        } = *self;
+        let result = self.result;
         let SolveResult {
             optimum,
             discrete,
@@ -149,8 +147,13 @@ impl Solved<'_> {
         } = result;
         let model = &optimum.model;
         let mut observed = observations(model, discrete);
-        let origin = request.origin(true);
-        feedback_files::add((control, feedback), result, (summary, files), &origin)?;
+        let origin = self.request.origin(true);
+        feedback_files::add(
+            (self.control, self.feedback),
+            result,
+            (summary, files),
+            &origin,
+        )?;
         let written = fields::write(files, model, discrete, &origin)?;
         summary.blocks = BlockSizes::from_model(model).map(|b| b.after(model, &observed, written));
         observed.columns.extend(result.exchange.columns());
@@ -176,12 +179,7 @@ impl Solved<'_> {
         files: &mut FileSet,
         origin: &Origin,
     ) -> Result<(), WriteError> {
-        let Self {
-            request,
-            control,
-            result,
-            ..
-        } = *self;
+        let (control, result) = (self.control, self.result);
         let optimum = &result.optimum;
         let Optimum {
             model, boundary, ..
@@ -214,12 +212,12 @@ impl Solved<'_> {
             },
             comparison: compared.as_ref().map(|c| ("constant voltages", c)),
             held: boundary.rest[1].as_deref().filter(|_| is_solved),
-            figures: request.figures,
+            figures: self.request.figures,
             tracked: &shown.tracked(&summary.tracking),
             goal: goal.as_deref(),
             targets: &targets(control, motion.trajectory),
             waypoints: &waypoints(control, motion.trajectory),
-            page: request.page.of(&content),
+            page: self.request.page.of(&content),
             ..shown.run(&model.system, origin)
         };
         write_run(files, &run)
