@@ -16,15 +16,24 @@ use rustix::thread::{CpuSet, sched_getaffinity, sched_setaffinity};
 /// The cores that the process was given.
 static CORES: OnceLock<CpuSet> = OnceLock::new();
 
-/// Address space that is left when the libraries are mapped: the first block that OpenBLAS takes, and 20 MiB that the
-/// libraries of MPI take before it; without MPI what the trunk needs (60 MiB for 40 s of motion).
-const ROOM: usize = if cfg!(mpi) { 160 << 20 } else { 64 << 20 };
-/// Message where there is less.
-const TOO_LITTLE: &str = if cfg!(mpi) {
-    "error: too little address space: expected 160 MiB more than the libraries take (ulimit -v)\n"
-} else {
-    "error: too little address space: expected 64 MiB more than the libraries take (ulimit -v)\n"
-};
+macro_rules! room {
+    ($mebibytes:literal) => {
+        /// Address space that has to be left when the libraries are mapped.
+        const ROOM: usize = $mebibytes << 20;
+        /// Message where there is less.
+        const TOO_LITTLE: &str = concat!(
+            "error: too little address space: expected ",
+            $mebibytes,
+            " MiB more than the libraries take (ulimit -v)\n"
+        );
+    };
+}
+// The first block of OpenBLAS, and 17 MiB that a library of MPI takes before it, for a thread and its data.
+#[cfg(mpi)]
+room!(160);
+// The memory of the trunk (60 MiB for 40 s of motion).
+#[cfg(not(mpi))]
+room!(64);
 
 /// Called by the loader before it initialises the libraries.
 #[used]
