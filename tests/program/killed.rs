@@ -15,8 +15,16 @@ fn kept(results: &Path) -> BTreeMap<String, Vec<f64>> {
     arrays(&results.join(iterate["arrays"]["file"].as_str().unwrap()))
 }
 
+/// Multipliers that an iterate keeps.
+const MULTIPLIERS: [&str; 3] = ["costates/rows", "costates/lower", "costates/upper"];
+
+fn is_nonzero(numbers: &[f64]) -> bool {
+    numbers.iter().any(|v| v.abs() > 1e-9)
+}
+
 /// Runs the program until it has written one iterate after another, the last with its multipliers, which are unknown at first and zero at the
-/// start, and kills it; the folder of its results and what its `unfinished.json` said of the iterate before.
+/// start, and kills it; the folder of its results and what its `unfinished.json` said of the iterate before. Multipliers of bounds that are not
+/// reached shrink with the barrier parameter, so that not every iterate has some of each kind that are not zero.
 fn killed(folder: &Path, arguments: &[&str]) -> (PathBuf, Vec<u8>) {
     let results = folder.join("results");
     let mut child = Command::new(env!("CARGO_BIN_EXE_proboscis"))
@@ -28,12 +36,15 @@ fn killed(folder: &Path, arguments: &[&str]) -> (PathBuf, Vec<u8>) {
         .unwrap();
     let (mut before, mut latest) = (Vec::new(), Vec::new());
     let mut is_kept = || {
-        let is_there = |rows: &Vec<f64>| rows.iter().any(|y| y.abs() > 1e-9);
         match fs::read(results.join("unfinished.json")) {
             Ok(now) if now != latest => before = mem::replace(&mut latest, now),
             _ => return false,
         }
-        !before.is_empty() && kept(&results).get("costates/rows").is_some_and(is_there)
+        !before.is_empty() && {
+            let all = kept(&results);
+            let is_there = |name: &&str| all.get(*name).is_some_and(|numbers| is_nonzero(numbers));
+            MULTIPLIERS.iter().all(is_there)
+        }
     };
     while !is_kept() {
         let ended = child.try_wait().unwrap();
@@ -58,8 +69,8 @@ fn a_solve_that_is_killed_leaves_an_iterate_to_go_on_from() {
     let all = arrays(&beside);
     assert_eq!(all["time"].len(), 4001);
     // With multipliers and the barrier parameter, so that a solve goes on where this one was.
-    for name in ["costates/rows", "costates/lower", "costates/upper"] {
-        assert!(all[name].iter().any(|v| v.abs() > 1e-9), "{name}");
+    for name in MULTIPLIERS {
+        assert!(is_nonzero(&all[name]), "{name}");
     }
     assert!(kept["barrier"].as_f64().unwrap() > 0.0);
     let goes_on_from = |unfinished: &Path, out: &Path| {
