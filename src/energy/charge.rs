@@ -2,7 +2,7 @@
 //!
 //! `Q²/(2 C(I))` with I = |r|²/L₀² is the Legendre transform of the energy `−½ C V²` by the voltage V = Q/C.
 
-use crate::energy::{DielectricCell, Energy, NeoHooke, OfSquare};
+use crate::energy::{DielectricCell, Energy, NeoHooke, OfSquare, law};
 use crate::math::{Jet, Number};
 use nalgebra::SVector;
 
@@ -37,6 +37,8 @@ pub struct GivenCharge<T = f64> {
     pub capacitance: Capacitance<T>,
 }
 
+law!(GivenCharge { capacitance } of 4);
+
 impl<T: Number> Energy<4, T> for GivenCharge<T> {
     type Local<const ORDER: usize> = OfSquare<T>;
 
@@ -60,6 +62,8 @@ pub struct FlowingCharge<T = f64> {
     pub unit: T,
 }
 
+law!(FlowingCharge { capacitance, unit } of 6);
+
 impl<T: Number> Energy<6, T> for FlowingCharge<T> {
     type Local<const ORDER: usize> = Jet<6, ORDER, T>;
 
@@ -78,6 +82,8 @@ pub struct Capacitance<T = f64> {
     /// The muscle.
     pub cell: DielectricCell<NeoHooke, T>,
 }
+
+law!(Capacitance { cell } of 3);
 
 impl Capacitance {
     /// C at the length |r| in mm.

@@ -1,7 +1,7 @@
 //! Quantities of charged muscles that limits bound: current and power of a source behind a resistor, charges and energies of which the steps are
 //! limited, and fields.
 
-use crate::energy::{Capacitance, Energy, OfSquare};
+use crate::energy::{Capacitance, Energy, OfSquare, law};
 use crate::math::{Jet, Number};
 use nalgebra::SVector;
 
@@ -52,6 +52,8 @@ pub struct SourceCurrent<T = f64> {
     pub unit: T,
 }
 
+law!(SourceCurrent { capacitance, unit_of_charge, resistance, unit } of 7);
+
 impl<T: Number> Energy<7, T> for SourceCurrent<T> {
     type Local<const ORDER: usize> = Jet<7, ORDER, T>;
 
@@ -71,6 +73,8 @@ pub struct PotentialDrop<T = f64> {
     pub resistance: T,
 }
 
+law!(PotentialDrop { unit, resistance } of 2);
+
 impl<T: Number> Energy<2, T> for PotentialDrop<T> {
     type Local<const ORDER: usize> = Jet<2, ORDER, T>;
 
@@ -89,6 +93,8 @@ pub struct VoltageAcross<T = f64> {
     pub unit: T,
 }
 
+law!(VoltageAcross { capacitance, unit } of 6);
+
 impl<T: Number> Energy<6, T> for VoltageAcross<T> {
     type Local<const ORDER: usize> = Jet<6, ORDER, T>;
 
@@ -101,6 +107,8 @@ impl<T: Number> Energy<6, T> for VoltageAcross<T> {
 #[derive(Clone, Copy, Debug)]
 pub struct SourcePower<T = f64>(pub SourceCurrent<T>);
 
+law!(SourcePower { 0 } of 7);
+
 impl<T: Number> Energy<7, T> for SourcePower<T> {
     type Local<const ORDER: usize> = Jet<7, ORDER, T>;
 
@@ -112,6 +120,8 @@ impl<T: Number> Energy<7, T> for SourcePower<T> {
 /// `½ (C₁ + C₂) V`, arguments: spans r₁ and r₂ at both ends of an interval, voltage V. The mean charge in mC under a voltage.
 #[derive(Clone, Copy, Debug)]
 pub struct MeanCharge<T = f64>(pub Capacitance<T>);
+
+law!(MeanCharge { 0 } of 7);
 
 impl<T: Number> Energy<7, T> for MeanCharge<T> {
     type Local<const ORDER: usize> = Jet<7, ORDER, T>;
@@ -135,6 +145,8 @@ impl<T: Number> Energy<7, T> for MeanCharge<T> {
 #[derive(Clone, Copy, Debug)]
 pub struct StoredEnergy<T = f64>(pub Capacitance<T>);
 
+law!(StoredEnergy { 0 } of 4);
+
 impl<T: Number> Energy<4, T> for StoredEnergy<T> {
     type Local<const ORDER: usize> = OfSquare<T>;
 
@@ -155,6 +167,8 @@ pub struct GivenChargeField<T = f64> {
     pub voltage: T,
 }
 
+law!(GivenChargeField { capacitance, voltage } of 4);
+
 impl<T: Number> Energy<4, T> for GivenChargeField<T> {
     type Local<const ORDER: usize> = Jet<4, ORDER, T>;
 
@@ -174,6 +188,8 @@ pub struct FlowingChargeField<T = f64> {
     /// Unit of the charge in mC.
     pub unit: T,
 }
+
+law!(FlowingChargeField { field, unit } of 6);
 
 impl<T: Number> Energy<6, T> for FlowingChargeField<T> {
     type Local<const ORDER: usize> = Jet<6, ORDER, T>;

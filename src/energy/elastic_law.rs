@@ -6,6 +6,7 @@
 //! I₁ = I + 2/√I,    I₂ = 2√I + 1/I,    Σ λᵃ = I^(a/2) + 2 I^(−a/4).
 //! ```
 
+use crate::energy::Coefficient;
 use crate::math::{Fault, Jet, Number, rule, value};
 use nalgebra::{SVector, Vector1};
 use std::f64::consts::PI;
@@ -15,6 +16,31 @@ use std::fmt::Debug;
 pub trait Elasticity<T = f64>: Copy + Debug + Send + Sync + 'static {
     /// Energy in mJ of the volume V₀ in mm³ with the shear modulus μ in MPa as a function of I: value and three derivatives.
     fn of_squared_stretch(&self, shear_modulus: T, volume: T, i: T) -> [T; 4];
+}
+
+/// A law of elasticity whose constants are functions of free parameters.
+pub trait ElasticConstants: Clone + Send + Sync + 'static {
+    /// The law over numbers.
+    type Over<T: Number>: Elasticity<T>;
+
+    /// The law at parameters.
+    fn with<T: Number>(&self, parameters: &[T]) -> Self::Over<T>;
+}
+
+impl ElasticConstants for NeoHooke {
+    type Over<T: Number> = Self;
+
+    fn with<T: Number>(&self, _: &[T]) -> Self {
+        Self
+    }
+}
+
+impl ElasticConstants for ElasticLaw<Coefficient> {
+    type Over<T: Number> = ElasticLaw<T>;
+
+    fn with<T: Number>(&self, parameters: &[T]) -> ElasticLaw<T> {
+        self.map(|_, constant| constant.at(parameters))
+    }
 }
 
 /// The neo-Hookean law `μ/2 (I₁ − 3)`.

@@ -1,6 +1,6 @@
 //! Kinetic energies of masses.
 
-use crate::energy::{Energy, OfSquare};
+use crate::energy::{Energy, OfSquare, law};
 use crate::math::{Jet, Number};
 use nalgebra::{SVector, Vector3};
 
@@ -10,6 +10,8 @@ pub struct KineticEnergy<T = f64> {
     /// Mass m in g.
     pub mass: T,
 }
+
+law!(KineticEnergy { mass } of 3);
 
 impl<T: Number> Energy<3, T> for KineticEnergy<T> {
     type Local<const ORDER: usize> = OfSquare<T>;
@@ -31,6 +33,8 @@ pub struct KineticCoupling<T = f64> {
     pub mass: T,
 }
 
+law!(KineticCoupling { mass } of 6);
+
 impl<T: Number> Energy<6, T> for KineticCoupling<T> {
     type Local<const ORDER: usize> = Jet<6, ORDER, T>;
 
@@ -47,6 +51,8 @@ pub struct Gravity<T = f64> {
     /// Weight `m g` in N.
     pub weight: Vector3<T>,
 }
+
+law!(Gravity { weight } of 3);
 
 impl<T: Number> Energy<3, T> for Gravity<T> {
     type Local<const ORDER: usize> = Jet<3, ORDER, T>;
@@ -70,6 +76,8 @@ pub struct DeadLoad<T = f64> {
     pub force: Vector3<T>,
 }
 
+law!(DeadLoad { force } of 4);
+
 impl<T: Number> Energy<4, T> for DeadLoad<T> {
     type Local<const ORDER: usize> = Jet<4, ORDER, T>;
 
@@ -88,6 +96,8 @@ impl<T: Number> Energy<4, T> for DeadLoad<T> {
 /// Virtual work `F δx·d` of a force F along a direction d that turns with the body, arguments: δx, δd, x, d, force F.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct FollowingForce;
+
+law!(FollowingForce of 13);
 
 impl<T: Number> Energy<13, T> for FollowingForce {
     type Local<const ORDER: usize> = Jet<13, ORDER, T>;

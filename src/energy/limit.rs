@@ -1,6 +1,6 @@
 //! Quantities that path limits and goals bound.
 
-use crate::energy::{Energy, OfSquare};
+use crate::energy::{Energy, OfSquare, law};
 use crate::math::{Jet, Number, Vector};
 use nalgebra::SVector;
 
@@ -12,6 +12,8 @@ pub struct PositionComponent {
     /// n.
     pub normal: Vector,
 }
+
+law!(PositionComponent of 3);
 
 impl<T: Number> Energy<3, T> for PositionComponent {
     type Local<const ORDER: usize> = Jet<3, ORDER, T>;
@@ -35,6 +37,8 @@ pub struct SquaredDistance<T = f64> {
     /// s in mm.
     pub scale: T,
 }
+
+law!(SquaredDistance { centre, scale } of 3);
 
 impl<T: Number> Energy<3, T> for SquaredDistance<T> {
     type Local<const ORDER: usize> = OfSquare<T>;
@@ -64,6 +68,8 @@ pub struct OutsideBox {
     pub half: Vector,
 }
 
+law!(OutsideBox of 3);
+
 impl<T: Number> Energy<3, T> for OutsideBox {
     type Local<const ORDER: usize> = Jet<3, ORDER, T>;
 
@@ -84,6 +90,8 @@ pub struct SquaredField<T = f64> {
     /// Voltage t E that reaches the limit field E at rest length, in V.
     pub voltage: T,
 }
+
+law!(SquaredField { length, voltage } of 4);
 
 impl<T: Number> Energy<4, T> for SquaredField<T> {
     type Local<const ORDER: usize> = OfSquare<T>;

@@ -1,6 +1,6 @@
 //! Damper of a Maxwell branch at a point of a finite element: derivatives by thirteen numbers.
 
-use crate::energy::Energy;
+use crate::energy::{Energy, law};
 use crate::math::{Derivatives, Jet, Local, Matrix, Number, Vector};
 use nalgebra::SVector;
 
@@ -206,6 +206,8 @@ pub struct MaxwellCell<T = f64> {
     /// Shear modulus μ₁ in MPa.
     pub shear_modulus: T,
 }
+
+law!(MaxwellCell { length, volume, shear_modulus } of 6);
 
 impl<T: Number> Energy<6, T> for MaxwellCell<T> {
     type Local<const ORDER: usize> = Jet<6, ORDER, T>;

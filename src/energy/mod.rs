@@ -3,15 +3,16 @@
 mod along_span;
 mod charge;
 mod charge_limit;
+mod coefficient;
 mod constraint;
 mod elastic_law;
 mod kinetic;
+mod law;
 mod limit;
 mod maxwell_damper;
 mod muscle;
 mod of_square;
 mod one_sided;
-mod polynomial;
 mod span_tension;
 mod spring;
 mod viscosity;
@@ -23,11 +24,14 @@ pub use charge_limit::{
     FlowingChargeField, GivenChargeField, MeanCharge, PotentialDrop, SourceCurrent, SourcePower,
     StoredEnergy, VoltageAcross,
 };
+pub use coefficient::Coefficient;
 pub use constraint::{Coincidence, Orthogonality};
-pub use elastic_law::{ElasticLaw, Elasticity, NeoHooke};
+pub use elastic_law::{ElasticConstants, ElasticLaw, Elasticity, NeoHooke};
 pub use kinetic::Gravity;
 pub use kinetic::{DeadLoad, FollowingForce, SurfaceCharge};
 pub use kinetic::{KineticCoupling, KineticEnergy};
+pub(crate) use law::law;
+pub use law::{Constants, Law};
 pub use limit::{
     Angle, AngleStep, Multiple, OutsideBox, PeakExcess, PositionComponent, Projection,
     ProjectionStep, SquaredDistance, SquaredField,
@@ -38,7 +42,6 @@ pub use muscle::{DielectricCell, ElasticCell, SectionInertia};
 pub use of_square::OfSquare;
 pub use one_sided::Cable;
 pub use one_sided::CoordinateStops;
-pub use polynomial::Polynomial;
 pub use span_tension::SpanTension;
 pub use spring::{CoordinateSpring, JointAngle, JointDisplacement};
 pub use spring::{LinearSpring, SpanDamper};

@@ -2,7 +2,7 @@
 //!
 //! All through the polynomial invariant I = Λ² = |r|²/L₀² of the span r (docs/theory.md, 3.1 to 3.3).
 
-use crate::energy::{Elasticity, Energy, NeoHooke, OfSquare};
+use crate::energy::{Elasticity, Energy, NeoHooke, OfSquare, law};
 use crate::math::{Jet, Number};
 use nalgebra::SVector;
 
@@ -18,6 +18,8 @@ pub struct ElasticCell<L = NeoHooke, T = f64> {
     /// Law of elasticity.
     pub law: L,
 }
+
+law!(ElasticCell<L> { length, volume, shear_modulus, law } of 3);
 
 impl<L: Elasticity<T>, T: Number> ElasticCell<L, T> {
     /// The energy as a function of I: value and three derivatives.
@@ -57,6 +59,8 @@ pub struct DielectricCell<L = NeoHooke, T = f64> {
     pub layer: T,
 }
 
+law!(DielectricCell<L> { elastic, c1, c2, permittivity, layer } of 4);
+
 impl<L, T: Number> DielectricCell<L, T> {
     /// Factor of (V/t)² V₀ as a function of I: value and three derivatives.
     #[inline(always)]
@@ -95,6 +99,8 @@ pub struct SectionInertia<T = f64> {
     /// ρ V₀ (X̂² + Ŷ²)/192 in g mm².
     pub moment: T,
 }
+
+law!(SectionInertia { length, moment } of 6);
 
 impl<T: Number> Energy<6, T> for SectionInertia<T> {
     type Local<const ORDER: usize> = Jet<6, ORDER, T>;

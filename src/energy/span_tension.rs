@@ -1,6 +1,6 @@
 //! Forces along spans as quantities: what an energy pulls the ends of a span together with.
 
-use crate::energy::Energy;
+use crate::energy::{Energy, Law};
 use crate::math::{Derivatives, Local, Number};
 use nalgebra::{Matrix3, SVector, Vector3};
 
@@ -40,6 +40,14 @@ impl<E: Energy<M, T>, T: Number, const M: usize> Energy<M, T> for SpanTension<E>
         w.fixed_rows_mut::<3>(0).copy_from(&r);
         let of = self.0.at::<3>(p, &w);
         AlongSpanOnly { of, r }
+    }
+}
+
+impl<L: Law<M>, const M: usize> Law<M> for SpanTension<L> {
+    type Formula<T: Number> = SpanTension<L::Formula<T>>;
+
+    fn formula<T: Number>(&self, parameters: &[T]) -> Self::Formula<T> {
+        SpanTension(self.0.formula(parameters))
     }
 }
 

@@ -1,6 +1,6 @@
 //! A spring and a damper between two points.
 
-use crate::energy::{AlongSpan, Energy, OfSquare};
+use crate::energy::{AlongSpan, Energy, OfSquare, law};
 use crate::math::{Jet, Number};
 use nalgebra::SVector;
 
@@ -12,6 +12,8 @@ pub struct LinearSpring<T = f64> {
     /// Length ℓ without force in mm.
     pub length: T,
 }
+
+law!(LinearSpring { stiffness, length } of 3);
 
 impl<T: Number> LinearSpring<T> {
     /// ½ k (√I − ℓ)² as a function of I = |r|²: value and three derivatives.
@@ -50,6 +52,8 @@ pub struct SpanDamper<T = f64> {
     pub coefficient: T,
 }
 
+law!(SpanDamper { coefficient } of 9);
+
 impl<T: Number> Energy<9, T> for SpanDamper<T> {
     type Local<const ORDER: usize> = AlongSpan<T>;
 
@@ -78,6 +82,8 @@ pub struct CoordinateSpring<T = f64> {
     /// Coordinate u₀ without force, in rad or mm.
     pub rest: T,
 }
+
+law!(CoordinateSpring { stiffness, rest } of 3);
 
 impl<T: Number> Energy<3, T> for CoordinateSpring<T> {
     type Local<const ORDER: usize> = Jet<3, ORDER, T>;

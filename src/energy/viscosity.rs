@@ -5,7 +5,7 @@
 //! Both are d times the rate of the coordinate, which the midpoint rule samples once as a difference of angles and once as a
 //! turn of vectors: the same force to O(h²).
 
-use crate::energy::{AlongSpan, Energy};
+use crate::energy::{AlongSpan, Energy, law};
 use crate::math::{Jet, Number};
 use nalgebra::SVector;
 
@@ -18,9 +18,13 @@ pub struct ViscousCell<T = f64> {
     pub coefficient: T,
 }
 
+law!(ViscousCell { coefficient } of 9);
+
 /// Force `c (r̄·ṙ)/|r̄|³` along the span of a [`ViscousCell`] with the coefficient c, arguments: r̄ and ṙ. Positive where the span grows.
 #[derive(Clone, Copy, Debug)]
 pub struct ViscousTension<T = f64>(pub ViscousCell<T>);
+
+law!(ViscousTension { 0 } of 6);
 
 impl<T: Number> Energy<6, T> for ViscousTension<T> {
     type Local<const ORDER: usize> = Jet<6, ORDER, T>;
@@ -61,6 +65,8 @@ pub struct CoordinateDamper<T = f64> {
     pub coefficient: T,
 }
 
+law!(CoordinateDamper { coefficient } of 6);
+
 impl<T: Number> Energy<6, T> for CoordinateDamper<T> {
     type Local<const ORDER: usize> = Jet<6, ORDER, T>;
 
@@ -87,6 +93,8 @@ pub struct AngularDamper<T = f64> {
     /// d in N mm ms.
     pub coefficient: T,
 }
+
+law!(AngularDamper { coefficient } of 27);
 
 impl<T: Number> Energy<27, T> for AngularDamper<T> {
     type Local<const ORDER: usize> = Jet<27, ORDER, T>;
@@ -126,6 +134,8 @@ pub struct LinearDamper<T = f64> {
     /// d in N ms/mm.
     pub coefficient: T,
 }
+
+law!(LinearDamper { coefficient } of 18);
 
 impl<T: Number> Energy<18, T> for LinearDamper<T> {
     type Local<const ORDER: usize> = Jet<18, ORDER, T>;

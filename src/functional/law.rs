@@ -1,22 +1,12 @@
-//! Laws: formulas whose constants are functions of free parameters, and elements of them.
+//! Elements of laws: formulas whose constants are functions of free parameters.
 
-use crate::energy::Energy;
+use crate::energy::Law;
 use crate::functional::{Element, VectorArg};
-use crate::math::Number;
 
 /// Most parameters that one element reads: as many as a law has constants, each of which follows one or is given. A muscle under voltage by a
 /// law of two terms has six components of its ends, a prestretch, two sides, a layer, a modulus, three constants of the law and three of the
 /// field.
 pub const MOST_PARAMETERS: usize = 17;
-
-/// A formula of `M` arguments whose constants are functions of parameters.
-pub trait Law<const M: usize>: Clone + Send + Sync + 'static {
-    /// The formula, of constants and arguments that are numbers `T`.
-    type Formula<T: Number>: Energy<M, T>;
-
-    /// The formula at parameters.
-    fn formula<T: Number>(&self, parameters: &[T]) -> Self::Formula<T>;
-}
 
 /// A parameter that moves a point which an element reads.
 #[derive(Clone, Copy, Debug)]

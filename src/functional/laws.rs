@@ -12,9 +12,9 @@
 //! A parameter that moves a point changes the vectors r that the formula reads: `r = r₀ + Σ c_a e_a` with the factors c_a = π_a − π_a⁰ and
 //! material vectors e_a, which are arguments of the element like r₀.
 
-use crate::energy::Energy;
+use crate::energy::{Energy, Law};
 use crate::functional::by_parameters::{ByParameter, ByParameters, OfElement, Values, contraction};
-use crate::functional::law::{Law, LawElement, MOST_PARAMETERS, Move};
+use crate::functional::law::{LawElement, MOST_PARAMETERS, Move};
 use crate::functional::{Kernel, Order, ParameterOrder, Sample, Scatter, VectorArg};
 use crate::math::{Derivatives, Dual, Gradient, HyperDual, Local, Number, Vector};
 use nalgebra::{SVector, Vector3};

@@ -48,7 +48,7 @@ pub use group::Group;
 pub use impulse::{Displacement, Impulse, Turn};
 pub use inertia::{Inertia, Mass};
 pub use kernel::{Kernel, Scatter};
-pub use law::{Law, LawElement, MOST_PARAMETERS, Move};
+pub use law::{LawElement, MOST_PARAMETERS, Move};
 pub use laws::Laws;
 pub use maxwell_elements::{MaxwellElement, MaxwellElements, POINTS};
 pub use measured::Curved;

@@ -15,7 +15,7 @@
 //! (∂²W)˙ᵢⱼ = W‴ L_w uᵢ uⱼᵀ + W″ (u̇ᵢ uⱼᵀ + uᵢ u̇ⱼᵀ) + δᵢⱼ (W″ L_w Kᵢ + W′ K̇ᵢ).
 //! ```
 
-use crate::energy::{Cable, Polynomial};
+use crate::energy::{Cable, Coefficient};
 use crate::functional::{Kernel, Move, Order, Sample, Scatter, Stencil, VectorArg};
 use crate::math::{Derivatives, HyperDual, Matrix, Number, Vector};
 use nalgebra::Vector3;
@@ -25,7 +25,7 @@ use std::cell::Cell;
 #[derive(Clone, Debug)]
 pub struct Path {
     /// Constants of the energy.
-    pub energy: Cable<Polynomial>,
+    pub energy: Cable<Coefficient>,
     /// Vectors of the spans, one after the other.
     pub spans: Vec<usize>,
     /// Parameters that constants and spans follow, scalars of the interval.

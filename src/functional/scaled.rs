@@ -1,9 +1,9 @@
-//! Elements of any kind times constants that follow from free parameters: `c(π) E` with a product `c` of constants.
+//! Elements of any kind times constants that follow from free parameters: `c(π) E`.
 //!
 //! A constant in which an energy is linear needs no formula of numbers that carry derivatives: `∂/∂π_a` is `∂c/∂π_a E`, of the element with
 //! the constant one.
 
-use crate::energy::Polynomial;
+use crate::energy::Coefficient;
 use crate::functional::{Kernel, Order, Sample, Scatter, VectorArg};
 use crate::math::{Derivatives, HyperDual, Matrix, Number, Vector};
 use std::fmt;
@@ -17,8 +17,8 @@ const MOST: usize = 2;
 pub struct ScaledElement<E> {
     /// The element E.
     pub of: E,
-    /// Constants whose product is c.
-    pub factors: Vec<Polynomial>,
+    /// The constant c.
+    pub factor: Coefficient,
     /// Parameters that they follow, scalars of the interval, two at most.
     pub parameters: Vec<usize>,
 }
@@ -32,12 +32,6 @@ struct Factor {
 }
 
 impl<E> ScaledElement<E> {
-    /// The constant at numbers in place of the parameters.
-    fn constant<T: Number>(&self, at: [T; MOST]) -> T {
-        let factors = self.factors.iter();
-        factors.fold(T::of(1.0), |product, factor| product * factor.at(&at))
-    }
-
     fn parameters(&self, sample: &Sample<'_>) -> [f64; MOST] {
         let mut values = [0.0; MOST];
         for (value, &scalar) in values.iter_mut().zip(&self.parameters) {
@@ -47,13 +41,13 @@ impl<E> ScaledElement<E> {
     }
 
     fn value(&self, sample: &Sample<'_>) -> f64 {
-        self.constant(self.parameters(sample))
+        self.factor.at(&self.parameters(sample))
     }
 
     fn factor(&self, sample: &Sample<'_>) -> Factor {
         let values = self.parameters(sample);
         let mut factor = Factor {
-            value: self.constant(values),
+            value: self.factor.at(&values),
             slopes: [0.0; MOST],
             curvatures: [[0.0; MOST]; MOST],
         };
@@ -62,7 +56,7 @@ impl<E> ScaledElement<E> {
                 let mut numbers = values.map(HyperDual::of);
                 numbers[i].value.part = 1.0;
                 numbers[j].part.value = 1.0;
-                let by = self.constant(numbers);
+                let by = self.factor.at(&numbers);
                 factor.slopes[i] = by.value.part;
                 factor.curvatures[i][j] = by.part.part;
                 factor.curvatures[j][i] = by.part.part;

@@ -4,7 +4,7 @@
 //! `∂W/∂π = J′ W_J` and `∂²W/∂π² = J′² W_JJ + J″ W_J`.
 
 use crate::element::{Elastomer, ElementGeometry, IsochoricLaw, Local, Passive};
-use crate::energy::Polynomial;
+use crate::energy::Coefficient;
 use crate::functional::finite_elements::middle;
 use crate::functional::{Kernel, Order, Sample, Scatter, Stencil, VectorArg};
 use crate::math::{Derivatives, HyperDual, Matrix, Number, Vector};
@@ -20,7 +20,7 @@ pub struct VariedElement<const NODES: usize = 8> {
     /// Vectors of the nodes.
     pub nodes: [usize; NODES],
     /// Gent's limit Jₘ.
-    pub limit: Polynomial,
+    pub limit: Coefficient,
     /// The parameter that it follows, a scalar of the interval.
     pub parameter: usize,
 }

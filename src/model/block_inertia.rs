@@ -1,12 +1,12 @@
 //! Masses and weights of elastic blocks.
 
+use crate::energy::{KineticCoupling, KineticEnergy};
 use crate::functional::Mass;
 use crate::model::constant::{Constant, MaterialConstant};
 use crate::model::plan::GRAVITY;
 use crate::model::solid_block::SolidBlock;
 use crate::model::solids::Solids;
-use crate::model::terms::{Terms, mid, rate};
-use crate::model::weight::{Moving, MovingTogether, Weight};
+use crate::model::terms::{Terms, mid, rate, weight};
 use std::collections::BTreeMap;
 
 const INERTIA: &str = "block inertia";
@@ -66,8 +66,8 @@ impl Solids {
         for (vector, mass) in self.weights(one) {
             let mut read = read.clone();
             if let Some(gravity) = terms.gravity(&mut read) {
-                let mass = density.scaled(mass, 0.0);
-                let element = read.element(Weight { mass, gravity }, [mid(vector)], []);
+                let law = weight(&density.scaled(mass), gravity);
+                let element = read.element(law, [mid(vector)], []);
                 terms.add_law((GRAVITY, "gravity of"), "the scene", element);
             }
         }
@@ -75,12 +75,13 @@ impl Solids {
             return;
         }
         for ([a, b], mass) in self.masses(one) {
-            let (mass, why) = (density.scaled(mass, 0.0), (INERTIA, "density of"));
+            let (mass, why) = (density.scaled(mass), (INERTIA, "density of"));
             if a == b {
-                let element = read.clone().element(Moving(mass), [rate(a)], []);
+                let law = KineticEnergy { mass };
+                let element = read.clone().element(law, [rate(a)], []);
                 terms.add_kinetic_law(why, name, element);
             } else {
-                let law = MovingTogether(mass);
+                let law = KineticCoupling { mass };
                 let element = read.clone().element(law, [rate(a), rate(b)], []);
                 terms.add_kinetic_law(why, name, element);
             }

@@ -1,15 +1,14 @@
 //! Terms of elastic blocks: elements by kind.
 
 use crate::element::{ElementLaw, Viscosity};
-use crate::energy::{NeoHooke, Polynomial};
+use crate::energy::NeoHooke;
 use crate::functional::ViscousElement;
 use crate::model::constant::MaterialConstant;
-use crate::model::free_parameters::Read;
 use crate::model::internal::Internals;
 use crate::model::parametric_elements::ElementOf;
 use crate::model::solid_block::SolidBlock;
 use crate::model::solids::Solids;
-use crate::model::terms::{Member, OfKind, Terms};
+use crate::model::terms::{Call, Terms};
 
 const INERTIA: &str = "block inertia";
 /// Elasticity and electroelasticity.
@@ -92,23 +91,14 @@ impl Solids {
             };
             let mut read = terms.sought().read();
             let factor = read.constant(c.constant(e, MaterialConstant::Viscosity), viscosity);
-            let of = (VISCOSITY, "viscosity of", c.solid.name.as_str());
-            let pair = (element(viscosity), element(1.0));
-            add_times::<(), _>(of, pair, (vec![factor], read), terms);
+            let (given, unit) = (element(viscosity), element(1.0));
+            Call {
+                term: VISCOSITY,
+                why: "viscosity of",
+                of: &c.solid.name,
+            }
+            .add_times::<(), _>(given, unit, factor, read, terms);
         }
-    }
-}
-
-/// An element as it is given, or that of the constant one times constants some of which are free.
-pub(super) fn add_times<Kind, E: OfKind + Member<Kind>>(
-    (term, why, of): (&'static str, &'static str, &str),
-    (given, unit): (E, E),
-    (factors, read): (Vec<Polynomial>, Read),
-    terms: &mut Terms<'_>,
-) {
-    match read.is_empty() {
-        true => terms.collect::<Kind, _>(term, why, of, given),
-        false => terms.add_scaled(term, why, of, (unit, factors, read)),
     }
 }
 

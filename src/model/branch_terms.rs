@@ -6,14 +6,13 @@ use crate::energy::MaxwellDamper;
 use crate::functional::{Element, FiniteElement, MaxwellElement, POINTS};
 use crate::kinematics::MaterialVector;
 use crate::math::Matrix;
-use crate::model::block_terms::add_times;
 use crate::model::constant::MaterialConstant;
 use crate::model::internal::Internals;
 use crate::model::maxwell::{MaxwellBranch, Response};
 use crate::model::model::Model;
 use crate::model::solid_block::SolidBlock;
 use crate::model::solids::Solids;
-use crate::model::terms::{Formula, Terms, UNRELAXED, mid, rate};
+use crate::model::terms::{Call, Formula, Terms, UNRELAXED, mid, rate};
 use std::sync::Arc;
 
 const MAXWELL: [&str; 2] = ["block maxwell elasticity", "block maxwell viscosity"];
@@ -36,14 +35,14 @@ impl Solids {
                     let modulus = constants.shear_modulus;
                     let mut read = terms.sought().read();
                     let constant = c.constant(e, MaterialConstant::BranchModulus(branch));
-                    let factors = vec![read.constant(constant, modulus)];
-                    let of = (MAXWELL[0], UNRELAXED, c.solid.name.as_str());
-                    add_times::<(), _>(
-                        of,
-                        (element(modulus), element(1.0)),
-                        (factors, read),
-                        terms,
-                    );
+                    let factor = read.constant(constant, modulus);
+                    let (given, unit) = (element(modulus), element(1.0));
+                    Call {
+                        term: MAXWELL[0],
+                        why: UNRELAXED,
+                        of: &c.solid.name,
+                    }
+                    .add_times::<(), _>(given, unit, factor, read, terms);
                 }
             }
         }
@@ -59,25 +58,28 @@ fn add_branch(
     c: &SolidBlock,
     e: usize,
     branch: usize,
-    &MaxwellBranch {
-        shear_modulus,
-        relaxation_time,
-    }: &MaxwellBranch,
+    constants: &MaxwellBranch,
     strains: [[MaterialVector; 2]; POINTS],
     terms: &mut Terms<'_>,
 ) {
-    let ([elasticity, viscosity], why) = (MAXWELL, "Maxwell branches of");
-    let name = c.solid.name.as_str();
+    let MaxwellBranch {
+        shear_modulus,
+        relaxation_time,
+    } = *constants;
+    let [elasticity, viscosity] = MAXWELL.map(|term| Call {
+        term,
+        why: "Maxwell branches of",
+        of: &c.solid.name,
+    });
     let [of_modulus, of_time] = [
         MaterialConstant::BranchModulus(branch),
         MaterialConstant::RelaxationTime(branch),
     ]
     .map(|constant| c.constant(e, constant));
     let mut read = terms.sought().read();
-    let modulus = vec![read.constant(of_modulus, shear_modulus)];
-    let of_spring = (modulus.clone(), read.clone());
-    let time = read.constant(of_time, relaxation_time);
-    let of_damper = ([modulus, vec![time]].concat(), read);
+    let modulus = read.constant(of_modulus, shear_modulus);
+    let of_spring = read.clone();
+    let both = &modulus * &read.constant(of_time, relaxation_time);
     let strains = strains.map(|parts| parts.map(|part| terms.new_vector(part)));
     let shape = c.shapes[e].clone();
     for ([stretches, shears], volume) in strains.into_iter().zip(shape.weights()) {
@@ -89,12 +91,8 @@ fn add_branch(
             scalars: [],
         };
         let given = element(relaxation_time * shear_modulus * volume);
-        add_times::<Formula<18, false>, _>(
-            (viscosity, why, name),
-            (given, element(*volume)),
-            of_damper.clone(),
-            terms,
-        );
+        let (unit, read) = (element(*volume), read.clone());
+        viscosity.add_times::<Formula<18, false>, _>(given, unit, both.clone(), read, terms);
     }
     let element = |shear_modulus| MaxwellElement {
         shape: shape.clone(),
@@ -102,12 +100,8 @@ fn add_branch(
         nodes: c.nodes(e),
         strains,
     };
-    add_times::<(), _>(
-        (elasticity, why, name),
-        (element(shear_modulus), element(1.0)),
-        of_spring,
-        terms,
-    );
+    let (given, unit) = (element(shear_modulus), element(1.0));
+    elasticity.add_times::<(), _>(given, unit, modulus, of_spring, terms);
 }
 
 impl Model {

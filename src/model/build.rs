@@ -1,10 +1,10 @@
 //! Construction of the model of a system: presolve, coordinates, terms and constraints, measures.
 
 use crate::coordinates::{CoordinateMap, Reduced};
-use crate::energy::{CoordinateSpring, CoordinateStops, Polynomial};
-use crate::functional::{Element, Functional, Law, Term};
+use crate::energy::{CoordinateSpring, CoordinateStops};
+use crate::functional::{Element, Functional, Term};
 use crate::kinematics::{MaterialVector, Pose, Vectors};
-use crate::math::{Matrix, Number};
+use crate::math::Matrix;
 use crate::mesh::grid::Grid;
 use crate::model::analysis::{Analysis, Coordinates};
 use crate::model::components::{Load, body, circuit, electrode_circuit, muscle};
@@ -416,24 +416,6 @@ pub(super) fn interval_variables(
 const ELASTICITY: &str = "joint elasticity";
 const STOPS: &str = "joint stops";
 
-/// Elasticity of a joint.
-#[derive(Clone)]
-struct Elasticity {
-    stiffness: Polynomial,
-    rest: Polynomial,
-}
-
-impl Law<3> for Elasticity {
-    type Formula<T: Number> = CoordinateSpring<T>;
-
-    fn formula<T: Number>(&self, parameters: &[T]) -> CoordinateSpring<T> {
-        CoordinateSpring {
-            stiffness: self.stiffness.at(parameters),
-            rest: self.rest.at(parameters),
-        }
-    }
-}
-
 /// Springs and stops of the joints of a presolved system.
 pub(super) fn add_joint_springs(
     presolved: &Presolved,
@@ -445,7 +427,7 @@ pub(super) fn add_joint_springs(
         if let (Some(spring), Some(coordinate)) = (joint.spring, internals.joint(index)) {
             let JointSpring { stiffness, rest } = spring;
             let mut read = terms.sought().read();
-            let law = Elasticity {
+            let law = CoordinateSpring {
                 stiffness: read.constant(Constant::JointStiffness(of_scene), stiffness),
                 rest: read.constant(Constant::JointRest(of_scene), rest),
             };

@@ -1,16 +1,15 @@
 //! Measures of charges and sources: behind resistors the charge, its voltage and field, current and power; otherwise charge and energy under the
 //! voltage.
 
-use crate::energy::{Multiple, PositionComponent};
-use crate::functional::{Law, Measure, Sample, Stencil, Term, TermKind, VectorArg};
+use crate::energy::{
+    Capacitance, Coefficient, FlowingCharge, FlowingChargeField, Law, MeanCharge, Multiple,
+    PositionComponent, PotentialDrop, SourceCurrent, SourcePower, StoredEnergy, VoltageAcross,
+};
+use crate::functional::{Measure, Sample, Stencil, Term, TermKind, VectorArg};
 use crate::kinematics::Vectors;
 use crate::math::Vector;
 use crate::model::components::capacitance;
-use crate::model::components::measured_laws::{
-    Across, Current, Drop, FlowingField, GivenField, Mean, Power, Stored,
-};
-use crate::model::components::muscle_constants::MuscleConstants;
-use crate::model::components::muscle_laws::{Flowing, OfCapacitance};
+use crate::model::components::muscle_constants::{MuscleConstants, charge_field};
 use crate::model::constant::Constant;
 use crate::model::electrode_circuits::ElectrodeCircuit;
 use crate::model::internal::InternalKind;
@@ -24,7 +23,7 @@ use crate::model::what::{At, What};
 /// A muscle behind a resistor: its constants, the electric energy of its charge, and the vectors of its span and of its charge.
 struct Charged<'a> {
     of: MuscleConstants<'a>,
-    energy: Flowing,
+    energy: FlowingCharge<Coefficient>,
     read: [usize; 2],
 }
 
@@ -39,14 +38,15 @@ impl Known<'_> {
         let (unit, at) = (quantity.unit, quantity.at.stencil());
         Some(match quantity.what {
             What::ChargedField(muscle) => {
-                let limit = unit;
                 let Charged {
                     of,
-                    energy: Flowing { capacitance, unit },
+                    energy,
                     read: [span, charge],
                 } = self.charged(muscle, vectors)?;
-                let field = GivenField { capacitance, limit };
-                let field = FlowingField { field, unit };
+                let field = FlowingChargeField {
+                    field: charge_field(energy.capacitance, unit),
+                    unit: energy.unit,
+                };
                 match quantity.at {
                     At::Instant => instant(shape, field.formula(&[]), [span, charge]),
                     _ => shape.law(of.element(field, [read(span, at), read(charge, at)], [])),
@@ -63,16 +63,16 @@ impl Known<'_> {
             }
             What::Power(muscle) => {
                 let (of, current, read, voltage) = self.source_current(muscle, unit, vectors)?;
-                shape.law(of.element(Power(current), read, [voltage]))
+                shape.law(of.element(SourcePower(current), read, [voltage]))
             }
             What::MeanCharge(muscle) => {
                 let (of, capacitance, span, voltage) = self.direct(muscle, vectors)?;
                 let ends = [Stencil::Here, Stencil::Next].map(|at| read(span, at));
-                shape.law(of.element(Mean(capacitance), ends, [voltage]))
+                shape.law(of.element(MeanCharge(capacitance), ends, [voltage]))
             }
             What::Energy(muscle) => {
                 let (of, capacitance, span, voltage) = self.direct(muscle, vectors)?;
-                shape.law(of.element(Stored(capacitance), [read(span, at)], [voltage]))
+                shape.law(of.element(StoredEnergy(capacitance), [read(span, at)], [voltage]))
             }
             _ => return None,
         })
@@ -118,8 +118,10 @@ impl Known<'_> {
             read: vectors,
             ..
         } = self.charged(source, vectors)?;
+        let FlowingCharge { capacitance, unit } = energy;
+        let law = VoltageAcross { capacitance, unit };
         let vectors = vectors.map(|vector| read(vector, Stencil::Mid));
-        Some(shape.law::<_, 6, 2, 0>(of.element(Across(energy), vectors, [])))
+        Some(shape.law::<_, 6, 2, 0>(of.element(law, vectors, [])))
     }
 
     /// Current of the source of electrodes behind a resistor in a unit.
@@ -132,10 +134,10 @@ impl Known<'_> {
         let mut read = self.sought.read();
         let (potential, volts) = of.potential;
         let series = of.circuit.resistance?;
-        let law = Drop {
-            unit: volts,
-            resistance: read.constant(Constant::Resistance(of.source), series),
-            of_current: unit,
+        let resistance = read.constant(Constant::Resistance(of.source), series);
+        let law = PotentialDrop {
+            unit: volts.into(),
+            resistance: resistance.scaled(unit),
         };
         Some(shape.law::<_, 2, 0, 2>(read.element(law, [], [of.input, potential])))
     }
@@ -145,7 +147,7 @@ impl Known<'_> {
         &self,
         muscle: usize,
         vectors: &mut Vectors,
-    ) -> Option<(MuscleConstants<'_>, OfCapacitance, usize, usize)> {
+    ) -> Option<(MuscleConstants<'_>, Capacitance<Coefficient>, usize, usize)> {
         let voltage = self.variables.input(muscle)?;
         let mut of = self.muscle(muscle, vectors);
         let capacitance = of.capacitance()?;
@@ -155,12 +157,11 @@ impl Known<'_> {
     /// A muscle behind a resistor.
     fn charged(&self, muscle: usize, vectors: &mut Vectors) -> Option<Charged<'_>> {
         let charge = self.internals.vector(InternalKind::Charge(muscle))?;
-        let unit = capacitance(&self.presolved.system.muscles[muscle])?.unit_of_charge();
         let mut of = self.muscle(muscle, vectors);
-        let capacitance = of.capacitance()?;
+        let energy = of.flowing_charge()?;
         Some(Charged {
             of,
-            energy: Flowing { capacitance, unit },
+            energy,
             read: [self.span(muscle, vectors), vectors.index(charge)],
         })
     }
@@ -171,17 +172,23 @@ impl Known<'_> {
         muscle: usize,
         unit: f64,
         vectors: &mut Vectors,
-    ) -> Option<(MuscleConstants<'_>, Current, [VectorArg; 2], usize)> {
+    ) -> Option<(
+        MuscleConstants<'_>,
+        SourceCurrent<Coefficient>,
+        [VectorArg; 2],
+        usize,
+    )> {
         let voltage = self.variables.input(muscle)?;
         let Charged {
             mut of,
             energy,
             read: vectors,
         } = self.charged(muscle, vectors)?;
-        let current = Current {
-            of: energy,
+        let current = SourceCurrent {
+            capacitance: energy.capacitance,
+            unit_of_charge: energy.unit,
             resistance: of.resistance()?,
-            unit,
+            unit: unit.into(),
         };
         let vectors = vectors.map(|vector| read(vector, Stencil::Mid));
         Some((of, current, vectors, voltage))

@@ -1,6 +1,6 @@
 //! Free parameters as components read them.
 
-use crate::energy::Polynomial;
+use crate::energy::Coefficient;
 use crate::functional::{LawElement, Move, VectorArg};
 use crate::kinematics::MaterialVector;
 use crate::math::Vector;
@@ -90,18 +90,13 @@ impl Read {
     }
 
     /// A constant as a function of parameters: its `value`, or what follows from one.
-    pub fn constant(&mut self, constant: Constant, value: f64) -> Polynomial {
+    pub fn constant(&mut self, constant: Constant, value: f64) -> Coefficient {
         let Some((parameter, follower)) = self.sought.find(constant) else {
             return value.into();
         };
-        Polynomial {
-            value: follower.offset,
-            slopes: vec![(self.place(parameter), follower.factor)],
-            higher: match follower.is_linear() {
-                true => Vec::new(),
-                false => vec![(self.place(parameter), follower.higher)],
-            },
-        }
+        let [a, b] = follower.higher;
+        let powers = [follower.offset, follower.factor, a, b];
+        Coefficient::Parameter(self.place(parameter), powers)
     }
 
     /// Place of a parameter in the list, which it joins if it is new.

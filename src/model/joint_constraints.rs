@@ -1,9 +1,9 @@
 //! Constraints of a joint: constant products of material vectors, and points that coincide.
 
-use crate::energy::{AngularDamper, CoordinateDamper, LinearDamper, Polynomial};
-use crate::functional::{Law, VectorArg};
+use crate::energy::{AngularDamper, Coefficient, CoordinateDamper, Law, LinearDamper};
+use crate::functional::VectorArg;
 use crate::kinematics::{MaterialVector, Pose};
-use crate::math::{Number, Vector};
+use crate::math::Vector;
 use crate::model::analysis::Coordinates;
 use crate::model::constant::Constant;
 use crate::model::joints::{JointCoordinate, JointReading, triad};
@@ -193,30 +193,6 @@ pub(super) fn build_dampers(
     terms.without(DAMPING, "no joint that moves names a damping");
 }
 
-/// Laws of dampers: formulas of one coefficient.
-macro_rules! laws {
-    ($($law:ident: $formula:ident of $arguments:literal;)*) => { $(
-        #[derive(Clone)]
-        struct $law(Polynomial);
-
-        impl Law<$arguments> for $law {
-            type Formula<T: Number> = $formula<T>;
-
-            fn formula<T: Number>(&self, parameters: &[T]) -> $formula<T> {
-                $formula {
-                    coefficient: self.0.at(parameters),
-                }
-            }
-        }
-    )* };
-}
-
-laws! {
-    OnCoordinate: CoordinateDamper of 6;
-    OnAngle: AngularDamper of 27;
-    OnDisplacement: LinearDamper of 18;
-}
-
 /// The damper of a joint.
 struct Damper<'a> {
     joint: &'a Joint,
@@ -229,7 +205,7 @@ impl Damper<'_> {
     /// Adds the term of a law of the coefficient.
     fn add<L: Law<M>, const M: usize, const NV: usize>(
         &self,
-        law: fn(Polynomial) -> L,
+        law: impl Fn(Coefficient) -> L,
         vectors: [VectorArg; NV],
         terms: &mut Terms<'_>,
     ) {
@@ -242,7 +218,8 @@ impl Damper<'_> {
 
     fn on_coordinate(&self, coordinate: usize, terms: &mut Terms<'_>) {
         let vector = terms.vector(MaterialVector::coordinate(coordinate));
-        self.add(OnCoordinate, [mid(vector), rate(vector)], terms);
+        let law = |coefficient| CoordinateDamper { coefficient };
+        self.add(law, [mid(vector), rate(vector)], terms);
     }
 
     fn on_vectors(&self, reference: &[Pose], terms: &mut Terms<'_>) {
@@ -260,12 +237,12 @@ impl Damper<'_> {
                     rate(b),
                     rate(x),
                 ];
-                self.add(OnAngle, vectors, terms);
+                self.add(|coefficient| AngularDamper { coefficient }, vectors, terms);
             }
             JointCoordinate::Displacement { axis, span } => {
                 let [n, r] = [axis, span].map(|v| terms.vector(v));
                 let vectors = [mid(n), mid(r), mid(n), mid(r), rate(n), rate(r)];
-                self.add(OnDisplacement, vectors, terms);
+                self.add(|coefficient| LinearDamper { coefficient }, vectors, terms);
             }
             JointCoordinate::None => {}
         }

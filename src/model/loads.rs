@@ -1,10 +1,9 @@
 //! Terms of loads: forces on points of bodies, on coordinates of joints and on nodes of blocks, charges on nodes.
 
-use crate::energy::{DeadLoad, FollowingForce, SurfaceCharge};
-use crate::functional::{Element, Law, PressureFace};
-use crate::math::{Number, Vector};
+use crate::energy::{Coefficient, DeadLoad, FollowingForce, GivenCharge, SurfaceCharge};
+use crate::functional::{Element, PressureFace};
+use crate::math::Vector;
 use crate::model::components::muscle::{CHARGES as MUSCLE_CHARGES, constants};
-use crate::model::components::muscle_laws::Given;
 use crate::model::components::{BlockLoad, Load, LoadPlace};
 use crate::model::free_parameters::{MovedPoint, Read};
 use crate::model::internal::Internals;
@@ -13,31 +12,6 @@ use crate::model::solid_block::SolidBlock;
 use crate::model::solids::Solids;
 use crate::model::system::{Attachment, Muscle, System};
 use crate::model::terms::{Terms, mid};
-
-/// A force w for a load of one, on a point that parameters may move.
-#[derive(Clone)]
-struct Pull(Vector);
-
-impl Law<4> for Pull {
-    type Formula<T: Number> = DeadLoad<T>;
-
-    fn formula<T: Number>(&self, _: &[T]) -> DeadLoad<T> {
-        let force = self.0.map(T::of);
-        DeadLoad { force }
-    }
-}
-
-/// A force that follows its body.
-#[derive(Clone)]
-struct Follow;
-
-impl Law<13> for Follow {
-    type Formula<T: Number> = FollowingForce;
-
-    fn formula<T: Number>(&self, _: &[T]) -> FollowingForce {
-        FollowingForce
-    }
-}
 
 /// Term of the loads whose forces have a potential.
 pub(super) const LOADS: &str = "loads";
@@ -97,7 +71,7 @@ pub(super) fn build(
                 on.pull(coordinate, Vector::x(), Read::nothing());
             }
             LoadPlace::Muscle(muscle) => {
-                on.charge_muscle((&system.muscles[*muscle], *muscle), spans[*muscle]);
+                on.charge_muscle(&system.muscles[*muscle], *muscle, spans[*muscle]);
             }
             LoadPlace::Block { block, load } => on.block(&blocks.list[*block], load),
         }
@@ -134,7 +108,8 @@ impl Loaded<'_, '_> {
 
     /// A force w on a vector for a load of one.
     fn pull(&mut self, vector: usize, force: Vector, read: Read) {
-        let element = read.element(Pull(force), [mid(vector)], [self.size]);
+        let force = force.map(Coefficient::from);
+        let element = read.element(DeadLoad { force }, [mid(vector)], [self.size]);
         let term = (LOADS, "the force of");
         self.terms.add_law::<_, 4, 1, 1>(term, self.name, element);
     }
@@ -143,16 +118,16 @@ impl Loaded<'_, '_> {
     fn follow(&mut self, [point, direction]: [usize; 2], read: Read) {
         let [point, direction] = [mid(point), mid(direction)];
         let vectors = [point, direction, point, direction];
-        let element = read.element(Follow, vectors, [self.size]);
+        let element = read.element(FollowingForce, vectors, [self.size]);
         let term = (FOLLOWING, "the force of");
         self.terms.add_law::<_, 13, 4, 1>(term, self.name, element);
     }
 
     /// A charge on the electrodes of a muscle.
-    fn charge_muscle(&mut self, muscle: (&Muscle, usize), span: usize) {
-        let mut constants = constants(muscle, self.terms);
+    fn charge_muscle(&mut self, muscle: &Muscle, index: usize, span: usize) {
+        let mut constants = constants(muscle, index, self.terms);
         if let Some(capacitance) = constants.capacitance() {
-            let element = constants.element(Given(capacitance), [mid(span)], [self.size]);
+            let element = constants.element(GivenCharge { capacitance }, [mid(span)], [self.size]);
             let term = (MUSCLE_CHARGES, "the charge of");
             self.terms.add_law(term, self.name, element);
         }

@@ -1,53 +1,14 @@
 //! Measures of markers: places, regions and velocities.
 
-use crate::energy::{OutsideBox, PositionComponent, Projection, SquaredDistance};
-use crate::functional::{Law, Measure, Stencil};
+use crate::energy::{Law, OutsideBox, PositionComponent, Projection, SquaredDistance};
+use crate::functional::{Measure, Stencil};
 use crate::kinematics::{MaterialVector, Vectors};
-use crate::math::{Number, Vector};
+use crate::math::Vector;
 use crate::model::constant::Constant;
 use crate::model::free_parameters::{MovedPoint, Read};
 use crate::model::measures::{Known, Shape, instant, read};
 use crate::model::quantity::Quantity;
 use crate::model::what::{At, Of, Region, What};
-
-/// A component of a place.
-#[derive(Clone)]
-struct Component(PositionComponent);
-
-impl Law<3> for Component {
-    type Formula<T: Number> = PositionComponent;
-
-    fn formula<T: Number>(&self, _: &[T]) -> PositionComponent {
-        self.0
-    }
-}
-
-/// Squared distance from a centre over that of a scale in mm.
-#[derive(Clone)]
-struct Distance(Vector, f64);
-
-impl Law<3> for Distance {
-    type Formula<T: Number> = SquaredDistance<T>;
-
-    fn formula<T: Number>(&self, _: &[T]) -> SquaredDistance<T> {
-        SquaredDistance {
-            centre: self.0,
-            scale: T::of(self.1),
-        }
-    }
-}
-
-/// Place in a box.
-#[derive(Clone)]
-struct Boxed(OutsideBox);
-
-impl Law<3> for Boxed {
-    type Formula<T: Number> = OutsideBox;
-
-    fn formula<T: Number>(&self, _: &[T]) -> OutsideBox {
-        self.0
-    }
-}
 
 /// Times at which a marker is read: the instants, or a place of the intervals with the parameters that move it.
 struct Places {
@@ -79,7 +40,7 @@ impl Known<'_> {
         let origin = Vector::zeros();
         let component = |axis| {
             let normal = Vector::ith(axis, 1.0);
-            Component(PositionComponent { origin, normal })
+            PositionComponent { origin, normal }
         };
         let times = match (&quantity.what, quantity.of, quantity.at) {
             (What::Speed(_), ..) => Some(Stencil::Rate),
@@ -96,13 +57,20 @@ impl Known<'_> {
             What::Place { marker, axis } => places(marker).of(component(axis)),
             // At most one inside a sphere, at least three only outside a box.
             What::Region { marker, region } => match region {
-                Region::Sphere { centre, radius } => places(marker).of(Distance(centre, radius)),
+                Region::Sphere { centre, radius } => {
+                    let scale = radius.into();
+                    places(marker).of(SquaredDistance { centre, scale })
+                }
                 Region::Box { min, max } => {
                     let (centre, half) = ((min + max) * 0.5, (max - min) * 0.5);
-                    places(marker).of(Boxed(OutsideBox { centre, half }))
+                    places(marker).of(OutsideBox { centre, half })
                 }
             },
-            What::Speed(marker) => places(marker).of(Distance(origin, quantity.unit)),
+            What::Speed(marker) => {
+                let scale = quantity.unit.into();
+                let centre = origin;
+                places(marker).of(SquaredDistance { centre, scale })
+            }
             What::Clearance { marker, plane } => {
                 let body = self.presolved.carrier(plane.body);
                 let normal = MaterialVector::direction(body, &plane.normal, self.reference);

@@ -2,19 +2,18 @@
 
 use crate::element::FieldPoint;
 use crate::energy::{
-    Angle, AngleStep, Energy, Multiple, PeakExcess, PositionComponent, Projection, ProjectionStep,
+    Angle, AngleStep, Coefficient, Energy, Law, Multiple, PeakExcess, PositionComponent,
+    Projection, ProjectionStep, law,
 };
 use crate::functional::{
-    Curved, Element, ElementField, ElementFields, Formulas, Group, Kernel, Law, LawElement, Laws,
+    Curved, Element, ElementField, ElementFields, Formulas, Group, Kernel, LawElement, Laws,
     Measure, Stencil, Term, VectorArg,
 };
 use crate::kinematics::{MaterialVector, Pose, Vectors};
 use crate::math::{Jet, Number, Vector};
 use crate::model::analysis::Analysis;
 use crate::model::components::capacitance;
-use crate::model::components::measured_laws::GivenField;
-use crate::model::components::muscle_constants::MuscleConstants;
-use crate::model::components::muscle_laws::{PointMass, RestVolume};
+use crate::model::components::muscle_constants::{MuscleConstants, charge_field};
 use crate::model::electrode_circuits::ElectrodeCircuit;
 use crate::model::free_parameters::Sought;
 use crate::model::internal::Internals;
@@ -337,29 +336,13 @@ pub(super) fn interval<E: Energy<M> + 'static, const M: usize, const NV: usize, 
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Constant<T>(T);
 
+law!(Constant { 0 } of 0);
+
 impl<T: Number> Energy<0, T> for Constant<T> {
     type Local<const ORDER: usize> = Jet<0, ORDER, T>;
 
     fn at<const ORDER: usize>(&self, _: &SVector<T, 0>, _: &SVector<T, 0>) -> Jet<0, ORDER, T> {
         Jet::constant(self.0)
-    }
-}
-
-/// Amount of one muscle.
-#[derive(Clone)]
-enum OfMuscle {
-    Volume(RestVolume),
-    Mass(PointMass),
-}
-
-impl Law<0> for OfMuscle {
-    type Formula<T: Number> = Constant<T>;
-
-    fn formula<T: Number>(&self, parameters: &[T]) -> Constant<T> {
-        Constant(match self {
-            Self::Volume(law) => law.volume(parameters),
-            Self::Mass(law) => law.mass(parameters),
-        })
     }
 }
 
@@ -373,20 +356,23 @@ pub(super) fn amount_measure(
         return None;
     };
     let element = |&m: &usize| {
-        let of = (&system.muscles[m], m);
-        let mut constants =
-            MuscleConstants::new(of, (sought.read(), [0.0; 2]), [None; 2], |_| 0).still();
-        let law = match amount {
-            Amount::Volume => OfMuscle::Volume(constants.volume()),
-            Amount::Mass => OfMuscle::Mass(constants.mass(1.0)?),
+        let (muscle, read) = (&system.muscles[m], sought.read());
+        let constants = MuscleConstants::new(muscle, m, read, [0.0; 2], [None; 2], |_| 0);
+        let mut constants = constants.still();
+        let amount = match amount {
+            Amount::Volume => constants.volume(),
+            Amount::Mass => constants.mass(1.0)?,
         };
-        Some(constants.element(law, [], []))
+        Some(constants.element(Constant(amount), [], []))
     };
     let elements: Vec<_> = muscles.iter().filter_map(element).collect();
     let is_moved = elements.iter().any(|one| !one.parameters.is_empty());
     is_moved.then(|| -> Box<dyn Measure> {
-        let group =
-            Group::<Laws<OfMuscle, 0, 0, 0>>::intervals("measure", 1.0 / quantity.unit, elements);
+        let group = Group::<Laws<Constant<Coefficient>, 0, 0, 0>>::intervals(
+            "measure",
+            1.0 / quantity.unit,
+            elements,
+        );
         Box::new(group)
     })
 }
@@ -427,7 +413,7 @@ impl Known<'_> {
         if let Some(source) = self.system.charge_of(muscle) {
             let charge = [self.variables.input(source)?];
             let capacitance = of.capacitance()?;
-            let field = GivenField { capacitance, limit };
+            let field = charge_field(capacitance, limit);
             return Some(shape.law(of.element(field, span, charge)));
         }
         let voltage = [self.variables.input(muscle)?];
@@ -440,7 +426,7 @@ impl Known<'_> {
         let muscle = &self.presolved.system.muscles[index];
         let read = self.sought.read();
         let bodies = [muscle.from.body, muscle.to.body];
-        MuscleConstants::new((muscle, index), (read, [-1.0, 1.0]), bodies, |moved| {
+        MuscleConstants::new(muscle, index, read, [-1.0, 1.0], bodies, |moved| {
             vectors.index(moved)
         })
     }

@@ -54,7 +54,6 @@ mod terms;
 mod tree_drifts;
 mod unknown_positions;
 mod variables;
-mod weight;
 mod what;
 
 pub use analysis::{Analysis, Coordinates, InitiallyMoving};

@@ -2,12 +2,12 @@
 //! that read none of them.
 
 use crate::element::{ElementLaw, IsochoricLaw};
-use crate::energy::{NeoHooke, Polynomial};
+use crate::energy::{Coefficient, NeoHooke};
 use crate::functional::{FiniteElement, VariedElement};
 use crate::model::constant::MaterialConstant;
 use crate::model::free_parameters::Read;
 use crate::model::solid_block::SolidBlock;
-use crate::model::terms::{Member, OfKind, Terms};
+use crate::model::terms::{Call, Member, OfKind, Terms};
 
 /// Constants of an energy beside those of its law of elasticity, in all of which it is linear: μ, λ, c₁, c₂ and ε.
 const LINEAR: [MaterialConstant; 5] = [
@@ -37,8 +37,8 @@ pub(super) struct ElementOf<'a> {
     pub(super) names: [&'static str; 2],
 }
 
-/// Constants, some of which are free, and what is read of them; no constants of an element that is itself.
-type Factors = (Vec<Polynomial>, Read);
+/// A constant that is free, and what is read of it.
+type Factor = (Coefficient, Read);
 
 impl ElementOf<'_> {
     fn is_charged(self) -> bool {
@@ -55,13 +55,23 @@ impl ElementOf<'_> {
     }
 
     /// The product of constants of its material that have these values.
-    fn product(self, of: &[(MaterialConstant, f64)], terms: &Terms<'_>) -> Factors {
+    fn product(self, of: &[(MaterialConstant, f64)], terms: &Terms<'_>) -> Factor {
         let mut read = terms.sought().read();
-        let factor = |&(constant, value): &(MaterialConstant, f64)| {
-            read.constant(self.block.constant(self.number, constant), value)
-        };
-        let factors = of.iter().map(factor).collect();
-        (factors, read)
+        let mut factor = Coefficient::from(1.0);
+        for &(constant, value) in of {
+            let constant = self.block.constant(self.number, constant);
+            factor = &factor * &read.constant(constant, value);
+        }
+        (factor, read)
+    }
+
+    /// What calls for its elasticity without a field.
+    fn call(&self) -> Call<'_> {
+        Call {
+            term: self.names[0],
+            why: ELASTIC,
+            of: &self.block.solid.name,
+        }
     }
 
     /// Adds its energy by a law.
@@ -79,16 +89,15 @@ impl ElementOf<'_> {
             unit[i] = 1.0;
             let factor = self.product(&[(LINEAR[i], rest[i])], terms);
             rest[i] = 0.0;
-            self.add(NeoHooke, unit, factor, terms);
+            self.add(NeoHooke, unit, Some(factor), terms);
         }
         if is_elastic {
             self.add_law(law, rest[0], terms);
             rest[0] = 0.0;
         }
-        let nothing = (Vec::new(), terms.sought().read());
         match (is_elastic, rest == [0.0; 5]) {
-            (false, _) => self.add(law, rest, nothing, terms),
-            (true, false) => self.add(NeoHooke, rest, nothing, terms),
+            (false, _) => self.add(law, rest, None, terms),
+            (true, false) => self.add(NeoHooke, rest, None, terms),
             (true, true) => {}
         }
     }
@@ -100,14 +109,16 @@ impl ElementOf<'_> {
         match law.isochoric() {
             None => {
                 let factor = self.product(&[modulus], terms);
-                self.add(law, unit, factor, terms);
+                self.add(law, unit, Some(factor), terms);
             }
             Some(IsochoricLaw::MooneyRivlin { share }) => {
                 for (part, slope) in [(0.0, -1.0), (1.0, 1.0)] {
-                    let (mut factors, read) = self.product(&[modulus, (OF_LAWS[1], share)], terms);
-                    factors[1] = factors[1].scaled(slope, 1.0 - part);
+                    let (modulus, mut read) = self.product(&[modulus], terms);
+                    let constant = self.block.constant(self.number, OF_LAWS[1]);
+                    let share = read.constant(constant, share).scaled(slope);
+                    let factor = &modulus * &(&share + &(1.0 - part).into());
                     let law = IsochoricLaw::MooneyRivlin { share: part };
-                    self.add(law, unit, (factors, read), terms);
+                    self.add(law, unit, Some((factor, read)), terms);
                 }
             }
             Some(IsochoricLaw::Yeoh { c2, c3 }) => {
@@ -119,17 +130,15 @@ impl ElementOf<'_> {
                 for (constant, [mu, c2, c3]) in parts {
                     let factor = self.product(&[constant], terms);
                     let unit = [mu, 0.0, 0.0, 0.0, 0.0];
-                    self.add(IsochoricLaw::Yeoh { c2, c3 }, unit, factor, terms);
+                    self.add(IsochoricLaw::Yeoh { c2, c3 }, unit, Some(factor), terms);
                 }
             }
             Some(law @ IsochoricLaw::Gent { limit }) => {
                 let factor = self.product(&[modulus], terms);
-                let (limits, read) = self.product(&[(OF_LAWS[0], limit)], terms);
-                match (read.scalars().first(), limits.into_iter().next()) {
-                    (Some(&parameter), Some(limit)) => {
-                        self.add_varied(law, limit, parameter, factor, terms);
-                    }
-                    _ => self.add(law, unit, factor, terms),
+                let (limit, read) = self.product(&[(OF_LAWS[0], limit)], terms);
+                match read.scalars().first() {
+                    Some(&parameter) => self.add_varied(law, limit, parameter, factor, terms),
+                    None => self.add(law, unit, Some(factor), terms),
                 }
             }
             Some(IsochoricLaw::GentSlope { .. } | IsochoricLaw::GentCurvature { .. }) => {
@@ -142,16 +151,12 @@ impl ElementOf<'_> {
     fn add_varied(
         self,
         law: IsochoricLaw,
-        limit: Polynomial,
+        limit: Coefficient,
         parameter: usize,
-        factor: Factors,
+        factor: Factor,
         terms: &mut Terms<'_>,
     ) {
-        let Self {
-            block,
-            number,
-            names,
-        } = self;
+        let Self { block, number, .. } = self;
         let mut law = block.passive(number).by(law);
         (law.shear_modulus, law.lame_lambda) = (1.0, 0.0);
         let element = VariedElement {
@@ -161,8 +166,8 @@ impl ElementOf<'_> {
             limit,
             parameter,
         };
-        let of = (names[0], ELASTIC, block.solid.name.as_str());
-        collect(of, element, factor, terms);
+        let (factor, read) = factor;
+        self.call().add_scaled(element, factor, read, terms);
     }
 
     /// Adds an element of these constants, times factors, if there are any.
@@ -170,7 +175,7 @@ impl ElementOf<'_> {
         self,
         law: L,
         constants: [f64; 5],
-        factors: Factors,
+        factor: Option<Factor>,
         terms: &mut Terms<'_>,
     ) {
         let Self {
@@ -179,8 +184,7 @@ impl ElementOf<'_> {
             names,
         } = self;
         let (shape, nodes) = (block.shapes[number].clone(), block.nodes(number));
-        let of = block.solid.name.as_str();
-        if self.is_charged() && (factors.0.is_empty() || constants[2..] != [0.0; 3]) {
+        if self.is_charged() && (factor.is_none() || constants[2..] != [0.0; 3]) {
             let law = block.dielectric(number).with_constants(constants).by(law);
             let terminals = block.terminals(number);
             let element = FiniteElement {
@@ -189,7 +193,12 @@ impl ElementOf<'_> {
                 nodes,
                 terminals,
             };
-            return collect((names[1], DIELECTRIC, of), element, factors, terms);
+            let call = Call {
+                term: names[1],
+                why: DIELECTRIC,
+                of: &block.solid.name,
+            };
+            return collect(call, element, factor, terms);
         }
         let mut law = block.passive(number).by(law);
         [law.shear_modulus, law.lame_lambda] = [constants[0], constants[1]];
@@ -199,19 +208,19 @@ impl ElementOf<'_> {
             nodes,
             terminals: (),
         };
-        collect((names[0], ELASTIC, of), element, factors, terms);
+        collect(self.call(), element, factor, terms);
     }
 }
 
-/// Adds an element, or the product of it with its factors.
+/// Adds an element, or the product of it with a factor.
 fn collect<E: OfKind + Member>(
-    (term, why, of): (&'static str, &'static str, &str),
+    call: Call<'_>,
     element: E,
-    (factors, read): Factors,
+    factor: Option<Factor>,
     terms: &mut Terms<'_>,
 ) {
-    match factors.is_empty() {
-        true => terms.collect::<(), _>(term, why, of, element),
-        false => terms.add_scaled(term, why, of, (element, factors, read)),
+    match factor {
+        None => call.add::<(), _>(element, terms),
+        Some((factor, read)) => call.add_scaled(element, factor, read, terms),
     }
 }

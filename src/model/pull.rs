@@ -1,16 +1,13 @@
 //! Measure of the force with which a spring or a tendon pulls its ends together: the forces of its own terms along its span.
 
-use crate::energy::NeoHooke;
+use crate::energy::{ElasticConstants, GivenCharge, Law, NeoHooke, SpanTension, ViscousTension};
 use crate::functional::{
-    CurvedSum, Displacement, Impulse, Law, LawElement, Measure, Stencil, Sum, Term, TermKind,
-    VectorArg,
+    CurvedSum, Displacement, Impulse, LawElement, Measure, Stencil, Sum, Term, TermKind, VectorArg,
 };
 use crate::kinematics::Vectors;
 use crate::math::Vector;
-use crate::model::components::measured_laws::{Tension, ViscousForce};
+use crate::model::components::Kind;
 use crate::model::components::muscle_constants::MuscleConstants;
-use crate::model::components::muscle_laws::{ElasticConstants, Flowing, Given};
-use crate::model::components::{Kind, capacitance};
 use crate::model::internal::InternalKind;
 use crate::model::joint_constraints::DAMPING;
 use crate::model::joint_sections::JointSection;
@@ -125,11 +122,11 @@ impl Parts {
     ) {
         match (of.muscle().material.electric, voltage) {
             (Some(electric), Some(voltage)) => {
-                let energy = Tension(of.driven(electric, law));
+                let energy = SpanTension(of.driven(electric, law));
                 self.add::<_, 4, 1, 1>(of.element(energy, [span], [voltage]));
             }
             _ => {
-                let energy = Tension(of.elastic(law));
+                let energy = SpanTension(of.elastic(law));
                 self.add::<_, 3, 1, 0>(of.element(energy, [span], []));
             }
         }
@@ -169,18 +166,14 @@ impl Known<'_> {
             }
         }
         let mut electric = of.clone();
-        if let Some((charge, law)) = charge.zip(electric.capacitance()) {
-            let unit = capacitance(muscle)?.unit_of_charge();
-            let energy = Tension(Flowing {
-                capacitance: law,
-                unit,
-            });
+        if let Some((charge, energy)) = charge.zip(electric.flowing_charge()) {
+            let energy = SpanTension(energy);
             let vectors = [middle, read(vectors.index(charge), Stencil::Mid)];
             parts.add::<_, 6, 2, 0>(electric.element(energy, vectors, []));
         }
         let mut electric = of.clone();
         if let Some((charge, capacitance)) = given.zip(electric.capacitance()) {
-            let energy = Tension(Given(capacitance));
+            let energy = SpanTension(GivenCharge { capacitance });
             parts.add::<_, 4, 1, 1>(electric.element(energy, [middle], [charge]));
         }
         for (branch, constants) in muscle.material.maxwell.list().iter().enumerate() {
@@ -190,14 +183,14 @@ impl Known<'_> {
             };
             if let Some(viscous) = self.internals.vector(kind) {
                 let mut of = of.clone();
-                let energy = Tension(of.branch_spring(branch, constants));
+                let energy = SpanTension(of.branch_spring(branch, constants));
                 let vectors = [middle, read(vectors.index(viscous), Stencil::Mid)];
                 parts.add::<_, 6, 2, 0>(of.element(energy, vectors, []));
             }
         }
         if let Some(viscosity) = muscle.material.viscosity {
             let mut of = of;
-            let force = ViscousForce(of.viscous(viscosity));
+            let force = ViscousTension(of.viscous(viscosity));
             parts.add::<_, 6, 2, 0>(of.element(force, [middle, rate], []));
         }
         Some(match shape {

@@ -2,9 +2,9 @@
 //! reasons are recorded.
 
 use crate::element::ElementLaw;
-use crate::energy::{Energy, MaxwellDamper, Polynomial};
+use crate::energy::{Coefficient, Energy, Gravity, Law, MaxwellDamper};
 use crate::functional::{
-    Electrical, Element, FiniteElement, FiniteElements, Formulas, Group, Inertia, Kernel, Law,
+    Electrical, Element, FiniteElement, FiniteElements, Formulas, Group, Inertia, Kernel,
     LawElement, Laws, Mass, MaxwellElement, MaxwellElements, Path, Paths, PressureFace,
     PressureFaces, Scaled, ScaledElement, Stencil, Term, VariedElement, VariedElements, VectorArg,
     ViscousElement, ViscousElements,
@@ -18,7 +18,6 @@ use crate::model::maxwell::Response;
 use crate::model::plan;
 use crate::model::plan::{LeftOut, Present};
 use crate::model::variables::Variables;
-use crate::model::weight::Weight;
 use std::any::Any;
 use std::fmt;
 
@@ -61,6 +60,53 @@ pub struct Terms<'a> {
 impl fmt::Debug for Terms<'_> {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         f.debug_list().entries(&self.present).finish()
+    }
+}
+
+/// What calls for a term: its name, "stiffness of", and a component.
+#[derive(Clone, Copy)]
+pub(super) struct Call<'a> {
+    pub(super) term: &'static str,
+    pub(super) why: &'static str,
+    pub(super) of: &'a str,
+}
+
+impl Call<'_> {
+    /// Adds an element.
+    pub(super) fn add<Kind, T: Member<Kind>>(self, element: T, terms: &mut Terms<'_>) {
+        terms.collect(self.term, self.why, self.of, element);
+    }
+
+    /// Adds an element, of those that are no formulas of constants, times a constant that follows parameters.
+    pub(super) fn add_scaled<E: OfKind>(
+        self,
+        of: E,
+        factor: Coefficient,
+        read: Read,
+        terms: &mut Terms<'_>,
+    ) {
+        let parameters = read.scalars();
+        let element = ScaledElement {
+            of,
+            factor,
+            parameters,
+        };
+        self.add::<(), _>(element, terms);
+    }
+
+    /// Adds an element as it is given, or where parameters are read that of the constant one times the constant.
+    pub(super) fn add_times<Kind, E: OfKind + Member<Kind>>(
+        self,
+        given: E,
+        unit: E,
+        factor: Coefficient,
+        read: Read,
+        terms: &mut Terms<'_>,
+    ) {
+        match read.is_empty() {
+            true => self.add::<Kind, _>(given, terms),
+            false => self.add_scaled(unit, factor, read, terms),
+        }
     }
 }
 
@@ -233,22 +279,6 @@ impl<'a> Terms<'a> {
         }
     }
 
-    /// Adds an element, of those that are no formulas of constants, times constants some of which are free.
-    pub(super) fn add_scaled<E: OfKind>(
-        &mut self,
-        term: &'static str,
-        why: &'static str,
-        of: &str,
-        (element, factors, read): (E, Vec<Polynomial>, Read),
-    ) {
-        let element = ScaledElement {
-            of: element,
-            factors,
-            parameters: read.scalars(),
-        };
-        self.collect::<(), _>(term, why, of, element);
-    }
-
     /// Adds a kinetic energy of vectors and rates of the intervals.
     pub(super) fn add_kinetic<E, const M: usize, const NV: usize, const NS: usize>(
         &mut self,
@@ -268,7 +298,7 @@ impl<'a> Terms<'a> {
     }
 
     /// Gravity in mm/ms² as an element reads it, where there is any.
-    pub(super) fn gravity(&self, read: &mut Read) -> Option<[Polynomial; 3]> {
+    pub(super) fn gravity(&self, read: &mut Read) -> Option<[Coefficient; 3]> {
         let g = self.gravity?;
         Some([0, 1, 2].map(|axis| read.constant(Constant::Gravity(axis), g[axis])))
     }
@@ -285,8 +315,7 @@ impl<'a> Terms<'a> {
     pub(super) fn weigh_vector(&mut self, vector: usize, mass: f64) {
         let mut read = self.sought.read();
         if let Some(gravity) = self.gravity(&mut read) {
-            let mass = mass.into();
-            let element = read.element(Weight { mass, gravity }, [mid(vector)], []);
+            let element = read.element(weight(&mass.into(), gravity), [mid(vector)], []);
             self.add_law((plan::GRAVITY, "gravity of"), "the scene", element);
         }
     }
@@ -341,6 +370,13 @@ impl<'a> Terms<'a> {
         let collected = self.collected.into_iter();
         let terms = collected.map(|c| (c.finish)(c.term, c.list));
         (terms.collect(), self.present, self.left_out)
+    }
+}
+
+/// Weight of a mass in g under gravity in mm/ms².
+pub(super) fn weight(mass: &Coefficient, gravity: [Coefficient; 3]) -> Gravity<Coefficient> {
+    Gravity {
+        weight: gravity.map(|g| &g * mass).into(),
     }
 }
 

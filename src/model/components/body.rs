@@ -1,6 +1,6 @@
 //! Terms of rigid bodies.
 
-use crate::energy::Polynomial;
+use crate::energy::{Coefficient, KineticEnergy};
 use crate::functional::Mass;
 use crate::kinematics::{MaterialVector, Pose};
 use crate::math::Vector;
@@ -8,8 +8,7 @@ use crate::model::constant::Constant;
 use crate::model::free_parameters::{MovedPoint, Read};
 use crate::model::plan::GRAVITY;
 use crate::model::system::{Attachment, Body};
-use crate::model::terms::{Terms, mid, rate};
-use crate::model::weight::{Moving, Weight};
+use crate::model::terms::{Terms, mid, rate, weight};
 
 const INERTIA: &str = "body inertia";
 
@@ -66,7 +65,7 @@ pub(in crate::model) fn build_sought(bodies: &[Body], terms: &mut Terms<'_>) {
         let more = |read: &mut Read| Sought::new(b, body, read).mass;
         if !moved.is_empty() {
             point_mass(body, &place, still, |_| (-body.mass).into(), terms);
-            let whole = |read: &mut Read| more(read).scaled(1.0, body.mass);
+            let whole = |read: &mut Read| &more(read) + &body.mass.into();
             point_mass(body, &place, moved, whole, terms);
         } else if !more(&mut still.clone()).is_given() {
             point_mass(body, &place, still, more, terms);
@@ -82,23 +81,21 @@ fn point_mass(
     body: &Body,
     place: &Attachment,
     read: Read,
-    mass: impl Fn(&mut Read) -> Polynomial,
+    mass: impl Fn(&mut Read) -> Coefficient,
     terms: &mut Terms<'_>,
 ) {
     let centre = terms.vector(terms.point(place));
     let mut of_weight = read.clone();
-    let weight = mass(&mut of_weight);
+    let weighed = mass(&mut of_weight);
     if let Some(gravity) = terms.gravity(&mut of_weight) {
-        let weight = Weight {
-            mass: weight,
-            gravity,
-        };
+        let weight = weight(&weighed, gravity);
         let element = of_weight.element(weight, [mid(centre)], []);
         terms.add_law((GRAVITY, "gravity of"), "the scene", element);
     }
     if terms.is_of_motion() {
         let mut read = read;
-        let law = Moving(mass(&mut read));
+        let mass = mass(&mut read);
+        let law = KineticEnergy { mass };
         let element = read.element(law, [rate(centre)], []);
         terms.add_kinetic_law((INERTIA, "mass of"), &body.name, element);
     }
@@ -114,7 +111,9 @@ fn turning(b: usize, body: &Body, place: &Attachment, terms: &mut Terms<'_>) {
         }
         let axis: Vector = body.directors.column(i).into();
         let director = terms.direction(place, &axis);
-        let law = Moving(euler[i].clone());
+        let law = KineticEnergy {
+            mass: euler[i].clone(),
+        };
         let element = read.element(law, [rate(terms.vector(director))], []);
         terms.add_kinetic_law((INERTIA, "mass of"), &body.name, element);
     }
@@ -122,21 +121,19 @@ fn turning(b: usize, body: &Body, place: &Attachment, terms: &mut Terms<'_>) {
 
 /// Differences of the mass of a body in g, and of half the Euler inertias of its directors in g mm², from what they are given as.
 struct Sought {
-    mass: Polynomial,
-    euler: [Polynomial; 3],
+    mass: Coefficient,
+    euler: [Coefficient; 3],
 }
 
 impl Sought {
     fn new(b: usize, body: &Body, read: &mut Read) -> Self {
-        let mut from_given =
-            |constant, given: f64| read.constant(constant, given).scaled(1.0, -given);
+        let mut from_given = |constant, given: f64| &read.constant(constant, given) - &given.into();
         let mass = from_given(Constant::Mass(b), body.mass);
         let moments =
             [0, 1, 2].map(|axis| from_given(Constant::Inertia(b, axis), body.inertia[axis]));
         let euler = [0, 1, 2].map(|i| {
             let [own, second, third] = [i, (i + 1) % 3, (i + 2) % 3].map(|axis| &moments[axis]);
-            let sum = second.clone().plus(1.0, third).plus(-1.0, own);
-            sum.scaled(0.5, 0.0)
+            (&(second + third) - own).scaled(0.5)
         });
         Self { mass, euler }
     }

@@ -1,10 +1,10 @@
 //! Terms of circuits: a charge that flows through a resistor, which with a leak is that of the equivalent source.
 
-use crate::energy::{CoordinateDamper, DeadLoad, Polynomial};
-use crate::functional::{Element, Law};
-use crate::math::{Number, Vector};
-use crate::model::components::muscle::{CHARGES, capacitance, constants};
-use crate::model::components::muscle_laws::Flowing;
+use crate::energy::{Coefficient, CoordinateDamper, DeadLoad};
+use crate::functional::Element;
+use crate::math::Vector;
+use crate::model::components::muscle::{CHARGES, constants};
+use crate::model::components::muscle_constants::capacitance;
 use crate::model::constant::Constant;
 use crate::model::free_parameters::Read;
 use crate::model::internal::{InternalKind, Internals};
@@ -52,116 +52,71 @@ fn circuit(
         return;
     };
     let (charge, unit) = (terms.vector(charge), capacitance.unit_of_charge());
-    let mut constants = constants((muscle, index), terms);
-    if let Some(capacitance) = constants.capacitance() {
-        let law = Flowing { capacitance, unit };
+    let mut constants = constants(muscle, index, terms);
+    if let Some(law) = constants.flowing_charge() {
         let element = constants.element(law, [mid(span), mid(charge)], []);
         terms.add_law((CHARGES, WHY), &muscle.name, element);
     }
     if let (Some(circuit), Some(series)) = (&muscle.circuit, series) {
-        let wires = Wires::new((index, series), circuit.leakage, unit);
-        add_circuit(&muscle.name, charge, terms.input(index), wires, terms);
+        let wires = Wires {
+            source: index,
+            series,
+            leakage: circuit.leakage,
+            unit,
+        };
+        add_circuit(&muscle.name, charge, terms.input(index), &wires, terms);
     }
 }
 
 /// A resistor in series with electrodes, and a leak parallel to them, whose resistances may be free.
-#[derive(Clone)]
 pub(super) struct Wires {
-    source: usize,
-    series: f64,
-    leakage: Option<f64>,
+    pub(super) source: usize,
+    /// Resistance in series in Ω.
+    pub(super) series: f64,
+    /// Resistance of the leak in Ω.
+    pub(super) leakage: Option<f64>,
     /// Unit of the charge in mC.
-    unit: f64,
+    pub(super) unit: f64,
 }
 
 impl Wires {
-    /// Those of the circuit of a source with a resistance in series in Ω.
-    pub(super) fn new((source, series): (usize, f64), leakage: Option<f64>, unit: f64) -> Self {
-        Self {
-            source,
-            series,
-            leakage,
-            unit,
-        }
-    }
-
-    fn read(&self, read: &mut Read) -> Resistances {
-        let leakage = self.leakage;
-        Resistances {
-            series: read.constant(Constant::Resistance(self.source), self.series),
-            leakage: leakage.map(|r| read.constant(Constant::Leakage(self.source), r)),
-            unit: self.unit,
-        }
-    }
-}
-
-/// The resistances in Ω.
-#[derive(Clone)]
-struct Resistances {
-    series: Polynomial,
-    leakage: Option<Polynomial>,
-    unit: f64,
-}
-
-impl Resistances {
     /// Resistance in series, and the part of the voltage that the leak leaves at rest.
-    fn at<T: Number>(&self, parameters: &[T]) -> [T; 2] {
-        let series = self.series.at(parameters);
-        let leakage = self.leakage.as_ref().map(|leak| leak.at(parameters));
-        [
-            series,
-            leakage.map_or(T::one(), |leak| leak.over(series + leak)),
-        ]
+    fn read(&self, read: &mut Read) -> [Coefficient; 2] {
+        let series = read.constant(Constant::Resistance(self.source), self.series);
+        let part = match self.leakage {
+            None => 1.0.into(),
+            Some(leakage) => {
+                let leakage = read.constant(Constant::Leakage(self.source), leakage);
+                &leakage / &(&series + &leakage)
+            }
+        };
+        [series, part]
     }
 }
 
-/// Energy of a charge in its unit at the voltage of the source that stands for source, resistor and leak.
-#[derive(Clone)]
-struct Supply(Resistances);
-
-impl Law<4> for Supply {
-    type Formula<T: Number> = DeadLoad<T>;
-
-    fn formula<T: Number>(&self, parameters: &[T]) -> DeadLoad<T> {
-        let [_, part] = self.0.at(parameters);
-        let none = T::zero();
-        DeadLoad {
-            force: Vector3::new(part.scaled(self.0.unit), none, none),
-        }
-    }
-}
-
-/// Resistor of that source, as the damper of a charge in its unit.
-#[derive(Clone)]
-struct Resistor(Resistances);
-
-impl Law<6> for Resistor {
-    type Formula<T: Number> = CoordinateDamper<T>;
-
-    fn formula<T: Number>(&self, parameters: &[T]) -> CoordinateDamper<T> {
-        let ([series, part], unit) = (self.0.at(parameters), self.0.unit);
-        CoordinateDamper {
-            coefficient: (part * series).scaled(unit).scaled(unit),
-        }
-    }
-}
-
-/// Adds source and resistor of a charge in its unit, from the scalar of the voltage of the source.
+/// Adds source and resistor of a charge in its unit, from the scalar of the voltage of the source: those of the source that stands for source,
+/// resistor and leak.
 pub(super) fn add_circuit(
     name: &str,
     charge: usize,
     voltage: Option<usize>,
-    wires: Wires,
+    wires: &Wires,
     terms: &mut Terms<'_>,
 ) {
+    let unit = wires.unit;
     if let Some(voltage) = voltage {
         let mut read = terms.sought().read();
-        let law = Supply(wires.read(&mut read));
-        let element = read.element(law, [mid(charge)], [voltage]);
+        let [_, part] = wires.read(&mut read);
+        let none = Coefficient::from(0.0);
+        let force = Vector3::new(part.scaled(unit), none.clone(), none);
+        let element = read.element(DeadLoad { force }, [mid(charge)], [voltage]);
         terms.add_law((SOURCES, WHY), name, element);
     }
     let mut read = terms.sought().read();
-    let law = Resistor(wires.read(&mut read));
+    let [series, part] = wires.read(&mut read);
+    let law = CoordinateDamper {
+        coefficient: (&part * &series).scaled(unit).scaled(unit),
+    };
     let element = read.element(law, [mid(charge), rate(charge)], []);
     terms.add_law((RESISTANCE, WHY), name, element);
 }

@@ -24,8 +24,13 @@ pub(in crate::model) fn build(
         let (potential, volts) = of.potential;
         add_voltage(CHARGES, &of.name, charge, -(unit * volts), potential, terms);
         let series = of.circuit.resistance.unwrap_or(0.0);
-        let wires = Wires::new((of.source, series), of.circuit.leakage, unit);
-        add_circuit(&of.name, charge, Some(of.input), wires, terms);
+        let wires = Wires {
+            source: of.source,
+            series,
+            leakage: of.circuit.leakage,
+            unit,
+        };
+        add_circuit(&of.name, charge, Some(of.input), &wires, terms);
     }
     terms.without(
         CHARGES,

@@ -5,16 +5,14 @@ pub(super) mod circuit;
 pub(super) mod electrode_circuit;
 mod kind;
 pub(super) mod load;
-pub(super) mod measured_laws;
 pub(super) mod muscle;
 pub(super) mod muscle_constants;
-pub(super) mod muscle_laws;
 mod spring;
 mod tendon;
 
 pub(crate) use kind::Kind;
 pub use load::{BlockLoad, Faces, Load, LoadPlace};
-pub use muscle::capacitance;
+pub use muscle_constants::capacitance;
 pub use spring::Spring;
 pub use tendon::Tendon;
 

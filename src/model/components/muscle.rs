@@ -1,11 +1,10 @@
 //! Terms of lumped muscles.
 
-use crate::energy::{Capacitance, ElasticLaw, Energy, NeoHooke};
-use crate::functional::{Law, Mass};
+use crate::energy::{ElasticConstants, ElasticLaw, Energy, Law, NeoHooke};
+use crate::functional::Mass;
 use crate::kinematics::MaterialVector;
 use crate::math::{Derivatives, Local, Vector};
 use crate::model::components::muscle_constants::MuscleConstants;
-use crate::model::components::muscle_laws::ElasticConstants;
 use crate::model::internal::{InternalKind, Internals};
 use crate::model::plan::GRAVITY;
 use crate::model::system::{Fidelity, Muscle};
@@ -73,19 +72,19 @@ fn lumped(muscle: &Muscle, source: usize, span: usize, terms: &mut Terms<'_>) {
         }
         return;
     }
-    inertia((muscle, source), span, terms);
-    let constants = constants((muscle, source), terms);
+    inertia(muscle, source, span, terms);
+    let constants = constants(muscle, source, terms);
     match muscle.material.law {
         None => {
             let named = [ELASTICITY, ELECTROELASTICITY];
-            elasticity(constants.clone(), (NeoHooke, named), (input, span), terms);
+            elasticity(constants.clone(), NeoHooke, named, input, span, terms);
         }
         Some(law) => {
             let is_driven = input.is_some() && muscle.material.electric.is_some();
             terms.note(GENERAL[usize::from(is_driven)], named(law), &muscle.name);
             let mut constants = constants.clone();
             let law = constants.law(law);
-            elasticity(constants, (law, GENERAL), (input, span), terms);
+            elasticity(constants, law, GENERAL, input, span, terms);
             for term in [ELASTICITY, ELECTROELASTICITY] {
                 terms.without(term, "every lumped muscle names a law of elasticity");
             }
@@ -96,27 +95,29 @@ fn lumped(muscle: &Muscle, source: usize, span: usize, terms: &mut Terms<'_>) {
 
 /// The constants of a muscle, by its index.
 pub(in crate::model) fn constants<'a>(
-    (muscle, index): (&'a Muscle, usize),
+    muscle: &'a Muscle,
+    index: usize,
     terms: &mut Terms<'_>,
 ) -> MuscleConstants<'a> {
-    by_parts((muscle, index), [-1.0, 1.0], terms)
+    by_parts(muscle, index, [-1.0, 1.0], terms)
 }
 
 /// The constants of a muscle whose elements read the sum of its ends by parts.
 fn by_parts<'a>(
-    (muscle, index): (&'a Muscle, usize),
+    muscle: &'a Muscle,
+    index: usize,
     parts: [f64; 2],
     terms: &mut Terms<'_>,
 ) -> MuscleConstants<'a> {
     let read = terms.sought().read();
     let bodies = [&muscle.from, &muscle.to].map(|end| terms.carrier(end));
-    MuscleConstants::new((muscle, index), (read, parts), bodies, |moved| {
+    MuscleConstants::new(muscle, index, read, parts, bodies, |moved| {
         terms.vector(moved)
     })
 }
 
 /// A uniform rod: m/6 (|va|² + va·vb + |vb|²) = m/2 |v_mid|² + m/24 |ṙ|², its weight, and the inertia of its section.
-fn inertia((muscle, index): (&Muscle, usize), span: usize, terms: &mut Terms<'_>) {
+fn inertia(muscle: &Muscle, index: usize, span: usize, terms: &mut Terms<'_>) {
     let name = &muscle.name;
     let Some(mass) = muscle.mass() else {
         terms.without(INERTIA, "no lumped muscle names a density");
@@ -124,12 +125,12 @@ fn inertia((muscle, index): (&Muscle, usize), span: usize, terms: &mut Terms<'_>
     };
     let ends = [&muscle.from, &muscle.to].map(|end| terms.point(end));
     let middle = MaterialVector::combine(0.5, &ends[0], 0.5, &ends[1]);
-    let mut of_span = constants((muscle, index), terms);
+    let mut of_span = constants(muscle, index, terms);
     let section = of_span.section();
     let is_given = of_span.are_given();
     match is_given {
         true => terms.weigh(&middle, mass),
-        false => sought_weight((muscle, index), &middle, terms),
+        false => sought_weight(muscle, index, &middle, terms),
     }
     if !terms.is_of_motion() {
         for term in [INERTIA, SECTION] {
@@ -142,12 +143,12 @@ fn inertia((muscle, index): (&Muscle, usize), span: usize, terms: &mut Terms<'_>
         terms.collect(INERTIA, OF_MASS, name, Mass::point(middle, mass));
         terms.collect(INERTIA, OF_MASS, name, Mass::point(span, mass / 12.0));
     } else {
-        let constants = by_parts((muscle, index), MIDDLE, terms);
+        let constants = by_parts(muscle, index, MIDDLE, terms);
         for (mut constants, vector, factor) in [
             (constants, middle, 1.0),
             (of_span.clone(), span, 1.0 / 12.0),
         ] {
-            if let Some(mass) = constants.mass(factor) {
+            if let Some(mass) = constants.inertia(factor) {
                 let element = constants.element(mass, [rate(vector)], []);
                 terms.add_kinetic_law((INERTIA, OF_MASS), name, element);
             }
@@ -163,8 +164,8 @@ fn inertia((muscle, index): (&Muscle, usize), span: usize, terms: &mut Terms<'_>
 }
 
 /// Adds the weight of a muscle whose mass is free, or whose ends are, where there is gravity.
-fn sought_weight(of: (&Muscle, usize), middle: &MaterialVector, terms: &mut Terms<'_>) {
-    let mut constants = by_parts(of, MIDDLE, terms);
+fn sought_weight(muscle: &Muscle, index: usize, middle: &MaterialVector, terms: &mut Terms<'_>) {
+    let mut constants = by_parts(muscle, index, MIDDLE, terms);
     if let Some(weight) = constants.weight(terms) {
         let middle = terms.vector(middle.clone());
         let element = constants.element(weight, [mid(middle)], []);
@@ -180,12 +181,6 @@ fn named(law: ElasticLaw) -> &'static str {
         ElasticLaw::Yeoh { .. } => "Yeoh's law of",
         ElasticLaw::Ogden { .. } => "Ogden's law of",
     }
-}
-
-/// Capacitance of a lumped muscle; none of a muscle of finite elements, or without electric constants.
-pub fn capacitance(muscle: &Muscle) -> Option<Capacitance> {
-    let law = MuscleConstants::given(muscle).capacitance()?;
-    (muscle.fidelity == Fidelity::Lumped).then(|| law.formula(&[]))
 }
 
 /// Force in N with which a lumped muscle pulls its ends together, at a span r with its rate, a voltage between the electrodes, and the
@@ -238,10 +233,13 @@ fn first_force<L: Law<M>, const M: usize>(law: &L, arguments: [f64; M]) -> Vecto
 
 fn elasticity<L: ElasticConstants>(
     mut constants: MuscleConstants<'_>,
-    (law, [elasticity, electroelasticity]): (L, [&'static str; 2]),
-    (input, span): (Option<usize>, usize),
+    law: L,
+    names: [&'static str; 2],
+    input: Option<usize>,
+    span: usize,
     terms: &mut Terms<'_>,
 ) {
+    let [elasticity, electroelasticity] = names;
     let muscle = constants.muscle();
     let (vectors, name) = ([mid(span)], &muscle.name);
     match (muscle.material.electric, input) {
@@ -289,7 +287,7 @@ fn unrelaxed(muscle: &Muscle, index: usize, span: usize, terms: &mut Terms<'_>) 
     if terms.is_immobile(&[muscle.from, muscle.to]) {
         return;
     }
-    let known = constants((muscle, index), terms);
+    let known = constants(muscle, index, terms);
     for (branch, of) in muscle.material.maxwell.list().iter().enumerate() {
         let mut constants = known.clone();
         let law = constants.unrelaxed_spring(branch, of);
@@ -316,7 +314,7 @@ fn relaxation(
             continue;
         };
         let viscous = terms.vector(viscous);
-        let known = constants((muscle, index), terms);
+        let known = constants(muscle, index, terms);
         let mut constants = known.clone();
         let law = constants.branch_spring(branch, of);
         let element = constants.element(law, [mid(span), mid(viscous)], []);

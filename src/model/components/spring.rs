@@ -1,8 +1,7 @@
 //! A spring with or without a damper between two points.
 
-use crate::energy::{LinearSpring, Polynomial, SpanDamper};
-use crate::functional::Law;
-use crate::math::{Fault, Number, not_negative, rule};
+use crate::energy::{LinearSpring, SpanDamper};
+use crate::math::{Fault, not_negative, rule};
 use crate::model::bodies::Attachment;
 use crate::model::component::Component;
 use crate::model::components::kind::Kind;
@@ -30,38 +29,6 @@ pub struct Spring {
 
 const ELASTICITY: &str = "spring elasticity";
 const DAMPING: &str = "spring damping";
-
-/// Elasticity of a spring.
-#[derive(Clone)]
-struct Elasticity {
-    stiffness: Polynomial,
-    length: Polynomial,
-}
-
-impl Law<3> for Elasticity {
-    type Formula<T: Number> = LinearSpring<T>;
-
-    fn formula<T: Number>(&self, parameters: &[T]) -> LinearSpring<T> {
-        LinearSpring {
-            stiffness: self.stiffness.at(parameters),
-            length: self.length.at(parameters),
-        }
-    }
-}
-
-/// Damping of a spring.
-#[derive(Clone)]
-struct Damping(Polynomial);
-
-impl Law<9> for Damping {
-    type Formula<T: Number> = SpanDamper<T>;
-
-    fn formula<T: Number>(&self, parameters: &[T]) -> SpanDamper<T> {
-        SpanDamper {
-            coefficient: self.0.at(parameters),
-        }
-    }
-}
 
 impl Spring {
     fn length(&self) -> f64 {
@@ -100,7 +67,7 @@ impl Spring {
         match self.stiffness {
             Some(stiffness) => {
                 let mut read = nothing.clone();
-                let law = Elasticity {
+                let law = LinearSpring {
                     stiffness: read.constant(Constant::SpringStiffness(index), stiffness),
                     length: read.constant(Constant::SpringLength(index), self.rest_length),
                 };
@@ -112,7 +79,8 @@ impl Spring {
         match self.damping {
             Some(damping) if terms.is_of_motion() => {
                 let mut read = nothing;
-                let law = Damping(read.constant(Constant::SpringDamping(index), damping));
+                let coefficient = read.constant(Constant::SpringDamping(index), damping);
+                let law = SpanDamper { coefficient };
                 let element = read.element(law, [mid(span), mid(span), rate(span)], []);
                 terms.add_law((DAMPING, "damping of"), name, element);
             }

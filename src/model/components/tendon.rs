@@ -64,7 +64,7 @@ impl Tendon {
                 Some(span) => spans.push(span),
                 None if !moved.is_empty() => spans.push(terms.on_ground(&between)),
                 // What never changes its length leaves the rest to the others.
-                None => length.value -= between.norm(),
+                None => length = &length - &between.norm().into(),
             }
         }
         if spans.is_empty() {
