@@ -11,7 +11,7 @@ use std::path::PathBuf;
 use tempfile::TempDir;
 
 /// Kept problems whose numbers all have units, and the largest difference of a column relative to its size.
-const PROBLEMS: [(&str, &str, f64); 14] = [
+const PROBLEMS: [(&str, &str, f64); 23] = [
     ("solve", "pair", 1e-8),
     ("solve", "pair_energy", 1e-7),
     ("solve", "pair_feedback", 1e-7),
@@ -26,6 +26,15 @@ const PROBLEMS: [(&str, &str, f64); 14] = [
     ("solve", "prestretched_pair", 1e-7),
     ("simulate", "pair_constant", 1e-9),
     ("simulate", "four_bar", 1e-7),
+    ("simulate", "slider_crank", 1e-8),
+    ("solve", "elbow_torque", 1e-8),
+    ("simulate", "block", 1e-6),
+    ("equilibrium", "clamped_stack", 1e-8),
+    ("equilibrium", "prestretched_membrane", 1e-8),
+    ("equilibrium", "creeping_block_at_once", 1e-8),
+    ("equilibrium", "stiffening_block", 1e-8),
+    ("solve", "recorded_pair", 1e-7),
+    ("solve", "recorded_payload", 1e-6),
 ];
 
 /// What a run ended with.
@@ -36,7 +45,7 @@ struct Outcome {
     /// Numbers of warnings and notes.
     told: [usize; 2],
     objective: Option<f64>,
-    /// Columns with units.
+    /// Columns with units, and constants with their intervals.
     columns: Vec<(String, String, Vec<f64>)>,
 }
 
@@ -84,13 +93,20 @@ fn outcome(task: &str, problem: &Value) -> Outcome {
             .filter(|line| line.starts_with(word))
             .count()
     };
-    let table = fs::read_to_string(ran.folder().join("trajectory.csv")).unwrap_or_default();
+    let tables = ["trajectory.csv", "equilibrium.csv"];
+    let tables = tables.map(|name| fs::read_to_string(ran.folder().join(name)));
+    let mut columns = columns(tables.iter().flatten().next().map_or("", String::as_str));
+    for constant in summary["constants"].as_array().into_iter().flatten() {
+        let numbers = ["value", "standard_error"].map(|key| constant[key].as_f64());
+        let [name, unit] = ["name", "unit"].map(|key| constant[key].as_str().unwrap().to_owned());
+        columns.push((name, unit, numbers.into_iter().flatten().collect()));
+    }
     Outcome {
         status: summary["status"].clone(),
         iterations: summary["iterations"].clone(),
         told: [count("warning"), count("note")],
         objective: summary["objective"].as_f64(),
-        columns: columns(&table),
+        columns,
     }
 }
 

@@ -355,7 +355,23 @@ impl Scaler {
     }
 }
 
-/// A problem of a file of this repository with its scene, without references to schemas.
+/// Columns of a CSV file by their headers.
+fn columns_of(path: &Path) -> Value {
+    let text = fs::read_to_string(path).unwrap();
+    let mut lines = text.lines().filter(|line| !line.starts_with('#'));
+    let header = lines.next().unwrap().split(',');
+    let rows: Vec<Vec<&str>> = lines.map(|line| line.split(',').collect()).collect();
+    let values = |j: usize| -> Value {
+        let cells = rows.iter().map(|row| row[j].parse::<f64>().ok());
+        cells.map(Value::from).collect()
+    };
+    let columns = header
+        .enumerate()
+        .map(|(j, name)| (name.to_owned(), values(j)));
+    Value::Object(columns.collect())
+}
+
+/// A problem of a file of this repository with its scene and recordings, without references to schemas.
 pub fn problem_of(path: &str) -> Value {
     let path = Path::new(env!("CARGO_MANIFEST_DIR")).join(path);
     let read = |path: &Path| -> Value {
@@ -364,6 +380,18 @@ pub fn problem_of(path: &str) -> Value {
     let mut problem = read(&path);
     if let Some(scene) = problem["scene"].as_str() {
         problem["scene"] = read(&path.parent().unwrap().join(scene));
+    }
+    let recordings = problem.pointer_mut("/identify/recordings");
+    for recording in recordings
+        .and_then(Value::as_array_mut)
+        .into_iter()
+        .flatten()
+    {
+        let recording = recording.as_object_mut().unwrap();
+        if let Some(file) = recording.remove("file") {
+            let table = columns_of(&path.parent().unwrap().join(file.as_str().unwrap()));
+            recording.insert("columns".into(), table);
+        }
     }
     problem.as_object_mut().unwrap().remove("$schema");
     problem["scene"].as_object_mut().unwrap().remove("$schema");
