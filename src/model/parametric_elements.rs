@@ -65,7 +65,7 @@ impl ElementOf<'_> {
         (factor, read)
     }
 
-    /// What calls for its elasticity without a field.
+    /// Reason for the terms of its elasticity without a field.
     fn call(&self) -> Call<'_> {
         Call {
             term: self.names[0],
