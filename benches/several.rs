@@ -14,7 +14,7 @@ use proboscis::control::{BoundaryConditions, Motion, Motions, Transcription, gue
 use proboscis::files::read_problem;
 use proboscis::ipopt::{Options, Solver, Start};
 use proboscis::workflow::parallel_map::parallel_map;
-use proboscis::workflow::{ACCURACY, Iterate, SolveLimits, optimise_together};
+use proboscis::workflow::{Iterate, SolveRequest, optimise_together};
 use random_goals::{Goals, Kind, Solved, solved, trunk};
 use std::fs;
 use std::ops::ControlFlow;
@@ -260,7 +260,7 @@ fn together(motions: &Motions, runs: usize) -> [f64; 2] {
     for _ in 0..runs {
         let began = Instant::now();
         let go_on = &mut |_: usize, _: &Iterate<'_>| ControlFlow::Continue(());
-        let found = optimise_together(motions, ACCURACY, SolveLimits::default(), go_on);
+        let found = optimise_together(&motions.task(), SolveRequest::default(), go_on);
         let found = found.expect("a right problem");
         assert!(
             found

@@ -17,7 +17,7 @@ use proboscis::model::system::{Potential, System};
 use proboscis::nlp::Nlp;
 use proboscis::sparse::{Backend, Direct, Symmetry};
 use proboscis::workflow::parallel_map::{cores, parallel_map};
-use proboscis::workflow::{Iterate, Optimum, SolveLimits, optimise_together};
+use proboscis::workflow::{Iterate, Optimum, SolveRequest, optimise_together};
 use serde_json::json;
 use std::collections::BTreeSet;
 use std::ops::ControlFlow;
@@ -195,7 +195,7 @@ fn of_motions() -> Vec<u64> {
         combined: Combined::Sum,
     };
     let go_on = &mut |_: usize, _: &Iterate<'_>| ControlFlow::Continue(());
-    let found = optimise_together(&motions, 0.01, SolveLimits::default(), go_on).unwrap();
+    let found = optimise_together(&motions.task(), SolveRequest::default(), go_on).unwrap();
     let of = |one: &Optimum| {
         assert!(one.solution.status.is_solved());
         let costates = &one.solution.costates.constraints;

@@ -7,8 +7,8 @@ use crate::app::overwrite_check::make_folder;
 use crate::app::program::joined;
 use crate::app::request::{CommandInput, CommandOutput};
 use crate::app::task::read;
+use crate::control::Motions;
 use crate::control::problem::{Control, Task};
-use crate::control::{Motion, Motions};
 use crate::identify;
 use crate::mesh::triangulated::Surface;
 use crate::model::system::{Body, Shape};
@@ -334,30 +334,19 @@ fn program_sizes(program: &dyn Nlp) -> [(&'static str, usize); 6] {
 
 /// Each motion by itself, and the program of all; pictures go to folders of their names.
 fn of_motions(request: &CommandInput, motions: &Motions) -> Result<Inspected, CommandError> {
-    let motions = &motions.with_limits_once();
+    let task = motions.task();
     let (mut each, mut words) = (BTreeMap::new(), String::new());
-    for Motion {
-        name,
-        system,
-        control,
-    } in &motions.list
-    {
+    for (motion, control) in task.motions.iter().zip(&task.with_limits_once()) {
+        let name = motion.name;
         let own = CommandInput {
             output: request.output.as_ref().map(|folder| folder.join(name)),
             ..request.clone()
         };
-        let found = of_control(&own, system, control)?;
+        let found = of_control(&own, motion.system, control)?;
         words.push_str(&format!("motion \"{name}\": {}\n", found.words));
-        each.insert(name.clone(), found);
+        each.insert(name.to_owned(), found);
     }
-    let asked = motions.list.iter();
-    let asked = asked.map(|one| (&*one.name, &one.system, &one.control));
-    let asked: Vec<_> = asked.collect();
-    let whole = joined(
-        &request.input,
-        (&asked, motions.in_common()),
-        |program, _| program_sizes(program),
-    )?;
+    let whole = joined(&request.input, &task, |program, _| program_sizes(program))?;
     let mut sizes = vec![("motions", motions.list.len())];
     sizes.extend(whole);
     let first = &each[&motions.list[0].name];

@@ -7,11 +7,10 @@ use serde_json::Value;
 use crate::app::error::CommandError;
 use crate::app::messages::key;
 use crate::app::task::read;
-use crate::control::problem::{Control, InCommon, Task};
-use crate::model::System;
+use crate::control::problem::{ControlTask, MotionTask, Task};
 use crate::nlp::Nlp;
 use crate::workflow::prepare_together::{
-    Counted, MotionAsked, PreparedTogether, prepare_together, program_motions, resolve_each,
+    Counted, PreparedTogether, prepare_together, program_motions, resolve_each,
 };
 
 /// Checks the text of a problem as if it stood in the file `input`, which need not exist: paths in it are relative to that file. Returns what it asks
@@ -63,15 +62,9 @@ pub fn with_program<R>(
     read_program: impl FnOnce(&mut dyn Nlp, &[f64]) -> R,
 ) -> Result<R, CommandError> {
     let loaded = read(input, Some(text), &[])?;
-    let once;
-    let (asked, in_common) = match &loaded.task {
-        Task::Control(control) => (vec![("", &loaded.system, &**control)], InCommon::default()),
-        Task::Motions(motions) => {
-            once = motions.with_limits_once();
-            let each = once.list.iter();
-            let each = each.map(|one| (&*one.name, &one.system, &one.control));
-            (each.collect(), motions.in_common())
-        }
+    let task = match &loaded.task {
+        Task::Control(control) => MotionTask::alone(&loaded.system, control).into(),
+        Task::Motions(motions) => motions.task(),
         Task::Simulate(_) | Task::Equilibrium(_) | Task::Identify(_) => {
             return Err(CommandError::Problem {
                 file: input.to_owned(),
@@ -80,29 +73,21 @@ pub fn with_program<R>(
             });
         }
     };
-    joined(input, (&asked, in_common), |program, x| {
-        read_program(program, x)
-    })
+    joined(input, &task, read_program)
 }
 
-/// Hands the program of motions by their names to `read_program`, with the point where the solver would start.
+/// Hands the program of a task to `read_program`, with the point where the solver would start.
 pub(super) fn joined<R>(
     input: &Path,
-    (asked, in_common): (&[(&str, &System, &Control)], InCommon<'_>),
+    task: &ControlTask<'_>,
     read_program: impl FnOnce(&mut dyn Nlp, &[f64]) -> R,
 ) -> Result<R, CommandError> {
-    let asked = asked.iter().map(|&(name, system, control)| MotionAsked {
-        name,
-        system,
-        control,
-        earlier: None,
-    });
-    let asked: Vec<MotionAsked<'_>> = asked.collect();
-    let resolved = resolve_each(&asked).map_err(CommandError::in_file(input))?;
-    let motions = program_motions(&asked, &resolved);
+    let once = task.with_limits_once();
+    let task = task.with(once.iter().map(|control| &**control));
+    let resolved = resolve_each(&task).map_err(CommandError::in_file(input))?;
+    let motions = program_motions(&task, &resolved);
     let PreparedTogether {
         mut program, point, ..
-    } = prepare_together(&motions, &asked, in_common, Counted::Yes)
-        .map_err(CommandError::in_file(input))?;
+    } = prepare_together(&motions, &task, Counted::Yes).map_err(CommandError::in_file(input))?;
     Ok(read_program(&mut program, &point.x))
 }

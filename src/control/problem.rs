@@ -1,6 +1,7 @@
 //! Tasks of a problem: simulation, equilibrium, control, identification. Units g, mm, ms, N, V.
 
 use crate::control::Earlier;
+use crate::control::identification::Solution;
 use crate::dynamics::Solving;
 use crate::feedback::Law;
 use crate::ipopt::{LinearSolver, OptionValue};
@@ -247,61 +248,113 @@ pub enum Combined {
     Worst,
 }
 
-/// Properties of several motions but their constants: inputs that are the same in all, and their objective.
-#[derive(Clone, Copy, Debug, Default)]
-pub struct InCommon<'a> {
+impl Motions {
+    /// The motions as a task.
+    pub fn task(&self) -> ControlTask<'_> {
+        let motions = self.list.iter().map(|motion| MotionTask {
+            name: &motion.name,
+            ..MotionTask::alone(&motion.system, &motion.control)
+        });
+        ControlTask {
+            motions: motions.collect(),
+            shared_inputs: &self.shared_inputs,
+            combined: self.combined,
+        }
+    }
+}
+
+/// A motion that is solved for, alone or with others.
+#[derive(Clone, Copy, Debug)]
+pub struct MotionTask<'a> {
+    /// Its name among several.
+    pub name: &'a str,
+    /// The system that moves.
+    pub system: &'a System,
+    /// Its problem.
+    pub control: &'a Control,
+    /// The solution that it starts from, in the place of the guess of its problem.
+    pub earlier: Option<&'a Solution>,
+}
+
+impl<'a> MotionTask<'a> {
+    /// A motion that has no name, as there is no other.
+    pub fn alone(system: &'a System, control: &'a Control) -> Self {
+        Self {
+            name: "",
+            system,
+            control,
+            earlier: None,
+        }
+    }
+}
+
+/// Motions that are solved for as one program, of which a single one is a case.
+#[derive(Clone, Debug)]
+pub struct ControlTask<'a> {
+    /// The motions, one or more.
+    pub motions: Vec<MotionTask<'a>>,
     /// Names of the sources whose inputs are sought once for all motions.
     pub shared_inputs: &'a [String],
     /// The objective of all of them.
     pub combined: Combined,
 }
 
-impl Motions {
-    /// Their common inputs and objective.
-    pub fn in_common(&self) -> InCommon<'_> {
-        InCommon {
-            shared_inputs: &self.shared_inputs,
-            combined: self.combined,
+impl<'a> From<MotionTask<'a>> for ControlTask<'a> {
+    fn from(motion: MotionTask<'a>) -> Self {
+        Self {
+            motions: vec![motion],
+            shared_inputs: &[],
+            combined: Combined::Sum,
+        }
+    }
+}
+
+impl<'a> ControlTask<'a> {
+    /// The same motions with other problems.
+    pub fn with<'b>(&self, controls: impl IntoIterator<Item = &'b Control>) -> ControlTask<'b>
+    where
+        'a: 'b,
+    {
+        let motions = self.motions.iter().zip(controls);
+        let motions = motions.map(|(motion, control)| MotionTask { control, ..*motion });
+        ControlTask {
+            motions: motions.collect(),
+            ..*self
         }
     }
 
-    /// The motions without limits of amounts of muscles that an earlier one has: with the same constants they are one.
-    #[must_use]
-    pub fn with_limits_once(&self) -> Cow<'_, Self> {
-        let mut out = Cow::Borrowed(self);
-        for (number, motion) in self.list.iter().enumerate() {
+    /// The problems without limits of amounts of muscles that an earlier motion has: with the same constants they are one.
+    pub fn with_limits_once(&self) -> Vec<Cow<'a, Control>> {
+        let each = self.motions.iter().enumerate();
+        let each = each.map(|(number, motion)| {
             let is_known = |limit: &Limit| {
-                let mut before = self.list[..number].iter();
+                let mut before = self.motions[..number].iter();
                 before.any(|one| {
-                    one.control.limits.contains(limit)
-                        && limit.is_as_in(&motion.system, &one.system)
+                    one.control.limits.contains(limit) && limit.is_as_in(motion.system, one.system)
                 })
             };
+            let mut out = Cow::Borrowed(motion.control);
             if motion.control.limits.iter().any(is_known) {
-                let own = &mut out.to_mut().list[number];
-                own.control.limits.retain(|limit| !is_known(limit));
+                out.to_mut().limits.retain(|limit| !is_known(limit));
             }
-        }
-        out
+            out
+        });
+        each.collect()
     }
 
     /// The first motion whose time grid differs from that of motion 0 or is free; inputs cannot be shared with it.
-    pub fn other_grid(&self) -> Option<&Motion> {
-        let grid = |motion: &Motion| match motion.control.duration {
-            Duration::Given(duration) => {
-                let Control {
-                    intervals,
-                    is_refined,
-                    ..
-                } = motion.control;
-                Some((duration, intervals, is_refined))
-            }
+    pub fn other_grid(&self) -> Option<MotionTask<'a>> {
+        let grid = |motion: &MotionTask<'_>| match motion.control.duration {
+            Duration::Given(duration) => Some((
+                duration,
+                motion.control.intervals,
+                motion.control.is_refined,
+            )),
             Duration::Free { .. } => None,
         };
-        let first = self.list.first().and_then(grid);
-        self.list
-            .iter()
-            .find(|motion| grid(motion).is_none() || grid(motion) != first)
+        let first = self.motions.first().and_then(grid);
+        let mut each = self.motions.iter().copied();
+        each.find(|motion| grid(motion).is_none() || grid(motion) != first)
     }
 }
 

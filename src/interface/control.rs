@@ -2,8 +2,8 @@
 
 use crate::control;
 use crate::control::problem::{
-    Ahead, Combined, Duration, Guess, Hold, InCommon, Limit, Objective, OutcomeOf, QuantityCost,
-    Regulator, Solver, SoughtHold, Varied,
+    Ahead, Combined, ControlTask, Duration, Guess, Hold, Limit, MotionTask, Objective, OutcomeOf,
+    QuantityCost, Regulator, Solver, SoughtHold, Varied,
 };
 use crate::control::{Earlier, EarlierSolution, Motions, problem};
 use crate::interface::cost_checks::{check_costs, check_energies, check_limits, check_waypoints};
@@ -21,7 +21,7 @@ use crate::tasks::SolveRequest;
 use crate::workflow::memory::Occasion;
 use crate::workflow::optimum::SolveLimits;
 use crate::workflow::prepare_together::{
-    Counted, MotionAsked, PreparedTogether, prepare_together, program_motions,
+    Counted, PreparedTogether, prepare_together, program_motions,
 };
 use crate::workflow::receding::Horizon;
 use crate::workflow::resolve::resolve;
@@ -234,17 +234,12 @@ impl Control {
         memory::of_elements(system, Occasion::Factors)?;
         let control = self.resolve(system)?;
         let (model, boundary) = resolve(system, &control)?;
-        let asked = [MotionAsked {
-            name: "",
-            system,
-            control: &control,
-            earlier: None,
-        }];
+        let task = ControlTask::from(MotionTask::alone(system, &control));
         let resolved = [(model, boundary)];
-        let motions = program_motions(&asked, &resolved);
+        let motions = program_motions(&task, &resolved);
         let PreparedTogether {
             mut program, point, ..
-        } = prepare_together(&motions, &asked, InCommon::default(), Counted::Yes)?;
+        } = prepare_together(&motions, &task, Counted::Yes)?;
         Ok(read(&mut program, &point.x))
     }
 

@@ -1,7 +1,7 @@
 //! One function for each task: it computes, verifies, and returns numbers, verdict and remarks; a simulation is assessed in a step of its own.
 //!
 //! - `solve`, `simulate`, `equilibrium`: the three tasks. The commands, Python and the interface for Rust call them; nothing here knows files.
-//! - `grid`, `held_goal`: the solves of a control problem, for an accuracy and for a goal that is kept.
+//! - `held_goal`: the solves of control problems whose goals are kept.
 //! - `disturbed`: a closed loop with parts of its disturbance.
 //! - `motions`: several control problems solved together.
 //! - `check`: the derivatives of a task against differences.
@@ -10,7 +10,6 @@
 pub mod check;
 mod disturbed;
 pub mod equilibrium;
-mod grid;
 mod held_goal;
 pub mod motions;
 pub mod simulate;
@@ -20,8 +19,9 @@ pub(crate) mod solve_messages;
 pub use check::{CheckResult, GreatestErrors, WrongDerivative, check};
 pub use disturbed::{DisturbedLoops, disturbed};
 pub use equilibrium::{EquilibriumResult, EquilibriumTaskError, equilibrium};
-pub use grid::SolveRequest;
 pub use motions::{MotionsResult, solve_motions};
 pub use simulate::{Assessment, SimulationRequest, SimulationResult, simulate};
 pub use solve::{SolveResult, solve};
 pub use solve_messages::Verdict;
+
+pub use crate::workflow::SolveRequest;

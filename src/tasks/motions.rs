@@ -1,24 +1,14 @@
 //! Several motions: solved together, each verified by a simulation and held after its end.
 
-use std::borrow::Cow;
 use std::ops::ControlFlow;
-use std::time::Instant;
 
 use crate::control::{Motion, Motions};
-use crate::tasks::grid::{Found, SolveRequest};
-use crate::tasks::held_goal::{NOT_FOUND, UNFINISHED, held, is_kept, is_left};
-use crate::tasks::solve::{SolveResult, assessed};
+use crate::tasks::solve::{SolveResult, Solved, solve_task};
 use crate::tasks::solve_messages;
 use crate::tasks::solve_messages::Verdict;
-use crate::workflow::accuracy::{Accuracy, AccuracyTarget};
-use crate::workflow::memory::{self, Occasion};
-use crate::workflow::optimum::{SolveLimits, seconds_left};
+use crate::workflow::accuracy::Accuracy;
 use crate::workflow::remark::STOPPED_EARLY;
-use crate::workflow::restarts::stopped;
-use crate::workflow::{
-    ACCURACY, Iterate, Remarks, Together, WholeProgram, WorkflowError, optimise_together,
-    optimise_together_to,
-};
+use crate::workflow::{Iterate, Remarks, SolveRequest, WholeProgram, WorkflowError};
 
 /// Motions that were optimised together.
 #[derive(Debug)]
@@ -47,33 +37,18 @@ pub fn solve_motions(
     request: SolveRequest,
     observer: &mut dyn FnMut(usize, &Iterate<'_>) -> ControlFlow<()>,
 ) -> Result<MotionsResult, WorkflowError> {
-    for motion in &motions.list {
-        memory::of_elements(&motion.system, Occasion::Factors)?;
-    }
-    let ((found, accuracy), motions, notes) = solve_and_hold(motions, request, observer)?;
-    let Together {
-        optima,
+    let Solved {
+        list,
         whole,
         iterations,
-        notes: of_grids,
-    } = found;
-    let each = motions.list.iter().zip(optima).zip(of_grids).zip(notes);
-    let list = each.map(|(((motion, optimum), note), not_found)| {
-        let found = Found {
-            optimum,
-            iterations,
-            accuracy: None,
-            note,
-        };
-        assessed(&motion.system, &motion.control, found, not_found)
-    });
-    let list: Vec<SolveResult> = list.collect();
+        accuracy,
+    } = solve_task(&motions.task(), request, observer)?;
     let mut remarks = Remarks::default();
     remarks.warn("optimality_gap", whole.wide.clone());
     let mut each = list.iter();
     let cut_short = each.find_map(|one| one.optimum.cut_short);
     remarks.warn(STOPPED_EARLY, cut_short.map(solve_messages::cut_short));
-    remarks.warn("shared_inputs", held_apart(&motions, &list));
+    remarks.warn("shared_inputs", held_apart(motions, &list));
     Ok(MotionsResult {
         verdict: verdict(&motions.list, &list),
         list,
@@ -136,97 +111,4 @@ fn verdict(motions: &[Motion], list: &[SolveResult]) -> Verdict {
         is_solved: first.is_none(),
         message,
     }
-}
-
-/// Motions with their estimated errors, where an accuracy is wanted of motions that name their intervals.
-type FoundMotions = (Together, Option<Accuracy>);
-
-/// Solves on the grids of the problems, or on finer ones where an accuracy is wanted.
-fn find(
-    motions: &Motions,
-    SolveRequest { wanted, limits }: SolveRequest,
-    observer: &mut dyn FnMut(usize, &Iterate<'_>) -> ControlFlow<()>,
-) -> Result<FoundMotions, WorkflowError> {
-    let are_given = motions.list.iter().all(|one| !one.control.is_refined);
-    if let (true, Some(wanted)) = (are_given, wanted) {
-        let found = optimise_together_to(motions, wanted, limits, observer);
-        return found.map(|(found, accuracy)| (found, Some(accuracy)));
-    }
-    let accuracy = match wanted {
-        Some(AccuracyTarget::Below(part)) => part,
-        _ => ACCURACY,
-    };
-    Ok((
-        optimise_together(motions, accuracy, limits, observer)?,
-        None,
-    ))
-}
-
-/// Motions, the problems that they solve, and for each a note where no inputs that hold its goal were found.
-type HeldGoals<'a> = (FoundMotions, Cow<'a, Motions>, Vec<Option<String>>);
-
-/// Solves, and again with the inputs that hold the goals that are left as unknowns; for each motion a note where none were found.
-fn solve_and_hold<'a>(
-    motions: &'a Motions,
-    request: SolveRequest,
-    observer: &mut dyn FnMut(usize, &Iterate<'_>) -> ControlFlow<()>,
-) -> Result<HeldGoals<'a>, WorkflowError> {
-    let began = Instant::now();
-    let (mut found, accuracy) = find(motions, request, observer)?;
-    hold(&mut found, motions);
-    let each = motions.list.iter().zip(&found.optima);
-    let left: Vec<bool> = each
-        .map(|(motion, optimum)| is_left(optimum, &motion.control))
-        .collect();
-    let told = |note: &str| {
-        left.iter()
-            .map(|is_left| is_left.then(|| note.to_owned()))
-            .collect()
-    };
-    let none = left.iter().map(|_| None).collect();
-    if !left.contains(&true) {
-        return Ok(((found, accuracy), Cow::Borrowed(motions), none));
-    }
-    let seconds = seconds_left(request.limits.seconds, began);
-    if stopped(seconds).is_some() {
-        return Ok(((found, accuracy), Cow::Borrowed(motions), told(UNFINISHED)));
-    }
-    let each = motions.list.iter().zip(&found.optima).zip(&left);
-    let again = each.map(|((motion, optimum), is_left)| Motion {
-        control: held(&motion.control, optimum, *is_left),
-        ..motion.clone()
-    });
-    let again = Motions {
-        list: again.collect(),
-        shared_inputs: motions.shared_inputs.clone(),
-        combined: motions.combined,
-    };
-    let limits = SolveLimits {
-        seconds,
-        ..request.limits
-    };
-    match find(&again, SolveRequest { limits, ..request }, observer) {
-        Ok((mut second, of_second)) => {
-            hold(&mut second, &again);
-            second.iterations += found.iterations;
-            let mut each = again.list.iter().zip(&second.optima).zip(&left);
-            if each.all(|((motion, optimum), is_left)| {
-                optimum.is_solved() && (!is_left || is_kept(optimum, &motion.control))
-            }) {
-                for (new, old) in second.optima.iter_mut().zip(&found.optima) {
-                    new.carried = old.carried;
-                }
-                return Ok(((second, of_second), Cow::Owned(again), none));
-            }
-            found.iterations = second.iterations;
-        }
-        Err(error) => tracing::debug!(%error, "the inputs that hold the goals are not sought"),
-    }
-    Ok(((found, accuracy), Cow::Borrowed(motions), told(NOT_FOUND)))
-}
-
-/// Holds the voltages of the goals after the ends.
-fn hold(found: &mut Together, motions: &Motions) {
-    let each = found.optima.iter_mut().zip(&motions.list);
-    each.for_each(|(optimum, motion)| optimum.hold(&motion.control));
 }

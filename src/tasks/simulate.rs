@@ -13,7 +13,7 @@ use crate::tasks::check::moved_markers;
 use crate::workflow::accuracy::{Accuracy, AccuracyTarget};
 use crate::workflow::closed_loop::ClosedLoop;
 use crate::workflow::domain::Outside;
-use crate::workflow::grids::integrate_to;
+use crate::workflow::integrate::integrate_to;
 use crate::workflow::integrate::{Simulated, grid, integrate_on};
 use crate::workflow::loop_limits::LoopLimits;
 use crate::workflow::memory::Occasion;

@@ -3,14 +3,13 @@
 use std::ops::ControlFlow;
 
 use crate::control::hold_obstacle;
-use crate::control::problem::Control;
+use crate::control::problem::{Control, ControlTask, MotionTask};
 use crate::dynamics::trajectory::Trajectory;
 use crate::dynamics::{DiscreteTrajectory, EnergyExchange, out_of_domain, out_of_range};
 use crate::model::System;
 use crate::sensitivity::{self, Gradients, NoSensitivity, Sensitivity, gradients, sensitivities};
 use crate::tasks::check::moved_markers;
-use crate::tasks::grid::{Found, SolveRequest};
-use crate::tasks::held_goal::{HeldGoal, solve_and_hold};
+use crate::tasks::held_goal::{HeldGoals, solve_and_hold};
 use crate::tasks::solve_messages::{self, Verdict, carried, ends, restarted};
 use crate::workflow::accuracy::Accuracy;
 use crate::workflow::domain::{self, Outside};
@@ -25,7 +24,7 @@ use crate::workflow::remark::{Remarks, STOPPED_EARLY};
 use crate::workflow::resimulate::Resimulation;
 use crate::workflow::restarts::is_unreached;
 use crate::workflow::tracking::{FinalValue, Tracked, final_values, followed};
-use crate::workflow::{Iterate, WorkflowError, infeasible};
+use crate::workflow::{Iterate, SolveRequest, WholeProgram, WorkflowError, infeasible};
 
 /// An optimal motion, or the last iterate of a solve that found none.
 #[derive(Debug)]
@@ -72,35 +71,72 @@ pub fn solve(
     request: SolveRequest,
     observer: &mut dyn FnMut(usize, &Iterate<'_>) -> ControlFlow<()>,
 ) -> Result<SolveResult, WorkflowError> {
-    memory::of_elements(system, Occasion::Factors)?;
-    sensitivity::check(system, control).map_err(|(name, reason)| WorkflowError::Problem {
-        place: format!("control.sensitivity.{name}"),
-        reason,
-    })?;
-    let HeldGoal {
-        found,
-        control,
-        note,
-    } = solve_and_hold(system, control, request, observer)?;
-    let cut_short = found.optimum.cut_short.map(solve_messages::cut_short);
-    let mut result = assessed(system, control.as_ref(), found, note);
+    let task = MotionTask::alone(system, control).into();
+    let mut solved = solve_task(&task, request, observer)?;
+    let mut result = solved.list.remove(0);
+    result.accuracy = solved.accuracy;
+    let cut_short = result.optimum.cut_short.map(solve_messages::cut_short);
     result.remarks.warn(STOPPED_EARLY, cut_short);
     Ok(result)
 }
 
-/// An optimum with its verdict and all that is observed of it; `not_found` says that inputs that hold its goal were not found.
-pub(super) fn assessed(
+/// Motions of a task, each with its verdict, and numbers of all of them.
+pub(super) struct Solved {
+    pub(super) list: Vec<SolveResult>,
+    pub(super) whole: WholeProgram,
+    pub(super) iterations: usize,
+    pub(super) accuracy: Option<Accuracy>,
+}
+
+/// Solves a task of one motion or several.
+///
+/// # Errors
+/// As of [`solve`].
+pub(super) fn solve_task(
+    task: &ControlTask<'_>,
+    request: SolveRequest,
+    observer: &mut dyn FnMut(usize, &Iterate<'_>) -> ControlFlow<()>,
+) -> Result<Solved, WorkflowError> {
+    for motion in &task.motions {
+        memory::of_elements(motion.system, Occasion::Factors)?;
+    }
+    if let [one] = &task.motions[..] {
+        sensitivity::check(one.system, one.control).map_err(|(name, reason)| {
+            WorkflowError::Problem {
+                place: format!("control.sensitivity.{name}"),
+                reason,
+            }
+        })?;
+    }
+    let HeldGoals {
+        found,
+        controls,
+        notes,
+    } = solve_and_hold(task, request, observer)?;
+    let each = task.motions.iter().zip(&controls).zip(found.optima);
+    let notes = found.notes.into_iter().zip(notes);
+    let list = each
+        .zip(notes)
+        .map(|(((motion, control), optimum), notes)| {
+            assessed(motion.system, control, optimum, found.iterations, notes)
+        });
+    Ok(Solved {
+        list: list.collect(),
+        whole: found.whole,
+        iterations: found.iterations,
+        accuracy: found.accuracy,
+    })
+}
+
+/// An optimum with its verdict and all that is observed of it. Notes say why its grid is another one than that of the problem, and that inputs that hold
+/// its goal were not found.
+fn assessed(
     system: &System,
     control: &Control,
-    found: Found,
-    not_found: Option<String>,
+    optimum: Optimum,
+    iterations: usize,
+    (refined, not_found): (Option<String>, Option<String>),
 ) -> SolveResult {
-    let Found {
-        optimum,
-        iterations,
-        accuracy,
-        note,
-    } = found;
     let (model, boundary) = (&optimum.model, &optimum.boundary);
     let tested = optimum.resimulation.as_ref();
     let not_kept = hold_check::warning(control, model, boundary, tested);
@@ -120,14 +156,14 @@ pub(super) fn assessed(
         remarks: Remarks::default(),
         optimum,
         iterations,
-        accuracy,
+        accuracy: None,
         verdict,
         discrete,
         trajectory,
     };
     let not_kept = not_kept.filter(|_| result.verdict.is_solved);
     let can_seek = not_found.is_none() && hold_obstacle(&result.optimum.model, control).is_none();
-    result.remarks = remarks(system, control, &result, (note, not_kept, can_seek));
+    result.remarks = remarks(system, control, &result, (refined, not_kept, can_seek));
     result.remarks.note("hold", not_found);
     add_sensitivities(system, control, &mut result);
     result

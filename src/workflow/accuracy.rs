@@ -12,7 +12,9 @@ const FINEST: usize = 1 << 10;
 /// The finest grid for an estimate, in times the intervals of the first.
 const ESTIMATED: usize = 8;
 /// No grid has more variables than this.
-const VARIABLES: usize = 2_000_000;
+pub(super) const VARIABLES: usize = 2_000_000;
+/// Order of optimal voltages until three grids show it: switches and the cost of the first and last jump may make it one.
+pub(super) const OF_CONTROL: f64 = 1.0;
 
 /// Target of the error of discretisation.
 #[derive(Clone, Copy, Debug, PartialEq)]

@@ -1,6 +1,6 @@
 //! A control problem solved from one start: boundary, guess, program, solver.
 
-use crate::control::problem::{Control, Duration, InCommon};
+use crate::control::problem::{Control, ControlTask, Duration, MotionTask};
 use crate::control::{BoundaryConditions, Carried, Costates, Solution, Transcription};
 use crate::dynamics::{DiscreteTrajectory, reversed_muscle};
 use crate::ipopt::{OptionValue, Options, Solver, SolverResult};
@@ -15,12 +15,13 @@ use crate::workflow::gap::Gap;
 use crate::workflow::motion::{Iterate, solved};
 use crate::workflow::optimum::{Optimum, Shortest, SolveLimits};
 use crate::workflow::prepare_together::{
-    Counted, MotionAsked, PreparedTogether, prepare_together, program_motions, resolve_each,
+    Counted, PreparedTogether, prepare_together, program_motions, resolve_each,
 };
+use crate::workflow::program_motion::multipliers_of;
 use crate::workflow::remark::phase;
 use crate::workflow::resimulate::{Resimulation, resimulate};
 use crate::workflow::resolve::with_found;
-use crate::workflow::solves::{Solves, multipliers_of};
+use crate::workflow::solves::Solves;
 use crate::workflow::{gap, hold_check, period};
 use std::collections::BTreeMap;
 use std::ops::ControlFlow;
@@ -43,69 +44,67 @@ impl FoundTogether {
     pub(crate) fn meets_equations(&self) -> bool {
         self.optima.iter().all(Optimum::meets_equations)
     }
+
+    /// Returns true if simulations reproduce all of them.
+    pub(crate) fn is_solved(&self) -> bool {
+        self.optima.iter().all(Optimum::is_solved)
+    }
+
+    /// The objective of all of them.
+    pub(crate) fn objective(&self) -> f64 {
+        match &self.optima[..] {
+            [only] => only.solution.objective,
+            _ => self.whole.objective,
+        }
+    }
+
+    /// Takes over what became of the solutions that the motions of a grid before started from.
+    pub(crate) fn carry(&mut self, before: &Self) {
+        for (new, old) in self.optima.iter_mut().zip(&before.optima) {
+            new.carried = old.carried;
+        }
+    }
 }
 
-/// Solves a control problem from one start: an `earlier` solution where one is given, or the guess of the problem; `observer` sees every iterate.
+/// Solves a task from one start: the earlier solution of each motion where one is given, or the guess of its problem; `observer` sees every
+/// iterate. Free parameters and the named inputs are shared; the options of the solver are those of the first motion.
 ///
 /// # Errors
 /// Start, goal, guess or an option of the solver is wrong. A problem without a solution is no error: see the status.
-pub(crate) fn attempt(
-    system: &System,
-    control: &Control,
-    earlier: Option<&Solution>,
-    allowed: SolveLimits,
-    observer: &mut dyn FnMut(&Iterate<'_>) -> ControlFlow<()>,
-) -> Result<Optimum, WorkflowError> {
-    let alone = MotionAsked {
-        name: "",
-        system,
-        control,
-        earlier,
-    };
-    let mut found = attempt_together(&[alone], InCommon::default(), allowed, observer)?;
-    Ok(found.optima.remove(0))
-}
-
-/// Solves the control problems of several motions as one program, in which free parameters and the named inputs are shared; the options of the solver
-/// are those of the first one.
-///
-/// # Errors
-/// As of [`attempt`].
 ///
 /// # Panics
 /// If there is no motion.
-pub(crate) fn attempt_together(
-    asked: &[MotionAsked<'_>],
-    in_common: InCommon<'_>,
+pub(crate) fn attempt(
+    task: &ControlTask<'_>,
     allowed: SolveLimits,
     observer: &mut dyn FnMut(&Iterate<'_>) -> ControlFlow<()>,
 ) -> Result<FoundTogether, WorkflowError> {
     let began = Instant::now();
     let watch = stop::watch(allowed.seconds);
     phase("building the model, finding start and goal");
-    let resolved = resolve_each(asked).map_err(stop::unless_stopped)?;
+    let resolved = resolve_each(task).map_err(stop::unless_stopped)?;
     phase("building the program");
-    let motions = program_motions(asked, &resolved);
+    let motions = program_motions(task, &resolved);
     let PreparedTogether {
         program,
         shared,
         point,
         start,
         carried,
-    } = prepare_together(&motions, asked, in_common, Counted::Yes).map_err(stop::unless_stopped)?;
+    } = prepare_together(&motions, task, Counted::Yes).map_err(stop::unless_stopped)?;
     let setup = began.elapsed().as_secs_f64();
     let first = motions[0];
     let options = Options {
         start,
         max_seconds: allowed.seconds.map(|s| (s - setup).max(0.0)),
-        ..options(first.model, first.control, allowed)
+        ..options(first.model, first.task.control, allowed)
     };
     phase("ordering and first factorisation");
     tracing::info!(?start, variables = point.x.len(), "solve");
     let mut solves = Solves {
         motions: &motions,
         shared: &shared,
-        combined: in_common.combined,
+        combined: task.combined,
         solver: Solver::new(program, options.clone()),
         options,
         began,
@@ -126,10 +125,10 @@ pub(crate) fn attempt_together(
         let discrete = part.decode(&own.x);
         let costates = part.costates(&own.costates);
         let found = final_motion(motion.model, motion.boundary, &discrete, costates, &own);
-        let point = FinalPoint::new(&mut part, &own, motion.model, motion.control);
+        let point = FinalPoint::new(&mut part, &own, motion.model, motion.task.control);
         ends.push((own, discrete, found, point));
     }
-    let mut optima = verified_optima(asked, resolved, ends, setup, carried)?;
+    let mut optima = verified_optima(task, resolved, ends, setup, carried)?;
     for optimum in &mut optima {
         optimum.cut_short = cut_short;
     }
@@ -142,13 +141,13 @@ pub(crate) fn attempt_together(
 
 /// Motions with their verifications.
 fn verified_optima(
-    asked: &[MotionAsked<'_>],
+    task: &ControlTask<'_>,
     resolved: Vec<(Model, BoundaryConditions)>,
     ends: Vec<End>,
     setup: f64,
     carried: Vec<Carried>,
 ) -> Result<Vec<Optimum>, WorkflowError> {
-    let all = asked.iter().zip(resolved).zip(ends).zip(carried);
+    let all = task.motions.iter().zip(resolved).zip(ends).zip(carried);
     let optima = all.map(|(((one, resolved), end), carried)| {
         let optimum = verified_optimum(*one, resolved, end, (setup, carried));
         optimum.map_err(|error| error.of_motion(one.name))
@@ -161,14 +160,14 @@ type End = (SolverResult, DiscreteTrajectory, Solution, FinalPoint);
 
 /// A motion with its verification.
 fn verified_optimum(
-    asked: MotionAsked<'_>,
+    task: MotionTask<'_>,
     resolved: (Model, BoundaryConditions),
     (solution, discrete, motion, point): End,
     (setup, carried): (f64, Carried),
 ) -> Result<Optimum, WorkflowError> {
-    let MotionAsked {
+    let MotionTask {
         system, control, ..
-    } = asked;
+    } = task;
     let (model, mut boundary, sought) = of_motion(system, control, resolved, &motion)?;
     let motion = match &sought {
         None => motion,

@@ -1,160 +1,476 @@
-//! Control problems and simulations on as fine a grid as an accuracy needs.
+//! Motions solved as one program on their own grids, then on finer ones: until simulations reproduce them, until these confirm an accuracy, or
+//! until an estimate of the error is small enough.
+//!
+//! The error of a grid falls with the square of its step: from the error e that a verification confirms on N intervals the next grid has
+//! about N √(e/ε), and begins at the optimum before.
 
-use crate::control::problem::{Control, Duration, Simulation, Voltages};
-use crate::dynamics::DiscreteTrajectory;
-use crate::model::{Model, System};
-use crate::nlp::Status;
-use crate::stop;
-use crate::workflow::accuracy::{AccuracyTarget, Attempt, Refined, refine};
-use crate::workflow::error::WorkflowError;
-use crate::workflow::estimate::ErrorSample;
-use crate::workflow::integrate::{Simulated, grid, integrate};
-use crate::workflow::motion;
-use crate::workflow::motion::Iterate;
-use crate::workflow::optimise::optimise;
-use crate::workflow::optimum::{Optimum, SolveLimits, seconds_left};
-use crate::workflow::restarts::stopped;
 use std::ops::ControlFlow;
 use std::time::Instant;
 
-/// The solver's tolerance as a part of the accuracy asked for, where the problem names no smaller one.
-pub(super) const SOLVER: f64 = 1e-2;
-/// Order of optimal voltages until three grids show it: switches and the cost of the first and last jump may make it one.
-pub(super) const OF_CONTROL: f64 = 1.0;
-/// Order of the midpoint rule under voltages that are constant over its steps.
-const OF_MOTION: f64 = 2.0;
+use crate::control::problem::{Control, ControlTask, Duration};
+use crate::nlp::Status;
+use crate::workflow::accuracy::{Accuracy, AccuracyTarget, Attempt, OF_CONTROL, VARIABLES, refine};
+use crate::workflow::attempt::{FoundTogether, WholeProgram};
+use crate::workflow::error::WorkflowError;
+use crate::workflow::estimate::ErrorSample;
+use crate::workflow::motion::{Iterate, discrete_trajectory};
+use crate::workflow::optimise::optimise_task;
+use crate::workflow::optimum::{Optimum, SolveLimits, seconds_left};
+use crate::workflow::remark::phase;
+use crate::workflow::restarts::{displaced, is_infeasible, is_unreached, stopped};
 
-/// Solves a control problem on its own grid, then on finer ones, each from the solution before, until every error is
-/// estimated below what is wanted; or estimates the error on its own grid. `observer` sees the number of intervals and every
-/// iteration.
-///
-/// # Errors
-/// As of [`optimise`].
-pub fn optimise_to(
-    system: &System,
-    control: &Control,
-    wanted: AccuracyTarget,
-    allowed: SolveLimits,
-    observer: &mut dyn FnMut(usize, &Iterate<'_>) -> ControlFlow<()>,
-) -> Result<Refined<Optimum>, WorkflowError> {
-    let began = Instant::now();
-    let left = || seconds_left(allowed.seconds, began);
-    let mut refined = refine(
-        wanted,
-        OF_CONTROL,
-        || stop(left()),
-        |times, before: Option<&Optimum>| {
-            let mut control = control.clone();
-            control.intervals *= times;
-            if let AccuracyTarget::Below(error) = wanted {
-                control.solver.tolerance = control.solver.tolerance.min(SOLVER * error);
-            }
-            let seconds = left();
-            let limits = SolveLimits { seconds, ..allowed };
-            let earlier = before.map(|optimum| &optimum.motion);
-            let mut run = optimise(system, &control, earlier, limits, &mut |iterate| {
-                observer(control.intervals, iterate)
-            })?;
-            // What the guess of the problem became belongs to all grids.
-            run.carried = before.map_or(run.carried, |optimum| optimum.carried);
-            // What is not reproduced may be on a finer grid.
-            let is_complete = run.meets_equations();
-            let sample = match is_complete {
-                true => sample(&run, &control),
-                false => ErrorSample::default(),
-            };
-            Ok(Attempt {
-                sample,
-                intervals: control.intervals,
-                iterations: run.solution.iterations.len().saturating_sub(1),
-                variables: run.solution.x.len(),
-                status: run.word(),
-                is_complete,
-                run,
-            })
-        },
-    )?;
-    if refined.run.meets_equations() && !refined.run.is_solved() {
-        refined.run.stopped = stopped(left());
-    }
-    Ok(refined)
+/// Deviation of the motion under the optimal voltages that is confirmed where no accuracy is set, as a part of the path length.
+pub const ACCURACY: f64 = 0.01;
+/// The part of the accuracy that the next grid is made for.
+const AIMED: f64 = 0.7;
+/// Least and greatest factor between the intervals of two grids, and that where the error is not known.
+const FACTORS: [f64; 2] = [1.25, 4.0];
+const UNKNOWN: f64 = 2.0;
+/// Limit of grids.
+const GRIDS: usize = 7;
+/// Multiples of the intervals of a single motion that are tried where it is not reproduced.
+const TIMES: [usize; 3] = [2, 4, 8];
+/// Multiple of the intervals that is tried before a problem is called infeasible.
+const FINER: usize = 2;
+/// Greatest multiple of the intervals of one of several motions that names them.
+const MOST_TIMES: usize = 8;
+/// The solver's tolerance as a part of the accuracy asked for, where the problem names no smaller one.
+const SOLVER: f64 = 1e-2;
+/// The reason why no finer grid was tried, where time was up.
+const STOPPED: &str = "it was stopped";
+
+/// Options of a solve in addition to its problem.
+#[derive(Clone, Copy, Debug, Default)]
+pub struct SolveRequest {
+    /// Accuracy of the grid; nothing takes that of the problem.
+    pub wanted: Option<AccuracyTarget>,
+    /// Limits of the solver.
+    pub limits: SolveLimits,
 }
 
-/// Simulates with the step of the task, then with half of it and so on, until every error is estimated below what is wanted;
-/// or estimates the error with its own step. `observer` sees the number of steps, and the motion after each step.
+/// Motions that were optimised together, or a single one, and the way to them.
+#[derive(Debug)]
+pub struct Together {
+    /// Each with its part of the result of the solver.
+    pub optima: Vec<Optimum>,
+    /// All of them as one program.
+    pub whole: WholeProgram,
+    /// Iterations on all grids.
+    pub iterations: usize,
+    /// Estimated errors, the greatest of all motions, where an accuracy was wanted of motions that name their intervals.
+    pub accuracy: Option<Accuracy>,
+    /// For each a note on the reason for another grid, or on the lack of a verification.
+    pub notes: Vec<Option<String>>,
+}
+
+/// Solves for motions as one program, on their own grids.
+///
+/// Where an accuracy is wanted of motions that name their intervals, finer grids follow until every error is estimated below it, each with twice the
+/// intervals of the one before. Else they follow for those whose verification does not confirm the accuracy (where their intervals are not given) or
+/// fails, each time from the motions before. `observer` sees the number of all intervals and every iterate.
 ///
 /// # Errors
-/// As of [`integrate`].
-pub fn integrate_to(
-    system: &System,
-    task: &Simulation,
-    wanted: AccuracyTarget,
-    seconds: Option<f64>,
-    observer: &mut dyn FnMut(usize, &Model, &DiscreteTrajectory) -> ControlFlow<()>,
-) -> Result<Refined<Simulated>, WorkflowError> {
-    let began = Instant::now();
-    let left = || seconds.map(|s| s - began.elapsed().as_secs_f64());
-    let (first, _) = grid(task);
-    // Sampled voltages may change within a step.
-    let order = match task.voltages {
-        Voltages::Constant(_) => OF_MOTION,
-        Voltages::Sampled { .. } | Voltages::Signals(_) => OF_CONTROL,
+/// As of [`optimise`](crate::workflow::optimise::optimise).
+pub fn optimise_together(
+    task: &ControlTask<'_>,
+    request: SolveRequest,
+    observer: &mut dyn FnMut(usize, &Iterate<'_>) -> ControlFlow<()>,
+) -> Result<Together, WorkflowError> {
+    let SolveRequest { wanted, limits } = request;
+    let once = task.with_limits_once();
+    let task = task.with(once.iter().map(|control| &**control));
+    if let (Some(other), [_, ..]) = (task.other_grid(), task.shared_inputs) {
+        return Err(WorkflowError::Problem {
+            place: "control.shared_inputs".to_owned(),
+            reason: format!(
+                "the instants of the motion \"{}\" are other ones",
+                other.name
+            ),
+        });
+    }
+    let are_given = task.motions.iter().all(|one| !one.control.is_refined);
+    let mut solves = GridSolves {
+        task: &task,
+        tolerance: f64::INFINITY,
+        allowed: limits,
+        observer,
+        began: Instant::now(),
+        iterations: 0,
     };
-    refine(
-        wanted,
-        order,
-        || stop(left()),
-        |times, _| {
-            let steps = first * times;
-            let task = Simulation {
-                step: task.duration / steps as f64,
-                ..task.clone()
+    match (wanted, are_given) {
+        (Some(wanted), true) => solves.estimated(wanted),
+        (_, true) if task.motions.len() == 1 => solves.reproduced(),
+        (Some(AccuracyTarget::Below(part)), _) => solves.confirmed(part),
+        (_, _) => solves.confirmed(ACCURACY),
+    }
+}
+
+/// The solves so far.
+struct GridSolves<'a, 'o> {
+    task: &'a ControlTask<'a>,
+    /// Greatest tolerance of the solver.
+    tolerance: f64,
+    allowed: SolveLimits,
+    observer: &'o mut dyn FnMut(usize, &Iterate<'_>) -> ControlFlow<()>,
+    began: Instant,
+    /// Iterations of all of them.
+    iterations: usize,
+}
+
+impl GridSolves<'_, '_> {
+    fn left(&self) -> Option<f64> {
+        seconds_left(self.allowed.seconds, self.began)
+    }
+
+    /// Returns the reason why nothing more may be begun, if there is one.
+    fn stopped(&self) -> Option<Status> {
+        stopped(self.left())
+    }
+
+    /// Intervals of the motions times a factor.
+    fn times(&self, factor: usize) -> Vec<usize> {
+        let motions = self.task.motions.iter();
+        motions.map(|one| factor * one.control.intervals).collect()
+    }
+
+    /// The problems with these intervals.
+    fn on(&self, intervals: &[usize]) -> Vec<Control> {
+        let motions = self.task.motions.iter().zip(intervals);
+        let controls = motions.map(|(one, &intervals)| {
+            let mut control = one.control.clone();
+            control.intervals = intervals;
+            control.solver.tolerance = control.solver.tolerance.min(self.tolerance);
+            control
+        });
+        controls.collect()
+    }
+
+    /// Solves on grids with these intervals, from earlier motions or from the guesses.
+    fn solve(
+        &mut self,
+        intervals: &[usize],
+        earlier: Option<&FoundTogether>,
+    ) -> Result<FoundTogether, WorkflowError> {
+        self.solve_problems(&self.on(intervals), earlier)
+    }
+
+    fn solve_problems(
+        &mut self,
+        controls: &[Control],
+        earlier: Option<&FoundTogether>,
+    ) -> Result<FoundTogether, WorkflowError> {
+        let limits = SolveLimits {
+            seconds: self.left(),
+            ..self.allowed
+        };
+        let mut task = self.task.with(controls);
+        for (k, motion) in task.motions.iter_mut().enumerate() {
+            motion.earlier = earlier.map(|found| &found.optima[k].motion);
+        }
+        let intervals = controls.iter().map(|control| control.intervals).sum();
+        let observer = &mut self.observer;
+        let found = optimise_task(&task, limits, &mut |iterate| observer(intervals, iterate))?;
+        self.iterations += iterations(&found);
+        Ok(found)
+    }
+
+    /// Solves on the own grids; several motions from displaced guesses too, where that leads nowhere.
+    fn first(&mut self) -> Result<FoundTogether, WorkflowError> {
+        let controls = self.on(&self.times(1));
+        let found = self.solve_problems(&controls, None)?;
+        let is_unreached = controls.len() > 1 && is_unreached(&found.optima[0].solution);
+        if !is_unreached || self.stopped().is_some() {
+            return Ok(found);
+        }
+        phase("second, displaced initial guesses");
+        let each = controls.iter().zip(&found.optima);
+        let displaced: Vec<Control> = each
+            .map(|(control, first)| displaced(control, first))
+            .collect();
+        let second = self.solve_problems(&displaced, None);
+        let second = second.ok().filter(FoundTogether::meets_equations);
+        Ok(second.unwrap_or(found))
+    }
+
+    /// The end of the solves.
+    fn end(&self, found: FoundTogether, notes: Vec<Option<String>>) -> Together {
+        let FoundTogether { optima, whole } = found;
+        Together {
+            optima,
+            whole,
+            iterations: self.iterations,
+            accuracy: None,
+            notes,
+        }
+    }
+
+    /// Solves for a single motion on its own grid; where the optimum is not reproduced, on finer ones, each from the optimum before, then from the
+    /// guess of the problem. Where none is, the first one stays.
+    fn reproduced(&mut self) -> Result<Together, WorkflowError> {
+        let mut first = self.first()?;
+        let optimum = &first.optima[0];
+        let (own, size) = (optimum.motion.intervals(), optimum.solution.x.len());
+        // Intervals that do not resolve the motion may leave none.
+        let is_open = is_infeasible(optimum.solution.status) && self.stopped().is_none();
+        if is_open
+            && FINER * size <= VARIABLES
+            && let Ok(found) = self.solve(&self.times(FINER), None)
+            && found.is_solved()
+        {
+            let note = format!(
+                "on {own} intervals no motion keeps goal and limits; on {} intervals this one does",
+                FINER * own
+            );
+            return Ok(self.end(found, vec![Some(note)]));
+        }
+        let Some(cause) = optimum.cause() else {
+            return Ok(self.end(first, vec![None]));
+        };
+        let of_problem = format!("on {own} intervals: {}", cause.message());
+        let mut before = None;
+        let mut finest = None;
+        'grids: for times in TIMES {
+            for from_before in [true, false] {
+                if self.stopped().is_some() || times * size > VARIABLES {
+                    break 'grids;
+                }
+                let earlier = from_before.then(|| before.as_ref().unwrap_or(&first));
+                let Ok(mut found) = self.solve(&self.times(times), earlier) else {
+                    break 'grids;
+                };
+                let n = own * times;
+                finest = Some(n);
+                if found.is_solved() {
+                    found.carry(&first);
+                    return Ok(self.end(found, vec![Some(reproduced_on(&of_problem, n))]));
+                }
+                if found.optima[0].solution.status.is_solved() {
+                    before = Some(found);
+                }
+            }
+        }
+        first.optima[0].stopped = self.stopped();
+        let notes = vec![finest.map(not_reproduced)];
+        Ok(self.end(first, notes))
+    }
+
+    /// Solves on the own grids, then on finer ones of the motions whose verification does not confirm the `accuracy` (where their intervals are not
+    /// given) or fails; the finest stays.
+    fn confirmed(&mut self, accuracy: f64) -> Result<Together, WorkflowError> {
+        let mut found = self.first()?;
+        let mut of_problems = vec![None; found.optima.len()];
+        let mut why = None;
+        for _ in 1..GRIDS {
+            let finer = self.finer(&found.optima, accuracy);
+            let Some(intervals) = finer.filter(|_| found.meets_equations()) else {
+                break;
             };
-            let run = integrate(system, &task, |model, discrete| {
-                observer(steps, model, discrete)
-            })?;
-            let is_complete = run.failure.is_none() && run.discrete.intervals() == steps;
-            let status = match (&run.failure, stop(left())) {
-                _ if is_complete => "simulated",
-                (Some(_), _) => "step_failed",
-                (None, stopped) => stopped.unwrap_or("stopped"),
+            let next = match self.refine(&found, &intervals) {
+                Ok(next) => next,
+                Err(reason) => {
+                    why = Some(reason);
+                    break;
+                }
             };
-            Ok(Attempt {
-                sample: match is_complete {
-                    true => ErrorSample::of_motion(&run.model, &run.discrete),
-                    false => ErrorSample::default(),
-                },
-                intervals: run.discrete.intervals(),
-                iterations: run.discrete.report.iterations,
-                variables: steps * run.model.action.map.unknowns(),
-                status,
-                is_complete,
-                run,
-            })
-        },
+            let each = self.task.motions.iter().zip(&found.optima);
+            for ((motion, old), note) in each.zip(&mut of_problems) {
+                let cause = old.cause().filter(|_| !motion.control.is_refined);
+                let n = old.motion.intervals();
+                let told = || cause.map(|cause| format!("on {n} intervals: {}", cause.message()));
+                *note = note.take().or_else(told);
+            }
+            found = next;
+        }
+        let (stopped, are_several) = (self.stopped(), found.optima.len() > 1);
+        let motions = self.task.motions.iter().zip(&mut found.optima);
+        let notes = motions
+            .zip(of_problems)
+            .map(|((motion, optimum), of_problem)| {
+                // What the solver found, or what several motions did not reach, might have been tried again.
+                let is_open =
+                    optimum.meets_equations() || are_several && is_unreached(&optimum.solution);
+                if is_open && !optimum.is_solved() {
+                    optimum.stopped = stopped;
+                }
+                let is_short = motion.control.is_refined && !is_confirmed(optimum, accuracy);
+                let n = optimum.motion.intervals();
+                match of_problem {
+                    _ if is_short && optimum.meets_equations() => {
+                        Some(unconfirmed(n, accuracy, why))
+                    }
+                    Some(_) if !optimum.is_solved() => Some(not_reproduced(n)),
+                    of_problem => of_problem.map(|of_problem| reproduced_on(&of_problem, n)),
+                }
+            });
+        let notes = notes.collect();
+        Ok(self.end(found, notes))
+    }
+
+    /// Solves on finer grids, from the motions before, then from the guesses; the reason where that is not done.
+    fn refine(
+        &mut self,
+        before: &FoundTogether,
+        intervals: &[usize],
+    ) -> Result<FoundTogether, &'static str> {
+        let grown = before.optima.iter().zip(intervals);
+        let grown = grown.map(|(one, &n)| n as f64 / one.motion.intervals() as f64);
+        let variables = before.whole.variables as f64 * grown.fold(1.0, f64::max);
+        if self.stopped().is_some() {
+            return Err(STOPPED);
+        }
+        if variables > VARIABLES as f64 {
+            return Err("a finer grid is too large");
+        }
+        let is_found = |found: &FoundTogether| found.meets_equations();
+        let mut next = self.solve(intervals, Some(before)).ok().filter(is_found);
+        if next.is_none() && self.stopped().is_none() {
+            next = self.solve(intervals, None).ok().filter(is_found);
+        }
+        let mut next = next.ok_or_else(|| match self.stopped() {
+            Some(_) => STOPPED,
+            None => "a finer grid was not solved",
+        })?;
+        next.carry(before);
+        Ok(next)
+    }
+
+    /// Intervals of the next grids; none where each verification is passed, or no finer grid is tried. Where inputs are shared all grids stay equal.
+    fn finer(&self, optima: &[Optimum], accuracy: f64) -> Option<Vec<usize>> {
+        let each = self.task.motions.iter().zip(optima);
+        let next = each.map(|(motion, optimum)| {
+            let n = optimum.motion.intervals();
+            match motion.control.is_refined {
+                true if is_confirmed(optimum, accuracy) => n,
+                true => (n as f64 * factor(optimum, accuracy)).ceil() as usize,
+                false if optimum.is_solved() => n,
+                false => (2 * n).min(MOST_TIMES * motion.control.intervals),
+            }
+        });
+        let mut next: Vec<usize> = next.collect();
+        if !self.task.shared_inputs.is_empty() {
+            let most = next.iter().copied().max().unwrap_or(0);
+            next.fill(most);
+        }
+        let mut each = next.iter().zip(optima);
+        let is_finer = each.any(|(n, optimum)| *n > optimum.motion.intervals());
+        is_finer.then_some(next)
+    }
+
+    /// Solves on the own grids, then on those with twice the intervals, until every error is estimated below what is wanted; or estimates the error on
+    /// the own grids. Errors are the greatest of all motions, that of the objective is the one of all.
+    fn estimated(&mut self, wanted: AccuracyTarget) -> Result<Together, WorkflowError> {
+        if let AccuracyTarget::Below(error) = wanted {
+            self.tolerance = SOLVER * error;
+        }
+        let (seconds, began) = (self.allowed.seconds, self.began);
+        let stop = || stopped(seconds_left(seconds, began)).map(Status::word);
+        let refined = refine(wanted, OF_CONTROL, stop, |times, before| {
+            let mut found = match before {
+                Some(_) => self.solve(&self.times(times), before),
+                None => self.first(),
+            }?;
+            // What the guess of the problem became belongs to all grids.
+            before.iter().for_each(|before| found.carry(before));
+            Ok(self.compared(found))
+        })?;
+        let mut found = refined.run;
+        for optimum in &mut found.optima {
+            if optimum.meets_equations() && !optimum.is_solved() {
+                optimum.stopped = self.stopped();
+            }
+        }
+        let notes = vec![None; found.optima.len()];
+        Ok(Together {
+            iterations: refined.iterations,
+            accuracy: Some(refined.accuracy),
+            ..self.end(found, notes)
+        })
+    }
+
+    /// A solve as one of the grids that are compared.
+    fn compared(&self, run: FoundTogether) -> Attempt<FoundTogether> {
+        // What is not reproduced may be on a finer grid.
+        let is_complete = run.meets_equations();
+        let open = run.optima.iter().find(|one| !one.is_solved());
+        let motions = self.task.motions.iter().zip(&run.optima);
+        let motions = motions.filter(|_| is_complete);
+        let mut samples = motions.map(|(motion, optimum)| sample(optimum, motion.control));
+        let first = samples.next().unwrap_or_default();
+        Attempt {
+            sample: ErrorSample {
+                objective: is_complete.then(|| run.objective()),
+                further: samples.collect(),
+                ..first
+            },
+            intervals: run.optima.iter().map(|one| one.motion.intervals()).sum(),
+            iterations: iterations(&run),
+            variables: run.whole.variables,
+            status: open.unwrap_or(&run.optima[0]).word(),
+            is_complete,
+            run,
+        }
+    }
+}
+
+/// Iterations of a solve.
+fn iterations(found: &FoundTogether) -> usize {
+    let solution = &found.optima[0].solution;
+    solution.iterations.len().saturating_sub(1)
+}
+
+/// Note on an optimum of a finer grid, after the reason of it.
+fn reproduced_on(of_problem: &str, intervals: usize) -> String {
+    format!(
+        "{of_problem}; solved again on {intervals} intervals; this optimum is reproduced by its inputs"
     )
 }
 
-/// Returns the reason why no other run may begin.
-pub(super) fn stop(seconds: Option<f64>) -> Option<&'static str> {
-    match seconds {
-        _ if stop::requested() => Some("interrupted"),
-        Some(seconds) if seconds <= 0.0 => Some("time_limit"),
-        _ => None,
+/// Note on the lack of an optimum that is reproduced.
+fn not_reproduced(intervals: usize) -> String {
+    format!(
+        "on finer grids of up to {intervals} intervals no optimum was reproduced by its inputs either"
+    )
+}
+
+/// Note on an accuracy that is not confirmed, and why no finer grid was tried.
+fn unconfirmed(intervals: usize, accuracy: f64, why: Option<&str>) -> String {
+    format!(
+        "the verification does not confirm an error below {} % of the path length on {intervals} intervals{}",
+        100.0 * accuracy,
+        why.map_or(String::new(), |why| format!(": {why}")),
+    )
+}
+
+/// Returns true if the verification confirms an error of no more than this part of the path length.
+fn is_confirmed(optimum: &Optimum, accuracy: f64) -> bool {
+    let tested = optimum.resimulation.as_ref();
+    tested.is_some_and(|tested| {
+        let error = tested.error.unwrap_or(f64::INFINITY);
+        tested.cause.is_none() && tested.is_confirmed && error <= accuracy
+    })
+}
+
+/// Returns the factor of the intervals of the next grid.
+fn factor(optimum: &Optimum, accuracy: f64) -> f64 {
+    let tested = optimum
+        .resimulation
+        .as_ref()
+        .filter(|tested| tested.is_confirmed);
+    match tested.and_then(|tested| tested.error) {
+        Some(error) => (error / (AIMED * accuracy))
+            .sqrt()
+            .clamp(FACTORS[0], FACTORS[1]),
+        None => UNKNOWN,
     }
 }
 
-/// Returns the values of an optimum that are compared.
-pub(super) fn sample(optimum: &Optimum, control: &Control) -> ErrorSample {
+/// Returns the values of an optimum that are compared, without its objective.
+fn sample(optimum: &Optimum, control: &Control) -> ErrorSample {
     let kept = &optimum.motion;
     let is_free = matches!(control.duration, Duration::Free { .. });
     let sample = ErrorSample {
-        objective: Some(optimum.solution.objective),
         duration: is_free.then(|| kept.times[kept.intervals()]),
-        ..ErrorSample::of_motion(
-            &optimum.model,
-            &motion::discrete_trajectory(&optimum.model, kept),
-        )
+        ..ErrorSample::of_motion(&optimum.model, &discrete_trajectory(&optimum.model, kept))
     };
     ErrorSample {
         response: Some(response(optimum, &sample)),
@@ -169,80 +485,4 @@ fn response(optimum: &Optimum, optimal: &ErrorSample) -> f64 {
     half.map_or(f64::INFINITY, |discrete| {
         optimal.deviation(&ErrorSample::of_motion(&optimum.model, discrete))
     })
-}
-
-/// No grid has more variables than this.
-pub(super) const VARIABLES: usize = 2_000_000;
-
-/// Observer of the iterates on a number of intervals.
-pub(super) type GridObserver<'a> = &'a mut dyn FnMut(usize, &Iterate<'_>) -> ControlFlow<()>;
-
-/// The solves so far.
-pub(super) struct GridSolves<'a> {
-    system: &'a System,
-    control: &'a Control,
-    allowed: SolveLimits,
-    observer: GridObserver<'a>,
-    began: Instant,
-    /// Iterations of all of them.
-    pub(super) iterations: usize,
-}
-
-impl<'a> GridSolves<'a> {
-    pub(super) fn new(
-        system: &'a System,
-        control: &'a Control,
-        allowed: SolveLimits,
-        observer: GridObserver<'a>,
-    ) -> Self {
-        Self {
-            system,
-            control,
-            allowed,
-            observer,
-            began: Instant::now(),
-            iterations: 0,
-        }
-    }
-
-    /// Seconds left of those allowed.
-    fn left(&self) -> Option<f64> {
-        seconds_left(self.allowed.seconds, self.began)
-    }
-
-    /// Returns the reason why no further grid may be begun, if there is one.
-    pub(super) fn stopped(&self) -> Option<Status> {
-        stopped(self.left())
-    }
-
-    /// Returns true if no further grid may be begun.
-    pub(super) fn is_over(&self) -> bool {
-        self.stopped().is_some()
-    }
-
-    /// Solves on a number of intervals, from an earlier optimum or from the guess of the problem.
-    ///
-    /// # Errors
-    /// As of [`optimise`].
-    pub(super) fn solve(
-        &mut self,
-        intervals: usize,
-        earlier: Option<&Optimum>,
-    ) -> Result<Optimum, WorkflowError> {
-        let control = Control {
-            intervals,
-            ..self.control.clone()
-        };
-        let limits = SolveLimits {
-            seconds: self.left(),
-            ..self.allowed
-        };
-        let earlier = earlier.map(|optimum| &optimum.motion);
-        let observer = &mut self.observer;
-        let found = optimise(self.system, &control, earlier, limits, &mut |iterate| {
-            observer(intervals, iterate)
-        })?;
-        self.iterations += found.solution.iterations.len().saturating_sub(1);
-        Ok(found)
-    }
 }

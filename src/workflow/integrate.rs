@@ -13,11 +13,18 @@ use crate::math::in_order;
 use crate::model::{Model, System};
 use crate::nlp::Status;
 use crate::stop;
+use crate::workflow::accuracy::{AccuracyTarget, Attempt, OF_CONTROL, Refined, refine};
 use crate::workflow::control_loop::{Counts, Loop, horizon};
 use crate::workflow::error::WorkflowError;
+use crate::workflow::estimate::ErrorSample;
 use crate::workflow::memory;
+use crate::workflow::optimum::seconds_left;
 use crate::workflow::remark::phase;
+use crate::workflow::restarts::stopped;
 use crate::workflow::tolerance::{ByTolerance, EstimatedError, Found};
+
+/// Order of the midpoint rule under voltages that are constant over its steps.
+const OF_MOTION: f64 = 2.0;
 
 /// A simulation and how it ended.
 #[derive(Debug)]
@@ -63,6 +70,61 @@ pub fn integrate(
     observer: impl FnMut(&Model, &DiscreteTrajectory) -> ControlFlow<()>,
 ) -> Result<Simulated, WorkflowError> {
     integrate_on(system, task, None, observer)
+}
+
+/// Simulates with the step of the task, then with half of it and so on, until every error is estimated below what is wanted;
+/// or estimates the error with its own step. `observer` sees the number of steps, and the motion after each step.
+///
+/// # Errors
+/// As of [`integrate`].
+pub fn integrate_to(
+    system: &System,
+    task: &Simulation,
+    wanted: AccuracyTarget,
+    seconds: Option<f64>,
+    observer: &mut dyn FnMut(usize, &Model, &DiscreteTrajectory) -> ControlFlow<()>,
+) -> Result<Refined<Simulated>, WorkflowError> {
+    let began = Instant::now();
+    let left = || seconds_left(seconds, began);
+    let (first, _) = grid(task);
+    // Sampled voltages may change within a step.
+    let order = match task.voltages {
+        Voltages::Constant(_) => OF_MOTION,
+        Voltages::Sampled { .. } | Voltages::Signals(_) => OF_CONTROL,
+    };
+    refine(
+        wanted,
+        order,
+        || stopped(left()).map(Status::word),
+        |times, _| {
+            let steps = first * times;
+            let task = Simulation {
+                step: task.duration / steps as f64,
+                ..task.clone()
+            };
+            let run = integrate(system, &task, |model, discrete| {
+                observer(steps, model, discrete)
+            })?;
+            let is_complete = run.failure.is_none() && run.discrete.intervals() == steps;
+            let status = match (&run.failure, stopped(left())) {
+                _ if is_complete => "simulated",
+                (Some(_), _) => "step_failed",
+                (None, stopped) => stopped.map_or("stopped", Status::word),
+            };
+            Ok(Attempt {
+                sample: match is_complete {
+                    true => ErrorSample::of_motion(&run.model, &run.discrete),
+                    false => ErrorSample::default(),
+                },
+                intervals: run.discrete.intervals(),
+                iterations: run.discrete.report.iterations,
+                variables: steps * run.model.action.map.unknowns(),
+                status,
+                is_complete,
+                run,
+            })
+        },
+    )
 }
 
 /// The same, from where a motion that has `begun` ends: the whole is to the bit what it would be without a stop.

@@ -2,9 +2,9 @@
 //!
 //! - `integrate`, `optimise`: a simulation, a control problem, with its result, the `optimum`; each `attempt` from one start by one of its `solves` or more; `resolve`: its model and boundary; `error`: errors of tasks;
 //!   `remark`: warnings and notes.
-//! - `together`, `together_to`: several motions as one program, `program_motion`, `prepare_together`, with `shared_variables`.
-//! - `grids`, `accuracy`, `estimate`: as finely as an accuracy needs; `tolerance`: steps as short as a tolerance needs.
-//! - `resimulate`: verification of an optimum, by the `distance` of motions; `refine_until_reproduced`, `verified`: finer grids where it fails; `gap`: duality gap of its
+//! - `program_motion`, `prepare_together`: one or several motions as one program, with `shared_variables`.
+//! - `grids`: on finer grids where an accuracy needs them or a verification fails, by `accuracy` and `estimate`; `tolerance`: steps as short as a tolerance needs.
+//! - `resimulate`: verification of an optimum, by the `distance` of motions; `gap`: duality gap of its
 //!   objective; `held`, `hold_check`, `period`: its end; `repeat`: simulations with several steps for each interval.
 //! - `restarts`, `retry_displaced`, `shortest`, `infeasible`, `active`: attempts before a problem is called infeasible, and the explanation.
 //! - `effects`, `coupled`, `reasons`: terms of a model, what they couple, and their reasons; `memory`: a refusal of more than the machine has.
@@ -43,7 +43,6 @@ pub(crate) mod prepare_together;
 mod program_motion;
 pub(crate) mod reasons;
 pub mod receding;
-pub(crate) mod refine_until_reproduced;
 pub mod regulator;
 pub(crate) mod remark;
 pub(crate) mod repeat;
@@ -55,11 +54,8 @@ mod shared_variables;
 pub(crate) mod shortest;
 mod solves;
 pub(crate) mod steps;
-mod together;
-mod together_to;
 pub(crate) mod tolerance;
 pub(crate) mod tracking;
-pub(crate) mod verified;
 
 pub use active::{Active, active};
 pub use active::{Violation, violations};
@@ -67,9 +63,9 @@ pub use attempt::WholeProgram;
 pub use domain::Outside;
 pub use effects::{EffectCounts, Plan, coupling, effect_counts};
 pub use error::WorkflowError;
-pub use grids::{integrate_to, optimise_to};
+pub use grids::{ACCURACY, SolveRequest, Together, optimise_together};
 pub use hold_check::{Afterwards, Departure};
-pub use integrate::{Simulated, grid, integrate, integrate_on};
+pub use integrate::{Simulated, grid, integrate, integrate_on, integrate_to};
 pub use motion::{Iterate, IterateMotions};
 pub use motion::{solved, trajectory};
 pub use optimise::optimise;
@@ -78,14 +74,10 @@ pub use period::Repeated;
 pub use prepare_together::Counted;
 pub use reasons::Cause;
 pub use reasons::{Absent, absent};
-pub use refine_until_reproduced::RefinedOptimum;
 pub use remark::listen_to_phases;
 pub use remark::{Remark, Remarks, Severity};
 pub use resimulate::{Resimulation, under_constant_voltages};
 pub use steps::{beyond, counted, divided};
-pub use together::{Together, optimise_together};
-pub use together_to::optimise_together_to;
 pub use tolerance::EstimatedError;
 pub use tracking::FinalValue;
 pub use tracking::{Tracked, TrackedPath, TrackingError, followed, tracked};
-pub use verified::{ACCURACY, verified};

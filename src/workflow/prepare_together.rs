@@ -1,27 +1,15 @@
 //! The program of several motions as one, and the point and the kind of start of its solver.
 
-use crate::control::problem::{Control, Guess, InCommon};
+use crate::control::problem::{Control, ControlTask, Guess};
 use crate::control::{BoundaryConditions, Carried, Solution, Transcription, guess};
 use crate::ipopt::{Start, StartingPoint};
-use crate::model::{Model, System};
+use crate::model::Model;
 use crate::nlp::joined::{Joined, SharedVariable};
 use crate::workflow::error::WorkflowError;
 use crate::workflow::memory;
-use crate::workflow::program_motion::{ProgramMotion, states_of_rest};
+use crate::workflow::program_motion::{ProgramMotion, Programs, joined, states_of_rest};
 use crate::workflow::resolve::{interval, resolve};
 use crate::workflow::shared_variables::{Beside, shared_variables};
-use crate::workflow::solves::joined;
-
-/// A motion that is asked for, alone or with others.
-#[derive(Clone, Copy, Debug)]
-pub(crate) struct MotionAsked<'a> {
-    /// Its name among several.
-    pub(crate) name: &'a str,
-    pub(crate) system: &'a System,
-    pub(crate) control: &'a Control,
-    /// The solution that it starts from, in the place of the guess of its problem.
-    pub(crate) earlier: Option<&'a Solution>,
-}
 
 /// The program of motions with the point to start from.
 pub(crate) struct PreparedTogether<'m> {
@@ -38,9 +26,10 @@ pub(crate) struct PreparedTogether<'m> {
 /// # Errors
 /// Start or goal of one of them is wrong.
 pub(crate) fn resolve_each(
-    asked: &[MotionAsked<'_>],
+    task: &ControlTask<'_>,
 ) -> Result<Vec<(Model, BoundaryConditions)>, WorkflowError> {
-    let each = asked
+    let each = task
+        .motions
         .iter()
         .map(|one| resolve(one.system, one.control).map_err(|error| error.of_motion(one.name)));
     each.collect()
@@ -48,15 +37,14 @@ pub(crate) fn resolve_each(
 
 /// The motions with their models and boundaries.
 pub(crate) fn program_motions<'m>(
-    asked: &[MotionAsked<'m>],
+    task: &ControlTask<'m>,
     resolved: &'m [(Model, BoundaryConditions)],
 ) -> Vec<ProgramMotion<'m>> {
-    let each = asked.iter().zip(resolved);
+    let each = task.motions.iter().zip(resolved);
     let each = each.map(|(one, (model, boundary))| ProgramMotion {
-        name: one.name,
+        task: *one,
         model,
         boundary,
-        control: one.control,
     });
     each.collect()
 }
@@ -67,20 +55,18 @@ pub(crate) fn program_motions<'m>(
 /// As of [`prepare`], or something cannot be shared.
 pub(crate) fn prepare_together<'m>(
     motions: &[ProgramMotion<'m>],
-    asked: &[MotionAsked<'_>],
-    in_common: InCommon<'_>,
+    task: &ControlTask<'_>,
     counted: Counted,
 ) -> Result<PreparedTogether<'m>, WorkflowError> {
     let (mut programs, mut points) = (Vec::new(), Vec::new());
     let (mut starts, mut carried) = (Vec::new(), Vec::new());
-    for (motion, one) in motions.iter().zip(asked) {
+    for motion in motions {
         let ProgramMotion {
+            task: one,
             model,
             boundary,
-            control,
-            ..
         } = *motion;
-        let prepared = prepare(model, boundary, control, one.earlier, counted);
+        let prepared = prepare(model, boundary, one.control, one.earlier, counted);
         let prepared = prepared.map_err(|error| error.of_motion(one.name))?;
         let Prepared {
             program,
@@ -102,9 +88,13 @@ pub(crate) fn prepare_together<'m>(
         shared: &one.shared,
     });
     let beside: Vec<Beside<'_>> = beside.collect();
-    let shared = shared_variables(&list, &beside, in_common.shared_inputs)?;
-    let whole = (programs, points, rest);
-    let (program, point) = joined(whole, &shared, in_common.combined);
+    let shared = shared_variables(&list, &beside, task.shared_inputs)?;
+    let whole = Programs {
+        programs,
+        points,
+        rest,
+    };
+    let (program, point) = joined(whole, &shared, task.combined);
     Ok(PreparedTogether {
         point,
         start: common(&starts),

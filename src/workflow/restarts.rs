@@ -4,9 +4,8 @@ use std::ops::ControlFlow;
 use std::time::Instant;
 
 use crate::control::Solution;
-use crate::control::problem::{Control, Guess, Voltages};
+use crate::control::problem::{Control, Guess, MotionTask, Voltages};
 use crate::ipopt::SolverResult;
-use crate::model::System;
 use crate::nlp::Status;
 use crate::stop;
 use crate::workflow::attempt::attempt;
@@ -63,8 +62,7 @@ pub(crate) fn displaced(control: &Control, first: &Optimum) -> Control {
 
 /// Further starts of a control problem, and what they may take.
 pub(crate) struct Further<'a> {
-    pub(crate) system: &'a System,
-    pub(crate) control: &'a Control,
+    pub(crate) motion: MotionTask<'a>,
     pub(crate) allowed: SolveLimits,
     pub(crate) began: Instant,
 }
@@ -100,11 +98,17 @@ impl Further<'_> {
         observer: &mut dyn FnMut(&Iterate<'_>) -> ControlFlow<()>,
     ) -> Option<Optimum> {
         let most = self.allowed.iterations;
-        let most = most.unwrap_or(self.control.solver.max_iterations);
+        let most = most.unwrap_or(self.motion.control.solver.max_iterations);
         let limits = SolveLimits {
             iterations: Some(iterations.min(most)),
             seconds: self.seconds(),
         };
-        attempt(self.system, control, earlier, limits, observer).ok()
+        let motion = MotionTask {
+            control,
+            earlier,
+            ..self.motion
+        };
+        let found = attempt(&motion.into(), limits, observer).ok();
+        found.map(|mut found| found.optima.remove(0))
     }
 }

@@ -4,9 +4,8 @@ use std::ops::ControlFlow;
 use std::time::Instant;
 
 use crate::control::Solution;
-use crate::control::problem::Control;
+use crate::control::problem::{Control, MotionTask};
 use crate::dynamics::stable_equilibrium;
-use crate::model::System;
 use crate::workflow::coupled::{put_after, put_before};
 use crate::workflow::motion::Iterate;
 use crate::workflow::optimum::{Optimum, Restarted, Shortest, SolveLimits};
@@ -23,20 +22,17 @@ const SLOW: &str = "a slow motion";
 /// asked for, and, unless it is longer, from a displaced guess; then it looks for a motion as slow as the slowest mode. The first solve, with
 /// the iterations of all, where none leads anywhere.
 pub(crate) fn second_starts(
-    system: &System,
-    control: &Control,
+    motion: MotionTask<'_>,
     first: Optimum,
-    earlier: Option<&Solution>,
     allowed: SolveLimits,
     observer: &mut dyn FnMut(&Iterate<'_>) -> ControlFlow<()>,
 ) -> Optimum {
     let further = Further {
-        system,
-        control,
+        motion,
         allowed,
         began: Instant::now(),
     };
-    let mut found = others(&further, first, earlier, observer);
+    let mut found = others(&further, first, observer);
     if !found.meets_equations() {
         found = advised(&further, found, observer);
     }
@@ -50,15 +46,16 @@ pub(crate) fn second_starts(
 fn others(
     further: &Further<'_>,
     mut found: Optimum,
-    earlier: Option<&Solution>,
     observer: &mut dyn FnMut(&Iterate<'_>) -> ControlFlow<()>,
 ) -> Optimum {
-    let control = further.control;
+    let MotionTask {
+        control, earlier, ..
+    } = further.motion;
     if further.is_over() {
         return found;
     }
     phase("looking for the shortest motion");
-    let (said, motion) = shortest(further, &mut found, earlier);
+    let (said, motion) = shortest(further, &mut found);
     found.shortest = said;
     if let (Some(motion), false) = (motion, further.is_over()) {
         phase("solving from the shortest motion");
@@ -95,7 +92,7 @@ fn advised(
     found.shortest = said;
     match motion {
         Some(motion) if !further.is_over() => {
-            let start = (further.control, Some(&motion));
+            let start = (further.motion.control, Some(&motion));
             replaced(further, found, start, SLOW, observer)
         }
         _ => found,

@@ -3,7 +3,7 @@
 use std::ops::ControlFlow;
 
 use crate::control::Solution;
-use crate::control::problem::{Control, Duration, Objective, Voltages};
+use crate::control::problem::{Control, Duration, MotionTask, Objective, Voltages};
 use crate::math::Signal;
 use crate::model::{Model, Role};
 use crate::nlp::Status;
@@ -93,15 +93,14 @@ fn squared_ranges(control: &Control, model: &Model) -> f64 {
 /// Looks for the shortest motion that is no shorter than the one asked for, where that was not found: from the guess of the problem and
 /// from a displaced one. What it says, and the motion where that is as short as is asked for; its iterations are put to those of the
 /// `first` solve.
-pub(crate) fn shortest(
-    further: &Further<'_>,
-    first: &mut Optimum,
-    earlier: Option<&Solution>,
-) -> (Shortest, Option<Solution>) {
-    let Duration::Given(given) = further.control.duration else {
+pub(crate) fn shortest(further: &Further<'_>, first: &mut Optimum) -> (Shortest, Option<Solution>) {
+    let MotionTask {
+        control, earlier, ..
+    } = further.motion;
+    let Duration::Given(given) = control.duration else {
         return (Shortest::Unknown, None);
     };
-    let freed = freed(further.control, given);
+    let freed = freed(control, given);
     if !fits(&freed) {
         return (Shortest::Unknown, None);
     }
@@ -131,11 +130,12 @@ pub(crate) fn slow(
     further: &Further<'_>,
     first: &mut Optimum,
 ) -> Option<(Shortest, Option<Solution>)> {
-    let Duration::Given(given) = further.control.duration else {
+    let control = further.motion.control;
+    let Duration::Given(given) = control.duration else {
         return None;
     };
     let half_period = first.half_period.filter(|half| *half > given)?;
-    let problem = slowed(further.control, &first.model, given, half_period);
+    let problem = slowed(control, &first.model, given, half_period);
     if !fits(&problem) {
         return None;
     }

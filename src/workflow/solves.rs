@@ -2,11 +2,11 @@
 //! the objective.
 
 use crate::control::problem::Combined;
-use crate::control::{BoundaryError, Carried, InitialGuess, RestProgram, Solution, Transcription};
+use crate::control::{BoundaryError, Carried, InitialGuess, Solution, Transcription};
 use crate::dynamics::DiscreteTrajectory;
 use crate::ipopt::{Iteration, Options, Reached, Solver, SolverResult, Start, StartingPoint};
 use crate::model::Model;
-use crate::nlp::joined::{Joined, Places, SharedVariable};
+use crate::nlp::joined::{Joined, SharedVariable};
 use crate::nlp::{Multipliers, Status};
 use crate::stop;
 use crate::workflow::coupled::one_of_both;
@@ -14,7 +14,9 @@ use crate::workflow::error::WorkflowError;
 use crate::workflow::gap::Gap;
 use crate::workflow::motion::{Iterate, solved};
 use crate::workflow::optimum::seconds_left;
-use crate::workflow::program_motion::{ProgramMotion, states_of_rest};
+use crate::workflow::program_motion::{
+    ProgramMotion, Programs, joined, multipliers_of, states_of_rest,
+};
 use crate::workflow::remark::phase;
 use std::ops::ControlFlow;
 use std::time::Instant;
@@ -91,13 +93,12 @@ impl Solves<'_, '_> {
             let each = self.motions.iter().zip(&initial);
             let program = each.map(|(motion, initial)| {
                 let ProgramMotion {
-                    name,
+                    task,
                     model,
                     boundary,
-                    control,
                 } = *motion;
-                let program = Transcription::of_any(model, boundary, control, initial)?;
-                Ok::<_, BoundaryError>((name.to_owned(), program))
+                let program = Transcription::of_any(model, boundary, task.control, initial)?;
+                Ok::<_, BoundaryError>((task.name.to_owned(), program))
             });
             // What cannot be built in the time that is left leaves the solution as it is.
             let Ok(programs) = program.collect::<Result<Vec<_>, _>>() else {
@@ -114,7 +115,11 @@ impl Solves<'_, '_> {
             let each = programs.iter().zip(&initial);
             let points = each.map(|((_, program), initial)| program.start(initial));
             let points: Vec<StartingPoint> = points.collect();
-            let whole = (programs, points, rest);
+            let whole = Programs {
+                programs,
+                points,
+                rest,
+            };
             let (program, point) = joined(whole, self.shared, self.combined);
             self.solver = Solver::new(program, options);
             solution = self.solve(&point)?;
@@ -191,69 +196,6 @@ impl Solves<'_, '_> {
     /// Seconds that are left.
     fn left(&self) -> Option<f64> {
         seconds_left(self.seconds, self.began)
-    }
-}
-
-/// The multipliers of the program of a motion.
-pub(super) fn multipliers_of(places: &Places, number: usize, whole: &Multipliers) -> Multipliers {
-    Multipliers {
-        constraints: whole.constraints[places.rows(number)].to_vec(),
-        lower: places.multipliers_of(number, &whole.lower),
-        upper: places.multipliers_of(number, &whole.upper),
-    }
-}
-
-/// Programs of motions with their points, and their states of rest.
-type Programs<'m> = (
-    Vec<(String, Transcription<'m>)>,
-    Vec<StartingPoint>,
-    Vec<(usize, RestProgram<'m>)>,
-);
-
-/// Programs as one, and the point of all of them.
-pub(super) fn joined<'m>(
-    (mut programs, mut points, rest): Programs<'m>,
-    shared: &[SharedVariable],
-    combined: Combined,
-) -> (Joined<Transcription<'m>>, StartingPoint) {
-    let motions = programs.len();
-    for (number, one) in rest {
-        let name = &programs[number].0;
-        let of = if name.is_empty() { "" } else { ": " };
-        let name = format!("{name}{of}state of rest at the {}", one.end);
-        programs.push((name, one.program));
-        points.push(one.point);
-    }
-    let program = Joined::new(programs, shared).with_objectives_of(motions);
-    let mut program = match combined {
-        Combined::Sum => program,
-        Combined::Worst => program.with_worst(),
-    };
-    let mut point = joined_point(program.places(), &points);
-    let StartingPoint { x, costates } = &mut point;
-    program.complete(x, costates.as_mut().map(|all| &mut all.constraints));
-    (program, point)
-}
-
-/// The point of several programs as one; with multipliers where all of them have some.
-fn joined_point(places: &Places, points: &[StartingPoint]) -> StartingPoint {
-    let x: Vec<&[f64]> = points.iter().map(|point| &*point.x).collect();
-    let all = points.iter().map(|point| point.costates.as_ref());
-    let all: Option<Vec<&Multipliers>> = all.collect();
-    let of = |list: fn(&Multipliers) -> &Vec<f64>, all: &[&Multipliers]| {
-        let lists: Vec<&[f64]> = all.iter().map(|one| &**list(one)).collect();
-        places.multipliers(&lists)
-    };
-    StartingPoint {
-        x: places.values(&x),
-        costates: all.map(|all| Multipliers {
-            constraints: all
-                .iter()
-                .flat_map(|one| one.constraints.iter().copied())
-                .collect(),
-            lower: of(|one| &one.lower, &all),
-            upper: of(|one| &one.upper, &all),
-        }),
     }
 }
 

@@ -3,10 +3,12 @@
 use crate::common::random::Random;
 use crate::robots::{Parts, robot};
 use crate::seeds;
-use proboscis::control::problem::Task;
+use proboscis::control::problem::{Control, MotionTask, Task};
 use proboscis::dynamics::{DiscreteTrajectory, Integrator, Lengths, Solving, go_on};
 use proboscis::files::{Loaded, read_problem};
-use proboscis::workflow::{ACCURACY, Cause, SolveLimits, integrate, optimise, solved, verified};
+use proboscis::workflow::{
+    ACCURACY, Cause, SolveLimits, SolveRequest, integrate, optimise, optimise_together, solved,
+};
 use serde_json::json;
 use std::ops::ControlFlow;
 
@@ -161,14 +163,20 @@ fn a_vibration_between_instants_is_seen_and_resolved() {
     })
     .unwrap();
     assert!(matches!(coarse.cause(), Some(Cause::Coarse { .. })));
-    let found = verified(&loaded.system, control, ACCURACY, limits, &mut |_, _| {
+    let refined = Control {
+        is_refined: true,
+        ..(**control).clone()
+    };
+    let task = MotionTask::alone(&loaded.system, &refined).into();
+    let found = optimise_together(&task, SolveRequest::default(), &mut |_, _| {
         ControlFlow::Continue(())
     })
     .unwrap();
-    let tested = found.optimum.resimulation.as_ref().unwrap();
-    assert!(found.optimum.is_solved() && tested.is_confirmed);
-    assert!(tested.error.unwrap() <= ACCURACY && found.note.is_none());
-    assert!(found.optimum.motion.intervals() > 2 * control.intervals);
+    let optimum = &found.optima[0];
+    let tested = optimum.resimulation.as_ref().unwrap();
+    assert!(optimum.is_solved() && tested.is_confirmed);
+    assert!(tested.error.unwrap() <= ACCURACY && found.notes == [None]);
+    assert!(optimum.motion.intervals() > 2 * control.intervals);
 }
 
 #[test]

@@ -5,8 +5,8 @@ use crate::common::force::{Force, with_control};
 use crate::common::{bare, body, joint};
 use nalgebra::{Matrix3, Vector3};
 use proboscis::control::problem::{
-    BoundaryState, Control, Duration, Guess, Objective, Simulation, Solver, SoughtHold, Task,
-    Voltages,
+    BoundaryState, Control, Duration, Guess, MotionTask, Objective, Simulation, Solver, SoughtHold,
+    Task, Voltages,
 };
 use proboscis::control::{BoundaryConditions, Transcription, guess};
 use proboscis::dynamics::{DiscreteTrajectory, Solving};
@@ -17,7 +17,7 @@ use proboscis::model::Model;
 use proboscis::model::system::{JointKind, System};
 use proboscis::workflow::accuracy::{AccuracyTarget, Attempt, Refined, refine};
 use proboscis::workflow::estimate::ErrorSample;
-use proboscis::workflow::{Iterate, SolveLimits, integrate_to, optimise_to};
+use proboscis::workflow::{Iterate, SolveRequest, integrate_to, optimise_together};
 use std::collections::BTreeMap;
 use std::ops::ControlFlow;
 use std::path::Path;
@@ -371,12 +371,16 @@ fn an_optimum_stopped_on_a_finer_grid_is_kept_as_it_was_on_the_one_before() {
         true => ControlFlow::Break(()),
         false => ControlFlow::Continue(()),
     };
-    let wanted = AccuracyTarget::Below(1e-4);
-    let allowed = SolveLimits::default();
-    let found = optimise_to(&loaded.system, &control, wanted, allowed, stop_at_80).unwrap();
-    assert_eq!(found.run.motion.intervals(), 40);
-    assert!(found.run.solution.status.is_solved());
-    assert_eq!(found.accuracy.stopped.as_deref(), Some("interrupted"));
-    assert_eq!(found.accuracy.levels.len(), 3);
-    assert!(found.accuracy.estimate["objective"] > 1e-4);
+    let request = SolveRequest {
+        wanted: Some(AccuracyTarget::Below(1e-4)),
+        ..SolveRequest::default()
+    };
+    let task = MotionTask::alone(&loaded.system, &control).into();
+    let found = optimise_together(&task, request, stop_at_80).unwrap();
+    assert_eq!(found.optima[0].motion.intervals(), 40);
+    assert!(found.optima[0].solution.status.is_solved());
+    let accuracy = found.accuracy.expect("three grids");
+    assert_eq!(accuracy.stopped.as_deref(), Some("interrupted"));
+    assert_eq!(accuracy.levels.len(), 3);
+    assert!(accuracy.estimate["objective"] > 1e-4);
 }

@@ -7,7 +7,7 @@ use proboscis::control::{BoundaryConditions, Column, Motions, Transcription, gue
 use proboscis::files::read_problem;
 use proboscis::model::with_parameters;
 use proboscis::nlp::Nlp;
-use proboscis::workflow::{Iterate, Optimum, SolveLimits, Together, optimise_together};
+use proboscis::workflow::{Iterate, Optimum, SolveRequest, Together, optimise_together};
 use std::collections::BTreeMap;
 use std::ops::ControlFlow;
 use std::path::Path;
@@ -26,7 +26,7 @@ fn motions(changes: &[&str]) -> Motions {
 
 fn solved(motions: &Motions) -> Together {
     let go_on = &mut |_: usize, _: &Iterate<'_>| ControlFlow::Continue(());
-    let found = optimise_together(motions, 0.01, SolveLimits::default(), go_on);
+    let found = optimise_together(&motions.task(), SolveRequest::default(), go_on);
     let found = found.expect("a problem that is right");
     assert!(found.optima.iter().all(Optimum::is_solved));
     found
@@ -34,16 +34,16 @@ fn solved(motions: &Motions) -> Together {
 
 /// Greatest entries of ∇f + ∇gᵀy − z_L + z_U by the variables of single motions, and by shared constants; and the greatest summand of the latter.
 fn stationarity(motions: &Motions, found: &Together) -> [f64; 3] {
-    let motions = motions.with_limits_once();
+    let controls = motions.task().with_limits_once();
     let mut own: f64 = 0.0;
     let mut shared: BTreeMap<String, f64> = BTreeMap::new();
     let mut summand: f64 = 0.0;
-    for (motion, optimum) in motions.list.iter().zip(&found.optima) {
-        let h = guessed_step(&motion.control);
-        let (model, boundary) =
-            BoundaryConditions::resolve(&motion.system, &motion.control, h).unwrap();
-        let initial = guess(&model, &boundary, &motion.control, h, None);
-        let mut program = Transcription::new(&model, &boundary, &motion.control, &initial).unwrap();
+    let each = motions.list.iter().zip(&controls);
+    for ((motion, control), optimum) in each.zip(&found.optima) {
+        let h = guessed_step(control);
+        let (model, boundary) = BoundaryConditions::resolve(&motion.system, control, h).unwrap();
+        let initial = guess(&model, &boundary, control, h, None);
+        let mut program = Transcription::new(&model, &boundary, control, &initial).unwrap();
         let slopes = slopes(&mut program, &optimum.solution);
         for (i, rest) in slopes.into_iter().enumerate() {
             match program.unknowns().columns[i] {

@@ -14,7 +14,9 @@ use proboscis::kkt::{Plan, Unknown};
 use proboscis::model::{MaterialConstant, Model, Parameter, Quantity, System, with_parameters};
 use proboscis::nlp::joined::{Joined, SharedVariable};
 use proboscis::nlp::{Nlp, Stage, differences};
-use proboscis::workflow::{Iterate, SolveLimits, Together, optimise, optimise_together};
+use proboscis::workflow::{
+    Iterate, SolveLimits, SolveRequest, Together, optimise, optimise_together,
+};
 use std::ops::ControlFlow;
 
 const H: f64 = 5.0;
@@ -110,8 +112,8 @@ pub(crate) fn together_by(
         combined,
     };
     let go_on = &mut |_: usize, _: &Iterate<'_>| ControlFlow::Continue(());
-    let limits = SolveLimits::default();
-    optimise_together(&motions, 0.01, limits, go_on).expect("a problem that is right")
+    let request = SolveRequest::default();
+    optimise_together(&motions.task(), request, go_on).expect("a problem that is right")
 }
 
 /// Does something with the programs of motions.

@@ -12,7 +12,9 @@ use proboscis::math::Signal;
 use proboscis::model::system::Muscle;
 use proboscis::model::{Quantity, System};
 use proboscis::nlp::joined::SharedVariable;
-use proboscis::workflow::{Iterate, Optimum, SolveLimits, optimise, optimise_together};
+use proboscis::workflow::{
+    Iterate, Optimum, SolveLimits, SolveRequest, optimise, optimise_together,
+};
 use proboscis::{Handle, State, Together};
 use std::ops::ControlFlow;
 use std::path::Path;
@@ -177,8 +179,8 @@ fn constants_are_those_of_an_independent_program() {
     assert!((a[2] - b[2]).abs() > 1e-4 * b[2]);
     for (case, motions) in [("together", motions), ("sine", sine)] {
         let go_on = &mut |_: usize, _: &Iterate<'_>| ControlFlow::Continue(());
-        let limits = SolveLimits::default();
-        let found = optimise_together(&motions, 0.01, limits, go_on).unwrap();
+        let request = SolveRequest::default();
+        let found = optimise_together(&motions.task(), request, go_on).unwrap();
         assert!(found.optima.iter().all(Optimum::is_solved));
         let constants = found.optima.iter().map(|one| {
             let parameters = one.motion.parameters.iter();

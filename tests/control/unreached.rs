@@ -1,7 +1,7 @@
 //! Problems that no start solves: what is said of their duration, and stops on the way.
 
 use crate::verdicts::{control, kept, output_of, read};
-use proboscis::control::problem::Task;
+use proboscis::control::problem::{MotionTask, Task};
 use proboscis::dynamics::trajectory::Trajectory;
 use proboscis::files::read_problem;
 use proboscis::nlp::Status;
@@ -9,8 +9,10 @@ use proboscis::stop::{self, Questions};
 use proboscis::tasks::{
     SimulationRequest, SimulationResult, SolveRequest, SolveResult, simulate, solve,
 };
+use proboscis::workflow::accuracy::AccuracyTarget;
 use proboscis::workflow::{
-    Iterate, Optimum, Shortest, SolveLimits, WorkflowError, listen_to_phases, optimise, verified,
+    Iterate, Optimum, Shortest, SolveLimits, WorkflowError, listen_to_phases, optimise,
+    optimise_together,
 };
 use std::cell::Cell;
 use std::ops::ControlFlow;
@@ -129,17 +131,21 @@ fn a_stop_between_grids_keeps_the_result_so_far() {
         }
     });
     let watch = stop::watch_questions(&questions);
-    let limits = SolveLimits::default();
     // No grid is fine enough for this.
-    let found = verified(&system, &control, 1e-9, limits, &mut |_, _| {
-        ControlFlow::Continue(())
-    });
+    let request = SolveRequest {
+        wanted: Some(AccuracyTarget::Below(1e-9)),
+        ..SolveRequest::default()
+    };
+    let task = MotionTask::alone(&system, &control).into();
+    let found = optimise_together(&task, request, &mut |_, _| ControlFlow::Continue(()));
     drop(watch);
     listen_to_phases(|_| ());
     let found = found.expect("the result of the first grid");
-    assert!(found.optimum.solution.status.is_solved());
-    assert_eq!(found.optimum.motion.intervals(), control.intervals);
-    let note = found.note.expect("the accuracy is not reached");
+    let optimum = &found.optima[0];
+    assert!(optimum.solution.status.is_solved());
+    assert_eq!(optimum.motion.intervals(), control.intervals);
+    let note = found.notes[0].as_ref();
+    let note = note.expect("the accuracy is not reached");
     assert!(note.ends_with("it was stopped"), "{note}");
 }
 

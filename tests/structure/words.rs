@@ -42,7 +42,7 @@ const WORDS: [Retired; 21] = [
     retired("evened", "on_uniform_grid"),
     retired("Care", "PivotStrategy"),
     retired("care", "strategy"),
-    retired("Cured", "RefinedOptimum"),
+    retired("Cured", "Together"),
     Retired {
         word: "bench",
         instead: "workspace",
@@ -139,7 +139,7 @@ const PATHS: [(&str, &str); 53] = [
     ("study/price", "study/table"),
     ("sweep/kept", "sweep/variant_record"),
     ("workflow/at_once", "workflow/parallel_map"),
-    ("workflow/cure", "workflow/refine_until_reproduced"),
+    ("workflow/cure", "workflow/grids"),
     ("workflow/holding", "workflow/hold_check"),
     ("workflow/second_start", "workflow/retry_displaced"),
 ];

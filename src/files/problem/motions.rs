@@ -201,16 +201,11 @@ pub(crate) fn together(list: Vec<Motion>, document: &Document) -> Result<Motions
     for (index, name) in motions.shared_inputs.iter().enumerate() {
         check_input(&motions.list, name, &scope.index(index))?;
     }
-    match motions
-        .other_grid()
-        .filter(|_| !motions.shared_inputs.is_empty())
-    {
+    let other = motions.task().other_grid().map(|motion| motion.name);
+    match other.filter(|_| !motions.shared_inputs.is_empty()) {
         None => Ok(motions),
-        Some(motion) => Err(scope.wrong(
-            format!(
-                "inputs in common with the motion {:?}, whose instants are other ones",
-                motion.name
-            ),
+        Some(name) => Err(scope.wrong(
+            format!("inputs in common with the motion {name:?}, whose instants are other ones"),
             "motions of one given \"duration\" and one number of \"intervals\"",
         )),
     }
