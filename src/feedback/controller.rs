@@ -5,6 +5,35 @@
 
 use crate::feedback::law::Law;
 use crate::feedback::observer::Observer;
+use std::collections::VecDeque;
+
+/// Values with the times in ms from which they act, the newest at the end. A step allocates nothing.
+#[derive(Clone, Debug)]
+pub struct DelayLine(VecDeque<(f64, Vec<f64>)>);
+
+impl DelayLine {
+    /// A line for samples at this distance or more, and a delay, in ms; before the first values zeros act.
+    pub fn new(width: usize, sample: f64, delay: f64) -> Self {
+        let slots = (delay / sample).ceil() as usize + 3;
+        Self(vec![(f64::NEG_INFINITY, vec![0.0; width]); slots].into())
+    }
+
+    /// The place of the oldest values, for those that act from a time on.
+    pub fn push(&mut self, from: f64) -> &mut [f64] {
+        self.0.rotate_left(1);
+        let (acts, values) = self.0.back_mut().expect("three values or more");
+        *acts = from;
+        values
+    }
+
+    /// The time from which those values act that do at a time, and the values.
+    pub fn at(&self, time: f64) -> (f64, &[f64]) {
+        let mut newest = self.0.iter().rev();
+        let acting = newest.find(|(from, _)| *from <= time);
+        let (from, values) = acting.unwrap_or(&self.0[0]);
+        (*from, values)
+    }
+}
 
 /// State of a controller.
 #[derive(Clone, Debug)]
@@ -20,16 +49,9 @@ pub struct Controller<'l> {
     acting: Vec<f64>,
     /// Time in ms of the last sample.
     sampled: Option<f64>,
-    /// Corrections that wait: the times in ms from which they act, and values by input.
-    waiting: Vec<(f64, Vec<f64>)>,
-    /// The oldest of them, and their number.
-    first: usize,
-    count: usize,
-    /// The correction that acts.
-    correction: Vec<f64>,
-    samples: usize,
-    /// Samples whose time had an input at its lower, and at its upper bound.
-    saturated: [usize; 2],
+    /// Corrections by input.
+    corrections: DelayLine,
+    samples: [usize; 3],
     is_saturated: [bool; 2],
 }
 
@@ -37,7 +59,6 @@ impl<'l> Controller<'l> {
     /// A controller with samples at this distance or more, and a delay, in ms.
     pub fn new(law: &'l Law, sample: f64, delay: f64) -> Self {
         let width = law.width();
-        let waiting = (delay / sample).ceil() as usize + 2;
         let read = law.measured.len() + law.forces() + law.targets() + law.integral.of.len();
         Self {
             law,
@@ -46,12 +67,8 @@ impl<'l> Controller<'l> {
             estimate: Estimate::new(law),
             acting: vec![0.0; width],
             sampled: None,
-            waiting: vec![(0.0, vec![0.0; width]); waiting],
-            first: 0,
-            count: 0,
-            correction: vec![0.0; width],
-            samples: 0,
-            saturated: [0; 2],
+            corrections: DelayLine::new(width, sample, delay),
+            samples: [0; 3],
             is_saturated: [false; 2],
         }
     }
@@ -83,16 +100,9 @@ impl<'l> Controller<'l> {
             }
         }
         self.predict(time);
-        let slots = self.waiting.len();
-        let slot = (self.first + self.count) % slots;
-        match self.count < slots {
-            true => self.count += 1,
-            false => self.first = (self.first + 1) % slots,
-        }
-        let (acts, correction) = &mut self.waiting[slot];
-        *acts = time + self.delay;
+        let correction = self.corrections.push(time + self.delay);
         law.correct(time, &self.deviation, correction);
-        self.samples += 1;
+        self.samples[0] += 1;
         self.is_saturated = [false; 2];
         self.expect(time);
     }
@@ -119,13 +129,7 @@ impl<'l> Controller<'l> {
 
     /// Deviation of an input from the motion at a time in ms, of its square where it acts by it, as bounds leave it.
     fn deviation_of_input(&self, time: f64, i: usize) -> f64 {
-        let mut acting = &self.correction;
-        for place in 0..self.count {
-            let (from, correction) = &self.waiting[(self.first + place) % self.waiting.len()];
-            if *from <= time {
-                acting = correction;
-            }
-        }
+        let (_, acting) = self.corrections.at(time);
         let given = self.law.at(time).inputs[i];
         let (wanted, [least, most], given) = self.law.inputs[i].wanted(given, acting[i]);
         wanted.clamp(least, most) - given
@@ -146,15 +150,11 @@ impl<'l> Controller<'l> {
     /// Writes the inputs that act at a time in ms, with the corrections that act from another one on, by input of the law.
     pub fn inputs(&mut self, from: f64, time: f64, out: &mut [f64]) {
         let law = self.law;
-        while self.count > 0 && self.waiting[self.first].0 <= from + 1e-9 * (law.h + from.abs()) {
-            self.correction.copy_from_slice(&self.waiting[self.first].1);
-            self.first = (self.first + 1) % self.waiting.len();
-            self.count -= 1;
-        }
+        let (_, correction) = self.corrections.at(law.now(from));
         let point = self.law.at(time);
         let mut is_beyond = [false; 2];
         for (i, input) in self.law.inputs.iter().enumerate() {
-            let (wanted, [least, most], _) = input.wanted(point.inputs[i], self.correction[i]);
+            let (wanted, [least, most], _) = input.wanted(point.inputs[i], correction[i]);
             let slack = 1e-9 * (most - least);
             is_beyond[0] |= wanted < least - slack;
             is_beyond[1] |= wanted > most + slack;
@@ -163,20 +163,15 @@ impl<'l> Controller<'l> {
         }
         for (side, is_beyond) in is_beyond.into_iter().enumerate() {
             if is_beyond && !self.is_saturated[side] {
-                self.saturated[side] += 1;
+                self.samples[1 + side] += 1;
                 self.is_saturated[side] = true;
             }
         }
     }
 
-    /// Number of samples so far.
-    pub fn samples(&self) -> usize {
+    /// Numbers of samples so far, and of those whose time had an input at its lower, and at its upper bound, beyond which it was wanted.
+    pub fn samples(&self) -> [usize; 3] {
         self.samples
-    }
-
-    /// Numbers of samples whose time had an input at its lower, and at its upper bound, beyond which it was wanted.
-    pub fn saturated(&self) -> [usize; 2] {
-        self.saturated
     }
 }
 

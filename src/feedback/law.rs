@@ -181,6 +181,11 @@ impl Law {
         (time / self.h + 1e-9).max(0.0) as usize
     }
 
+    /// A time in ms with room for the rounding of that from which something acts.
+    pub fn now(&self, time: f64) -> f64 {
+        time + 1e-9 * (self.h + time.abs())
+    }
+
     /// A place of a marker at a time in ms, between instants on the line between them.
     pub fn place(&self, places: &[[f64; 3]], time: f64) -> [f64; 3] {
         let last = places.len() - 1;

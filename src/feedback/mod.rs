@@ -8,8 +8,7 @@ mod held;
 mod law;
 mod observer;
 
-pub use controller::Controller;
-pub use controller::Estimate;
+pub use controller::{Controller, DelayLine, Estimate};
 pub use held::spectral_radius;
 pub(crate) use held::symmetric;
 pub use held::{Costs, RiccatiStep, riccati_step};

@@ -2,7 +2,7 @@
 
 use crate::control::problem::{FeedbackControl, Noise, Simulation, Voltages};
 use crate::dynamics::{DiscreteTrajectory, Drive, rates_of_momentum};
-use crate::feedback::{Controller, Law, LawInput, Measured, Reading};
+use crate::feedback::{Controller, DelayLine, Law, LawInput, Measured, Reading};
 use crate::math::Random;
 use crate::model::{Coordinates, Model, Role};
 use crate::workflow::error::WorkflowError;
@@ -10,7 +10,7 @@ use crate::workflow::receding::{Horizon, RecedingHorizon};
 use crate::workflow::regulator::remembered;
 use serde::Serialize;
 use std::cell::RefCell;
-use std::collections::{BTreeMap, VecDeque};
+use std::collections::BTreeMap;
 use std::sync::Arc;
 use std::time::Instant;
 
@@ -30,63 +30,81 @@ pub(crate) struct Loop<'a> {
 }
 
 struct State<'a> {
-    controller: Acting<'a>,
+    controller: Box<dyn Acting + 'a>,
     random: Random,
     values: Vec<f64>,
     inputs: Vec<f64>,
     next: f64,
 }
 
-/// The law that acts, or the plan.
-enum Acting<'a> {
-    Law(Box<Controller<'a>>),
-    Plan(Box<Planning<'a>>),
+/// A controller at work: that of a law, or one that plans anew.
+trait Acting {
+    /// Takes what was measured at a time in ms.
+    fn sample(&mut self, time: f64, measured: &[f64]);
+
+    /// Writes the inputs at a time in ms, with what acts from another one on.
+    fn inputs(&mut self, from: f64, time: f64, out: &mut [f64]);
+
+    /// Samples, with an input at its lower and at its upper bound, and its plans.
+    fn counts(&self) -> ([usize; 3], Option<Plans>);
+}
+
+impl Acting for Controller<'_> {
+    fn sample(&mut self, time: f64, measured: &[f64]) {
+        Controller::sample(self, time, measured);
+    }
+
+    fn inputs(&mut self, from: f64, time: f64, out: &mut [f64]) {
+        Controller::inputs(self, from, time, out);
+    }
+
+    fn counts(&self) -> ([usize; 3], Option<Plans>) {
+        (self.samples(), None)
+    }
 }
 
 /// A controller that plans anew.
 struct Planning<'a> {
     controller: RecedingHorizon<'a>,
-    sources: BTreeMap<&'static str, usize>,
-    samples: usize,
-    /// Those of them with an input at its lower, and at its upper bound.
-    at_bounds: [usize; 2],
-    /// The longest time of a step with its preparation, and without, in s.
-    longest: [f64; 2],
-    /// Inputs that wait, with the times in ms from which they act, and those that act; none before the first do.
-    waiting: VecDeque<(f64, Vec<f64>)>,
-    acting: Option<Vec<f64>>,
+    law: &'a Law,
+    delay: f64,
+    sent: DelayLine,
+    samples: [usize; 3],
+    plans: Plans,
 }
 
-impl Planning<'_> {
-    /// The inputs for what was measured at a time, which act after a delay; then the next step is prepared.
-    fn sample(&mut self, time: f64, measured: &[f64], (law, delay): (&Law, f64)) {
+impl Acting for Planning<'_> {
+    /// The next step is prepared after the answer.
+    fn sample(&mut self, time: f64, measured: &[f64]) {
         let began = Instant::now();
         let answer = self.controller.step(time, Some(measured));
-        self.waiting
-            .push_back((time + delay, answer.inputs.to_vec()));
-        *self.sources.entry(answer.source.word()).or_default() += 1;
-        self.samples += 1;
+        let sent = self.sent.push(time + self.delay);
+        sent.copy_from_slice(answer.inputs);
+        *self.plans.sources.entry(answer.source.word()).or_default() += 1;
         let answered = began.elapsed().as_secs_f64();
         let is_at = |side: usize| {
-            let mut each = law.inputs.iter().zip(answer.inputs);
+            let mut each = self.law.inputs.iter().zip(answer.inputs);
             each.any(|(input, value)| input.is_at_bound(*value, side))
         };
-        let is_at = [is_at(0), is_at(1)];
-        let counts = self.at_bounds.iter_mut().zip(is_at);
-        counts.for_each(|(count, is_at)| *count += usize::from(is_at));
+        let counts = self.samples.iter_mut().zip([true, is_at(0), is_at(1)]);
+        counts.for_each(|(count, is_one)| *count += usize::from(is_one));
         self.controller.prepare();
-        let [whole, step] = &mut self.longest;
+        let whole = &mut self.plans.longest_with_preparation;
         *whole = whole.max(began.elapsed().as_secs_f64());
-        *step = step.max(answered);
+        self.plans.longest_step = self.plans.longest_step.max(answered);
     }
 
-    /// The inputs that act from a time on: those of the motion before the first.
-    fn inputs(&mut self, from: f64, law: &Law, inputs: &mut [f64]) {
-        let now = from + 1e-9 * (law.h + from.abs());
-        while self.waiting.front().is_some_and(|(acts, _)| *acts <= now) {
-            self.acting = self.waiting.pop_front().map(|(_, values)| values);
-        }
-        inputs.copy_from_slice(self.acting.as_ref().unwrap_or(&law.at(from).inputs));
+    /// Before the first that were sent, the inputs of the motion act.
+    fn inputs(&mut self, from: f64, _: f64, out: &mut [f64]) {
+        let (since, sent) = self.sent.at(self.law.now(from));
+        out.copy_from_slice(match since.is_finite() {
+            true => sent,
+            false => &self.law.at(from).inputs,
+        });
+    }
+
+    fn counts(&self) -> ([usize; 3], Option<Plans>) {
+        (self.samples, Some(self.plans.clone()))
     }
 }
 
@@ -101,7 +119,7 @@ pub(crate) struct Counts {
 }
 
 /// Steps of a controller that plans anew.
-#[derive(Clone, Debug, PartialEq, Serialize)]
+#[derive(Clone, Debug, Default, PartialEq, Serialize)]
 pub struct Plans {
     /// Numbers of steps by the origin of their inputs.
     pub sources: BTreeMap<&'static str, usize>,
@@ -176,7 +194,18 @@ impl<'a> Loop<'a> {
             let source = sources.iter().position(|source| source.name == input.name);
             source.and_then(|source| model.variables.input(source))
         };
-        let inputs = law.inputs.len();
+        let FeedbackControl { sample, delay, .. } = **controller;
+        let acting: Box<dyn Acting + 'a> = match horizon {
+            Some(horizon) => Box::new(Planning {
+                controller: RecedingHorizon::new(horizon),
+                law,
+                delay,
+                sent: DelayLine::new(law.width(), sample, delay),
+                samples: [0; 3],
+                plans: Plans::default(),
+            }),
+            None => Box::new(Controller::new(law, sample, delay)),
+        };
         Ok(Some(Self {
             model,
             task: controller,
@@ -184,24 +213,10 @@ impl<'a> Loop<'a> {
             voltages: &task.voltages,
             scalars: law.inputs.iter().map(scalar).collect(),
             state: RefCell::new(State {
-                controller: match horizon {
-                    Some(horizon) => Acting::Plan(Box::new(Planning {
-                        controller: RecedingHorizon::new(horizon),
-                        sources: BTreeMap::new(),
-                        samples: 0,
-                        at_bounds: [0; 2],
-                        longest: [0.0; 2],
-                        waiting: VecDeque::new(),
-                        acting: None,
-                    })),
-                    None => {
-                        let FeedbackControl { sample, delay, .. } = **controller;
-                        Acting::Law(Box::new(Controller::new(law, sample, delay)))
-                    }
-                },
+                controller: acting,
                 random: Random::new(controller.noise.seed),
                 values: vec![0.0; law.readings()],
-                inputs: vec![0.0; inputs],
+                inputs: vec![0.0; law.width()],
                 next: 0.0,
             }),
             measured,
@@ -261,32 +276,12 @@ impl<'a> Loop<'a> {
             };
             state.values[place] = value + noise * random;
         }
-        match &mut state.controller {
-            Acting::Law(controller) => controller.sample(time, &state.values),
-            Acting::Plan(controller) => {
-                controller.sample(time, &state.values, (self.law, self.task.delay));
-            }
-        }
+        state.controller.sample(time, &state.values);
     }
 
     /// Counts of its samples.
     pub(crate) fn counts(&self) -> Counts {
-        let (samples, plans) = match &self.state.borrow().controller {
-            Acting::Law(controller) => {
-                let [lower, upper] = controller.saturated();
-                ([controller.samples(), lower, upper], None)
-            }
-            Acting::Plan(of) => {
-                let [longest_with_preparation, longest_step] = of.longest;
-                let plans = Plans {
-                    sources: of.sources.clone(),
-                    longest_step,
-                    longest_with_preparation,
-                };
-                let [lower, upper] = of.at_bounds;
-                ([of.samples, lower, upper], Some(plans))
-            }
-        };
+        let (samples, plans) = self.state.borrow().controller.counts();
         let law = Arc::new(self.law.clone());
         Counts {
             samples,
@@ -339,10 +334,7 @@ impl Drive for Loop<'_> {
         let State {
             controller, inputs, ..
         } = &mut *self.state.borrow_mut();
-        match controller {
-            Acting::Law(controller) => controller.inputs(from, time, inputs),
-            Acting::Plan(controller) => controller.inputs(from, self.law, inputs),
-        }
+        controller.inputs(from, time, inputs);
         for (scalar, value) in self.scalars.iter().zip(inputs) {
             if let Some(scalar) = scalar {
                 out[*scalar] = *value;
