@@ -37,9 +37,9 @@ pub(super) fn program(system: &System, control: &Control, result: &SolveResult) 
         intervals,
         duration: kept.times[intervals] / 1e3,
         variables: solution.x.len(),
-        constraints: optimum.constraints,
-        jacobian_nonzeros: optimum.jacobian_nonzeros,
-        hessian_nonzeros: optimum.hessian_nonzeros,
+        constraints: optimum.program.constraints,
+        jacobian_nonzeros: optimum.program.jacobian_nonzeros,
+        hessian_nonzeros: optimum.program.hessian_nonzeros,
         linear_solver: LinearSystems::new(&solution.linear),
         evaluations: Evaluations::new(&solution.evaluations),
         interval_microseconds: PerInterval {
@@ -50,7 +50,7 @@ pub(super) fn program(system: &System, control: &Control, result: &SolveResult) 
         violations: optimum.violated.clone(),
         resimulation: optimum.resimulation.clone(),
         parameters: kept.parameters.iter().map(SoughtValue::new).collect(),
-        gap: Some(optimum.gap).filter(|gap| is_solved && gap.is_finite()),
+        gap: Some(optimum.program.gap).filter(|gap| is_solved && gap.is_finite()),
         afterwards: optimum.afterwards.clone(),
         repeated: optimum.repeated.clone(),
     }

@@ -1,8 +1,7 @@
 //! The derivatives of a problem against differences, at its guess moved by noise.
 
 use crate::control::problem::{
-    BoundaryState, Control, Duration, Guess, Objective, Simulation, Solver, SoughtHold, Task,
-    Voltages,
+    BoundaryState, Control, Guess, Objective, Simulation, Solver, Task, Voltages,
 };
 use crate::control::{Column, Motion, Motions, Row, Transcription};
 use crate::ipopt::LinearSolver;
@@ -279,40 +278,31 @@ fn as_control(task: Task, system: &System) -> Control {
         rates: BTreeMap::new(),
         velocities: Default::default(),
     };
-    let without_goal = |start, step, voltages, coordinates: Option<Coordinates>| Control {
-        duration: Duration::Given(step * INTERVALS as f64),
-        intervals: INTERVALS,
-        is_refined: false,
-        varied: Vec::new(),
-        outcomes: Vec::new(),
-        start,
-        // A joint that goes on does not rest.
-        goal: match system.joints.iter().any(|joint| joint.motion.is_some()) {
-            true => BoundaryState::Free,
-            false => at_reference(),
-        },
-        voltage_bounds: [f64::NEG_INFINITY, f64::INFINITY],
-        load_bounds: BTreeMap::new(),
-        given: BTreeMap::new(),
-        course: None,
-        parameters: Vec::new(),
-        sought_hold: SoughtHold::Never,
-        hold: Default::default(),
-        objective: Objective {
-            effort: 1.0,
-            rate: 1.0,
-            ..Objective::default()
-        },
-        limits: Vec::new(),
-        waypoints: Vec::new(),
-        coordinates,
-        guess: Guess::Simulate(Voltages::Constant(voltages)),
-        solver: Solver {
-            tolerance: 1e-10,
-            max_iterations: 0,
-            linear_solver: LinearSolver::Auto,
-            ipopt: BTreeMap::new(),
-        },
+    let without_goal = |start, step, voltages, coordinates: Option<Coordinates>| {
+        let voltages = Voltages::Constant(voltages);
+        let duration = step * INTERVALS as f64;
+        Control {
+            // A joint that goes on does not rest.
+            goal: match system.joints.iter().any(|joint| joint.motion.is_some()) {
+                true => BoundaryState::Free,
+                false => at_reference(),
+            },
+            course: None,
+            objective: Objective {
+                effort: 1.0,
+                rate: 1.0,
+                ..Objective::default()
+            },
+            coordinates,
+            guess: Guess::Simulate(voltages.clone()),
+            solver: Solver {
+                tolerance: 1e-10,
+                max_iterations: 0,
+                linear_solver: LinearSolver::Auto,
+                ipopt: BTreeMap::new(),
+            },
+            ..Control::of_course(&start, &voltages, duration, INTERVALS)
+        }
     };
     match task {
         Task::Control(control) => *control,

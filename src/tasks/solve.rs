@@ -222,7 +222,7 @@ fn remarks(
     let repeated = optimum.repeated.as_ref();
     remarks.warn("not_periodic", repeated.and_then(Repeated::warning));
     remarks.note("periodic", repeated.and_then(Repeated::note));
-    remarks.warn("optimality_gap", optimum.wide.clone());
+    remarks.warn("optimality_gap", optimum.program.wide.clone());
     remarks.note("free_end", free_end(control));
     if control.seeks_hold() && result.verdict.is_solved {
         let held = optimum.boundary.rest[1].as_deref();

@@ -6,14 +6,13 @@ use crate::dynamics::{DiscreteTrajectory, reversed_muscle};
 use crate::ipopt::{OptionValue, Options, Solver, SolverResult};
 use crate::kinematics::Pose;
 use crate::model::{Coordinates, Model, System};
-use crate::nlp::joined::{Joined, Places};
+use crate::nlp::joined::Places;
 use crate::nlp::{Nlp, Status};
 use crate::stop;
 use crate::workflow::active::{Active, Violation, active, violations};
 use crate::workflow::error::WorkflowError;
-use crate::workflow::gap::Gap;
 use crate::workflow::motion::{Iterate, solved};
-use crate::workflow::optimum::{Optimum, Shortest, SolveLimits};
+use crate::workflow::optimum::{Optimum, Shortest, SolveLimits, WholeProgram};
 use crate::workflow::prepare_together::{
     Counted, PreparedTogether, prepare_together, program_motions, resolve_each,
 };
@@ -117,7 +116,11 @@ pub(crate) fn attempt(
     let program = solves.solver.into_program();
     let cut_short = stop::reason().filter(|_| solution.status == Status::Acceptable);
     drop(watch);
-    let whole = WholeProgram::new(&program, &solution, gap);
+    let whole = WholeProgram {
+        weights: program.weights(&solution.costates.constraints),
+        wide: gap.warning(&solution),
+        ..WholeProgram::new(&program, &solution, gap.left)
+    };
     let places = program.places().clone();
     let mut ends = Vec::new();
     for (number, (motion, mut part)) in motions.iter().zip(program.into_parts()).enumerate() {
@@ -134,7 +137,7 @@ pub(crate) fn attempt(
     }
     // A part of an objective may vanish: the gap of the whole counts.
     if let [only] = &mut optima[..] {
-        (only.gap, only.wide) = (whole.gap, whole.wide.clone());
+        (only.program.gap, only.program.wide) = (whole.gap, whole.wide.clone());
     }
     Ok(FoundTogether { optima, whole })
 }
@@ -190,9 +193,7 @@ fn verified_optimum(
         reversed: verified.reversed,
         violated: point.violated,
         infeasibility: point.infeasibility,
-        constraints: point.constraints,
-        jacobian_nonzeros: point.jacobian_nonzeros,
-        hessian_nonzeros: point.hessian_nonzeros,
+        program: point.program,
         setup,
         carried,
         resimulation: verified.resimulation,
@@ -203,8 +204,6 @@ fn verified_optimum(
         stopped: None,
         cut_short: None,
         active: point.active,
-        gap: point.gap,
-        wide: None,
         afterwards: None,
         repeated: None,
     })
@@ -227,42 +226,6 @@ fn part_of(
         constraints: whole.constraints[places.rows(number)].to_vec(),
         costates: multipliers_of(places, number, &whole.costates),
         ..whole.clone()
-    }
-}
-
-/// The program of several motions in numbers, with its result.
-#[derive(Clone, Debug)]
-pub struct WholeProgram {
-    /// The sum of the objectives, or the greatest one.
-    pub objective: f64,
-    /// Weights of the objectives at the optimum, where the greatest one is minimised.
-    pub weights: Option<Vec<f64>>,
-    /// Number of variables.
-    pub variables: usize,
-    /// Number of equations and limits.
-    pub constraints: usize,
-    /// Nonzeros of the Jacobian.
-    pub jacobian_nonzeros: usize,
-    /// Nonzeros of the lower triangle of the Hessian, those of shared variables motion by motion.
-    pub hessian_nonzeros: usize,
-    /// The objective lies no farther above its least value nearby, in its unit.
-    pub gap: f64,
-    /// A warning that it is large compared with the sum.
-    pub(crate) wide: Option<String>,
-}
-
-impl WholeProgram {
-    fn new(program: &Joined<Transcription<'_>>, solution: &SolverResult, gap: Gap) -> Self {
-        Self {
-            objective: solution.objective,
-            weights: program.weights(&solution.costates.constraints),
-            variables: solution.x.len(),
-            constraints: solution.constraints.len(),
-            jacobian_nonzeros: program.jacobian_structure().rows.len(),
-            hessian_nonzeros: program.hessian_structure().rows.len(),
-            gap: gap.left,
-            wide: gap.warning(solution),
-        }
     }
 }
 
@@ -320,10 +283,7 @@ struct FinalPoint {
     violated: Vec<Violation>,
     active: Vec<Active>,
     infeasibility: f64,
-    constraints: usize,
-    jacobian_nonzeros: usize,
-    hessian_nonzeros: usize,
-    gap: f64,
+    program: WholeProgram,
 }
 
 impl FinalPoint {
@@ -346,10 +306,7 @@ impl FinalPoint {
             violated,
             active,
             infeasibility: program.violation(x),
-            constraints: program.constraints().lower.len(),
-            jacobian_nonzeros: program.jacobian_structure().rows.len(),
-            hessian_nonzeros: program.hessian_structure().rows.len(),
-            gap,
+            program: WholeProgram::new(program, solution, gap),
         }
     }
 }

@@ -35,9 +35,6 @@ pub(crate) fn records(list: &[OutOfDomain]) -> Vec<Outside> {
 
 /// One note; with times where there is a motion.
 pub(crate) fn note(list: &[Outside], moves: bool) -> Option<String> {
-    if list.is_empty() {
-        return None;
-    }
     let one = |out: &Outside| {
         let when = match moves {
             true => format!(" at {:.4} s, outside from {:.4} s on", out.time, out.first),
@@ -48,22 +45,22 @@ pub(crate) fn note(list: &[Outside], moves: bool) -> Option<String> {
             out.name, out.stretch, out.limit
         )
     };
+    let what = "outside the domain of the first-order dielectric, where charge and stiffness turn negative";
+    listed(what, list, one)
+}
+
+/// Words on some of a list, and the number of the others; none of an empty one.
+fn listed<T>(what: &str, list: &[T], one: impl Fn(&T) -> String) -> Option<String> {
     let named: Vec<String> = list.iter().take(LISTED).map(one).collect();
     let more = match list.len().saturating_sub(LISTED) {
         0 => String::new(),
         more => format!("; and {more} more"),
     };
-    Some(format!(
-        "outside the domain of the first-order dielectric, where charge and stiffness turn negative: {}{more}",
-        named.join("; ")
-    ))
+    (!named.is_empty()).then(|| format!("{what}: {}{more}", named.join("; ")))
 }
 
 /// One warning; with times where there is a motion.
 pub(crate) fn stretch_range_warning(list: &[OutOfRange], moves: bool) -> Option<String> {
-    if list.is_empty() {
-        return None;
-    }
     let one = |out: &OutOfRange| {
         let when = match moves {
             true => format!(" at {:.4} s", out.time / 1e3),
@@ -75,13 +72,6 @@ pub(crate) fn stretch_range_warning(list: &[OutOfRange], moves: bool) -> Option<
             out.name, out.stretch
         )
     };
-    let named: Vec<String> = list.iter().take(LISTED).map(one).collect();
-    let more = match list.len().saturating_sub(LISTED) {
-        0 => String::new(),
-        more => format!("; and {more} more"),
-    };
-    Some(format!(
-        "outside the range of stretch for which the constants of the material hold: {}{more}",
-        named.join("; ")
-    ))
+    let what = "outside the range of stretch for which the constants of the material hold";
+    listed(what, list, one)
 }

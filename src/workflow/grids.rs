@@ -10,12 +10,12 @@ use std::time::Instant;
 use crate::control::problem::{Control, ControlTask, Duration};
 use crate::nlp::Status;
 use crate::workflow::accuracy::{Accuracy, AccuracyTarget, Attempt, OF_CONTROL, VARIABLES, refine};
-use crate::workflow::attempt::{FoundTogether, WholeProgram};
+use crate::workflow::attempt::FoundTogether;
 use crate::workflow::error::WorkflowError;
 use crate::workflow::estimate::ErrorSample;
 use crate::workflow::motion::{Iterate, discrete_trajectory};
 use crate::workflow::optimise::optimise_task;
-use crate::workflow::optimum::{Optimum, SolveLimits, seconds_left};
+use crate::workflow::optimum::{Optimum, SolveLimits, WholeProgram, seconds_left};
 use crate::workflow::remark::phase;
 use crate::workflow::restarts::{displaced, is_infeasible, is_unreached, stopped};
 

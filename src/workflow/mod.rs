@@ -59,7 +59,6 @@ pub(crate) mod tracking;
 
 pub use active::{Active, active};
 pub use active::{Violation, violations};
-pub use attempt::WholeProgram;
 pub use domain::Outside;
 pub use effects::{EffectCounts, Plan, coupling, effect_counts};
 pub use error::WorkflowError;
@@ -69,7 +68,7 @@ pub use integrate::{Simulated, grid, integrate, integrate_on, integrate_to};
 pub use motion::{Iterate, IterateMotions};
 pub use motion::{solved, trajectory};
 pub use optimise::optimise;
-pub use optimum::{Optimum, Restarted, Shortest, SolveLimits};
+pub use optimum::{Optimum, Restarted, Shortest, SolveLimits, WholeProgram};
 pub use period::Repeated;
 pub use prepare_together::Counted;
 pub use reasons::Cause;

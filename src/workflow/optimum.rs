@@ -4,7 +4,7 @@ use crate::control::problem::Control;
 use crate::control::{BoundaryConditions, Carried, Solution};
 use crate::ipopt::SolverResult;
 use crate::model::Model;
-use crate::nlp::Status;
+use crate::nlp::{Nlp, Status};
 use crate::workflow::active::{Active, Violation};
 use crate::workflow::distance::Distance;
 use crate::workflow::hold_check::{Afterwards, afterwards};
@@ -28,6 +28,43 @@ pub(crate) fn seconds_left(allowed: Option<f64>, began: Instant) -> Option<f64> 
     allowed.map(|limit| (limit - spent).max(0.0))
 }
 
+/// The program of one motion or several in numbers, with its result.
+#[derive(Clone, Debug)]
+pub struct WholeProgram {
+    /// The sum of the objectives, or the greatest one.
+    pub objective: f64,
+    /// Weights of the objectives at the optimum, where the greatest one is minimised.
+    pub weights: Option<Vec<f64>>,
+    /// Number of variables.
+    pub variables: usize,
+    /// Number of equations and limits.
+    pub constraints: usize,
+    /// Nonzeros of the Jacobian.
+    pub jacobian_nonzeros: usize,
+    /// Nonzeros of the lower triangle of the Hessian, those of shared variables motion by motion.
+    pub hessian_nonzeros: usize,
+    /// The objective lies no farther above its least value nearby, in its unit.
+    pub gap: f64,
+    /// A warning that it is large compared with the objective.
+    pub(crate) wide: Option<String>,
+}
+
+impl WholeProgram {
+    /// A program with its result and its gap.
+    pub(crate) fn new(program: &impl Nlp, solution: &SolverResult, gap: f64) -> Self {
+        Self {
+            objective: solution.objective,
+            weights: None,
+            variables: solution.x.len(),
+            constraints: solution.constraints.len(),
+            jacobian_nonzeros: program.jacobian_structure().rows.len(),
+            hessian_nonzeros: program.hessian_structure().rows.len(),
+            gap,
+            wide: None,
+        }
+    }
+}
+
 /// A control problem and how its solve ended.
 #[derive(Debug)]
 pub struct Optimum {
@@ -48,12 +85,8 @@ pub struct Optimum {
     pub violated: Vec<Violation>,
     /// Greatest scaled violation of an equation or limit.
     pub infeasibility: f64,
-    /// Number of equations and limits.
-    pub constraints: usize,
-    /// Nonzeros of the Jacobian.
-    pub jacobian_nonzeros: usize,
-    /// Nonzeros of the lower triangle of the Hessian.
-    pub hessian_nonzeros: usize,
+    /// Its program; the gap of a single motion is that of the program with its states of rest.
+    pub program: WholeProgram,
     /// Seconds before the solver began.
     pub setup: f64,
     /// The use of the solution that it started from.
@@ -74,10 +107,6 @@ pub struct Optimum {
     pub cut_short: Option<Status>,
     /// Bounds and limits that the motion reaches, the most frequent first; none of a solution.
     pub active: Vec<Active>,
-    /// The objective lies no farther above its least value nearby, in its unit.
-    pub gap: f64,
-    /// A warning that the gap is large compared with the objective.
-    pub(crate) wide: Option<String>,
     /// The motion after a goal that no voltages are known to hold.
     pub afterwards: Option<Afterwards>,
     /// A periodic motion under the same inputs again.
