@@ -33,8 +33,8 @@ use crate::report::style::Dash;
 use crate::report::{Branch, PageContent, Run, style, write_still};
 use crate::stop;
 use crate::tasks::equilibrium::model_at_rest;
-use crate::workflow::domain;
 use crate::workflow::remark::phase;
+use crate::workflow::warnings;
 
 /// Follows the path for `points` equilibria and writes `path.csv`, `path.svg`, the fields, and figure and page of the last
 /// equilibrium before stability is lost, or of the last one.
@@ -72,8 +72,8 @@ pub(super) fn follow(
     let rows = followed.rows(path.stops[path.shown()].fraction);
     let output = command_output(&followed, found.points.len(), stopped, &folder);
     summary.path = Some(followed);
-    summary.domain = domain::records(&out_of_domain(&model, &path.discrete));
-    let note = domain::note(&summary.domain, false);
+    summary.domain = warnings::outside_domain(&out_of_domain(&model, &path.discrete));
+    let note = warnings::domain_note(&summary.domain, false);
     summary.notes.warn("outside_domain", note);
     summary.seconds = Seconds {
         total: began.elapsed().as_secs_f64(),

@@ -9,7 +9,7 @@ use crate::app::messages::key;
 use crate::app::task::read;
 use crate::control::problem::{ControlTask, MotionTask, Task};
 use crate::nlp::Nlp;
-use crate::workflow::prepare_together::{
+use crate::workflow::program::{
     Counted, PreparedTogether, prepare_together, program_motions, resolve_each,
 };
 

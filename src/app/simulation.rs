@@ -31,7 +31,7 @@ use crate::workflow::effects::Plan;
 use crate::workflow::integrate::grid;
 use crate::workflow::motion::{solved, solved_of};
 use crate::workflow::remark::phase;
-use crate::workflow::{Simulated, steps};
+use crate::workflow::{Simulated, warnings};
 use std::io;
 use std::path::{Path, PathBuf};
 use std::time::Instant;
@@ -405,7 +405,7 @@ pub(super) fn rows(
     let row = |name: &str, value: String| (name.to_owned(), value);
     let mut rows = vec![
         row("status", summary.status.replace('_', " ")),
-        row("steps", steps::counted(discrete, task)),
+        row("steps", warnings::counted(discrete, task)),
         row("duration", format!("{} s", reached / 1e3)),
         row("method", method(task)),
         row("coordinates", model.coordinates.name().to_owned()),

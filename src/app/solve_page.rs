@@ -14,7 +14,7 @@ use crate::report::axes::{Axis, Extent};
 use crate::report::lines::{LinePlot, Series};
 use crate::report::style;
 use crate::tasks::solve_messages;
-use crate::workflow::active::Violation;
+use crate::workflow::optimum::Violation;
 use crate::workflow::tracking::Tracked;
 use nalgebra::Vector3;
 use std::collections::BTreeMap;
@@ -45,7 +45,7 @@ pub(super) fn rows(summary: &Summary) -> Vec<(String, String)> {
             row(&format!("estimated error, {name}"), format!("{error:.1e}"));
         }
         if let Some(r) = &program.resimulation {
-            let of = |d: &crate::workflow::distance::Distance| {
+            let of = |d: &crate::workflow::motion::Distance| {
                 format!("{:.1e} rad, {:.1e} m", d.angle, d.length)
             };
             row("deviation when simulated forward", of(&r.deviation));

@@ -13,8 +13,8 @@ use crate::control::problem::Control;
 use crate::math::significant;
 use crate::model::System;
 use crate::tasks::SolveResult;
-use crate::workflow::active::Violation;
 use crate::workflow::optimum::Optimum;
+use crate::workflow::optimum::Violation;
 
 /// The program of an optimum in numbers.
 pub(super) fn program(system: &System, control: &Control, result: &SolveResult) -> Program {

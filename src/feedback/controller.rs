@@ -3,8 +3,7 @@
 //! A correction `−K (x − x₀)` is computed at each sample and acts, after the delay, until the next one does. Inputs of the motion are
 //! known beforehand and act at once. An observer finds the state where it is not measured. A step allocates nothing.
 
-use crate::feedback::law::Law;
-use crate::feedback::observer::Observer;
+use crate::feedback::law::{Law, Observer};
 use std::collections::VecDeque;
 
 /// Values with the times in ms from which they act, the newest at the end. A step allocates nothing.

@@ -7,9 +7,8 @@
 
 use crate::control::problem::{Identification, Prior};
 use crate::identify::error::IdentifyError;
-use crate::identify::prediction::{Grid, Prediction, predict};
+use crate::identify::prediction::{Grid, Prediction, Unknowns, predict};
 use crate::identify::residuals::Data;
-use crate::identify::unknowns::Unknowns;
 use crate::model::System;
 use nalgebra::{DMatrix, DVector};
 

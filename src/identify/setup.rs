@@ -1,4 +1,17 @@
 //! The model of a recording at values of the constants, with its start.
+//!
+//! Free parameters of the inputs of recordings: gains, and delays with which they act.
+//!
+//! The input of a source is `u(t) = g V(t − τ)`, of which a recording says V(t) from 0 on; before, it is that of the state of rest at the
+//! start, or V(0). An interval of length h around the time m has of a delayed input the mean
+//!
+//! ```text
+//! ∫ w u dt,     or  (∫ w u² dt)^½  of a voltage without a resistor, whose forces follow its square,     w(t) = (1 − |t − m| / h) / h.
+//! ```
+//!
+//! These weights of neighbouring intervals add up to 1, and their centres to the time itself: the impulse of a jump and its moment are exact
+//! wherever it lies within an interval. The mean is smooth in the delay, `d/dτ ∫ w u dt = ∫ w′ u dt`. The first interval takes in what the one
+//! before it would have.
 
 use crate::control::problem::{
     BoundaryState, Control, Duration, Identification, Recording, SoughtStart, Voltages,
@@ -9,9 +22,9 @@ use crate::control::{
 };
 use crate::dynamics::{Equilibrium, IndependentChanges, Start};
 use crate::identify::error::IdentifyError;
-use crate::identify::input_constants::{Drive, Inputs};
+use crate::math::in_order;
 use crate::model::{
-    Analysis, Coordinates, Model, Parameter, Quantity, System, What, with_parameters,
+    Analysis, Constant, Coordinates, Model, Parameter, Quantity, System, What, with_parameters,
 };
 use nalgebra::{DMatrix, DVector};
 use std::borrow::Cow;
@@ -249,4 +262,247 @@ fn lasts(quantity: &Quantity) -> bool {
             | What::Current(_)
             | What::Power(_)
     )
+}
+
+/// Places and weights of Gauss's rule of order 8 in an interval of length 1.
+const GAUSS: [(f64, f64); 4] = [
+    (0.069_431_844_202_973_71, 0.173_927_422_568_726_93),
+    (0.330_009_478_207_571_87, 0.326_072_577_431_273_07),
+    (0.669_990_521_792_428_1, 0.326_072_577_431_273_07),
+    (0.930_568_155_797_026_3, 0.173_927_422_568_726_93),
+];
+
+/// A free parameter at its value.
+#[derive(Clone, Copy, Debug)]
+struct Sought {
+    /// Index of the constant.
+    constant: usize,
+    value: f64,
+}
+
+/// Gains and delays at values of the constants, by source.
+#[derive(Clone, Debug)]
+pub(super) struct Drive {
+    gains: Vec<Option<Sought>>,
+    delays: Vec<Option<Sought>>,
+}
+
+/// An input in an interval, and its derivative by its delay.
+struct Delayed {
+    value: f64,
+    slope: f64,
+}
+
+impl Drive {
+    pub(super) fn new(sources: usize, parameters: &[Parameter], constants: &[f64]) -> Self {
+        let mut out = Self {
+            gains: vec![None; sources],
+            delays: vec![None; sources],
+        };
+        for (constant, (parameter, &value)) in parameters.iter().zip(constants).enumerate() {
+            let sought = Some(Sought { constant, value });
+            for follower in &parameter.constants {
+                match follower.constant {
+                    Constant::Gain(source) => out.gains[source] = sought,
+                    Constant::Delay(source) => out.delays[source] = sought,
+                    _ => {}
+                }
+            }
+        }
+        out
+    }
+
+    /// Sources of which a gain or a delay is sought.
+    pub(super) fn sources(&self) -> impl Iterator<Item = usize> + '_ {
+        let is_sought = |source: &usize| {
+            let of = |list: &[Option<Sought>]| list[*source].is_some();
+            of(&self.gains) || of(&self.delays)
+        };
+        (0..self.gains.len()).filter(is_sought)
+    }
+
+    fn has_delays(&self) -> bool {
+        self.delays.iter().any(Option::is_some)
+    }
+
+    fn factor(&self, source: usize) -> f64 {
+        self.gains[source].map_or(1.0, |gain| gain.value)
+    }
+
+    /// Voltages and loads of a recording with their gains.
+    fn voltages<'a>(&self, said: &'a Voltages) -> Cow<'a, Voltages> {
+        match self.gains.iter().all(Option::is_none) {
+            true => Cow::Borrowed(said),
+            false => Cow::Owned(said.scaled(|source| self.factor(source))),
+        }
+    }
+
+    /// The start with gains of the voltages under which it rests.
+    pub(super) fn start<'a>(&self, said: &'a BoundaryState) -> Cow<'a, BoundaryState> {
+        match said {
+            BoundaryState::RestAtVoltages(row, rest) if self.gains.iter().any(Option::is_some) => {
+                let of = |(source, value): (usize, &f64)| self.factor(source) * value;
+                let row = row.iter().enumerate().map(of).collect();
+                Cow::Owned(BoundaryState::RestAtVoltages(row, *rest))
+            }
+            _ => Cow::Borrowed(said),
+        }
+    }
+}
+
+/// The inputs of a motion with their gains and delays.
+#[derive(Clone, Debug)]
+pub(super) struct Inputs<'a> {
+    drive: Drive,
+    /// Those that are said, with gains.
+    pub(super) undelayed: Cow<'a, Voltages>,
+    /// Inputs before those that are said.
+    before: Vec<f64>,
+    /// Sources that act by their squares: voltages of electrodes without a resistor.
+    by_squares: Vec<bool>,
+}
+
+impl<'a> Inputs<'a> {
+    /// Those that a recording says of a system; `start` has gains.
+    pub(super) fn new(
+        drive: Drive,
+        said: &'a Voltages,
+        (system, start): (&mut System, &BoundaryState),
+    ) -> Self {
+        let undelayed = drive.voltages(said);
+        let before = match start {
+            BoundaryState::RestAtVoltages(row, _) => row.clone(),
+            _ => undelayed.at(0.0).to_vec(),
+        };
+        let loads = system.first_load();
+        let is_square = |source| {
+            let resistor = Constant::Resistance(source).value(system);
+            source < loads && resistor.is_none()
+        };
+        Self {
+            by_squares: (0..before.len()).map(is_square).collect(),
+            before,
+            undelayed,
+            drive,
+        }
+    }
+
+    /// Sources of which a gain or a delay is sought.
+    pub(super) fn sought(&self) -> impl Iterator<Item = usize> + '_ {
+        self.drive.sources()
+    }
+
+    /// Inputs in the interval between two times in ms: at its middle, unless they are delayed.
+    pub(super) fn within(&self, from: f64, to: f64) -> Cow<'_, [f64]> {
+        let mut out = self.undelayed.at(0.5 * (from + to));
+        if self.drive.has_delays() {
+            let row = out.to_mut();
+            for (source, value) in row.iter_mut().enumerate() {
+                if let Some(delay) = self.drive.delays[source] {
+                    *value = self.delayed(source, delay.value, [from, to]).value;
+                }
+            }
+        }
+        out
+    }
+
+    /// Constants on which the value of an input in an interval depends, and its derivatives by them; of one at rest there is no interval. None
+    /// where nothing of the source is sought.
+    pub(super) fn slopes(
+        &self,
+        (source, value): (usize, f64),
+        interval: Option<[f64; 2]>,
+    ) -> Option<Vec<(usize, f64)>> {
+        let Drive { gains, delays } = &self.drive;
+        let (gain, delay) = (gains[source], delays[source]);
+        let by_delay = delay.zip(interval).map(|(delay, times)| {
+            let slope = self.delayed(source, delay.value, times).slope;
+            (delay.constant, slope)
+        });
+        let by_gain = gain.map(|gain| (gain.constant, value / gain.value));
+        let is_sought = gain.is_some() || delay.is_some();
+        is_sought.then(|| by_gain.into_iter().chain(by_delay).collect())
+    }
+
+    /// Times in ms at which inputs have corners or jumps.
+    pub(super) fn corners(&self) -> Vec<f64> {
+        let said = self.undelayed.switches();
+        let delays = self.drive.delays.iter();
+        let delays = in_order(delays.map(|one| one.map_or(0.0, |one| one.value)));
+        let later = |&delay: &f64| {
+            let begins = (delay > 0.0).then_some(delay);
+            begins
+                .into_iter()
+                .chain(said.iter().map(move |t| t + delay))
+        };
+        in_order(delays.iter().flat_map(later))
+    }
+
+    /// A delayed input: mean, or root of the mean of its square with the sign of the mean.
+    fn delayed(&self, source: usize, delay: f64, [from, to]: [f64; 2]) -> Delayed {
+        let h = to - from;
+        let weighted = |of: fn(f64) -> f64| {
+            let own = self.weighted((source, delay), [from, to], of);
+            match from > 0.0 {
+                true => own,
+                false => {
+                    let earlier = self.weighted((source, delay), [from - h, from], of);
+                    Delayed {
+                        value: own.value + earlier.value - of(self.before[source]),
+                        slope: own.slope + earlier.slope,
+                    }
+                }
+            }
+        };
+        let mean = weighted(|u| u);
+        if !self.by_squares[source] {
+            return mean;
+        }
+        let square = weighted(|u| u * u);
+        let value = square.value.max(0.0).sqrt().copysign(mean.value);
+        Delayed {
+            value,
+            slope: if value == 0.0 {
+                0.0
+            } else {
+                0.5 * square.slope / value
+            },
+        }
+    }
+
+    /// The weighted mean of a function of a delayed input in an interval.
+    fn weighted(
+        &self,
+        (source, delay): (usize, f64),
+        [from, to]: [f64; 2],
+        of: fn(f64) -> f64,
+    ) -> Delayed {
+        let (h, middle) = (to - from, 0.5 * (from + to));
+        let at = |time: f64| match time - delay {
+            early if early < 0.0 => self.before[source],
+            said => self.undelayed.at(said)[source],
+        };
+        let said = self.undelayed.switches();
+        let corners = [0.0].into_iter().chain(said.iter().copied());
+        let (first, last) = (middle - h, middle + h);
+        let inside = corners
+            .map(|t| t + delay)
+            .filter(|t| (first..last).contains(t));
+        let ends = in_order([first, middle, last].into_iter().chain(inside));
+        let mut out = Delayed {
+            value: 0.0,
+            slope: 0.0,
+        };
+        for pair in ends.windows(2) {
+            let length = pair[1] - pair[0];
+            let side = if pair[0] < middle { 1.0 } else { -1.0 };
+            for (x, w) in GAUSS {
+                let time = pair[0] + x * length;
+                let part = w * length * of(at(time)) / h;
+                out.value += part * (1.0 - (time - middle).abs() / h);
+                out.slope += part * side / h;
+            }
+        }
+        out
+    }
 }

@@ -20,11 +20,9 @@ use crate::tasks;
 use crate::tasks::SolveRequest;
 use crate::workflow::memory::Occasion;
 use crate::workflow::optimum::SolveLimits;
-use crate::workflow::prepare_together::{
-    Counted, PreparedTogether, prepare_together, program_motions,
-};
+use crate::workflow::program::resolve;
+use crate::workflow::program::{Counted, PreparedTogether, prepare_together, program_motions};
 use crate::workflow::receding::Horizon;
-use crate::workflow::resolve::resolve;
 use crate::workflow::{Iterate, memory};
 use std::collections::BTreeMap;
 use std::ops::{ControlFlow, RangeInclusive};

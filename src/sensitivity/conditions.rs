@@ -1,7 +1,12 @@
 //! The conditions of an optimum at a point, over the squares of those variables that enter by squares alone.
+//!
+//! The linear system of the derivatives of an optimum, over unknowns that no bound holds and equations that hold.
 
+use crate::kkt::{Plan, Solver, Unknown};
 use crate::nlp::squares::{InSquares, Squares};
 use crate::nlp::{Bounds, Entries, Multipliers, Nlp, Stage};
+use crate::sensitivity::active_set::Place;
+use crate::sensitivity::check::NoSensitivity;
 
 /// A program at a point with multipliers, and its derivatives there.
 #[derive(Debug)]
@@ -181,4 +186,179 @@ pub(super) fn entries<'a>(
     places
         .zip(values)
         .map(|((row, col), value)| (row, col, value))
+}
+
+/// Steps of refinement.
+const REFINED: usize = 3;
+/// Residual of a solution, relative to the terms of its equations, that is that of rounding.
+pub(super) const EXACT: f64 = 1e-9;
+
+/// The system with its factors.
+#[derive(Debug)]
+pub(super) struct Linear {
+    /// Number of each variable among the unknowns, and of each constraint.
+    columns: Vec<Option<usize>>,
+    rows: Vec<Option<usize>>,
+    /// Entries of Hessian and Jacobian that are in the matrix.
+    kept: [Vec<usize>; 2],
+    places: Vec<[u32; 2]>,
+    values: Vec<f64>,
+    /// Unknowns that are variables.
+    free: usize,
+    solver: Solver,
+}
+
+impl Linear {
+    /// Lays out the matrix of Hessian (lower triangle) and Jacobian.
+    pub(super) fn new(
+        [columns, rows]: [&[Place]; 2],
+        [hessian, jacobian]: [&Entries; 2],
+        stages: Option<&[Stage]>,
+    ) -> Result<Self, NoSensitivity> {
+        let mut free = 0;
+        let mut number = |is_kept: bool| {
+            is_kept.then(|| {
+                free += 1;
+                free - 1
+            })
+        };
+        let columns: Vec<_> = columns.iter().map(|c| number(*c == Place::Free)).collect();
+        let is_row = |row: &Place| row.is_reached() || *row == Place::Equation;
+        let rows: Vec<_> = rows.iter().map(|r| number(is_row(r))).collect();
+        let order = free;
+        let free = columns.iter().flatten().count();
+        if order - free > free {
+            return Err(NoSensitivity::Overdetermined {
+                rows: order - free,
+                columns: free,
+            });
+        }
+        let (mut kept, mut places) = ([Vec::new(), Vec::new()], Vec::new());
+        let matrices = [(hessian, &columns), (jacobian, &rows)];
+        for ((entries, numbers), kept) in matrices.into_iter().zip(&mut kept) {
+            for (entry, (&row, &col)) in entries.rows.iter().zip(&entries.cols).enumerate() {
+                let place = (numbers[row as usize], columns[col as usize]);
+                if let (Some(row), Some(col)) = place {
+                    kept.push(entry);
+                    places.push([row as u32, col as u32]);
+                }
+            }
+        }
+        let kinds = stages.map(|stages| {
+            let all = columns.iter().zip(stages).filter(|(c, _)| c.is_some());
+            let mut kinds: Vec<Unknown> = all.map(|(_, &stage)| stage.into()).collect();
+            kinds.resize(order, Unknown::Equality);
+            kinds
+        });
+        let [at_rows, at_cols]: [Vec<u32>; 2] =
+            [0, 1].map(|side| places.iter().map(|p| p[side]).collect());
+        Ok(Self {
+            solver: Solver::new(Plan::new(order, &at_rows, &at_cols, kinds.as_deref())),
+            values: vec![0.0; places.len()],
+            columns,
+            rows,
+            kept,
+            places,
+            free,
+        })
+    }
+
+    /// Factorises the matrix with these values.
+    pub(super) fn factor(
+        &mut self,
+        hessian: &[f64],
+        jacobian: &[f64],
+    ) -> Result<(), NoSensitivity> {
+        let all = self.kept[0].iter().map(|&entry| hessian[entry]);
+        let all = all.chain(self.kept[1].iter().map(|&entry| jacobian[entry]));
+        self.values
+            .iter_mut()
+            .zip(all)
+            .for_each(|(value, new)| *value = new);
+        let equations = self.order() - self.free;
+        let found = self.solver.factor(&self.values);
+        match (found.zero, found.negative) {
+            (0, negative) if negative == equations => Ok(()),
+            (0, negative) if negative > equations => {
+                Err(NoSensitivity::NoMinimum(negative - equations))
+            }
+            _ => Err(NoSensitivity::Singular),
+        }
+    }
+
+    /// Number of unknowns.
+    fn order(&self) -> usize {
+        self.free + self.rows.iter().flatten().count()
+    }
+
+    /// Replaces right-hand sides, by variable and by constraint, by the solution; entries of what is not in the system become zero.
+    pub(super) fn solve(&mut self, x: &mut [f64], y: &mut [f64]) -> Result<(), NoSensitivity> {
+        let mut right = vec![0.0; self.order()];
+        let all = self
+            .columns
+            .iter()
+            .zip(x.iter())
+            .chain(self.rows.iter().zip(y.iter()));
+        for (number, value) in all {
+            number.iter().for_each(|&i| right[i] = *value);
+        }
+        let mut solution = right.clone();
+        self.solver.solve(&mut solution);
+        let size = self.size(&solution, &right);
+        let mut left = right.clone();
+        let mut error = self.residual(&solution, size, &mut left);
+        for _ in 0..REFINED {
+            if error <= f64::EPSILON {
+                break;
+            }
+            self.solver.solve(&mut left);
+            let all = solution.iter_mut().zip(&left);
+            all.for_each(|(value, more)| *value += more);
+            left.copy_from_slice(&right);
+            error = self.residual(&solution, size, &mut left);
+        }
+        if error > EXACT {
+            return Err(NoSensitivity::Inexact(error));
+        }
+        let all = self.columns.iter().zip(x).chain(self.rows.iter().zip(y));
+        for (number, value) in all {
+            *value = number.map_or(0.0, |i| solution[i]);
+        }
+        Ok(())
+    }
+
+    /// Greatest sum of the sizes of the terms of an equation.
+    fn size(&self, solution: &[f64], right: &[f64]) -> f64 {
+        let mut sizes: Vec<f64> = right.iter().map(|value| value.abs()).collect();
+        self.each_term(solution, |row, term| sizes[row] += term.abs());
+        sizes.into_iter().fold(0.0, f64::max)
+    }
+
+    /// Turns right-hand sides into residuals of the equations, and returns the greatest one relative to a size.
+    fn residual(&self, solution: &[f64], size: f64, right: &mut [f64]) -> f64 {
+        self.each_term(solution, |row, term| right[row] -= term);
+        let worst = largest(right);
+        if worst == 0.0 { 0.0 } else { worst / size }
+    }
+
+    /// Hands on each term of the product of the matrix with a solution, with its row.
+    #[inline(always)]
+    fn each_term(&self, solution: &[f64], mut add: impl FnMut(usize, f64)) {
+        for (&[row, col], value) in self.places.iter().zip(&self.values) {
+            let (row, col) = (row as usize, col as usize);
+            add(row, value * solution[col]);
+            if row != col {
+                add(col, value * solution[row]);
+            }
+        }
+    }
+}
+
+/// The greatest size in a list; infinite where a number is not.
+pub(super) fn largest(list: &[f64]) -> f64 {
+    list.iter()
+        .fold(0.0, |largest: f64, value| match value.is_nan() {
+            true => f64::INFINITY,
+            false => largest.max(value.abs()),
+        })
 }

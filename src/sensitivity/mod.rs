@@ -12,28 +12,21 @@
 //! then the optimum is strict, and its derivatives exist (Fiacco, 1983). They hold as long as the same bounds are reached: `range` tells how far,
 //! to first order.
 //!
-//! `kernel` knows any [`Nlp`](crate::nlp::Nlp), `conditions` what holds at its optimum, `linear` its linear system, `active_set` the bounds that are
+//! `kernel` knows any [`Nlp`](crate::nlp::Nlp), `conditions` what holds at its optimum with its linear system, `active_set` the bounds that are
 //! reached. `optimum` is the front for control problems: `with_parameters` their program in which constants, start and goal are columns that are held,
 //! `directions` what changes with each number. `check` refuses numbers before the solve.
 
 mod active_set;
-mod adjoint;
 mod check;
 mod conditions;
 mod directions;
-mod gradients;
 mod kernel;
-mod linear;
 mod margins;
 mod optimum;
-mod range;
 mod with_parameters;
 
 pub use active_set::{Direction, Held, Side};
-pub use adjoint::{Adjoint, Outcome};
-pub use check::NoSensitivity;
-pub use check::check;
-pub use gradients::{Gradients, gradients};
-pub use kernel::{Derivative, Kernel};
-pub use optimum::{Refusal, Sensitivity, sensitivities};
-pub use range::{End, Range};
+pub use check::{NoSensitivity, check};
+pub use kernel::{Adjoint, Derivative, Kernel, Outcome};
+pub use margins::{End, Range};
+pub use optimum::{Gradients, Refusal, Sensitivity, gradients, sensitivities};

@@ -1,7 +1,5 @@
 //! A static equilibrium, with its stability.
 
-use thiserror::Error;
-
 use crate::control::problem::AtRest;
 use crate::dynamics::trajectory::Trajectory;
 use crate::dynamics::{
@@ -11,11 +9,12 @@ use crate::dynamics::{
 use crate::model::{Model, System};
 use crate::stop;
 use crate::tasks::check::moved_markers;
-use crate::workflow::domain::{self, Outside};
 use crate::workflow::memory::{self, Occasion};
 use crate::workflow::remark::{Remarks, phase};
+use crate::workflow::warnings::{self, Outside};
 use crate::workflow::{WorkflowError, infeasible};
 use std::time::Instant;
+use thiserror::Error;
 
 /// Remark on what the eigenvalues of a stiffness without symmetry leave open.
 const FLUTTER: &str = "loads follow what they act on, and stability is that of strongly damped motion: with little damping the state may \
@@ -84,15 +83,15 @@ pub fn equilibrium(
         scalars: vec![found.scalars.clone()],
         ..DiscreteTrajectory::default()
     };
-    let outside = domain::records(&out_of_domain(&model, &discrete));
+    let outside = warnings::outside_domain(&out_of_domain(&model, &discrete));
     let mut remarks = Remarks::default();
     remarks.note("moved_marker", moved_markers(system));
     remarks.warn("singular_loops", model.loops.warning.clone());
-    remarks.warn("outside_domain", domain::note(&outside, false));
+    remarks.warn("outside_domain", warnings::domain_note(&outside, false));
     let beyond = out_of_range(&model, &discrete);
     remarks.warn(
         "outside_range",
-        domain::stretch_range_warning(&beyond, false),
+        warnings::stretch_range_warning(&beyond, false),
     );
     remarks.warn("may_flutter", found.may_flutter.then(|| FLUTTER.to_owned()));
     if let Some((_, fallbacks)) = found.on_grids {

@@ -1,6 +1,6 @@
 //! A simulation: its motion, and the assessment of it.
 
-use crate::control::problem::{Afterwards, FeedbackControl, Simulation, Voltages};
+use crate::control::problem::{Afterwards, Disturbed, FeedbackControl, Simulation, Voltages};
 use crate::dynamics::trajectory::Trajectory;
 use crate::dynamics::{
     DiscreteTrajectory, EnergyExchange, LocalError, local_error_of, out_of_domain, out_of_range,
@@ -11,16 +11,15 @@ use crate::nlp::Status;
 use crate::stop::{self, Stopped};
 use crate::tasks::check::moved_markers;
 use crate::workflow::accuracy::{Accuracy, AccuracyTarget};
-use crate::workflow::closed_loop::ClosedLoop;
-use crate::workflow::domain::Outside;
-use crate::workflow::integrate::integrate_to;
-use crate::workflow::integrate::{Simulated, grid, integrate_on};
-use crate::workflow::loop_limits::LoopLimits;
+use crate::workflow::closed_loop::{ClosedLoop, DisturbedLoop, LoopLimits};
+use crate::workflow::integrate::{Simulated, grid, integrate_on, integrate_to};
 use crate::workflow::memory::Occasion;
 use crate::workflow::remark::{Remarks, STOPPED_EARLY};
-use crate::workflow::{WorkflowError, domain, infeasible, longer_steps, memory, steps};
+use crate::workflow::warnings::Outside;
+use crate::workflow::{WorkflowError, infeasible, memory, warnings};
 use std::ops::ControlFlow;
 use std::sync::Arc;
+use std::time::Instant;
 
 /// Options of a simulation in addition to its problem.
 #[derive(Debug, Default)]
@@ -91,10 +90,10 @@ impl SimulationResult {
         } = &self.simulated;
         let order = task.solving.integrator.order();
         let ends = [task.start.voltages(), None];
-        let outside = domain::records(&out_of_domain(model, discrete));
+        let outside = warnings::outside_domain(&out_of_domain(model, discrete));
         let neglected =
             local_error_of(model, discrete, trajectory, order).map(|local| match self.stopped {
-                None => longer_steps::confirmed(&self.simulated, task, trajectory, local),
+                None => warnings::confirmed(&self.simulated, task, trajectory, local),
                 Some(_) => local,
             });
         let mut remarks = Remarks::default();
@@ -114,26 +113,26 @@ impl SimulationResult {
             remarks.note("at_lower_bound", closed.at_lower_bound());
             remarks.warn("at_upper_bound", closed.at_upper_bound());
         }
-        remarks.note("step_divided", steps::divided(task));
-        remarks.warn("outside_domain", domain::note(&outside, true));
+        remarks.note("step_divided", warnings::divided(task));
+        remarks.warn("outside_domain", warnings::domain_note(&outside, true));
         let beyond = out_of_range(model, discrete);
         remarks.warn(
             "outside_range",
-            domain::stretch_range_warning(&beyond, true),
+            warnings::stretch_range_warning(&beyond, true),
         );
         remarks.note("stops", infeasible::stop_notes(system, trajectory));
-        remarks.warn("coarse_steps", steps::warning(neglected, discrete, task));
-        remarks.warn("tolerance_exceeded", steps::beyond(*error, task));
+        remarks.warn("coarse_steps", warnings::warning(neglected, discrete, task));
+        remarks.warn("tolerance_exceeded", warnings::beyond(*error, task));
         let unconfirmed = self
             .simulated
             .unconfirmed
             .filter(|_| self.stopped.is_none());
-        remarks.warn(STOPPED_EARLY, unconfirmed.map(steps::unconfirmed));
+        remarks.warn(STOPPED_EARLY, unconfirmed.map(warnings::unconfirmed));
         remarks.warn(
             "multigrid_stalled",
             infeasible::stalled_warning(discrete.report.fallbacks),
         );
-        remarks.warn("energy_balance", steps::unbalanced(discrete));
+        remarks.warn("energy_balance", warnings::unbalanced(discrete));
         Assessment {
             exchange: EnergyExchange::new(&model.system, trajectory, ends),
             neglected,
@@ -293,4 +292,77 @@ pub(super) fn timing(task: &Simulation) -> Vec<String> {
         of("delay", controller.delay, predicted),
     ];
     both.into_iter().flatten().collect()
+}
+
+/// Closed loops with parts of a disturbance.
+#[derive(Debug, Default)]
+pub struct DisturbedLoops {
+    /// Those that were simulated.
+    pub loops: Vec<DisturbedLoop>,
+    /// Reasons why others are left out.
+    pub left_out: Vec<String>,
+    /// Status of a run that was stopped before all of them ended.
+    pub stopped: Option<Status>,
+}
+
+/// The part that is the problem itself.
+const WHOLE: f64 = 1.0;
+
+/// Closed loops with all parts of a disturbance, next to that of the whole, which has been simulated. They end after a number of seconds.
+///
+/// # Errors
+/// A model or a start does not exist.
+pub fn disturbed(
+    parts: &[Disturbed],
+    whole: &SimulationResult,
+    seconds: Option<f64>,
+) -> Result<DisturbedLoops, WorkflowError> {
+    let began = Instant::now();
+    let mut out = DisturbedLoops::default();
+    if whole.closed_loop.is_none() {
+        return Ok(out);
+    }
+    let go_on = &mut |_: usize, _: &_, _: &_| {
+        stop::check().map_or(ControlFlow::Break(()), ControlFlow::Continue)
+    };
+    for Disturbed { size, system, task } in parts {
+        let simulated;
+        let found = match *size == WHOLE {
+            true => whole,
+            false => {
+                let request = SimulationRequest {
+                    seconds: seconds.map(|limit| limit - began.elapsed().as_secs_f64()),
+                    ..SimulationRequest::default()
+                };
+                match simulate(system, task, request, go_on) {
+                    Err(WorkflowError::Stopped(Stopped(status))) => {
+                        out.left_out.push(not_whole(*size));
+                        out.stopped = Some(status);
+                        continue;
+                    }
+                    found => simulated = found?,
+                }
+                &simulated
+            }
+        };
+        out.stopped = out.stopped.or(found.stopped);
+        if let Some(failure) = &found.simulated.failure {
+            out.left_out.push(format!(
+                "the motion with {size} of the disturbance ends early: {failure}"
+            ));
+        }
+        match &found.closed_loop {
+            Some(closed) => out.loops.push(DisturbedLoop {
+                size: *size,
+                times: found.simulated.discrete.times.clone(),
+                closed: closed.clone(),
+            }),
+            None => out.left_out.push(not_whole(*size)),
+        }
+    }
+    Ok(out)
+}
+
+fn not_whole(size: f64) -> String {
+    format!("{size} of the disturbance was not simulated to the end: the run was stopped before")
 }

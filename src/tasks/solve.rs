@@ -1,30 +1,33 @@
-//! A control problem: solved, verified by a simulation, and held after its end.
+//! Control problems: solved, verified by simulations, and held after their end; of several motions together too.
 
-use std::ops::ControlFlow;
-
-use crate::control::hold_obstacle;
-use crate::control::problem::{Control, ControlTask, MotionTask};
+use crate::control::problem::{Control, ControlTask, Guess, MotionTask, SoughtHold};
+use crate::control::{Earlier, Motion, Motions, hold_obstacle};
 use crate::dynamics::trajectory::Trajectory;
 use crate::dynamics::{DiscreteTrajectory, EnergyExchange, out_of_domain, out_of_range};
 use crate::model::System;
 use crate::sensitivity::{self, Gradients, NoSensitivity, Sensitivity, gradients, sensitivities};
 use crate::tasks::check::moved_markers;
-use crate::tasks::held_goal::{HeldGoals, solve_and_hold};
+use crate::tasks::solve_messages;
 use crate::tasks::solve_messages::{self, Verdict, carried, ends, restarted};
 use crate::workflow::accuracy::Accuracy;
-use crate::workflow::domain::{self, Outside};
-use crate::workflow::hold_check::{self, free_end};
+use crate::workflow::closed_loop::LoopLimits;
+use crate::workflow::hold_check::{self, Repeated, free_end};
 use crate::workflow::infeasible::explain;
-use crate::workflow::loop_limits::LoopLimits;
 use crate::workflow::memory::{self, Occasion};
 use crate::workflow::motion::{discrete_trajectory, trajectory};
-use crate::workflow::optimum::Optimum;
-use crate::workflow::period::Repeated;
+use crate::workflow::optimise::{is_unreached, stopped};
+use crate::workflow::optimum::{Optimum, SolveLimits, seconds_left};
 use crate::workflow::remark::{Remarks, STOPPED_EARLY};
 use crate::workflow::resimulate::Resimulation;
-use crate::workflow::restarts::is_unreached;
 use crate::workflow::tracking::{FinalValue, Tracked, final_values, followed};
-use crate::workflow::{Iterate, SolveRequest, WholeProgram, WorkflowError, infeasible};
+use crate::workflow::warnings::{self, Outside};
+use crate::workflow::{
+    Iterate, Remarks, SolveRequest, Together, WholeProgram, WorkflowError, hold_check, infeasible,
+    optimise_together,
+};
+use std::borrow::Cow;
+use std::ops::ControlFlow;
+use std::time::Instant;
 
 /// An optimal motion, or the last iterate of a solve that found none.
 #[derive(Debug)]
@@ -152,7 +155,7 @@ fn assessed(
         final_values,
         sensitivities: Vec::new(),
         gradients: None,
-        outside: domain::records(&out_of_domain(model, &discrete)),
+        outside: warnings::outside_domain(&out_of_domain(model, &discrete)),
         remarks: Remarks::default(),
         optimum,
         iterations,
@@ -237,11 +240,14 @@ fn remarks(
     }
     remarks.note("earlier_solution", carried(&optimum.carried));
     remarks.note("second_start", optimum.restarted.map(restarted));
-    remarks.warn("outside_domain", domain::note(&result.outside, true));
+    remarks.warn(
+        "outside_domain",
+        warnings::domain_note(&result.outside, true),
+    );
     let beyond = out_of_range(&optimum.model, &result.discrete);
     remarks.warn(
         "outside_range",
-        domain::stretch_range_warning(&beyond, true),
+        warnings::stretch_range_warning(&beyond, true),
     );
     remarks.note(
         "stops",
@@ -251,4 +257,232 @@ fn remarks(
     remarks.note("waypoint_value", ends(&result.waypoint_values));
     remarks.note("final_value", ends(&result.final_values));
     remarks
+}
+
+/// Notes that no inputs that hold a goal were found, and that there was no time for it.
+const NOT_FOUND: &str = "no inputs within the bounds were found that hold the goal";
+const UNFINISHED: &str = "the inputs that hold the goal were not found in the time: \"hold\": \"find\" seeks them at once";
+
+/// Optima, and the problems that they solve.
+pub(super) struct HeldGoals<'a> {
+    pub(super) found: Together,
+    /// The problems, in which the inputs that hold the goals are unknowns where these were found.
+    pub(super) controls: Vec<Cow<'a, Control>>,
+    /// For each a note that none were found.
+    pub(super) notes: Vec<Option<String>>,
+}
+
+/// Solves a task, and again with the inputs that hold the goals as unknowns where these are left and can be held; those optima count if
+/// simulations stay at the goals.
+///
+/// # Errors
+/// As of [`optimise_together`].
+pub(super) fn solve_and_hold<'a>(
+    task: &ControlTask<'a>,
+    request: SolveRequest,
+    observer: &mut dyn FnMut(usize, &Iterate<'_>) -> ControlFlow<()>,
+) -> Result<HeldGoals<'a>, WorkflowError> {
+    let began = Instant::now();
+    let mut found = optimise_together(task, request, observer)?;
+    hold(&mut found, task);
+    let each = task.motions.iter().zip(&found.optima);
+    let left: Vec<bool> = each
+        .map(|(motion, optimum)| is_left(optimum, motion.control))
+        .collect();
+    let end = |found: Together, note: Option<&str>| {
+        let controls = task.motions.iter();
+        let of = |is_left: &bool| note.filter(|_| *is_left).map(str::to_owned);
+        Ok(HeldGoals {
+            found,
+            controls: controls.map(|one| Cow::Borrowed(one.control)).collect(),
+            notes: left.iter().map(of).collect(),
+        })
+    };
+    if !left.contains(&true) {
+        return end(found, None);
+    }
+    let seconds = seconds_left(request.limits.seconds, began);
+    if stopped(seconds).is_some() {
+        unfinished(&mut found, &left);
+        return end(found, Some(UNFINISHED));
+    }
+    let each = task.motions.iter().zip(&found.optima).zip(&left);
+    let held: Vec<Control> = each
+        .map(|((motion, optimum), is_left)| held(motion.control, optimum, *is_left))
+        .collect();
+    let limits = SolveLimits {
+        seconds,
+        ..request.limits
+    };
+    let again = task.with(&held);
+    match optimise_together(&again, SolveRequest { limits, ..request }, observer) {
+        Ok(mut second) => {
+            hold(&mut second, &again);
+            second.iterations += found.iterations;
+            let mut each = held.iter().zip(&second.optima).zip(&left);
+            if each.all(|((control, optimum), is_left)| {
+                optimum.is_solved() && (!is_left || is_kept(optimum, control))
+            }) {
+                for (new, old) in second.optima.iter_mut().zip(&found.optima) {
+                    new.carried = old.carried;
+                }
+                return Ok(HeldGoals {
+                    found: second,
+                    notes: vec![None; held.len()],
+                    controls: held.into_iter().map(Cow::Owned).collect(),
+                });
+            }
+            found.iterations = second.iterations;
+        }
+        Err(error) => tracing::debug!(%error, "the inputs that hold the goals are not sought"),
+    }
+    if stopped(seconds_left(request.limits.seconds, began)).is_some() {
+        unfinished(&mut found, &left);
+        return end(found, Some(UNFINISHED));
+    }
+    end(found, Some(NOT_FOUND))
+}
+
+/// Holds the voltages of the goals after the ends.
+fn hold(found: &mut Together, task: &ControlTask<'_>) {
+    let each = found.optima.iter_mut().zip(&task.motions);
+    each.for_each(|(optimum, motion)| optimum.hold(motion.control));
+}
+
+/// The problem from an optimum of it, in which inputs that hold its goal are unknowns where they `are_sought`.
+fn held(control: &Control, optimum: &Optimum, are_sought: bool) -> Control {
+    Control {
+        sought_hold: match are_sought {
+            true => SoughtHold::Always,
+            false => control.sought_hold,
+        },
+        guess: Guess::Solution(Earlier::new(optimum.motion.clone())),
+        ..control.clone()
+    }
+}
+
+/// Marks the optima whose search for what holds their goals was stopped: by Ctrl-C the whole solve was.
+fn unfinished(found: &mut Together, left: &[bool]) {
+    let each = found.optima.iter_mut().zip(left);
+    for (optimum, _) in each.filter(|(_, is_left)| **is_left) {
+        optimum.stopped = optimum.stopped.or(stopped(None));
+    }
+}
+
+/// Returns true if an optimum leaves a goal for which inputs that hold it may be sought.
+fn is_left(optimum: &Optimum, control: &Control) -> bool {
+    let afterwards = optimum.afterwards.as_ref();
+    control.sought_hold == SoughtHold::WhereLeft
+        && afterwards.is_some_and(|after| !after.is_held)
+        && hold_obstacle(&optimum.model, control).is_none()
+}
+
+/// Returns true if an optimum is reproduced and its goal is kept.
+fn is_kept(optimum: &Optimum, control: &Control) -> bool {
+    let tested = optimum.resimulation.as_ref();
+    optimum.is_solved()
+        && hold_check::warning(control, &optimum.model, &optimum.boundary, tested).is_none()
+}
+
+/// Motions that were optimised together.
+#[derive(Debug)]
+pub struct MotionsResult {
+    /// Each as the result of a problem of its own.
+    pub list: Vec<SolveResult>,
+    /// All of them as one program.
+    pub whole: WholeProgram,
+    /// Iterations on all grids.
+    pub iterations: usize,
+    /// Estimated errors, the greatest of all motions, where an accuracy was wanted of motions that name their intervals.
+    pub accuracy: Option<Accuracy>,
+    /// The verdict on all of them: solved where each is.
+    pub verdict: Verdict,
+    /// Warnings and notes on all of them.
+    pub remarks: Remarks,
+}
+
+/// Solves for several motions as one program; each is verified, refined and held as one by itself. `observer` sees the number of all intervals
+/// and every iterate.
+///
+/// # Errors
+/// As of `solve` of one motion.
+pub fn solve_motions(
+    motions: &Motions,
+    request: SolveRequest,
+    observer: &mut dyn FnMut(usize, &Iterate<'_>) -> ControlFlow<()>,
+) -> Result<MotionsResult, WorkflowError> {
+    let Solved {
+        list,
+        whole,
+        iterations,
+        accuracy,
+    } = solve_task(&motions.task(), request, observer)?;
+    let mut remarks = Remarks::default();
+    remarks.warn("optimality_gap", whole.wide.clone());
+    let mut each = list.iter();
+    let cut_short = each.find_map(|one| one.optimum.cut_short);
+    remarks.warn(STOPPED_EARLY, cut_short.map(solve_messages::cut_short));
+    remarks.warn("shared_inputs", held_apart(motions, &list));
+    Ok(MotionsResult {
+        verdict: verdict(&motions.list, &list),
+        list,
+        whole,
+        iterations,
+        accuracy,
+        remarks,
+    })
+}
+
+/// Inputs that differ by less, relative to the largest, are the same.
+const SAME: f64 = 1e-6;
+
+/// That inputs which are the same in all motions are different ones after the end, where goals are held.
+fn held_apart(motions: &Motions, list: &[SolveResult]) -> Option<String> {
+    let apart = motions.shared_inputs.iter().filter(|name| {
+        let each = motions.list.iter().zip(list);
+        let held = each.filter_map(|(motion, result)| {
+            let sources = motion.system.sources();
+            let source = sources.iter().position(|source| source.name == **name)?;
+            result.optimum.motion.hold.as_ref()?.get(source).copied()
+        });
+        let held: Vec<f64> = held.collect();
+        let largest = held.iter().fold(0.0_f64, |a, b| a.max(b.abs()));
+        let differ = |value: &f64| (value - held[0]).abs() > SAME * largest;
+        held.iter().any(differ)
+    });
+    let apart: Vec<&str> = apart.map(String::as_str).collect();
+    (!apart.is_empty()).then(|| {
+        format!(
+            "the inputs of {} are the same in all motions up to the end; after it each motion is held by other ones, which one history cannot be",
+            apart.join(", ")
+        )
+    })
+}
+
+/// The verdict on all: the word of the first that is not solved, or not to the whole tolerance, and the reasons of all of these.
+fn verdict(motions: &[Motion], list: &[SolveResult]) -> Verdict {
+    let verdicts = || list.iter().map(|result| &result.verdict);
+    let first = verdicts().find(|verdict| !verdict.is_solved);
+    let weaker = verdicts().find(|verdict| verdict.word != "solved");
+    let messages: Vec<&String> = verdicts()
+        .filter_map(|verdict| verdict.message.as_ref())
+        .collect();
+    let are_one = messages.len() == list.len() && messages.windows(2).all(|two| two[0] == two[1]);
+    let message = match &messages[..] {
+        [] => None,
+        [one, ..] if are_one => Some((*one).clone()),
+        _ => {
+            let named = motions.iter().zip(verdicts());
+            let named = named.filter_map(|(motion, verdict)| {
+                let message = verdict.message.as_ref()?;
+                Some(format!("motion \"{}\": {message}", motion.name))
+            });
+            Some(named.collect::<Vec<_>>().join("; "))
+        }
+    };
+    Verdict {
+        word: first.or(weaker).map_or("solved", |verdict| verdict.word),
+        is_solved: first.is_none(),
+        message,
+    }
 }

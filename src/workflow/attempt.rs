@@ -9,19 +9,19 @@ use crate::model::{Coordinates, Model, System};
 use crate::nlp::joined::Places;
 use crate::nlp::{Nlp, Status};
 use crate::stop;
-use crate::workflow::active::{Active, Violation, active, violations};
 use crate::workflow::error::WorkflowError;
 use crate::workflow::motion::{Iterate, solved};
-use crate::workflow::optimum::{Optimum, Shortest, SolveLimits, WholeProgram};
-use crate::workflow::prepare_together::{
-    Counted, PreparedTogether, prepare_together, program_motions, resolve_each,
+use crate::workflow::optimum::{
+    Active, Optimum, Shortest, SolveLimits, Violation, WholeProgram, active, violations,
 };
-use crate::workflow::program_motion::multipliers_of;
+use crate::workflow::program::{
+    Counted, PreparedTogether, multipliers_of, prepare_together, program_motions, resolve_each,
+    with_found,
+};
 use crate::workflow::remark::phase;
 use crate::workflow::resimulate::{Resimulation, resimulate};
-use crate::workflow::resolve::with_found;
 use crate::workflow::solves::Solves;
-use crate::workflow::{gap, hold_check, period};
+use crate::workflow::{gap, hold_check};
 use std::collections::BTreeMap;
 use std::ops::ControlFlow;
 use std::time::Instant;
@@ -330,7 +330,7 @@ impl Verification {
         (discrete, motion): (&DiscreteTrajectory, &Solution),
     ) -> Self {
         hold_check::keep_found(model, boundary, discrete);
-        period::begin(control, boundary, motion);
+        hold_check::begin_periodic(control, boundary, motion);
         let reversed = reversed_muscle(model, discrete);
         if reversed.is_some() {
             return Self {

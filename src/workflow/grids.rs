@@ -4,20 +4,19 @@
 //! The error of a grid falls with the square of its step: from the error e that a verification confirms on N intervals the next grid has
 //! about N √(e/ε), and begins at the optimum before.
 
-use std::ops::ControlFlow;
-use std::time::Instant;
-
 use crate::control::problem::{Control, ControlTask, Duration};
 use crate::nlp::Status;
-use crate::workflow::accuracy::{Accuracy, AccuracyTarget, Attempt, OF_CONTROL, VARIABLES, refine};
+use crate::workflow::accuracy::{
+    Accuracy, AccuracyTarget, Attempt, ErrorSample, OF_CONTROL, VARIABLES, refine,
+};
 use crate::workflow::attempt::FoundTogether;
 use crate::workflow::error::WorkflowError;
-use crate::workflow::estimate::ErrorSample;
 use crate::workflow::motion::{Iterate, discrete_trajectory};
-use crate::workflow::optimise::optimise_task;
+use crate::workflow::optimise::{displaced, is_infeasible, is_unreached, optimise_task, stopped};
 use crate::workflow::optimum::{Optimum, SolveLimits, WholeProgram, seconds_left};
 use crate::workflow::remark::phase;
-use crate::workflow::restarts::{displaced, is_infeasible, is_unreached, stopped};
+use std::ops::ControlFlow;
+use std::time::Instant;
 
 /// Deviation of the motion under the optimal voltages that is confirmed where no accuracy is set, as a part of the path length.
 pub const ACCURACY: f64 = 0.01;

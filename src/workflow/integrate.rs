@@ -1,8 +1,5 @@
 //! A simulation in memory.
 
-use std::ops::ControlFlow;
-use std::time::Instant;
-
 use crate::control::problem::{BoundaryState, Simulation, Voltages};
 use crate::control::resolve_start;
 use crate::dynamics::{
@@ -13,15 +10,18 @@ use crate::math::in_order;
 use crate::model::{Model, System};
 use crate::nlp::Status;
 use crate::stop;
-use crate::workflow::accuracy::{AccuracyTarget, Attempt, OF_CONTROL, Refined, refine};
+use crate::workflow::accuracy::{
+    AccuracyTarget, Attempt, ErrorSample, OF_CONTROL, Refined, refine,
+};
 use crate::workflow::control_loop::{Counts, Loop, horizon};
 use crate::workflow::error::WorkflowError;
-use crate::workflow::estimate::ErrorSample;
 use crate::workflow::memory;
+use crate::workflow::optimise::stopped;
 use crate::workflow::optimum::seconds_left;
 use crate::workflow::remark::phase;
-use crate::workflow::restarts::stopped;
 use crate::workflow::tolerance::{ByTolerance, EstimatedError, Found};
+use std::ops::ControlFlow;
+use std::time::Instant;
 
 /// Order of the midpoint rule under voltages that are constant over its steps.
 const OF_MOTION: f64 = 2.0;

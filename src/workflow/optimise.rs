@@ -1,17 +1,23 @@
-//! A task solved in memory, from its own guess and then from others.
-
-use std::ops::ControlFlow;
-use std::time::Instant;
+//! A task solved in memory: from its own guess, and a single motion from others where that leads nowhere.
 
 use crate::control::Solution;
-use crate::control::problem::{Control, ControlTask, MotionTask};
-use crate::model::System;
+use crate::control::problem::{
+    Control, ControlTask, Duration, Guess, MotionTask, Objective, Voltages,
+};
+use crate::dynamics::stable_equilibrium;
+use crate::ipopt::SolverResult;
+use crate::math::Signal;
+use crate::model::{Model, Role, System};
+use crate::nlp::Status;
+use crate::stop;
 use crate::workflow::attempt::{FoundTogether, attempt};
 use crate::workflow::error::WorkflowError;
 use crate::workflow::motion::Iterate;
-use crate::workflow::optimum::{Optimum, SolveLimits, seconds_left};
-use crate::workflow::restarts::is_unreached;
-use crate::workflow::retry_displaced::second_starts;
+use crate::workflow::optimum::{Optimum, Restarted, Shortest, SolveLimits, seconds_left};
+use crate::workflow::remark::phase;
+use crate::workflow::solves::{put_after, put_before};
+use std::ops::ControlFlow;
+use std::time::Instant;
 
 /// Solves a control problem, from an `earlier` solution where one is given; from its guess, and from others where that leads nowhere;
 /// `observer` sees every iterate.
@@ -53,4 +59,405 @@ pub(super) fn optimise_task(
         found.optima.push(second);
     }
     Ok(found)
+}
+
+/// Starts, in words.
+const SHORTEST: &str = "the shortest motion";
+const DISPLACED: &str = "a second, displaced initial guess";
+const SLOW: &str = "a slow motion";
+
+/// Solves a control problem again from other starts, where the first one led nowhere: from the shortest motion, where that is as short as is
+/// asked for, and, unless it is longer, from a displaced guess; then it looks for a motion as slow as the slowest mode. The first solve, with
+/// the iterations of all, where none leads anywhere.
+pub(crate) fn second_starts(
+    motion: MotionTask<'_>,
+    first: Optimum,
+    allowed: SolveLimits,
+    observer: &mut dyn FnMut(&Iterate<'_>) -> ControlFlow<()>,
+) -> Optimum {
+    let further = Further {
+        motion,
+        allowed,
+        began: Instant::now(),
+    };
+    let mut found = others(&further, first, observer);
+    if !found.meets_equations() {
+        found = advised(&further, found, observer);
+    }
+    if !found.meets_equations() {
+        found.stopped = further.stopped();
+    }
+    found
+}
+
+/// Solves from the shortest motion, and from a displaced guess.
+fn others(
+    further: &Further<'_>,
+    mut found: Optimum,
+    observer: &mut dyn FnMut(&Iterate<'_>) -> ControlFlow<()>,
+) -> Optimum {
+    let MotionTask {
+        control, earlier, ..
+    } = further.motion;
+    if further.is_over() {
+        return found;
+    }
+    phase("looking for the shortest motion");
+    let (said, motion) = shortest(further, &mut found);
+    found.shortest = said;
+    if let (Some(motion), false) = (motion, further.is_over()) {
+        phase("solving from the shortest motion");
+        let start = (control, Some(&motion));
+        found = replaced(further, found, start, SHORTEST, observer);
+    }
+    let is_done = found.meets_equations() || matches!(said, Shortest::Longer(_));
+    if !is_done && earlier.is_none() && !further.is_over() {
+        phase(DISPLACED);
+        let displaced = displaced(control, &found);
+        found = replaced(further, found, (&displaced, None), DISPLACED, observer);
+    }
+    found
+}
+
+/// Looks for what the slowest mode says of a problem that no start solved, and solves from a slow motion that is as short as is asked for.
+fn advised(
+    further: &Further<'_>,
+    mut found: Optimum,
+    observer: &mut dyn FnMut(&Iterate<'_>) -> ControlFlow<()>,
+) -> Optimum {
+    if further.is_over() {
+        return found;
+    }
+    phase("looking for the slowest mode");
+    found.half_period = further.within(|| half_period(&found));
+    if matches!(found.shortest, Shortest::Longer(_) | Shortest::AsGiven) {
+        return found;
+    }
+    phase("looking for a slow motion");
+    let Some((said, motion)) = slow(further, &mut found) else {
+        return found;
+    };
+    found.shortest = said;
+    match motion {
+        Some(motion) if !further.is_over() => {
+            let start = (further.motion.control, Some(&motion));
+            replaced(further, found, start, SLOW, observer)
+        }
+        _ => found,
+    }
+}
+
+/// Half a period in ms of the slowest vibration about rest: at the goal, or where that is no state of rest, under the voltages of the start.
+fn half_period(found: &Optimum) -> Option<f64> {
+    let Optimum {
+        model, boundary, ..
+    } = found;
+    let of_goal = boundary.goal.rest.as_ref();
+    let period = of_goal.and_then(|rest| rest.slowest_period(model));
+    let of_start = || {
+        let none = vec![0.0; model.sources.len()];
+        let voltages = boundary.rest[0].as_ref().unwrap_or(&none);
+        let rest = stable_equilibrium(model, &boundary.start.z, &model.scalars(voltages));
+        rest.ok()?.slowest_period(model)
+    };
+    period.or_else(of_start).map(|period| 0.5 * period)
+}
+
+/// Returns the optimum of another start, or the result before where that finds none; with the iterations of both.
+fn replaced(
+    further: &Further<'_>,
+    mut before: Optimum,
+    (control, earlier): (&Control, Option<&Solution>),
+    from: &'static str,
+    observer: &mut dyn FnMut(&Iterate<'_>) -> ControlFlow<()>,
+) -> Optimum {
+    let Some(mut second) = further.solve(control, earlier, ITERATIONS, observer) else {
+        return before;
+    };
+    if !second.meets_equations() {
+        put_after(&mut before.solution, &second.solution);
+        return before;
+    }
+    let first = before.solution.status;
+    put_before(&mut second.solution, &before.solution);
+    Optimum {
+        setup: before.setup,
+        carried: before.carried,
+        restarted: Some(Restarted { first, from }),
+        ..second
+    }
+}
+
+/// Largest free duration and the first one, as multiples of the given one.
+const LONGEST: f64 = 20.0;
+const FIRST: f64 = 2.0;
+/// Iterations of its solve, as a multiple of those of the first one, within these limits.
+const TIMES: usize = 2;
+const FEWEST: usize = 60;
+const MOST: usize = 200;
+/// A free duration that is longer by no more than this part lies on its lower bound.
+const ON_BOUND: f64 = 1e-5;
+/// Largest duration of a slow motion in halves of the period of the slowest mode.
+const SLOWEST: f64 = 4.0;
+/// Cost of inputs that cross their ranges evenly in half that period, as a part of the cost of this time: what is faster than the slowest mode
+/// costs more than it saves, and the mode itself does not.
+const SMOOTH: f64 = 0.5;
+
+/// The problem whose duration is free and alone costs something.
+fn freed(control: &Control, given: f64) -> Control {
+    Control {
+        duration: Duration::Free {
+            min: given,
+            max: LONGEST * given,
+            guess: FIRST * given,
+        },
+        objective: Objective {
+            duration: 1.0,
+            ..Objective::default()
+        },
+        ..control.clone()
+    }
+}
+
+/// Returns true if what the problem gives over time has derivatives by the duration, and its goal rests at all of them or at none.
+fn fits(control: &Control) -> bool {
+    let has_jump = |function: &Signal| control.duration.jump(function).is_some();
+    let changes = |function: &Signal| control.duration.final_value(function).is_none();
+    let rests = control.goal.voltages().is_some();
+    let is_sampled = matches!(control.course, Some(Voltages::Sampled { .. }));
+    let mut functions = control.given.values();
+    !is_sampled && !functions.any(|function| has_jump(function) || (rests && changes(function)))
+}
+
+/// The same from half a period of the slowest mode on, with inputs that change slowly.
+fn slowed(control: &Control, model: &Model, given: f64, half_period: f64) -> Control {
+    let seconds = half_period / 1e3;
+    let ranges = squared_ranges(control, model);
+    let rate = SMOOTH * seconds * seconds / ranges;
+    let freed = freed(control, given);
+    Control {
+        duration: Duration::Free {
+            min: given,
+            max: f64::max(LONGEST * given, SLOWEST * half_period),
+            guess: half_period,
+        },
+        objective: Objective {
+            rate: if rate.is_finite() { rate } else { 0.0 },
+            ..freed.objective
+        },
+        ..freed
+    }
+}
+
+/// Sum of the squared ranges of the inputs that are sought, in the units in which objectives count them; of unbounded ones their sizes.
+fn squared_ranges(control: &Control, model: &Model) -> f64 {
+    let inputs = [Role::Voltage, Role::Load].into_iter();
+    let inputs = inputs.flat_map(|role| model.variables.with(role));
+    let sought = inputs.filter(|input| !input.source.is_some_and(|s| control.is_given(s)));
+    let ranges = sought.map(|input| {
+        let [low, high] = control.bounds(input);
+        let range = match (high - low).is_finite() {
+            true => high - low,
+            false => control.size(input, model),
+        };
+        let kind = model.input_kind(input.source.expect("an input of a source"));
+        (range / kind.counted().1).powi(2)
+    });
+    ranges.sum()
+}
+
+/// Looks for the shortest motion that is no shorter than the one asked for, where that was not found: from the guess of the problem and
+/// from a displaced one. What it says, and the motion where that is as short as is asked for; its iterations are put to those of the
+/// `first` solve.
+pub(crate) fn shortest(further: &Further<'_>, first: &mut Optimum) -> (Shortest, Option<Solution>) {
+    let MotionTask {
+        control, earlier, ..
+    } = further.motion;
+    let Duration::Given(given) = control.duration else {
+        return (Shortest::Unknown, None);
+    };
+    let freed = freed(control, given);
+    if !fits(&freed) {
+        return (Shortest::Unknown, None);
+    }
+    let iterations = iterations(first);
+    let displaced = match earlier {
+        None => Some((displaced(&freed, first), None, ITERATIONS)),
+        Some(_) => None,
+    };
+    let starts = [(freed, earlier, iterations)].into_iter().chain(displaced);
+    let mut said = Shortest::Unknown;
+    for (problem, earlier, iterations) in starts {
+        let Some(found) = solved(further, first, &problem, earlier, iterations) else {
+            break;
+        };
+        said = outcome(&found, given);
+        let is_start = is_as_given(&found, given);
+        if is_start || matches!(said, Shortest::Longer(_)) {
+            return (said, is_start.then_some(found.motion));
+        }
+    }
+    (said, None)
+}
+
+/// Looks for a motion that is about as slow as the slowest mode, where that is slower than what is asked for and no other start led anywhere.
+/// As of [`shortest`]; `None` if it finds none, too.
+pub(crate) fn slow(
+    further: &Further<'_>,
+    first: &mut Optimum,
+) -> Option<(Shortest, Option<Solution>)> {
+    let control = further.motion.control;
+    let Duration::Given(given) = control.duration else {
+        return None;
+    };
+    let half_period = first.half_period.filter(|half| *half > given)?;
+    let problem = slowed(control, &first.model, given, half_period);
+    if !fits(&problem) {
+        return None;
+    }
+    let found = solved(further, first, &problem, None, ITERATIONS)?;
+    let said = outcome(&found, given);
+    let is_start = is_as_given(&found, given);
+    let is_told = matches!(said, Shortest::AsGiven | Shortest::Longer(_));
+    is_told.then(|| (said, is_start.then_some(found.motion)))
+}
+
+/// Iterations of a solve for the shortest motion.
+fn iterations(first: &Optimum) -> usize {
+    (TIMES * first.solution.iterations.len()).clamp(FEWEST, MOST)
+}
+
+/// Solves a problem with a free duration; its iterations are put to those of the `first` solve. `None` if it is time to stop.
+fn solved(
+    further: &Further<'_>,
+    first: &mut Optimum,
+    problem: &Control,
+    earlier: Option<&Solution>,
+    iterations: usize,
+) -> Option<Optimum> {
+    if further.is_over() {
+        return None;
+    }
+    let mut go_on = |_: &Iterate<'_>| ControlFlow::Continue(());
+    let found = further.solve(problem, earlier, iterations, &mut go_on)?;
+    put_after(&mut first.solution, &found.solution);
+    Some(found)
+}
+
+/// Returns true if a solve with a free duration ends at the given one.
+fn is_as_given(found: &Optimum, given: f64) -> bool {
+    let duration = found.motion.times[found.motion.intervals()];
+    found.solution.status == Status::Solved && duration <= given * (1.0 + ON_BOUND)
+}
+
+/// Reads the end of a solve with a free duration for a given one. What its voltages do not reproduce is no advice.
+fn outcome(found: &Optimum, given: f64) -> Shortest {
+    match found.solution.status {
+        Status::Solved if !found.is_solved() => Shortest::Unknown,
+        Status::Solved if is_as_given(found, given) => Shortest::AsGiven,
+        Status::Solved => Shortest::Longer(found.motion.times[found.motion.intervals()]),
+        status if is_infeasible(status) => Shortest::NotUpTo(LONGEST * given),
+        _ => Shortest::Unknown,
+    }
+}
+
+/// Iterations of the second start; an optimum is found from it soon or not at all.
+pub(crate) const ITERATIONS: usize = 100;
+
+/// Returns true if a solve ended for want of a motion that keeps goal and limits.
+pub(crate) fn is_infeasible(status: Status) -> bool {
+    matches!(status, Status::Infeasible | Status::RestorationFailed)
+}
+
+/// Iterations after which a limit of them says something of the problem.
+const MANY: usize = 50;
+
+/// Returns true if a solve ended without a motion that keeps goal and limits, by its verdict or after many iterations, so that an explanation helps.
+pub(crate) fn is_unreached(solution: &SolverResult) -> bool {
+    let is_long = solution.iterations.len() > MANY;
+    is_infeasible(solution.status) || (solution.status == Status::IterationLimit && is_long)
+}
+
+/// Returns the reason why no further solve may be begun with these seconds left, if there is one.
+pub(crate) fn stopped(left: Option<f64>) -> Option<Status> {
+    if stop::requested() {
+        return Some(Status::Interrupted);
+    }
+    let is_late = left.is_some_and(|seconds| seconds <= 0.0);
+    stop::reason().or(is_late.then_some(Status::TimeLimit))
+}
+
+/// The problem with another guess: the motion under the voltages of the goal, or half of the largest ones; interpolated where it
+/// was simulated.
+pub(crate) fn displaced(control: &Control, first: &Optimum) -> Control {
+    let [low, high] = control.voltage_bounds;
+    let guess = match (&control.guess, &first.boundary.rest[1]) {
+        (Guess::Simulate(_), _) => Guess::Interpolate,
+        (_, Some(hold)) => Guess::Simulate(Voltages::Constant(hold.clone())),
+        (_, None) => {
+            // Without bounds nothing is known of the size of voltages.
+            let half = 0.5 * (low + high);
+            let half = if half.is_finite() { half } else { 0.0 };
+            let sources = first.model.sources.iter();
+            let row = sources.map(|source| if source.is_load() { 0.0 } else { half });
+            Guess::Simulate(Voltages::Constant(row.collect()))
+        }
+    };
+    Control {
+        guess,
+        ..control.clone()
+    }
+}
+
+/// Further starts of a control problem, and what they may take.
+pub(crate) struct Further<'a> {
+    pub(crate) motion: MotionTask<'a>,
+    pub(crate) allowed: SolveLimits,
+    pub(crate) began: Instant,
+}
+
+impl Further<'_> {
+    /// Seconds that are left, where they are limited.
+    fn seconds(&self) -> Option<f64> {
+        seconds_left(self.allowed.seconds, self.began)
+    }
+
+    /// Returns the reason why nothing more may be begun, if there is one.
+    pub(crate) fn stopped(&self) -> Option<Status> {
+        stopped(self.seconds())
+    }
+
+    /// Returns true if nothing more may be begun.
+    pub(crate) fn is_over(&self) -> bool {
+        self.stopped().is_some()
+    }
+
+    /// Does a piece of work that asks whether it is to stop.
+    pub(crate) fn within<T>(&self, work: impl FnOnce() -> T) -> T {
+        let _watch = stop::watch(self.seconds());
+        work()
+    }
+
+    /// Solves a problem of the same system, within a number of iterations; none where it cannot be stated.
+    pub(crate) fn solve(
+        &self,
+        control: &Control,
+        earlier: Option<&Solution>,
+        iterations: usize,
+        observer: &mut dyn FnMut(&Iterate<'_>) -> ControlFlow<()>,
+    ) -> Option<Optimum> {
+        let most = self.allowed.iterations;
+        let most = most.unwrap_or(self.motion.control.solver.max_iterations);
+        let limits = SolveLimits {
+            iterations: Some(iterations.min(most)),
+            seconds: self.seconds(),
+        };
+        let motion = MotionTask {
+            control,
+            earlier,
+            ..self.motion
+        };
+        let found = attempt(&motion.into(), limits, observer).ok();
+        found.map(|mut found| found.optima.remove(0))
+    }
 }

@@ -1,16 +1,19 @@
-//! A control problem and the end of its solve.
+//! A control problem and the end of its solve, with the bounds and limits that it reaches.
 
-use crate::control::problem::Control;
-use crate::control::{BoundaryConditions, Carried, Solution};
+use crate::control::problem::{Control, Duration};
+use crate::control::{
+    BoundaryConditions, BoundedQuantity, Carried, Column, Row, Solution, Transcription,
+};
 use crate::ipopt::SolverResult;
-use crate::model::Model;
+use crate::math::significant;
+use crate::model::{JointReading, Model, Parameter, Role, Size, System, joint_unit};
 use crate::nlp::{Nlp, Status};
-use crate::workflow::active::{Active, Violation};
-use crate::workflow::distance::Distance;
-use crate::workflow::hold_check::{Afterwards, afterwards};
-use crate::workflow::period::{Repeated, repeated};
+use crate::workflow::hold_check::{Afterwards, Repeated, afterwards, repeated};
+use crate::workflow::motion::Distance;
 use crate::workflow::reasons::Cause;
 use crate::workflow::resimulate::Resimulation;
+use serde::Serialize;
+use std::collections::BTreeMap;
 use std::time::Instant;
 
 /// Limits of a solve, in place of those of its problem.
@@ -190,4 +193,277 @@ pub enum Shortest {
     Longer(f64),
     /// None was found up to this duration in ms.
     NotUpTo(f64),
+}
+
+/// A bound that is reached.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Active {
+    /// Quantity that reaches it, and its value with unit.
+    pub what: String,
+    /// Number of its rows that are reached.
+    pub count: usize,
+    /// Number of its rows.
+    pub of: usize,
+    /// `interval` or `instant`; nothing for a bound that exists once.
+    pub noun: &'static str,
+    /// True if it is a bound of voltages.
+    pub is_voltage: bool,
+}
+
+/// A value this near to a bound, relative to the range or the bound, has reached it.
+const NEAR: f64 = 1e-3;
+
+/// Active bounds, most frequent first. Zero lower bounds of voltages are not listed.
+pub fn active(
+    program: &mut Transcription<'_>,
+    x: &[f64],
+    model: &Model,
+    control: &Control,
+) -> Vec<Active> {
+    let mut seen = ActiveLimits::default();
+    let bounds = program.variables().clone();
+    for (i, &column) in program.unknowns().columns.iter().enumerate() {
+        let side = reached(x[i], bounds.lower[i], bounds.upper[i]);
+        match (column, column.of(&model.variables).role) {
+            (Column::Interval { k, .. }, _) if k >= program.intervals() => {}
+            (_, Role::Voltage | Role::Load) => {
+                let variable = column.of(&model.variables);
+                let source = variable.source.expect("an input of a source");
+                let unit = model.input_kind(source).unit();
+                seen.add_input(&variable.name, control.bounds(variable), unit, side);
+            }
+            (Column::Instant { i, .. }, Role::Coordinate) => {
+                seen.add_coordinate(i, model, control, side);
+            }
+            (Column::Parameter { .. }, _) => {
+                let parameter = model.parameter(column.of(&model.variables));
+                seen.add_parameter(parameter, &model.system, side);
+            }
+            (Column::Horizon, _) => seen.add_duration(control.duration, side),
+            _ => {}
+        }
+    }
+    let bounds = program.constraints().clone();
+    let mut values = vec![0.0; bounds.lower.len()];
+    program.constraint(x, &mut values);
+    for (r, row) in program.unknowns().rows.iter().enumerate() {
+        let Row::Limit { limit, .. } = *row else {
+            continue;
+        };
+        let bounded = program.limit(limit);
+        if !bounded.when.is_single() {
+            let side = reached(values[r], bounds.lower[r], bounds.upper[r]);
+            seen.add_limit(bounded, &model.system, side);
+        }
+    }
+    seen.list()
+}
+
+/// Returns for its lower and its upper bound true if a value has reached it, or is beyond.
+fn reached(value: f64, low: f64, high: f64) -> [bool; 2] {
+    let range = high - low;
+    let size = |bound: f64| match range.is_finite() {
+        true => range,
+        false => bound.abs().max(1.0),
+    };
+    [
+        value - low <= NEAR * size(low),
+        high - value <= NEAR * size(high),
+    ]
+}
+
+/// Counts by name.
+#[derive(Debug, Default)]
+struct ActiveLimits(BTreeMap<String, Active>);
+
+impl ActiveLimits {
+    /// The bounds of a voltage or load in an interval.
+    fn add_input(&mut self, name: &str, bounds: [f64; 2], unit: &str, side: [bool; 2]) {
+        for (bound, is_reached) in bounds.into_iter().zip(side) {
+            if bound.is_finite() && bound != 0.0 {
+                let what = format!("{name} at its bound of {} {unit}", significant(bound, 4));
+                self.add(what, is_reached, "interval", unit == "V");
+            }
+        }
+    }
+
+    /// The limits of the joint of a coordinate at an instant.
+    fn add_coordinate(&mut self, i: usize, model: &Model, control: &Control, side: [bool; 2]) {
+        let of = |reading: &JointReading| reading.coordinate == Some(i);
+        let Some(joint) = model.joint_readings.iter().position(of) else {
+            return;
+        };
+        for limit in &control.limits {
+            if limit.joint() != Some(joint) || limit.part.is_some() {
+                continue;
+            }
+            let (name, unit) = (
+                &model.system.joints[joint].name,
+                joint_unit(&model.system, joint),
+            );
+            for (bound, is_reached) in limit.bounds().into_iter().zip(side) {
+                if bound.is_finite() {
+                    let value = significant(bound, 4);
+                    let what = format!("{name} at its limit of {value} {unit}");
+                    self.add(what, is_reached, "instant", false);
+                }
+            }
+        }
+    }
+
+    /// The bounds of a free parameter.
+    fn add_parameter(&mut self, parameter: &Parameter, system: &System, side: [bool; 2]) {
+        let unit = parameter.unit(system);
+        let bounds = [parameter.lower, parameter.upper];
+        for (bound, is_reached) in bounds.into_iter().zip(side) {
+            let value = significant(bound * unit.factor, 4);
+            let what = format!("{} at its bound of {value} {}", parameter.name, unit.symbol);
+            self.add(what.trim_end().to_owned(), is_reached, "", false);
+        }
+    }
+
+    /// The bounds of a free duration.
+    fn add_duration(&mut self, duration: Duration, side: [bool; 2]) {
+        let Duration::Free { min, max, .. } = duration else {
+            return;
+        };
+        for (bound, is_reached) in [min, max].into_iter().zip(side) {
+            let seconds = significant(bound / 1e3, 4);
+            let what = format!("the duration at its bound of {seconds} s");
+            self.add(what, is_reached, "", false);
+        }
+    }
+
+    /// The limits of a quantity at an instant or in an interval.
+    fn add_limit(&mut self, bounded: &BoundedQuantity, system: &System, side: [bool; 2]) {
+        let noun = match bounded.quantity.is_of_intervals() {
+            true => "interval",
+            false => "instant",
+        };
+        for (bound, is_reached) in bounded.bounds().into_iter().zip(side) {
+            if bound.is_finite() {
+                let (value, unit) = bounded.quantity.plain(bound, system);
+                let space = if unit.is_empty() { "" } else { " " };
+                let value = significant(value, 4);
+                let what = format!("{} at its limit of {value}{space}{unit}", bounded.name);
+                self.add(what, is_reached, noun, false);
+            }
+        }
+    }
+
+    fn add(&mut self, what: String, is_reached: bool, noun: &'static str, is_voltage: bool) {
+        let entry = self.0.entry(what).or_insert_with_key(|what| Active {
+            what: what.clone(),
+            count: 0,
+            of: 0,
+            noun,
+            is_voltage,
+        });
+        entry.of += 1;
+        entry.count += usize::from(is_reached);
+    }
+
+    fn list(self) -> Vec<Active> {
+        let reached = self.0.into_values().filter(|active| active.count > 0);
+        let mut list: Vec<Active> = reached.collect();
+        list.sort_by(|a, b| b.count.cmp(&a.count).then_with(|| a.what.cmp(&b.what)));
+        list
+    }
+}
+
+impl Active {
+    /// In words, such as `m1b at its bound of 500 V in 43 of 60 intervals`.
+    pub fn message(&self) -> String {
+        let Self {
+            what,
+            count,
+            of,
+            noun,
+            ..
+        } = self;
+        match *noun {
+            "" => what.clone(),
+            "interval" => format!("{what} in {count} of {of} intervals"),
+            noun => format!("{what} at {count} of {of} {noun}s"),
+        }
+    }
+}
+
+/// A row that does not hold.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct Violation {
+    /// Equation or limit of the row.
+    pub row: String,
+    /// Distance to its bounds in its unit; absent where the row has no value.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub violation: Option<f64>,
+    /// The unit; none of a pure number.
+    #[serde(skip_serializing_if = "str::is_empty")]
+    pub unit: &'static str,
+    /// The same, scaled as in the solver.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub scaled: Option<f64>,
+}
+
+/// The worst `count` rows that are violated by more than `tolerance` in the measure of the solver.
+pub fn violations(
+    program: &mut Transcription<'_>,
+    x: &[f64],
+    tolerance: f64,
+    count: usize,
+) -> Vec<Violation> {
+    let bounds = program.constraints().clone();
+    let mut g = vec![0.0; bounds.lower.len()];
+    program.constraint(x, &mut g);
+    let excess = |row: usize| bounds.excess(row, g[row]);
+    let mut rows: Vec<usize> = (0..g.len()).filter(|&r| excess(r) > tolerance).collect();
+    rows.sort_by(|&a, &b| excess(b).total_cmp(&excess(a)));
+    rows.truncate(count);
+    let describe = |row: usize| {
+        let scaled = Some(excess(row)).filter(|excess| excess.is_finite());
+        let scale = program.row_scale(row);
+        let (violation, unit) = match program.unknowns().rows[row] {
+            Row::Limit { limit, .. } => {
+                let plain = |value: f64| program.plain(limit, value / scale);
+                let bound = match g[row] < bounds.lower[row] {
+                    true => bounds.lower[row],
+                    false => bounds.upper[row],
+                };
+                let (value, unit) = plain(g[row]);
+                ((value - plain(bound).0).abs(), unit)
+            }
+            other => of_equation(program, other, excess(row) / scale),
+        };
+        Violation {
+            row: program.constraint_name(row),
+            violation: scaled.map(|_| violation),
+            unit,
+            scaled,
+        }
+    };
+    rows.into_iter().map(describe).collect()
+}
+
+/// The violation of an equation with its unit: the momentum that a balance misses, the value of a constraint of places and directions, or the
+/// charge that is missing at an electrode times the interval; of a value that is a function of time, the value.
+fn of_equation(program: &Transcription<'_>, row: Row, violation: f64) -> (f64, &'static str) {
+    let model = program.model();
+    let Some(variable) = row.of(&model.variables) else {
+        return (violation, "");
+    };
+    if let Row::Time { .. } = row {
+        let of_coordinate = match variable.size {
+            Size::Length => "mm",
+            _ => "rad",
+        };
+        let of_input = variable.source.map(|s| model.input_kind(s).unit());
+        return (violation, of_input.unwrap_or(of_coordinate));
+    }
+    match (variable.role, variable.size) {
+        (Role::Coordinate, Size::Length) => (violation, "N ms"),
+        (Role::Coordinate, _) => (violation, "N mm ms"),
+        (Role::Multiplier, _) => (violation / model.multiplier_time, ""),
+        (Role::Potential, _) => (violation / variable.unit, "mC ms"),
+        _ => (violation, ""),
+    }
 }

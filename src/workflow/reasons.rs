@@ -3,7 +3,7 @@
 use crate::control::problem::{Control, Duration, SourceEnergy};
 use crate::model::system::{InputKind, JointKind, Source};
 use crate::model::{BodyLocation, Model};
-use crate::workflow::distance::Distance;
+use crate::workflow::motion::Distance;
 use serde::Serialize;
 
 /// A model term that is inactive, with its reason.

@@ -9,14 +9,11 @@ use crate::model::Model;
 use crate::nlp::joined::{Joined, SharedVariable};
 use crate::nlp::{Multipliers, Status};
 use crate::stop;
-use crate::workflow::coupled::one_of_both;
 use crate::workflow::error::WorkflowError;
 use crate::workflow::gap::Gap;
 use crate::workflow::motion::{Iterate, solved};
 use crate::workflow::optimum::seconds_left;
-use crate::workflow::program_motion::{
-    ProgramMotion, Programs, joined, multipliers_of, states_of_rest,
-};
+use crate::workflow::program::{ProgramMotion, Programs, joined, multipliers_of, states_of_rest};
 use crate::workflow::remark::phase;
 use std::ops::ControlFlow;
 use std::time::Instant;
@@ -222,4 +219,32 @@ pub(crate) fn recentred(model: &Model, discrete: &DiscreteTrajectory) -> Option<
             carried: Carried::default(),
         }
     })
+}
+
+/// The better of two solves, with the iterations, evaluations and seconds of both.
+fn one_of_both(mut first: SolverResult, mut second: SolverResult) -> SolverResult {
+    if second.status.is_solved() {
+        put_before(&mut second, &first);
+        return second;
+    }
+    put_after(&mut first, &second);
+    first
+}
+
+/// Adds iterations, evaluations and seconds of an earlier solve.
+pub(super) fn put_before(kept: &mut SolverResult, earlier: &SolverResult) {
+    kept.iterations.splice(0..0, earlier.iterations.clone());
+    add_calls(kept, earlier);
+}
+
+/// Adds iterations, evaluations and seconds of a later solve.
+pub(super) fn put_after(kept: &mut SolverResult, later: &SolverResult) {
+    kept.iterations.extend_from_slice(&later.iterations);
+    add_calls(kept, later);
+}
+
+fn add_calls(kept: &mut SolverResult, other: &SolverResult) {
+    kept.seconds += other.seconds;
+    kept.evaluations += other.evaluations;
+    kept.failed_evaluations += other.failed_evaluations;
 }

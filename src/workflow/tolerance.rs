@@ -19,8 +19,7 @@ use crate::dynamics::{
 use crate::model::Model;
 use crate::nlp::Status;
 use crate::stop;
-use crate::workflow::distance::Distance;
-use crate::workflow::motion::solved_of;
+use crate::workflow::motion::{Distance, solved_of};
 use std::ops::{ControlFlow, RangeInclusive};
 
 /// Largest number of times that a motion is begun again with a tighter tolerance.

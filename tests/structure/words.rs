@@ -141,7 +141,7 @@ const PATHS: [(&str, &str); 53] = [
     ("workflow/at_once", "workflow/parallel_map"),
     ("workflow/cure", "workflow/grids"),
     ("workflow/holding", "workflow/hold_check"),
-    ("workflow/second_start", "workflow/retry_displaced"),
+    ("workflow/second_start", "workflow/optimise"),
 ];
 
 /// End of the text that begins at a quote, after `hashes` signs of a raw string.

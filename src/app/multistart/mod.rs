@@ -24,7 +24,7 @@ use crate::app::task::{read, refuse_replacing};
 use crate::control::Motion;
 use crate::control::problem::Task;
 use crate::files::{Loaded, is_standard_input};
-use crate::workflow::resolve::resolve;
+use crate::workflow::program::resolve;
 use ended::{Ended, best, number_optima};
 use files::write;
 use start::{FOLDER, Start};

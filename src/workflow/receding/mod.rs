@@ -1,23 +1,19 @@
 //! A controller that plans anew in each interval: nonlinear model predictive control by real-time iterations.
 //!
-//! - `horizon`: all that controllers share, from an optimal motion and the costs of its regulator; `reference`: the motion that is followed.
-//! - `program`: the nonlinear program of the next intervals, with its `layout` and `costs`.
-//! - `iteration`, `advance`: one iteration of it, in two parts.
+//! - `horizon`: all that controllers share, from an optimal motion and the costs of its regulator.
+//! - `program`: the nonlinear program of the next intervals, with its `layout` and the motion that is followed.
+//! - `iteration`: one iteration of it, in two parts.
 //! - `state`: where a plan begins, from what is measured, over a delay and with an observer.
 //! - `controller`: inputs from what is measured, step by step, and what stands in where a step fails, by their `source`.
 
-mod advance;
 mod controller;
-mod costs;
 mod horizon;
 mod iteration;
 mod layout;
 mod program;
-mod reference;
 mod state;
 
 pub use controller::{Answer, RecedingHorizon};
-pub use horizon::Horizon;
-pub use horizon::NoHorizon;
+pub use horizon::{Horizon, NoHorizon};
 pub use iteration::Residual;
 pub use state::Source;

@@ -3,7 +3,6 @@
 //! The state of the recursion is that of the discrete equations, coordinates and momenta, with the integrals that are asked for.
 
 mod design;
-mod lasting;
 mod law;
 mod observer;
 mod regulated;
@@ -14,14 +13,15 @@ use crate::feedback::{Costs, HeldGain, NotHeld, spectral_radius};
 use crate::model::Model;
 use crate::stop;
 use crate::workflow::regulator::design::Design;
-use crate::workflow::regulator::lasting::Against;
+use crate::workflow::regulator::law::Against;
 use crate::workflow::regulator::observer::reproduced;
 pub(crate) use design::rate_weight;
 pub(crate) use law::remembered;
 use nalgebra::DMatrix;
 pub(crate) use regulated::NOTHING_HOLDS;
-pub use regulated::WholeCosts;
-pub use regulated::{NoRegulator, Regulated, RegulatedStep, RegulatorReport, Reproduced};
+pub use regulated::{
+    NoRegulator, Regulated, RegulatedStep, RegulatorReport, Reproduced, WholeCosts,
+};
 
 /// The regulator of a motion with a momentum at its start, whose goal is held by `rest` voltages, by source, where it is.
 ///
