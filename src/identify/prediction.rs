@@ -327,7 +327,7 @@ fn of_rest(
 fn at_rest(setup: &Setup<'_>, point: Point<'_>) -> Result<Values, IdentifyError> {
     let recording = setup.recording;
     let mut out = Values {
-        values: nalgebra::DVector::zeros(recording.count()),
+        values: DVector::zeros(recording.count()),
         derivatives: DMatrix::zeros(recording.count(), point.count()),
     };
     let mut times: Vec<f64> = recording.readings().map(|reading| reading.time).collect();

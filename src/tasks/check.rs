@@ -12,12 +12,11 @@ use crate::nlp::differences::{DifferenceVariables, Matrix, WrongEntry};
 use crate::nlp::{Nlp, differences};
 use crate::stop;
 use crate::stop::TimeLimit;
-use crate::workflow::optimum::seconds_left;
+use crate::workflow::optimum::Budget;
 use crate::workflow::program::{Counted, Prepared, prepare, resolve};
 use crate::workflow::{WorkflowError, effects};
 use serde::Serialize;
 use std::collections::{BTreeMap, HashMap};
-use std::time::Instant;
 
 /// Noise on each variable, relative to its size.
 const NOISE: f64 = 1e-2;
@@ -162,7 +161,7 @@ pub fn check(
 
 /// Compares those of each motion by itself: a program of several has the same.
 fn all_motions(motions: Motions, seconds: Option<f64>) -> Result<CheckResult, WorkflowError> {
-    let began = Instant::now();
+    let budget = Budget::of_seconds(seconds);
     let mut all: Option<CheckResult> = None;
     for Motion {
         name,
@@ -170,7 +169,7 @@ fn all_motions(motions: Motions, seconds: Option<f64>) -> Result<CheckResult, Wo
         control,
     } in motions.list
     {
-        let left = seconds_left(seconds, began);
+        let left = budget.left();
         let found = check(&system, Task::Control(Box::new(control)), left);
         let mut found = found.map_err(|error| error.of_motion(&name))?;
         found.message = format!("motion \"{name}\": {}", found.message);

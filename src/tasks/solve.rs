@@ -7,7 +7,6 @@ use crate::dynamics::{DiscreteTrajectory, EnergyExchange, out_of_domain, out_of_
 use crate::model::System;
 use crate::sensitivity::{self, Gradients, NoSensitivity, Sensitivity, gradients, sensitivities};
 use crate::tasks::check::moved_markers;
-use crate::tasks::solve_messages;
 use crate::tasks::solve_messages::{self, Verdict, carried, ends, restarted};
 use crate::workflow::accuracy::Accuracy;
 use crate::workflow::closed_loop::LoopLimits;
@@ -15,19 +14,17 @@ use crate::workflow::hold_check::{self, Repeated, free_end};
 use crate::workflow::infeasible::explain;
 use crate::workflow::memory::{self, Occasion};
 use crate::workflow::motion::{discrete_trajectory, trajectory};
-use crate::workflow::optimise::{is_unreached, stopped};
-use crate::workflow::optimum::{Optimum, SolveLimits, seconds_left};
+use crate::workflow::optimise::is_unreached;
+use crate::workflow::optimum::{Budget, Optimum};
 use crate::workflow::remark::{Remarks, STOPPED_EARLY};
 use crate::workflow::resimulate::Resimulation;
 use crate::workflow::tracking::{FinalValue, Tracked, final_values, followed};
 use crate::workflow::warnings::{self, Outside};
 use crate::workflow::{
-    Iterate, Remarks, SolveRequest, Together, WholeProgram, WorkflowError, hold_check, infeasible,
-    optimise_together,
+    Iterate, SolveRequest, Together, WholeProgram, WorkflowError, infeasible, optimise_together,
 };
 use std::borrow::Cow;
 use std::ops::ControlFlow;
-use std::time::Instant;
 
 /// An optimal motion, or the last iterate of a solve that found none.
 #[derive(Debug)]
@@ -282,7 +279,7 @@ pub(super) fn solve_and_hold<'a>(
     request: SolveRequest,
     observer: &mut dyn FnMut(usize, &Iterate<'_>) -> ControlFlow<()>,
 ) -> Result<HeldGoals<'a>, WorkflowError> {
-    let began = Instant::now();
+    let budget = Budget::new(request.limits);
     let mut found = optimise_together(task, request, observer)?;
     hold(&mut found, task);
     let each = task.motions.iter().zip(&found.optima);
@@ -301,8 +298,7 @@ pub(super) fn solve_and_hold<'a>(
     if !left.contains(&true) {
         return end(found, None);
     }
-    let seconds = seconds_left(request.limits.seconds, began);
-    if stopped(seconds).is_some() {
+    if budget.is_over() {
         unfinished(&mut found, &left);
         return end(found, Some(UNFINISHED));
     }
@@ -310,10 +306,7 @@ pub(super) fn solve_and_hold<'a>(
     let held: Vec<Control> = each
         .map(|((motion, optimum), is_left)| held(motion.control, optimum, *is_left))
         .collect();
-    let limits = SolveLimits {
-        seconds,
-        ..request.limits
-    };
+    let limits = budget.left_of_limits();
     let again = task.with(&held);
     match optimise_together(&again, SolveRequest { limits, ..request }, observer) {
         Ok(mut second) => {
@@ -336,7 +329,7 @@ pub(super) fn solve_and_hold<'a>(
         }
         Err(error) => tracing::debug!(%error, "the inputs that hold the goals are not sought"),
     }
-    if stopped(seconds_left(request.limits.seconds, began)).is_some() {
+    if budget.is_over() {
         unfinished(&mut found, &left);
         return end(found, Some(UNFINISHED));
     }
@@ -365,7 +358,7 @@ fn held(control: &Control, optimum: &Optimum, are_sought: bool) -> Control {
 fn unfinished(found: &mut Together, left: &[bool]) {
     let each = found.optima.iter_mut().zip(left);
     for (optimum, _) in each.filter(|(_, is_left)| **is_left) {
-        optimum.stopped = optimum.stopped.or(stopped(None));
+        optimum.stopped = optimum.stopped.or(Budget::of_seconds(None).stopped());
     }
 }
 

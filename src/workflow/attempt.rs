@@ -12,7 +12,7 @@ use crate::stop;
 use crate::workflow::error::WorkflowError;
 use crate::workflow::motion::{Iterate, solved};
 use crate::workflow::optimum::{
-    Active, Optimum, Shortest, SolveLimits, Violation, WholeProgram, active, violations,
+    Active, Budget, Optimum, Shortest, SolveLimits, Violation, WholeProgram, active, violations,
 };
 use crate::workflow::program::{
     Counted, PreparedTogether, multipliers_of, prepare_together, program_motions, resolve_each,
@@ -78,7 +78,7 @@ pub(crate) fn attempt(
     allowed: SolveLimits,
     observer: &mut dyn FnMut(&Iterate<'_>) -> ControlFlow<()>,
 ) -> Result<FoundTogether, WorkflowError> {
-    let began = Instant::now();
+    let (began, budget) = (Instant::now(), Budget::new(allowed));
     let watch = stop::watch(allowed.seconds);
     phase("building the model, finding start and goal");
     let resolved = resolve_each(task).map_err(stop::unless_stopped)?;
@@ -95,7 +95,7 @@ pub(crate) fn attempt(
     let first = motions[0];
     let options = Options {
         start,
-        max_seconds: allowed.seconds.map(|s| (s - setup).max(0.0)),
+        max_seconds: budget.left(),
         ..options(first.model, first.task.control, allowed)
     };
     phase("ordering and first factorisation");
@@ -106,8 +106,7 @@ pub(crate) fn attempt(
         combined: task.combined,
         solver: Solver::new(program, options.clone()),
         options,
-        began,
-        seconds: allowed.seconds,
+        budget,
         observer,
     };
     let solution = solves.solve(&point)?;

@@ -12,11 +12,10 @@ use crate::workflow::accuracy::{
 use crate::workflow::attempt::FoundTogether;
 use crate::workflow::error::WorkflowError;
 use crate::workflow::motion::{Iterate, discrete_trajectory};
-use crate::workflow::optimise::{displaced, is_infeasible, is_unreached, optimise_task, stopped};
-use crate::workflow::optimum::{Optimum, SolveLimits, WholeProgram, seconds_left};
+use crate::workflow::optimise::{displaced, is_infeasible, is_unreached, optimise_task};
+use crate::workflow::optimum::{Budget, Optimum, SolveLimits, WholeProgram};
 use crate::workflow::remark::phase;
 use std::ops::ControlFlow;
-use std::time::Instant;
 
 /// Deviation of the motion under the optimal voltages that is confirmed where no accuracy is set, as a part of the path length.
 pub const ACCURACY: f64 = 0.01;
@@ -91,9 +90,8 @@ pub fn optimise_together(
     let mut solves = GridSolves {
         task: &task,
         tolerance: f64::INFINITY,
-        allowed: limits,
+        budget: Budget::new(limits),
         observer,
-        began: Instant::now(),
         iterations: 0,
     };
     match (wanted, are_given) {
@@ -109,23 +107,13 @@ struct GridSolves<'a, 'o> {
     task: &'a ControlTask<'a>,
     /// Greatest tolerance of the solver.
     tolerance: f64,
-    allowed: SolveLimits,
+    budget: Budget,
     observer: &'o mut dyn FnMut(usize, &Iterate<'_>) -> ControlFlow<()>,
-    began: Instant,
     /// Iterations of all of them.
     iterations: usize,
 }
 
 impl GridSolves<'_, '_> {
-    fn left(&self) -> Option<f64> {
-        seconds_left(self.allowed.seconds, self.began)
-    }
-
-    /// Returns the reason why nothing more may be begun, if there is one.
-    fn stopped(&self) -> Option<Status> {
-        stopped(self.left())
-    }
-
     /// Intervals of the motions times a factor.
     fn times(&self, factor: usize) -> Vec<usize> {
         let motions = self.task.motions.iter();
@@ -158,10 +146,7 @@ impl GridSolves<'_, '_> {
         controls: &[Control],
         earlier: Option<&FoundTogether>,
     ) -> Result<FoundTogether, WorkflowError> {
-        let limits = SolveLimits {
-            seconds: self.left(),
-            ..self.allowed
-        };
+        let limits = self.budget.left_of_limits();
         let mut task = self.task.with(controls);
         for (k, motion) in task.motions.iter_mut().enumerate() {
             motion.earlier = earlier.map(|found| &found.optima[k].motion);
@@ -178,7 +163,7 @@ impl GridSolves<'_, '_> {
         let controls = self.on(&self.times(1));
         let found = self.solve_problems(&controls, None)?;
         let is_unreached = controls.len() > 1 && is_unreached(&found.optima[0].solution);
-        if !is_unreached || self.stopped().is_some() {
+        if !is_unreached || self.budget.is_over() {
             return Ok(found);
         }
         phase("second, displaced initial guesses");
@@ -210,7 +195,7 @@ impl GridSolves<'_, '_> {
         let optimum = &first.optima[0];
         let (own, size) = (optimum.motion.intervals(), optimum.solution.x.len());
         // Intervals that do not resolve the motion may leave none.
-        let is_open = is_infeasible(optimum.solution.status) && self.stopped().is_none();
+        let is_open = is_infeasible(optimum.solution.status) && !self.budget.is_over();
         if is_open
             && FINER * size <= VARIABLES
             && let Ok(found) = self.solve(&self.times(FINER), None)
@@ -230,7 +215,7 @@ impl GridSolves<'_, '_> {
         let mut finest = None;
         'grids: for times in TIMES {
             for from_before in [true, false] {
-                if self.stopped().is_some() || times * size > VARIABLES {
+                if self.budget.is_over() || times * size > VARIABLES {
                     break 'grids;
                 }
                 let earlier = from_before.then(|| before.as_ref().unwrap_or(&first));
@@ -248,7 +233,7 @@ impl GridSolves<'_, '_> {
                 }
             }
         }
-        first.optima[0].stopped = self.stopped();
+        first.optima[0].stopped = self.budget.stopped();
         let notes = vec![finest.map(not_reproduced)];
         Ok(self.end(first, notes))
     }
@@ -280,7 +265,7 @@ impl GridSolves<'_, '_> {
             }
             found = next;
         }
-        let (stopped, are_several) = (self.stopped(), found.optima.len() > 1);
+        let (stopped, are_several) = (self.budget.stopped(), found.optima.len() > 1);
         let motions = self.task.motions.iter().zip(&mut found.optima);
         let notes = motions
             .zip(of_problems)
@@ -314,7 +299,7 @@ impl GridSolves<'_, '_> {
         let grown = before.optima.iter().zip(intervals);
         let grown = grown.map(|(one, &n)| n as f64 / one.motion.intervals() as f64);
         let variables = before.whole.variables as f64 * grown.fold(1.0, f64::max);
-        if self.stopped().is_some() {
+        if self.budget.is_over() {
             return Err(STOPPED);
         }
         if variables > VARIABLES as f64 {
@@ -322,12 +307,12 @@ impl GridSolves<'_, '_> {
         }
         let is_found = |found: &FoundTogether| found.meets_equations();
         let mut next = self.solve(intervals, Some(before)).ok().filter(is_found);
-        if next.is_none() && self.stopped().is_none() {
+        if next.is_none() && !self.budget.is_over() {
             next = self.solve(intervals, None).ok().filter(is_found);
         }
-        let mut next = next.ok_or_else(|| match self.stopped() {
-            Some(_) => STOPPED,
-            None => "a finer grid was not solved",
+        let mut next = next.ok_or_else(|| match self.budget.is_over() {
+            true => STOPPED,
+            false => "a finer grid was not solved",
         })?;
         next.carry(before);
         Ok(next)
@@ -361,8 +346,8 @@ impl GridSolves<'_, '_> {
         if let AccuracyTarget::Below(error) = wanted {
             self.tolerance = SOLVER * error;
         }
-        let (seconds, began) = (self.allowed.seconds, self.began);
-        let stop = || stopped(seconds_left(seconds, began)).map(Status::word);
+        let budget = self.budget;
+        let stop = || budget.stopped().map(Status::word);
         let refined = refine(wanted, OF_CONTROL, stop, |times, before| {
             let mut found = match before {
                 Some(_) => self.solve(&self.times(times), before),
@@ -375,7 +360,7 @@ impl GridSolves<'_, '_> {
         let mut found = refined.run;
         for optimum in &mut found.optima {
             if optimum.meets_equations() && !optimum.is_solved() {
-                optimum.stopped = self.stopped();
+                optimum.stopped = self.budget.stopped();
             }
         }
         let notes = vec![None; found.optima.len()];

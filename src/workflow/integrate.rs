@@ -16,8 +16,7 @@ use crate::workflow::accuracy::{
 use crate::workflow::control_loop::{Counts, Loop, horizon};
 use crate::workflow::error::WorkflowError;
 use crate::workflow::memory;
-use crate::workflow::optimise::stopped;
-use crate::workflow::optimum::seconds_left;
+use crate::workflow::optimum::Budget;
 use crate::workflow::remark::phase;
 use crate::workflow::tolerance::{ByTolerance, EstimatedError, Found};
 use std::ops::ControlFlow;
@@ -84,8 +83,7 @@ pub fn integrate_to(
     seconds: Option<f64>,
     observer: &mut dyn FnMut(usize, &Model, &DiscreteTrajectory) -> ControlFlow<()>,
 ) -> Result<Refined<Simulated>, WorkflowError> {
-    let began = Instant::now();
-    let left = || seconds_left(seconds, began);
+    let budget = Budget::of_seconds(seconds);
     let (first, _) = grid(task);
     // Sampled voltages may change within a step.
     let order = match task.voltages {
@@ -95,7 +93,7 @@ pub fn integrate_to(
     refine(
         wanted,
         order,
-        || stopped(left()).map(Status::word),
+        || budget.stopped().map(Status::word),
         |times, _| {
             let steps = first * times;
             let task = Simulation {
@@ -106,7 +104,7 @@ pub fn integrate_to(
                 observer(steps, model, discrete)
             })?;
             let is_complete = run.failure.is_none() && run.discrete.intervals() == steps;
-            let status = match (&run.failure, stopped(left())) {
+            let status = match (&run.failure, budget.stopped()) {
                 _ if is_complete => "simulated",
                 (Some(_), _) => "step_failed",
                 (None, stopped) => stopped.map_or("stopped", Status::word),

@@ -261,8 +261,8 @@ impl Distance {
 }
 
 /// In words, as in `0.0210 rad, 3.40 mm`.
-impl std::fmt::Display for Distance {
-    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+impl fmt::Display for Distance {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         write!(
             f,
             "{} rad, {} mm",

@@ -13,11 +13,10 @@ use crate::stop;
 use crate::workflow::attempt::{FoundTogether, attempt};
 use crate::workflow::error::WorkflowError;
 use crate::workflow::motion::Iterate;
-use crate::workflow::optimum::{Optimum, Restarted, Shortest, SolveLimits, seconds_left};
+use crate::workflow::optimum::{Budget, Optimum, Restarted, Shortest, SolveLimits};
 use crate::workflow::remark::phase;
 use crate::workflow::solves::{put_after, put_before};
 use std::ops::ControlFlow;
-use std::time::Instant;
 
 /// Solves a control problem, from an `earlier` solution where one is given; from its guess, and from others where that leads nowhere;
 /// `observer` sees every iterate.
@@ -45,17 +44,13 @@ pub(super) fn optimise_task(
     allowed: SolveLimits,
     observer: &mut dyn FnMut(&Iterate<'_>) -> ControlFlow<()>,
 ) -> Result<FoundTogether, WorkflowError> {
-    let began = Instant::now();
+    let budget = Budget::new(allowed);
     let mut found = attempt(task, allowed, observer)?;
     if let [motion] = task.motions[..]
         && is_unreached(&found.optima[0].solution)
     {
-        let left = SolveLimits {
-            seconds: seconds_left(allowed.seconds, began),
-            ..allowed
-        };
         let first = found.optima.remove(0);
-        let second = second_starts(motion, first, left, observer);
+        let second = second_starts(Further { motion, budget }, first, observer);
         found.optima.push(second);
     }
     Ok(found)
@@ -69,23 +64,17 @@ const SLOW: &str = "a slow motion";
 /// Solves a control problem again from other starts, where the first one led nowhere: from the shortest motion, where that is as short as is
 /// asked for, and, unless it is longer, from a displaced guess; then it looks for a motion as slow as the slowest mode. The first solve, with
 /// the iterations of all, where none leads anywhere.
-pub(crate) fn second_starts(
-    motion: MotionTask<'_>,
+fn second_starts(
+    further: Further<'_>,
     first: Optimum,
-    allowed: SolveLimits,
     observer: &mut dyn FnMut(&Iterate<'_>) -> ControlFlow<()>,
 ) -> Optimum {
-    let further = Further {
-        motion,
-        allowed,
-        began: Instant::now(),
-    };
     let mut found = others(&further, first, observer);
     if !found.meets_equations() {
         found = advised(&further, found, observer);
     }
     if !found.meets_equations() {
-        found.stopped = further.stopped();
+        found.stopped = further.budget.stopped();
     }
     found
 }
@@ -99,19 +88,19 @@ fn others(
     let MotionTask {
         control, earlier, ..
     } = further.motion;
-    if further.is_over() {
+    if further.budget.is_over() {
         return found;
     }
     phase("looking for the shortest motion");
     let (said, motion) = shortest(further, &mut found);
     found.shortest = said;
-    if let (Some(motion), false) = (motion, further.is_over()) {
+    if let (Some(motion), false) = (motion, further.budget.is_over()) {
         phase("solving from the shortest motion");
         let start = (control, Some(&motion));
         found = replaced(further, found, start, SHORTEST, observer);
     }
     let is_done = found.meets_equations() || matches!(said, Shortest::Longer(_));
-    if !is_done && earlier.is_none() && !further.is_over() {
+    if !is_done && earlier.is_none() && !further.budget.is_over() {
         phase(DISPLACED);
         let displaced = displaced(control, &found);
         found = replaced(further, found, (&displaced, None), DISPLACED, observer);
@@ -125,11 +114,13 @@ fn advised(
     mut found: Optimum,
     observer: &mut dyn FnMut(&Iterate<'_>) -> ControlFlow<()>,
 ) -> Optimum {
-    if further.is_over() {
+    if further.budget.is_over() {
         return found;
     }
     phase("looking for the slowest mode");
-    found.half_period = further.within(|| half_period(&found));
+    let watch = stop::watch(further.budget.left());
+    found.half_period = half_period(&found);
+    drop(watch);
     if matches!(found.shortest, Shortest::Longer(_) | Shortest::AsGiven) {
         return found;
     }
@@ -139,7 +130,7 @@ fn advised(
     };
     found.shortest = said;
     match motion {
-        Some(motion) if !further.is_over() => {
+        Some(motion) if !further.budget.is_over() => {
             let start = (further.motion.control, Some(&motion));
             replaced(further, found, start, SLOW, observer)
         }
@@ -269,7 +260,7 @@ fn squared_ranges(control: &Control, model: &Model) -> f64 {
 /// Looks for the shortest motion that is no shorter than the one asked for, where that was not found: from the guess of the problem and
 /// from a displaced one. What it says, and the motion where that is as short as is asked for; its iterations are put to those of the
 /// `first` solve.
-pub(crate) fn shortest(further: &Further<'_>, first: &mut Optimum) -> (Shortest, Option<Solution>) {
+fn shortest(further: &Further<'_>, first: &mut Optimum) -> (Shortest, Option<Solution>) {
     let MotionTask {
         control, earlier, ..
     } = further.motion;
@@ -302,10 +293,7 @@ pub(crate) fn shortest(further: &Further<'_>, first: &mut Optimum) -> (Shortest,
 
 /// Looks for a motion that is about as slow as the slowest mode, where that is slower than what is asked for and no other start led anywhere.
 /// As of [`shortest`]; `None` if it finds none, too.
-pub(crate) fn slow(
-    further: &Further<'_>,
-    first: &mut Optimum,
-) -> Option<(Shortest, Option<Solution>)> {
+fn slow(further: &Further<'_>, first: &mut Optimum) -> Option<(Shortest, Option<Solution>)> {
     let control = further.motion.control;
     let Duration::Given(given) = control.duration else {
         return None;
@@ -335,7 +323,7 @@ fn solved(
     earlier: Option<&Solution>,
     iterations: usize,
 ) -> Option<Optimum> {
-    if further.is_over() {
+    if further.budget.is_over() {
         return None;
     }
     let mut go_on = |_: &Iterate<'_>| ControlFlow::Continue(());
@@ -362,7 +350,7 @@ fn outcome(found: &Optimum, given: f64) -> Shortest {
 }
 
 /// Iterations of the second start; an optimum is found from it soon or not at all.
-pub(crate) const ITERATIONS: usize = 100;
+const ITERATIONS: usize = 100;
 
 /// Returns true if a solve ended for want of a motion that keeps goal and limits.
 pub(crate) fn is_infeasible(status: Status) -> bool {
@@ -376,15 +364,6 @@ const MANY: usize = 50;
 pub(crate) fn is_unreached(solution: &SolverResult) -> bool {
     let is_long = solution.iterations.len() > MANY;
     is_infeasible(solution.status) || (solution.status == Status::IterationLimit && is_long)
-}
-
-/// Returns the reason why no further solve may be begun with these seconds left, if there is one.
-pub(crate) fn stopped(left: Option<f64>) -> Option<Status> {
-    if stop::requested() {
-        return Some(Status::Interrupted);
-    }
-    let is_late = left.is_some_and(|seconds| seconds <= 0.0);
-    stop::reason().or(is_late.then_some(Status::TimeLimit))
 }
 
 /// The problem with another guess: the motion under the voltages of the goal, or half of the largest ones; interpolated where it
@@ -410,47 +389,26 @@ pub(crate) fn displaced(control: &Control, first: &Optimum) -> Control {
 }
 
 /// Further starts of a control problem, and what they may take.
-pub(crate) struct Further<'a> {
-    pub(crate) motion: MotionTask<'a>,
-    pub(crate) allowed: SolveLimits,
-    pub(crate) began: Instant,
+struct Further<'a> {
+    motion: MotionTask<'a>,
+    budget: Budget,
 }
 
 impl Further<'_> {
-    /// Seconds that are left, where they are limited.
-    fn seconds(&self) -> Option<f64> {
-        seconds_left(self.allowed.seconds, self.began)
-    }
-
-    /// Returns the reason why nothing more may be begun, if there is one.
-    pub(crate) fn stopped(&self) -> Option<Status> {
-        stopped(self.seconds())
-    }
-
-    /// Returns true if nothing more may be begun.
-    pub(crate) fn is_over(&self) -> bool {
-        self.stopped().is_some()
-    }
-
-    /// Does a piece of work that asks whether it is to stop.
-    pub(crate) fn within<T>(&self, work: impl FnOnce() -> T) -> T {
-        let _watch = stop::watch(self.seconds());
-        work()
-    }
-
     /// Solves a problem of the same system, within a number of iterations; none where it cannot be stated.
-    pub(crate) fn solve(
+    fn solve(
         &self,
         control: &Control,
         earlier: Option<&Solution>,
         iterations: usize,
         observer: &mut dyn FnMut(&Iterate<'_>) -> ControlFlow<()>,
     ) -> Option<Optimum> {
-        let most = self.allowed.iterations;
+        let left = self.budget.left_of_limits();
+        let most = left.iterations;
         let most = most.unwrap_or(self.motion.control.solver.max_iterations);
         let limits = SolveLimits {
             iterations: Some(iterations.min(most)),
-            seconds: self.seconds(),
+            ..left
         };
         let motion = MotionTask {
             control,

@@ -8,6 +8,7 @@ use crate::ipopt::SolverResult;
 use crate::math::significant;
 use crate::model::{JointReading, Model, Parameter, Role, Size, System, joint_unit};
 use crate::nlp::{Nlp, Status};
+use crate::stop;
 use crate::workflow::hold_check::{Afterwards, Repeated, afterwards, repeated};
 use crate::workflow::motion::Distance;
 use crate::workflow::reasons::Cause;
@@ -25,10 +26,56 @@ pub struct SolveLimits {
     pub seconds: Option<f64>,
 }
 
-/// Seconds that are left of those allowed since an instant, where they are limited.
-pub(crate) fn seconds_left(allowed: Option<f64>, began: Instant) -> Option<f64> {
-    let spent = began.elapsed().as_secs_f64();
-    allowed.map(|limit| (limit - spent).max(0.0))
+/// Limits of several solves since they began.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Budget {
+    limits: SolveLimits,
+    began: Instant,
+}
+
+impl Budget {
+    /// Limits from now on.
+    pub(crate) fn new(limits: SolveLimits) -> Self {
+        let began = Instant::now();
+        Self { limits, began }
+    }
+
+    /// A number of seconds from now on.
+    pub(crate) fn of_seconds(seconds: Option<f64>) -> Self {
+        Self::new(SolveLimits {
+            iterations: None,
+            seconds,
+        })
+    }
+
+    /// Seconds that are left, where they are limited.
+    pub(crate) fn left(&self) -> Option<f64> {
+        let spent = self.began.elapsed().as_secs_f64();
+        let seconds = self.limits.seconds;
+        seconds.map(|limit| (limit - spent).max(0.0))
+    }
+
+    /// The limits of one solve with these seconds.
+    pub(crate) fn left_of_limits(&self) -> SolveLimits {
+        SolveLimits {
+            seconds: self.left(),
+            ..self.limits
+        }
+    }
+
+    /// Returns the reason why nothing more may be begun, if there is one.
+    pub(crate) fn stopped(&self) -> Option<Status> {
+        if stop::requested() {
+            return Some(Status::Interrupted);
+        }
+        let is_late = self.left().is_some_and(|seconds| seconds <= 0.0);
+        stop::reason().or(is_late.then_some(Status::TimeLimit))
+    }
+
+    /// Returns true if nothing more may be begun.
+    pub(crate) fn is_over(&self) -> bool {
+        self.stopped().is_some()
+    }
 }
 
 /// The program of one motion or several in numbers, with its result.

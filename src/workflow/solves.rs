@@ -12,11 +12,10 @@ use crate::stop;
 use crate::workflow::error::WorkflowError;
 use crate::workflow::gap::Gap;
 use crate::workflow::motion::{Iterate, solved};
-use crate::workflow::optimum::seconds_left;
+use crate::workflow::optimum::Budget;
 use crate::workflow::program::{ProgramMotion, Programs, joined, multipliers_of, states_of_rest};
 use crate::workflow::remark::phase;
 use std::ops::ControlFlow;
-use std::time::Instant;
 
 /// Maximum numbers of repeated solves with other charts of its rotations, and with the objective scaled by its size.
 const CHARTS: usize = 4;
@@ -29,9 +28,7 @@ pub(super) struct Solves<'a, 'm> {
     pub(super) combined: Combined,
     /// Options of the first solve.
     pub(super) options: Options,
-    /// The time from which on seconds count, and how many there are.
-    pub(super) began: Instant,
-    pub(super) seconds: Option<f64>,
+    pub(super) budget: Budget,
     /// Function that sees every iterate.
     pub(super) observer: &'a mut dyn FnMut(&Iterate<'_>) -> ControlFlow<()>,
     pub(super) solver: Solver<Joined<Transcription<'m>>>,
@@ -105,7 +102,7 @@ impl Solves<'_, '_> {
                 break;
             };
             let options = Options {
-                max_seconds: self.left(),
+                max_seconds: self.budget.left(),
                 start: Start::PRIMAL,
                 ..self.options.clone()
             };
@@ -159,7 +156,7 @@ impl Solves<'_, '_> {
                 break;
             };
             phase("solving again, with the objective scaled by its size");
-            options.max_seconds = self.left();
+            options.max_seconds = self.budget.left();
             self.solver.set_options(options.clone());
             let again = self.solve(&solution.to_point())?;
             let program = self.solver.program_mut();
@@ -188,11 +185,6 @@ impl Solves<'_, '_> {
         tracing::info!(left = gap.left, "end");
         solution.status = gap.status(solution.status);
         Ok((solution, gap))
-    }
-
-    /// Seconds that are left.
-    fn left(&self) -> Option<f64> {
-        seconds_left(self.seconds, self.began)
     }
 }
 

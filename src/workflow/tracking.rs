@@ -60,6 +60,18 @@ pub struct TrackedPath {
 }
 
 impl TrackedPath {
+    /// A value and its reference.
+    fn new(name: String, axis: Option<usize>, [value, reference]: [Vec<f64>; 2]) -> Self {
+        let pairs = value.iter().zip(&reference);
+        Self {
+            name,
+            axis,
+            difference: pairs.map(|(value, reference)| value - reference).collect(),
+            value,
+            reference,
+        }
+    }
+
     /// The same at some of the instants, by their indices.
     pub fn at(&self, instants: &[usize]) -> Self {
         let pick = |list: &[f64]| instants.iter().map(|&k| list[k]).collect();
@@ -101,45 +113,56 @@ pub fn tracked(
         }
     }
     let of = |group: Vec<&QuantityCost>| {
-        let paths: Vec<_> = group
-            .iter()
-            .filter_map(|c| path(system, c, motion))
-            .collect();
-        let deviation = deviations(&paths);
+        let along = |motion: &Trajectory| -> Vec<TrackedPath> {
+            let paths = group.iter().filter_map(|cost| path(system, cost, motion));
+            paths.collect()
+        };
         let (kind, name, unit) = match (of_marker(group[0]), &group[0].quantity.what) {
             (Some(m), _) => ("marker", &system.markers[m].name, "m"),
             (None, &What::Joint { joint, .. }) if !group[0].quantity.is_step() => {
-                let unit = if joint_unit(system, joint) == "mm" {
-                    "m"
-                } else {
-                    "rad"
-                };
-                ("joint", &system.joints[joint].name, unit)
+                let is_length = joint_unit(system, joint) == "mm";
+                ("joint", &system.joints[joint].name, unit(is_length))
             }
             _ => return None,
         };
-        let scale = if unit == "m" { 1e-3 } else { 1.0 };
-        let again = simulated.map(|motion| {
-            let paths: Vec<_> = group
-                .iter()
-                .filter_map(|c| path(system, c, motion))
-                .collect();
-            TrackingError::from_deviations(&motion.times, &deviations(&paths), scale)
-        });
+        let own = Tracked::new(kind, name, unit, &motion.times, along(motion));
+        let again = simulated
+            .map(|motion| Tracked::new(kind, name, unit, &motion.times, along(motion)).error);
         Some(Tracked {
-            kind,
-            name: name.clone(),
-            unit,
-            error: TrackingError::from_deviations(&motion.times, &deviation, scale),
             simulated: again,
-            paths,
-            deviation,
+            ..own
         })
     };
     groups.into_iter().filter_map(of).collect()
 }
 
+/// Unit of deviations of a length, or of an angle.
+fn unit(is_length: bool) -> &'static str {
+    if is_length { "m" } else { "rad" }
+}
+
 impl Tracked {
+    /// A marker or a joint by its paths at times in ms.
+    fn new(
+        kind: &'static str,
+        name: &str,
+        unit: &'static str,
+        times: &[f64],
+        paths: Vec<TrackedPath>,
+    ) -> Self {
+        let deviation = deviations(&paths);
+        let scale = if unit == "m" { 1e-3 } else { 1.0 };
+        Self {
+            kind,
+            name: name.to_owned(),
+            unit,
+            error: TrackingError::from_deviations(times, &deviation, scale),
+            simulated: None,
+            paths,
+            deviation,
+        }
+    }
+
     /// A marker of a motion and its places in mm in another one, at each instant.
     pub(crate) fn marker(
         name: &str,
@@ -149,58 +172,23 @@ impl Tracked {
     ) -> Self {
         let of_axis = |axis: usize| {
             let value = motion.marks.iter().map(|places| places[marker][axis]);
-            let value: Vec<f64> = value.collect();
-            let reference: Vec<f64> = reference.iter().map(|place| place[axis]).collect();
-            let pairs = value.iter().zip(&reference);
-            TrackedPath {
-                name: format!("{name}_{}", ["x", "y", "z"][axis]),
-                axis: Some(axis),
-                difference: pairs.map(|(value, reference)| value - reference).collect(),
-                value,
-                reference,
-            }
+            let reference = reference.iter().map(|place| place[axis]);
+            let name = format!("{name}_{}", ["x", "y", "z"][axis]);
+            TrackedPath::new(name, Some(axis), [value.collect(), reference.collect()])
         };
-        let paths: Vec<TrackedPath> = (0..3).map(of_axis).collect();
-        let deviation = deviations(&paths);
-        Self {
-            kind: "marker",
-            name: name.to_owned(),
-            unit: "m",
-            error: TrackingError::from_deviations(&motion.times, &deviation, 1e-3),
-            simulated: None,
-            paths,
-            deviation,
-        }
+        let paths = (0..3).map(of_axis).collect();
+        Self::new("marker", name, "m", &motion.times, paths)
     }
-}
 
-impl Tracked {
     /// A coordinate of a motion, a length in mm or not, and its values in another motion, at each instant.
     pub(crate) fn coordinate(
         name: &str,
         is_length: bool,
         times: &[f64],
-        [value, reference]: [Vec<f64>; 2],
+        values: [Vec<f64>; 2],
     ) -> Self {
-        let pairs = value.iter().zip(&reference);
-        let difference: Vec<f64> = pairs.map(|(value, reference)| value - reference).collect();
-        let deviation: Vec<f64> = difference.iter().map(|d| d.abs()).collect();
-        let (unit, scale) = if is_length { ("m", 1e-3) } else { ("rad", 1.0) };
-        Self {
-            kind: "joint",
-            name: name.to_owned(),
-            unit,
-            error: TrackingError::from_deviations(times, &deviation, scale),
-            simulated: None,
-            paths: vec![TrackedPath {
-                name: name.to_owned(),
-                axis: None,
-                value,
-                reference,
-                difference,
-            }],
-            deviation,
-        }
+        let path = TrackedPath::new(name.to_owned(), None, values);
+        Self::new("joint", name, unit(is_length), times, vec![path])
     }
 }
 
@@ -236,18 +224,12 @@ pub(crate) fn path(
     };
     let at = |t: &f64| Signal::at(reference, *t);
     let reference: Vec<f64> = motion.times.iter().map(at).collect();
-    let period = cost.quantity.period(system);
-    let difference = value.iter().zip(&reference).map(|(value, reference)| {
-        let far = value - reference;
-        period.map_or(far, |period| far - period * (far / period).round())
-    });
-    Some(TrackedPath {
-        difference: difference.collect(),
-        name,
-        axis,
-        value,
-        reference,
-    })
+    let mut path = TrackedPath::new(name, axis, [value, reference]);
+    if let Some(period) = cost.quantity.period(system) {
+        let turns = path.difference.iter_mut();
+        turns.for_each(|far| *far -= period * (*far / period).round());
+    }
+    Some(path)
 }
 
 /// The distance over all directions at each instant.

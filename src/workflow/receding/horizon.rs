@@ -19,8 +19,8 @@ use crate::workflow::optimum::SolveLimits;
 use crate::workflow::receding::layout::Reference;
 use crate::workflow::receding::program::Program;
 use crate::workflow::regulator::{NOTHING_HOLDS, NoRegulator, predicting, rate_weight};
-use std::fmt;
 use std::ops::ControlFlow;
+use thiserror::Error;
 
 /// Words on integrals.
 const INTEGRAL: &str =
@@ -352,37 +352,27 @@ fn rates(model: &Model, task: &Regulator, (of, inert): (&[usize], &[usize]), h: 
 }
 
 /// Reason why there is no controller with a receding horizon.
-#[derive(Clone, Debug, PartialEq)]
+#[derive(Clone, Debug, PartialEq, Error)]
 pub enum NoHorizon {
     /// There is no regulator of the motion, whose costs it takes.
+    #[error(transparent)]
     Regulator(NoRegulator),
     /// Nothing holds the goal after the end.
+    #[error("the goal is not held after the end: {0}")]
     NotHeld(String),
     /// The program of the horizon does not exist.
+    #[error("{0}")]
     Program(String),
     /// Something of the problem is not offered.
+    #[error("{0}, which a receding horizon does not take in")]
     NotOffered(&'static str),
     /// The problem has no optimum that was found.
+    #[error("{0}")]
     Unsolved(String),
     /// It was time to stop.
+    #[error("{}", .0.0.word())]
     Stopped(Stopped),
 }
-
-impl fmt::Display for NoHorizon {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        match self {
-            Self::Regulator(reason) => reason.fmt(f),
-            Self::NotHeld(reason) => write!(f, "the goal is not held after the end: {reason}"),
-            Self::Program(reason) | Self::Unsolved(reason) => f.write_str(reason),
-            Self::Stopped(Stopped(status)) => f.write_str(status.word()),
-            Self::NotOffered(what) => {
-                write!(f, "{what}, which a receding horizon does not take in")
-            }
-        }
-    }
-}
-
-impl std::error::Error for NoHorizon {}
 
 impl NoHorizon {
     /// The same as an error at a place of a problem, with words in front.

@@ -17,7 +17,7 @@ use crate::feedback::{
 };
 use nalgebra::{DMatrix, DVector};
 use serde::Serialize;
-use std::fmt;
+use thiserror::Error;
 
 /// Most entries of a state.
 pub(super) const MOST: usize = 1500;
@@ -85,41 +85,32 @@ pub struct RegulatedStep {
 }
 
 /// Reason why there is no regulator.
-#[derive(Clone, Debug, PartialEq)]
+#[derive(Clone, Debug, PartialEq, Error)]
 pub enum NoRegulator {
     /// The model has no state of this kind.
+    #[error("{0}")]
     State(NoState),
     /// No input is sought.
+    #[error("no voltage or load is sought that could be fed back")]
     NoInput,
     /// The state is too large.
+    #[error("its state has {0} entries, more than {most}", most = MOST)]
     Large(usize),
     /// A step is singular.
+    #[error("the linearised step of interval {0} is singular")]
     Singular(usize),
     /// A step of the motion fails.
+    #[error("{0}")]
     Step(String),
     /// The recursion fails at a step.
+    #[error("the Riccati recursion has no result in interval {0}")]
     Recursion(usize),
     /// The state does not follow from what is measured.
+    #[error("no observer: {0}")]
     Observer(String),
     /// It was time to stop.
+    #[error("the run was stopped before")]
     Stopped,
-}
-
-impl fmt::Display for NoRegulator {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        match self {
-            Self::State(reason) => write!(f, "{reason}"),
-            Self::NoInput => f.write_str("no voltage or load is sought that could be fed back"),
-            Self::Large(size) => write!(f, "its state has {size} entries, more than {MOST}"),
-            Self::Singular(k) => write!(f, "the linearised step of interval {k} is singular"),
-            Self::Step(error) => f.write_str(error),
-            Self::Observer(reason) => write!(f, "no observer: {reason}"),
-            Self::Stopped => f.write_str("the run was stopped before"),
-            Self::Recursion(k) => {
-                write!(f, "the Riccati recursion has no result in interval {k}")
-            }
-        }
-    }
 }
 
 /// A residual of the Riccati equations from which on gains are doubtful.
