@@ -19,10 +19,9 @@
 
 use crate::control::problem::{Channel, Identification, Recording};
 use crate::identify::error::IdentifyError;
-use crate::identify::fit::{Fit, fit};
+use crate::identify::fit::{Data, Fit, Series, fit, weighted};
 use crate::identify::information::Information;
 use crate::identify::prediction::{Grid, Unknowns, count_of_start, predict};
-use crate::identify::residuals::{Data, Series};
 use crate::model::System;
 use crate::stop;
 use nalgebra::{DMatrix, DVector};
@@ -117,7 +116,7 @@ impl HeldOut {
                 break;
             }
         }
-        let whole = weighted(&found.prediction.derivatives, &data.deviations);
+        let whole = weighted(&found.prediction.derivatives, &data);
         let residuals = &data.values - &found.prediction.values;
         let mut residuals = residuals.component_div(&data.deviations);
         let n = (residuals.len() - count) as f64;
@@ -152,14 +151,6 @@ impl HeldOut {
             p,
         })
     }
-}
-
-fn weighted(derivatives: &DMatrix<f64>, deviations: &DVector<f64>) -> DMatrix<f64> {
-    let mut out = derivatives.clone();
-    for (mut row, deviation) in out.row_iter_mut().zip(deviations.iter()) {
-        row /= *deviation;
-    }
-    out
 }
 
 /// Removes what changes of the start make up for.

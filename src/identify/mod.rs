@@ -4,7 +4,7 @@
 //! given, has the exact derivatives of its discrete equations `c(y, p) = 0` by motion and constants, so that the motion changes by
 //! `S = −(∂c/∂y)⁻¹ ∂c/∂p`. Readings are interpolated between instants (`readout`), and predictions of
 //! two grids are extrapolated to steps of zero length (`prediction`). `fit` is the method of Levenberg and Marquardt, `information`
-//! the covariance and what is not determined, `residuals` the deviations, `assessment` the checks and what to measure next, `refine` the whole with
+//! the covariance and what is not determined, `assessment` the checks and what to measure next, `refine` the whole with
 //! the states at starts that were sought.
 
 mod assessment;
@@ -14,13 +14,11 @@ mod information;
 mod prediction;
 mod readout;
 mod refine;
-mod residuals;
 mod setup;
 
 pub use assessment::{Experiment, HeldOut, Rises, Whiteness, ljung_box};
 pub use error::IdentifyError;
-pub use fit::{Ended, Fit, fit};
+pub use fit::{Ended, Fit, Series, fit};
 pub use information::{Information, Product, Undetermined};
 pub use prediction::{Grid, Prediction, Unknowns, predict};
 pub use refine::{Bias, FoundStart, Identified, NONE, first_model, found_starts, identify};
-pub use residuals::Series;

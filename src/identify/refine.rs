@@ -6,10 +6,9 @@ use crate::identify::assessment::{
     Experiment, HeldOut, LEVEL, Rises, Whiteness, check_deviations, ljung_box,
 };
 use crate::identify::error::IdentifyError;
-use crate::identify::fit::{Fit, fit};
+use crate::identify::fit::{Data, Fit, Series, fit};
 use crate::identify::information::Information;
 use crate::identify::prediction::{Grid, Unknowns, count_of_start};
-use crate::identify::residuals::{Data, Series};
 use crate::identify::setup::Setup;
 use crate::model::{Model, System, check_parameters, joint_unit};
 use crate::stop;

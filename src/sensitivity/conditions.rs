@@ -1,11 +1,12 @@
 //! The conditions of an optimum at a point, over the squares of those variables that enter by squares alone.
 //!
 //! The linear system of the derivatives of an optimum, over unknowns that no bound holds and equations that hold.
+//!
+//! Bounds that an optimum has reached: the multiplier of such a bound is greater than the distance from it.
 
 use crate::kkt::{Plan, Solver, Unknown};
 use crate::nlp::squares::{InSquares, Squares};
 use crate::nlp::{Bounds, Entries, Multipliers, Nlp, Stage};
-use crate::sensitivity::active_set::Place;
 use crate::sensitivity::check::NoSensitivity;
 
 /// A program at a point with multipliers, and its derivatives there.
@@ -201,7 +202,7 @@ pub(super) struct Linear {
     rows: Vec<Option<usize>>,
     /// Entries of Hessian and Jacobian that are in the matrix.
     kept: [Vec<usize>; 2],
-    places: Vec<[u32; 2]>,
+    matrix: Matrix,
     values: Vec<f64>,
     /// Unknowns that are variables.
     free: usize,
@@ -233,32 +234,25 @@ impl Linear {
                 columns: free,
             });
         }
-        let (mut kept, mut places) = ([Vec::new(), Vec::new()], Vec::new());
-        let matrices = [(hessian, &columns), (jacobian, &rows)];
-        for ((entries, numbers), kept) in matrices.into_iter().zip(&mut kept) {
-            for (entry, (&row, &col)) in entries.rows.iter().zip(&entries.cols).enumerate() {
-                let place = (numbers[row as usize], columns[col as usize]);
-                if let (Some(row), Some(col)) = place {
-                    kept.push(entry);
-                    places.push([row as u32, col as u32]);
-                }
-            }
-        }
+        let mut matrix = Matrix::default();
+        let kept = [
+            matrix.add(hessian, (&columns, &columns)),
+            matrix.add(jacobian, (&rows, &columns)),
+        ];
         let kinds = stages.map(|stages| {
             let all = columns.iter().zip(stages).filter(|(c, _)| c.is_some());
             let mut kinds: Vec<Unknown> = all.map(|(_, &stage)| stage.into()).collect();
             kinds.resize(order, Unknown::Equality);
             kinds
         });
-        let [at_rows, at_cols]: [Vec<u32>; 2] =
-            [0, 1].map(|side| places.iter().map(|p| p[side]).collect());
+        let plan = Plan::new(order, &matrix.rows, &matrix.cols, kinds.as_deref());
         Ok(Self {
-            solver: Solver::new(Plan::new(order, &at_rows, &at_cols, kinds.as_deref())),
-            values: vec![0.0; places.len()],
+            solver: Solver::new(plan),
+            values: vec![0.0; matrix.rows.len()],
             columns,
             rows,
             kept,
-            places,
+            matrix,
             free,
         })
     }
@@ -344,13 +338,44 @@ impl Linear {
     /// Hands on each term of the product of the matrix with a solution, with its row.
     #[inline(always)]
     fn each_term(&self, solution: &[f64], mut add: impl FnMut(usize, f64)) {
-        for (&[row, col], value) in self.places.iter().zip(&self.values) {
+        let places = self.matrix.rows.iter().zip(&self.matrix.cols);
+        for ((&row, &col), value) in places.zip(&self.values) {
             let (row, col) = (row as usize, col as usize);
             add(row, value * solution[col]);
             if row != col {
                 add(col, value * solution[row]);
             }
         }
+    }
+}
+
+/// Rows and columns of the entries of a matrix of conditions.
+#[derive(Debug, Default)]
+pub(crate) struct Matrix {
+    pub(crate) rows: Vec<u32>,
+    pub(crate) cols: Vec<u32>,
+}
+
+impl Matrix {
+    pub(crate) fn push(&mut self, row: usize, col: usize) {
+        self.rows.push(row as u32);
+        self.cols.push(col as u32);
+    }
+
+    /// Adds the entries whose row and column are unknowns; returns which they are.
+    pub(crate) fn add(
+        &mut self,
+        entries: &Entries,
+        (rows, cols): (&[Option<usize>], &[Option<usize>]),
+    ) -> Vec<usize> {
+        let mut kept = Vec::new();
+        for (entry, (&row, &col)) in entries.rows.iter().zip(&entries.cols).enumerate() {
+            if let (Some(row), Some(col)) = (rows[row as usize], cols[col as usize]) {
+                self.push(row, col);
+                kept.push(entry);
+            }
+        }
+        kept
     }
 }
 
@@ -361,4 +386,134 @@ pub(super) fn largest(list: &[f64]) -> f64 {
             true => f64::INFINITY,
             false => largest.max(value.abs()),
         })
+}
+
+/// A variable or an inequality relative to its bounds.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) enum Place {
+    /// Between its bounds: it follows from the conditions of the optimum.
+    Free,
+    /// At its lower bound.
+    Lower,
+    /// At its upper bound.
+    Upper,
+    /// An equation.
+    Equation,
+    /// Held at its value, or left out.
+    Held,
+}
+
+impl Place {
+    /// Returns true if a multiplier holds it.
+    pub(super) fn is_reached(self) -> bool {
+        matches!(self, Self::Lower | Self::Upper)
+    }
+
+    /// Sign of the multiplier in `∇f + Jᵀy + z = 0`: negative at a lower bound.
+    pub(super) fn sign(self) -> f64 {
+        match self {
+            Self::Lower => -1.0,
+            _ => 1.0,
+        }
+    }
+}
+
+/// Places of variables; `multipliers` of their lower and upper bounds.
+pub(super) fn of_variables(
+    (x, bounds): (&[f64], &Bounds),
+    [lower, upper]: [&[f64]; 2],
+    is_held: &[bool],
+) -> Vec<Place> {
+    let place = |i: usize| {
+        let distances = [x[i] - bounds.lower[i], bounds.upper[i] - x[i]];
+        match is_held[i] || bounds.lower[i] == bounds.upper[i] {
+            true => Place::Held,
+            false => nearest(distances, [lower[i], upper[i]]),
+        }
+    };
+    (0..x.len()).map(place).collect()
+}
+
+/// Places of constraints with these values and multipliers.
+pub(super) fn of_constraints(
+    (g, bounds): (&[f64], &Bounds),
+    multipliers: &[f64],
+    is_left_out: &[bool],
+) -> Vec<Place> {
+    let place = |i: usize| {
+        let distances = [g[i] - bounds.lower[i], bounds.upper[i] - g[i]];
+        match bounds.lower[i] == bounds.upper[i] {
+            _ if is_left_out[i] => Place::Held,
+            true => Place::Equation,
+            false => nearest(distances, [-multipliers[i], multipliers[i]]),
+        }
+    };
+    (0..g.len()).map(place).collect()
+}
+
+/// The bound whose multiplier is greater than the distance from it.
+fn nearest(distances: [f64; 2], multipliers: [f64; 2]) -> Place {
+    let over = |side: usize| multipliers[side] - distances[side].max(0.0);
+    match (over(0) > 0.0, over(1) > 0.0) {
+        (true, false) => Place::Lower,
+        (false, true) => Place::Upper,
+        (true, true) if over(0) >= over(1) => Place::Lower,
+        (true, true) => Place::Upper,
+        (false, false) => Place::Free,
+    }
+}
+
+/// Parts of a program that are no parts of the optimum.
+#[derive(Clone, Debug)]
+pub struct Held {
+    /// True for each variable that is held at its value; its bounds do not count.
+    pub variables: Vec<bool>,
+    /// True for each constraint that is left out.
+    pub constraints: Vec<bool>,
+    /// Variables that enter by their squares alone while these are held, in the place of those of the program.
+    pub squares: Option<Vec<usize>>,
+}
+
+/// Side of a bound.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Side {
+    /// The lower one.
+    Lower,
+    /// The upper one.
+    Upper,
+}
+
+/// Changes with a parameter p while all unknowns stay.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct Direction {
+    /// Derivatives of variables that are held.
+    pub held: Vec<(usize, f64)>,
+    /// Derivatives of bounds of variables.
+    pub bounds: Vec<(usize, Side, f64)>,
+    /// Derivatives of bounds of constraints; both of an equation.
+    pub constraint_bounds: Vec<(usize, Side, f64)>,
+    /// Derivatives of constraints beside those through variables that are held.
+    pub constraints: Vec<(usize, f64)>,
+    /// Derivatives of the gradient of the objective beside those.
+    pub gradient: Vec<(usize, f64)>,
+    /// Derivative of the objective beside those.
+    pub objective: f64,
+}
+
+impl Side {
+    /// The place of a variable that has reached it.
+    pub(super) fn place(self) -> Place {
+        match self {
+            Self::Lower => Place::Lower,
+            Self::Upper => Place::Upper,
+        }
+    }
+
+    /// The bounds of this side.
+    pub(super) fn of(self, bounds: &Bounds) -> &[f64] {
+        match self {
+            Self::Lower => &bounds.lower,
+            Self::Upper => &bounds.upper,
+        }
+    }
 }

@@ -10,9 +10,11 @@
 //! ```
 
 use crate::nlp::{Multipliers, Nlp};
-use crate::sensitivity::active_set::{Direction, Held, Place, Side, of_constraints, of_variables};
 use crate::sensitivity::check::NoSensitivity;
-use crate::sensitivity::conditions::{Conditions, EXACT, Linear, entries, largest};
+use crate::sensitivity::conditions::{
+    Conditions, Direction, EXACT, Held, Linear, Place, Side, entries, largest, of_constraints,
+    of_variables,
+};
 use crate::sensitivity::margins::{At, Changes, Margin, Of, Range};
 
 /// Most steps of Newton's method to the optimum.

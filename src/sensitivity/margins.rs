@@ -7,8 +7,7 @@
 
 use crate::model::Model;
 use crate::nlp::Nlp;
-use crate::sensitivity::active_set::{Direction, Place, Side};
-use crate::sensitivity::conditions::Conditions;
+use crate::sensitivity::conditions::{Conditions, Direction, Place, Side};
 use nalgebra::Vector3;
 
 /// A bound, or its multiplier, that ends a range.

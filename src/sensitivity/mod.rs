@@ -12,11 +12,9 @@
 //! then the optimum is strict, and its derivatives exist (Fiacco, 1983). They hold as long as the same bounds are reached: `range` tells how far,
 //! to first order.
 //!
-//! `kernel` knows any [`Nlp`](crate::nlp::Nlp), `conditions` what holds at its optimum with its linear system, `active_set` the bounds that are
-//! reached. `optimum` is the front for control problems: `with_parameters` their program in which constants, start and goal are columns that are held,
+//! `kernel` knows any [`Nlp`](crate::nlp::Nlp), `conditions` what holds at its optimum with the bounds that are reached, and its linear system. `optimum` is the front for control problems: `with_parameters` their program in which constants, start and goal are columns that are held,
 //! `directions` what changes with each number. `check` refuses numbers before the solve.
 
-mod active_set;
 mod check;
 mod conditions;
 mod directions;
@@ -25,8 +23,9 @@ mod margins;
 mod optimum;
 mod with_parameters;
 
-pub use active_set::{Direction, Held, Side};
 pub use check::{NoSensitivity, check};
+pub(crate) use conditions::Matrix;
+pub use conditions::{Direction, Held, Side};
 pub use kernel::{Adjoint, Derivative, Kernel, Outcome};
 pub use margins::{End, Range};
 pub use optimum::{Gradients, Refusal, Sensitivity, gradients, sensitivities};

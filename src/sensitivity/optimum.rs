@@ -9,8 +9,8 @@
 use crate::control::problem::{Control, OutcomeOf, Varied, VariedOf};
 use crate::control::{Column, Solution, Transcription};
 use crate::model::{Coordinates, Model, Role, System, Time};
-use crate::sensitivity::active_set::Direction;
 use crate::sensitivity::check::NoSensitivity;
+use crate::sensitivity::conditions::Direction;
 use crate::sensitivity::directions::Directions;
 use crate::sensitivity::kernel::{Derivative, Kernel, Outcome};
 use crate::sensitivity::margins::{MarkerSlopes, Range};

@@ -8,8 +8,8 @@ use crate::control::{
 use crate::dynamics::Equilibrium;
 use crate::model::{Model, Parameter, Role, System};
 use crate::nlp::{Multipliers, Nlp};
-use crate::sensitivity::active_set::{Held, Place};
 use crate::sensitivity::check::NoSensitivity;
+use crate::sensitivity::conditions::{Held, Place};
 use crate::sensitivity::kernel::Kernel;
 
 /// A state of rest with its voltages.

@@ -1,7 +1,7 @@
 //! Control problems: solved, verified by simulations, and held after their end; of several motions together too.
 
 use crate::control::problem::{Control, ControlTask, Guess, MotionTask, SoughtHold};
-use crate::control::{Earlier, Motion, Motions, hold_obstacle};
+use crate::control::{Earlier, Motions, hold_obstacle};
 use crate::dynamics::trajectory::Trajectory;
 use crate::dynamics::{DiscreteTrajectory, EnergyExchange, out_of_domain, out_of_range};
 use crate::model::System;
@@ -72,31 +72,23 @@ pub fn solve(
     observer: &mut dyn FnMut(usize, &Iterate<'_>) -> ControlFlow<()>,
 ) -> Result<SolveResult, WorkflowError> {
     let task = MotionTask::alone(system, control).into();
-    let mut solved = solve_task(&task, request, observer)?;
-    let mut result = solved.list.remove(0);
-    result.accuracy = solved.accuracy;
+    let mut all = solve_task(&task, request, observer)?;
+    let mut result = all.list.remove(0);
+    result.accuracy = all.accuracy;
     let cut_short = result.optimum.cut_short.map(solve_messages::cut_short);
     result.remarks.warn(STOPPED_EARLY, cut_short);
     Ok(result)
-}
-
-/// Motions of a task, each with its verdict, and numbers of all of them.
-pub(super) struct Solved {
-    pub(super) list: Vec<SolveResult>,
-    pub(super) whole: WholeProgram,
-    pub(super) iterations: usize,
-    pub(super) accuracy: Option<Accuracy>,
 }
 
 /// Solves a task of one motion or several.
 ///
 /// # Errors
 /// As of [`solve`].
-pub(super) fn solve_task(
+fn solve_task(
     task: &ControlTask<'_>,
     request: SolveRequest,
     observer: &mut dyn FnMut(usize, &Iterate<'_>) -> ControlFlow<()>,
-) -> Result<Solved, WorkflowError> {
+) -> Result<MotionsResult, WorkflowError> {
     for motion in &task.motions {
         memory::of_elements(motion.system, Occasion::Factors)?;
     }
@@ -120,11 +112,21 @@ pub(super) fn solve_task(
         .map(|(((motion, control), optimum), notes)| {
             assessed(motion.system, control, optimum, found.iterations, notes)
         });
-    Ok(Solved {
-        list: list.collect(),
-        whole: found.whole,
+    let list: Vec<SolveResult> = list.collect();
+    let whole = found.whole;
+    let mut remarks = Remarks::default();
+    remarks.warn("optimality_gap", whole.wide.clone());
+    let mut each = list.iter();
+    let cut_short = each.find_map(|one| one.optimum.cut_short);
+    remarks.warn(STOPPED_EARLY, cut_short.map(solve_messages::cut_short));
+    remarks.warn("shared_inputs", held_apart(task, &list));
+    Ok(MotionsResult {
+        verdict: verdict(task, &list),
+        list,
+        whole,
         iterations: found.iterations,
         accuracy: found.accuracy,
+        remarks,
     })
 }
 
@@ -404,35 +406,16 @@ pub fn solve_motions(
     request: SolveRequest,
     observer: &mut dyn FnMut(usize, &Iterate<'_>) -> ControlFlow<()>,
 ) -> Result<MotionsResult, WorkflowError> {
-    let Solved {
-        list,
-        whole,
-        iterations,
-        accuracy,
-    } = solve_task(&motions.task(), request, observer)?;
-    let mut remarks = Remarks::default();
-    remarks.warn("optimality_gap", whole.wide.clone());
-    let mut each = list.iter();
-    let cut_short = each.find_map(|one| one.optimum.cut_short);
-    remarks.warn(STOPPED_EARLY, cut_short.map(solve_messages::cut_short));
-    remarks.warn("shared_inputs", held_apart(motions, &list));
-    Ok(MotionsResult {
-        verdict: verdict(&motions.list, &list),
-        list,
-        whole,
-        iterations,
-        accuracy,
-        remarks,
-    })
+    solve_task(&motions.task(), request, observer)
 }
 
 /// Inputs that differ by less, relative to the largest, are the same.
 const SAME: f64 = 1e-6;
 
 /// That inputs which are the same in all motions are different ones after the end, where goals are held.
-fn held_apart(motions: &Motions, list: &[SolveResult]) -> Option<String> {
-    let apart = motions.shared_inputs.iter().filter(|name| {
-        let each = motions.list.iter().zip(list);
+fn held_apart(task: &ControlTask<'_>, list: &[SolveResult]) -> Option<String> {
+    let apart = task.shared_inputs.iter().filter(|name| {
+        let each = task.motions.iter().zip(list);
         let held = each.filter_map(|(motion, result)| {
             let sources = motion.system.sources();
             let source = sources.iter().position(|source| source.name == **name)?;
@@ -453,7 +436,7 @@ fn held_apart(motions: &Motions, list: &[SolveResult]) -> Option<String> {
 }
 
 /// The verdict on all: the word of the first that is not solved, or not to the whole tolerance, and the reasons of all of these.
-fn verdict(motions: &[Motion], list: &[SolveResult]) -> Verdict {
+fn verdict(task: &ControlTask<'_>, list: &[SolveResult]) -> Verdict {
     let verdicts = || list.iter().map(|result| &result.verdict);
     let first = verdicts().find(|verdict| !verdict.is_solved);
     let weaker = verdicts().find(|verdict| verdict.word != "solved");
@@ -465,7 +448,7 @@ fn verdict(motions: &[Motion], list: &[SolveResult]) -> Verdict {
         [] => None,
         [one, ..] if are_one => Some((*one).clone()),
         _ => {
-            let named = motions.iter().zip(verdicts());
+            let named = task.motions.iter().zip(verdicts());
             let named = named.filter_map(|(motion, verdict)| {
                 let message = verdict.message.as_ref()?;
                 Some(format!("motion \"{}\": {message}", motion.name))

@@ -1,27 +1,26 @@
 //! A control problem solved from one start: boundary, guess, program, solver.
 
 use crate::control::problem::{Control, ControlTask, Duration, MotionTask};
-use crate::control::{BoundaryConditions, Carried, Costates, Solution, Transcription};
+use crate::control::{BoundaryConditions, Carried, Solution, Transcription};
 use crate::dynamics::{DiscreteTrajectory, reversed_muscle};
 use crate::ipopt::{OptionValue, Options, Solver, SolverResult};
-use crate::kinematics::Pose;
-use crate::model::{Coordinates, Model, System};
+use crate::model::{Coordinates, Model};
 use crate::nlp::joined::Places;
 use crate::nlp::{Nlp, Status};
 use crate::stop;
 use crate::workflow::error::WorkflowError;
+use crate::workflow::hold_check;
 use crate::workflow::motion::{Iterate, solved};
 use crate::workflow::optimum::{
     Active, Budget, Optimum, Shortest, SolveLimits, Violation, WholeProgram, active, violations,
 };
 use crate::workflow::program::{
-    Counted, PreparedTogether, multipliers_of, prepare_together, program_motions, resolve_each,
-    with_found,
+    Counted, PreparedTogether, ProgramMotion, multipliers_of, prepare_together, program_motions,
+    resolve_each, with_found,
 };
 use crate::workflow::remark::phase;
-use crate::workflow::resimulate::{Resimulation, resimulate};
-use crate::workflow::solves::Solves;
-use crate::workflow::{gap, hold_check};
+use crate::workflow::resimulate::resimulate;
+use crate::workflow::solves::{Solves, bound};
 use std::collections::BTreeMap;
 use std::ops::ControlFlow;
 use std::time::Instant;
@@ -121,16 +120,18 @@ pub(crate) fn attempt(
         ..WholeProgram::new(&program, &solution, gap.left)
     };
     let places = program.places().clone();
-    let mut ends = Vec::new();
-    for (number, (motion, mut part)) in motions.iter().zip(program.into_parts()).enumerate() {
+    let ends = motions.iter().zip(program.into_parts()).enumerate();
+    let ends = ends.map(|(number, (motion, mut part))| {
         let own = part_of(&places, number, &solution, &mut part);
-        let discrete = part.decode(&own.x);
-        let costates = part.costates(&own.costates);
-        let found = final_motion(motion.model, motion.boundary, &discrete, costates, &own);
-        let point = FinalPoint::new(&mut part, &own, motion.model, motion.task.control);
-        ends.push((own, discrete, found, point));
-    }
-    let mut optima = verified_optima(task, resolved, ends, setup, carried)?;
+        End::new(motion, &mut part, own)
+    });
+    let ends: Vec<End> = ends.collect();
+    let all = task.motions.iter().zip(resolved).zip(ends).zip(carried);
+    let optima = all.map(|(((one, resolved), end), carried)| {
+        let optimum = end.optimum(one, resolved, setup, carried);
+        optimum.map_err(|error| error.of_motion(one.name))
+    });
+    let mut optima = optima.collect::<Result<Vec<_>, _>>()?;
     for optimum in &mut optima {
         optimum.cut_short = cut_short;
     }
@@ -141,71 +142,128 @@ pub(crate) fn attempt(
     Ok(FoundTogether { optima, whole })
 }
 
-/// Motions with their verifications.
-fn verified_optima(
-    task: &ControlTask<'_>,
-    resolved: Vec<(Model, BoundaryConditions)>,
-    ends: Vec<End>,
-    setup: f64,
-    carried: Vec<Carried>,
-) -> Result<Vec<Optimum>, WorkflowError> {
-    let all = task.motions.iter().zip(resolved).zip(ends).zip(carried);
-    let optima = all.map(|(((one, resolved), end), carried)| {
-        let optimum = verified_optimum(*one, resolved, end, (setup, carried));
-        optimum.map_err(|error| error.of_motion(one.name))
-    });
-    optima.collect()
+/// The end of the last solve for one motion.
+struct End {
+    /// Its part of the result.
+    solution: SolverResult,
+    /// The motion in unknowns, and as it is kept: a solution, or an iterate with its barrier parameter.
+    discrete: DiscreteTrajectory,
+    motion: Solution,
+    violated: Vec<Violation>,
+    active: Vec<Active>,
+    infeasibility: f64,
+    program: WholeProgram,
 }
 
-/// The end of the last solve for one motion: its part of the result, its motion in unknowns and as it is kept, and the point of its program.
-type End = (SolverResult, DiscreteTrajectory, Solution, FinalPoint);
+impl End {
+    fn new(
+        of: &ProgramMotion<'_>,
+        program: &mut Transcription<'_>,
+        solution: SolverResult,
+    ) -> Self {
+        let (model, x) = (of.model, &solution.x);
+        let discrete = program.decode(x);
+        let motion = solved(model, &discrete, Some(program.costates(&solution.costates)));
+        let is_solved = solution.status.is_solved();
+        let (violated, active) = match is_solved {
+            true => (Vec::new(), Vec::new()),
+            false => (
+                violations(program, x, HOLDS, NAMED),
+                active(program, x, model, of.task.control),
+            ),
+        };
+        let last = solution.iterations.last().filter(|_| !is_solved);
+        let gap = bound(program, &solution);
+        Self {
+            motion: Solution {
+                hold: of.boundary.rest[1].clone().or(motion.hold.clone()),
+                barrier: last.map(|last| last.mu),
+                ..motion
+            },
+            infeasibility: program.violation(x),
+            program: WholeProgram::new(program, &solution, gap),
+            solution,
+            discrete,
+            violated,
+            active,
+        }
+    }
 
-/// A motion with its verification.
-fn verified_optimum(
-    task: MotionTask<'_>,
-    resolved: (Model, BoundaryConditions),
-    (solution, discrete, motion, point): End,
-    (setup, carried): (f64, Carried),
-) -> Result<Optimum, WorkflowError> {
-    let MotionTask {
-        system, control, ..
-    } = task;
-    let (model, mut boundary, sought) = of_motion(system, control, resolved, &motion)?;
-    let motion = match &sought {
-        None => motion,
-        // Places of joints may be sought.
-        Some(_) => Solution {
-            poses: motion.z.iter().map(|z| poses(&model, z)).collect(),
-            ..motion
-        },
-    };
-    let verified = match solution.status.is_solved() {
-        true => Verification::new(&model, &mut boundary, control, (&discrete, &motion)),
-        false => Verification::default(),
-    };
-    Ok(Optimum {
-        model,
-        sought,
-        boundary,
-        motion,
-        solution,
-        reversed: verified.reversed,
-        violated: point.violated,
-        infeasibility: point.infeasibility,
-        program: point.program,
-        setup,
-        carried,
-        resimulation: verified.resimulation,
-        tested: verified.tested,
-        restarted: None,
-        shortest: Shortest::Unknown,
-        half_period: None,
-        stopped: None,
-        cut_short: None,
-        active: point.active,
-        afterwards: None,
-        repeated: None,
-    })
+    /// The motion with its verification; parameters that were found are put in.
+    fn optimum(
+        self,
+        task: &MotionTask<'_>,
+        resolved: (Model, BoundaryConditions),
+        setup: f64,
+        carried: Carried,
+    ) -> Result<Optimum, WorkflowError> {
+        let MotionTask {
+            system, control, ..
+        } = *task;
+        let mut motion = self.motion;
+        let (mut model, mut boundary) = resolved;
+        let mut sought = None;
+        if !control.parameters.is_empty() {
+            let found = with_found(system, control, &model, &motion)?;
+            sought = Some(model);
+            (model, boundary) = found;
+            // Places of joints may be sought.
+            let poses = motion.z.iter().map(|z| model.action.map.placed(z));
+            motion.poses = poses.map(|instant| model.poses(&instant)).collect();
+        }
+        let mut out = Optimum {
+            model,
+            sought,
+            boundary,
+            motion,
+            solution: self.solution,
+            reversed: None,
+            violated: self.violated,
+            infeasibility: self.infeasibility,
+            program: self.program,
+            setup,
+            carried,
+            resimulation: None,
+            tested: 0.0,
+            restarted: None,
+            shortest: Shortest::Unknown,
+            half_period: None,
+            stopped: None,
+            cut_short: None,
+            active: self.active,
+            afterwards: None,
+            repeated: None,
+        };
+        if out.solution.status.is_solved() {
+            out.verify(control, &self.discrete);
+        }
+        Ok(out)
+    }
+}
+
+impl Optimum {
+    /// Completes start and goal by what was found with the motion, and verifies it from there: muscles that turn around within an interval, and,
+    /// where none does, a simulation under its voltages.
+    fn verify(&mut self, control: &Control, discrete: &DiscreteTrajectory) {
+        let Self {
+            model,
+            boundary,
+            motion,
+            ..
+        } = self;
+        hold_check::keep_found(model, boundary, discrete);
+        hold_check::begin_periodic(control, boundary, motion);
+        self.reversed = reversed_muscle(model, discrete);
+        if self.reversed.is_some() {
+            return;
+        }
+        phase("simulating under the optimal inputs");
+        let began = Instant::now();
+        let tolerance = control.solver.tolerance;
+        let found = resimulate(model, control, &boundary.start, motion, tolerance);
+        self.resimulation = Some(found);
+        self.tested = began.elapsed().as_secs_f64();
+    }
 }
 
 /// The part of a result that is of one motion; the whole of a single one.
@@ -236,116 +294,6 @@ fn options(model: &Model, control: &Control, allowed: SolveLimits) -> Options {
         linear_solver: control.solver.linear_solver,
         extra: ordering(model, control),
         ..Options::default()
-    }
-}
-
-/// The motion at the end of the last solve: a solution, or an iterate with its barrier parameter.
-fn final_motion(
-    model: &Model,
-    boundary: &BoundaryConditions,
-    discrete: &DiscreteTrajectory,
-    costates: Costates,
-    solution: &SolverResult,
-) -> Solution {
-    let motion = solved(model, discrete, Some(costates));
-    Solution {
-        hold: boundary.rest[1].clone().or(motion.hold.clone()),
-        barrier: match solution.status.is_solved() {
-            true => None,
-            false => solution.iterations.last().map(|last| last.mu),
-        },
-        ..motion
-    }
-}
-
-/// Model and boundary of a motion, with its parameters put in, and the model of the program, where that has free parameters.
-fn of_motion(
-    system: &System,
-    control: &Control,
-    (model, boundary): (Model, BoundaryConditions),
-    motion: &Solution,
-) -> Result<(Model, BoundaryConditions, Option<Model>), WorkflowError> {
-    if control.parameters.is_empty() {
-        return Ok((model, boundary, None));
-    }
-    let (found, boundary) = with_found(system, control, &model, motion)?;
-    Ok((found, boundary, Some(model)))
-}
-
-/// Poses of the bodies at coordinates.
-fn poses(model: &Model, z: &[f64]) -> Vec<Pose> {
-    model.poses(&model.action.map.placed(z))
-}
-
-/// The point of a program at which its last solve ended.
-struct FinalPoint {
-    violated: Vec<Violation>,
-    active: Vec<Active>,
-    infeasibility: f64,
-    program: WholeProgram,
-}
-
-impl FinalPoint {
-    fn new(
-        program: &mut Transcription<'_>,
-        solution: &SolverResult,
-        model: &Model,
-        control: &Control,
-    ) -> Self {
-        let x = &solution.x;
-        let (violated, active) = match solution.status.is_solved() {
-            true => (Vec::new(), Vec::new()),
-            false => (
-                violations(program, x, HOLDS, NAMED),
-                active(program, x, model, control),
-            ),
-        };
-        let gap = gap::bound(program, solution);
-        Self {
-            violated,
-            active,
-            infeasibility: program.violation(x),
-            program: WholeProgram::new(program, solution, gap),
-        }
-    }
-}
-
-/// The verification of a solution: muscles that turn around within an interval, and a simulation under its voltages.
-#[derive(Default)]
-struct Verification {
-    reversed: Option<(usize, usize)>,
-    /// The simulation, where no muscle turns around.
-    resimulation: Option<Resimulation>,
-    /// Seconds that it took.
-    tested: f64,
-}
-
-impl Verification {
-    /// Completes start and goal by what was found with the motion, and verifies it from there.
-    fn new(
-        model: &Model,
-        boundary: &mut BoundaryConditions,
-        control: &Control,
-        (discrete, motion): (&DiscreteTrajectory, &Solution),
-    ) -> Self {
-        hold_check::keep_found(model, boundary, discrete);
-        hold_check::begin_periodic(control, boundary, motion);
-        let reversed = reversed_muscle(model, discrete);
-        if reversed.is_some() {
-            return Self {
-                reversed,
-                ..Self::default()
-            };
-        }
-        phase("simulating under the optimal inputs");
-        let began = Instant::now();
-        let tolerance = control.solver.tolerance;
-        let resimulation = resimulate(model, control, &boundary.start, motion, tolerance);
-        Self {
-            reversed,
-            resimulation: Some(resimulation),
-            tested: began.elapsed().as_secs_f64(),
-        }
     }
 }
 

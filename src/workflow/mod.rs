@@ -1,9 +1,9 @@
 //! Tasks in memory: simulate, optimise, refine, verify.
 //!
-//! - `integrate`, `optimise`: a simulation, a control problem, with its result, the `optimum`; each `attempt` from one start by one of its `solves` or more, with
+//! - `integrate`, `optimise`: a simulation, a control problem, with its result, the `optimum`; each `attempt` from one start by one of its `solves` or more, until its duality gap is small, with
 //!   the `program` of one motion or several; `error`: errors of tasks; `remark`: warnings and notes.
 //! - `grids`: on finer grids where an accuracy needs them or a verification fails, by `accuracy`; `tolerance`: steps as short as a tolerance needs.
-//! - `resimulate`: verification of an optimum; `gap`: duality gap of its objective; `hold_check`: its end; `infeasible`: explanation of a problem without one.
+//! - `resimulate`: verification of an optimum; `hold_check`: its end; `infeasible`: explanation of a problem without one.
 //! - `effects`, `reasons`: terms of a model, what they couple, and their reasons; `memory`: a refusal of more than the machine has.
 //! - `warnings`: steps that do not resolve a motion, muscles outside the domain of their material.
 //! - `regulator`: feedback along an optimum; `receding`: a controller that plans anew; `control_loop`, `closed_loop`: a simulation under feedback.
@@ -16,7 +16,6 @@ pub mod closed_loop;
 pub(crate) mod control_loop;
 pub(crate) mod effects;
 mod error;
-pub(crate) mod gap;
 pub(crate) mod grids;
 pub(crate) mod hold_check;
 pub(crate) mod infeasible;

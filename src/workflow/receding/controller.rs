@@ -278,7 +278,11 @@ impl<'h> RecedingHorizon<'h> {
             }
             self.stay();
             let Iteration { program, .. } = &mut self.iteration;
-            for (momentum, &c) in program.momentum.iter_mut().zip(&program.layout.inert) {
+            for (momentum, &c) in program
+                .momentum
+                .iter_mut()
+                .zip(&program.layout.steered.inert)
+            {
                 *momentum = self.momenta[self.of.coordinates()[c]];
             }
             let full = &mut self.points[0];
@@ -334,7 +338,7 @@ impl<'h> RecedingHorizon<'h> {
         }
         let law = self.of.law();
         let motion = &law.at(law.h * self.interval as f64).state[places.len()..];
-        for ((&c, rate), motion) in layout.inert.iter().zip(rates).zip(motion) {
+        for ((&c, rate), motion) in layout.steered.inert.iter().zip(rates).zip(motion) {
             is_far |= (rate - motion).abs() * law.h > ABSURD_RATE * unit(c);
             self.rates[coordinates[c]] = *rate;
         }
@@ -342,7 +346,7 @@ impl<'h> RecedingHorizon<'h> {
         action.map.place(&mut self.instant);
         let (moving, momenta) = (&mut self.moving, &mut self.momenta);
         action.momentum_into(&mut self.instant, &self.rates, moving, momenta);
-        for (place, &c) in layout.inert.iter().enumerate() {
+        for (place, &c) in layout.steered.inert.iter().enumerate() {
             let (row, scale) = layout.momenta[0][place];
             let change = self.momenta[coordinates[c]] - program.momentum[place];
             self.rows[place] = (row, scale * change);
@@ -370,7 +374,7 @@ pub(super) struct Shift {
 impl Shift {
     pub(super) fn new(program: &Program<'_>) -> Self {
         let (columns, rows) = program.numbers();
-        let parts = program.layout.parts;
+        let parts = program.layout.steered.parts;
         let n = program.layout.width();
         let (end, _) = program.layout.coordinates[(program.layout.intervals - 1) * n];
         Self {

@@ -6,7 +6,7 @@ use crate::control::problem::{
 use crate::control::{
     BoundaryConditions, BoundaryError, Carried, InitialGuess, Rests, Transcription,
 };
-use crate::dynamics::{DiscreteTrajectory, Linearisation, NoState, Start, step_inputs};
+use crate::dynamics::{DiscreteTrajectory, Linearisation, NoState, step_inputs};
 use crate::feedback::Law;
 use crate::ipopt::{IpoptError, Options, StartingPoint, solve};
 use crate::model::{Model, System, Time};
@@ -16,7 +16,7 @@ use crate::workflow::error::WorkflowError;
 use crate::workflow::motion::{Iterate, discrete_trajectory};
 use crate::workflow::optimise::optimise;
 use crate::workflow::optimum::SolveLimits;
-use crate::workflow::receding::layout::Reference;
+use crate::workflow::receding::layout::{Reference, Steered};
 use crate::workflow::receding::program::Program;
 use crate::workflow::regulator::{NOTHING_HOLDS, NoRegulator, predicting, rate_weight};
 use std::ops::ControlFlow;
@@ -31,24 +31,15 @@ const INTEGRAL: &str =
 pub struct Horizon {
     model: Model,
     boundary: BoundaryConditions,
-    /// The problem in short steps, and the number of them in an interval.
+    /// The problem in short steps.
     control: Control,
-    parts: usize,
     reference: Reference,
     law: Law,
-    /// Coordinates of the state, and places of those with momenta among them.
-    coordinates: Vec<usize>,
-    inert: Vec<usize>,
-    /// Scalars of the inputs, with those that act by their squares.
-    inputs: Vec<(usize, bool)>,
-    /// Weights of the rates for differences of a step.
-    rates: Vec<f64>,
+    steered: Steered,
     /// Weight of inputs as parts of their ranges.
     of_inputs: f64,
     /// Intervals from a measurement to its effect.
     delay: usize,
-    /// Coordinates on which constant disturbances act.
-    forced: Vec<usize>,
 }
 
 impl Horizon {
@@ -100,20 +91,29 @@ impl Horizon {
         let state = |error: NoState| NoHorizon::Regulator(NoRegulator::State(error));
         let linearisation = Linearisation::new(&model, &[]).map_err(state)?;
         let coordinates = linearisation.coordinates().to_vec();
-        let inert: Vec<usize> = linearisation.momenta().to_vec();
+        let inert = linearisation.momenta().to_vec();
         let inert: Vec<usize> = (0..coordinates.len())
             .filter(|&c| inert.contains(&coordinates[c]))
             .collect();
         drop(linearisation);
-        let momenta = |state: &[f64]| momenta(&model, (&coordinates, &inert), state);
+        let weight = |c: usize| match inert.contains(&c) {
+            true => rate_weight(&model, task, coordinates[c], h),
+            false => 0.0,
+        };
+        let steered = Steered {
+            rates: (0..coordinates.len()).map(weight).collect(),
+            forced: forced(&model, &coordinates, &found.law),
+            coordinates,
+            inert,
+            inputs,
+            parts,
+            h: h / parts as f64,
+        };
+        let momenta = |state: &[f64]| steered.momenta(&model, state);
         let reference = Reference::new(&found, momenta).ok_or_else(not_held)?;
-        let forced = forced(&model, &coordinates, &found.law);
         Ok(Self {
             delay: task.delayed(h),
-            forced,
             of_inputs: task.inputs,
-            parts,
-            rates: rates(&model, task, (&coordinates, &inert), h),
             control: Control {
                 start: BoundaryState::Free,
                 ..control
@@ -122,9 +122,7 @@ impl Horizon {
             reference,
             boundary,
             model,
-            coordinates,
-            inert,
-            inputs,
+            steered,
         })
     }
 
@@ -179,7 +177,7 @@ impl Horizon {
 
     /// Number of intervals of the horizon.
     pub fn intervals(&self) -> usize {
-        self.control.intervals / self.parts
+        self.control.intervals / self.steered.parts
     }
 
     /// The inputs of the first interval of the optimum from a state, in the order of the law, and the status of the solver: iterated to the end, whereas
@@ -196,10 +194,10 @@ impl Horizon {
         program.begin = interval;
         let start = program.layout.coordinates.iter().zip(state);
         let values: Vec<f64> = start
-            .take(self.coordinates.len())
+            .take(self.coordinates().len())
             .map(|((_, scale), v)| v / scale)
             .collect();
-        let momenta = momenta(&self.model, (&self.coordinates, &self.inert), state);
+        let momenta = self.steered.momenta(&self.model, state);
         program.hold_start(&values, &momenta);
         let mut x = vec![0.0; program.variables().lower.len()];
         program.refer_all(&mut x);
@@ -231,7 +229,7 @@ impl Horizon {
     }
 
     pub(super) fn coordinates(&self) -> &[usize] {
-        &self.coordinates
+        &self.steered.coordinates
     }
 
     /// The program of the horizon at the start of the motion.
@@ -242,20 +240,17 @@ impl Horizon {
         let program = Transcription::of_any(&self.model, &self.boundary, &self.control, &guess);
         // Nothing stops it, and nothing else is an error.
         let program = program.expect("a program whose equations are not counted");
-        let state = (&*self.coordinates, &*self.inert);
-        let inputs = (&*self.inputs, self.rates.clone());
-        let forced = (&*self.forced, self.law.h / self.parts as f64);
-        Program::new(program, &self.reference, self.parts, state, inputs, forced)
+        Program::new(program, &self.reference, &self.steered)
     }
 
     /// The motion to follow over the first horizon.
     fn guess(&self) -> InitialGuess {
         let steps = self.control.intervals;
-        let h = self.law.h / self.parts as f64;
+        let Steered { parts, h, .. } = self.steered;
         let mut z = vec![self.boundary.start.z.clone(); steps + 1];
         for (k, z) in z.iter_mut().enumerate() {
-            let state = &self.reference.at(k / self.parts).state;
-            self.coordinates
+            let state = &self.reference.at(k / parts).state;
+            self.coordinates()
                 .iter()
                 .zip(state)
                 .for_each(|(&i, value)| z[i] = *value);
@@ -263,8 +258,8 @@ impl Horizon {
         let count = self.model.variables.of(Time::Interval).len();
         let mut scalars = vec![vec![0.0; count]; steps];
         for (k, scalars) in scalars.iter_mut().enumerate() {
-            let inputs = &self.reference.at(k / self.parts).inputs;
-            for (&(scalar, is_squared), value) in self.inputs.iter().zip(inputs) {
+            let inputs = &self.reference.at(k / parts).inputs;
+            for (&(scalar, is_squared), value) in self.steered.inputs.iter().zip(inputs) {
                 scalars[scalar] = if is_squared { value.sqrt() } else { *value };
             }
         }
@@ -329,26 +324,6 @@ fn ahead(control: &Control, rest: &[f64], intervals: usize, h: f64) -> Control {
         guess: Guess::Interpolate,
         ..control.clone()
     }
-}
-
-/// Momenta of a state of coordinates and rates.
-fn momenta(model: &Model, (of, inert): (&[usize], &[usize]), state: &[f64]) -> Vec<f64> {
-    let mut z = model.reference_coordinates();
-    let mut rates = vec![0.0; model.coordinate_count()];
-    of.iter().zip(state).for_each(|(&i, value)| z[i] = *value);
-    let of_rates = inert.iter().zip(&state[of.len()..]);
-    of_rates.for_each(|(&c, rate)| rates[of[c]] = *rate);
-    let start = Start::with_rates(model, z, &rates);
-    inert.iter().map(|&c| start.momentum[of[c]]).collect()
-}
-
-/// Weight of the rate of each coordinate, for its differences over a step.
-fn rates(model: &Model, task: &Regulator, (of, inert): (&[usize], &[usize]), h: f64) -> Vec<f64> {
-    let weight = |c: usize| match inert.contains(&c) {
-        true => rate_weight(model, task, of[c], h),
-        false => 0.0,
-    };
-    (0..of.len()).map(weight).collect()
 }
 
 /// Reason why there is no controller with a receding horizon.

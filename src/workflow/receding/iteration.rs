@@ -21,6 +21,7 @@
 
 use crate::kkt::{Plan, Solver, Unknown};
 use crate::nlp::{Bounds, Entries, Nlp};
+use crate::sensitivity::Matrix;
 
 /// A point starts no nearer to its bounds than this part of their distance, or of one.
 const INSIDE: f64 = 1e-4;
@@ -306,36 +307,6 @@ impl<N: Nlp> Iteration<N> {
     pub(super) fn evaluate_rows(&mut self) {
         self.program
             .constraint(&self.x[..self.columns], &mut self.g);
-    }
-}
-
-/// Rows and columns of the matrix.
-#[derive(Default)]
-pub(super) struct Matrix {
-    pub(super) rows: Vec<u32>,
-    pub(super) cols: Vec<u32>,
-}
-
-impl Matrix {
-    pub(super) fn push(&mut self, row: usize, col: usize) {
-        self.rows.push(row as u32);
-        self.cols.push(col as u32);
-    }
-
-    /// Adds the entries whose row and column are unknowns; returns which they are.
-    pub(super) fn add(
-        &mut self,
-        entries: &Entries,
-        (rows, cols): (&[Option<usize>], &[Option<usize>]),
-    ) -> Vec<usize> {
-        let mut kept = Vec::new();
-        for (entry, (&row, &col)) in entries.rows.iter().zip(&entries.cols).enumerate() {
-            if let (Some(row), Some(col)) = (rows[row as usize], cols[col as usize]) {
-                self.push(row, col);
-                kept.push(entry);
-            }
-        }
-        kept
     }
 }
 

@@ -3,7 +3,9 @@
 //! The motion that a receding horizon follows, with the costs of deviations from it: those of the regulator.
 
 use crate::control::{Column, Transcription};
+use crate::dynamics::Start;
 use crate::feedback::LawInput;
+use crate::model::Model;
 use crate::nlp::Nlp;
 use crate::nlp::squares::Squares;
 use crate::workflow::regulator::{Regulated, RegulatedStep};
@@ -32,35 +34,59 @@ impl InputColumn {
     }
 }
 
+/// State and inputs of a horizon, in the order of its law.
+#[derive(Clone, Debug)]
+pub(super) struct Steered {
+    /// Coordinates of the state, and places of those with momenta among them.
+    pub(super) coordinates: Vec<usize>,
+    pub(super) inert: Vec<usize>,
+    /// Scalars of the inputs, with those that act by their squares.
+    pub(super) inputs: Vec<(usize, bool)>,
+    /// Weight of the rate of each coordinate, for differences of a step.
+    pub(super) rates: Vec<f64>,
+    /// Coordinates on which constant disturbances act.
+    pub(super) forced: Vec<usize>,
+    /// Number of steps in an interval, and the length of one in ms.
+    pub(super) parts: usize,
+    pub(super) h: f64,
+}
+
+impl Steered {
+    /// Momenta of a state of coordinates and rates.
+    pub(super) fn momenta(&self, model: &Model, state: &[f64]) -> Vec<f64> {
+        let of = &self.coordinates;
+        let mut z = model.reference_coordinates();
+        let mut rates = vec![0.0; model.coordinate_count()];
+        of.iter().zip(state).for_each(|(&i, value)| z[i] = *value);
+        let of_rates = self.inert.iter().zip(&state[of.len()..]);
+        of_rates.for_each(|(&c, rate)| rates[of[c]] = *rate);
+        let start = Start::with_rates(model, z, &rates);
+        let inert = self.inert.iter();
+        inert.map(|&c| start.momentum[of[c]]).collect()
+    }
+}
+
 /// The state and the inputs of a program by their columns.
 #[derive(Clone, Debug)]
-pub(super) struct Layout {
-    /// Number of intervals, and of steps in each of them.
+pub(super) struct Layout<'m> {
+    pub(super) steered: &'m Steered,
+    /// Number of intervals.
     pub(super) intervals: usize,
-    pub(super) parts: usize,
     /// Columns and scales of the coordinates of the state, instant by instant.
     pub(super) coordinates: Vec<(usize, f64)>,
-    /// Places of the coordinates that have a momentum, among those of the state.
-    pub(super) inert: Vec<usize>,
     /// Rows of the momenta of the first and of the last instant, with their scales.
     pub(super) momenta: [Vec<(usize, f64)>; 2],
     /// Columns of the inputs of each interval.
     pub(super) driven: Vec<Vec<InputColumn>>,
-    /// Weight of the rates of each coordinate, for differences of a step.
-    pub(super) rates: Vec<f64>,
     /// Rows on which constant disturbances act, with the scaled time of their action, and the number of the force.
     pub(super) forced: Vec<(usize, f64, usize)>,
 }
 
-impl Layout {
+impl<'m> Layout<'m> {
     /// The layout of a transcription, with the column here of each of its columns.
-    pub(super) fn new(
-        (motion, own): (&Transcription<'_>, &[usize]),
-        (intervals, parts): (usize, usize),
-        (state, inert): (&[usize], &[usize]),
-        (inputs, rates): (&[(usize, bool)], Vec<f64>),
-        (forced, h): (&[usize], f64),
-    ) -> Self {
+    pub(super) fn new(motion: &Transcription<'_>, own: &[usize], steered: &'m Steered) -> Self {
+        let Steered { parts, h, .. } = *steered;
+        let intervals = motion.intervals() / parts;
         let unknowns = motion.unknowns();
         let squares = motion.squares();
         let mut ones = vec![1.0; own.len()];
@@ -71,7 +97,9 @@ impl Layout {
             (own[column], motion.column_scale(column))
         };
         let row = |k: usize, c: usize| {
-            let row = unknowns.row(k * parts, state[c]).expect("a balance");
+            let row = unknowns
+                .row(k * parts, steered.coordinates[c])
+                .expect("a balance");
             (row, motion.row_scale(row))
         };
         let input = |k: usize, (s, is_squared): (usize, bool)| {
@@ -99,21 +127,19 @@ impl Layout {
         let steps = 0..=last;
         Self {
             forced: steps
-                .flat_map(|k| forced.iter().enumerate().map(move |one| (k, one)))
+                .flat_map(|k| steered.forced.iter().enumerate().map(move |one| (k, one)))
                 .map(|(k, one)| force(k, one))
                 .collect(),
+            steered,
             intervals,
-            parts,
             coordinates: instants
-                .flat_map(|k| state.iter().map(move |&i| (k, i)))
+                .flat_map(|k| steered.coordinates.iter().map(move |&i| (k, i)))
                 .map(coordinate)
                 .collect(),
-            inert: inert.to_vec(),
-            momenta: [0, intervals].map(|k| inert.iter().map(|&c| row(k, c)).collect()),
+            momenta: [0, intervals].map(|k| steered.inert.iter().map(|&c| row(k, c)).collect()),
             driven: (0..intervals)
-                .map(|k| inputs.iter().map(|&one| input(k, one)).collect())
+                .map(|k| steered.inputs.iter().map(|&one| input(k, one)).collect())
                 .collect(),
-            rates,
         }
     }
 

@@ -13,14 +13,16 @@
 use crate::control::{Column, Row, Transcription};
 use crate::nlp::squares::{InSquares, Squares};
 use crate::nlp::{Bounds, Entries, Nlp, Stage};
-use crate::workflow::receding::layout::{Between, Layout, Reference, between, held_over_parts};
+use crate::workflow::receding::layout::{
+    Between, Layout, Reference, Steered, between, held_over_parts,
+};
 
 /// The program.
 #[derive(Debug)]
 pub(super) struct Program<'m> {
     motion: InSquares<Transcription<'m>>,
     pub(super) reference: &'m Reference,
-    pub(super) layout: Layout,
+    pub(super) layout: Layout<'m>,
     bounds: Bounds,
     row_bounds: Bounds,
     jacobian: Entries,
@@ -60,37 +62,28 @@ pub(super) struct Lasting {
 }
 
 impl<'m> Program<'m> {
-    /// The program of a transcription with an open start without momenta, and an end at rest with no coordinate given, in a number of steps for each
-    /// interval. `state` are the coordinates of the state with the places of those that have momenta, `inputs` the scalars with those that act by their
-    /// squares, `rates` the weights of rates, `forced` the coordinates on which constant disturbances act, in steps of h ms.
+    /// The program of a transcription with an open start without momenta, and an end at rest with no coordinate given.
     pub(super) fn new(
         motion: Transcription<'m>,
         reference: &'m Reference,
-        parts: usize,
-        (state, inert): (&[usize], &[usize]),
-        (inputs, rates): (&[(usize, bool)], Vec<f64>),
-        (forced, h): (&[usize], f64),
+        steered: &'m Steered,
     ) -> Self {
+        let inert = steered.inert.len();
+        let (state, inputs) = (steered.coordinates.len() + inert, steered.inputs.len());
+        let (forces, parts) = (steered.forced.len(), steered.parts);
         let unknowns = motion.unknowns();
-        let intervals = motion.intervals() / parts;
-        let scalars: Vec<usize> = inputs.iter().map(|&(s, _)| s).collect();
+        let scalars: Vec<usize> = steered.inputs.iter().map(|&(s, _)| s).collect();
         let (own, of_columns) = held_over_parts(&unknowns.columns, &scalars, parts);
         let of_rows = unknowns.rows.clone();
         let columns = of_columns.len();
         let squares = motion.squares();
         let of_squares = Squares::of(&motion, squares.clone());
-        let layout = Layout::new(
-            (&motion, &own),
-            (intervals, parts),
-            (state, inert),
-            (inputs, rates),
-            (forced, h),
-        );
+        let layout = Layout::new(&motion, &own, steered);
         let [jacobian, hessian] = [motion.jacobian_structure(), motion.hessian_structure()];
         let mut given = motion.variables().clone();
         of_squares.square(&mut given.lower);
         of_squares.square(&mut given.upper);
-        let size = columns + inert.len();
+        let size = columns + inert;
         let mut bounds = Bounds {
             lower: vec![f64::NEG_INFINITY; size],
             upper: vec![f64::INFINITY; size],
@@ -105,14 +98,14 @@ impl<'m> Program<'m> {
             motion: InSquares::new(motion, of_squares, &jacobian, &hessian),
             point: vec![0.0; own.len()],
             reference,
-            deviation: vec![0.0; state.len() + inert.len()],
-            momentum: vec![0.0; inert.len()],
+            deviation: vec![0.0; state],
+            momentum: vec![0.0; inert],
             lasting: Lasting {
-                values: [vec![0.0; forced.len()], vec![0.0; inputs.len()]].concat(),
-                forces: forced.len(),
-                state: vec![0.0; state.len() + inert.len()],
-                inputs: vec![0.0; inputs.len()],
-                slope: vec![0.0; state.len() + inert.len()],
+                values: vec![0.0; forces + inputs],
+                forces,
+                state: vec![0.0; state],
+                inputs: vec![0.0; inputs],
+                slope: vec![0.0; state],
             },
             layout,
             bounds,
@@ -162,7 +155,7 @@ impl<'m> Program<'m> {
                 add(column(k + 1, c), column(k, c));
             }
         }
-        let size = n + self.layout.inert.len();
+        let size = n + self.layout.steered.inert.len();
         let of_end = |c: usize| match c < n {
             true => column(last, c),
             false => self.columns + c - n,
@@ -318,8 +311,8 @@ impl Nlp for Program<'_> {
 
     fn stages(&self) -> Option<Vec<Stage>> {
         let given = self.motion.stages()?;
-        let last = Stage::Of(2 * (self.layout.intervals * self.layout.parts) as u32);
-        let mut stages = vec![last; self.columns + self.layout.inert.len()];
+        let last = Stage::Of(2 * (self.layout.intervals * self.layout.steered.parts) as u32);
+        let mut stages = vec![last; self.columns + self.layout.steered.inert.len()];
         for (stage, &own) in given.into_iter().zip(&self.own).rev() {
             stages[own] = stage;
         }
@@ -378,7 +371,7 @@ impl Program<'_> {
             let places = &self.reference.at(self.begin + k).places;
             sum += square(&self.deviation[..n], places);
             for c in 0..n {
-                sum += self.layout.rates[c] * self.step(x, k, c).powi(2);
+                sum += self.layout.steered.rates[c] * self.step(x, k, c).powi(2);
             }
         }
         self.deviate_at_end(x);
@@ -407,7 +400,7 @@ impl Program<'_> {
                 let (column, scale) = self.layout.coordinates[k * n + a];
                 let slope: f64 = (0..n).map(|b| places[(a, b)] * self.deviation[b]).sum();
                 grad[column] += scale * slope;
-                let slope = self.layout.rates[a] * self.step(x, k, a);
+                let slope = self.layout.steered.rates[a] * self.step(x, k, a);
                 grad[column] -= scale * slope;
                 let (column, scale) = self.layout.coordinates[(k + 1) * n + a];
                 grad[column] += scale * slope;
@@ -437,7 +430,7 @@ impl Program<'_> {
         let mut costs = costs.iter_mut();
         let mut put = |value: f64| *costs.next().expect("an entry") = sigma * value;
         let scale = |k: usize, c: usize| self.layout.coordinates[k * n + c].1;
-        let rates = &self.layout.rates;
+        let rates = &self.layout.steered.rates;
         for k in 0..last {
             let places = &self.reference.at(self.begin + k).places;
             // The step before and that behind.
