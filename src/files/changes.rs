@@ -1,8 +1,9 @@
 //! Overrides that a study or a sweep writes, with the places that they are from.
 
+use crate::files::json::error::{Result, SceneError};
 use crate::files::json::set::Override;
 use crate::files::study::ChangesSpec;
-use crate::files::{JsonPath, SceneError, Scope};
+use crate::files::{JsonPath, Scope};
 use serde_json::Value;
 use std::path::Path;
 
@@ -14,21 +15,12 @@ pub(crate) struct Changes<'a> {
 }
 
 impl<'a> Changes<'a> {
-    pub(crate) fn extend(
-        &mut self,
-        set: &ChangesSpec,
-        scope: &Scope<'a>,
-    ) -> Result<(), SceneError> {
+    pub(crate) fn extend(&mut self, set: &ChangesSpec, scope: &Scope<'a>) -> Result<()> {
         let mut each = set.iter();
         each.try_for_each(|(key, value)| self.push(key, value, scope.key(key)))
     }
 
-    pub(crate) fn push(
-        &mut self,
-        key: &str,
-        value: &Value,
-        scope: Scope<'a>,
-    ) -> Result<(), SceneError> {
+    pub(crate) fn push(&mut self, key: &str, value: &Value, scope: Scope<'a>) -> Result<()> {
         let Some(place) = JsonPath::parse(key) else {
             let expected = "a place in the problem, such as control.intervals";
             return Err(scope.wrong(format!("the key {key:?}"), expected));
@@ -39,7 +31,7 @@ impl<'a> Changes<'a> {
     }
 
     /// The overrides, as they are read again.
-    pub(crate) fn overrides(&self) -> Result<Vec<Override>, SceneError> {
+    pub(crate) fn overrides(&self) -> Result<Vec<Override>> {
         let each = self.words.iter();
         each.map(|written| Override::parse(written)).collect()
     }

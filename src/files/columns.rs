@@ -1,7 +1,7 @@
 //! Columns of a CSV file or of a problem, with the units of their headers: `muscle1 [kV]`.
 
 use crate::files::header::Header;
-use crate::files::json::error::SceneError;
+use crate::files::json::error::Result;
 use crate::files::json::scope::Scope;
 use crate::files::units::quantity::{Kind, PhysicalQuantity, Quantity};
 use csv::{ReaderBuilder, StringRecord, Trim};
@@ -26,7 +26,7 @@ fn plain(cell: &str) -> &str {
 
 impl Columns {
     /// Reads a file that a problem names: relative to the problem, otherwise to the current folder.
-    pub(crate) fn read(path: &str, scope: &Scope<'_>) -> Result<Self, SceneError> {
+    pub(crate) fn read(path: &str, scope: &Scope<'_>) -> Result<Self> {
         let path = scope.file_or_result(path, "the path of a CSV file")?;
         let mistake = |cause: &dyn std::fmt::Display| {
             let found = format!("{:?}, which cannot be read ({cause})", path.display());
@@ -62,7 +62,7 @@ impl Columns {
     pub(crate) fn inside(
         columns: &BTreeMap<String, Vec<Option<f64>>>,
         scope: &Scope<'_>,
-    ) -> Result<Self, SceneError> {
+    ) -> Result<Self> {
         let count = columns.values().next().map_or(0, Vec::len);
         for (header, values) in columns {
             if values.len() != count {
@@ -90,7 +90,7 @@ impl Columns {
         &self,
         (name, kind): (&str, &Kind),
         scope: &Scope<'_>,
-    ) -> Result<Vec<Quantity<M>>, SceneError> {
+    ) -> Result<Vec<Quantity<M>>> {
         let (at, unit) = self.place((name, kind), scope)?;
         let read = |row: &StringRecord| self.cell(row, (at, unit.as_deref()), scope);
         self.rows.iter().map(read).collect()
@@ -102,7 +102,7 @@ impl Columns {
         name: &str,
         kind: &Kind,
         scope: &Scope<'_>,
-    ) -> Result<Vec<Option<Quantity<M>>>, SceneError> {
+    ) -> Result<Vec<Option<Quantity<M>>>> {
         let (at, unit) = self.place((name, kind), scope)?;
         let read = |row: &StringRecord| {
             let is_gap = row[at].is_empty();
@@ -118,7 +118,7 @@ impl Columns {
         &self,
         (name, kind): (&str, &Kind),
         scope: &Scope<'_>,
-    ) -> Result<(usize, Option<String>), SceneError> {
+    ) -> Result<(usize, Option<String>)> {
         let headers: Vec<Header<'_>> = (self.headers.iter())
             .map(|header| Header::new(header, kind))
             .collect();
@@ -166,7 +166,7 @@ impl Columns {
         row: &StringRecord,
         (at, unit): (usize, Option<&str>),
         scope: &Scope<'_>,
-    ) -> Result<Quantity<M>, SceneError> {
+    ) -> Result<Quantity<M>> {
         let cell = &row[at];
         let quantity = match unit {
             _ if cell.trim().is_empty() => Err("an empty cell".to_owned()),

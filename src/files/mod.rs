@@ -44,6 +44,7 @@ use std::path::{Path, PathBuf};
 
 use crate::control::Motion;
 use crate::control::problem::{Disturbed, Duration, Regulator, Task};
+use crate::files::json::error::Result;
 use crate::files::json::set::Override;
 use crate::files::problem::build::build_problem;
 use crate::files::problem::changed_scenes::changed_scenes;
@@ -105,7 +106,7 @@ impl Loaded {
 ///
 /// # Errors
 /// A file cannot be read, is no JSON, or says what does not make sense; the error has its place.
-pub fn read_problem(path: &Path, overrides: &[String]) -> Result<Loaded, SceneError> {
+pub fn read_problem(path: &Path, overrides: &[String]) -> Result<Loaded> {
     problem_of(|| Document::read_typed(path), overrides)
 }
 
@@ -113,18 +114,11 @@ pub fn read_problem(path: &Path, overrides: &[String]) -> Result<Loaded, SceneEr
 ///
 /// # Errors
 /// As of [`read_problem`].
-pub fn read_problem_text(
-    path: &Path,
-    text: &str,
-    overrides: &[String],
-) -> Result<Loaded, SceneError> {
+pub fn read_problem_text(path: &Path, text: &str, overrides: &[String]) -> Result<Loaded> {
     problem_of(|| Document::of_text(path, text.to_owned()), overrides)
 }
 
-fn problem_of(
-    read: impl FnOnce() -> Result<Document, SceneError>,
-    overrides: &[String],
-) -> Result<Loaded, SceneError> {
+fn problem_of(read: impl FnOnce() -> Result<Document>, overrides: &[String]) -> Result<Loaded> {
     let overrides: Vec<Override> = overrides
         .iter()
         .map(|written| Override::parse(written))
@@ -174,7 +168,7 @@ fn problem_of(
 }
 
 /// A problem without a list of motions, whose recordings may have scenes of their own, and whose controller may name a disturbance.
-fn with_changed_scenes(document: &Document, of_scene: &[Override]) -> Result<Loaded, SceneError> {
+fn with_changed_scenes(document: &Document, of_scene: &[Override]) -> Result<Loaded> {
     let scenes = changed_scenes(document)?;
     let mut loaded = alone(document.clone(), of_scene, &ChangesSpec::default())?;
     for of in scenes {
@@ -195,11 +189,7 @@ fn with_changed_scenes(document: &Document, of_scene: &[Override]) -> Result<Loa
 }
 
 /// A problem of one motion, or of another task; of an identification the recordings whose scene has these changes.
-fn alone(
-    mut document: Document,
-    of_scene: &[Override],
-    changes: &ChangesSpec,
-) -> Result<Loaded, SceneError> {
+fn alone(mut document: Document, of_scene: &[Override], changes: &ChangesSpec) -> Result<Loaded> {
     let scene_apart = document
         .entry("scene")
         .is_some_and(|scene| scene.string().is_some());
@@ -275,12 +265,7 @@ fn alone(
 }
 
 /// Part of the result of a task that is shown.
-fn shown(
-    problem: &ProblemSpec,
-    task: &Task,
-    system: &System,
-    scope: &Scope<'_>,
-) -> Result<Output, SceneError> {
+fn shown(problem: &ProblemSpec, task: &Task, system: &System, scope: &Scope<'_>) -> Result<Output> {
     let place = scope.key("output");
     let expected = match (&problem.output, task) {
         (None, _) => return Ok(Output::default()),
@@ -297,7 +282,7 @@ fn feedback(
     task: &Task,
     system: &System,
     scope: &Scope<'_>,
-) -> Result<Option<Regulator>, SceneError> {
+) -> Result<Option<Regulator>> {
     let Some(spec) = &problem.feedback else {
         return Ok(None);
     };
@@ -325,7 +310,7 @@ fn feedback(
 ///
 /// # Errors
 /// As of [`read_problem`].
-pub fn read_scene(path: &Path) -> Result<System, SceneError> {
+pub fn read_scene(path: &Path) -> Result<System> {
     let document = Document::read(path)?;
     build_scene(&document.parse()?, &Scope::of(&document))
 }
@@ -334,7 +319,7 @@ pub fn read_scene(path: &Path) -> Result<System, SceneError> {
 ///
 /// # Errors
 /// As of [`read_problem`].
-pub fn expand(path: &Path) -> Result<String, SceneError> {
+pub fn expand(path: &Path) -> Result<String> {
     let document = Document::read(path)?;
     let mut scene: SceneSpec = document.parse()?;
     build_scene(&scene, &Scope::of(&document))?;

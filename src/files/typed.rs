@@ -2,7 +2,7 @@
 
 use crate::files::Loaded;
 use crate::files::json::document::Document;
-use crate::files::json::error::{Mistake, SceneError, nearest};
+use crate::files::json::error::{Mistake, Result, SceneError, nearest};
 use crate::files::json::path::Step;
 use crate::files::json::scope::Scope;
 use crate::files::json::set::{Override, resolved};
@@ -17,7 +17,7 @@ use std::path::Path;
 ///
 /// # Errors
 /// There are two, or one is no override.
-pub fn each_once(overrides: &[String]) -> Result<(), SceneError> {
+pub fn each_once(overrides: &[String]) -> Result<()> {
     Override::check(overrides, |change| change.place.clone())
 }
 
@@ -25,7 +25,7 @@ pub fn each_once(overrides: &[String]) -> Result<(), SceneError> {
 ///
 /// # Errors
 /// There are two.
-pub fn each_entry_once(overrides: &[String], loaded: &Loaded) -> Result<(), SceneError> {
+pub fn each_entry_once(overrides: &[String], loaded: &Loaded) -> Result<()> {
     Override::check(overrides, |change| match change.in_scene() {
         Some(inside) => {
             let mut place = resolved(&loaded.scene, &inside.place);
@@ -40,7 +40,7 @@ pub fn each_entry_once(overrides: &[String], loaded: &Loaded) -> Result<(), Scen
 ///
 /// # Errors
 /// The file, its scene or an override is wrong.
-pub fn read_system(path: &Path, overrides: &[String]) -> Result<System, SceneError> {
+pub fn read_system(path: &Path, overrides: &[String]) -> Result<System> {
     let mut document = Document::read_typed(path)?;
     if document.entry("scene").is_some() {
         return Ok(crate::files::read_problem(path, overrides)?.system);
@@ -56,7 +56,7 @@ pub fn read_system(path: &Path, overrides: &[String]) -> Result<System, SceneErr
 ///
 /// # Errors
 /// A source does not exist or takes no voltage, or a voltage is none.
-pub fn driven_voltages(words: &[String], system: &System) -> Result<Vec<f64>, SceneError> {
+pub fn driven_voltages(words: &[String], system: &System) -> Result<Vec<f64>> {
     let sources = system.sources();
     let mut voltages = vec![None; sources.len()];
     let mistake = |word: &str, expected: String, nearest: Option<String>| -> SceneError {

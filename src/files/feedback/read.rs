@@ -8,7 +8,7 @@ use crate::files::feedback::record::{
     PointRecord, ReadingRecord, factor_of, integrated, unit_of, unit_of_force, unit_of_input,
 };
 use crate::files::json::document::Document;
-use crate::files::json::error::SceneError;
+use crate::files::json::error::{Result, SceneError};
 use crate::files::json::scope::Scope;
 use crate::files::problem::state::driven;
 use crate::files::scene::names::names;
@@ -23,7 +23,7 @@ const MOST_DELAYED: usize = 10_000;
 ///
 /// # Errors
 /// It cannot be read, lacks something, or is one of another robot.
-pub(crate) fn read_law(path: &Path, system: &System) -> Result<Law, SceneError> {
+pub(crate) fn read_law(path: &Path, system: &System) -> Result<Law> {
     let document = Document::read(path)?;
     let record: LawRecord = document.parse()?;
     let scope = Scope::of(&document);
@@ -96,7 +96,7 @@ fn factors(
     (measured, inputs, of_inputs): (&[Measured], &[LawInput], &[f64]),
     record: &LawRecord,
     scope: &Scope<'_>,
-) -> Result<(Vec<f64>, Vec<f64>), SceneError> {
+) -> Result<(Vec<f64>, Vec<f64>)> {
     let place = scope.key("integrals");
     for (i, &of) in record.integrals.iter().enumerate() {
         if of >= measured.len() {
@@ -158,7 +158,7 @@ fn markers(record: &LawRecord, instants: usize, system: &System) -> Vec<(String,
     markers
 }
 
-fn of_measured(record: &MeasuredRecord, place: &Scope<'_>) -> Result<Measured, SceneError> {
+fn of_measured(record: &MeasuredRecord, place: &Scope<'_>) -> Result<Measured> {
     let plain = [(false, false), (false, true), (true, false), (true, true)];
     let plain = plain.map(|(is_length, is_rate)| (is_length, is_rate, None));
     let remembered = [Memory::Number, Memory::Charge(1.0)].map(|one| (false, false, Some(one)));
@@ -186,7 +186,7 @@ fn of_input(
     record: &InputRecord,
     sources: &[Source],
     place: &Scope<'_>,
-) -> Result<(LawInput, f64), SceneError> {
+) -> Result<(LawInput, f64)> {
     let load = sources
         .iter()
         .find(|source| source.is_load() && source.name == record.name);
@@ -217,7 +217,7 @@ fn of_input(
 }
 
 /// Finite numbers, as many as there are factors, in the units inside.
-fn list(values: &[f64], factors: &[f64], place: &Scope<'_>) -> Result<Vec<f64>, SceneError> {
+fn list(values: &[f64], factors: &[f64], place: &Scope<'_>) -> Result<Vec<f64>> {
     if values.len() != factors.len() {
         let found = format!("{} numbers", values.len());
         return Err(place.wrong(found, factors.len().to_string()));
@@ -239,7 +239,7 @@ fn matrix(
     rows: &[Vec<f64>],
     [of_rows, columns]: [&[f64]; 2],
     place: &Scope<'_>,
-) -> Result<DMatrix<f64>, SceneError> {
+) -> Result<DMatrix<f64>> {
     if rows.len() != of_rows.len() {
         let found = format!("{} rows", rows.len());
         return Err(place.wrong(found, of_rows.len().to_string()));
@@ -261,7 +261,7 @@ fn observer(
     (measured, intervals): (&[Measured], usize),
     [state, acting]: [&[f64]; 2],
     place: &Scope<'_>,
-) -> Result<Observer, SceneError> {
+) -> Result<Observer> {
     let reading = |(i, one): (usize, &ReadingRecord)| {
         let place = place.key("readings").index(i);
         match one {

@@ -7,7 +7,7 @@ use std::collections::HashSet;
 use std::ops::Range;
 use std::path::{Path, PathBuf};
 
-use crate::files::json::error::{Excerpt, Mistake, SceneError, is_printable, nearest};
+use crate::files::json::error::{Excerpt, Mistake, Result, SceneError, is_printable, nearest};
 use crate::files::json::path::JsonPath;
 use crate::files::json::source::{
     NoBytes, check_json, is_standard_input, of_file, of_standard_input, unmarked,
@@ -33,7 +33,7 @@ pub(crate) struct Document {
 
 impl Document {
     /// Reads a file that is typed: standard input where it is `-`.
-    pub(crate) fn read_typed(path: &Path) -> Result<Self, SceneError> {
+    pub(crate) fn read_typed(path: &Path) -> Result<Self> {
         match is_standard_input(path) {
             true => Self::from_bytes(path, of_standard_input()),
             false => Self::read(path),
@@ -41,11 +41,11 @@ impl Document {
     }
 
     /// Reads a file.
-    pub(crate) fn read(path: &Path) -> Result<Self, SceneError> {
+    pub(crate) fn read(path: &Path) -> Result<Self> {
         Self::from_bytes(path, of_file(path))
     }
 
-    fn from_bytes(path: &Path, bytes: Result<Vec<u8>, NoBytes>) -> Result<Self, SceneError> {
+    fn from_bytes(path: &Path, bytes: Result<Vec<u8>, NoBytes>) -> Result<Self> {
         let wrong = |found: String, expected: &str| {
             Self::new(path, String::new()).mistake(&JsonPath::default(), found, expected)
         };
@@ -87,7 +87,7 @@ impl Document {
     }
 
     /// Takes a text for that of a file, which need not exist.
-    pub(crate) fn of_text(path: &Path, text: String) -> Result<Self, SceneError> {
+    pub(crate) fn of_text(path: &Path, text: String) -> Result<Self> {
         let document = Self::new(path, unmarked(text));
         document.refuse_broken()?;
         document.refuse_infinite()?;
@@ -120,7 +120,7 @@ impl Document {
     }
 
     /// The values as a type, or the first error.
-    pub(crate) fn parse<T: DeserializeOwned>(&self) -> Result<T, SceneError> {
+    pub(crate) fn parse<T: DeserializeOwned>(&self) -> Result<T> {
         self.refuse_unprintable()?;
         self.json().read().map_err(|misfit| {
             let (place, is_key) = (misfit.place(), misfit.is_of_key());
@@ -213,7 +213,7 @@ impl Document {
     }
 
     /// A text that is no JSON has a line and a column, and the place of a number that is the reason.
-    fn refuse_broken(&self) -> Result<(), SceneError> {
+    fn refuse_broken(&self) -> Result<()> {
         let text = self.tree.text();
         let Err(error) = check_json(text) else {
             return Ok(());
@@ -239,7 +239,7 @@ impl Document {
     }
 
     /// Numbers beyond all that are computed with have no place in a file.
-    fn refuse_infinite(&self) -> Result<(), SceneError> {
+    fn refuse_infinite(&self) -> Result<()> {
         let infinite = self.json().find_map(&|one| {
             let number = Some(one.written()).filter(|_| one.first() != Some('"'));
             number.filter(|number| number.parse().is_ok_and(f64::is_infinite))
@@ -254,7 +254,7 @@ impl Document {
     }
 
     /// Names are shown in messages, figures, tables and pages: what cannot be printed has no place in any text.
-    fn refuse_unprintable(&self) -> Result<(), SceneError> {
+    fn refuse_unprintable(&self) -> Result<()> {
         let is_wrong = |text: &Cow<'_, str>| !text.chars().all(is_printable);
         let wrong = self.json().find_map(&|one| {
             let key = one.key().filter(is_wrong).map(|key| (key, true));
@@ -269,7 +269,7 @@ impl Document {
     }
 
     /// JSON readers keep the last of two equal keys without a word; here that is an error.
-    fn refuse_repeated_keys(&self) -> Result<(), SceneError> {
+    fn refuse_repeated_keys(&self) -> Result<()> {
         let repeated = self.json().find_map(&|one| {
             let mut seen = HashSet::new();
             let mut keys = one.parts().filter_map(Json::key);

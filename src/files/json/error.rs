@@ -11,6 +11,9 @@ use crate::files::json::path::JsonPath;
 #[derive(Clone, Debug)]
 pub struct SceneError(Box<Mistake>);
 
+/// A value that is read, or the first error.
+pub type Result<T, E = SceneError> = std::result::Result<T, E>;
+
 #[derive(Clone, Debug)]
 pub(crate) struct Mistake {
     /// File as the user named it.

@@ -7,7 +7,7 @@ use std::fmt;
 use std::path::PathBuf;
 
 use crate::files::json::document::Document;
-use crate::files::json::error::SceneError;
+use crate::files::json::error::{Result, SceneError};
 use crate::files::json::path::{JsonPath, Step};
 use crate::files::units::quantity::{PhysicalQuantity, Quantity, WRITTEN};
 use crate::math::{Fault, unique};
@@ -82,12 +82,7 @@ impl<'a> Scope<'a> {
     }
 
     /// Index of a name in a list.
-    pub(crate) fn find(
-        &self,
-        name: &str,
-        names: &[String],
-        expected: &str,
-    ) -> Result<usize, SceneError> {
+    pub(crate) fn find(&self, name: &str, names: &[String], expected: &str) -> Result<usize> {
         let position = names.iter().position(|other| other == name);
         position.ok_or_else(|| {
             let candidates = names.iter().map(String::as_str);
@@ -97,34 +92,29 @@ impl<'a> Scope<'a> {
     }
 
     /// The file that a path written here names: relative to the document.
-    pub(crate) fn file(&self, path: &str, expected: &str) -> Result<PathBuf, SceneError> {
+    pub(crate) fn file(&self, path: &str, expected: &str) -> Result<PathBuf> {
         let file = Some(self.document.beside(path)).filter(|file| file.is_file());
         file.ok_or_else(|| self.missing(path, "file", expected))
     }
 
     /// The same, or else in the current folder: results of earlier runs.
-    pub(crate) fn file_or_result(&self, path: &str, expected: &str) -> Result<PathBuf, SceneError> {
+    pub(crate) fn file_or_result(&self, path: &str, expected: &str) -> Result<PathBuf> {
         self.result(path, None, expected)
     }
 
     /// The `solution.json` that a path names, or that is in the folder that it names; in the same places.
-    pub(crate) fn solution_file(&self, path: &str, expected: &str) -> Result<PathBuf, SceneError> {
+    pub(crate) fn solution_file(&self, path: &str, expected: &str) -> Result<PathBuf> {
         self.result(path, Some("solution.json"), expected)
     }
 
     /// The `feedback.json` that a path names, or that is in the folder that it names; in the same places.
-    pub(crate) fn feedback_file(&self, path: &str) -> Result<PathBuf, SceneError> {
+    pub(crate) fn feedback_file(&self, path: &str) -> Result<PathBuf> {
         let expected = "the path of the feedback.json of an optimum, or of its folder";
         self.result(path, Some("feedback.json"), expected)
     }
 
     /// A file beside the document or in the current folder, or the one of a name in a folder there.
-    fn result(
-        &self,
-        path: &str,
-        name: Option<&str>,
-        expected: &str,
-    ) -> Result<PathBuf, SceneError> {
+    fn result(&self, path: &str, name: Option<&str>, expected: &str) -> Result<PathBuf> {
         let places = [self.document.beside(path), PathBuf::from(path)];
         let mut files = places.into_iter().map(|place| match name {
             Some(name) if place.is_dir() => place.join(name),
@@ -139,7 +129,7 @@ impl<'a> Scope<'a> {
     }
 
     /// That times in ms increase, at the first that does not.
-    pub(crate) fn increasing(&self, times: &[f64]) -> Result<(), SceneError> {
+    pub(crate) fn increasing(&self, times: &[f64]) -> Result<()> {
         let falls = times.windows(2).position(|pair| pair[0] >= pair[1]);
         falls.map_or(Ok(()), |index| {
             let found = format!("{} s", times[index + 1] / 1e3);
@@ -148,10 +138,7 @@ impl<'a> Scope<'a> {
     }
 
     /// A positive quantity in the units inside.
-    pub(crate) fn positive<M: PhysicalQuantity>(
-        &self,
-        quantity: &Quantity<M>,
-    ) -> Result<f64, SceneError> {
+    pub(crate) fn positive<M: PhysicalQuantity>(&self, quantity: &Quantity<M>) -> Result<f64> {
         let value = quantity.value();
         if value > 0.0 {
             return Ok(value);
@@ -161,7 +148,7 @@ impl<'a> Scope<'a> {
     }
 
     /// A weight that is zero or more; zero leaves no trace.
-    pub(crate) fn weight(&self, weight: f64) -> Result<f64, SceneError> {
+    pub(crate) fn weight(&self, weight: f64) -> Result<f64> {
         match weight < 0.0 {
             true => Err(self.wrong(weight.to_string(), "a weight that is not negative")),
             false => Ok(weight),
@@ -172,7 +159,7 @@ impl<'a> Scope<'a> {
     pub(crate) fn absent_or_positive<M: PhysicalQuantity>(
         &self,
         quantity: Option<&Quantity<M>>,
-    ) -> Result<Option<f64>, SceneError> {
+    ) -> Result<Option<f64>> {
         match quantity {
             Some(quantity) if quantity.value() != 0.0 => self.positive(quantity).map(Some),
             _ => Ok(None),
@@ -183,7 +170,7 @@ impl<'a> Scope<'a> {
     pub(crate) fn exactly_one<T, const N: usize>(
         &self,
         entries: [(&str, Option<T>); N],
-    ) -> Result<T, SceneError> {
+    ) -> Result<T> {
         let expected = format!(
             "exactly one of {}",
             list(entries.iter().map(|&(key, _)| key))
@@ -206,7 +193,7 @@ impl<'a> Scope<'a> {
         names: &[String],
         reserved: &[&str],
         place: impl Fn(usize) -> Self,
-    ) -> Result<(), SceneError> {
+    ) -> Result<()> {
         unique(names, reserved)
             .map_err(|(index, fault)| place(index).wrong(fault.found, fault.expected))
     }

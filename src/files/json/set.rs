@@ -4,7 +4,7 @@ use serde_json::Value;
 use std::borrow::Cow;
 
 use crate::files::json::document::Document;
-use crate::files::json::error::{Mistake, SceneError};
+use crate::files::json::error::{Mistake, Result, SceneError};
 use crate::files::json::path::{JsonPath, Step};
 use crate::files::json::scope::list;
 use crate::files::json::tree::{Json, Tree};
@@ -24,7 +24,7 @@ pub(crate) struct Override {
 
 impl Override {
     /// Reads `path=value`; a value that is no JSON is a text.
-    pub(crate) fn parse(written: &str) -> Result<Self, SceneError> {
+    pub(crate) fn parse(written: &str) -> Result<Self> {
         let parts = written.split_once('=');
         let read = |(path, value): (&str, &str)| {
             let place = JsonPath::parse(path.trim()).filter(|place| place.0.len() <= DEEPEST)?;
@@ -40,10 +40,7 @@ impl Override {
     }
 
     /// Refuses two overrides of one place, which `place` tells.
-    pub(crate) fn check(
-        written: &[String],
-        place: impl Fn(&Self) -> JsonPath,
-    ) -> Result<(), SceneError> {
+    pub(crate) fn check(written: &[String], place: impl Fn(&Self) -> JsonPath) -> Result<()> {
         let mut known: Vec<(JsonPath, Self)> = Vec::with_capacity(written.len());
         for written in written {
             let next = Self::parse(written)?;
@@ -79,7 +76,7 @@ impl Override {
     }
 
     /// Puts the value in its place.
-    pub(crate) fn apply(&self, document: &mut Document) -> Result<(), SceneError> {
+    pub(crate) fn apply(&self, document: &mut Document) -> Result<()> {
         let way = Way::to(&self.place, document.json());
         if let Some((found, expected)) = way.obstacle(&self.place) {
             return Err(Mistake {

@@ -1,7 +1,7 @@
 //! Conversion of a problem file to its task, with one voltage per source and indices for names.
 
 use crate::control::problem::{AtRest, Task};
-use crate::files::json::error::SceneError;
+use crate::files::json::error::Result;
 use crate::files::json::scope::Scope;
 use crate::files::problem::control::control;
 use crate::files::problem::coordinates::{coordinates, count};
@@ -24,9 +24,9 @@ pub(crate) fn build_problem(
     problem: &ProblemSpec,
     scene: &WrittenScene<'_>,
     scope: &Scope<'_>,
-) -> Result<Task, SceneError> {
+) -> Result<Task> {
     let system = scene.system;
-    type Build<'a> = Box<dyn FnOnce() -> Result<Task, SceneError> + 'a>;
+    type Build<'a> = Box<dyn FnOnce() -> Result<Task> + 'a>;
     let simulate = problem.simulate.as_ref().map(|spec| -> Build<'_> {
         Box::new(|| {
             let scope = scope.key("simulate");

@@ -3,7 +3,7 @@
 use crate::control::problem::{ChangedScene, Identification, Recording, Task};
 use crate::files::changes::Changes;
 use crate::files::json::document::Document;
-use crate::files::json::error::SceneError;
+use crate::files::json::error::Result;
 use crate::files::json::scope::Scope;
 use crate::files::problem::spec::ProblemSpec;
 use crate::files::problem::spec_identify::IdentifySpec;
@@ -20,7 +20,7 @@ pub(crate) struct SceneChanges<'a> {
 }
 
 /// The changes that recordings and candidates of a problem name, each once.
-pub(crate) fn changed_scenes(document: &Document) -> Result<Vec<SceneChanges<'_>>, SceneError> {
+pub(crate) fn changed_scenes(document: &Document) -> Result<Vec<SceneChanges<'_>>> {
     let mut out: Vec<SceneChanges<'_>> = Vec::new();
     let Some(spec) = written(document)? else {
         return Ok(out);
@@ -58,7 +58,7 @@ pub(crate) fn changed_scenes(document: &Document) -> Result<Vec<SceneChanges<'_>
 }
 
 /// The identification that a problem asks for, if it does.
-fn written(document: &Document) -> Result<Option<IdentifySpec>, SceneError> {
+fn written(document: &Document) -> Result<Option<IdentifySpec>> {
     match document.entry("identify") {
         None => Ok(None),
         Some(_) => Ok(document.parse::<ProblemSpec>()?.identify),
@@ -72,7 +72,7 @@ impl SceneChanges<'_> {
         task: &mut Task,
         (system, of_changed): (System, Task),
         document: &Document,
-    ) -> Result<(), SceneError> {
+    ) -> Result<()> {
         let (Task::Identify(task), Task::Identify(other)) = (task, of_changed) else {
             unreachable!("an entry \"identify\" is that task");
         };

@@ -2,7 +2,7 @@
 
 use crate::control::problem::{Channel, Reading};
 use crate::files::columns::Columns;
-use crate::files::json::error::SceneError;
+use crate::files::json::error::Result;
 use crate::files::json::scope::Scope;
 use crate::files::problem::quantities::keys::{MeasuredSize, MeasuredSpec};
 use crate::files::units::quantity::{Kind, Quantity as Written, Ratio};
@@ -27,11 +27,7 @@ pub(super) struct Source<'a> {
 
 impl Measured {
     /// The quantity that is written.
-    pub(super) fn new(
-        spec: &MeasuredSpec,
-        system: &System,
-        scope: &Scope<'_>,
-    ) -> Result<Self, SceneError> {
+    pub(super) fn new(spec: &MeasuredSpec, system: &System, scope: &Scope<'_>) -> Result<Self> {
         let what = spec.recorded(system, scope)?;
         let column = spec.column.as_ref();
         Ok(Self {
@@ -44,11 +40,7 @@ impl Measured {
     }
 
     /// The standard deviation that is written for all readings.
-    pub(super) fn deviation(
-        &self,
-        spec: &MeasuredSpec,
-        scope: &Scope<'_>,
-    ) -> Result<Option<f64>, SceneError> {
+    pub(super) fn deviation(&self, spec: &MeasuredSpec, scope: &Scope<'_>) -> Result<Option<f64>> {
         let Some(written) = &spec.standard_deviation else {
             return Ok(None);
         };
@@ -78,7 +70,7 @@ impl Measured {
         spec: &MeasuredSpec,
         source: &Source<'_>,
         scope: &Scope<'_>,
-    ) -> Result<Channel, SceneError> {
+    ) -> Result<Channel> {
         let given = [
             ("standard_deviation", spec.standard_deviation.is_some()),
             ("deviations", spec.deviations.is_some()),
@@ -129,7 +121,7 @@ impl Measured {
         header: &str,
         source: &Source<'_>,
         scope: &Scope<'_>,
-    ) -> Result<Vec<Option<f64>>, SceneError> {
+    ) -> Result<Vec<Option<f64>>> {
         let column = source
             .columns
             .with_gaps::<MeasuredSize>(header, &self.kind, scope)?;
@@ -143,11 +135,7 @@ impl Measured {
 }
 
 /// Relative deviations of weights.
-fn weights(
-    header: &str,
-    source: &Source<'_>,
-    scope: &Scope<'_>,
-) -> Result<Vec<Option<f64>>, SceneError> {
+fn weights(header: &str, source: &Source<'_>, scope: &Scope<'_>) -> Result<Vec<Option<f64>>> {
     let column = source
         .columns
         .with_gaps::<Ratio>(header, &Ratio::kind(), scope)?;

@@ -5,7 +5,7 @@ use crate::control::problem::{
     BoundaryState, Control, Duration, EnergyCost, Guess, Objective, Solver, SourceEnergy, Voltages,
     absent_loads,
 };
-use crate::files::json::error::SceneError;
+use crate::files::json::error::Result;
 use crate::files::json::scope::Scope;
 use crate::files::problem::coordinates::{coordinates, count};
 use crate::files::problem::free::parameters;
@@ -44,7 +44,7 @@ pub(crate) fn control(
     spec: &ControlSpec,
     scene: &WrittenScene<'_>,
     scope: &Scope<'_>,
-) -> Result<Control, SceneError> {
+) -> Result<Control> {
     let system = scene.system;
     check_alone(spec, scope)?;
     let duration = duration(&spec.duration, &scope.key("duration"))?;
@@ -127,7 +127,7 @@ fn goal(
     objective: &Objective,
     system: &System,
     scope: &Scope<'_>,
-) -> Result<BoundaryState, SceneError> {
+) -> Result<BoundaryState> {
     match &spec.goal {
         Some(goal) => goal_state(goal, system, &scope.key("goal")),
         None if objective.quantities.is_empty()
@@ -146,7 +146,7 @@ fn with_peak(
     weight: f64,
     system: &System,
     scope: &Scope<'_>,
-) -> Result<Control, SceneError> {
+) -> Result<Control> {
     if weight > 0.0 && !control.minimise_peak_voltage(weight, system) {
         let found = "a weight where all voltages are given";
         return Err(scope.wrong(found, "a voltage that is sought"));
@@ -154,7 +154,7 @@ fn with_peak(
     Ok(control)
 }
 
-pub(crate) fn duration(spec: &DurationSpec, scope: &Scope<'_>) -> Result<Duration, SceneError> {
+pub(crate) fn duration(spec: &DurationSpec, scope: &Scope<'_>) -> Result<Duration> {
     let free = match spec {
         DurationSpec::Given(duration) => return scope.positive(duration).map(Duration::Given),
         DurationSpec::Free(free) => free,
@@ -178,7 +178,7 @@ pub(crate) fn voltage_bounds(
     spec: &ControlSpec,
     is_needed: bool,
     scope: &Scope<'_>,
-) -> Result<[f64; 2], SceneError> {
+) -> Result<[f64; 2]> {
     let Some([lower, upper]) = &spec.voltage_bounds else {
         return match is_needed {
             true => Err(scope.wrong(
@@ -208,7 +208,7 @@ pub(crate) fn given_voltages(
     spec: &ControlSpec,
     system: &System,
     scope: &Scope<'_>,
-) -> Result<(BTreeMap<usize, Signal>, Option<Voltages>), SceneError> {
+) -> Result<(BTreeMap<usize, Signal>, Option<Voltages>)> {
     let sources = system.sources();
     let mut given = BTreeMap::new();
     let mut course = None;
@@ -245,7 +245,7 @@ pub(crate) fn check_rest_voltages(
     is_given: impl Fn(usize) -> bool,
     [lower, upper]: [f64; 2],
     scope: &Scope<'_>,
-) -> Result<(), SceneError> {
+) -> Result<()> {
     let BoundaryState::RestAtVoltages(voltages, _) = state else {
         return Ok(());
     };
@@ -266,7 +266,7 @@ pub(crate) fn check_final_conditions(
     goal: &BoundaryState,
     system: &System,
     scope: &Scope<'_>,
-) -> Result<(), SceneError> {
+) -> Result<()> {
     let lumped = |muscle: &Muscle| muscle.fidelity == Fidelity::Lumped;
     if !system.solids.is_empty() || !system.muscles.iter().all(lumped) {
         return Ok(());
@@ -298,7 +298,7 @@ pub(crate) fn objective(
     spec: &ObjectiveSpec,
     system: &System,
     scope: &Scope<'_>,
-) -> Result<Objective, SceneError> {
+) -> Result<Objective> {
     let weights = [
         ("effort", spec.effort),
         ("rate", spec.rate),
@@ -351,7 +351,7 @@ pub(crate) fn objective(
     })
 }
 
-pub(crate) fn solver(spec: &SolverSpec, scope: &Scope<'_>) -> Result<Solver, SceneError> {
+pub(crate) fn solver(spec: &SolverSpec, scope: &Scope<'_>) -> Result<Solver> {
     let default = Solver::default();
     let tolerance = spec.tolerance.unwrap_or(default.tolerance);
     if tolerance <= 0.0 {
@@ -384,7 +384,7 @@ pub(crate) fn solver(spec: &SolverSpec, scope: &Scope<'_>) -> Result<Solver, Sce
 }
 
 /// Reads the solver of the linear systems; named once.
-fn linear_solver(spec: &SolverSpec, scope: &Scope<'_>) -> Result<LinearSolver, SceneError> {
+fn linear_solver(spec: &SolverSpec, scope: &Scope<'_>) -> Result<LinearSolver> {
     let Some(named) = spec.linear_solver else {
         return Ok(LinearSolver::Auto);
     };
@@ -410,7 +410,7 @@ pub(crate) fn energies(
     energy: SourceEnergy,
     system: &System,
     scope: &Scope<'_>,
-) -> Result<Vec<EnergyCost>, SceneError> {
+) -> Result<Vec<EnergyCost>> {
     let sources = system.sources();
     let cost = |source: usize, weight: f64, place: &Scope<'_>| {
         let cost = EnergyCost {
@@ -463,11 +463,11 @@ pub(crate) fn guess(
     system: &System,
     bounds: [f64; 2],
     scope: &Scope<'_>,
-) -> Result<Guess, SceneError> {
+) -> Result<Guess> {
     let GuessSpec::Object(spec) = spec else {
         return Ok(Guess::Interpolate);
     };
-    type Build<'a> = Box<dyn FnOnce() -> Result<Guess, SceneError> + 'a>;
+    type Build<'a> = Box<dyn FnOnce() -> Result<Guess> + 'a>;
     let simulate = spec.simulate.as_ref().map(|simulate| -> Build<'_> {
         let scope = scope.key("simulate").key("voltages");
         Box::new(move || over_time(&simulate.voltages, system, &scope).map(Guess::Simulate))

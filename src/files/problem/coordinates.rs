@@ -1,6 +1,6 @@
 //! Conversion of counts and coordinates, which several tasks have.
 
-use crate::files::json::error::SceneError;
+use crate::files::json::error::Result;
 use crate::files::json::scope::Scope;
 use crate::files::scene::graph::tree_freedoms;
 use crate::model::Coordinates;
@@ -9,12 +9,7 @@ use schemars::JsonSchema;
 use serde::Deserialize;
 
 /// A number of things from one to a limit.
-pub(crate) fn count(
-    value: usize,
-    noun: &str,
-    most: usize,
-    scope: &Scope<'_>,
-) -> Result<(), SceneError> {
+pub(crate) fn count(value: usize, noun: &str, most: usize, scope: &Scope<'_>) -> Result<()> {
     let expected = match value {
         0 => format!("1 {noun} or more"),
         _ if value > most => format!("no more than {most} {noun}s"),
@@ -27,7 +22,7 @@ pub(crate) fn coordinates(
     spec: Option<CoordinatesSpec>,
     system: &System,
     scope: &Scope<'_>,
-) -> Result<Option<Coordinates>, SceneError> {
+) -> Result<Option<Coordinates>> {
     let bodies = system.bodies.len();
     let place = scope.key("coordinates");
     match spec {

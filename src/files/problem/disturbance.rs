@@ -3,7 +3,7 @@
 use crate::control::problem::{Disturbed, Task};
 use crate::files::changes::{Changes, word};
 use crate::files::json::document::Document;
-use crate::files::json::error::SceneError;
+use crate::files::json::error::Result;
 use crate::files::json::path::{JsonPath, Step};
 use crate::files::json::scope::Scope;
 use crate::files::json::set::{Override, value_at};
@@ -21,8 +21,8 @@ pub(crate) fn disturbed(
     document: &Document,
     of_scene: &[Override],
     texts: [&str; 2],
-    read: impl Fn(Document, &[Override]) -> Result<(System, Task), SceneError>,
-) -> Result<Vec<Disturbed>, SceneError> {
+    read: impl Fn(Document, &[Override]) -> Result<(System, Task)>,
+) -> Result<Vec<Disturbed>> {
     let Some(spec) = written(document)? else {
         return Ok(Vec::new());
     };
@@ -67,7 +67,7 @@ pub(crate) fn disturbed(
 }
 
 /// The disturbance that a problem names, if it does.
-fn written(document: &Document) -> Result<Option<DisturbanceSpec>, SceneError> {
+fn written(document: &Document) -> Result<Option<DisturbanceSpec>> {
     if document.entry("simulate").is_none() {
         return Ok(None);
     }
@@ -75,7 +75,7 @@ fn written(document: &Document) -> Result<Option<DisturbanceSpec>, SceneError> {
     Ok(simulate.and_then(|one| one.controller?.disturbance))
 }
 
-fn sizes(spec: &DisturbanceSpec, scope: &Scope<'_>) -> Result<Vec<f64>, SceneError> {
+fn sizes(spec: &DisturbanceSpec, scope: &Scope<'_>) -> Result<Vec<f64>> {
     let place = scope.key("sizes");
     let Some(sizes) = &spec.sizes else {
         return Ok(vec![0.0, 0.25, 0.5, 1.0]);
@@ -95,7 +95,7 @@ fn sizes(spec: &DisturbanceSpec, scope: &Scope<'_>) -> Result<Vec<f64>, SceneErr
 }
 
 /// The value that a problem has in a place.
-fn with(key: &str, texts: [&str; 2], place: &Scope<'_>) -> Result<Value, SceneError> {
+fn with(key: &str, texts: [&str; 2], place: &Scope<'_>) -> Result<Value> {
     let wrong = || {
         let expected = "a place in the problem or its scene that has a value, such as scene.materials.silicone.shear_modulus";
         place.wrong(format!("the key {key:?}"), expected)

@@ -9,7 +9,7 @@ use std::path::Path;
 use crate::control::EndState;
 use crate::dynamics::StepState;
 use crate::files::continuation;
-use crate::files::json::error::SceneError;
+use crate::files::json::error::Result;
 use crate::files::json::scope::{Scope, list};
 use crate::files::problem::solution_document::solution_document;
 use crate::kinematics::Pose;
@@ -76,11 +76,7 @@ struct Summary {
 }
 
 /// The last instant of the result that a path names.
-pub(crate) fn end_of(
-    path: &str,
-    system: &System,
-    scope: &Scope<'_>,
-) -> Result<EndState, SceneError> {
+pub(crate) fn end_of(path: &str, system: &System, scope: &Scope<'_>) -> Result<EndState> {
     let file = scope.solution_file(path, FOLDER)?;
     let notes = status(&file, scope)?;
     let document = solution_document(&file, |name| {
@@ -137,7 +133,7 @@ pub(crate) fn end_of(
 }
 
 /// Refuses a result that is no motion, and returns notes on one that is.
-fn status(file: &Path, scope: &Scope<'_>) -> Result<Vec<String>, SceneError> {
+fn status(file: &Path, scope: &Scope<'_>) -> Result<Vec<String>> {
     let beside = file.with_file_name("summary.json");
     let shown = file.display();
     let text = fs::read_to_string(&beside).ok();
@@ -167,12 +163,7 @@ fn status(file: &Path, scope: &Scope<'_>) -> Result<Vec<String>, SceneError> {
 }
 
 /// Refuses a result of other bodies, joints or sources.
-fn check_names(
-    ended: &Ended,
-    path: &str,
-    system: &System,
-    scope: &Scope<'_>,
-) -> Result<(), SceneError> {
+fn check_names(ended: &Ended, path: &str, system: &System, scope: &Scope<'_>) -> Result<()> {
     let Configuration { bodies, joints } = &ended.configuration;
     let with_coordinate = system.joints.iter().filter(|joint| joint.has_coordinate());
     for (kind, there, here) in [
@@ -214,12 +205,7 @@ fn check_names(
 }
 
 /// The state of the method of a simulation; of a solve none is kept.
-fn method(
-    file: &Path,
-    z: &[f64],
-    momentum: &[f64],
-    scope: &Scope<'_>,
-) -> Result<StepState, SceneError> {
+fn method(file: &Path, z: &[f64], momentum: &[f64], scope: &Scope<'_>) -> Result<StepState> {
     let beside = file.with_file_name("continuation.npz");
     if !beside.is_file() {
         return Ok(StepState::default());

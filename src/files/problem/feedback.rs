@@ -3,7 +3,7 @@
 use crate::control::problem::{FeedbackControl, Noise, Observation, Regulator};
 use crate::feedback::{Integral, Law};
 use crate::files::feedback::read_law;
-use crate::files::json::error::SceneError;
+use crate::files::json::error::Result;
 use crate::files::json::scope::Scope;
 use crate::files::problem::state::{joint_value, joint_with_coordinate, moving_marker};
 use crate::files::scene::names::names;
@@ -26,7 +26,7 @@ pub(crate) fn regulator(
     spec: &FeedbackSpec,
     system: &System,
     scope: &Scope<'_>,
-) -> Result<Regulator, SceneError> {
+) -> Result<Regulator> {
     let place = scope.key("weights");
     let weight = |key: &str, written: Option<f64>, unwritten: f64| match written {
         Some(weight) => finite(weight, &place.key(key)),
@@ -86,11 +86,7 @@ pub(crate) fn regulator(
     Ok(out)
 }
 
-fn observation(
-    spec: &ObserverSpec,
-    system: &System,
-    scope: &Scope<'_>,
-) -> Result<Observation, SceneError> {
+fn observation(spec: &ObserverSpec, system: &System, scope: &Scope<'_>) -> Result<Observation> {
     let positive = |deviation: f64, place: &Scope<'_>| match deviation > 0.0 {
         true => Ok(deviation),
         false => Err(place.wrong(deviation.to_string(), "a positive standard deviation")),
@@ -117,8 +113,8 @@ fn observation(
         None => Ok(unwritten),
     };
     let out = Observation {
-        joints: joints.collect::<Result<_, SceneError>>()?,
-        markers: markers.collect::<Result<_, SceneError>>()?,
+        joints: joints.collect::<Result<_>>()?,
+        markers: markers.collect::<Result<_>>()?,
         inputs: disturbance("voltages", spec.voltages, inputs)?,
         rates: disturbance("rates", spec.rates, rates)?,
         lasting: match spec.lasting {
@@ -139,7 +135,7 @@ fn observation(
     Ok(out)
 }
 
-fn finite(weight: f64, place: &Scope<'_>) -> Result<f64, SceneError> {
+fn finite(weight: f64, place: &Scope<'_>) -> Result<f64> {
     match weight.is_finite() {
         true => place.weight(weight),
         false => Err(place.wrong(weight.to_string(), "a finite number")),
@@ -152,7 +148,7 @@ pub(crate) fn controller(
     step: Option<f64>,
     system: &System,
     scope: &Scope<'_>,
-) -> Result<FeedbackControl, SceneError> {
+) -> Result<FeedbackControl> {
     let Some(step) = step else {
         let expected = "a \"step\" of the simulation: samples are multiples of it";
         return Err(scope.wrong("steps of no given length", expected));
@@ -194,7 +190,7 @@ pub(crate) fn controller(
 }
 
 /// Refuses noise of a kind of which the controller measures nothing.
-fn refuse_unread(noise: &Noise, law: &Law, scope: &Scope<'_>) -> Result<(), SceneError> {
+fn refuse_unread(noise: &Noise, law: &Law, scope: &Scope<'_>) -> Result<()> {
     let [found, expected] = Noise::UNREAD;
     noise
         .unread(law)
@@ -202,14 +198,14 @@ fn refuse_unread(noise: &Noise, law: &Law, scope: &Scope<'_>) -> Result<(), Scen
 }
 
 /// The delay of a controller as it is written, a multiple of the step.
-fn delay(spec: &ControllerSpec, step: f64, scope: &Scope<'_>) -> Result<Option<f64>, SceneError> {
+fn delay(spec: &ControllerSpec, step: f64, scope: &Scope<'_>) -> Result<Option<f64>> {
     match &spec.delay {
         Some(delay) if delay.value() != 0.0 => multiple(delay, step, &scope.key("delay")).map(Some),
         delay => Ok(delay.as_ref().map(|_| 0.0)),
     }
 }
 
-fn noise(of: &NoiseSpec, place: &Scope<'_>) -> Result<Noise, SceneError> {
+fn noise(of: &NoiseSpec, place: &Scope<'_>) -> Result<Noise> {
     let angular = &place.key("angular_velocity");
     Ok(Noise {
         angle: deviation(of.angle.as_ref(), &place.key("angle"))?,
@@ -226,7 +222,7 @@ fn planning(
     horizon: &HorizonSpec,
     step: f64,
     scope: &Scope<'_>,
-) -> Result<FeedbackControl, SceneError> {
+) -> Result<FeedbackControl> {
     if let Some(sample) = &spec.sample {
         let expected = "none beside \"horizon\", which plans anew in each interval of its problem";
         return Err(scope.key("sample").wrong(sample.to_string(), expected));
@@ -254,10 +250,7 @@ fn planning(
     })
 }
 
-fn deviation<M: PhysicalQuantity>(
-    written: Option<&Quantity<M>>,
-    place: &Scope<'_>,
-) -> Result<f64, SceneError> {
+fn deviation<M: PhysicalQuantity>(written: Option<&Quantity<M>>, place: &Scope<'_>) -> Result<f64> {
     Ok(place.absent_or_positive(written)?.unwrap_or(0.0))
 }
 
@@ -266,7 +259,7 @@ fn multiple<M: PhysicalQuantity>(
     written: &Quantity<M>,
     step: f64,
     place: &Scope<'_>,
-) -> Result<f64, SceneError> {
+) -> Result<f64> {
     let time = place.positive(written)?;
     let steps = (time / step).round();
     match steps >= 1.0 && (time / step - steps).abs() <= ROUNDING * steps {

@@ -2,7 +2,7 @@
 
 use crate::control::PEAK_VOLTAGE;
 use crate::files::json::document::Document;
-use crate::files::json::error::SceneError;
+use crate::files::json::error::{Result, SceneError};
 use crate::files::json::path::JsonPath;
 use crate::files::json::scope::Scope;
 use crate::files::scene::constants::{NoConstant, SceneConstant, WrittenScene};
@@ -19,7 +19,7 @@ pub(crate) fn parameters(
     map: &FreeMap,
     scene: &WrittenScene<'_>,
     scope: &Scope<'_>,
-) -> Result<Vec<Parameter>, SceneError> {
+) -> Result<Vec<Parameter>> {
     let parameter =
         |(path, spec): (&String, &FreeSpec)| parameter(path, spec, scene, &scope.key(path));
     let parameters: Vec<Parameter> = map.iter().map(parameter).collect::<Result<_, _>>()?;
@@ -35,7 +35,7 @@ fn parameter(
     spec: &FreeSpec,
     scene: &WrittenScene<'_>,
     scope: &Scope<'_>,
-) -> Result<Parameter, SceneError> {
+) -> Result<Parameter> {
     let (lower, upper) = (spec.min.si(), spec.max.si());
     if lower >= upper {
         let expected = format!("a value larger than \"min\" {}", spec.min);
@@ -132,7 +132,7 @@ pub(crate) fn check_solution(
     path: &Path,
     scene: &WrittenScene<'_>,
     scope: &Scope<'_>,
-) -> Result<(), SceneError> {
+) -> Result<()> {
     let document = &Document::read(path)?;
     let FoundRecord { parameters } = document.parse()?;
     // The peak is a result, and no constant of a scene.

@@ -3,7 +3,7 @@
 use std::collections::BTreeMap;
 
 use crate::control::problem::{BoundaryState, Orientation, Place, Rest};
-use crate::files::json::error::SceneError;
+use crate::files::json::error::Result;
 use crate::files::json::scope::Scope;
 use crate::files::problem::spec_voltages::VoltageMap;
 use crate::files::problem::state::{
@@ -19,7 +19,7 @@ pub(crate) fn goal_state(
     spec: &GoalSpec,
     system: &System,
     scope: &Scope<'_>,
-) -> Result<BoundaryState, SceneError> {
+) -> Result<BoundaryState> {
     let spec = match spec {
         GoalSpec::Word(GoalWord::Free) => return Ok(BoundaryState::Free),
         GoalSpec::Word(GoalWord::Periodic) => return Ok(BoundaryState::Periodic),
@@ -39,7 +39,7 @@ fn is_of_places(spec: &RestGoalSpec) -> bool {
 }
 
 /// The key that says what a goal gives.
-fn given_key(spec: &RestGoalSpec, scope: &Scope<'_>) -> Result<&'static str, SceneError> {
+fn given_key(spec: &RestGoalSpec, scope: &Scope<'_>) -> Result<&'static str> {
     let of_places = match (&spec.markers, &spec.orientations) {
         (None, Some(_)) => "orientations",
         _ => "markers",
@@ -53,7 +53,7 @@ fn given_key(spec: &RestGoalSpec, scope: &Scope<'_>) -> Result<&'static str, Sce
 }
 
 /// Refuses `hold` and `rest` where they have no meaning next to `key`.
-fn check_companions(spec: &RestGoalSpec, key: &str, scope: &Scope<'_>) -> Result<(), SceneError> {
+fn check_companions(spec: &RestGoalSpec, key: &str, scope: &Scope<'_>) -> Result<()> {
     let beside_places = "it beside \"markers\" or \"orientations\" only";
     let beside_rest = "it beside \"rest_at_voltages\", \"markers\" or \"orientations\" only";
     let beside_goals = "it beside \"joint_angles\", \"markers\" or \"orientations\"; voltages at rest hold their equilibrium";
@@ -90,7 +90,7 @@ fn equilibrium(
     rest: Rest,
     system: &System,
     scope: &Scope<'_>,
-) -> Result<BoundaryState, SceneError> {
+) -> Result<BoundaryState> {
     if rest == Rest::Bodies && system.bodies.is_empty() {
         let expected = "a scene with bodies; goals of elastic blocks alone are \"markers\"";
         return Err(scope.key("rest").wrong("a scene without bodies", expected));
@@ -100,11 +100,7 @@ fn equilibrium(
 }
 
 /// Positions of markers and orientations of bodies.
-fn positions(
-    spec: &RestGoalSpec,
-    system: &System,
-    scope: &Scope<'_>,
-) -> Result<BoundaryState, SceneError> {
+fn positions(spec: &RestGoalSpec, system: &System, scope: &Scope<'_>) -> Result<BoundaryState> {
     let written = (spec.markers.as_ref(), spec.orientations.as_ref());
     let (places, orientations) = places(written, system, scope)?;
     let held = match &spec.hold {
@@ -120,11 +116,7 @@ fn positions(
 }
 
 /// Coordinates of joints; `scope` is that of the map.
-fn coordinates(
-    spec: &RestGoalSpec,
-    system: &System,
-    scope: &Scope<'_>,
-) -> Result<BoundaryState, SceneError> {
+fn coordinates(spec: &RestGoalSpec, system: &System, scope: &Scope<'_>) -> Result<BoundaryState> {
     let kinds = [Angle::kind(), Length::kind()];
     let angles = by_joint(&spec.joint_angles, &kinds, system, scope)?;
     if angles.is_empty() {
@@ -151,7 +143,7 @@ pub(crate) fn places(
     (markers, orientations): WrittenPlaces<'_>,
     system: &System,
     scope: &Scope<'_>,
-) -> Result<Places, SceneError> {
+) -> Result<Places> {
     let places = markers.map(|map| of_markers(map, system, &scope.key("markers")));
     let turned = orientations.map(|map| of_bodies(map, system, &scope.key("orientations")));
     Ok((
@@ -164,7 +156,7 @@ fn of_markers(
     markers: &BTreeMap<String, PartialPoint>,
     system: &System,
     scope: &Scope<'_>,
-) -> Result<BTreeMap<usize, Place>, SceneError> {
+) -> Result<BTreeMap<usize, Place>> {
     let mut goals = BTreeMap::new();
     for (name, at) in markers {
         let place = scope.key(name);
@@ -185,7 +177,7 @@ fn of_bodies(
     bodies: &BTreeMap<String, OrientationSpec>,
     system: &System,
     scope: &Scope<'_>,
-) -> Result<BTreeMap<usize, Orientation>, SceneError> {
+) -> Result<BTreeMap<usize, Orientation>> {
     let all = names(&system.bodies, |body| &body.name);
     let mut goals = BTreeMap::new();
     for (name, spec) in bodies {

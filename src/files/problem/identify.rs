@@ -4,7 +4,7 @@ use crate::control::problem::{
     Identification, Prior, Reading, Recording, Regime, SoughtStart, begin_late,
 };
 use crate::files::columns::Columns;
-use crate::files::json::error::SceneError;
+use crate::files::json::error::Result;
 use crate::files::json::path::JsonPath;
 use crate::files::json::scope::Scope;
 use crate::files::problem::channels::{Measured, Source};
@@ -32,7 +32,7 @@ pub(crate) fn identification(
     spec: &IdentifySpec,
     scene: &WrittenScene<'_>,
     scope: &Scope<'_>,
-) -> Result<Identification, SceneError> {
+) -> Result<Identification> {
     let system = scene.system;
     let place = scope.key("free");
     let behind = (system, spec.free.len());
@@ -81,7 +81,7 @@ pub(crate) fn identification(
 }
 
 /// Refuses a name that stands already.
-fn unique(name: &str, names: &mut Vec<String>, scope: &Scope<'_>) -> Result<(), SceneError> {
+fn unique(name: &str, names: &mut Vec<String>, scope: &Scope<'_>) -> Result<()> {
     if names.iter().any(|other| other == name) {
         let expected = "a name that no other recording or candidate has";
         return Err(scope.key("name").wrong(format!("{name:?}"), expected));
@@ -96,7 +96,7 @@ fn experiment(
     spec: &ExperimentSpec,
     system: &System,
     scope: &Scope<'_>,
-) -> Result<Recording, SceneError> {
+) -> Result<Recording> {
     let (start, voltages) = driven(
         spec.start.as_ref(),
         (&spec.voltages, &spec.loads),
@@ -132,11 +132,7 @@ fn experiment(
 }
 
 /// All that is measured, with what it is called.
-fn measured(
-    list: &[MeasuredSpec],
-    system: &System,
-    scope: &Scope<'_>,
-) -> Result<Vec<Measured>, SceneError> {
+fn measured(list: &[MeasuredSpec], system: &System, scope: &Scope<'_>) -> Result<Vec<Measured>> {
     let scope = scope.key("measured");
     if list.is_empty() {
         return Err(scope.wrong("nothing that is measured", "one or more quantities"));
@@ -163,11 +159,7 @@ fn on_its_clock(spec: &RecordingSpec) -> ExperimentSpec {
     out
 }
 
-fn recording(
-    spec: &RecordingSpec,
-    system: &System,
-    scope: &Scope<'_>,
-) -> Result<Recording, SceneError> {
+fn recording(spec: &RecordingSpec, system: &System, scope: &Scope<'_>) -> Result<Recording> {
     let place = scope.key("experiment");
     let mut out = experiment(&spec.name, &on_its_clock(spec), system, &place)?;
     out.is_held_out = spec.held_out;
@@ -196,8 +188,8 @@ fn recording(
 }
 
 /// The columns of a recording, with the key at which they stand.
-fn columns(spec: &RecordingSpec, scope: &Scope<'_>) -> Result<(&'static str, Columns), SceneError> {
-    type Read<'a> = Box<dyn FnOnce() -> Result<Columns, SceneError> + 'a>;
+fn columns(spec: &RecordingSpec, scope: &Scope<'_>) -> Result<(&'static str, Columns)> {
+    type Read<'a> = Box<dyn FnOnce() -> Result<Columns> + 'a>;
     let file = spec.file.as_ref().map(|path| -> (_, Read<'_>) {
         let read = || Columns::read(path, &scope.key("file"));
         ("file", Box::new(read))
@@ -215,7 +207,7 @@ fn times(
     (from, columns): (&str, &Columns),
     spec: &RecordingSpec,
     scope: &Scope<'_>,
-) -> Result<Vec<f64>, SceneError> {
+) -> Result<Vec<f64>> {
     let place = scope.key("time");
     let written = columns.column::<Time>((&spec.time, &Time::kind()), &place)?;
     let times: Vec<f64> = written.iter().map(Quantity::value).collect();
@@ -248,11 +240,7 @@ fn times(
     }
 }
 
-fn candidate(
-    spec: &CandidateSpec,
-    system: &System,
-    scope: &Scope<'_>,
-) -> Result<Recording, SceneError> {
+fn candidate(spec: &CandidateSpec, system: &System, scope: &Scope<'_>) -> Result<Recording> {
     let mut out = experiment(
         &spec.name,
         &spec.experiment,
@@ -288,7 +276,7 @@ pub(super) fn priors(
     (parameters, free): (&[Parameter], &FreeMap),
     scene: &WrittenScene<'_>,
     scope: &Scope<'_>,
-) -> Result<Vec<Prior>, SceneError> {
+) -> Result<Vec<Prior>> {
     let one = |(path, spec): (&String, &PriorSpec)| {
         let place = scope.key(path);
         let found = parameters.iter().position(|one| one.name == *path);
@@ -336,7 +324,7 @@ pub(super) fn input_constants(
     spec: &InputConstantsSpec,
     (system, first): (&System, usize),
     scope: &Scope<'_>,
-) -> Result<(Vec<Parameter>, Vec<Prior>), SceneError> {
+) -> Result<(Vec<Parameter>, Vec<Prior>)> {
     let sources: Vec<String> = system.sources().into_iter().map(|one| one.name).collect();
     let (mut out, mut priors) = (Vec::new(), Vec::new());
     for (name, range) in &spec.gains {
@@ -383,7 +371,7 @@ fn prior<M: PhysicalQuantity>(
     range: &RangeSpec<M>,
     constant: usize,
     scope: &Scope<'_>,
-) -> Result<Option<Prior>, SceneError> {
+) -> Result<Option<Prior>> {
     let Some(spec) = &range.prior else {
         return Ok(None);
     };
@@ -401,7 +389,7 @@ fn parameter<M: PhysicalQuantity>(
     range: &RangeSpec<M>,
     usual: f64,
     scope: &Scope<'_>,
-) -> Result<Parameter, SceneError> {
+) -> Result<Parameter> {
     let [lower, upper] = [&range.min, &range.max].map(|bound| bound.value());
     if lower >= upper {
         let expected = format!("a value larger than \"min\" {}", range.min);

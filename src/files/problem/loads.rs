@@ -1,7 +1,7 @@
 //! Loads of a problem: sizes over time, bounds of those that are sought, and loads at rest.
 
 use crate::control::problem::{BoundaryState, Duration, Voltages};
-use crate::files::json::error::SceneError;
+use crate::files::json::error::Result;
 use crate::files::json::scope::Scope;
 use crate::files::problem::spec_voltages::VoltagesSpec;
 use crate::files::problem::state::{StartSpec, start_state};
@@ -22,7 +22,7 @@ pub(crate) type LoadMap = BTreeMap<String, SignalSpec<LoadSize>>;
 pub(crate) type LoadBounds = BTreeMap<String, [Quantity<LoadSize>; 2]>;
 
 /// Index and unit of a load.
-fn find(name: &str, system: &System, scope: &Scope<'_>) -> Result<(usize, Kind), SceneError> {
+fn find(name: &str, system: &System, scope: &Scope<'_>) -> Result<(usize, Kind)> {
     let first = system.first_load();
     let sources = system.sources();
     let names = sources[first..].iter().map(|source| source.name.clone());
@@ -44,7 +44,7 @@ pub(crate) fn loads(
     map: &LoadMap,
     system: &System,
     scope: &Scope<'_>,
-) -> Result<BTreeMap<usize, Signal>, SceneError> {
+) -> Result<BTreeMap<usize, Signal>> {
     let read = |(name, spec): (&String, &SignalSpec<LoadSize>)| {
         let scope = scope.key(name);
         let (source, kind) = find(name, system, &scope)?;
@@ -59,7 +59,7 @@ pub(crate) fn load_bounds(
     given: &BTreeMap<usize, Signal>,
     system: &System,
     scope: &Scope<'_>,
-) -> Result<BTreeMap<usize, [f64; 2]>, SceneError> {
+) -> Result<BTreeMap<usize, [f64; 2]>> {
     let read = |(name, written): (&String, &[Quantity<LoadSize>; 2])| {
         let scope = scope.key(name);
         let (source, kind) = find(name, system, &scope)?;
@@ -90,7 +90,7 @@ pub(crate) fn with_loads(
     map: &LoadMap,
     system: &System,
     scope: &Scope<'_>,
-) -> Result<(Voltages, BTreeMap<usize, Signal>), SceneError> {
+) -> Result<(Voltages, BTreeMap<usize, Signal>)> {
     let loads = loads(map, system, scope)?;
     Ok((voltages.with(loads.clone()), loads))
 }
@@ -115,7 +115,7 @@ pub(crate) fn check_end(
     system: &System,
     duration: Duration,
     scope: &Scope<'_>,
-) -> Result<(), SceneError> {
+) -> Result<()> {
     let changes = |(_, load): &(&usize, &Signal)| duration.final_value(load).is_none();
     match loads
         .iter()
@@ -139,7 +139,7 @@ pub(crate) fn driven(
     (voltages, loads): (&VoltagesSpec, &LoadMap),
     system: &System,
     scope: &Scope<'_>,
-) -> Result<(BoundaryState, Voltages), SceneError> {
+) -> Result<(BoundaryState, Voltages)> {
     let mut start = match start {
         Some(start) => start_state(start, system, &scope.key("start"))?,
         None => BoundaryState::JointAngles {

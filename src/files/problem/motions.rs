@@ -8,7 +8,7 @@ use crate::control::problem::Combined;
 use crate::control::{Motion, Motions};
 use crate::files::changes::Changes;
 use crate::files::json::document::Document;
-use crate::files::json::error::SceneError;
+use crate::files::json::error::Result;
 use crate::files::json::path::JsonPath;
 use crate::files::json::scope::Scope;
 use crate::files::json::tree::Json;
@@ -28,7 +28,7 @@ pub(crate) struct MotionDocument<'a> {
 }
 
 /// The motions of a problem, if it has a list of them.
-pub(crate) fn motions(document: &Document) -> Result<Option<Vec<MotionDocument<'_>>>, SceneError> {
+pub(crate) fn motions(document: &Document) -> Result<Option<Vec<MotionDocument<'_>>>> {
     let Some(control) = document.entry("control") else {
         return Ok(None);
     };
@@ -68,7 +68,7 @@ fn one<'a>(
     number: usize,
     control: Json<'_>,
     scope: &Scope<'a>,
-) -> Result<MotionDocument<'a>, SceneError> {
+) -> Result<MotionDocument<'a>> {
     if motion.first() != Some('{') {
         return Err(scope.wrong(
             motion.to_string(),
@@ -109,7 +109,7 @@ fn one<'a>(
 }
 
 /// The name of a motion, which is that of a folder.
-fn name(written: Option<Value>, number: usize, scope: &Scope<'_>) -> Result<String, SceneError> {
+fn name(written: Option<Value>, number: usize, scope: &Scope<'_>) -> Result<String> {
     let name = match written {
         None | Some(Value::Null) => return Ok(format!("motion{}", number + 1)),
         Some(Value::String(name)) => name,
@@ -126,7 +126,7 @@ fn name(written: Option<Value>, number: usize, scope: &Scope<'_>) -> Result<Stri
 }
 
 /// The constants of the scene that are other ones in a motion.
-fn changes<'a>(written: Option<Value>, scope: &Scope<'a>) -> Result<Changes<'a>, SceneError> {
+fn changes<'a>(written: Option<Value>, scope: &Scope<'a>) -> Result<Changes<'a>> {
     let mut changes = Changes::default();
     let entries = match written {
         None | Some(Value::Null) => return Ok(changes),
@@ -150,7 +150,7 @@ fn changes<'a>(written: Option<Value>, scope: &Scope<'a>) -> Result<Changes<'a>,
 }
 
 /// Refuses keys of several motions in a problem of one.
-pub(super) fn check_alone(spec: &ControlSpec, scope: &Scope<'_>) -> Result<(), SceneError> {
+pub(super) fn check_alone(spec: &ControlSpec, scope: &Scope<'_>) -> Result<()> {
     let keys = [
         (
             !spec.shared_inputs.is_empty(),
@@ -170,7 +170,7 @@ pub(super) fn check_alone(spec: &ControlSpec, scope: &Scope<'_>) -> Result<(), S
 }
 
 /// The objective of all motions, the sum where none is written.
-fn combined(written: Option<&str>, scope: &Scope<'_>) -> Result<Combined, SceneError> {
+fn combined(written: Option<&str>, scope: &Scope<'_>) -> Result<Combined> {
     match written {
         None | Some("\"sum\"" | "null") => Ok(Combined::Sum),
         Some("\"worst\"") => Ok(Combined::Worst),
@@ -179,7 +179,7 @@ fn combined(written: Option<&str>, scope: &Scope<'_>) -> Result<Combined, SceneE
 }
 
 /// The motions, if what they are to share can be shared.
-pub(crate) fn together(list: Vec<Motion>, document: &Document) -> Result<Motions, SceneError> {
+pub(crate) fn together(list: Vec<Motion>, document: &Document) -> Result<Motions> {
     let of_all = Scope::of(document).key("control");
     let scope = of_all.key("shared_inputs");
     let key = |key: &str| document.entry("control")?.entry(key);
@@ -212,7 +212,7 @@ pub(crate) fn together(list: Vec<Motion>, document: &Document) -> Result<Motions
 }
 
 /// That an input is sought in all motions.
-fn check_input(list: &[Motion], name: &str, scope: &Scope<'_>) -> Result<(), SceneError> {
+fn check_input(list: &[Motion], name: &str, scope: &Scope<'_>) -> Result<()> {
     for motion in list {
         let sources = motion.system.sources();
         let names: Vec<String> = sources.iter().map(|source| source.name.clone()).collect();

@@ -1,6 +1,6 @@
 //! Conversion of the output entry of a problem file to the columns and instants shown.
 
-use crate::files::json::error::SceneError;
+use crate::files::json::error::Result;
 use crate::files::json::scope::Scope;
 use crate::files::scene::names::names;
 use crate::files::units::quantity::{Quantity, Time};
@@ -35,11 +35,7 @@ const KINDS: [&str; 14] = [
     "constraint_violation",
 ];
 
-pub(crate) fn output(
-    spec: &OutputSpec,
-    system: &System,
-    scope: &Scope<'_>,
-) -> Result<Output, SceneError> {
+pub(crate) fn output(spec: &OutputSpec, system: &System, scope: &Scope<'_>) -> Result<Output> {
     let every = spec.every.as_ref();
     let every = every.map(|every| scope.key("every").positive(every));
     let place = scope.key("quantities");

@@ -3,7 +3,7 @@
 use crate::control::problem::{Ahead, Duration, Regulator, Simulation, Task};
 use crate::feedback::{Law, LawInput};
 use crate::files::json::document::Document;
-use crate::files::json::error::SceneError;
+use crate::files::json::error::Result;
 use crate::files::json::scope::Scope;
 use crate::files::problem::coordinates::count;
 use crate::files::problem::feedback::{CONTROL_FILE, ROUNDING};
@@ -19,8 +19,8 @@ pub(crate) fn add_plan(
     task: &mut Task,
     spec: &ProblemSpec,
     scope: &Scope<'_>,
-    read: impl Fn(&Path) -> Result<(System, Task, Option<Regulator>), SceneError>,
-) -> Result<(), SceneError> {
+    read: impl Fn(&Path) -> Result<(System, Task, Option<Regulator>)>,
+) -> Result<()> {
     let written = spec
         .simulate
         .as_ref()

@@ -1,7 +1,7 @@
 //! Conversion of the numbers by which the optimum of a problem is differentiated.
 
 use crate::control::problem::{BoundaryState, Control, Duration, Varied, VariedOf, WeightOf};
-use crate::files::json::error::SceneError;
+use crate::files::json::error::Result;
 use crate::files::json::path::{JsonPath, Step};
 use crate::files::json::scope::Scope;
 use crate::files::problem::state::A_SOURCE;
@@ -45,7 +45,7 @@ pub(crate) fn with_varied(
     map: &SensitivityMap,
     scene: &WrittenScene<'_>,
     scope: &Scope<'_>,
-) -> Result<Control, SceneError> {
+) -> Result<Control> {
     Ok(Control {
         varied: varied(map, &control, scene, scope)?,
         ..control
@@ -58,7 +58,7 @@ fn varied(
     control: &Control,
     scene: &WrittenScene<'_>,
     scope: &Scope<'_>,
-) -> Result<Vec<Varied>, SceneError> {
+) -> Result<Vec<Varied>> {
     let mut out = Vec::new();
     for (path, spec) in map {
         let scope = scope.key(path);
@@ -85,7 +85,7 @@ fn of_scene(
     spec: &SensitivitySpec,
     scene: &WrittenScene<'_>,
     scope: &Scope<'_>,
-) -> Result<Varied, SceneError> {
+) -> Result<Varied> {
     let wrong = |found: String| scope.wrong(found, OFFERED);
     let written = scene.written(place);
     let number =
@@ -154,7 +154,7 @@ fn beside(si: f64) -> [(Value, f64); 2] {
     [si - size, si + size].map(|value| (Value::from(value), value))
 }
 
-fn check_tolerance(tolerance: Option<f64>, scope: &Scope<'_>) -> Result<(), SceneError> {
+fn check_tolerance(tolerance: Option<f64>, scope: &Scope<'_>) -> Result<()> {
     match tolerance {
         Some(size) if size <= 0.0 => {
             let found = "a tolerance that is not positive";
@@ -218,7 +218,7 @@ fn of_problem(
     control: &Control,
     system: &System,
     scope: &Scope<'_>,
-) -> Result<Varied, SceneError> {
+) -> Result<Varied> {
     if !spec.also.is_empty() {
         let found = "other constants of a number of the problem";
         return Err(scope
@@ -292,18 +292,18 @@ impl Place<'_> {
         keys.collect::<Vec<_>>().join(".")
     }
 
-    fn joint(&self) -> Result<usize, SceneError> {
+    fn joint(&self) -> Result<usize> {
         let names = names(&self.system.joints, |joint| &joint.name);
         self.scope.find(&self.name(), &names, "the name of a joint")
     }
 
-    fn source(&self, name: &str, expected: &str) -> Result<usize, SceneError> {
+    fn source(&self, name: &str, expected: &str) -> Result<usize> {
         let sources = self.system.sources();
         let names = names(&sources, |source| &source.name);
         self.scope.find(name, &names, expected)
     }
 
-    fn number(&self) -> Result<Option<Number>, SceneError> {
+    fn number(&self) -> Result<Option<Number>> {
         let objective = &self.control.objective;
         Ok(match (self.key(0), self.key(1)) {
             ("duration", "") => match self.control.duration {
@@ -337,7 +337,7 @@ impl Place<'_> {
         })
     }
 
-    fn of_goal(&self, key: &str) -> Result<Option<Number>, SceneError> {
+    fn of_goal(&self, key: &str) -> Result<Option<Number>> {
         Ok(match (key, &self.control.goal) {
             ("joint_angles", BoundaryState::JointAngles { angles, .. }) => {
                 let joint = self.joint()?;
@@ -366,7 +366,7 @@ impl Place<'_> {
         })
     }
 
-    fn of_start(&self, key: &str) -> Result<Option<Number>, SceneError> {
+    fn of_start(&self, key: &str) -> Result<Option<Number>> {
         Ok(match (key, &self.control.start) {
             ("joint_angles", BoundaryState::JointAngles { angles, .. }) => {
                 let joint = self.joint()?;

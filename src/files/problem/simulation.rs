@@ -4,7 +4,7 @@ use crate::control::problem::Simulation;
 use crate::dynamics::{Integrator, MultigridUse, Newton, Solving};
 use crate::feedback::Law;
 use crate::files::json::either::{Either, scalar_or_object};
-use crate::files::json::error::SceneError;
+use crate::files::json::error::Result;
 use crate::files::json::scope::Scope;
 use crate::files::problem::coordinates::{CoordinatesSpec, coordinates};
 use crate::files::problem::feedback::{ControllerSpec, controller};
@@ -30,7 +30,7 @@ pub(crate) fn simulation(
     spec: &SimulateSpec,
     system: &System,
     scope: &Scope<'_>,
-) -> Result<Simulation, SceneError> {
+) -> Result<Simulation> {
     let duration = scope.key("duration").positive(&spec.duration)?;
     let method = integrator(spec.integrator.as_ref(), system, &scope.key("integrator"))?;
     let (step, tolerance) = step(spec, duration, method, scope)?;
@@ -78,11 +78,7 @@ pub(crate) fn simulation(
 }
 
 /// Refuses voltages and loads that are written for inputs which the controller gives.
-pub(crate) fn refuse_given(
-    spec: &SimulateSpec,
-    law: &Law,
-    scope: &Scope<'_>,
-) -> Result<(), SceneError> {
+pub(crate) fn refuse_given(spec: &SimulateSpec, law: &Law, scope: &Scope<'_>) -> Result<()> {
     let of_voltages: Vec<&String> = match &spec.voltages {
         VoltagesSpec::Signals(map) => map.keys().collect(),
         VoltagesSpec::Table(table) => table.voltages.keys().collect(),
@@ -109,7 +105,7 @@ pub(crate) fn step(
     duration: f64,
     method: Integrator,
     scope: &Scope<'_>,
-) -> Result<(f64, Option<f64>), SceneError> {
+) -> Result<(f64, Option<f64>)> {
     let Some(StepSpec::Given(written)) = &spec.step else {
         if method != Integrator::Midpoint {
             let found = format!(
@@ -337,7 +333,7 @@ pub(crate) fn integrator(
     spec: Option<&IntegratorSpec>,
     system: &System,
     scope: &Scope<'_>,
-) -> Result<Integrator, SceneError> {
+) -> Result<Integrator> {
     let method = match spec {
         None => Integrator::Midpoint,
         Some(IntegratorSpec::Word(word)) => match word {
@@ -362,7 +358,7 @@ pub(crate) fn integrator(
     }
 }
 
-fn with_parameter(object: &IntegratorObject, scope: &Scope<'_>) -> Result<Integrator, SceneError> {
+fn with_parameter(object: &IntegratorObject, scope: &Scope<'_>) -> Result<Integrator> {
     match (object.galerkin, object.generalised_alpha) {
         (Some(degree), None) if (1..=HIGHEST).contains(&degree) => {
             Ok(Integrator::Galerkin { degree })

@@ -5,7 +5,7 @@ use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
 
 use crate::control::problem::{Afterwards, Voltages};
-use crate::files::json::error::SceneError;
+use crate::files::json::error::Result;
 use crate::files::json::scope::Scope;
 use crate::files::problem::solution_document::solution_document;
 use crate::files::problem::spec_voltages::TableSpec;
@@ -27,7 +27,7 @@ struct SolutionRecord {
 
 /// Voltages of a solution, then those that hold its goal, or where it names none the last ones; 0 for sources that it does
 /// not know.
-pub(crate) fn of_solution(path: &Path, system: &System) -> Result<Voltages, SceneError> {
+pub(crate) fn of_solution(path: &Path, system: &System) -> Result<Voltages> {
     let document =
         &solution_document(path, |name| name == "time" || name.starts_with("voltages/"))?;
     let solution: SolutionRecord = document.parse()?;
@@ -51,11 +51,7 @@ pub(crate) fn of_solution(path: &Path, system: &System) -> Result<Voltages, Scen
 }
 
 /// Voltages of a table, then those that it says are held, or the last ones; 0 for sources that it does not name.
-pub(crate) fn of_table(
-    table: &TableSpec,
-    system: &System,
-    scope: &Scope<'_>,
-) -> Result<Voltages, SceneError> {
+pub(crate) fn of_table(table: &TableSpec, system: &System, scope: &Scope<'_>) -> Result<Voltages> {
     let instants: Vec<f64> = table.time.iter().map(|time| time.value()).collect();
     let all_series = table.voltages.iter();
     let all_series = all_series.map(|(name, series)| (name, series.iter().map(Quantity::value)));
@@ -77,7 +73,7 @@ fn rows<'a>(
     all_series: impl Iterator<Item = (&'a String, impl ExactSizeIterator<Item = f64>)>,
     system: &System,
     scope: &Scope<'_>,
-) -> Result<Vec<Vec<f64>>, SceneError> {
+) -> Result<Vec<Vec<f64>>> {
     let place = scope.key("time");
     if instants.len() < 2 {
         let found = format!("{} instants", instants.len());

@@ -2,7 +2,7 @@
 
 use crate::control::problem::{BoundaryState, Hold, Rest, SoughtHold};
 use crate::files::json::either::{Either, scalar_or_object};
-use crate::files::json::error::SceneError;
+use crate::files::json::error::Result;
 use crate::files::json::scope::Scope;
 use crate::files::problem::end_of::end_of;
 use crate::files::problem::spec_voltages::VoltageMap;
@@ -27,11 +27,7 @@ pub(crate) const ELECTRIC_KEYS: &str =
     "a material with \"relative_permittivity\", or \"c1\" and \"c2\"";
 
 /// One voltage per source in V, 0 where not named.
-pub(crate) fn voltages(
-    map: &VoltageMap,
-    system: &System,
-    scope: &Scope<'_>,
-) -> Result<Vec<f64>, SceneError> {
+pub(crate) fn voltages(map: &VoltageMap, system: &System, scope: &Scope<'_>) -> Result<Vec<f64>> {
     let sources = system.sources();
     let mut voltages = vec![0.0; sources.len()];
     for (name, voltage) in map {
@@ -41,11 +37,7 @@ pub(crate) fn voltages(
 }
 
 /// Index of a source that takes a voltage.
-pub(crate) fn driven(
-    name: &str,
-    sources: &[Source],
-    scope: &Scope<'_>,
-) -> Result<usize, SceneError> {
+pub(crate) fn driven(name: &str, sources: &[Source], scope: &Scope<'_>) -> Result<usize> {
     let sources = voltage_sources(sources);
     let index = scope.find(name, &names(sources, |source| &source.name), A_SOURCE)?;
     if sources[index].takes_voltage {
@@ -69,7 +61,7 @@ pub(crate) fn start_state(
     spec: &StartSpec,
     system: &System,
     scope: &Scope<'_>,
-) -> Result<BoundaryState, SceneError> {
+) -> Result<BoundaryState> {
     let moving =
         spec.joint_angles.is_some() || spec.joint_rates.is_some() || spec.body_velocities.is_some();
     let joints = match () {
@@ -116,7 +108,7 @@ fn velocities(
     map: &Option<BTreeMap<String, BodyVelocitySpec>>,
     system: &System,
     scope: &Scope<'_>,
-) -> Result<BTreeMap<usize, [Vector3<f64>; 2]>, SceneError> {
+) -> Result<BTreeMap<usize, [Vector3<f64>; 2]>> {
     let bodies = names(&system.bodies, |body| &body.name);
     let (floating, turning) = Graph::new(system).movable(system);
     let mut velocities = BTreeMap::new();
@@ -150,11 +142,7 @@ fn velocities(
 }
 
 /// Index of a marker that may move.
-pub(crate) fn moving_marker(
-    name: &str,
-    system: &System,
-    scope: &Scope<'_>,
-) -> Result<usize, SceneError> {
+pub(crate) fn moving_marker(name: &str, system: &System, scope: &Scope<'_>) -> Result<usize> {
     let all = names(&system.markers, |marker| &marker.name);
     let index = scope.find(name, &all, "the name of a marker")?;
     let marker = &system.markers[index];
@@ -171,7 +159,7 @@ pub(crate) fn by_joint<M: PhysicalQuantity>(
     kinds: &[Kind; 2],
     system: &System,
     scope: &Scope<'_>,
-) -> Result<BTreeMap<usize, f64>, SceneError> {
+) -> Result<BTreeMap<usize, f64>> {
     let mut values = BTreeMap::new();
     for (name, quantity) in map.iter().flatten() {
         let place = scope.key(name);
@@ -187,7 +175,7 @@ pub(crate) fn joint_with_coordinate(
     name: &str,
     system: &System,
     scope: &Scope<'_>,
-) -> Result<usize, SceneError> {
+) -> Result<usize> {
     let joints = names(&system.joints, |joint| &joint.name);
     let index = scope.find(name, &joints, "the name of a joint")?;
     match system.joints[index].has_coordinate() {
@@ -206,7 +194,7 @@ pub(crate) fn joint_value<M: PhysicalQuantity>(
     joint: usize,
     system: &System,
     scope: &Scope<'_>,
-) -> Result<f64, SceneError> {
+) -> Result<f64> {
     let kind = match system.joints[joint].kind {
         JointKind::Prismatic { .. } => linear,
         _ => angular,

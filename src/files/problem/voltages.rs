@@ -1,7 +1,7 @@
 //! Voltages over time, and the files that hold them.
 
 use crate::control::problem::Voltages;
-use crate::files::json::error::SceneError;
+use crate::files::json::error::Result;
 use crate::files::json::scope::Scope;
 use crate::files::problem::solution_voltages::{of_solution, of_table};
 use crate::files::problem::spec_voltages::VoltagesSpec;
@@ -22,7 +22,7 @@ pub(crate) fn over_time(
     spec: &VoltagesSpec,
     system: &System,
     scope: &Scope<'_>,
-) -> Result<Voltages, SceneError> {
+) -> Result<Voltages> {
     match spec {
         VoltagesSpec::Signals(map) => signals(map, system, scope),
         VoltagesSpec::Solution(solution) => {
@@ -40,7 +40,7 @@ pub(crate) fn signals(
     map: &BTreeMap<String, SignalSpec<Voltage>>,
     system: &System,
     scope: &Scope<'_>,
-) -> Result<Voltages, SceneError> {
+) -> Result<Voltages> {
     let sources = system.sources();
     let mut signals = vec![Signal::Constant(0.0); sources.len()];
     for (name, spec) in map {

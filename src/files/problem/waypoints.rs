@@ -1,7 +1,7 @@
 //! Waypoints as they are written, and their conversion.
 
 use crate::control::problem::{Duration, QuantityCost, Waypoint};
-use crate::files::json::error::SceneError;
+use crate::files::json::error::Result;
 use crate::files::json::scope::Scope;
 use crate::files::problem::goal::places;
 use crate::files::problem::state::{OrientationSpec, by_joint};
@@ -45,7 +45,7 @@ pub(crate) fn waypoints(
     (duration, is_periodic): (Duration, bool),
     system: &System,
     scope: &Scope<'_>,
-) -> Result<(Vec<Waypoint>, Vec<QuantityCost>), SceneError> {
+) -> Result<(Vec<Waypoint>, Vec<QuantityCost>)> {
     let (mut exact, mut near) = (Vec::new(), Vec::new());
     for (index, spec) in specs.iter().enumerate() {
         let scope = scope.index(index);
@@ -75,7 +75,7 @@ impl WaypointSpec {
         of: (Duration, bool),
         system: &System,
         scope: &Scope<'_>,
-    ) -> Result<Waypoint, SceneError> {
+    ) -> Result<Waypoint> {
         let (part, name) = self.part_of(of, scope)?;
         let written = (self.markers.as_ref(), self.orientations.as_ref());
         let (places, orientations) = places(written, system, scope)?;
@@ -109,7 +109,7 @@ impl WaypointSpec {
         &self,
         (duration, is_periodic): (Duration, bool),
         scope: &Scope<'_>,
-    ) -> Result<(f64, String), SceneError> {
+    ) -> Result<(f64, String)> {
         let key = scope.exactly_one([
             ("time", self.time.as_ref().map(|_| "time")),
             ("part", self.part.map(|_| "part")),

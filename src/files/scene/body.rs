@@ -2,7 +2,7 @@
 
 use nalgebra::{Matrix3, Unit, UnitQuaternion, Vector3};
 
-use crate::files::json::error::SceneError;
+use crate::files::json::error::Result;
 use crate::files::json::scope::Scope;
 use crate::files::scene::mesh::{DEFAULT_UNIT, mesh_mistake};
 use crate::files::scene::point::{unit_axis, vector};
@@ -13,7 +13,7 @@ use crate::mesh::triangulated::Surface;
 use crate::model::system::{Body, Shape, directors_along, is_diagonal, principal};
 
 /// The body that is written.
-pub(crate) fn body(spec: &BodySpec, scope: &Scope<'_>) -> Result<Body, SceneError> {
+pub(crate) fn body(spec: &BodySpec, scope: &Scope<'_>) -> Result<Body> {
     check_keys(spec, scope)?;
     let surface = match &spec.mesh {
         Some(mesh) => Some(surface(mesh, &scope.key("mesh"))?),
@@ -48,7 +48,7 @@ pub(crate) fn body(spec: &BodySpec, scope: &Scope<'_>) -> Result<Body, SceneErro
 }
 
 /// Checks that there is one mass or density, and one shape or explicit moments or both.
-fn check_keys(spec: &BodySpec, scope: &Scope<'_>) -> Result<(), SceneError> {
+fn check_keys(spec: &BodySpec, scope: &Scope<'_>) -> Result<()> {
     scope.exactly_one([
         ("mass", spec.mass.as_ref().map(|_| ())),
         ("density", spec.density.as_ref().map(|_| ())),
@@ -77,7 +77,7 @@ fn check_keys(spec: &BodySpec, scope: &Scope<'_>) -> Result<(), SceneError> {
 }
 
 /// Shape and directors; d₃ is the axis of a cylinder.
-fn simple(spec: &BodySpec, scope: &Scope<'_>) -> Result<(Shape, Matrix3<f64>), SceneError> {
+fn simple(spec: &BodySpec, scope: &Scope<'_>) -> Result<(Shape, Matrix3<f64>)> {
     if let Some(cylinder) = &spec.cylinder {
         let scope = scope.key("cylinder");
         let shape = Shape::Cylinder {
@@ -103,7 +103,7 @@ fn simple(spec: &BodySpec, scope: &Scope<'_>) -> Result<(Shape, Matrix3<f64>), S
 }
 
 /// The surface of a mesh in the ground frame.
-fn surface(spec: &BodyMeshSpec, scope: &Scope<'_>) -> Result<Surface, SceneError> {
+fn surface(spec: &BodyMeshSpec, scope: &Scope<'_>) -> Result<Surface> {
     let unit = match &spec.unit {
         Some(unit) => scope.key("unit").positive(unit)?,
         None => DEFAULT_UNIT,
@@ -122,7 +122,7 @@ fn surface(spec: &BodyMeshSpec, scope: &Scope<'_>) -> Result<Surface, SceneError
 }
 
 /// The body that a surface encloses.
-fn within(surface: Surface, spec: &BodySpec, scope: &Scope<'_>) -> Result<Body, SceneError> {
+fn within(surface: Surface, spec: &BodySpec, scope: &Scope<'_>) -> Result<Body> {
     if spec.position.is_some() {
         let found = "a position of a body whose centre of mass follows from its mesh";
         let expected = "\"at\" of the mesh, the place of its origin";
@@ -132,13 +132,13 @@ fn within(surface: Surface, spec: &BodySpec, scope: &Scope<'_>) -> Result<Body, 
     Body::within(surface).map_err(|error| mesh_mistake(&error, &place))
 }
 
-fn position(spec: &BodySpec, scope: &Scope<'_>) -> Result<Vector3<f64>, SceneError> {
+fn position(spec: &BodySpec, scope: &Scope<'_>) -> Result<Vector3<f64>> {
     let missing = || scope.wrong("no \"position\"", "the place of its centre of mass");
     spec.position.as_ref().map(vector).ok_or_else(missing)
 }
 
 /// The mass in g.
-fn mass(spec: &BodySpec, shape: &Shape, scope: &Scope<'_>) -> Result<f64, SceneError> {
+fn mass(spec: &BodySpec, shape: &Shape, scope: &Scope<'_>) -> Result<f64> {
     let Some(density) = &spec.density else {
         return Ok(spec.mass.as_ref().expect("one of the two").value());
     };
@@ -152,7 +152,7 @@ fn mass(spec: &BodySpec, shape: &Shape, scope: &Scope<'_>) -> Result<f64, SceneE
 }
 
 /// The tensor of inertia about the axes of the ground frame that is written.
-fn tensor(spec: &BodySpec, scope: &Scope<'_>) -> Result<Matrix3<f64>, SceneError> {
+fn tensor(spec: &BodySpec, scope: &Scope<'_>) -> Result<Matrix3<f64>> {
     let mut tensor = Matrix3::zeros();
     let place = scope.key("inertia");
     for (index, written) in spec.inertia.iter().flatten().enumerate() {

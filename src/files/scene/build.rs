@@ -1,6 +1,6 @@
 //! Conversion of a scene file to its system: names resolved and everything checked.
 
-use crate::files::json::error::SceneError;
+use crate::files::json::error::Result;
 use crate::files::json::path::JsonPath;
 use crate::files::json::scope::Scope;
 use crate::files::scene::body::body;
@@ -27,7 +27,7 @@ use std::cell::Cell;
 pub(crate) const LONGEST_CHAIN: usize = 1000;
 
 /// The system that a scene means.
-pub(crate) fn build_scene(scene: &SceneSpec, scope: &Scope<'_>) -> Result<System, SceneError> {
+pub(crate) fn build_scene(scene: &SceneSpec, scope: &Scope<'_>) -> Result<System> {
     let mut named = scene.clone();
     add_named(&mut named);
     let materials = materials(&named.materials, &scope.key("materials"))?;
@@ -83,7 +83,7 @@ pub(crate) fn build_scene(scene: &SceneSpec, scope: &Scope<'_>) -> Result<System
 }
 
 /// Checks that names by which parts refer to each other and to files are unique.
-fn check_names(scene: &SceneSpec, lists: &Lists<'_>) -> Result<(), SceneError> {
+fn check_names(scene: &SceneSpec, lists: &Lists<'_>) -> Result<()> {
     let reserved = ["solution", "time", "voltages", "hold"];
     let all: [(&str, Vec<String>, &[&str]); 4] = [
         (
@@ -109,7 +109,7 @@ struct Elements(Cell<usize>);
 
 impl Elements {
     /// Adds those of a muscle or block, unless they are too many in all.
-    fn add(&self, count: usize, scope: &Scope<'_>) -> Result<(), SceneError> {
+    fn add(&self, count: usize, scope: &Scope<'_>) -> Result<()> {
         let total = self.0.get() + count;
         self.0.set(total);
         if total <= MOST_ELEMENTS {
@@ -163,7 +163,7 @@ impl<'a> Lists<'a> {
     }
 
     /// Refuses names of a list that are empty, reserved or repeated.
-    fn unique(&self, list: &str, names: &[String], reserved: &[&str]) -> Result<(), SceneError> {
+    fn unique(&self, list: &str, names: &[String], reserved: &[&str]) -> Result<()> {
         self.scope.unique(names, reserved, |index| {
             let place = self.scope(list, index);
             match place.place.last_key() {
@@ -178,14 +178,14 @@ impl<'a> Lists<'a> {
         &self,
         list: &str,
         specs: &[S],
-        build: impl Fn(&S, &Scope<'a>) -> Result<T, SceneError>,
-    ) -> Result<Vec<T>, SceneError> {
+        build: impl Fn(&S, &Scope<'a>) -> Result<T>,
+    ) -> Result<Vec<T>> {
         let build = |(index, spec)| build(spec, &self.scope(list, index));
         specs.iter().enumerate().map(build).collect()
     }
 
     /// Checks the rules of a system.
-    fn check(&self, system: &System) -> Result<(), SceneError> {
+    fn check(&self, system: &System) -> Result<()> {
         system.check().map_err(|error| {
             let (mut part, mut fault) = (self.place(error.list, error.index), error.fault);
             match (error.list, part.last_key()) {
@@ -200,7 +200,7 @@ impl<'a> Lists<'a> {
 }
 
 /// Checks the entries from which a chain is written out.
-fn check_chain(chain: &ChainSpec, scope: &Scope<'_>) -> Result<(), SceneError> {
+fn check_chain(chain: &ChainSpec, scope: &Scope<'_>) -> Result<()> {
     if !(1..=LONGEST_CHAIN).contains(&chain.segments) {
         let expected = format!("a whole number from 1 to {LONGEST_CHAIN}");
         return Err(scope
@@ -243,7 +243,7 @@ macro_rules! visits {
             loads: Vec<Load>,
             bodies: &[String],
             lists: &Lists<'_>,
-        ) -> Result<Components, SceneError> {
+        ) -> Result<Components> {
             Ok(Components {
                 $($list: lists.build(stringify!($list), &scene.$list, |spec, scope| {
                     spec.component(bodies, scope)
@@ -263,7 +263,7 @@ pub(crate) fn marker(
     bodies: &[String],
     solids: &[Solid],
     scope: &Scope<'_>,
-) -> Result<Marker, SceneError> {
+) -> Result<Marker> {
     scope.exactly_one([
         ("body", spec.body.as_ref().map(|_| ())),
         ("solid", spec.solid.as_ref().map(|_| ())),

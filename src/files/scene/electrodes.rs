@@ -2,7 +2,7 @@
 
 use std::collections::BTreeMap;
 
-use crate::files::json::error::SceneError;
+use crate::files::json::error::Result;
 use crate::files::json::scope::Scope;
 use crate::files::scene::mesh::Meshed;
 use crate::files::scene::nodes::{AXES, extent, in_plane, nodes, place, planes_near};
@@ -21,7 +21,7 @@ pub(crate) fn electrodes(
     spec: &SolidSpec,
     meshed: &Meshed,
     scope: &Scope<'_>,
-) -> Result<Vec<Electrode>, SceneError> {
+) -> Result<Vec<Electrode>> {
     let mut placed = Placed {
         mesh: &meshed.mesh,
         electrodes: Vec::new(),
@@ -63,7 +63,7 @@ fn circuit(
     spec: Option<&CircuitSpec>,
     is_driven: bool,
     scope: &Scope<'_>,
-) -> Result<Option<Circuit>, SceneError> {
+) -> Result<Option<Circuit>> {
     let Some(spec) = spec else { return Ok(None) };
     let circuit = spec.circuit();
     match circuit.check(is_driven, true) {
@@ -87,7 +87,7 @@ impl Placed<'_> {
         nodes: &[usize],
         potential: Potential,
         scope: &Scope<'_>,
-    ) -> Result<(), SceneError> {
+    ) -> Result<()> {
         if name.is_empty() {
             return Err(scope.key("name").wrong("\"\"", "a name"));
         }
@@ -134,12 +134,7 @@ impl Placed<'_> {
         Ok(())
     }
 
-    fn add_stack(
-        &mut self,
-        stack: &StackSpec,
-        meshed: &Meshed,
-        scope: &Scope<'_>,
-    ) -> Result<(), SceneError> {
+    fn add_stack(&mut self, stack: &StackSpec, meshed: &Meshed, scope: &Scope<'_>) -> Result<()> {
         let axis = stack.axis.index();
         let boundaries = boundaries(stack, meshed, &scope.key("layers"))?;
         let mut parts = [Vec::new(), Vec::new()];
@@ -163,11 +158,7 @@ impl Placed<'_> {
 }
 
 /// The planes between layers and at the ends, in mm.
-fn boundaries(
-    stack: &StackSpec,
-    meshed: &Meshed,
-    scope: &Scope<'_>,
-) -> Result<Vec<f64>, SceneError> {
+fn boundaries(stack: &StackSpec, meshed: &Meshed, scope: &Scope<'_>) -> Result<Vec<f64>> {
     let axis = stack.axis.index();
     let Some(planes) = &meshed.planes else {
         if stack.layers == 0 {

@@ -1,6 +1,6 @@
 //! The graph of bodies and joints: its connected parts, its loops, and the number of degrees of freedom of a tree.
 
-use crate::files::json::error::SceneError;
+use crate::files::json::error::Result;
 use crate::files::json::scope::Scope;
 use crate::files::scene::spec::BodySpec;
 use crate::math::DisjointSets;
@@ -11,7 +11,7 @@ pub(crate) fn check_connected<'a>(
     bodies: &[BodySpec],
     joints: &[Joint],
     scope: impl Fn(usize) -> Scope<'a>,
-) -> Result<(), SceneError> {
+) -> Result<()> {
     let parts = parts(bodies.len(), joints);
     let ground = parts[bodies.len()];
     for (index, body) in bodies.iter().enumerate() {

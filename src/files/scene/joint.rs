@@ -1,6 +1,6 @@
 //! Conversion of a joint of a scene file: its kind, axis, damper, spring, stops and prescribed motion.
 
-use crate::files::json::error::SceneError;
+use crate::files::json::error::Result;
 use crate::files::json::scope::Scope;
 use crate::files::scene::names::find_body;
 use crate::files::scene::objects::objects;
@@ -21,11 +21,7 @@ use serde::{Deserialize, Serialize};
 const PERPENDICULAR: f64 = 1e-3;
 
 /// The joint that is written.
-pub(super) fn joint(
-    spec: &JointSpec,
-    bodies: &[String],
-    scope: &Scope<'_>,
-) -> Result<Joint, SceneError> {
+pub(super) fn joint(spec: &JointSpec, bodies: &[String], scope: &Scope<'_>) -> Result<Joint> {
     let kind = kind(spec, scope)?;
     let parent = find_body(&spec.parent, bodies, &scope.key("parent"))?;
     let child = scope.key("child");
@@ -77,7 +73,7 @@ pub(super) fn joint(
     })
 }
 
-fn kind(spec: &JointSpec, scope: &Scope<'_>) -> Result<JointKind, SceneError> {
+fn kind(spec: &JointSpec, scope: &Scope<'_>) -> Result<JointKind> {
     let along = |key: &'static str, written: &Option<AxisSpec>, kind: fn(Vector) -> JointKind| {
         let place = scope.key(key).key("axis");
         let axis = written
@@ -112,7 +108,7 @@ fn kind(spec: &JointSpec, scope: &Scope<'_>) -> Result<JointKind, SceneError> {
 }
 
 /// A joint of two axes that are perpendicular to each other up to the digits that are written.
-fn perpendicular(spec: &AxesSpec, scope: &Scope<'_>) -> Result<JointKind, SceneError> {
+fn perpendicular(spec: &AxesSpec, scope: &Scope<'_>) -> Result<JointKind> {
     let place = scope.key("axes");
     let first = unit_axis(&spec.axes[0], &place.index(0))?;
     let second = unit_axis(&spec.axes[1], &place.index(1))?;
@@ -140,7 +136,7 @@ fn read<M: PhysicalQuantity>(
     written: Option<&Quantity<M>>,
     kind: &Kind,
     place: &Scope<'_>,
-) -> Result<Option<f64>, SceneError> {
+) -> Result<Option<f64>> {
     let value = written.map(|written| written.value_as(kind)).transpose();
     value.map_err(|found| place.wrong(found, kind.expected()))
 }
@@ -149,7 +145,7 @@ fn stops_of(
     spec: &StopsSpec,
     [coordinate, _, stiffness]: &[Kind; 3],
     scope: &Scope<'_>,
-) -> Result<Option<JointStops>, SceneError> {
+) -> Result<Option<JointStops>> {
     let bound = |key: &str, written: &Option<Quantity<JointCoordinate>>| {
         read(written.as_ref(), coordinate, &scope.key(key))
     };
@@ -167,7 +163,7 @@ fn stops_of(
 }
 
 /// The coordinate without force: zero where none is written.
-fn at_rest(spec: &JointSpec, kind: &JointKind, scope: &Scope<'_>) -> Result<f64, SceneError> {
+fn at_rest(spec: &JointSpec, kind: &JointKind, scope: &Scope<'_>) -> Result<f64> {
     let is_sprung = spec.stiffness.is_some();
     let is_revolute = is_sprung && matches!(kind, JointKind::Revolute { .. });
     let is_prismatic = is_sprung && matches!(kind, JointKind::Prismatic { .. });

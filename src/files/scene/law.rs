@@ -1,7 +1,7 @@
 //! Laws of elasticity of a material other than the neo-Hookean one: as they are written, and their constants.
 
 use crate::energy::ElasticLaw;
-use crate::files::json::error::SceneError;
+use crate::files::json::error::Result;
 use crate::files::json::scope::Scope;
 use crate::files::scene::objects::objects;
 use crate::files::units::quantity::{Quantity, Stress};
@@ -50,7 +50,7 @@ objects! {
 
 impl LawSpec {
     /// The law.
-    pub(crate) fn law(&self, scope: &Scope<'_>) -> Result<ElasticLaw, SceneError> {
+    pub(crate) fn law(&self, scope: &Scope<'_>) -> Result<ElasticLaw> {
         let gent = |law: &GentSpec| ElasticLaw::Gent { limit: law.limit };
         let mooney_rivlin = |law: &MooneyRivlinSpec| ElasticLaw::MooneyRivlin { share: law.share };
         let yeoh = |law: &YeohSpec| ElasticLaw::Yeoh {

@@ -1,6 +1,6 @@
 //! Conversion of materials of a scene file to their constants.
 
-use crate::files::json::error::SceneError;
+use crate::files::json::error::Result;
 use crate::files::json::scope::Scope;
 use crate::files::scene::law::LawSpec;
 use crate::files::scene::objects::objects;
@@ -17,7 +17,7 @@ use std::collections::BTreeMap;
 pub(crate) fn materials(
     specs: &BTreeMap<String, MaterialSpec>,
     scope: &Scope<'_>,
-) -> Result<Vec<(String, Material)>, SceneError> {
+) -> Result<Vec<(String, Material)>> {
     let material = |(name, spec): (&String, &MaterialSpec)| {
         let material = material(spec, &scope.key(name))?;
         Ok((name.clone(), material))
@@ -25,7 +25,7 @@ pub(crate) fn materials(
     specs.iter().map(material).collect()
 }
 
-fn material(spec: &MaterialSpec, scope: &Scope<'_>) -> Result<Material, SceneError> {
+fn material(spec: &MaterialSpec, scope: &Scope<'_>) -> Result<Material> {
     let law = spec.law.as_ref().map(|law| law.law(&scope.key("law")));
     let material = Material {
         density: Quantity::present(&spec.density),
@@ -42,7 +42,7 @@ fn material(spec: &MaterialSpec, scope: &Scope<'_>) -> Result<Material, SceneErr
     Ok(material)
 }
 
-fn maxwell(specs: &[MaxwellSpec], scope: &Scope<'_>) -> Result<MaxwellBranches, SceneError> {
+fn maxwell(specs: &[MaxwellSpec], scope: &Scope<'_>) -> Result<MaxwellBranches> {
     let branch = |spec: &MaxwellSpec| MaxwellBranch {
         shear_modulus: spec.shear_modulus.value(),
         relaxation_time: spec.relaxation_time.value(),
@@ -55,7 +55,7 @@ fn maxwell(specs: &[MaxwellSpec], scope: &Scope<'_>) -> Result<MaxwellBranches, 
 }
 
 /// λ, or 2 μ ν/(1 − 2 ν), in MPa.
-fn lame_lambda(spec: &MaterialSpec, scope: &Scope<'_>) -> Result<Option<f64>, SceneError> {
+fn lame_lambda(spec: &MaterialSpec, scope: &Scope<'_>) -> Result<Option<f64>> {
     let shear_modulus = spec.shear_modulus.value();
     match (&spec.lame_lambda, spec.poisson_ratio) {
         (lambda, None) => Ok(lambda.as_ref().map(Quantity::value)),
@@ -75,10 +75,7 @@ fn lame_lambda(spec: &MaterialSpec, scope: &Scope<'_>) -> Result<Option<f64>, Sc
 }
 
 /// Constants of the electric energy, where the material has one.
-fn electric(
-    spec: &MaterialSpec,
-    scope: &Scope<'_>,
-) -> Result<Option<ElectricConstants>, SceneError> {
+fn electric(spec: &MaterialSpec, scope: &Scope<'_>) -> Result<Option<ElectricConstants>> {
     let ratio = spec.relative_permittivity;
     if let (None, Some(_)) = (ratio, spec.dielectric) {
         let expected = "\"relative_permittivity\" beside it";

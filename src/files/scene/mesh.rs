@@ -2,7 +2,7 @@
 
 use nalgebra::Vector3;
 
-use crate::files::json::error::SceneError;
+use crate::files::json::error::{Result, SceneError};
 use crate::files::json::scope::Scope;
 use crate::files::scene::point::vector;
 use crate::files::scene::spec_solids::{DivisionSpec, GridSpec, LayerSpec, SolidSpec};
@@ -21,7 +21,7 @@ pub(crate) struct Meshed {
 }
 
 /// The mesh of a block, checked.
-pub(crate) fn meshed(spec: &SolidSpec, scope: &Scope<'_>) -> Result<Meshed, SceneError> {
+pub(crate) fn meshed(spec: &SolidSpec, scope: &Scope<'_>) -> Result<Meshed> {
     scope.exactly_one([
         ("box", spec.cuboid.as_ref().map(|_| ())),
         ("mesh", spec.mesh.as_ref().map(|_| ())),
@@ -40,7 +40,7 @@ pub(crate) fn meshed(spec: &SolidSpec, scope: &Scope<'_>) -> Result<Meshed, Scen
     Ok(meshed)
 }
 
-fn from_file(path: &str, spec: &SolidSpec, scope: &Scope<'_>) -> Result<Meshed, SceneError> {
+fn from_file(path: &str, spec: &SolidSpec, scope: &Scope<'_>) -> Result<Meshed> {
     let unit = match &spec.unit {
         Some(unit) => scope.key("unit").positive(unit)?,
         None => DEFAULT_UNIT,
@@ -77,7 +77,7 @@ pub(crate) fn mesh_mistake(error: &MeshError, scope: &Scope<'_>) -> SceneError {
     }
 }
 
-fn boxed(spec: &GridSpec, scope: &Scope<'_>) -> Result<Meshed, SceneError> {
+fn boxed(spec: &GridSpec, scope: &Scope<'_>) -> Result<Meshed> {
     let mut size = Vector3::zeros();
     for (axis, length) in spec.size.iter().enumerate() {
         size[axis] = scope.key("size").index(axis).positive(length)?;
@@ -110,7 +110,7 @@ fn boxed(spec: &GridSpec, scope: &Scope<'_>) -> Result<Meshed, SceneError> {
 }
 
 /// Thickness in mm and elements of the layers along one direction.
-fn layered(layers: &[LayerSpec], scope: &Scope<'_>) -> Result<Vec<(f64, usize)>, SceneError> {
+fn layered(layers: &[LayerSpec], scope: &Scope<'_>) -> Result<Vec<(f64, usize)>> {
     let layer = |(index, layer): (usize, &LayerSpec)| {
         let scope = scope.index(index);
         if layer.elements == 0 || layer.elements > MOST_ELEMENTS {
@@ -129,7 +129,7 @@ fn name_regions(
     spec: &GridSpec,
     planes: &[Vec<f64>; 3],
     scope: &Scope<'_>,
-) -> Result<(), SceneError> {
+) -> Result<()> {
     let mut named = None;
     for (axis, division) in spec.elements.iter().enumerate() {
         let DivisionSpec::Layers(layers) = division else {

@@ -1,6 +1,6 @@
 //! Conversion of a muscle of a scene file to its span, section and model.
 
-use crate::files::json::error::SceneError;
+use crate::files::json::error::Result;
 use crate::files::json::scope::Scope;
 use crate::files::scene::names::{find_compressible, find_material};
 use crate::files::scene::point::unit_axis;
@@ -16,7 +16,7 @@ pub(crate) fn muscle(
     bodies: &[String],
     materials: &[(String, Material)],
     scope: &Scope<'_>,
-) -> Result<Muscle, SceneError> {
+) -> Result<Muscle> {
     let scope = &match scope.place.last_key() {
         // The pair of a chain has the same keys.
         Some("chain") => scope.key("muscles"),
@@ -41,7 +41,7 @@ fn fidelity(
     spec: &MuscleSpec,
     materials: &[(String, Material)],
     scope: &Scope<'_>,
-) -> Result<Fidelity, SceneError> {
+) -> Result<Fidelity> {
     if spec.model == MuscleModel::Lumped {
         let keys = [
             ("elements", spec.elements.is_some()),

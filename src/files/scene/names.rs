@@ -1,7 +1,7 @@
 //! Resolution of names in a scene: bodies, points of bodies, materials.
 
 use crate::energy::ElasticLaw;
-use crate::files::json::error::SceneError;
+use crate::files::json::error::Result;
 use crate::files::json::scope::{Scope, list};
 use crate::files::scene::material::named_materials;
 use crate::files::scene::point::{PointSpec, vector};
@@ -17,7 +17,7 @@ pub(crate) fn find_material(
     name: &str,
     materials: &[(String, Material)],
     scope: &Scope<'_>,
-) -> Result<Material, SceneError> {
+) -> Result<Material> {
     if let Some((_, material)) = materials.iter().find(|(other, _)| other == name) {
         return Ok(*material);
     }
@@ -37,7 +37,7 @@ pub(crate) fn find_compressible(
     name: &str,
     materials: &[(String, Material)],
     scope: &Scope<'_>,
-) -> Result<Material, SceneError> {
+) -> Result<Material> {
     let material = find_material(name, materials, scope)?;
     if let Some(ElasticLaw::Ogden { .. }) = material.law {
         let found = format!("{name:?}, which follows Ogden's law");
@@ -56,11 +56,7 @@ pub(crate) fn find_compressible(
 
 impl PointSpec {
     /// The point.
-    pub(crate) fn attachment(
-        &self,
-        bodies: &[String],
-        scope: &Scope<'_>,
-    ) -> Result<Attachment, SceneError> {
+    pub(crate) fn attachment(&self, bodies: &[String], scope: &Scope<'_>) -> Result<Attachment> {
         let body = find_body(&self.body, bodies, &scope.key("body"))?;
         let at = vector(&self.at);
         Ok(Attachment { body, at })
@@ -68,11 +64,7 @@ impl PointSpec {
 }
 
 /// Index of a body; `None` is the ground.
-pub(crate) fn find_body(
-    name: &str,
-    bodies: &[String],
-    scope: &Scope<'_>,
-) -> Result<Option<usize>, SceneError> {
+pub(crate) fn find_body(name: &str, bodies: &[String], scope: &Scope<'_>) -> Result<Option<usize>> {
     if name == "ground" {
         return Ok(None);
     }

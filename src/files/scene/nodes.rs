@@ -2,7 +2,7 @@
 
 use nalgebra::Vector3;
 
-use crate::files::json::error::SceneError;
+use crate::files::json::error::Result;
 use crate::files::json::scope::{Scope, list};
 use crate::files::scene::point::{CornersSpec, vector};
 use crate::files::scene::spec_solids::PlaneSpec;
@@ -23,7 +23,7 @@ pub(crate) fn nodes(
     (name, plane, cuboid): (Option<&String>, Option<&PlaneSpec>, Option<&CornersSpec>),
     mesh: &Mesh,
     scope: &Scope<'_>,
-) -> Result<Vec<usize>, SceneError> {
+) -> Result<Vec<usize>> {
     let of_face = name.map(|name| face(name, mesh, &scope.key("face")).map(<[usize]>::to_vec));
     let of_plane = plane.map(|plane| nodes_in_plane(owner, plane, mesh, &scope.key("plane")));
     let of_box = cuboid.map(|corners| nodes_in_box(owner, corners, mesh, &scope.key("box")));
@@ -31,11 +31,7 @@ pub(crate) fn nodes(
 }
 
 /// The nodes of a face or set whose name stands at `scope`.
-pub(crate) fn face<'a>(
-    name: &str,
-    mesh: &'a Mesh,
-    scope: &Scope<'_>,
-) -> Result<&'a [usize], SceneError> {
+pub(crate) fn face<'a>(name: &str, mesh: &'a Mesh, scope: &Scope<'_>) -> Result<&'a [usize]> {
     let names: Vec<String> = mesh.sets.keys().cloned().collect();
     let expected = match names.as_slice() {
         [] => "a mesh with named faces".to_owned(),
@@ -55,7 +51,7 @@ fn nodes_in_plane(
     plane: &PlaneSpec,
     mesh: &Mesh,
     scope: &Scope<'_>,
-) -> Result<Vec<usize>, SceneError> {
+) -> Result<Vec<usize>> {
     let (axis, written) = scope.exactly_one([
         ("x", plane.x.as_ref().map(|at| (0, at))),
         ("y", plane.y.as_ref().map(|at| (1, at))),
@@ -107,7 +103,7 @@ fn nodes_in_box(
     corners: &CornersSpec,
     mesh: &Mesh,
     scope: &Scope<'_>,
-) -> Result<Vec<usize>, SceneError> {
+) -> Result<Vec<usize>> {
     let margin = Vector3::repeat(tolerance(mesh));
     let (low, high) = (vector(&corners.min) - margin, vector(&corners.max) + margin);
     let is_in = |node: &usize| {

@@ -2,7 +2,7 @@
 
 use nalgebra::Vector3;
 
-use crate::files::json::error::SceneError;
+use crate::files::json::error::Result;
 use crate::files::json::scope::Scope;
 use crate::files::scene::objects::objects;
 use crate::files::units::quantity::{Length, PhysicalQuantity, Quantity};
@@ -39,7 +39,7 @@ objects! {
 }
 
 /// A direction of length one.
-pub(crate) fn unit_axis(axis: &[f64; 3], scope: &Scope<'_>) -> Result<Vector3<f64>, SceneError> {
+pub(crate) fn unit_axis(axis: &[f64; 3], scope: &Scope<'_>) -> Result<Vector3<f64>> {
     direction(axis).ok_or_else(|| {
         let found = format!("{axis:?}");
         scope.wrong(found, "a direction, such as [0, 0, 1]")

@@ -1,6 +1,6 @@
 //! Conversion of an elastic block of a scene file to nodes, materials, electrodes, supports, velocities and prestretch.
 
-use crate::files::json::error::SceneError;
+use crate::files::json::error::Result;
 use crate::files::json::scope::{Scope, list};
 use crate::files::problem::state::ELECTRIC_KEYS;
 use crate::files::scene::electrodes::electrodes;
@@ -24,7 +24,7 @@ pub(crate) fn solid(
     bodies: &[String],
     materials: &[(String, Material)],
     scope: &Scope<'_>,
-) -> Result<Solid, SceneError> {
+) -> Result<Solid> {
     let meshed = meshed(spec, scope)?;
     let by_region = by_region(spec, &meshed.mesh, scope)?;
     let mut of_region = Vec::new();
@@ -74,7 +74,7 @@ fn by_region<'s, 'a>(
     spec: &'s SolidSpec,
     mesh: &Mesh,
     scope: &Scope<'a>,
-) -> Result<Vec<(&'s String, Scope<'a>)>, SceneError> {
+) -> Result<Vec<(&'s String, Scope<'a>)>> {
     scope.exactly_one([
         ("material", spec.material.as_ref().map(|_| ())),
         ("materials", spec.materials.as_ref().map(|_| ())),
@@ -101,7 +101,7 @@ fn by_region<'s, 'a>(
 }
 
 /// The places that are held.
-fn supports(spec: &SolidSpec, mesh: &Mesh, scope: &Scope<'_>) -> Result<Vec<Support>, SceneError> {
+fn supports(spec: &SolidSpec, mesh: &Mesh, scope: &Scope<'_>) -> Result<Vec<Support>> {
     let support = |(index, fixed): (usize, &FixedSpec)| {
         let scope = scope.index(index);
         let held = match fixed {
@@ -140,7 +140,7 @@ fn glued(
     mesh: &Mesh,
     bodies: &[String],
     scope: &Scope<'_>,
-) -> Result<(Vec<Glue>, Vec<Support>), SceneError> {
+) -> Result<(Vec<Glue>, Vec<Support>)> {
     let mut owners: BTreeMap<usize, &String> = BTreeMap::new();
     let (mut glued, mut grounded) = (Vec::new(), Vec::new());
     for (name, body) in &spec.glued {
@@ -192,7 +192,7 @@ fn velocities(spec: &VelocitySpec, mesh: &Mesh) -> Vec<Vector3<f64>> {
 pub(super) fn prestretch(
     spec: Option<&PrestretchSpec>,
     scope: &Scope<'_>,
-) -> Result<Option<Matrix>, SceneError> {
+) -> Result<Option<Matrix>> {
     let Some(spec) = spec else {
         return Ok(None);
     };

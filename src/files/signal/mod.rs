@@ -3,7 +3,7 @@
 pub(crate) mod spec;
 
 use crate::files::columns::Columns;
-use crate::files::json::error::SceneError;
+use crate::files::json::error::Result;
 use crate::files::json::scope::Scope;
 use crate::files::signal::spec::{
     FollowedInTime, FunctionSpec, RampSpec, SignalCsvSpec, SignalSpec, SignalTableSpec, SineSpec,
@@ -16,7 +16,7 @@ pub(crate) fn signal<M: FollowedInTime>(
     spec: &SignalSpec<M>,
     kind: &Kind,
     scope: &Scope<'_>,
-) -> Result<Signal, SceneError> {
+) -> Result<Signal> {
     let FunctionSpec {
         ramp,
         sine,
@@ -51,11 +51,7 @@ pub(crate) fn signal<M: FollowedInTime>(
 }
 
 /// A value of a kind in the units inside.
-fn of_kind<M: FollowedInTime>(
-    value: &Quantity<M>,
-    kind: &Kind,
-    scope: &Scope<'_>,
-) -> Result<f64, SceneError> {
+fn of_kind<M: FollowedInTime>(value: &Quantity<M>, kind: &Kind, scope: &Scope<'_>) -> Result<f64> {
     let read = value.value_as(kind);
     read.map_err(|found| scope.wrong(found, kind.expected()))
 }
@@ -65,7 +61,7 @@ fn or_zero<M: FollowedInTime>(
     value: &Option<Quantity<M>>,
     kind: &Kind,
     scope: &Scope<'_>,
-) -> Result<f64, SceneError> {
+) -> Result<f64> {
     let read = |value| of_kind(value, kind, scope);
     value.as_ref().map_or(Ok(0.0), read)
 }
@@ -74,7 +70,7 @@ fn of_ramp<M: FollowedInTime>(
     spec: &RampSpec<M>,
     kind: &Kind,
     scope: &Scope<'_>,
-) -> Result<Signal, SceneError> {
+) -> Result<Signal> {
     Ok(Signal::Ramp {
         from: or_zero(&spec.from, kind, &scope.key("from"))?,
         to: of_kind(&spec.to, kind, &scope.key("to"))?,
@@ -87,7 +83,7 @@ fn of_sine<M: FollowedInTime>(
     spec: &SineSpec<M>,
     kind: &Kind,
     scope: &Scope<'_>,
-) -> Result<Signal, SceneError> {
+) -> Result<Signal> {
     Ok(Signal::Sine {
         mean: or_zero(&spec.mean, kind, &scope.key("mean"))?,
         amplitude: of_kind(&spec.amplitude, kind, &scope.key("amplitude"))?,
@@ -100,7 +96,7 @@ fn of_table<M: FollowedInTime>(
     spec: &SignalTableSpec<M>,
     kind: &Kind,
     scope: &Scope<'_>,
-) -> Result<Signal, SceneError> {
+) -> Result<Signal> {
     let [time, values] = ["time", "values"].map(|key| scope.key(key));
     linear(
         (&spec.time, &|k| time.index(k)),
@@ -114,7 +110,7 @@ fn of_csv<M: FollowedInTime>(
     spec: &SignalCsvSpec,
     kind: &Kind,
     scope: &Scope<'_>,
-) -> Result<Signal, SceneError> {
+) -> Result<Signal> {
     let columns = Columns::read(&spec.file, &scope.key("file"))?;
     let [time, values] = ["time", "values"].map(|key| scope.key(key));
     let times = columns.column::<Time>((&spec.time, &Time::kind()), &time)?;
@@ -140,7 +136,7 @@ fn linear<'s, M: FollowedInTime>(
     (values, value): Placed<'_, 's, M>,
     kind: &Kind,
     [whole_times, whole_values]: [&Scope<'s>; 2],
-) -> Result<Signal, SceneError> {
+) -> Result<Signal> {
     let instants: Vec<f64> = times.iter().map(Quantity::value).collect();
     if instants.is_empty() {
         return Err(whole_times.wrong("no times", "one or more"));

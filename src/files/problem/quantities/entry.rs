@@ -1,7 +1,7 @@
 //! Entries of limits, costs and recorded quantities in a problem file, and conversion of their parts.
 
 use crate::control::problem::{CostFunction, During, Limit, QuantityCost};
-use crate::files::json::error::SceneError;
+use crate::files::json::error::Result;
 use crate::files::json::scope::Scope;
 use crate::files::scene::names::names;
 use crate::files::scene::point::{Point, unit_axis, vector};
@@ -23,7 +23,7 @@ pub enum All {
 /// An entry of the limits of a problem; the scope is that of its key.
 pub(super) trait LimitEntry {
     /// The limits that it stands for.
-    fn limits(&self, system: &System, scope: &Scope<'_>) -> Result<Vec<Limit>, SceneError>;
+    fn limits(&self, system: &System, scope: &Scope<'_>) -> Result<Vec<Limit>>;
 
     /// Returns true if it bounds what follows from constants alone.
     fn is_timeless(&self) -> bool {
@@ -39,7 +39,7 @@ pub(super) trait CostEntry {
         during: During,
         system: &System,
         scope: &Scope<'_>,
-    ) -> Result<Vec<QuantityCost>, SceneError>;
+    ) -> Result<Vec<QuantityCost>>;
 }
 
 /// A quantity of a recording by its name, which stands at `place`; `scope` has the directions beside it.
@@ -93,7 +93,7 @@ pub(super) fn limits_of(whats: impl IntoIterator<Item = What>, bounds: [f64; 2])
 pub(super) fn bounds<M: PhysicalQuantity>(
     [min, max]: [&Option<Written<M>>; 2],
     scope: &Scope<'_>,
-) -> Result<[f64; 2], SceneError> {
+) -> Result<[f64; 2]> {
     let of =
         |bound: &Option<Written<M>>, absent: f64| bound.as_ref().map_or(absent, Written::value);
     let bounds = [of(min, f64::NEG_INFINITY), of(max, f64::INFINITY)];
@@ -105,7 +105,7 @@ pub(super) fn check_bounds(
     bounds: [f64; 2],
     is_written: bool,
     scope: &Scope<'_>,
-) -> Result<[f64; 2], SceneError> {
+) -> Result<[f64; 2]> {
     if !is_written {
         return Err(scope.wrong("no bound", "\"min\", \"max\" or both"));
     }
@@ -117,7 +117,7 @@ pub(super) fn check_bounds(
 }
 
 /// The weight of a cost, 1 where not written.
-pub(super) fn weight(spec: Option<f64>, scope: &Scope<'_>) -> Result<f64, SceneError> {
+pub(super) fn weight(spec: Option<f64>, scope: &Scope<'_>) -> Result<f64> {
     match spec.unwrap_or(1.0) {
         weight if weight > 0.0 => Ok(weight),
         weight => {
@@ -168,7 +168,7 @@ pub struct PlaneSpec {
 
 impl PlaneSpec {
     /// The plane that it stands for.
-    pub(super) fn plane(&self, system: &System, scope: &Scope<'_>) -> Result<Plane, SceneError> {
+    pub(super) fn plane(&self, system: &System, scope: &Scope<'_>) -> Result<Plane> {
         let bodies = names(&system.bodies, |body| &body.name);
         let place = scope.key("body");
         let body = self.body.as_ref();

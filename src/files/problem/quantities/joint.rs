@@ -1,7 +1,7 @@
 //! Coordinates, rates, forces and torques of joints in limits, costs and recordings.
 
 use crate::control::problem::{During, Limit, QuantityCost};
-use crate::files::json::error::SceneError;
+use crate::files::json::error::Result;
 use crate::files::json::scope::Scope;
 use crate::files::problem::quantities::entry::{
     CostEntry, LimitEntry, Named, Recorded, SiUnit, bounds, check_bounds, limits_of, square, weight,
@@ -158,7 +158,7 @@ fn of_joint<M: PhysicalQuantity>(
     kinds: [Kind; 2],
     system: &System,
     scope: &Scope<'_>,
-) -> Result<(What, [f64; 2]), SceneError> {
+) -> Result<(What, [f64; 2])> {
     let joint = joint_with_coordinate(joint, system, &scope.key("joint"))?;
     let bound = |key: &str, quantity: &Option<Written<M>>, absent: f64| match quantity {
         Some(quantity) => joint_value(quantity, &kinds, joint, system, &scope.key(key)),
@@ -174,7 +174,7 @@ fn of_joint<M: PhysicalQuantity>(
 }
 
 impl LimitEntry for JointAngleLimitSpec {
-    fn limits(&self, system: &System, scope: &Scope<'_>) -> Result<Vec<Limit>, SceneError> {
+    fn limits(&self, system: &System, scope: &Scope<'_>) -> Result<Vec<Limit>> {
         let bounds = [&self.min, &self.max];
         let (what, bounds) = of_joint(&self.joint, bounds, coordinates(), system, scope)?;
         Ok(vec![Limit::new(what, bounds)])
@@ -182,7 +182,7 @@ impl LimitEntry for JointAngleLimitSpec {
 }
 
 impl LimitEntry for JointRateLimitSpec {
-    fn limits(&self, system: &System, scope: &Scope<'_>) -> Result<Vec<Limit>, SceneError> {
+    fn limits(&self, system: &System, scope: &Scope<'_>) -> Result<Vec<Limit>> {
         let bounds = [&self.min, &self.max];
         let (what, bounds) = of_joint(&self.joint, bounds, rates(), system, scope)?;
         Ok(vec![Limit::of_rate(what, bounds)])
@@ -190,7 +190,7 @@ impl LimitEntry for JointRateLimitSpec {
 }
 
 impl LimitEntry for ReactionForceLimitSpec {
-    fn limits(&self, system: &System, scope: &Scope<'_>) -> Result<Vec<Limit>, SceneError> {
+    fn limits(&self, system: &System, scope: &Scope<'_>) -> Result<Vec<Limit>> {
         let bounds = bounds([&self.min, &self.max], scope)?;
         let joint = transmitting(&self.joint, Reaction::Force, system, &scope.key("joint"))?;
         let along = unit_axis(&self.along, &scope.key("along"))?;
@@ -200,7 +200,7 @@ impl LimitEntry for ReactionForceLimitSpec {
 }
 
 impl LimitEntry for ReactionTorqueLimitSpec {
-    fn limits(&self, system: &System, scope: &Scope<'_>) -> Result<Vec<Limit>, SceneError> {
+    fn limits(&self, system: &System, scope: &Scope<'_>) -> Result<Vec<Limit>> {
         let joint = transmitting(&self.joint, Reaction::Torque, system, &scope.key("joint"))?;
         let bounds = bounds([&self.min, &self.max], scope)?;
         let along = unit_axis(&self.about, &scope.key("about"))?;
@@ -210,12 +210,7 @@ impl LimitEntry for ReactionTorqueLimitSpec {
 }
 
 /// A joint that transmits a force or torque.
-fn transmitting(
-    name: &str,
-    of: Reaction,
-    system: &System,
-    place: &Scope<'_>,
-) -> Result<usize, SceneError> {
+fn transmitting(name: &str, of: Reaction, system: &System, place: &Scope<'_>) -> Result<usize> {
     let joints = names(&system.joints, |joint| &joint.name);
     let joint = place.find(name, &joints, "the name of a joint")?;
     if of == Reaction::Torque && !system.joints[joint].has_torque() {
@@ -231,7 +226,7 @@ impl CostEntry for JointRateCostSpec {
         during: During,
         system: &System,
         scope: &Scope<'_>,
-    ) -> Result<Vec<QuantityCost>, SceneError> {
+    ) -> Result<Vec<QuantityCost>> {
         let weight = weight(self.weight, scope)?;
         let joint = joint_with_coordinate(&self.joint, system, &scope.key("joint"))?;
         let at = self.at.as_ref().map_or(Ok(0.0), |at| {
@@ -249,7 +244,7 @@ impl CostEntry for TrackJointSpec {
         during: During,
         system: &System,
         scope: &Scope<'_>,
-    ) -> Result<Vec<QuantityCost>, SceneError> {
+    ) -> Result<Vec<QuantityCost>> {
         let joint = joint_with_coordinate(&self.joint, system, &scope.key("joint"))?;
         let kind = match joint_unit(system, joint) {
             "mm" => Length::kind(),
@@ -268,7 +263,7 @@ impl CostEntry for TrackJointsSpec {
         during: During,
         system: &System,
         scope: &Scope<'_>,
-    ) -> Result<Vec<QuantityCost>, SceneError> {
+    ) -> Result<Vec<QuantityCost>> {
         let place = scope.key("solution");
         let weight = weight(self.weight, scope)?;
         let path = place.solution_file(&self.solution, SOLUTION_PATH)?;
@@ -290,7 +285,7 @@ impl CostEntry for FinalJointSpec {
         during: During,
         system: &System,
         scope: &Scope<'_>,
-    ) -> Result<Vec<QuantityCost>, SceneError> {
+    ) -> Result<Vec<QuantityCost>> {
         let joint = joint_with_coordinate(&self.joint, system, &scope.key("joint"))?;
         let at = joint_value(&self.at, &coordinates(), joint, system, &scope.key("at"))?;
         let weight = weight(self.weight, scope)?;
@@ -299,7 +294,7 @@ impl CostEntry for FinalJointSpec {
     }
 }
 
-pub(super) fn coordinate(of: &Named<'_>) -> Result<Recorded, SceneError> {
+pub(super) fn coordinate(of: &Named<'_>) -> Result<Recorded> {
     let joint = joint_with_coordinate(of.name, of.system, of.place)?;
     let unit = match joint_unit(of.system, joint) {
         "mm" => (Length::kind(), ("m", 1e-3)),
@@ -309,7 +304,7 @@ pub(super) fn coordinate(of: &Named<'_>) -> Result<Recorded, SceneError> {
     Ok(Recorded::plain(of.name, of.name.to_owned(), quantity, unit))
 }
 
-pub(super) fn rate(of: &Named<'_>) -> Result<Recorded, SceneError> {
+pub(super) fn rate(of: &Named<'_>) -> Result<Recorded> {
     let joint = joint_with_coordinate(of.name, of.system, of.place)?;
     let unit = match joint_unit(of.system, joint) {
         "mm" => (Velocity::kind(), ("m/s", 1.0)),
@@ -319,13 +314,13 @@ pub(super) fn rate(of: &Named<'_>) -> Result<Recorded, SceneError> {
     Ok(Recorded::named("rate", of.name, quantity, unit))
 }
 
-pub(super) fn reaction_force(of: &Named<'_>) -> Result<Recorded, SceneError> {
+pub(super) fn reaction_force(of: &Named<'_>) -> Result<Recorded> {
     let along = written_direction(of.along, &of.scope.key("along"));
     let unit = (Force::kind(), ("N", 1.0));
     reaction(of, Reaction::Force, along, unit)
 }
 
-pub(super) fn reaction_torque(of: &Named<'_>) -> Result<Recorded, SceneError> {
+pub(super) fn reaction_torque(of: &Named<'_>) -> Result<Recorded> {
     let along = written_direction(of.about, &of.scope.key("about"));
     let unit = (Torque::kind(), ("N m", 1e-3));
     reaction(of, Reaction::Torque, along, unit)
@@ -335,9 +330,9 @@ pub(super) fn reaction_torque(of: &Named<'_>) -> Result<Recorded, SceneError> {
 fn reaction(
     named: &Named<'_>,
     of: Reaction,
-    along: Result<Vector, SceneError>,
+    along: Result<Vector>,
     unit: (Kind, SiUnit),
-) -> Result<Recorded, SceneError> {
+) -> Result<Recorded> {
     let joint = transmitting(named.name, of, named.system, named.place)?;
     let what = What::Reaction {
         joint,
@@ -357,10 +352,7 @@ fn reaction(
 }
 
 /// The unit vector of a direction that has to be written.
-pub(super) fn written_direction(
-    direction: Option<[f64; 3]>,
-    place: &Scope<'_>,
-) -> Result<Vector, SceneError> {
+pub(super) fn written_direction(direction: Option<[f64; 3]>, place: &Scope<'_>) -> Result<Vector> {
     let Some(direction) = direction else {
         let expected = "a direction, such as [1, 0, 0]";
         return Err(place.wrong("no direction", expected));
@@ -387,10 +379,7 @@ struct Configuration {
 }
 
 /// The coordinate of each joint of a solution by index, linear between its instants.
-pub(crate) fn read_solution_joints(
-    path: &Path,
-    system: &System,
-) -> Result<Vec<(usize, Signal)>, SceneError> {
+pub(crate) fn read_solution_joints(path: &Path, system: &System) -> Result<Vec<(usize, Signal)>> {
     let document = &solution_document(path, |name| {
         name == "time" || name.starts_with("configuration/joints/")
     })?;

@@ -1,7 +1,7 @@
 //! Keys of the quantities that limits, costs and recordings name.
 
 use crate::control::problem::{During, Limit, QuantityCost};
-use crate::files::json::error::SceneError;
+use crate::files::json::error::Result;
 use crate::files::json::scope::Scope;
 use crate::files::problem::quantities::entry::{CostEntry, LimitEntry, Named, PlaneSpec, Recorded};
 use crate::files::problem::quantities::joint::{
@@ -42,7 +42,7 @@ macro_rules! one_of {
 
         impl $name {
             /// The entry that is written, and its key.
-            fn entry(&self, scope: &Scope<'_>) -> Result<(&'static str, &dyn $entry), SceneError> {
+            fn entry(&self, scope: &Scope<'_>) -> Result<(&'static str, &dyn $entry)> {
                 scope.exactly_one([$((
                     stringify!($key),
                     self.$key.as_ref().map(|one| (stringify!($key), one as &dyn $entry)),
@@ -164,7 +164,7 @@ macro_rules! recorded {
 
         impl $name {
             /// The key that is written, its name, and how it is read.
-            fn entry(&self, scope: &Scope<'_>) -> Result<(&'static str, &str, Make), SceneError> {
+            fn entry(&self, scope: &Scope<'_>) -> Result<(&'static str, &str, Make)> {
                 scope.exactly_one([$((
                     stringify!($key),
                     self.$key.as_ref().map(|name| (stringify!($key), name.as_str(), $make as Make)),
@@ -175,7 +175,7 @@ macro_rules! recorded {
 }
 
 /// Reads a quantity of a recording.
-type Make = fn(&Named<'_>) -> Result<Recorded, SceneError>;
+type Make = fn(&Named<'_>) -> Result<Recorded>;
 
 recorded! {
     /// A measured quantity: exactly one of `joint`, `joint_rate`, `marker`, `tension`, `charge`, `current`, `power`, `voltage`, `reaction_force`,
@@ -229,7 +229,7 @@ impl MeasuredSpec {
         &self,
         system: &System,
         scope: &Scope<'_>,
-    ) -> Result<Recorded, SceneError> {
+    ) -> Result<Recorded> {
         let (key, name, make) = self.entry(scope)?;
         let beside = [
             (
@@ -264,11 +264,7 @@ impl MeasuredSpec {
 }
 
 /// The limits of a list of entries.
-pub(crate) fn limits(
-    list: &[LimitSpec],
-    system: &System,
-    scope: &Scope<'_>,
-) -> Result<Vec<Limit>, SceneError> {
+pub(crate) fn limits(list: &[LimitSpec], system: &System, scope: &Scope<'_>) -> Result<Vec<Limit>> {
     let mut limits = Vec::new();
     for (index, spec) in list.iter().enumerate() {
         let scope = scope.index(index);
@@ -297,7 +293,7 @@ pub(crate) fn track(
     spec: &TrackSpec,
     system: &System,
     scope: &Scope<'_>,
-) -> Result<Vec<QuantityCost>, SceneError> {
+) -> Result<Vec<QuantityCost>> {
     let (key, entry) = spec.entry(scope)?;
     entry.costs(During::Motion, system, &scope.key(key))
 }
@@ -307,7 +303,7 @@ pub(crate) fn at_the_end(
     spec: &FinalSpec,
     system: &System,
     scope: &Scope<'_>,
-) -> Result<Vec<QuantityCost>, SceneError> {
+) -> Result<Vec<QuantityCost>> {
     let (key, entry) = spec.entry(scope)?;
     entry.costs(During::End, system, &scope.key(key))
 }

@@ -1,7 +1,7 @@
 //! Places, speeds, regions and clearances of markers in limits, costs and recordings.
 
 use crate::control::problem::{During, Limit, QuantityCost};
-use crate::files::json::error::SceneError;
+use crate::files::json::error::Result;
 use crate::files::json::scope::Scope;
 use crate::files::problem::quantities::entry::{
     CostEntry, LimitEntry, Named, PlaneSpec, Recorded, bounds, check_bounds, itself, limits_of,
@@ -154,7 +154,7 @@ pub struct ClearanceCostSpec {
 }
 
 impl LimitEntry for MarkerLimitSpec {
-    fn limits(&self, system: &System, scope: &Scope<'_>) -> Result<Vec<Limit>, SceneError> {
+    fn limits(&self, system: &System, scope: &Scope<'_>) -> Result<Vec<Limit>> {
         let markers = names(&system.markers, |marker| &marker.name);
         let expected = "the name of a marker";
         let marker = scope.key("marker").find(&self.marker, &markers, expected)?;
@@ -174,7 +174,7 @@ impl LimitEntry for MarkerLimitSpec {
     }
 }
 
-fn region(spec: &RegionSpec, scope: &Scope<'_>) -> Result<Region, SceneError> {
+fn region(spec: &RegionSpec, scope: &Scope<'_>) -> Result<Region> {
     scope.exactly_one([
         ("box", spec.cuboid.as_ref().map(|_| ())),
         ("sphere", spec.sphere.as_ref().map(|_| ())),
@@ -201,7 +201,7 @@ fn region(spec: &RegionSpec, scope: &Scope<'_>) -> Result<Region, SceneError> {
 
 impl LimitEntry for MarkerSpeedLimitSpec {
     /// A lower bound of zero is none.
-    fn limits(&self, system: &System, scope: &Scope<'_>) -> Result<Vec<Limit>, SceneError> {
+    fn limits(&self, system: &System, scope: &Scope<'_>) -> Result<Vec<Limit>> {
         let marker = moving_marker(&self.marker, system, &scope.key("marker"))?;
         let bound = |key: &str, bound: &Option<Written<Velocity>>, absent: f64| match bound {
             Some(bound) => scope.key(key).positive(bound),
@@ -217,7 +217,7 @@ impl LimitEntry for MarkerSpeedLimitSpec {
 }
 
 impl LimitEntry for ClearanceLimitSpec {
-    fn limits(&self, system: &System, scope: &Scope<'_>) -> Result<Vec<Limit>, SceneError> {
+    fn limits(&self, system: &System, scope: &Scope<'_>) -> Result<Vec<Limit>> {
         let bounds = bounds([&self.min, &self.max], scope)?;
         Ok(limits_of(
             [clearance(&self.marker, &self.from, system, scope)?],
@@ -227,12 +227,7 @@ impl LimitEntry for ClearanceLimitSpec {
 }
 
 /// The distance of a marker from a plane; the scope has both.
-fn clearance(
-    marker: &str,
-    from: &PlaneSpec,
-    system: &System,
-    scope: &Scope<'_>,
-) -> Result<What, SceneError> {
+fn clearance(marker: &str, from: &PlaneSpec, system: &System, scope: &Scope<'_>) -> Result<What> {
     let markers = names(&system.markers, |marker| &marker.name);
     let place = scope.key("marker");
     let marker = place.find(marker, &markers, "the name of a marker")?;
@@ -246,7 +241,7 @@ impl CostEntry for ClearanceCostSpec {
         during: During,
         system: &System,
         scope: &Scope<'_>,
-    ) -> Result<Vec<QuantityCost>, SceneError> {
+    ) -> Result<Vec<QuantityCost>> {
         let weight = weight(self.weight, scope)?;
         let at = self.at.as_ref().map_or(0.0, Written::value);
         let what = clearance(&self.marker, &self.from, system, scope)?;
@@ -260,7 +255,7 @@ impl CostEntry for MarkerSpeedCostSpec {
         during: During,
         system: &System,
         scope: &Scope<'_>,
-    ) -> Result<Vec<QuantityCost>, SceneError> {
+    ) -> Result<Vec<QuantityCost>> {
         let weight = weight(self.weight, scope)?;
         let marker = moving_marker(&self.marker, system, &scope.key("marker"))?;
         Ok(vec![itself(
@@ -277,7 +272,7 @@ impl CostEntry for TrackMarkerSpec {
         during: During,
         system: &System,
         scope: &Scope<'_>,
-    ) -> Result<Vec<QuantityCost>, SceneError> {
+    ) -> Result<Vec<QuantityCost>> {
         let marker = moving_marker(&self.marker, system, &scope.key("marker"))?;
         let weight = weight(self.weight, scope)?;
         let place = scope.key("along");
@@ -307,7 +302,7 @@ impl CostEntry for FinalMarkerSpec {
         during: During,
         system: &System,
         scope: &Scope<'_>,
-    ) -> Result<Vec<QuantityCost>, SceneError> {
+    ) -> Result<Vec<QuantityCost>> {
         let marker = moving_marker(&self.marker, system, &scope.key("marker"))?;
         let weight = weight(self.weight, scope)?;
         let given = self.at.iter().enumerate();
@@ -326,7 +321,7 @@ impl CostEntry for FinalMarkerSpec {
     }
 }
 
-pub(super) fn place(of: &Named<'_>) -> Result<Recorded, SceneError> {
+pub(super) fn place(of: &Named<'_>) -> Result<Recorded> {
     let marker = moving_marker(of.name, of.system, of.place)?;
     let along = written_direction(of.along, &of.scope.key("along"))?;
     let part = |(axis, a): (usize, &f64)| (*a, Quantity::marker_place(marker, axis));
@@ -340,7 +335,7 @@ pub(super) fn place(of: &Named<'_>) -> Result<Recorded, SceneError> {
     })
 }
 
-pub(super) fn distance(of: &Named<'_>) -> Result<Recorded, SceneError> {
+pub(super) fn distance(of: &Named<'_>) -> Result<Recorded> {
     let marker = moving_marker(of.name, of.system, of.place)?;
     let Some(from) = of.from else {
         let place = of.scope.key("from");

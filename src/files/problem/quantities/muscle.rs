@@ -1,7 +1,7 @@
 //! Stretches, tensions, fields and amounts of muscles in limits, costs and recordings.
 
 use crate::control::problem::{During, Limit, QuantityCost};
-use crate::files::json::error::SceneError;
+use crate::files::json::error::Result;
 use crate::files::json::scope::Scope;
 use crate::files::problem::quantities::entry::{
     All, CostEntry, LimitEntry, Named, Recorded, bounds, check_bounds, itself, limits_of, square,
@@ -104,7 +104,7 @@ macro_rules! amount_limits {
             }
 
             impl LimitEntry for $name {
-                fn limits(&self, system: &System, scope: &Scope<'_>) -> Result<Vec<Limit>, SceneError> {
+                fn limits(&self, system: &System, scope: &Scope<'_>) -> Result<Vec<Limit>> {
                     let bounds = bounds([&self.min, &self.max], scope)?;
                     amount(&self.muscles, Amount::$measure, bounds, system, scope)
                 }
@@ -166,7 +166,7 @@ fn lumped_muscles(
     muscles: Option<All>,
     system: &System,
     scope: &Scope<'_>,
-) -> Result<Vec<usize>, SceneError> {
+) -> Result<Vec<usize>> {
     let is_lumped = |&m: &usize| system.muscles[m].fidelity == Fidelity::Lumped;
     let one = muscle.as_ref().map(Some);
     let chosen = [("muscle", one), ("muscles", muscles.map(|_| None))];
@@ -194,7 +194,7 @@ fn pulling(
     others: [&Option<String>; 2],
     system: &System,
     scope: &Scope<'_>,
-) -> Result<Vec<Pulling>, SceneError> {
+) -> Result<Vec<Pulling>> {
     let is_written = |of: &Option<String>| of.as_ref().map(|_| ());
     scope.exactly_one([
         ("muscle", is_written(muscles.0)),
@@ -222,7 +222,7 @@ fn pulling(
 }
 
 impl LimitEntry for StretchLimitSpec {
-    fn limits(&self, system: &System, scope: &Scope<'_>) -> Result<Vec<Limit>, SceneError> {
+    fn limits(&self, system: &System, scope: &Scope<'_>) -> Result<Vec<Limit>> {
         let muscles = names(&system.muscles, |muscle| &muscle.name);
         let expected = "the name of a muscle";
         let muscle = scope.key("muscle").find(&self.muscle, &muscles, expected)?;
@@ -239,7 +239,7 @@ impl LimitEntry for StretchLimitSpec {
 }
 
 impl LimitEntry for TensionLimitSpec {
-    fn limits(&self, system: &System, scope: &Scope<'_>) -> Result<Vec<Limit>, SceneError> {
+    fn limits(&self, system: &System, scope: &Scope<'_>) -> Result<Vec<Limit>> {
         let bounds = bounds([&self.min, &self.max], scope)?;
         let muscles = (&self.muscle, self.muscles);
         let parts = pulling(muscles, [&self.spring, &self.tendon], system, scope)?;
@@ -251,7 +251,7 @@ impl LimitEntry for TensionLimitSpec {
 const NOTHING: &str = "nothing that a field reaches";
 
 impl LimitEntry for ElectricFieldLimitSpec {
-    fn limits(&self, system: &System, scope: &Scope<'_>) -> Result<Vec<Limit>, SceneError> {
+    fn limits(&self, system: &System, scope: &Scope<'_>) -> Result<Vec<Limit>> {
         let max = scope.key("max").positive(&self.max)?;
         let one = |name: &Option<String>| name.clone().map(Some);
         let all = |all: Option<All>| all.map(|_| None);
@@ -310,7 +310,7 @@ fn muscle_fields(
     max: f64,
     system: &System,
     place: &Scope<'_>,
-) -> Result<Vec<Limit>, SceneError> {
+) -> Result<Vec<Limit>> {
     let muscles = match name {
         Some(name) => vec![muscle_with_field(name, system, place)?],
         None => (0..system.muscles.len())
@@ -337,7 +337,7 @@ fn muscle_fields(
 }
 
 /// Index of a muscle with an electric term.
-fn muscle_with_field(name: &str, system: &System, scope: &Scope<'_>) -> Result<usize, SceneError> {
+fn muscle_with_field(name: &str, system: &System, scope: &Scope<'_>) -> Result<usize> {
     let muscles = names(&system.muscles, |muscle| &muscle.name);
     let index = scope.find(name, &muscles, "the name of a muscle")?;
     if system.muscles[index].material.electric.is_some() {
@@ -353,7 +353,7 @@ impl CostEntry for TensionCostSpec {
         during: During,
         system: &System,
         scope: &Scope<'_>,
-    ) -> Result<Vec<QuantityCost>, SceneError> {
+    ) -> Result<Vec<QuantityCost>> {
         let weight = weight(self.weight, scope)?;
         let at = self.at.as_ref().map_or(0.0, Written::value);
         let muscles = lumped_muscles(&self.muscle, self.muscles, system, scope)?;
@@ -369,7 +369,7 @@ impl CostEntry for FieldCostSpec {
         during: During,
         system: &System,
         scope: &Scope<'_>,
-    ) -> Result<Vec<QuantityCost>, SceneError> {
+    ) -> Result<Vec<QuantityCost>> {
         let weight = weight(self.weight, scope)?;
         let mut muscles = lumped_muscles(&self.muscle, self.muscles, system, scope)?;
         muscles.retain(|&muscle| system.muscles[muscle].material.electric.is_some());
@@ -393,7 +393,7 @@ impl CostEntry for FieldCostSpec {
 }
 
 /// Force with which a muscle, a spring or a tendon pulls its ends together.
-pub(super) fn tension(of: &Named<'_>) -> Result<Recorded, SceneError> {
+pub(super) fn tension(of: &Named<'_>) -> Result<Recorded> {
     const EXPECTED: &str = "the name of a lumped muscle, a spring or a tendon";
     let (system, name) = (of.system, of.name);
     let components = &system.components;
@@ -431,7 +431,7 @@ fn amount(
     bounds: [f64; 2],
     system: &System,
     scope: &Scope<'_>,
-) -> Result<Vec<Limit>, SceneError> {
+) -> Result<Vec<Limit>> {
     if bounds[1] <= 0.0 {
         let place = scope.key("max");
         return Err(place.wrong("no more than zero", "a positive bound"));
@@ -449,7 +449,7 @@ pub(in crate::files::problem) fn amount_costs(
     [volume, mass]: [f64; 2],
     system: &System,
     scope: &Scope<'_>,
-) -> Result<Vec<QuantityCost>, SceneError> {
+) -> Result<Vec<QuantityCost>> {
     let weights = [
         ("muscle_volume", Amount::Volume, volume),
         ("muscle_mass", Amount::Mass, mass),
@@ -469,7 +469,7 @@ fn has(amount: Amount, system: &System, muscle: usize) -> bool {
 }
 
 /// All lumped muscles, of which one at least has the amount.
-fn lumped(amount: Amount, system: &System, scope: &Scope<'_>) -> Result<Vec<usize>, SceneError> {
+fn lumped(amount: Amount, system: &System, scope: &Scope<'_>) -> Result<Vec<usize>> {
     let is_lumped = |&m: &usize| system.muscles[m].fidelity == Fidelity::Lumped;
     let muscles: Vec<usize> = (0..system.muscles.len()).filter(is_lumped).collect();
     match muscles.iter().any(|&m| has(amount, system, m)) {
@@ -488,7 +488,7 @@ fn by_names(
     amount: Amount,
     system: &System,
     scope: &Scope<'_>,
-) -> Result<Vec<usize>, SceneError> {
+) -> Result<Vec<usize>> {
     if list.is_empty() {
         return Err(scope.wrong("no muscle", EXPECTED));
     }

@@ -1,7 +1,7 @@
 //! Voltages, charges, currents and powers of sources in limits, costs and recordings.
 
 use crate::control::problem::{During, Limit, QuantityCost};
-use crate::files::json::error::SceneError;
+use crate::files::json::error::Result;
 use crate::files::json::scope::Scope;
 use crate::files::problem::quantities::entry::{
     All, CostEntry, LimitEntry, Named, Recorded, bounds, limits_of, square, weight,
@@ -38,7 +38,7 @@ macro_rules! source_limits {
             }
 
             impl LimitEntry for $name {
-                fn limits(&self, system: &System, scope: &Scope<'_>) -> Result<Vec<Limit>, SceneError> {
+                fn limits(&self, system: &System, scope: &Scope<'_>) -> Result<Vec<Limit>> {
                     let bounds = bounds([&self.min, &self.max], scope)?;
                     let chosen = Chosen { one: &self.source, all: self.sources };
                     $limits(chosen, bounds, system, scope)
@@ -119,7 +119,7 @@ impl Chosen<'_> {
         &self,
         sources: &[Source],
         scope: &Scope<'s>,
-    ) -> Result<(Vec<usize>, Scope<'s>), SceneError> {
+    ) -> Result<(Vec<usize>, Scope<'s>)> {
         let one = self.one.as_ref().map(Some);
         match scope.exactly_one([("source", one), ("sources", self.all.map(|_| None))])? {
             Some(name) => {
@@ -141,7 +141,7 @@ fn rates(
     bounds: [f64; 2],
     system: &System,
     scope: &Scope<'_>,
-) -> Result<Vec<Limit>, SceneError> {
+) -> Result<Vec<Limit>> {
     let (sources, place) = chosen.sources(&system.sources(), scope)?;
     if sources.is_empty() {
         return Err(place.wrong("no source", "a source of a voltage"));
@@ -151,7 +151,7 @@ fn rates(
 }
 
 /// Muscles of whose sources current and power are known: all of them without such a muscle is none.
-fn measured(of: &Chosen<'_>, system: &System, scope: &Scope<'_>) -> Result<Vec<usize>, SceneError> {
+fn measured(of: &Chosen<'_>, system: &System, scope: &Scope<'_>) -> Result<Vec<usize>> {
     const EXPECTED: &str = "sources of lumped muscles with a permittivity: without a \"circuit\", or with a \"resistance\" in it";
     let sources = system.sources();
     let (chosen, place) = of.sources(&sources, scope)?;
@@ -172,11 +172,7 @@ fn measured(of: &Chosen<'_>, system: &System, scope: &Scope<'_>) -> Result<Vec<u
 }
 
 /// Muscles whose sources are behind a resistor.
-fn behind_resistors(
-    of: &Chosen<'_>,
-    system: &System,
-    scope: &Scope<'_>,
-) -> Result<Vec<usize>, SceneError> {
+fn behind_resistors(of: &Chosen<'_>, system: &System, scope: &Scope<'_>) -> Result<Vec<usize>> {
     let key = if of.one.is_some() {
         "source"
     } else {
@@ -202,7 +198,7 @@ impl CostEntry for CurrentCostSpec {
         during: During,
         system: &System,
         scope: &Scope<'_>,
-    ) -> Result<Vec<QuantityCost>, SceneError> {
+    ) -> Result<Vec<QuantityCost>> {
         let weight = weight(self.weight, scope)?;
         let at = self.at.as_ref();
         let at = at.map_or(0.0, |at| at.value() / MILLIAMPERE);
@@ -219,7 +215,7 @@ impl CostEntry for PowerCostSpec {
         during: During,
         system: &System,
         scope: &Scope<'_>,
-    ) -> Result<Vec<QuantityCost>, SceneError> {
+    ) -> Result<Vec<QuantityCost>> {
         let weight = weight(self.weight, scope)?;
         let at = self.at.as_ref().map_or(0.0, Written::value);
         let (one, all) = (&self.source, self.sources);
@@ -237,7 +233,7 @@ struct Charging {
 }
 
 impl Charging {
-    fn new(of: &Named<'_>) -> Result<Self, SceneError> {
+    fn new(of: &Named<'_>) -> Result<Self> {
         let (name, system, place) = (of.name, of.system, of.place);
         let source = driven(name, &system.sources(), place)?;
         let muscle = system.muscles.get(source);
@@ -259,7 +255,7 @@ const OF_ELEMENTS: [&str; 2] = [
     "a lumped muscle, or electrodes with a \"resistance\" in their \"circuit\"",
 ];
 
-pub(super) fn charge(named: &Named<'_>) -> Result<Recorded, SceneError> {
+pub(super) fn charge(named: &Named<'_>) -> Result<Recorded> {
     let (name, place) = (named.name, named.place);
     let of = Charging::new(named)?;
     let quantity = match (of.is_behind_resistor, of.is_lumped) {
@@ -275,7 +271,7 @@ pub(super) fn charge(named: &Named<'_>) -> Result<Recorded, SceneError> {
 }
 
 /// Current of a source: through a resistor, or that of the changing charge.
-pub(super) fn current(named: &Named<'_>) -> Result<Recorded, SceneError> {
+pub(super) fn current(named: &Named<'_>) -> Result<Recorded> {
     let (name, place) = (named.name, named.place);
     let of = Charging::new(named)?;
     let quantity = match (of.is_behind_resistor, of.is_lumped) {
@@ -299,7 +295,7 @@ pub(super) fn current(named: &Named<'_>) -> Result<Recorded, SceneError> {
 }
 
 /// Electrical power of the source of a muscle.
-pub(super) fn power(named: &Named<'_>) -> Result<Recorded, SceneError> {
+pub(super) fn power(named: &Named<'_>) -> Result<Recorded> {
     let (name, place) = (named.name, named.place);
     let of = Charging::new(named)?;
     if !(of.is_lumped && of.is_behind_resistor) {
@@ -313,7 +309,7 @@ pub(super) fn power(named: &Named<'_>) -> Result<Recorded, SceneError> {
 }
 
 /// Voltage of electrodes that is not given.
-pub(super) fn voltage(named: &Named<'_>) -> Result<Recorded, SceneError> {
+pub(super) fn voltage(named: &Named<'_>) -> Result<Recorded> {
     let (name, place) = (named.name, named.place);
     let of = Charging::new(named)?;
     if !of.is_behind_resistor {

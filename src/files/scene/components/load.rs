@@ -1,6 +1,6 @@
 //! Loads.
 
-use crate::files::json::error::SceneError;
+use crate::files::json::error::Result;
 use crate::files::json::scope::Scope;
 use crate::files::scene::names::names;
 use crate::files::scene::nodes::nodes;
@@ -63,7 +63,7 @@ pub(crate) fn load(
     spec: &LoadSpec,
     (bodies, joints, muscles, solids): (&[String], &[Joint], &[Muscle], &[Solid]),
     scope: &Scope<'_>,
-) -> Result<Load, SceneError> {
+) -> Result<Load> {
     enum Written<'a> {
         Point(&'a PointSpec),
         Joint(&'a String),
@@ -120,7 +120,7 @@ impl LoadSpec {
         is_of_solid: bool,
         no_direction: Option<&'static str>,
         scope: &Scope<'_>,
-    ) -> Result<(), SceneError> {
+    ) -> Result<()> {
         use BlockLoadKind::{BodyForce, Pressure, SurfaceCharge};
         let turns = no_direction.is_none() && matches!(self.kind, None | Some(Pressure));
         let no_direction = no_direction.or(match self.kind {
@@ -151,14 +151,14 @@ impl LoadSpec {
         Ok(())
     }
 
-    fn direction(&self, scope: &Scope<'_>) -> Result<Vector, SceneError> {
+    fn direction(&self, scope: &Scope<'_>) -> Result<Vector> {
         let missing = || scope.wrong("no key \"direction\"", "the direction of the force");
         let direction = self.direction.as_ref().ok_or_else(missing)?;
         unit_axis(direction, &scope.key("direction"))
     }
 
     /// The load of a block.
-    fn of_solid(&self, solid: &Solid, scope: &Scope<'_>) -> Result<BlockLoad, SceneError> {
+    fn of_solid(&self, solid: &Solid, scope: &Scope<'_>) -> Result<BlockLoad> {
         let expected = "\"traction\", \"pressure\", \"surface_charge\" or \"body_force\"";
         let missing = || scope.wrong("no key \"kind\"", expected);
         Ok(match self.kind.ok_or_else(missing)? {
@@ -175,7 +175,7 @@ impl LoadSpec {
     }
 
     /// Faces of the surface all of whose nodes lie in the place that is written; a force on them moves a node.
-    fn faces(&self, solid: &Solid, scope: &Scope<'_>) -> Result<Faces, SceneError> {
+    fn faces(&self, solid: &Solid, scope: &Scope<'_>) -> Result<Faces> {
         let place = (
             self.face.as_ref(),
             self.plane.as_ref(),

@@ -1,6 +1,6 @@
 //! Springs and dampers.
 
-use crate::files::json::error::SceneError;
+use crate::files::json::error::Result;
 use crate::files::json::scope::Scope;
 use crate::files::scene::objects::objects;
 use crate::files::scene::point::PointSpec;
@@ -28,7 +28,7 @@ objects! {
 impl ComponentSpec for SpringSpec {
     type Part = Spring;
 
-    fn component(&self, bodies: &[String], scope: &Scope<'_>) -> Result<Spring, SceneError> {
+    fn component(&self, bodies: &[String], scope: &Scope<'_>) -> Result<Spring> {
         if self.stiffness.is_none() && self.damping.is_none() {
             return Err(scope.wrong("neither of them", "\"stiffness\" or \"damping\""));
         }
@@ -61,5 +61,5 @@ pub(in crate::files::scene) trait ComponentSpec {
     ///
     /// # Errors
     /// A name is wrong, or a key.
-    fn component(&self, bodies: &[String], scope: &Scope<'_>) -> Result<Self::Part, SceneError>;
+    fn component(&self, bodies: &[String], scope: &Scope<'_>) -> Result<Self::Part>;
 }

@@ -1,6 +1,6 @@
 //! Tendons.
 
-use crate::files::json::error::SceneError;
+use crate::files::json::error::Result;
 use crate::files::json::scope::Scope;
 use crate::files::scene::components::spring::ComponentSpec;
 use crate::files::scene::objects::objects;
@@ -27,7 +27,7 @@ objects! {
 impl ComponentSpec for TendonSpec {
     type Part = Tendon;
 
-    fn component(&self, bodies: &[String], scope: &Scope<'_>) -> Result<Tendon, SceneError> {
+    fn component(&self, bodies: &[String], scope: &Scope<'_>) -> Result<Tendon> {
         let place = scope.key("through");
         let points = self.through.iter().enumerate();
         let points = points.map(|(index, point)| point.attachment(bodies, &place.index(index)));
