@@ -46,6 +46,7 @@ use crate::control::Motion;
 use crate::control::problem::{Disturbed, Duration, Regulator, Task};
 use crate::files::json::error::Result;
 use crate::files::json::set::Override;
+use crate::files::problem::at::At;
 use crate::files::problem::build::build_problem;
 use crate::files::problem::changed_scenes::changed_scenes;
 use crate::files::problem::disturbance::disturbed;
@@ -238,7 +239,8 @@ fn alone(mut document: Document, of_scene: &[Override], changes: &ChangesSpec) -
         document: apart.as_ref().unwrap_or(&document),
         changes,
     };
-    let mut task = build_problem(&problem, &of_scene, &scope)?;
+    let at = At::new(&scope, &system);
+    let mut task = build_problem(&problem, &of_scene, &at)?;
     add_plan(&mut task, &problem, &scope, |path| {
         let Loaded {
             system,
@@ -248,8 +250,8 @@ fn alone(mut document: Document, of_scene: &[Override], changes: &ChangesSpec) -
         } = read_problem(path, &[])?;
         Ok((system, task, feedback))
     })?;
-    let output = shown(&problem, &task, &system, &scope)?;
-    let feedback = feedback(&problem, &task, &system, &scope)?;
+    let output = shown(&problem, &task, &at)?;
+    let feedback = feedback(&problem, &task, &at)?;
     let documents = [Some(&document), apart.as_ref()].into_iter().flatten();
     Ok(Loaded {
         notes: documents.flat_map(Document::notes).collect(),
@@ -265,31 +267,26 @@ fn alone(mut document: Document, of_scene: &[Override], changes: &ChangesSpec) -
 }
 
 /// Part of the result of a task that is shown.
-fn shown(problem: &ProblemSpec, task: &Task, system: &System, scope: &Scope<'_>) -> Result<Output> {
-    let place = scope.key("output");
+fn shown(problem: &ProblemSpec, task: &Task, at: &At<'_>) -> Result<Output> {
+    let place = at.key("output");
     let expected = match (&problem.output, task) {
         (None, _) => return Ok(Output::default()),
         (Some(_), Task::Equilibrium(_)) => "none beside an equilibrium, which has no times",
         (Some(_), Task::Identify(_)) => "none beside an identification, which shows its readings",
-        (Some(spec), _) => return output(spec, system, &place),
+        (Some(spec), _) => return output(spec, &place),
     };
     Err(place.wrong("an \"output\"", expected))
 }
 
 /// Feedback along an optimum.
-fn feedback(
-    problem: &ProblemSpec,
-    task: &Task,
-    system: &System,
-    scope: &Scope<'_>,
-) -> Result<Option<Regulator>> {
+fn feedback(problem: &ProblemSpec, task: &Task, at: &At<'_>) -> Result<Option<Regulator>> {
     let Some(spec) = &problem.feedback else {
         return Ok(None);
     };
-    let place = scope.key("feedback");
+    let place = at.key("feedback");
     match task {
         Task::Control(control) => {
-            let regulator = regulator(spec, system, &place)?;
+            let regulator = regulator(spec, &place)?;
             let (Duration::Given(longest) | Duration::Free { max: longest, .. }) = control.duration;
             match &spec.delay {
                 Some(delay) if regulator.delay > longest => {

@@ -6,7 +6,7 @@ use crate::files::json::error::{Mistake, Result, SceneError, nearest};
 use crate::files::json::path::Step;
 use crate::files::json::scope::Scope;
 use crate::files::json::set::{Override, resolved};
-use crate::files::problem::state::A_SOURCE;
+use crate::files::problem::at::A_SOURCE;
 use crate::files::scene::build::build_scene;
 use crate::files::units::quantity::{Quantity, Voltage};
 use crate::model::system::{Source, System};

@@ -10,9 +10,9 @@ use crate::files::feedback::record::{
 use crate::files::json::document::Document;
 use crate::files::json::error::{Result, SceneError};
 use crate::files::json::scope::Scope;
-use crate::files::problem::state::driven;
+use crate::files::problem::at::At;
 use crate::files::scene::names::names;
-use crate::model::system::{Source, System};
+use crate::model::system::System;
 use nalgebra::DMatrix;
 use std::path::Path;
 
@@ -34,9 +34,9 @@ pub(crate) fn read_law(path: &Path, system: &System) -> Result<Law> {
     let measured = record.measured.iter().enumerate();
     let measured = measured.map(|(i, one)| of_measured(one, &scope.key("measured").index(i)));
     let measured: Vec<Measured> = measured.collect::<Result<_, _>>()?;
-    let sources = system.sources();
+    let at = At::new(&scope, system).key("inputs");
     let inputs = record.inputs.iter().enumerate();
-    let inputs = inputs.map(|(i, one)| of_input(one, &sources, &scope.key("inputs").index(i)));
+    let inputs = inputs.map(|(i, one)| of_input(one, &at.index(i)));
     let (inputs, of_inputs): (Vec<LawInput>, Vec<f64>) =
         inputs.collect::<Result<Vec<_>, _>>()?.into_iter().unzip();
     let (read, acting) = factors((&measured, &inputs, &of_inputs), &record, &scope)?;
@@ -182,17 +182,11 @@ fn of_measured(record: &MeasuredRecord, place: &Scope<'_>) -> Result<Measured> {
 }
 
 /// An input, and the factor of its unit.
-fn of_input(
-    record: &InputRecord,
-    sources: &[Source],
-    place: &Scope<'_>,
-) -> Result<(LawInput, f64)> {
-    let load = sources
-        .iter()
-        .find(|source| source.is_load() && source.name == record.name);
-    let source = match load {
+fn of_input(record: &InputRecord, place: &At<'_>) -> Result<(LawInput, f64)> {
+    let mut sources = place.sources.iter();
+    let source = match sources.find(|source| source.is_load() && source.name == record.name) {
         Some(load) => load,
-        None => &sources[driven(&record.name, sources, &place.key("name"))?],
+        None => &place.sources[place.key("name").driven(&record.name)?],
     };
     let (unit, factor) = unit_of_input(source);
     if unit != record.unit {

@@ -9,7 +9,7 @@ use std::path::PathBuf;
 use crate::files::json::document::Document;
 use crate::files::json::error::{Result, SceneError};
 use crate::files::json::path::{JsonPath, Step};
-use crate::files::units::quantity::{PhysicalQuantity, Quantity, WRITTEN};
+use crate::files::units::quantity::{Kind, PhysicalQuantity, Quantity, WRITTEN};
 use crate::math::{Fault, unique};
 
 /// A place in a document.
@@ -147,6 +147,16 @@ impl<'a> Scope<'a> {
         Err(self.wrong(quantity.to_string(), expected))
     }
 
+    /// A quantity read as one kind, in the units inside.
+    pub(crate) fn value_as<M: PhysicalQuantity>(
+        &self,
+        quantity: &Quantity<M>,
+        kind: &Kind,
+    ) -> Result<f64> {
+        let value = quantity.value_as(kind);
+        value.map_err(|found| self.wrong(found, kind.expected()))
+    }
+
     /// A weight that is zero or more; zero leaves no trace.
     pub(crate) fn weight(&self, weight: f64) -> Result<f64> {
         match weight < 0.0 {
@@ -187,6 +197,14 @@ impl<'a> Scope<'a> {
         }
     }
 
+    /// The key of the one entry that is there.
+    pub(crate) fn one_key<'k, const N: usize>(
+        &self,
+        entries: [(&'k str, bool); N],
+    ) -> Result<&'k str> {
+        self.exactly_one(entries.map(|(key, is_there)| (key, is_there.then_some(key))))
+    }
+
     /// A list without repeated, empty or reserved names; `place` gives the place of a name.
     pub(crate) fn unique(
         &self,
@@ -198,6 +216,20 @@ impl<'a> Scope<'a> {
             .map_err(|(index, fault)| place(index).wrong(fault.found, fault.expected))
     }
 }
+
+/// What is made of the one of some entries of an object that is there, at its place.
+macro_rules! the_one {
+    ($at:expr, $of:expr; $($key:literal $entry:ident |$place:pat_param, $one:pat_param| $made:expr;)+) => {{
+        $at.one_key([$(($key, $of.$entry.is_some())),+])?;
+        $(if let Some($one) = &$of.$entry {
+            let $place = &$at.key($key);
+            $made
+        } else)+ {
+            unreachable!("one of them is there")
+        }
+    }};
+}
+pub(crate) use the_one;
 
 /// The value at a place.
 fn entry<'v, 's>(whole: &'v Value, mut steps: impl Iterator<Item = &'s Step>) -> Option<&'v Value> {

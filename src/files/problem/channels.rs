@@ -4,10 +4,10 @@ use crate::control::problem::{Channel, Reading};
 use crate::files::columns::Columns;
 use crate::files::json::error::Result;
 use crate::files::json::scope::Scope;
+use crate::files::problem::at::At;
 use crate::files::problem::quantities::keys::{MeasuredSize, MeasuredSpec};
 use crate::files::units::quantity::{Kind, Quantity as Written, Ratio};
 use crate::model::Quantity;
-use crate::model::system::System;
 
 /// A quantity that is measured.
 #[derive(Debug)]
@@ -27,8 +27,8 @@ pub(super) struct Source<'a> {
 
 impl Measured {
     /// The quantity that is written.
-    pub(super) fn new(spec: &MeasuredSpec, system: &System, scope: &Scope<'_>) -> Result<Self> {
-        let what = spec.recorded(system, scope)?;
+    pub(super) fn new(spec: &MeasuredSpec, at: &At<'_>) -> Result<Self> {
+        let what = spec.recorded(at)?;
         let column = spec.column.as_ref();
         Ok(Self {
             column: column.unwrap_or(&what.of).clone(),
@@ -40,13 +40,12 @@ impl Measured {
     }
 
     /// The standard deviation that is written for all readings.
-    pub(super) fn deviation(&self, spec: &MeasuredSpec, scope: &Scope<'_>) -> Result<Option<f64>> {
+    pub(super) fn deviation(&self, spec: &MeasuredSpec, at: &Scope<'_>) -> Result<Option<f64>> {
         let Some(written) = &spec.standard_deviation else {
             return Ok(None);
         };
-        let place = scope.key("standard_deviation");
-        let value = written.value_as(&self.kind);
-        let value = value.map_err(|found| place.wrong(found, self.kind.expected()))?;
+        let place = at.key("standard_deviation");
+        let value = place.value_as(written, &self.kind)?;
         match value > 0.0 {
             true => Ok(Some(value)),
             false => Err(place.wrong(written.to_string(), "a positive one")),
@@ -69,7 +68,7 @@ impl Measured {
         &self,
         spec: &MeasuredSpec,
         source: &Source<'_>,
-        scope: &Scope<'_>,
+        at: &Scope<'_>,
     ) -> Result<Channel> {
         let given = [
             ("standard_deviation", spec.standard_deviation.is_some()),
@@ -79,13 +78,13 @@ impl Measured {
         let mut given = given.into_iter().filter(|(_, is_given)| *is_given);
         if let (Some((first, _)), Some((second, _))) = (given.next(), given.next()) {
             let expected = format!("one of both, not \"{first}\" too");
-            return Err(scope.key(second).wrong("a second one", expected));
+            return Err(at.key(second).wrong("a second one", expected));
         }
-        let values = self.values(&self.column, source, &scope.key("column"))?;
-        let of_all = self.deviation(spec, scope)?;
+        let values = self.values(&self.column, source, &at.key("column"))?;
+        let of_all = self.deviation(spec, at)?;
         let deviations = match (&spec.deviations, &spec.weights) {
-            (Some(header), _) => self.values(header, source, &scope.key("deviations"))?,
-            (_, Some(header)) => weights(header, source, &scope.key("weights"))?,
+            (Some(header), _) => self.values(header, source, &at.key("deviations"))?,
+            (_, Some(header)) => weights(header, source, &at.key("weights"))?,
             _ => vec![Some(of_all.unwrap_or(1.0)); values.len()],
         };
         let mut readings = Vec::new();
@@ -99,7 +98,7 @@ impl Measured {
                     None => "weights",
                 };
                 let found = format!("a value that is not positive, in row {}", k + 1);
-                return Err(scope.key(key).wrong(found, "positive values"));
+                return Err(at.key(key).wrong(found, "positive values"));
             }
             readings.push(Reading {
                 time: source.times[k],
@@ -109,7 +108,7 @@ impl Measured {
         }
         if readings.is_empty() {
             let found = format!("{:?}, a column of gaps alone", self.column);
-            return Err(scope.key("column").wrong(found, "one reading or more"));
+            return Err(at.key("column").wrong(found, "one reading or more"));
         }
         let is_known = of_all.is_some() || spec.deviations.is_some();
         Ok(self.with(readings, is_known))
@@ -120,25 +119,24 @@ impl Measured {
         &self,
         header: &str,
         source: &Source<'_>,
-        scope: &Scope<'_>,
+        at: &Scope<'_>,
     ) -> Result<Vec<Option<f64>>> {
         let column = source
             .columns
-            .with_gaps::<MeasuredSize>(header, &self.kind, scope)?;
+            .with_gaps::<MeasuredSize>(header, &self.kind, at)?;
         let value = |written: Option<Written<MeasuredSize>>| {
-            let read = written.map(|written| written.value_as(&self.kind));
-            let read = read.transpose();
-            read.map_err(|found| scope.wrong(found, self.kind.expected()))
+            let read = written.map(|written| at.value_as(&written, &self.kind));
+            read.transpose()
         };
         column.into_iter().map(value).collect()
     }
 }
 
 /// Relative deviations of weights.
-fn weights(header: &str, source: &Source<'_>, scope: &Scope<'_>) -> Result<Vec<Option<f64>>> {
+fn weights(header: &str, source: &Source<'_>, at: &Scope<'_>) -> Result<Vec<Option<f64>>> {
     let column = source
         .columns
-        .with_gaps::<Ratio>(header, &Ratio::kind(), scope)?;
+        .with_gaps::<Ratio>(header, &Ratio::kind(), at)?;
     let deviation = |weight: Option<Written<Ratio>>| Some(weight?.value().sqrt().recip());
     Ok(column.into_iter().map(deviation).collect())
 }

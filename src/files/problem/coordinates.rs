@@ -2,33 +2,32 @@
 
 use crate::files::json::error::Result;
 use crate::files::json::scope::Scope;
+use crate::files::problem::at::At;
 use crate::files::scene::graph::tree_freedoms;
 use crate::model::Coordinates;
-use crate::model::system::System;
 use schemars::JsonSchema;
 use serde::Deserialize;
 
 /// A number of things from one to a limit.
-pub(crate) fn count(value: usize, noun: &str, most: usize, scope: &Scope<'_>) -> Result<()> {
+pub(crate) fn count(value: usize, noun: &str, most: usize, at: &Scope<'_>) -> Result<()> {
     let expected = match value {
         0 => format!("1 {noun} or more"),
         _ if value > most => format!("no more than {most} {noun}s"),
         _ => return Ok(()),
     };
-    Err(scope.wrong(value.to_string(), expected))
+    Err(at.wrong(value.to_string(), expected))
 }
 
 pub(crate) fn coordinates(
     spec: Option<CoordinatesSpec>,
-    system: &System,
-    scope: &Scope<'_>,
+    at: &At<'_>,
 ) -> Result<Option<Coordinates>> {
-    let bodies = system.bodies.len();
-    let place = scope.key("coordinates");
+    let (bodies, joints) = (at.system.bodies.len(), &at.system.joints);
     match spec {
         None => Ok(None),
         Some(CoordinatesSpec::Redundant) => Ok(Some(Coordinates::Redundant)),
-        Some(CoordinatesSpec::Reduced) if tree_freedoms(bodies, &system.joints).is_none() => {
+        Some(CoordinatesSpec::Reduced) if tree_freedoms(bodies, joints).is_none() => {
+            let place = at.key("coordinates");
             let found = "\"reduced\", though the joints close a loop";
             Err(place.wrong(found, "\"redundant\""))
         }

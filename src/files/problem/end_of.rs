@@ -11,11 +11,11 @@ use crate::dynamics::StepState;
 use crate::files::continuation;
 use crate::files::json::error::Result;
 use crate::files::json::scope::{Scope, list};
-use crate::files::problem::solution_document::solution_document;
+use crate::files::problem::at::At;
+use crate::files::problem::voltages::solution_document;
 use crate::kinematics::Pose;
 use crate::math::{Matrix, Vector};
 use crate::model::Coordinates;
-use crate::model::system::System;
 
 /// Expected value of a path.
 const FOLDER: &str = "the folder of a simulation or of a solved control problem, which holds a solution.json; a state of rest is \"rest_at_voltages\"";
@@ -76,17 +76,17 @@ struct Summary {
 }
 
 /// The last instant of the result that a path names.
-pub(crate) fn end_of(path: &str, system: &System, scope: &Scope<'_>) -> Result<EndState> {
-    let file = scope.solution_file(path, FOLDER)?;
-    let notes = status(&file, scope)?;
+pub(crate) fn end_of(path: &str, at: &At<'_>) -> Result<EndState> {
+    let file = at.solution_file(path, FOLDER)?;
+    let notes = status(&file, at)?;
     let document = solution_document(&file, |name| {
         ["state/", "voltages/", "loads/", "configuration/"]
             .iter()
             .any(|of| name.starts_with(of))
     })?;
     let ended: Ended = document.parse()?;
-    check_names(&ended, path, system, scope)?;
-    let untold = |what: &str| scope.wrong(format!("{path:?}, which does not tell {what}"), WRITTEN);
+    check_names(&ended, path, at)?;
+    let untold = |what: &str| at.wrong(format!("{path:?}, which does not tell {what}"), WRITTEN);
     let coordinates = ended.coordinates.as_deref().and_then(Coordinates::named);
     let coordinates = coordinates.ok_or_else(|| untold("in which \"coordinates\" it is"))?;
     let mut state = ended
@@ -97,7 +97,7 @@ pub(crate) fn end_of(path: &str, system: &System, scope: &Scope<'_>) -> Result<E
         return Err(untold("the \"state.momentum\" at its end"));
     }
     let mut poses = Vec::new();
-    for body in &system.bodies {
+    for body in &at.system.bodies {
         let Body { centre, directors } = &ended.configuration.bodies[&body.name];
         let (Some(centre), Some(directors)) = (centre.last(), directors.last()) else {
             return Err(untold(&format!("where body {:?} ended", body.name)));
@@ -108,7 +108,7 @@ pub(crate) fn end_of(path: &str, system: &System, scope: &Scope<'_>) -> Result<E
         });
     }
     let mut voltages = Vec::new();
-    for source in system.sources() {
+    for source in at.sources.iter() {
         let held = ended.hold.as_ref().and_then(|hold| hold.get(&source.name));
         let all = if source.is_load() {
             &ended.loads
@@ -122,7 +122,7 @@ pub(crate) fn end_of(path: &str, system: &System, scope: &Scope<'_>) -> Result<E
     Ok(EndState {
         source: file.parent().unwrap_or(&file).to_owned(),
         coordinates,
-        method: method(&file, &z, &state.momentum, scope)?,
+        method: method(&file, &z, &state.momentum, at)?,
         z,
         momentum: state.momentum,
         poses,
@@ -133,7 +133,7 @@ pub(crate) fn end_of(path: &str, system: &System, scope: &Scope<'_>) -> Result<E
 }
 
 /// Refuses a result that is no motion, and returns notes on one that is.
-fn status(file: &Path, scope: &Scope<'_>) -> Result<Vec<String>> {
+fn status(file: &Path, at: &Scope<'_>) -> Result<Vec<String>> {
     let beside = file.with_file_name("summary.json");
     let shown = file.display();
     let text = fs::read_to_string(&beside).ok();
@@ -151,7 +151,7 @@ fn status(file: &Path, scope: &Scope<'_>) -> Result<Vec<String>> {
         (false, word) if SOLVED.contains(&word) => Ok(Vec::new()),
         (false, _) => {
             let found = format!("{shown}, whose status is {status:?}");
-            Err(scope.wrong(
+            Err(at.wrong(
                 found,
                 format!(
                     "a motion of the robot: a simulation, or one of {}",
@@ -163,14 +163,18 @@ fn status(file: &Path, scope: &Scope<'_>) -> Result<Vec<String>> {
 }
 
 /// Refuses a result of other bodies, joints or sources.
-fn check_names(ended: &Ended, path: &str, system: &System, scope: &Scope<'_>) -> Result<()> {
+fn check_names(ended: &Ended, path: &str, at: &At<'_>) -> Result<()> {
     let Configuration { bodies, joints } = &ended.configuration;
-    let with_coordinate = system.joints.iter().filter(|joint| joint.has_coordinate());
+    let with_coordinate = at
+        .system
+        .joints
+        .iter()
+        .filter(|joint| joint.has_coordinate());
     for (kind, there, here) in [
         (
             "body",
             bodies.keys().collect::<BTreeSet<_>>(),
-            system
+            at.system
                 .bodies
                 .iter()
                 .map(|body| &body.name)
@@ -184,7 +188,7 @@ fn check_names(ended: &Ended, path: &str, system: &System, scope: &Scope<'_>) ->
     ] {
         let wrong = |words: String| {
             let found = format!("{path:?}, {words}");
-            scope.wrong(found, "a result of the same robot")
+            at.wrong(found, "a result of the same robot")
         };
         if let Some(name) = here.difference(&there).next() {
             return Err(wrong(format!("which has no {kind} {name:?}")));
@@ -193,10 +197,9 @@ fn check_names(ended: &Ended, path: &str, system: &System, scope: &Scope<'_>) ->
             return Err(wrong(format!("whose {kind} {name:?} is not in the scene")));
         }
     }
-    let sources = system.sources();
     let mut named = ended.voltages.keys();
-    match named.find(|name| !sources.iter().any(|source| source.name == **name)) {
-        Some(name) => Err(scope.wrong(
+    match named.find(|name| !at.sources.iter().any(|source| source.name == **name)) {
+        Some(name) => Err(at.wrong(
             format!("{path:?}, whose muscle or electrode {name:?} is not in the scene"),
             "a result of the same robot",
         )),
@@ -205,19 +208,19 @@ fn check_names(ended: &Ended, path: &str, system: &System, scope: &Scope<'_>) ->
 }
 
 /// The state of the method of a simulation; of a solve none is kept.
-fn method(file: &Path, z: &[f64], momentum: &[f64], scope: &Scope<'_>) -> Result<StepState> {
+fn method(file: &Path, z: &[f64], momentum: &[f64], at: &Scope<'_>) -> Result<StepState> {
     let beside = file.with_file_name("continuation.npz");
     if !beside.is_file() {
         return Ok(StepState::default());
     }
     let shown = beside.display();
     let read = continuation::read(&beside);
-    let read = read.map_err(|error| scope.wrong(format!("{shown}: {error}"), WRITTEN))?;
+    let read = read.map_err(|error| at.wrong(format!("{shown}: {error}"), WRITTEN))?;
     let discrete = read.discrete;
     let ends = [&discrete.z, &discrete.momenta].map(|rows| rows.last().map(Vec::as_slice));
     if ends != [Some(z), Some(momentum)] {
         let found = format!("{shown}, which is not of the motion in {}", file.display());
-        return Err(scope.wrong(found, "files of one run"));
+        return Err(at.wrong(found, "files of one run"));
     }
     Ok(discrete.end.begun_anew())
 }

@@ -5,13 +5,11 @@ use crate::feedback::{Integral, Law};
 use crate::files::feedback::read_law;
 use crate::files::json::error::Result;
 use crate::files::json::scope::Scope;
-use crate::files::problem::state::{joint_value, joint_with_coordinate, moving_marker};
-use crate::files::scene::names::names;
+use crate::files::problem::at::At;
 use crate::files::units::quantity::{
     Angle, AngularVelocity, JointCoordinate, Length, PhysicalQuantity, Quantity, Time, Velocity,
 };
 use crate::math::shortest;
-use crate::model::system::System;
 use schemars::JsonSchema;
 use serde::Deserialize;
 use std::collections::BTreeMap;
@@ -22,23 +20,18 @@ pub(crate) const CONTROL_FILE: &str = "the path of a problem file with a \"contr
 /// Part of a step by which a sample or delay may differ from a multiple of it.
 pub(crate) const ROUNDING: f64 = 1e-6;
 
-pub(crate) fn regulator(
-    spec: &FeedbackSpec,
-    system: &System,
-    scope: &Scope<'_>,
-) -> Result<Regulator> {
-    let place = scope.key("weights");
+pub(crate) fn regulator(spec: &FeedbackSpec, at: &At<'_>) -> Result<Regulator> {
+    let place = at.key("weights");
     let weight = |key: &str, written: Option<f64>, unwritten: f64| match written {
         Some(weight) => finite(weight, &place.key(key)),
         None => Ok(unwritten),
     };
     let usual = Regulator::default();
     let weights = &spec.weights;
-    let known = names(&system.markers, |marker| &marker.name);
     let mut markers = Vec::new();
     for (name, &weight) in &weights.markers {
         let place = place.key("markers").key(name);
-        let marker = place.find(name, &known, "the name of a marker")?;
+        let marker = place.marker(name)?;
         let weight = finite(weight, &place)?;
         markers.extend((weight > 0.0).then_some((marker, weight)));
     }
@@ -54,21 +47,21 @@ pub(crate) fn regulator(
         inputs,
         integral: weight("integral", weights.integral, usual.integral)?,
         step: match &spec.step {
-            Some(step) => scope.key("step").positive(step)?,
+            Some(step) => at.key("step").positive(step)?,
             None => usual.step,
         },
-        delay: scope
+        delay: at
             .key("delay")
             .absent_or_positive(spec.delay.as_ref())?
             .unwrap_or(0.0),
         terminal: match spec.terminal {
-            Some(terminal) => finite(terminal, &scope.key("terminal"))?,
+            Some(terminal) => finite(terminal, &at.key("terminal"))?,
             None => usual.terminal,
         },
         observer: spec
             .observer
             .as_ref()
-            .map(|spec| observation(spec, system, &scope.key("observer")))
+            .map(|spec| observation(spec, &at.key("observer")))
             .transpose()?,
     };
     let lasting = out.observer.as_ref().and_then(|one| one.lasting);
@@ -86,30 +79,26 @@ pub(crate) fn regulator(
     Ok(out)
 }
 
-fn observation(spec: &ObserverSpec, system: &System, scope: &Scope<'_>) -> Result<Observation> {
+fn observation(spec: &ObserverSpec, at: &At<'_>) -> Result<Observation> {
     let positive = |deviation: f64, place: &Scope<'_>| match deviation > 0.0 {
         true => Ok(deviation),
         false => Err(place.wrong(deviation.to_string(), "a positive standard deviation")),
     };
-    let place = scope.key("joints");
-    let kinds = [Angle::kind(), Length::kind()];
+    let place = at.key("joints");
     let joints = spec.joints.iter().map(|(name, deviation)| {
         let place = place.key(name);
-        let joint = joint_with_coordinate(name, system, &place)?;
-        let value = joint_value(deviation, &kinds, joint, system, &place)?;
+        let joint = place.coordinate(name)?;
+        let value = place.of_joint(joint, deviation)?;
         Ok((joint, positive(value, &place)?))
     });
-    let place = scope.key("markers");
+    let place = at.key("markers");
     let markers = spec.markers.iter().map(|(name, deviation)| {
         let place = place.key(name);
-        Ok((
-            moving_marker(name, system, &place)?,
-            place.positive(deviation)?,
-        ))
+        Ok((place.moving_marker(name)?, place.positive(deviation)?))
     });
     let [inputs, rates] = Observation::USUAL;
     let disturbance = |key: &str, written: Option<f64>, unwritten: f64| match written {
-        Some(part) => finite(part, &scope.key(key)),
+        Some(part) => finite(part, &at.key(key)),
         None => Ok(unwritten),
     };
     let out = Observation {
@@ -121,13 +110,13 @@ fn observation(spec: &ObserverSpec, system: &System, scope: &Scope<'_>) -> Resul
             Some(part) if part > 0.0 && part.is_finite() => Some(part),
             Some(part) => {
                 let expected = "a positive number, or none where no force lasts";
-                return Err(scope.key("lasting").wrong(part.to_string(), expected));
+                return Err(at.key("lasting").wrong(part.to_string(), expected));
             }
             None => None,
         },
     };
     if out.joints.is_empty() && out.markers.is_empty() {
-        return Err(scope.wrong(
+        return Err(at.wrong(
             "nothing that is measured",
             "\"joints\", \"markers\" or both",
         ));
@@ -146,39 +135,38 @@ fn finite(weight: f64, place: &Scope<'_>) -> Result<f64> {
 pub(crate) fn controller(
     spec: &ControllerSpec,
     step: Option<f64>,
-    system: &System,
-    scope: &Scope<'_>,
+    at: &At<'_>,
 ) -> Result<FeedbackControl> {
     let Some(step) = step else {
         let expected = "a \"step\" of the simulation: samples are multiples of it";
-        return Err(scope.wrong("steps of no given length", expected));
+        return Err(at.wrong("steps of no given length", expected));
     };
     let path = match (&spec.feedback, &spec.horizon) {
         (Some(path), None) => path,
-        (None, Some(horizon)) => return planning(spec, horizon, step, scope),
+        (None, Some(horizon)) => return planning(spec, horizon, step, at),
         (both, _) => {
             let found = if both.is_some() { "both" } else { "neither" };
             let found = format!("{found} of \"feedback\" and \"horizon\"");
-            return Err(scope.wrong(found, "one of them"));
+            return Err(at.wrong(found, "one of them"));
         }
     };
-    let place = scope.key("feedback");
+    let place = at.key("feedback");
     let path = place.feedback_file(path)?;
-    let law = read_law(&path, system)?;
+    let law = read_law(&path, at.system)?;
     let sample = match &spec.sample {
-        Some(sample) => multiple(sample, step, &scope.key("sample"))?,
+        Some(sample) => multiple(sample, step, &at.key("sample"))?,
         None => (law.h / step - 1e-6).ceil().max(1.0) * step,
     };
     if law.observer.is_some() && (sample - law.h).abs() > ROUNDING * law.h {
         let [sample, h] = [sample, law.h].map(|time| shortest(time, 9));
         let expected =
             format!("{h} ms, the interval of the observer, in steps of which it is a multiple");
-        return Err(scope.key("sample").wrong(format!("{sample} ms"), expected));
+        return Err(at.key("sample").wrong(format!("{sample} ms"), expected));
     }
-    let noise = noise(&spec.noise, &scope.key("noise"))?;
-    refuse_unread(&noise, &law, &scope.key("noise"))?;
+    let noise = noise(&spec.noise, &at.key("noise"))?;
+    refuse_unread(&noise, &law, &at.key("noise"))?;
     let predicted = (law.delay as f64 * law.h / step - 1e-6).ceil() * step;
-    let delay = delay(spec, step, scope)?.unwrap_or(predicted);
+    let delay = delay(spec, step, at)?.unwrap_or(predicted);
     Ok(FeedbackControl {
         law: Arc::new(law),
         path,
@@ -190,17 +178,17 @@ pub(crate) fn controller(
 }
 
 /// Refuses noise of a kind of which the controller measures nothing.
-fn refuse_unread(noise: &Noise, law: &Law, scope: &Scope<'_>) -> Result<()> {
+fn refuse_unread(noise: &Noise, law: &Law, at: &Scope<'_>) -> Result<()> {
     let [found, expected] = Noise::UNREAD;
     noise
         .unread(law)
-        .map_or(Ok(()), |key| Err(scope.key(key).wrong(found, expected)))
+        .map_or(Ok(()), |key| Err(at.key(key).wrong(found, expected)))
 }
 
 /// The delay of a controller as it is written, a multiple of the step.
-fn delay(spec: &ControllerSpec, step: f64, scope: &Scope<'_>) -> Result<Option<f64>> {
+fn delay(spec: &ControllerSpec, step: f64, at: &Scope<'_>) -> Result<Option<f64>> {
     match &spec.delay {
-        Some(delay) if delay.value() != 0.0 => multiple(delay, step, &scope.key("delay")).map(Some),
+        Some(delay) if delay.value() != 0.0 => multiple(delay, step, &at.key("delay")).map(Some),
         delay => Ok(delay.as_ref().map(|_| 0.0)),
     }
 }
@@ -221,11 +209,11 @@ fn planning(
     spec: &ControllerSpec,
     horizon: &HorizonSpec,
     step: f64,
-    scope: &Scope<'_>,
+    at: &Scope<'_>,
 ) -> Result<FeedbackControl> {
     if let Some(sample) = &spec.sample {
         let expected = "none beside \"horizon\", which plans anew in each interval of its problem";
-        return Err(scope.key("sample").wrong(sample.to_string(), expected));
+        return Err(at.key("sample").wrong(sample.to_string(), expected));
     }
     Ok(FeedbackControl {
         law: Arc::new(Law {
@@ -239,13 +227,13 @@ fn planning(
             observer: None,
             markers: Vec::new(),
         }),
-        path: scope
+        path: at
             .key("horizon")
             .key("problem")
             .file_or_result(&horizon.problem, CONTROL_FILE)?,
         sample: 0.0,
-        delay: delay(spec, step, scope)?.unwrap_or(0.0),
-        noise: noise(&spec.noise, &scope.key("noise"))?,
+        delay: delay(spec, step, at)?.unwrap_or(0.0),
+        noise: noise(&spec.noise, &at.key("noise"))?,
         ahead: None,
     })
 }

@@ -2,10 +2,10 @@
 
 use crate::control::PEAK_VOLTAGE;
 use crate::files::json::document::Document;
-use crate::files::json::error::{Result, SceneError};
+use crate::files::json::error::Result;
 use crate::files::json::path::JsonPath;
 use crate::files::json::scope::Scope;
-use crate::files::scene::constants::{NoConstant, SceneConstant, WrittenScene};
+use crate::files::scene::constants::{SceneConstant, WrittenScene};
 use crate::files::units::quantity::{Quantity, SoughtConstant};
 use crate::model::{Constant, NotSought, Parameter, check_parameters, unit_of};
 use schemars::JsonSchema;
@@ -18,13 +18,13 @@ use std::path::Path;
 pub(crate) fn parameters(
     map: &FreeMap,
     scene: &WrittenScene<'_>,
-    scope: &Scope<'_>,
+    at: &Scope<'_>,
 ) -> Result<Vec<Parameter>> {
     let parameter =
-        |(path, spec): (&String, &FreeSpec)| parameter(path, spec, scene, &scope.key(path));
+        |(path, spec): (&String, &FreeSpec)| parameter(path, spec, scene, &at.key(path));
     let parameters: Vec<Parameter> = map.iter().map(parameter).collect::<Result<_, _>>()?;
     check_parameters(scene.system, &parameters).map_err(|NotSought { parameter, reason }| {
-        let place = scope.key(&parameters[parameter].name);
+        let place = at.key(&parameters[parameter].name);
         place.wrong(reason, "a constant that can be sought")
     })?;
     Ok(parameters)
@@ -34,43 +34,33 @@ fn parameter(
     path: &str,
     spec: &FreeSpec,
     scene: &WrittenScene<'_>,
-    scope: &Scope<'_>,
+    at: &Scope<'_>,
 ) -> Result<Parameter> {
     let (lower, upper) = (spec.min.si(), spec.max.si());
     if lower >= upper {
         let expected = format!("a value larger than \"min\" {}", spec.min);
-        return Err(scope.key("max").wrong(spec.max.to_string(), expected));
+        return Err(at.key("max").wrong(spec.max.to_string(), expected));
     }
     let texts = [&spec.min, &spec.max].map(|bound| serde_json::to_value(bound).unwrap_or_default());
+    let constant = scene.constant(path, [&texts[0], &texts[1]], [lower, upper]);
+    let mut constant = constant.map_err(|reason| {
+        let bound = reason.value.map(|bound| at.key(["min", "max"][bound]));
+        reason.at(bound.as_ref().unwrap_or(at))
+    })?;
+    add_others(&mut constant, &spec.also, [lower, upper], scene, at)?;
     let SceneConstant {
-        mut followers,
+        followers,
         from_si,
         value,
-    } = scene
-        .constant(path, [&texts[0], &texts[1]], [lower, upper])
-        .map_err(|reason| refused(reason, scope))?;
-    for (path, &factor) in &spec.also {
-        let place = scope.key("also").key(path);
-        let other = also(path, (factor, [lower, upper]), scene)
-            .map_err(|reason| place.wrong(reason.found, reason.expected))?;
-        let lists = [&followers, &other.followers];
-        let [own, others] = lists.map(|list| unit_of(list, scene.system).symbol);
-        if own != others {
-            let found = format!("a number in {others:?}");
-            let expected = format!("one in {own:?}, as the number that it follows");
-            return Err(place.wrong(found, expected));
-        }
-        let multiple = factor * other.from_si / from_si;
-        followers.extend(other.followers.into_iter().map(|f| f.of_multiple(multiple)));
-    }
+    } = constant;
     let guess = spec.guess.as_ref().map(|guess| guess.si() * from_si);
     let guess_or_value = guess.unwrap_or(value);
     let (lower, upper) = (lower * from_si, upper * from_si);
     if guess_or_value < lower || guess_or_value > upper {
         let (place, found) = match &spec.guess {
-            Some(guess) => (scope.key("guess"), guess.to_string()),
+            Some(guess) => (at.key("guess"), guess.to_string()),
             None => (
-                scope.clone(),
+                at.clone(),
                 "a value in the scene outside the bounds".to_owned(),
             ),
         };
@@ -80,9 +70,8 @@ fn parameter(
     if let Some(guess) = &spec.guess {
         let text = serde_json::to_value(guess).unwrap_or_default();
         let place = JsonPath::parse(path).unwrap_or_default();
-        scene
-            .with(&place, &text)
-            .map_err(|reason| scope.key("guess").wrong(reason.found, reason.expected))?;
+        let with = scene.with(&place, &text);
+        with.map_err(|reason| reason.at(&at.key("guess")))?;
     }
     Ok(Parameter {
         name: path.to_owned(),
@@ -93,28 +82,33 @@ fn parameter(
     })
 }
 
-/// The number that another one times a factor is.
-fn also(
-    path: &str,
-    (factor, bounds): (f64, [f64; 2]),
+/// Adds what follows a number by the paths of other numbers, which are that one times a factor.
+pub(super) fn add_others(
+    constant: &mut SceneConstant,
+    others: &BTreeMap<String, f64>,
+    bounds: [f64; 2],
     scene: &WrittenScene<'_>,
-) -> Result<SceneConstant, NoConstant> {
-    let si = bounds.map(|bound| bound * factor);
-    let values = si.map(Value::from);
-    scene.constant(path, [&values[0], &values[1]], si)
-}
-
-/// The error of a bound, or of the path.
-fn refused(reason: NoConstant, scope: &Scope<'_>) -> SceneError {
-    let NoConstant {
-        value,
-        found,
-        expected,
-    } = reason;
-    let bound = value.map(|bound| scope.key(["min", "max"][bound]));
-    bound
-        .unwrap_or_else(|| scope.clone())
-        .wrong(found, expected)
+    at: &Scope<'_>,
+) -> Result<()> {
+    for (path, &factor) in others {
+        let place = at.key("also").key(path);
+        let si = bounds.map(|bound| bound * factor);
+        let values = si.map(Value::from);
+        let other = scene.constant(path, [&values[0], &values[1]], si);
+        let other = other.map_err(|reason| reason.at(&place))?;
+        let lists = [&constant.followers, &other.followers];
+        let [own, others] = lists.map(|list| unit_of(list, scene.system).symbol);
+        if own != others {
+            let found = format!("a number in {others:?}");
+            let expected = format!("one in {own:?}, as the number that it follows");
+            return Err(place.wrong(found, expected));
+        }
+        let multiple = factor * other.from_si / constant.from_si;
+        let others = other.followers.into_iter();
+        let others = others.map(|follower| follower.of_multiple(multiple));
+        constant.followers.extend(others);
+    }
+    Ok(())
 }
 
 /// Entries that are read of a solution: values that were found, in SI units, by paths in the scene.
@@ -128,20 +122,16 @@ struct FoundRecord {
 const SAME: f64 = 1e-9;
 
 /// Refuses the voltages of a solution that was found with other constants than the scene has.
-pub(crate) fn check_solution(
-    path: &Path,
-    scene: &WrittenScene<'_>,
-    scope: &Scope<'_>,
-) -> Result<()> {
+pub(crate) fn check_solution(path: &Path, scene: &WrittenScene<'_>, at: &Scope<'_>) -> Result<()> {
     let document = &Document::read(path)?;
     let FoundRecord { parameters } = document.parse()?;
     // The peak is a result, and no constant of a scene.
     let constants = parameters.iter().filter(|(name, _)| *name != PEAK_VOLTAGE);
     for (name, &found) in constants {
         let place = JsonPath::parse(name).unwrap_or_default();
-        let mut other = scene.with(&place, &Value::from(found)).map_err(|reason| {
-            scope.wrong(format!("{name:?}: {}", reason.found), reason.expected)
-        })?;
+        let mut other = scene
+            .with(&place, &Value::from(found))
+            .map_err(|reason| at.wrong(format!("{name:?}: {}", reason.found), reason.expected))?;
         let mut system = scene.system.clone();
         let differs = |constant: &Constant| {
             let of_solution = constant.value(&mut other);
@@ -158,7 +148,7 @@ pub(crate) fn check_solution(
             let other = format!(
                 "a solution with {name} = {found} {symbol}, where the scene has {of_scene} {symbol}"
             );
-            return Err(scope.wrong(other, "the value of the solution in the scene"));
+            return Err(at.wrong(other, "the value of the solution in the scene"));
         }
     }
     Ok(())

@@ -6,7 +6,8 @@ use crate::control::problem::{
 use crate::files::columns::Columns;
 use crate::files::json::error::Result;
 use crate::files::json::path::JsonPath;
-use crate::files::json::scope::Scope;
+use crate::files::json::scope::{Scope, the_one};
+use crate::files::problem::at::At;
 use crate::files::problem::channels::{Measured, Source};
 use crate::files::problem::coordinates::{coordinates, count};
 use crate::files::problem::free::{FreeMap, parameters};
@@ -20,7 +21,6 @@ use crate::files::problem::spec_voltages::VoltagesSpec;
 use crate::files::scene::constants::WrittenScene;
 use crate::files::signal::spec::{SignalCsvSpec, SignalSpec};
 use crate::files::units::quantity::{PhysicalQuantity, Quantity, Time};
-use crate::model::system::System;
 use crate::model::{Constant, Follower, Parameter};
 use std::collections::BTreeMap;
 
@@ -31,18 +31,17 @@ const MOST_READINGS: usize = 100_000;
 pub(crate) fn identification(
     spec: &IdentifySpec,
     scene: &WrittenScene<'_>,
-    scope: &Scope<'_>,
+    at: &At<'_>,
 ) -> Result<Identification> {
-    let system = scene.system;
-    let place = scope.key("free");
-    let behind = (system, spec.free.len());
-    let (of_inputs, of_their_priors) = input_constants(&spec.inputs, behind, &scope.key("inputs"))?;
+    let place = at.key("free");
+    let first = spec.free.len();
+    let (of_inputs, of_their_priors) = input_constants(&spec.inputs, first, &at.key("inputs"))?;
     if spec.free.is_empty() && of_inputs.is_empty() {
         return Err(place.wrong("no constant", "one or more"));
     }
     let mut parameters = parameters(&spec.free, scene, &place)?;
     parameters.extend(of_inputs);
-    let [of_recordings, of_candidates] = ["recordings", "candidates"].map(|key| scope.key(key));
+    let [of_recordings, of_candidates] = ["recordings", "candidates"].map(|key| at.key(key));
     let mut names = Vec::new();
     for (index, one) in spec.recordings.iter().enumerate() {
         unique(&one.name, &mut names, &of_recordings.index(index))?;
@@ -59,16 +58,14 @@ pub(crate) fn identification(
     }
     let recordings = spec.recordings.iter().enumerate();
     let recordings = recordings.filter(|(_, one)| one.set == *scene.changes);
-    let recordings =
-        recordings.map(|(index, one)| recording(one, system, &of_recordings.index(index)));
+    let recordings = recordings.map(|(index, one)| recording(one, &of_recordings.index(index)));
     let candidates = spec.candidates.iter().enumerate();
     let candidates = candidates.filter(|(_, one)| one.set == *scene.changes);
-    let candidates =
-        candidates.map(|(index, one)| candidate(one, system, &of_candidates.index(index)));
+    let candidates = candidates.map(|(index, one)| candidate(one, &of_candidates.index(index)));
     let step = spec.step.as_ref();
-    let step = step.map(|step| scope.key("step").positive(step));
+    let step = step.map(|step| at.key("step").positive(step));
     let of_scene = (&parameters[..], &spec.free);
-    let mut priors = priors(&spec.priors, of_scene, scene, &scope.key("priors"))?;
+    let mut priors = priors(&spec.priors, of_scene, scene, &at.key("priors"))?;
     priors.extend(of_their_priors);
     Ok(Identification {
         priors,
@@ -76,33 +73,23 @@ pub(crate) fn identification(
         recordings: recordings.collect::<Result<_, _>>()?,
         candidates: candidates.collect::<Result<_, _>>()?,
         step: step.transpose()?,
-        coordinates: coordinates(spec.coordinates, system, scope)?,
+        coordinates: coordinates(spec.coordinates, at)?,
     })
 }
 
 /// Refuses a name that stands already.
-fn unique(name: &str, names: &mut Vec<String>, scope: &Scope<'_>) -> Result<()> {
+fn unique(name: &str, names: &mut Vec<String>, at: &Scope<'_>) -> Result<()> {
     if names.iter().any(|other| other == name) {
         let expected = "a name that no other recording or candidate has";
-        return Err(scope.key("name").wrong(format!("{name:?}"), expected));
+        return Err(at.key("name").wrong(format!("{name:?}"), expected));
     }
     names.push(name.to_owned());
     Ok(())
 }
 
 /// A recording without its readings.
-fn experiment(
-    name: &str,
-    spec: &ExperimentSpec,
-    system: &System,
-    scope: &Scope<'_>,
-) -> Result<Recording> {
-    let (start, voltages) = driven(
-        spec.start.as_ref(),
-        (&spec.voltages, &spec.loads),
-        system,
-        scope,
-    )?;
+fn experiment(name: &str, spec: &ExperimentSpec, at: &At<'_>) -> Result<Recording> {
+    let (start, voltages) = driven(spec.start.as_ref(), &spec.voltages, &spec.loads, at)?;
     let sought_start = match spec.sought_start {
         SoughtStartSpec::Nothing => SoughtStart::Nothing,
         SoughtStartSpec::Coordinates => SoughtStart::Coordinates,
@@ -114,7 +101,7 @@ fn experiment(
             None => "sought_start",
         };
         let expected = "none beside \"at_rest\": states of rest follow from voltages and loads";
-        return Err(scope.key(key).wrong("a start", expected));
+        return Err(at.key(key).wrong("a start", expected));
     }
     Ok(Recording {
         name: name.to_owned(),
@@ -132,13 +119,13 @@ fn experiment(
 }
 
 /// All that is measured, with what it is called.
-fn measured(list: &[MeasuredSpec], system: &System, scope: &Scope<'_>) -> Result<Vec<Measured>> {
-    let scope = scope.key("measured");
+fn measured(list: &[MeasuredSpec], at: &At<'_>) -> Result<Vec<Measured>> {
+    let at = at.key("measured");
     if list.is_empty() {
-        return Err(scope.wrong("nothing that is measured", "one or more quantities"));
+        return Err(at.wrong("nothing that is measured", "one or more quantities"));
     }
     let all = list.iter().enumerate();
-    all.map(|(index, spec)| Measured::new(spec, system, &scope.index(index)))
+    all.map(|(index, spec)| Measured::new(spec, &at.index(index)))
         .collect()
 }
 
@@ -159,61 +146,54 @@ fn on_its_clock(spec: &RecordingSpec) -> ExperimentSpec {
     out
 }
 
-fn recording(spec: &RecordingSpec, system: &System, scope: &Scope<'_>) -> Result<Recording> {
-    let place = scope.key("experiment");
-    let mut out = experiment(&spec.name, &on_its_clock(spec), system, &place)?;
+fn recording(spec: &RecordingSpec, at: &At<'_>) -> Result<Recording> {
+    let place = at.key("experiment");
+    let mut out = experiment(&spec.name, &on_its_clock(spec), &place)?;
     out.is_held_out = spec.held_out;
-    let (from, columns) = columns(spec, scope)?;
-    let times = times((from, &columns), spec, scope)?;
-    let all = measured(&spec.measured, system, scope)?;
+    let (from, columns) = columns(spec, at)?;
+    let times = times((from, &columns), spec, at)?;
+    let all = measured(&spec.measured, at)?;
     for (index, (one, spec_of)) in all.iter().zip(&spec.measured).enumerate() {
-        let scope = scope.key("measured").index(index);
+        let at = at.key("measured").index(index);
         let column = &one.column;
         if all[..index].iter().any(|other| other.column == *column) {
             let found = format!("{column:?}, which is measured already");
             let expected = "each column once, as twice the readings would be twice the data";
-            return Err(scope.key("column").wrong(found, expected));
+            return Err(at.key("column").wrong(found, expected));
         }
         let source = Source {
             columns: &columns,
             times: &times,
         };
-        out.channels.push(one.channel(spec_of, &source, &scope)?);
+        out.channels.push(one.channel(spec_of, &source, &at)?);
     }
     if out.regime == Regime::Motion && out.duration() <= 0.0 {
         let found = "a recording that is too short: no reading after time 0";
-        return Err(scope.key(from).wrong(found, "readings at later times"));
+        return Err(at.key(from).wrong(found, "readings at later times"));
     }
     Ok(out)
 }
 
 /// The columns of a recording, with the key at which they stand.
-fn columns(spec: &RecordingSpec, scope: &Scope<'_>) -> Result<(&'static str, Columns)> {
-    type Read<'a> = Box<dyn FnOnce() -> Result<Columns> + 'a>;
-    let file = spec.file.as_ref().map(|path| -> (_, Read<'_>) {
-        let read = || Columns::read(path, &scope.key("file"));
-        ("file", Box::new(read))
-    });
-    let inside = spec.columns.as_ref().map(|columns| -> (_, Read<'_>) {
-        let read = || Columns::inside(columns, &scope.key("columns"));
-        ("columns", Box::new(read))
-    });
-    let (from, read) = scope.exactly_one([("file", file), ("columns", inside)])?;
-    Ok((from, read()?))
+fn columns(spec: &RecordingSpec, at: &Scope<'_>) -> Result<(&'static str, Columns)> {
+    Ok(the_one!(at, spec;
+        "file" file |at, path| ("file", Columns::read(path, at)?);
+        "columns" columns |at, columns| ("columns", Columns::inside(columns, at)?);
+    ))
 }
 
 /// Times in ms of all rows from the begin of the motion on.
 fn times(
     (from, columns): (&str, &Columns),
     spec: &RecordingSpec,
-    scope: &Scope<'_>,
+    at: &Scope<'_>,
 ) -> Result<Vec<f64>> {
-    let place = scope.key("time");
+    let place = at.key("time");
     let written = columns.column::<Time>((&spec.time, &Time::kind()), &place)?;
     let times: Vec<f64> = written.iter().map(Quantity::value).collect();
     if times.is_empty() {
         let expected = "one line or more below the headers";
-        return Err(scope.key(from).wrong("no readings", expected));
+        return Err(at.key(from).wrong("no readings", expected));
     }
     if let Some(k) = times.windows(2).position(|pair| pair[0] >= pair[1]) {
         let found = format!("{} after {}", written[k + 1], written[k]);
@@ -235,30 +215,20 @@ fn times(
         (true, None) => Err(place.wrong(first.to_string(), "times from 0 on")),
         (true, Some(offset)) => {
             let expected = format!("a time no later than {first}, that of the first reading");
-            Err(scope.key("time_offset").wrong(offset.to_string(), expected))
+            Err(at.key("time_offset").wrong(offset.to_string(), expected))
         }
     }
 }
 
-fn candidate(spec: &CandidateSpec, system: &System, scope: &Scope<'_>) -> Result<Recording> {
-    let mut out = experiment(
-        &spec.name,
-        &spec.experiment,
-        system,
-        &scope.key("experiment"),
-    )?;
-    let duration = scope.key("duration").positive(&spec.duration)?;
-    count(
-        spec.readings,
-        "reading",
-        MOST_READINGS,
-        &scope.key("readings"),
-    )?;
+fn candidate(spec: &CandidateSpec, at: &At<'_>) -> Result<Recording> {
+    let mut out = experiment(&spec.name, &spec.experiment, &at.key("experiment"))?;
+    let duration = at.key("duration").positive(&spec.duration)?;
+    count(spec.readings, "reading", MOST_READINGS, &at.key("readings"))?;
     let time = |k: usize| duration * (k + 1) as f64 / spec.readings as f64;
-    let all = measured(&spec.measured, system, scope)?;
+    let all = measured(&spec.measured, at)?;
     for (index, (one, spec_of)) in all.iter().zip(&spec.measured).enumerate() {
-        let scope = scope.key("measured").index(index);
-        let deviation = one.deviation(spec_of, &scope)?;
+        let at = at.key("measured").index(index);
+        let deviation = one.deviation(spec_of, &at)?;
         let reading = |k| Reading {
             time: time(k),
             value: 0.0,
@@ -275,19 +245,18 @@ pub(super) fn priors(
     map: &BTreeMap<String, PriorSpec>,
     (parameters, free): (&[Parameter], &FreeMap),
     scene: &WrittenScene<'_>,
-    scope: &Scope<'_>,
+    at: &Scope<'_>,
 ) -> Result<Vec<Prior>> {
     let one = |(path, spec): (&String, &PriorSpec)| {
-        let place = scope.key(path);
+        let place = at.key(path);
         let found = parameters.iter().position(|one| one.name == *path);
         let (Some(constant), Some(bounds)) = (found, free.get(path)) else {
             return Err(place.wrong(format!("{path:?}"), "a constant of \"free\""));
         };
         let [of_value, of_size] = ["value", "standard_deviation"].map(|key| place.key(key));
         let text = serde_json::to_value(&spec.value).unwrap_or_default();
-        scene
-            .with(&JsonPath::parse(path).unwrap_or_default(), &text)
-            .map_err(|reason| of_value.wrong(reason.found, reason.expected))?;
+        let with = scene.with(&JsonPath::parse(path).unwrap_or_default(), &text);
+        with.map_err(|reason| reason.at(&of_value))?;
         let size = &spec.standard_deviation;
         let written = [&spec.value, &bounds.min, &bounds.max];
         let unit = written.into_iter().find_map(|one| one.dimension());
@@ -322,33 +291,27 @@ fn gain(source: &str) -> String {
 /// The gains and the delay that are sought, behind `first` other constants, and what is known of them beside the recordings.
 pub(super) fn input_constants(
     spec: &InputConstantsSpec,
-    (system, first): (&System, usize),
-    scope: &Scope<'_>,
+    first: usize,
+    at: &At<'_>,
 ) -> Result<(Vec<Parameter>, Vec<Prior>)> {
-    let sources: Vec<String> = system.sources().into_iter().map(|one| one.name).collect();
     let (mut out, mut priors) = (Vec::new(), Vec::new());
     for (name, range) in &spec.gains {
-        let place = scope.key("gains").key(name);
-        let source = place.find(name, &sources, SOURCE)?;
+        let place = at.key("gains").key(name);
+        let source = place.source(name, SOURCE)?;
         let constant = vec![Constant::Gain(source).into()];
         priors.extend(prior(range, first + out.len(), &place)?);
         out.push(parameter((gain(name), constant), range, 1.0, &place)?);
     }
-    let mut delays: Vec<(String, &RangeSpec<Time>, Vec<usize>, Scope<'_>)> = Vec::new();
+    let mut delays: Vec<(String, &RangeSpec<Time>, Vec<usize>, At<'_>)> = Vec::new();
     for (name, range) in &spec.delays {
-        let place = scope.key("delays").key(name);
-        let source = place.find(name, &sources, SOURCE)?;
+        let place = at.key("delays").key(name);
+        let source = place.source(name, SOURCE)?;
         delays.push((format!("delay of {name}"), range, vec![source], place));
     }
     if let Some(range) = &spec.delay {
         let own: Vec<usize> = delays.iter().flat_map(|one| one.2.clone()).collect();
-        let others = (0..sources.len()).filter(|source| !own.contains(source));
-        delays.push((
-            DELAY.to_owned(),
-            range,
-            others.collect(),
-            scope.key("delay"),
-        ));
+        let others = (0..at.sources.len()).filter(|source| !own.contains(source));
+        delays.push((DELAY.to_owned(), range, others.collect(), at.key("delay")));
     }
     for (name, range, sources, place) in delays {
         let least = range.min.value();
@@ -370,12 +333,12 @@ pub(super) fn input_constants(
 fn prior<M: PhysicalQuantity>(
     range: &RangeSpec<M>,
     constant: usize,
-    scope: &Scope<'_>,
+    at: &Scope<'_>,
 ) -> Result<Option<Prior>> {
     let Some(spec) = &range.prior else {
         return Ok(None);
     };
-    let deviation = scope.key("prior").key("standard_deviation");
+    let deviation = at.key("prior").key("standard_deviation");
     Ok(Some(Prior {
         constant,
         value: spec.value.value(),
@@ -388,18 +351,18 @@ fn parameter<M: PhysicalQuantity>(
     (name, constants): (String, Vec<Follower>),
     range: &RangeSpec<M>,
     usual: f64,
-    scope: &Scope<'_>,
+    at: &Scope<'_>,
 ) -> Result<Parameter> {
     let [lower, upper] = [&range.min, &range.max].map(|bound| bound.value());
     if lower >= upper {
         let expected = format!("a value larger than \"min\" {}", range.min);
-        return Err(scope.key("max").wrong(range.max.to_string(), expected));
+        return Err(at.key("max").wrong(range.max.to_string(), expected));
     }
     let guess = range.guess.as_ref().map_or(usual, |guess| guess.value());
     if !(lower..=upper).contains(&guess) {
         let (place, found) = match &range.guess {
-            Some(guess) => (scope.key("guess"), guess.to_string()),
-            None => (scope.clone(), format!("bounds without {usual}")),
+            Some(guess) => (at.key("guess"), guess.to_string()),
+            None => (at.clone(), format!("bounds without {usual}")),
         };
         let expected = format!("a guess from {} to {}", range.min, range.max);
         return Err(place.wrong(found, expected));

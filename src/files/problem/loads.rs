@@ -2,17 +2,18 @@
 
 use crate::control::problem::{BoundaryState, Duration, Voltages};
 use crate::files::json::error::Result;
-use crate::files::json::scope::Scope;
+use crate::files::problem::at::At;
 use crate::files::problem::spec_voltages::VoltagesSpec;
 use crate::files::problem::state::{StartSpec, start_state};
 use crate::files::problem::voltages::over_time;
+use crate::files::scene::names::names;
 use crate::files::signal::signal;
 use crate::files::signal::spec::SignalSpec;
 use crate::files::units::quantity::{
     Charge, ChargeDensity, Force, ForceDensity, Kind, LoadSize, Quantity, Stress, Torque, Voltage,
 };
 use crate::math::Signal;
-use crate::model::system::{InputKind, System};
+use crate::model::system::InputKind;
 use std::collections::BTreeMap;
 
 /// Loads by name, constant or functions of time.
@@ -22,12 +23,11 @@ pub(crate) type LoadMap = BTreeMap<String, SignalSpec<LoadSize>>;
 pub(crate) type LoadBounds = BTreeMap<String, [Quantity<LoadSize>; 2]>;
 
 /// Index and unit of a load.
-fn find(name: &str, system: &System, scope: &Scope<'_>) -> Result<(usize, Kind)> {
-    let first = system.first_load();
-    let sources = system.sources();
-    let names = sources[first..].iter().map(|source| source.name.clone());
-    let index = scope.find(name, &names.collect::<Vec<_>>(), "the name of a load")?;
-    let kind = match sources[first + index].kind {
+fn find(name: &str, at: &At<'_>) -> Result<(usize, Kind)> {
+    let first = at.system.first_load();
+    let loads = names(&at.sources[first..], |source| &source.name);
+    let index = at.find(name, &loads, "the name of a load")?;
+    let kind = match at.sources[first + index].kind {
         InputKind::Voltage => Voltage::kind(),
         InputKind::Force => Force::kind(),
         InputKind::Torque => Torque::kind(),
@@ -40,15 +40,11 @@ fn find(name: &str, system: &System, scope: &Scope<'_>) -> Result<(usize, Kind)>
 }
 
 /// Loads over time, by source.
-pub(crate) fn loads(
-    map: &LoadMap,
-    system: &System,
-    scope: &Scope<'_>,
-) -> Result<BTreeMap<usize, Signal>> {
+pub(crate) fn loads(map: &LoadMap, at: &At<'_>) -> Result<BTreeMap<usize, Signal>> {
     let read = |(name, spec): (&String, &SignalSpec<LoadSize>)| {
-        let scope = scope.key(name);
-        let (source, kind) = find(name, system, &scope)?;
-        Ok((source, signal(spec, &kind, &scope)?))
+        let at = at.key(name);
+        let (source, kind) = find(name, &at)?;
+        Ok((source, signal(spec, &kind, &at)?))
     };
     map.iter().map(read).collect()
 }
@@ -57,42 +53,27 @@ pub(crate) fn loads(
 pub(crate) fn load_bounds(
     map: &LoadBounds,
     given: &BTreeMap<usize, Signal>,
-    system: &System,
-    scope: &Scope<'_>,
+    at: &At<'_>,
 ) -> Result<BTreeMap<usize, [f64; 2]>> {
     let read = |(name, written): (&String, &[Quantity<LoadSize>; 2])| {
-        let scope = scope.key(name);
-        let (source, kind) = find(name, system, &scope)?;
+        let at = at.key(name);
+        let (source, kind) = find(name, &at)?;
         if given.contains_key(&source) {
             let found = format!("{name:?}, which \"loads\" gives");
-            return Err(scope.wrong(found, "a load that is sought"));
+            return Err(at.wrong(found, "a load that is sought"));
         }
-        let value = |index: usize| {
-            let read = written[index].value_as(&kind);
-            read.map_err(|found| scope.index(index).wrong(found, kind.expected()))
-        };
+        let value = |index: usize| at.index(index).value_as(&written[index], &kind);
         let bounds = [value(0)?, value(1)?];
         if bounds[0] > bounds[1] {
             let expected = format!(
                 "an upper bound that is no less than the lower bound {}",
                 written[0]
             );
-            return Err(scope.index(1).wrong(written[1].to_string(), expected));
+            return Err(at.index(1).wrong(written[1].to_string(), expected));
         }
         Ok((source, bounds))
     };
     map.iter().map(read).collect()
-}
-
-/// Voltages of a simulation together with its loads.
-pub(crate) fn with_loads(
-    voltages: Voltages,
-    map: &LoadMap,
-    system: &System,
-    scope: &Scope<'_>,
-) -> Result<(Voltages, BTreeMap<usize, Signal>)> {
-    let loads = loads(map, system, scope)?;
-    Ok((voltages.with(loads.clone()), loads))
 }
 
 /// Puts the loads of a time in ms on a state of rest.
@@ -111,23 +92,20 @@ pub(crate) fn load(state: &mut BoundaryState, loads: &BTreeMap<usize, Signal>, t
 
 /// Refuses loads under which a goal rests at one free duration and not at another.
 pub(crate) fn check_end(
-    (loads, goal): (&BTreeMap<usize, Signal>, &BoundaryState),
-    system: &System,
+    loads: &BTreeMap<usize, Signal>,
+    goal: &BoundaryState,
     duration: Duration,
-    scope: &Scope<'_>,
+    at: &At<'_>,
 ) -> Result<()> {
     let changes = |(_, load): &(&usize, &Signal)| duration.final_value(load).is_none();
-    match loads
-        .iter()
-        .find(changes)
-        .filter(|_| goal.voltages().is_some())
-    {
+    let changing = loads.iter().find(changes);
+    match changing.filter(|_| goal.voltages().is_some()) {
         Some((&source, _)) => {
             let found = "a load that still changes between the bounds of the free duration, while the goal rests under it";
             let expected =
                 "one that is constant from the lower bound on, another goal, or a given duration";
-            let name = &system.sources()[source].name;
-            Err(scope.key(name).wrong(found, expected))
+            let place = at.key(&at.sources[source].name);
+            Err(place.wrong(found, expected))
         }
         None => Ok(()),
     }
@@ -136,20 +114,20 @@ pub(crate) fn check_end(
 /// Start and inputs of a motion under given ones: at rest in the reference configuration where no start is written.
 pub(crate) fn driven(
     start: Option<&StartSpec>,
-    (voltages, loads): (&VoltagesSpec, &LoadMap),
-    system: &System,
-    scope: &Scope<'_>,
+    voltages: &VoltagesSpec,
+    loads: &LoadMap,
+    at: &At<'_>,
 ) -> Result<(BoundaryState, Voltages)> {
     let mut start = match start {
-        Some(start) => start_state(start, system, &scope.key("start"))?,
+        Some(start) => start_state(start, &at.key("start"))?,
         None => BoundaryState::JointAngles {
             angles: BTreeMap::new(),
             rates: BTreeMap::new(),
             velocities: Default::default(),
         },
     };
-    let voltages = over_time(voltages, system, &scope.key("voltages"))?;
-    let (voltages, loads) = with_loads(voltages, loads, system, &scope.key("loads"))?;
+    let voltages = over_time(voltages, &at.key("voltages"))?;
+    let loads = self::loads(loads, &at.key("loads"))?;
     load(&mut start, &loads, 0.0);
-    Ok((start, voltages))
+    Ok((start, voltages.with(loads)))
 }

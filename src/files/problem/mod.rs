@@ -3,9 +3,9 @@
 //! - `motions`: several motions of one problem, each as a problem of its own.
 //! - `build`: the problem; `control`, `simulation`, `identify`: its longer tasks; `channels`: what recordings measure; `changed_scenes`: scenes of some of them.
 //! - `feedback`: gains along an optimum, and a controller that reads them; `receding`: a problem that it plans anew; `disturbance`: the same simulation with parts of its disturbance.
-//! - `state`, `end_of`, `goal`, `waypoints`, `quantities`, `free`, `sensitivity`, `loads`, `voltages`, `coordinates`: their parts; `output`: what is written of a motion.
-//! - `solution_voltages`, `solution_document`: what is read of an earlier solution.
+//! - `at`: places with their system; `state`, `end_of`, `goal`, `waypoints`, `quantities`, `free`, `sensitivity`, `loads`, `voltages`, `coordinates`: their parts; `output`: what is written of a motion.
 
+pub(super) mod at;
 pub(crate) mod build;
 pub(crate) mod changed_scenes;
 mod channels;
@@ -24,8 +24,6 @@ pub mod quantities;
 pub(crate) mod receding;
 pub mod sensitivity;
 pub mod simulation;
-pub(crate) mod solution_document;
-pub(crate) mod solution_voltages;
 pub mod spec;
 pub mod spec_control;
 pub mod spec_energies;

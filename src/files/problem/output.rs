@@ -1,7 +1,7 @@
 //! Conversion of the output entry of a problem file to the columns and instants shown.
 
 use crate::files::json::error::Result;
-use crate::files::json::scope::Scope;
+use crate::files::problem::at::At;
 use crate::files::scene::names::names;
 use crate::files::units::quantity::{Quantity, Time};
 use crate::model::system::System;
@@ -35,20 +35,20 @@ const KINDS: [&str; 14] = [
     "constraint_violation",
 ];
 
-pub(crate) fn output(spec: &OutputSpec, system: &System, scope: &Scope<'_>) -> Result<Output> {
+pub(crate) fn output(spec: &OutputSpec, at: &At<'_>) -> Result<Output> {
     let every = spec.every.as_ref();
-    let every = every.map(|every| scope.key("every").positive(every));
-    let place = scope.key("quantities");
+    let every = every.map(|every| at.key("every").positive(every));
+    let place = at.key("quantities");
     if spec.quantities.as_ref().is_some_and(Vec::is_empty) {
         return Err(place.wrong("none", "one or more names of quantities"));
     }
     let mut known: Vec<String> = KINDS.map(str::to_owned).to_vec();
-    known.extend(names(&system.joints, |joint| &joint.name));
-    known.extend(names(&system.markers, |marker| &marker.name));
-    known.extend(names(&system.muscles, |muscle| &muscle.name));
-    known.extend(names(&system.solids, |solid| &solid.name));
-    known.extend(system.components.iter().map(|one| one.name().to_owned()));
-    known.extend(names(&system.components.loads, |load| &load.name));
+    known.extend(names(&at.system.joints, |joint| &joint.name));
+    known.extend(names(&at.system.markers, |marker| &marker.name));
+    known.extend(names(&at.system.muscles, |muscle| &muscle.name));
+    known.extend(names(&at.system.solids, |solid| &solid.name));
+    known.extend(at.system.components.iter().map(|one| one.name().to_owned()));
+    known.extend(names(&at.system.components.loads, |load| &load.name));
     for (index, name) in spec.quantities.iter().flatten().enumerate() {
         let expected = format!(
             "{}, or the name of a joint, marker, muscle, block, spring, tendon or load",

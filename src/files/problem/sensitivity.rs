@@ -4,14 +4,12 @@ use crate::control::problem::{BoundaryState, Control, Duration, Varied, VariedOf
 use crate::files::json::error::Result;
 use crate::files::json::path::{JsonPath, Step};
 use crate::files::json::scope::Scope;
-use crate::files::problem::state::A_SOURCE;
+use crate::files::problem::at::{A_SOURCE, At};
+use crate::files::problem::free::add_others;
 use crate::files::scene::constants::{SceneConstant, WrittenScene};
-use crate::files::scene::names::names;
-use crate::files::units::quantity::{
-    Angle, AngularVelocity, Kind, Length, Quantity, SoughtConstant, Time, Velocity, Voltage,
-};
-use crate::model::system::{InputKind, System};
-use crate::model::{NotSought, Parameter, SiUnit, check_parameters, unit_of};
+use crate::files::units::quantity::{Kind, Length, Quantity, SoughtConstant, Time, Voltage};
+use crate::model::system::{InputKind, Source};
+use crate::model::{NotSought, Parameter, SiUnit, check_parameters};
 use schemars::{JsonSchema, Schema, SchemaGenerator, json_schema};
 use serde::de::{Error, Unexpected, Visitor};
 use serde::{Deserialize, Deserializer};
@@ -44,10 +42,10 @@ pub(crate) fn with_varied(
     control: Control,
     map: &SensitivityMap,
     scene: &WrittenScene<'_>,
-    scope: &Scope<'_>,
+    at: &At<'_>,
 ) -> Result<Control> {
     Ok(Control {
-        varied: varied(map, &control, scene, scope)?,
+        varied: varied(map, &control, scene, at)?,
         ..control
     })
 }
@@ -57,23 +55,23 @@ fn varied(
     map: &SensitivityMap,
     control: &Control,
     scene: &WrittenScene<'_>,
-    scope: &Scope<'_>,
+    at: &At<'_>,
 ) -> Result<Vec<Varied>> {
     let mut out = Vec::new();
     for (path, spec) in map {
-        let scope = scope.key(path);
+        let at = at.key(path);
         let place = JsonPath::parse(path).unwrap_or_default();
         let is_of_problem =
             matches!(place.0.first(), Some(Step::Key(key)) if OF_PROBLEM.contains(&&**key));
         out.push(match is_of_problem {
-            true => of_problem(path, &place, spec, control, scene.system, &scope)?,
-            false => of_scene((path, &place), spec, scene, &scope)?,
+            true => of_problem(path, &place, spec, control, &at)?,
+            false => of_scene((path, &place), spec, scene, &at)?,
         });
     }
     let held = out.iter().filter_map(Varied::parameter);
     let all: Vec<Parameter> = control.parameters.iter().chain(held).cloned().collect();
     check_parameters(scene.system, &all).map_err(|NotSought { parameter, reason }| {
-        let place = scope.key(&all[parameter].name);
+        let place = at.key(&all[parameter].name);
         place.wrong(reason, "a constant that can be differentiated by")
     })?;
     Ok(out)
@@ -84,46 +82,26 @@ fn of_scene(
     (path, place): (&str, &JsonPath),
     spec: &SensitivitySpec,
     scene: &WrittenScene<'_>,
-    scope: &Scope<'_>,
+    at: &Scope<'_>,
 ) -> Result<Varied> {
-    let wrong = |found: String| scope.wrong(found, OFFERED);
+    let wrong = |found: String| at.wrong(found, OFFERED);
     let written = scene.written(place);
     let number =
         written.and_then(|value| serde_json::from_value::<Quantity<SoughtConstant>>(value).ok());
     let number =
         number.ok_or_else(|| wrong(format!("{path:?}, which is no number of the scene")))?;
     let ends = beside(number.si());
+    let texts = ends.each_ref().map(|(value, _)| value);
+    let bounds = ends.each_ref().map(|(_, si)| *si);
+    let constant = scene.constant(path, texts, bounds);
+    let mut constant = constant.map_err(|reason| reason.at(at))?;
+    add_others(&mut constant, &spec.also, bounds, scene, at)?;
     let SceneConstant {
-        mut followers,
+        followers,
         from_si,
         value,
-    } = scene
-        .constant(
-            path,
-            ends.each_ref().map(|(value, _)| value),
-            ends.each_ref().map(|(_, si)| *si),
-        )
-        .map_err(|reason| scope.wrong(reason.found, reason.expected))?;
-    for (path, &factor) in &spec.also {
-        let place = scope.key("also").key(path);
-        let ends = ends.each_ref().map(|(_, si)| factor * si);
-        let values = ends.map(Value::from);
-        let other = scene
-            .constant(path, [&values[0], &values[1]], ends)
-            .map_err(|reason| place.wrong(reason.found, reason.expected))?;
-        let lists = [&followers, &other.followers];
-        let [own, others] = lists.map(|list| unit_of(list, scene.system).symbol);
-        if own != others {
-            let found = format!("a number in {others:?}");
-            return Err(place.wrong(
-                found,
-                format!("one in {own:?}, as the number that it follows"),
-            ));
-        }
-        let multiple = factor * other.from_si / from_si;
-        followers.extend(other.followers.into_iter().map(|f| f.of_multiple(multiple)));
-    }
-    let [lower, upper] = ends.map(|(_, si)| si * from_si);
+    } = constant;
+    let [lower, upper] = bounds.map(|si| si * from_si);
     let parameter = Parameter {
         name: path.to_owned(),
         constants: followers,
@@ -135,13 +113,13 @@ fn of_scene(
         Some(ToleranceSpec::Size(size)) => {
             let text = serde_json::to_value(size).unwrap_or_default();
             let of = scene.with(place, &text);
-            of.map_err(|reason| scope.key("tolerance").wrong(reason.found, reason.expected))?;
+            of.map_err(|reason| reason.at(&at.key("tolerance")))?;
             Some(size.si() * from_si)
         }
         Some(ToleranceSpec::Part(part)) => Some(part * value.abs()),
         None => None,
     };
-    check_tolerance(tolerance, scope)?;
+    check_tolerance(tolerance, at)?;
     Ok(Varied::constants(parameter, tolerance, scene.system))
 }
 
@@ -154,56 +132,40 @@ fn beside(si: f64) -> [(Value, f64); 2] {
     [si - size, si + size].map(|value| (Value::from(value), value))
 }
 
-fn check_tolerance(tolerance: Option<f64>, scope: &Scope<'_>) -> Result<()> {
+fn check_tolerance(tolerance: Option<f64>, at: &Scope<'_>) -> Result<()> {
     match tolerance {
         Some(size) if size <= 0.0 => {
             let found = "a tolerance that is not positive";
-            Err(scope.key("tolerance").wrong(found, A_TOLERANCE))
+            Err(at.key("tolerance").wrong(found, A_TOLERANCE))
         }
         _ => Ok(()),
     }
 }
 
-/// Symbol and kind of a unit, and its size in the unit inside.
+/// Kind of a number where it has one, and its unit.
 struct Unit {
     kind: Option<Kind>,
     si: SiUnit,
 }
 
 impl Unit {
-    fn new(kind: Kind, symbol: &'static str, factor: f64) -> Self {
+    fn new(unit: (Kind, (&'static str, f64))) -> Self {
+        let (kind, (symbol, factor)) = unit;
         Self {
             kind: Some(kind),
             si: SiUnit { symbol, factor },
         }
     }
 
-    /// That of a joint coordinate.
-    fn of_joint(joint: usize, system: &System) -> Self {
-        match crate::model::joint_unit(system, joint) {
-            "mm" => Self::new(Length::kind(), "m", 1e-3),
-            _ => Self::new(Angle::kind(), "rad", 1.0),
-        }
-    }
-
-    fn of_rate(joint: usize, system: &System) -> Self {
-        match crate::model::joint_unit(system, joint) {
-            "mm" => Self::new(Velocity::kind(), "m/s", 1.0),
-            _ => Self::new(AngularVelocity::kind(), "rad/s", 1e3),
-        }
-    }
-
-    fn of_source(source: usize, system: &System) -> Self {
-        match system.sources()[source].kind {
-            InputKind::Voltage => Self::new(Voltage::kind(), "V", 1.0),
+    fn of_source(source: &Source) -> Self {
+        match source.kind {
+            InputKind::Voltage => Self::new((Voltage::kind(), ("V", 1.0))),
             other => {
                 let (symbol, size) = other.si();
+                let factor = size.recip();
                 Self {
                     kind: None,
-                    si: SiUnit {
-                        symbol,
-                        factor: size.recip(),
-                    },
+                    si: SiUnit { symbol, factor },
                 }
             }
         }
@@ -216,36 +178,31 @@ fn of_problem(
     place: &JsonPath,
     spec: &SensitivitySpec,
     control: &Control,
-    system: &System,
-    scope: &Scope<'_>,
+    at: &At<'_>,
 ) -> Result<Varied> {
     if !spec.also.is_empty() {
         let found = "other constants of a number of the problem";
-        return Err(scope
-            .key("also")
-            .wrong(found, "it beside a number of the scene only"));
+        let expected = "it beside a number of the scene only";
+        return Err(at.key("also").wrong(found, expected));
     }
     let place = Place {
         path: place,
         control,
-        system,
-        scope,
+        at,
     };
     let (of, value, unit) = place.number()?.ok_or_else(|| {
         let found = format!("{path:?}, which is no number of the problem that is offered");
-        scope.wrong(found, OFFERED)
+        at.wrong(found, OFFERED)
     })?;
     let tolerance = match &spec.tolerance {
         None => None,
         Some(ToleranceSpec::Part(part)) => Some(part * value.abs()),
         Some(ToleranceSpec::Size(size)) => Some(match &unit.kind {
-            Some(kind) => size
-                .value_as(kind)
-                .map_err(|found| scope.key("tolerance").wrong(found, kind.expected()))?,
+            Some(kind) => at.key("tolerance").value_as(size, kind)?,
             None => size.si() / unit.si.factor,
         }),
     };
-    check_tolerance(tolerance, scope)?;
+    check_tolerance(tolerance, at)?;
     Ok(Varied {
         name: path.to_owned(),
         of,
@@ -262,8 +219,7 @@ type Number = (VariedOf, f64, Unit);
 struct Place<'a> {
     path: &'a JsonPath,
     control: &'a Control,
-    system: &'a System,
-    scope: &'a Scope<'a>,
+    at: &'a At<'a>,
 }
 
 impl Place<'_> {
@@ -292,17 +248,6 @@ impl Place<'_> {
         keys.collect::<Vec<_>>().join(".")
     }
 
-    fn joint(&self) -> Result<usize> {
-        let names = names(&self.system.joints, |joint| &joint.name);
-        self.scope.find(&self.name(), &names, "the name of a joint")
-    }
-
-    fn source(&self, name: &str, expected: &str) -> Result<usize> {
-        let sources = self.system.sources();
-        let names = names(&sources, |source| &source.name);
-        self.scope.find(name, &names, expected)
-    }
-
     fn number(&self) -> Result<Option<Number>> {
         let objective = &self.control.objective;
         Ok(match (self.key(0), self.key(1)) {
@@ -310,7 +255,7 @@ impl Place<'_> {
                 Duration::Given(given) => Some((
                     VariedOf::Duration,
                     given,
-                    Unit::new(Time::kind(), "s", 1e-3),
+                    Unit::new((Time::kind(), ("s", 1e-3))),
                 )),
                 Duration::Free { .. } => None,
             },
@@ -318,16 +263,16 @@ impl Place<'_> {
             ("objective", "rate") => weight(objective.rate, WeightOf::Rate),
             ("objective", "duration") => weight(objective.duration, WeightOf::Duration),
             ("voltage_bounds", "") => self.index().filter(|side| *side < 2).map(|side| {
-                let unit = Unit::new(Voltage::kind(), "V", 1.0);
+                let unit = Unit::new((Voltage::kind(), ("V", 1.0)));
                 let bound = self.control.voltage_bounds[side];
                 (VariedOf::VoltageBound(side), bound, unit)
             }),
             ("load_bounds", name) => {
-                let source = self.source(name, "the name of a load")?;
+                let source = self.at.source(name, "the name of a load")?;
                 let bounds = self.control.load_bounds.get(&source);
                 let side = self.index().filter(|side| *side < 2);
                 bounds.zip(side).map(|(bounds, side)| {
-                    let unit = Unit::of_source(source, self.system);
+                    let unit = Unit::of_source(&self.at.sources[source]);
                     (VariedOf::LoadBound(source, side), bounds[side], unit)
                 })
             }
@@ -340,25 +285,23 @@ impl Place<'_> {
     fn of_goal(&self, key: &str) -> Result<Option<Number>> {
         Ok(match (key, &self.control.goal) {
             ("joint_angles", BoundaryState::JointAngles { angles, .. }) => {
-                let joint = self.joint()?;
-                let unit = Unit::of_joint(joint, self.system);
+                let joint = self.at.joint(&self.name())?;
+                let unit = Unit::new(self.at.unit_of(joint));
                 let value = angles.get(&joint);
                 value.map(|value| (VariedOf::GoalJoint(joint), *value, unit))
             }
             ("rest_at_voltages", BoundaryState::RestAtVoltages(voltages, _)) => {
-                let source = self.source(&self.name(), A_SOURCE)?;
-                let unit = Unit::of_source(source, self.system);
+                let source = self.at.source(&self.name(), A_SOURCE)?;
+                let unit = Unit::of_source(&self.at.sources[source]);
                 Some((VariedOf::GoalVoltage(source), voltages[source], unit))
             }
             ("markers", BoundaryState::Markers { places, .. }) => {
-                let all = names(&self.system.markers, |marker| &marker.name);
-                let expected = "the name of a marker";
-                let marker = self.scope.find(&self.name(), &all, expected)?;
+                let marker = self.at.marker(&self.name())?;
                 let given = places.get(&marker).into_iter();
                 let mut given = given.flat_map(|place| place.given());
                 let given = given.find(|(axis, _)| Some(*axis) == self.index());
                 given.map(|(axis, value)| {
-                    let unit = Unit::new(Length::kind(), "m", 1e-3);
+                    let unit = Unit::new((Length::kind(), ("m", 1e-3)));
                     (VariedOf::GoalPlace { marker, axis }, value, unit)
                 })
             }
@@ -369,20 +312,20 @@ impl Place<'_> {
     fn of_start(&self, key: &str) -> Result<Option<Number>> {
         Ok(match (key, &self.control.start) {
             ("joint_angles", BoundaryState::JointAngles { angles, .. }) => {
-                let joint = self.joint()?;
+                let joint = self.at.joint(&self.name())?;
                 let value = angles.get(&joint).copied().unwrap_or(0.0);
-                let unit = Unit::of_joint(joint, self.system);
+                let unit = Unit::new(self.at.unit_of(joint));
                 Some((VariedOf::StartJoint(joint), value, unit))
             }
             ("joint_rates", BoundaryState::JointAngles { rates, .. }) => {
-                let joint = self.joint()?;
+                let joint = self.at.joint(&self.name())?;
                 let value = rates.get(&joint).copied().unwrap_or(0.0);
-                let unit = Unit::of_rate(joint, self.system);
+                let unit = Unit::new(self.at.unit_of_rate(joint));
                 Some((VariedOf::StartRate(joint), value, unit))
             }
             ("rest_at_voltages", BoundaryState::RestAtVoltages(voltages, _)) => {
-                let source = self.source(&self.name(), A_SOURCE)?;
-                let unit = Unit::of_source(source, self.system);
+                let source = self.at.source(&self.name(), A_SOURCE)?;
+                let unit = Unit::of_source(&self.at.sources[source]);
                 Some((VariedOf::StartVoltage(source), voltages[source], unit))
             }
             _ => None,

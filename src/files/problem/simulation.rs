@@ -6,6 +6,7 @@ use crate::feedback::Law;
 use crate::files::json::either::{Either, scalar_or_object};
 use crate::files::json::error::Result;
 use crate::files::json::scope::Scope;
+use crate::files::problem::at::At;
 use crate::files::problem::coordinates::{CoordinatesSpec, coordinates};
 use crate::files::problem::feedback::{ControllerSpec, controller};
 use crate::files::problem::loads::{LoadMap, driven};
@@ -13,7 +14,6 @@ use crate::files::problem::spec_voltages::VoltagesSpec;
 use crate::files::problem::state::StartSpec;
 use crate::files::units::quantity::{Quantity, Time};
 use crate::math::shortest;
-use crate::model::system::System;
 use crate::sparse::Backend;
 use schemars::JsonSchema;
 use serde::de::{Error, IntoDeserializer, Visitor};
@@ -26,20 +26,11 @@ pub(crate) const LEAST_TOLERANCE: f64 = 1e-9;
 /// Most steps of a simulation.
 pub(crate) const MOST_STEPS: f64 = 1e8;
 
-pub(crate) fn simulation(
-    spec: &SimulateSpec,
-    system: &System,
-    scope: &Scope<'_>,
-) -> Result<Simulation> {
-    let duration = scope.key("duration").positive(&spec.duration)?;
-    let method = integrator(spec.integrator.as_ref(), system, &scope.key("integrator"))?;
-    let (step, tolerance) = step(spec, duration, method, scope)?;
-    let (start, voltages) = driven(
-        spec.start.as_ref(),
-        (&spec.voltages, &spec.loads),
-        system,
-        scope,
-    )?;
+pub(crate) fn simulation(spec: &SimulateSpec, at: &At<'_>) -> Result<Simulation> {
+    let duration = at.key("duration").positive(&spec.duration)?;
+    let method = integrator(spec.integrator.as_ref(), &at.key("integrator"))?;
+    let (step, tolerance) = step(spec, duration, method, at)?;
+    let (start, voltages) = driven(spec.start.as_ref(), &spec.voltages, &spec.loads, at)?;
     let named = spec.linear_solver.unwrap_or(LinearSolverSpec::Auto);
     let (backend, multigrid) = named.taken();
     Ok(Simulation {
@@ -48,12 +39,12 @@ pub(crate) fn simulation(
         tolerance,
         start,
         voltages,
-        coordinates: coordinates(spec.coordinates, system, scope)?,
+        coordinates: coordinates(spec.coordinates, at)?,
         solving: Solving {
             integrator: method,
             newton: spec
                 .newton
-                .map_or_else(|| Newton::for_system(system), Into::into),
+                .map_or_else(|| Newton::for_system(at.system), Into::into),
             backend,
             multigrid,
         },
@@ -62,14 +53,14 @@ pub(crate) fn simulation(
                 // The steps that are taken, which divide the duration.
                 let equal = duration / (duration / step - 1e-9).ceil().max(1.0);
                 let equal = tolerance.is_none().then_some(equal);
-                let place = scope.key("controller");
-                let controller = controller(written, equal, system, &place)?;
+                let place = at.key("controller");
+                let controller = controller(written, equal, &place)?;
                 if controller.delay > duration {
                     let found = format!("{} s", shortest(controller.delay / 1e3, 9));
                     let expected = format!("no more than the duration {}", spec.duration);
                     return Err(place.key("delay").wrong(found, expected));
                 }
-                refuse_given(spec, &controller.law, scope)?;
+                refuse_given(spec, &controller.law, at)?;
                 Some(Box::new(controller))
             }
             None => None,
@@ -78,7 +69,7 @@ pub(crate) fn simulation(
 }
 
 /// Refuses voltages and loads that are written for inputs which the controller gives.
-pub(crate) fn refuse_given(spec: &SimulateSpec, law: &Law, scope: &Scope<'_>) -> Result<()> {
+pub(crate) fn refuse_given(spec: &SimulateSpec, law: &Law, at: &Scope<'_>) -> Result<()> {
     let of_voltages: Vec<&String> = match &spec.voltages {
         VoltagesSpec::Signals(map) => map.keys().collect(),
         VoltagesSpec::Table(table) => table.voltages.keys().collect(),
@@ -94,7 +85,7 @@ pub(crate) fn refuse_given(spec: &SimulateSpec, law: &Law, scope: &Scope<'_>) ->
         Some((key, name)) => {
             let found = format!("{name:?}, an input that the controller gives");
             let expected = "other inputs alone beside \"controller\"";
-            Err(scope.key(key).key(name).wrong(found, expected))
+            Err(at.key(key).key(name).wrong(found, expected))
         }
     }
 }
@@ -104,7 +95,7 @@ pub(crate) fn step(
     spec: &SimulateSpec,
     duration: f64,
     method: Integrator,
-    scope: &Scope<'_>,
+    at: &Scope<'_>,
 ) -> Result<(f64, Option<f64>)> {
     let Some(StepSpec::Given(written)) = &spec.step else {
         if method != Integrator::Midpoint {
@@ -113,23 +104,21 @@ pub(crate) fn step(
                 method.name()
             );
             let expected = "a step, such as \"10 ms\": only the midpoint rule chooses its steps";
-            return Err(scope.wrong(found, expected));
+            return Err(at.wrong(found, expected));
         }
         let tolerance = spec.tolerance.unwrap_or(Simulation::TOLERANCE);
         if !(LEAST_TOLERANCE..1.0).contains(&tolerance) {
             let expected = format!("a tolerance from {LEAST_TOLERANCE:.0e} to below 1");
-            return Err(scope
-                .key("tolerance")
-                .wrong(tolerance.to_string(), expected));
+            return Err(at.key("tolerance").wrong(tolerance.to_string(), expected));
         }
         return Ok((Simulation::FIRST * duration, Some(tolerance)));
     };
-    let place = scope.key("step");
+    let place = at.key("step");
     let step = place.positive(written)?;
     if let Some(tolerance) = spec.tolerance {
         let found = format!("{tolerance} beside steps of {written}");
         let expected = "a tolerance only where the step is \"auto\" or not written";
-        return Err(scope.key("tolerance").wrong(found, expected));
+        return Err(at.key("tolerance").wrong(found, expected));
     }
     if step > duration {
         let expected = format!(
@@ -329,11 +318,7 @@ scalar_or_object! {
 }
 
 /// The method of a simulation.
-pub(crate) fn integrator(
-    spec: Option<&IntegratorSpec>,
-    system: &System,
-    scope: &Scope<'_>,
-) -> Result<Integrator> {
+pub(crate) fn integrator(spec: Option<&IntegratorSpec>, at: &At<'_>) -> Result<Integrator> {
     let method = match spec {
         None => Integrator::Midpoint,
         Some(IntegratorSpec::Word(word)) => match word {
@@ -343,43 +328,47 @@ pub(crate) fn integrator(
                 spectral_radius: RADIUS,
             },
         },
-        Some(IntegratorSpec::Object(object)) => with_parameter(object, scope)?,
+        Some(IntegratorSpec::Object(object)) => with_parameter(object, at)?,
     };
-    let changes = system.muscles.iter().find(|muscle| muscle.section_inertia);
+    let changes = at
+        .system
+        .muscles
+        .iter()
+        .find(|muscle| muscle.section_inertia);
     match (method, changes) {
         (Integrator::GeneralisedAlpha { .. }, Some(muscle)) => {
             let found = format!(
                 "\"generalised_alpha\", though \"section_inertia\" of {} is not constant",
                 muscle.name
             );
-            Err(scope.wrong(found, "another method"))
+            Err(at.wrong(found, "another method"))
         }
         _ => Ok(method),
     }
 }
 
-fn with_parameter(object: &IntegratorObject, scope: &Scope<'_>) -> Result<Integrator> {
+fn with_parameter(object: &IntegratorObject, at: &Scope<'_>) -> Result<Integrator> {
     match (object.galerkin, object.generalised_alpha) {
         (Some(degree), None) if (1..=HIGHEST).contains(&degree) => {
             Ok(Integrator::Galerkin { degree })
         }
         (Some(degree), None) => {
             let expected = format!("a degree from 1 to {HIGHEST}");
-            Err(scope.key("galerkin").wrong(degree.to_string(), expected))
+            Err(at.key("galerkin").wrong(degree.to_string(), expected))
         }
         (None, Some(radius)) if (0.0..=1.0).contains(&radius) => Ok(Integrator::GeneralisedAlpha {
             spectral_radius: radius,
         }),
         (None, Some(radius)) => {
-            let place = scope.key("generalised_alpha");
+            let place = at.key("generalised_alpha");
             Err(place.wrong(radius.to_string(), "a spectral radius from 0 to 1"))
         }
         (galerkin, generalised_alpha) => {
             let there = [
-                ("galerkin", galerkin.map(|_| ())),
-                ("generalised_alpha", generalised_alpha.map(|_| ())),
+                ("galerkin", galerkin.is_some()),
+                ("generalised_alpha", generalised_alpha.is_some()),
             ];
-            scope.exactly_one(there).map(|()| Integrator::Midpoint)
+            at.one_key(there).map(|_| Integrator::Midpoint)
         }
     }
 }

@@ -1,53 +1,20 @@
-//! Conversion of states and voltages of a problem file to indices and one voltage per source.
+//! Conversion of states of a problem file to indices and one voltage per source.
 
 use crate::control::problem::{BoundaryState, Hold, Rest, SoughtHold};
 use crate::files::json::either::{Either, scalar_or_object};
 use crate::files::json::error::Result;
-use crate::files::json::scope::Scope;
+use crate::files::problem::at::At;
 use crate::files::problem::end_of::end_of;
 use crate::files::problem::spec_voltages::VoltageMap;
-use crate::files::scene::names::names;
 use crate::files::scene::point::{PartialPoint, vector};
 use crate::files::units::quantity::{
-    Angle, AngularVelocity, JointCoordinate, JointRate, Kind, Length, PhysicalQuantity, Quantity,
-    Velocity,
+    Angle, AngularVelocity, JointCoordinate, JointRate, Quantity, Velocity,
 };
 use crate::model::Graph;
-use crate::model::system::{JointKind, Source, System, voltage_sources};
 use nalgebra::Vector3;
 use schemars::JsonSchema;
 use serde::{Deserialize, Deserializer};
 use std::collections::BTreeMap;
-
-/// Expected name of a voltage, for messages.
-pub(crate) const A_SOURCE: &str = "the name of a muscle or of a driven electrode (block.electrode)";
-
-/// Keys that give a material an electric term, for messages.
-pub(crate) const ELECTRIC_KEYS: &str =
-    "a material with \"relative_permittivity\", or \"c1\" and \"c2\"";
-
-/// One voltage per source in V, 0 where not named.
-pub(crate) fn voltages(map: &VoltageMap, system: &System, scope: &Scope<'_>) -> Result<Vec<f64>> {
-    let sources = system.sources();
-    let mut voltages = vec![0.0; sources.len()];
-    for (name, voltage) in map {
-        voltages[driven(name, &sources, &scope.key(name))?] = voltage.value();
-    }
-    Ok(voltages)
-}
-
-/// Index of a source that takes a voltage.
-pub(crate) fn driven(name: &str, sources: &[Source], scope: &Scope<'_>) -> Result<usize> {
-    let sources = voltage_sources(sources);
-    let index = scope.find(name, &names(sources, |source| &source.name), A_SOURCE)?;
-    if sources[index].takes_voltage {
-        return Ok(index);
-    }
-    let found = format!(
-        "{name:?}, which takes no voltage: its material has no electric term, or a load gives its charge"
-    );
-    Err(scope.wrong(found, format!("a muscle of {ELECTRIC_KEYS}")))
-}
 
 /// The ways to write a start.
 enum Written<'a> {
@@ -57,11 +24,7 @@ enum Written<'a> {
 }
 
 /// A state at the start.
-pub(crate) fn start_state(
-    spec: &StartSpec,
-    system: &System,
-    scope: &Scope<'_>,
-) -> Result<BoundaryState> {
+pub(crate) fn start_state(spec: &StartSpec, at: &At<'_>) -> Result<BoundaryState> {
     let moving =
         spec.joint_angles.is_some() || spec.joint_rates.is_some() || spec.body_velocities.is_some();
     let joints = match () {
@@ -70,57 +33,43 @@ pub(crate) fn start_state(
         () => "body_velocities",
     };
     let (rest, end) = (spec.rest_at_voltages.as_ref(), spec.end_of.as_ref());
-    match scope.exactly_one([
+    match at.exactly_one([
         ("rest_at_voltages", rest.map(Written::Rest)),
         ("end_of", end.map(|path| Written::EndOf(path))),
         (joints, moving.then_some(Written::Joints)),
     ])? {
         Written::Rest(map) => {
-            let row = voltages(map, system, &scope.key("rest_at_voltages"))?;
+            let row = at.key("rest_at_voltages").voltages(map)?;
             Ok(BoundaryState::RestAtVoltages(row, Rest::Everything))
         }
         Written::EndOf(path) => {
-            let end = end_of(path, system, &scope.key("end_of"))?;
+            let end = end_of(path, &at.key("end_of"))?;
             Ok(BoundaryState::EndOf(Box::new(end)))
         }
-        Written::Joints => {
-            let kinds = [Angle::kind(), Length::kind()];
-            let angles = by_joint(
-                &spec.joint_angles,
-                &kinds,
-                system,
-                &scope.key("joint_angles"),
-            )?;
-            let kinds = [AngularVelocity::kind(), Velocity::kind()];
-            let rates = by_joint(&spec.joint_rates, &kinds, system, &scope.key("joint_rates"))?;
-            let place = scope.key("body_velocities");
-            Ok(BoundaryState::JointAngles {
-                angles,
-                rates,
-                velocities: velocities(&spec.body_velocities, system, &place)?,
-            })
-        }
+        Written::Joints => Ok(BoundaryState::JointAngles {
+            angles: at.key("joint_angles").by_joint(&spec.joint_angles)?,
+            rates: at.key("joint_rates").by_joint(&spec.joint_rates)?,
+            velocities: velocities(&spec.body_velocities, &at.key("body_velocities"))?,
+        }),
     }
 }
 
 /// Velocities at the start of bodies that joints leave free to have them.
 fn velocities(
     map: &Option<BTreeMap<String, BodyVelocitySpec>>,
-    system: &System,
-    scope: &Scope<'_>,
+    at: &At<'_>,
 ) -> Result<BTreeMap<usize, [Vector3<f64>; 2]>> {
-    let bodies = names(&system.bodies, |body| &body.name);
-    let (floating, turning) = Graph::new(system).movable(system);
+    let (floating, turning) = Graph::new(at.system).movable(at.system);
     let mut velocities = BTreeMap::new();
     for (name, spec) in map.iter().flatten() {
-        let place = scope.key(name);
-        let body = place.find(name, &bodies, "the name of a body")?;
+        let place = at.key(name);
+        let body = place.body(name)?;
         if !floating.contains(&body) && !turning.contains(&body) {
             let found = format!("{name:?}, whose motion follows from its joints");
             let free = floating
                 .iter()
                 .chain(&turning)
-                .map(|&b| format!("{:?}", bodies[b]));
+                .map(|&b| format!("{:?}", at.system.bodies[b].name));
             let free: Vec<String> = free.collect();
             let expected = match free.is_empty() {
                 true => "\"joint_rates\", as no body is free".to_owned(),
@@ -139,68 +88,6 @@ fn velocities(
         velocities.insert(body, [linear, angular]);
     }
     Ok(velocities)
-}
-
-/// Index of a marker that may move.
-pub(crate) fn moving_marker(name: &str, system: &System, scope: &Scope<'_>) -> Result<usize> {
-    let all = names(&system.markers, |marker| &marker.name);
-    let index = scope.find(name, &all, "the name of a marker")?;
-    let marker = &system.markers[index];
-    if marker.point.body.is_none() && marker.solid.is_none() {
-        let found = format!("{name:?}, which is fixed to the ground");
-        return Err(scope.wrong(found, "a marker on a body or a block"));
-    }
-    Ok(index)
-}
-
-/// Values by joint index, of the first kind for rotations and of the second for translations.
-pub(crate) fn by_joint<M: PhysicalQuantity>(
-    map: &Option<BTreeMap<String, Quantity<M>>>,
-    kinds: &[Kind; 2],
-    system: &System,
-    scope: &Scope<'_>,
-) -> Result<BTreeMap<usize, f64>> {
-    let mut values = BTreeMap::new();
-    for (name, quantity) in map.iter().flatten() {
-        let place = scope.key(name);
-        let index = joint_with_coordinate(name, system, &place)?;
-        let value = joint_value(quantity, kinds, index, system, &place)?;
-        values.insert(index, value);
-    }
-    Ok(values)
-}
-
-/// Index of a joint that has one coordinate.
-pub(crate) fn joint_with_coordinate(
-    name: &str,
-    system: &System,
-    scope: &Scope<'_>,
-) -> Result<usize> {
-    let joints = names(&system.joints, |joint| &joint.name);
-    let index = scope.find(name, &joints, "the name of a joint")?;
-    match system.joints[index].has_coordinate() {
-        true => Ok(index),
-        false => {
-            let found = format!("{name:?}, which is neither revolute nor prismatic, or locked");
-            Err(scope.wrong(found, "a joint with one coordinate"))
-        }
-    }
-}
-
-/// A value of a joint in the kind that the joint calls for.
-pub(crate) fn joint_value<M: PhysicalQuantity>(
-    quantity: &Quantity<M>,
-    [angular, linear]: &[Kind; 2],
-    joint: usize,
-    system: &System,
-    scope: &Scope<'_>,
-) -> Result<f64> {
-    let kind = match system.joints[joint].kind {
-        JointKind::Prismatic { .. } => linear,
-        _ => angular,
-    };
-    let value = quantity.value_as(kind);
-    value.map_err(|found| scope.wrong(found, kind.expected()))
 }
 
 /// A state at the start: exactly one of `rest_at_voltages`, `end_of` and joint coordinates.

@@ -3,12 +3,12 @@
 use crate::control::problem::{Duration, QuantityCost, Waypoint};
 use crate::files::json::error::Result;
 use crate::files::json::scope::Scope;
-use crate::files::problem::goal::places;
-use crate::files::problem::state::{OrientationSpec, by_joint};
+use crate::files::problem::at::At;
+use crate::files::problem::goal::{of_bodies, of_markers};
+use crate::files::problem::state::OrientationSpec;
 use crate::files::scene::point::PartialPoint;
-use crate::files::units::quantity::{Angle, JointCoordinate, Length, Quantity, Time};
+use crate::files::units::quantity::{JointCoordinate, Quantity, Time};
 use crate::math::shortest;
-use crate::model::system::System;
 use schemars::JsonSchema;
 use serde::Deserialize;
 use std::collections::BTreeMap;
@@ -39,30 +39,34 @@ pub struct WaypointSpec {
     pub weight: Option<f64>,
 }
 
+/// What waypoints are on the way of.
+#[derive(Clone, Copy)]
+pub(crate) struct Course {
+    pub(crate) duration: Duration,
+    pub(crate) is_periodic: bool,
+}
+
 /// The waypoints that are written: those that are conditions, and the costs that others are.
 pub(crate) fn waypoints(
     specs: &[WaypointSpec],
-    (duration, is_periodic): (Duration, bool),
-    system: &System,
-    scope: &Scope<'_>,
+    of: Course,
+    at: &At<'_>,
 ) -> Result<(Vec<Waypoint>, Vec<QuantityCost>)> {
     let (mut exact, mut near) = (Vec::new(), Vec::new());
     for (index, spec) in specs.iter().enumerate() {
-        let scope = scope.index(index);
-        let waypoint = spec.waypoint((duration, is_periodic), system, &scope)?;
+        let at = at.index(index);
+        let waypoint = spec.waypoint(of, &at)?;
         match spec.weight {
             None => exact.push(waypoint),
             Some(_) if spec.orientations.is_some() => {
+                let found = "an orientation with a weight";
                 let expected = "an orientation without \"weight\", which is reached exactly";
-                return Err(scope
-                    .key("orientations")
-                    .wrong("an orientation with a weight", expected));
+                return Err(at.key("orientations").wrong(found, expected));
             }
             Some(weight) if weight > 0.0 => near.extend(waypoint.costs(weight)),
             Some(weight) => {
-                return Err(scope
-                    .key("weight")
-                    .wrong(weight.to_string(), "a positive weight"));
+                let place = at.key("weight");
+                return Err(place.wrong(weight.to_string(), "a positive weight"));
             }
         }
     }
@@ -70,33 +74,20 @@ pub(crate) fn waypoints(
 }
 
 impl WaypointSpec {
-    fn waypoint(
-        &self,
-        of: (Duration, bool),
-        system: &System,
-        scope: &Scope<'_>,
-    ) -> Result<Waypoint> {
-        let (part, name) = self.part_of(of, scope)?;
-        let written = (self.markers.as_ref(), self.orientations.as_ref());
-        let (places, orientations) = places(written, system, scope)?;
-        let kinds = [Angle::kind(), Length::kind()];
+    fn waypoint(&self, of: Course, at: &At<'_>) -> Result<Waypoint> {
+        let (part, name) = self.part_of(of, at)?;
         let waypoint = Waypoint {
             part,
             name,
-            places,
-            orientations,
-            angles: by_joint(
-                &self.joint_angles,
-                &kinds,
-                system,
-                &scope.key("joint_angles"),
-            )?,
+            places: of_markers(&self.markers, &at.key("markers"))?,
+            orientations: of_bodies(&self.orientations, &at.key("orientations"))?,
+            angles: at.key("joint_angles").by_joint(&self.joint_angles)?,
         };
         let is_empty = waypoint.places.is_empty()
             && waypoint.orientations.is_empty()
             && waypoint.angles.is_empty();
         match is_empty {
-            true => Err(scope.wrong(
+            true => Err(at.wrong(
                 "a waypoint without a place",
                 "\"markers\", \"orientations\" or \"joint_angles\"",
             )),
@@ -105,16 +96,9 @@ impl WaypointSpec {
     }
 
     /// Part of the duration, and the name in messages.
-    fn part_of(
-        &self,
-        (duration, is_periodic): (Duration, bool),
-        scope: &Scope<'_>,
-    ) -> Result<(f64, String)> {
-        let key = scope.exactly_one([
-            ("time", self.time.as_ref().map(|_| "time")),
-            ("part", self.part.map(|_| "part")),
-        ])?;
-        let (part, name, found, expected) = match (&self.time, duration) {
+    fn part_of(&self, of: Course, at: &Scope<'_>) -> Result<(f64, String)> {
+        let key = at.one_key([("time", self.time.is_some()), ("part", self.part.is_some())])?;
+        let (part, name, found, expected) = match (&self.time, of.duration) {
             (Some(time), Duration::Given(duration)) => (
                 time.value() / duration,
                 format!("waypoint at {time}"),
@@ -123,12 +107,12 @@ impl WaypointSpec {
             ),
             (Some(_), Duration::Free { .. }) => {
                 let expected = "\"part\", a part of the duration, as the duration is free";
-                return Err(scope.key(key).wrong("a time", expected));
+                return Err(at.key(key).wrong("a time", expected));
             }
             (None, _) => {
                 let part = self.part.unwrap_or_default();
                 let name = format!("waypoint at {} of the duration", shortest(part, 6));
-                let expected = match is_periodic {
+                let expected = match of.is_periodic {
                     true => "a number above 0 and at most 1",
                     false => "a number above 0 and below 1",
                 };
@@ -136,9 +120,9 @@ impl WaypointSpec {
             }
         };
         // The end of a periodic motion is its start.
-        match part > 0.0 && (part < 1.0 || (is_periodic && part == 1.0)) {
+        match part > 0.0 && (part < 1.0 || (of.is_periodic && part == 1.0)) {
             true => Ok((part, name)),
-            false => Err(scope.key(key).wrong(found, expected)),
+            false => Err(at.key(key).wrong(found, expected)),
         }
     }
 }

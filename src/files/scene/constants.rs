@@ -81,6 +81,11 @@ impl NoConstant {
         }
     }
 
+    /// The error at a place.
+    pub(crate) fn at(self, place: &Scope<'_>) -> SceneError {
+        place.wrong(self.found, self.expected)
+    }
+
     /// The same, where it is the upper bound that is wrong.
     fn of_upper(self) -> Self {
         Self {

@@ -2,7 +2,7 @@
 
 use crate::files::json::error::Result;
 use crate::files::json::scope::{Scope, list};
-use crate::files::problem::state::ELECTRIC_KEYS;
+use crate::files::problem::at::ELECTRIC_KEYS;
 use crate::files::scene::electrodes::electrodes;
 use crate::files::scene::mesh::{Meshed, meshed};
 use crate::files::scene::muscle::element_kind;

@@ -1,13 +1,11 @@
 //! Entries of limits, costs and recorded quantities in a problem file, and conversion of their parts.
 
-use crate::control::problem::{CostFunction, During, Limit, QuantityCost};
+use crate::control::problem::{CostFunction, Limit};
 use crate::files::json::error::Result;
-use crate::files::json::scope::Scope;
-use crate::files::scene::names::names;
+use crate::files::problem::at::{At, SiUnit};
 use crate::files::scene::point::{Point, unit_axis, vector};
 use crate::files::units::quantity::{Kind, PhysicalQuantity, Quantity as Written};
 use crate::math::Signal;
-use crate::model::system::System;
 use crate::model::{Plane, Quantity, What};
 use schemars::JsonSchema;
 use serde::Deserialize;
@@ -20,10 +18,10 @@ pub enum All {
     All,
 }
 
-/// An entry of the limits of a problem; the scope is that of its key.
+/// An entry of the limits of a problem, which stands under its key.
 pub(super) trait LimitEntry {
     /// The limits that it stands for.
-    fn limits(&self, system: &System, scope: &Scope<'_>) -> Result<Vec<Limit>>;
+    fn limits(&self, at: &At<'_>) -> Result<Vec<Limit>>;
 
     /// Returns true if it bounds what follows from constants alone.
     fn is_timeless(&self) -> bool {
@@ -31,30 +29,42 @@ pub(super) trait LimitEntry {
     }
 }
 
-/// An entry of the costs of a problem, along the motion or at its end; the scope is that of its key.
+/// An entry of the costs of a problem, along the motion or at its end, which stands under its key.
 pub(super) trait CostEntry {
-    /// The costs that it stands for.
-    fn costs(
-        &self,
-        during: During,
-        system: &System,
-        scope: &Scope<'_>,
-    ) -> Result<Vec<QuantityCost>>;
+    /// The quantities that it stands for, and the function of each that is minimised.
+    fn costs(&self, at: &At<'_>) -> Result<Vec<Cost>>;
 }
 
-/// A quantity of a recording by its name, which stands at `place`; `scope` has the directions beside it.
+/// A quantity, and its function in a cost.
+pub(super) type Cost = (Quantity, CostFunction);
+
+/// A quantity of a recording by its name, which stands at `place`; the directions beside it stand at `at`.
 pub(super) struct Named<'a> {
     pub(super) name: &'a str,
     pub(super) along: Option<[f64; 3]>,
     pub(super) about: Option<[f64; 3]>,
     pub(super) from: Option<&'a PlaneSpec>,
-    pub(super) system: &'a System,
-    pub(super) place: &'a Scope<'a>,
-    pub(super) scope: &'a Scope<'a>,
+    pub(super) place: &'a At<'a>,
+    pub(super) at: &'a At<'a>,
 }
 
-/// Symbol of an SI unit and its factor.
-pub(super) type SiUnit = (&'static str, f64);
+impl Named<'_> {
+    /// The quantity, called by a word and the name of what it is of.
+    pub(super) fn recorded(
+        &self,
+        word: &str,
+        quantity: Quantity,
+        (kind, unit): (Kind, SiUnit),
+    ) -> Recorded {
+        Recorded {
+            of: self.name.to_owned(),
+            name: format!("{word} of {}", self.name),
+            parts: vec![(1.0, quantity)],
+            kind,
+            unit,
+        }
+    }
+}
 
 /// A recorded quantity: what it is of, what it is called, its parts, and its unit.
 pub(in crate::files::problem) struct Recorded {
@@ -65,24 +75,6 @@ pub(in crate::files::problem) struct Recorded {
     pub(in crate::files::problem) unit: SiUnit,
 }
 
-impl Recorded {
-    /// A quantity as it is, of a kind with an SI unit.
-    pub(super) fn plain(of: &str, name: String, quantity: Quantity, unit: (Kind, SiUnit)) -> Self {
-        Self {
-            of: of.to_owned(),
-            name,
-            parts: vec![(1.0, quantity)],
-            kind: unit.0,
-            unit: unit.1,
-        }
-    }
-
-    /// The same, called by a word and the name of what it is of.
-    pub(super) fn named(word: &str, of: &str, quantity: Quantity, unit: (Kind, SiUnit)) -> Self {
-        Self::plain(of, format!("{word} of {of}"), quantity, unit)
-    }
-}
-
 /// Limits of some quantities by the same bounds.
 pub(super) fn limits_of(whats: impl IntoIterator<Item = What>, bounds: [f64; 2]) -> Vec<Limit> {
     let limit = |what| Limit::new(what, bounds);
@@ -91,66 +83,50 @@ pub(super) fn limits_of(whats: impl IntoIterator<Item = What>, bounds: [f64; 2])
 
 /// Both bounds, of which one at least is written.
 pub(super) fn bounds<M: PhysicalQuantity>(
-    [min, max]: [&Option<Written<M>>; 2],
-    scope: &Scope<'_>,
+    written: [&Option<Written<M>>; 2],
+    at: &At<'_>,
 ) -> Result<[f64; 2]> {
-    let of =
-        |bound: &Option<Written<M>>, absent: f64| bound.as_ref().map_or(absent, Written::value);
-    let bounds = [of(min, f64::NEG_INFINITY), of(max, f64::INFINITY)];
-    check_bounds(bounds, min.is_some() || max.is_some(), scope)
+    bounds_by(written, at, |_, bound| Ok(bound.value()))
 }
 
-/// Bounds of which one at least is written, and which are not crossed.
-pub(super) fn check_bounds(
-    bounds: [f64; 2],
-    is_written: bool,
-    scope: &Scope<'_>,
+/// Both bounds as they are read, of which one at least is written, and which are not crossed.
+pub(super) fn bounds_by<B>(
+    [min, max]: [&Option<B>; 2],
+    at: &At<'_>,
+    read: impl Fn(&At<'_>, &B) -> Result<f64>,
 ) -> Result<[f64; 2]> {
-    if !is_written {
-        return Err(scope.wrong("no bound", "\"min\", \"max\" or both"));
+    let bound = |key: &str, written: &Option<B>, absent: f64| {
+        let written = written.as_ref();
+        written.map_or(Ok(absent), |written| read(&at.key(key), written))
+    };
+    let bounds = [
+        bound("min", min, f64::NEG_INFINITY)?,
+        bound("max", max, f64::INFINITY)?,
+    ];
+    if min.is_none() && max.is_none() {
+        return Err(at.wrong("no bound", "\"min\", \"max\" or both"));
     }
     if bounds[0] > bounds[1] {
         let found = "\"max\" below \"min\"";
-        return Err(scope.key("max").wrong(found, "bounds that are not crossed"));
+        return Err(at.key("max").wrong(found, "bounds that are not crossed"));
     }
     Ok(bounds)
 }
 
-/// The weight of a cost, 1 where not written.
-pub(super) fn weight(spec: Option<f64>, scope: &Scope<'_>) -> Result<f64> {
-    match spec.unwrap_or(1.0) {
-        weight if weight > 0.0 => Ok(weight),
-        weight => {
-            let place = scope.key("weight");
-            Err(place.wrong(weight.to_string(), "a positive weight"))
-        }
-    }
-}
-
-/// The weighted squared deviation of a quantity from a function of time.
-pub(super) fn square(
-    quantity: Quantity,
-    reference: impl Into<Signal>,
-    weight: f64,
-    during: During,
-) -> QuantityCost {
+/// The squared deviation of a quantity from a function of time.
+pub(super) fn square(quantity: Quantity, reference: impl Into<Signal>) -> Cost {
     let reference = reference.into();
-    QuantityCost {
-        quantity,
-        weight,
-        function: CostFunction::Square { reference },
-        during,
-    }
+    (quantity, CostFunction::Square { reference })
 }
 
-/// The weighted integral or value of a quantity that is a square.
-pub(super) fn itself(quantity: Quantity, weight: f64, during: During) -> QuantityCost {
-    QuantityCost {
-        quantity,
-        weight,
-        function: CostFunction::Itself,
-        during,
-    }
+/// Those of a quantity of each of some parts from a value, 0 where not written.
+pub(super) fn squares(
+    parts: Vec<usize>,
+    quantity: impl Fn(usize) -> Quantity,
+    value: Option<f64>,
+) -> Vec<Cost> {
+    let cost = |part| square(quantity(part), value.unwrap_or(0.0));
+    parts.into_iter().map(cost).collect()
 }
 
 /// A plane that is fixed to a body, or to the ground where none is named.
@@ -168,15 +144,13 @@ pub struct PlaneSpec {
 
 impl PlaneSpec {
     /// The plane that it stands for.
-    pub(super) fn plane(&self, system: &System, scope: &Scope<'_>) -> Result<Plane> {
-        let bodies = names(&system.bodies, |body| &body.name);
-        let place = scope.key("body");
+    pub(super) fn plane(&self, at: &At<'_>) -> Result<Plane> {
         let body = self.body.as_ref();
-        let body = body.map(|name| place.find(name, &bodies, "the name of a body"));
+        let body = body.map(|name| at.key("body").body(name)).transpose()?;
         Ok(Plane {
-            body: body.transpose()?,
+            body,
             point: vector(&self.point),
-            normal: unit_axis(&self.normal, &scope.key("normal"))?,
+            normal: unit_axis(&self.normal, &at.key("normal"))?,
         })
     }
 }

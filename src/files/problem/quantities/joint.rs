@@ -1,25 +1,22 @@
 //! Coordinates, rates, forces and torques of joints in limits, costs and recordings.
 
-use crate::control::problem::{During, Limit, QuantityCost};
+use crate::control::problem::Limit;
 use crate::files::json::error::Result;
 use crate::files::json::scope::Scope;
+use crate::files::problem::at::{At, SiUnit};
 use crate::files::problem::quantities::entry::{
-    CostEntry, LimitEntry, Named, Recorded, SiUnit, bounds, check_bounds, limits_of, square, weight,
+    Cost, CostEntry, LimitEntry, Named, Recorded, bounds, bounds_by, limits_of, square,
 };
-use crate::files::problem::solution_document::solution_document;
-use crate::files::problem::state::{joint_value, joint_with_coordinate};
-use crate::files::problem::voltages::SOLUTION_PATH;
-use crate::files::scene::names::names;
+use crate::files::problem::voltages::{SOLUTION_PATH, solution_document};
 use crate::files::scene::point::unit_axis;
 use crate::files::signal::signal;
 use crate::files::signal::spec::SignalSpec;
 use crate::files::units::quantity::{
-    Angle, AngularVelocity, Force, JointCoordinate, JointRate, Kind, Length, PhysicalQuantity,
-    Quantity as Written, Torque, Velocity,
+    Force, JointCoordinate, JointRate, Kind, PhysicalQuantity, Quantity as Written, Torque,
 };
 use crate::math::{Signal, Vector};
 use crate::model::system::System;
-use crate::model::{Quantity, Reaction, What, joint_unit};
+use crate::model::{Quantity, Reaction, What};
 use schemars::JsonSchema;
 use serde::Deserialize;
 use std::collections::BTreeMap;
@@ -142,186 +139,126 @@ pub struct JointRateCostSpec {
     pub weight: Option<f64>,
 }
 
-/// Kinds of coordinates of joints, and of their rates: of rotations and of translations.
-fn coordinates() -> [Kind; 2] {
-    [Angle::kind(), Length::kind()]
-}
-
-fn rates() -> [Kind; 2] {
-    [AngularVelocity::kind(), Velocity::kind()]
-}
-
-/// A joint, and the bounds of its coordinate or rate, of which one at least is written.
-fn of_joint<M: PhysicalQuantity>(
-    joint: &str,
-    [min, max]: [&Option<Written<M>>; 2],
-    kinds: [Kind; 2],
-    system: &System,
-    scope: &Scope<'_>,
-) -> Result<(What, [f64; 2])> {
-    let joint = joint_with_coordinate(joint, system, &scope.key("joint"))?;
-    let bound = |key: &str, quantity: &Option<Written<M>>, absent: f64| match quantity {
-        Some(quantity) => joint_value(quantity, &kinds, joint, system, &scope.key(key)),
-        None => Ok(absent),
-    };
-    let bounds = [
-        bound("min", min, f64::NEG_INFINITY)?,
-        bound("max", max, f64::INFINITY)?,
-    ];
-    let is_written = min.is_some() || max.is_some();
-    let what = What::Joint { joint, near: 0.0 };
-    Ok((what, check_bounds(bounds, is_written, scope)?))
-}
-
 impl LimitEntry for JointAngleLimitSpec {
-    fn limits(&self, system: &System, scope: &Scope<'_>) -> Result<Vec<Limit>> {
-        let bounds = [&self.min, &self.max];
-        let (what, bounds) = of_joint(&self.joint, bounds, coordinates(), system, scope)?;
+    fn limits(&self, at: &At<'_>) -> Result<Vec<Limit>> {
+        let (what, bounds) = of_joint(&self.joint, [&self.min, &self.max], at)?;
         Ok(vec![Limit::new(what, bounds)])
     }
 }
 
 impl LimitEntry for JointRateLimitSpec {
-    fn limits(&self, system: &System, scope: &Scope<'_>) -> Result<Vec<Limit>> {
-        let bounds = [&self.min, &self.max];
-        let (what, bounds) = of_joint(&self.joint, bounds, rates(), system, scope)?;
+    fn limits(&self, at: &At<'_>) -> Result<Vec<Limit>> {
+        let (what, bounds) = of_joint(&self.joint, [&self.min, &self.max], at)?;
         Ok(vec![Limit::of_rate(what, bounds)])
     }
 }
 
+/// A joint, and the bounds of its coordinate or rate, of which one at least is written.
+fn of_joint<M: PhysicalQuantity>(
+    joint: &str,
+    bounds: [&Option<Written<M>>; 2],
+    at: &At<'_>,
+) -> Result<(What, [f64; 2])> {
+    let joint = at.key("joint").coordinate(joint)?;
+    let bounds = bounds_by(bounds, at, |at, bound| at.of_joint(joint, bound))?;
+    Ok((What::Joint { joint, near: 0.0 }, bounds))
+}
+
 impl LimitEntry for ReactionForceLimitSpec {
-    fn limits(&self, system: &System, scope: &Scope<'_>) -> Result<Vec<Limit>> {
-        let bounds = bounds([&self.min, &self.max], scope)?;
-        let joint = transmitting(&self.joint, Reaction::Force, system, &scope.key("joint"))?;
-        let along = unit_axis(&self.along, &scope.key("along"))?;
+    fn limits(&self, at: &At<'_>) -> Result<Vec<Limit>> {
+        let bounds = bounds([&self.min, &self.max], at)?;
+        let joint = transmitting(&self.joint, Reaction::Force, &at.key("joint"))?;
+        let along = unit_axis(&self.along, &at.key("along"))?;
         let of = Reaction::Force;
         Ok(limits_of([What::Reaction { joint, of, along }], bounds))
     }
 }
 
 impl LimitEntry for ReactionTorqueLimitSpec {
-    fn limits(&self, system: &System, scope: &Scope<'_>) -> Result<Vec<Limit>> {
-        let joint = transmitting(&self.joint, Reaction::Torque, system, &scope.key("joint"))?;
-        let bounds = bounds([&self.min, &self.max], scope)?;
-        let along = unit_axis(&self.about, &scope.key("about"))?;
+    fn limits(&self, at: &At<'_>) -> Result<Vec<Limit>> {
+        let bounds = bounds([&self.min, &self.max], at)?;
+        let joint = transmitting(&self.joint, Reaction::Torque, &at.key("joint"))?;
+        let along = unit_axis(&self.about, &at.key("about"))?;
         let of = Reaction::Torque;
         Ok(limits_of([What::Reaction { joint, of, along }], bounds))
     }
 }
 
 /// A joint that transmits a force or torque.
-fn transmitting(name: &str, of: Reaction, system: &System, place: &Scope<'_>) -> Result<usize> {
-    let joints = names(&system.joints, |joint| &joint.name);
-    let joint = place.find(name, &joints, "the name of a joint")?;
-    if of == Reaction::Torque && !system.joints[joint].has_torque() {
+fn transmitting(name: &str, of: Reaction, at: &At<'_>) -> Result<usize> {
+    let joint = at.joint(name)?;
+    if of == Reaction::Torque && !at.system.joints[joint].has_torque() {
         let found = format!("{name:?}, a spherical joint");
-        return Err(place.wrong(found, "a joint that transmits a torque"));
+        return Err(at.wrong(found, "a joint that transmits a torque"));
     }
     Ok(joint)
 }
 
 impl CostEntry for JointRateCostSpec {
-    fn costs(
-        &self,
-        during: During,
-        system: &System,
-        scope: &Scope<'_>,
-    ) -> Result<Vec<QuantityCost>> {
-        let weight = weight(self.weight, scope)?;
-        let joint = joint_with_coordinate(&self.joint, system, &scope.key("joint"))?;
-        let at = self.at.as_ref().map_or(Ok(0.0), |at| {
-            joint_value(at, &rates(), joint, system, &scope.key("at"))
-        })?;
+    fn costs(&self, at: &At<'_>) -> Result<Vec<Cost>> {
+        let joint = at.key("joint").coordinate(&self.joint)?;
+        let rate = self.at.as_ref();
+        let rate = rate.map_or(Ok(0.0), |rate| at.key("at").of_joint(joint, rate))?;
         let quantity = Quantity::joint_rate(joint);
-        let at = quantity.rate_factor(system).unwrap_or(1.0) * at;
-        Ok(vec![square(quantity, at, weight, during)])
+        let factor = quantity.rate_factor(at.system).unwrap_or(1.0);
+        Ok(vec![square(quantity, factor * rate)])
     }
 }
 
 impl CostEntry for TrackJointSpec {
-    fn costs(
-        &self,
-        during: During,
-        system: &System,
-        scope: &Scope<'_>,
-    ) -> Result<Vec<QuantityCost>> {
-        let joint = joint_with_coordinate(&self.joint, system, &scope.key("joint"))?;
-        let kind = match joint_unit(system, joint) {
-            "mm" => Length::kind(),
-            _ => Angle::kind(),
-        };
-        let reference = signal(&self.along, &kind, &scope.key("along"))?;
-        let weight = weight(self.weight, scope)?;
-        let quantity = Quantity::joint(joint, 0.0);
-        Ok(vec![square(quantity, reference, weight, during)])
+    fn costs(&self, at: &At<'_>) -> Result<Vec<Cost>> {
+        let joint = at.key("joint").coordinate(&self.joint)?;
+        let (kind, _) = at.unit_of(joint);
+        let reference = signal(&self.along, &kind, &at.key("along"))?;
+        Ok(vec![square(Quantity::joint(joint, 0.0), reference)])
     }
 }
 
 impl CostEntry for TrackJointsSpec {
-    fn costs(
-        &self,
-        during: During,
-        system: &System,
-        scope: &Scope<'_>,
-    ) -> Result<Vec<QuantityCost>> {
-        let place = scope.key("solution");
-        let weight = weight(self.weight, scope)?;
+    fn costs(&self, at: &At<'_>) -> Result<Vec<Cost>> {
+        let place = at.key("solution");
         let path = place.solution_file(&self.solution, SOLUTION_PATH)?;
-        let joints = read_solution_joints(&path, system)?;
+        let joints = read_solution_joints(&path, at.system)?;
         if joints.is_empty() {
             let found = "a scene without a revolute or prismatic joint";
             return Err(place.wrong(found, "joints that follow the solution"));
         }
-        let cost = |(joint, reference): (usize, Signal)| {
-            square(Quantity::joint(joint, 0.0), reference, weight, during)
-        };
+        let cost = |(joint, reference)| square(Quantity::joint(joint, 0.0), reference);
         Ok(joints.into_iter().map(cost).collect())
     }
 }
 
 impl CostEntry for FinalJointSpec {
-    fn costs(
-        &self,
-        during: During,
-        system: &System,
-        scope: &Scope<'_>,
-    ) -> Result<Vec<QuantityCost>> {
-        let joint = joint_with_coordinate(&self.joint, system, &scope.key("joint"))?;
-        let at = joint_value(&self.at, &coordinates(), joint, system, &scope.key("at"))?;
-        let weight = weight(self.weight, scope)?;
-        let quantity = Quantity::joint(joint, 0.0);
-        Ok(vec![square(quantity, at, weight, during)])
+    fn costs(&self, at: &At<'_>) -> Result<Vec<Cost>> {
+        let joint = at.key("joint").coordinate(&self.joint)?;
+        let value = at.key("at").of_joint(joint, &self.at)?;
+        Ok(vec![square(Quantity::joint(joint, 0.0), value)])
     }
 }
 
 pub(super) fn coordinate(of: &Named<'_>) -> Result<Recorded> {
-    let joint = joint_with_coordinate(of.name, of.system, of.place)?;
-    let unit = match joint_unit(of.system, joint) {
-        "mm" => (Length::kind(), ("m", 1e-3)),
-        _ => (Angle::kind(), ("rad", 1.0)),
-    };
+    let joint = of.place.coordinate(of.name)?;
     let quantity = Quantity::joint(joint, 0.0);
-    Ok(Recorded::plain(of.name, of.name.to_owned(), quantity, unit))
+    Ok(Recorded {
+        name: of.name.to_owned(),
+        ..of.recorded("coordinate", quantity, of.at.unit_of(joint))
+    })
 }
 
 pub(super) fn rate(of: &Named<'_>) -> Result<Recorded> {
-    let joint = joint_with_coordinate(of.name, of.system, of.place)?;
-    let unit = match joint_unit(of.system, joint) {
-        "mm" => (Velocity::kind(), ("m/s", 1.0)),
-        _ => (AngularVelocity::kind(), ("rad/s", 1e3)),
-    };
+    let joint = of.place.coordinate(of.name)?;
     let quantity = Quantity::joint_rate(joint);
-    Ok(Recorded::named("rate", of.name, quantity, unit))
+    Ok(of.recorded("rate", quantity, of.at.unit_of_rate(joint)))
 }
 
 pub(super) fn reaction_force(of: &Named<'_>) -> Result<Recorded> {
-    let along = written_direction(of.along, &of.scope.key("along"));
+    let along = written_direction(of.along, &of.at.key("along"));
     let unit = (Force::kind(), ("N", 1.0));
     reaction(of, Reaction::Force, along, unit)
 }
 
 pub(super) fn reaction_torque(of: &Named<'_>) -> Result<Recorded> {
-    let along = written_direction(of.about, &of.scope.key("about"));
+    let along = written_direction(of.about, &of.at.key("about"));
     let unit = (Torque::kind(), ("N m", 1e-3));
     reaction(of, Reaction::Torque, along, unit)
 }
@@ -333,22 +270,14 @@ fn reaction(
     along: Result<Vector>,
     unit: (Kind, SiUnit),
 ) -> Result<Recorded> {
-    let joint = transmitting(named.name, of, named.system, named.place)?;
-    let what = What::Reaction {
-        joint,
-        of,
-        along: along?,
-    };
+    let joint = transmitting(named.name, of, named.place)?;
+    let along = along?;
+    let quantity = Quantity::jump(What::Reaction { joint, of, along }, 1.0, 1.0);
     let word = match of {
         Reaction::Force => "force",
         Reaction::Torque => "torque",
     };
-    Ok(Recorded::named(
-        word,
-        named.name,
-        Quantity::jump(what, 1.0, 1.0),
-        unit,
-    ))
+    Ok(named.recorded(word, quantity, unit))
 }
 
 /// The unit vector of a direction that has to be written.
@@ -384,36 +313,31 @@ pub(crate) fn read_solution_joints(path: &Path, system: &System) -> Result<Vec<(
         name == "time" || name.starts_with("configuration/joints/")
     })?;
     let solution: SolutionRecord = document.parse()?;
-    let scope = Scope::of(document);
-    let place = scope.key("time");
+    let at = At::new(&Scope::of(document), system);
+    let place = at.key("time");
     let times: Vec<f64> = solution.time.iter().map(|time| 1e3 * time).collect();
     if times.is_empty() {
         return Err(place.wrong("no instant", "one or more"));
     }
     place.increasing(&times)?;
     let (joints, place) = match (solution.configuration, solution.joints) {
-        (Some(configuration), _) => (
-            configuration.joints,
-            scope.key("configuration").key("joints"),
-        ),
-        (None, Some(joints)) => (joints, scope.key("joints")),
+        (Some(configuration), _) => (configuration.joints, at.key("configuration").key("joints")),
+        (None, Some(joints)) => (joints, at.key("joints")),
         (None, None) => {
-            return Err(scope.wrong("neither of them", "\"configuration\" or \"joints\""));
+            return Err(at.wrong("neither of them", "\"configuration\" or \"joints\""));
         }
     };
     let signal = |(name, values): (String, Vec<f64>)| {
         let place = place.key(&name);
-        let joint = joint_with_coordinate(&name, system, &place)?;
+        let joint = place.coordinate(&name)?;
         if values.len() != times.len() {
             let found = format!("{} values", values.len());
             let expected = format!("{}, one for each instant", times.len());
             return Err(place.wrong(found, expected));
         }
-        let unit = match joint_unit(system, joint) {
-            "mm" => 1e3,
-            _ => 1.0,
-        };
-        let values = values.into_iter().map(|value| unit * value).collect();
+        let (_, (_, si)) = place.unit_of(joint);
+        let values = values.into_iter().map(|value| si.recip() * value);
+        let values = values.collect();
         let times = times.clone();
         Ok((joint, Signal::Table { times, values }))
     };

@@ -2,7 +2,7 @@
 
 use crate::control::problem::{During, Limit, QuantityCost};
 use crate::files::json::error::Result;
-use crate::files::json::scope::Scope;
+use crate::files::problem::at::At;
 use crate::files::problem::quantities::entry::{CostEntry, LimitEntry, Named, PlaneSpec, Recorded};
 use crate::files::problem::quantities::joint::{
     self, FinalJointSpec, JointAngleLimitSpec, JointRateCostSpec, JointRateLimitSpec,
@@ -23,13 +23,12 @@ use crate::files::units::quantity::{
     Angle, AngularVelocity, Charge, Current, Force, Kind, Length, PhysicalQuantity, Power,
     Quantity as Written, Torque, Velocity, Voltage,
 };
-use crate::model::system::System;
 use schemars::JsonSchema;
 use serde::Deserialize;
 
-/// Declares an entry that has exactly one of some keys, beside others.
+/// Declares an entry that has exactly one of some keys, beside others, and what is seen of the one that is written.
 macro_rules! one_of {
-    ($(#[$about:meta])* $name:ident: $entry:ident;
+    ($(#[$about:meta])* $name:ident: $entry:ty = |$one:ident| $seen:expr;
      keys { $($(#[$doc:meta])* $key:ident: $spec:ty;)* }
      beside { $($(#[$beside_doc:meta])* $beside:ident: $other:ty;)* }) => {
         $(#[$about])*
@@ -41,20 +40,23 @@ macro_rules! one_of {
         }
 
         impl $name {
-            /// The entry that is written, and its key.
-            fn entry(&self, scope: &Scope<'_>) -> Result<(&'static str, &dyn $entry)> {
-                scope.exactly_one([$((
+            /// The entry that is written, and its place.
+            fn entry<'a>(&self, at: &At<'a>) -> Result<($entry, At<'a>)> {
+                at.exactly_one([$((
                     stringify!($key),
-                    self.$key.as_ref().map(|one| (stringify!($key), one as &dyn $entry)),
+                    self.$key.as_ref().map(|$one| ($seen, at.key(stringify!($key)))),
                 ),)*])
             }
         }
     };
 }
 
+/// A cost with its weight.
+type Weighted<'a> = (&'a dyn CostEntry, Option<f64>);
+
 one_of! {
     /// A path limit: exactly one of the keys but `part`. `min` and `max` may be equal with `part`: the quantity is then prescribed there.
-    LimitSpec: LimitEntry;
+    LimitSpec: &dyn LimitEntry = |one| one as &dyn LimitEntry;
     keys {
         /// Limits of a joint coordinate.
         joint_angle: JointAngleLimitSpec;
@@ -97,7 +99,7 @@ one_of! {
 one_of! {
     /// Marker or joints that follow a reference, or a measured quantity whose squared deviation from a value, times `weight`, is integrated over the
     /// time in s: exactly one of them.
-    TrackSpec: CostEntry;
+    TrackSpec: Weighted<'_> = |one| (one as &dyn CostEntry, one.weight);
     keys {
         /// A marker follows a path in time.
         marker: TrackMarkerSpec;
@@ -125,7 +127,7 @@ one_of! {
 
 one_of! {
     /// Marker or joint that ends near a place, or a measured quantity that ends near a value, in the last interval: exactly one of them.
-    FinalSpec: CostEntry;
+    FinalSpec: Weighted<'_> = |one| (one as &dyn CostEntry, one.weight);
     keys {
         /// A marker ends near a place.
         marker: FinalMarkerSpec;
@@ -164,8 +166,8 @@ macro_rules! recorded {
 
         impl $name {
             /// The key that is written, its name, and how it is read.
-            fn entry(&self, scope: &Scope<'_>) -> Result<(&'static str, &str, Make)> {
-                scope.exactly_one([$((
+            fn entry(&self, at: &At<'_>) -> Result<(&'static str, &str, Make)> {
+                at.exactly_one([$((
                     stringify!($key),
                     self.$key.as_ref().map(|name| (stringify!($key), name.as_str(), $make as Make)),
                 ),)*])
@@ -225,30 +227,23 @@ recorded! {
 
 impl MeasuredSpec {
     /// The quantity that is written.
-    pub(in crate::files::problem) fn recorded(
-        &self,
-        system: &System,
-        scope: &Scope<'_>,
-    ) -> Result<Recorded> {
-        let (key, name, make) = self.entry(scope)?;
+    pub(in crate::files::problem) fn recorded(&self, at: &At<'_>) -> Result<Recorded> {
+        let (key, name, make) = self.entry(at)?;
+        let directed: &[&str] = &["marker", "reaction_force"];
         let beside = [
+            ("along", self.along.is_some(), "a direction", directed),
             (
-                "along",
-                self.along.is_some(),
-                &["marker", "reaction_force"][..],
+                "about",
+                self.about.is_some(),
+                "a direction",
+                &["reaction_torque"],
             ),
-            ("about", self.about.is_some(), &["reaction_torque"]),
-            ("from", self.from.is_some(), &["clearance"]),
+            ("from", self.from.is_some(), "a plane", &["clearance"]),
         ];
-        for (other, is_written, of) in beside {
+        for (other, is_written, found, of) in beside {
             if is_written && !of.contains(&key) {
-                let found = if other == "from" {
-                    "a plane"
-                } else {
-                    "a direction"
-                };
                 let expected = format!("{found} of a {:?} alone", of[0]);
-                return Err(scope.key(other).wrong(found, expected));
+                return Err(at.key(other).wrong(found, expected));
             }
         }
         make(&Named {
@@ -256,20 +251,19 @@ impl MeasuredSpec {
             along: self.along,
             about: self.about,
             from: self.from.as_ref(),
-            system,
-            place: &scope.key(key),
-            scope,
+            place: &at.key(key),
+            at,
         })
     }
 }
 
 /// The limits of a list of entries.
-pub(crate) fn limits(list: &[LimitSpec], system: &System, scope: &Scope<'_>) -> Result<Vec<Limit>> {
+pub(crate) fn limits(list: &[LimitSpec], at: &At<'_>) -> Result<Vec<Limit>> {
     let mut limits = Vec::new();
     for (index, spec) in list.iter().enumerate() {
-        let scope = scope.index(index);
-        let (key, entry) = spec.entry(&scope)?;
-        let own = entry.limits(system, &scope.key(key))?.into_iter();
+        let at = at.index(index);
+        let (entry, place) = spec.entry(&at)?;
+        let own = entry.limits(&place)?.into_iter();
         let expected = match spec.part {
             None => {
                 limits.extend(own);
@@ -283,29 +277,36 @@ pub(crate) fn limits(list: &[LimitSpec], system: &System, scope: &Scope<'_>) -> 
             Some(_) => "a part of the duration, above 0 and at most 1, the end",
         };
         let found = spec.part.unwrap_or_default().to_string();
-        return Err(scope.key("part").wrong(found, expected));
+        return Err(at.key("part").wrong(found, expected));
     }
     Ok(limits)
 }
 
 /// The costs along the motion that one entry stands for.
-pub(crate) fn track(
-    spec: &TrackSpec,
-    system: &System,
-    scope: &Scope<'_>,
-) -> Result<Vec<QuantityCost>> {
-    let (key, entry) = spec.entry(scope)?;
-    entry.costs(During::Motion, system, &scope.key(key))
+pub(crate) fn track(spec: &TrackSpec, at: &At<'_>) -> Result<Vec<QuantityCost>> {
+    costs(spec.entry(at)?, During::Motion)
 }
 
 /// The costs of the end that one entry stands for.
-pub(crate) fn at_the_end(
-    spec: &FinalSpec,
-    system: &System,
-    scope: &Scope<'_>,
-) -> Result<Vec<QuantityCost>> {
-    let (key, entry) = spec.entry(scope)?;
-    entry.costs(During::End, system, &scope.key(key))
+pub(crate) fn at_the_end(spec: &FinalSpec, at: &At<'_>) -> Result<Vec<QuantityCost>> {
+    costs(spec.entry(at)?, During::End)
+}
+
+/// The costs of an entry, whose weight is 1 where not written.
+fn costs(written: (Weighted<'_>, At<'_>), during: During) -> Result<Vec<QuantityCost>> {
+    let ((entry, weight), at) = written;
+    let weight = weight.unwrap_or(1.0);
+    if weight <= 0.0 || weight.is_nan() {
+        let place = at.key("weight");
+        return Err(place.wrong(weight.to_string(), "a positive weight"));
+    }
+    let cost = |(quantity, function)| QuantityCost {
+        quantity,
+        weight,
+        function,
+        during,
+    };
+    Ok(entry.costs(&at)?.into_iter().map(cost).collect())
 }
 
 /// Size of a measured quantity, whose kind the quantity says.

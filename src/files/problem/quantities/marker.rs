@@ -1,20 +1,17 @@
 //! Places, speeds, regions and clearances of markers in limits, costs and recordings.
 
-use crate::control::problem::{During, Limit, QuantityCost};
+use crate::control::problem::{CostFunction, Limit};
 use crate::files::json::error::Result;
-use crate::files::json::scope::Scope;
+use crate::files::json::scope::the_one;
+use crate::files::problem::at::At;
 use crate::files::problem::quantities::entry::{
-    CostEntry, LimitEntry, Named, PlaneSpec, Recorded, bounds, check_bounds, itself, limits_of,
-    square, weight,
+    Cost, CostEntry, LimitEntry, Named, PlaneSpec, Recorded, bounds, bounds_by, limits_of, square,
 };
 use crate::files::problem::quantities::joint::written_direction;
-use crate::files::problem::state::moving_marker;
-use crate::files::scene::names::names;
 use crate::files::scene::point::{CornersSpec, PartialPoint, Point, vector};
 use crate::files::signal::signal;
 use crate::files::signal::spec::SignalSpec;
 use crate::files::units::quantity::{Length, Quantity as Written, Velocity};
-use crate::model::system::System;
 use crate::model::{Quantity, Region, What};
 use schemars::JsonSchema;
 use serde::Deserialize;
@@ -154,139 +151,88 @@ pub struct ClearanceCostSpec {
 }
 
 impl LimitEntry for MarkerLimitSpec {
-    fn limits(&self, system: &System, scope: &Scope<'_>) -> Result<Vec<Limit>> {
-        let markers = names(&system.markers, |marker| &marker.name);
-        let expected = "the name of a marker";
-        let marker = scope.key("marker").find(&self.marker, &markers, expected)?;
-        let (inside, outside) = (self.inside.as_ref(), self.outside.as_ref());
-        let (written, key, bounds) = scope.exactly_one([
-            (
-                "inside",
-                inside.map(|region| (region, "inside", [f64::NEG_INFINITY, 1.0])),
-            ),
-            (
-                "outside",
-                outside.map(|region| (region, "outside", [1.0, f64::INFINITY])),
-            ),
-        ])?;
-        let region = region(written, &scope.key(key))?;
+    fn limits(&self, at: &At<'_>) -> Result<Vec<Limit>> {
+        let marker = at.key("marker").marker(&self.marker)?;
+        let (region, bounds) = the_one!(at, self;
+            "inside" inside |at, of| (region(of, at)?, [f64::NEG_INFINITY, 1.0]);
+            "outside" outside |at, of| (region(of, at)?, [1.0, f64::INFINITY]);
+        );
         Ok(limits_of([What::Region { marker, region }], bounds))
     }
 }
 
-fn region(spec: &RegionSpec, scope: &Scope<'_>) -> Result<Region> {
-    scope.exactly_one([
-        ("box", spec.cuboid.as_ref().map(|_| ())),
-        ("sphere", spec.sphere.as_ref().map(|_| ())),
-    ])?;
-    match (&spec.cuboid, &spec.sphere) {
-        (None, Some(ball)) => Ok(Region::Sphere {
-            centre: vector(&ball.centre),
-            radius: scope.key("sphere").key("radius").positive(&ball.radius)?,
-        }),
-        (Some(corners), _) => {
+fn region(spec: &RegionSpec, at: &At<'_>) -> Result<Region> {
+    the_one!(at, spec;
+        "box" cuboid |at, corners| {
             let (min, max) = (vector(&corners.min), vector(&corners.max));
             for index in 0..3 {
                 if min[index] >= max[index] {
-                    let place = scope.key("box").key("max").index(index);
+                    let place = at.key("max").index(index);
                     let expected = format!("more than {} of \"min\"", corners.min[index]);
                     return Err(place.wrong(corners.max[index].to_string(), expected));
                 }
             }
             Ok(Region::Box { min, max })
-        }
-        (None, None) => Err(scope.wrong("no region", "\"box\" or \"sphere\"")),
-    }
+        };
+        "sphere" sphere |at, ball| Ok(Region::Sphere {
+            centre: vector(&ball.centre),
+            radius: at.key("radius").positive(&ball.radius)?,
+        });
+    )
 }
 
 impl LimitEntry for MarkerSpeedLimitSpec {
     /// A lower bound of zero is none.
-    fn limits(&self, system: &System, scope: &Scope<'_>) -> Result<Vec<Limit>> {
-        let marker = moving_marker(&self.marker, system, &scope.key("marker"))?;
-        let bound = |key: &str, bound: &Option<Written<Velocity>>, absent: f64| match bound {
-            Some(bound) => scope.key(key).positive(bound),
-            None => Ok(absent),
-        };
-        let bounds = [
-            bound("min", &self.min, 0.0)?,
-            bound("max", &self.max, f64::INFINITY)?,
-        ];
-        let bounds = check_bounds(bounds, self.min.is_some() || self.max.is_some(), scope)?;
-        Ok(limits_of([What::Speed(marker)], bounds))
+    fn limits(&self, at: &At<'_>) -> Result<Vec<Limit>> {
+        let marker = at.key("marker").moving_marker(&self.marker)?;
+        let [min, max] = bounds_by([&self.min, &self.max], at, |at, speed| at.positive(speed))?;
+        Ok(limits_of([What::Speed(marker)], [min.max(0.0), max]))
     }
 }
 
 impl LimitEntry for ClearanceLimitSpec {
-    fn limits(&self, system: &System, scope: &Scope<'_>) -> Result<Vec<Limit>> {
-        let bounds = bounds([&self.min, &self.max], scope)?;
+    fn limits(&self, at: &At<'_>) -> Result<Vec<Limit>> {
+        let bounds = bounds([&self.min, &self.max], at)?;
         Ok(limits_of(
-            [clearance(&self.marker, &self.from, system, scope)?],
+            [clearance(&self.marker, &self.from, at)?],
             bounds,
         ))
     }
 }
 
-/// The distance of a marker from a plane; the scope has both.
-fn clearance(marker: &str, from: &PlaneSpec, system: &System, scope: &Scope<'_>) -> Result<What> {
-    let markers = names(&system.markers, |marker| &marker.name);
-    let place = scope.key("marker");
-    let marker = place.find(marker, &markers, "the name of a marker")?;
-    let plane = from.plane(system, &scope.key("from"))?;
+/// The distance of a marker from a plane.
+fn clearance(marker: &str, from: &PlaneSpec, at: &At<'_>) -> Result<What> {
+    let marker = at.key("marker").marker(marker)?;
+    let plane = from.plane(&at.key("from"))?;
     Ok(What::Clearance { marker, plane })
 }
 
 impl CostEntry for ClearanceCostSpec {
-    fn costs(
-        &self,
-        during: During,
-        system: &System,
-        scope: &Scope<'_>,
-    ) -> Result<Vec<QuantityCost>> {
-        let weight = weight(self.weight, scope)?;
-        let at = self.at.as_ref().map_or(0.0, Written::value);
-        let what = clearance(&self.marker, &self.from, system, scope)?;
-        Ok(vec![square(Quantity::of(what), at, weight, during)])
+    fn costs(&self, at: &At<'_>) -> Result<Vec<Cost>> {
+        let distance = self.at.as_ref().map_or(0.0, Written::value);
+        let what = clearance(&self.marker, &self.from, at)?;
+        Ok(vec![square(Quantity::of(what), distance)])
     }
 }
 
 impl CostEntry for MarkerSpeedCostSpec {
-    fn costs(
-        &self,
-        during: During,
-        system: &System,
-        scope: &Scope<'_>,
-    ) -> Result<Vec<QuantityCost>> {
-        let weight = weight(self.weight, scope)?;
-        let marker = moving_marker(&self.marker, system, &scope.key("marker"))?;
-        Ok(vec![itself(
-            Quantity::squared_speed(marker),
-            weight,
-            during,
-        )])
+    fn costs(&self, at: &At<'_>) -> Result<Vec<Cost>> {
+        let marker = at.key("marker").moving_marker(&self.marker)?;
+        let speed = Quantity::squared_speed(marker);
+        Ok(vec![(speed, CostFunction::Itself)])
     }
 }
 
 impl CostEntry for TrackMarkerSpec {
-    fn costs(
-        &self,
-        during: During,
-        system: &System,
-        scope: &Scope<'_>,
-    ) -> Result<Vec<QuantityCost>> {
-        let marker = moving_marker(&self.marker, system, &scope.key("marker"))?;
-        let weight = weight(self.weight, scope)?;
-        let place = scope.key("along");
-        let axes = [
-            ("x", &self.along.x),
-            ("y", &self.along.y),
-            ("z", &self.along.z),
-        ];
+    fn costs(&self, at: &At<'_>) -> Result<Vec<Cost>> {
+        let marker = at.key("marker").moving_marker(&self.marker)?;
+        let place = at.key("along");
+        let PathSpec { x, y, z } = &self.along;
         let mut costs = Vec::new();
-        for (axis, (key, along)) in axes.into_iter().enumerate() {
+        for (axis, (key, along)) in [("x", x), ("y", y), ("z", z)].into_iter().enumerate() {
             if let Some(along) = along {
                 let reference = signal(along, &Length::kind(), &place.key(key))?;
-                let quantity = Quantity::marker_place(marker, axis);
-                costs.push(square(quantity, reference, weight, during));
+                costs.push(square(Quantity::marker_place(marker, axis), reference));
             }
         }
         match costs.is_empty() {
@@ -297,24 +243,18 @@ impl CostEntry for TrackMarkerSpec {
 }
 
 impl CostEntry for FinalMarkerSpec {
-    fn costs(
-        &self,
-        during: During,
-        system: &System,
-        scope: &Scope<'_>,
-    ) -> Result<Vec<QuantityCost>> {
-        let marker = moving_marker(&self.marker, system, &scope.key("marker"))?;
-        let weight = weight(self.weight, scope)?;
+    fn costs(&self, at: &At<'_>) -> Result<Vec<Cost>> {
+        let marker = at.key("marker").moving_marker(&self.marker)?;
         let given = self.at.iter().enumerate();
-        let given = given.filter_map(|(axis, at)| Some((axis, at.as_ref()?.value())));
-        let cost = |(axis, at): (usize, f64)| {
-            square(Quantity::marker_place(marker, axis), at, weight, during)
+        let cost = |(axis, place): (usize, &Option<Written<Length>>)| {
+            let quantity = Quantity::marker_place(marker, axis);
+            Some(square(quantity, place.as_ref()?.value()))
         };
-        let costs: Vec<QuantityCost> = given.map(cost).collect();
+        let costs: Vec<Cost> = given.filter_map(cost).collect();
         match costs.is_empty() {
             true => {
                 let expected = "one that is not null, or more";
-                Err(scope.key("at").wrong("no coordinate", expected))
+                Err(at.key("at").wrong("no coordinate", expected))
             }
             false => Ok(costs),
         }
@@ -322,8 +262,8 @@ impl CostEntry for FinalMarkerSpec {
 }
 
 pub(super) fn place(of: &Named<'_>) -> Result<Recorded> {
-    let marker = moving_marker(of.name, of.system, of.place)?;
-    let along = written_direction(of.along, &of.scope.key("along"))?;
+    let marker = of.place.moving_marker(of.name)?;
+    let along = written_direction(of.along, &of.at.key("along"))?;
     let part = |(axis, a): (usize, &f64)| (*a, Quantity::marker_place(marker, axis));
     let along = along.iter().enumerate().filter(|(_, a)| **a != 0.0);
     Ok(Recorded {
@@ -336,16 +276,13 @@ pub(super) fn place(of: &Named<'_>) -> Result<Recorded> {
 }
 
 pub(super) fn distance(of: &Named<'_>) -> Result<Recorded> {
-    let marker = moving_marker(of.name, of.system, of.place)?;
-    let Some(from) = of.from else {
-        let place = of.scope.key("from");
-        return Err(place.wrong(
-            "no plane",
-            "a plane: \"point\" and \"normal\", of a \"body\" or the ground",
-        ));
+    let marker = of.place.moving_marker(of.name)?;
+    let place = of.at.key("from");
+    let missing = || {
+        let expected = "a plane: \"point\" and \"normal\", of a \"body\" or the ground";
+        place.wrong("no plane", expected)
     };
-    let plane = from.plane(of.system, &of.scope.key("from"))?;
+    let plane = of.from.ok_or_else(missing)?.plane(&place)?;
     let quantity = Quantity::of(What::Clearance { marker, plane });
-    let unit = (Length::kind(), ("m", 1e-3));
-    Ok(Recorded::named("clearance", of.name, quantity, unit))
+    Ok(of.recorded("clearance", quantity, (Length::kind(), ("m", 1e-3))))
 }

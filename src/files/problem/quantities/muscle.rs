@@ -1,17 +1,15 @@
 //! Stretches, tensions, fields and amounts of muscles in limits, costs and recordings.
 
-use crate::control::problem::{During, Limit, QuantityCost};
+use crate::control::problem::{CostFunction, During, Limit, QuantityCost};
 use crate::files::json::error::Result;
 use crate::files::json::scope::Scope;
+use crate::files::problem::at::{At, ELECTRIC_KEYS};
 use crate::files::problem::quantities::entry::{
-    All, CostEntry, LimitEntry, Named, Recorded, bounds, check_bounds, itself, limits_of, square,
-    weight,
+    All, Cost, CostEntry, LimitEntry, Named, Recorded, bounds, bounds_by, limits_of, squares,
 };
-use crate::files::problem::state::ELECTRIC_KEYS;
-use crate::files::scene::names::names;
 use crate::files::units::quantity::{ElectricField, Force, Mass, Quantity as Written, Volume};
-use crate::model::system::{Fidelity, System};
-use crate::model::{Amount, FieldPlace, PartKind, Pulling, Quantity, What};
+use crate::model::system::Fidelity;
+use crate::model::{Amount, FieldPlace, Pulling, Quantity, What};
 use schemars::JsonSchema;
 use serde::Deserialize;
 
@@ -104,9 +102,9 @@ macro_rules! amount_limits {
             }
 
             impl LimitEntry for $name {
-                fn limits(&self, system: &System, scope: &Scope<'_>) -> Result<Vec<Limit>> {
-                    let bounds = bounds([&self.min, &self.max], scope)?;
-                    amount(&self.muscles, Amount::$measure, bounds, system, scope)
+                fn limits(&self, at: &At<'_>) -> Result<Vec<Limit>> {
+                    let bounds = bounds([&self.min, &self.max], at)?;
+                    amount_limits(&self.muscles, Amount::$measure, bounds, at)
                 }
 
                 fn is_timeless(&self) -> bool {
@@ -160,89 +158,69 @@ pub struct FieldCostSpec {
 
 const EXPECTED: &str = "a lumped muscle";
 
+/// Places of the lumped muscles in the list of all.
+fn lumped(at: &At<'_>) -> Vec<usize> {
+    let is_lumped = |&m: &usize| at.system.muscles[m].fidelity == Fidelity::Lumped;
+    (0..at.system.muscles.len()).filter(is_lumped).collect()
+}
+
+/// The lumped muscle of a name that stands here.
+fn lumped_muscle(name: &str, at: &At<'_>) -> Result<usize> {
+    let muscle = at.muscle(name)?;
+    match at.system.muscles[muscle].fidelity {
+        Fidelity::Lumped => Ok(muscle),
+        Fidelity::FiniteElements(_) => {
+            Err(at.wrong(format!("{name:?}, a muscle of finite elements"), EXPECTED))
+        }
+    }
+}
+
 /// One lumped muscle, or all.
 fn lumped_muscles(
     muscle: &Option<String>,
     muscles: Option<All>,
-    system: &System,
-    scope: &Scope<'_>,
+    at: &At<'_>,
 ) -> Result<Vec<usize>> {
-    let is_lumped = |&m: &usize| system.muscles[m].fidelity == Fidelity::Lumped;
     let one = muscle.as_ref().map(Some);
-    let chosen = [("muscle", one), ("muscles", muscles.map(|_| None))];
-    let muscles: Vec<usize> = match scope.exactly_one(chosen)? {
-        None => (0..system.muscles.len()).filter(is_lumped).collect(),
-        Some(name) => {
-            let (place, names) = (scope.key("muscle"), names(&system.muscles, |m| &m.name));
-            let muscle = place.find(name, &names, "the name of a muscle")?;
-            if !is_lumped(&muscle) {
-                let found = format!("{name:?}, a muscle of finite elements");
-                return Err(place.wrong(found, EXPECTED));
-            }
-            vec![muscle]
-        }
+    let muscles = match at.exactly_one([("muscle", one), ("muscles", muscles.map(|_| None))])? {
+        None => lumped(at),
+        Some(name) => vec![lumped_muscle(name, &at.key("muscle"))?],
     };
     match muscles.is_empty() {
-        true => Err(scope.key("muscles").wrong("no lumped muscle", EXPECTED)),
+        true => Err(at.key("muscles").wrong("no lumped muscle", EXPECTED)),
         false => Ok(muscles),
     }
 }
 
-/// The lumped muscles, the spring or the tendon of an entry.
-fn pulling(
-    muscles: (&Option<String>, Option<All>),
-    others: [&Option<String>; 2],
-    system: &System,
-    scope: &Scope<'_>,
-) -> Result<Vec<Pulling>> {
-    let is_written = |of: &Option<String>| of.as_ref().map(|_| ());
-    scope.exactly_one([
-        ("muscle", is_written(muscles.0)),
-        ("muscles", muscles.1.map(|_| ())),
-        ("spring", is_written(others[0])),
-        ("tendon", is_written(others[1])),
-    ])?;
-    let kinds = [
-        (
-            "spring",
-            PartKind::Spring,
-            Pulling::Spring as fn(usize) -> Pulling,
-        ),
-        ("tendon", PartKind::Tendon, Pulling::Tendon),
-    ];
-    for ((key, kind, part), name) in kinds.into_iter().zip(others) {
-        if let Some(name) = name {
-            let expected = format!("the name of a {key}");
-            let index = scope.key(key).find(name, &kind.names(system), &expected)?;
-            return Ok(vec![part(index)]);
-        }
-    }
-    let muscles = lumped_muscles(muscles.0, muscles.1, system, scope)?;
-    Ok(muscles.into_iter().map(Pulling::Muscle).collect())
-}
-
 impl LimitEntry for StretchLimitSpec {
-    fn limits(&self, system: &System, scope: &Scope<'_>) -> Result<Vec<Limit>> {
-        let muscles = names(&system.muscles, |muscle| &muscle.name);
-        let expected = "the name of a muscle";
-        let muscle = scope.key("muscle").find(&self.muscle, &muscles, expected)?;
-        for (key, bound) in [("min", self.min), ("max", self.max)] {
-            if let Some(bound) = bound.filter(|bound| *bound <= 0.0) {
-                let place = scope.key(key);
-                return Err(place.wrong(bound.to_string(), "a positive stretch"));
-            }
-        }
-        let bounds = [self.min.unwrap_or(0.0), self.max.unwrap_or(f64::INFINITY)];
-        let bounds = check_bounds(bounds, self.min.is_some() || self.max.is_some(), scope)?;
-        Ok(limits_of([What::Stretch(muscle)], bounds))
+    fn limits(&self, at: &At<'_>) -> Result<Vec<Limit>> {
+        let muscle = at.key("muscle").muscle(&self.muscle)?;
+        let [min, max] = bounds_by([&self.min, &self.max], at, |at, &bound| match bound > 0.0 {
+            true => Ok(bound),
+            false => Err(at.wrong(bound.to_string(), "a positive stretch")),
+        })?;
+        Ok(limits_of([What::Stretch(muscle)], [min.max(0.0), max]))
     }
 }
 
 impl LimitEntry for TensionLimitSpec {
-    fn limits(&self, system: &System, scope: &Scope<'_>) -> Result<Vec<Limit>> {
-        let bounds = bounds([&self.min, &self.max], scope)?;
-        let muscles = (&self.muscle, self.muscles);
-        let parts = pulling(muscles, [&self.spring, &self.tendon], system, scope)?;
+    fn limits(&self, at: &At<'_>) -> Result<Vec<Limit>> {
+        let bounds = bounds([&self.min, &self.max], at)?;
+        let key = at.one_key([
+            ("muscle", self.muscle.is_some()),
+            ("muscles", self.muscles.is_some()),
+            ("spring", self.spring.is_some()),
+            ("tendon", self.tendon.is_some()),
+        ])?;
+        let place = at.key(key);
+        let parts = match (&self.spring, &self.tendon) {
+            (Some(name), _) => vec![Pulling::Spring(place.spring(name)?)],
+            (None, Some(name)) => vec![Pulling::Tendon(place.tendon(name)?)],
+            (None, None) => {
+                let muscles = lumped_muscles(&self.muscle, self.muscles, at)?;
+                muscles.into_iter().map(Pulling::Muscle).collect()
+            }
+        };
         Ok(limits_of(parts.into_iter().map(What::Tension), bounds))
     }
 }
@@ -251,71 +229,69 @@ impl LimitEntry for TensionLimitSpec {
 const NOTHING: &str = "nothing that a field reaches";
 
 impl LimitEntry for ElectricFieldLimitSpec {
-    fn limits(&self, system: &System, scope: &Scope<'_>) -> Result<Vec<Limit>> {
-        let max = scope.key("max").positive(&self.max)?;
-        let one = |name: &Option<String>| name.clone().map(Some);
-        let all = |all: Option<All>| all.map(|_| None);
-        let chosen = [
-            ("muscle", one(&self.muscle)),
-            ("muscles", all(self.muscles)),
-            ("solid", one(&self.solid)),
-            ("solids", all(self.solids)),
-        ];
-        let key = chosen.iter().find(|(_, choice)| choice.is_some());
-        let key = key.map_or("", |(key, _)| key);
-        let name = scope.exactly_one(chosen)?;
-        let place = scope.key(key);
+    fn limits(&self, at: &At<'_>) -> Result<Vec<Limit>> {
+        let max = at.key("max").positive(&self.max)?;
+        let key = at.one_key([
+            ("muscle", self.muscle.is_some()),
+            ("muscles", self.muscles.is_some()),
+            ("solid", self.solid.is_some()),
+            ("solids", self.solids.is_some()),
+        ])?;
         if self.region.is_some() && key != "solid" {
             let found = "a region without \"solid\"";
-            return Err(scope.key("region").wrong(found, "a region of one block"));
+            return Err(at.key("region").wrong(found, "a region of one block"));
         }
-        let nothing = |expected: String| place.wrong(NOTHING, expected);
-        if key.starts_with("muscle") {
-            return muscle_fields(name.as_ref(), max, system, &place);
-        }
-        let (blocks, region) = match &name {
-            None => ((0..system.solids.len()).collect(), None),
-            Some(name) => {
-                let names = names(&system.solids, |solid| &solid.name);
-                let block = place.find(name, &names, "the name of an elastic block")?;
-                let regions = &system.solids[block].mesh.region_names;
-                let of = scope.key("region");
+        let place = at.key(key);
+        let fields = match (key, &self.solid) {
+            ("muscle" | "muscles", _) => muscle_fields(self.muscle.as_ref(), &place)?,
+            (_, Some(name)) => {
+                let block = place.solid(name)?;
+                let regions = &at.system.solids[block].mesh.region_names;
+                let of = at.key("region");
                 let region = self.region.as_ref();
                 let region = region.map(|name| of.find(name, regions, "the name of a region"));
-                (vec![block], region.transpose()?)
+                block_fields(vec![block], region.transpose()?, &place)?
             }
+            (_, None) => block_fields((0..at.system.solids.len()).collect(), None, &place)?,
         };
-        let has_field = |&block: &usize| {
-            let solid = &system.solids[block];
-            let mut elements = solid
-                .mesh
-                .regions
-                .iter()
-                .zip(system.elements_with_field(block));
-            elements.any(|(of, has_field)| has_field && region.is_none_or(|region| *of == region))
-        };
-        let blocks: Vec<usize> = blocks.into_iter().filter(has_field).collect();
-        if blocks.is_empty() {
-            let expected = format!("elements of {ELECTRIC_KEYS} between electrodes");
-            return Err(nothing(expected));
-        }
-        let limit = |block| Limit::below(What::Field(FieldPlace::Block { block, region }), max);
-        Ok(blocks.into_iter().map(limit).collect())
+        let limit = |field| Limit::below(What::Field(field), max);
+        Ok(fields.into_iter().map(limit).collect())
     }
 }
 
-/// Limits of the fields of one muscle, or of all.
-fn muscle_fields(
-    name: Option<&String>,
-    max: f64,
-    system: &System,
-    place: &Scope<'_>,
-) -> Result<Vec<Limit>> {
-    let muscles = match name {
-        Some(name) => vec![muscle_with_field(name, system, place)?],
-        None => (0..system.muscles.len())
-            .filter(|&muscle| system.muscles[muscle].material.electric.is_some())
-            .collect(),
+/// The fields of some blocks, or of a region of one.
+fn block_fields(
+    mut blocks: Vec<usize>,
+    region: Option<usize>,
+    at: &At<'_>,
+) -> Result<Vec<FieldPlace>> {
+    blocks.retain(|&block| {
+        let regions = at.system.solids[block].mesh.regions.iter();
+        let mut elements = regions.zip(at.system.elements_with_field(block));
+        elements.any(|(of, has_field)| has_field && region.is_none_or(|region| *of == region))
+    });
+    if blocks.is_empty() {
+        let expected = format!("elements of {ELECTRIC_KEYS} between electrodes");
+        return Err(at.wrong(NOTHING, expected));
+    }
+    let field = |block| FieldPlace::Block { block, region };
+    Ok(blocks.into_iter().map(field).collect())
+}
+
+/// The fields of one muscle, or of all.
+fn muscle_fields(name: Option<&String>, at: &At<'_>) -> Result<Vec<FieldPlace>> {
+    let system = at.system;
+    let has_field = |&muscle: &usize| system.muscles[muscle].material.electric.is_some();
+    let muscles: Vec<usize> = match name {
+        Some(name) => {
+            let muscle = at.muscle(name)?;
+            if !has_field(&muscle) {
+                let found = format!("{name:?}, whose material has no electric term");
+                return Err(at.wrong(found, format!("a muscle of {ELECTRIC_KEYS}")));
+            }
+            vec![muscle]
+        }
+        None => (0..system.muscles.len()).filter(has_field).collect(),
     };
     if muscles.is_empty() {
         let beside = match system.solids.is_empty() {
@@ -323,7 +299,7 @@ fn muscle_fields(
             false => "; the field of elastic blocks is limited by \"solid\" or \"solids\"",
         };
         let expected = format!("a muscle of {ELECTRIC_KEYS}{beside}");
-        return Err(place.wrong(NOTHING, expected));
+        return Err(at.wrong(NOTHING, expected));
     }
     let place = |muscle| match system.meshed_muscles().position(|m| m == muscle) {
         None => FieldPlace::Muscle(muscle),
@@ -332,47 +308,26 @@ fn muscle_fields(
             region: None,
         },
     };
-    let limit = |muscle| Limit::below(What::Field(place(muscle)), max);
-    Ok(muscles.into_iter().map(limit).collect())
-}
-
-/// Index of a muscle with an electric term.
-fn muscle_with_field(name: &str, system: &System, scope: &Scope<'_>) -> Result<usize> {
-    let muscles = names(&system.muscles, |muscle| &muscle.name);
-    let index = scope.find(name, &muscles, "the name of a muscle")?;
-    if system.muscles[index].material.electric.is_some() {
-        return Ok(index);
-    }
-    let found = format!("{name:?}, whose material has no electric term");
-    Err(scope.wrong(found, format!("a muscle of {ELECTRIC_KEYS}")))
+    Ok(muscles.into_iter().map(place).collect())
 }
 
 impl CostEntry for TensionCostSpec {
-    fn costs(
-        &self,
-        during: During,
-        system: &System,
-        scope: &Scope<'_>,
-    ) -> Result<Vec<QuantityCost>> {
-        let weight = weight(self.weight, scope)?;
-        let at = self.at.as_ref().map_or(0.0, Written::value);
-        let muscles = lumped_muscles(&self.muscle, self.muscles, system, scope)?;
+    fn costs(&self, at: &At<'_>) -> Result<Vec<Cost>> {
+        let muscles = lumped_muscles(&self.muscle, self.muscles, at)?;
         let tension = |muscle| Quantity::tension(Pulling::Muscle(muscle));
-        let cost = |muscle| square(tension(muscle), at, weight, during);
-        Ok(muscles.into_iter().map(cost).collect())
+        Ok(squares(
+            muscles,
+            tension,
+            self.at.as_ref().map(Written::value),
+        ))
     }
 }
 
 impl CostEntry for FieldCostSpec {
-    fn costs(
-        &self,
-        during: During,
-        system: &System,
-        scope: &Scope<'_>,
-    ) -> Result<Vec<QuantityCost>> {
-        let weight = weight(self.weight, scope)?;
-        let mut muscles = lumped_muscles(&self.muscle, self.muscles, system, scope)?;
-        muscles.retain(|&muscle| system.muscles[muscle].material.electric.is_some());
+    fn costs(&self, at: &At<'_>) -> Result<Vec<Cost>> {
+        let of_system = &at.system.muscles;
+        let mut muscles = lumped_muscles(&self.muscle, self.muscles, at)?;
+        muscles.retain(|&muscle| of_system[muscle].material.electric.is_some());
         if muscles.is_empty() {
             let (key, found) = match &self.muscle {
                 Some(name) => (
@@ -382,12 +337,13 @@ impl CostEntry for FieldCostSpec {
                 None => ("muscles", NOTHING.to_owned()),
             };
             let expected = format!("a muscle of {ELECTRIC_KEYS}");
-            return Err(scope.key(key).wrong(found, expected));
+            return Err(at.key(key).wrong(found, expected));
         }
-        let field = |muscle: usize| {
-            Quantity::squared_field(muscle, system.muscles[muscle].is_behind_resistor())
+        let cost = |muscle: usize| {
+            let is_behind = of_system[muscle].is_behind_resistor();
+            let field = Quantity::squared_field(muscle, is_behind);
+            (field, CostFunction::Itself)
         };
-        let cost = |muscle| itself(field(muscle), weight, during);
         Ok(muscles.into_iter().map(cost).collect())
     }
 }
@@ -395,7 +351,7 @@ impl CostEntry for FieldCostSpec {
 /// Force with which a muscle, a spring or a tendon pulls its ends together.
 pub(super) fn tension(of: &Named<'_>) -> Result<Recorded> {
     const EXPECTED: &str = "the name of a lumped muscle, a spring or a tendon";
-    let (system, name) = (of.system, of.name);
+    let (system, name) = (of.at.system, of.name);
     let components = &system.components;
     let muscles = system.muscles.iter().enumerate().map(|(m, muscle)| {
         let is_meshed = muscle.fidelity != Fidelity::Lumped;
@@ -416,29 +372,23 @@ pub(super) fn tension(of: &Named<'_>) -> Result<Recorded> {
         return Err(of.place.wrong(format!("{name:?}, {without}"), EXPECTED));
     }
     let unit = (Force::kind(), ("N", 1.0));
-    Ok(Recorded::named(
-        "tension",
-        name,
-        Quantity::tension(part),
-        unit,
-    ))
+    Ok(of.recorded("tension", Quantity::tension(part), unit))
 }
 
 /// Limits of an amount of muscles.
-fn amount(
+fn amount_limits(
     named: &Option<Vec<String>>,
     amount: Amount,
     bounds: [f64; 2],
-    system: &System,
-    scope: &Scope<'_>,
+    at: &At<'_>,
 ) -> Result<Vec<Limit>> {
     if bounds[1] <= 0.0 {
-        let place = scope.key("max");
+        let place = at.key("max");
         return Err(place.wrong("no more than zero", "a positive bound"));
     }
     let muscles = match named {
-        None => lumped(amount, system, scope)?,
-        Some(list) => by_names(list, amount, system, &scope.key("muscles"))?,
+        None => all_with(amount, at)?,
+        Some(list) => by_names(list, amount, &at.key("muscles"))?,
     };
     let muscles = muscles.into();
     Ok(limits_of([What::Amount { muscles, amount }], bounds))
@@ -447,35 +397,37 @@ fn amount(
 /// The costs of the amounts of all lumped muscles that have a weight.
 pub(in crate::files::problem) fn amount_costs(
     [volume, mass]: [f64; 2],
-    system: &System,
-    scope: &Scope<'_>,
+    at: &At<'_>,
 ) -> Result<Vec<QuantityCost>> {
     let weights = [
         ("muscle_volume", Amount::Volume, volume),
         ("muscle_mass", Amount::Mass, mass),
     ];
     let cost = |(key, amount, weight): (&str, Amount, f64)| {
-        let muscles = lumped(amount, system, &scope.key(key))?.into();
-        let quantity = Quantity::of(What::Amount { muscles, amount }).in_unit(amount.unit().1);
-        Ok(itself(quantity, weight, During::End))
+        let muscles = all_with(amount, &at.key(key))?.into();
+        Ok(QuantityCost {
+            quantity: Quantity::of(What::Amount { muscles, amount }).in_unit(amount.unit().1),
+            weight,
+            function: CostFunction::Itself,
+            during: During::End,
+        })
     };
     let weighted = weights.into_iter().filter(|(.., weight)| *weight > 0.0);
     weighted.map(cost).collect()
 }
 
 /// True if a muscle has the amount.
-fn has(amount: Amount, system: &System, muscle: usize) -> bool {
-    amount == Amount::Volume || system.muscles[muscle].mass().is_some()
+fn has(amount: Amount, muscle: usize, at: &At<'_>) -> bool {
+    amount == Amount::Volume || at.system.muscles[muscle].mass().is_some()
 }
 
 /// All lumped muscles, of which one at least has the amount.
-fn lumped(amount: Amount, system: &System, scope: &Scope<'_>) -> Result<Vec<usize>> {
-    let is_lumped = |&m: &usize| system.muscles[m].fidelity == Fidelity::Lumped;
-    let muscles: Vec<usize> = (0..system.muscles.len()).filter(is_lumped).collect();
-    match muscles.iter().any(|&m| has(amount, system, m)) {
+fn all_with(amount: Amount, at: &At<'_>) -> Result<Vec<usize>> {
+    let muscles = lumped(at);
+    match muscles.iter().any(|&m| has(amount, m, at)) {
         true => Ok(muscles),
-        false if muscles.is_empty() => Err(scope.wrong("no lumped muscle", EXPECTED)),
-        false => Err(scope.wrong(
+        false if muscles.is_empty() => Err(at.wrong("no lumped muscle", EXPECTED)),
+        false => Err(at.wrong(
             "muscles without a density",
             "a \"density\" of the material of a lumped muscle",
         )),
@@ -483,24 +435,15 @@ fn lumped(amount: Amount, system: &System, scope: &Scope<'_>) -> Result<Vec<usiz
 }
 
 /// Lumped muscles by their names.
-fn by_names(
-    list: &[String],
-    amount: Amount,
-    system: &System,
-    scope: &Scope<'_>,
-) -> Result<Vec<usize>> {
+fn by_names(list: &[String], amount: Amount, at: &At<'_>) -> Result<Vec<usize>> {
     if list.is_empty() {
-        return Err(scope.wrong("no muscle", EXPECTED));
+        return Err(at.wrong("no muscle", EXPECTED));
     }
-    scope.unique(list, &[], |index| scope.index(index))?;
-    let names = names(&system.muscles, |muscle| &muscle.name);
+    at.unique(list, &[], |index| Scope::index(at, index))?;
     let muscle = |(index, name): (usize, &String)| {
-        let place = scope.index(index);
-        let muscle = place.find(name, &names, "the name of a muscle")?;
-        if system.muscles[muscle].fidelity != Fidelity::Lumped {
-            return Err(place.wrong(format!("{name:?}, a muscle of finite elements"), EXPECTED));
-        }
-        match has(amount, system, muscle) {
+        let place = at.index(index);
+        let muscle = lumped_muscle(name, &place)?;
+        match has(amount, muscle, at) {
             true => Ok(muscle),
             false => {
                 let found = format!("{name:?}, whose material has no density");

@@ -1,23 +1,22 @@
 //! Voltages, charges, currents and powers of sources in limits, costs and recordings.
 
-use crate::control::problem::{During, Limit, QuantityCost};
+use crate::control::problem::Limit;
 use crate::files::json::error::Result;
-use crate::files::json::scope::Scope;
+use crate::files::problem::at::{At, SiUnit};
 use crate::files::problem::quantities::entry::{
-    All, CostEntry, LimitEntry, Named, Recorded, bounds, limits_of, square, weight,
+    All, Cost, CostEntry, LimitEntry, Named, Recorded, bounds, squares,
 };
-use crate::files::problem::state::driven;
 use crate::files::units::quantity::{
-    Charge, Current, Power, Quantity as Written, Voltage, VoltageRate,
+    Charge, Current, Kind, Power, Quantity as Written, Voltage, VoltageRate,
 };
-use crate::model::system::{Fidelity, Muscle, Source, System};
+use crate::model::system::{Fidelity, Muscle};
 use crate::model::{MILLIAMPERE, Quantity, What};
 use schemars::JsonSchema;
 use serde::Deserialize;
 
 /// Declares limits of one source (`"source": name`) or all (`"sources": "all"`): `min`, `max` or both.
 macro_rules! source_limits {
-    ($($(#[$about:meta])* $name:ident: $measure:ident, $unit:literal, $limits:expr;)*) => {
+    ($($(#[$about:meta])* $name:ident: $measure:ident, $unit:literal, $chosen:ident, $limit:expr;)*) => {
         $(
             $(#[$about])*
             #[derive(Clone, Debug, Deserialize, JsonSchema)]
@@ -38,10 +37,11 @@ macro_rules! source_limits {
             }
 
             impl LimitEntry for $name {
-                fn limits(&self, system: &System, scope: &Scope<'_>) -> Result<Vec<Limit>> {
-                    let bounds = bounds([&self.min, &self.max], scope)?;
-                    let chosen = Chosen { one: &self.source, all: self.sources };
-                    $limits(chosen, bounds, system, scope)
+                fn limits(&self, at: &At<'_>) -> Result<Vec<Limit>> {
+                    let bounds = bounds([&self.min, &self.max], at)?;
+                    let limit: fn(usize, [f64; 2]) -> Limit = $limit;
+                    let (sources, _) = $chosen(&self.source, self.sources, at)?;
+                    Ok(sources.into_iter().map(|source| limit(source, bounds)).collect())
                 }
             }
         )*
@@ -53,22 +53,16 @@ source_limits! {
     ///
     /// Behind a resistor it is the mean current in each interval. Otherwise it is the charge that flows from the middle of an interval to that
     /// of the next one, where the voltage jumps too; from and to states of rest that are known it is that of half an interval.
-    CurrentLimitSpec: Current, "A", |chosen, bounds, system, scope| {
-        let sources = measured(&chosen, system, scope)?;
-        Ok(limits_of(sources.into_iter().map(What::Current), bounds))
-    };
+    CurrentLimitSpec: Current, "A", measured, |source, bounds| Limit::new(What::Current(source), bounds);
     /// Limits of the power of one source (`"source": name`) or each (`"sources": "all"`) of lumped muscles: `min`, `max` or both, at the
     /// times of a current.
     ///
     /// Without a resistor it is that of the stored energy and of the work on the motion, as in the table; losses of charging in steps do not
     /// count.
-    PowerLimitSpec: Power, "W", |chosen, bounds, system, scope| {
-        let sources = measured(&chosen, system, scope)?;
-        Ok(limits_of(sources.into_iter().map(What::Power), bounds))
-    };
+    PowerLimitSpec: Power, "W", measured, |source, bounds| Limit::new(What::Power(source), bounds);
     /// Limits of the rate of the voltage of one source (`"source": name`) or each (`"sources": "all"`) from interval to interval: `min`,
     /// `max` or both.
-    VoltageRateLimitSpec: VoltageRate, "V/s", rates;
+    VoltageRateLimitSpec: VoltageRate, "V/s", any, |source, bounds| Limit::of_rate(What::Voltage(source), bounds);
 }
 
 /// The current of one source (`"source": name`) or of each (`"sources": "all"`) of lumped muscles behind a resistor.
@@ -107,121 +101,85 @@ pub struct PowerCostSpec {
     pub weight: Option<f64>,
 }
 
-/// Sources of which an entry speaks.
-struct Chosen<'s> {
-    one: &'s Option<String>,
-    all: Option<All>,
-}
-
-impl Chosen<'_> {
-    /// One source, or all that take a voltage, with the place where they are chosen.
-    fn sources<'s>(
-        &self,
-        sources: &[Source],
-        scope: &Scope<'s>,
-    ) -> Result<(Vec<usize>, Scope<'s>)> {
-        let one = self.one.as_ref().map(Some);
-        match scope.exactly_one([("source", one), ("sources", self.all.map(|_| None))])? {
-            Some(name) => {
-                let place = scope.key("source");
-                Ok((vec![driven(name, sources, &place)?], place))
-            }
-            None => {
-                let takes = |&s: &usize| sources[s].takes_voltage;
-                let all = (0..sources.len()).filter(takes);
-                Ok((all.collect(), scope.key("sources")))
-            }
+/// One source, or all that take a voltage, with the place where they are chosen.
+fn chosen<'s>(one: &Option<String>, all: Option<All>, at: &At<'s>) -> Result<(Vec<usize>, At<'s>)> {
+    let one = one.as_ref().map(Some);
+    match at.exactly_one([("source", one), ("sources", all.map(|_| None))])? {
+        Some(name) => {
+            let place = at.key("source");
+            Ok((vec![place.driven(name)?], place))
+        }
+        None => {
+            let takes = |&s: &usize| at.sources[s].takes_voltage;
+            let all = (0..at.sources.len()).filter(takes);
+            Ok((all.collect(), at.key("sources")))
         }
     }
 }
 
-/// Limits of the rates of voltages.
-fn rates(
-    chosen: Chosen<'_>,
-    bounds: [f64; 2],
-    system: &System,
-    scope: &Scope<'_>,
-) -> Result<Vec<Limit>> {
-    let (sources, place) = chosen.sources(&system.sources(), scope)?;
-    if sources.is_empty() {
-        return Err(place.wrong("no source", "a source of a voltage"));
+/// Sources of which there is one at least.
+fn any<'s>(one: &Option<String>, all: Option<All>, at: &At<'s>) -> Result<(Vec<usize>, At<'s>)> {
+    let (sources, place) = chosen(one, all, at)?;
+    match sources.is_empty() {
+        true => Err(place.wrong("no source", "a source of a voltage")),
+        false => Ok((sources, place)),
     }
-    let limit = |source| Limit::of_rate(What::Voltage(source), bounds);
-    Ok(sources.into_iter().map(limit).collect())
 }
 
 /// Muscles of whose sources current and power are known: all of them without such a muscle is none.
-fn measured(of: &Chosen<'_>, system: &System, scope: &Scope<'_>) -> Result<Vec<usize>> {
+fn measured<'s>(
+    one: &Option<String>,
+    all: Option<All>,
+    at: &At<'s>,
+) -> Result<(Vec<usize>, At<'s>)> {
     const EXPECTED: &str = "sources of lumped muscles with a permittivity: without a \"circuit\", or with a \"resistance\" in it";
-    let sources = system.sources();
-    let (chosen, place) = of.sources(&sources, scope)?;
-    let obstacle = |s: usize| match system.muscles.get(s) {
+    let (chosen, place) = chosen(one, all, at)?;
+    let obstacle = |s: usize| match at.system.muscles.get(s) {
         Some(muscle) if muscle.has_measured_current() => None,
         Some(muscle) if muscle.circuit.is_some() => Some("which leaks and has no resistor"),
         Some(_) => Some("a muscle of finite elements"),
         None => Some("which drives finite elements"),
     };
     if let Some((source, why)) = chosen.iter().find_map(|&s| Some((s, obstacle(s)?))) {
-        let found = format!("{:?}, {why}", sources[source].name);
+        let found = format!("{:?}, {why}", at.sources[source].name);
         return Err(place.wrong(found, EXPECTED));
     }
     match chosen.is_empty() {
         true => Err(place.wrong("no source", EXPECTED)),
-        false => Ok(chosen),
+        false => Ok((chosen, place)),
     }
 }
 
 /// Muscles whose sources are behind a resistor.
-fn behind_resistors(of: &Chosen<'_>, system: &System, scope: &Scope<'_>) -> Result<Vec<usize>> {
-    let key = if of.one.is_some() {
-        "source"
-    } else {
-        "sources"
-    };
-    let muscles = measured(of, system, scope)?;
-    let jumps = |&&muscle: &&usize| !Muscle::is_behind_resistor(&system.muscles[muscle]);
+fn behind_resistors(one: &Option<String>, all: Option<All>, at: &At<'_>) -> Result<Vec<usize>> {
+    let (muscles, place) = measured(one, all, at)?;
+    let of_system = &at.system.muscles;
+    let jumps = |&&muscle: &&usize| !Muscle::is_behind_resistor(&of_system[muscle]);
     match muscles.iter().find(jumps) {
         None => Ok(muscles),
         Some(&muscle) => {
-            let name = &system.muscles[muscle].name;
+            let name = &of_system[muscle].name;
             let found =
                 format!("{name:?}, without a resistor: its voltage jumps between intervals");
             let expected = "a muscle with a \"resistance\" in its \"circuit\"; otherwise \"rate\", \"electrical_energy\" or a limit";
-            Err(scope.key(key).wrong(found, expected))
+            Err(place.wrong(found, expected))
         }
     }
 }
 
 impl CostEntry for CurrentCostSpec {
-    fn costs(
-        &self,
-        during: During,
-        system: &System,
-        scope: &Scope<'_>,
-    ) -> Result<Vec<QuantityCost>> {
-        let weight = weight(self.weight, scope)?;
-        let at = self.at.as_ref();
-        let at = at.map_or(0.0, |at| at.value() / MILLIAMPERE);
-        let (one, all) = (&self.source, self.sources);
-        let muscles = behind_resistors(&Chosen { one, all }, system, scope)?;
-        let cost = |muscle| square(Quantity::current(muscle), at, weight, during);
-        Ok(muscles.into_iter().map(cost).collect())
+    fn costs(&self, at: &At<'_>) -> Result<Vec<Cost>> {
+        let current = self.at.as_ref().map(|one| one.value() / MILLIAMPERE);
+        let muscles = behind_resistors(&self.source, self.sources, at)?;
+        Ok(squares(muscles, Quantity::current, current))
     }
 }
 
 impl CostEntry for PowerCostSpec {
-    fn costs(
-        &self,
-        during: During,
-        system: &System,
-        scope: &Scope<'_>,
-    ) -> Result<Vec<QuantityCost>> {
-        let weight = weight(self.weight, scope)?;
-        let at = self.at.as_ref().map_or(0.0, Written::value);
-        let (one, all) = (&self.source, self.sources);
-        let muscles = behind_resistors(&Chosen { one, all }, system, scope)?;
-        let cost = |muscle| square(Quantity::power(muscle), at, weight, during);
-        Ok(muscles.into_iter().map(cost).collect())
+    fn costs(&self, at: &At<'_>) -> Result<Vec<Cost>> {
+        let power = self.at.as_ref().map(Written::value);
+        let muscles = behind_resistors(&self.source, self.sources, at)?;
+        Ok(squares(muscles, Quantity::power, power))
     }
 }
 
@@ -234,8 +192,7 @@ struct Charging {
 
 impl Charging {
     fn new(of: &Named<'_>) -> Result<Self> {
-        let (name, system, place) = (of.name, of.system, of.place);
-        let source = driven(name, &system.sources(), place)?;
+        let (source, system) = (of.place.driven(of.name)?, of.at.system);
         let muscle = system.muscles.get(source);
         let muscle = muscle.filter(|muscle| muscle.fidelity == Fidelity::Lumped);
         Ok(Self {
@@ -255,69 +212,66 @@ const OF_ELEMENTS: [&str; 2] = [
     "a lumped muscle, or electrodes with a \"resistance\" in their \"circuit\"",
 ];
 
+/// A quantity of a source, or why it is not known, and what is expected.
+fn known(
+    named: &Named<'_>,
+    word: &str,
+    quantity: Result<Quantity, [&str; 2]>,
+    unit: (Kind, SiUnit),
+) -> Result<Recorded> {
+    let quantity = quantity.map_err(|[why, expected]| {
+        let found = format!("{:?}, {why}", named.name);
+        named.place.wrong(found, expected)
+    });
+    Ok(named.recorded(word, quantity?, unit))
+}
+
 pub(super) fn charge(named: &Named<'_>) -> Result<Recorded> {
-    let (name, place) = (named.name, named.place);
     let of = Charging::new(named)?;
     let quantity = match (of.is_behind_resistor, of.is_lumped) {
-        (true, _) => Quantity::of(What::Charge(of.source)),
-        (false, true) => Quantity::of(What::MeanCharge(of.source)),
-        (false, false) => {
-            let [why, expected] = OF_ELEMENTS;
-            return Err(place.wrong(format!("{name:?}, {why}"), expected));
-        }
+        (true, _) => Ok(Quantity::of(What::Charge(of.source))),
+        (false, true) => Ok(Quantity::of(What::MeanCharge(of.source))),
+        (false, false) => Err(OF_ELEMENTS),
     };
-    let unit = (Charge::kind(), ("C", 1e-3));
-    Ok(Recorded::named("charge", name, quantity, unit))
+    known(named, "charge", quantity, (Charge::kind(), ("C", 1e-3)))
 }
 
 /// Current of a source: through a resistor, or that of the changing charge.
 pub(super) fn current(named: &Named<'_>) -> Result<Recorded> {
-    let (name, place) = (named.name, named.place);
     let of = Charging::new(named)?;
+    let is_measured = |source: usize| named.at.system.muscles[source].has_measured_current();
     let quantity = match (of.is_behind_resistor, of.is_lumped) {
-        (true, _) => Quantity::of(What::Current(of.source)),
-        (false, true) if named.system.muscles[of.source].has_measured_current() => {
-            Quantity::jump(What::MeanCharge(of.source), 1.0, 1.0)
+        (true, _) => Ok(Quantity::of(What::Current(of.source))),
+        (false, true) if is_measured(of.source) => {
+            Ok(Quantity::jump(What::MeanCharge(of.source), 1.0, 1.0))
         }
-        (false, is_lumped) => {
-            let [why, expected] = match is_lumped {
-                true => [
-                    "which leaks and has no resistor",
-                    "a muscle without a \"circuit\", or with a \"resistance\" in it",
-                ],
-                false => OF_ELEMENTS,
-            };
-            return Err(place.wrong(format!("{name:?}, {why}"), expected));
-        }
+        (false, true) => Err([
+            "which leaks and has no resistor",
+            "a muscle without a \"circuit\", or with a \"resistance\" in it",
+        ]),
+        (false, false) => Err(OF_ELEMENTS),
     };
-    let unit = (Current::kind(), ("A", 1.0));
-    Ok(Recorded::named("current", name, quantity, unit))
+    known(named, "current", quantity, (Current::kind(), ("A", 1.0)))
 }
 
 /// Electrical power of the source of a muscle.
 pub(super) fn power(named: &Named<'_>) -> Result<Recorded> {
-    let (name, place) = (named.name, named.place);
     let of = Charging::new(named)?;
-    if !(of.is_lumped && of.is_behind_resistor) {
-        let found = format!("{name:?}, which is no lumped muscle behind a resistor");
-        let expected = "a lumped muscle with a \"resistance\" in its \"circuit\"";
-        return Err(place.wrong(found, expected));
-    }
-    let quantity = Quantity::power(of.source);
-    let unit = (Power::kind(), ("W", 1.0));
-    Ok(Recorded::named("power", name, quantity, unit))
+    let is_known = of.is_lumped && of.is_behind_resistor;
+    let quantity = is_known.then(|| Quantity::power(of.source)).ok_or([
+        "which is no lumped muscle behind a resistor",
+        "a lumped muscle with a \"resistance\" in its \"circuit\"",
+    ]);
+    known(named, "power", quantity, (Power::kind(), ("W", 1.0)))
 }
 
 /// Voltage of electrodes that is not given.
 pub(super) fn voltage(named: &Named<'_>) -> Result<Recorded> {
-    let (name, place) = (named.name, named.place);
     let of = Charging::new(named)?;
-    if !of.is_behind_resistor {
-        let found = format!("{name:?}, whose electrodes have the voltage that is given");
-        let expected = "a source with a \"resistance\" in its \"circuit\"";
-        return Err(place.wrong(found, expected));
-    }
     let quantity = Quantity::of(What::ElectrodeVoltage(of.source));
-    let unit = (Voltage::kind(), ("V", 1.0));
-    Ok(Recorded::named("voltage", name, quantity, unit))
+    let quantity = of.is_behind_resistor.then_some(quantity).ok_or([
+        "whose electrodes have the voltage that is given",
+        "a source with a \"resistance\" in its \"circuit\"",
+    ]);
+    known(named, "voltage", quantity, (Voltage::kind(), ("V", 1.0)))
 }

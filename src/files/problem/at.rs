@@ -1,0 +1,203 @@
+//! A place in a problem, and the parts of the system whose names stand there.
+
+use crate::files::json::error::Result;
+use crate::files::json::scope::Scope;
+use crate::files::problem::spec_voltages::VoltageMap;
+use crate::files::scene::names::names;
+use crate::files::units::quantity::{
+    Angle, AngularVelocity, Kind, Length, PhysicalQuantity, Quantity, Velocity,
+};
+use crate::model::PartKind;
+use crate::model::system::{JointKind, Source, System, voltage_sources};
+use std::collections::BTreeMap;
+use std::ops::Deref;
+use std::rc::Rc;
+
+/// Expected name of a voltage, for messages.
+pub(crate) const A_SOURCE: &str = "the name of a muscle or of a driven electrode (block.electrode)";
+
+/// Keys that give a material an electric term, for messages.
+pub(crate) const ELECTRIC_KEYS: &str =
+    "a material with \"relative_permittivity\", or \"c1\" and \"c2\"";
+
+/// A place in a problem, with the system of its scene.
+#[derive(Clone)]
+pub(crate) struct At<'a> {
+    scope: Scope<'a>,
+    pub(crate) system: &'a System,
+    /// All sources of the system.
+    pub(crate) sources: Rc<[Source]>,
+}
+
+impl<'a> Deref for At<'a> {
+    type Target = Scope<'a>;
+
+    fn deref(&self) -> &Scope<'a> {
+        &self.scope
+    }
+}
+
+/// Symbol of an SI unit and its factor.
+pub(crate) type SiUnit = (&'static str, f64);
+
+impl<'a> At<'a> {
+    pub(crate) fn new(scope: &Scope<'a>, system: &'a System) -> Self {
+        Self {
+            scope: scope.clone(),
+            system,
+            sources: system.sources().into(),
+        }
+    }
+
+    fn inside(&self, scope: Scope<'a>) -> Self {
+        let sources = Rc::clone(&self.sources);
+        Self {
+            scope,
+            sources,
+            ..*self
+        }
+    }
+
+    /// The entry under a key.
+    pub(crate) fn key(&self, key: &str) -> Self {
+        self.inside(self.scope.key(key))
+    }
+
+    /// The entry at an index.
+    pub(crate) fn index(&self, index: usize) -> Self {
+        self.inside(self.scope.index(index))
+    }
+
+    fn part(&self, name: &str, kind: PartKind, expected: &str) -> Result<usize> {
+        self.find(name, &kind.names(self.system), expected)
+    }
+
+    /// The body of a name that stands here.
+    pub(crate) fn body(&self, name: &str) -> Result<usize> {
+        self.part(name, PartKind::Body, "the name of a body")
+    }
+
+    /// The joint of a name.
+    pub(crate) fn joint(&self, name: &str) -> Result<usize> {
+        self.part(name, PartKind::Joint, "the name of a joint")
+    }
+
+    /// The muscle of a name.
+    pub(crate) fn muscle(&self, name: &str) -> Result<usize> {
+        self.part(name, PartKind::Muscle, "the name of a muscle")
+    }
+
+    /// The marker of a name.
+    pub(crate) fn marker(&self, name: &str) -> Result<usize> {
+        self.part(name, PartKind::Marker, "the name of a marker")
+    }
+
+    /// The spring of a name.
+    pub(crate) fn spring(&self, name: &str) -> Result<usize> {
+        self.part(name, PartKind::Spring, "the name of a spring")
+    }
+
+    /// The tendon of a name.
+    pub(crate) fn tendon(&self, name: &str) -> Result<usize> {
+        self.part(name, PartKind::Tendon, "the name of a tendon")
+    }
+
+    /// The elastic block of a name, of those of the scene.
+    pub(crate) fn solid(&self, name: &str) -> Result<usize> {
+        let solids = names(&self.system.solids, |solid| &solid.name);
+        self.find(name, &solids, "the name of an elastic block")
+    }
+
+    /// The source of a name, of any kind.
+    pub(crate) fn source(&self, name: &str, expected: &str) -> Result<usize> {
+        self.part(name, PartKind::Source, expected)
+    }
+
+    /// A marker that may move.
+    pub(crate) fn moving_marker(&self, name: &str) -> Result<usize> {
+        let index = self.marker(name)?;
+        let marker = &self.system.markers[index];
+        if marker.point.body.is_none() && marker.solid.is_none() {
+            let found = format!("{name:?}, which is fixed to the ground");
+            return Err(self.wrong(found, "a marker on a body or a block"));
+        }
+        Ok(index)
+    }
+
+    /// A source that takes a voltage.
+    pub(crate) fn driven(&self, name: &str) -> Result<usize> {
+        let sources = voltage_sources(&self.sources);
+        let index = self.find(name, &names(sources, |one| &one.name), A_SOURCE)?;
+        if sources[index].takes_voltage {
+            return Ok(index);
+        }
+        let found = format!(
+            "{name:?}, which takes no voltage: its material has no electric term, or a load gives its charge"
+        );
+        Err(self.wrong(found, format!("a muscle of {ELECTRIC_KEYS}")))
+    }
+
+    /// One voltage per source in V, 0 where not named.
+    pub(crate) fn voltages(&self, map: &VoltageMap) -> Result<Vec<f64>> {
+        let mut voltages = vec![0.0; self.sources.len()];
+        for (name, voltage) in map {
+            voltages[self.key(name).driven(name)?] = voltage.value();
+        }
+        Ok(voltages)
+    }
+
+    /// A joint that has one coordinate.
+    pub(crate) fn coordinate(&self, name: &str) -> Result<usize> {
+        let index = self.joint(name)?;
+        match self.system.joints[index].has_coordinate() {
+            true => Ok(index),
+            false => {
+                let found = format!("{name:?}, which is neither revolute nor prismatic, or locked");
+                Err(self.wrong(found, "a joint with one coordinate"))
+            }
+        }
+    }
+
+    fn is_prismatic(&self, joint: usize) -> bool {
+        matches!(self.system.joints[joint].kind, JointKind::Prismatic { .. })
+    }
+
+    /// Kind and unit of the coordinate of a joint.
+    pub(crate) fn unit_of(&self, joint: usize) -> (Kind, SiUnit) {
+        match self.is_prismatic(joint) {
+            true => (Length::kind(), ("m", 1e-3)),
+            false => (Angle::kind(), ("rad", 1.0)),
+        }
+    }
+
+    /// Kind and unit of its rate.
+    pub(crate) fn unit_of_rate(&self, joint: usize) -> (Kind, SiUnit) {
+        match self.is_prismatic(joint) {
+            true => (Velocity::kind(), ("m/s", 1.0)),
+            false => (AngularVelocity::kind(), ("rad/s", 1e3)),
+        }
+    }
+
+    /// A value of a joint, in the kind that the joint calls for.
+    pub(crate) fn of_joint<M: PhysicalQuantity>(
+        &self,
+        joint: usize,
+        written: &Quantity<M>,
+    ) -> Result<f64> {
+        let kinds = M::kinds();
+        self.value_as(written, &kinds[usize::from(self.is_prismatic(joint))])
+    }
+
+    /// Values of joints by their names.
+    pub(crate) fn by_joint<M: PhysicalQuantity>(
+        &self,
+        map: &Option<BTreeMap<String, Quantity<M>>>,
+    ) -> Result<BTreeMap<usize, f64>> {
+        let value = |(name, written): (&String, &Quantity<M>)| {
+            let at = self.key(name);
+            let joint = at.coordinate(name)?;
+            Ok((joint, at.of_joint(joint, written)?))
+        };
+        map.iter().flatten().map(value).collect()
+    }
+}
