@@ -1,5 +1,6 @@
 //! A study as it is written: the serde types of the study file.
 
+use crate::files::json::objects::read_objects;
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 use serde_json::Value;
@@ -8,58 +9,48 @@ use std::collections::BTreeMap;
 /// Overrides by their place in the problem, or in its scene after `scene.`: `"control.intervals": 80`.
 pub type ChangesSpec = BTreeMap<String, Value>;
 
-/// A study: one question asked in several ways, each ever finer, to see what accuracy costs in time.
-#[derive(Clone, Debug, Deserialize, JsonSchema)]
-#[serde(deny_unknown_fields)]
-pub struct StudySpec {
-    /// JSON Schema of this file, for editors.
-    #[serde(rename = "$schema", default)]
-    #[expect(dead_code, reason = "read by editors only")]
-    pub(crate) schema: Option<String>,
-    /// Title of the page.
-    pub title: String,
-    /// Subject of the comparison and its reason, for the page.
-    #[serde(default)]
-    pub about: Option<String>,
-    /// Path of the problem file, relative to this file.
-    pub problem: String,
-    /// Overrides of all points.
-    #[serde(default)]
-    pub set: ChangesSpec,
-    /// The methods that are compared, a curve each.
-    pub methods: Vec<MethodSpec>,
-    /// Entry that is refined from point to point; a method may refine something else.
-    #[serde(default)]
-    pub refine: Option<RefineSpec>,
-    /// Whose limit errors are measured against; each method has its own where not written.
-    #[serde(default)]
-    pub reference: Option<ReferenceSpec>,
-    /// The markers whose places are compared; all of them where not written.
-    #[serde(default)]
-    pub markers: Option<Vec<String>>,
-    /// Quantities that are measured; all that there are of the kind of problem where not written.
-    #[serde(default)]
-    pub measures: Option<Vec<MeasureSpec>>,
-    /// Number of timed runs of each point, 5 or more; 5 where not written.
-    #[serde(default)]
-    pub runs: Option<usize>,
-}
+read_objects! {
+    /// A study: one question asked in several ways, each ever finer, to see what accuracy costs in time.
+    pub struct StudySpec {
+        /// JSON Schema of this file, for editors.
+        #[serde(rename = "$schema", default)]
+        #[expect(dead_code, reason = "read by editors only")]
+        pub(crate) schema: Option<String>,
+        /// Title of the page.
+        pub title: String,
+        /// Subject of the comparison and its reason, for the page.
+        pub about: Option<String>,
+        /// Path of the problem file, relative to this file.
+        pub problem: String,
+        /// Overrides of all points.
+        #[serde(default)]
+        pub set: ChangesSpec,
+        /// The methods that are compared, a curve each.
+        pub methods: Vec<MethodSpec>,
+        /// Entry that is refined from point to point; a method may refine something else.
+        pub refine: Option<RefineSpec>,
+        /// Whose limit errors are measured against; each method has its own where not written.
+        pub reference: Option<ReferenceSpec>,
+        /// The markers whose places are compared; all of them where not written.
+        pub markers: Option<Vec<String>>,
+        /// Quantities that are measured; all that there are of the kind of problem where not written.
+        pub measures: Option<Vec<MeasureSpec>>,
+        /// Number of timed runs of each point, 5 or more; 5 where not written.
+        pub runs: Option<usize>,
+    }
 
-/// A way to answer the question.
-#[derive(Clone, Debug, Deserialize, JsonSchema)]
-#[serde(deny_unknown_fields)]
-pub struct MethodSpec {
-    /// Name in legends and tables.
-    pub name: String,
-    /// Path of another problem file, relative to the study.
-    #[serde(default)]
-    pub problem: Option<String>,
-    /// Overrides of its points, after those of all points.
-    #[serde(default)]
-    pub set: ChangesSpec,
-    /// Entry that it refines, in place of that of the study.
-    #[serde(default)]
-    pub refine: Option<RefineSpec>,
+    /// A way to answer the question.
+    pub struct MethodSpec {
+        /// Name in legends and tables.
+        pub name: String,
+        /// Path of another problem file, relative to the study.
+        pub problem: Option<String>,
+        /// Overrides of its points, after those of all points.
+        #[serde(default)]
+        pub set: ChangesSpec,
+        /// Entry that it refines, in place of that of the study.
+        pub refine: Option<RefineSpec>,
+    }
 }
 
 /// Refinement: one value of each override per point, the coarsest first.
@@ -76,15 +67,14 @@ pub struct RefineSpec {
     pub sizes: Option<Vec<f64>>,
 }
 
-/// Whose limit errors are measured against.
-#[derive(Clone, Debug, Deserialize, JsonSchema)]
-#[serde(deny_unknown_fields)]
-pub struct ReferenceSpec {
-    /// Name of the method.
-    pub method: String,
-    /// Points of the method that are run for the reference alone, and not timed; its points in the study where not written.
-    #[serde(default)]
-    pub refine: Option<RefineSpec>,
+read_objects! {
+    /// Whose limit errors are measured against.
+    pub struct ReferenceSpec {
+        /// Name of the method.
+        pub method: String,
+        /// Points of the method that are run for the reference alone, and not timed; its points in the study where not written.
+        pub refine: Option<RefineSpec>,
+    }
 }
 
 /// Quantity that is measured at a point.

@@ -5,33 +5,31 @@ use serde::Deserialize;
 use serde_json::Value;
 use std::collections::BTreeMap;
 
+use crate::files::json::objects::read_objects;
 use crate::files::study::ChangesSpec;
 
-/// A sweep: one problem solved in many variants.
-#[derive(Clone, Debug, Deserialize, JsonSchema)]
-#[serde(deny_unknown_fields)]
-pub struct SweepSpec {
-    /// JSON Schema of this file, for editors.
-    #[serde(rename = "$schema", default)]
-    #[expect(dead_code, reason = "read by editors only")]
-    pub(crate) schema: Option<String>,
-    /// Title of the page; the name of the file where not written.
-    #[serde(default)]
-    pub title: Option<String>,
-    /// Path of the problem file, relative to this file.
-    pub problem: String,
-    /// Overrides of all variants.
-    #[serde(default)]
-    pub set: ChangesSpec,
-    /// Entries that vary, by their places in the problem, or in its scene after `scene.`.
-    #[serde(default)]
-    pub vary: BTreeMap<String, VarySpec>,
-    /// Combination of the values; as a grid where not written.
-    #[serde(default)]
-    pub combine: CombineSpec,
-    /// Path of a CSV file with a variant per line, in place of `vary`: its headers are places, its cells values.
-    #[serde(default)]
-    pub table: Option<String>,
+read_objects! {
+    /// A sweep: one problem solved in many variants.
+    pub struct SweepSpec {
+        /// JSON Schema of this file, for editors.
+        #[serde(rename = "$schema", default)]
+        #[expect(dead_code, reason = "read by editors only")]
+        pub(crate) schema: Option<String>,
+        /// Title of the page; the name of the file where not written.
+        pub title: Option<String>,
+        /// Path of the problem file, relative to this file.
+        pub problem: String,
+        /// Overrides of all variants.
+        #[serde(default)]
+        pub set: ChangesSpec,
+        /// Entries that vary, by their places in the problem, or in its scene after `scene.`.
+        pub vary: BTreeMap<String, VarySpec>,
+        /// Combination of the values; as a grid where not written.
+        #[serde(default)]
+        pub combine: CombineSpec,
+        /// Path of a CSV file with a variant per line, in place of `vary`: its headers are places, its cells values.
+        pub table: Option<String>,
+    }
 }
 
 /// The values of one entry.
@@ -44,20 +42,19 @@ pub enum VarySpec {
     Range(RangeSpec),
 }
 
-/// A range of numbers, or of quantities of one unit.
-#[derive(Clone, Debug, Deserialize, JsonSchema)]
-#[serde(deny_unknown_fields)]
-pub struct RangeSpec {
-    /// The first value: a number, or a text with a unit.
-    pub from: Value,
-    /// The last value, in the same unit.
-    pub to: Value,
-    /// Number of values, both ends included; 2 or more. Not for values at random.
-    #[serde(default)]
-    pub count: Option<usize>,
-    /// Spacing of the values; even where not written.
-    #[serde(default)]
-    pub spacing: SpacingSpec,
+read_objects! {
+    /// A range of numbers, or of quantities of one unit.
+    pub struct RangeSpec {
+        /// The first value: a number, or a text with a unit.
+        pub from: Value,
+        /// The last value, in the same unit.
+        pub to: Value,
+        /// Number of values, both ends included; 2 or more. Not for values at random.
+        pub count: Option<usize>,
+        /// Spacing of the values; even where not written.
+        #[serde(default)]
+        pub spacing: SpacingSpec,
+    }
 }
 
 /// Spacing of values.
@@ -84,15 +81,16 @@ pub enum CombineSpec {
     Random(RandomSpec),
 }
 
-/// Variants at random.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Deserialize, JsonSchema)]
-#[serde(deny_unknown_fields)]
-pub struct RandomSpec {
-    /// Number of variants.
-    pub count: usize,
-    /// Equal seeds give equal variants; 1 where not written.
-    #[serde(default = "one")]
-    pub seed: u64,
+read_objects! {
+    /// Variants at random.
+    #[derive(Copy, PartialEq, Eq)]
+    pub struct RandomSpec {
+        /// Number of variants.
+        pub count: usize,
+        /// Equal seeds give equal variants; 1 where not written.
+        #[serde(default = "one")]
+        pub seed: u64,
+    }
 }
 
 fn one() -> u64 {

@@ -2,7 +2,8 @@
 //!
 //! - `source`: the bytes of a file, if there is room for them; `tree`: its values with their places in the text; `path`: places by keys.
 //! - `document`: a file with overrides; `scope`: a value with its place, for messages.
-//! - `reader`: values of serde from a tree; `misfit`: those that do not fit, in our words; `either`: values that are written in two ways.
+//! - `reader`: values of serde from a tree; `misfit`: those that do not fit, in our words; `either`: values that are written in two ways;
+//!   `objects`: types of objects.
 //! - `error`: mistakes; `set`: overrides of the command line; `layout`: lines of what is written.
 
 pub(crate) mod document;
@@ -10,6 +11,7 @@ pub mod either;
 pub mod error;
 pub(crate) mod layout;
 pub(crate) mod misfit;
+pub(crate) mod objects;
 pub(crate) mod path;
 pub(crate) mod reader;
 pub(crate) mod scope;

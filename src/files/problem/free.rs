@@ -3,12 +3,12 @@
 use crate::control::PEAK_VOLTAGE;
 use crate::files::json::document::Document;
 use crate::files::json::error::Result;
+use crate::files::json::objects::read_objects;
 use crate::files::json::path::JsonPath;
 use crate::files::json::scope::Scope;
 use crate::files::scene::constants::{SceneConstant, WrittenScene};
 use crate::files::units::quantity::{Quantity, SoughtConstant};
 use crate::model::{Constant, NotSought, Parameter, check_parameters, unit_of};
-use schemars::JsonSchema;
 use serde::Deserialize;
 use serde_json::Value;
 use std::collections::BTreeMap;
@@ -154,20 +154,18 @@ pub(crate) fn check_solution(path: &Path, scene: &WrittenScene<'_>, at: &Scope<'
     Ok(())
 }
 
-/// A free parameter between bounds.
-#[derive(Clone, Debug, Deserialize, JsonSchema)]
-#[serde(deny_unknown_fields)]
-pub struct FreeSpec {
-    /// Lower bound, in the unit of the constant.
-    pub min: Quantity<SoughtConstant>,
-    /// Upper bound.
-    pub max: Quantity<SoughtConstant>,
-    /// Value at which the solver starts; the value of the scene where not written.
-    #[serde(default)]
-    pub guess: Option<Quantity<SoughtConstant>>,
-    /// Other constants by their paths that are this one times a number.
-    #[serde(default)]
-    pub also: BTreeMap<String, f64>,
+read_objects! {
+    /// A free parameter between bounds.
+    pub struct FreeSpec {
+        /// Lower bound, in the unit of the constant.
+        pub min: Quantity<SoughtConstant>,
+        /// Upper bound.
+        pub max: Quantity<SoughtConstant>,
+        /// Value at which the solver starts; the value of the scene where not written.
+        pub guess: Option<Quantity<SoughtConstant>>,
+        /// Other constants by their paths that are this one times a number.
+        pub also: BTreeMap<String, f64>,
+    }
 }
 
 /// Free parameters by their paths in the scene.

@@ -2,6 +2,7 @@
 
 use crate::control::problem::{BoundaryState, Control, Duration, Varied, VariedOf, WeightOf};
 use crate::files::json::error::Result;
+use crate::files::json::objects::read_objects;
 use crate::files::json::path::{JsonPath, Step};
 use crate::files::json::scope::Scope;
 use crate::files::problem::at::{A_SOURCE, At};
@@ -342,16 +343,15 @@ fn weight(value: f64, of: WeightOf) -> Option<Number> {
     Some((VariedOf::Weight(of), value, Unit { kind: None, si }))
 }
 
-/// A number by which the optimum is differentiated.
-#[derive(Clone, Debug, Default, Deserialize, JsonSchema)]
-#[serde(deny_unknown_fields)]
-pub struct SensitivitySpec {
-    /// Tolerance of the number, which may be so much smaller or larger: a part of it such as `"5 %"`, or a size in its unit such as `"1 mm"`.
-    #[serde(default)]
-    pub tolerance: Option<ToleranceSpec>,
-    /// Other constants of the scene by their paths that are this one times a number.
-    #[serde(default)]
-    pub also: BTreeMap<String, f64>,
+read_objects! {
+    /// A number by which the optimum is differentiated.
+    #[derive(Default)]
+    pub struct SensitivitySpec {
+        /// Tolerance of the number, which may be so much smaller or larger: a part of it such as `"5 %"`, or a size in its unit such as `"1 mm"`.
+        pub tolerance: Option<ToleranceSpec>,
+        /// Other constants of the scene by their paths that are this one times a number.
+        pub also: BTreeMap<String, f64>,
+    }
 }
 
 /// Numbers by their paths in the scene or in `control`.

@@ -5,6 +5,7 @@ use crate::dynamics::{Integrator, MultigridUse, Newton, Solving};
 use crate::feedback::Law;
 use crate::files::json::either::{Either, scalar_or_object};
 use crate::files::json::error::Result;
+use crate::files::json::objects::read_objects;
 use crate::files::json::scope::Scope;
 use crate::files::problem::at::At;
 use crate::files::problem::coordinates::{CoordinatesSpec, coordinates};
@@ -134,43 +135,35 @@ pub(crate) fn step(
     Ok((step, None))
 }
 
-/// A forward simulation.
-#[derive(Clone, Debug, Deserialize, JsonSchema)]
-#[serde(deny_unknown_fields)]
-pub struct SimulateSpec {
-    /// Length, SI unit s.
-    pub duration: Quantity<Time>,
-    /// Step, SI unit s, or `"auto"`, as where it is not written: steps as short as the tolerance needs, by the midpoint rule.
-    #[serde(default)]
-    pub step: Option<StepSpec>,
-    /// Sum of the estimated local errors that `"auto"` allows over the duration, of angles in rad, of lengths relative to the
-    /// robot's size; 1e-3 where not written.
-    #[serde(default)]
-    pub tolerance: Option<f64>,
-    /// Constant voltages, those of a solution, or a table; 0 where not written.
-    #[serde(default)]
-    pub voltages: VoltagesSpec,
-    /// Loads by name, constant or functions of time, SI units N, N m, Pa, N/m³ and C/m²; 0 where not named.
-    #[serde(default)]
-    pub loads: LoadMap,
-    /// A controller that gives the voltages which it has gains for.
-    #[serde(default)]
-    pub controller: Option<ControllerSpec>,
-    /// Start of the motion; the reference configuration at rest where not written.
-    #[serde(default)]
-    pub start: Option<StartSpec>,
-    /// Coordinates.
-    #[serde(default)]
-    pub coordinates: Option<CoordinatesSpec>,
-    /// The method; the midpoint variational integrator where not written.
-    #[serde(default)]
-    pub integrator: Option<IntegratorSpec>,
-    /// Occasions at which the tangent of a step is factorised; where not written `modified` with finite elements, otherwise `full`.
-    #[serde(default)]
-    pub newton: Option<NewtonSpec>,
-    /// Method by which its linear systems are solved; `auto` where not written.
-    #[serde(default)]
-    pub linear_solver: Option<LinearSolverSpec>,
+read_objects! {
+    /// A forward simulation.
+    pub struct SimulateSpec {
+        /// Length, SI unit s.
+        pub duration: Quantity<Time>,
+        /// Step, SI unit s, or `"auto"`, as where it is not written: steps as short as the tolerance needs, by the midpoint rule.
+        pub step: Option<StepSpec>,
+        /// Sum of the estimated local errors that `"auto"` allows over the duration, of angles in rad, of lengths relative to the
+        /// robot's size; 1e-3 where not written.
+        pub tolerance: Option<f64>,
+        /// Constant voltages, those of a solution, or a table; 0 where not written.
+        #[serde(default)]
+        pub voltages: VoltagesSpec,
+        /// Loads by name, constant or functions of time, SI units N, N m, Pa, N/m³ and C/m²; 0 where not named.
+        #[serde(default)]
+        pub loads: LoadMap,
+        /// A controller that gives the voltages which it has gains for.
+        pub controller: Option<ControllerSpec>,
+        /// Start of the motion; the reference configuration at rest where not written.
+        pub start: Option<StartSpec>,
+        /// Coordinates.
+        pub coordinates: Option<CoordinatesSpec>,
+        /// The method; the midpoint variational integrator where not written.
+        pub integrator: Option<IntegratorSpec>,
+        /// Occasions at which the tangent of a step is factorised; where not written `modified` with finite elements, otherwise `full`.
+        pub newton: Option<NewtonSpec>,
+        /// Method by which its linear systems are solved; `auto` where not written.
+        pub linear_solver: Option<LinearSolverSpec>,
+    }
 }
 
 /// Length of the steps.
@@ -290,16 +283,14 @@ pub enum IntegratorWord {
     GeneralisedAlpha,
 }
 
-/// A method with its parameter: exactly one of the two.
-#[derive(Clone, Debug, Deserialize, JsonSchema)]
-#[serde(deny_unknown_fields)]
-pub struct IntegratorObject {
-    /// Degree, from 1 to 8, of a Galerkin variational integrator with Lobatto points, order 2 × degree.
-    #[serde(default)]
-    pub galerkin: Option<usize>,
-    /// Spectral radius at infinity, from 0 to 1, of the generalised-α method.
-    #[serde(default)]
-    pub generalised_alpha: Option<f64>,
+read_objects! {
+    /// A method with its parameter: exactly one of the two.
+    pub struct IntegratorObject {
+        /// Degree, from 1 to 8, of a Galerkin variational integrator with Lobatto points, order 2 × degree.
+        pub galerkin: Option<usize>,
+        /// Spectral radius at infinity, from 0 to 1, of the generalised-α method.
+        pub generalised_alpha: Option<f64>,
+    }
 }
 
 /// A word or an object.

@@ -5,6 +5,7 @@ use serde::{Deserialize, Deserializer};
 use std::collections::BTreeMap;
 
 use crate::files::json::either::{Either, scalar_or_object};
+use crate::files::json::objects::read_objects;
 use crate::files::problem::coordinates::CoordinatesSpec;
 use crate::files::problem::feedback::FeedbackSpec;
 use crate::files::problem::output::OutputSpec;
@@ -16,55 +17,43 @@ use crate::files::scene::spec::SceneSpec;
 use crate::files::units::quantity::{LoadSize, Quantity};
 use crate::model::Response;
 
-/// Task for a scene: exactly one of `simulate`, `equilibrium`, `control`, `identify`.
-#[derive(Clone, Debug, Deserialize, JsonSchema)]
-#[serde(deny_unknown_fields)]
-pub struct ProblemSpec {
-    /// JSON Schema of this file, for editors.
-    #[serde(rename = "$schema", default)]
-    #[expect(dead_code, reason = "read by editors only")]
-    pub(crate) schema: Option<String>,
-    /// Path of the scene file, relative to this file, or the scene itself.
-    pub scene: SceneSource,
-    /// Forward simulation.
-    #[serde(default)]
-    pub simulate: Option<SimulateSpec>,
-    /// Static equilibrium.
-    #[serde(default)]
-    pub equilibrium: Option<EquilibriumSpec>,
-    /// Optimal control.
-    #[serde(default)]
-    pub control: Option<ControlSpec>,
-    /// Constants fitted to recordings.
-    #[serde(default)]
-    pub identify: Option<IdentifySpec>,
-    /// Gains of a controller that keeps the optimal motion.
-    #[serde(default)]
-    pub feedback: Option<FeedbackSpec>,
-    /// Part of a motion that tables, figures and page show.
-    #[serde(default)]
-    pub output: Option<OutputSpec>,
-}
+read_objects! {
+    /// Task for a scene: exactly one of `simulate`, `equilibrium`, `control`, `identify`.
+    pub struct ProblemSpec {
+        /// JSON Schema of this file, for editors.
+        #[serde(rename = "$schema", default)]
+        #[expect(dead_code, reason = "read by editors only")]
+        pub(crate) schema: Option<String>,
+        /// Path of the scene file, relative to this file, or the scene itself.
+        pub scene: SceneSource,
+        /// Forward simulation.
+        pub simulate: Option<SimulateSpec>,
+        /// Static equilibrium.
+        pub equilibrium: Option<EquilibriumSpec>,
+        /// Optimal control.
+        pub control: Option<ControlSpec>,
+        /// Constants fitted to recordings.
+        pub identify: Option<IdentifySpec>,
+        /// Gains of a controller that keeps the optimal motion.
+        pub feedback: Option<FeedbackSpec>,
+        /// Part of a motion that tables, figures and page show.
+        pub output: Option<OutputSpec>,
+    }
 
-/// A static equilibrium.
-#[derive(Clone, Debug, Deserialize, JsonSchema)]
-#[serde(deny_unknown_fields)]
-pub struct EquilibriumSpec {
-    /// Voltages by the names of muscles and driven electrodes (`block.electrode`), SI unit V; 0 where not named.
-    #[serde(default)]
-    pub voltages: VoltageMap,
-    /// Loads by name, SI units N, N m, Pa, N/m³ and C/m²; 0 where not named.
-    #[serde(default)]
-    pub loads: BTreeMap<String, Quantity<LoadSize>>,
-    /// Coordinates.
-    #[serde(default)]
-    pub coordinates: Option<CoordinatesSpec>,
-    /// Response of Maxwell branches; `relaxed` where not written.
-    #[serde(default)]
-    pub response: Option<ResponseSpec>,
-    /// Number of points of the path of equilibria from zero voltage that are followed by arc length, past limit points such as pull-in.
-    #[serde(default)]
-    pub path: Option<usize>,
+    /// A static equilibrium.
+    pub struct EquilibriumSpec {
+        /// Voltages by the names of muscles and driven electrodes (`block.electrode`), SI unit V; 0 where not named.
+        #[serde(default)]
+        pub voltages: VoltageMap,
+        /// Loads by name, SI units N, N m, Pa, N/m³ and C/m²; 0 where not named.
+        pub loads: BTreeMap<String, Quantity<LoadSize>>,
+        /// Coordinates.
+        pub coordinates: Option<CoordinatesSpec>,
+        /// Response of Maxwell branches; `relaxed` where not written.
+        pub response: Option<ResponseSpec>,
+        /// Number of points of the path of equilibria from zero voltage that are followed by arc length, past limit points such as pull-in.
+        pub path: Option<usize>,
+    }
 }
 
 /// Response of Maxwell branches to voltages and loads.

@@ -1,6 +1,7 @@
 //! A control problem as it is written.
 
 use crate::files::json::either::{Either, scalar_or_object};
+use crate::files::json::objects::read_objects;
 use crate::files::problem::coordinates::CoordinatesSpec;
 use crate::files::problem::free::FreeMap;
 use crate::files::problem::loads::{LoadBounds, LoadMap};
@@ -20,78 +21,72 @@ use std::borrow::Cow;
 use std::collections::BTreeMap;
 use std::fmt;
 
-/// An optimal control problem.
-#[derive(Clone, Debug, Deserialize, JsonSchema)]
-#[serde(deny_unknown_fields)]
-#[schemars(transform = needed_without_motions)]
-pub struct ControlSpec {
-    /// Final time, SI unit s, or its bounds and a guess.
-    pub duration: DurationSpec,
-    /// Number of intervals, 1 or more, or `"auto"`, as where it is not written: as many as the verification of the optimum needs to confirm
-    /// an error of 1 % of the path length, or of the part that `--accuracy` gives.
-    #[serde(default)]
-    pub intervals: Option<IntervalsSpec>,
-    /// Initial state; of a periodic motion, whose start is sought, the state where the solver begins.
-    pub start: StartSpec,
-    /// Final state; may be left out where the objective names something to `track` or where to end (`final`), and is free then.
-    #[serde(default)]
-    pub goal: Option<GoalSpec>,
-    /// Lower and upper bound of every voltage that is sought, SI unit V; not needed where none is.
-    #[serde(default)]
-    pub voltage_bounds: Option<[Quantity<Voltage>; 2]>,
-    /// Lower and upper bound of each load that is sought, by name, SI units N, N m, Pa, N/m³ and C/m².
-    #[serde(default)]
-    pub load_bounds: LoadBounds,
-    /// Loads that are given, by name, constant or functions of time, SI units N, N m, Pa, N/m³ and C/m²; 0 where neither given nor sought.
-    #[serde(default)]
-    pub loads: LoadMap,
-    /// Voltages that are given, by the names of muscles and driven electrodes (`block.electrode`), SI unit V: they are no unknowns,
-    /// and one of 0 for all the time leaves no electric term at all. Functions of time, a table and those of a solution give all
-    /// voltages, as of a simulation; then a constant of the scene has to be sought.
-    #[serde(default)]
-    pub voltages: VoltagesSpec,
-    /// Constants of the scene that are sought, by their paths, such as `materials.silicone.shear_modulus`.
-    #[serde(default)]
-    pub free: FreeMap,
-    /// Numbers by which the optimum is differentiated, by their paths: constants of the scene, such as `materials.silicone.shear_modulus`, and
-    /// `duration`, `goal.joint_angles.NAME`, `goal.markers.NAME[0]`, `goal.rest_at_voltages.NAME`, `start.joint_angles.NAME`,
-    /// `start.joint_rates.NAME`, `start.rest_at_voltages.NAME`, `voltage_bounds[1]`, `load_bounds.NAME[1]`, `objective.effort`, `objective.rate`,
-    /// `objective.duration`.
-    #[serde(default)]
-    pub sensitivity: SensitivityMap,
-    /// Treatment of a goal that cannot be kept, because it is unstable or its voltages are beyond their bounds: it is
-    /// `reported` (where not written), or refused where holding it is `required`.
-    #[serde(default)]
-    pub hold: HoldSpec,
-    /// Objective that is minimised.
-    pub objective: ObjectiveSpec,
-    /// Path limits.
-    #[serde(default)]
-    pub limits: Vec<LimitSpec>,
-    /// Places, orientations and joint coordinates that the motion reaches on its way.
-    #[serde(default)]
-    pub waypoints: Vec<WaypointSpec>,
-    /// Coordinates.
-    #[serde(default)]
-    pub coordinates: Option<CoordinatesSpec>,
-    /// Initial guess of the solver; where not written, of elastic blocks whose goal has `hold`, the motion under these voltages, otherwise
-    /// `"interpolate"`.
-    #[serde(default)]
-    pub guess: Option<GuessSpec>,
-    /// Options of the solver.
-    #[serde(default)]
-    pub solver: SolverSpec,
-    /// Several motions in one optimisation: what `free` seeks is the same in all of them, and the objective is the sum of theirs. Each names the
-    /// keys that are other ones in it.
-    #[serde(default)]
-    pub motions: Vec<MotionSpec>,
-    /// Names of muscles, driven electrodes (`block.electrode`) and loads whose inputs are sought once for all motions; these have one
-    /// given duration and one number of intervals.
-    #[serde(default)]
-    pub shared_inputs: Vec<String>,
-    /// The objective of several motions: the `sum` of theirs (where not written), or that of the `worst`, the greatest one.
-    #[serde(default)]
-    pub combine: Option<CombinedSpec>,
+read_objects! {
+    /// An optimal control problem.
+    #[schemars(transform = needed_without_motions)]
+    pub struct ControlSpec {
+        /// Final time, SI unit s, or its bounds and a guess.
+        pub duration: DurationSpec,
+        /// Number of intervals, 1 or more, or `"auto"`, as where it is not written: as many as the verification of the optimum needs to confirm
+        /// an error of 1 % of the path length, or of the part that `--accuracy` gives.
+        pub intervals: Option<IntervalsSpec>,
+        /// Initial state; of a periodic motion, whose start is sought, the state where the solver begins.
+        pub start: StartSpec,
+        /// Final state; may be left out where the objective names something to `track` or where to end (`final`), and is free then.
+        pub goal: Option<GoalSpec>,
+        /// Lower and upper bound of every voltage that is sought, SI unit V; not needed where none is.
+        pub voltage_bounds: Option<[Quantity<Voltage>; 2]>,
+        /// Lower and upper bound of each load that is sought, by name, SI units N, N m, Pa, N/m³ and C/m².
+        #[serde(default)]
+        pub load_bounds: LoadBounds,
+        /// Loads that are given, by name, constant or functions of time, SI units N, N m, Pa, N/m³ and C/m²; 0 where neither given nor sought.
+        #[serde(default)]
+        pub loads: LoadMap,
+        /// Voltages that are given, by the names of muscles and driven electrodes (`block.electrode`), SI unit V: they are no unknowns,
+        /// and one of 0 for all the time leaves no electric term at all. Functions of time, a table and those of a solution give all
+        /// voltages, as of a simulation; then a constant of the scene has to be sought.
+        #[serde(default)]
+        pub voltages: VoltagesSpec,
+        /// Constants of the scene that are sought, by their paths, such as `materials.silicone.shear_modulus`.
+        #[serde(default)]
+        pub free: FreeMap,
+        /// Numbers by which the optimum is differentiated, by their paths: constants of the scene, such as `materials.silicone.shear_modulus`, and
+        /// `duration`, `goal.joint_angles.NAME`, `goal.markers.NAME[0]`, `goal.rest_at_voltages.NAME`, `start.joint_angles.NAME`,
+        /// `start.joint_rates.NAME`, `start.rest_at_voltages.NAME`, `voltage_bounds[1]`, `load_bounds.NAME[1]`, `objective.effort`, `objective.rate`,
+        /// `objective.duration`.
+        #[serde(default)]
+        pub sensitivity: SensitivityMap,
+        /// Treatment of a goal that cannot be kept, because it is unstable or its voltages are beyond their bounds: it is
+        /// `reported` (where not written), or refused where holding it is `required`.
+        #[serde(default)]
+        pub hold: HoldSpec,
+        /// Objective that is minimised.
+        pub objective: ObjectiveSpec,
+        /// Path limits.
+        #[serde(default)]
+        pub limits: Vec<LimitSpec>,
+        /// Places, orientations and joint coordinates that the motion reaches on its way.
+        #[serde(default)]
+        pub waypoints: Vec<WaypointSpec>,
+        /// Coordinates.
+        pub coordinates: Option<CoordinatesSpec>,
+        /// Initial guess of the solver; where not written, of elastic blocks whose goal has `hold`, the motion under these voltages, otherwise
+        /// `"interpolate"`.
+        pub guess: Option<GuessSpec>,
+        /// Options of the solver.
+        #[serde(default)]
+        pub solver: SolverSpec,
+        /// Several motions in one optimisation: what `free` seeks is the same in all of them, and the objective is the sum of theirs. Each names the
+        /// keys that are other ones in it.
+        #[serde(default)]
+        pub motions: Vec<MotionSpec>,
+        /// Names of muscles, driven electrodes (`block.electrode`) and loads whose inputs are sought once for all motions; these have one
+        /// given duration and one number of intervals.
+        #[serde(default)]
+        pub shared_inputs: Vec<String>,
+        /// The objective of several motions: the `sum` of theirs (where not written), or that of the `worst`, the greatest one.
+        pub combine: Option<CombinedSpec>,
+    }
 }
 
 /// The objective of several motions.
@@ -214,70 +209,63 @@ impl Visitor<'_> for IntervalsVisitor {
     }
 }
 
-/// Bounds of a free final time.
-#[derive(Clone, Debug, Deserialize, JsonSchema)]
-#[serde(deny_unknown_fields)]
-pub struct FreeDurationSpec {
-    /// Lower bound, SI unit s.
-    pub min: Quantity<Time>,
-    /// Upper bound, SI unit s.
-    pub max: Quantity<Time>,
-    /// Duration at which the solver starts, SI unit s.
-    pub guess: Quantity<Time>,
-}
+read_objects! {
+    /// Bounds of a free final time.
+    pub struct FreeDurationSpec {
+        /// Lower bound, SI unit s.
+        pub min: Quantity<Time>,
+        /// Upper bound, SI unit s.
+        pub max: Quantity<Time>,
+        /// Duration at which the solver starts, SI unit s.
+        pub guess: Quantity<Time>,
+    }
 
-/// Weights of the objective.
-#[derive(Clone, Debug, Deserialize, JsonSchema)]
-#[serde(deny_unknown_fields)]
-pub struct ObjectiveSpec {
-    /// Weight of Σ h |V_k|², V in kV, h in s.
-    #[serde(default)]
-    pub effort: f64,
-    /// Weight of Σ |V_k − V_{k−1}|²/h, V in kV, h in s, with the rest voltages of start and goal at the ends.
-    #[serde(default)]
-    pub rate: f64,
-    /// Weight of the final time in s.
-    #[serde(default)]
-    pub duration: f64,
-    /// Weight of the square of the peak voltage in kV: of the largest voltage of all sources that are sought, in all intervals.
-    #[serde(default)]
-    pub peak_voltage: f64,
-    /// Weight per J of the electrical energy from the sources of lumped muscles, of all sources or of named ones; what flows back is negative.
-    #[serde(default)]
-    pub electrical_energy: EnergySpec,
-    /// Weight per J of the mechanical work of the electrical forces of lumped muscles, of all sources or of named ones.
-    #[serde(default)]
-    pub mechanical_work: EnergySpec,
-    /// Weight per cm³ of the volume of all lumped muscles at rest, which follows from free parameters.
-    #[serde(default)]
-    pub muscle_volume: f64,
-    /// Weight per g of the mass of all lumped muscles with a density, which follows from free parameters.
-    #[serde(default)]
-    pub muscle_mass: f64,
-    /// References of markers and joints in time.
-    #[serde(default)]
-    pub track: Vec<TrackSpec>,
-    /// Targets of markers and joints at the end.
-    #[serde(default, rename = "final")]
-    pub at_the_end: Vec<FinalSpec>,
-}
+    /// Weights of the objective.
+    pub struct ObjectiveSpec {
+        /// Weight of Σ h |V_k|², V in kV, h in s.
+        #[serde(default)]
+        pub effort: f64,
+        /// Weight of Σ |V_k − V_{k−1}|²/h, V in kV, h in s, with the rest voltages of start and goal at the ends.
+        #[serde(default)]
+        pub rate: f64,
+        /// Weight of the final time in s.
+        #[serde(default)]
+        pub duration: f64,
+        /// Weight of the square of the peak voltage in kV: of the largest voltage of all sources that are sought, in all intervals.
+        #[serde(default)]
+        pub peak_voltage: f64,
+        /// Weight per J of the electrical energy from the sources of lumped muscles, of all sources or of named ones; what flows back is negative.
+        #[serde(default)]
+        pub electrical_energy: EnergySpec,
+        /// Weight per J of the mechanical work of the electrical forces of lumped muscles, of all sources or of named ones.
+        #[serde(default)]
+        pub mechanical_work: EnergySpec,
+        /// Weight per cm³ of the volume of all lumped muscles at rest, which follows from free parameters.
+        #[serde(default)]
+        pub muscle_volume: f64,
+        /// Weight per g of the mass of all lumped muscles with a density, which follows from free parameters.
+        #[serde(default)]
+        pub muscle_mass: f64,
+        /// References of markers and joints in time.
+        #[serde(default)]
+        pub track: Vec<TrackSpec>,
+        /// Targets of markers and joints at the end.
+        #[serde(default, rename = "final")]
+        pub at_the_end: Vec<FinalSpec>,
+    }
 
-/// Options of the solver.
-#[derive(Clone, Debug, Default, Deserialize, JsonSchema)]
-#[serde(deny_unknown_fields)]
-pub struct SolverSpec {
-    /// Relative tolerance, 1e-10 where not written.
-    #[serde(default)]
-    pub tolerance: Option<f64>,
-    /// Limit of iterations, 500 where not written.
-    #[serde(default)]
-    pub max_iterations: Option<usize>,
-    /// Solver of the linear systems, `auto` where not written.
-    #[serde(default)]
-    pub linear_solver: Option<ControlSolverSpec>,
-    /// Options of Ipopt by name.
-    #[serde(default)]
-    pub ipopt: BTreeMap<String, OptionSpec>,
+    /// Options of the solver.
+    #[derive(Default)]
+    pub struct SolverSpec {
+        /// Relative tolerance, 1e-10 where not written.
+        pub tolerance: Option<f64>,
+        /// Limit of iterations, 500 where not written.
+        pub max_iterations: Option<usize>,
+        /// Solver of the linear systems, `auto` where not written.
+        pub linear_solver: Option<ControlSolverSpec>,
+        /// Options of Ipopt by name.
+        pub ipopt: BTreeMap<String, OptionSpec>,
+    }
 }
 
 /// Solver of the linear systems of a control problem.
@@ -307,36 +295,29 @@ pub enum OptionSpec {
     Text(String),
 }
 
-/// A simulation as a guess.
-#[derive(Clone, Debug, Deserialize, JsonSchema)]
-#[serde(deny_unknown_fields)]
-pub struct GuessSimulationSpec {
-    /// Constant voltages, those of a solution, or a table, as of a simulation; 0 where not written.
-    #[serde(default)]
-    pub voltages: VoltagesSpec,
-}
+read_objects! {
+    /// A simulation as a guess.
+    pub struct GuessSimulationSpec {
+        /// Constant voltages, those of a solution, or a table, as of a simulation; 0 where not written.
+        #[serde(default)]
+        pub voltages: VoltagesSpec,
+    }
 
-/// A random guess.
-#[derive(Clone, Debug, Deserialize, JsonSchema)]
-#[serde(deny_unknown_fields)]
-pub struct RandomGuessSpec {
-    /// Equal seeds give equal guesses.
-    pub seed: u64,
-}
+    /// A random guess.
+    pub struct RandomGuessSpec {
+        /// Equal seeds give equal guesses.
+        pub seed: u64,
+    }
 
-/// An object of a guess: exactly one of the three.
-#[derive(Clone, Debug, Deserialize, JsonSchema)]
-#[serde(deny_unknown_fields)]
-pub struct GuessObjectSpec {
-    /// A simulation under given voltages.
-    #[serde(default)]
-    pub simulate: Option<GuessSimulationSpec>,
-    /// Path of a `solution.json` or of the folder that holds it, relative to this file or to the current folder.
-    #[serde(default)]
-    pub solution: Option<String>,
-    /// A simulation under constant voltages drawn at random within the bounds.
-    #[serde(default)]
-    pub random: Option<RandomGuessSpec>,
+    /// An object of a guess: exactly one of the three.
+    pub struct GuessObjectSpec {
+        /// A simulation under given voltages.
+        pub simulate: Option<GuessSimulationSpec>,
+        /// Path of a `solution.json` or of the folder that holds it, relative to this file or to the current folder.
+        pub solution: Option<String>,
+        /// A simulation under constant voltages drawn at random within the bounds.
+        pub random: Option<RandomGuessSpec>,
+    }
 }
 
 /// A word of a guess.

@@ -1,17 +1,18 @@
 //! Weights of energies of sources as they are written.
 
 use crate::files::json::either::{Either, scalar_or_object};
+use crate::files::json::objects::read_objects;
 use schemars::JsonSchema;
 use serde::{Deserialize, Deserializer};
 
-/// The weight of an energy of some sources.
-#[derive(Clone, Debug, Deserialize, JsonSchema)]
-#[serde(deny_unknown_fields)]
-pub struct SourceEnergySpec {
-    /// Weight per J.
-    pub weight: f64,
-    /// Names of lumped muscles.
-    pub sources: Vec<String>,
+read_objects! {
+    /// The weight of an energy of some sources.
+    pub struct SourceEnergySpec {
+        /// Weight per J.
+        pub weight: f64,
+        /// Names of lumped muscles.
+        pub sources: Vec<String>,
+    }
 }
 
 /// The weight of an energy of all sources, or of those that are named.

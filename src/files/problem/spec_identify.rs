@@ -1,5 +1,6 @@
 //! An identification as it is written: free parameters, recordings, and candidates for the next experiment.
 
+use crate::files::json::objects::read_objects;
 use crate::files::problem::coordinates::CoordinatesSpec;
 use crate::files::problem::free::FreeMap;
 use crate::files::problem::loads::LoadMap;
@@ -12,47 +13,40 @@ use schemars::JsonSchema;
 use serde::Deserialize;
 use std::collections::BTreeMap;
 
-/// Constants that are fitted to recordings, with what the data say of them.
-#[derive(Clone, Debug, Deserialize, JsonSchema)]
-#[serde(deny_unknown_fields)]
-pub struct IdentifySpec {
-    /// Free parameters by their paths in the scene, such as `"materials.silicone.shear_modulus"`, each between bounds.
-    #[serde(default)]
-    pub free: FreeMap,
-    /// Constants of the inputs that are sought: gains of sources, and their delays.
-    #[serde(default)]
-    pub inputs: InputConstantsSpec,
-    /// Constants of `free` that are known beside the recordings, by their paths: each counts as one reading more.
-    #[serde(default)]
-    pub priors: BTreeMap<String, PriorSpec>,
-    /// Recordings: those that constants are fitted to, and those that are held out to check their prediction.
-    pub recordings: Vec<RecordingSpec>,
-    /// Experiments that could be done next; the result ranks them by the variance that they leave.
-    #[serde(default)]
-    pub candidates: Vec<CandidateSpec>,
-    /// Step of the first grid, SI unit s, which is halved until its bias is below a tenth of the standard errors; by the number of readings
-    /// where not written.
-    #[serde(default)]
-    pub step: Option<Quantity<Time>>,
-    /// Coordinates.
-    #[serde(default)]
-    pub coordinates: Option<CoordinatesSpec>,
-}
+read_objects! {
+    /// Constants that are fitted to recordings, with what the data say of them.
+    pub struct IdentifySpec {
+        /// Free parameters by their paths in the scene, such as `"materials.silicone.shear_modulus"`, each between bounds.
+        #[serde(default)]
+        pub free: FreeMap,
+        /// Constants of the inputs that are sought: gains of sources, and their delays.
+        #[serde(default)]
+        pub inputs: InputConstantsSpec,
+        /// Constants of `free` that are known beside the recordings, by their paths: each counts as one reading more.
+        pub priors: BTreeMap<String, PriorSpec>,
+        /// Recordings: those that constants are fitted to, and those that are held out to check their prediction.
+        pub recordings: Vec<RecordingSpec>,
+        /// Experiments that could be done next; the result ranks them by the variance that they leave.
+        #[serde(default)]
+        pub candidates: Vec<CandidateSpec>,
+        /// Step of the first grid, SI unit s, which is halved until its bias is below a tenth of the standard errors; by the number of readings
+        /// where not written.
+        pub step: Option<Quantity<Time>>,
+        /// Coordinates.
+        pub coordinates: Option<CoordinatesSpec>,
+    }
 
-/// Constants of the inputs of all recordings.
-#[derive(Clone, Debug, Default, Deserialize, JsonSchema)]
-#[serde(deny_unknown_fields)]
-pub struct InputConstantsSpec {
-    /// Factors between the voltages and loads that recordings say and those that act, by the names of muscles, electrodes and loads.
-    #[serde(default)]
-    pub gains: BTreeMap<String, RangeSpec<Ratio>>,
-    /// Time by which all voltages and loads act later than recordings say, SI unit s; before they act, those of the state of rest at the
-    /// start, or the first ones.
-    #[serde(default)]
-    pub delay: Option<RangeSpec<Time>>,
-    /// The same of single sources, by the names of muscles, electrodes and loads, beside that of all others.
-    #[serde(default)]
-    pub delays: BTreeMap<String, RangeSpec<Time>>,
+    /// Constants of the inputs of all recordings.
+    #[derive(Default)]
+    pub struct InputConstantsSpec {
+        /// Factors between the voltages and loads that recordings say and those that act, by the names of muscles, electrodes and loads.
+        pub gains: BTreeMap<String, RangeSpec<Ratio>>,
+        /// Time by which all voltages and loads act later than recordings say, SI unit s; before they act, those of the state of rest at the
+        /// start, or the first ones.
+        pub delay: Option<RangeSpec<Time>>,
+        /// The same of single sources, by the names of muscles, electrodes and loads, beside that of all others.
+        pub delays: BTreeMap<String, RangeSpec<Time>>,
+    }
 }
 
 /// Bounds of a constant.
@@ -83,88 +77,77 @@ pub struct InputPriorSpec<M: PhysicalQuantity> {
     pub standard_deviation: Quantity<M>,
 }
 
-/// A normal distribution of a constant, such as that of a data sheet.
-#[derive(Clone, Debug, Deserialize, JsonSchema)]
-#[serde(deny_unknown_fields)]
-pub struct PriorSpec {
-    /// Mean, in the unit of the constant.
-    pub value: Quantity<SoughtConstant>,
-    /// Standard deviation.
-    pub standard_deviation: Quantity<SoughtConstant>,
-}
+read_objects! {
+    /// A normal distribution of a constant, such as that of a data sheet.
+    pub struct PriorSpec {
+        /// Mean, in the unit of the constant.
+        pub value: Quantity<SoughtConstant>,
+        /// Standard deviation.
+        pub standard_deviation: Quantity<SoughtConstant>,
+    }
 
-/// Readings of a motion or of states of rest under given voltages and loads.
-#[derive(Clone, Debug, Deserialize, JsonSchema)]
-#[serde(deny_unknown_fields)]
-pub struct RecordingSpec {
-    /// Unique name.
-    pub name: String,
-    /// Path of the CSV file, relative to the problem or to the current folder: one line of headers such as `tip [mm]`, `tip (mm)` or `tip_mm`,
-    /// SI units where a header has none, which a note says; lines that begin with `#` are comments, empty cells are gaps.
-    #[serde(default)]
-    pub file: Option<String>,
-    /// Columns of numbers by such headers in place of a file; `null` is a gap.
-    #[serde(default)]
-    pub columns: Option<BTreeMap<String, Vec<Option<f64>>>>,
-    /// Header of the times, which begin with the motion at 0; `time` where not written.
-    #[serde(default = "time")]
-    pub time: String,
-    /// Time in that column at which the motion begins, SI unit s, which all times lose, also those of inputs from the same file that have no
-    /// `time_offset` of their own; 0 where not written. A motion whose readings begin late needs it.
-    #[serde(default)]
-    pub time_offset: Option<Quantity<Time>>,
-    /// Quantities that the columns measure.
-    pub measured: Vec<MeasuredSpec>,
-    /// Voltages, loads and start.
-    #[serde(default)]
-    pub experiment: ExperimentSpec,
-    /// Values that are other ones in the scene of this recording, by their places, such as `"scene.bodies.payload.mass": "1 kg"`.
-    #[serde(default)]
-    pub set: ChangesSpec,
-    /// True if no constant is fitted to it: the result says whether the fitted constants explain it.
-    #[serde(default)]
-    pub held_out: bool,
-}
+    /// Readings of a motion or of states of rest under given voltages and loads.
+    pub struct RecordingSpec {
+        /// Unique name.
+        pub name: String,
+        /// Path of the CSV file, relative to the problem or to the current folder: one line of headers such as `tip [mm]`, `tip (mm)` or `tip_mm`,
+        /// SI units where a header has none, which a note says; lines that begin with `#` are comments, empty cells are gaps.
+        pub file: Option<String>,
+        /// Columns of numbers by such headers in place of a file; `null` is a gap.
+        pub columns: Option<BTreeMap<String, Vec<Option<f64>>>>,
+        /// Header of the times, which begin with the motion at 0; `time` where not written.
+        #[serde(default = "time")]
+        pub time: String,
+        /// Time in that column at which the motion begins, SI unit s, which all times lose, also those of inputs from the same file that have no
+        /// `time_offset` of their own; 0 where not written. A motion whose readings begin late needs it.
+        pub time_offset: Option<Quantity<Time>>,
+        /// Quantities that the columns measure.
+        pub measured: Vec<MeasuredSpec>,
+        /// Voltages, loads and start.
+        #[serde(default)]
+        pub experiment: ExperimentSpec,
+        /// Values that are other ones in the scene of this recording, by their places, such as `"scene.bodies.payload.mass": "1 kg"`.
+        #[serde(default)]
+        pub set: ChangesSpec,
+        /// True if no constant is fitted to it: the result says whether the fitted constants explain it.
+        pub held_out: bool,
+    }
 
-/// An experiment that could be done.
-#[derive(Clone, Debug, Deserialize, JsonSchema)]
-#[serde(deny_unknown_fields)]
-pub struct CandidateSpec {
-    /// Unique name.
-    pub name: String,
-    /// Length, SI unit s.
-    pub duration: Quantity<Time>,
-    /// Number of readings of each quantity, at equal distances.
-    pub readings: usize,
-    /// Measured quantities; their columns are not read.
-    pub measured: Vec<MeasuredSpec>,
-    /// Voltages, loads and start.
-    #[serde(default)]
-    pub experiment: ExperimentSpec,
-    /// Values that are other ones in the scene of this experiment, by their places.
-    #[serde(default)]
-    pub set: ChangesSpec,
-}
+    /// An experiment that could be done.
+    pub struct CandidateSpec {
+        /// Unique name.
+        pub name: String,
+        /// Length, SI unit s.
+        pub duration: Quantity<Time>,
+        /// Number of readings of each quantity, at equal distances.
+        pub readings: usize,
+        /// Measured quantities; their columns are not read.
+        pub measured: Vec<MeasuredSpec>,
+        /// Voltages, loads and start.
+        #[serde(default)]
+        pub experiment: ExperimentSpec,
+        /// Values that are other ones in the scene of this experiment, by their places.
+        #[serde(default)]
+        pub set: ChangesSpec,
+    }
 
-/// Voltages, loads and start of a recording.
-#[derive(Clone, Debug, Default, Deserialize, JsonSchema)]
-#[serde(deny_unknown_fields)]
-pub struct ExperimentSpec {
-    /// Constant voltages, those of a solution, a table, or functions of time such as columns of a CSV file; 0 where not written.
-    #[serde(default)]
-    pub voltages: VoltagesSpec,
-    /// Loads by name, constant or functions of time, SI units N, N m, Pa, N/m³ and C/m²; 0 where not named.
-    #[serde(default)]
-    pub loads: LoadMap,
-    /// Start of the motion; the reference configuration at rest where not written.
-    #[serde(default)]
-    pub start: Option<StartSpec>,
-    /// Part of the start that is unknown, and fitted with the constants; nothing where not written.
-    #[serde(default)]
-    pub sought_start: SoughtStartSpec,
-    /// True if each reading is one of a state of rest under the voltages and loads of its time.
-    #[serde(default)]
-    pub at_rest: bool,
+    /// Voltages, loads and start of a recording.
+    #[derive(Default)]
+    pub struct ExperimentSpec {
+        /// Constant voltages, those of a solution, a table, or functions of time such as columns of a CSV file; 0 where not written.
+        #[serde(default)]
+        pub voltages: VoltagesSpec,
+        /// Loads by name, constant or functions of time, SI units N, N m, Pa, N/m³ and C/m²; 0 where not named.
+        #[serde(default)]
+        pub loads: LoadMap,
+        /// Start of the motion; the reference configuration at rest where not written.
+        pub start: Option<StartSpec>,
+        /// Part of the start that is unknown, and fitted with the constants; nothing where not written.
+        #[serde(default)]
+        pub sought_start: SoughtStartSpec,
+        /// True if each reading is one of a state of rest under the voltages and loads of its time.
+        pub at_rest: bool,
+    }
 }
 
 /// Unknown part of a start.

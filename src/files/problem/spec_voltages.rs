@@ -1,5 +1,6 @@
 //! Voltages as they are written: constant, of a solution, or a table.
 
+use crate::files::json::objects::read_objects;
 use crate::files::signal::spec::SignalSpec;
 use crate::files::units::quantity::{Quantity, Time, Voltage};
 use schemars::JsonSchema;
@@ -23,12 +24,12 @@ pub enum VoltagesSpec {
     Signals(BTreeMap<String, SignalSpec<Voltage>>),
 }
 
-/// A solution by its path.
-#[derive(Clone, Debug, Deserialize, JsonSchema)]
-#[serde(deny_unknown_fields)]
-pub struct SolutionSpec {
-    /// Path of a `solution.json` or of the folder that holds it, relative to this file or to the current folder.
-    pub solution: String,
+read_objects! {
+    /// A solution by its path.
+    pub struct SolutionSpec {
+        /// Path of a `solution.json` or of the folder that holds it, relative to this file or to the current folder.
+        pub solution: String,
+    }
 }
 
 /// Voltages that are constant in intervals of time.

@@ -3,6 +3,7 @@
 use crate::control::problem::{BoundaryState, Hold, Rest, SoughtHold};
 use crate::files::json::either::{Either, scalar_or_object};
 use crate::files::json::error::Result;
+use crate::files::json::objects::read_objects;
 use crate::files::problem::at::At;
 use crate::files::problem::end_of::end_of;
 use crate::files::problem::spec_voltages::VoltageMap;
@@ -90,39 +91,30 @@ fn velocities(
     Ok(velocities)
 }
 
-/// A state at the start: exactly one of `rest_at_voltages`, `end_of` and joint coordinates.
-#[derive(Clone, Debug, Deserialize, JsonSchema)]
-#[serde(deny_unknown_fields)]
-pub struct StartSpec {
-    /// Static equilibrium under these voltages, SI unit V; 0 where not named.
-    #[serde(default)]
-    pub rest_at_voltages: Option<VoltageMap>,
-    /// The end of another motion of the same robot, configuration and momentum: the path of the folder of its result, relative to this file or
-    /// to the current folder. Time begins at zero.
-    #[serde(default)]
-    pub end_of: Option<String>,
-    /// Joint coordinates by joint, SI unit rad or m; 0 where not named.
-    #[serde(default)]
-    pub joint_angles: Option<BTreeMap<String, Quantity<JointCoordinate>>>,
-    /// Rates of joint coordinates by joint, SI unit rad/s or m/s; 0 where not named.
-    #[serde(default)]
-    pub joint_rates: Option<BTreeMap<String, Quantity<JointRate>>>,
-    /// Velocities by body, of bodies that are free or hang on a spherical or floating joint; with what the joints before them do where not
-    /// named.
-    #[serde(default)]
-    pub body_velocities: Option<BTreeMap<String, BodyVelocitySpec>>,
-}
+read_objects! {
+    /// A state at the start: exactly one of `rest_at_voltages`, `end_of` and joint coordinates.
+    pub struct StartSpec {
+        /// Static equilibrium under these voltages, SI unit V; 0 where not named.
+        pub rest_at_voltages: Option<VoltageMap>,
+        /// The end of another motion of the same robot, configuration and momentum: the path of the folder of its result, relative to this file or
+        /// to the current folder. Time begins at zero.
+        pub end_of: Option<String>,
+        /// Joint coordinates by joint, SI unit rad or m; 0 where not named.
+        pub joint_angles: Option<BTreeMap<String, Quantity<JointCoordinate>>>,
+        /// Rates of joint coordinates by joint, SI unit rad/s or m/s; 0 where not named.
+        pub joint_rates: Option<BTreeMap<String, Quantity<JointRate>>>,
+        /// Velocities by body, of bodies that are free or hang on a spherical or floating joint; with what the joints before them do where not
+        /// named.
+        pub body_velocities: Option<BTreeMap<String, BodyVelocitySpec>>,
+    }
 
-/// The velocity of a body at the start, in the ground frame.
-#[derive(Clone, Debug, Deserialize, JsonSchema)]
-#[serde(deny_unknown_fields)]
-pub struct BodyVelocitySpec {
-    /// Velocity of the centre of mass, SI unit m/s; 0 where not written. On a spherical joint it follows from `angular`.
-    #[serde(default)]
-    pub linear: Option<[Quantity<Velocity>; 3]>,
-    /// Angular velocity, SI unit rad/s; 0 where not written.
-    #[serde(default)]
-    pub angular: Option<[Quantity<AngularVelocity>; 3]>,
+    /// The velocity of a body at the start, in the ground frame.
+    pub struct BodyVelocitySpec {
+        /// Velocity of the centre of mass, SI unit m/s; 0 where not written. On a spherical joint it follows from `angular`.
+        pub linear: Option<[Quantity<Velocity>; 3]>,
+        /// Angular velocity, SI unit rad/s; 0 where not written.
+        pub angular: Option<[Quantity<AngularVelocity>; 3]>,
+    }
 }
 
 /// `"free"`, `"periodic"`, or a state at the end, at rest.
@@ -164,33 +156,27 @@ pub(crate) fn sought_hold(goal: Option<&GoalSpec>) -> SoughtHold {
     }
 }
 
-/// A state at the end, at rest: `rest_at_voltages`, or `joint_angles`, or `markers` and `orientations`.
-#[derive(Clone, Debug, Deserialize, JsonSchema)]
-#[serde(deny_unknown_fields)]
-pub struct RestGoalSpec {
-    /// Static equilibrium under these voltages, SI unit V; 0 where not named.
-    #[serde(default)]
-    pub rest_at_voltages: Option<VoltageMap>,
-    /// Joint coordinates by joint, SI unit rad or m; free where not named.
-    #[serde(default)]
-    pub joint_angles: Option<BTreeMap<String, Quantity<JointCoordinate>>>,
-    /// Positions by marker, SI unit m; directions that are `null` are free.
-    #[serde(default)]
-    pub markers: Option<BTreeMap<String, PartialPoint>>,
-    /// Orientations by body.
-    #[serde(default)]
-    pub orientations: Option<BTreeMap<String, OrientationSpec>>,
-    /// Part that comes to rest at an equilibrium, at positions of markers and at orientations: `everything`, or `bodies` and these markers alone,
-    /// also called `markers`. Where not written everything, or, of elastic blocks that have more coordinates than the voltages can bring to rest, bodies
-    /// and these markers.
-    #[serde(default)]
-    pub rest: Option<RestSpec>,
-    /// Voltages that are held after positions of markers and orientations are reached, SI unit V; 0 where not named. Of elastic blocks the motion
-    /// under them is the guess, where no other is written. `"find"`: they are sought with the motion, so that the goal is an equilibrium; also of
-    /// `joint_angles`, for lumped muscles. Where not written they are sought if the motion leaves its goal under the last voltages; `"none"`: they
-    /// are not.
-    #[serde(default)]
-    pub hold: Option<HeldSpec>,
+read_objects! {
+    /// A state at the end, at rest: `rest_at_voltages`, or `joint_angles`, or `markers` and `orientations`.
+    pub struct RestGoalSpec {
+        /// Static equilibrium under these voltages, SI unit V; 0 where not named.
+        pub rest_at_voltages: Option<VoltageMap>,
+        /// Joint coordinates by joint, SI unit rad or m; free where not named.
+        pub joint_angles: Option<BTreeMap<String, Quantity<JointCoordinate>>>,
+        /// Positions by marker, SI unit m; directions that are `null` are free.
+        pub markers: Option<BTreeMap<String, PartialPoint>>,
+        /// Orientations by body.
+        pub orientations: Option<BTreeMap<String, OrientationSpec>>,
+        /// Part that comes to rest at an equilibrium, at positions of markers and at orientations: `everything`, or `bodies` and these markers alone,
+        /// also called `markers`. Where not written everything, or, of elastic blocks that have more coordinates than the voltages can bring to rest, bodies
+        /// and these markers.
+        pub rest: Option<RestSpec>,
+        /// Voltages that are held after positions of markers and orientations are reached, SI unit V; 0 where not named. Of elastic blocks the motion
+        /// under them is the guess, where no other is written. `"find"`: they are sought with the motion, so that the goal is an equilibrium; also of
+        /// `joint_angles`, for lumped muscles. Where not written they are sought if the motion leaves its goal under the last voltages; `"none"`: they
+        /// are not.
+        pub hold: Option<HeldSpec>,
+    }
 }
 
 /// Voltages that are held after a goal.
@@ -213,19 +199,17 @@ pub enum HeldWord {
     None,
 }
 
-/// An orientation of a body: `axis` with exactly one of `towards` and `angle`.
-#[derive(Clone, Debug, Deserialize, JsonSchema)]
-#[serde(deny_unknown_fields)]
-pub struct OrientationSpec {
-    /// A direction of the ground frame, of any length: with `towards` one that moves with the body, as it is in the reference
-    /// configuration; with `angle` the axis about which the body is turned.
-    pub axis: [f64; 3],
-    /// Direction of the ground frame, of any length, to which `axis` points.
-    #[serde(default)]
-    pub towards: Option<[f64; 3]>,
-    /// Angle by which the body is turned from its reference configuration, SI unit rad.
-    #[serde(default)]
-    pub angle: Option<Quantity<Angle>>,
+read_objects! {
+    /// An orientation of a body: `axis` with exactly one of `towards` and `angle`.
+    pub struct OrientationSpec {
+        /// A direction of the ground frame, of any length: with `towards` one that moves with the body, as it is in the reference
+        /// configuration; with `angle` the axis about which the body is turned.
+        pub axis: [f64; 3],
+        /// Direction of the ground frame, of any length, to which `axis` points.
+        pub towards: Option<[f64; 3]>,
+        /// Angle by which the body is turned from its reference configuration, SI unit rad.
+        pub angle: Option<Quantity<Angle>>,
+    }
 }
 
 /// Part that comes to rest at a goal.

@@ -2,6 +2,7 @@
 
 use crate::control::problem::{Duration, QuantityCost, Waypoint};
 use crate::files::json::error::Result;
+use crate::files::json::objects::read_objects;
 use crate::files::json::scope::Scope;
 use crate::files::problem::at::At;
 use crate::files::problem::goal::{of_bodies, of_markers};
@@ -9,34 +10,26 @@ use crate::files::problem::state::OrientationSpec;
 use crate::files::scene::point::PartialPoint;
 use crate::files::units::quantity::{JointCoordinate, Quantity, Time};
 use crate::math::shortest;
-use schemars::JsonSchema;
-use serde::Deserialize;
 use std::collections::BTreeMap;
 
-/// Places that the motion reaches at a time on its way, at the instant nearest to it: `markers`, `orientations`, `joint_angles`, or several
-/// of them. With a `weight` it passes near them: their squared distances are costs.
-#[derive(Clone, Debug, Deserialize, JsonSchema)]
-#[serde(deny_unknown_fields)]
-pub struct WaypointSpec {
-    /// Time, SI unit s; or give `part`.
-    #[serde(default)]
-    pub time: Option<Quantity<Time>>,
-    /// Part of the duration, above 0 and below 1, which may be free; of a periodic motion 1 is its start and its end.
-    #[serde(default)]
-    pub part: Option<f64>,
-    /// Positions by marker, SI unit m; directions that are `null` are free.
-    #[serde(default)]
-    pub markers: Option<BTreeMap<String, PartialPoint>>,
-    /// Orientations by body.
-    #[serde(default)]
-    pub orientations: Option<BTreeMap<String, OrientationSpec>>,
-    /// Joint coordinates by joint, SI unit rad or m.
-    #[serde(default)]
-    pub joint_angles: Option<BTreeMap<String, Quantity<JointCoordinate>>>,
-    /// Weight of the squared distances at that instant, in mm² of markers and prismatic joints and rad² of revolute ones, as costs in the
-    /// objective in place of exact conditions; not of `orientations`.
-    #[serde(default)]
-    pub weight: Option<f64>,
+read_objects! {
+    /// Places that the motion reaches at a time on its way, at the instant nearest to it: `markers`, `orientations`, `joint_angles`, or several
+    /// of them. With a `weight` it passes near them: their squared distances are costs.
+    pub struct WaypointSpec {
+        /// Time, SI unit s; or give `part`.
+        pub time: Option<Quantity<Time>>,
+        /// Part of the duration, above 0 and below 1, which may be free; of a periodic motion 1 is its start and its end.
+        pub part: Option<f64>,
+        /// Positions by marker, SI unit m; directions that are `null` are free.
+        pub markers: Option<BTreeMap<String, PartialPoint>>,
+        /// Orientations by body.
+        pub orientations: Option<BTreeMap<String, OrientationSpec>>,
+        /// Joint coordinates by joint, SI unit rad or m.
+        pub joint_angles: Option<BTreeMap<String, Quantity<JointCoordinate>>>,
+        /// Weight of the squared distances at that instant, in mm² of markers and prismatic joints and rad² of revolute ones, as costs in the
+        /// objective in place of exact conditions; not of `orientations`.
+        pub weight: Option<f64>,
+    }
 }
 
 /// What waypoints are on the way of.

@@ -2,8 +2,8 @@
 
 use crate::energy::ElasticLaw;
 use crate::files::json::error::Result;
+use crate::files::json::objects::objects;
 use crate::files::json::scope::Scope;
-use crate::files::scene::objects::objects;
 use crate::files::units::quantity::{Quantity, Stress};
 
 objects! {

@@ -1,9 +1,9 @@
 //! Conversion of materials of a scene file to their constants.
 
 use crate::files::json::error::Result;
+use crate::files::json::objects::objects;
 use crate::files::json::scope::Scope;
 use crate::files::scene::law::LawSpec;
-use crate::files::scene::objects::objects;
 use crate::files::units::quantity::{Density, Permittivity, Quantity, Stress, Time, Viscosity};
 use crate::model::MOST_BRANCHES;
 use crate::model::system::{

@@ -2,7 +2,7 @@
 //!
 //! - `build`: the scene; `body`, `joint`, `material`, `muscle`, `components`: its parts, each described and converted in one file.
 //! - `solid`, `mesh`, `electrodes`, `nodes`: elastic solids; `graph`: connections by joints; `names`: resolution of names.
-//! - `objects`: declaration of what is written; `law`: laws of elasticity of materials.
+//! - `law`: laws of elasticity of materials.
 //! - `constants`: constants by their paths, as an optimisation may seek them.
 //! - `expand`: the shorthand of chains; `trunk`: a scene to begin with.
 
@@ -20,7 +20,6 @@ pub(crate) mod mesh;
 pub(crate) mod muscle;
 pub(crate) mod names;
 pub(crate) mod nodes;
-mod objects;
 pub mod point;
 pub(crate) mod solid;
 pub mod spec;

@@ -3,8 +3,8 @@
 use nalgebra::Vector3;
 
 use crate::files::json::error::Result;
+use crate::files::json::objects::objects;
 use crate::files::json::scope::Scope;
-use crate::files::scene::objects::objects;
 use crate::files::units::quantity::{Length, PhysicalQuantity, Quantity};
 
 /// A point or a vector of lengths.

@@ -4,10 +4,10 @@ use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 use std::collections::BTreeMap;
 
+use crate::files::json::objects::objects;
 use crate::files::scene::components::{LoadSpec, SpringSpec, TendonSpec, component_lists};
 use crate::files::scene::joint::JointSpec;
 use crate::files::scene::material::MaterialSpec;
-use crate::files::scene::objects::objects;
 use crate::files::scene::point::{Point, PointSpec};
 use crate::files::scene::spec_solids::{CircuitSpec, ElementSpec, SolidSpec};
 use crate::files::units::quantity::{

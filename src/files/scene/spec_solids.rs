@@ -8,7 +8,7 @@ use std::collections::BTreeMap;
 use std::fmt;
 
 use crate::files::json::either::{Either, scalar_or_object};
-use crate::files::scene::objects::objects;
+use crate::files::json::objects::objects;
 use crate::files::scene::point::{CornersSpec, Point};
 use crate::files::units::quantity::{
     AngularVelocity, Length, Quantity, Rate, Resistance, Velocity, Voltage,

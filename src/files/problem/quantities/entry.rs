@@ -2,6 +2,7 @@
 
 use crate::control::problem::{CostFunction, Limit};
 use crate::files::json::error::Result;
+use crate::files::json::objects::read_objects;
 use crate::files::problem::at::{At, SiUnit};
 use crate::files::scene::point::{Point, unit_axis, vector};
 use crate::files::units::quantity::{Kind, PhysicalQuantity, Quantity as Written};
@@ -129,17 +130,16 @@ pub(super) fn squares(
     parts.into_iter().map(cost).collect()
 }
 
-/// A plane that is fixed to a body, or to the ground where none is named.
-#[derive(Clone, Debug, Deserialize, JsonSchema)]
-#[serde(deny_unknown_fields)]
-pub struct PlaneSpec {
-    /// Name of the body.
-    #[serde(default)]
-    pub body: Option<String>,
-    /// A point of the plane in the reference configuration, SI unit m.
-    pub point: Point,
-    /// Its normal in the reference configuration, of any length; distances on its side are positive.
-    pub normal: [f64; 3],
+read_objects! {
+    /// A plane that is fixed to a body, or to the ground where none is named.
+    pub struct PlaneSpec {
+        /// Name of the body.
+        pub body: Option<String>,
+        /// A point of the plane in the reference configuration, SI unit m.
+        pub point: Point,
+        /// Its normal in the reference configuration, of any length; distances on its side are positive.
+        pub normal: [f64; 3],
+    }
 }
 
 impl PlaneSpec {

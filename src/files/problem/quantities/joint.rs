@@ -2,6 +2,7 @@
 
 use crate::control::problem::Limit;
 use crate::files::json::error::Result;
+use crate::files::json::objects::read_objects;
 use crate::files::json::scope::Scope;
 use crate::files::problem::at::{At, SiUnit};
 use crate::files::problem::quantities::entry::{
@@ -17,126 +18,98 @@ use crate::files::units::quantity::{
 use crate::math::{Signal, Vector};
 use crate::model::system::System;
 use crate::model::{Quantity, Reaction, What};
-use schemars::JsonSchema;
 use serde::Deserialize;
 use std::collections::BTreeMap;
 use std::path::Path;
 
-/// Limits of a joint coordinate: `min`, `max` or both.
-#[derive(Clone, Debug, Deserialize, JsonSchema)]
-#[serde(deny_unknown_fields)]
-pub struct JointAngleLimitSpec {
-    /// Name of the joint.
-    pub joint: String,
-    /// Lower bound, SI unit rad or m.
-    #[serde(default)]
-    pub min: Option<Written<JointCoordinate>>,
-    /// Upper bound, SI unit rad or m.
-    #[serde(default)]
-    pub max: Option<Written<JointCoordinate>>,
-}
+read_objects! {
+    /// Limits of a joint coordinate: `min`, `max` or both.
+    pub struct JointAngleLimitSpec {
+        /// Name of the joint.
+        pub joint: String,
+        /// Lower bound, SI unit rad or m.
+        pub min: Option<Written<JointCoordinate>>,
+        /// Upper bound, SI unit rad or m.
+        pub max: Option<Written<JointCoordinate>>,
+    }
 
-/// Limits of the mean rate of a joint coordinate in each interval: `min`, `max` or both.
-#[derive(Clone, Debug, Deserialize, JsonSchema)]
-#[serde(deny_unknown_fields)]
-pub struct JointRateLimitSpec {
-    /// Name of the joint.
-    pub joint: String,
-    /// Lower bound, SI unit rad/s or m/s.
-    #[serde(default)]
-    pub min: Option<Written<JointRate>>,
-    /// Upper bound, SI unit rad/s or m/s.
-    #[serde(default)]
-    pub max: Option<Written<JointRate>>,
-}
+    /// Limits of the mean rate of a joint coordinate in each interval: `min`, `max` or both.
+    pub struct JointRateLimitSpec {
+        /// Name of the joint.
+        pub joint: String,
+        /// Lower bound, SI unit rad/s or m/s.
+        pub min: Option<Written<JointRate>>,
+        /// Upper bound, SI unit rad/s or m/s.
+        pub max: Option<Written<JointRate>>,
+    }
 
-/// Limits of the component, along a direction of the ground frame, of the force from the parent of a joint on its child: `min`, `max` or both.
-///
-/// It is the force of the columns of reactions, at the instants between intervals. Joints in loops are refused.
-#[derive(Clone, Debug, Deserialize, JsonSchema)]
-#[serde(deny_unknown_fields)]
-pub struct ReactionForceLimitSpec {
-    /// Name of the joint.
-    pub joint: String,
-    /// Direction of the ground frame, of any length.
-    pub along: [f64; 3],
-    /// Lower bound, SI unit N.
-    #[serde(default)]
-    pub min: Option<Written<Force>>,
-    /// Upper bound, SI unit N.
-    #[serde(default)]
-    pub max: Option<Written<Force>>,
-}
+    /// Limits of the component, along a direction of the ground frame, of the force from the parent of a joint on its child: `min`, `max` or both.
+    ///
+    /// It is the force of the columns of reactions, at the instants between intervals. Joints in loops are refused.
+    pub struct ReactionForceLimitSpec {
+        /// Name of the joint.
+        pub joint: String,
+        /// Direction of the ground frame, of any length.
+        pub along: [f64; 3],
+        /// Lower bound, SI unit N.
+        pub min: Option<Written<Force>>,
+        /// Upper bound, SI unit N.
+        pub max: Option<Written<Force>>,
+    }
 
-/// Limits of the component, about a direction of the ground frame, of the torque from the parent of a joint on its child: `min`, `max` or both.
-///
-/// It is the torque of the columns of reactions, about the point of the joint, at the instants between intervals. Spherical joints and joints in
-/// loops are refused.
-#[derive(Clone, Debug, Deserialize, JsonSchema)]
-#[serde(deny_unknown_fields)]
-pub struct ReactionTorqueLimitSpec {
-    /// Name of the joint.
-    pub joint: String,
-    /// Direction of the ground frame, of any length.
-    pub about: [f64; 3],
-    /// Lower bound, SI unit N m.
-    #[serde(default)]
-    pub min: Option<Written<Torque>>,
-    /// Upper bound, SI unit N m.
-    #[serde(default)]
-    pub max: Option<Written<Torque>>,
-}
+    /// Limits of the component, about a direction of the ground frame, of the torque from the parent of a joint on its child: `min`, `max` or both.
+    ///
+    /// It is the torque of the columns of reactions, about the point of the joint, at the instants between intervals. Spherical joints and joints in
+    /// loops are refused.
+    pub struct ReactionTorqueLimitSpec {
+        /// Name of the joint.
+        pub joint: String,
+        /// Direction of the ground frame, of any length.
+        pub about: [f64; 3],
+        /// Lower bound, SI unit N m.
+        pub min: Option<Written<Torque>>,
+        /// Upper bound, SI unit N m.
+        pub max: Option<Written<Torque>>,
+    }
 
-/// A joint and the function that its coordinate follows.
-#[derive(Clone, Debug, Deserialize, JsonSchema)]
-#[serde(deny_unknown_fields)]
-pub struct TrackJointSpec {
-    /// Name of the joint, revolute or prismatic.
-    pub joint: String,
-    /// The function of time, SI unit rad or m.
-    pub along: SignalSpec<JointCoordinate>,
-    /// Weight of ∫ (θ − r)² dt in rad² s, or mm² s of a prismatic joint; 1 where not written.
-    #[serde(default)]
-    pub weight: Option<f64>,
-}
+    /// A joint and the function that its coordinate follows.
+    pub struct TrackJointSpec {
+        /// Name of the joint, revolute or prismatic.
+        pub joint: String,
+        /// The function of time, SI unit rad or m.
+        pub along: SignalSpec<JointCoordinate>,
+        /// Weight of ∫ (θ − r)² dt in rad² s, or mm² s of a prismatic joint; 1 where not written.
+        pub weight: Option<f64>,
+    }
 
-/// All joints along an earlier solution.
-#[derive(Clone, Debug, Deserialize, JsonSchema)]
-#[serde(deny_unknown_fields)]
-pub struct TrackJointsSpec {
-    /// Path of a `solution.json` or of the folder that holds it, relative to this file or to the current folder; linear between its instants, constant after
-    /// the last.
-    pub solution: String,
-    /// Weight of the sum over all joints of ∫ (θ − r)² dt in rad² s, or mm² s of prismatic joints; 1 where not written.
-    #[serde(default)]
-    pub weight: Option<f64>,
-}
+    /// All joints along an earlier solution.
+    pub struct TrackJointsSpec {
+        /// Path of a `solution.json` or of the folder that holds it, relative to this file or to the current folder; linear between its instants, constant after
+        /// the last.
+        pub solution: String,
+        /// Weight of the sum over all joints of ∫ (θ − r)² dt in rad² s, or mm² s of prismatic joints; 1 where not written.
+        pub weight: Option<f64>,
+    }
 
-/// A joint and where it is to end.
-#[derive(Clone, Debug, Deserialize, JsonSchema)]
-#[serde(deny_unknown_fields)]
-pub struct FinalJointSpec {
-    /// Name of the joint, revolute or prismatic.
-    pub joint: String,
-    /// The value, SI unit rad or m.
-    pub at: Written<JointCoordinate>,
-    /// Weight of (θ − r)² at the final instant, in rad², or mm² of a prismatic joint; 1 where not written.
-    #[serde(default)]
-    pub weight: Option<f64>,
-}
+    /// A joint and where it is to end.
+    pub struct FinalJointSpec {
+        /// Name of the joint, revolute or prismatic.
+        pub joint: String,
+        /// The value, SI unit rad or m.
+        pub at: Written<JointCoordinate>,
+        /// Weight of (θ − r)² at the final instant, in rad², or mm² of a prismatic joint; 1 where not written.
+        pub weight: Option<f64>,
+    }
 
-/// The mean rate of the coordinate of a joint in the intervals.
-#[derive(Clone, Debug, Deserialize, JsonSchema)]
-#[serde(deny_unknown_fields)]
-pub struct JointRateCostSpec {
-    /// Name of the joint, revolute or prismatic.
-    pub joint: String,
-    /// Rate that is asked for, SI unit rad/s or m/s; 0 where not written.
-    #[serde(default)]
-    pub at: Option<Written<JointRate>>,
-    /// Weight of the squared deviation in (rad/s)², or (m/s)² of a prismatic joint; 1 where not written.
-    #[serde(default)]
-    pub weight: Option<f64>,
+    /// The mean rate of the coordinate of a joint in the intervals.
+    pub struct JointRateCostSpec {
+        /// Name of the joint, revolute or prismatic.
+        pub joint: String,
+        /// Rate that is asked for, SI unit rad/s or m/s; 0 where not written.
+        pub at: Option<Written<JointRate>>,
+        /// Weight of the squared deviation in (rad/s)², or (m/s)² of a prismatic joint; 1 where not written.
+        pub weight: Option<f64>,
+    }
 }
 
 impl LimitEntry for JointAngleLimitSpec {

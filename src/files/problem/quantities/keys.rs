@@ -2,6 +2,7 @@
 
 use crate::control::problem::{During, Limit, QuantityCost};
 use crate::files::json::error::Result;
+use crate::files::json::objects::read_objects;
 use crate::files::problem::at::At;
 use crate::files::problem::quantities::entry::{CostEntry, LimitEntry, Named, PlaneSpec, Recorded};
 use crate::files::problem::quantities::joint::{
@@ -23,20 +24,18 @@ use crate::files::units::quantity::{
     Angle, AngularVelocity, Charge, Current, Force, Kind, Length, PhysicalQuantity, Power,
     Quantity as Written, Torque, Velocity, Voltage,
 };
-use schemars::JsonSchema;
-use serde::Deserialize;
 
 /// Declares an entry that has exactly one of some keys, beside others, and what is seen of the one that is written.
 macro_rules! one_of {
     ($(#[$about:meta])* $name:ident: $entry:ty = |$one:ident| $seen:expr;
      keys { $($(#[$doc:meta])* $key:ident: $spec:ty;)* }
      beside { $($(#[$beside_doc:meta])* $beside:ident: $other:ty;)* }) => {
-        $(#[$about])*
-        #[derive(Clone, Debug, Deserialize, JsonSchema)]
-        #[serde(deny_unknown_fields)]
-        pub struct $name {
-            $($(#[$beside_doc])* #[serde(default)] pub $beside: Option<$other>,)*
-            $($(#[$doc])* #[serde(default)] pub $key: Option<$spec>,)*
+        read_objects! {
+            $(#[$about])*
+            pub struct $name {
+                $($(#[$beside_doc])* pub $beside: Option<$other>,)*
+                $($(#[$doc])* pub $key: Option<$spec>,)*
+            }
         }
 
         impl $name {
@@ -156,12 +155,12 @@ macro_rules! recorded {
     ($(#[$about:meta])* $name:ident;
      keys { $($(#[$doc:meta])* $key:ident: $make:expr;)* }
      beside { $($(#[$beside_doc:meta])* $beside:ident: $other:ty;)* }) => {
-        $(#[$about])*
-        #[derive(Clone, Debug, Deserialize, JsonSchema)]
-        #[serde(deny_unknown_fields)]
-        pub struct $name {
-            $($(#[$doc])* #[serde(default)] pub $key: Option<String>,)*
-            $($(#[$beside_doc])* #[serde(default)] pub $beside: Option<$other>,)*
+        read_objects! {
+            $(#[$about])*
+            pub struct $name {
+                $($(#[$doc])* pub $key: Option<String>,)*
+                $($(#[$beside_doc])* pub $beside: Option<$other>,)*
+            }
         }
 
         impl $name {

@@ -2,6 +2,7 @@
 
 use crate::control::problem::{CostFunction, Limit};
 use crate::files::json::error::Result;
+use crate::files::json::objects::read_objects;
 use crate::files::json::scope::the_one;
 use crate::files::problem::at::At;
 use crate::files::problem::quantities::entry::{
@@ -13,141 +14,106 @@ use crate::files::signal::signal;
 use crate::files::signal::spec::SignalSpec;
 use crate::files::units::quantity::{Length, Quantity as Written, Velocity};
 use crate::model::{Quantity, Region, What};
-use schemars::JsonSchema;
-use serde::Deserialize;
 
-/// Region of a marker: exactly one of `inside` and `outside`.
-#[derive(Clone, Debug, Deserialize, JsonSchema)]
-#[serde(deny_unknown_fields)]
-pub struct MarkerLimitSpec {
-    /// Name of the marker.
-    pub marker: String,
-    /// Region in which it stays.
-    #[serde(default)]
-    pub inside: Option<RegionSpec>,
-    /// Region outside which it stays.
-    #[serde(default)]
-    pub outside: Option<RegionSpec>,
-}
+read_objects! {
+    /// Region of a marker: exactly one of `inside` and `outside`.
+    pub struct MarkerLimitSpec {
+        /// Name of the marker.
+        pub marker: String,
+        /// Region in which it stays.
+        pub inside: Option<RegionSpec>,
+        /// Region outside which it stays.
+        pub outside: Option<RegionSpec>,
+    }
 
-/// A region: exactly one of the two.
-#[derive(Clone, Debug, Deserialize, JsonSchema)]
-#[serde(deny_unknown_fields)]
-pub struct RegionSpec {
-    /// Box between two corners.
-    #[serde(rename = "box", default)]
-    pub cuboid: Option<CornersSpec>,
-    /// Ball.
-    #[serde(default)]
-    pub sphere: Option<BallSpec>,
-}
+    /// A region: exactly one of the two.
+    pub struct RegionSpec {
+        /// Box between two corners.
+        #[serde(rename = "box")]
+        pub cuboid: Option<CornersSpec>,
+        /// Ball.
+        pub sphere: Option<BallSpec>,
+    }
 
-/// A ball.
-#[derive(Clone, Debug, Deserialize, JsonSchema)]
-#[serde(deny_unknown_fields)]
-pub struct BallSpec {
-    /// Centre, SI unit m.
-    pub centre: Point,
-    /// Radius, SI unit m.
-    pub radius: Written<Length>,
-}
+    /// A ball.
+    pub struct BallSpec {
+        /// Centre, SI unit m.
+        pub centre: Point,
+        /// Radius, SI unit m.
+        pub radius: Written<Length>,
+    }
 
-/// Limits of the size of the mean velocity of a marker in each interval: `min`, `max` or both.
-#[derive(Clone, Debug, Deserialize, JsonSchema)]
-#[serde(deny_unknown_fields)]
-pub struct MarkerSpeedLimitSpec {
-    /// Name of the marker.
-    pub marker: String,
-    /// Lower bound, SI unit m/s.
-    #[serde(default)]
-    pub min: Option<Written<Velocity>>,
-    /// Upper bound, SI unit m/s.
-    #[serde(default)]
-    pub max: Option<Written<Velocity>>,
-}
+    /// Limits of the size of the mean velocity of a marker in each interval: `min`, `max` or both.
+    pub struct MarkerSpeedLimitSpec {
+        /// Name of the marker.
+        pub marker: String,
+        /// Lower bound, SI unit m/s.
+        pub min: Option<Written<Velocity>>,
+        /// Upper bound, SI unit m/s.
+        pub max: Option<Written<Velocity>>,
+    }
 
-/// Limits of the distance of a marker from a plane, on the side of its normal: `min`, `max` or both.
-#[derive(Clone, Debug, Deserialize, JsonSchema)]
-#[serde(deny_unknown_fields)]
-pub struct ClearanceLimitSpec {
-    /// Name of the marker.
-    pub marker: String,
-    /// The plane.
-    pub from: PlaneSpec,
-    /// Lower bound, SI unit m.
-    #[serde(default)]
-    pub min: Option<Written<Length>>,
-    /// Upper bound, SI unit m.
-    #[serde(default)]
-    pub max: Option<Written<Length>>,
-}
+    /// Limits of the distance of a marker from a plane, on the side of its normal: `min`, `max` or both.
+    pub struct ClearanceLimitSpec {
+        /// Name of the marker.
+        pub marker: String,
+        /// The plane.
+        pub from: PlaneSpec,
+        /// Lower bound, SI unit m.
+        pub min: Option<Written<Length>>,
+        /// Upper bound, SI unit m.
+        pub max: Option<Written<Length>>,
+    }
 
-/// A marker and its path.
-#[derive(Clone, Debug, Deserialize, JsonSchema)]
-#[serde(deny_unknown_fields)]
-pub struct TrackMarkerSpec {
-    /// Name of the marker.
-    pub marker: String,
-    /// The path.
-    pub along: PathSpec,
-    /// Weight of ∫ |x − r|² dt over the directions of the path, in mm² s; 1 where not written.
-    #[serde(default)]
-    pub weight: Option<f64>,
-}
+    /// A marker and its path.
+    pub struct TrackMarkerSpec {
+        /// Name of the marker.
+        pub marker: String,
+        /// The path.
+        pub along: PathSpec,
+        /// Weight of ∫ |x − r|² dt over the directions of the path, in mm² s; 1 where not written.
+        pub weight: Option<f64>,
+    }
 
-/// Coordinates as functions of time, SI unit m; one or more. Directions that are not written are free.
-#[derive(Clone, Debug, Deserialize, JsonSchema)]
-#[serde(deny_unknown_fields)]
-pub struct PathSpec {
-    /// Along x.
-    #[serde(default)]
-    pub x: Option<SignalSpec<Length>>,
-    /// Along y.
-    #[serde(default)]
-    pub y: Option<SignalSpec<Length>>,
-    /// Along z.
-    #[serde(default)]
-    pub z: Option<SignalSpec<Length>>,
-}
+    /// Coordinates as functions of time, SI unit m; one or more. Directions that are not written are free.
+    pub struct PathSpec {
+        /// Along x.
+        pub x: Option<SignalSpec<Length>>,
+        /// Along y.
+        pub y: Option<SignalSpec<Length>>,
+        /// Along z.
+        pub z: Option<SignalSpec<Length>>,
+    }
 
-/// A marker and where it is to end.
-#[derive(Clone, Debug, Deserialize, JsonSchema)]
-#[serde(deny_unknown_fields)]
-pub struct FinalMarkerSpec {
-    /// Name of the marker.
-    pub marker: String,
-    /// The place, SI unit m; directions that are `null` are free.
-    pub at: PartialPoint,
-    /// Weight of |x − r|² at the final instant, in mm²; 1 where not written.
-    #[serde(default)]
-    pub weight: Option<f64>,
-}
+    /// A marker and where it is to end.
+    pub struct FinalMarkerSpec {
+        /// Name of the marker.
+        pub marker: String,
+        /// The place, SI unit m; directions that are `null` are free.
+        pub at: PartialPoint,
+        /// Weight of |x − r|² at the final instant, in mm²; 1 where not written.
+        pub weight: Option<f64>,
+    }
 
-/// The size of the mean velocity of a marker in the intervals.
-#[derive(Clone, Debug, Deserialize, JsonSchema)]
-#[serde(deny_unknown_fields)]
-pub struct MarkerSpeedCostSpec {
-    /// Name of the marker.
-    pub marker: String,
-    /// Weight of the squared speed in (m/s)²; 1 where not written.
-    #[serde(default)]
-    pub weight: Option<f64>,
-}
+    /// The size of the mean velocity of a marker in the intervals.
+    pub struct MarkerSpeedCostSpec {
+        /// Name of the marker.
+        pub marker: String,
+        /// Weight of the squared speed in (m/s)²; 1 where not written.
+        pub weight: Option<f64>,
+    }
 
-/// The distance of a marker from a plane, on the side of its normal.
-#[derive(Clone, Debug, Deserialize, JsonSchema)]
-#[serde(deny_unknown_fields)]
-pub struct ClearanceCostSpec {
-    /// Name of the marker.
-    pub marker: String,
-    /// The plane.
-    pub from: PlaneSpec,
-    /// Distance that is asked for, SI unit m; 0 where not written.
-    #[serde(default)]
-    pub at: Option<Written<Length>>,
-    /// Weight of the squared deviation in mm²; 1 where not written.
-    #[serde(default)]
-    pub weight: Option<f64>,
+    /// The distance of a marker from a plane, on the side of its normal.
+    pub struct ClearanceCostSpec {
+        /// Name of the marker.
+        pub marker: String,
+        /// The plane.
+        pub from: PlaneSpec,
+        /// Distance that is asked for, SI unit m; 0 where not written.
+        pub at: Option<Written<Length>>,
+        /// Weight of the squared deviation in mm²; 1 where not written.
+        pub weight: Option<f64>,
+    }
 }
 
 impl LimitEntry for MarkerLimitSpec {

@@ -2,6 +2,7 @@
 
 use crate::control::problem::{CostFunction, During, Limit, QuantityCost};
 use crate::files::json::error::Result;
+use crate::files::json::objects::read_objects;
 use crate::files::json::scope::Scope;
 use crate::files::problem::at::{At, ELECTRIC_KEYS};
 use crate::files::problem::quantities::entry::{
@@ -10,95 +11,73 @@ use crate::files::problem::quantities::entry::{
 use crate::files::units::quantity::{ElectricField, Force, Mass, Quantity as Written, Volume};
 use crate::model::system::Fidelity;
 use crate::model::{Amount, FieldPlace, Pulling, Quantity, What};
-use schemars::JsonSchema;
-use serde::Deserialize;
 
-/// Limits of the stretch of a muscle: `min`, `max` or both.
-#[derive(Clone, Debug, Deserialize, JsonSchema)]
-#[serde(deny_unknown_fields)]
-pub struct StretchLimitSpec {
-    /// Name of the muscle.
-    pub muscle: String,
-    /// Lower bound.
-    #[serde(default)]
-    pub min: Option<f64>,
-    /// Upper bound.
-    #[serde(default)]
-    pub max: Option<f64>,
-}
+read_objects! {
+    /// Limits of the stretch of a muscle: `min`, `max` or both.
+    pub struct StretchLimitSpec {
+        /// Name of the muscle.
+        pub muscle: String,
+        /// Lower bound.
+        pub min: Option<f64>,
+        /// Upper bound.
+        pub max: Option<f64>,
+    }
 
-/// Limits of the force with which one lumped muscle (`"muscle": name`), each (`"muscles": "all"`), a spring or a tendon pulls its ends
-/// together, by elasticity, field, viscosity and Maxwell branches: `min`, `max` or both.
-///
-/// It bounds the tension in the middle of every interval, under the voltage there; the column of the table is its mean in both intervals
-/// beside an instant. Of springs and tendons it bounds the mean over every interval.
-#[derive(Clone, Debug, Deserialize, JsonSchema)]
-#[serde(deny_unknown_fields)]
-pub struct TensionLimitSpec {
-    /// Name of the muscle.
-    #[serde(default)]
-    pub muscle: Option<String>,
-    /// All lumped muscles.
-    #[serde(default)]
-    pub muscles: Option<All>,
-    /// Name of a spring.
-    #[serde(default)]
-    pub spring: Option<String>,
-    /// Name of a tendon.
-    #[serde(default)]
-    pub tendon: Option<String>,
-    /// Lower bound, SI unit N. With `0` the muscle is never slack.
-    #[serde(default)]
-    pub min: Option<Written<Force>>,
-    /// Upper bound, SI unit N.
-    #[serde(default)]
-    pub max: Option<Written<Force>>,
-}
+    /// Limits of the force with which one lumped muscle (`"muscle": name`), each (`"muscles": "all"`), a spring or a tendon pulls its ends
+    /// together, by elasticity, field, viscosity and Maxwell branches: `min`, `max` or both.
+    ///
+    /// It bounds the tension in the middle of every interval, under the voltage there; the column of the table is its mean in both intervals
+    /// beside an instant. Of springs and tendons it bounds the mean over every interval.
+    pub struct TensionLimitSpec {
+        /// Name of the muscle.
+        pub muscle: Option<String>,
+        /// All lumped muscles.
+        pub muscles: Option<All>,
+        /// Name of a spring.
+        pub spring: Option<String>,
+        /// Name of a tendon.
+        pub tendon: Option<String>,
+        /// Lower bound, SI unit N. With `0` the muscle is never slack.
+        pub min: Option<Written<Force>>,
+        /// Upper bound, SI unit N.
+        pub max: Option<Written<Force>>,
+    }
 
-/// Breakdown field of one muscle (`"muscle": name`) or all (`"muscles": "all"`), of one elastic block (`"solid": name`, or a
-/// `region` of it) or all (`"solids": "all"`).
-///
-/// It bounds the true field at every instant and in the middle of every interval; in finite elements at their centres and Gauss
-/// points.
-#[derive(Clone, Debug, Deserialize, JsonSchema)]
-#[serde(deny_unknown_fields)]
-pub struct ElectricFieldLimitSpec {
-    /// Name of the muscle.
-    #[serde(default)]
-    pub muscle: Option<String>,
-    /// All muscles with an electric term.
-    #[serde(default)]
-    pub muscles: Option<All>,
-    /// Name of the elastic block.
-    #[serde(default)]
-    pub solid: Option<String>,
-    /// All elastic blocks that a field reaches.
-    #[serde(default)]
-    pub solids: Option<All>,
-    /// Name of a region of the mesh of `solid`; all elements that a field reaches where not written.
-    #[serde(default)]
-    pub region: Option<String>,
-    /// Largest true field, SI unit V/m.
-    pub max: Written<ElectricField>,
+    /// Breakdown field of one muscle (`"muscle": name`) or all (`"muscles": "all"`), of one elastic block (`"solid": name`, or a
+    /// `region` of it) or all (`"solids": "all"`).
+    ///
+    /// It bounds the true field at every instant and in the middle of every interval; in finite elements at their centres and Gauss
+    /// points.
+    pub struct ElectricFieldLimitSpec {
+        /// Name of the muscle.
+        pub muscle: Option<String>,
+        /// All muscles with an electric term.
+        pub muscles: Option<All>,
+        /// Name of the elastic block.
+        pub solid: Option<String>,
+        /// All elastic blocks that a field reaches.
+        pub solids: Option<All>,
+        /// Name of a region of the mesh of `solid`; all elements that a field reaches where not written.
+        pub region: Option<String>,
+        /// Largest true field, SI unit V/m.
+        pub max: Written<ElectricField>,
+    }
 }
 
 /// Declares limits of an amount of lumped muscles, together: `min`, `max` or both.
 macro_rules! amount_limits {
     ($($(#[$about:meta])* $name:ident: $measure:ident, $unit:literal;)*) => {
         $(
-            $(#[$about])*
-            #[derive(Clone, Debug, Deserialize, JsonSchema)]
-            #[serde(deny_unknown_fields)]
-            pub struct $name {
-                /// Names of lumped muscles; all of them where not written.
-                #[serde(default)]
-                pub muscles: Option<Vec<String>>,
-                #[doc = concat!("Lower bound, SI unit ", $unit, ".")]
-                #[serde(default)]
-                pub min: Option<Written<$measure>>,
-                #[doc = concat!("Upper bound, SI unit ", $unit, ".")]
-                #[serde(default)]
-                pub max: Option<Written<$measure>>,
+            read_objects! {
+                $(#[$about])*
+                pub struct $name {
+                    /// Names of lumped muscles; all of them where not written.
+                    pub muscles: Option<Vec<String>>,
+                    #[doc = concat!("Lower bound, SI unit ", $unit, ".")]
+                    pub min: Option<Written<$measure>>,
+                    #[doc = concat!("Upper bound, SI unit ", $unit, ".")]
+                    pub max: Option<Written<$measure>>,
+                }
             }
 
             impl LimitEntry for $name {
@@ -122,38 +101,29 @@ amount_limits! {
     MuscleMassLimitSpec: Mass, "kg";
 }
 
-/// The tension of one lumped muscle (`"muscle": name`) or of each (`"muscles": "all"`), in the middle of the intervals.
-#[derive(Clone, Debug, Deserialize, JsonSchema)]
-#[serde(deny_unknown_fields)]
-pub struct TensionCostSpec {
-    /// Name of the muscle.
-    #[serde(default)]
-    pub muscle: Option<String>,
-    /// All lumped muscles.
-    #[serde(default)]
-    pub muscles: Option<All>,
-    /// Tension that is asked for, SI unit N; 0 where not written.
-    #[serde(default)]
-    pub at: Option<Written<Force>>,
-    /// Weight of the squared deviation in N²; 1 where not written.
-    #[serde(default)]
-    pub weight: Option<f64>,
-}
+read_objects! {
+    /// The tension of one lumped muscle (`"muscle": name`) or of each (`"muscles": "all"`), in the middle of the intervals.
+    pub struct TensionCostSpec {
+        /// Name of the muscle.
+        pub muscle: Option<String>,
+        /// All lumped muscles.
+        pub muscles: Option<All>,
+        /// Tension that is asked for, SI unit N; 0 where not written.
+        pub at: Option<Written<Force>>,
+        /// Weight of the squared deviation in N²; 1 where not written.
+        pub weight: Option<f64>,
+    }
 
-/// The true electric field of one lumped muscle (`"muscle": name`) or of each (`"muscles": "all"`), in the middle of the intervals; behind a
-/// resistor at the instants.
-#[derive(Clone, Debug, Deserialize, JsonSchema)]
-#[serde(deny_unknown_fields)]
-pub struct FieldCostSpec {
-    /// Name of the muscle.
-    #[serde(default)]
-    pub muscle: Option<String>,
-    /// All lumped muscles with an electric term.
-    #[serde(default)]
-    pub muscles: Option<All>,
-    /// Weight of the squared field in (V/µm)²; 1 where not written.
-    #[serde(default)]
-    pub weight: Option<f64>,
+    /// The true electric field of one lumped muscle (`"muscle": name`) or of each (`"muscles": "all"`), in the middle of the intervals; behind a
+    /// resistor at the instants.
+    pub struct FieldCostSpec {
+        /// Name of the muscle.
+        pub muscle: Option<String>,
+        /// All lumped muscles with an electric term.
+        pub muscles: Option<All>,
+        /// Weight of the squared field in (V/µm)²; 1 where not written.
+        pub weight: Option<f64>,
+    }
 }
 
 const EXPECTED: &str = "a lumped muscle";

@@ -2,6 +2,7 @@
 
 use crate::control::problem::Limit;
 use crate::files::json::error::Result;
+use crate::files::json::objects::read_objects;
 use crate::files::problem::at::{At, SiUnit};
 use crate::files::problem::quantities::entry::{
     All, Cost, CostEntry, LimitEntry, Named, Recorded, bounds, squares,
@@ -11,29 +12,23 @@ use crate::files::units::quantity::{
 };
 use crate::model::system::{Fidelity, Muscle};
 use crate::model::{MILLIAMPERE, Quantity, What};
-use schemars::JsonSchema;
-use serde::Deserialize;
 
 /// Declares limits of one source (`"source": name`) or all (`"sources": "all"`): `min`, `max` or both.
 macro_rules! source_limits {
     ($($(#[$about:meta])* $name:ident: $measure:ident, $unit:literal, $chosen:ident, $limit:expr;)*) => {
         $(
-            $(#[$about])*
-            #[derive(Clone, Debug, Deserialize, JsonSchema)]
-            #[serde(deny_unknown_fields)]
-            pub struct $name {
-                /// Name of the source: that of its muscle or electrode.
-                #[serde(default)]
-                pub source: Option<String>,
-                /// All sources.
-                #[serde(default)]
-                pub sources: Option<All>,
-                #[doc = concat!("Lower bound, SI unit ", $unit, ".")]
-                #[serde(default)]
-                pub min: Option<Written<$measure>>,
-                #[doc = concat!("Upper bound, SI unit ", $unit, ".")]
-                #[serde(default)]
-                pub max: Option<Written<$measure>>,
+            read_objects! {
+                $(#[$about])*
+                pub struct $name {
+                    /// Name of the source: that of its muscle or electrode.
+                    pub source: Option<String>,
+                    /// All sources.
+                    pub sources: Option<All>,
+                    #[doc = concat!("Lower bound, SI unit ", $unit, ".")]
+                    pub min: Option<Written<$measure>>,
+                    #[doc = concat!("Upper bound, SI unit ", $unit, ".")]
+                    pub max: Option<Written<$measure>>,
+                }
             }
 
             impl LimitEntry for $name {
@@ -65,40 +60,30 @@ source_limits! {
     VoltageRateLimitSpec: VoltageRate, "V/s", any, |source, bounds| Limit::of_rate(What::Voltage(source), bounds);
 }
 
-/// The current of one source (`"source": name`) or of each (`"sources": "all"`) of lumped muscles behind a resistor.
-#[derive(Clone, Debug, Deserialize, JsonSchema)]
-#[serde(deny_unknown_fields)]
-pub struct CurrentCostSpec {
-    /// Name of the source: that of its muscle.
-    #[serde(default)]
-    pub source: Option<String>,
-    /// All sources.
-    #[serde(default)]
-    pub sources: Option<All>,
-    /// Current that is asked for, SI unit A; 0 where not written.
-    #[serde(default)]
-    pub at: Option<Written<Current>>,
-    /// Weight of the squared deviation in mA²; 1 where not written.
-    #[serde(default)]
-    pub weight: Option<f64>,
-}
+read_objects! {
+    /// The current of one source (`"source": name`) or of each (`"sources": "all"`) of lumped muscles behind a resistor.
+    pub struct CurrentCostSpec {
+        /// Name of the source: that of its muscle.
+        pub source: Option<String>,
+        /// All sources.
+        pub sources: Option<All>,
+        /// Current that is asked for, SI unit A; 0 where not written.
+        pub at: Option<Written<Current>>,
+        /// Weight of the squared deviation in mA²; 1 where not written.
+        pub weight: Option<f64>,
+    }
 
-/// The power of one source (`"source": name`) or of each (`"sources": "all"`) of lumped muscles behind a resistor.
-#[derive(Clone, Debug, Deserialize, JsonSchema)]
-#[serde(deny_unknown_fields)]
-pub struct PowerCostSpec {
-    /// Name of the source: that of its muscle.
-    #[serde(default)]
-    pub source: Option<String>,
-    /// All sources.
-    #[serde(default)]
-    pub sources: Option<All>,
-    /// Power that is asked for, SI unit W; 0 where not written.
-    #[serde(default)]
-    pub at: Option<Written<Power>>,
-    /// Weight of the squared deviation in W²; 1 where not written.
-    #[serde(default)]
-    pub weight: Option<f64>,
+    /// The power of one source (`"source": name`) or of each (`"sources": "all"`) of lumped muscles behind a resistor.
+    pub struct PowerCostSpec {
+        /// Name of the source: that of its muscle.
+        pub source: Option<String>,
+        /// All sources.
+        pub sources: Option<All>,
+        /// Power that is asked for, SI unit W; 0 where not written.
+        pub at: Option<Written<Power>>,
+        /// Weight of the squared deviation in W²; 1 where not written.
+        pub weight: Option<f64>,
+    }
 }
 
 /// One source, or all that take a voltage, with the place where they are chosen.

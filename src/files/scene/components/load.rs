@@ -1,10 +1,10 @@
 //! Loads.
 
 use crate::files::json::error::Result;
+use crate::files::json::objects::objects;
 use crate::files::json::scope::Scope;
 use crate::files::scene::names::names;
 use crate::files::scene::nodes::nodes;
-use crate::files::scene::objects::objects;
 use crate::files::scene::point::{CornersSpec, PointSpec, unit_axis};
 use crate::files::scene::spec_solids::PlaneSpec;
 use crate::math::Vector;

@@ -1,9 +1,9 @@
 //! Tendons.
 
 use crate::files::json::error::Result;
+use crate::files::json::objects::objects;
 use crate::files::json::scope::Scope;
 use crate::files::scene::components::spring::ComponentSpec;
-use crate::files::scene::objects::objects;
 use crate::files::scene::point::PointSpec;
 use crate::files::units::quantity::{Length, Quantity, Stiffness};
 use crate::model::components::Tendon;
