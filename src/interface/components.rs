@@ -1,5 +1,6 @@
 //! Springs, tendons, loads and components of other crates, built with defaults.
 
+use crate::interface::builder::builder;
 use crate::interface::handle::{Carrier, Handle, Part, named};
 use crate::interface::parts::attachment;
 use crate::model::components::{
@@ -25,26 +26,16 @@ impl Spring {
             damping: None,
         }
     }
+}
 
+builder! {
+    impl Spring;
     /// Stiffness in N/mm.
-    pub fn stiffness(self, stiffness: f64) -> Self {
-        let stiffness = Some(stiffness);
-        Self { stiffness, ..self }
-    }
-
+    stiffness(stiffness: f64) |of| of.stiffness = Some(stiffness);
     /// Damping in N ms/mm.
-    pub fn damping(self, damping: f64) -> Self {
-        let damping = Some(damping);
-        Self { damping, ..self }
-    }
-
+    damping(damping: f64) |of| of.damping = Some(damping);
     /// Length without force in mm.
-    pub fn rest_length(self, rest_length: f64) -> Self {
-        Self {
-            rest_length,
-            ..self
-        }
-    }
+    rest_length(rest_length: f64) |of| of.rest_length = rest_length;
 }
 
 impl<K: Kind> Part for K

@@ -6,6 +6,7 @@ use crate::control::problem::{
     QuantityCost, Regulator, Solver, SoughtHold, Varied,
 };
 use crate::control::{Earlier, EarlierSolution, Motions, problem};
+use crate::interface::builder::builder;
 use crate::interface::cost_checks::{check_costs, check_energies, check_limits, check_waypoints};
 use crate::interface::error::{Result, require, source};
 use crate::interface::handle::{Handle, Input};
@@ -83,43 +84,6 @@ impl Control {
         }
     }
 
-    /// Another start.
-    pub fn start(self, start: State) -> Self {
-        Self { start, ..self }
-    }
-
-    /// The goal, at rest unless it is [`State::Free`] or [`State::Periodic`].
-    pub fn goal(self, goal: State) -> Self {
-        Self { goal, ..self }
-    }
-
-    /// Does not seek inputs that hold a goal of places or joint coordinates. Otherwise, where the motion leaves such a goal under its last
-    /// inputs, the problem is solved again with [these](Self::find_hold) as unknowns.
-    pub fn without_hold(self) -> Self {
-        Self {
-            sought_hold: SoughtHold::Never,
-            ..self
-        }
-    }
-
-    /// Seeks the voltages and loads that hold a goal of places or joint coordinates together with the motion: the goal is an equilibrium under
-    /// them, and they count as those of one more interval.
-    pub fn find_hold(self) -> Self {
-        Self {
-            sought_hold: SoughtHold::Always,
-            ..self
-        }
-    }
-
-    /// Bounds of all voltages in V; from 0 to infinity where nothing is said.
-    pub fn voltage_bounds(self, lower: f64, upper: f64) -> Self {
-        let voltage_bounds = [lower, upper];
-        Self {
-            voltage_bounds,
-            ..self
-        }
-    }
-
     /// Seeks a load within bounds in N, or N mm of a torque; loads that are neither sought nor given are zero.
     pub fn load_within(mut self, load: Handle<Load>, range: RangeInclusive<f64>) -> Self {
         let bounds = [*range.start(), *range.end()];
@@ -127,74 +91,10 @@ impl Control {
         self
     }
 
-    /// Minimises Σ h |V|² of the inputs V in kV, N or N m, h in s, with a weight.
-    pub fn effort(mut self, weight: f64) -> Self {
-        self.objective.effort = weight;
-        self
-    }
-
-    /// Minimises Σ |ΔV|²/h of the changes of the inputs, with a weight.
-    pub fn rate(mut self, weight: f64) -> Self {
-        self.objective.rate = weight;
-        self
-    }
-
-    /// Minimises the duration in s, with a weight.
-    pub fn time(mut self, weight: f64) -> Self {
-        self.objective.duration = weight;
-        self
-    }
-
-    /// Minimises a function of a quantity; [`Control::track`] and its neighbours make the usual ones.
-    pub fn minimise(mut self, cost: QuantityCost) -> Self {
-        self.objective.quantities.push(cost);
-        self
-    }
-
-    /// A voltage that is given: a constant in V, or a [`Signal`] whose value in the middle of each interval acts during the interval.
-    pub fn voltage(mut self, input: impl Into<Input>, signal: impl Into<Signal>) -> Self {
-        self.voltages.push((input.into(), signal.into()));
-        self
-    }
-
     /// A load that is given: a constant in N, or N mm of a torque, or a [`Signal`] whose value in the middle of each interval acts during
     /// the interval.
     pub fn load(self, load: Handle<Load>, size: impl Into<Signal>) -> Self {
         self.voltage(load, size)
-    }
-
-    /// Seeks constants of the system within bounds; see [`Optimum::parameters`].
-    pub fn seek(mut self, parameter: Parameter) -> Self {
-        self.parameters.push(parameter);
-        self
-    }
-
-    /// Differentiates the optimum by a number of the problem; see [`Optimum::sensitivities`](crate::interface::Optimum::sensitivities).
-    pub fn sensitivity(mut self, varied: Varied) -> Self {
-        self.varied.push(varied);
-        self
-    }
-
-    /// Differentiates this outcome, others that are named, and the objective, and nothing else; see
-    /// [`Optimum::gradients`](crate::interface::Optimum::gradients). A few outcomes by many numbers take less work than all by each number.
-    pub fn outcome(mut self, outcome: OutcomeOf) -> Self {
-        self.outcomes.push(outcome);
-        self
-    }
-
-    /// Starts from an earlier solution, also of another grid or goal.
-    pub fn starting_from(self, earlier: impl EarlierSolution + 'static) -> Self {
-        let guess = Guess::Solution(Earlier::new(earlier));
-        Self { guess, ..self }
-    }
-
-    /// Stops the solver after this number of seconds.
-    pub fn max_seconds(self, seconds: f64) -> Self {
-        let max_seconds = Some(seconds);
-        Self {
-            max_seconds,
-            ..self
-        }
     }
 
     /// Solves; an optimum that a simulation under its voltages does not reproduce is solved again on finer grids.
@@ -346,6 +246,43 @@ impl Control {
         given.extend(absent);
         Ok(given)
     }
+}
+
+builder! {
+    impl Control;
+    /// Another start.
+    start(start: State) |of| of.start = start;
+    /// The goal, at rest unless it is [`State::Free`] or [`State::Periodic`].
+    goal(goal: State) |of| of.goal = goal;
+    /// Does not seek inputs that hold a goal of places or joint coordinates. Otherwise, where the motion leaves such a goal under its last
+    /// inputs, the problem is solved again with [these](Self::find_hold) as unknowns.
+    without_hold() |of| of.sought_hold = SoughtHold::Never;
+    /// Seeks the voltages and loads that hold a goal of places or joint coordinates together with the motion: the goal is an equilibrium under
+    /// them, and they count as those of one more interval.
+    find_hold() |of| of.sought_hold = SoughtHold::Always;
+    /// Bounds of all voltages in V; from 0 to infinity where nothing is said.
+    voltage_bounds(lower: f64, upper: f64) |of| of.voltage_bounds = [lower, upper];
+    /// Minimises Σ h |V|² of the inputs V in kV, N or N m, h in s, with a weight.
+    effort(weight: f64) |of| of.objective.effort = weight;
+    /// Minimises Σ |ΔV|²/h of the changes of the inputs, with a weight.
+    rate(weight: f64) |of| of.objective.rate = weight;
+    /// Minimises the duration in s, with a weight.
+    time(weight: f64) |of| of.objective.duration = weight;
+    /// Minimises a function of a quantity; [`Control::track`] and its neighbours make the usual ones.
+    minimise(cost: QuantityCost) |of| of.objective.quantities.push(cost);
+    /// A voltage that is given: a constant in V, or a [`Signal`] whose value in the middle of each interval acts during the interval.
+    voltage(input: impl Into<Input>, signal: impl Into<Signal>) |of| of.voltages.push((input.into(), signal.into()));
+    /// Seeks constants of the system within bounds; see [`Optimum::parameters`].
+    seek(parameter: Parameter) |of| of.parameters.push(parameter);
+    /// Differentiates the optimum by a number of the problem; see [`Optimum::sensitivities`](crate::interface::Optimum::sensitivities).
+    sensitivity(varied: Varied) |of| of.varied.push(varied);
+    /// Differentiates this outcome, others that are named, and the objective, and nothing else; see
+    /// [`Optimum::gradients`](crate::interface::Optimum::gradients). A few outcomes by many numbers take less work than all by each number.
+    outcome(outcome: OutcomeOf) |of| of.outcomes.push(outcome);
+    /// Starts from an earlier solution, also of another grid or goal.
+    starting_from(earlier: impl EarlierSolution + 'static) |of| of.guess = Guess::Solution(Earlier::new(earlier));
+    /// Stops the solver after this number of seconds.
+    max_seconds(seconds: f64) |of| of.max_seconds = Some(seconds);
 }
 
 impl Control {

@@ -2,6 +2,7 @@
 
 use crate::control::problem::AtRest;
 use crate::dynamics::EnergyExchange;
+use crate::interface::builder::builder;
 use crate::interface::error::{Error, Result, require, source};
 use crate::interface::handle::{Handle, Input};
 use crate::interface::motion::Motion;
@@ -23,22 +24,9 @@ impl Equilibrium {
         Self::default()
     }
 
-    /// The voltage of a muscle or electrode in V.
-    pub fn voltage(mut self, input: impl Into<Input>, volts: f64) -> Self {
-        self.inputs.push((input.into(), volts));
-        self
-    }
-
     /// The size of a load in N, or N mm of a torque.
     pub fn load(self, load: Handle<Load>, size: f64) -> Self {
         self.voltage(load, size)
-    }
-
-    /// The state right after the voltages and loads came to act: Maxwell branches are springs without stress in the reference
-    /// configuration. Otherwise the state after a long time, in which they carry nothing.
-    pub fn instantaneous(self) -> Self {
-        let response = Response::Instantaneous;
-        Self { response, ..self }
     }
 
     /// Finds it, as a motion of one instant.
@@ -90,4 +78,13 @@ impl Equilibrium {
             }),
         }
     }
+}
+
+builder! {
+    impl Equilibrium;
+    /// The voltage of a muscle or electrode in V.
+    voltage(input: impl Into<Input>, volts: f64) |of| of.inputs.push((input.into(), volts));
+    /// The state right after the voltages and loads came to act: Maxwell branches are springs without stress in the reference
+    /// configuration. Otherwise the state after a long time, in which they carry nothing.
+    instantaneous() |of| of.response = Response::Instantaneous;
 }

@@ -1,5 +1,6 @@
 //! Constants of a system that are sought: names for them, and a parameter that they follow.
 
+use crate::interface::builder::constants;
 use crate::interface::handle::Handle;
 use crate::model::components::{Spring, Tendon};
 use crate::model::system::{Body, ElectricConstants, Joint, Muscle};
@@ -21,109 +22,64 @@ impl Handle<Muscle> {
     pub fn viscosity(self) -> Constant {
         self.material(MaterialConstant::Viscosity)
     }
+}
 
+constants! {
+    Muscle:
     /// The thickness of its layers in mm.
-    pub fn layer_thickness(self) -> Constant {
-        Constant::Layer(self.index())
-    }
-
+    layer_thickness() Layer();
     /// A side, 0 or 1, of its cross-section in mm.
-    pub fn side(self, side: usize) -> Constant {
-        Constant::Side(self.index(), side)
-    }
-
+    side(side) Side(side);
     /// A component, 0 to 2, of the place in mm where it starts.
-    pub fn start(self, axis: usize) -> Constant {
-        Constant::End(self.index(), 0, axis)
-    }
-
+    start(axis) End(0, axis);
     /// A component, 0 to 2, of the place in mm where it ends.
-    pub fn end(self, axis: usize) -> Constant {
-        Constant::End(self.index(), 1, axis)
-    }
+    end(axis) End(1, axis);
 }
 
-impl Handle<Spring> {
+constants! {
+    Spring:
     /// Its stiffness in N/mm.
-    pub fn stiffness(self) -> Constant {
-        Constant::SpringStiffness(self.index())
-    }
-
+    stiffness() SpringStiffness();
     /// Its damping in N ms/mm.
-    pub fn damping(self) -> Constant {
-        Constant::SpringDamping(self.index())
-    }
-
+    damping() SpringDamping();
     /// Its length without force in mm.
-    pub fn rest_length(self) -> Constant {
-        Constant::SpringLength(self.index())
-    }
-
+    rest_length() SpringLength();
     /// A component, 0 to 2, of the place in mm where it starts.
-    pub fn start(self, axis: usize) -> Constant {
-        Constant::SpringEnd(self.index(), 0, axis)
-    }
-
+    start(axis) SpringEnd(0, axis);
     /// A component, 0 to 2, of the place in mm where it ends.
-    pub fn end(self, axis: usize) -> Constant {
-        Constant::SpringEnd(self.index(), 1, axis)
-    }
+    end(axis) SpringEnd(1, axis);
 }
 
-impl Handle<Tendon> {
+constants! {
+    Tendon:
     /// Its stiffness in N/mm.
-    pub fn stiffness(self) -> Constant {
-        Constant::TendonStiffness(self.index())
-    }
-
+    stiffness() TendonStiffness();
     /// The length in mm up to which it is slack.
-    pub fn rest_length(self) -> Constant {
-        Constant::TendonLength(self.index())
-    }
-
+    rest_length() TendonLength();
     /// A component, 0 to 2, of the place in mm of one of its points, by its number along it.
-    pub fn point(self, number: usize, axis: usize) -> Constant {
-        Constant::TendonPoint(self.index(), number, axis)
-    }
+    point(number, axis) TendonPoint(number, axis);
 }
 
-impl Handle<Joint> {
+constants! {
+    Joint:
     /// Its damping in N mm ms, or N ms/mm of a prismatic joint.
-    pub fn damping(self) -> Constant {
-        Constant::JointDamping(self.index())
-    }
-
+    damping() JointDamping();
     /// Its stiffness in N mm/rad, or N/mm of a prismatic joint.
-    pub fn stiffness(self) -> Constant {
-        Constant::JointStiffness(self.index())
-    }
-
+    stiffness() JointStiffness();
     /// A component, 0 to 2, of its place in mm.
-    pub fn place(self, axis: usize) -> Constant {
-        Constant::JointPlace(self.index(), axis)
-    }
-
+    place(axis) JointPlace(axis);
     /// Its coordinate without force of its spring in rad or mm.
-    pub fn rest(self) -> Constant {
-        Constant::JointRest(self.index())
-    }
+    rest() JointRest();
 }
 
-impl Handle<Body> {
+constants! {
+    Body:
     /// Its mass in g.
-    pub fn mass(self) -> Constant {
-        Constant::Mass(self.index())
-    }
-
+    mass() Mass();
     /// A principal moment of inertia, 0 to 2, in g mm².
-    pub fn inertia(self, axis: usize) -> Constant {
-        Constant::Inertia(self.index(), axis)
-    }
-
+    inertia(axis) Inertia(axis);
     /// A component, 0 to 2, of its place in mm.
-    pub fn place(self, axis: usize) -> Constant {
-        Constant::BodyPlace(self.index(), axis)
-    }
+    place(axis) BodyPlace(axis);
 }
 
 impl Parameter {

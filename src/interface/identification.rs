@@ -4,6 +4,7 @@ use crate::control::problem::{
     self, ChangedScene, Channel, Prior, Reading, Regime, SoughtStart, Voltages, begin_late,
 };
 use crate::identify::{Identified, identify};
+use crate::interface::builder::builder;
 use crate::interface::error::{Result, require, source};
 use crate::interface::handle::{Handle, Input};
 use crate::interface::state::State;
@@ -71,55 +72,6 @@ impl Recording {
             time_offset: None,
             channels: Vec::new(),
         }
-    }
-
-    /// Time in ms of the readings at which the motion begins, 0 where it is not said; readings that begin late need it.
-    pub fn time_offset(self, time: f64) -> Self {
-        let time_offset = Some(time);
-        Self {
-            time_offset,
-            ..self
-        }
-    }
-
-    /// Another system than that of the identification, with the same parts and more, such as a payload.
-    pub fn of(self, system: System) -> Self {
-        let scene = Some(system);
-        Self { scene, ..self }
-    }
-
-    /// Another start.
-    pub fn start(self, start: State) -> Self {
-        Self { start, ..self }
-    }
-
-    /// The part of the start that is unknown, and fitted too.
-    pub fn sought_start(self, sought_start: SoughtStart) -> Self {
-        Self {
-            sought_start,
-            ..self
-        }
-    }
-
-    /// Each reading is one of the state of rest under the voltages of its time.
-    pub fn at_rest(self) -> Self {
-        let regime = Regime::Rest;
-        Self { regime, ..self }
-    }
-
-    /// No constant is fitted to it: it checks the prediction.
-    pub fn held_out(self) -> Self {
-        let is_held_out = true;
-        Self {
-            is_held_out,
-            ..self
-        }
-    }
-
-    /// The voltage of a muscle or electrode: a constant in V or a [`Signal`].
-    pub fn voltage(mut self, input: impl Into<Input>, signal: impl Into<Signal>) -> Self {
-        self.inputs.push((input.into(), signal.into()));
-        self
     }
 
     /// The size of a load in N, or N mm of a torque: a constant or a [`Signal`].
@@ -238,6 +190,24 @@ impl Recording {
     }
 }
 
+builder! {
+    impl Recording;
+    /// Time in ms of the readings at which the motion begins, 0 where it is not said; readings that begin late need it.
+    time_offset(time: f64) |of| of.time_offset = Some(time);
+    /// Another system than that of the identification, with the same parts and more, such as a payload.
+    of(system: System) |of| of.scene = Some(system);
+    /// Another start.
+    start(start: State) |of| of.start = start;
+    /// The part of the start that is unknown, and fitted too.
+    sought_start(sought_start: SoughtStart) |of| of.sought_start = sought_start;
+    /// Each reading is one of the state of rest under the voltages of its time.
+    at_rest() |of| of.regime = Regime::Rest;
+    /// No constant is fitted to it: it checks the prediction.
+    held_out() |of| of.is_held_out = true;
+    /// The voltage of a muscle or electrode: a constant in V or a [`Signal`].
+    voltage(input: impl Into<Input>, signal: impl Into<Signal>) |of| of.inputs.push((input.into(), signal.into()));
+}
+
 impl Identification {
     /// Of free parameters within their bounds; they have names, bounds and guesses as in a [`Control`](crate::Control).
     pub fn of(parameters: impl IntoIterator<Item = Parameter>) -> Self {
@@ -247,24 +217,6 @@ impl Identification {
             recordings: Vec::new(),
             step: None,
         }
-    }
-
-    /// A constant that is known beside the recordings: its mean and standard deviation, in its units; it counts as one reading more.
-    pub fn prior(mut self, name: impl Into<String>, value: f64, deviation: f64) -> Self {
-        self.priors.push((name.into(), [value, deviation]));
-        self
-    }
-
-    /// A recording more.
-    pub fn recording(mut self, recording: Recording) -> Self {
-        self.recordings.push(recording);
-        self
-    }
-
-    /// Step of the first grid in ms, which is halved until its bias is small; by the number of readings where there is none.
-    pub fn step(self, step: f64) -> Self {
-        let step = Some(step);
-        Self { step, ..self }
     }
 
     /// Fits the constants, and says how well the recordings determine them.
@@ -339,4 +291,14 @@ impl Identification {
         };
         Ok(identify(system, &task, &mut |_, _| {})?)
     }
+}
+
+builder! {
+    impl Identification;
+    /// A constant that is known beside the recordings: its mean and standard deviation, in its units; it counts as one reading more.
+    prior(name: impl Into<String>, value: f64, deviation: f64) |of| of.priors.push((name.into(), [value, deviation]));
+    /// A recording more.
+    recording(recording: Recording) |of| of.recordings.push(recording);
+    /// Step of the first grid in ms, which is halved until its bias is small; by the number of readings where there is none.
+    step(step: f64) |of| of.step = Some(step);
 }

@@ -1,5 +1,6 @@
 //! Elastomers, built with defaults.
 
+use crate::interface::builder::builder;
 use crate::model::system::{
     Circuit, ElasticLaw, ElectricConstants, Electrode, Material, MaxwellBranch, MaxwellBranches,
     Potential, Solid,
@@ -18,46 +19,6 @@ impl Material {
             maxwell: MaxwellBranches::default(),
             stretch_range: None,
         }
-    }
-
-    /// Law of elasticity in place of the neo-Hookean one, with the same shear modulus at small strains.
-    pub fn law(self, law: ElasticLaw) -> Self {
-        let law = Some(law);
-        Self { law, ..self }
-    }
-
-    /// Smallest and largest stretch for which the constants hold: a lumped muscle beyond them is a warning.
-    pub fn stretch_range(self, range: [f64; 2]) -> Self {
-        let stretch_range = Some(range);
-        Self {
-            stretch_range,
-            ..self
-        }
-    }
-
-    /// Density in g/mm³.
-    pub fn density(self, density: f64) -> Self {
-        let density = Some(density);
-        Self { density, ..self }
-    }
-
-    /// Relative permittivity of a dielectric whose polarisation is linear in the reference field (c₁ = −(ε_r − 1) ε₀,
-    /// c₂ = (ε_r − 1) ε₀/2).
-    pub fn relative_permittivity(self, ratio: f64) -> Self {
-        let electric = Some(ElectricConstants::first_order(ratio));
-        Self { electric, ..self }
-    }
-
-    /// Relative permittivity of an ideal dielectric.
-    pub fn ideal_dielectric(self, ratio: f64) -> Self {
-        let electric = Some(ElectricConstants::ideal(ratio));
-        Self { electric, ..self }
-    }
-
-    /// Viscosity in MPa ms.
-    pub fn viscosity(self, viscosity: f64) -> Self {
-        let viscosity = Some(viscosity);
-        Self { viscosity, ..self }
     }
 
     /// One more Maxwell branch: shear modulus μ₁ of its spring in MPa, relaxation time in ms.
@@ -82,6 +43,23 @@ impl Material {
             ..self
         }
     }
+}
+
+builder! {
+    impl Material;
+    /// Law of elasticity in place of the neo-Hookean one, with the same shear modulus at small strains.
+    law(law: ElasticLaw) |of| of.law = Some(law);
+    /// Smallest and largest stretch for which the constants hold: a lumped muscle beyond them is a warning.
+    stretch_range(range: [f64; 2]) |of| of.stretch_range = Some(range);
+    /// Density in g/mm³.
+    density(density: f64) |of| of.density = Some(density);
+    /// Relative permittivity of a dielectric whose polarisation is linear in the reference field (c₁ = −(ε_r − 1) ε₀,
+    /// c₂ = (ε_r − 1) ε₀/2).
+    relative_permittivity(ratio: f64) |of| of.electric = Some(ElectricConstants::first_order(ratio));
+    /// Relative permittivity of an ideal dielectric.
+    ideal_dielectric(ratio: f64) |of| of.electric = Some(ElectricConstants::ideal(ratio));
+    /// Viscosity in MPa ms.
+    viscosity(viscosity: f64) |of| of.viscosity = Some(viscosity);
 }
 
 impl Solid {

@@ -1,9 +1,10 @@
 //! The library as a program uses it: systems built part by part, simulated and steered in memory.
 //!
 //! - `handle`, `components`, `material`: systems and their parts, with defaults; checked when they are used.
-//! - `state`, `free_parameters`, `equilibrium`, `simulation`, `control`, `limits`, `costs`, `measured`, `cost_checks`, `identification`: the tasks of a system.
-//! - `motion`, `error`: results and errors.
+//! - `state`, `free_parameters`, `equilibrium`, `simulation`, `control`, `limits`, `costs`, `cost_checks`, `identification`: the tasks of a system.
+//! - `motion`, `error`: results and errors; `builder`: declaration of methods.
 
+mod builder;
 mod components;
 mod control;
 mod cost_checks;
@@ -15,7 +16,6 @@ mod handle;
 mod identification;
 mod limits;
 mod material;
-mod measured;
 mod motion;
 mod parts;
 mod simulation;

@@ -1,5 +1,6 @@
 //! Bodies, joints, muscles, markers and solids, built with defaults.
 
+use crate::interface::builder::builder;
 use crate::interface::handle::{Carrier, Handle, Part, named};
 use crate::math::{Matrix, Signal};
 use crate::mesh::Mesh;
@@ -86,22 +87,16 @@ impl Body {
             None => self,
         }
     }
+}
 
+builder! {
+    impl Body;
     /// Principal moments of inertia in g mm² in place of those of its shape.
-    pub fn inertia(self, inertia: [f64; 3]) -> Self {
-        Self { inertia, ..self }
-    }
-
+    inertia(inertia: [f64; 3]) |of| of.inertia = inertia;
     /// Centre of mass in mm.
-    pub fn at(self, centre: Vector3<f64>) -> Self {
-        Self { centre, ..self }
-    }
-
+    at(centre: Vector3<f64>) |of| of.centre = centre;
     /// Direction of the third director, which is the axis of a cylinder.
-    pub fn along(self, axis: Vector3<f64>) -> Self {
-        let directors = directors_along(&axis.normalize());
-        Self { directors, ..self }
-    }
+    along(axis: Vector3<f64>) |of| of.directors = directors_along(&axis.normalize());
 }
 
 impl Joint {
@@ -143,40 +138,24 @@ impl Joint {
         let normal = normal.normalize();
         JointKind::Planar { normal }
     }
+}
 
+builder! {
+    impl Joint;
     /// Place in mm, in the reference configuration.
-    pub fn at(self, at: Vector3<f64>) -> Self {
-        Self { at, ..self }
-    }
-
+    at(at: Vector3<f64>) |of| of.at = at;
     /// Damping of its coordinate: N mm ms of an angle, N ms/mm of a displacement.
-    pub fn damping(self, damping: f64) -> Self {
-        let damping = Some(damping);
-        Self { damping, ..self }
-    }
-
+    damping(damping: f64) |of| of.damping = Some(damping);
     /// Spring of its coordinate: stiffness in N mm/rad or N/mm, and the coordinate in rad or mm at which it exerts no force.
-    pub fn spring(self, stiffness: f64, rest: f64) -> Self {
-        let spring = Some(JointSpring { stiffness, rest });
-        Self { spring, ..self }
-    }
-
+    spring(stiffness: f64, rest: f64) |of| of.spring = Some(JointSpring { stiffness, rest });
     /// Prescribes its coordinate in rad or mm as a function of time.
-    pub fn motion(self, motion: impl Into<Signal>) -> Self {
-        let motion = Some(motion.into());
-        Self { motion, ..self }
-    }
-
+    motion(motion: impl Into<Signal>) |of| of.motion = Some(motion.into());
     /// Elastic stops of its coordinate at both ends of a range in rad or mm, infinite where there is none; stiffness in N mm/rad or N/mm.
     /// It grows over a width around each, or jumps where that is zero.
-    pub fn stops(self, range: RangeInclusive<f64>, stiffness: f64, smoothing: f64) -> Self {
-        let stops = Some(JointStops {
-            at: [*range.start(), *range.end()],
-            stiffness,
-            smoothing,
-        });
-        Self { stops, ..self }
-    }
+    stops(range: RangeInclusive<f64>, stiffness: f64, smoothing: f64) |of| {
+        let at = [*range.start(), *range.end()];
+        of.stops = Some(JointStops { at, stiffness, smoothing });
+    };
 }
 
 impl JointKind {
@@ -209,33 +188,6 @@ impl Muscle {
         }
     }
 
-    /// Sets its start: a body or the ground, and a place in mm.
-    pub fn from(self, carrier: impl Into<Carrier>, at: Vector3<f64>) -> Self {
-        let from = attachment(carrier, at);
-        Self { from, ..self }
-    }
-
-    /// Sets its end.
-    pub fn to(self, carrier: impl Into<Carrier>, at: Vector3<f64>) -> Self {
-        let to = attachment(carrier, at);
-        Self { to, ..self }
-    }
-
-    /// Stretch before it is glued between its ends: its rest length is their distance divided by it.
-    pub fn prestretch(self, stretch: f64) -> Self {
-        let prestretch = Some(stretch);
-        Self { prestretch, ..self }
-    }
-
-    /// Sides of its rectangular cross-section at rest in mm.
-    pub fn section(self, width: f64, depth: f64) -> Self {
-        let cross_section = [width, depth];
-        Self {
-            cross_section,
-            ..self
-        }
-    }
-
     /// A resistance in Ω between its source and its electrodes.
     pub fn resistance(self, resistance: f64) -> Self {
         let circuit = self.circuit.unwrap_or_default();
@@ -257,14 +209,6 @@ impl Muscle {
     fn behind(self, circuit: Circuit) -> Self {
         let circuit = Some(circuit);
         Self { circuit, ..self }
-    }
-
-    /// Thickness of one layer at rest in mm.
-    pub fn layer(self, thickness: f64) -> Self {
-        Self {
-            layer_thickness: thickness,
-            ..self
-        }
     }
 
     /// Trilinear hexahedra in place of one stretch: elements across both sides and along the span, each along the span a layer of
@@ -289,6 +233,20 @@ impl Muscle {
         }
         self
     }
+}
+
+builder! {
+    impl Muscle;
+    /// Sets its start: a body or the ground, and a place in mm.
+    from(carrier: impl Into<Carrier>, at: Vector3<f64>) |of| of.from = attachment(carrier, at);
+    /// Sets its end.
+    to(carrier: impl Into<Carrier>, at: Vector3<f64>) |of| of.to = attachment(carrier, at);
+    /// Stretch before it is glued between its ends: its rest length is their distance divided by it.
+    prestretch(stretch: f64) |of| of.prestretch = Some(stretch);
+    /// Sides of its rectangular cross-section at rest in mm.
+    section(width: f64, depth: f64) |of| of.cross_section = [width, depth];
+    /// Thickness of one layer at rest in mm.
+    layer(thickness: f64) |of| of.layer_thickness = thickness;
 }
 
 impl Marker {

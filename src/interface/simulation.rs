@@ -3,6 +3,7 @@
 use crate::control::problem::{self, Voltages};
 use crate::dynamics::trajectory::Trajectory;
 use crate::dynamics::{DiscreteTrajectory, Integrator, Newton, Solving};
+use crate::interface::builder::builder;
 use crate::interface::error::{Error, Result, require, source};
 use crate::interface::handle::{Handle, Input};
 use crate::interface::motion::Motion;
@@ -39,33 +40,10 @@ impl Simulation {
         }
     }
 
-    /// Equal steps in ms.
-    pub fn step(self, step: f64) -> Self {
-        let step = Some(step);
-        Self { step, ..self }
-    }
-
-    /// Another start.
-    pub fn start(self, start: State) -> Self {
-        Self { start, ..self }
-    }
-
-    /// The voltage of a muscle or electrode: a constant in V or a [`Signal`]; its value in the middle of each step acts during
-    /// the step.
-    pub fn voltage(mut self, input: impl Into<Input>, signal: impl Into<Signal>) -> Self {
-        self.voltages.push((input.into(), signal.into()));
-        self
-    }
-
     /// The size of a load in N, or N mm of a torque: a constant or a [`Signal`], whose value in the middle of each step acts during the
     /// step.
     pub fn load(self, load: Handle<Load>, size: impl Into<Signal>) -> Self {
         self.voltage(load, size)
-    }
-
-    /// Another method; it needs a step of given length.
-    pub fn integrator(self, integrator: Integrator) -> Self {
-        Self { integrator, ..self }
     }
 
     /// Simulates.
@@ -154,4 +132,17 @@ impl Simulation {
             controller: None,
         })
     }
+}
+
+builder! {
+    impl Simulation;
+    /// Equal steps in ms.
+    step(step: f64) |of| of.step = Some(step);
+    /// Another start.
+    start(start: State) |of| of.start = start;
+    /// The voltage of a muscle or electrode: a constant in V or a [`Signal`]; its value in the middle of each step acts during
+    /// the step.
+    voltage(input: impl Into<Input>, signal: impl Into<Signal>) |of| of.voltages.push((input.into(), signal.into()));
+    /// Another method; it needs a step of given length.
+    integrator(integrator: Integrator) |of| of.integrator = integrator;
 }
