@@ -41,6 +41,9 @@ pub enum ContinuationError {
     Missing(&'static str),
 }
 
+/// What is read of a file, or why it is no continuation.
+type Result<T, E = ContinuationError> = std::result::Result<T, E>;
+
 /// The bytes of a file.
 ///
 /// # Errors
@@ -122,7 +125,7 @@ pub fn bytes(discrete: &DiscreteTrajectory, problem: &str) -> io::Result<Vec<u8>
 ///
 /// # Errors
 /// It is none.
-pub fn read(path: &Path) -> Result<Continuation, ContinuationError> {
+pub fn read(path: &Path) -> Result<Continuation> {
     let mut file = npz::read(path, |_| true)?;
     let problem = file.texts.remove(PROBLEM);
     let problem = problem.ok_or(ContinuationError::Missing(PROBLEM))?;
@@ -154,7 +157,7 @@ pub fn read(path: &Path) -> Result<Continuation, ContinuationError> {
 }
 
 /// Inputs at the ends of intervals; none where they are constant.
-fn ends(file: &mut Npz) -> Result<Vec<[Inputs; 2]>, ContinuationError> {
+fn ends(file: &mut Npz) -> Result<Vec<[Inputs; 2]>> {
     if !file.arrays.contains_key("input_ends") {
         return Ok(Vec::new());
     }
@@ -168,7 +171,7 @@ fn ends(file: &mut Npz) -> Result<Vec<[Inputs; 2]>, ContinuationError> {
     Ok(std::iter::from_fn(|| Some([next()?, next()?])).collect())
 }
 
-fn state(file: &mut Npz) -> Result<StepState, ContinuationError> {
+fn state(file: &mut Npz) -> Result<StepState> {
     let (of_state, others) = std::mem::take(&mut file.arrays)
         .into_iter()
         .partition(|(name, _)| name.starts_with(STATE));
@@ -227,25 +230,22 @@ fn state(file: &mut Npz) -> Result<StepState, ContinuationError> {
     })
 }
 
-fn taken(file: &mut Npz, name: &'static str) -> Result<Array, ContinuationError> {
+fn taken(file: &mut Npz, name: &'static str) -> Result<Array> {
     let array = file.arrays.remove(name);
     array.ok_or(ContinuationError::Missing(name))
 }
 
-fn list(file: &mut Npz, name: &'static str) -> Result<Vec<f64>, ContinuationError> {
+fn list(file: &mut Npz, name: &'static str) -> Result<Vec<f64>> {
     Ok(taken(file, name)?.values)
 }
 
-fn numbers<const N: usize>(
-    file: &mut Npz,
-    name: &'static str,
-) -> Result<[f64; N], ContinuationError> {
+fn numbers<const N: usize>(file: &mut Npz, name: &'static str) -> Result<[f64; N]> {
     let list = list(file, name)?;
     list.try_into()
         .map_err(|_| ContinuationError::Missing(name))
 }
 
-fn rows(file: &mut Npz, name: &'static str) -> Result<Vec<Vec<f64>>, ContinuationError> {
+fn rows(file: &mut Npz, name: &'static str) -> Result<Vec<Vec<f64>>> {
     let Array { shape, values } = taken(file, name)?;
     let [count, length] = shape[..] else {
         return Err(ContinuationError::Missing(name));

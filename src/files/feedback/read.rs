@@ -31,14 +31,10 @@ pub(crate) fn read_law(path: &Path, system: &System) -> Result<Law> {
         let found = record.interval.to_string();
         return Err(scope.key("interval").wrong(found, "a positive time in s"));
     }
-    let measured = record.measured.iter().enumerate();
-    let measured = measured.map(|(i, one)| of_measured(one, &scope.key("measured").index(i)));
-    let measured: Vec<Measured> = measured.collect::<Result<_, _>>()?;
-    let at = At::new(&scope, system).key("inputs");
-    let inputs = record.inputs.iter().enumerate();
-    let inputs = inputs.map(|(i, one)| of_input(one, &at.index(i)));
-    let (inputs, of_inputs): (Vec<LawInput>, Vec<f64>) =
-        inputs.collect::<Result<Vec<_>, _>>()?.into_iter().unzip();
+    let measured: Vec<Measured> = scope.key("measured").each(&record.measured, of_measured)?;
+    let inputs = At::new(&scope, system).key("inputs");
+    let inputs: Vec<(LawInput, f64)> = inputs.each(&record.inputs, of_input)?;
+    let (inputs, of_inputs): (Vec<LawInput>, Vec<f64>) = inputs.into_iter().unzip();
     let (read, acting) = factors((&measured, &inputs, &of_inputs), &record, &scope)?;
     let point = |record: &PointRecord, place: &Scope<'_>| {
         let measured = &read[..measured.len()];
@@ -56,9 +52,7 @@ pub(crate) fn read_law(path: &Path, system: &System) -> Result<Law> {
     if record.intervals.is_empty() {
         return Err(place.wrong("none", "one interval or more"));
     }
-    let points = record.intervals.iter().enumerate();
-    let points = points.map(|(k, one)| point(one, &place.index(k)));
-    let points: Vec<Point> = points.collect::<Result<_, _>>()?;
+    let points: Vec<Point> = place.each(&record.intervals, point)?;
     let held = record.held.as_ref();
     let held = held.map(|one| point(one, &scope.key("held"))).transpose()?;
     let markers = markers(&record, points.len() + 1, system);
@@ -256,21 +250,15 @@ fn observer(
     [state, acting]: [&[f64]; 2],
     place: &Scope<'_>,
 ) -> Result<Observer> {
-    let reading = |(i, one): (usize, &ReadingRecord)| {
-        let place = place.key("readings").index(i);
-        match one {
-            ReadingRecord::Measured(own) if *own < measured.len() => Ok(Reading::State(*own)),
-            ReadingRecord::Measured(own) => {
-                Err(place.wrong(own.to_string(), format!("a place below {}", measured.len())))
-            }
-            ReadingRecord::Marker(name, axis) if *axis < 3 => {
-                Ok(Reading::Marker(name.clone(), *axis))
-            }
-            ReadingRecord::Marker(_, axis) => Err(place.wrong(axis.to_string(), "0, 1 or 2")),
+    let reading = |one: &ReadingRecord, place: &Scope<'_>| match one {
+        ReadingRecord::Measured(own) if *own < measured.len() => Ok(Reading::State(*own)),
+        ReadingRecord::Measured(own) => {
+            Err(place.wrong(own.to_string(), format!("a place below {}", measured.len())))
         }
+        ReadingRecord::Marker(name, axis) if *axis < 3 => Ok(Reading::Marker(name.clone(), *axis)),
+        ReadingRecord::Marker(_, axis) => Err(place.wrong(axis.to_string(), "0, 1 or 2")),
     };
-    let readings = record.readings.iter().enumerate().map(reading);
-    let readings: Vec<Reading> = readings.collect::<Result<_, _>>()?;
+    let readings: Vec<Reading> = place.key("readings").each(&record.readings, reading)?;
     if readings.is_empty() {
         return Err(place.key("readings").wrong("none", "one reading or more"));
     }
@@ -290,8 +278,6 @@ fn observer(
         let found = record.intervals.len().to_string();
         return Err(of_intervals.wrong(found, format!("{intervals}, one for each interval")));
     }
-    let points = record.intervals.iter().enumerate();
-    let points = points.map(|(k, one)| filter(one, &of_intervals.index(k)));
     let held = record.held.as_ref();
     let lasting = record.lasting.as_ref().map(|one: &LastingRecord| {
         let on = one.forces.iter().map(|force| Forced {
@@ -311,7 +297,7 @@ fn observer(
     Ok(Observer {
         jump,
         lasting: lasting.transpose()?,
-        points: points.collect::<Result<_, _>>()?,
+        points: of_intervals.each(&record.intervals, filter)?,
         held: held
             .map(|one| filter(one, &place.key("held")))
             .transpose()?,

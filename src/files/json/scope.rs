@@ -38,6 +38,16 @@ impl<'a> Scope<'a> {
         Self { place, ..*self }
     }
 
+    /// What is made of each entry of a list here.
+    pub(crate) fn each<S, T, C: FromIterator<T>>(
+        &self,
+        list: &[S],
+        make: impl Fn(&S, &Self) -> Result<T>,
+    ) -> Result<C> {
+        let make = |(index, one)| make(one, &self.index(index));
+        list.iter().enumerate().map(make).collect()
+    }
+
     /// Returns the error of a value here that is not the expected one.
     pub(crate) fn wrong(
         &self,

@@ -68,6 +68,26 @@ impl<'a> At<'a> {
         self.inside(self.scope.index(index))
     }
 
+    /// What is made of each entry of a list here.
+    pub(crate) fn each<S, T, C: FromIterator<T>>(
+        &self,
+        list: &[S],
+        make: impl Fn(&S, &Self) -> Result<T>,
+    ) -> Result<C> {
+        let make = |(index, one)| make(one, &self.index(index));
+        list.iter().enumerate().map(make).collect()
+    }
+
+    /// What is made of each entry of an object here by its name.
+    pub(crate) fn each_named<'s, S: 's, T, C: FromIterator<T>>(
+        &self,
+        map: impl IntoIterator<Item = (&'s String, &'s S)>,
+        make: impl Fn(&str, &S, &Self) -> Result<T>,
+    ) -> Result<C> {
+        let make = |(name, one): (&String, &S)| make(name, one, &self.key(name));
+        map.into_iter().map(make).collect()
+    }
+
     fn part(&self, name: &str, kind: PartKind, expected: &str) -> Result<usize> {
         self.find(name, &kind.names(self.system), expected)
     }
@@ -193,11 +213,9 @@ impl<'a> At<'a> {
         &self,
         map: &Option<BTreeMap<String, Quantity<M>>>,
     ) -> Result<BTreeMap<usize, f64>> {
-        let value = |(name, written): (&String, &Quantity<M>)| {
-            let at = self.key(name);
+        self.each_named(map.iter().flatten(), |name, written, at| {
             let joint = at.coordinate(name)?;
             Ok((joint, at.of_joint(joint, written)?))
-        };
-        map.iter().flatten().map(value).collect()
+        })
     }
 }

@@ -292,13 +292,9 @@ pub(crate) fn objective(spec: &ObjectiveSpec, at: &At<'_>) -> Result<Objective> 
     for (key, weight) in weights {
         at.key(key).weight(weight)?;
     }
-    let mut quantities = Vec::new();
-    for (index, spec) in spec.track.iter().enumerate() {
-        quantities.extend(track(spec, &at.key("track").index(index))?);
-    }
-    for (index, spec) in spec.at_the_end.iter().enumerate() {
-        quantities.extend(at_the_end(spec, &at.key("final").index(index))?);
-    }
+    let along: Vec<_> = at.key("track").each(&spec.track, track)?;
+    let ends: Vec<_> = at.key("final").each(&spec.at_the_end, at_the_end)?;
+    let mut quantities = [along, ends].concat().concat();
     quantities.extend(amount_costs([spec.muscle_volume, spec.muscle_mass], at)?);
     let mut of_sources = Vec::new();
     for (key, energy, weight) in [

@@ -85,26 +85,25 @@ fn observation(spec: &ObserverSpec, at: &At<'_>) -> Result<Observation> {
         true => Ok(deviation),
         false => Err(place.wrong(deviation.to_string(), "a positive standard deviation")),
     };
-    let place = at.key("joints");
-    let joints = spec.joints.iter().map(|(name, deviation)| {
-        let place = place.key(name);
-        let joint = place.coordinate(name)?;
-        let value = place.of_joint(joint, deviation)?;
-        Ok((joint, positive(value, &place)?))
-    });
-    let place = at.key("markers");
-    let markers = spec.markers.iter().map(|(name, deviation)| {
-        let place = place.key(name);
-        Ok((place.moving_marker(name)?, place.positive(deviation)?))
-    });
+    let joints = at
+        .key("joints")
+        .each_named(&spec.joints, |name, deviation, at| {
+            let joint = at.coordinate(name)?;
+            Ok((joint, positive(at.of_joint(joint, deviation)?, at)?))
+        })?;
+    let markers = at
+        .key("markers")
+        .each_named(&spec.markers, |name, deviation, at| {
+            Ok((at.moving_marker(name)?, at.positive(deviation)?))
+        })?;
     let [inputs, rates] = Observation::USUAL;
     let disturbance = |key: &str, written: Option<f64>, unwritten: f64| match written {
         Some(part) => finite(part, &at.key(key)),
         None => Ok(unwritten),
     };
     let out = Observation {
-        joints: joints.collect::<Result<_>>()?,
-        markers: markers.collect::<Result<_>>()?,
+        joints,
+        markers,
         inputs: disturbance("voltages", spec.voltages, inputs)?,
         rates: disturbance("rates", spec.rates, rates)?,
         lasting: match spec.lasting {

@@ -117,19 +117,17 @@ pub(crate) fn of_markers(
     markers: &Option<BTreeMap<String, PartialPoint>>,
     at: &At<'_>,
 ) -> Result<BTreeMap<usize, Place>> {
-    let place = |(name, point): (&String, &PartialPoint)| {
-        let at = at.key(name);
+    if markers.as_ref().is_some_and(BTreeMap::is_empty) {
+        return Err(at.wrong("no marker", "the position of a marker or more"));
+    }
+    at.each_named(markers.iter().flatten(), |name, point, at| {
         let marker = at.moving_marker(name)?;
         if point.iter().all(Option::is_none) {
             return Err(at.wrong("no coordinate", "one that is not null, or more"));
         }
         let value = |entry: &Option<Quantity<Length>>| entry.as_ref().map(Quantity::value);
         Ok((marker, Place(point.each_ref().map(value))))
-    };
-    if markers.as_ref().is_some_and(BTreeMap::is_empty) {
-        return Err(at.wrong("no marker", "the position of a marker or more"));
-    }
-    markers.iter().flatten().map(place).collect()
+    })
 }
 
 /// Orientations by body; of a map that is written one or more.
@@ -137,8 +135,10 @@ pub(crate) fn of_bodies(
     bodies: &Option<BTreeMap<String, OrientationSpec>>,
     at: &At<'_>,
 ) -> Result<BTreeMap<usize, Orientation>> {
-    let orientation = |(name, spec): (&String, &OrientationSpec)| {
-        let at = at.key(name);
+    if bodies.as_ref().is_some_and(BTreeMap::is_empty) {
+        return Err(at.wrong("no body", "the orientation of a body or more"));
+    }
+    at.each_named(bodies.iter().flatten(), |name, spec, at| {
         let body = at.body(name)?;
         let axis = unit_axis(&spec.axis, &at.key("axis"))?;
         let orientation = the_one!(at, spec;
@@ -152,9 +152,5 @@ pub(crate) fn of_bodies(
             };
         );
         Ok((body, orientation))
-    };
-    if bodies.as_ref().is_some_and(BTreeMap::is_empty) {
-        return Err(at.wrong("no body", "the orientation of a body or more"));
-    }
-    bodies.iter().flatten().map(orientation).collect()
+    })
 }

@@ -124,9 +124,7 @@ fn measured(list: &[MeasuredSpec], at: &At<'_>) -> Result<Vec<Measured>> {
     if list.is_empty() {
         return Err(at.wrong("nothing that is measured", "one or more quantities"));
     }
-    let all = list.iter().enumerate();
-    all.map(|(index, spec)| Measured::new(spec, &at.index(index)))
-        .collect()
+    at.each(list, Measured::new)
 }
 
 /// Voltages, loads and start of a recording; inputs from its own file are on its clock.

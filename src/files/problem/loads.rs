@@ -41,12 +41,10 @@ fn find(name: &str, at: &At<'_>) -> Result<(usize, Kind)> {
 
 /// Loads over time, by source.
 pub(crate) fn loads(map: &LoadMap, at: &At<'_>) -> Result<BTreeMap<usize, Signal>> {
-    let read = |(name, spec): (&String, &SignalSpec<LoadSize>)| {
-        let at = at.key(name);
-        let (source, kind) = find(name, &at)?;
-        Ok((source, signal(spec, &kind, &at)?))
-    };
-    map.iter().map(read).collect()
+    at.each_named(map, |name, spec, at| {
+        let (source, kind) = find(name, at)?;
+        Ok((source, signal(spec, &kind, at)?))
+    })
 }
 
 /// Bounds of the loads that are sought, by source; none of them is `given`.
@@ -55,9 +53,8 @@ pub(crate) fn load_bounds(
     given: &BTreeMap<usize, Signal>,
     at: &At<'_>,
 ) -> Result<BTreeMap<usize, [f64; 2]>> {
-    let read = |(name, written): (&String, &[Quantity<LoadSize>; 2])| {
-        let at = at.key(name);
-        let (source, kind) = find(name, &at)?;
+    at.each_named(map, |name, written, at| {
+        let (source, kind) = find(name, at)?;
         if given.contains_key(&source) {
             let found = format!("{name:?}, which \"loads\" gives");
             return Err(at.wrong(found, "a load that is sought"));
@@ -72,8 +69,7 @@ pub(crate) fn load_bounds(
             return Err(at.index(1).wrong(written[1].to_string(), expected));
         }
         Ok((source, bounds))
-    };
-    map.iter().map(read).collect()
+    })
 }
 
 /// Puts the loads of a time in ms on a state of rest.

@@ -2,7 +2,7 @@
 
 use crate::files::json::error::Result;
 use crate::files::json::objects::objects;
-use crate::files::json::scope::Scope;
+use crate::files::json::scope::{Scope, the_one};
 use crate::files::scene::names::find_body;
 use crate::files::scene::point::{Point, unit_axis, vector};
 use crate::files::signal::signal;
@@ -11,7 +11,6 @@ use crate::files::units::quantity::{
     Angle, Damping, JointCoordinate, JointDamping, JointStiffness, Kind, Length, PhysicalQuantity,
     Quantity, RotationalDamping, RotationalStiffness, Stiffness,
 };
-use crate::math::Vector;
 use crate::model::check_axes;
 use crate::model::system::{Joint, JointKind, JointSpring, JointStops};
 use schemars::JsonSchema;
@@ -74,37 +73,19 @@ pub(super) fn joint(spec: &JointSpec, bodies: &[String], scope: &Scope<'_>) -> R
 }
 
 fn kind(spec: &JointSpec, scope: &Scope<'_>) -> Result<JointKind> {
-    let along = |key: &'static str, written: &Option<AxisSpec>, kind: fn(Vector) -> JointKind| {
-        let place = scope.key(key).key("axis");
-        let axis = written
-            .as_ref()
-            .map(|written| unit_axis(&written.axis, &place));
-        (key, axis.map(|axis| axis.map(kind)))
-    };
-    let of = |written: &Option<Nothing>, kind| written.as_ref().map(|_| Ok(kind));
-    let axes = spec.universal.as_ref();
-    let axes = axes.map(|axes| perpendicular(axes, &scope.key("universal")));
-    let normal = spec.planar.as_ref();
-    let normal = normal.map(|plane| unit_axis(&plane.normal, &scope.key("planar").key("normal")));
-    scope.exactly_one([
-        along("revolute", &spec.revolute, |axis| JointKind::Revolute {
-            axis,
-        }),
-        along("prismatic", &spec.prismatic, |axis| JointKind::Prismatic {
-            axis,
-        }),
-        ("universal", axes),
-        along("cylindrical", &spec.cylindrical, |axis| {
-            JointKind::Cylindrical { axis }
-        }),
-        (
-            "planar",
-            normal.map(|normal| normal.map(|normal| JointKind::Planar { normal })),
-        ),
-        ("spherical", of(&spec.spherical, JointKind::Spherical)),
-        ("floating", of(&spec.floating, JointKind::Floating)),
-        ("fixed", of(&spec.fixed, JointKind::Fixed)),
-    ])?
+    let axis = |written: &AxisSpec, at: &Scope<'_>| unit_axis(&written.axis, &at.key("axis"));
+    Ok(the_one!(scope, spec;
+        "revolute" revolute |at, of| JointKind::Revolute { axis: axis(of, at)? };
+        "prismatic" prismatic |at, of| JointKind::Prismatic { axis: axis(of, at)? };
+        "universal" universal |at, axes| perpendicular(axes, at)?;
+        "cylindrical" cylindrical |at, of| JointKind::Cylindrical { axis: axis(of, at)? };
+        "planar" planar |at, plane| JointKind::Planar {
+            normal: unit_axis(&plane.normal, &at.key("normal"))?,
+        };
+        "spherical" spherical |_, _| JointKind::Spherical;
+        "floating" floating |_, _| JointKind::Floating;
+        "fixed" fixed |_, _| JointKind::Fixed;
+    ))
 }
 
 /// A joint of two axes that are perpendicular to each other up to the digits that are written.
@@ -137,8 +118,9 @@ fn read<M: PhysicalQuantity>(
     kind: &Kind,
     place: &Scope<'_>,
 ) -> Result<Option<f64>> {
-    let value = written.map(|written| written.value_as(kind)).transpose();
-    value.map_err(|found| place.wrong(found, kind.expected()))
+    written
+        .map(|written| place.value_as(written, kind))
+        .transpose()
 }
 
 fn stops_of(

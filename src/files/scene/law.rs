@@ -3,7 +3,7 @@
 use crate::energy::ElasticLaw;
 use crate::files::json::error::Result;
 use crate::files::json::objects::objects;
-use crate::files::json::scope::Scope;
+use crate::files::json::scope::{Scope, the_one};
 use crate::files::units::quantity::{Quantity, Stress};
 
 objects! {
@@ -51,24 +51,11 @@ objects! {
 impl LawSpec {
     /// The law.
     pub(crate) fn law(&self, scope: &Scope<'_>) -> Result<ElasticLaw> {
-        let gent = |law: &GentSpec| ElasticLaw::Gent { limit: law.limit };
-        let mooney_rivlin = |law: &MooneyRivlinSpec| ElasticLaw::MooneyRivlin { share: law.share };
-        let yeoh = |law: &YeohSpec| ElasticLaw::Yeoh {
-            c2: law.c2.value(),
-            c3: law.c3.value(),
-        };
-        let ogden = |law: &OgdenSpec| ElasticLaw::Ogden {
-            exponents: law.exponents,
-            share: law.share,
-        };
-        scope.exactly_one([
-            ("gent", self.gent.as_ref().map(gent)),
-            (
-                "mooney_rivlin",
-                self.mooney_rivlin.as_ref().map(mooney_rivlin),
-            ),
-            ("yeoh", self.yeoh.as_ref().map(yeoh)),
-            ("ogden", self.ogden.as_ref().map(ogden)),
-        ])
+        Ok(the_one!(scope, self;
+            "gent" gent |_, law| ElasticLaw::Gent { limit: law.limit };
+            "mooney_rivlin" mooney_rivlin |_, law| ElasticLaw::MooneyRivlin { share: law.share };
+            "yeoh" yeoh |_, law| ElasticLaw::Yeoh { c2: law.c2.value(), c3: law.c3.value() };
+            "ogden" ogden |_, law| ElasticLaw::Ogden { exponents: law.exponents, share: law.share };
+        ))
     }
 }

@@ -111,16 +111,14 @@ fn boxed(spec: &GridSpec, scope: &Scope<'_>) -> Result<Meshed> {
 
 /// Thickness in mm and elements of the layers along one direction.
 fn layered(layers: &[LayerSpec], scope: &Scope<'_>) -> Result<Vec<(f64, usize)>> {
-    let layer = |(index, layer): (usize, &LayerSpec)| {
-        let scope = scope.index(index);
+    scope.each(layers, |layer, scope| {
         if layer.elements == 0 || layer.elements > MOST_ELEMENTS {
             let found = layer.elements.to_string();
             return Err(scope.key("elements").wrong(found, "1 element or more"));
         }
         let thickness = scope.key("thickness").positive(&layer.thickness)?;
         Ok((thickness, layer.elements))
-    };
-    layers.iter().enumerate().map(layer).collect()
+    })
 }
 
 /// Gives each element the region of its layer, in the one direction that names regions.

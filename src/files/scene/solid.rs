@@ -102,11 +102,10 @@ fn by_region<'s, 'a>(
 
 /// The places that are held.
 fn supports(spec: &SolidSpec, mesh: &Mesh, scope: &Scope<'_>) -> Result<Vec<Support>> {
-    let support = |(index, fixed): (usize, &FixedSpec)| {
-        let scope = scope.index(index);
+    scope.each(&spec.fixed, |fixed, scope| {
         let held = match fixed {
             FixedSpec::Clamped(name) => {
-                let nodes = face(name, mesh, &scope)?.to_vec();
+                let nodes = face(name, mesh, scope)?.to_vec();
                 let held = [true; 3];
                 return Ok(Support { nodes, held });
             }
@@ -117,7 +116,7 @@ fn supports(spec: &SolidSpec, mesh: &Mesh, scope: &Scope<'_>) -> Result<Vec<Supp
             held.plane.as_ref(),
             held.cuboid.as_ref(),
         );
-        let nodes = nodes("a support", place, mesh, &scope)?;
+        let nodes = nodes("a support", place, mesh, scope)?;
         let directions = held.directions.as_deref();
         let held = directions.map_or([true; 3], along);
         if held == [false; 3] {
@@ -125,8 +124,7 @@ fn supports(spec: &SolidSpec, mesh: &Mesh, scope: &Scope<'_>) -> Result<Vec<Supp
             return Err(scope.key("directions").wrong("no direction", expected));
         }
         Ok(Support { nodes, held })
-    };
-    spec.fixed.iter().enumerate().map(support).collect()
+    })
 }
 
 /// Returns for x, y, z true if they are among some directions.

@@ -4,9 +4,9 @@ pub(crate) mod spec;
 
 use crate::files::columns::Columns;
 use crate::files::json::error::Result;
-use crate::files::json::scope::Scope;
+use crate::files::json::scope::{Scope, the_one};
 use crate::files::signal::spec::{
-    FollowedInTime, FunctionSpec, RampSpec, SignalCsvSpec, SignalSpec, SignalTableSpec, SineSpec,
+    FollowedInTime, RampSpec, SignalCsvSpec, SignalSpec, SignalTableSpec, SineSpec,
 };
 use crate::files::units::quantity::{Kind, Quantity, Time};
 use crate::math::Signal;
@@ -17,43 +17,16 @@ pub(crate) fn signal<M: FollowedInTime>(
     kind: &Kind,
     scope: &Scope<'_>,
 ) -> Result<Signal> {
-    let FunctionSpec {
-        ramp,
-        sine,
-        table,
-        csv,
-    } = match spec {
-        SignalSpec::Constant(value) => return of_kind(value, kind, scope).map(Signal::Constant),
+    let function = match spec {
+        SignalSpec::Constant(value) => return scope.value_as(value, kind).map(Signal::Constant),
         SignalSpec::Function(function) => function.as_ref(),
     };
-    let ramp = ramp.as_ref();
-    let sine = sine.as_ref();
-    let table = table.as_ref();
-    let csv = csv.as_ref();
-    scope.exactly_one([
-        (
-            "ramp",
-            ramp.map(|spec| of_ramp(spec, kind, &scope.key("ramp"))),
-        ),
-        (
-            "sine",
-            sine.map(|spec| of_sine(spec, kind, &scope.key("sine"))),
-        ),
-        (
-            "table",
-            table.map(|spec| of_table(spec, kind, &scope.key("table"))),
-        ),
-        (
-            "csv",
-            csv.map(|spec| of_csv::<M>(spec, kind, &scope.key("csv"))),
-        ),
-    ])?
-}
-
-/// A value of a kind in the units inside.
-fn of_kind<M: FollowedInTime>(value: &Quantity<M>, kind: &Kind, scope: &Scope<'_>) -> Result<f64> {
-    let read = value.value_as(kind);
-    read.map_err(|found| scope.wrong(found, kind.expected()))
+    the_one!(scope, function;
+        "ramp" ramp |scope, spec| of_ramp(spec, kind, scope);
+        "sine" sine |scope, spec| of_sine(spec, kind, scope);
+        "table" table |scope, spec| of_table(spec, kind, scope);
+        "csv" csv |scope, spec| of_csv::<M>(spec, kind, scope);
+    )
 }
 
 /// A value of a kind; 0 where not written.
@@ -62,8 +35,8 @@ fn or_zero<M: FollowedInTime>(
     kind: &Kind,
     scope: &Scope<'_>,
 ) -> Result<f64> {
-    let read = |value| of_kind(value, kind, scope);
-    value.as_ref().map_or(Ok(0.0), read)
+    let value = value.as_ref();
+    value.map_or(Ok(0.0), |value| scope.value_as(value, kind))
 }
 
 fn of_ramp<M: FollowedInTime>(
@@ -73,7 +46,7 @@ fn of_ramp<M: FollowedInTime>(
 ) -> Result<Signal> {
     Ok(Signal::Ramp {
         from: or_zero(&spec.from, kind, &scope.key("from"))?,
-        to: of_kind(&spec.to, kind, &scope.key("to"))?,
+        to: scope.key("to").value_as(&spec.to, kind)?,
         start: spec.start.as_ref().map_or(0.0, |t| t.value()),
         duration: scope.key("duration").positive(&spec.duration)?,
     })
@@ -86,7 +59,7 @@ fn of_sine<M: FollowedInTime>(
 ) -> Result<Signal> {
     Ok(Signal::Sine {
         mean: or_zero(&spec.mean, kind, &scope.key("mean"))?,
-        amplitude: of_kind(&spec.amplitude, kind, &scope.key("amplitude"))?,
+        amplitude: scope.key("amplitude").value_as(&spec.amplitude, kind)?,
         frequency: scope.key("period").positive(&spec.period)?.recip(),
         phase: spec.phase.as_ref().map_or(0.0, |v| v.value()),
     })
@@ -150,7 +123,7 @@ fn linear<'s, M: FollowedInTime>(
         return Err(whole_values.wrong(found, expected));
     }
     let read = values.iter().enumerate();
-    let read = read.map(|(k, written)| of_kind(written, kind, &value(k)));
+    let read = read.map(|(k, written)| value(k).value_as(written, kind));
     Ok(Signal::Table {
         times: instants,
         values: read.collect::<Result<_, _>>()?,

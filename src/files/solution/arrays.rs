@@ -9,7 +9,7 @@ use serde_json::Value;
 use crate::files::json::path::Step;
 use crate::files::json::tree::{Json, Tree};
 use crate::files::npz::{self, NpzError, NpzWriter};
-use crate::files::solution::record::{ArraysOf, File, Reason};
+use crate::files::solution::record::{ArraysOf, File, Reason, Result};
 
 /// Names of arrays that end with a name of the scene.
 const OF_NAMES: [&str; 3] = ["voltages/", "loads/", "configuration/joints/"];
@@ -84,7 +84,7 @@ pub(crate) fn complete(
     path: &Path,
     solution: &mut Tree,
     is_wanted: impl Fn(&str) -> bool,
-) -> Result<(), Reason> {
+) -> Result<()> {
     let named = solution.json().entry("arrays").map(Json::read);
     let Some(Ok(Some(ArraysOf { file, digits }))) = named else {
         return Ok(());

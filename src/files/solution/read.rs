@@ -11,7 +11,8 @@ use crate::files::json::source::{NoBytes, check_json, of_file, unmarked};
 use crate::files::json::tree::Tree;
 use crate::files::solution::arrays::complete;
 use crate::files::solution::record::{
-    Body, ConfigurationRecord, File, METRE, Reason, SECOND, SolutionError, StateRecord, unit,
+    Body, ConfigurationRecord, File, METRE, Reason, Result, SECOND, SolutionError, StateRecord,
+    unit,
 };
 use crate::kinematics::Pose;
 use crate::math::Matrix;
@@ -47,7 +48,7 @@ pub fn read(path: &Path, model: &Model) -> Result<Solution, SolutionError> {
 }
 
 /// The file as it is written, with the arrays that stand in another one.
-fn read_file(path: &Path) -> Result<File, Reason> {
+fn read_file(path: &Path) -> Result<File> {
     let bytes = of_file(path).map_err(|error| match error {
         NoBytes::Unreadable(cause) => Reason::Unreadable(cause),
         NoBytes::TooLarge(found, expected) => Reason::TooLarge { found, expected },
@@ -64,7 +65,7 @@ fn read_file(path: &Path) -> Result<File, Reason> {
 }
 
 /// Reads the file and checks it against the scene of the model.
-fn parse(path: &Path, model: &Model) -> Result<Solution, Reason> {
+fn parse(path: &Path, model: &Model) -> Result<Solution> {
     let file = read_file(path)?;
     check_times(&file.time)?;
     let (system, instants) = (&model.system, file.time.len());
@@ -104,7 +105,7 @@ fn parse(path: &Path, model: &Model) -> Result<Solution, Reason> {
     })
 }
 
-fn check_times(times: &[f64]) -> Result<(), Reason> {
+fn check_times(times: &[f64]) -> Result<()> {
     if times.len() < 2 || times.windows(2).any(|pair| pair[0] >= pair[1]) {
         let reason = "\"time\" needs two instants or more, in increasing order";
         return Err(Reason::Contradiction(reason.to_owned()));
@@ -113,7 +114,7 @@ fn check_times(times: &[f64]) -> Result<(), Reason> {
 }
 
 /// Coordinates by joint, one column for each joint of the scene that has a coordinate.
-fn joint_columns<'f>(file: &'f File, system: &System) -> Result<&'f Columns, Reason> {
+fn joint_columns<'f>(file: &'f File, system: &System) -> Result<&'f Columns> {
     let columns = match (&file.configuration, &file.joints) {
         (Some(configuration), _) => &configuration.joints,
         (None, Some(joints)) => joints,
@@ -131,7 +132,7 @@ fn joint_columns<'f>(file: &'f File, system: &System) -> Result<&'f Columns, Rea
 }
 
 /// Voltages by muscle and electrode, one column for each source that the voltages of the scene reach.
-fn voltage_columns<'f>(columns: Option<&'f Columns>, model: &Model) -> Result<&'f Columns, Reason> {
+fn voltage_columns<'f>(columns: Option<&'f Columns>, model: &Model) -> Result<&'f Columns> {
     let columns = columns.ok_or_else(|| Reason::NoSolution {
         place: ".".to_owned(),
         found: "missing field `voltages`".to_owned(),
@@ -141,11 +142,7 @@ fn voltage_columns<'f>(columns: Option<&'f Columns>, model: &Model) -> Result<&'
 }
 
 /// Coordinates by instant and joint, in the units inside.
-fn joint_rows(
-    columns: &Columns,
-    system: &System,
-    instants: usize,
-) -> Result<Vec<Vec<f64>>, Reason> {
+fn joint_rows(columns: &Columns, system: &System, instants: usize) -> Result<Vec<Vec<f64>>> {
     let mut rows = vec![vec![0.0; system.joints.len()]; instants];
     for (name, column) in columns {
         same_length(name, column.len(), instants, "instants")?;
@@ -159,7 +156,7 @@ fn joint_rows(
 }
 
 /// Loads by their names, one column for each that acts in the scene.
-fn load_columns(columns: Option<&Columns>, model: &Model) -> Result<Columns, Reason> {
+fn load_columns(columns: Option<&Columns>, model: &Model) -> Result<Columns> {
     let columns = columns.cloned().unwrap_or_default();
     same_loads(columns.keys(), model)?;
     Ok(columns)
@@ -170,7 +167,7 @@ fn input_rows(
     [voltages, loads]: [&Columns; 2],
     model: &Model,
     intervals: usize,
-) -> Result<Vec<Vec<f64>>, Reason> {
+) -> Result<Vec<Vec<f64>>> {
     let sources = &model.sources;
     let mut rows = vec![vec![0.0; sources.len()]; intervals];
     for &s in &model.reached {
@@ -194,7 +191,7 @@ fn hold(
     (held, loads): (&BTreeMap<String, f64>, Option<&BTreeMap<String, f64>>),
     last: Option<&Vec<f64>>,
     model: &Model,
-) -> Result<Vec<f64>, Reason> {
+) -> Result<Vec<f64>> {
     same_sources(held.keys(), model)?;
     if let Some(loads) = loads {
         same_loads(loads.keys(), model)?;
@@ -215,7 +212,7 @@ fn hold(
 }
 
 /// Coordinates that a file names, or those of the model.
-fn coordinates(word: Option<&str>, model: &Model) -> Result<Coordinates, Reason> {
+fn coordinates(word: Option<&str>, model: &Model) -> Result<Coordinates> {
     match word {
         None => Ok(model.coordinates),
         Some(word) => Coordinates::named(word).ok_or_else(|| Reason::NoSolution {
@@ -231,7 +228,7 @@ fn checked_state(
     coordinates: Coordinates,
     model: &Model,
     instants: usize,
-) -> Result<StateRecord, Reason> {
+) -> Result<StateRecord> {
     same_length("state.times_ms", state.times_ms.len(), instants, "instants")?;
     same_length("state.z", state.z.len(), instants, "instants")?;
     let map = &model.action.map;
@@ -274,7 +271,7 @@ fn poses(
     configuration: Option<&ConfigurationRecord>,
     system: &System,
     instants: usize,
-) -> Result<Vec<Vec<Pose>>, Reason> {
+) -> Result<Vec<Vec<Pose>>> {
     let Some(configuration) = configuration.filter(|c| !c.bodies.is_empty()) else {
         return Ok(Vec::new());
     };
@@ -300,10 +297,7 @@ fn poses(
 }
 
 /// Checks that names are those of the sources that the voltages of the scene reach.
-fn same_sources<'a>(
-    names: impl Iterator<Item = &'a String>,
-    model: &'a Model,
-) -> Result<(), Reason> {
+fn same_sources<'a>(names: impl Iterator<Item = &'a String>, model: &'a Model) -> Result<()> {
     let driven = model.reached.iter().map(|&s| &model.sources[s]);
     let driven = driven.filter(|source| !source.is_load());
     let driven = driven.map(|source| source.name.as_str());
@@ -311,7 +305,7 @@ fn same_sources<'a>(
 }
 
 /// Checks that names are those of the loads that act in the scene.
-fn same_loads<'a>(names: impl Iterator<Item = &'a String>, model: &'a Model) -> Result<(), Reason> {
+fn same_loads<'a>(names: impl Iterator<Item = &'a String>, model: &'a Model) -> Result<()> {
     let loads = model.reached.iter().map(|&s| &model.sources[s]);
     let loads = loads.filter(|source| source.is_load());
     let loads = loads.map(|source| source.name.as_str());
@@ -322,7 +316,7 @@ fn same_names<'a>(
     what: &str,
     file: impl Iterator<Item = &'a str>,
     scene: impl Iterator<Item = &'a str>,
-) -> Result<(), Reason> {
+) -> Result<()> {
     let (file, scene): (Vec<_>, Vec<_>) = (file.collect(), scene.collect());
     let unknown = file.iter().find(|name| !scene.contains(name));
     let missing = scene.iter().find(|name| !file.contains(name));
@@ -337,7 +331,7 @@ fn same_names<'a>(
     }
 }
 
-fn same_length(name: &str, found: usize, expected: usize, of: &str) -> Result<(), Reason> {
+fn same_length(name: &str, found: usize, expected: usize, of: &str) -> Result<()> {
     if found == expected {
         return Ok(());
     }

@@ -2,10 +2,48 @@
 
 use nalgebra::{Isometry3, Translation3, UnitQuaternion, Vector3};
 use roxmltree::Node;
+use std::collections::BTreeMap;
+use std::fmt;
 use std::path::Path;
+use thiserror::Error;
 
-use crate::files::urdf::error::UrdfError;
-use crate::files::urdf::left_out::LeftOut;
+/// A mistake in a URDF file.
+#[derive(Clone, Debug, Error, PartialEq, Eq)]
+#[error("{place}: found {found}, expected {expected}")]
+pub struct UrdfError {
+    /// File, with the line where it is known.
+    pub place: String,
+    /// Value that was found.
+    pub found: String,
+    /// Value that is expected instead.
+    pub expected: String,
+}
+
+/// A part of a robot, or the first mistake.
+pub(super) type Result<T, E = UrdfError> = std::result::Result<T, E>;
+
+/// Parts of a file that are left out, by their kinds, each with its owners.
+#[derive(Debug, Default)]
+pub(super) struct LeftOut(BTreeMap<String, Vec<String>>);
+
+impl LeftOut {
+    /// Adds a part of an owner.
+    pub(super) fn add(&mut self, kind: impl Into<String>, owner: impl fmt::Display) {
+        let owners = self.0.entry(kind.into()).or_default();
+        let owner = owner.to_string();
+        if !owners.contains(&owner) {
+            owners.push(owner);
+        }
+    }
+
+    /// A sentence for each kind.
+    pub(super) fn notes(&self) -> impl Iterator<Item = String> + '_ {
+        let note = |(kind, owners): (&String, &Vec<String>)| {
+            format!("left out: {kind} of {}", owners.join(", "))
+        };
+        self.0.iter().map(note)
+    }
+}
 
 /// Numbers of a size that no robot has.
 const HUGE: f64 = 1e12;
@@ -49,7 +87,7 @@ impl<'a> Element<'a> {
     }
 
     /// The element of a name within it, where there is one.
-    pub(super) fn child(&self, name: &'static str) -> Result<Option<Self>, UrdfError> {
+    pub(super) fn child(&self, name: &'static str) -> Result<Option<Self>> {
         let mut all = self.children(name);
         match (all.next(), all.next()) {
             (first, None) => Ok(first),
@@ -58,20 +96,20 @@ impl<'a> Element<'a> {
     }
 
     /// The element of a name within it.
-    pub(super) fn needed(&self, name: &'static str) -> Result<Self, UrdfError> {
+    pub(super) fn needed(&self, name: &'static str) -> Result<Self> {
         let missing = || self.wrong(format!("no <{name}>"), format!("<{name}>"));
         self.child(name)?.ok_or_else(missing)
     }
 
     /// An attribute.
-    pub(super) fn word(&self, name: &str) -> Result<&'a str, UrdfError> {
+    pub(super) fn word(&self, name: &str) -> Result<&'a str> {
         let tag = self.node.tag_name().name();
         let missing = || self.wrong(format!("<{tag}> without {name:?}"), format!("{name:?}"));
         self.node.attribute(name).ok_or_else(missing)
     }
 
     /// An attribute of several numbers.
-    pub(super) fn numbers<const N: usize>(&self, name: &str) -> Result<[f64; N], UrdfError> {
+    pub(super) fn numbers<const N: usize>(&self, name: &str) -> Result<[f64; N]> {
         let text = self.word(name)?;
         let mut numbers = [0.0; N];
         let mut words = text.split_whitespace();
@@ -95,12 +133,12 @@ impl<'a> Element<'a> {
     }
 
     /// A number.
-    pub(super) fn number(&self, name: &str) -> Result<f64, UrdfError> {
+    pub(super) fn number(&self, name: &str) -> Result<f64> {
         self.numbers::<1>(name).map(|[number]| number)
     }
 
     /// A number, or what stands for it where the attribute is absent.
-    pub(super) fn number_or(&self, name: &str, absent: f64) -> Result<f64, UrdfError> {
+    pub(super) fn number_or(&self, name: &str, absent: f64) -> Result<f64> {
         match self.node.has_attribute(name) {
             true => self.number(name),
             false => Ok(absent),
@@ -108,7 +146,7 @@ impl<'a> Element<'a> {
     }
 
     /// A positive length.
-    pub(super) fn length(&self, name: &str) -> Result<f64, UrdfError> {
+    pub(super) fn length(&self, name: &str) -> Result<f64> {
         match self.number(name)? {
             length if length > 0.0 => Ok(length),
             length => Err(self.wrong(format!("{name}={length}"), "a positive length")),
@@ -116,7 +154,7 @@ impl<'a> Element<'a> {
     }
 
     /// The pose of its `<origin>`: a rotation by roll, pitch and yaw about the fixed axes x, y and z, then a displacement in m.
-    pub(super) fn origin(&self, left_out: &mut LeftOut) -> Result<Isometry3<f64>, UrdfError> {
+    pub(super) fn origin(&self, left_out: &mut LeftOut) -> Result<Isometry3<f64>> {
         let Some(origin) = self.child("origin")? else {
             return Ok(Isometry3::identity());
         };

@@ -1,33 +1,30 @@
 //! Robots from URDF, the XML format of ROS: links and joints become the bodies and joints of a scene.
 //!
-//! - `element`: elements of XML with places, numbers and vectors; `read`: links and joints as they are written; `left_out`: what is not
-//!   taken over.
+//! - `element`: elements of XML with places, numbers and vectors; what is not taken over, and mistakes; `read`: links and joints as they are written.
 //! - `tree`: poses of the links in the reference configuration; `scene`: the scene; `outline`: shapes of bodies.
 //!
 //! Parts that a scene cannot hold are left out, each named.
 
 mod element;
-mod error;
-mod left_out;
 mod outline;
 mod read;
 mod scene;
 mod tree;
 
-pub use error::UrdfError;
+pub use element::UrdfError;
 pub use scene::FromUrdf;
 
 use roxmltree::Document;
 use std::path::Path;
 
 use crate::files::json::source::{NoBytes, of_file};
-use crate::files::urdf::left_out::LeftOut;
+use crate::files::urdf::element::{LeftOut, Result};
 
 /// Reads a file.
 ///
 /// # Errors
 /// It cannot be read, or is no tree of links and joints that a scene can hold.
-pub fn read_urdf(path: &Path) -> Result<FromUrdf, UrdfError> {
+pub fn read_urdf(path: &Path) -> Result<FromUrdf> {
     let wrong = |found: String, expected: String| UrdfError {
         place: path.display().to_string(),
         found,
@@ -53,7 +50,7 @@ pub fn read_urdf(path: &Path) -> Result<FromUrdf, UrdfError> {
 ///
 /// # Errors
 /// As of [`read_urdf`].
-pub fn parse_urdf(path: &Path, text: &str) -> Result<FromUrdf, UrdfError> {
+pub fn parse_urdf(path: &Path, text: &str) -> Result<FromUrdf> {
     let document = Document::parse(text).map_err(|error| UrdfError {
         place: format!("{}:{}", path.display(), error.pos().row),
         found: format!("no XML ({error})"),

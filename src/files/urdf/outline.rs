@@ -5,7 +5,7 @@ use serde_json::{Value, json};
 use std::path::{Path, PathBuf};
 
 use crate::files::stl;
-use crate::files::urdf::left_out::LeftOut;
+use crate::files::urdf::element::LeftOut;
 use crate::files::urdf::read::{Geometry, Visual};
 use crate::mesh::triangulated::{Surface, rings_of_sphere};
 

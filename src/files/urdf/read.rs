@@ -5,9 +5,7 @@ use roxmltree::{Document, Node};
 use std::path::Path;
 
 use crate::files::scene::point::direction;
-use crate::files::urdf::element::Element;
-use crate::files::urdf::error::UrdfError;
-use crate::files::urdf::left_out::LeftOut;
+use crate::files::urdf::element::{Element, LeftOut, Result};
 use crate::model::system::principal;
 
 /// Relative excess of a moment over the sum of the two others that is one of rounding.
@@ -81,7 +79,7 @@ pub(super) fn robot<'a>(
     path: &'a Path,
     document: &'a Document<'a>,
     left_out: &mut LeftOut,
-) -> Result<Robot<'a>, UrdfError> {
+) -> Result<Robot<'a>> {
     let root = Element {
         node: document.root_element(),
         owner: "the robot".to_owned(),
@@ -92,7 +90,7 @@ pub(super) fn robot<'a>(
         return Err(root.wrong(found, "<robot>"));
     }
     root.only(&["link", "joint"], &["name", "version"], left_out);
-    let owned = |element: Element<'a>, kind: &str| -> Result<(Element<'a>, String), UrdfError> {
+    let owned = |element: Element<'a>, kind: &str| -> Result<(Element<'a>, String)> {
         let name = element.word("name")?.to_owned();
         let owner = format!("the {kind} {name:?}");
         Ok((Element { owner, ..element }, name))
@@ -115,11 +113,7 @@ pub(super) fn robot<'a>(
     })
 }
 
-fn link<'a>(
-    element: Element<'a>,
-    name: String,
-    left_out: &mut LeftOut,
-) -> Result<Link<'a>, UrdfError> {
+fn link<'a>(element: Element<'a>, name: String, left_out: &mut LeftOut) -> Result<Link<'a>> {
     element.only(&["inertial", "visual"], &["name"], left_out);
     let inertial = match element.child("inertial")? {
         Some(inertial) => self::inertial(&inertial, left_out)?,
@@ -141,7 +135,7 @@ fn link<'a>(
 }
 
 /// The inertia of a link; `None` for a mass of zero.
-fn inertial(element: &Element<'_>, left_out: &mut LeftOut) -> Result<Option<Inertial>, UrdfError> {
+fn inertial(element: &Element<'_>, left_out: &mut LeftOut) -> Result<Option<Inertial>> {
     element.only(&["origin", "mass", "inertia"], &[], left_out);
     let pose = element.origin(left_out)?;
     let mass = element.needed("mass")?;
@@ -186,7 +180,7 @@ fn inertial(element: &Element<'_>, left_out: &mut LeftOut) -> Result<Option<Iner
 }
 
 /// A shape; `None` of a kind that is left out.
-fn geometry(element: &Element<'_>, left_out: &mut LeftOut) -> Result<Option<Geometry>, UrdfError> {
+fn geometry(element: &Element<'_>, left_out: &mut LeftOut) -> Result<Option<Geometry>> {
     const SHAPES: [&str; 4] = ["box", "cylinder", "sphere", "mesh"];
     element.only(&SHAPES, &[], left_out);
     let shapes = element.node.children().filter(Node::is_element);
@@ -230,11 +224,7 @@ fn geometry(element: &Element<'_>, left_out: &mut LeftOut) -> Result<Option<Geom
     Ok(Some(Geometry::Mesh { file, scale }))
 }
 
-fn joint<'a>(
-    element: Element<'a>,
-    name: String,
-    left_out: &mut LeftOut,
-) -> Result<Joint<'a>, UrdfError> {
+fn joint<'a>(element: Element<'a>, name: String, left_out: &mut LeftOut) -> Result<Joint<'a>> {
     let known = ["origin", "parent", "child", "axis", "dynamics", "limit"];
     element.only(&known, &["name", "type"], left_out);
     let kind = kind(&element, left_out)?;
@@ -280,7 +270,7 @@ fn joint<'a>(
     })
 }
 
-fn kind(element: &Element<'_>, left_out: &mut LeftOut) -> Result<Kind, UrdfError> {
+fn kind(element: &Element<'_>, left_out: &mut LeftOut) -> Result<Kind> {
     let axis = || match element.child("axis")? {
         None => Ok(Vector3::x()),
         Some(axis) => {

@@ -7,8 +7,7 @@ use std::path::Path;
 use crate::files::json::layout::lay_out;
 use crate::files::scene::spec::SceneSpec;
 use crate::files::stl;
-use crate::files::urdf::error::UrdfError;
-use crate::files::urdf::left_out::LeftOut;
+use crate::files::urdf::element::{LeftOut, Result};
 use crate::files::urdf::outline::{Outline, outline, rounded, turned};
 use crate::files::urdf::read::{Inertial, Joint, Kind, Robot, Visual};
 use crate::files::urdf::tree::Tree;
@@ -35,7 +34,7 @@ pub(super) fn scene(
     tree: &Tree,
     path: &Path,
     mut left_out: LeftOut,
-) -> Result<FromUrdf, UrdfError> {
+) -> Result<FromUrdf> {
     let (mut bodies, mut markers) = (Vec::new(), Vec::new());
     let (mut joints, mut meshes, mut notes) = (Vec::new(), Vec::new(), Vec::new());
     for &link in &tree.order {

@@ -3,7 +3,7 @@
 use nalgebra::Isometry3;
 use std::collections::BTreeMap;
 
-use crate::files::urdf::error::UrdfError;
+use crate::files::urdf::element::Result;
 use crate::files::urdf::read::{Kind, Robot};
 
 /// Links by their places in the file.
@@ -21,7 +21,7 @@ pub(super) struct Tree {
 }
 
 /// The tree of a robot.
-pub(super) fn tree(robot: &Robot<'_>) -> Result<Tree, UrdfError> {
+pub(super) fn tree(robot: &Robot<'_>) -> Result<Tree> {
     let count = robot.links.len();
     let mut index = BTreeMap::new();
     for (i, link) in robot.links.iter().enumerate() {
@@ -90,7 +90,7 @@ pub(super) fn tree(robot: &Robot<'_>) -> Result<Tree, UrdfError> {
 
 impl Tree {
     /// Pose and carrier of a link whose parent is placed.
-    fn place(&mut self, link: usize, robot: &Robot<'_>) -> Result<(), UrdfError> {
+    fn place(&mut self, link: usize, robot: &Robot<'_>) -> Result<()> {
         let has_mass = robot.links[link].inertial.is_some();
         let (Some(parent), Some(joint)) = (self.parent[link], self.joint[link]) else {
             self.carrier[link] = has_mass.then_some(link);

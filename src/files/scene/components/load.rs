@@ -2,7 +2,7 @@
 
 use crate::files::json::error::Result;
 use crate::files::json::objects::objects;
-use crate::files::json::scope::Scope;
+use crate::files::json::scope::{Scope, the_one};
 use crate::files::scene::names::names;
 use crate::files::scene::nodes::nodes;
 use crate::files::scene::point::{CornersSpec, PointSpec, unit_axis};
@@ -64,49 +64,39 @@ pub(crate) fn load(
     (bodies, joints, muscles, solids): (&[String], &[Joint], &[Muscle], &[Solid]),
     scope: &Scope<'_>,
 ) -> Result<Load> {
-    enum Written<'a> {
-        Point(&'a PointSpec),
-        Joint(&'a String),
-        Muscle(&'a String),
-        Solid(&'a String),
-    }
-    let written = scope.exactly_one([
-        ("point", spec.point.as_ref().map(Written::Point)),
-        ("joint", spec.joint.as_ref().map(Written::Joint)),
-        ("muscle", spec.muscle.as_ref().map(Written::Muscle)),
-        ("solid", spec.solid.as_ref().map(Written::Solid)),
-    ])?;
-    let is_of_solid = matches!(written, Written::Solid(_));
-    let no_direction = match written {
-        Written::Joint(_) => Some("as the axis of the joint is the direction"),
-        Written::Muscle(_) => Some("as a charge has no direction"),
-        Written::Point(_) | Written::Solid(_) => None,
+    let no_direction = match (&spec.joint, &spec.muscle) {
+        (Some(_), _) => Some("as the axis of the joint is the direction"),
+        (None, Some(_)) => Some("as a charge has no direction"),
+        (None, None) => None,
     };
-    spec.check_keys(is_of_solid, no_direction, scope)?;
-    let on = match written {
-        Written::Point(point) => LoadPlace::Point {
-            at: point.attachment(bodies, &scope.key("point"))?,
-            direction: spec.direction(scope)?,
-            follows: spec.follows.unwrap_or(false),
-        },
-        Written::Joint(name) => {
+    let checked = spec.check_keys(no_direction, scope);
+    let on = the_one!(scope, spec;
+        "point" point |at, point| {
+            checked?;
+            LoadPlace::Point {
+                at: point.attachment(bodies, at)?,
+                direction: spec.direction(scope)?,
+                follows: spec.follows.unwrap_or(false),
+            }
+        };
+        "joint" joint |at, name| {
+            checked?;
             let all = names(joints, |joint| &joint.name);
-            let place = scope.key("joint");
-            LoadPlace::Joint(place.find(name, &all, "the name of a joint")?)
-        }
-        Written::Muscle(name) => {
+            LoadPlace::Joint(at.find(name, &all, "the name of a joint")?)
+        };
+        "muscle" muscle |at, name| {
+            checked?;
             let all = names(muscles, |muscle| &muscle.name);
-            let place = scope.key("muscle");
-            LoadPlace::Muscle(place.find(name, &all, "the name of a muscle")?)
-        }
-        Written::Solid(name) => {
+            LoadPlace::Muscle(at.find(name, &all, "the name of a muscle")?)
+        };
+        "solid" solid |at, name| {
+            checked?;
             let all = names(solids, |solid| &solid.name);
-            let place = scope.key("solid");
-            let block = place.find(name, &all, "the name of an elastic block")?;
+            let block = at.find(name, &all, "the name of an elastic block")?;
             let load = spec.of_solid(&solids[block], scope)?;
             LoadPlace::Block { block, load }
-        }
-    };
+        };
+    );
     Ok(Load {
         name: spec.name.clone(),
         on,
@@ -115,12 +105,7 @@ pub(crate) fn load(
 
 impl LoadSpec {
     /// Refuses keys that mean nothing where they stand.
-    fn check_keys(
-        &self,
-        is_of_solid: bool,
-        no_direction: Option<&'static str>,
-        scope: &Scope<'_>,
-    ) -> Result<()> {
+    fn check_keys(&self, no_direction: Option<&'static str>, scope: &Scope<'_>) -> Result<()> {
         use BlockLoadKind::{BodyForce, Pressure, SurfaceCharge};
         let turns = no_direction.is_none() && matches!(self.kind, None | Some(Pressure));
         let no_direction = no_direction.or(match self.kind {
@@ -128,7 +113,10 @@ impl LoadSpec {
             Some(SurfaceCharge) => Some("as a charge has no direction"),
             _ => None,
         });
-        let no_kind = (!is_of_solid).then_some("as only a load of a \"solid\" has it");
+        let no_kind = self
+            .solid
+            .is_none()
+            .then_some("as only a load of a \"solid\" has it");
         let no_face = match self.kind {
             Some(BodyForce) => Some("as a body force acts in the whole block"),
             _ => no_kind,

@@ -7,6 +7,7 @@ use crate::files::scene::components::spring::ComponentSpec;
 use crate::files::scene::point::PointSpec;
 use crate::files::units::quantity::{Length, Quantity, Stiffness};
 use crate::model::components::Tendon;
+use crate::model::system::Attachment;
 
 objects! {
     /// An elastic cable that slides without friction through points and takes no compression: tension k max(length − rest length, 0).
@@ -28,10 +29,8 @@ impl ComponentSpec for TendonSpec {
     type Part = Tendon;
 
     fn component(&self, bodies: &[String], scope: &Scope<'_>) -> Result<Tendon> {
-        let place = scope.key("through");
-        let points = self.through.iter().enumerate();
-        let points = points.map(|(index, point)| point.attachment(bodies, &place.index(index)));
-        let through = points.collect::<Result<Vec<_>, _>>()?;
+        let through: Vec<Attachment> =
+            (scope.key("through")).each(&self.through, |point, at| point.attachment(bodies, at))?;
         let spans = through
             .windows(2)
             .map(|pair| (pair[1].at - pair[0].at).norm());
