@@ -63,7 +63,7 @@ impl fmt::Debug for Terms<'_> {
     }
 }
 
-/// What calls for a term: its name, "stiffness of", and a component.
+/// Reason for a term: the name of the term, words such as "stiffness of", and the component.
 #[derive(Clone, Copy)]
 pub(super) struct Call<'a> {
     pub(super) term: &'static str,

@@ -22,7 +22,7 @@ struct Function<'t> {
 /// Words before `fn`.
 const QUALIFIERS: [&str; 6] = ["pub", "const", "unsafe", "async", "extern", "\"C\""];
 
-/// Name of the function whose declaration a line begins.
+/// Name of the function whose declaration a line begins; none of one that a macro names.
 fn declared(line: &str) -> Option<&str> {
     let mut rest = line.trim_start();
     while !rest.starts_with("fn ") {
@@ -36,7 +36,7 @@ fn declared(line: &str) -> Option<&str> {
     }
     let name = &rest["fn ".len()..];
     let end = name.find(|c: char| !c.is_alphanumeric() && c != '_');
-    Some(&name[..end.unwrap_or(name.len())])
+    Some(&name[..end.unwrap_or(name.len())]).filter(|name| !name.is_empty())
 }
 
 /// The functions of a text as rustfmt lays it out: the closing brace stands below the first letter of the declaration.
