@@ -6,13 +6,12 @@
 //! - [`study`], [`sweep`]: types of a study of variants of a problem, or a sweep of them; `changes`: their overrides.
 //! - `feedback`: laws of controllers.
 //! - [`solution`]: motions that later runs start from; [`npz`]: arrays of long ones; [`continuation`]: motions that go on.
-//! - [`urdf`]: robots of ROS; [`stl`]: surfaces; `columns`, `header`: columns of CSV files; `typed`: scenes and voltages named on the command line.
+//! - [`urdf`]: robots of ROS; [`stl`]: surfaces; `columns`: columns of CSV files; `typed`: scenes and voltages named on the command line.
 
 pub(crate) mod changes;
 mod columns;
 pub mod continuation;
 pub mod feedback;
-mod header;
 pub mod json;
 pub mod npz;
 pub mod problem;
@@ -201,37 +200,31 @@ fn alone(mut document: Document, of_scene: &[Override], changes: &ChangesSpec) -
     }
     let problem: ProblemSpec = document.parse()?;
     let scope = Scope::of(&document);
-    let (written, system, scene, scene_path, apart) = match &problem.scene {
-        SceneSource::Inline(scene) => {
-            let system = build_scene(scene, &scope.key("scene"))?;
-            let written = scene.as_ref().clone();
-            (
-                written,
-                system,
-                document
-                    .entry("scene")
-                    .map(|scene| scene.to_string())
-                    .unwrap_or_default(),
-                None,
-                None,
-            )
-        }
+    let apart = match &problem.scene {
+        SceneSource::Inline(_) => None,
         SceneSource::Path(path) => {
             let file = scope.key("scene").file(path, "the path of a scene file")?;
             let mut scene = Document::read(&file)?;
             for change in of_scene.iter().filter_map(Override::in_scene) {
                 change.apply(&mut scene)?;
             }
-            let written: SceneSpec = scene.parse()?;
-            let system = build_scene(&written, &Scope::of(&scene))?;
-            (
-                written,
-                system,
-                scene.json().to_string(),
-                Some(file),
-                Some(scene),
-            )
+            Some((file, scene))
         }
+    };
+    let (scene_path, apart) = apart.unzip();
+    let (written, place) = match (&problem.scene, &apart) {
+        (SceneSource::Inline(scene), _) => (scene.as_ref().clone(), scope.key("scene")),
+        (SceneSource::Path(_), apart) => {
+            let scene = apart.as_ref().unwrap_or(&document);
+            (scene.parse()?, Scope::of(scene))
+        }
+    };
+    let system = build_scene(&written, &place)?;
+    let scene = match &apart {
+        Some(scene) => scene.json().to_string(),
+        None => document
+            .entry("scene")
+            .map_or_else(String::new, |scene| scene.to_string()),
     };
     let of_scene = WrittenScene {
         spec: &written,

@@ -66,8 +66,7 @@ pub fn driven_voltages(words: &[String], system: &System) -> Result<Vec<f64>> {
             found: format!("{word:?}"),
             expected,
             nearest,
-            source: None,
-            overridden: None,
+            ..Mistake::default()
         }
         .into()
     };

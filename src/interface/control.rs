@@ -291,18 +291,10 @@ impl Control {
     /// # Errors
     /// As of [`solve`](Self::solve); no optimum was found, nothing holds the goal, or the problem has something that is not offered.
     pub fn horizon(&self, system: &System, intervals: usize) -> Result<Horizon> {
-        require(
-            intervals > 0,
-            "horizon",
-            || "0 intervals".to_owned(),
-            "1 or more",
-        )?;
-        require(
-            intervals <= Ahead::MOST_INTERVALS,
-            "horizon",
-            || format!("{intervals} intervals"),
-            "no more than 10000",
-        )?;
+        let found = || format!("{intervals} intervals");
+        require(intervals > 0, "horizon", found, "1 or more")?;
+        let holds = intervals <= Ahead::MOST_INTERVALS;
+        require(holds, "horizon", found, "no more than 10000")?;
         let system = system.checked()?;
         let ahead = Ahead {
             control: self.resolve(&system)?,

@@ -43,12 +43,8 @@ impl Equilibrium {
             voltages[source(input, system)?] = *value;
         }
         let found = || "an instantaneous response".to_owned();
-        require(
-            self.response == Response::Relaxed || system.has_branches(),
-            "equilibrium",
-            found,
-            NO_BRANCHES,
-        )?;
+        let holds = self.response == Response::Relaxed || system.has_branches();
+        require(holds, "equilibrium", found, NO_BRANCHES)?;
         let task = AtRest {
             voltages,
             coordinates: None,

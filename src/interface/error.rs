@@ -4,6 +4,7 @@ use crate::dynamics::{EquilibriumError, StepError};
 use crate::identify::IdentifyError;
 use crate::interface::handle::Input;
 use crate::interface::motion::Motion;
+use crate::math::Signal;
 use crate::model::{System, SystemError};
 use crate::workflow::WorkflowError;
 use thiserror::Error;
@@ -81,6 +82,22 @@ pub(super) fn require(
             expected,
         }),
     }
+}
+
+/// A function of time for each source of a system, zero where nothing is said.
+pub(super) fn signals(
+    inputs: &[(Input, Signal)],
+    what: &'static str,
+    system: &System,
+) -> Result<Vec<Signal>> {
+    let mut signals = vec![Signal::Constant(0.0); system.sources().len()];
+    for (input, signal) in inputs {
+        let found = || format!("{signal:?} of {input:?}");
+        let expected = "finite numbers, and times that grow";
+        require(signal.is_sound(), what, found, expected)?;
+        signals[source(input, system)?] = signal.clone();
+    }
+    Ok(signals)
 }
 
 /// The source of an input of a system.

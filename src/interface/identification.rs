@@ -5,7 +5,7 @@ use crate::control::problem::{
 };
 use crate::identify::{Identified, identify};
 use crate::interface::builder::builder;
-use crate::interface::error::{Result, require, source};
+use crate::interface::error::{Result, require, signals};
 use crate::interface::handle::{Handle, Input};
 use crate::interface::state::State;
 use crate::math::{Signal, Vector, in_order};
@@ -141,13 +141,7 @@ impl Recording {
         let scene = self.scene.as_ref().map(System::checked).transpose()?;
         let system = scene.as_ref().unwrap_or(system);
         let sources = system.sources().len();
-        let mut signals = vec![Signal::Constant(0.0); sources];
-        for (input, signal) in &self.inputs {
-            let found = || format!("{signal:?} of {input:?}");
-            let expected = "finite numbers, and times that grow";
-            require(signal.is_sound(), "recording", found, expected)?;
-            signals[source(input, system)?] = signal.clone();
-        }
+        let signals = signals(&self.inputs, "recording", system)?;
         let mut channels = self.channels.clone();
         let begin = self.time_offset.unwrap_or(0.0);
         let all = channels.iter_mut().flat_map(|one| &mut one.readings);
@@ -165,12 +159,8 @@ impl Recording {
             let holds = numbers.iter().all(|x| x.is_finite()) && reading.time >= 0.0;
             let found = || format!("{} at {} ms", reading.value, reading.time);
             let expected = "finite readings at times from 0 on";
-            require(
-                holds && reading.deviation > 0.0,
-                "recording",
-                found,
-                expected,
-            )?;
+            let holds = holds && reading.deviation > 0.0;
+            require(holds, "recording", found, expected)?;
         }
         Ok(problem::Recording {
             name: self.name.clone(),
@@ -256,11 +246,8 @@ impl Identification {
             require(holds, "identification", found, expected)?;
         }
         let resolved = |one: &Recording| one.resolve(system, &self.parameters);
-        let recordings: Vec<_> = self
-            .recordings
-            .iter()
-            .map(resolved)
-            .collect::<Result<_>>()?;
+        let recordings = self.recordings.iter().map(resolved);
+        let recordings: Vec<_> = recordings.collect::<Result<_>>()?;
         let has_fitted = recordings.iter().any(|one| !one.is_held_out);
         let found = || format!("{} recordings", recordings.len());
         let expected = "one or more to which constants are fitted";

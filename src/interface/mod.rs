@@ -1,6 +1,6 @@
 //! The library as a program uses it: systems built part by part, simulated and steered in memory.
 //!
-//! - `handle`, `components`, `material`: systems and their parts, with defaults; checked when they are used.
+//! - `handle`, `parts`, `components`: systems and their parts, with defaults; checked when they are used.
 //! - `state`, `free_parameters`, `equilibrium`, `simulation`, `control`, `limits`, `costs`, `cost_checks`, `identification`: the tasks of a system.
 //! - `motion`, `error`: results and errors; `builder`: declaration of methods.
 
@@ -15,7 +15,6 @@ mod free_parameters;
 mod handle;
 mod identification;
 mod limits;
-mod material;
 mod motion;
 mod parts;
 mod simulation;

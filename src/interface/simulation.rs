@@ -4,7 +4,7 @@ use crate::control::problem::{self, Voltages};
 use crate::dynamics::trajectory::Trajectory;
 use crate::dynamics::{DiscreteTrajectory, Integrator, Newton, Solving};
 use crate::interface::builder::builder;
-use crate::interface::error::{Error, Result, require, source};
+use crate::interface::error::{Error, Result, require, signals};
 use crate::interface::handle::{Handle, Input};
 use crate::interface::motion::Motion;
 use crate::interface::state::State;
@@ -86,21 +86,13 @@ impl Simulation {
     fn resolve(&self, system: &System) -> Result<problem::Simulation> {
         let positive = |v: f64| v > 0.0 && v.is_finite();
         let length = || format!("a duration of {} ms", self.duration);
-        require(
-            positive(self.duration),
-            "simulation",
-            length,
-            "a positive one",
-        )?;
+        let holds = positive(self.duration);
+        require(holds, "simulation", length, "a positive one")?;
         if let Some(step) = self.step {
             let holds = positive(step) && step <= self.duration;
             let found = || format!("steps of {step} ms");
-            require(
-                holds,
-                "simulation",
-                found,
-                "positive steps within the duration",
-            )?;
+            let expected = "positive steps within the duration";
+            require(holds, "simulation", found, expected)?;
         }
         let controlled = self.step.is_none();
         let holds = !controlled || self.integrator == Integrator::Midpoint;
@@ -108,13 +100,7 @@ impl Simulation {
         let expected = "a step: only the midpoint rule chooses its steps";
         require(holds, "simulation", found, expected)?;
         let sources = system.sources().len();
-        let mut signals = vec![Signal::Constant(0.0); sources];
-        for (input, signal) in &self.voltages {
-            let found = || format!("{signal:?} of {input:?}");
-            let expected = "finite numbers, and times that grow";
-            require(signal.is_sound(), "simulation", found, expected)?;
-            signals[source(input, system)?] = signal.clone();
-        }
+        let signals = signals(&self.voltages, "simulation", system)?;
         Ok(problem::Simulation {
             duration: self.duration,
             step: self

@@ -1,8 +1,8 @@
-//! Values that are written as a scalar or as an object, read without losing the place of an error.
+//! Values that are written as a scalar or as an object, or as `"auto"` or a value, read without losing the place of an error.
 
 use serde::Deserialize;
 use serde::de::value::MapAccessDeserializer;
-use serde::de::{Error, IntoDeserializer, MapAccess, Visitor};
+use serde::de::{Error, IntoDeserializer, MapAccess, Unexpected, Visitor};
 use std::fmt;
 
 /// Visits a scalar or an object, so that paths and messages of both survive.
@@ -57,3 +57,43 @@ macro_rules! scalar_or_object {
 }
 
 pub(crate) use scalar_or_object;
+
+/// Visits `"auto"` or a value, which is a whole number or else a quantity.
+pub(crate) struct AutoOr<V, T> {
+    /// Both, for messages.
+    pub(crate) expected: &'static str,
+    pub(crate) auto: T,
+    pub(crate) value: fn(V) -> T,
+    pub(crate) is_whole: bool,
+}
+
+impl<'de, V: Deserialize<'de>, T> Visitor<'de> for AutoOr<V, T> {
+    type Value = T;
+
+    fn expecting(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.write_str(self.expected)
+    }
+
+    fn visit_str<E: Error>(self, text: &str) -> Result<T, E> {
+        match text {
+            "auto" => Ok(self.auto),
+            _ if self.is_whole => Err(E::invalid_value(Unexpected::Str(text), &self)),
+            _ => V::deserialize(text.into_deserializer()).map(self.value),
+        }
+    }
+
+    fn visit_u64<E: Error>(self, number: u64) -> Result<T, E> {
+        V::deserialize(number.into_deserializer()).map(self.value)
+    }
+
+    fn visit_i64<E: Error>(self, number: i64) -> Result<T, E> {
+        V::deserialize(number.into_deserializer()).map(self.value)
+    }
+
+    fn visit_f64<E: Error>(self, number: f64) -> Result<T, E> {
+        match self.is_whole {
+            true => Err(E::invalid_type(Unexpected::Float(number), &self)),
+            false => V::deserialize(number.into_deserializer()).map(self.value),
+        }
+    }
+}

@@ -14,7 +14,7 @@ pub struct SceneError(Box<Mistake>);
 /// A value that is read, or the first error.
 pub type Result<T, E = SceneError> = std::result::Result<T, E>;
 
-#[derive(Clone, Debug)]
+#[derive(Clone, Debug, Default)]
 pub(crate) struct Mistake {
     /// File as the user named it.
     pub(crate) file: String,

@@ -1,4 +1,4 @@
-//! Declaration of objects of JSON files.
+//! Declaration of objects of JSON files, and of what their words mean.
 
 /// Declares objects as they are written, without other keys: what is an `Option`, a map or true or false need not be written, nor is it where
 /// there is none.
@@ -41,3 +41,17 @@ macro_rules! read_objects {
     ($($objects:tt)*) => { $crate::files::json::objects::objects!(@read $($objects)*); };
 }
 pub(crate) use read_objects;
+
+/// Declares what the words of a type mean in the program.
+macro_rules! meanings {
+    ($($words:ident: $of:ident { $($word:ident => $meant:ident,)* })*) => {
+        $(impl From<$words> for $of {
+            fn from(word: $words) -> Self {
+                match word {
+                    $($words::$word => Self::$meant,)*
+                }
+            }
+        })*
+    };
+}
+pub(crate) use meanings;

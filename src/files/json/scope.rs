@@ -7,10 +7,12 @@ use std::fmt;
 use std::path::PathBuf;
 
 use crate::files::json::document::Document;
-use crate::files::json::error::{Result, SceneError};
+use crate::files::json::error::SceneError;
 use crate::files::json::path::{JsonPath, Step};
 use crate::files::units::quantity::{Kind, PhysicalQuantity, Quantity, WRITTEN};
 use crate::math::{Fault, unique};
+
+pub(crate) use crate::files::json::error::Result;
 
 /// A place in a document.
 #[derive(Clone)]
@@ -213,6 +215,16 @@ impl<'a> Scope<'a> {
         entries: [(&'k str, bool); N],
     ) -> Result<&'k str> {
         self.exactly_one(entries.map(|(key, is_there)| (key, is_there.then_some(key))))
+    }
+
+    /// A number of things from one to a limit.
+    pub(crate) fn count(&self, value: usize, noun: &str, most: usize) -> Result<()> {
+        let expected = match value {
+            0 => format!("1 {noun} or more"),
+            _ if value > most => format!("no more than {most} {noun}s"),
+            _ => return Ok(()),
+        };
+        Err(self.wrong(value.to_string(), expected))
     }
 
     /// A list without repeated, empty or reserved names; `place` gives the place of a name.

@@ -84,9 +84,8 @@ impl Override {
                 path: self.place.to_string(),
                 found: format!("{found} in {:?}", self.written),
                 expected,
-                nearest: None,
-                source: None,
                 overridden: Some(self.typed.clone()),
+                ..Mistake::default()
             }
             .into());
         }
@@ -103,9 +102,8 @@ fn typed_wrong(place: Option<JsonPath>, found: String, expected: &str) -> SceneE
         path: place.as_ref().map_or_else(String::new, JsonPath::to_string),
         found,
         expected: expected.to_owned(),
-        nearest: None,
-        source: None,
         overridden: place,
+        ..Mistake::default()
     };
     mistake.into()
 }

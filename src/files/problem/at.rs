@@ -1,14 +1,16 @@
 //! A place in a problem, and the parts of the system whose names stand there.
 
-use crate::files::json::error::Result;
-use crate::files::json::scope::Scope;
+use crate::files::json::scope::{Result, Scope};
 use crate::files::problem::spec_voltages::VoltageMap;
+use crate::files::scene::graph::tree_freedoms;
 use crate::files::scene::names::names;
 use crate::files::units::quantity::{
     Angle, AngularVelocity, Kind, Length, PhysicalQuantity, Quantity, Velocity,
 };
-use crate::model::PartKind;
 use crate::model::system::{JointKind, Source, System, voltage_sources};
+use crate::model::{Coordinates, PartKind};
+use schemars::JsonSchema;
+use serde::Deserialize;
 use std::collections::BTreeMap;
 use std::ops::Deref;
 use std::rc::Rc;
@@ -218,4 +220,28 @@ impl<'a> At<'a> {
             Ok((joint, at.of_joint(joint, written)?))
         })
     }
+
+    /// Coordinates of this task as they are written.
+    pub(crate) fn coordinates(&self, spec: Option<CoordinatesSpec>) -> Result<Option<Coordinates>> {
+        let (bodies, joints) = (self.system.bodies.len(), &self.system.joints);
+        match spec {
+            None => Ok(None),
+            Some(CoordinatesSpec::Redundant) => Ok(Some(Coordinates::Redundant)),
+            Some(CoordinatesSpec::Reduced) if tree_freedoms(bodies, joints).is_none() => {
+                let found = "\"reduced\", though the joints close a loop";
+                Err(self.key("coordinates").wrong(found, "\"redundant\""))
+            }
+            Some(CoordinatesSpec::Reduced) => Ok(Some(Coordinates::Reduced)),
+        }
+    }
+}
+
+/// Coordinates in which a problem is solved; reduced where the joints form a tree, unless written.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Deserialize, JsonSchema)]
+#[serde(rename_all = "snake_case")]
+pub enum CoordinatesSpec {
+    /// Independent joint coordinates.
+    Reduced,
+    /// Directors with multipliers.
+    Redundant,
 }

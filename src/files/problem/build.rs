@@ -1,11 +1,9 @@
 //! Conversion of a problem file to its task, with one voltage per source and indices for names.
 
 use crate::control::problem::{AtRest, Task};
-use crate::files::json::error::Result;
-use crate::files::json::scope::the_one;
+use crate::files::json::scope::{Result, the_one};
 use crate::files::problem::at::At;
 use crate::files::problem::control::control;
-use crate::files::problem::coordinates::{coordinates, count};
 use crate::files::problem::free::check_solution;
 use crate::files::problem::identify::identification;
 use crate::files::problem::loads::loads;
@@ -50,9 +48,9 @@ fn equilibrium(spec: &EquilibriumSpec, at: &At<'_>) -> Result<Task> {
     for (source, load) in loads(&map, &at.key("loads"))? {
         voltages[source] = load.at(0.0);
     }
-    let coordinates = coordinates(spec.coordinates, at)?;
+    let coordinates = at.coordinates(spec.coordinates)?;
     if let Some(points) = spec.path {
-        count(points, "point", MOST_POINTS, &at.key("path"))?;
+        at.key("path").count(points, "point", MOST_POINTS)?;
     }
     let response = Response::from(spec.response.unwrap_or_default());
     if response == Response::Instantaneous && !at.system.has_branches() {

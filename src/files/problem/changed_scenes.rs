@@ -3,8 +3,7 @@
 use crate::control::problem::{ChangedScene, Identification, Recording, Task};
 use crate::files::changes::Changes;
 use crate::files::json::document::Document;
-use crate::files::json::error::Result;
-use crate::files::json::scope::Scope;
+use crate::files::json::scope::{Result, Scope};
 use crate::files::problem::spec::ProblemSpec;
 use crate::files::problem::spec_identify::IdentifySpec;
 use crate::files::study::ChangesSpec;

@@ -2,22 +2,10 @@
 
 use crate::control::problem::{Channel, Reading};
 use crate::files::columns::Columns;
-use crate::files::json::error::Result;
-use crate::files::json::scope::Scope;
-use crate::files::problem::at::At;
-use crate::files::problem::quantities::keys::{MeasuredSize, MeasuredSpec};
-use crate::files::units::quantity::{Kind, Quantity as Written, Ratio};
-use crate::model::Quantity;
-
-/// A quantity that is measured.
-#[derive(Debug)]
-pub(super) struct Measured {
-    name: String,
-    pub(super) column: String,
-    parts: Vec<(f64, Quantity)>,
-    kind: Kind,
-    unit: (&'static str, f64),
-}
+use crate::files::json::scope::{Result, Scope};
+use crate::files::problem::quantities::entry::Recorded;
+use crate::files::problem::quantities::keys::MeasuredSpec;
+use crate::files::units::quantity::{MeasuredSize, Quantity as Written, Ratio};
 
 /// Columns, and the times of their rows.
 pub(super) struct Source<'a> {
@@ -25,20 +13,7 @@ pub(super) struct Source<'a> {
     pub(super) times: &'a [f64],
 }
 
-impl Measured {
-    /// The quantity that is written.
-    pub(super) fn new(spec: &MeasuredSpec, at: &At<'_>) -> Result<Self> {
-        let what = spec.recorded(at)?;
-        let column = spec.column.as_ref();
-        Ok(Self {
-            column: column.unwrap_or(&what.of).clone(),
-            name: column.unwrap_or(&what.name).clone(),
-            parts: what.parts,
-            kind: what.kind,
-            unit: what.unit,
-        })
-    }
-
+impl Recorded {
     /// The standard deviation that is written for all readings.
     pub(super) fn deviation(&self, spec: &MeasuredSpec, at: &Scope<'_>) -> Result<Option<f64>> {
         let Some(written) = &spec.standard_deviation else {
@@ -80,7 +55,7 @@ impl Measured {
             let expected = format!("one of both, not \"{first}\" too");
             return Err(at.key(second).wrong("a second one", expected));
         }
-        let values = self.values(&self.column, source, &at.key("column"))?;
+        let values = self.values(&self.of, source, &at.key("column"))?;
         let of_all = self.deviation(spec, at)?;
         let deviations = match (&spec.deviations, &spec.weights) {
             (Some(header), _) => self.values(header, source, &at.key("deviations"))?,
@@ -107,7 +82,7 @@ impl Measured {
             });
         }
         if readings.is_empty() {
-            let found = format!("{:?}, a column of gaps alone", self.column);
+            let found = format!("{:?}, a column of gaps alone", self.of);
             return Err(at.key("column").wrong(found, "one reading or more"));
         }
         let is_known = of_all.is_some() || spec.deviations.is_some();

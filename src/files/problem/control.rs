@@ -5,10 +5,8 @@ use crate::control::problem::{
     BoundaryState, Control, Duration, EnergyCost, Guess, Objective, Solver, SourceEnergy, Voltages,
     absent_loads,
 };
-use crate::files::json::error::Result;
-use crate::files::json::scope::{Scope, the_one};
+use crate::files::json::scope::{Result, Scope, the_one};
 use crate::files::problem::at::{At, ELECTRIC_KEYS};
-use crate::files::problem::coordinates::{coordinates, count};
 use crate::files::problem::free::parameters;
 use crate::files::problem::goal::goal_state;
 use crate::files::problem::loads::{check_end, load, load_bounds, loads};
@@ -17,10 +15,9 @@ use crate::files::problem::quantities::keys::{at_the_end, limits, track};
 use crate::files::problem::quantities::muscle::amount_costs;
 use crate::files::problem::sensitivity::with_varied;
 use crate::files::problem::spec_control::{
-    ControlSolverSpec, ControlSpec, DurationSpec, GuessSpec, IntervalsSpec, IntervalsWord,
-    ObjectiveSpec, OptionSpec, SolverSpec,
+    ControlSpec, DurationSpec, EnergySpec, GuessSpec, IntervalsSpec, IntervalsWord, ObjectiveSpec,
+    OptionSpec, SolverSpec,
 };
-use crate::files::problem::spec_energies::EnergySpec;
 use crate::files::problem::spec_voltages::VoltagesSpec;
 use crate::files::problem::state::{sought_hold, start_state};
 use crate::files::problem::voltages::{SOLUTION_PATH, over_time};
@@ -52,7 +49,7 @@ pub(crate) fn control(
     let intervals = match spec.intervals {
         Some(IntervalsSpec::Given(intervals)) => {
             let place = at.key("intervals");
-            count(intervals, "interval", MOST_INTERVALS, &place)?;
+            place.count(intervals, "interval", MOST_INTERVALS)?;
             Some(intervals)
         }
         Some(IntervalsSpec::Word(IntervalsWord::Auto)) | None => None,
@@ -115,7 +112,7 @@ pub(crate) fn control(
         objective,
         limits,
         waypoints,
-        coordinates: coordinates(spec.coordinates, at)?,
+        coordinates: at.coordinates(spec.coordinates)?,
         guess,
         solver: solver(&spec.solver, &at.key("solver"))?,
     };
@@ -365,11 +362,7 @@ fn linear_solver(spec: &SolverSpec, at: &Scope<'_>) -> Result<LinearSolver> {
         let place = at.key("ipopt").key("linear_solver");
         return Err(place.wrong(format!("{other:?}"), expected));
     }
-    Ok(match named {
-        ControlSolverSpec::Auto => LinearSolver::Auto,
-        ControlSolverSpec::Stages => LinearSolver::Stages,
-        ControlSolverSpec::Mumps => LinearSolver::Mumps,
-    })
+    Ok(named.into())
 }
 
 /// Names that an energy may have, for messages: the charge of an electrode of finite elements is not known at instants.

@@ -3,9 +3,8 @@
 use crate::control::problem::{Disturbed, Task};
 use crate::files::changes::{Changes, word};
 use crate::files::json::document::Document;
-use crate::files::json::error::Result;
 use crate::files::json::path::{JsonPath, Step};
-use crate::files::json::scope::Scope;
+use crate::files::json::scope::{Result, Scope};
 use crate::files::json::set::{Override, value_at};
 use crate::files::problem::feedback::DisturbanceSpec;
 use crate::files::problem::spec::ProblemSpec;

@@ -3,9 +3,8 @@
 use crate::control::problem::{FeedbackControl, Noise, Observation, Regulator};
 use crate::feedback::{Integral, Law};
 use crate::files::feedback::read_law;
-use crate::files::json::error::Result;
 use crate::files::json::objects::read_objects;
-use crate::files::json::scope::Scope;
+use crate::files::json::scope::{Result, Scope};
 use crate::files::problem::at::At;
 use crate::files::units::quantity::{
     Angle, AngularVelocity, JointCoordinate, Length, PhysicalQuantity, Quantity, Time, Velocity,

@@ -2,10 +2,9 @@
 
 use crate::control::PEAK_VOLTAGE;
 use crate::files::json::document::Document;
-use crate::files::json::error::Result;
 use crate::files::json::objects::read_objects;
 use crate::files::json::path::JsonPath;
-use crate::files::json::scope::Scope;
+use crate::files::json::scope::{Result, Scope};
 use crate::files::scene::constants::{SceneConstant, WrittenScene};
 use crate::files::units::quantity::{Quantity, SoughtConstant};
 use crate::model::{Constant, NotSought, Parameter, check_parameters, unit_of};

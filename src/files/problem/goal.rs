@@ -3,8 +3,7 @@
 use std::collections::BTreeMap;
 
 use crate::control::problem::{BoundaryState, Orientation, Place, Rest};
-use crate::files::json::error::Result;
-use crate::files::json::scope::{Scope, the_one};
+use crate::files::json::scope::{Result, Scope, the_one};
 use crate::files::problem::at::At;
 use crate::files::problem::spec_voltages::VoltageMap;
 use crate::files::problem::state::{GoalSpec, GoalWord, HeldSpec, OrientationSpec, RestGoalSpec};

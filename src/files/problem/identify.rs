@@ -4,18 +4,17 @@ use crate::control::problem::{
     Identification, Prior, Reading, Recording, Regime, SoughtStart, begin_late,
 };
 use crate::files::columns::Columns;
-use crate::files::json::error::Result;
 use crate::files::json::path::JsonPath;
-use crate::files::json::scope::{Scope, the_one};
+use crate::files::json::scope::{Result, Scope, the_one};
 use crate::files::problem::at::At;
-use crate::files::problem::channels::{Measured, Source};
-use crate::files::problem::coordinates::{coordinates, count};
+use crate::files::problem::channels::Source;
 use crate::files::problem::free::{FreeMap, parameters};
 use crate::files::problem::loads::driven;
+use crate::files::problem::quantities::entry::Recorded;
 use crate::files::problem::quantities::keys::MeasuredSpec;
 use crate::files::problem::spec_identify::{
     CandidateSpec, ExperimentSpec, IdentifySpec, InputConstantsSpec, PriorSpec, RangeSpec,
-    RecordingSpec, SoughtStartSpec,
+    RecordingSpec,
 };
 use crate::files::problem::spec_voltages::VoltagesSpec;
 use crate::files::scene::constants::WrittenScene;
@@ -73,7 +72,7 @@ pub(crate) fn identification(
         recordings: recordings.collect::<Result<_, _>>()?,
         candidates: candidates.collect::<Result<_, _>>()?,
         step: step.transpose()?,
-        coordinates: coordinates(spec.coordinates, at)?,
+        coordinates: at.coordinates(spec.coordinates)?,
     })
 }
 
@@ -90,11 +89,7 @@ fn unique(name: &str, names: &mut Vec<String>, at: &Scope<'_>) -> Result<()> {
 /// A recording without its readings.
 fn experiment(name: &str, spec: &ExperimentSpec, at: &At<'_>) -> Result<Recording> {
     let (start, voltages) = driven(spec.start.as_ref(), &spec.voltages, &spec.loads, at)?;
-    let sought_start = match spec.sought_start {
-        SoughtStartSpec::Nothing => SoughtStart::Nothing,
-        SoughtStartSpec::Coordinates => SoughtStart::Coordinates,
-        SoughtStartSpec::State => SoughtStart::State,
-    };
+    let sought_start = SoughtStart::from(spec.sought_start);
     if spec.at_rest && (sought_start != SoughtStart::Nothing || spec.start.is_some()) {
         let key = match spec.start {
             Some(_) => "start",
@@ -119,12 +114,12 @@ fn experiment(name: &str, spec: &ExperimentSpec, at: &At<'_>) -> Result<Recordin
 }
 
 /// All that is measured, with what it is called.
-fn measured(list: &[MeasuredSpec], at: &At<'_>) -> Result<Vec<Measured>> {
+fn measured(list: &[MeasuredSpec], at: &At<'_>) -> Result<Vec<Recorded>> {
     let at = at.key("measured");
     if list.is_empty() {
         return Err(at.wrong("nothing that is measured", "one or more quantities"));
     }
-    at.each(list, Measured::new)
+    at.each(list, MeasuredSpec::recorded)
 }
 
 /// Voltages, loads and start of a recording; inputs from its own file are on its clock.
@@ -153,8 +148,8 @@ fn recording(spec: &RecordingSpec, at: &At<'_>) -> Result<Recording> {
     let all = measured(&spec.measured, at)?;
     for (index, (one, spec_of)) in all.iter().zip(&spec.measured).enumerate() {
         let at = at.key("measured").index(index);
-        let column = &one.column;
-        if all[..index].iter().any(|other| other.column == *column) {
+        let column = &one.of;
+        if all[..index].iter().any(|other| other.of == *column) {
             let found = format!("{column:?}, which is measured already");
             let expected = "each column once, as twice the readings would be twice the data";
             return Err(at.key("column").wrong(found, expected));
@@ -221,7 +216,8 @@ fn times(
 fn candidate(spec: &CandidateSpec, at: &At<'_>) -> Result<Recording> {
     let mut out = experiment(&spec.name, &spec.experiment, &at.key("experiment"))?;
     let duration = at.key("duration").positive(&spec.duration)?;
-    count(spec.readings, "reading", MOST_READINGS, &at.key("readings"))?;
+    at.key("readings")
+        .count(spec.readings, "reading", MOST_READINGS)?;
     let time = |k: usize| duration * (k + 1) as f64 / spec.readings as f64;
     let all = measured(&spec.measured, at)?;
     for (index, (one, spec_of)) in all.iter().zip(&spec.measured).enumerate() {

@@ -3,14 +3,13 @@
 //! - `motions`: several motions of one problem, each as a problem of its own.
 //! - `build`: the problem; `control`, `simulation`, `identify`: its longer tasks; `channels`: what recordings measure; `changed_scenes`: scenes of some of them.
 //! - `feedback`: gains along an optimum, and a controller that reads them; `receding`: a problem that it plans anew; `disturbance`: the same simulation with parts of its disturbance.
-//! - `at`: places with their system; `state`, `end_of`, `goal`, `waypoints`, `quantities`, `free`, `sensitivity`, `loads`, `voltages`, `coordinates`: their parts; `output`: what is written of a motion.
+//! - `at`: places with their system; `state`, `end_of`, `goal`, `waypoints`, `quantities`, `free`, `sensitivity`, `loads`, `voltages`: their parts; `output`: what is written of a motion.
 
-pub(super) mod at;
+pub mod at;
 pub(crate) mod build;
 pub(crate) mod changed_scenes;
 mod channels;
 pub(crate) mod control;
-pub mod coordinates;
 pub(crate) mod disturbance;
 mod end_of;
 pub mod feedback;
@@ -26,7 +25,6 @@ pub mod sensitivity;
 pub mod simulation;
 pub mod spec;
 pub mod spec_control;
-pub mod spec_energies;
 pub mod spec_identify;
 pub mod spec_voltages;
 pub mod state;

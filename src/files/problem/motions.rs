@@ -8,9 +8,8 @@ use crate::control::problem::Combined;
 use crate::control::{Motion, Motions};
 use crate::files::changes::Changes;
 use crate::files::json::document::Document;
-use crate::files::json::error::Result;
 use crate::files::json::path::JsonPath;
-use crate::files::json::scope::Scope;
+use crate::files::json::scope::{Result, Scope};
 use crate::files::json::tree::Json;
 use crate::files::problem::spec_control::{COMMON, ControlSpec};
 

@@ -3,9 +3,7 @@
 use crate::control::problem::{Ahead, Duration, Regulator, Simulation, Task};
 use crate::feedback::{Law, LawInput};
 use crate::files::json::document::Document;
-use crate::files::json::error::Result;
-use crate::files::json::scope::Scope;
-use crate::files::problem::coordinates::count;
+use crate::files::json::scope::{Result, Scope};
 use crate::files::problem::feedback::{CONTROL_FILE, ROUNDING};
 use crate::files::problem::simulation::refuse_given;
 use crate::files::problem::spec::ProblemSpec;
@@ -32,7 +30,9 @@ pub(crate) fn add_plan(
     };
     let place = scope.key("simulate").key("controller").key("horizon");
     let most = Ahead::MOST_INTERVALS;
-    count(horizon.intervals, "interval", most, &place.key("intervals"))?;
+    place
+        .key("intervals")
+        .count(horizon.intervals, "interval", most)?;
     let Simulation {
         duration,
         step,

@@ -1,10 +1,9 @@
 //! Conversion of the numbers by which the optimum of a problem is differentiated.
 
 use crate::control::problem::{BoundaryState, Control, Duration, Varied, VariedOf, WeightOf};
-use crate::files::json::error::Result;
 use crate::files::json::objects::read_objects;
 use crate::files::json::path::{JsonPath, Step};
-use crate::files::json::scope::Scope;
+use crate::files::json::scope::{Result, Scope};
 use crate::files::problem::at::{A_SOURCE, At};
 use crate::files::problem::free::add_others;
 use crate::files::scene::constants::{SceneConstant, WrittenScene};

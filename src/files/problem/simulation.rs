@@ -3,12 +3,10 @@
 use crate::control::problem::Simulation;
 use crate::dynamics::{Integrator, MultigridUse, Newton, Solving};
 use crate::feedback::Law;
-use crate::files::json::either::{Either, scalar_or_object};
-use crate::files::json::error::Result;
-use crate::files::json::objects::read_objects;
-use crate::files::json::scope::Scope;
-use crate::files::problem::at::At;
-use crate::files::problem::coordinates::{CoordinatesSpec, coordinates};
+use crate::files::json::either::{AutoOr, Either, scalar_or_object};
+use crate::files::json::objects::{meanings, read_objects};
+use crate::files::json::scope::{Result, Scope};
+use crate::files::problem::at::{At, CoordinatesSpec};
 use crate::files::problem::feedback::{ControllerSpec, controller};
 use crate::files::problem::loads::{LoadMap, driven};
 use crate::files::problem::spec_voltages::VoltagesSpec;
@@ -17,9 +15,7 @@ use crate::files::units::quantity::{Quantity, Time};
 use crate::math::shortest;
 use crate::sparse::Backend;
 use schemars::JsonSchema;
-use serde::de::{Error, IntoDeserializer, Visitor};
 use serde::{Deserialize, Deserializer};
-use std::fmt;
 
 /// Tolerances below this ask for more than rounding allows.
 pub(crate) const LEAST_TOLERANCE: f64 = 1e-9;
@@ -40,7 +36,7 @@ pub(crate) fn simulation(spec: &SimulateSpec, at: &At<'_>) -> Result<Simulation>
         tolerance,
         start,
         voltages,
-        coordinates: coordinates(spec.coordinates, at)?,
+        coordinates: at.coordinates(spec.coordinates)?,
         solving: Solving {
             integrator: method,
             newton: spec
@@ -186,36 +182,12 @@ pub enum StepWord {
 
 impl<'de> Deserialize<'de> for StepSpec {
     fn deserialize<D: Deserializer<'de>>(deserializer: D) -> Result<Self, D::Error> {
-        deserializer.deserialize_any(StepVisitor)
-    }
-}
-
-struct StepVisitor;
-
-impl Visitor<'_> for StepVisitor {
-    type Value = StepSpec;
-
-    fn expecting(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        f.write_str("a time, such as \"10 ms\", or \"auto\"")
-    }
-
-    fn visit_str<E: Error>(self, text: &str) -> Result<StepSpec, E> {
-        match text {
-            "auto" => Ok(StepSpec::Word(StepWord::Auto)),
-            _ => Quantity::deserialize(text.into_deserializer()).map(StepSpec::Given),
-        }
-    }
-
-    fn visit_f64<E: Error>(self, number: f64) -> Result<StepSpec, E> {
-        Quantity::deserialize(number.into_deserializer()).map(StepSpec::Given)
-    }
-
-    fn visit_u64<E: Error>(self, number: u64) -> Result<StepSpec, E> {
-        self.visit_f64(number as f64)
-    }
-
-    fn visit_i64<E: Error>(self, number: i64) -> Result<StepSpec, E> {
-        self.visit_f64(number as f64)
+        deserializer.deserialize_any(AutoOr {
+            expected: "a time, such as \"10 ms\", or \"auto\"",
+            auto: Self::Word(StepWord::Auto),
+            value: Self::Given,
+            is_whole: false,
+        })
     }
 }
 
@@ -229,15 +201,6 @@ pub enum NewtonSpec {
     Modified,
     /// The former name of `modified`.
     Reused,
-}
-
-impl From<NewtonSpec> for Newton {
-    fn from(spec: NewtonSpec) -> Self {
-        match spec {
-            NewtonSpec::Full => Self::Full,
-            NewtonSpec::Modified | NewtonSpec::Reused => Self::Modified,
-        }
-    }
 }
 
 /// Method by which linear systems with the tangent are solved.
@@ -362,4 +325,8 @@ fn with_parameter(object: &IntegratorObject, at: &Scope<'_>) -> Result<Integrato
             at.one_key(there).map(|_| Integrator::Midpoint)
         }
     }
+}
+
+meanings! {
+    NewtonSpec: Newton { Full => Full, Modified => Modified, Reused => Modified, }
 }

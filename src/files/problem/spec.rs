@@ -5,8 +5,8 @@ use serde::{Deserialize, Deserializer};
 use std::collections::BTreeMap;
 
 use crate::files::json::either::{Either, scalar_or_object};
-use crate::files::json::objects::read_objects;
-use crate::files::problem::coordinates::CoordinatesSpec;
+use crate::files::json::objects::{meanings, read_objects};
+use crate::files::problem::at::CoordinatesSpec;
 use crate::files::problem::feedback::FeedbackSpec;
 use crate::files::problem::output::OutputSpec;
 use crate::files::problem::simulation::SimulateSpec;
@@ -67,15 +67,6 @@ pub enum ResponseSpec {
     Instantaneous,
 }
 
-impl From<ResponseSpec> for Response {
-    fn from(spec: ResponseSpec) -> Self {
-        match spec {
-            ResponseSpec::Relaxed => Self::Relaxed,
-            ResponseSpec::Instantaneous => Self::Instantaneous,
-        }
-    }
-}
-
 /// A scene by its path, or the scene itself.
 #[derive(Clone, Debug, JsonSchema)]
 #[serde(untagged)]
@@ -88,4 +79,8 @@ pub enum SceneSource {
 
 scalar_or_object! {
     SceneSource: String = Self::Path, Box<SceneSpec> = Self::Inline, "the path of a scene file or a scene";
+}
+
+meanings! {
+    ResponseSpec: Response { Relaxed => Relaxed, Instantaneous => Instantaneous, }
 }

@@ -1,25 +1,24 @@
 //! A control problem as it is written.
 
-use crate::files::json::either::{Either, scalar_or_object};
-use crate::files::json::objects::read_objects;
-use crate::files::problem::coordinates::CoordinatesSpec;
+use crate::files::json::either::{AutoOr, Either, scalar_or_object};
+use crate::files::json::objects::{meanings, read_objects};
+use crate::files::problem::at::CoordinatesSpec;
 use crate::files::problem::free::FreeMap;
 use crate::files::problem::loads::{LoadBounds, LoadMap};
 use crate::files::problem::quantities::keys::{FinalSpec, LimitSpec, TrackSpec};
 use crate::files::problem::sensitivity::SensitivityMap;
-use crate::files::problem::spec_energies::EnergySpec;
 use crate::files::problem::spec_voltages::VoltagesSpec;
 use crate::files::problem::state::{GoalSpec, HoldSpec, StartSpec};
 use crate::files::problem::waypoints::WaypointSpec;
 use crate::files::study::ChangesSpec;
 use crate::files::units::quantity::{Quantity, Time, Voltage};
+use crate::ipopt::LinearSolver;
 use schemars::{JsonSchema, Schema, SchemaGenerator, json_schema};
-use serde::de::{Error, IgnoredAny, IntoDeserializer, Unexpected, Visitor};
+use serde::de::IgnoredAny;
 use serde::{Deserialize, Deserializer};
 use serde_json::Value;
 use std::borrow::Cow;
 use std::collections::BTreeMap;
-use std::fmt;
 
 read_objects! {
     /// An optimal control problem.
@@ -176,36 +175,12 @@ pub enum IntervalsWord {
 
 impl<'de> Deserialize<'de> for IntervalsSpec {
     fn deserialize<D: Deserializer<'de>>(deserializer: D) -> Result<Self, D::Error> {
-        deserializer.deserialize_any(IntervalsVisitor)
-    }
-}
-
-struct IntervalsVisitor;
-
-impl Visitor<'_> for IntervalsVisitor {
-    type Value = IntervalsSpec;
-
-    fn expecting(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        f.write_str("a whole number of intervals, or \"auto\"")
-    }
-
-    fn visit_str<E: Error>(self, text: &str) -> Result<IntervalsSpec, E> {
-        match text {
-            "auto" => Ok(IntervalsSpec::Word(IntervalsWord::Auto)),
-            _ => Err(E::invalid_value(Unexpected::Str(text), &self)),
-        }
-    }
-
-    fn visit_u64<E: Error>(self, number: u64) -> Result<IntervalsSpec, E> {
-        usize::deserialize(number.into_deserializer()).map(IntervalsSpec::Given)
-    }
-
-    fn visit_i64<E: Error>(self, number: i64) -> Result<IntervalsSpec, E> {
-        usize::deserialize(number.into_deserializer()).map(IntervalsSpec::Given)
-    }
-
-    fn visit_f64<E: Error>(self, number: f64) -> Result<IntervalsSpec, E> {
-        Err(E::invalid_type(Unexpected::Float(number), &self))
+        deserializer.deserialize_any(AutoOr {
+            expected: "a whole number of intervals, or \"auto\"",
+            auto: Self::Word(IntervalsWord::Auto),
+            value: Self::Given,
+            is_whole: true,
+        })
     }
 }
 
@@ -348,9 +323,41 @@ pub enum GuessSpec {
     Object(GuessObjectSpec),
 }
 
+read_objects! {
+    /// The weight of an energy of some sources.
+    pub struct SourceEnergySpec {
+        /// Weight per J.
+        pub weight: f64,
+        /// Names of lumped muscles.
+        pub sources: Vec<String>,
+    }
+}
+
+/// The weight of an energy of all sources, or of those that are named.
+#[derive(Clone, Debug, JsonSchema)]
+#[serde(untagged)]
+pub enum EnergySpec {
+    /// Of all sources, per J.
+    All(f64),
+    /// Of those that are named.
+    Named(SourceEnergySpec),
+}
+
+impl Default for EnergySpec {
+    fn default() -> Self {
+        Self::All(0.0)
+    }
+}
+
 scalar_or_object! {
+    EnergySpec: f64 = Self::All, SourceEnergySpec = Self::Named,
+        "a weight, or an object with \"weight\" and \"sources\"";
     DurationSpec: Quantity<Time> = Self::Given, FreeDurationSpec = Self::Free,
         "a time, such as \"0.6 s\", or an object with \"min\", \"max\" and \"guess\"";
     GuessSpec: GuessWord = Self::Word, GuessObjectSpec = Self::Object,
         "\"interpolate\" or an object with \"simulate\", \"solution\" or \"random\"";
+}
+
+meanings! {
+    ControlSolverSpec: LinearSolver { Auto => Auto, Stages => Stages, Mumps => Mumps, }
 }

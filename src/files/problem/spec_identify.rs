@@ -1,7 +1,8 @@
 //! An identification as it is written: free parameters, recordings, and candidates for the next experiment.
 
-use crate::files::json::objects::read_objects;
-use crate::files::problem::coordinates::CoordinatesSpec;
+use crate::control::problem::SoughtStart;
+use crate::files::json::objects::{meanings, read_objects};
+use crate::files::problem::at::CoordinatesSpec;
 use crate::files::problem::free::FreeMap;
 use crate::files::problem::loads::LoadMap;
 use crate::files::problem::quantities::keys::MeasuredSpec;
@@ -166,4 +167,12 @@ pub enum SoughtStartSpec {
 /// The usual header of times.
 fn time() -> String {
     "time".to_owned()
+}
+
+meanings! {
+    SoughtStartSpec: SoughtStart {
+        Nothing => Nothing,
+        Coordinates => Coordinates,
+        State => State,
+    }
 }

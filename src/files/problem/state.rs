@@ -3,7 +3,7 @@
 use crate::control::problem::{BoundaryState, Hold, Rest, SoughtHold};
 use crate::files::json::either::{Either, scalar_or_object};
 use crate::files::json::error::Result;
-use crate::files::json::objects::read_objects;
+use crate::files::json::objects::{meanings, read_objects};
 use crate::files::problem::at::At;
 use crate::files::problem::end_of::end_of;
 use crate::files::problem::spec_voltages::VoltageMap;
@@ -235,20 +235,7 @@ pub enum HoldSpec {
     Required,
 }
 
-impl From<HoldSpec> for Hold {
-    fn from(spec: HoldSpec) -> Self {
-        match spec {
-            HoldSpec::Reported => Self::Reported,
-            HoldSpec::Required => Self::Required,
-        }
-    }
-}
-
-impl From<RestSpec> for Rest {
-    fn from(spec: RestSpec) -> Self {
-        match spec {
-            RestSpec::Everything => Self::Everything,
-            RestSpec::Bodies | RestSpec::Markers => Self::Bodies,
-        }
-    }
+meanings! {
+    HoldSpec: Hold { Reported => Reported, Required => Required, }
+    RestSpec: Rest { Everything => Everything, Bodies => Bodies, Markers => Bodies, }
 }

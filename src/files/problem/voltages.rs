@@ -6,8 +6,7 @@ use std::path::{Path, PathBuf};
 
 use crate::control::problem::{Afterwards, Voltages};
 use crate::files::json::document::Document;
-use crate::files::json::error::Result;
-use crate::files::json::scope::Scope;
+use crate::files::json::scope::{Result, Scope};
 use crate::files::problem::at::At;
 use crate::files::problem::spec_voltages::{TableSpec, VoltagesSpec};
 use crate::files::signal::signal;

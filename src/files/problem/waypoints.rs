@@ -1,9 +1,8 @@
 //! Waypoints as they are written, and their conversion.
 
 use crate::control::problem::{Duration, QuantityCost, Waypoint};
-use crate::files::json::error::Result;
 use crate::files::json::objects::read_objects;
-use crate::files::json::scope::Scope;
+use crate::files::json::scope::{Result, Scope};
 use crate::files::problem::at::At;
 use crate::files::problem::goal::{of_bodies, of_markers};
 use crate::files::problem::state::OrientationSpec;

@@ -2,8 +2,7 @@
 
 use nalgebra::{Matrix3, Unit, UnitQuaternion, Vector3};
 
-use crate::files::json::error::Result;
-use crate::files::json::scope::Scope;
+use crate::files::json::scope::{Result, Scope};
 use crate::files::scene::mesh::{DEFAULT_UNIT, mesh_mistake};
 use crate::files::scene::point::{unit_axis, vector};
 use crate::files::scene::spec::{BodyMeshSpec, BodySpec};
@@ -49,9 +48,9 @@ pub(crate) fn body(spec: &BodySpec, scope: &Scope<'_>) -> Result<Body> {
 
 /// Checks that there is one mass or density, and one shape or explicit moments or both.
 fn check_keys(spec: &BodySpec, scope: &Scope<'_>) -> Result<()> {
-    scope.exactly_one([
-        ("mass", spec.mass.as_ref().map(|_| ())),
-        ("density", spec.density.as_ref().map(|_| ())),
+    scope.one_key([
+        ("mass", spec.mass.is_some()),
+        ("density", spec.density.is_some()),
     ])?;
     let shapes = [
         ("cylinder", spec.cylinder.is_some()),
@@ -59,13 +58,13 @@ fn check_keys(spec: &BodySpec, scope: &Scope<'_>) -> Result<()> {
         ("sphere", spec.sphere.is_some()),
         ("mesh", spec.mesh.is_some()),
     ];
-    let [cylinder, cuboid, sphere, mesh] = shapes.map(|(key, there)| (key, there.then_some(())));
-    let count = shapes.iter().filter(|(_, there)| *there).count();
-    match &spec.inertia {
-        Some(_) if count > 1 => scope.exactly_one([cylinder, cuboid, sphere, mesh]),
-        Some(_) => Ok(()),
-        None => scope.exactly_one([cylinder, cuboid, sphere, mesh, ("inertia", None)]),
-    }?;
+    let [cylinder, cuboid, sphere, mesh] = shapes;
+    let is_single = shapes.iter().filter(|(_, there)| *there).count() <= 1;
+    if spec.inertia.is_none() {
+        scope.one_key([cylinder, cuboid, sphere, mesh, ("inertia", false)])?;
+    } else if !is_single {
+        scope.one_key(shapes)?;
+    }
     match (&spec.inertia, &spec.products_of_inertia) {
         (None, Some(_)) => {
             let place = scope.key("products_of_inertia");

@@ -1,8 +1,7 @@
 //! Conversion of a scene file to its system: names resolved and everything checked.
 
-use crate::files::json::error::Result;
 use crate::files::json::path::JsonPath;
-use crate::files::json::scope::Scope;
+use crate::files::json::scope::{Result, Scope, the_one};
 use crate::files::scene::body::body;
 use crate::files::scene::components::spring::ComponentSpec;
 use crate::files::scene::components::{component_lists, load};
@@ -85,22 +84,18 @@ pub(crate) fn build_scene(scene: &SceneSpec, scope: &Scope<'_>) -> Result<System
 /// Checks that names by which parts refer to each other and to files are unique.
 fn check_names(scene: &SceneSpec, lists: &Lists<'_>) -> Result<()> {
     let reserved = ["solution", "time", "voltages", "hold"];
-    let all: [(&str, Vec<String>, &[&str]); 4] = [
-        (
-            "bodies",
-            names(&scene.bodies, |body| &body.name),
-            &["ground"],
-        ),
-        ("joints", names(&scene.joints, |joint| &joint.name), &[]),
-        (
-            "muscles",
-            names(&scene.muscles, |muscle| &muscle.name),
-            &reserved,
-        ),
-        ("solids", names(&scene.solids, |solid| &solid.name), &[]),
-    ];
-    let mut all = all.iter();
-    all.try_for_each(|(list, names, reserved)| lists.unique(list, names, reserved))
+    lists.unique(
+        "bodies",
+        &names(&scene.bodies, |body| &body.name),
+        &["ground"],
+    )?;
+    lists.unique("joints", &names(&scene.joints, |joint| &joint.name), &[])?;
+    lists.unique(
+        "muscles",
+        &names(&scene.muscles, |muscle| &muscle.name),
+        &reserved,
+    )?;
+    lists.unique("solids", &names(&scene.solids, |solid| &solid.name), &[])
 }
 
 /// Elements counted while a scene is built.
@@ -264,41 +259,36 @@ pub(crate) fn marker(
     solids: &[Solid],
     scope: &Scope<'_>,
 ) -> Result<Marker> {
-    scope.exactly_one([
-        ("body", spec.body.as_ref().map(|_| ())),
-        ("solid", spec.solid.as_ref().map(|_| ())),
-    ])?;
-    let name = spec.name.clone();
     let at = vector(&spec.at);
-    let Some(solid) = &spec.solid else {
-        let body = spec.body.as_deref().unwrap_or_default();
-        let body = find_body(body, bodies, &scope.key("body"))?;
-        return Ok(Marker {
-            name,
-            point: Attachment { body, at },
-            solid: None,
-        });
-    };
-    let all = names(solids, |solid| &solid.name);
-    let solid = scope
-        .key("solid")
-        .find(solid, &all, "the name of a block")?;
-    let mesh = &solids[solid].mesh;
-    let (node, distance) = nearest(mesh, &at);
+    let (body, solid) = the_one!(scope, spec;
+        "body" body |place, name| (find_body(name, bodies, place)?, None);
+        "solid" solid |place, name| {
+            let all = names(solids, |solid| &solid.name);
+            let solid = place.find(name, &all, "the name of a block")?;
+            check_near(&solids[solid].mesh, &at, &scope.key("at"))?;
+            (None, Some(solid))
+        };
+    );
+    Ok(Marker {
+        name: spec.name.clone(),
+        point: Attachment { body, at },
+        solid,
+    })
+}
+
+/// Refuses a place that is far from all nodes.
+fn check_near(mesh: &Mesh, at: &Vector3<f64>, scope: &Scope<'_>) -> Result<()> {
+    let (node, distance) = nearest(mesh, at);
     if distance.is_nan() || distance > size_at(mesh, node) {
         let found = format!(
             "{}, which is {distance:.3} mm away from the nearest node, at {}",
-            place(&at),
+            place(at),
             place(&mesh.nodes[node])
         );
         let expected = "a place no farther from the block than the size of an element";
-        return Err(scope.key("at").wrong(found, expected));
+        return Err(scope.wrong(found, expected));
     }
-    Ok(Marker {
-        name,
-        point: Attachment { body: None, at },
-        solid: Some(solid),
-    })
+    Ok(())
 }
 
 /// The node nearest to a place, and its distance in mm.

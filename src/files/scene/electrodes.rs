@@ -2,8 +2,7 @@
 
 use std::collections::BTreeMap;
 
-use crate::files::json::error::Result;
-use crate::files::json::scope::Scope;
+use crate::files::json::scope::{Result, Scope};
 use crate::files::scene::mesh::Meshed;
 use crate::files::scene::nodes::{AXES, extent, in_plane, nodes, place, planes_near};
 use crate::files::scene::spec_solids::{CircuitSpec, PotentialSpec, SolidSpec, StackSpec};

@@ -1,7 +1,6 @@
 //! The graph of bodies and joints: its connected parts, its loops, and the number of degrees of freedom of a tree.
 
-use crate::files::json::error::Result;
-use crate::files::json::scope::Scope;
+use crate::files::json::scope::{Result, Scope};
 use crate::files::scene::spec::BodySpec;
 use crate::math::DisjointSets;
 use crate::model::system::Joint;

@@ -1,8 +1,7 @@
 //! Conversion of a joint of a scene file: its kind, axis, damper, spring, stops and prescribed motion.
 
-use crate::files::json::error::Result;
 use crate::files::json::objects::objects;
-use crate::files::json::scope::{Scope, the_one};
+use crate::files::json::scope::{Result, Scope, the_one};
 use crate::files::scene::names::find_body;
 use crate::files::scene::point::{Point, unit_axis, vector};
 use crate::files::signal::signal;

@@ -3,7 +3,7 @@
 use nalgebra::Vector3;
 
 use crate::files::json::error::{Result, SceneError};
-use crate::files::json::scope::Scope;
+use crate::files::json::scope::{Scope, the_one};
 use crate::files::scene::point::vector;
 use crate::files::scene::spec_solids::{DivisionSpec, GridSpec, LayerSpec, SolidSpec};
 use crate::mesh::error::MeshError;
@@ -22,19 +22,16 @@ pub(crate) struct Meshed {
 
 /// The mesh of a block, checked.
 pub(crate) fn meshed(spec: &SolidSpec, scope: &Scope<'_>) -> Result<Meshed> {
-    scope.exactly_one([
-        ("box", spec.cuboid.as_ref().map(|_| ())),
-        ("mesh", spec.mesh.as_ref().map(|_| ())),
-    ])?;
-    if let (Some(unit), None) = (&spec.unit, &spec.mesh) {
-        let expected = "no such key: the lengths of a box have units of their own";
-        return Err(scope.key("unit").wrong(unit.to_string(), expected));
-    }
-    let (meshed, place) = match (&spec.cuboid, &spec.mesh) {
-        (Some(cuboid), _) => (boxed(cuboid, &scope.key("box"))?, scope.key("box")),
-        (None, Some(path)) => (from_file(path, spec, scope)?, scope.key("mesh")),
-        (None, None) => return Err(scope.wrong("no mesh", "\"box\" or \"mesh\"")),
-    };
+    let (meshed, place) = the_one!(scope, spec;
+        "box" cuboid |place, cuboid| {
+            if let Some(unit) = &spec.unit {
+                let expected = "no such key: the lengths of a box have units of their own";
+                return Err(scope.key("unit").wrong(unit.to_string(), expected));
+            }
+            (boxed(cuboid, place)?, place.clone())
+        };
+        "mesh" mesh |place, path| (from_file(path, spec, scope)?, place.clone());
+    );
     let checked = meshed.mesh.check();
     checked.map_err(|error| mesh_mistake(&error, &place))?;
     Ok(meshed)

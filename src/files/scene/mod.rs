@@ -2,7 +2,6 @@
 //!
 //! - `build`: the scene; `body`, `joint`, `material`, `muscle`, `components`: its parts, each described and converted in one file.
 //! - `solid`, `mesh`, `electrodes`, `nodes`: elastic solids; `graph`: connections by joints; `names`: resolution of names.
-//! - `law`: laws of elasticity of materials.
 //! - `constants`: constants by their paths, as an optimisation may seek them.
 //! - `expand`: the shorthand of chains; `trunk`: a scene to begin with.
 
@@ -14,7 +13,6 @@ pub(crate) mod electrodes;
 pub(crate) mod expand;
 pub(crate) mod graph;
 pub mod joint;
-pub mod law;
 pub mod material;
 pub(crate) mod mesh;
 pub(crate) mod muscle;

@@ -1,7 +1,6 @@
 //! Conversion of a muscle of a scene file to its span, section and model.
 
-use crate::files::json::error::Result;
-use crate::files::json::scope::Scope;
+use crate::files::json::scope::{Result, Scope};
 use crate::files::scene::names::{find_compressible, find_material};
 use crate::files::scene::point::unit_axis;
 use crate::files::scene::spec::{MuscleModel, MuscleSpec};

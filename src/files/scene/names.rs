@@ -1,8 +1,7 @@
 //! Resolution of names in a scene: bodies, points of bodies, materials.
 
 use crate::energy::ElasticLaw;
-use crate::files::json::error::Result;
-use crate::files::json::scope::{Scope, list};
+use crate::files::json::scope::{Result, Scope, list};
 use crate::files::scene::material::named_materials;
 use crate::files::scene::point::{PointSpec, vector};
 use crate::model::system::{Attachment, Material};

@@ -2,8 +2,7 @@
 
 use nalgebra::Vector3;
 
-use crate::files::json::error::Result;
-use crate::files::json::scope::{Scope, list};
+use crate::files::json::scope::{Result, Scope, list, the_one};
 use crate::files::scene::point::{CornersSpec, vector};
 use crate::files::scene::spec_solids::PlaneSpec;
 use crate::mesh::Mesh;
@@ -52,12 +51,11 @@ fn nodes_in_plane(
     mesh: &Mesh,
     scope: &Scope<'_>,
 ) -> Result<Vec<usize>> {
-    let (axis, written) = scope.exactly_one([
-        ("x", plane.x.as_ref().map(|at| (0, at))),
-        ("y", plane.y.as_ref().map(|at| (1, at))),
-        ("z", plane.z.as_ref().map(|at| (2, at))),
-    ])?;
-    let at = written.value();
+    let (axis, at) = the_one!(scope, plane;
+        "x" x |_, at| (0, at.value());
+        "y" y |_, at| (1, at.value());
+        "z" z |_, at| (2, at.value());
+    );
     let nodes = in_plane(mesh, axis, at);
     if nodes.is_empty() {
         let found = format!(

@@ -2,9 +2,8 @@
 
 use nalgebra::Vector3;
 
-use crate::files::json::error::Result;
 use crate::files::json::objects::objects;
-use crate::files::json::scope::Scope;
+use crate::files::json::scope::{Result, Scope};
 use crate::files::units::quantity::{Length, PhysicalQuantity, Quantity};
 
 /// A point or a vector of lengths.

@@ -1,7 +1,6 @@
 //! Conversion of an elastic block of a scene file to nodes, materials, electrodes, supports, velocities and prestretch.
 
-use crate::files::json::error::Result;
-use crate::files::json::scope::{Scope, list};
+use crate::files::json::scope::{Result, Scope, list, the_one};
 use crate::files::problem::at::ELECTRIC_KEYS;
 use crate::files::scene::electrodes::electrodes;
 use crate::files::scene::mesh::{Meshed, meshed};
@@ -75,15 +74,19 @@ fn by_region<'s, 'a>(
     mesh: &Mesh,
     scope: &Scope<'a>,
 ) -> Result<Vec<(&'s String, Scope<'a>)>> {
-    scope.exactly_one([
-        ("material", spec.material.as_ref().map(|_| ())),
-        ("materials", spec.materials.as_ref().map(|_| ())),
-    ])?;
-    if let Some(name) = &spec.material {
-        return Ok(vec![(name, scope.key("material")); mesh.region_names.len()]);
-    }
-    let scope = scope.key("materials");
-    let named: &BTreeMap<String, String> = spec.materials.as_ref().expect("one of the two");
+    let whole = |scope: &Scope<'a>, name| vec![(name, scope.clone()); mesh.region_names.len()];
+    the_one!(scope, spec;
+        "material" material |scope, name| Ok(whole(scope, name));
+        "materials" materials |scope, named| of_regions(named, mesh, scope);
+    )
+}
+
+/// The same where each region has a material of its own.
+fn of_regions<'s, 'a>(
+    named: &'s BTreeMap<String, String>,
+    mesh: &Mesh,
+    scope: &Scope<'a>,
+) -> Result<Vec<(&'s String, Scope<'a>)>> {
     let expected = format!(
         "the name of a region: one of {}",
         list(mesh.region_names.iter())

@@ -3,8 +3,7 @@
 pub(crate) mod spec;
 
 use crate::files::columns::Columns;
-use crate::files::json::error::Result;
-use crate::files::json::scope::{Scope, the_one};
+use crate::files::json::scope::{Result, Scope, the_one};
 use crate::files::signal::spec::{
     FollowedInTime, RampSpec, SignalCsvSpec, SignalSpec, SignalTableSpec, SineSpec,
 };

@@ -152,9 +152,9 @@ measures! {
     Resistance: si::electrical_resistance::Dimension, [0], "a resistance", "\"10 MOhm\"";
 }
 
-/// Declares measures of joints: an angular and a linear kind.
-macro_rules! joint_measures {
-    ($($(#[$doc:meta])* $measure:ident: $angular:ident | $linear:ident;)*) => {
+/// Declares measures of several kinds; of joints an angular and a linear one.
+macro_rules! either_measures {
+    ($($(#[$doc:meta])* $measure:ident: $($kind:ident)|+;)*) => {
         $(
             $(#[$doc])*
             #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -164,14 +164,14 @@ macro_rules! joint_measures {
                 const NAME: &'static str = stringify!($measure);
 
                 fn kinds() -> Vec<Kind> {
-                    vec![$angular::kind(), $linear::kind()]
+                    vec![$($kind::kind()),+]
                 }
             }
         )*
     };
 }
 
-joint_measures! {
+either_measures! {
     /// Joint coordinate: an angle, or a length of a prismatic joint.
     JointCoordinate: Angle | Length;
     /// Rate of a joint coordinate: an angular velocity, or a velocity of a prismatic joint.
@@ -180,25 +180,10 @@ joint_measures! {
     JointDamping: RotationalDamping | Damping;
     /// Stiffness of a joint coordinate: rotational, or linear of a prismatic joint.
     JointStiffness: RotationalStiffness | Stiffness;
-}
-
-/// Size of a load, whose kind the scene says.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub struct LoadSize;
-
-impl PhysicalQuantity for LoadSize {
-    const NAME: &'static str = "LoadSize";
-
-    fn kinds() -> Vec<Kind> {
-        vec![
-            Torque::kind(),
-            Force::kind(),
-            Stress::kind(),
-            ForceDensity::kind(),
-            ChargeDensity::kind(),
-            Charge::kind(),
-        ]
-    }
+    /// Size of a load, whose kind the scene says.
+    LoadSize: Torque | Force | Stress | ForceDensity | ChargeDensity | Charge;
+    /// Size of a measured quantity, whose kind the quantity says.
+    MeasuredSize: Length | Angle | Velocity | AngularVelocity | Force | Torque | Charge | Current | Power | Voltage;
 }
 
 /// A constant that an optimisation seeks, of the kind of its place in the scene.

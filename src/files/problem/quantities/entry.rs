@@ -67,7 +67,7 @@ impl Named<'_> {
     }
 }
 
-/// A recorded quantity: what it is of, what it is called, its parts, and its unit.
+/// A recorded quantity: what it is of, or its column where one is written; what it is called, its parts, and its unit.
 pub(in crate::files::problem) struct Recorded {
     pub(in crate::files::problem) of: String,
     pub(in crate::files::problem) name: String,

@@ -1,9 +1,8 @@
 //! Coordinates, rates, forces and torques of joints in limits, costs and recordings.
 
 use crate::control::problem::Limit;
-use crate::files::json::error::Result;
 use crate::files::json::objects::read_objects;
-use crate::files::json::scope::Scope;
+use crate::files::json::scope::{Result, Scope};
 use crate::files::problem::at::{At, SiUnit};
 use crate::files::problem::quantities::entry::{
     Cost, CostEntry, LimitEntry, Named, Recorded, bounds, bounds_by, limits_of, square,

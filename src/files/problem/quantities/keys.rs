@@ -20,10 +20,7 @@ use crate::files::problem::quantities::muscle::{
 use crate::files::problem::quantities::source::{
     self, CurrentCostSpec, CurrentLimitSpec, PowerCostSpec, PowerLimitSpec, VoltageRateLimitSpec,
 };
-use crate::files::units::quantity::{
-    Angle, AngularVelocity, Charge, Current, Force, Kind, Length, PhysicalQuantity, Power,
-    Quantity as Written, Torque, Velocity, Voltage,
-};
+use crate::files::units::quantity::{MeasuredSize, Quantity as Written};
 
 /// Declares an entry that has exactly one of some keys, beside others, and what is seen of the one that is written.
 macro_rules! one_of {
@@ -245,13 +242,21 @@ impl MeasuredSpec {
                 return Err(at.key(other).wrong(found, expected));
             }
         }
-        make(&Named {
+        let recorded = make(&Named {
             name,
             along: self.along,
             about: self.about,
             from: self.from.as_ref(),
             place: &at.key(key),
             at,
+        })?;
+        Ok(match &self.column {
+            None => recorded,
+            Some(column) => Recorded {
+                of: column.clone(),
+                name: column.clone(),
+                ..recorded
+            },
         })
     }
 }
@@ -306,27 +311,4 @@ fn costs(written: (Weighted<'_>, At<'_>), during: During) -> Result<Vec<Quantity
         during,
     };
     Ok(entry.costs(&at)?.into_iter().map(cost).collect())
-}
-
-/// Size of a measured quantity, whose kind the quantity says.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub struct MeasuredSize;
-
-impl PhysicalQuantity for MeasuredSize {
-    const NAME: &'static str = "MeasuredSize";
-
-    fn kinds() -> Vec<Kind> {
-        vec![
-            Length::kind(),
-            Angle::kind(),
-            Velocity::kind(),
-            AngularVelocity::kind(),
-            Force::kind(),
-            Torque::kind(),
-            Charge::kind(),
-            Current::kind(),
-            Power::kind(),
-            Voltage::kind(),
-        ]
-    }
 }

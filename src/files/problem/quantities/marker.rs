@@ -1,9 +1,8 @@
 //! Places, speeds, regions and clearances of markers in limits, costs and recordings.
 
 use crate::control::problem::{CostFunction, Limit};
-use crate::files::json::error::Result;
 use crate::files::json::objects::read_objects;
-use crate::files::json::scope::the_one;
+use crate::files::json::scope::{Result, the_one};
 use crate::files::problem::at::At;
 use crate::files::problem::quantities::entry::{
     Cost, CostEntry, LimitEntry, Named, PlaneSpec, Recorded, bounds, bounds_by, limits_of, square,

@@ -1,9 +1,8 @@
 //! Stretches, tensions, fields and amounts of muscles in limits, costs and recordings.
 
 use crate::control::problem::{CostFunction, During, Limit, QuantityCost};
-use crate::files::json::error::Result;
 use crate::files::json::objects::read_objects;
-use crate::files::json::scope::Scope;
+use crate::files::json::scope::{Result, Scope};
 use crate::files::problem::at::{At, ELECTRIC_KEYS};
 use crate::files::problem::quantities::entry::{
     All, Cost, CostEntry, LimitEntry, Named, Recorded, bounds, bounds_by, limits_of, squares,

@@ -1,8 +1,7 @@
 //! Loads.
 
-use crate::files::json::error::Result;
 use crate::files::json::objects::objects;
-use crate::files::json::scope::{Scope, the_one};
+use crate::files::json::scope::{Result, Scope, the_one};
 use crate::files::scene::names::names;
 use crate::files::scene::nodes::nodes;
 use crate::files::scene::point::{CornersSpec, PointSpec, unit_axis};

@@ -1,8 +1,7 @@
 //! Springs and dampers.
 
-use crate::files::json::error::Result;
 use crate::files::json::objects::objects;
-use crate::files::json::scope::Scope;
+use crate::files::json::scope::{Result, Scope};
 use crate::files::scene::point::PointSpec;
 use crate::files::units::quantity::{Damping, Length, Quantity, Stiffness};
 use crate::model::components::Spring;

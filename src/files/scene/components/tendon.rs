@@ -1,8 +1,7 @@
 //! Tendons.
 
-use crate::files::json::error::Result;
 use crate::files::json::objects::objects;
-use crate::files::json::scope::Scope;
+use crate::files::json::scope::{Result, Scope};
 use crate::files::scene::components::spring::ComponentSpec;
 use crate::files::scene::point::PointSpec;
 use crate::files::units::quantity::{Length, Quantity, Stiffness};
