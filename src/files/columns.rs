@@ -1,6 +1,6 @@
 //! Columns of a CSV file or of a problem, with the units of their headers: `x [mm]`, `x (mm)`, `x / mm`, `x, mm`, `x in mm` or `x_mm`.
 
-use crate::files::json::scope::{Result, Scope};
+use crate::files::json::scope::{Result, Scope, refuse};
 use crate::files::units::quantity::{Kind, PhysicalQuantity, Quantity, describe};
 use crate::files::units::unit::Unit;
 use csv::{ReaderBuilder, StringRecord, Trim};
@@ -40,10 +40,9 @@ impl Columns {
             .trim(Trim::All)
             .from_reader(file);
         let headers = reader.headers().map_err(|cause| mistake(&cause))?;
-        if headers.is_empty() {
-            let expected = "a CSV file: a line of headers, then lines of numbers";
-            return Err(scope.wrong(format!("{}, which is empty", path.display()), expected));
-        }
+        refuse!(if headers.is_empty(), scope;
+            found format!("{}, which is empty", path.display()),
+            expected "a CSV file: a line of headers, then lines of numbers");
         let headers: StringRecord = headers.iter().map(plain).collect();
         if headers.len() == 1 && headers[0].contains(';') {
             let found = format!("{}, with semicolons between columns", path.display());
@@ -64,11 +63,9 @@ impl Columns {
     ) -> Result<Self> {
         let count = columns.values().next().map_or(0, Vec::len);
         for (header, values) in columns {
-            if values.len() != count {
-                let found = format!("{} values beside {count}", values.len());
-                let expected = "columns that are as long as each other";
-                return Err(scope.key(header).wrong(found, expected));
-            }
+            refuse!(if values.len() != count, scope.key(header);
+                found format!("{} values beside {count}", values.len()),
+                expected "columns that are as long as each other");
         }
         let cell = |value: Option<f64>| value.map_or_else(String::new, |v| v.to_string());
         let row = |k: usize| columns.values().map(|values| cell(values[k])).collect();
@@ -130,10 +127,9 @@ impl Columns {
         if columns.is_empty() {
             columns = at(&|header| header.name == name);
         }
-        if columns.len() > 1 {
-            let found = format!("{} columns {name:?} in {}", columns.len(), self.place);
-            return Err(scope.wrong(found, "one column of this name"));
-        }
+        refuse!(if columns.len() > 1, scope;
+            found format!("{} columns {name:?} in {}", columns.len(), self.place),
+            expected "one column of this name");
         let Some(&at) = columns.first() else {
             let file = &self.place;
             let candidates = headers.iter().map(|header| header.name);

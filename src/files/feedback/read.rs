@@ -9,7 +9,7 @@ use crate::files::feedback::record::{
 };
 use crate::files::json::document::Document;
 use crate::files::json::error::{Result, SceneError};
-use crate::files::json::scope::Scope;
+use crate::files::json::scope::{Scope, refuse};
 use crate::files::problem::at::At;
 use crate::files::scene::names::names;
 use crate::model::system::System;
@@ -27,10 +27,8 @@ pub(crate) fn read_law(path: &Path, system: &System) -> Result<Law> {
     let document = Document::read(path)?;
     let record: LawRecord = document.parse()?;
     let scope = Scope::of(&document);
-    if !(record.interval > 0.0 && record.interval.is_finite()) {
-        let found = record.interval.to_string();
-        return Err(scope.key("interval").wrong(found, "a positive time in s"));
-    }
+    refuse!(if !(record.interval > 0.0 && record.interval.is_finite()), scope.key("interval");
+        found record.interval, expected "a positive time in s");
     let measured: Vec<Measured> = scope.key("measured").each(&record.measured, of_measured)?;
     let inputs = At::new(&scope, system).key("inputs");
     let inputs: Vec<(LawInput, f64)> = inputs.each(&record.inputs, of_input)?;
@@ -49,9 +47,7 @@ pub(crate) fn read_law(path: &Path, system: &System) -> Result<Law> {
         })
     };
     let place = scope.key("intervals");
-    if record.intervals.is_empty() {
-        return Err(place.wrong("none", "one interval or more"));
-    }
+    refuse!(if record.intervals.is_empty(), place; found "none", expected "one interval or more");
     let points: Vec<Point> = place.each(&record.intervals, point)?;
     let held = record.held.as_ref();
     let held = held.map(|one| point(one, &scope.key("held"))).transpose()?;
@@ -93,10 +89,8 @@ fn factors(
 ) -> Result<(Vec<f64>, Vec<f64>)> {
     let place = scope.key("integrals");
     for (i, &of) in record.integrals.iter().enumerate() {
-        if of >= measured.len() {
-            let expected = format!("a place below {}", measured.len());
-            return Err(place.index(i).wrong(of.to_string(), expected));
-        }
+        refuse!(if of >= measured.len(), place.index(i);
+            found of, expected format!("a place below {}", measured.len()));
     }
     let mut read: Vec<f64> = measured.iter().map(|one| unit_of(one).1).collect();
     let acting = inputs.iter().zip(of_inputs);
@@ -108,9 +102,7 @@ fn factors(
     let lasting = record.observer.as_ref();
     if let Some(lasting) = lasting.and_then(|one| one.lasting.as_ref()) {
         let place = scope.key("observer").key("lasting").key("forces");
-        if lasting.forces.is_empty() {
-            return Err(place.wrong("none", "one force or more"));
-        }
+        refuse!(if lasting.forces.is_empty(), place; found "none", expected "one force or more");
         for (i, force) in lasting.forces.iter().enumerate() {
             let mut kinds = [false, true].map(unit_of_force).into_iter();
             let own = kinds.find(|(unit, _)| *unit == force.unit);
@@ -129,11 +121,8 @@ fn factors(
             .map(|&of| integrated(read[of]))
             .collect::<Vec<_>>(),
     );
-    if record.delay_intervals > MOST_DELAYED {
-        let found = record.delay_intervals.to_string();
-        let expected = format!("no more than {MOST_DELAYED}");
-        return Err(scope.key("delay_intervals").wrong(found, expected));
-    }
+    refuse!(if record.delay_intervals > MOST_DELAYED, scope.key("delay_intervals");
+        found record.delay_intervals, expected format!("no more than {MOST_DELAYED}"));
     (0..record.delay_intervals).for_each(|_| read.extend(&acting));
     Ok((read, acting))
 }
@@ -183,19 +172,14 @@ fn of_input(record: &InputRecord, place: &At<'_>) -> Result<(LawInput, f64)> {
         None => &place.sources[place.key("name").driven(&record.name)?],
     };
     let (unit, factor) = unit_of_input(source);
-    if unit != record.unit {
-        let expected = format!("{unit:?}, the unit of {}", source.name);
-        return Err(place
-            .key("unit")
-            .wrong(format!("{:?}", record.unit), expected));
-    }
+    refuse!(if unit != record.unit, place.key("unit");
+        found format!("{:?}", record.unit),
+        expected format!("{unit:?}, the unit of {}", source.name));
     let [low, high] = record.bounds;
     let is_root = !record.is_squared || low >= 0.0;
-    if !(low <= high && is_root) {
-        let found = format!("[{low}, {high}]");
-        let expected = "a lower and an upper bound, of a squared voltage none below zero";
-        return Err(place.key("bounds").wrong(found, expected));
-    }
+    refuse!(if !(low <= high && is_root), place.key("bounds");
+        found format!("[{low}, {high}]"),
+        expected "a lower and an upper bound, of a squared voltage none below zero");
     let input = LawInput {
         name: record.name.clone(),
         is_squared: record.is_squared,
@@ -206,10 +190,8 @@ fn of_input(record: &InputRecord, place: &At<'_>) -> Result<(LawInput, f64)> {
 
 /// Finite numbers, as many as there are factors, in the units inside.
 fn list(values: &[f64], factors: &[f64], place: &Scope<'_>) -> Result<Vec<f64>> {
-    if values.len() != factors.len() {
-        let found = format!("{} numbers", values.len());
-        return Err(place.wrong(found, factors.len().to_string()));
-    }
+    refuse!(if values.len() != factors.len(), place;
+        found format!("{} numbers", values.len()), expected factors.len().to_string());
     if let Some(i) = values.iter().position(|value| !value.is_finite()) {
         return Err(place
             .index(i)
@@ -228,10 +210,8 @@ fn matrix(
     [of_rows, columns]: [&[f64]; 2],
     place: &Scope<'_>,
 ) -> Result<DMatrix<f64>> {
-    if rows.len() != of_rows.len() {
-        let found = format!("{} rows", rows.len());
-        return Err(place.wrong(found, of_rows.len().to_string()));
-    }
+    refuse!(if rows.len() != of_rows.len(), place;
+        found format!("{} rows", rows.len()), expected of_rows.len().to_string());
     let mut out = DMatrix::zeros(of_rows.len(), columns.len());
     for (i, (row, of)) in rows.iter().zip(of_rows).enumerate() {
         let factors: Vec<f64> = columns.iter().map(|column| of / column).collect();
@@ -259,9 +239,8 @@ fn observer(
         ReadingRecord::Marker(_, axis) => Err(place.wrong(axis.to_string(), "0, 1 or 2")),
     };
     let readings: Vec<Reading> = place.key("readings").each(&record.readings, reading)?;
-    if readings.is_empty() {
-        return Err(place.key("readings").wrong("none", "one reading or more"));
-    }
+    refuse!(if readings.is_empty(), place.key("readings");
+        found "none", expected "one reading or more");
     let outputs = readings.iter().map(|one| factor_of(one, measured));
     let outputs: Vec<f64> = outputs.collect();
     let filter = |one: &FilterRecord, place: &Scope<'_>| {
@@ -274,10 +253,8 @@ fn observer(
         })
     };
     let of_intervals = place.key("intervals");
-    if record.intervals.len() != intervals {
-        let found = record.intervals.len().to_string();
-        return Err(of_intervals.wrong(found, format!("{intervals}, one for each interval")));
-    }
+    refuse!(if record.intervals.len() != intervals, of_intervals;
+        found record.intervals.len(), expected format!("{intervals}, one for each interval"));
     let held = record.held.as_ref();
     let lasting = record.lasting.as_ref().map(|one: &LastingRecord| {
         let on = one.forces.iter().map(|force| Forced {

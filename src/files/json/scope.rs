@@ -171,10 +171,8 @@ impl<'a> Scope<'a> {
 
     /// A weight that is zero or more; zero leaves no trace.
     pub(crate) fn weight(&self, weight: f64) -> Result<f64> {
-        match weight < 0.0 {
-            true => Err(self.wrong(weight.to_string(), "a weight that is not negative")),
-            false => Ok(weight),
-        }
+        refuse!(if weight < 0.0, self; found weight, expected "a weight that is not negative");
+        Ok(weight)
     }
 
     /// A quantity that is zero or more; zero leaves no trace.
@@ -238,6 +236,16 @@ impl<'a> Scope<'a> {
             .map_err(|(index, fault)| place(index).wrong(fault.found, fault.expected))
     }
 }
+
+/// Refuses what is found at a place if something holds.
+macro_rules! refuse {
+    (if $holds:expr, $at:expr; found $found:expr, expected $expected:expr) => {
+        if $holds {
+            return Err($at.wrong($found.to_string(), $expected));
+        }
+    };
+}
+pub(crate) use refuse;
 
 /// What is made of the one of some entries of an object that is there, at its place.
 macro_rules! the_one {

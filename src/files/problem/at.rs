@@ -1,6 +1,6 @@
 //! A place in a problem, and the parts of the system whose names stand there.
 
-use crate::files::json::scope::{Result, Scope};
+use crate::files::json::scope::{Result, Scope, refuse};
 use crate::files::problem::spec_voltages::VoltageMap;
 use crate::files::scene::graph::tree_freedoms;
 use crate::files::scene::names::names;
@@ -139,10 +139,9 @@ impl<'a> At<'a> {
     pub(crate) fn moving_marker(&self, name: &str) -> Result<usize> {
         let index = self.marker(name)?;
         let marker = &self.system.markers[index];
-        if marker.point.body.is_none() && marker.solid.is_none() {
-            let found = format!("{name:?}, which is fixed to the ground");
-            return Err(self.wrong(found, "a marker on a body or a block"));
-        }
+        refuse!(if marker.point.body.is_none() && marker.solid.is_none(), self;
+            found format!("{name:?}, which is fixed to the ground"),
+            expected "a marker on a body or a block");
         Ok(index)
     }
 
@@ -171,13 +170,10 @@ impl<'a> At<'a> {
     /// A joint that has one coordinate.
     pub(crate) fn coordinate(&self, name: &str) -> Result<usize> {
         let index = self.joint(name)?;
-        match self.system.joints[index].has_coordinate() {
-            true => Ok(index),
-            false => {
-                let found = format!("{name:?}, which is neither revolute nor prismatic, or locked");
-                Err(self.wrong(found, "a joint with one coordinate"))
-            }
-        }
+        refuse!(if !self.system.joints[index].has_coordinate(), self;
+            found format!("{name:?}, which is neither revolute nor prismatic, or locked"),
+            expected "a joint with one coordinate");
+        Ok(index)
     }
 
     fn is_prismatic(&self, joint: usize) -> bool {

@@ -1,7 +1,7 @@
 //! Conversion of a problem file to its task, with one voltage per source and indices for names.
 
 use crate::control::problem::{AtRest, Task};
-use crate::files::json::scope::{Result, the_one};
+use crate::files::json::scope::{Result, refuse, the_one};
 use crate::files::problem::at::At;
 use crate::files::problem::control::control;
 use crate::files::problem::free::check_solution;
@@ -53,10 +53,8 @@ fn equilibrium(spec: &EquilibriumSpec, at: &At<'_>) -> Result<Task> {
         at.key("path").count(points, "point", MOST_POINTS)?;
     }
     let response = Response::from(spec.response.unwrap_or_default());
-    if response == Response::Instantaneous && !at.system.has_branches() {
-        let place = at.key("response");
-        return Err(place.wrong("\"instantaneous\"", NO_BRANCHES));
-    }
+    refuse!(if response == Response::Instantaneous && !at.system.has_branches(), at.key("response");
+        found "\"instantaneous\"", expected NO_BRANCHES);
     Ok(Task::Equilibrium(AtRest {
         voltages,
         coordinates,

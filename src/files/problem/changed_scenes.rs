@@ -3,7 +3,7 @@
 use crate::control::problem::{ChangedScene, Identification, Recording, Task};
 use crate::files::changes::Changes;
 use crate::files::json::document::Document;
-use crate::files::json::scope::{Result, Scope};
+use crate::files::json::scope::{Result, Scope, refuse};
 use crate::files::problem::spec::ProblemSpec;
 use crate::files::problem::spec_identify::IdentifySpec;
 use crate::files::study::ChangesSpec;
@@ -41,10 +41,9 @@ pub(crate) fn changed_scenes(document: &Document) -> Result<Vec<SceneChanges<'_>
         let mut changes = Changes::default();
         for (key, value) in &set {
             let place = scope.key(key);
-            if !key.starts_with("scene.") {
-                let expected = "a place in the scene, such as scene.gravity";
-                return Err(place.wrong(format!("the key {key:?}"), expected));
-            }
+            refuse!(if !key.starts_with("scene."), place;
+                found format!("the key {key:?}"),
+                expected "a place in the scene, such as scene.gravity");
             changes.push(key, value, place)?;
         }
         out.push(SceneChanges {

@@ -2,7 +2,7 @@
 
 use crate::control::problem::{Channel, Reading};
 use crate::files::columns::Columns;
-use crate::files::json::scope::{Result, Scope};
+use crate::files::json::scope::{Result, Scope, refuse};
 use crate::files::problem::quantities::entry::Recorded;
 use crate::files::problem::quantities::keys::MeasuredSpec;
 use crate::files::units::quantity::{MeasuredSize, Quantity as Written, Ratio};
@@ -81,10 +81,8 @@ impl Recorded {
                 deviation,
             });
         }
-        if readings.is_empty() {
-            let found = format!("{:?}, a column of gaps alone", self.of);
-            return Err(at.key("column").wrong(found, "one reading or more"));
-        }
+        refuse!(if readings.is_empty(), at.key("column");
+            found format!("{:?}, a column of gaps alone", self.of), expected "one reading or more");
         let is_known = of_all.is_some() || spec.deviations.is_some();
         Ok(self.with(readings, is_known))
     }

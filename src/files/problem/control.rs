@@ -5,7 +5,7 @@ use crate::control::problem::{
     BoundaryState, Control, Duration, EnergyCost, Guess, Objective, Solver, SourceEnergy, Voltages,
     absent_loads,
 };
-use crate::files::json::scope::{Result, Scope, the_one};
+use crate::files::json::scope::{Result, Scope, refuse, the_one};
 use crate::files::problem::at::{At, ELECTRIC_KEYS};
 use crate::files::problem::free::parameters;
 use crate::files::problem::goal::goal_state;
@@ -55,11 +55,9 @@ pub(crate) fn control(
         Some(IntervalsSpec::Word(IntervalsWord::Auto)) | None => None,
     };
     let takes_voltage = at.sources.iter().any(|source| source.takes_voltage);
-    if !takes_voltage && spec.load_bounds.is_empty() {
-        let found = "a scene without any muscle or electrode that takes a voltage";
-        let expected = format!("a muscle of {ELECTRIC_KEYS}, or a driven electrode");
-        return Err(at.wrong(found, expected));
-    }
+    refuse!(if !takes_voltage && spec.load_bounds.is_empty(), at;
+        found "a scene without any muscle or electrode that takes a voltage",
+        expected format!("a muscle of {ELECTRIC_KEYS}, or a driven electrode"));
     let mut start = start_state(&spec.start, &at.key("start"))?;
     let mut objective = objective(&spec.objective, &at.key("objective"))?;
     let mut goal = goal(spec, &objective, at)?;
@@ -137,10 +135,8 @@ fn goal(spec: &ControlSpec, objective: &Objective, at: &At<'_>) -> Result<Bounda
 
 /// The problem with the cost of the peak voltage, where that has a weight.
 fn with_peak(mut control: Control, weight: f64, at: &At<'_>) -> Result<Control> {
-    if weight > 0.0 && !control.minimise_peak_voltage(weight, at.system) {
-        let found = "a weight where all voltages are given";
-        return Err(at.wrong(found, "a voltage that is sought"));
-    }
+    refuse!(if weight > 0.0 && !control.minimise_peak_voltage(weight, at.system), at;
+        found "a weight where all voltages are given", expected "a voltage that is sought");
     Ok(control)
 }
 
@@ -152,14 +148,10 @@ pub(crate) fn duration(spec: &DurationSpec, at: &Scope<'_>) -> Result<Duration> 
     let min = at.key("min").positive(&free.min)?;
     let max = at.key("max").positive(&free.max)?;
     let guess = at.key("guess").positive(&free.guess)?;
-    if min > max {
-        let expected = format!("a time that is no shorter than \"min\" {}", free.min);
-        return Err(at.key("max").wrong(free.max.to_string(), expected));
-    }
-    if guess < min || guess > max {
-        let expected = format!("a time from {} to {}", free.min, free.max);
-        return Err(at.key("guess").wrong(free.guess.to_string(), expected));
-    }
+    refuse!(if min > max, at.key("max");
+        found free.max, expected format!("a time that is no shorter than \"min\" {}", free.min));
+    refuse!(if guess < min || guess > max, at.key("guess");
+        found free.guess, expected format!("a time from {} to {}", free.min, free.max));
     Ok(Duration::Free { min, max, guess })
 }
 
@@ -180,15 +172,11 @@ pub(crate) fn voltage_bounds(
     };
     let at = at.key("voltage_bounds");
     let bounds = [lower.value(), upper.value()];
-    if bounds[0] < 0.0 {
-        return Err(at
-            .index(0)
-            .wrong(lower.to_string(), "a voltage that is not negative"));
-    }
-    if bounds[0] > bounds[1] {
-        let expected = format!("an upper bound that is no less than the lower bound {lower}");
-        return Err(at.index(1).wrong(upper.to_string(), expected));
-    }
+    refuse!(if bounds[0] < 0.0, at.index(0);
+        found lower, expected "a voltage that is not negative");
+    refuse!(if bounds[0] > bounds[1], at.index(1);
+        found upper,
+        expected format!("an upper bound that is no less than the lower bound {lower}"));
     Ok(bounds)
 }
 
@@ -211,11 +199,9 @@ pub(crate) fn given_voltages(
         other => course = Some(over_time(other, at)?),
     }
     let jumps = matches!(course, Some(Voltages::Sampled { .. }));
-    if jumps && matches!(spec.duration, DurationSpec::Free(_)) {
-        let found = "voltages that jump from interval to interval where the duration is free";
-        let expected = "functions of time by the names of sources, or a given duration";
-        return Err(at.wrong(found, expected));
-    }
+    refuse!(if jumps && matches!(spec.duration, DurationSpec::Free(_)), at;
+        found "voltages that jump from interval to interval where the duration is free",
+        expected "functions of time by the names of sources, or a given duration");
     let is_sought =
         |s: usize| at.sources[s].takes_voltage && course.is_none() && !given.contains_key(&s);
     let seeks_load = !spec.load_bounds.is_empty();
@@ -309,10 +295,9 @@ pub(crate) fn objective(spec: &ObjectiveSpec, at: &At<'_>) -> Result<Objective> 
         of_sources.extend(energies(weight, energy, &at.key(key))?);
     }
     let is_any = !quantities.is_empty() || !of_sources.is_empty();
-    if !is_any && weights.iter().all(|(_, weight)| *weight == 0.0) {
-        let expected = "a positive weight of \"effort\", \"rate\", \"duration\", \"peak_voltage\", \"muscle_volume\", \"muscle_mass\", \"electrical_energy\" or \"mechanical_work\", or something to \"track\" or a \"final\" place";
-        return Err(at.wrong("no weight", expected));
-    }
+    refuse!(if !is_any && weights.iter().all(|(_, weight)| *weight == 0.0), at;
+        found "no weight",
+        expected "a positive weight of \"effort\", \"rate\", \"duration\", \"peak_voltage\", \"muscle_volume\", \"muscle_mass\", \"electrical_energy\" or \"mechanical_work\", or something to \"track\" or a \"final\" place");
     Ok(Objective {
         effort: spec.effort,
         rate: spec.rate,
@@ -325,16 +310,11 @@ pub(crate) fn objective(spec: &ObjectiveSpec, at: &At<'_>) -> Result<Objective> 
 pub(crate) fn solver(spec: &SolverSpec, at: &Scope<'_>) -> Result<Solver> {
     let default = Solver::default();
     let tolerance = spec.tolerance.unwrap_or(default.tolerance);
-    if tolerance <= 0.0 {
-        let expected = "a positive tolerance";
-        return Err(at.key("tolerance").wrong(tolerance.to_string(), expected));
-    }
+    refuse!(if tolerance <= 0.0, at.key("tolerance");
+        found tolerance, expected "a positive tolerance");
     let max_iterations = spec.max_iterations.unwrap_or(default.max_iterations);
-    if i32::try_from(max_iterations).is_err() {
-        let expected = "a number of iterations below 2147483648";
-        let place = at.key("max_iterations");
-        return Err(place.wrong(max_iterations.to_string(), expected));
-    }
+    refuse!(if i32::try_from(max_iterations).is_err(), at.key("max_iterations");
+        found max_iterations, expected "a number of iterations below 2147483648");
     let option = |(name, value): (&String, &OptionSpec)| {
         let value = match value {
             OptionSpec::Integer(integer) => OptionValue::Integer(*integer),
@@ -388,10 +368,8 @@ pub(crate) fn energies(
             None => "drives finite elements",
         };
         let found = || format!("{:?}, which {what}", at.sources[source].name);
-        match cost.exists(at.system) {
-            true => Ok(cost),
-            false => Err(place.wrong(found(), LUMPED)),
-        }
+        refuse!(if !cost.exists(at.system), place; found found(), expected LUMPED);
+        Ok(cost)
     };
     match spec {
         EnergySpec::All(weight) => {
@@ -403,16 +381,14 @@ pub(crate) fn energies(
         EnergySpec::Named(spec) => {
             let weight = at.key("weight").weight(spec.weight)?;
             let list = at.key("sources");
-            if spec.sources.is_empty() {
-                return Err(list.wrong("no source", "one source or more"));
-            }
+            refuse!(if spec.sources.is_empty(), list;
+                found "no source", expected "one source or more");
             let mut costs: Vec<EnergyCost> = Vec::new();
             for (index, name) in spec.sources.iter().enumerate() {
                 let place = list.index(index);
                 let source = place.driven(name)?;
-                if costs.iter().any(|cost| cost.source == source) {
-                    return Err(place.wrong(format!("{name:?} again"), "each source once"));
-                }
+                refuse!(if costs.iter().any(|cost| cost.source == source), place;
+                    found format!("{name:?} again"), expected "each source once");
                 costs.push(cost(source, weight, &place)?);
             }
             costs.retain(|cost| cost.weight > 0.0);

@@ -4,7 +4,7 @@ use crate::control::problem::{Disturbed, Task};
 use crate::files::changes::{Changes, word};
 use crate::files::json::document::Document;
 use crate::files::json::path::{JsonPath, Step};
-use crate::files::json::scope::{Result, Scope};
+use crate::files::json::scope::{Result, Scope, refuse};
 use crate::files::json::set::{Override, value_at};
 use crate::files::problem::feedback::DisturbanceSpec;
 use crate::files::problem::spec::ProblemSpec;
@@ -29,9 +29,8 @@ pub(crate) fn disturbed(
     let scope = scope.key("disturbance");
     let sizes = sizes(&spec, &scope)?;
     let place = scope.key("without");
-    if spec.without.is_empty() {
-        return Err(place.wrong("nothing", "values without the disturbance, by their places"));
-    }
+    refuse!(if spec.without.is_empty(), place;
+        found "nothing", expected "values without the disturbance, by their places");
     let mut ends = Vec::new();
     for (key, without) in &spec.without {
         ends.push((key, without, with(key, texts, &place.key(key))?));
@@ -79,16 +78,13 @@ fn sizes(spec: &DisturbanceSpec, scope: &Scope<'_>) -> Result<Vec<f64>> {
     let Some(sizes) = &spec.sizes else {
         return Ok(vec![0.0, 0.25, 0.5, 1.0]);
     };
-    if !(2..=MOST).contains(&sizes.len()) {
-        let expected = format!("2 to {MOST} sizes");
-        return Err(place.wrong(sizes.len().to_string(), expected));
-    }
+    refuse!(if !(2..=MOST).contains(&sizes.len()), place;
+        found sizes.len(), expected format!("2 to {MOST} sizes"));
     for (i, size) in sizes.iter().enumerate() {
         let before = i.checked_sub(1).map_or(f64::NEG_INFINITY, |i| sizes[i]);
-        if !(size.is_finite() && *size >= 0.0 && *size > before) {
-            let expected = "sizes from 0 on, the smallest first, of which 1 is that of the problem";
-            return Err(place.index(i).wrong(size.to_string(), expected));
-        }
+        refuse!(if !(size.is_finite() && *size >= 0.0 && *size > before), place.index(i);
+            found size,
+            expected "sizes from 0 on, the smallest first, of which 1 is that of the problem");
     }
     Ok(sizes.clone())
 }

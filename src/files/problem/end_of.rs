@@ -9,7 +9,7 @@ use std::path::Path;
 use crate::control::EndState;
 use crate::dynamics::StepState;
 use crate::files::continuation;
-use crate::files::json::scope::{Result, Scope, list};
+use crate::files::json::scope::{Result, Scope, list, refuse};
 use crate::files::problem::at::At;
 use crate::files::problem::voltages::solution_document;
 use crate::kinematics::Pose;
@@ -217,9 +217,8 @@ fn method(file: &Path, z: &[f64], momentum: &[f64], at: &Scope<'_>) -> Result<St
     let read = read.map_err(|error| at.wrong(format!("{shown}: {error}"), WRITTEN))?;
     let discrete = read.discrete;
     let ends = [&discrete.z, &discrete.momenta].map(|rows| rows.last().map(Vec::as_slice));
-    if ends != [Some(z), Some(momentum)] {
-        let found = format!("{shown}, which is not of the motion in {}", file.display());
-        return Err(at.wrong(found, "files of one run"));
-    }
+    refuse!(if ends != [Some(z), Some(momentum)], at;
+        found format!("{shown}, which is not of the motion in {}", file.display()),
+        expected "files of one run");
     Ok(discrete.end.begun_anew())
 }

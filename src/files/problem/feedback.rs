@@ -4,7 +4,7 @@ use crate::control::problem::{FeedbackControl, Noise, Observation, Regulator};
 use crate::feedback::{Integral, Law};
 use crate::files::feedback::read_law;
 use crate::files::json::objects::read_objects;
-use crate::files::json::scope::{Result, Scope};
+use crate::files::json::scope::{Result, Scope, refuse};
 use crate::files::problem::at::At;
 use crate::files::units::quantity::{
     Angle, AngularVelocity, JointCoordinate, Length, PhysicalQuantity, Quantity, Time, Velocity,
@@ -36,10 +36,8 @@ pub(crate) fn regulator(spec: &FeedbackSpec, at: &At<'_>) -> Result<Regulator> {
         markers.extend((weight > 0.0).then_some((marker, weight)));
     }
     let inputs = weight("voltages", weights.voltages, usual.inputs)?;
-    if inputs == 0.0 {
-        let expected = "a positive weight: without one the voltages are not bounded";
-        return Err(place.key("voltages").wrong("0", expected));
-    }
+    refuse!(if inputs == 0.0, place.key("voltages");
+        found "0", expected "a positive weight: without one the voltages are not bounded");
     let out = Regulator {
         coordinates: weight("joints", weights.joints, usual.coordinates)?,
         rates: weight("rates", weights.rates, usual.rates)?,
@@ -65,17 +63,12 @@ pub(crate) fn regulator(spec: &FeedbackSpec, at: &At<'_>) -> Result<Regulator> {
             .transpose()?,
     };
     let lasting = out.observer.as_ref().and_then(|one| one.lasting);
-    if out.integral > 0.0 && lasting.is_some() {
-        let expected =
-            "no integrals beside constant disturbances of the observer, which do their work";
-        return Err(place
-            .key("integral")
-            .wrong(out.integral.to_string(), expected));
-    }
+    refuse!(if out.integral > 0.0 && lasting.is_some(), place.key("integral");
+        found out.integral,
+        expected "no integrals beside constant disturbances of the observer, which do their work");
     let costs = [out.coordinates, out.rates, out.integral];
-    if costs.iter().all(|cost| *cost == 0.0) && out.markers.is_empty() {
-        return Err(place.wrong("no positive weight of a deviation", "one or more"));
-    }
+    refuse!(if costs.iter().all(|cost| *cost == 0.0) && out.markers.is_empty(), place;
+        found "no positive weight of a deviation", expected "one or more");
     Ok(out)
 }
 
@@ -114,12 +107,8 @@ fn observation(spec: &ObserverSpec, at: &At<'_>) -> Result<Observation> {
             None => None,
         },
     };
-    if out.joints.is_empty() && out.markers.is_empty() {
-        return Err(at.wrong(
-            "nothing that is measured",
-            "\"joints\", \"markers\" or both",
-        ));
-    }
+    refuse!(if out.joints.is_empty() && out.markers.is_empty(), at;
+        found "nothing that is measured", expected "\"joints\", \"markers\" or both");
     Ok(out)
 }
 

@@ -4,7 +4,7 @@ use crate::control::PEAK_VOLTAGE;
 use crate::files::json::document::Document;
 use crate::files::json::objects::read_objects;
 use crate::files::json::path::JsonPath;
-use crate::files::json::scope::{Result, Scope};
+use crate::files::json::scope::{Result, Scope, refuse};
 use crate::files::scene::constants::{SceneConstant, WrittenScene};
 use crate::files::units::quantity::{Quantity, SoughtConstant};
 use crate::model::{Constant, NotSought, Parameter, check_parameters, unit_of};
@@ -36,10 +36,8 @@ fn parameter(
     at: &Scope<'_>,
 ) -> Result<Parameter> {
     let (lower, upper) = (spec.min.si(), spec.max.si());
-    if lower >= upper {
-        let expected = format!("a value larger than \"min\" {}", spec.min);
-        return Err(at.key("max").wrong(spec.max.to_string(), expected));
-    }
+    refuse!(if lower >= upper, at.key("max");
+        found spec.max, expected format!("a value larger than \"min\" {}", spec.min));
     let texts = [&spec.min, &spec.max].map(|bound| serde_json::to_value(bound).unwrap_or_default());
     let constant = scene.constant(path, [&texts[0], &texts[1]], [lower, upper]);
     let mut constant = constant.map_err(|reason| {
@@ -97,11 +95,9 @@ pub(super) fn add_others(
         let other = other.map_err(|reason| reason.at(&place))?;
         let lists = [&constant.followers, &other.followers];
         let [own, others] = lists.map(|list| unit_of(list, scene.system).symbol);
-        if own != others {
-            let found = format!("a number in {others:?}");
-            let expected = format!("one in {own:?}, as the number that it follows");
-            return Err(place.wrong(found, expected));
-        }
+        refuse!(if own != others, place;
+            found format!("a number in {others:?}"),
+            expected format!("one in {own:?}, as the number that it follows"));
         let multiple = factor * other.from_si / constant.from_si;
         let others = other.followers.into_iter();
         let others = others.map(|follower| follower.of_multiple(multiple));

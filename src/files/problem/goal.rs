@@ -3,7 +3,7 @@
 use std::collections::BTreeMap;
 
 use crate::control::problem::{BoundaryState, Orientation, Place, Rest};
-use crate::files::json::scope::{Result, Scope, the_one};
+use crate::files::json::scope::{Result, Scope, refuse, the_one};
 use crate::files::problem::at::At;
 use crate::files::problem::spec_voltages::VoltageMap;
 use crate::files::problem::state::{GoalSpec, GoalWord, HeldSpec, OrientationSpec, RestGoalSpec};
@@ -62,10 +62,8 @@ fn check_companions(spec: &RestGoalSpec, key: &str, at: &Scope<'_>) -> Result<()
         ),
         ("rest", spec.rest.is_some() && is_of_angles, beside_rest),
     ] {
-        if is_ignored {
-            let found = format!("{name:?} beside {key:?}");
-            return Err(at.key(name).wrong(found, expected));
-        }
+        refuse!(if is_ignored, at.key(name);
+            found format!("{name:?} beside {key:?}"), expected expected);
     }
     Ok(())
 }
@@ -77,10 +75,9 @@ fn reached(spec: &RestGoalSpec) -> Rest {
 
 /// A state of rest under voltages.
 fn equilibrium(map: &VoltageMap, rest: Rest, at: &At<'_>) -> Result<BoundaryState> {
-    if rest == Rest::Bodies && at.system.bodies.is_empty() {
-        let expected = "a scene with bodies; goals of elastic blocks alone are \"markers\"";
-        return Err(at.key("rest").wrong("a scene without bodies", expected));
-    }
+    refuse!(if rest == Rest::Bodies && at.system.bodies.is_empty(), at.key("rest");
+        found "a scene without bodies",
+        expected "a scene with bodies; goals of elastic blocks alone are \"markers\"");
     let row = at.key("rest_at_voltages").voltages(map)?;
     Ok(BoundaryState::RestAtVoltages(row, rest))
 }
@@ -101,9 +98,8 @@ fn positions(spec: &RestGoalSpec, at: &At<'_>) -> Result<BoundaryState> {
 /// Coordinates of joints, whose map stands here.
 fn coordinates(spec: &RestGoalSpec, at: &At<'_>) -> Result<BoundaryState> {
     let angles = at.by_joint(&spec.joint_angles)?;
-    if angles.is_empty() {
-        return Err(at.wrong("no joint", "the coordinate of a joint or more"));
-    }
+    refuse!(if angles.is_empty(), at;
+        found "no joint", expected "the coordinate of a joint or more");
     Ok(BoundaryState::JointAngles {
         angles,
         rates: BTreeMap::new(),
@@ -116,14 +112,12 @@ pub(crate) fn of_markers(
     markers: &Option<BTreeMap<String, PartialPoint>>,
     at: &At<'_>,
 ) -> Result<BTreeMap<usize, Place>> {
-    if markers.as_ref().is_some_and(BTreeMap::is_empty) {
-        return Err(at.wrong("no marker", "the position of a marker or more"));
-    }
+    refuse!(if markers.as_ref().is_some_and(BTreeMap::is_empty), at;
+        found "no marker", expected "the position of a marker or more");
     at.each_named(markers.iter().flatten(), |name, point, at| {
         let marker = at.moving_marker(name)?;
-        if point.iter().all(Option::is_none) {
-            return Err(at.wrong("no coordinate", "one that is not null, or more"));
-        }
+        refuse!(if point.iter().all(Option::is_none), at;
+            found "no coordinate", expected "one that is not null, or more");
         let value = |entry: &Option<Quantity<Length>>| entry.as_ref().map(Quantity::value);
         Ok((marker, Place(point.each_ref().map(value))))
     })
@@ -134,9 +128,8 @@ pub(crate) fn of_bodies(
     bodies: &Option<BTreeMap<String, OrientationSpec>>,
     at: &At<'_>,
 ) -> Result<BTreeMap<usize, Orientation>> {
-    if bodies.as_ref().is_some_and(BTreeMap::is_empty) {
-        return Err(at.wrong("no body", "the orientation of a body or more"));
-    }
+    refuse!(if bodies.as_ref().is_some_and(BTreeMap::is_empty), at;
+        found "no body", expected "the orientation of a body or more");
     at.each_named(bodies.iter().flatten(), |name, spec, at| {
         let body = at.body(name)?;
         let axis = unit_axis(&spec.axis, &at.key("axis"))?;

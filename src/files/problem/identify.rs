@@ -5,7 +5,7 @@ use crate::control::problem::{
 };
 use crate::files::columns::Columns;
 use crate::files::json::path::JsonPath;
-use crate::files::json::scope::{Result, Scope, the_one};
+use crate::files::json::scope::{Result, Scope, refuse, the_one};
 use crate::files::problem::at::At;
 use crate::files::problem::channels::Source;
 use crate::files::problem::free::{FreeMap, parameters};
@@ -35,9 +35,8 @@ pub(crate) fn identification(
     let place = at.key("free");
     let first = spec.free.len();
     let (of_inputs, of_their_priors) = input_constants(&spec.inputs, first, &at.key("inputs"))?;
-    if spec.free.is_empty() && of_inputs.is_empty() {
-        return Err(place.wrong("no constant", "one or more"));
-    }
+    refuse!(if spec.free.is_empty() && of_inputs.is_empty(), place;
+        found "no constant", expected "one or more");
     let mut parameters = parameters(&spec.free, scene, &place)?;
     parameters.extend(of_inputs);
     let [of_recordings, of_candidates] = ["recordings", "candidates"].map(|key| at.key(key));
@@ -78,10 +77,8 @@ pub(crate) fn identification(
 
 /// Refuses a name that stands already.
 fn unique(name: &str, names: &mut Vec<String>, at: &Scope<'_>) -> Result<()> {
-    if names.iter().any(|other| other == name) {
-        let expected = "a name that no other recording or candidate has";
-        return Err(at.key("name").wrong(format!("{name:?}"), expected));
-    }
+    refuse!(if names.iter().any(|other| other == name), at.key("name");
+        found format!("{name:?}"), expected "a name that no other recording or candidate has");
     names.push(name.to_owned());
     Ok(())
 }
@@ -116,9 +113,8 @@ fn experiment(name: &str, spec: &ExperimentSpec, at: &At<'_>) -> Result<Recordin
 /// All that is measured, with what it is called.
 fn measured(list: &[MeasuredSpec], at: &At<'_>) -> Result<Vec<Recorded>> {
     let at = at.key("measured");
-    if list.is_empty() {
-        return Err(at.wrong("nothing that is measured", "one or more quantities"));
-    }
+    refuse!(if list.is_empty(), at;
+        found "nothing that is measured", expected "one or more quantities");
     at.each(list, MeasuredSpec::recorded)
 }
 
@@ -149,21 +145,18 @@ fn recording(spec: &RecordingSpec, at: &At<'_>) -> Result<Recording> {
     for (index, (one, spec_of)) in all.iter().zip(&spec.measured).enumerate() {
         let at = at.key("measured").index(index);
         let column = &one.of;
-        if all[..index].iter().any(|other| other.of == *column) {
-            let found = format!("{column:?}, which is measured already");
-            let expected = "each column once, as twice the readings would be twice the data";
-            return Err(at.key("column").wrong(found, expected));
-        }
+        refuse!(if all[..index].iter().any(|other| other.of == *column), at.key("column");
+            found format!("{column:?}, which is measured already"),
+            expected "each column once, as twice the readings would be twice the data");
         let source = Source {
             columns: &columns,
             times: &times,
         };
         out.channels.push(one.channel(spec_of, &source, &at)?);
     }
-    if out.regime == Regime::Motion && out.duration() <= 0.0 {
-        let found = "a recording that is too short: no reading after time 0";
-        return Err(at.key(from).wrong(found, "readings at later times"));
-    }
+    refuse!(if out.regime == Regime::Motion && out.duration() <= 0.0, at.key(from);
+        found "a recording that is too short: no reading after time 0",
+        expected "readings at later times");
     Ok(out)
 }
 
@@ -184,24 +177,17 @@ fn times(
     let place = at.key("time");
     let written = columns.column::<Time>((&spec.time, &Time::kind()), &place)?;
     let times: Vec<f64> = written.iter().map(Quantity::value).collect();
-    if times.is_empty() {
-        let expected = "one line or more below the headers";
-        return Err(at.key(from).wrong("no readings", expected));
-    }
+    refuse!(if times.is_empty(), at.key(from);
+        found "no readings", expected "one line or more below the headers");
     if let Some(k) = times.windows(2).position(|pair| pair[0] >= pair[1]) {
         let found = format!("{} after {}", written[k + 1], written[k]);
         return Err(place.wrong(found, "increasing times"));
     }
     let first = &written[0];
     let offset = spec.time_offset.as_ref();
-    if offset.is_none() && !spec.experiment.at_rest && begin_late(&times) {
-        let found =
-            format!("{first} at the first reading, which leaves open when the motion begins");
-        let expected = format!(
-            "\"time_offset\": {first} beside \"time\" if the motion begins with the first reading, or \"time_offset\": 0 if it begins at time 0 of the column"
-        );
-        return Err(place.wrong(found, expected));
-    }
+    refuse!(if offset.is_none() && !spec.experiment.at_rest && begin_late(&times), place;
+        found format!("{first} at the first reading, which leaves open when the motion begins"),
+        expected format!("\"time_offset\": {first} beside \"time\" if the motion begins with the first reading, or \"time_offset\": 0 if it begins at time 0 of the column"));
     let begin = offset.map_or(0.0, Quantity::value);
     match (times[0] < begin, offset) {
         (false, _) => Ok(times.iter().map(|time| time - begin).collect()),
@@ -254,13 +240,9 @@ pub(super) fn priors(
         let size = &spec.standard_deviation;
         let written = [&spec.value, &bounds.min, &bounds.max];
         let unit = written.into_iter().find_map(|one| one.dimension());
-        if size.dimension().is_some_and(|own| unit != Some(own)) {
-            let expected = "a size in a unit of the value, or a plain number in its SI unit";
-            return Err(of_size.wrong(size.to_string(), expected));
-        }
-        if size.si() <= 0.0 {
-            return Err(of_size.wrong(size.to_string(), "a positive size"));
-        }
+        refuse!(if size.dimension().is_some_and(|own| unit != Some(own)), of_size;
+            found size, expected "a size in a unit of the value, or a plain number in its SI unit");
+        refuse!(if size.si() <= 0.0, of_size; found size, expected "a positive size");
         let factor = parameters[constant].unit(scene.system).factor;
         Ok(Prior {
             constant,
@@ -309,10 +291,7 @@ pub(super) fn input_constants(
     }
     for (name, range, sources, place) in delays {
         let least = range.min.value();
-        if least < 0.0 {
-            let found = range.min.to_string();
-            return Err(place.key("min").wrong(found, "no negative time"));
-        }
+        refuse!(if least < 0.0, place.key("min"); found range.min, expected "no negative time");
         priors.extend(prior(range, first + out.len(), &place)?);
         let constants = sources
             .into_iter()
@@ -348,10 +327,8 @@ fn parameter<M: PhysicalQuantity>(
     at: &Scope<'_>,
 ) -> Result<Parameter> {
     let [lower, upper] = [&range.min, &range.max].map(|bound| bound.value());
-    if lower >= upper {
-        let expected = format!("a value larger than \"min\" {}", range.min);
-        return Err(at.key("max").wrong(range.max.to_string(), expected));
-    }
+    refuse!(if lower >= upper, at.key("max");
+        found range.max, expected format!("a value larger than \"min\" {}", range.min));
     let guess = range.guess.as_ref().map_or(usual, |guess| guess.value());
     if !(lower..=upper).contains(&guess) {
         let (place, found) = match &range.guess {

@@ -1,7 +1,7 @@
 //! Loads of a problem: sizes over time, bounds of those that are sought, and loads at rest.
 
 use crate::control::problem::{BoundaryState, Duration, Voltages};
-use crate::files::json::error::Result;
+use crate::files::json::scope::{Result, refuse};
 use crate::files::problem::at::At;
 use crate::files::problem::spec_voltages::VoltagesSpec;
 use crate::files::problem::state::{StartSpec, start_state};
@@ -55,19 +55,13 @@ pub(crate) fn load_bounds(
 ) -> Result<BTreeMap<usize, [f64; 2]>> {
     at.each_named(map, |name, written, at| {
         let (source, kind) = find(name, at)?;
-        if given.contains_key(&source) {
-            let found = format!("{name:?}, which \"loads\" gives");
-            return Err(at.wrong(found, "a load that is sought"));
-        }
+        refuse!(if given.contains_key(&source), at;
+            found format!("{name:?}, which \"loads\" gives"), expected "a load that is sought");
         let value = |index: usize| at.index(index).value_as(&written[index], &kind);
         let bounds = [value(0)?, value(1)?];
-        if bounds[0] > bounds[1] {
-            let expected = format!(
-                "an upper bound that is no less than the lower bound {}",
-                written[0]
-            );
-            return Err(at.index(1).wrong(written[1].to_string(), expected));
-        }
+        refuse!(if bounds[0] > bounds[1], at.index(1);
+            found written[1],
+            expected format!("an upper bound that is no less than the lower bound {}", written[0]));
         Ok((source, bounds))
     })
 }

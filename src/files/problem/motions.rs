@@ -9,7 +9,7 @@ use crate::control::{Motion, Motions};
 use crate::files::changes::Changes;
 use crate::files::json::document::Document;
 use crate::files::json::path::JsonPath;
-use crate::files::json::scope::{Result, Scope};
+use crate::files::json::scope::{Result, Scope, refuse};
 use crate::files::json::tree::Json;
 use crate::files::problem::spec_control::{COMMON, ControlSpec};
 
@@ -40,22 +40,15 @@ pub(crate) fn motions(document: &Document) -> Result<Option<Vec<MotionDocument<'
         return Err(scope.wrong(found, "a problem of one motion"));
     }
     let scope = Scope::of(document).key("control").key("motions");
-    if list.first() != Some('[') {
-        return Err(scope.wrong(list.to_string(), "a list of motions"));
-    }
-    if list.parts().len() == 0 {
-        return Err(scope.wrong("no motion", "a list of one motion or more"));
-    }
+    refuse!(if list.first() != Some('['), scope; found list, expected "a list of motions");
+    refuse!(if list.parts().len() == 0, scope;
+        found "no motion", expected "a list of one motion or more");
     let mut names = BTreeSet::new();
     let each = list.parts().enumerate().map(|(number, written)| {
         let motion = one(written, number, control, &scope.index(number))?;
-        if !names.insert(motion.name.clone()) {
-            let found = format!("{:?} a second time", motion.name);
-            return Err(scope
-                .index(number)
-                .key("name")
-                .wrong(found, "another name for each motion"));
-        }
+        refuse!(if !names.insert(motion.name.clone()), scope.index(number).key("name");
+            found format!("{:?} a second time", motion.name),
+            expected "another name for each motion");
         Ok(motion)
     });
     each.collect::<Result<_, _>>().map(Some)
@@ -139,10 +132,9 @@ fn changes<'a>(written: Option<Value>, scope: &Scope<'a>) -> Result<Changes<'a>>
     };
     for (key, value) in &entries {
         let place = scope.key(key);
-        if !key.starts_with("scene.") {
-            let expected = "a place in the scene, such as scene.gravity; keys of \"control\" stand in the motion itself";
-            return Err(place.wrong(format!("the key {key:?}"), expected));
-        }
+        refuse!(if !key.starts_with("scene."), place;
+            found format!("the key {key:?}"),
+            expected "a place in the scene, such as scene.gravity; keys of \"control\" stand in the motion itself");
         changes.push(key, value, place)?;
     }
     Ok(changes)
@@ -220,13 +212,9 @@ fn check_input(list: &[Motion], name: &str, scope: &Scope<'_>) -> Result<()> {
             true => !motion.control.is_given(source),
             false => motion.control.load_bounds.contains_key(&source),
         };
-        if !is_sought {
-            let found = format!(
-                "{name:?}, which is not sought in the motion {:?}",
-                motion.name
-            );
-            return Err(scope.wrong(found, "an input that is sought in all motions"));
-        }
+        refuse!(if !is_sought, scope;
+            found format!("{name:?}, which is not sought in the motion {:?}", motion.name),
+            expected "an input that is sought in all motions");
     }
     Ok(())
 }

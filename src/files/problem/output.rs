@@ -1,7 +1,7 @@
 //! Conversion of the output entry of a problem file to the columns and instants shown.
 
-use crate::files::json::error::Result;
 use crate::files::json::objects::read_objects;
+use crate::files::json::scope::{Result, refuse};
 use crate::files::problem::at::At;
 use crate::files::scene::names::names;
 use crate::files::units::quantity::{Quantity, Time};
@@ -38,9 +38,8 @@ pub(crate) fn output(spec: &OutputSpec, at: &At<'_>) -> Result<Output> {
     let every = spec.every.as_ref();
     let every = every.map(|every| at.key("every").positive(every));
     let place = at.key("quantities");
-    if spec.quantities.as_ref().is_some_and(Vec::is_empty) {
-        return Err(place.wrong("none", "one or more names of quantities"));
-    }
+    refuse!(if spec.quantities.as_ref().is_some_and(Vec::is_empty), place;
+        found "none", expected "one or more names of quantities");
     let mut known: Vec<String> = KINDS.map(str::to_owned).to_vec();
     known.extend(names(&at.system.joints, |joint| &joint.name));
     known.extend(names(&at.system.markers, |marker| &marker.name));

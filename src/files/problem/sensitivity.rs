@@ -3,7 +3,7 @@
 use crate::control::problem::{BoundaryState, Control, Duration, Varied, VariedOf, WeightOf};
 use crate::files::json::objects::read_objects;
 use crate::files::json::path::{JsonPath, Step};
-use crate::files::json::scope::{Result, Scope};
+use crate::files::json::scope::{Result, Scope, refuse};
 use crate::files::problem::at::{A_SOURCE, At};
 use crate::files::problem::free::add_others;
 use crate::files::scene::constants::{SceneConstant, WrittenScene};
@@ -180,11 +180,9 @@ fn of_problem(
     control: &Control,
     at: &At<'_>,
 ) -> Result<Varied> {
-    if !spec.also.is_empty() {
-        let found = "other constants of a number of the problem";
-        let expected = "it beside a number of the scene only";
-        return Err(at.key("also").wrong(found, expected));
-    }
+    refuse!(if !spec.also.is_empty(), at.key("also");
+        found "other constants of a number of the problem",
+        expected "it beside a number of the scene only");
     let place = Place {
         path: place,
         control,

@@ -5,7 +5,7 @@ use crate::dynamics::{Integrator, MultigridUse, Newton, Solving};
 use crate::feedback::Law;
 use crate::files::json::either::{AutoOr, Either, scalar_or_object};
 use crate::files::json::objects::{meanings, read_objects};
-use crate::files::json::scope::{Result, Scope};
+use crate::files::json::scope::{Result, Scope, refuse};
 use crate::files::problem::at::{At, CoordinatesSpec};
 use crate::files::problem::feedback::{ControllerSpec, controller};
 use crate::files::problem::loads::{LoadMap, driven};
@@ -52,11 +52,9 @@ pub(crate) fn simulation(spec: &SimulateSpec, at: &At<'_>) -> Result<Simulation>
                 let equal = tolerance.is_none().then_some(equal);
                 let place = at.key("controller");
                 let controller = controller(written, equal, &place)?;
-                if controller.delay > duration {
-                    let found = format!("{} s", shortest(controller.delay / 1e3, 9));
-                    let expected = format!("no more than the duration {}", spec.duration);
-                    return Err(place.key("delay").wrong(found, expected));
-                }
+                refuse!(if controller.delay > duration, place.key("delay");
+                    found format!("{} s", shortest(controller.delay / 1e3, 9)),
+                    expected format!("no more than the duration {}", spec.duration));
                 refuse_given(spec, &controller.law, at)?;
                 Some(Box::new(controller))
             }
@@ -95,19 +93,12 @@ pub(crate) fn step(
     at: &Scope<'_>,
 ) -> Result<(f64, Option<f64>)> {
     let Some(StepSpec::Given(written)) = &spec.step else {
-        if method != Integrator::Midpoint {
-            let found = format!(
-                "steps of no given length with the integrator {}",
-                method.name()
-            );
-            let expected = "a step, such as \"10 ms\": only the midpoint rule chooses its steps";
-            return Err(at.wrong(found, expected));
-        }
+        refuse!(if method != Integrator::Midpoint, at;
+            found format!("steps of no given length with the integrator {}", method.name()),
+            expected "a step, such as \"10 ms\": only the midpoint rule chooses its steps");
         let tolerance = spec.tolerance.unwrap_or(Simulation::TOLERANCE);
-        if !(LEAST_TOLERANCE..1.0).contains(&tolerance) {
-            let expected = format!("a tolerance from {LEAST_TOLERANCE:.0e} to below 1");
-            return Err(at.key("tolerance").wrong(tolerance.to_string(), expected));
-        }
+        refuse!(if !(LEAST_TOLERANCE..1.0).contains(&tolerance), at.key("tolerance");
+            found tolerance, expected format!("a tolerance from {LEAST_TOLERANCE:.0e} to below 1"));
         return Ok((Simulation::FIRST * duration, Some(tolerance)));
     };
     let place = at.key("step");
@@ -117,17 +108,12 @@ pub(crate) fn step(
         let expected = "a tolerance only where the step is \"auto\" or not written";
         return Err(at.key("tolerance").wrong(found, expected));
     }
-    if step > duration {
-        let expected = format!(
-            "a step that is no longer than the duration {}",
-            spec.duration
-        );
-        return Err(place.wrong(written.to_string(), expected));
-    }
-    if duration / step > MOST_STEPS {
-        let found = format!("{written}, which makes {:.0e} steps", duration / step);
-        return Err(place.wrong(found, format!("no more than {MOST_STEPS:.0e} steps")));
-    }
+    refuse!(if step > duration, place;
+        found written,
+        expected format!("a step that is no longer than the duration {}", spec.duration));
+    refuse!(if duration / step > MOST_STEPS, place;
+        found format!("{written}, which makes {:.0e} steps", duration / step),
+        expected format!("no more than {MOST_STEPS:.0e} steps"));
     Ok((step, None))
 }
 

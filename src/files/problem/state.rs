@@ -2,8 +2,8 @@
 
 use crate::control::problem::{BoundaryState, Hold, Rest, SoughtHold};
 use crate::files::json::either::{Either, scalar_or_object};
-use crate::files::json::error::Result;
 use crate::files::json::objects::{meanings, read_objects};
+use crate::files::json::scope::{Result, refuse};
 use crate::files::problem::at::At;
 use crate::files::problem::end_of::end_of;
 use crate::files::problem::spec_voltages::VoltageMap;
@@ -78,12 +78,9 @@ fn velocities(
             };
             return Err(place.wrong(found, expected));
         }
-        if spec.linear.is_some() && !floating.contains(&body) {
-            let found = format!("a linear velocity of {name:?}, which a spherical joint holds");
-            return Err(place
-                .key("linear")
-                .wrong(found, "its angular velocity alone"));
-        }
+        refuse!(if spec.linear.is_some() && !floating.contains(&body), place.key("linear");
+            found format!("a linear velocity of {name:?}, which a spherical joint holds"),
+            expected "its angular velocity alone");
         let linear = spec.linear.as_ref().map_or_else(Vector3::zeros, vector);
         let angular = spec.angular.as_ref().map_or_else(Vector3::zeros, vector);
         velocities.insert(body, [linear, angular]);

@@ -6,7 +6,7 @@ use std::path::{Path, PathBuf};
 
 use crate::control::problem::{Afterwards, Voltages};
 use crate::files::json::document::Document;
-use crate::files::json::scope::{Result, Scope};
+use crate::files::json::scope::{Result, Scope, refuse};
 use crate::files::problem::at::At;
 use crate::files::problem::spec_voltages::{TableSpec, VoltagesSpec};
 use crate::files::signal::signal;
@@ -99,10 +99,8 @@ fn of_table(table: &TableSpec, at: &At<'_>) -> Result<Voltages> {
     let all_series = table.voltages.iter();
     let all_series = all_series.map(|(name, series)| (name, series.iter().map(Quantity::value)));
     let rows = rows(&instants, all_series, at)?;
-    if instants[0] != 0.0 {
-        let found = format!("{} s", instants[0] / 1e3);
-        return Err(at.key("time").index(0).wrong(found, "0"));
-    }
+    refuse!(if instants[0] != 0.0, at.key("time").index(0);
+        found format!("{} s", instants[0] / 1e3), expected "0");
     let hold = match &table.hold {
         Some(hold) => Some(at.key("hold").voltages(hold)?),
         None => None,
@@ -117,21 +115,17 @@ fn rows<'a>(
     at: &At<'_>,
 ) -> Result<Vec<Vec<f64>>> {
     let place = at.key("time");
-    if instants.len() < 2 {
-        let found = format!("{} instants", instants.len());
-        return Err(place.wrong(found, "2 instants or more"));
-    }
+    refuse!(if instants.len() < 2, place;
+        found format!("{} instants", instants.len()), expected "2 instants or more");
     place.increasing(instants)?;
     let intervals = instants.len() - 1;
     let mut rows = vec![vec![0.0; at.sources.len()]; intervals + 1];
     for (name, series) in all_series {
         let place = at.key("voltages").key(name);
         let source = place.driven(name)?;
-        if series.len() != intervals {
-            let found = format!("{} voltages", series.len());
-            let expected = format!("{intervals}, one per interval");
-            return Err(place.wrong(found, expected));
-        }
+        refuse!(if series.len() != intervals, place;
+            found format!("{} voltages", series.len()),
+            expected format!("{intervals}, one per interval"));
         for (row, voltage) in rows.iter_mut().zip(series) {
             row[source] = voltage;
         }

@@ -2,7 +2,7 @@
 
 use crate::control::problem::{Duration, QuantityCost, Waypoint};
 use crate::files::json::objects::read_objects;
-use crate::files::json::scope::{Result, Scope};
+use crate::files::json::scope::{Result, Scope, refuse};
 use crate::files::problem::at::At;
 use crate::files::problem::goal::{of_bodies, of_markers};
 use crate::files::problem::state::OrientationSpec;
@@ -78,13 +78,10 @@ impl WaypointSpec {
         let is_empty = waypoint.places.is_empty()
             && waypoint.orientations.is_empty()
             && waypoint.angles.is_empty();
-        match is_empty {
-            true => Err(at.wrong(
-                "a waypoint without a place",
-                "\"markers\", \"orientations\" or \"joint_angles\"",
-            )),
-            false => Ok(waypoint),
-        }
+        refuse!(if is_empty, at;
+            found "a waypoint without a place",
+            expected "\"markers\", \"orientations\" or \"joint_angles\"");
+        Ok(waypoint)
     }
 
     /// Part of the duration, and the name in messages.

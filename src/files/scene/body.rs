@@ -2,7 +2,7 @@
 
 use nalgebra::{Matrix3, Unit, UnitQuaternion, Vector3};
 
-use crate::files::json::scope::{Result, Scope};
+use crate::files::json::scope::{Result, Scope, refuse};
 use crate::files::scene::mesh::{DEFAULT_UNIT, mesh_mistake};
 use crate::files::scene::point::{unit_axis, vector};
 use crate::files::scene::spec::{BodyMeshSpec, BodySpec};
@@ -122,11 +122,9 @@ fn surface(spec: &BodyMeshSpec, scope: &Scope<'_>) -> Result<Surface> {
 
 /// The body that a surface encloses.
 fn within(surface: Surface, spec: &BodySpec, scope: &Scope<'_>) -> Result<Body> {
-    if spec.position.is_some() {
-        let found = "a position of a body whose centre of mass follows from its mesh";
-        let expected = "\"at\" of the mesh, the place of its origin";
-        return Err(scope.key("position").wrong(found, expected));
-    }
+    refuse!(if spec.position.is_some(), scope.key("position");
+        found "a position of a body whose centre of mass follows from its mesh",
+        expected "\"at\" of the mesh, the place of its origin");
     let place = scope.key("mesh").key("file");
     Body::within(surface).map_err(|error| mesh_mistake(&error, &place))
 }

@@ -1,7 +1,7 @@
 //! Conversion of a scene file to its system: names resolved and everything checked.
 
 use crate::files::json::path::JsonPath;
-use crate::files::json::scope::{Result, Scope, the_one};
+use crate::files::json::scope::{Result, Scope, refuse, the_one};
 use crate::files::scene::body::body;
 use crate::files::scene::components::spring::ComponentSpec;
 use crate::files::scene::components::{component_lists, load};
@@ -196,35 +196,27 @@ impl<'a> Lists<'a> {
 
 /// Checks the entries from which a chain is written out.
 fn check_chain(chain: &ChainSpec, scope: &Scope<'_>) -> Result<()> {
-    if !(1..=LONGEST_CHAIN).contains(&chain.segments) {
-        let expected = format!("a whole number from 1 to {LONGEST_CHAIN}");
-        return Err(scope
-            .key("segments")
-            .wrong(chain.segments.to_string(), expected));
-    }
+    refuse!(if !(1..=LONGEST_CHAIN).contains(&chain.segments), scope.key("segments");
+        found chain.segments, expected format!("a whole number from 1 to {LONGEST_CHAIN}"));
     let length = scope.key("length").positive(&chain.length)?;
     scope.key("radius").positive(&chain.radius)?;
     scope.key("mass").positive(&chain.mass)?;
     let reach = length * chain.segments as f64;
-    if !reach.is_finite() {
-        let found = chain.length.to_string();
-        return Err(scope.key("length").wrong(found, "a finite chain"));
-    }
+    refuse!(if !reach.is_finite(), scope.key("length");
+        found chain.length, expected "a finite chain");
     let axis = unit_axis(&chain.axis, &scope.key("axis"))?;
     let place = scope.key("first_joint_axis");
     let joint_axis = unit_axis(&chain.first_joint_axis, &place)?;
-    if axis.dot(&joint_axis).abs() > 1e-9 {
-        let found = format!("{:?}", chain.first_joint_axis);
-        return Err(place.wrong(found, "an axis at right angles to \"axis\""));
-    }
+    refuse!(if axis.dot(&joint_axis).abs() > 1e-9, place;
+        found format!("{:?}", chain.first_joint_axis),
+        expected "an axis at right angles to \"axis\"");
     if let Some(pair) = &chain.muscles {
         let scope = scope.key("muscles");
         let arm = scope.key("arm").positive(&pair.arm)?;
         let rest_length = scope.key("rest_length").positive(&pair.rest_length)?;
-        if !(reach + arm + rest_length).is_finite() {
-            let found = format!("an arm of {} at a length of {}", pair.arm, pair.rest_length);
-            return Err(scope.wrong(found, "muscles in finite places"));
-        }
+        refuse!(if !(reach + arm + rest_length).is_finite(), scope;
+            found format!("an arm of {} at a length of {}", pair.arm, pair.rest_length),
+            expected "muscles in finite places");
     }
     Ok(())
 }

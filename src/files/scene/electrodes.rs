@@ -2,7 +2,7 @@
 
 use std::collections::BTreeMap;
 
-use crate::files::json::scope::{Result, Scope};
+use crate::files::json::scope::{Result, Scope, refuse};
 use crate::files::scene::mesh::Meshed;
 use crate::files::scene::nodes::{AXES, extent, in_plane, nodes, place, planes_near};
 use crate::files::scene::spec_solids::{CircuitSpec, PotentialSpec, SolidSpec, StackSpec};
@@ -87,9 +87,7 @@ impl Placed<'_> {
         potential: Potential,
         scope: &Scope<'_>,
     ) -> Result<()> {
-        if name.is_empty() {
-            return Err(scope.key("name").wrong("\"\"", "a name"));
-        }
+        refuse!(if name.is_empty(), scope.key("name"); found "\"\"", expected "a name");
         let known = self.electrodes.iter().position(|other| other.name == name);
         let index = match known {
             Some(known) if potential == DRIVEN && self.electrodes[known].potential == DRIVEN => {
@@ -160,18 +158,15 @@ impl Placed<'_> {
 fn boundaries(stack: &StackSpec, meshed: &Meshed, scope: &Scope<'_>) -> Result<Vec<f64>> {
     let axis = stack.axis.index();
     let Some(planes) = &meshed.planes else {
-        if stack.layers == 0 {
-            return Err(scope.wrong("0", "1 layer or more"));
-        }
+        refuse!(if stack.layers == 0, scope; found "0", expected "1 layer or more");
         let [low, high] = extent(&meshed.mesh).map(|corner| corner[axis]);
         let place = |layer: usize| low + (high - low) * layer as f64 / stack.layers as f64;
         return Ok((0..=stack.layers).map(place).collect());
     };
     let elements = planes[axis].len() - 1;
-    if stack.layers == 0 || !elements.is_multiple_of(stack.layers) {
-        let expected = format!("a divisor of the {elements} elements along {}", AXES[axis]);
-        return Err(scope.wrong(stack.layers.to_string(), expected));
-    }
+    refuse!(if stack.layers == 0 || !elements.is_multiple_of(stack.layers), scope;
+        found stack.layers,
+        expected format!("a divisor of the {elements} elements along {}", AXES[axis]));
     let stride = elements / stack.layers;
     Ok(planes[axis].iter().step_by(stride).copied().collect())
 }

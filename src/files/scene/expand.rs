@@ -89,19 +89,13 @@ impl Link {
         BodySpec {
             name: self.segment(),
             mass: Some(chain.mass.clone()),
-            density: None,
             cylinder: Some(CylinderSpec {
                 length: chain.length.clone(),
                 radius: chain.radius.clone(),
                 axis: chain.axis,
             }),
-            cuboid: None,
-            sphere: None,
-            mesh: None,
-            inertia: None,
-            products_of_inertia: None,
             position: Some(point(&centre)),
-            free: false,
+            ..BodySpec::default()
         }
     }
 

@@ -1,6 +1,6 @@
 //! The graph of bodies and joints: its connected parts, its loops, and the number of degrees of freedom of a tree.
 
-use crate::files::json::scope::{Result, Scope};
+use crate::files::json::scope::{Result, Scope, refuse};
 use crate::files::scene::spec::BodySpec;
 use crate::math::DisjointSets;
 use crate::model::system::Joint;
@@ -15,22 +15,16 @@ pub(crate) fn check_connected<'a>(
     let ground = parts[bodies.len()];
     for (index, body) in bodies.iter().enumerate() {
         let grounded = parts[index] == ground;
-        if body.free && grounded {
-            let found = format!("{:?} free, though joints lead to the ground", body.name);
-            return Err(scope(index).wrong(found, "no \"free\" here"));
-        }
+        refuse!(if body.free && grounded, scope(index);
+            found format!("{:?} free, though joints lead to the ground", body.name),
+            expected "no \"free\" here");
         let mut part = bodies
             .iter()
             .zip(&parts)
             .filter(|(_, part)| **part == parts[index]);
-        if !grounded && !part.any(|(body, _)| body.free) {
-            let found = format!(
-                "{:?}, which no chain of joints connects to the ground",
-                body.name
-            );
-            let expected = "a joint that leads to the ground, or \"free\": true";
-            return Err(scope(index).wrong(found, expected));
-        }
+        refuse!(if !grounded && !part.any(|(body, _)| body.free), scope(index);
+            found format!("{:?}, which no chain of joints connects to the ground", body.name),
+            expected "a joint that leads to the ground, or \"free\": true");
     }
     Ok(())
 }

@@ -3,7 +3,7 @@
 use nalgebra::Vector3;
 
 use crate::files::json::error::{Result, SceneError};
-use crate::files::json::scope::{Scope, the_one};
+use crate::files::json::scope::{Scope, refuse, the_one};
 use crate::files::scene::point::vector;
 use crate::files::scene::spec_solids::{DivisionSpec, GridSpec, LayerSpec, SolidSpec};
 use crate::mesh::error::MeshError;
@@ -109,10 +109,8 @@ fn boxed(spec: &GridSpec, scope: &Scope<'_>) -> Result<Meshed> {
 /// Thickness in mm and elements of the layers along one direction.
 fn layered(layers: &[LayerSpec], scope: &Scope<'_>) -> Result<Vec<(f64, usize)>> {
     scope.each(layers, |layer, scope| {
-        if layer.elements == 0 || layer.elements > MOST_ELEMENTS {
-            let found = layer.elements.to_string();
-            return Err(scope.key("elements").wrong(found, "1 element or more"));
-        }
+        refuse!(if layer.elements == 0 || layer.elements > MOST_ELEMENTS, scope.key("elements");
+            found layer.elements, expected "1 element or more");
         let thickness = scope.key("thickness").positive(&layer.thickness)?;
         Ok((thickness, layer.elements))
     })

@@ -2,7 +2,7 @@
 
 use nalgebra::Vector3;
 
-use crate::files::json::scope::{Result, Scope, list, the_one};
+use crate::files::json::scope::{Result, Scope, list, refuse, the_one};
 use crate::files::scene::point::{CornersSpec, vector};
 use crate::files::scene::spec_solids::PlaneSpec;
 use crate::mesh::Mesh;
@@ -38,10 +38,8 @@ pub(crate) fn face<'a>(name: &str, mesh: &'a Mesh, scope: &Scope<'_>) -> Result<
     };
     let index = scope.find(name, &names, &expected)?;
     let nodes = &mesh.sets[&names[index]];
-    if nodes.is_empty() {
-        let found = format!("{name:?}, which holds no node");
-        return Err(scope.wrong(found, "a face with nodes"));
-    }
+    refuse!(if nodes.is_empty(), scope;
+        found format!("{name:?}, which holds no node"), expected "a face with nodes");
     Ok(nodes)
 }
 
@@ -57,14 +55,9 @@ fn nodes_in_plane(
         "z" z |_, at| (2, at.value());
     );
     let nodes = in_plane(mesh, axis, at);
-    if nodes.is_empty() {
-        let found = format!(
-            "{owner} in the plane {} = {at} mm, which holds no node",
-            AXES[axis]
-        );
-        let place = scope.key(AXES[axis]);
-        return Err(place.wrong(found, planes_near(mesh, axis, at)));
-    }
+    refuse!(if nodes.is_empty(), scope.key(AXES[axis]);
+        found format!("{owner} in the plane {} = {at} mm, which holds no node", AXES[axis]),
+        expected planes_near(mesh, axis, at));
     Ok(nodes)
 }
 

@@ -1,6 +1,6 @@
 //! Conversion of an elastic block of a scene file to nodes, materials, electrodes, supports, velocities and prestretch.
 
-use crate::files::json::scope::{Result, Scope, list, the_one};
+use crate::files::json::scope::{Result, Scope, list, refuse, the_one};
 use crate::files::problem::at::ELECTRIC_KEYS;
 use crate::files::scene::electrodes::electrodes;
 use crate::files::scene::mesh::{Meshed, meshed};
@@ -207,9 +207,8 @@ pub(super) fn prestretch(
     }
     let given = || written.iter().filter_map(|(_, stretch)| *stretch);
     let others = 3 - given().count();
-    if others == 3 {
-        return Err(scope.wrong("no stretch", "\"x\", \"y\" or \"z\", or several of them"));
-    }
+    refuse!(if others == 3, scope;
+        found "no stretch", expected "\"x\", \"y\" or \"z\", or several of them");
     let other = given().product::<f64>().powf(-1.0 / others.max(1) as f64);
     let stretches = written.map(|(_, stretch)| stretch.unwrap_or(other));
     Ok(Some(Matrix::from_diagonal(&stretches.into())))

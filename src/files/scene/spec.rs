@@ -62,6 +62,7 @@ component_lists!(scene);
 
 objects! {
     /// A rigid body: a mass or a density; one shape, or an explicit inertia, or both.
+    #[derive(Default)]
     pub struct BodySpec {
         /// Unique name other than `ground`.
         pub name: String,

@@ -3,7 +3,7 @@
 pub(crate) mod spec;
 
 use crate::files::columns::Columns;
-use crate::files::json::scope::{Result, Scope, the_one};
+use crate::files::json::scope::{Result, Scope, refuse, the_one};
 use crate::files::signal::spec::{
     FollowedInTime, RampSpec, SignalCsvSpec, SignalSpec, SignalTableSpec, SineSpec,
 };
@@ -110,17 +110,13 @@ fn linear<'s, M: FollowedInTime>(
     [whole_times, whole_values]: [&Scope<'s>; 2],
 ) -> Result<Signal> {
     let instants: Vec<f64> = times.iter().map(Quantity::value).collect();
-    if instants.is_empty() {
-        return Err(whole_times.wrong("no times", "one or more"));
-    }
+    refuse!(if instants.is_empty(), whole_times; found "no times", expected "one or more");
     if let Some(k) = instants.windows(2).position(|pair| pair[0] >= pair[1]) {
         return Err(time(k + 1).wrong(times[k + 1].to_string(), "increasing times"));
     }
-    if values.len() != instants.len() {
-        let found = format!("{} values", values.len());
-        let expected = format!("{}, one for each time", instants.len());
-        return Err(whole_values.wrong(found, expected));
-    }
+    refuse!(if values.len() != instants.len(), whole_values;
+        found format!("{} values", values.len()),
+        expected format!("{}, one for each time", instants.len()));
     let read = values.iter().enumerate();
     let read = read.map(|(k, written)| value(k).value_as(written, kind));
     Ok(Signal::Table {

@@ -1,8 +1,8 @@
 //! Entries of limits, costs and recorded quantities in a problem file, and conversion of their parts.
 
 use crate::control::problem::{CostFunction, Limit};
-use crate::files::json::error::Result;
 use crate::files::json::objects::read_objects;
+use crate::files::json::scope::{Result, refuse};
 use crate::files::problem::at::{At, SiUnit};
 use crate::files::scene::point::{Point, unit_axis, vector};
 use crate::files::units::quantity::{Kind, PhysicalQuantity, Quantity as Written};
@@ -104,13 +104,10 @@ pub(super) fn bounds_by<B>(
         bound("min", min, f64::NEG_INFINITY)?,
         bound("max", max, f64::INFINITY)?,
     ];
-    if min.is_none() && max.is_none() {
-        return Err(at.wrong("no bound", "\"min\", \"max\" or both"));
-    }
-    if bounds[0] > bounds[1] {
-        let found = "\"max\" below \"min\"";
-        return Err(at.key("max").wrong(found, "bounds that are not crossed"));
-    }
+    refuse!(if min.is_none() && max.is_none(), at;
+        found "no bound", expected "\"min\", \"max\" or both");
+    refuse!(if bounds[0] > bounds[1], at.key("max");
+        found "\"max\" below \"min\"", expected "bounds that are not crossed");
     Ok(bounds)
 }
 

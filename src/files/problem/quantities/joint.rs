@@ -2,7 +2,7 @@
 
 use crate::control::problem::Limit;
 use crate::files::json::objects::read_objects;
-use crate::files::json::scope::{Result, Scope};
+use crate::files::json::scope::{Result, Scope, refuse};
 use crate::files::problem::at::{At, SiUnit};
 use crate::files::problem::quantities::entry::{
     Cost, CostEntry, LimitEntry, Named, Recorded, bounds, bounds_by, limits_of, square,
@@ -159,10 +159,8 @@ impl LimitEntry for ReactionTorqueLimitSpec {
 /// A joint that transmits a force or torque.
 fn transmitting(name: &str, of: Reaction, at: &At<'_>) -> Result<usize> {
     let joint = at.joint(name)?;
-    if of == Reaction::Torque && !at.system.joints[joint].has_torque() {
-        let found = format!("{name:?}, a spherical joint");
-        return Err(at.wrong(found, "a joint that transmits a torque"));
-    }
+    refuse!(if of == Reaction::Torque && !at.system.joints[joint].has_torque(), at;
+        found format!("{name:?}, a spherical joint"), expected "a joint that transmits a torque");
     Ok(joint)
 }
 
@@ -191,10 +189,9 @@ impl CostEntry for TrackJointsSpec {
         let place = at.key("solution");
         let path = place.solution_file(&self.solution, SOLUTION_PATH)?;
         let joints = read_solution_joints(&path, at.system)?;
-        if joints.is_empty() {
-            let found = "a scene without a revolute or prismatic joint";
-            return Err(place.wrong(found, "joints that follow the solution"));
-        }
+        refuse!(if joints.is_empty(), place;
+            found "a scene without a revolute or prismatic joint",
+            expected "joints that follow the solution");
         let cost = |(joint, reference)| square(Quantity::joint(joint, 0.0), reference);
         Ok(joints.into_iter().map(cost).collect())
     }
@@ -288,9 +285,7 @@ pub(crate) fn read_solution_joints(path: &Path, system: &System) -> Result<Vec<(
     let at = At::new(&Scope::of(document), system);
     let place = at.key("time");
     let times: Vec<f64> = solution.time.iter().map(|time| 1e3 * time).collect();
-    if times.is_empty() {
-        return Err(place.wrong("no instant", "one or more"));
-    }
+    refuse!(if times.is_empty(), place; found "no instant", expected "one or more");
     place.increasing(&times)?;
     let (joints, place) = match (solution.configuration, solution.joints) {
         (Some(configuration), _) => (configuration.joints, at.key("configuration").key("joints")),
@@ -302,11 +297,9 @@ pub(crate) fn read_solution_joints(path: &Path, system: &System) -> Result<Vec<(
     let signal = |(name, values): (String, Vec<f64>)| {
         let place = place.key(&name);
         let joint = place.coordinate(&name)?;
-        if values.len() != times.len() {
-            let found = format!("{} values", values.len());
-            let expected = format!("{}, one for each instant", times.len());
-            return Err(place.wrong(found, expected));
-        }
+        refuse!(if values.len() != times.len(), place;
+            found format!("{} values", values.len()),
+            expected format!("{}, one for each instant", times.len()));
         let (_, (_, si)) = place.unit_of(joint);
         let values = values.into_iter().map(|value| si.recip() * value);
         let values = values.collect();

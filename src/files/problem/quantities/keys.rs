@@ -1,8 +1,8 @@
 //! Keys of the quantities that limits, costs and recordings name.
 
 use crate::control::problem::{During, Limit, QuantityCost};
-use crate::files::json::error::Result;
 use crate::files::json::objects::read_objects;
+use crate::files::json::scope::{Result, refuse};
 use crate::files::problem::at::At;
 use crate::files::problem::quantities::entry::{CostEntry, LimitEntry, Named, PlaneSpec, Recorded};
 use crate::files::problem::quantities::joint::{
@@ -237,10 +237,8 @@ impl MeasuredSpec {
             ("from", self.from.is_some(), "a plane", &["clearance"]),
         ];
         for (other, is_written, found, of) in beside {
-            if is_written && !of.contains(&key) {
-                let expected = format!("{found} of a {:?} alone", of[0]);
-                return Err(at.key(other).wrong(found, expected));
-            }
+            refuse!(if is_written && !of.contains(&key), at.key(other);
+                found found, expected format!("{found} of a {:?} alone", of[0]));
         }
         let recorded = make(&Named {
             name,
@@ -300,10 +298,8 @@ pub(crate) fn at_the_end(spec: &FinalSpec, at: &At<'_>) -> Result<Vec<QuantityCo
 fn costs(written: (Weighted<'_>, At<'_>), during: During) -> Result<Vec<QuantityCost>> {
     let ((entry, weight), at) = written;
     let weight = weight.unwrap_or(1.0);
-    if weight <= 0.0 || weight.is_nan() {
-        let place = at.key("weight");
-        return Err(place.wrong(weight.to_string(), "a positive weight"));
-    }
+    refuse!(if weight <= 0.0 || weight.is_nan(), at.key("weight");
+        found weight, expected "a positive weight");
     let cost = |(quantity, function)| QuantityCost {
         quantity,
         weight,

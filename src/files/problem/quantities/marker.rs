@@ -2,7 +2,7 @@
 
 use crate::control::problem::{CostFunction, Limit};
 use crate::files::json::objects::read_objects;
-use crate::files::json::scope::{Result, the_one};
+use crate::files::json::scope::{Result, refuse, the_one};
 use crate::files::problem::at::At;
 use crate::files::problem::quantities::entry::{
     Cost, CostEntry, LimitEntry, Named, PlaneSpec, Recorded, bounds, bounds_by, limits_of, square,
@@ -131,11 +131,9 @@ fn region(spec: &RegionSpec, at: &At<'_>) -> Result<Region> {
         "box" cuboid |at, corners| {
             let (min, max) = (vector(&corners.min), vector(&corners.max));
             for index in 0..3 {
-                if min[index] >= max[index] {
-                    let place = at.key("max").index(index);
-                    let expected = format!("more than {} of \"min\"", corners.min[index]);
-                    return Err(place.wrong(corners.max[index].to_string(), expected));
-                }
+                refuse!(if min[index] >= max[index], at.key("max").index(index);
+                    found corners.max[index],
+                    expected format!("more than {} of \"min\"", corners.min[index]));
             }
             Ok(Region::Box { min, max })
         };
@@ -200,10 +198,8 @@ impl CostEntry for TrackMarkerSpec {
                 costs.push(square(Quantity::marker_place(marker, axis), reference));
             }
         }
-        match costs.is_empty() {
-            true => Err(place.wrong("no direction", "\"x\", \"y\" or \"z\"")),
-            false => Ok(costs),
-        }
+        refuse!(if costs.is_empty(), place; found "no direction", expected "\"x\", \"y\" or \"z\"");
+        Ok(costs)
     }
 }
 
@@ -216,13 +212,9 @@ impl CostEntry for FinalMarkerSpec {
             Some(square(quantity, place.as_ref()?.value()))
         };
         let costs: Vec<Cost> = given.filter_map(cost).collect();
-        match costs.is_empty() {
-            true => {
-                let expected = "one that is not null, or more";
-                Err(at.key("at").wrong("no coordinate", expected))
-            }
-            false => Ok(costs),
-        }
+        refuse!(if costs.is_empty(), at.key("at");
+            found "no coordinate", expected "one that is not null, or more");
+        Ok(costs)
     }
 }
 

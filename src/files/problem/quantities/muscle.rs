@@ -2,7 +2,7 @@
 
 use crate::control::problem::{CostFunction, During, Limit, QuantityCost};
 use crate::files::json::objects::read_objects;
-use crate::files::json::scope::{Result, Scope};
+use crate::files::json::scope::{Result, Scope, refuse};
 use crate::files::problem::at::{At, ELECTRIC_KEYS};
 use crate::files::problem::quantities::entry::{
     All, Cost, CostEntry, LimitEntry, Named, Recorded, bounds, bounds_by, limits_of, squares,
@@ -155,10 +155,8 @@ fn lumped_muscles(
         None => lumped(at),
         Some(name) => vec![lumped_muscle(name, &at.key("muscle"))?],
     };
-    match muscles.is_empty() {
-        true => Err(at.key("muscles").wrong("no lumped muscle", EXPECTED)),
-        false => Ok(muscles),
-    }
+    refuse!(if muscles.is_empty(), at.key("muscles"); found "no lumped muscle", expected EXPECTED);
+    Ok(muscles)
 }
 
 impl LimitEntry for StretchLimitSpec {
@@ -206,10 +204,8 @@ impl LimitEntry for ElectricFieldLimitSpec {
             ("solid", self.solid.is_some()),
             ("solids", self.solids.is_some()),
         ])?;
-        if self.region.is_some() && key != "solid" {
-            let found = "a region without \"solid\"";
-            return Err(at.key("region").wrong(found, "a region of one block"));
-        }
+        refuse!(if self.region.is_some() && key != "solid", at.key("region");
+            found "a region without \"solid\"", expected "a region of one block");
         let place = at.key(key);
         let fields = match (key, &self.solid) {
             ("muscle" | "muscles", _) => muscle_fields(self.muscle.as_ref(), &place)?,
@@ -239,10 +235,8 @@ fn block_fields(
         let mut elements = regions.zip(at.system.elements_with_field(block));
         elements.any(|(of, has_field)| has_field && region.is_none_or(|region| *of == region))
     });
-    if blocks.is_empty() {
-        let expected = format!("elements of {ELECTRIC_KEYS} between electrodes");
-        return Err(at.wrong(NOTHING, expected));
-    }
+    refuse!(if blocks.is_empty(), at;
+        found NOTHING, expected format!("elements of {ELECTRIC_KEYS} between electrodes"));
     let field = |block| FieldPlace::Block { block, region };
     Ok(blocks.into_iter().map(field).collect())
 }
@@ -254,10 +248,9 @@ fn muscle_fields(name: Option<&String>, at: &At<'_>) -> Result<Vec<FieldPlace>> 
     let muscles: Vec<usize> = match name {
         Some(name) => {
             let muscle = at.muscle(name)?;
-            if !has_field(&muscle) {
-                let found = format!("{name:?}, whose material has no electric term");
-                return Err(at.wrong(found, format!("a muscle of {ELECTRIC_KEYS}")));
-            }
+            refuse!(if !has_field(&muscle), at;
+                found format!("{name:?}, whose material has no electric term"),
+                expected format!("a muscle of {ELECTRIC_KEYS}"));
             vec![muscle]
         }
         None => (0..system.muscles.len()).filter(has_field).collect(),
@@ -351,10 +344,8 @@ fn amount_limits(
     bounds: [f64; 2],
     at: &At<'_>,
 ) -> Result<Vec<Limit>> {
-    if bounds[1] <= 0.0 {
-        let place = at.key("max");
-        return Err(place.wrong("no more than zero", "a positive bound"));
-    }
+    refuse!(if bounds[1] <= 0.0, at.key("max");
+        found "no more than zero", expected "a positive bound");
     let muscles = match named {
         None => all_with(amount, at)?,
         Some(list) => by_names(list, amount, &at.key("muscles"))?,
@@ -405,20 +396,15 @@ fn all_with(amount: Amount, at: &At<'_>) -> Result<Vec<usize>> {
 
 /// Lumped muscles by their names.
 fn by_names(list: &[String], amount: Amount, at: &At<'_>) -> Result<Vec<usize>> {
-    if list.is_empty() {
-        return Err(at.wrong("no muscle", EXPECTED));
-    }
+    refuse!(if list.is_empty(), at; found "no muscle", expected EXPECTED);
     at.unique(list, &[], |index| Scope::index(at, index))?;
     let muscle = |(index, name): (usize, &String)| {
         let place = at.index(index);
         let muscle = lumped_muscle(name, &place)?;
-        match has(amount, muscle, at) {
-            true => Ok(muscle),
-            false => {
-                let found = format!("{name:?}, whose material has no density");
-                Err(place.wrong(found, "a muscle with a \"density\" of its material"))
-            }
-        }
+        refuse!(if !has(amount, muscle, at), place;
+            found format!("{name:?}, whose material has no density"),
+            expected "a muscle with a \"density\" of its material");
+        Ok(muscle)
     };
     list.iter().enumerate().map(muscle).collect()
 }

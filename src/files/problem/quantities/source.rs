@@ -1,8 +1,8 @@
 //! Voltages, charges, currents and powers of sources in limits, costs and recordings.
 
 use crate::control::problem::Limit;
-use crate::files::json::error::Result;
 use crate::files::json::objects::read_objects;
+use crate::files::json::scope::{Result, refuse};
 use crate::files::problem::at::{At, SiUnit};
 use crate::files::problem::quantities::entry::{
     All, Cost, CostEntry, LimitEntry, Named, Recorded, bounds, squares,
@@ -105,10 +105,8 @@ fn chosen<'s>(one: &Option<String>, all: Option<All>, at: &At<'s>) -> Result<(Ve
 /// Sources of which there is one at least.
 fn any<'s>(one: &Option<String>, all: Option<All>, at: &At<'s>) -> Result<(Vec<usize>, At<'s>)> {
     let (sources, place) = chosen(one, all, at)?;
-    match sources.is_empty() {
-        true => Err(place.wrong("no source", "a source of a voltage")),
-        false => Ok((sources, place)),
-    }
+    refuse!(if sources.is_empty(), place; found "no source", expected "a source of a voltage");
+    Ok((sources, place))
 }
 
 /// Muscles of whose sources current and power are known: all of them without such a muscle is none.
@@ -129,10 +127,8 @@ fn measured<'s>(
         let found = format!("{:?}, {why}", at.sources[source].name);
         return Err(place.wrong(found, EXPECTED));
     }
-    match chosen.is_empty() {
-        true => Err(place.wrong("no source", EXPECTED)),
-        false => Ok((chosen, place)),
-    }
+    refuse!(if chosen.is_empty(), place; found "no source", expected EXPECTED);
+    Ok((chosen, place))
 }
 
 /// Muscles whose sources are behind a resistor.

@@ -1,7 +1,7 @@
 //! Loads.
 
 use crate::files::json::objects::objects;
-use crate::files::json::scope::{Result, Scope, the_one};
+use crate::files::json::scope::{Result, Scope, refuse, the_one};
 use crate::files::scene::names::names;
 use crate::files::scene::nodes::nodes;
 use crate::files::scene::point::{CornersSpec, PointSpec, unit_axis};
@@ -172,19 +172,17 @@ impl LoadSpec {
         let faces = solid
             .mesh
             .faces_of(&nodes(&owner, place, &solid.mesh, scope)?);
-        if faces.is_empty() {
-            let found = format!("{owner} where no face of an element lies on the surface");
-            return Err(scope.wrong(found, "a part of the surface of the block"));
-        }
+        refuse!(if faces.is_empty(), scope;
+            found format!("{owner} where no face of an element lies on the surface"),
+            expected "a part of the surface of the block");
         let is_held = |support: &Support, node: &usize| {
             support.held == [true; 3] && support.nodes.binary_search(node).is_ok()
         };
         let is_held = |node: &usize| solid.supports.iter().any(|s| is_held(s, node));
         let is_force = self.kind != Some(BlockLoadKind::SurfaceCharge);
-        if is_force && faces.iter().flatten().all(is_held) {
-            let found = format!("{owner} on nodes that are all held");
-            return Err(scope.wrong(found, "a part of the surface that moves"));
-        }
+        refuse!(if is_force && faces.iter().flatten().all(is_held), scope;
+            found format!("{owner} on nodes that are all held"),
+            expected "a part of the surface that moves");
         Ok(faces)
     }
 }

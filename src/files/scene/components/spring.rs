@@ -1,7 +1,7 @@
 //! Springs and dampers.
 
 use crate::files::json::objects::objects;
-use crate::files::json::scope::{Result, Scope};
+use crate::files::json::scope::{Result, Scope, refuse};
 use crate::files::scene::point::PointSpec;
 use crate::files::units::quantity::{Damping, Length, Quantity, Stiffness};
 use crate::model::components::Spring;
@@ -28,13 +28,11 @@ impl ComponentSpec for SpringSpec {
     type Part = Spring;
 
     fn component(&self, bodies: &[String], scope: &Scope<'_>) -> Result<Spring> {
-        if self.stiffness.is_none() && self.damping.is_none() {
-            return Err(scope.wrong("neither of them", "\"stiffness\" or \"damping\""));
-        }
-        if self.rest_length.is_some() && self.stiffness.is_none() {
-            let expected = "no such key, as a spring without \"stiffness\" does not read it";
-            return Err(scope.key("rest_length").wrong("\"rest_length\"", expected));
-        }
+        refuse!(if self.stiffness.is_none() && self.damping.is_none(), scope;
+            found "neither of them", expected "\"stiffness\" or \"damping\"");
+        refuse!(if self.rest_length.is_some() && self.stiffness.is_none(), scope.key("rest_length");
+            found "\"rest_length\"",
+            expected "no such key, as a spring without \"stiffness\" does not read it");
         let (from, to) = (
             self.from.attachment(bodies, &scope.key("from"))?,
             self.to.attachment(bodies, &scope.key("to"))?,
