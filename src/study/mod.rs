@@ -3,11 +3,11 @@
 //! - `read`, `sizes`: the study file and all its problems; `measure`: measures of them.
 //! - `outcome`, `schedule`: one run, and all of them in rounds.
 //! - `limit`, `compare`: observed orders and Richardson's limits; errors of all points.
-//! - `conclusion`: costs of accuracies, and the conclusion in words.
+//! - `costs`: costs of accuracies, and the conclusion in a sentence.
 //! - `table`, `record`, `page`: output.
 
 pub mod compare;
-pub mod conclusion;
+pub mod costs;
 pub mod limit;
 pub mod measure;
 pub mod outcome;
@@ -29,7 +29,7 @@ use crate::report::origin::Origin;
 use crate::report::page::of_plots;
 use crate::report::{PageContent, atomic};
 use crate::study::compare::{Judged, judge, moved_marker};
-use crate::study::conclusion::conclusion;
+use crate::study::costs::{conclusion, cost_table};
 use crate::study::measure::StudyTask;
 use crate::study::read::{Study, read_study};
 use crate::study::schedule::{Results, bar, look, time};
@@ -100,10 +100,11 @@ fn write(
         let title = judged.measure.label().to_owned();
         plots.extend(plot.map(|plot| (title, plot)));
     }
-    let text = table::text(study, results, judged);
+    let points = table::text(study, results, judged);
+    let text = format!("{points}\n{}", cost_table(study, results, judged));
     put("table.txt", &text)?;
     put("table.csv", &table::csv(study, results, judged, &origin))?;
-    let page = page::markdown(study, results, judged, &figures, said, &text, &origin);
+    let page = page::markdown(study, results, judged, &figures, said, &points, &origin);
     put("study.md", &page)?;
     let points = || results.methods.iter().flatten();
     let solved = points().filter(|done| done.first.is_solved).count();

@@ -1,18 +1,15 @@
 //! `study.md`: the figures of a study and their meaning.
 
-use crate::math::significant;
 use crate::report::axes::Axis;
 use crate::report::lines::{LinePlot, Mark, Series};
 use crate::report::origin::Origin;
 use crate::report::style;
 use crate::study::compare::{Judged, common};
-use crate::study::limit::How;
-use crate::study::measure::{StudyMeasure, Unit};
+use crate::study::costs;
+use crate::study::measure::StudyMeasure;
 use crate::study::read::Study;
 use crate::study::record::{command, machine, of_reference};
 use crate::study::schedule::Results;
-use crate::study::table;
-use std::fmt::Write;
 
 /// The page; `figures` are the names of those written, by measure.
 pub(super) fn markdown(
@@ -34,9 +31,11 @@ pub(super) fn markdown(
     }
     add(format!("**Conclusion.** {conclusion}"));
     add(how_it_was_run(results));
-    if let Some(table) = cost_table(study, results, judged) {
-        add(table);
-    }
+    add(format!(
+        "## What accuracy costs\n\nSeconds are found between points by a straight line in the diagram; `*` marks the cheapest method and those that do not differ \
+         clearly from it, `–` was not reached. Accuracies of places are relative to the path length of the markers.\n\n```text\n{}```",
+        costs::cost_table(study, results, judged)
+    ));
     for (judged, figure) in judged.iter().zip(figures) {
         add(section(study, judged, figure.as_deref()));
         if judged.measure == StudyMeasure::Path {
@@ -60,83 +59,14 @@ pub(super) fn markdown(
 }
 
 fn how_it_was_run(results: &Results<'_>) -> String {
-    let counts = || {
-        let points = results.methods.iter().flatten();
-        points
-            .filter(|done| done.first.is_solved)
-            .map(|done| done.seconds.len())
-    };
-    let (least, most) = (counts().min().unwrap_or(0), counts().max().unwrap_or(0));
-    let runs = match least == most {
-        true => format!("{most}"),
-        false => format!("{least} to {most}"),
-    };
+    let points = results.methods.iter().flatten();
+    let most = points.map(|done| done.seconds.len()).max().unwrap_or(0);
     let machine = machine();
-    let cores = match machine.cores {
-        1 => "1 core".to_owned(),
-        cores => format!("{cores} cores"),
-    };
-    let on = machine
-        .processor
-        .map_or(cores.clone(), |name| format!("{name}, {cores}"));
-    let early = match results.is_interrupted {
-        true => " Interrupted: these are the results up to then.",
-        false => "",
-    };
+    let processor = machine.processor.unwrap_or(machine.system);
     format!(
-        "{runs} timed runs of each point, round after round, on {on}; reading files and measuring is not timed.{early}"
+        "{most} timed runs of each point, round after round, on {processor}, cores: {}; reading files and measuring is not timed.",
+        machine.cores
     )
-}
-
-/// Returns the table of costs of each accuracy by each method.
-fn cost_table(study: &Study, results: &Results<'_>, judged: &[Judged]) -> Option<String> {
-    let mut rows = String::new();
-    for judged in judged.iter().filter(|judged| judged.measure.has_order()) {
-        for at_accuracy in table::costs_at_accuracy(results, judged) {
-            let Some(cheapest) = at_accuracy.cheapest() else {
-                continue;
-            };
-            let cells = at_accuracy
-                .costs
-                .iter()
-                .enumerate()
-                .map(|(m, cost)| match cost {
-                    None => "–".to_owned(),
-                    Some([_, seconds, _]) if m == cheapest && at_accuracy.costs.len() > 1 => {
-                        format!("**{}**", significant(*seconds, 3))
-                    }
-                    Some([_, seconds, _]) => significant(*seconds, 3),
-                });
-            let cells: Vec<_> = cells.collect();
-            let unit = judged.measure.unit();
-            let text = match unit {
-                Unit::Length => {
-                    format!(
-                        "{:.0e}, {}",
-                        at_accuracy.accuracy,
-                        table::error_text(unit, at_accuracy.error)
-                    )
-                }
-                Unit::Relative => table::error_text(unit, at_accuracy.error),
-            };
-            writeln!(
-                rows,
-                "| {} | {text} | {} |",
-                judged.measure.label(),
-                cells.join(" | ")
-            )
-            .expect("writing to a string does not fail");
-        }
-    }
-    let names: Vec<_> = study.methods.iter().map(|m| m.name.as_str()).collect();
-    (!rows.is_empty()).then(|| {
-        format!(
-            "## What accuracy costs\n\nSeconds, between points by a straight line in the diagram; the cheapest is bold, `–` was not \
-             reached. Accuracies of places are relative to the path length of the markers.\n\n| error | at most | {} |\n|:--|:--|{}\n{rows}",
-            names.join(" | "),
-            "--:|".repeat(names.len())
-        )
-    })
 }
 
 fn section(study: &Study, judged: &Judged, figure: Option<&str>) -> String {
@@ -151,42 +81,17 @@ fn section(study: &Study, judged: &Judged, figure: Option<&str>) -> String {
     for (index, limit) in judged.limits.iter().enumerate() {
         let Some(limit) = limit else { continue };
         let name = of_reference(study, judged, index);
-        let orders: Vec<_> = (limit.orders.iter())
-            .map(|order| order.map_or("–".to_owned(), |p| format!("{p:.3}")))
-            .collect();
         let unit = judged.measure.unit().suffix().trim_matches([' ', '[', ']']);
-        let unit = if unit.is_empty() {
-            String::new()
-        } else {
-            format!(" {unit}")
-        };
         let value = match limit.value.as_slice() {
             [value] => format!(" {value:.12}"),
-            [x, y, z] => format!(" ({x:.9}, {y:.9}, {z:.9}){unit}"),
+            [x, y, z] => format!(" ({x:.9}, {y:.9}, {z:.9}) {unit}"),
             _ => String::new(),
         };
-        let known = match (limit.how, limit.uncertainty) {
-            (How::Extrapolated, Some(apart)) if limit.floor() > limit.rounding => {
-                format!("; the limit of the three points before is {apart:.1e}{unit} beside it")
-            }
-            (How::Extrapolated, Some(apart)) => {
-                format!("; the finest value is {apart:.1e}{unit} from it")
-            }
-            (How::Rounding, Some(apart)) => {
-                format!("; the two finest values are {apart:.1e}{unit} apart")
-            }
-            (_, Some(apart)) => format!("; this estimate is {apart:.1e}{unit}"),
-            (_, None) => String::new(),
-        };
-        let seen = match orders.is_empty() {
-            true => String::new(),
-            false => format!(
-                "; order observed in every three successive points: {}",
-                orders.join(", ")
-            ),
-        };
+        let known = limit.uncertainty;
+        let known = known.map_or_else(String::new, |apart| format!(", ± {apart:.1e} {unit}"));
+        let known = known.trim_end();
         text.push_str(&format!(
-            "* Reference, {name}:{value} {}{seen}{known}.\n",
+            "* Reference, {name}:{value}{known}, {}.\n",
             limit.how.words()
         ));
     }

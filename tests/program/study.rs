@@ -344,5 +344,5 @@ fn ctrl_c_keeps_the_results_so_far() {
     let html = fs::read_to_string(folder.path().join("out/report.html")).unwrap();
     assert!(html.contains("\"title\":\"Study\""));
     let page = fs::read_to_string(folder.path().join("out/study.md")).unwrap();
-    assert!(page.contains("Interrupted"), "{page}");
+    assert!(page.contains("(interrupted)"), "{page}");
 }

@@ -1,8 +1,8 @@
-//! Conclusions of studies in words, of results that are made up.
+//! Conclusions and costs of studies, of results that are made up.
 
 use nalgebra::Vector3;
 use proboscis::study::compare::judge;
-use proboscis::study::conclusion::conclusion;
+use proboscis::study::costs::{conclusion, cost_table};
 use proboscis::study::outcome::{Observed, RunOutcome};
 use proboscis::study::read::{Study, read_study};
 use proboscis::study::schedule::{Done, Results};
@@ -56,8 +56,8 @@ fn study(methods: &[&str]) -> (TempDir, Study) {
     (folder, study)
 }
 
-/// Conclusion of a study whose points have these errors in mm and median times in ms.
-fn said(study: &Study, points: &[[(f64, f64); 4]], change: impl Fn(&mut Results<'_>)) -> String {
+/// Conclusion and costs of a study whose points have these errors in mm and median times in ms.
+fn said(study: &Study, points: &[[(f64, f64); 4]], change: impl Fn(&mut Results<'_>)) -> Said {
     let done = |m: usize, k: usize| {
         let (error, milliseconds) = points[m][k];
         let seen = Observed {
@@ -88,7 +88,33 @@ fn said(study: &Study, points: &[[(f64, f64); 4]], change: impl Fn(&mut Results<
         is_interrupted: false,
     };
     change(&mut results);
-    conclusion(study, &results, &judge(study, &results))
+    let judged = judge(study, &results);
+    let table = cost_table(study, &results, &judged);
+    let cells = |line: &str| -> Vec<String> {
+        let cells = line.split("  ").map(str::trim);
+        cells
+            .filter(|cell| !cell.is_empty())
+            .map(str::to_owned)
+            .collect()
+    };
+    Said {
+        conclusion: conclusion(study, &results, &judged),
+        rows: table.lines().map(cells).collect(),
+    }
+}
+
+/// The sentence and the cells of the table.
+struct Said {
+    conclusion: String,
+    rows: Vec<Vec<String>>,
+}
+
+impl Said {
+    /// The cells of one column by method.
+    fn column(&self, name: &str) -> Vec<&str> {
+        let at = self.rows[0].iter().position(|cell| cell == name).unwrap();
+        self.rows[1..].iter().map(|row| &*row[at]).collect()
+    }
 }
 
 /// Errors C hᵖ from the first one on, at times that double.
@@ -102,41 +128,55 @@ fn falling(error: f64, order: i32, milliseconds: f64) -> [(f64, f64); 4] {
 fn nothing(_: &mut Results<'_>) {}
 
 #[test]
-fn one_method_has_costs_and_an_order_without_its_name() {
+fn the_table_has_order_costs_least_error_and_status() {
     let (_folder, study) = study(&["midpoint"]);
     // 1 mm: between 1.6 mm in 10 ms and 0.4 mm in 20 ms, 10 ms · 2^(ln 1.6 / ln 4).
+    let said = said(&study, &[falling(1.6, 2, 10.0)], nothing);
     assert_eq!(
-        said(&study, &[falling(1.6, 2, 10.0)], nothing),
-        "Error of the place at the end: 1.0 mm costs 13 ms; 10 µm is not reached: the least error is 25 µm. \
-         Observed order: 2.00."
+        said.conclusion,
+        "4 of 4 points have an answer; error of the place at the end: 1.0 mm costs least by `midpoint`, 0.013 s."
     );
+    let row = [
+        "end", "midpoint", "2.00", "0.0126", "–", "–", "25 µm", "resolved",
+    ];
+    assert_eq!(said.rows[1], row);
+    assert_eq!(said.rows.len(), 2);
 }
 
 #[test]
-fn the_cheapest_method_is_named_with_its_factor_where_times_differ_clearly() {
+fn the_cheapest_method_has_a_star_and_so_have_those_that_do_not_differ_clearly() {
     let (_folder, study) = study(&["quick", "slow", "as quick"]);
     let points = [
         falling(1.6, 2, 10.0),
         falling(1.6, 2, 35.0),
         falling(1.6, 2, 10.05),
     ];
+    let of = said(&study, &points, nothing);
     assert_eq!(
-        said(&study, &points, nothing),
-        "Error of the place at the end: 1.0 mm costs least by `quick` and `as quick`, 13 ms without a clear difference (`slow` takes \
-         3.5 times as long); 10 µm is not reached by any method: the least error is 25 µm by `quick`. \
-         Observed order: `quick`, `slow` and `as quick` 2.00."
+        of.column("cost at 1e-2 [s]"),
+        ["0.0126*", "0.0443", "0.0127*"]
     );
+    assert_eq!(of.column("cost at 1e-4 [s]"), ["–"; 3]);
+    assert!(
+        of.conclusion
+            .ends_with(": 1.0 mm costs least by `quick` and `as quick`, 0.013 s."),
+        "{}",
+        of.conclusion
+    );
+    let starred = |of: &Said| {
+        let costs = of.column("cost at 1e-2 [s]");
+        costs
+            .iter()
+            .map(|cost| cost.ends_with('*'))
+            .collect::<Vec<_>>()
+    };
     // Clearly longer, by a factor too small to be told.
     let points = [
         falling(1.6, 2, 10.0),
         falling(1.6, 2, 11.5),
         falling(1.6, 2, 11.8),
     ];
-    let words = said(&study, &points, nothing);
-    assert!(
-        words.contains("1.0 mm costs least by `quick`, `slow` and `as quick`, 13 ms to 15 ms without a clear difference;"),
-        "{words}"
-    );
+    assert_eq!(starred(&said(&study, &points, nothing)), [true; 3]);
     // Runs of very different lengths say nothing about which is quicker.
     let points = [
         falling(1.6, 2, 10.0),
@@ -149,90 +189,76 @@ fn the_cheapest_method_is_named_with_its_factor_where_times_differ_clearly() {
             done.seconds = vec![0.5 * t, 0.7 * t, t, 1.8 * t, 2.0 * t];
         }
     };
-    let words = said(&study, &points, scattered);
-    assert!(
-        words.contains("least by `quick` and `slow`, 13 ms to 19 ms without a clear difference (`as quick` takes 3.5 times"),
-        "{words}"
-    );
+    let of = said(&study, &points, scattered);
+    assert_eq!(starred(&of), [true, true, false]);
 }
 
 #[test]
 fn an_accuracy_that_one_or_no_method_reaches_is_told() {
     let (_folder, study) = study(&["fine", "coarse"]);
     let points = [falling(1.6, 2, 10.0), falling(40.0, 1, 10.0)];
-    let words = said(&study, &points, nothing);
+    let of = said(&study, &points, nothing);
     assert!(
-        words.contains("only `fine` reaches 1.1 mm, in 12 ms; 11 µm is not reached by any"),
-        "{words}"
+        of.conclusion
+            .ends_with(": 1.1 mm costs least by `fine`, 0.012 s."),
+        "{}",
+        of.conclusion
     );
-    let points = [falling(160.0, 2, 10.0), falling(400.0, 2, 10.0)];
-    let words = said(&study, &points, nothing);
-    let start = "Error of the place at the end: ";
-    // The markers get 256 mm and more from their start where errors are so large.
+    assert_eq!(of.column("cost at 1e-2 [s]"), ["0.0122*", "–"]);
+    // The markers get 1.7 m from their start where errors are so large.
+    let points = [falling(1600.0, 2, 10.0), falling(1700.0, 2, 10.0)];
+    let of = said(&study, &points, nothing);
     assert!(
-        words.starts_with(start)
-            && words
-                .contains(" is not reached by any method: the least error is 2.5 mm by `fine`."),
-        "{words}"
+        of.conclusion
+            .ends_with(": 17 mm is not reached, the least error is 25 mm by `fine`."),
+        "{}",
+        of.conclusion
     );
-    assert!(!words.contains("cost"), "{words}");
+    assert_eq!(of.column("cost at 1e-2 [s]"), ["–"; 2]);
+    assert_eq!(of.column("least error"), ["25 mm", "27 mm"]);
 }
 
 #[test]
-fn errors_that_rise_are_said_to_rise() {
+fn errors_that_rise_and_limits_without_an_order_are_told() {
     let (_folder, study) = study(&["clean", "levels off"]);
     let points = [
         falling(1.6, 2, 10.0),
         [(8.0, 10.0), (2.0, 20.0), (1.5, 40.0), (1.8, 80.0)],
     ];
-    let words = said(&study, &points, nothing);
-    assert!(
-        words.ends_with(
-            "Observed order: `clean` 2.00; errors of `levels off` do not fall throughout: from 10 ms to 5 ms they rise from 1.5 mm to 1.8 mm."
-        ),
-        "{words}"
-    );
+    let of = said(&study, &points, nothing);
+    assert_eq!(of.column("order"), ["2.00", "–"]);
+    assert_eq!(of.column("status"), ["resolved", "errors rise, no order"]);
     // Falling, but by no power of the step.
     let points = [
         falling(1.6, 2, 10.0),
         [(8.0, 10.0), (1.0, 20.0), (0.5, 40.0), (0.48, 80.0)],
     ];
-    let words = said(&study, &points, nothing);
-    assert!(
-        words.ends_with(
-            "errors of `levels off` (3.0, 1.0, 0.1) show no single order from point to point."
-        ),
-        "{words}"
-    );
+    let of = said(&study, &points, nothing);
+    assert_eq!(of.column("status"), ["resolved", "no order"]);
     // A reference without an order is the finest value itself.
     let points = [
         [(8.0, 10.0), (2.0, 20.0), (1.5, 40.0), (1.8, 80.0)],
         falling(1.6, 2, 10.0),
     ];
-    let words = said(&study, &points, nothing);
+    let of = said(&study, &points, nothing);
+    let told = of.column("status");
     assert!(
-        words.contains(
-            "Errors are distances from the finest value of `clean`, as no order is observed, and its own error is estimated from the last differences by the order 0.5."
-        ),
-        "{words}"
+        told.iter()
+            .all(|status| status.ends_with("limit not extrapolated")),
+        "{told:?}"
     );
 }
 
 #[test]
-fn an_order_far_from_that_of_the_method_is_told_beside_it() {
+fn each_method_has_the_order_that_its_errors_show() {
     let (_folder, study) = study(&["midpoint", "spoilt", "nearly"]);
     let points = [
         falling(1.6, 2, 10.0),
         falling(1.6, 1, 10.0),
         [(1.6, 10.0), (0.5, 20.0), (0.15, 40.0), (0.045, 80.0)],
     ];
-    let words = said(&study, &points, nothing);
-    assert!(
-        words.ends_with(
-            "Observed order: `midpoint` 2.00, `spoilt` 1.00 (where 2 is expected), `nearly` 1.72."
-        ),
-        "{words}"
-    );
+    let of = said(&study, &points, nothing);
+    assert_eq!(of.column("order"), ["2.00", "1.00", "1.72"]);
 }
 
 #[test]
@@ -246,37 +272,39 @@ fn points_that_fail_and_steps_that_are_halved_are_told() {
         done.seconds.clear();
     };
     let mut points = [falling(1.6, 2, 10.0), falling(1.6, 2, 35.0)];
-    let words = said(&study, &points, |results| fail(results, 1, 0));
+    let of = said(&study, &points, |results| fail(results, 1, 0));
     assert!(
-        words.ends_with(
-            "`other` 2.00. 1 of 8 points have no answer: `other`, step 40 ms (step failed)."
-        ),
-        "{words}"
+        of.conclusion.starts_with("7 of 8 points have an answer; "),
+        "{}",
+        of.conclusion
     );
-    let words = said(&study, &points, |results| {
+    assert_eq!(of.column("order"), ["2.00"; 2]);
+    assert_eq!(
+        of.column("status"),
+        ["resolved", "1 of 4 without an answer"]
+    );
+    let of = said(&study, &points, |results| {
         (0..2).for_each(|m| (0..4).for_each(|k| fail(results, m, k)));
         results.is_interrupted = true;
     });
     assert_eq!(
-        words,
-        "No point has an answer: `midpoint`, step 40 ms (step failed); `midpoint`, step 20 ms (step failed); `midpoint`, step \
-         10 ms (step failed); 5 more. It was interrupted: these are the results up to then."
+        of.conclusion,
+        "0 of 8 points have an answer (interrupted); error of the place at the end: no error is known."
+    );
+    assert_eq!(
+        of.column("status"),
+        ["4 of 4 without an answer, no order"; 2]
     );
     // A step that was halved is no step of its size: an error that does not fit leaves the order as it is.
     points[0][1].0 = 0.6;
     let spoilt = said(&study, &points, nothing);
-    assert!(!spoilt.contains("`midpoint` and `other` 2.00"), "{spoilt}");
-    let words = said(&study, &points, |results| {
+    assert_ne!(spoilt.column("order"), ["2.00"; 2]);
+    let of = said(&study, &points, |results| {
         results.methods[0][1].seen.as_mut().unwrap().halved = 3;
     });
-    assert!(
-        words.contains("`midpoint` and `other` 2.00") && !words.contains("rise"),
-        "{words}"
-    );
-    assert!(
-        words.ends_with(
-            "Steps were halved, so that neither limits nor orders count the point: `midpoint`, step 20 ms (3 steps)."
-        ),
-        "{words}"
+    assert_eq!(of.column("order"), ["2.00"; 2]);
+    assert_eq!(
+        of.column("status"),
+        ["1 of 4 with halved steps", "resolved"]
     );
 }
