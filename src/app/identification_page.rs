@@ -8,8 +8,7 @@ use crate::control::problem::Identification;
 use crate::files::Loaded;
 use crate::identify::{Identified, Series};
 use crate::math::significant;
-use crate::report::axes::{Axis, Extent};
-use crate::report::lines::{LinePlot, Mark, Series as Curve};
+use crate::report::lines::{LinePlot, Mark, Series as Curve, over_time};
 use crate::report::markup::escape;
 use crate::report::origin::Origin;
 use crate::report::style;
@@ -140,37 +139,20 @@ fn section(task: &Identification, one: &Series, origin: &Origin) -> String {
     let recording = &task.recordings[one.recording];
     let channel = &recording.channels[one.channel];
     let (symbol, factor) = channel.unit;
-    let points = |values: &[f64]| {
-        let pairs = one.times.iter().zip(values);
-        pairs
-            .map(|(t, v)| [t / 1e3, factor * v])
-            .collect::<Vec<_>>()
-    };
+    let points = |values: &[f64]| over_time(&one.times, values.iter().map(|v| factor * v));
     let measured = Curve::curve("measured", points(&one.measured), style::hue(1));
     let predicted = Curve::curve("predicted", points(&one.predicted), style::hue(0));
-    let time = || Axis::linear("time [s]", Extent::Tight);
-    let above = LinePlot::new(
-        time(),
-        Axis::linear(format!("{} [{symbol}]", channel.name), Extent::Padded),
+    let above = LinePlot::over_time(
+        format!("{} [{symbol}]", channel.name),
         vec![predicted, measured.marked(Mark::Ring).unjoined()],
     );
-    let residuals = one.standardised().into_iter();
-    let residuals: Vec<[f64; 2]> = one
-        .times
-        .iter()
-        .zip(residuals)
-        .map(|(t, r)| [t / 1e3, r])
-        .collect();
+    let residuals = over_time(&one.times, one.standardised());
+    let residuals = Curve::curve("", residuals, style::hue(1));
     let below = LinePlot {
         frame: [400.0, 120.0],
-        ..LinePlot::new(
-            time(),
-            Axis::linear("residual [σ]", Extent::Padded),
-            vec![
-                Curve::curve("", residuals, style::hue(1))
-                    .marked(Mark::Disc)
-                    .unjoined(),
-            ],
+        ..LinePlot::over_time(
+            "residual [σ]",
+            vec![residuals.marked(Mark::Disc).unjoined()],
         )
     };
     let held_out = match recording.is_held_out {

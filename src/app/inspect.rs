@@ -424,7 +424,7 @@ pub(super) fn sparsity_svg(shape: MatrixSize<'_>, entries: &Entries, origin: &Or
         canvas.outline(&frame, Stroke::solid(style::INK, 0.8));
         let title = format!("{name}: {rows} × {columns}, {} entries", entries.rows.len());
         let place = [MARGIN, 0.5 * MARGIN];
-        canvas.text(place, &title, style::TICK_SIZE, style::INK, Align::Left);
+        canvas.text(place, &title, style::TICK_SIZE, Align::Left);
     })
 }
 

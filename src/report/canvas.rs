@@ -96,7 +96,7 @@ pub fn svg(size: [f64; 2], origin: &Origin, draw: impl FnOnce(&Canvas<'_>)) -> S
         );
         draw(&canvas);
         for (i, line) in lines.iter().enumerate() {
-            canvas.text(
+            canvas.coloured_text(
                 [12.0, size[1] + line_height * (i as f64 + 0.5)],
                 line,
                 style::CAPTION_SIZE,
@@ -168,7 +168,19 @@ impl Canvas<'_> {
     }
 
     /// A line of text of the given size in pt, vertically centred on its place.
-    pub fn text(&self, place: CanvasPoint, text: &str, size: f64, colour: Colour, align: Align) {
+    pub fn text(&self, place: CanvasPoint, text: &str, size: f64, align: Align) {
+        self.coloured_text(place, text, size, style::INK, align);
+    }
+
+    /// The same in a colour.
+    pub fn coloured_text(
+        &self,
+        place: CanvasPoint,
+        text: &str,
+        size: f64,
+        colour: Colour,
+        align: Align,
+    ) {
         if text.is_empty() || !finite(&place) {
             return;
         }

@@ -47,7 +47,7 @@ pub fn draw(canvas: &Canvas<'_>, [left, top]: CanvasPoint, rows: &[(String, Lege
             }
         }
         let place = [left + TEXT, at];
-        canvas.text(place, name, style::TICK_SIZE, style::INK, Align::Left);
+        canvas.text(place, name, style::TICK_SIZE, Align::Left);
     }
 }
 
@@ -68,7 +68,7 @@ pub fn triad(canvas: &Canvas<'_>, view: &View, at: CanvasPoint) {
         }
         canvas.line(&[at, unit.place(&axis)], Stroke::solid(style::MUTED, 1.0));
         let place = unit.place(&(axis * 1.4));
-        canvas.text(place, name, style::TICK_SIZE, style::INK, Align::Centre);
+        canvas.text(place, name, style::TICK_SIZE, Align::Centre);
     }
     let rough = 60.0 / view.scale;
     let power = 10_f64.powf(rough.log10().floor());
@@ -78,13 +78,7 @@ pub fn triad(canvas: &Canvas<'_>, view: &View, at: CanvasPoint) {
     let right = left + length * view.scale;
     canvas.line(&[[left, top], [right, top]], Stroke::solid(style::INK, 1.6));
     let label = format!("{length} mm");
-    canvas.text(
-        [left, top - 10.0],
-        &label,
-        style::TICK_SIZE,
-        style::INK,
-        Align::Left,
-    );
+    canvas.text([left, top - 10.0], &label, style::TICK_SIZE, Align::Left);
 }
 
 /// Colours of the voltages from zero to the full scale in V, labelled in kV; the upper left corner is given.
@@ -96,7 +90,6 @@ pub fn colour_bar(canvas: &Canvas<'_>, [left, top]: CanvasPoint, scale: f64) {
         [left, top - 14.0],
         "voltage [kV]",
         style::TICK_SIZE,
-        style::INK,
         Align::Left,
     );
     for i in 0..STEPS {
@@ -130,7 +123,6 @@ pub fn colour_bar(canvas: &Canvas<'_>, [left, top]: CanvasPoint, scale: f64) {
             [left + width + 7.0, y],
             &label,
             style::TICK_SIZE,
-            style::INK,
             Align::Left,
         );
     }

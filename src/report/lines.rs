@@ -1,6 +1,6 @@
 //! Curves over a pair of axes: the plot that the other figures share.
 
-use crate::report::axes::{Axis, Scale};
+use crate::report::axes::{Axis, Extent, Scale};
 use crate::report::canvas::{self, Align, Canvas, CanvasPoint, Stroke, text_width};
 use crate::report::origin::Origin;
 use crate::report::style::{self, Colour, Dash};
@@ -75,6 +75,12 @@ impl Series {
     }
 }
 
+/// Values at times in ms, over time in s.
+pub fn over_time(times: &[f64], values: impl IntoIterator<Item = f64>) -> Vec<[f64; 2]> {
+    let points = times.iter().zip(values);
+    points.map(|(time, value)| [time / 1e3, value]).collect()
+}
+
 /// Aspect ratio: a unit equally long on both axes or not.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Aspect {
@@ -123,6 +129,12 @@ impl LinePlot {
         }
     }
 
+    /// Curves over time in s.
+    pub fn over_time(label: impl Into<String>, series: Vec<Series>) -> Self {
+        let time = Axis::linear("time [s]", Extent::Tight);
+        Self::new(time, Axis::linear(label, Extent::Padded), series)
+    }
+
     /// The plot as an SVG document.
     pub fn svg(&self, origin: &Origin) -> String {
         let (frame, ranges) = self.layout();
@@ -157,7 +169,7 @@ impl LinePlot {
             }
             plot.border();
             let (place, size) = ([MARGIN[0], MARGIN[1] + 0.3 * TITLE], style::LABEL_SIZE);
-            canvas.text(place, &self.title, size, style::INK, Align::Left);
+            canvas.text(place, &self.title, size, Align::Left);
             let left = MARGIN[0] + frame[0] + 18.0;
             for (i, series) in entries.iter().enumerate() {
                 let place = [
@@ -233,7 +245,7 @@ impl PlotFrame<'_, '_> {
             canvas.line(&[[at, top], [at, bottom]], grid);
             canvas.line(&[[at, bottom], [at, bottom + 4.0]], tick);
             let place = [at, bottom + 13.0];
-            canvas.text(place, label, style::TICK_SIZE, style::INK, Align::Centre);
+            canvas.text(place, label, style::TICK_SIZE, Align::Centre);
         }
         for position in &ticks.minor {
             let at = self.horizontal(*position);
@@ -246,7 +258,7 @@ impl PlotFrame<'_, '_> {
             canvas.line(&[[left, at], [right, at]], grid);
             canvas.line(&[[left - 4.0, at], [left, at]], tick);
             let place = [left - 8.0, at];
-            canvas.text(place, label, style::TICK_SIZE, style::INK, Align::Right);
+            canvas.text(place, label, style::TICK_SIZE, Align::Right);
         }
         for position in &ticks.minor {
             let at = self.vertical(*position);
@@ -254,21 +266,9 @@ impl PlotFrame<'_, '_> {
         }
 
         let middle = [(left + right) / 2.0, bottom + 31.0];
-        canvas.text(
-            middle,
-            &x.label,
-            style::LABEL_SIZE,
-            style::INK,
-            Align::Centre,
-        );
+        canvas.text(middle, &x.label, style::LABEL_SIZE, Align::Centre);
         let middle = [left - 46.0, (top + bottom) / 2.0];
-        canvas.text(
-            middle,
-            &y.label,
-            style::LABEL_SIZE,
-            style::INK,
-            Align::Upwards,
-        );
+        canvas.text(middle, &y.label, style::LABEL_SIZE, Align::Upwards);
         if y.scale == Scale::Linear && self.ranges[1][0] < 0.0 && self.ranges[1][1] > 0.0 {
             let zero = self.vertical(0.0);
             canvas.line(
@@ -305,7 +305,8 @@ impl PlotFrame<'_, '_> {
                 continue;
             }
             labelled.push((at, width));
-            self.canvas.text(at, label, size, colour, Align::Centre);
+            self.canvas
+                .coloured_text(at, label, size, colour, Align::Centre);
         }
     }
 
@@ -359,11 +360,5 @@ fn legend_entry(canvas: &Canvas<'_>, [left, at]: CanvasPoint, series: &Series) {
     };
     trace(canvas, &[[left + SAMPLE / 2.0, at]], &mark);
     let place = [left + SAMPLE + 6.0, at];
-    canvas.text(
-        place,
-        &series.name,
-        style::TICK_SIZE,
-        style::INK,
-        Align::Left,
-    );
+    canvas.text(place, &series.name, style::TICK_SIZE, Align::Left);
 }

@@ -3,12 +3,11 @@ pub mod atomic;
 pub mod axes;
 pub mod body;
 pub mod canvas;
+pub mod curves;
 mod drawing;
 pub mod file_set;
 mod frame;
 pub mod gltf;
-pub mod inputs;
-pub mod joints;
 pub mod legend;
 pub mod lines;
 mod load_arrows;
@@ -27,12 +26,10 @@ pub mod skin;
 pub mod skins;
 mod snapshots;
 pub mod solids;
-mod sources;
 pub mod style;
 pub mod table;
 mod ties;
 pub mod tip_path;
-pub mod tracking;
 pub mod view;
 pub mod viewpoint;
 
@@ -44,6 +41,7 @@ use crate::math::{has_pool, join};
 use crate::model::system::InputKind;
 use crate::report::atomic::WriteError;
 use crate::report::file_set::FileSet;
+use crate::report::lines::LinePlot;
 
 /// Name of the page.
 const PAGE: &str = "report.html";
@@ -111,35 +109,29 @@ fn tables_and_figures(run: &Run<'_>) -> Vec<(&'static str, String)> {
             Some(("snapshots.svg", stills))
         },
     ];
-    let inputs = InputKind::ALL.map(|kind| move || inputs::svg(system, trajectory, kind, origin));
+    let inputs =
+        InputKind::ALL.map(|kind| move || curves::input_svg(system, trajectory, kind, origin));
+    let figure = |name, plot: Option<LinePlot>| Some((name, plot?.svg(origin)));
+    let times = &trajectory.times;
     let behind: [Maker<'_>; 6] = [
         &|| {
             let is_marked = !system.markers.is_empty();
             let svg = || tip_path::svg(system, &motions, (tracked, waypoints), view, origin);
             is_marked.then(|| ("tip_path.svg", svg()))
         },
+        &|| figure("joint_angles.svg", curves::joint_plot(system, trajectory)),
         &|| {
-            let has_any = !trajectory.coordinates(system).is_empty();
-            has_any.then(|| ("joint_angles.svg", joints::svg(system, trajectory, origin)))
+            let plot = curves::charge_plot(system, trajectory, observations);
+            figure("charge.svg", plot.filter(|_| !skins.list.is_empty()))
         },
+        &|| figure("energy.svg", curves::energy_plot(trajectory, observations)),
         &|| {
-            let charges = joints::charges(system, trajectory, observations);
-            let has_any = !skins.list.is_empty() && !charges.is_empty();
-            has_any.then(|| ("charge.svg", joints::charge_svg(charges, origin)))
+            Some((
+                "tracking.csv",
+                curves::tracking_csv(times, tracked, origin)?,
+            ))
         },
-        &|| {
-            let energies = joints::energies(trajectory, observations);
-            let has_any = !energies.is_empty();
-            has_any.then(|| ("energy.svg", joints::energy_svg(energies, origin)))
-        },
-        &|| {
-            let table = || tracking::table(&trajectory.times, tracked, origin);
-            (!tracked.is_empty()).then(|| ("tracking.csv", table()))
-        },
-        &|| {
-            let svg = || tracking::svg(&trajectory.times, tracked, origin);
-            (!tracked.is_empty()).then(|| ("tracking.svg", svg()))
-        },
+        &|| figure("tracking.svg", curves::deviation_plot(times, tracked)),
     ];
     let inputs = inputs.iter().map(|make| make as Maker<'_>);
     let makers: Vec<_> = before.into_iter().chain(inputs).chain(behind).collect();

@@ -86,7 +86,7 @@ pub(super) fn svg(
             drawing.paths(canvas, &paths.collect::<Vec<_>>());
             let place = [corner[0] + 0.5 * width, corner[1] + height + 0.6 * LABEL];
             let label = time(trajectory.times[k]);
-            canvas.text(place, &label, style::TICK_SIZE, style::INK, Align::Centre);
+            canvas.text(place, &label, style::TICK_SIZE, Align::Centre);
         }
         let left = size[0] - SIDE + GAP;
         if is_charged(system, skins) {

@@ -5,10 +5,10 @@ use nalgebra::Vector3;
 use crate::dynamics::trajectory::Trajectory;
 use crate::model::system::System;
 use crate::report::axes::{Axis, Extent};
+use crate::report::curves;
 use crate::report::lines::{Aspect, LinePlot, Mark, Series};
 use crate::report::origin::Origin;
 use crate::report::style::{self, Dash};
-use crate::report::tracking;
 use crate::report::viewpoint::Viewpoint;
 use crate::workflow::Tracked;
 
@@ -88,7 +88,7 @@ pub(super) fn plot(
         }
     }
     for marker in &system.markers {
-        if let Some(points) = tracking::reference(tracked, &marker.name, [horizontal, vertical]) {
+        if let Some(points) = curves::reference(tracked, &marker.name, [horizontal, vertical]) {
             let name = match system.markers.len() {
                 1 => "reference".to_owned(),
                 _ => format!("{}, reference", marker.name),

@@ -14,7 +14,7 @@ use proboscis::report::pose::Shown;
 use proboscis::report::skins::Skins;
 use proboscis::report::viewpoint::Viewpoint;
 use proboscis::report::{
-    PageContent, Run, inputs, markup, pose, style, table, tip_path, write_run,
+    PageContent, Run, curves, markup, pose, style, table, tip_path, write_run,
 };
 
 fn origin() -> Origin {
@@ -164,14 +164,14 @@ fn agonists_are_solid_and_antagonists_dashed() {
     let solid_alone = |trajectory: &Trajectory| {
         let mut system = system.clone();
         system.muscles.truncate(1);
-        inputs::svg(&system, trajectory, InputKind::Voltage, &origin())
+        curves::input_svg(&system, trajectory, InputKind::Voltage, &origin())
             .unwrap()
             .1
     };
     for (k, voltages) in trajectory.voltages.iter_mut().enumerate() {
         *voltages = (0..12).map(|i| 100.0 * (i + k) as f64).collect();
     }
-    let svg = inputs::svg(&system, &trajectory, InputKind::Voltage, &origin())
+    let svg = curves::input_svg(&system, &trajectory, InputKind::Voltage, &origin())
         .unwrap()
         .1;
     assert_well_formed(&svg);
@@ -187,7 +187,7 @@ fn voltage_figures_hold_from_one_to_forty_muscles() {
     for segments in [1, 6, 20] {
         let system = crate::common::trunk::system(segments);
         let trajectory = crate::common::trunk::swing(&system, 5);
-        let svg = inputs::svg(&system, &trajectory, InputKind::Voltage, &origin())
+        let svg = curves::input_svg(&system, &trajectory, InputKind::Voltage, &origin())
             .unwrap()
             .1;
         assert_well_formed(&svg);
@@ -213,7 +213,7 @@ fn what_is_not_finite_is_not_drawn() {
     let series = Series::curve("error", curve, style::INK).marked(Mark::Disc);
     let plot = LinePlot::new(Axis::log("work"), Axis::log("error"), vec![series]);
     for svg in [
-        inputs::svg(&system, &trajectory, InputKind::Voltage, &origin())
+        curves::input_svg(&system, &trajectory, InputKind::Voltage, &origin())
             .unwrap()
             .1,
         tip_path::svg(

@@ -5,10 +5,10 @@ use serde_json::{Value, json};
 use crate::dynamics::trajectory::Column;
 use crate::model::system::{InputKind, System};
 use crate::report::axes::Scale;
-use crate::report::lines::{Aspect, LinePlot, Mark, Series};
+use crate::report::lines::{Aspect, LinePlot, Mark, Series, over_time};
 use crate::report::page::scene::numbers;
 use crate::report::style::{self, Dash};
-use crate::report::{PageContent, Run, inputs, joints, sources, tip_path, tracking};
+use crate::report::{PageContent, Run, curves, tip_path};
 
 /// Panels beyond which voltages are shown as colours.
 const PANELS: usize = 12;
@@ -23,7 +23,7 @@ pub(super) fn charts(run: &Run<'_>, content: &PageContent) -> Vec<Value> {
             charts.extend(of_inputs(run, kind));
         }
         charts.extend(paths(run));
-        charts.extend(over_time(run));
+        charts.extend(charts_over_time(run));
     }
     charts.extend(plots(content).into_iter().map(|mut chart| {
         // The path of equilibria has their fraction of the voltages upwards.
@@ -42,7 +42,7 @@ pub(super) fn plots(content: &PageContent) -> Vec<Value> {
 
 /// Inputs of a kind: the sources between the same two bodies share a panel; many panels become rows of colours.
 fn of_inputs(run: &Run<'_>, kind: InputKind) -> Option<Value> {
-    let curves = inputs::curves(run.system, run.trajectory, kind);
+    let curves = curves::inputs(run.system, run.trajectory, kind);
     let (mut names, mut groups): (Vec<String>, Vec<Vec<&Series>>) = (Vec::new(), Vec::new());
     for (i, curve) in &curves {
         let name = pair(run.system, *i);
@@ -61,23 +61,12 @@ fn of_inputs(run: &Run<'_>, kind: InputKind) -> Option<Value> {
     };
     let alone = groups.len() == 1;
     let panels = names.iter().zip(&groups).map(|(name, group)| {
-        json!({
-            "title": if alone { "" } else { name },
-            "x": axis("time [s]", Scale::Linear),
-            "y": axis(&inputs::label(kind), Scale::Linear),
-            "series": group.iter().map(|one| series(one)).collect::<Vec<_>>(),
-        })
+        let curves = group.iter().map(|&one| one.clone()).collect();
+        let plot = LinePlot::over_time(curves::input_label(kind), curves);
+        panel(if alone { "" } else { name }, &plot)
     });
     let panels: Vec<Value> = panels.collect();
-    let title = match kind {
-        InputKind::Voltage => "Voltages",
-        InputKind::Force => "Forces",
-        InputKind::Torque => "Torques",
-        InputKind::Traction => "Tractions and pressures",
-        InputKind::BodyForce => "Body forces",
-        InputKind::SurfaceCharge => "Surface charges",
-        InputKind::Charge => "Charges",
-    };
+    let (_, title) = curves::input_names(kind);
     (!panels.is_empty())
         .then(|| json!({ "title": title, "kind": shown, "time": true, "panels": panels }))
 }
@@ -107,55 +96,47 @@ fn pair(system: &System, source: usize) -> String {
 }
 
 /// Quantities over time with a chart each, with a panel for each unit.
-fn over_time(run: &Run<'_>) -> Vec<Value> {
-    let (system, motion) = (run.system, run.trajectory);
-    let times = &motion.times;
-    let points = |column: &Column| -> Vec<[f64; 2]> {
-        let points = times.iter().zip(&column.values);
-        points.map(|(t, v)| [t / 1e3, *v]).collect()
-    };
-    let observed = |chosen: &dyn Fn(&Column) -> Option<String>| {
-        let columns = run.observations.columns.iter();
+fn charts_over_time(run: &Run<'_>) -> Vec<Value> {
+    let (system, motion, observed) = (run.system, run.trajectory, run.observations);
+    let named = |chosen: &dyn Fn(&Column) -> Option<String>| {
+        let columns = observed.columns.iter();
         let named = columns.filter_map(|column| Some((chosen(column)?, column)));
-        let curve = |(i, (name, column))| Series::curve(name, points(column), style::hue(i));
+        let curve = |(i, (name, column)): (usize, (String, &Column))| {
+            let points = over_time(&motion.times, column.values.iter().copied());
+            Series::curve(name, points, style::hue(i))
+        };
         named.enumerate().map(curve).collect::<Vec<_>>()
     };
-    let of_sources = |end: &str| {
-        let columns = run.observations.columns.iter();
-        let columns = columns.filter(|column| column.name != "mechanical_work");
-        let named = columns.filter_map(|c| Some((c.name.strip_suffix(end)?, points(c))));
-        sources::curves(system, named)
-    };
-    let begins = |start: &'static str| {
-        move |column: &Column| Some(column.name.strip_prefix(start)?.to_owned())
+    let begins = |column: &Column, start: &str, about: &str| {
+        let axis = column.name.strip_prefix(start)?;
+        Some(format!("{about}{axis}"))
     };
     let marker = |column: &Column| {
         let (name, axis) = column.name.rsplit_once('_')?;
         let is = column.unit == "mm" && system.markers.iter().any(|marker| marker.name == name);
         is.then(|| format!("{name} {axis}"))
     };
-    let energy =
-        |column: &Column| joints::is_energy(&column.name).then(|| column.name.replace('_', " "));
     let violation = |column: &Column| {
         (column.name == "constraint_violation").then(|| "constraint violation".to_owned())
     };
-    let mut momenta = observed(&begins("angular_momentum_"));
-    momenta
-        .iter_mut()
-        .for_each(|series| series.name.insert_str(0, "about "));
-    let charges = joints::charges(system, motion, run.observations);
+    let linear = named(&|column| begins(column, "linear_momentum_", ""));
+    let angular = named(&|column| begins(column, "angular_momentum_", "about "));
     let alone = |label: &'static str, curves: Vec<Series>| vec![(label, curves)];
-    let of_each = |title: &'static str, label, end: &str| (title, alone(label, of_sources(end)));
+    let of_each = |title: &'static str, label, end: &str| {
+        let curves = curves::of_sources(system, motion, observed, end);
+        (title, alone(label, curves))
+    };
+    let energies = curves::energies(motion, observed);
     let all = [
-        ("Joints", joints::by_unit(system, motion)),
-        ("Markers", alone("place [mm]", observed(&marker))),
-        ("Deviations", tracking::by_unit(times, run.tracked)),
+        ("Joints", curves::joints(system, motion)),
+        ("Markers", alone("place [mm]", named(&marker))),
+        ("Deviations", curves::deviations(&motion.times, run.tracked)),
         of_each("Stretches", "stretch", "_stretch"),
         of_each("Tensions", "tension [N]", "_tension"),
-        ("Charges", vec![joints::scaled_charges(charges)]),
+        ("Charges", vec![curves::charges(system, motion, observed)]),
         of_each("Voltages of electrodes", "voltage [V]", "_voltage"),
         of_each("Electric fields", "field [V/µm]", "_field"),
-        ("Energies", alone("energy [mJ]", observed(&energy))),
+        ("Energies", alone("energy [mJ]", energies)),
         of_each(
             "Energy from each source",
             "energy [mJ]",
@@ -164,19 +145,19 @@ fn over_time(run: &Run<'_>) -> Vec<Value> {
         of_each("Work of each source", "work [mJ]", "_mechanical_work"),
         (
             "Linear momentum, conserved without ground and weight",
-            alone("momentum [N ms]", observed(&begins("linear_momentum_"))),
+            alone("momentum [N ms]", linear),
         ),
         (
             "Angular momentum, conserved without ground and weight",
-            alone("momentum [N mm ms]", momenta),
+            alone("momentum [N mm ms]", angular),
         ),
         (
             "Constraint violation",
-            alone("violation", observed(&violation)),
+            alone("violation", named(&violation)),
         ),
     ];
     let each = all.into_iter().filter_map(|(title, panels)| {
-        let panels: Vec<Value> = panels.iter().filter_map(of_time).collect();
+        let panels: Vec<Value> = panels.into_iter().filter_map(of_time).collect();
         let chart = json!({ "title": title, "kind": "panels", "time": true, "panels": panels });
         (!panels.is_empty()).then_some(chart)
     });
@@ -184,17 +165,10 @@ fn over_time(run: &Run<'_>) -> Vec<Value> {
 }
 
 /// A panel of curves over time; what stays zero, such as the violation of constraints that were eliminated, has none.
-fn of_time((label, curves): &(&str, Vec<Series>)) -> Option<Value> {
+fn of_time((label, curves): (&str, Vec<Series>)) -> Option<Value> {
     let mut values = curves.iter().flat_map(|one| &one.points);
     let exists = values.any(|point| point[1].is_finite() && point[1] != 0.0);
-    exists.then(|| {
-        json!({
-            "title": "",
-            "x": axis("time [s]", Scale::Linear),
-            "y": axis(label, Scale::Linear),
-            "series": curves.iter().map(series).collect::<Vec<_>>(),
-        })
-    })
+    exists.then(|| panel("", &LinePlot::over_time(label, curves)))
 }
 
 /// Paths of the markers in the three planes of the axes.

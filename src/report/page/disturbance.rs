@@ -3,7 +3,7 @@
 use serde_json::{Value, json};
 
 use crate::report::axes::Scale;
-use crate::report::lines::Series;
+use crate::report::lines::{Series, over_time};
 use crate::report::page::charts::{axis, series};
 use crate::report::style::{self, Dash};
 use crate::workflow::Tracked;
@@ -54,12 +54,7 @@ fn panels(parts: &[DisturbedLoop], place: usize) -> Vec<Value> {
     } else {
         let (unit, factor) = unit(first);
         let of = |one: &Tracked, times: &[f64], is_reference: bool| {
-            let values = path(one, 0, is_reference, factor).into_iter();
-            times
-                .iter()
-                .zip(values)
-                .map(|(t, v)| [t / 1e3, v])
-                .collect()
+            over_time(times, path(one, 0, is_reference, factor))
         };
         let label = format!("{name} [{unit}]");
         let curves = curves(parts, place, (&of, true));
@@ -67,8 +62,7 @@ fn panels(parts: &[DisturbedLoop], place: usize) -> Vec<Value> {
     }
     let (unit, factor) = unit(first);
     let of = |one: &Tracked, times: &[f64], _: bool| {
-        let values = times.iter().zip(&one.deviation);
-        values.map(|(t, v)| [t / 1e3, factor * v]).collect()
+        over_time(times, one.deviation.iter().map(|v| factor * v))
     };
     let label = format!("deviation [{unit}]");
     let title = format!("{name}, distance from the reference");

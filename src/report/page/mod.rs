@@ -19,34 +19,24 @@ use crate::report::{PageContent, Run};
 pub fn html(run: &Run<'_>, content: &PageContent) -> String {
     let run = &run.along_branch();
     let of_disturbance = disturbance::chart(run.disturbed).into_iter();
-    let charts = charts::charts(run, content);
-    let charts: Vec<Value> = of_disturbance.chain(charts).collect();
-    let documents = content.documents.iter();
-    let documents = documents.map(|(name, text)| json!({ "name": name, "text": text }));
-    let data = json!({
-        "title": content.title,
-        "system": run.system.name,
-        "isSolved": content.is_solved,
-        "answer": content.answer,
-        "notes": content.notes,
-        "rows": content.rows,
-        "command": run.origin.command,
-        "scene": scene::scene(run),
-        "charts": charts,
-        "documents": documents.collect::<Vec<_>>(),
-    });
-    page(
-        &format!("{}: {}", run.system.name, content.title),
-        run.origin,
-        &data,
-    )
+    let charts = of_disturbance.chain(charts::charts(run, content)).collect();
+    let mut data = data(&run.system.name, content, charts, run.origin);
+    data["scene"] = scene::scene(run);
+    let title = format!("{}: {}", run.system.name, content.title);
+    page(&title, run.origin, &data)
 }
 
 /// A page of plots and words without a motion; `subject` stands before the title.
 pub fn of_plots(subject: &str, content: &PageContent, origin: &Origin) -> String {
+    let data = data(subject, content, charts::plots(content), origin);
+    page(&format!("{subject}: {}", content.title), origin, &data)
+}
+
+/// The contents of a page but its scene.
+fn data(subject: &str, content: &PageContent, charts: Vec<Value>, origin: &Origin) -> Value {
     let documents = content.documents.iter();
     let documents = documents.map(|(name, text)| json!({ "name": name, "text": text }));
-    let data = json!({
+    json!({
         "title": content.title,
         "system": subject,
         "isSolved": content.is_solved,
@@ -54,10 +44,9 @@ pub fn of_plots(subject: &str, content: &PageContent, origin: &Origin) -> String
         "notes": content.notes,
         "rows": content.rows,
         "command": origin.command,
-        "charts": charts::plots(content),
+        "charts": charts,
         "documents": documents.collect::<Vec<_>>(),
-    });
-    page(&format!("{subject}: {}", content.title), origin, &data)
+    })
 }
 
 /// A page with its title, its origin, and its contents.

@@ -1,0 +1,291 @@
+//! Curves over time of a motion, which look the same in figures and charts: inputs, joint coordinates, deviations, charges and energies.
+
+use crate::dynamics::trajectory::{Observations, Trajectory};
+use crate::model::system::{InputKind, System};
+use crate::report::axes::Extent;
+use crate::report::lines::{LinePlot, Series, over_time};
+use crate::report::origin::Origin;
+use crate::report::style;
+use crate::report::table::csv;
+use crate::workflow::Tracked;
+
+/// Steps (time in s; kV, N or N m) of one source: each value from the start of its interval to the end.
+fn steps(trajectory: &Trajectory, source: usize, kind: InputKind) -> Vec<[f64; 2]> {
+    let (_, unit) = kind.counted();
+    let ends = trajectory.times.windows(2);
+    ends.zip(&trajectory.voltages)
+        .flat_map(|(ends, row)| [[ends[0], row[source]], [ends[1], row[source]]])
+        .map(|[time, value]| [time / 1e3, value / unit])
+        .collect()
+}
+
+/// The curves of all sources of a kind, each with its number: of voltages agonists solid, antagonists dashed.
+pub(super) fn inputs(
+    system: &System,
+    trajectory: &Trajectory,
+    kind: InputKind,
+) -> Vec<(usize, Series)> {
+    let sources = system.sources().into_iter().enumerate();
+    // A muscle whose charge is given takes no voltage.
+    let curve = sources.filter(|(i, source)| source.kind == kind && !system.is_charged(*i));
+    let curve = curve.map(|(i, source)| {
+        let (colour, dash) = style::muscle(i);
+        let steps = steps(trajectory, i, kind);
+        (i, Series::curve(&source.name, steps, colour).dashed(dash))
+    });
+    curve.collect()
+}
+
+/// Label of the axis of a kind.
+pub(super) fn input_label(kind: InputKind) -> String {
+    format!("{} [{}]", kind.name(), kind.counted().0)
+}
+
+/// Name of the figure of a kind, and title of its chart.
+pub(super) fn input_names(kind: InputKind) -> (&'static str, &'static str) {
+    match kind {
+        InputKind::Voltage => ("voltages.svg", "Voltages"),
+        InputKind::Force => ("forces.svg", "Forces"),
+        InputKind::Torque => ("torques.svg", "Torques"),
+        InputKind::Traction => ("tractions.svg", "Tractions and pressures"),
+        InputKind::BodyForce => ("body_forces.svg", "Body forces"),
+        InputKind::SurfaceCharge => ("surface_charges.svg", "Surface charges"),
+        InputKind::Charge => ("charges.svg", "Charges"),
+    }
+}
+
+/// `voltages.svg`, `forces.svg`, `body_forces.svg` …: the inputs of a kind over time in s, where there are any.
+pub fn input_svg(
+    system: &System,
+    trajectory: &Trajectory,
+    kind: InputKind,
+    origin: &Origin,
+) -> Option<(&'static str, String)> {
+    let curves = inputs(system, trajectory, kind).into_iter();
+    let mut plot = plot(input_label(kind), curves.map(|(_, curve)| curve).collect())?;
+    if kind == InputKind::Voltage {
+        plot.y.extent = Extent::FromZero;
+    }
+    Some((input_names(kind).0, plot.svg(origin)))
+}
+
+/// A plot over time in s; none without curves.
+fn plot(label: impl Into<String>, curves: Vec<Series>) -> Option<LinePlot> {
+    (!curves.is_empty()).then(|| LinePlot::over_time(label, curves))
+}
+
+/// Two units of curves with the labels of their axes, and the label of an axis of both.
+struct Labels {
+    of_units: [(&'static str, &'static str); 2],
+    of_both: &'static str,
+}
+
+/// Angles in degrees and displacements in mm.
+const JOINTS: Labels = Labels {
+    of_units: [
+        ("rad", "joint angle [°]"),
+        ("mm", "joint displacement [mm]"),
+    ],
+    of_both: "joint coordinate [°, mm]",
+};
+
+/// Distances in mm and angles in degrees.
+const DEVIATIONS: Labels = Labels {
+    of_units: [("m", "deviation [mm]"), ("rad", "deviation [°]")],
+    of_both: "deviation [°, mm]",
+};
+
+/// Curves with their units.
+type WithUnit = Vec<(&'static str, Series)>;
+
+impl Labels {
+    /// Curves by their units, each with the label of its axis.
+    fn by_unit(&self, curves: &WithUnit) -> Vec<(&'static str, Vec<Series>)> {
+        let of = |unit| curves.iter().filter(move |(other, _)| *other == unit);
+        let each = self.of_units;
+        each.map(|(unit, label)| (label, of(unit).map(|(_, curve)| curve.clone()).collect()))
+            .to_vec()
+    }
+
+    /// All curves over one axis.
+    fn plot(&self, curves: WithUnit) -> Option<LinePlot> {
+        let has = |unit| curves.iter().any(|(other, _)| *other == unit);
+        let [(first, of_first), (second, of_second)] = self.of_units;
+        let label = match (has(first), has(second)) {
+            (_, false) => of_first,
+            (false, true) => of_second,
+            (true, true) => self.of_both,
+        };
+        plot(label, curves.into_iter().map(|(_, curve)| curve).collect())
+    }
+}
+
+/// Factor from rad or mm to degrees or mm.
+fn shown(unit: &str) -> f64 {
+    match unit {
+        "rad" => 1_f64.to_degrees(),
+        _ => 1.0,
+    }
+}
+
+fn of_joints(system: &System, trajectory: &Trajectory) -> WithUnit {
+    let coordinates = trajectory.coordinates(system).into_iter().enumerate();
+    let curve = coordinates.map(|(i, coordinate)| {
+        let unit = coordinate.unit;
+        let values = trajectory.joints.iter().map(|u| shown(unit) * u[i]);
+        let points = over_time(&trajectory.times, values);
+        (unit, Series::curve(coordinate.name, points, style::hue(i)))
+    });
+    curve.collect()
+}
+
+/// Joint coordinates by their units, each with the label of its axis.
+pub(super) fn joints(system: &System, trajectory: &Trajectory) -> Vec<(&'static str, Vec<Series>)> {
+    JOINTS.by_unit(&of_joints(system, trajectory))
+}
+
+/// `joint_angles.svg`: joint coordinates over time in s.
+pub(super) fn joint_plot(system: &System, trajectory: &Trajectory) -> Option<LinePlot> {
+    JOINTS.plot(of_joints(system, trajectory))
+}
+
+fn of_deviations(times: &[f64], tracked: &[Tracked]) -> WithUnit {
+    let curve = |(i, one): (usize, &Tracked)| {
+        let values = one.deviation.iter().map(|e| shown(one.unit) * e);
+        let points = over_time(times, values);
+        (one.unit, Series::curve(&one.name, points, style::hue(i)))
+    };
+    tracked.iter().enumerate().map(curve).collect()
+}
+
+/// Deviations of markers and joints from their references by their units, each with the label of its axis.
+pub(super) fn deviations(times: &[f64], tracked: &[Tracked]) -> Vec<(&'static str, Vec<Series>)> {
+    DEVIATIONS.by_unit(&of_deviations(times, tracked))
+}
+
+/// `tracking.svg`: deviations over time in s.
+pub(super) fn deviation_plot(times: &[f64], tracked: &[Tracked]) -> Option<LinePlot> {
+    DEVIATIONS.plot(of_deviations(times, tracked))
+}
+
+/// `tracking.csv`: one row per instant with each coordinate, its reference, and the deviation; none where nothing is followed.
+pub(super) fn tracking_csv(times: &[f64], tracked: &[Tracked], origin: &Origin) -> Option<String> {
+    let mut header = vec!["time [ms]".to_owned()];
+    let mut columns: Vec<&[f64]> = vec![times];
+    for one in tracked {
+        let unit = match one.unit {
+            "m" => "mm",
+            unit => unit,
+        };
+        for path in &one.paths {
+            header.push(format!("{} [{unit}]", path.name));
+            header.push(format!("{}_reference [{unit}]", path.name));
+            columns.extend([&path.value[..], &path.reference[..]]);
+        }
+        header.push(format!("{}_deviation [{unit}]", one.name));
+        columns.push(&one.deviation);
+    }
+    let rows = (0..times.len()).map(|k| columns.iter().map(move |column| column[k]));
+    (!tracked.is_empty()).then(|| csv(&origin.line(), header.into_iter(), rows))
+}
+
+/// The path that a marker follows in a plane, where it follows one in both directions.
+pub(super) fn reference(
+    tracked: &[Tracked],
+    marker: &str,
+    plane: [usize; 2],
+) -> Option<Vec<[f64; 2]>> {
+    let of = |one: &&Tracked| one.kind == "marker" && one.name == marker;
+    let one = tracked.iter().find(of)?;
+    let along = |axis: usize| one.paths.iter().find(|path| path.axis == Some(axis));
+    let [a, b] = plane.map(along);
+    let points = a?.reference.iter().zip(&b?.reference);
+    Some(points.map(|(&a, &b)| [a, b]).collect())
+}
+
+/// Curves by the names of their sources in columns with an ending; each has the name and the look of the voltage of its source. What no voltage
+/// drives, such as a grounded electrode, has a look of its own.
+pub(super) fn of_sources(
+    system: &System,
+    trajectory: &Trajectory,
+    observations: &Observations,
+    end: &str,
+) -> Vec<Series> {
+    let sources = system.sources();
+    let mut others = sources.len().div_ceil(2)..;
+    let mut look = |name: &str, points| {
+        let is = |source: &str| source.replace('.', "_") == name.replace('.', "_");
+        match sources.iter().position(|source| is(&source.name)) {
+            Some(i) => {
+                let (colour, dash) = style::muscle(i);
+                Series::curve(&sources[i].name, points, colour).dashed(dash)
+            }
+            None => {
+                let hue = style::hue(others.next().unwrap_or(0));
+                Series::curve(name.replace('_', " "), points, hue)
+            }
+        }
+    };
+    let columns = observations.columns.iter();
+    let columns = columns.filter(|column| column.name != "mechanical_work");
+    let named = columns.filter_map(|column| {
+        let points = over_time(&trajectory.times, column.values.iter().copied());
+        Some(look(column.name.strip_suffix(end)?, points))
+    });
+    named.collect()
+}
+
+/// The observed charges of electrodes and muscles over time in s, in the unit that suits the largest, and the label of their axis.
+pub(super) fn charges(
+    system: &System,
+    trajectory: &Trajectory,
+    observations: &Observations,
+) -> (&'static str, Vec<Series>) {
+    let mut charges = of_sources(system, trajectory, observations, "_charge");
+    let values = charges.iter().flat_map(|series| &series.points);
+    let largest = values.map(|p| p[1].abs()).filter(|q| q.is_finite());
+    let (label, factor) = match largest.fold(0.0, f64::max) {
+        q if q >= 1.0 => ("charge [mC]", 1.0),
+        q if q >= 1e-3 => ("charge [µC]", 1e3),
+        q if q >= 1e-6 => ("charge [nC]", 1e6),
+        _ => ("charge [pC]", 1e9),
+    };
+    let points = charges.iter_mut().flat_map(|series| &mut series.points);
+    points.for_each(|p| p[1] *= factor);
+    (label, charges)
+}
+
+/// `charge.svg`: the charges over time in s.
+pub(super) fn charge_plot(
+    system: &System,
+    trajectory: &Trajectory,
+    observations: &Observations,
+) -> Option<LinePlot> {
+    let (label, charges) = charges(system, trajectory, observations);
+    plot(label, charges)
+}
+
+/// The observed columns that are energies of the system, over time in s; in N mm, which is mJ.
+pub(super) fn energies(trajectory: &Trajectory, observations: &Observations) -> Vec<Series> {
+    let columns = observations.columns.iter();
+    let energies = columns.filter(|column| is_energy(&column.name)).enumerate();
+    let curve = energies.map(|(i, column)| {
+        let points = over_time(&trajectory.times, column.values.iter().copied());
+        Series::curve(column.name.replace('_', " "), points, style::hue(i))
+    });
+    curve.collect()
+}
+
+/// Returns true if a column is an energy of the system, not of one of many sources.
+fn is_energy(name: &str) -> bool {
+    let is_of_one = ["_electrical_energy", "_mechanical_work"].map(|end| name.ends_with(end));
+    (name.contains("energy") && is_of_one == [false; 2]) || name == "mechanical_work"
+}
+
+/// `energy.svg`: the energies over time in s.
+pub(super) fn energy_plot(
+    trajectory: &Trajectory,
+    observations: &Observations,
+) -> Option<LinePlot> {
+    plot("energy [mJ]", energies(trajectory, observations))
+}
