@@ -6,7 +6,7 @@ use crate::choices::{Engine, Export, View};
 use clap::{Args, Parser, Subcommand, ValueEnum, value_parser};
 use clap_complete::Shell;
 use proboscis::app::{CommandInput, PageWanted, ProgressDisplay};
-use proboscis::report::{Figures, shell};
+use proboscis::report::{Figures, quoting};
 use proboscis::study::StudyRequest;
 use proboscis::sweep::{Shard, SweepRequest};
 use proboscis::workflow::accuracy::AccuracyTarget;
@@ -347,7 +347,7 @@ pub(crate) fn typed() -> String {
     let words = std::env::args_os().skip(1);
     let words = words.map(|word| word.to_string_lossy().into_owned());
     let command = ["proboscis".to_owned()].into_iter().chain(words);
-    shell::command(command)
+    quoting::command(command)
 }
 
 fn shown(quiet: bool) -> ProgressDisplay {

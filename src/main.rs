@@ -213,15 +213,11 @@ fn output_of(
     stop::install(tell);
     let output = match run(request) {
         // What was found is told in the summary, which is written.
-        Err(error @ (CommandError::NoEquilibrium { .. } | CommandError::Unsolved { .. }))
-            if json =>
-        {
-            CommandOutput {
-                is_solved: false,
-                result: String::new(),
-                notes: vec![format!("error: {}", message(&error.to_string()))],
-            }
-        }
+        Err(error) if json && error.unanswered().is_some() => CommandOutput {
+            is_solved: false,
+            result: String::new(),
+            notes: vec![format!("error: {}", message(&error.to_string()))],
+        },
         other => other?,
     };
     Ok(match json {

@@ -1,14 +1,12 @@
 //! Skips a run whose complete result exists.
 
 use crate::app::error::CommandError;
-use crate::app::record::{Ending, FileRecords, Found, OF_RUN, digest, digest_of};
+use crate::app::record::{Ending, FileRecords, FolderRecord, Found, OF_RUN, digest, digest_of};
 use crate::app::request::{CommandInput, CommandOutput};
 use crate::app::task::{read, run};
 use crate::control::problem::{Control, Guess, Task};
+use crate::files::Loaded;
 use crate::files::solution::file_beside;
-use crate::files::{Loaded, lay_out};
-use crate::report::atomic;
-use crate::report::atomic::WriteError;
 use crate::report::origin::Origin;
 use serde::{Deserialize, Serialize};
 use std::path::Path;
@@ -33,7 +31,7 @@ pub fn run_once(request: &CommandInput) -> Result<CommandOutput, CommandError> {
     let loaded = read(&request.input, None, &request.set)?;
     let identity = Identity::of_run(&loaded, request);
     let folder = request.folder();
-    let deviation = match found(&folder, &identity) {
+    let deviation = match Record::found(&folder, identity.as_str()) {
         Found::Whole(record) => {
             return Ok(CommandOutput {
                 is_solved: record.is_solved,
@@ -46,45 +44,30 @@ pub fn run_once(request: &CommandInput) -> Result<CommandOutput, CommandError> {
     };
     let mut output = run(request)?;
     if Ending::of_folder(&folder).is_some_and(|ending| !ending.is_unfinished()) {
-        write(&folder, &identity, &output)?;
+        let mut record = Record {
+            identity: identity.as_str().to_owned(),
+            is_solved: output.is_solved,
+            result: output.result.clone(),
+            notes: output.notes.clone(),
+            files: FileRecords::default(),
+        };
+        record.write(&folder)?;
     }
     let again = deviation.map(|words| format!("made again: {words}"));
     output.notes.splice(0..0, again);
     Ok(output)
 }
 
-/// Returns the result of a run that a folder holds.
-fn found(folder: &Path, identity: &Identity) -> Found<Record> {
-    let Ok(text) = fs::read_to_string(folder.join(OF_RUN)) else {
-        return Found::Nothing;
-    };
-    let Ok(record) = serde_json::from_str::<Record>(&text) else {
-        return Found::Deviates(format!("{OF_RUN} is no record"));
-    };
-    if record.identity != identity.as_str() {
-        return Found::Nothing;
-    }
-    match record.files.deviation(folder) {
-        Some(words) => Found::Deviates(words),
-        None => Found::Whole(record),
-    }
-}
+impl FolderRecord for Record {
+    const NAME: &'static str = OF_RUN;
 
-fn write(folder: &Path, identity: &Identity, output: &CommandOutput) -> Result<(), WriteError> {
-    let path = folder.join(OF_RUN);
-    let files = FileRecords::from_folder(folder).map_err(|cause| WriteError {
-        path: path.clone(),
-        cause,
-    })?;
-    let record = Record {
-        identity: identity.as_str().to_owned(),
-        is_solved: output.is_solved,
-        result: output.result.clone(),
-        notes: output.notes.clone(),
-        files,
-    };
-    let text = serde_json::to_string(&record).expect("words and numbers are JSON");
-    atomic::write(&path, lay_out(&text).as_bytes())
+    fn identity(&self) -> &str {
+        &self.identity
+    }
+
+    fn files(&mut self) -> &mut FileRecords {
+        &mut self.files
+    }
 }
 
 /// Digits of an identity.

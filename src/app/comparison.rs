@@ -190,24 +190,15 @@ impl Accuracy {
     /// The accuracy of a run that is `done` ("solved", "simulated"), in words, and true if that is what was asked for.
     pub(super) fn outcome(&self, done: &str) -> (String, bool) {
         let error = greatest(&self.estimate);
-        let of = |(name, error): (&str, f64)| format!("{error:.1e} ({name})");
-        match (self.requested, error) {
-            (None, Some(found)) => (format!("{done}, error about {}", of(found)), true),
-            (None, None) => (format!("{done}, error not known"), true),
-            (Some(_), Some(found)) if self.is_met == Some(true) => {
-                (format!("{done}, error about {}", of(found)), true)
+        let found = error.map_or_else(
+            || "error not known".to_owned(),
+            |(name, error)| format!("error about {error:.1e} ({name})"),
+        );
+        match self.requested {
+            Some(asked) if error.is_none() || self.is_met != Some(true) => {
+                (format!("{done}, but not to {asked:e}: {found}"), false)
             }
-            (Some(asked), Some(found)) => {
-                let found = of(found);
-                (
-                    format!("{done}, but not to {asked:e}: error about {found}"),
-                    false,
-                )
-            }
-            (Some(asked), None) => (
-                format!("{done}, but not to {asked:e}: error not known"),
-                false,
-            ),
+            _ => (format!("{done}, {found}"), true),
         }
     }
 }

@@ -124,10 +124,7 @@ impl DisplayedMotion {
                 shown.notes.push(format!(
                     "tables, figures and page show {instants} of {of} instants, between which nothing is lost to the eye; {TABLES} and the solution have all, \"output\": {{\"every\": …}} chooses"
                 ));
-                let bytes = bytes.map_err(|cause| WriteError {
-                    path: files.folder().join(TABLES),
-                    cause,
-                })?;
+                let bytes = bytes.map_err(WriteError::at(files.folder().join(TABLES)))?;
                 files.add(TABLES, &bytes)?;
             }
             _ => files.remove(TABLES),

@@ -11,9 +11,8 @@ use crate::app::overwrite_check::{make_folder_of, refuse_foreign};
 use crate::app::progress::Progress;
 use crate::app::request::{CommandInput, CommandOutput};
 use crate::app::summary::{MEASURED, Seconds, Summary};
-use crate::app::{fields, page, path};
+use crate::app::{fields, path};
 use crate::control::problem::{AtRest, Task};
-use crate::dynamics::trajectory::Observations;
 use crate::dynamics::{UNSTABLE, observations};
 use crate::files::{Loaded, driven_voltages, read_problem, read_system};
 use crate::model::{Model, Response, System};
@@ -35,7 +34,7 @@ pub fn equilibrium_of_file(
     voltages: Option<&[String]>,
 ) -> Result<CommandOutput, CommandError> {
     let began = Instant::now();
-    let _progress = Progress::of_phases(request.progress);
+    let _progress = Progress::of_solve(request.progress);
     phase("reading");
     refuse_foreign(request)?;
     if let Some(voltages) = voltages {
@@ -77,8 +76,7 @@ pub(super) fn at(
     began: Instant,
 ) -> Result<CommandOutput, CommandError> {
     let read = began.elapsed().as_secs_f64();
-    let left = |seconds| seconds - read;
-    let watch = stop::watch(request.max_seconds.map(left));
+    let watch = stop::watch(request.max_seconds.map(|seconds| seconds - read));
     if let Some(points) = task.path {
         return path::follow(request, loaded, system, task, points, began);
     }
@@ -98,7 +96,8 @@ pub(super) fn at(
         discrete,
         ..
     } = &result;
-    let still = Still::new(&result);
+    let observed = at_rest(observations(model, discrete));
+    let rest = describe(&result, &observed);
     let folder = make_folder_of(request)?;
     let writing = Instant::now();
     let origin = request.origin(false);
@@ -107,28 +106,27 @@ pub(super) fn at(
     let status = loss.map_or(result.found.status(), status);
     let mut summary = Summary::new(request, status, model.coordinates.name());
     summary.message = match loss {
-        Some(loss) => Some(lost(&still.rest, *loss, &folder)),
-        None => (status == UNSTABLE).then(|| still.rest.verdict()),
+        Some(loss) => Some(lost(&rest, *loss, &folder)),
+        None => (status == UNSTABLE).then(|| rest.verdict()),
     };
     summary.domain.clone_from(&result.outside);
     summary.notes.clone_from(&result.remarks);
     summary.plan = Plan::from_model(model, None, MEASURED);
-    summary.blocks =
-        BlockSizes::from_model(model).map(|b| b.after(model, &still.observed, written));
+    summary.blocks = BlockSizes::from_model(model).map(|b| b.after(model, &observed, written));
     summary.seconds = Seconds {
         total: began.elapsed().as_secs_f64(),
         setup: read + result.setup,
         ..Seconds::default()
     };
-    let output = command_output(&summary, model, &still.rest, &folder);
-    let rows = rows(&still.rest, status);
-    summary.rest = Some(still.rest);
+    let output = command_output(&summary, model, &rest, &folder);
+    let rows = rows(&rest, status);
+    summary.rest = Some(rest);
     let title = match loss {
         None if status == UNSTABLE => "An unstable equilibrium",
         None => "Static equilibrium",
         Some(_) => "The last equilibrium",
     };
-    let mut page = page::content(title, &summary, loaded);
+    let mut page = summary.page(title, loaded);
     page.rows = rows;
     let skins = Skins::new(model, discrete);
     let run = Run {
@@ -140,7 +138,7 @@ pub(super) fn at(
             &model.system,
             &result.trajectory,
             &skins,
-            &still.observed,
+            &observed,
             &origin,
         )
     };
@@ -148,29 +146,6 @@ pub(super) fn at(
     summary.seconds.wrote(began, writing);
     summary.write(files)?;
     Ok(output)
-}
-
-/// Observations of an equilibrium.
-struct Still {
-    observed: Observations,
-    rest: Rest,
-}
-
-impl Still {
-    fn new(result: &EquilibriumResult) -> Self {
-        let EquilibriumResult {
-            model,
-            found,
-            loss,
-            discrete,
-            trajectory,
-            ..
-        } = result;
-        let observed = at_rest(observations(model, discrete));
-        let mut rest = describe(model, discrete, trajectory, &observed, found, *loss);
-        rest.largest_nominal_field = fields::largest_nominal_field(model, discrete, 0);
-        Self { observed, rest }
-    }
 }
 
 /// The answer of the command; an equilibrium that is unstable or was lost has a message.

@@ -1,19 +1,19 @@
-//! A static equilibrium in words and in `summary.json`: joint coordinates, marker places, stiffness, and the route to it.
+//! A static equilibrium, and a path of equilibria, in words and in `summary.json`: joint coordinates, marker places, stiffness, and the route to it.
 
-use std::collections::BTreeMap;
-use std::path::Path;
-
-use serde::Serialize;
-
+use crate::app::fields;
 use crate::app::linear_systems::MultigridCounts;
-use crate::dynamics::trajectory::{Column, Observations, Trajectory};
+use crate::dynamics::trajectory::{Column, Observations};
 use crate::dynamics::{
-    DiscreteTrajectory, Equilibrium, Instability, Load, LowestMode, Route, Softening, StabilityLoss,
+    Continuation, Instability, Load, LowestMode, Route, Softening, StabilityLoss,
 };
 use crate::model::Model;
 use crate::model::system::{Joint, JointKind};
 use crate::report::table;
+use crate::tasks::EquilibriumResult;
 use crate::workflow::motion::solved;
+use serde::Serialize;
+use std::collections::BTreeMap;
+use std::path::Path;
 
 /// A static equilibrium, or the last one on the way to the loads asked for.
 #[derive(Debug, Serialize)]
@@ -25,7 +25,7 @@ pub(super) struct Rest {
     fraction: Option<f64>,
     /// Largest electric field of an element of a block in its reference configuration in V/m.
     #[serde(skip_serializing_if = "Option::is_none")]
-    pub(super) largest_nominal_field: Option<f64>,
+    largest_nominal_field: Option<f64>,
     /// Coordinate of each joint in rad or m.
     joints: BTreeMap<String, f64>,
     /// Place of each marker in m.
@@ -107,10 +107,10 @@ pub(super) fn status(loss: StabilityLoss) -> &'static str {
     loss.kind.map_or("limit_point", Instability::key)
 }
 
-fn load(load: Load) -> (&'static str, &'static str) {
+fn load(load: Load) -> &'static str {
     match load {
-        Load::Forces => ("loads", "loads"),
-        Load::Voltages => ("voltages", "voltages"),
+        Load::Forces => "loads",
+        Load::Voltages => "voltages",
     }
 }
 
@@ -122,14 +122,16 @@ fn kind(loss: StabilityLoss) -> &'static str {
 const MIXED: &str = "N mm, coordinates in rad and lengths of the system";
 
 /// Describes an equilibrium; the last one where growing loads lose it.
-pub(super) fn describe(
-    model: &Model,
-    state: &DiscreteTrajectory,
-    motion: &Trajectory,
-    observed: &Observations,
-    found: &Equilibrium,
-    failure: Option<StabilityLoss>,
-) -> Rest {
+pub(super) fn describe(result: &EquilibriumResult, observed: &Observations) -> Rest {
+    let EquilibriumResult {
+        model,
+        found,
+        loss: failure,
+        discrete: state,
+        trajectory: motion,
+        ..
+    } = result;
+    let failure = *failure;
     let system = &model.system;
     let kept = solved(model, state, None);
     let joints = system.joints.iter().zip(&kept.joints[0]);
@@ -159,7 +161,7 @@ pub(super) fn describe(
             Load::Forces => 0.0,
             Load::Voltages => loss.fraction,
         }),
-        largest_nominal_field: None,
+        largest_nominal_field: fields::largest_nominal_field(model, state, 0),
         joints: joints
             .filter(|(joint, _)| joint.has_coordinate())
             .map(|(joint, &value)| {
@@ -188,7 +190,7 @@ pub(super) fn describe(
             (None, Route::DampedMotion(_)) => "damped_motion",
         },
         lost: failure.or(found.loss()).map(|loss| Lost {
-            load: load(loss.load).0,
+            load: load(loss.load),
             fraction: loss.fraction,
             kind: status(loss),
         }),
@@ -267,11 +269,8 @@ impl Rest {
                 "path_continued" => "on the continued path",
                 _ => "by damped motion from an unstable state",
             };
-            let (what, kind) = match lost.load {
-                "loads" => ("loads", lost.kind),
-                _ => ("voltages", lost.kind),
-            };
-            let kind = kind.replace('_', " ").replace("pull in", "pull-in");
+            let what = lost.load;
+            let kind = lost.kind.replace('_', " ").replace("pull in", "pull-in");
             text.push_str(&match lost.fraction > 0.0 {
                 true => format!(
                     " {place}: growing {what} lose theirs at {:.4} % ({kind})",
@@ -290,7 +289,7 @@ pub(super) fn lost(rest: &Rest, loss: StabilityLoss, folder: &Path) -> String {
         "no equilibrium was found, neither on the path of growing loads nor by damped motion from it: {} at {:.6} % of the {}",
         kind(loss),
         100.0 * loss.fraction,
-        load(loss.load).1
+        load(loss.load)
     );
     let on = rest.voltages.iter().filter(|(_, v)| **v != 0.0);
     for (name, v) in on {
@@ -380,4 +379,62 @@ pub(super) fn at_rest(mut observed: Observations) -> Observations {
     let is_of_motion = |column: &Column| moves(&column.name) || is_rate(column.unit);
     observed.columns.retain(|column| !is_of_motion(column));
     observed
+}
+
+/// A path in `summary.json`.
+#[derive(Debug, Serialize)]
+pub(super) struct PathSummary {
+    /// Number of equilibria.
+    points: usize,
+    /// Largest fraction of the voltages on the path: of these equilibria and of those where stability is lost between them.
+    largest_fraction: f64,
+    /// Points at which stability is lost.
+    pub(super) lost: Vec<StabilityLossRecord>,
+}
+
+/// A loss of stability.
+#[derive(Debug, Serialize)]
+pub(super) struct StabilityLossRecord {
+    /// Exact fraction of the voltages.
+    pub(super) fraction: f64,
+    /// `pull_in` or `buckling`.
+    kind: &'static str,
+    /// The same in words.
+    #[serde(skip)]
+    pub(super) words: &'static str,
+}
+
+impl PathSummary {
+    pub(super) fn new(found: &Continuation) -> Self {
+        let loss = |&(_, fraction, kind): &(usize, f64, Instability)| StabilityLossRecord {
+            fraction,
+            kind: kind.key(),
+            words: kind.words(),
+        };
+        let lost = found.lost.iter().map(|&(_, fraction, _)| fraction);
+        let all = found.fractions.iter().copied().chain(lost);
+        Self {
+            points: found.points.len(),
+            largest_fraction: all.fold(0.0, f64::max),
+            lost: found.lost.iter().map(loss).collect(),
+        }
+    }
+
+    /// Rows of the page; `shown` is the fraction of the voltages of the equilibrium that is drawn.
+    pub(super) fn rows(&self, shown: f64) -> Vec<(String, String)> {
+        let mut rows = vec![
+            ("equilibria".to_owned(), self.points.to_string()),
+            (
+                "largest fraction of the voltages".to_owned(),
+                format!("{:.6} %", 100.0 * self.largest_fraction),
+            ),
+        ];
+        rows.extend(self.lost.iter().map(|loss| {
+            let place = format!("{:.6} % of the voltages", 100.0 * loss.fraction);
+            (loss.words.to_owned(), place)
+        }));
+        let place = format!("the equilibrium at {:.6} %", 100.0 * shown);
+        rows.push(("configuration".to_owned(), place));
+        rows
+    }
 }

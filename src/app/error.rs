@@ -24,35 +24,13 @@ pub enum CommandError {
     /// An earlier solution cannot be used.
     #[error(transparent)]
     Earlier(Box<dyn StdError + Send + Sync>),
-    /// The problem asks for something that does not exist.
-    #[error("{}: {place}: {reason}", file.display())]
-    Problem {
+    /// A problem asks for something that does not exist, or is right and has no answer.
+    #[error("{}: {error}", file.display())]
+    InFile {
         /// The problem file as typed.
         file: PathBuf,
-        /// Path in it.
-        place: String,
-        /// Reason.
-        reason: String,
-    },
-    /// The input is right, but a start or goal at rest was not found.
-    #[error("{}: {place}: {reason}", file.display())]
-    NoEquilibrium {
-        /// The problem file as typed.
-        file: PathBuf,
-        /// Path in it.
-        place: String,
-        /// Reason.
-        reason: String,
-    },
-    /// The input is right, but the problem that a controller plans anew was not solved.
-    #[error("{}: {place}: {reason}", file.display())]
-    Unsolved {
-        /// The problem file as typed.
-        file: PathBuf,
-        /// Path in it.
-        place: String,
-        /// Reason.
-        reason: String,
+        /// The place in it, and the reason.
+        error: WorkflowError,
     },
     /// A value typed on the command line is wrong.
     #[error("{option}: {reason}")]
@@ -106,16 +84,40 @@ pub enum CommandError {
 }
 
 impl CommandError {
+    /// The error of a place in a problem file.
+    pub(crate) fn problem(
+        file: &Path,
+        place: impl Into<String>,
+        reason: impl Into<String>,
+    ) -> Self {
+        let (place, reason) = (place.into(), reason.into());
+        Self::in_file(file)(WorkflowError::Problem { place, reason })
+    }
+
+    /// The error of an option.
+    pub(crate) fn option(option: &'static str, reason: impl Into<String>) -> Self {
+        let reason = reason.into();
+        Self::Option { option, reason }
+    }
+
+    /// Status of a problem that is right, but has no state of rest to begin or end with, or no optimum that its controller follows.
+    pub fn unanswered(&self) -> Option<&'static str> {
+        match self {
+            Self::InFile { error, .. } => match error {
+                WorkflowError::NoEquilibrium { .. } => Some("no_equilibrium"),
+                WorkflowError::Unsolved { .. } => Some("plan_unsolved"),
+                _ => None,
+            },
+            _ => None,
+        }
+    }
+
     /// Exit status of the program: 2 where the input is wrong, 1 where it has no answer, there was no time, or results could not
     /// be kept.
     pub fn exit_status(&self) -> u8 {
         match self {
-            Self::Write(_)
-            | Self::Unreadable { .. }
-            | Self::Stopped(_)
-            | Self::Engine(_)
-            | Self::NoEquilibrium { .. }
-            | Self::Unsolved { .. } => 1,
+            Self::Write(_) | Self::Unreadable { .. } | Self::Stopped(_) | Self::Engine(_) => 1,
+            error if error.unanswered().is_some() => 1,
             _ => 2,
         }
     }
@@ -124,9 +126,12 @@ impl CommandError {
     pub fn place(&self) -> &str {
         match self {
             Self::Scene(mistake) => mistake.path(),
-            Self::Problem { place, .. }
-            | Self::NoEquilibrium { place, .. }
-            | Self::Unsolved { place, .. } => place,
+            Self::InFile { error, .. } => match error {
+                WorkflowError::Problem { place, .. }
+                | WorkflowError::NoEquilibrium { place, .. }
+                | WorkflowError::Unsolved { place, .. } => place,
+                WorkflowError::Earlier(_) | WorkflowError::Stopped(_) => "",
+            },
             _ => "",
         }
     }
@@ -143,23 +148,12 @@ impl CommandError {
     pub(crate) fn in_file(file: &Path) -> impl Fn(WorkflowError) -> Self {
         let file = file.to_owned();
         move |error| match error {
-            WorkflowError::Problem { place, reason } => Self::Problem {
-                file: file.clone(),
-                place,
-                reason,
-            },
-            WorkflowError::NoEquilibrium { place, reason } => Self::NoEquilibrium {
-                file: file.clone(),
-                place,
-                reason,
-            },
-            WorkflowError::Unsolved { place, reason } => Self::Unsolved {
-                file: file.clone(),
-                place,
-                reason,
-            },
             WorkflowError::Earlier(error) => Self::Earlier(error),
             WorkflowError::Stopped(stopped) => stopped.into(),
+            error => Self::InFile {
+                file: file.clone(),
+                error,
+            },
         }
     }
 }

@@ -61,10 +61,7 @@ pub(super) fn add(
                 law_csv(&found.law, system, &origin.line()).as_bytes(),
             )?;
             files.add(CODE, law_c(&found.law, system, &origin.line()).as_bytes())?;
-            let arrays = arrays(&found).map_err(|cause| WriteError {
-                path: files.folder().join(ARRAYS),
-                cause,
-            })?;
+            let arrays = arrays(&found).map_err(WriteError::at(files.folder().join(ARRAYS)))?;
             return files.add(ARRAYS, &arrays);
         }
     }

@@ -1,7 +1,6 @@
 //! An identification from file to folder.
 
 use crate::app::error::CommandError;
-use crate::app::identification_page;
 use crate::app::identification_summary::Identification;
 use crate::app::identification_verdict::{remarks, status};
 use crate::app::overwrite_check::make_folder_of;
@@ -10,10 +9,16 @@ use crate::app::request::{CommandInput, CommandOutput, PageWanted};
 use crate::app::summary::Summary;
 use crate::control::problem;
 use crate::files::Loaded;
-use crate::identify::{Ended, Identified, IdentifyError, found_starts, identify};
+use crate::identify::{
+    Ended, Experiment, Identified, IdentifyError, Series, found_starts, identify,
+};
+use crate::math::significant;
 use crate::nlp::Status;
 use crate::report::file_set::FileSet;
-use crate::report::table::cells_csv;
+use crate::report::lines::{LinePlot, Mark, Series as Curve, over_time};
+use crate::report::page::of_plots;
+use crate::report::table::{aligned, cells_csv};
+use crate::report::{PageContent, style};
 use crate::stop;
 use crate::workflow::remark::phase;
 use std::time::Instant;
@@ -58,7 +63,8 @@ pub(super) fn run(
         cells_csv(&table(task, &found), &origin).as_bytes(),
     )?;
     if request.page == PageWanted::Written {
-        let page = identification_page::html(task, loaded, &found, &summary, &origin);
+        let content = page(task, loaded, &found, &summary);
+        let page = of_plots(&loaded.system.name, &content, &origin);
         files.add("report.html", page.as_bytes())?;
     }
     summary.seconds.setup = read;
@@ -87,15 +93,11 @@ fn refused(request: &CommandInput, error: &IdentifyError) -> CommandError {
         IdentifyError::Candidate { .. } => "identify.candidates",
         _ => "identify.recordings",
     };
-    CommandError::Problem {
-        file: request.input.clone(),
-        place: place.to_owned(),
-        reason: error.to_string(),
-    }
+    CommandError::problem(&request.input, place, error.to_string())
 }
 
 /// All readings with their predictions as rows of cells, in SI units.
-pub(super) fn table(task: &problem::Identification, found: &Identified) -> Vec<Vec<String>> {
+fn table(task: &problem::Identification, found: &Identified) -> Vec<Vec<String>> {
     let header = [
         "recording",
         "quantity",
@@ -128,4 +130,109 @@ pub(super) fn table(task: &problem::Identification, found: &Identified) -> Vec<V
         }
     }
     rows
+}
+
+/// The page: constants with intervals, verdicts, measured against predicted, residuals, correlations and the next experiments.
+fn page(
+    task: &problem::Identification,
+    loaded: &Loaded,
+    found: &Identified,
+    summary: &Summary,
+) -> PageContent {
+    let mut content = summary.page("Identification", Some(loaded));
+    content.is_solved = is_solved(found);
+    let text = summary.identification.as_ref().map(Identification::text);
+    let text = text.unwrap_or_default();
+    content.notes.splice(0..0, text.lines().map(str::to_owned));
+    let held_out = found.held_out.iter().flat_map(|one| &one.series);
+    let series = found.series.iter().chain(held_out);
+    content
+        .plots
+        .extend(series.flat_map(|one| plots(task, one)));
+    let tables = [
+        ("Correlation", correlations(task, found)),
+        (
+            "Standard errors after the next experiment",
+            experiments(task, found),
+        ),
+    ];
+    let tables = tables.into_iter().filter(|(_, rows)| rows.len() > 1);
+    let tables = tables.map(|(name, rows)| (name.to_owned(), aligned(&rows)));
+    content.documents.extend(tables);
+    content
+}
+
+/// Correlations of the constants that have intervals; none of fewer than two.
+fn correlations(task: &problem::Identification, found: &Identified) -> Vec<Vec<String>> {
+    let has = |&j: &usize| found.information.is_determined[j] && !found.fit.is_at_bound[j];
+    let all: Vec<usize> = (0..task.parameters.len()).filter(has).collect();
+    if all.len() < 2 {
+        return Vec::new();
+    }
+    let name = |&j: &usize| task.parameters[j].name.clone();
+    let head = [String::new()].into_iter().chain(all.iter().map(name));
+    let row = |i: &usize| -> Vec<String> {
+        let cell = |j: &usize| format!("{:.3}", found.information.correlation(*i, *j));
+        [name(i)].into_iter().chain(all.iter().map(cell)).collect()
+    };
+    [head.collect()]
+        .into_iter()
+        .chain(all.iter().map(row))
+        .collect()
+}
+
+/// The next experiments, the best one first, with the relative standard errors that are left.
+fn experiments(task: &problem::Identification, found: &Identified) -> Vec<Vec<String>> {
+    let names = task
+        .parameters
+        .iter()
+        .map(|parameter| parameter.name.clone());
+    let head = [String::new()].into_iter().chain(names);
+    let row = |one: &Experiment| -> Vec<String> {
+        let error = |(j, value): (usize, &f64)| match one.information.is_determined[j] {
+            true => {
+                let variance = one.information.covariance[(j, j)];
+                format!(
+                    "{} %",
+                    significant(100.0 * variance.sqrt() / value.abs(), 2)
+                )
+            }
+            false => "not determined".to_owned(),
+        };
+        let errors = found.fit.of_constants().iter().enumerate().map(error);
+        let name = task.candidates[one.candidate].name.clone();
+        [name].into_iter().chain(errors).collect()
+    };
+    let rows = found.experiments.iter().map(row);
+    [head.collect()].into_iter().chain(rows).collect()
+}
+
+/// Measured against predicted, and residuals, of one quantity of one recording, with their titles.
+fn plots(task: &problem::Identification, one: &Series) -> [(String, LinePlot); 2] {
+    let recording = &task.recordings[one.recording];
+    let channel = &recording.channels[one.channel];
+    let (symbol, factor) = channel.unit;
+    let points = |values: &[f64]| over_time(&one.times, values.iter().map(|v| factor * v));
+    let measured = Curve::curve("measured", points(&one.measured), style::hue(1));
+    let predicted = Curve::curve("predicted", points(&one.predicted), style::hue(0));
+    let above = LinePlot::over_time(
+        format!("{} [{symbol}]", channel.name),
+        vec![predicted, measured.marked(Mark::Ring).unjoined()],
+    );
+    let residuals = over_time(&one.times, one.standardised());
+    let residuals = Curve::curve("", residuals, style::hue(1));
+    let below = LinePlot {
+        frame: [400.0, 120.0],
+        ..LinePlot::over_time(
+            "residual [σ]",
+            vec![residuals.marked(Mark::Disc).unjoined()],
+        )
+    };
+    let held_out = match recording.is_held_out {
+        true => ", held out",
+        false => "",
+    };
+    let title = format!("{}: {}{held_out}", recording.name, channel.name);
+    let residuals = format!("{title}, residuals");
+    [(title, above), (residuals, below)]
 }

@@ -2,9 +2,9 @@
 
 use crate::app::blocks::BlockSizes;
 use crate::app::error::CommandError;
-use crate::app::messages::key;
 use crate::app::overwrite_check::make_folder;
 use crate::app::program::joined;
+use crate::app::request::key;
 use crate::app::request::{CommandInput, CommandOutput};
 use crate::app::task::read;
 use crate::control::Motions;
@@ -80,26 +80,21 @@ pub fn inspected(request: &CommandInput, text: Option<&str>) -> Result<Inspected
     let wrong = |error| {
         CommandError::in_file(&request.input)(WorkflowError::boundary(key(&loaded.task), &error))
     };
+    let of_analysis = |analysis| {
+        let model = Model::for_analysis(system.clone(), analysis);
+        model
+            .map(|model| of_model(&model, None))
+            .map_err(|error| wrong(error.into()))
+    };
     let mut found = match &loaded.task {
         Task::Control(control) => of_control(request, system, control),
         Task::Motions(motions) => of_motions(request, motions),
-        Task::Simulate(task) => {
-            let model = Model::for_analysis(system.clone(), task.analysis(system, task.step))
-                .map_err(|error| wrong(error.into()))?;
-            Ok(of_model(&model, None))
-        }
-        Task::Equilibrium(task) => {
-            let model = Model::for_analysis(system.clone(), task.analysis(system))
-                .map_err(|error| wrong(error.into()))?;
-            Ok(of_model(&model, None))
-        }
+        Task::Simulate(task) => of_analysis(task.analysis(system, task.step)),
+        Task::Equilibrium(task) => of_analysis(task.analysis(system)),
         Task::Identify(task) => {
-            let model =
-                identify::first_model(system, task).map_err(|error| CommandError::Problem {
-                    file: request.input.clone(),
-                    place: key(&loaded.task).to_owned(),
-                    reason: error.to_string(),
-                })?;
+            let model = identify::first_model(system, task).map_err(|error| {
+                CommandError::problem(&request.input, key(&loaded.task), error.to_string())
+            })?;
             Ok(of_model(&model, None))
         }
     }?;
@@ -295,12 +290,7 @@ fn of_control(
             ("hessian.svg", "Hessian", variables, &hessian),
         ];
         for (file, name, rows, entries) in pictures {
-            let shape = MatrixSize {
-                name,
-                rows,
-                columns: variables,
-            };
-            let svg = sparsity_svg(shape, entries, &origin);
+            let svg = sparsity_svg(name, [rows, variables], entries, &origin);
             atomic::write(&folder.join(file), svg.as_bytes())?;
         }
     }
@@ -377,21 +367,9 @@ const MARGIN: f64 = 26.0;
 /// Cells along the longer side at most: more entries than that share cells.
 const CELLS: usize = 420;
 
-/// Name and size of a matrix.
-#[derive(Clone, Copy, Debug)]
-pub(super) struct MatrixSize<'a> {
-    pub(super) name: &'a str,
-    pub(super) rows: usize,
-    pub(super) columns: usize,
-}
-
-/// An SVG of the entries of a matrix, rows downwards.
-pub(super) fn sparsity_svg(shape: MatrixSize<'_>, entries: &Entries, origin: &Origin) -> String {
-    let MatrixSize {
-        name,
-        rows,
-        columns,
-    } = shape;
+/// An SVG of the entries of a matrix of this name and numbers of rows and columns, rows downwards.
+fn sparsity_svg(name: &str, shape: [usize; 2], entries: &Entries, origin: &Origin) -> String {
+    let [rows, columns] = shape;
     let longest = rows.max(columns).max(1);
     // A cell holds `share` rows and columns.
     let share = longest.div_ceil(CELLS);
@@ -437,7 +415,7 @@ const TINY: f64 = 0.1;
 type Corners = (Vector3<f64>, Vector3<f64>);
 
 /// Lines about the size of the robot and of its meshes in the reference configuration.
-pub(super) fn unit_questions(system: &System) -> String {
+fn unit_questions(system: &System) -> String {
     let all = around(places(system));
     if all.0.x > all.1.x {
         return String::new();

@@ -2,20 +2,18 @@
 //!
 //! - `solve`, `motions`, `simulation`, `equilibrium`, `identification`: the tasks; `task` chooses the one of a file; `path`: paths of equilibria.
 //! - `batch`: several solves in parallel, in threads or processes; `multistart`: a control problem from several guesses.
-//! - `inspect`, `check`, `templates`: the other commands; `program`, `receding`: entry points for other languages in place of files.
-//! - `solution_file`, `unfinished`, `summary`: JSON files; `feedback_files`, `fields`: those of gains and of elastic blocks; figures, tables and page are written by [`report`](crate::report).
-//! - `checkpoint`, `partial_result`, `resume_file`: what a stopped run leaves, and runs that go on from it.
+//! - `inspect`, `templates`: the other commands; `program`: entry points for other languages in place of files.
+//! - `solution_file`, `summary`: JSON files; `feedback_files`, `fields`: those of gains and of elastic blocks; figures, tables and page are written by [`report`](crate::report).
+//! - `unfinished`, `partial_result`, `resume_file`: what a stopped run leaves, and runs that go on from it.
 //! - `cache`, `record`: a result that is made once, and the hashes of its files.
-//! - `displayed_motion`: part of a motion that tables, figures and page show; `page`, `solve_page`, `identification_page`: texts of the page.
-//! - `blocks`, `comparison`, `linear_systems`, `path_summary`, `motions_summary`, `solve_summary`, `equilibrium_summary`, `sensitivity_summary`, `identification_summary`,
-//!   `identification_verdict`, `no_equilibrium`: texts about a result.
-//! - `messages`, `overwrite_check`, `progress`, `request`, `error`: common parts of commands.
+//! - `displayed_motion`: part of a motion that tables, figures and page show.
+//! - `blocks`, `comparison`, `linear_systems`, `solve_summary`, `equilibrium_summary`, `sensitivity_summary`, `identification_summary`, `identification_verdict`,
+//!   `no_equilibrium`: texts about a result.
+//! - `overwrite_check`, `progress`, `request`, `error`: common parts of commands.
 
 mod batch;
 mod blocks;
 mod cache;
-mod check;
-mod checkpoint;
 mod comparison;
 mod displayed_motion;
 mod equilibrium;
@@ -24,24 +22,18 @@ mod error;
 mod feedback_files;
 mod fields;
 mod identification;
-mod identification_page;
 mod identification_summary;
 mod identification_verdict;
 mod inspect;
 mod linear_systems;
-mod messages;
 mod motions;
-mod motions_summary;
 mod multistart;
 mod no_equilibrium;
 mod overwrite_check;
-mod page;
 mod partial_result;
 mod path;
-mod path_summary;
 mod program;
 mod progress;
-mod receding;
 mod record;
 mod request;
 mod resume_file;
@@ -49,7 +41,6 @@ mod sensitivity_summary;
 mod simulation;
 mod solution_file;
 mod solve;
-mod solve_page;
 mod solve_summary;
 mod summary;
 mod task;
@@ -61,18 +52,18 @@ pub use batch::{RunIn, end_with_parent};
 pub use blocks::{BlockSize, BlockSizes};
 pub(crate) use cache::Identity;
 pub use cache::run_once;
-pub use check::{check, checked};
 pub use equilibrium::equilibrium_of_file;
 pub use error::CommandError;
 pub use inspect::{Inspected, inspect, inspected};
 pub use motions::compare;
 pub use multistart::{solve_from_starts, solve_text_from_starts};
-pub(crate) use overwrite_check::make_folder;
-pub use program::{changed_text, check_text, with_program};
+pub(crate) use overwrite_check::{make_folder, without_dots};
+pub use program::{
+    FileHorizon, SiController, changed_text, check, check_text, checked, with_program,
+};
 pub(crate) use progress::{Progress, progress_bar};
 pub use progress::{ProgressDisplay, Reached};
-pub use receding::{FileHorizon, SiController};
-pub(crate) use record::{Ending, FileRecords, Found, OF_VARIANT, is_unfinished};
+pub(crate) use record::{Ending, FileRecords, FolderRecord, Found, OF_VARIANT, is_unfinished};
 pub use request::{CommandInput, CommandOutput, PageWanted};
 pub use summary::written_summary;
 pub use task::{run, run_observed, simulate};

@@ -1,24 +1,25 @@
-//! Several motions from file to folder: each in a folder of its own within that of the results, and what they have in common.
+//! Several motions from file to folder: each in a folder of its own within that of the results, and what they have in common, once.
 
 use crate::app::error::CommandError;
-use crate::app::messages::counted;
-use crate::app::motions_summary::MotionsSummary;
 use crate::app::overwrite_check::{make_folder, make_folder_of};
 use crate::app::partial_result::{EARLIER, STOPPED};
 use crate::app::progress::Reached;
-use crate::app::request::{CommandInput, CommandOutput, PageWanted};
+use crate::app::request::{CommandInput, CommandOutput, PageWanted, counted};
 use crate::app::solve::{Solved, add_notes};
-use crate::app::solve_page::describe;
-use crate::app::summary::Summary;
-use crate::app::{checkpoint, fields, solution_file, unfinished};
-use crate::control::Motions;
-use crate::files::Loaded;
+use crate::app::solve_summary::{describe, outcome_word};
+use crate::app::summary::{SoughtValue, Summary, Versions};
+use crate::app::{fields, solution_file, unfinished};
+use crate::control::{Motions, PEAK_VOLTAGE};
+use crate::files::{Loaded, lay_out};
 use crate::math::significant;
 use crate::report::atomic;
 use crate::report::file_set::FileSet;
 use crate::report::origin::Origin;
 use crate::report::page::compared;
 use crate::tasks::{MotionsResult, solve_motions};
+use crate::workflow::Remarks;
+use crate::workflow::accuracy::Accuracy;
+use serde::Serialize;
 use std::collections::BTreeMap;
 use std::fs;
 use std::path::{Path, PathBuf};
@@ -34,7 +35,7 @@ pub(super) fn motions(
 ) -> Result<CommandOutput, CommandError> {
     let read = began.elapsed().as_secs_f64();
     let results = request.folder();
-    let (result, folder) = checkpoint::solve(
+    let (result, folder) = unfinished::solve(
         request,
         read,
         observer,
@@ -114,15 +115,7 @@ fn command_output(
     folder: &Path,
 ) -> CommandOutput {
     let mut is_solved = result.verdict.is_solved && !STOPPED.contains(&&*summary.status);
-    let solved = if result.verdict.is_solved {
-        "solved"
-    } else {
-        "not solved"
-    };
-    let mut word = match summary.status.as_str() {
-        "solved" => solved.to_owned(),
-        word => format!("{solved} ({})", word.replace('_', " ")),
-    };
+    let mut word = outcome_word(result.verdict.is_solved, &summary.status);
     let mut notes: Vec<String> = summary.message.iter().cloned().collect();
     let of_motions = each.iter().zip(&result.list).map(|(summary, one)| {
         let violated = one.optimum.violated.iter().map(describe);
@@ -164,7 +157,7 @@ fn command_output(
 }
 
 /// Name of the page of a result.
-pub(super) const SIDE_BY_SIDE: &str = "report.html";
+const SIDE_BY_SIDE: &str = "report.html";
 
 /// Writes `report.html` into `output`, which compares the results of some folders.
 ///
@@ -180,13 +173,13 @@ pub fn compare(
     let place = |folder: &Path| fs::canonicalize(folder).ok();
     let is_own = |folder: &&PathBuf| place(folder).is_some_and(|it| place(output) == Some(it));
     if let Some(own) = folders.iter().find(is_own) {
-        return Err(CommandError::Option {
-            option: "--output",
-            reason: format!(
+        return Err(CommandError::option(
+            "--output",
+            format!(
                 "found {}, one of the results, expected another folder: its report.html is that of a run",
                 own.display()
             ),
-        });
+        ));
     }
     make_folder(output)?;
     let file = output.join(SIDE_BY_SIDE);
@@ -202,15 +195,12 @@ pub fn compare(
 ///
 /// # Errors
 /// A folder has no page of a result.
-pub(super) fn side_by_side(
+fn side_by_side(
     command: &str,
     folders: &[PathBuf],
     pages: &[String],
 ) -> Result<String, CommandError> {
-    let wrong = |reason| CommandError::Option {
-        option: "RESULT",
-        reason,
-    };
+    let wrong = |reason| CommandError::option("RESULT", reason);
     let mut results = Vec::new();
     for (folder, name) in folders.iter().zip(names(folders)) {
         let file = folder.join(SIDE_BY_SIDE);
@@ -248,4 +238,140 @@ fn names(folders: &[PathBuf]) -> Vec<String> {
             .collect()
     };
     names.filter(differ).unwrap_or_else(whole)
+}
+
+/// `summary.json` of several motions.
+#[derive(Debug, Serialize)]
+struct MotionsSummary {
+    command: String,
+    input: String,
+    /// A word: `solved`, where each motion is, or that of the first that is not.
+    status: String,
+    /// Reasons why motions are not solved, in words.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    message: Option<String>,
+    /// Warnings and notes on all of them.
+    #[serde(skip_serializing_if = "Remarks::is_empty")]
+    notes: Remarks,
+    /// The sum of their objectives, or the greatest one.
+    objective: f64,
+    objective_units: Vec<String>,
+    iterations: usize,
+    variables: usize,
+    constraints: usize,
+    jacobian_nonzeros: usize,
+    hessian_nonzeros: usize,
+    /// Greatest violation of an equation or limit of a motion.
+    infeasibility: f64,
+    /// Constants that were sought.
+    #[serde(skip_serializing_if = "Vec::is_empty")]
+    parameters: Vec<SoughtValue>,
+    /// Sources whose inputs are the same in all motions.
+    #[serde(skip_serializing_if = "Vec::is_empty")]
+    shared_inputs: Vec<String>,
+    /// Bound of the objective above its least value; absent without a solution.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    gap: Option<f64>,
+    /// Estimated errors, the greatest of all motions.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    accuracy: Option<Accuracy>,
+    /// The motions in their order, with the summaries of their folders.
+    motions: Vec<MotionEntry>,
+    seconds: TotalSeconds,
+    versions: Versions,
+}
+
+/// A motion in the summary of all.
+#[derive(Debug, Serialize)]
+struct MotionEntry {
+    name: String,
+    /// Its folder, in that of the results.
+    folder: String,
+    status: String,
+    /// Its part of the objective, or its objective beside the greatest one.
+    objective: f64,
+    /// The weight of its objective at the optimum, where the greatest one is minimised: 0 below it.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    weight: Option<f64>,
+    intervals: usize,
+    /// Final time in s.
+    duration: f64,
+}
+
+/// Wall time in s.
+#[derive(Debug, Default, Serialize)]
+struct TotalSeconds {
+    /// Seconds from reading to the last file but the summary.
+    total: f64,
+}
+
+impl MotionsSummary {
+    /// Of a result whose motions have these summaries.
+    fn new(
+        request: &CommandInput,
+        motions: &Motions,
+        result: &MotionsResult,
+        each: &[Summary],
+    ) -> Self {
+        let MotionsResult {
+            list,
+            whole,
+            iterations,
+            accuracy,
+            verdict,
+            remarks,
+        } = result;
+        let constants = list[0].optimum.motion.parameters.iter();
+        let constants = constants.filter(|found| found.name != PEAK_VOLTAGE);
+        let weight = |number: usize| whole.weights.as_ref().map(|all| all[number]);
+        let entries = motions.list.iter().zip(list).zip(each).enumerate();
+        let entries = entries.map(|(number, ((motion, result), summary))| {
+            let found = &result.optimum.motion;
+            MotionEntry {
+                name: motion.name.clone(),
+                folder: motion.name.clone(),
+                status: summary.status.clone(),
+                objective: result.optimum.solution.objective,
+                weight: weight(number),
+                intervals: found.intervals(),
+                duration: found.times[found.intervals()] / 1e3,
+            }
+        });
+        let mut units: Vec<String> = Vec::new();
+        let of_motions = motions.list.iter();
+        for unit in of_motions.flat_map(|one| one.control.objective_units(&one.system)) {
+            if !units.contains(&unit) {
+                units.push(unit);
+            }
+        }
+        Self {
+            command: request.command.clone(),
+            input: request.input.display().to_string(),
+            status: verdict.word.to_owned(),
+            message: verdict.message.clone(),
+            notes: remarks.clone(),
+            objective: whole.objective,
+            objective_units: units,
+            iterations: *iterations,
+            variables: whole.variables,
+            constraints: whole.constraints,
+            jacobian_nonzeros: whole.jacobian_nonzeros,
+            hessian_nonzeros: whole.hessian_nonzeros,
+            parameters: constants.map(SoughtValue::new).collect(),
+            shared_inputs: motions.shared_inputs.clone(),
+            infeasibility: list
+                .iter()
+                .fold(0.0, |worst, one| one.optimum.infeasibility.max(worst)),
+            gap: Some(whole.gap).filter(|gap| verdict.is_solved && gap.is_finite()),
+            accuracy: accuracy.clone(),
+            motions: entries.collect(),
+            seconds: TotalSeconds::default(),
+            versions: Versions::default(),
+        }
+    }
+
+    /// Its text.
+    fn text(&self) -> String {
+        lay_out(&serde_json::to_string(self).expect("numbers and names are JSON"))
+    }
 }

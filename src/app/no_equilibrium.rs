@@ -1,20 +1,15 @@
 //! Result of a run that finds no state of rest to begin with, to end with, or at all, or no optimum that its controller follows: its summary alone.
 
 use crate::app::error::CommandError;
-use crate::app::messages::key;
 use crate::app::overwrite_check::make_folder_of;
 use crate::app::partial_result::EARLIER;
+use crate::app::request::key;
 use crate::app::request::{CommandInput, CommandOutput};
 use crate::app::summary::Summary;
 use crate::control::problem::Task;
 use crate::dynamics::EquilibriumError;
 use crate::report::file_set::FileSet;
-use crate::report::shell;
-
-/// The status of such a run.
-const STATUS: &str = "no_equilibrium";
-/// That of one whose controller has no optimum to follow.
-const UNSOLVED: &str = "plan_unsolved";
+use crate::report::quoting;
 
 /// Writes the summary of a run that has ended so, and gives its answer back.
 ///
@@ -24,14 +19,10 @@ pub(super) fn kept<T>(
     request: &CommandInput,
     answer: Result<T, CommandError>,
 ) -> Result<T, CommandError> {
-    match &answer {
-        Err(CommandError::NoEquilibrium { place, reason, .. }) => {
-            write(request, STATUS, &format!("{place}: {reason}"))?;
-        }
-        Err(CommandError::Unsolved { place, reason, .. }) => {
-            write(request, UNSOLVED, &format!("{place}: {reason}"))?;
-        }
-        _ => {}
+    if let Err(error @ CommandError::InFile { error: reason, .. }) = &answer
+        && let Some(status) = error.unanswered()
+    {
+        write(request, status, &reason.to_string())?;
     }
     answer
 }
@@ -61,16 +52,16 @@ pub(super) fn refused(
 ) -> Result<CommandOutput, CommandError> {
     match error {
         EquilibriumError::Floating { .. } => {
-            return Err(CommandError::Problem {
-                file: request.input.clone(),
-                place: "equilibrium".to_owned(),
-                reason: error.to_string(),
-            });
+            return Err(CommandError::problem(
+                &request.input,
+                "equilibrium",
+                error.to_string(),
+            ));
         }
         EquilibriumError::Stopped(stopped) => return Err((*stopped).into()),
         _ => {}
     }
-    write(request, STATUS, &error.to_string())?;
+    write(request, "no_equilibrium", &error.to_string())?;
     Ok(CommandOutput {
         is_solved: false,
         result: format!("{result}, {}", request.folder().display()),
@@ -83,22 +74,17 @@ pub(super) fn refuse_all_but_motions(
     request: &CommandInput,
     task: &Task,
 ) -> Result<(), CommandError> {
-    let reason = match task {
+    let (asks, word, instead) = match task {
         Task::Simulate(_) => return Ok(()),
-        Task::Control(_) | Task::Motions(_) => format!(
-            "asks for optimal voltages, found by `{}`; a motion under given voltages is asked for by \"simulate\" in place of \"control\"",
-            command(request, "solve")
+        Task::Control(_) | Task::Motions(_) => (
+            "optimal voltages",
+            "solve",
+            "; a motion under given voltages is asked for by \"simulate\" in place of \"control\"",
         ),
-        Task::Identify(_) => format!(
-            "asks for constants, found by `{}`",
-            command(request, "solve")
-        ),
-        Task::Equilibrium(_) => format!(
-            "asks for a state of rest, found by `{}`",
-            command(request, "equilibrium")
-        ),
+        Task::Identify(_) => ("constants", "solve", ""),
+        Task::Equilibrium(_) => ("a state of rest", "equilibrium", ""),
     };
-    Err(command_error(request, task, reason))
+    Err(asks_for(request, task, [asks, word, instead]))
 }
 
 /// The refusal of a problem that asks for no state of rest.
@@ -108,19 +94,16 @@ pub(super) fn no_equilibrium(request: &CommandInput, task: &Task) -> CommandErro
         Task::Identify(_) => ("constants", "solve"),
         _ => ("a motion", "simulate"),
     };
-    let reason = format!(
-        "asks for {asks}, found by `{}`, and for no equilibrium; for that of its scene name the voltages with --voltages",
-        command(request, word)
-    );
-    command_error(request, task, reason)
+    let instead =
+        ", and for no equilibrium; for that of its scene name the voltages with --voltages";
+    asks_for(request, task, [asks, word, instead])
 }
 
-fn command_error(request: &CommandInput, task: &Task, reason: String) -> CommandError {
-    CommandError::Problem {
-        file: request.input.clone(),
-        place: key(task).to_owned(),
-        reason,
-    }
+/// The refusal of a problem that asks for something else, with the word of the command that finds it.
+fn asks_for(request: &CommandInput, task: &Task, [asks, word, instead]: [&str; 3]) -> CommandError {
+    let found = command(request, word);
+    let reason = format!("asks for {asks}, found by `{found}`{instead}");
+    CommandError::problem(&request.input, key(task), reason)
 }
 
 /// A command on the same problem with the same overrides and folder.
@@ -132,5 +115,5 @@ fn command(request: &CommandInput, word: &str) -> String {
     if let Some(folder) = &request.output {
         words.extend(["-o".to_owned(), folder.display().to_string()]);
     }
-    shell::command(words)
+    quoting::command(words)
 }

@@ -56,12 +56,12 @@ fn is_same(before: &Path, now: &Path) -> bool {
     match before.canonicalize() {
         Ok(other) => other == own,
         // It was typed in another folder.
-        Err(_) => own.ends_with(plain(before)),
+        Err(_) => own.ends_with(without_dots(before)),
     }
 }
 
 /// A path without `.`, and without `..` behind a folder.
-fn plain(path: &Path) -> PathBuf {
+pub(crate) fn without_dots(path: &Path) -> PathBuf {
     let mut plain = PathBuf::new();
     for part in path.components() {
         match part {
@@ -87,10 +87,7 @@ pub(super) fn make_folder_of(request: &CommandInput) -> Result<PathBuf, WriteErr
 
 /// Makes the folder of the results, or removes the files that killed runs left half written.
 pub(crate) fn make_folder(folder: &Path) -> Result<(), WriteError> {
-    fs::create_dir_all(folder).map_err(|cause| WriteError {
-        path: folder.to_owned(),
-        cause,
-    })?;
+    fs::create_dir_all(folder).map_err(WriteError::at(folder))?;
     atomic::tidy(folder);
     Ok(())
 }

@@ -4,16 +4,16 @@ use std::ops::RangeInclusive;
 use std::path::Path;
 use std::time::Instant;
 
+use crate::app::equilibrium_summary::PathSummary;
 use crate::app::equilibrium_summary::at_rest;
 use crate::app::error::CommandError;
-use crate::app::messages::counted;
+use crate::app::fields;
 use crate::app::no_equilibrium::refused;
 use crate::app::overwrite_check::make_folder_of;
 use crate::app::partial_result::plan;
-use crate::app::path_summary::PathSummary;
+use crate::app::request::counted;
 use crate::app::request::{CommandInput, CommandOutput};
 use crate::app::summary::{Seconds, Summary};
-use crate::app::{fields, page};
 use crate::control::problem::AtRest;
 use crate::dynamics::trajectory::{Column, Observations, Trajectory};
 use crate::dynamics::{
@@ -80,7 +80,7 @@ pub(super) fn follow(
         setup,
         ..Seconds::default()
     };
-    let mut page = page::content("Path of equilibria", &summary, loaded);
+    let mut page = summary.page("Path of equilibria", loaded);
     page.rows = rows;
     page.plots.push(("Path".to_owned(), plot));
     path.write(request, &page, &mut files, &origin)?;

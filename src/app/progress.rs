@@ -55,12 +55,7 @@ pub(crate) struct Progress {
 }
 
 impl Progress {
-    /// A run of which only the phase is known yet.
-    pub(super) fn of_phases(shown: ProgressDisplay) -> Self {
-        Self::of_solve(shown)
-    }
-
-    /// A solve with an open number of iterations.
+    /// A solve with an open number of iterations, or a run of which only the phase is known yet.
     pub(super) fn of_solve(shown: ProgressDisplay) -> Self {
         let bar = target(ProgressBar::no_length(), shown);
         Self::starting(bar, "{spinner} {elapsed_precise} {msg}")

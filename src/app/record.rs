@@ -1,7 +1,10 @@
 //! The files of a result as they were written: their sizes and hashes, which a record in their folder keeps.
 
+use crate::files::lay_out;
+use crate::report::atomic::{self, WriteError};
 use crate::workflow::Remarks;
 use crate::workflow::remark::STOPPED_EARLY;
+use serde::de::DeserializeOwned;
 use serde::{Deserialize, Serialize};
 use sha2::{Digest, Sha256};
 use std::collections::BTreeMap;
@@ -49,6 +52,44 @@ pub(crate) const OF_RUN: &str = "record.json";
 /// The record of a variant of a sweep.
 pub(crate) const OF_VARIANT: &str = "variant.json";
 
+/// A record in the folder of its result, with the files there as they were written.
+pub(crate) trait FolderRecord: Serialize + DeserializeOwned {
+    /// Name of its file.
+    const NAME: &'static str;
+    /// Digits of the identity of its problem.
+    fn identity(&self) -> &str;
+    /// Files of the result.
+    fn files(&mut self) -> &mut FileRecords;
+
+    /// The record of a folder, where it is of this problem and all files are as they were written.
+    fn found(folder: &Path, identity: &str) -> Found<Self> {
+        let Ok(text) = fs::read_to_string(folder.join(Self::NAME)) else {
+            return Found::Nothing;
+        };
+        let Ok(mut record) = serde_json::from_str::<Self>(&text) else {
+            return Found::Deviates(format!("{} is not as it was written", Self::NAME));
+        };
+        if record.identity() != identity {
+            return Found::Nothing;
+        }
+        match record.files().deviation(folder) {
+            Some(words) => Found::Deviates(words),
+            None => Found::Whole(record),
+        }
+    }
+
+    /// Writes it, with the hashes of the files that the folder has now.
+    ///
+    /// # Errors
+    /// A file cannot be read or written.
+    fn write(&mut self, folder: &Path) -> Result<(), WriteError> {
+        let path = folder.join(Self::NAME);
+        *self.files() = FileRecords::from_folder(folder).map_err(WriteError::at(&path))?;
+        let text = serde_json::to_string(self).expect("words and numbers are JSON");
+        atomic::write(&path, lay_out(&text).as_bytes())
+    }
+}
+
 /// A file.
 #[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
 struct FileRecord {
@@ -74,10 +115,7 @@ pub(crate) enum Found<T> {
 
 impl FileRecords {
     /// The files that a folder has now, without records and unfinished files.
-    ///
-    /// # Errors
-    /// A file cannot be read.
-    pub(crate) fn from_folder(folder: &Path) -> io::Result<Self> {
+    fn from_folder(folder: &Path) -> io::Result<Self> {
         let mut files = Self::default();
         if folder.is_dir() {
             files.read(folder, "")?;
@@ -108,7 +146,7 @@ impl FileRecords {
     }
 
     /// The first file that is not as it was written, in words.
-    pub(crate) fn deviation(&self, folder: &Path) -> Option<String> {
+    fn deviation(&self, folder: &Path) -> Option<String> {
         let mut files = self.0.iter();
         files.find_map(|(name, record)| {
             let path = folder.join(name);

@@ -1,13 +1,13 @@
-//! Input and output of a command: its options, and its answer.
-
-use std::ffi::OsString;
-use std::path::{Path, PathBuf};
+//! Input and output of a command: its options, its answer, and common words.
 
 use crate::app::progress::ProgressDisplay;
+use crate::control::problem::Task;
 use crate::files::is_standard_input;
 use crate::report::origin::Origin;
 use crate::report::{Figures, PageContent};
 use crate::workflow::accuracy::AccuracyTarget;
+use std::ffi::OsString;
+use std::path::{Path, PathBuf};
 
 /// A command on a problem file.
 #[derive(Clone, Debug)]
@@ -78,16 +78,7 @@ impl CommandInput {
 
     /// Returns the origin of results; Ipopt is named where it has a part.
     pub fn origin(&self, with_ipopt: bool) -> Origin {
-        Origin {
-            command: self.command.clone(),
-            input: self.input.display().to_string(),
-            version: Origin::program(),
-            ipopt: if with_ipopt {
-                crate::ipopt::VERSION.to_owned()
-            } else {
-                String::new()
-            },
-        }
+        Origin::new(&self.command, &self.input, with_ipopt)
     }
 }
 
@@ -105,4 +96,19 @@ fn name(input: &Path) -> OsString {
     let is_generic = GENERIC.iter().any(|&name| stem == name);
     let name = is_generic.then(of_folder).flatten();
     name.unwrap_or_else(|| stem.to_owned())
+}
+
+/// A number with its noun.
+pub(super) fn counted(count: usize, noun: &str) -> String {
+    format!("{count} {noun}{}", if count == 1 { "" } else { "s" })
+}
+
+/// Key of a task in its file.
+pub(super) fn key(task: &Task) -> &'static str {
+    match task {
+        Task::Control(_) | Task::Motions(_) => "control",
+        Task::Simulate(_) => "simulate",
+        Task::Equilibrium(..) => "equilibrium",
+        Task::Identify(_) => "identify",
+    }
 }

@@ -15,7 +15,7 @@ use crate::files::{Loaded, is_standard_input};
 use crate::report::atomic::{self, WriteError};
 use crate::report::file_set::FileSet;
 use crate::report::origin::Origin;
-use crate::report::shell;
+use crate::report::quoting;
 use crate::workflow::integrate::grid;
 
 /// A simulation that has ended, and one that has not.
@@ -28,10 +28,7 @@ const SAME_STEP: f64 = 1e-9;
 
 /// Error: the run cannot be resumed from this folder.
 fn wrong(reason: String) -> CommandError {
-    CommandError::Option {
-        option: "--from",
-        reason,
-    }
+    CommandError::option("--from", reason)
 }
 
 /// The JSON text of a simulation without its end: a motion can be resumed where this is the same.
@@ -107,7 +104,7 @@ pub(super) fn add(
     match asked {
         Some(asked) => {
             let path = files.folder().join(ENDED);
-            let bytes = bytes(discrete, asked).map_err(|cause| WriteError { path, cause })?;
+            let bytes = bytes(discrete, asked).map_err(WriteError::at(path))?;
             files.add(ENDED, &bytes)
         }
         None => {
@@ -123,10 +120,7 @@ pub(super) fn replace(
     discrete: &DiscreteTrajectory,
     asked: &str,
 ) -> Result<(), WriteError> {
-    let bytes = bytes(discrete, asked).map_err(|cause| WriteError {
-        path: path.to_owned(),
-        cause,
-    })?;
+    let bytes = bytes(discrete, asked).map_err(WriteError::at(path))?;
     atomic::write(path, &bytes)
 }
 
@@ -201,5 +195,5 @@ pub(super) fn command(request: &CommandInput, task: &Task) -> Option<String> {
         words.extend(["-o".to_owned(), folder.clone()]);
     }
     words.extend(["--from".to_owned(), folder]);
-    Some(format!("to go on: proboscis {}", shell::command(words)))
+    Some(format!("to go on: proboscis {}", quoting::command(words)))
 }

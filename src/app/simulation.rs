@@ -4,13 +4,12 @@ use crate::app::blocks::{BlockSizes, EnergySummary};
 use crate::app::comparison::Comparison;
 use crate::app::displayed_motion::{DisplayedMotion, Motion};
 use crate::app::error::CommandError;
-use crate::app::messages::counted;
 use crate::app::partial_result::{STOPPED, leave_out, plan, time_to_write};
 use crate::app::progress::{Progress, Reached};
-use crate::app::request::{CommandInput, CommandOutput};
+use crate::app::request::{CommandInput, CommandOutput, counted};
 use crate::app::summary::{Seconds, Summary};
 use crate::app::unfinished::Unfinished;
-use crate::app::{comparison, fields, page, resume_file, solution_file, summary, unfinished};
+use crate::app::{comparison, fields, resume_file, solution_file, summary, unfinished};
 use crate::control::problem::{Afterwards, Simulation, Voltages};
 use crate::dynamics::trajectory::{Observations, Trajectory};
 use crate::dynamics::{DiscreteTrajectory, LocalError, observed};
@@ -94,12 +93,11 @@ fn refuse_halving(request: &CommandInput, task: &Simulation) -> Result<(), Comma
     if task.tolerance.is_none() || request.wanted.is_none() {
         return Ok(());
     }
-    Err(CommandError::Problem {
-        file: request.input.clone(),
-        place: "simulate.step".to_owned(),
-        reason: "steps are halved for --accuracy and --estimate-error: write a step; \"auto\" has a \"tolerance\" instead"
-            .to_owned(),
-    })
+    Err(CommandError::problem(
+        &request.input,
+        "simulate.step",
+        "steps are halved for --accuracy and --estimate-error: write a step; \"auto\" has a \"tolerance\" instead",
+    ))
 }
 
 /// A simulation that a command runs.
@@ -237,10 +235,7 @@ fn observe(
         },
     );
     let written = written?;
-    let columns = columns.map_err(|stopped| WriteError {
-        path: folder,
-        cause: io::Error::other(stopped),
-    })?;
+    let columns = columns.map_err(|stopped| WriteError::at(folder)(io::Error::other(stopped)))?;
     let mut observations = trajectory.observe(&model.system);
     observations.columns.extend(columns);
     let blocks = BlockSizes::from_model(model);
@@ -329,7 +324,7 @@ fn write_pictures(
     let shown = DisplayedMotion::from_motion(motion, &run.loaded.output, true, files)?;
     summary.notes.note("shown", shown.notes.iter().cloned());
     summary.shown = shown.part;
-    let mut content = page::content("Simulation", summary, Some(run.loaded));
+    let mut content = summary.page("Simulation", Some(run.loaded));
     content.rows = rows(summary, task, (model, discrete), assessment.neglected);
     let earlier = earlier.map(|earlier| shown.beside(earlier));
     let closed = ended.closed_loop.as_ref();
@@ -409,15 +404,8 @@ pub(super) fn rows(
         row("duration", format!("{} s", reached / 1e3)),
         row("method", method(task)),
         row("coordinates", model.coordinates.name().to_owned()),
-        row("computing time", format!("{:.3} s", summary.seconds.total)),
     ];
-    rows.extend(summary.energies.iter().flat_map(EnergySummary::rows));
-    rows.extend(summary.accuracy.iter().flat_map(|a| {
-        let told = |(name, error): (&&str, &f64)| {
-            (format!("estimated error, {name}"), format!("{error:.1e}"))
-        };
-        a.estimate.iter().map(told)
-    }));
+    rows.extend(summary.rows());
     rows.extend(neglected.map(|error| {
         let words = format!(
             "{:.2e} m, {:.2} % of the path",

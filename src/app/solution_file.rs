@@ -22,10 +22,7 @@ pub(super) const UNFINISHED: &str = "unfinished.json";
 /// A file cannot be written.
 pub(super) fn add(files: &mut FileSet, model: &Model, solved: &Solution) -> Result<(), WriteError> {
     let texts = solution::written(model, solved, ARRAYS);
-    let Written { json, arrays } = texts.map_err(|cause| WriteError {
-        path: files.folder().join(ARRAYS),
-        cause,
-    })?;
+    let Written { json, arrays } = texts.map_err(WriteError::at(files.folder().join(ARRAYS)))?;
     match arrays {
         Some(bytes) => files.add(ARRAYS, &bytes)?,
         None => files.remove(ARRAYS),
@@ -48,10 +45,7 @@ pub(super) fn replace(path: &Path, model: &Model, solved: &Solution) -> Result<(
     };
     let name = beside.file_name().unwrap_or_default().to_string_lossy();
     let texts = solution::written(model, solved, &name);
-    let Written { json, arrays } = texts.map_err(|cause| WriteError {
-        path: beside.clone(),
-        cause,
-    })?;
+    let Written { json, arrays } = texts.map_err(WriteError::at(&beside))?;
     if let Some(bytes) = &arrays {
         atomic::write(&beside, bytes)?;
     }

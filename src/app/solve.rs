@@ -10,12 +10,10 @@ use crate::app::partial_result::{leave_out, time_to_write};
 use crate::app::progress::Reached;
 use crate::app::request::{CommandInput, CommandOutput};
 use crate::app::sensitivity_summary::SensitivitySummary;
-use crate::app::solve_page::{convergence, goal, rows, targets, waypoints};
 use crate::app::solve_summary::{command_output, program, seconds};
+use crate::app::solve_summary::{convergence, goal, rows, targets, waypoints};
 use crate::app::summary::{MEASURED, Summary};
-use crate::app::{
-    checkpoint, feedback_files, fields, page, resume_file, solution_file, unfinished,
-};
+use crate::app::{feedback_files, fields, resume_file, solution_file, unfinished};
 use crate::control::problem::{Control, Regulator};
 use crate::dynamics::observations;
 use crate::files::Loaded;
@@ -52,7 +50,7 @@ pub(super) fn control(
 ) -> Result<CommandOutput, CommandError> {
     let read = began.elapsed().as_secs_f64();
     let system = &loaded.system;
-    let (result, folder) = checkpoint::solve(
+    let (result, folder) = unfinished::solve(
         request,
         read,
         observer,
@@ -191,7 +189,7 @@ impl Solved<'_> {
             .map(|(discrete, _)| trajectory(model, &solved(model, &discrete, None)))
             .map(|other| shown.beside(other));
         let goal = goal(model, boundary);
-        let mut content = page::content("Optimal control", summary, Some(self.loaded));
+        let mut content = summary.page("Optimal control", Some(self.loaded));
         content.rows = rows(summary);
         content
             .plots

@@ -1,20 +1,28 @@
-//! A control problem in `summary.json` and in the answer of its command: program, notes, times.
-
-use std::path::Path;
-use std::time::Instant;
+//! A control problem in `summary.json`, on its page and in the answer of its command: program, notes, times, rows, convergence, goal.
 
 use crate::app::linear_systems::LinearSystems;
-use crate::app::messages::counted;
 use crate::app::partial_result::STOPPED;
-use crate::app::request::CommandOutput;
-use crate::app::solve_page::describe;
+use crate::app::request::{CommandOutput, counted};
+use crate::app::sensitivity_summary::SensitivitySummary;
 use crate::app::summary::{Evaluations, PerInterval, Program, Seconds, SoughtValue, Summary};
-use crate::control::problem::Control;
+use crate::control::BoundaryConditions;
+use crate::control::problem::{BoundaryState, Control, CostFunction, During, Place, instant_at};
+use crate::dynamics::trajectory::Trajectory;
+use crate::ipopt::Iteration;
+use crate::kinematics::Pose;
 use crate::math::significant;
-use crate::model::System;
-use crate::tasks::SolveResult;
-use crate::workflow::optimum::Optimum;
-use crate::workflow::optimum::Violation;
+use crate::model::{Model, System, What};
+use crate::report::axes::{Axis, Extent};
+use crate::report::lines::{LinePlot, Series};
+use crate::report::style;
+use crate::tasks::{SolveResult, solve_messages};
+use crate::workflow::motion::Distance;
+use crate::workflow::optimum::{Optimum, Violation};
+use crate::workflow::tracking::Tracked;
+use nalgebra::Vector3;
+use std::collections::BTreeMap;
+use std::path::Path;
+use std::time::Instant;
 
 /// The program of an optimum in numbers.
 pub(super) fn program(system: &System, control: &Control, result: &SolveResult) -> Program {
@@ -72,6 +80,15 @@ pub(super) fn seconds(optimum: &Optimum, read: f64, began: Instant) -> Seconds {
     }
 }
 
+/// The outcome of a solve with its status, where that says more.
+pub(super) fn outcome_word(is_solved: bool, status: &str) -> String {
+    let solved = if is_solved { "solved" } else { "not solved" };
+    match status {
+        "solved" => solved.to_owned(),
+        word => format!("{solved} ({})", word.replace('_', " ")),
+    }
+}
+
 /// The answer of the command.
 pub(super) fn command_output(
     summary: &Summary,
@@ -82,11 +99,7 @@ pub(super) fn command_output(
     let program = summary.program.as_ref();
     let (objective, iterations) = program.map_or((f64::NAN, 0), |p| (p.objective, p.iterations));
     let mut is_solved = summary.message.is_none();
-    let solved = if is_solved { "solved" } else { "not solved" };
-    let mut word = match summary.status.as_str() {
-        "solved" => solved.to_owned(),
-        word => format!("{solved} ({})", word.replace('_', " ")),
-    };
+    let mut word = outcome_word(is_solved, &summary.status);
     let mut notes: Vec<String> = summary.message.iter().cloned().collect();
     notes.extend(violated.iter().map(describe));
     notes.extend(summary.notes.lines());
@@ -116,4 +129,174 @@ pub(super) fn command_output(
         ),
         notes,
     }
+}
+
+/// Rows of the table of the page.
+pub(super) fn rows(summary: &Summary) -> Vec<(String, String)> {
+    let mut rows = vec![("status".to_owned(), summary.status.clone())];
+    let Some(program) = &summary.program else {
+        return rows;
+    };
+    let mut row = |key: &str, value: String| rows.push((key.to_owned(), value));
+    row("objective", objective(program));
+    row("iterations", program.iterations.to_string());
+    row("duration", format!("{:.6} s", program.duration));
+    row("intervals", program.intervals.to_string());
+    for parameter in &program.parameters {
+        row(&parameter.name, parameter.text());
+    }
+    let coordinates = summary.coordinates.unwrap_or_default();
+    row("coordinates", coordinates.to_owned());
+    row("variables", program.variables.to_string());
+    row("constraints", program.constraints.to_string());
+    rows.extend(summary.rows());
+    if let Some(r) = &program.resimulation {
+        let of = |d: &Distance| format!("{:.1e} rad, {:.1e} m", d.angle, d.length);
+        let key = "deviation when simulated forward";
+        rows.push((key.to_owned(), of(&r.deviation)));
+        if let (Some(drift), Some(held)) = (&r.drift, r.held) {
+            rows.push((format!("drift when held for {held} s"), of(drift)));
+        }
+    }
+    rows.extend(summary.tracking.iter().map(tracking_row));
+    rows.extend(summary.sensitivities.iter().map(SensitivitySummary::row));
+    let violated = program.violations.iter().map(describe);
+    rows.extend(violated.map(|words| ("violated".to_owned(), words)));
+    rows
+}
+
+/// The objective with its unit, or those of its terms where they differ.
+fn objective(program: &Program) -> String {
+    let value = program.objective;
+    match program.objective_units.as_slice() {
+        [] => format!("{value:.9}"),
+        [unit] => format!("{value:.9} {unit}").trim_end().to_owned(),
+        [units @ .., last] => format!(
+            "{value:.9} (weighted sum of terms in {} and {last})",
+            units.join(", ")
+        ),
+    }
+}
+
+/// A violated row in words.
+pub(super) fn describe(violation: &Violation) -> String {
+    match (violation.violation, violation.scaled) {
+        (Some(distance), Some(scaled)) => {
+            let unit = match violation.unit {
+                "" => String::new(),
+                unit => format!(" {unit}"),
+            };
+            format!(
+                "{}: violated by {}{unit} (scaled violation {scaled:.1e})",
+                violation.row,
+                significant(distance, 4)
+            )
+        }
+        _ => format!("{}: has no value there", violation.row),
+    }
+}
+
+/// Title and plot of the iterations of the solver.
+pub(super) fn convergence(iterations: &[Iteration]) -> (String, LinePlot) {
+    let curve = |i: usize, name: &str, value: &dyn Fn(&Iteration) -> f64| {
+        let points = iterations.iter().enumerate();
+        let points = points.map(|(k, iteration)| [k as f64, value(iteration)]);
+        Series::curve(name, points.collect(), style::hue(i))
+    };
+    let series = vec![
+        curve(0, "violation of equations and limits", &|one| {
+            one.primal_infeasibility
+        }),
+        curve(1, "gradient of the Lagrangian", &|one| {
+            one.dual_infeasibility
+        }),
+        curve(2, "barrier parameter", &|one| one.mu),
+        curve(3, "greatest step", &|one| one.step_norm),
+    ];
+    let plot = LinePlot::new(
+        Axis::linear("iteration", Extent::Tight),
+        Axis::log("scaled value"),
+        series,
+    );
+    ("Convergence".to_owned(), plot)
+}
+
+/// Places in mm where markers were to end, by goal or objective, with their indices; as they ended in directions that are free.
+pub(super) fn targets(control: &Control, motion: &Trajectory) -> Vec<(usize, Vector3<f64>)> {
+    let last = motion.times.len() - 1;
+    let given = match &control.goal {
+        BoundaryState::Markers { places, .. } => places.clone(),
+        _ => BTreeMap::new(),
+    };
+    let given = given
+        .into_iter()
+        .map(|(marker, place)| ((last, marker), place));
+    let at_end = |during: During| (during == During::End).then_some(last);
+    asked_places(control, motion, given.collect(), &at_end)
+}
+
+/// Places in mm that markers are to pass, exactly or near, with their indices; as they pass in directions that are free.
+pub(super) fn waypoints(control: &Control, motion: &Trajectory) -> Vec<(usize, Vector3<f64>)> {
+    let instant = |part: f64| instant_at(part, motion.intervals());
+    let given = control.waypoints.iter().flat_map(|waypoint| {
+        let all = waypoint.places.iter();
+        all.map(|(&marker, place)| ((instant(waypoint.part), marker), *place))
+    });
+    let on_the_way = |during: During| match during {
+        During::At(part) => Some(instant(part)),
+        _ => None,
+    };
+    asked_places(control, motion, given.collect(), &on_the_way)
+}
+
+/// Places by instant and marker with those near which the objective asks for them; those that the motion has in directions that are free.
+fn asked_places(
+    control: &Control,
+    motion: &Trajectory,
+    mut places: BTreeMap<(usize, usize), Place>,
+    instant: &dyn Fn(During) -> Option<usize>,
+) -> Vec<(usize, Vector3<f64>)> {
+    for cost in &control.objective.quantities {
+        let CostFunction::Square { reference } = &cost.function else {
+            continue;
+        };
+        if let (&What::Place { marker, axis }, Some(k)) =
+            (&cost.quantity.what, instant(cost.during))
+        {
+            let place = &mut places.entry((k, marker)).or_default().0[axis];
+            place.get_or_insert_with(|| reference.at(motion.times[k]));
+        }
+    }
+    let whole = |((k, marker), place): ((usize, usize), Place)| {
+        let mut at = motion.marks[k][marker];
+        place.given().for_each(|(axis, value)| at[axis] = value);
+        (marker, at)
+    };
+    places.into_iter().map(whole).collect()
+}
+
+/// Poses of the bodies at the end that is asked for, where it is given as a whole.
+pub(super) fn goal(model: &Model, boundary: &BoundaryConditions) -> Option<Vec<Pose>> {
+    let goal = &boundary.goal;
+    let z = match &goal.rest {
+        Some(rest) => rest.z.clone(),
+        None => goal
+            .coordinates
+            .iter()
+            .copied()
+            .collect::<Option<Vec<f64>>>()?,
+    };
+    let mut instant = model.action.map.instant();
+    (z.len() == instant.z.len()).then(|| {
+        instant.z.copy_from_slice(&z);
+        model.action.map.place(&mut instant);
+        model.poses(&instant)
+    })
+}
+
+/// A row of a table: what follows, and its deviations.
+fn tracking_row(of: &Tracked) -> (String, String) {
+    let Tracked { kind, name, .. } = of;
+    let key = format!("deviation of {kind} {name} from its path");
+    (key, solve_messages::deviation_words(of))
 }

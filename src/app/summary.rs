@@ -3,19 +3,20 @@
 use crate::app::blocks::{BlockSizes, EnergySummary};
 use crate::app::comparison::Comparison;
 use crate::app::displayed_motion::ShownPart;
+use crate::app::equilibrium_summary::PathSummary;
 use crate::app::equilibrium_summary::Rest;
 use crate::app::error::CommandError;
 use crate::app::identification_summary::Identification;
 use crate::app::linear_systems::{LinearSystems, MultigridCounts};
-use crate::app::path_summary::PathSummary;
 use crate::app::request::CommandInput;
 use crate::app::sensitivity_summary::SensitivitySummary;
 use crate::control::problem;
 use crate::dynamics::{DiscreteTrajectory, LocalError};
-use crate::files::lay_out;
+use crate::files::{Loaded, lay_out};
 use crate::ipopt;
 use crate::math::significant;
 use crate::model::FoundParameter;
+use crate::report::PageContent;
 use crate::report::atomic::WriteError;
 use crate::report::file_set::FileSet;
 use crate::workflow::accuracy::Accuracy;
@@ -37,7 +38,7 @@ use std::time::Instant;
 pub(super) const MEASURED: f64 = 2e-4;
 
 /// The file.
-#[derive(Debug, Serialize)]
+#[derive(Debug, Default, Serialize)]
 pub(super) struct Summary {
     pub(super) command: String,
     pub(super) input: String,
@@ -301,7 +302,7 @@ impl Simulation {
     }
 }
 
-/// Versions that the result depends on.
+/// Versions that the result depends on: those of this program.
 #[derive(Debug, Serialize)]
 pub(super) struct Versions {
     program: &'static str,
@@ -310,9 +311,8 @@ pub(super) struct Versions {
     ipopt: &'static str,
 }
 
-impl Versions {
-    /// Those of this program.
-    pub(super) fn new() -> Self {
+impl Default for Versions {
+    fn default() -> Self {
         Self {
             program: env!("CARGO_PKG_VERSION"),
             commit: option_env!("PROBOSCIS_COMMIT"),
@@ -341,36 +341,47 @@ impl Summary {
             command: request.command.clone(),
             input: request.input.display().to_string(),
             status: status.to_owned(),
-            message: None,
-            notes: Remarks::default(),
-            program: None,
-            simulation: None,
-            feedback: None,
-            closed_loop: None,
-            shown: None,
-            accuracy: None,
-            tracking: Vec::new(),
-            waypoint_values: Vec::new(),
-            final_values: Vec::new(),
-            sensitivities: Vec::new(),
-            energies: None,
-            comparison: None,
-            rest: None,
-            path: None,
-            identification: None,
-            domain: Vec::new(),
-            blocks: None,
             coordinates: coordinates.into(),
-            seconds: Seconds::default(),
-            plan: Plan::default(),
-            versions: Versions::new(),
+            ..Self::default()
         }
+    }
+
+    /// Rows of the page: computing time, energies, and estimated errors.
+    pub(super) fn rows(&self) -> Vec<(String, String)> {
+        let seconds = format!("{:.3} s", self.seconds.total);
+        let mut rows = vec![("computing time".to_owned(), seconds)];
+        rows.extend(self.energies.iter().flat_map(EnergySummary::rows));
+        let estimated = self.accuracy.iter().flat_map(|accuracy| &accuracy.estimate);
+        rows.extend(
+            estimated
+                .map(|(name, error)| (format!("estimated error, {name}"), format!("{error:.1e}"))),
+        );
+        rows
     }
 
     /// Writes it as `summary.json`, the last file of a result.
     pub(super) fn write(&self, mut files: FileSet) -> Result<(), WriteError> {
         files.add("summary.json", self.text().as_bytes())?;
         files.finish()
+    }
+
+    /// Texts of its page before rows and plots, and those of its problem, where there is a file of it.
+    pub(super) fn page(&self, title: &str, loaded: Option<&Loaded>) -> PageContent {
+        let mut documents = vec![("Summary".to_owned(), self.text())];
+        documents.extend(loaded.into_iter().flat_map(asked));
+        PageContent {
+            title: title.to_owned(),
+            is_solved: self.message.is_none(),
+            answer: self.status.replace('_', " "),
+            notes: self
+                .message
+                .iter()
+                .cloned()
+                .chain(self.notes.lines())
+                .collect(),
+            documents,
+            ..PageContent::default()
+        }
     }
 
     /// Its text.
@@ -403,4 +414,13 @@ impl Seconds {
         self.total = began.elapsed().as_secs_f64();
         self.writing = writing.elapsed().as_secs_f64();
     }
+}
+
+/// Names and texts of problem and scene as they were read, overrides applied.
+fn asked(loaded: &Loaded) -> Vec<(String, String)> {
+    let mut documents = vec![("Problem".to_owned(), lay_out(&loaded.problem))];
+    if loaded.scene_path.is_some() {
+        documents.push(("Scene".to_owned(), lay_out(&loaded.scene)));
+    }
+    documents
 }

@@ -55,7 +55,7 @@ fn run_checked(
     check: fn(&CommandInput, &Task) -> Result<(), CommandError>,
 ) -> Result<CommandOutput, CommandError> {
     let began = Instant::now();
-    let _progress = Progress::of_phases(request.progress);
+    let _progress = Progress::of_solve(request.progress);
     phase("reading");
     let loaded = read(&request.input, text, &request.set)?;
     check(request, &loaded.task)?;
@@ -147,71 +147,78 @@ fn refuse_end(
     };
     let folders = [own, &end.source].map(|folder| folder.canonicalize().ok());
     match folders {
-        [Some(to), Some(from)] if to == from => Err(CommandError::Problem {
-            file: request.input.clone(),
-            place: format!("{place}.start.end_of"),
-            reason: format!(
+        [Some(to), Some(from)] if to == from => Err(CommandError::problem(
+            &request.input,
+            format!("{place}.start.end_of"),
+            format!(
                 "the results would replace {}, where the motion starts; expected another folder for them, by -o",
                 end.source.display()
             ),
-        }),
+        )),
         _ => Ok(()),
     }
 }
 
 /// Refuses options that the task has no use for.
 fn refuse_unused(request: &CommandInput, task: &Task) -> Result<(), CommandError> {
-    let is_simulation = matches!(task, Task::Simulate(_));
-    let option = match (task, request.wanted) {
-        (Task::Control(_), _) => return Ok(()),
-        (Task::Motions(motions), Some(wanted)) if some_are_refined(motions) => match wanted {
-            AccuracyTarget::Below(_) => "--accuracy",
-            AccuracyTarget::Estimate => "--estimate-error",
-        },
-        (Task::Motions(motions), Some(AccuracyTarget::Estimate))
-            if motions.list[0].control.is_refined =>
-        {
-            "--estimate-error"
-        }
-        (Task::Motions(_), _) => return Ok(()),
-        (Task::Equilibrium(_) | Task::Identify(_), Some(AccuracyTarget::Below(_))) => "--accuracy",
-        (Task::Equilibrium(_) | Task::Identify(_), Some(AccuracyTarget::Estimate)) => {
-            "--estimate-error"
-        }
-        _ if request.from.is_some() && (!is_simulation || request.wanted.is_some()) => "--from",
-        _ if request.max_iterations.is_some() => "--max-iterations",
-        (Task::Identify(_), None) if request.figures.gltf || request.figures.parts => "--export",
-        _ => return Ok(()),
+    let Some((option, asks)) = unused(request, task) else {
+        return Ok(());
     };
-    let asks = match task {
-        Task::Motions(motions) if some_are_refined(motions) => {
-            "several motions, and names \"intervals\" of some; expected them, or \"auto\", of all"
-        }
-        Task::Motions(_) => {
-            "several motions on \"auto\" grids, which are refined until their errors are confirmed"
-        }
-        Task::Equilibrium(_) if option == "--from" => "an equilibrium, which goes on from nothing",
-        Task::Simulate(_) if option == "--from" => {
-            "a simulation, whose steps --accuracy and --estimate-error halve from the start"
-        }
-        Task::Equilibrium(_) if request.wanted.is_some() => {
-            "an equilibrium, which has no steps in time to refine"
-        }
-        Task::Equilibrium(_) => "an equilibrium, for which no solver of programs iterates",
-        Task::Identify(_) if option == "--from" => "an identification, which goes on from nothing",
-        Task::Identify(_) if request.wanted.is_some() => {
-            "an identification, whose steps are halved until their bias is small"
-        }
-        Task::Identify(_) if option == "--export" => {
-            "an identification, whose motions are those of its recordings"
-        }
-        Task::Identify(_) => "an identification, for which no solver of programs iterates",
-        _ => "a simulation, for which no solver of programs iterates",
-    };
-    Err(CommandError::Option {
+    let file = request.input.display();
+    Err(CommandError::option(
         option,
-        reason: format!("{} asks for {asks}", request.input.display()),
-    })
+        format!("{file} asks for {asks}"),
+    ))
+}
+
+/// An option that the task has no use for, and why.
+fn unused(request: &CommandInput, task: &Task) -> Option<(&'static str, &'static str)> {
+    let wanted = request.wanted.map(|wanted| match wanted {
+        AccuracyTarget::Below(_) => "--accuracy",
+        AccuracyTarget::Estimate => "--estimate-error",
+    });
+    let [of_wanted, of_from, of_iterations] = match task {
+        Task::Control(_) => return None,
+        Task::Motions(motions) if some_are_refined(motions) => {
+            let asks = "several motions, and names \"intervals\" of some; expected them, or \"auto\", of all";
+            return wanted.map(|option| (option, asks));
+        }
+        Task::Motions(motions) => {
+            let asks = "several motions on \"auto\" grids, which are refined until their errors are confirmed";
+            let is_unused = motions.list[0].control.is_refined
+                && request.wanted == Some(AccuracyTarget::Estimate);
+            return wanted.filter(|_| is_unused).map(|option| (option, asks));
+        }
+        Task::Equilibrium(_) => [
+            "an equilibrium, which has no steps in time to refine",
+            "an equilibrium, which goes on from nothing",
+            "an equilibrium, for which no solver of programs iterates",
+        ],
+        Task::Identify(_) => [
+            "an identification, whose steps are halved until their bias is small",
+            "an identification, which goes on from nothing",
+            "an identification, for which no solver of programs iterates",
+        ],
+        Task::Simulate(_) => [
+            "",
+            "a simulation, whose steps --accuracy and --estimate-error halve from the start",
+            "a simulation, for which no solver of programs iterates",
+        ],
+    };
+    let is_simulation = matches!(task, Task::Simulate(_));
+    let figures = request.figures;
+    match wanted {
+        Some(option) if !is_simulation => Some((option, of_wanted)),
+        _ if request.from.is_some() && (!is_simulation || wanted.is_some()) => {
+            Some(("--from", of_from))
+        }
+        _ if request.max_iterations.is_some() => Some(("--max-iterations", of_iterations)),
+        _ if matches!(task, Task::Identify(_)) && (figures.gltf || figures.parts) => {
+            let asks = "an identification, whose motions are those of its recordings";
+            Some(("--export", asks))
+        }
+        _ => None,
+    }
 }
 
 /// Returns true if the grids of some motions are chosen, and those of others given.

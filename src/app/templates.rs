@@ -9,7 +9,7 @@ use crate::app::request::CommandOutput;
 use crate::files;
 use crate::files::named_materials;
 use crate::files::urdf::read_urdf;
-use crate::report::{atomic, shell};
+use crate::report::{atomic, quoting};
 
 /// A robot to begin with.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -68,10 +68,10 @@ pub fn new_files(template: Template, folder: &Path) -> Result<CommandOutput, Com
         && !(1..=files::LONGEST_CHAIN).contains(&segments)
     {
         let most = files::LONGEST_CHAIN;
-        return Err(CommandError::Option {
-            option: "--segments",
-            reason: format!("found {segments}, expected a number of segments from 1 to {most}"),
-        });
+        return Err(CommandError::option(
+            "--segments",
+            format!("found {segments}, expected a number of segments from 1 to {most}"),
+        ));
     }
     let (scene, problem) = template.files();
     let files = [("scene.json".to_owned(), scene.into_bytes())];
@@ -162,7 +162,7 @@ fn next(command: &str, folder: &Path) -> String {
     };
     let problem = problem.display().to_string();
     let words = ["proboscis", command, &problem].map(str::to_owned);
-    shell::command(words)
+    quoting::command(words)
 }
 
 /// Writes a file, and the folders that it lies in where they are missing.
@@ -198,10 +198,10 @@ pub fn materials(name: Option<&str>) -> Result<String, CommandError> {
         return Ok(text.trim_end().to_owned());
     }
     let names: Vec<&str> = named_materials().map(|(name, _)| name).collect();
-    Err(CommandError::Option {
-        option: "materials",
-        reason: format!("found {wanted:?}, expected one of {}", names.join(", ")),
-    })
+    Err(CommandError::option(
+        "materials",
+        format!("found {wanted:?}, expected one of {}", names.join(", ")),
+    ))
 }
 
 /// The JSON Schemas of scene and problem as text.

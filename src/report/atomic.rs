@@ -23,6 +23,14 @@ pub struct WriteError {
     pub cause: io::Error,
 }
 
+impl WriteError {
+    /// Makes the error of a path from that of the operating system.
+    pub(crate) fn at(path: impl Into<PathBuf>) -> impl FnOnce(io::Error) -> Self {
+        let path = path.into();
+        move |cause| Self { path, cause }
+    }
+}
+
 /// Replaces `path` by `bytes` in one step: a reader sees the old file or the new one, never a part.
 ///
 /// The bytes go to a partial file of the same folder, reach the disk, and take the name at last.
@@ -32,10 +40,7 @@ pub struct WriteError {
 /// # Errors
 /// The file cannot be written.
 pub fn write(path: &Path, bytes: &[u8]) -> Result<(), WriteError> {
-    replace(path, bytes).map_err(|cause| WriteError {
-        path: path.to_owned(),
-        cause,
-    })
+    replace(path, bytes).map_err(WriteError::at(path))
 }
 
 fn replace(path: &Path, bytes: &[u8]) -> io::Result<()> {

@@ -1,15 +1,14 @@
-//! A rigid body drawn as glass: the walls behind its inside, then those in front of it.
-
-use nalgebra::Vector3;
+//! A rigid body drawn as glass: the walls behind its inside, then those in front of it; a surface of triangles by its outline and its sharp edges.
 
 use crate::kinematics::Pose;
-use crate::mesh::triangulated::circle;
+use crate::mesh::triangulated::{Surface, circle};
 use crate::model::system::Shape;
-use crate::report::canvas::{Canvas, Stroke};
-use crate::report::silhouette::Silhouette;
+use crate::report::canvas::{Canvas, CanvasPoint, Stroke};
 use crate::report::solids::Prism;
 use crate::report::style::{self, Colour};
 use crate::report::view::{View, hull};
+use nalgebra::Vector3;
+use std::collections::BTreeMap;
 
 /// State that a drawing shows.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -178,4 +177,118 @@ fn bands(view: &View, pose: &Pose, length: f64, radius: f64) -> Vec<Vec<Vector3<
             lower.chain(upper).collect()
         })
         .collect()
+}
+
+/// Cosine of the smallest angle between neighbours that meet in an edge that is drawn: 30°.
+const SHARP: f64 = 0.866;
+/// Edges shorter than this in pt are not drawn.
+const FINEST: f64 = 0.5;
+
+/// Lines of a surface on a sheet.
+struct Silhouette {
+    /// Closed lines around the triangles that look at the viewer; what they wind around is covered.
+    outline: Vec<Vec<CanvasPoint>>,
+    /// Sharp edges between triangles that look away.
+    behind: Vec<[CanvasPoint; 2]>,
+    /// Other sharp edges.
+    before: Vec<[CanvasPoint; 2]>,
+}
+
+impl Silhouette {
+    /// Lines of the surface of a body in a pose.
+    fn new(view: &View, surface: &Surface, pose: &Pose) -> Self {
+        let places = surface.vertices.iter();
+        let places = places.map(|x| view.place(&(pose.centre + pose.directors * x)));
+        let places: Vec<_> = places.collect();
+        let toward = pose.directors.transpose() * view.toward;
+        let normals: Vec<Vector3<f64>> = surface
+            .corners()
+            .map(|[a, b, c]| (b - a).cross(&(c - a)))
+            .map(|normal| normal.try_normalize(0.0).unwrap_or_default())
+            .collect();
+        let is_front = |triangle: usize| normals[triangle].dot(&toward) > 0.0;
+        // Triangles at each edge.
+        let mut sides: BTreeMap<[usize; 2], Vec<usize>> = BTreeMap::new();
+        let mut rim: BTreeMap<[usize; 2], i32> = BTreeMap::new();
+        for (triangle, vertices) in surface.triangles.iter().enumerate() {
+            for i in 0..3 {
+                let (from, to) = (vertices[i], vertices[(i + 1) % 3]);
+                let edge = [from.min(to), from.max(to)];
+                sides.entry(edge).or_default().push(triangle);
+                if is_front(triangle) {
+                    *rim.entry(edge).or_default() += if from < to { 1 } else { -1 };
+                }
+            }
+        }
+        let (mut behind, mut before) = (Vec::new(), Vec::new());
+        for (edge, triangles) in &sides {
+            let ends = edge.map(|vertex| places[vertex]);
+            let is_sharp = match triangles[..] {
+                [a, b] => normals[a].dot(&normals[b]) < SHARP,
+                _ => true,
+            };
+            if !is_sharp || length(ends) < FINEST {
+                continue;
+            }
+            match triangles.iter().any(|&triangle| is_front(triangle)) {
+                true => before.push(ends),
+                false => behind.push(ends),
+            }
+        }
+        let outline = loops(&rim);
+        let outline = outline
+            .iter()
+            .map(|path| path.iter().map(|&v| places[v]).collect());
+        Self {
+            outline: outline.collect(),
+            behind,
+            before,
+        }
+    }
+
+    /// The outline as one polygon: closed lines, each from the beginning of the first one and back to it.
+    fn polygon(&self) -> Vec<CanvasPoint> {
+        let Some(start) = self.outline.first().and_then(|path| path.first()) else {
+            return Vec::new();
+        };
+        let closed = |path: &Vec<CanvasPoint>| {
+            let first = path.first().copied();
+            path.iter()
+                .copied()
+                .chain(first)
+                .chain([*start])
+                .collect::<Vec<_>>()
+        };
+        self.outline.iter().flat_map(closed).collect()
+    }
+}
+
+/// The closed paths of edges with the number of their passes: positive from the lower vertex to the higher one.
+fn loops(rim: &BTreeMap<[usize; 2], i32>) -> Vec<Vec<usize>> {
+    let mut next: BTreeMap<usize, Vec<usize>> = BTreeMap::new();
+    for (&[low, high], &passes) in rim {
+        let (from, to) = if passes > 0 { (low, high) } else { (high, low) };
+        for _ in 0..passes.abs() {
+            next.entry(from).or_default().push(to);
+        }
+    }
+    let mut paths = Vec::new();
+    while let Some((&start, _)) = next.first_key_value() {
+        let mut path = Vec::new();
+        let mut at = start;
+        while let Some(targets) = next.get_mut(&at) {
+            path.push(at);
+            let to = targets.pop().expect("a vertex without targets is removed");
+            if targets.is_empty() {
+                next.remove(&at);
+            }
+            at = to;
+        }
+        paths.push(path);
+    }
+    paths
+}
+
+fn length([a, b]: [CanvasPoint; 2]) -> f64 {
+    (b[0] - a[0]).hypot(b[1] - a[1])
 }

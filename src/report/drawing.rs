@@ -1,18 +1,18 @@
-//! The system at an instant on a sheet: bodies as glass around muscles, joints and elastic blocks.
-
-use nalgebra::Vector3;
+//! The system in space at an instant on a sheet: bodies as glass around muscles, joints and elastic blocks; what frames it, and lines of components.
 
 use crate::dynamics::trajectory::Trajectory;
+use crate::mesh::triangulated::circle;
+use crate::model::Component;
 use crate::model::system::{Attachment, Fidelity, Joint, System};
-use crate::report::body::{Tint, draw_back, draw_front};
+use crate::report::body::{Tint, draw_back, draw_front, extent_points};
 use crate::report::canvas::{Canvas, CanvasPoint, Stroke};
 use crate::report::load_arrows::LoadArrows;
-use crate::report::skin::{self, Paint};
-use crate::report::skins::{Skin, Skins};
+use crate::report::skins::{Paint, Skin, Skins, draw_skin, shown};
 use crate::report::solids::{Prism, slice};
 use crate::report::style::{self, Colour};
-use crate::report::ties;
 use crate::report::view::View;
+use nalgebra::Vector3;
+use std::collections::HashSet;
 
 /// Lines across a muscle that hint at its layers.
 const LAYERS: usize = 12;
@@ -120,7 +120,7 @@ impl Drawing<'_> {
     /// The surfaces of blocks in the reference configuration.
     pub(super) fn reference_skins(&self, canvas: &Canvas<'_>) {
         for skin in &self.skins.list {
-            skin::draw(canvas, &self.view, skin, &skin.reference, Paint::Reference);
+            draw_skin(canvas, &self.view, skin, &skin.reference, Paint::Reference);
         }
     }
 
@@ -135,7 +135,7 @@ impl Drawing<'_> {
             },
             _ => Paint::Even(style::PASSIVE),
         };
-        skin::draw(canvas, &self.view, skin, &skin.places[at], paint);
+        draw_skin(canvas, &self.view, skin, &skin.places[at], paint);
     }
 
     /// The faces that look at the viewer, lit from the upper left, with lines that hint at the layers.
@@ -201,7 +201,7 @@ impl Drawing<'_> {
             Tint::Reference => style::REFERENCE,
             Tint::Coloured => style::TIE,
         };
-        for line in ties::lines(self.system, self.trajectory, k) {
+        for line in component_lines(self.system, self.trajectory, k) {
             canvas.line(&self.view.places(&line), Stroke::solid(ink, 1.0));
         }
     }
@@ -244,4 +244,126 @@ pub(super) fn marker_colour(marker: usize, count: usize) -> Colour {
         1 => style::INK,
         _ => style::hue(marker),
     }
+}
+
+/// Turns of a spring.
+const TURNS: usize = 8;
+/// Points of a turn.
+const PER_TURN: usize = 14;
+/// Radius of a spring, as a part of its length in the reference configuration.
+const RADIUS: f64 = 0.06;
+/// Straight ends of a spring, as parts of its length.
+const END: f64 = 0.12;
+
+/// The line of each component at an instant, in mm.
+pub(super) fn component_lines(
+    system: &System,
+    trajectory: &Trajectory,
+    k: usize,
+) -> Vec<Vec<Vector3<f64>>> {
+    let line = |component: &dyn Component| {
+        let points = component.points();
+        let at = points.iter().map(|p| trajectory.point(k, p, system));
+        let at: Vec<_> = at.collect();
+        match at[..] {
+            [from, to] if component.is_coiled() => {
+                coil(&from, &to, RADIUS * (points[1].at - points[0].at).norm())
+            }
+            _ => at,
+        }
+    };
+    system.components.iter().map(line).collect()
+}
+
+/// A helix between two points, with straight ends.
+fn coil(from: &Vector3<f64>, to: &Vector3<f64>, radius: f64) -> Vec<Vector3<f64>> {
+    let span = to - from;
+    let least = span.iamin();
+    let Some(across) = span.cross(&Vector3::ith(least, 1.0)).try_normalize(0.0) else {
+        return vec![*from, *to];
+    };
+    let other = span.normalize().cross(&across);
+    let count = TURNS * PER_TURN;
+    let turn = |i: usize| {
+        let s = i as f64 / count as f64;
+        let angle = std::f64::consts::TAU * TURNS as f64 * s;
+        // The radius grows from the axis and goes back to it within half a turn.
+        let grown = (2.0 * TURNS as f64 * s.min(1.0 - s)).min(1.0);
+        let out = across * angle.cos() + other * angle.sin();
+        from + span * (END + (1.0 - 2.0 * END) * s) + out * (radius * grown)
+    };
+    let turns = (0..=count).map(turn);
+    [*from].into_iter().chain(turns).chain([*to]).collect()
+}
+
+/// Points in mm whose outline is that of all that is seen over a motion.
+pub(super) fn points(system: &System, trajectory: &Trajectory, skins: &Skins) -> Vec<Vector3<f64>> {
+    let mut points = ground_plate(system);
+    let arrows = LoadArrows::new(system, trajectory, skins);
+    for k in shown(&trajectory.times, 1) {
+        for (body, pose) in system.bodies.iter().zip(&trajectory.poses[k]) {
+            points.extend(extent_points(&body.shape, pose));
+        }
+        for i in lumped(system) {
+            points.extend(Prism::muscle(system, trajectory, k, i).corners());
+        }
+        points.extend(component_lines(system, trajectory, k).into_iter().flatten());
+        let arrow = |(source, load)| arrows.arrow(source, load, k);
+        points.extend(arrows.loads().flat_map(arrow));
+    }
+    points.extend(
+        skins
+            .list
+            .iter()
+            .flat_map(|skin| skin.places.iter().flatten()),
+    );
+    points.extend(trajectory.marks.iter().flatten());
+    points
+}
+
+/// A motion of one instant, the reference configuration, without joint coordinates and voltages.
+pub(super) fn reference(system: &System) -> Trajectory {
+    let marks = system.markers.iter().map(|marker| marker.point.at);
+    Trajectory {
+        times: vec![0.0],
+        poses: vec![system.bodies.iter().map(|body| body.pose()).collect()],
+        marks: vec![marks.collect()],
+        ..Trajectory::default()
+    }
+}
+
+/// Faces of elastic blocks that the ground holds in all directions, in mm.
+pub(super) fn held_faces(system: &System) -> Vec<[Vector3<f64>; 4]> {
+    let faces = system.solids.iter().flat_map(|solid| {
+        let fixed = solid.supports.iter().filter(|s| s.held == [true; 3]);
+        let glued = solid.glued.iter().filter(|glue| glue.body.is_none());
+        let nodes = fixed.map(|s| &s.nodes).chain(glued.map(|glue| &glue.nodes));
+        let held: HashSet<usize> = nodes.flatten().copied().collect();
+        let faces = solid.mesh.boundary_quads().into_iter();
+        let faces = faces.filter(move |face| face.iter().all(|node| held.contains(node)));
+        faces.map(|face| face.map(|node| solid.mesh.nodes[node]))
+    });
+    faces.collect()
+}
+
+/// A disc in the ground below the points that are held by it, in mm; empty where nothing is.
+pub(super) fn ground_plate(system: &System) -> Vec<Vector3<f64>> {
+    let muscles = system.muscles.iter().flat_map(|m| [m.from, m.to]);
+    let components = system.components.iter().flat_map(|c| c.points());
+    let joints = system.joints.iter().filter(|j| j.parent.is_none());
+    let held: Vec<_> = muscles
+        .chain(components)
+        .filter(|point| point.body.is_none())
+        .map(|point| point.at)
+        .chain(joints.map(|j| j.at))
+        .collect();
+    if held.is_empty() {
+        return vec![];
+    }
+    let centre = held.iter().sum::<Vector3<f64>>() / held.len() as f64;
+    let lowest = held.iter().map(|p| p.y).fold(f64::INFINITY, f64::min);
+    let spread = held.iter().map(|p| (p - centre).xz().norm());
+    let radius = 1.6 * spread.fold(0.0, f64::max) + 8.0;
+    let middle = Vector3::new(centre.x, lowest, centre.z);
+    circle(middle, Vector3::x(), Vector3::z(), radius)
 }

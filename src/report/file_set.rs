@@ -102,18 +102,14 @@ impl FileSet {
             removed(path)?;
         }
         for (file, path) in self.written {
-            file.persist(&path).map_err(|failure| WriteError {
-                path,
-                cause: failure.error,
-            })?;
+            file.persist(&path)
+                .map_err(|failure| WriteError::at(path)(failure.error))?;
         }
         for folder in &folders {
             atomic::sync_folder(folder);
         }
-        last.persist(&last_path).map_err(|failure| WriteError {
-            path: last_path.clone(),
-            cause: failure.error,
-        })?;
+        last.persist(&last_path)
+            .map_err(|failure| WriteError::at(&last_path)(failure.error))?;
         atomic::sync_folder(atomic::folder(&last_path));
         Ok(())
     }
@@ -123,10 +119,7 @@ impl FileSet {
         let next = AtomicUsize::new(0);
         let work = || -> Result<(), WriteError> {
             while let Some((file, path)) = self.written.get(next.fetch_add(1, Ordering::Relaxed)) {
-                file.as_file().sync_all().map_err(|cause| WriteError {
-                    path: path.clone(),
-                    cause,
-                })?;
+                file.as_file().sync_all().map_err(WriteError::at(path))?;
             }
             Ok(())
         };
@@ -140,12 +133,9 @@ impl FileSet {
             let mine = work();
             let theirs = started.into_iter().map(|thread| {
                 let gone = || io::Error::other("a thread of the writing ended");
-                thread.join().unwrap_or_else(|_| {
-                    Err(WriteError {
-                        path: self.folder.clone(),
-                        cause: gone(),
-                    })
-                })
+                thread
+                    .join()
+                    .unwrap_or_else(|_| Err(WriteError::at(&self.folder)(gone())))
             });
             theirs.fold(mine, Result::and)
         })
@@ -157,9 +147,6 @@ fn removed(path: &Path) -> Result<bool, WriteError> {
     match fs::remove_file(path) {
         Ok(()) => Ok(true),
         Err(cause) if cause.kind() == ErrorKind::NotFound => Ok(false),
-        Err(cause) => Err(WriteError {
-            path: path.to_owned(),
-            cause,
-        }),
+        Err(cause) => Err(WriteError::at(path)(cause)),
     }
 }

@@ -6,29 +6,24 @@ pub mod canvas;
 pub mod curves;
 mod drawing;
 pub mod file_set;
-mod frame;
 pub mod gltf;
 pub mod legend;
 pub mod lines;
 mod load_arrows;
-pub mod markup;
 pub mod origin;
 pub mod page;
 pub mod paraview;
 mod parts;
 pub mod pose;
+pub mod quoting;
 mod run;
 pub mod sampled;
 pub mod sensitivities;
-pub mod shell;
-mod silhouette;
-pub mod skin;
 pub mod skins;
 mod snapshots;
 pub mod solids;
 pub mod style;
 pub mod table;
-mod ties;
 pub mod tip_path;
 pub mod view;
 pub mod viewpoint;
@@ -54,15 +49,25 @@ const PAGE: &str = "report.html";
 /// A file cannot be written.
 pub fn write_run(files: &mut FileSet, run: &Run<'_>) -> Result<(), WriteError> {
     let page = || run.page.map(|content| page::html(run, content));
-    let (page, mut texts) = join(page, || tables_and_figures(run));
-    match page {
-        Some(page) => texts.push((PAGE, page)),
-        None => files.remove(PAGE),
+    let (page, texts) = join(page, || tables_and_figures(run));
+    write(files, run, page, texts)
+}
+
+/// Writes files with their texts, those of ParaView and the page.
+fn write(
+    files: &mut FileSet,
+    run: &Run<'_>,
+    page: Option<String>,
+    texts: Vec<(&str, String)>,
+) -> Result<(), WriteError> {
+    if page.is_none() {
+        files.remove(PAGE);
     }
     if run.figures.parts {
         parts::write(files, run.system, run.trajectory, run.origin)?;
     }
-    let mut texts = texts.into_iter();
+    let page = page.map(|page| (PAGE, page));
+    let mut texts = texts.into_iter().chain(page);
     texts.try_for_each(|(name, text)| files.add(name, text.as_bytes()))
 }
 
@@ -149,27 +154,14 @@ fn tables_and_figures(run: &Run<'_>) -> Vec<(&'static str, String)> {
 /// # Errors
 /// A file cannot be written.
 pub fn write_still(files: &mut FileSet, table: &str, run: &Run<'_>) -> Result<(), WriteError> {
-    let csv = table::trajectory_csv(run.observations, run.origin);
-    let svg = pose::svg(
-        run.system,
-        run.trajectory,
-        run.skins,
-        &run.shown(),
-        run.origin,
-    );
-    if run.figures.gltf
-        && let Some(text) = gltf::text(run.system, run.trajectory, run.skins, run.origin)
-    {
-        files.add("motion.gltf", text.as_bytes())?;
+    let (system, trajectory, skins, origin) = (run.system, run.trajectory, run.skins, run.origin);
+    let csv = table::trajectory_csv(run.observations, origin);
+    let svg = pose::svg(system, trajectory, skins, &run.shown(), origin);
+    let mut texts = vec![(table, csv), ("configuration.svg", svg)];
+    if run.figures.gltf {
+        let text = gltf::text(system, trajectory, skins, origin);
+        texts.extend(text.map(|text| ("motion.gltf", text)));
     }
-    if run.figures.parts {
-        parts::write(files, run.system, run.trajectory, run.origin)?;
-    }
-    files.add(table, csv.as_bytes())?;
-    files.add("configuration.svg", svg.as_bytes())?;
-    match run.page {
-        Some(content) => files.add(PAGE, page::html(run, content).as_bytes())?,
-        None => files.remove(PAGE),
-    }
-    Ok(())
+    let page = run.page.map(|content| page::html(run, content));
+    write(files, run, page, texts)
 }

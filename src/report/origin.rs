@@ -1,5 +1,8 @@
 //! Origin of a result, in one line: program, command, input, Ipopt.
 
+use crate::ipopt;
+use std::path::Path;
+
 /// Origin of a result: the first line of each table and the caption of each figure and page.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
 pub struct Origin {
@@ -14,6 +17,16 @@ pub struct Origin {
 }
 
 impl Origin {
+    /// Origin of a result of this program; Ipopt is named where it has a part.
+    pub fn new(command: &str, input: &Path, with_ipopt: bool) -> Self {
+        Self {
+            command: command.to_owned(),
+            input: input.display().to_string(),
+            version: Self::program(),
+            ipopt: if with_ipopt { ipopt::VERSION } else { "" }.to_owned(),
+        }
+    }
+
     /// Crate version, and the commit where the build knew it (environment variable `PROBOSCIS_COMMIT`).
     pub fn program() -> String {
         let version = env!("CARGO_PKG_VERSION");

@@ -15,6 +15,7 @@ use std::io::Write as _;
 use crate::report::atomic::{self, WriteError};
 use crate::report::file_set::FileSet;
 use crate::report::origin::Origin;
+use crate::report::quoting::escape;
 
 /// Number of a trilinear hexahedron in VTK.
 const HEXAHEDRON: u8 = 12;
@@ -307,16 +308,5 @@ pub(super) fn line(text: &mut String, arguments: std::fmt::Arguments<'_>) {
 
 /// Text of an XML attribute; control characters become spaces.
 fn escaped(text: &str) -> String {
-    let mut out = String::new();
-    for letter in text.chars() {
-        match letter {
-            '&' => out.push_str("&amp;"),
-            '<' => out.push_str("&lt;"),
-            '>' => out.push_str("&gt;"),
-            '"' => out.push_str("&quot;"),
-            control if control.is_control() => out.push(' '),
-            other => out.push(other),
-        }
-    }
-    out
+    escape(text).replace(char::is_control, " ")
 }

@@ -3,7 +3,7 @@
 use crate::study::limit::{SequenceLimit, distance, limit, observed_order};
 use crate::study::measure::StudyMeasure;
 use crate::study::outcome::Observed;
-use crate::study::read::{Reference, Study};
+use crate::study::read::Reference;
 use crate::study::schedule::{Done, Results};
 
 /// Two instants are the same where they differ by less, as parts of the duration.
@@ -44,12 +44,12 @@ impl Judged {
 }
 
 /// Judges all points of a study by all its measures.
-pub fn judge(study: &Study, results: &Results<'_>) -> Vec<Judged> {
+pub fn judge(results: &Results<'_>) -> Vec<Judged> {
     let instants = common(results);
-    let measures = study.measures.iter();
+    let measures = results.study.measures.iter();
     measures
         .map(|&measure| match measure.has_reference() {
-            true => against(study, results, measure, &instants),
+            true => against(results, measure, &instants),
             false => alone(results, measure),
         })
         .collect()
@@ -90,12 +90,7 @@ fn value(seen: &Observed, measure: StudyMeasure, instants: &[f64]) -> Option<Vec
     }
 }
 
-fn against(
-    study: &Study,
-    results: &Results<'_>,
-    measure: StudyMeasure,
-    instants: &[f64],
-) -> Judged {
+fn against(results: &Results<'_>, measure: StudyMeasure, instants: &[f64]) -> Judged {
     let width = measure.width();
     let of = |done: &Done<'_>| value(done.seen.as_ref()?, measure, instants);
     let values: Vec<Vec<_>> = (results.methods.iter())
@@ -109,7 +104,7 @@ fn against(
         let (sizes, values): (Vec<_>, Vec<_>) = there.unzip();
         limit(&sizes, &values, width)
     };
-    let (limits, is_shared) = match &study.reference {
+    let (limits, is_shared) = match &results.study.reference {
         Reference::Own => (
             results
                 .methods
@@ -224,7 +219,7 @@ fn scale(results: &Results<'_>, measure: StudyMeasure) -> f64 {
 }
 
 /// A marker that is elsewhere in one of the scenes, as the nearest node of a mesh is: its name and the distance in mm.
-pub fn moved_marker(study: &Study, results: &Results<'_>) -> Option<(String, f64)> {
+pub fn moved_marker(results: &Results<'_>) -> Option<(String, f64)> {
     let mut seen = (results.methods.iter().flatten().chain(&results.reference))
         .filter_map(|done| done.seen.as_ref());
     let first = seen.next()?;
@@ -238,7 +233,7 @@ pub fn moved_marker(study: &Study, results: &Results<'_>) -> Option<(String, f64
             .reference
             .iter()
             .zip(&first.reference)
-            .zip(&study.markers);
+            .zip(&results.study.markers);
         pairs
             .map(|((a, b), name)| (name.clone(), (a - b).norm()))
             .find(|(_, apart)| *apart > 1e-6 * size)

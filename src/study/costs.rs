@@ -5,7 +5,6 @@ use crate::report::table::aligned;
 use crate::study::compare::Judged;
 use crate::study::limit::How;
 use crate::study::measure::{StudyMeasure, Unit};
-use crate::study::read::Study;
 use crate::study::schedule::{Done, Results};
 
 /// Accuracies that are priced, as parts of the scale of a measure.
@@ -58,17 +57,17 @@ impl CostAtAccuracy {
 
 /// Rows by measure and method: order, seconds at each accuracy, least error, and status. A star marks the cheapest method and those that do not differ
 /// clearly from it.
-pub fn cost_table(study: &Study, results: &Results<'_>, judged: &[Judged]) -> String {
+pub fn cost_table(results: &Results<'_>, judged: &[Judged]) -> String {
     let mut head = ["error", "method", "order"].map(str::to_owned).to_vec();
     head.extend(ACCURACIES.map(|accuracy| format!("cost at {accuracy:e} [s]")));
     head.extend(["least error", "status"].map(str::to_owned));
     let mut rows = vec![head];
     for judged in judged.iter().filter(|judged| judged.measure.has_order()) {
         let costs = ACCURACIES.map(|accuracy| CostAtAccuracy::new(results, judged, accuracy));
-        for (m, method) in study.methods.iter().enumerate() {
+        for (m, method) in results.study.methods.iter().enumerate() {
             let order = judged.orders[m].map(|order| format!("{order:.2}"));
             let cost = |at: &CostAtAccuracy| {
-                let star = match at.cheapest.contains(&m) && study.methods.len() > 1 {
+                let star = match at.cheapest.contains(&m) && results.study.methods.len() > 1 {
                     true => "*",
                     false => "",
                 };
@@ -120,14 +119,13 @@ fn status(results: &Results<'_>, judged: &Judged, method: usize) -> String {
 }
 
 /// The conclusion of a study in a sentence: how many points have an answer, and the cheapest methods at the finest accuracy that is reached.
-pub fn conclusion(study: &Study, results: &Results<'_>, judged: &[Judged]) -> String {
-    let points = || results.methods.iter().flatten();
-    let solved = points().filter(|done| done.first.is_solved).count();
+pub fn conclusion(results: &Results<'_>, judged: &[Judged]) -> String {
+    let [solved, all] = results.solved();
     let of = |measure: StudyMeasure| judged.iter().find(|judged| judged.measure == measure);
     let with_order = || judged.iter().find(|judged| judged.measure.has_order());
     let reported = FIRST.into_iter().find_map(of).or_else(with_order);
     let reached = reported.map(|judged| {
-        let (label, reached) = (judged.measure.label(), reached(study, results, judged));
+        let (label, reached) = (judged.measure.label(), reached(results, judged));
         format!("; {label}: {reached}")
     });
     let early = if results.is_interrupted {
@@ -136,16 +134,15 @@ pub fn conclusion(study: &Study, results: &Results<'_>, judged: &[Judged]) -> St
         ""
     };
     format!(
-        "{solved} of {} points have an answer{early}{}.",
-        points().count(),
+        "{solved} of {all} points have an answer{early}{}.",
         reached.unwrap_or_default()
     )
 }
 
 /// The finest accuracy that is reached and its cheapest methods, or the least error.
-fn reached(study: &Study, results: &Results<'_>, judged: &Judged) -> String {
+fn reached(results: &Results<'_>, judged: &Judged) -> String {
     let unit = judged.measure.unit();
-    let name = |m: usize| format!("`{}`", study.methods[m].name);
+    let name = |m: usize| format!("`{}`", results.study.methods[m].name);
     let costs = ACCURACIES.map(|accuracy| CostAtAccuracy::new(results, judged, accuracy));
     for at in costs.iter().rev() {
         let first = at.cheapest.first();

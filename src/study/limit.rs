@@ -109,44 +109,31 @@ pub fn limit(sizes: &[f64], values: &[Vec<f64>], width: usize) -> Option<Sequenc
                 .collect::<Vec<f64>>(),
         )
     };
-    let Some(last) = each.len().checked_sub(1) else {
-        return Some(SequenceLimit {
-            uncertainty: (values.len() > 1).then(|| estimated(sizes, values, width)),
-            value: finest.clone(),
-            how: How::TooFew,
-            orders,
-            rounding,
-        });
-    };
-    let apart = distance(&values[values.len() - 2], finest, width);
-    let is_rounding = apart <= rounding;
-    let found = match extrapolated(last) {
-        Some(value) => {
+    let before = values.len().checked_sub(2);
+    let apart = before.map(|k| distance(&values[k], finest, width));
+    let last = each.len().checked_sub(1);
+    let (how, value, uncertainty) = match last.map(|last| (last, extrapolated(last))) {
+        Some((last, Some(value))) => {
             let before = last.checked_sub(1).and_then(extrapolated);
-            let uncertainty = distance(&value, before.as_ref().unwrap_or(finest), width);
-            SequenceLimit {
-                value,
-                how: How::Extrapolated,
-                orders,
-                uncertainty: Some(uncertainty),
-                rounding,
-            }
+            let apart = distance(&value, before.as_ref().unwrap_or(finest), width);
+            (How::Extrapolated, value, Some(apart))
         }
-        None => SequenceLimit {
-            value: finest.clone(),
-            how: match is_rounding {
-                true => How::Rounding,
-                false => How::NoOrder,
-            },
-            orders,
-            uncertainty: Some(match is_rounding {
-                true => apart,
-                false => estimated(sizes, values, width),
-            }),
-            rounding,
-        },
+        Some(_) if apart.is_some_and(|apart| apart <= rounding) => {
+            (How::Rounding, finest.clone(), apart)
+        }
+        found => {
+            let how = found.map_or(How::TooFew, |_| How::NoOrder);
+            let estimated = apart.map(|_| estimated(sizes, values, width));
+            (how, finest.clone(), estimated)
+        }
     };
-    Some(found)
+    Some(SequenceLimit {
+        value,
+        how,
+        orders,
+        uncertainty,
+        rounding,
+    })
 }
 
 /// An estimate of the error of the finest of two values or more that show no order: errors C hᵖ are `h₂ᵖ/(h₁ᵖ − h₂ᵖ)` times the last difference, and the

@@ -1,6 +1,6 @@
 //! Work–precision studies: variants of one problem, timed and measured against the limit under refinement.
 //!
-//! - `read`, `sizes`: the study file and all its problems; `measure`: measures of them.
+//! - `read`: the study file and all its problems; `measure`: measures of them.
 //! - `outcome`, `schedule`: one run, and all of them in rounds.
 //! - `limit`, `compare`: observed orders and Richardson's limits; errors of all points.
 //! - `costs`: costs of accuracies, and the conclusion in a sentence.
@@ -15,7 +15,6 @@ mod page;
 pub mod read;
 mod record;
 pub mod schedule;
-mod sizes;
 pub mod table;
 
 pub use record::StudyRequest;
@@ -24,14 +23,13 @@ use std::path::Path;
 use std::time::Instant;
 
 use crate::app::{CommandError, CommandOutput, make_folder};
-use crate::ipopt;
 use crate::report::origin::Origin;
 use crate::report::page::of_plots;
 use crate::report::{PageContent, atomic};
 use crate::study::compare::{Judged, judge, moved_marker};
 use crate::study::costs::{conclusion, cost_table};
 use crate::study::measure::StudyTask;
-use crate::study::read::{Study, read_study};
+use crate::study::read::read_study;
 use crate::study::schedule::{Results, bar, look, time};
 
 /// Runs a study and writes its folder; one that Ctrl-C ends early is kept as far as it went.
@@ -46,22 +44,22 @@ pub fn study(request: &StudyRequest) -> Result<CommandOutput, CommandError> {
     let runs = request.runs.unwrap_or(study.runs);
     let bar = bar(&study, runs, request.progress);
     let mut results = look(&study, &bar);
-    if let Some((name, apart)) = moved_marker(&study, &results) {
+    if let Some((name, apart)) = moved_marker(&results) {
         bar.finish_and_clear();
-        return Err(CommandError::Problem {
-            file: request.input.clone(),
-            place: "markers".to_owned(),
-            reason: format!(
+        return Err(CommandError::problem(
+            &request.input,
+            "markers",
+            format!(
                 "{name:?} is {apart:.3} mm elsewhere in another scene, as the nearest node of a mesh; choose a place that is \
                  a node of each of them"
             ),
-        });
+        ));
     }
-    time(&study, &mut results, runs, &bar);
+    time(&mut results, runs, &bar);
     bar.finish_and_clear();
-    let judged = judge(&study, &results);
-    let said = conclusion(&study, &results, &judged);
-    let table = write(&folder, request, &study, &results, &judged, &said)?;
+    let judged = judge(&results);
+    let said = conclusion(&results, &judged);
+    let table = write(&folder, request, &results, &judged, &said)?;
     Ok(command_output(
         &results,
         &format!("{table}{said}\n"),
@@ -74,25 +72,18 @@ pub fn study(request: &StudyRequest) -> Result<CommandOutput, CommandError> {
 fn write(
     folder: &Path,
     request: &StudyRequest,
-    study: &Study,
     results: &Results<'_>,
     judged: &[Judged],
     said: &str,
 ) -> Result<String, CommandError> {
-    let origin = Origin {
-        command: request.command.clone(),
-        input: request.input.display().to_string(),
-        version: Origin::program(),
-        ipopt: match study.asked {
-            StudyTask::Control => ipopt::VERSION.to_owned(),
-            StudyTask::Motion | StudyTask::Rest => String::new(),
-        },
-    };
+    let study = results.study;
+    let with_ipopt = study.asked == StudyTask::Control;
+    let origin = Origin::new(&request.command, &request.input, with_ipopt);
     let put = |name: &str, text: &str| atomic::write(&folder.join(name), text.as_bytes());
     let (mut figures, mut plots) = (Vec::new(), Vec::new());
     for judged in judged {
         let name = format!("{}.svg", judged.measure.key());
-        let plot = page::plot_diagram(study, results, judged);
+        let plot = page::plot_diagram(results, judged);
         if let Some(plot) = &plot {
             put(&name, &plot.svg(&origin))?;
         }
@@ -100,18 +91,17 @@ fn write(
         let title = judged.measure.label().to_owned();
         plots.extend(plot.map(|plot| (title, plot)));
     }
-    let points = table::text(study, results, judged);
-    let text = format!("{points}\n{}", cost_table(study, results, judged));
+    let points = table::text(results, judged);
+    let text = format!("{points}\n{}", cost_table(results, judged));
     put("table.txt", &text)?;
-    put("table.csv", &table::csv(study, results, judged, &origin))?;
-    let page = page::markdown(study, results, judged, &figures, said, &points, &origin);
+    put("table.csv", &table::csv(results, judged, &origin))?;
+    let page = page::markdown(results, judged, &figures, said, &points, &origin);
     put("study.md", &page)?;
-    let points = || results.methods.iter().flatten();
-    let solved = points().filter(|done| done.first.is_solved).count();
+    let [solved, all] = results.solved();
     let said_of_all = PageContent {
         title: "Study".to_owned(),
         is_solved: solved > 0 && !results.is_interrupted,
-        answer: format!("{solved} of {} points solved", points().count()),
+        answer: format!("{solved} of {all} points solved"),
         notes: study
             .about
             .iter()
@@ -127,7 +117,7 @@ fn write(
         &of_plots(&study.title, &said_of_all, &origin),
     )?;
     let path = folder.join("study.json");
-    record::write(&path, request, study, results, judged, said)?;
+    record::write(&path, request, results, judged, said)?;
     Ok(text)
 }
 
@@ -137,9 +127,9 @@ fn command_output(
     folder: &Path,
     began: Instant,
 ) -> CommandOutput {
-    let points = || results.methods.iter().flatten();
-    let solved = points().filter(|done| done.first.is_solved).count();
-    let failed = points().filter(|done| !done.first.is_solved);
+    let [solved, all] = results.solved();
+    let points = results.methods.iter().flatten();
+    let failed = points.filter(|done| !done.first.is_solved);
     let mut notes: Vec<String> = failed
         .filter_map(|done| {
             let why = done.first.message.as_ref()?;
@@ -152,8 +142,7 @@ fn command_output(
     CommandOutput {
         is_solved: solved > 0 && !results.is_interrupted,
         result: format!(
-            "{text}{solved} of {} points solved, {:.1} s, {}",
-            points().count(),
+            "{text}{solved} of {all} points solved, {:.1} s, {}",
             began.elapsed().as_secs_f64(),
             folder.display()
         ),

@@ -15,7 +15,7 @@ use crate::stop;
 use crate::study::measure::StudyMeasure;
 use crate::study::read::StudyPoint;
 use crate::workflow::{
-    Cause, Iterate, Optimum, Simulated, SolveLimits, integrate, optimise, trajectory,
+    Cause, Iterate, Optimum, Simulated, SolveLimits, WorkflowError, integrate, optimise, trajectory,
 };
 
 /// Refinement factor of the grid on which optimal voltages are verified.
@@ -54,50 +54,134 @@ pub struct Observed {
 /// The status of a run that Ctrl-C ended.
 pub const INTERRUPTED: &str = "interrupted";
 
+/// Outcome of a run, and what was observed of its answer.
+pub type Ran = (RunOutcome, Option<Observed>);
+
 /// Runs a point once; where `markers` are named, its answer is observed after the clock has stopped.
-pub fn run(point: &StudyPoint, markers: Option<&[String]>) -> (RunOutcome, Option<Observed>) {
+pub fn run(point: &StudyPoint, markers: Option<&[String]>) -> Ran {
     let began = Instant::now();
+    let run = Run {
+        point,
+        markers,
+        began,
+    };
     match &point.loaded.task {
-        Task::Control(task) => control(point, task, markers, began),
+        Task::Control(task) => run.control(task),
         Task::Motions(_) => unreachable!("refused where the study is read"),
-        Task::Simulate(task) => motion(point, task, markers, began),
-        Task::Equilibrium(task) => rest(point, task, markers, began),
+        Task::Simulate(task) => run.motion(task),
+        Task::Equilibrium(task) => run.rest(task),
         Task::Identify(_) => unreachable!("studies have no identifications"),
     }
 }
 
-fn control(
-    point: &StudyPoint,
-    task: &Control,
-    markers: Option<&[String]>,
+/// A run that has begun.
+struct Run<'a> {
+    point: &'a StudyPoint,
+    markers: Option<&'a [String]>,
     began: Instant,
-) -> (RunOutcome, Option<Observed>) {
-    let system = &point.loaded.system;
-    let mut on = |_: &Iterate<'_>| ControlFlow::Continue(());
-    let found = optimise(system, task, None, SolveLimits::default(), &mut on);
-    let seconds = began.elapsed().as_secs_f64();
-    let optimum = match found {
-        Ok(optimum) => optimum,
-        Err(error) => {
-            return (
-                refused(&CommandError::in_file(&point.problem)(error), seconds),
-                None,
-            );
-        }
-    };
-    let is_solved = optimum.is_solved();
-    let none = || "the solver found no solution".to_owned();
-    let ended = RunOutcome {
-        status: optimum.word(),
-        message: (!is_solved).then(|| optimum.cause().map_or_else(none, Cause::message)),
-        // Verifying voltages is no part of finding them.
-        seconds: seconds - optimum.tested,
-        is_solved,
-    };
-    let seen = markers
-        .filter(|_| is_solved)
-        .map(|names| of_optimum(&optimum, names));
-    (ended, seen)
+}
+
+impl Run<'_> {
+    /// Without an answer.
+    fn failed(&self, status: &'static str, message: String) -> Ran {
+        let ended = RunOutcome {
+            status,
+            message: Some(message),
+            seconds: self.began.elapsed().as_secs_f64(),
+            is_solved: false,
+        };
+        (ended, None)
+    }
+
+    fn refused(&self, error: WorkflowError) -> Ran {
+        let error = CommandError::in_file(&self.point.problem)(error);
+        self.failed(REFUSED, error.to_string())
+    }
+
+    fn control(&self, task: &Control) -> Ran {
+        let system = &self.point.loaded.system;
+        let mut on = |_: &Iterate<'_>| ControlFlow::Continue(());
+        let optimum = match optimise(system, task, None, SolveLimits::default(), &mut on) {
+            Ok(optimum) => optimum,
+            Err(error) => return self.refused(error),
+        };
+        let is_solved = optimum.is_solved();
+        let none = || "the solver found no solution".to_owned();
+        let ended = RunOutcome {
+            status: optimum.word(),
+            message: (!is_solved).then(|| optimum.cause().map_or_else(none, Cause::message)),
+            // Verifying voltages is no part of finding them.
+            seconds: self.began.elapsed().as_secs_f64() - optimum.tested,
+            is_solved,
+        };
+        let seen = self.markers.filter(|_| is_solved);
+        (ended, seen.map(|names| of_optimum(&optimum, names)))
+    }
+
+    fn motion(&self, task: &Simulation) -> Ran {
+        let mut interrupted = false;
+        let found = integrate(&self.point.loaded.system, task, |_, _| {
+            interrupted = stop::requested();
+            match interrupted {
+                true => ControlFlow::Break(()),
+                false => ControlFlow::Continue(()),
+            }
+        });
+        let seconds = self.began.elapsed().as_secs_f64();
+        let simulated = match found {
+            Ok(simulated) => simulated,
+            Err(error) => return self.refused(error),
+        };
+        let is_solved = simulated.failure.is_none() && !interrupted;
+        let ended = RunOutcome {
+            status: match &simulated.failure {
+                Some(_) => "step_failed",
+                None if interrupted => INTERRUPTED,
+                None => "simulated",
+            },
+            message: simulated.failure.as_ref().map(ToString::to_string),
+            seconds,
+            is_solved,
+        };
+        let seen = self.markers.filter(|_| is_solved);
+        (ended, seen.map(|names| of_motion(&simulated, task, names)))
+    }
+
+    fn rest(&self, task: &AtRest) -> Ran {
+        let system = self.point.loaded.system.clone();
+        let analysis = task.analysis(&system);
+        let model = match Model::for_analysis(system, analysis) {
+            Ok(model) => model,
+            Err(error) => return self.failed(REFUSED, error.to_string()),
+        };
+        let zero = model.reference_coordinates();
+        let found = match stable_equilibrium(&model, &zero, &model.scalars(&task.voltages)) {
+            Ok(found) => found,
+            Err(error) => {
+                let status = match &error {
+                    EquilibriumError::LimitPoint { kind, .. } => {
+                        kind.map_or("limit_point", |kind| kind.key())
+                    }
+                    _ => "no_equilibrium",
+                };
+                return self.failed(status, error.to_string());
+            }
+        };
+        let ended = RunOutcome {
+            status: found.status(),
+            message: None,
+            seconds: self.began.elapsed().as_secs_f64(),
+            is_solved: found.is_stable() != Some(false),
+        };
+        let look = |names: &[String]| Observed {
+            instants: vec![0.0],
+            places: vec![marks(&model, &found.z, names)],
+            reference: marks(&model, &zero, names),
+            iterations: found.iterations,
+            ..Observed::default()
+        };
+        (ended, self.markers.map(look))
+    }
 }
 
 fn of_optimum(optimum: &Optimum, names: &[String]) -> Observed {
@@ -137,45 +221,6 @@ fn of_optimum(optimum: &Optimum, names: &[String]) -> Observed {
         seen.numbers.insert(StudyMeasure::ResimulatedPath, greatest);
     }
     seen
-}
-
-fn motion(
-    point: &StudyPoint,
-    task: &Simulation,
-    markers: Option<&[String]>,
-    began: Instant,
-) -> (RunOutcome, Option<Observed>) {
-    let mut interrupted = false;
-    let found = integrate(&point.loaded.system, task, |_, _| {
-        interrupted = stop::requested();
-        match interrupted {
-            true => ControlFlow::Break(()),
-            false => ControlFlow::Continue(()),
-        }
-    });
-    let seconds = began.elapsed().as_secs_f64();
-    let simulated = match found {
-        Ok(simulated) => simulated,
-        Err(error) => {
-            return (
-                refused(&CommandError::in_file(&point.problem)(error), seconds),
-                None,
-            );
-        }
-    };
-    let is_solved = simulated.failure.is_none() && !interrupted;
-    let ended = RunOutcome {
-        status: match &simulated.failure {
-            Some(_) => "step_failed",
-            None if interrupted => INTERRUPTED,
-            None => "simulated",
-        },
-        message: simulated.failure.as_ref().map(ToString::to_string),
-        seconds,
-        is_solved,
-    };
-    let look = |names: &[String]| of_motion(&simulated, task, names);
-    (ended, markers.filter(|_| is_solved).map(look))
 }
 
 fn of_motion(simulated: &Simulated, task: &Simulation, names: &[String]) -> Observed {
@@ -228,66 +273,8 @@ fn energy(observed: &Observations) -> Option<[f64; 2]> {
     (scale > 0.0).then(|| [change / scale, drift.abs() / scale])
 }
 
-fn rest(
-    point: &StudyPoint,
-    task: &AtRest,
-    markers: Option<&[String]>,
-    began: Instant,
-) -> (RunOutcome, Option<Observed>) {
-    let system = point.loaded.system.clone();
-    let failed = |status, message, began: Instant| RunOutcome {
-        status,
-        message: Some(message),
-        seconds: began.elapsed().as_secs_f64(),
-        is_solved: false,
-    };
-    let analysis = task.analysis(&system);
-    let model = match Model::for_analysis(system, analysis) {
-        Ok(model) => model,
-        Err(error) => return (failed(REFUSED, error.to_string(), began), None),
-    };
-    let zero = model.reference_coordinates();
-    let found = stable_equilibrium(&model, &zero, &model.scalars(&task.voltages));
-    let seconds = began.elapsed().as_secs_f64();
-    let found = match found {
-        Ok(found) => found,
-        Err(error) => {
-            let status = match &error {
-                EquilibriumError::LimitPoint { kind, .. } => {
-                    kind.map_or("limit_point", |kind| kind.key())
-                }
-                _ => "no_equilibrium",
-            };
-            return (failed(status, error.to_string(), began), None);
-        }
-    };
-    let ended = RunOutcome {
-        status: found.status(),
-        message: None,
-        seconds,
-        is_solved: found.is_stable() != Some(false),
-    };
-    let look = |names: &[String]| Observed {
-        instants: vec![0.0],
-        places: vec![marks(&model, &found.z, names)],
-        reference: marks(&model, &zero, names),
-        iterations: found.iterations,
-        ..Observed::default()
-    };
-    (ended, markers.map(look))
-}
-
 /// The status of a point whose model, start or goal does not exist.
 const REFUSED: &str = "refused";
-
-fn refused(error: &CommandError, seconds: f64) -> RunOutcome {
-    RunOutcome {
-        status: REFUSED,
-        message: Some(error.to_string()),
-        seconds,
-        is_solved: false,
-    }
-}
 
 impl Observed {
     /// Instants and places of a motion.

@@ -13,7 +13,6 @@ use crate::study::schedule::Results;
 
 /// The page; `figures` are the names of those written, by measure.
 pub(super) fn markdown(
-    study: &Study,
     results: &Results<'_>,
     judged: &[Judged],
     figures: &[Option<String>],
@@ -21,6 +20,7 @@ pub(super) fn markdown(
     table: &str,
     origin: &Origin,
 ) -> String {
+    let study = results.study;
     let mut page = format!("# {}\n\n", study.title);
     let mut add = |text: String| {
         page.push_str(text.trim_end());
@@ -34,7 +34,7 @@ pub(super) fn markdown(
     add(format!(
         "## What accuracy costs\n\nSeconds are found between points by a straight line in the diagram; `*` marks the cheapest method and those that do not differ \
          clearly from it, `–` was not reached. Accuracies of places are relative to the path length of the markers.\n\n```text\n{}```",
-        costs::cost_table(study, results, judged)
+        costs::cost_table(results, judged)
     ));
     for (judged, figure) in judged.iter().zip(figures) {
         add(section(study, judged, figure.as_deref()));
@@ -50,10 +50,10 @@ pub(super) fn markdown(
         "Seconds are the median of the timed runs. An error written with `<` is below the uncertainty of the limit itself: the number is that uncertainty and the distance from the limit together; `–` means not known. `table.csv` and `study.json` have the input, the quartiles and every run of each point."
             .to_owned(),
     );
-    if let Some(failed) = failed(study, results) {
+    if let Some(failed) = failed(results) {
         add(failed);
     }
-    add(again(study, results));
+    add(again(results));
     add(format!("<sub>{}</sub>", origin.line().replace('<', "&lt;")));
     format!("{}\n", page.trim_end())
 }
@@ -99,9 +99,9 @@ fn section(study: &Study, judged: &Judged, figure: Option<&str>) -> String {
 }
 
 /// The points without an answer.
-fn failed(study: &Study, results: &Results<'_>) -> Option<String> {
+fn failed(results: &Results<'_>) -> Option<String> {
     let mut text = String::new();
-    for (method, points) in study.methods.iter().zip(&results.methods) {
+    for (method, points) in results.each() {
         for done in points.iter().filter(|done| !done.first.is_solved) {
             let why = done
                 .first
@@ -121,11 +121,11 @@ fn failed(study: &Study, results: &Results<'_>) -> Option<String> {
 }
 
 /// Returns the commands that run one point of each method alone.
-fn again(study: &Study, results: &Results<'_>) -> String {
+fn again(results: &Results<'_>) -> String {
     let mut text = "## A point alone\n\nThe coarsest point of each method; the others differ in what is refined.\n\n```sh\n".to_owned();
     for points in &results.methods {
         if let Some(done) = points.first() {
-            text.push_str(&command(study.asked, done.point));
+            text.push_str(&command(results.study.asked, done.point));
             text.push('\n');
         }
     }
@@ -136,13 +136,9 @@ fn again(study: &Study, results: &Results<'_>) -> String {
 /// The diagram of one measure; none where no error is above zero.
 ///
 /// The legend names the observed order; the first and the last point of a curve are labelled with the refined value.
-pub(super) fn plot_diagram(
-    study: &Study,
-    results: &Results<'_>,
-    judged: &Judged,
-) -> Option<LinePlot> {
+pub(super) fn plot_diagram(results: &Results<'_>, judged: &Judged) -> Option<LinePlot> {
     let mut series = Vec::new();
-    for (m, (method, points)) in study.methods.iter().zip(&results.methods).enumerate() {
+    for (m, (method, points)) in results.each().enumerate() {
         let drawn = points.iter().enumerate().filter_map(|(k, done)| {
             let place = [done.median()?, judged.known(m, k)?];
             Some((place, done.point.label.clone()))

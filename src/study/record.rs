@@ -5,7 +5,7 @@ use crate::files::lay_out;
 use crate::ipopt;
 use crate::report::atomic::WriteError;
 use crate::report::origin::Origin;
-use crate::report::{atomic, shell};
+use crate::report::{atomic, quoting};
 use crate::study::compare::{Judged, common};
 use crate::study::limit::{How, SequenceLimit};
 use crate::study::measure::{StudyMeasure, StudyTask};
@@ -128,11 +128,11 @@ struct Versions {
 pub(super) fn write(
     path: &Path,
     request: &StudyRequest,
-    study: &Study,
     results: &Results<'_>,
     judged: &[Judged],
     conclusion: &str,
 ) -> Result<(), WriteError> {
+    let study = results.study;
     let record = Record {
         command: &request.command,
         study: request.input.display().to_string(),
@@ -272,7 +272,7 @@ pub(super) fn command(asked: StudyTask, point: &StudyPoint) -> String {
     for change in &point.set {
         words.extend(["--set", change]);
     }
-    shell::command(words)
+    quoting::command(words)
 }
 
 /// The machine that this runs on.

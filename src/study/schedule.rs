@@ -6,7 +6,7 @@ use indicatif::ProgressBar;
 use crate::app::{ProgressDisplay, progress_bar};
 use crate::stop;
 use crate::study::outcome::{INTERRUPTED, Observed, RunOutcome, run};
-use crate::study::read::{Reference, Study, StudyPoint};
+use crate::study::read::{Method, Reference, Study, StudyPoint};
 
 /// A point after its runs.
 #[derive(Debug)]
@@ -24,12 +24,29 @@ pub struct Done<'a> {
 /// All points after their runs.
 #[derive(Debug)]
 pub struct Results<'a> {
+    /// The study.
+    pub study: &'a Study,
     /// The points of each method.
     pub methods: Vec<Vec<Done<'a>>>,
     /// Those of the reference alone, which are not timed.
     pub reference: Vec<Done<'a>>,
     /// True if Ctrl-C ended it early.
     pub is_interrupted: bool,
+}
+
+impl<'a> Results<'a> {
+    /// Numbers of points with an answer, and of all.
+    pub fn solved(&self) -> [usize; 2] {
+        let points = || self.methods.iter().flatten();
+        let solved = points().filter(|done| done.first.is_solved).count();
+        [solved, points().count()]
+    }
+
+    /// The methods with their points.
+    pub fn each(&self) -> impl Iterator<Item = (&'a Method, &[Done<'a>])> {
+        let points = self.methods.iter().map(Vec::as_slice);
+        self.study.methods.iter().zip(points)
+    }
 }
 
 /// A bar as long as all runs of a study.
@@ -74,6 +91,7 @@ pub(super) fn look<'a>(study: &'a Study, bar: &ProgressBar) -> Results<'a> {
     let reference = extra(study).iter();
     let reference = reference.map(|point| look("reference", point)).collect();
     Results {
+        study,
         methods,
         reference,
         is_interrupted: stop::requested(),
@@ -81,9 +99,9 @@ pub(super) fn look<'a>(study: &'a Study, bar: &ProgressBar) -> Results<'a> {
 }
 
 /// Times every point that has an answer in `runs` rounds, until Ctrl-C.
-pub(super) fn time(study: &Study, results: &mut Results<'_>, runs: usize, bar: &ProgressBar) {
+pub(super) fn time(results: &mut Results<'_>, runs: usize, bar: &ProgressBar) {
     for _ in 0..runs {
-        for (method, points) in study.methods.iter().zip(&mut results.methods) {
+        for (method, points) in results.study.methods.iter().zip(&mut results.methods) {
             for done in points {
                 done.time(&method.name, bar);
             }

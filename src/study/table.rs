@@ -4,16 +4,10 @@ use crate::math::significant;
 use crate::report::origin::Origin;
 use crate::report::table::{aligned, cells_csv};
 use crate::study::compare::Judged;
-use crate::study::read::Study;
 use crate::study::schedule::Results;
 
 /// One row per point: its method, its input, how it ended, seconds and errors; each number reads back identical.
-pub(super) fn csv(
-    study: &Study,
-    results: &Results<'_>,
-    judged: &[Judged],
-    origin: &Origin,
-) -> String {
+pub(super) fn csv(results: &Results<'_>, judged: &[Judged], origin: &Origin) -> String {
     let mut header: Vec<String> = [
         "method",
         "refined",
@@ -33,7 +27,7 @@ pub(super) fn csv(
     .into();
     header.extend(judged.iter().map(|judged| judged.measure.head()));
     let mut rows = vec![header];
-    for (m, (method, points)) in study.methods.iter().zip(&results.methods).enumerate() {
+    for (m, (method, points)) in results.each().enumerate() {
         for (k, done) in points.iter().enumerate() {
             let seconds = [0.5, 0.25, 0.75, 0.0].map(|part| full(done.quantile(part)));
             let iterations = done.seen.as_ref().map(|seen| seen.iterations.to_string());
@@ -64,17 +58,18 @@ fn full(value: Option<f64>) -> String {
 /// The same in columns, rounded.
 ///
 /// An error that is no larger than the uncertainty of the reference is reported as less than both together.
-pub(super) fn text(study: &Study, results: &Results<'_>, judged: &[Judged]) -> String {
-    let same = |method: &crate::study::read::Method| method.refined == study.methods[0].refined;
-    let refined = match study.methods.iter().all(same) {
-        true => study.methods[0].refined.clone(),
+pub(super) fn text(results: &Results<'_>, judged: &[Judged]) -> String {
+    let same =
+        |method: &crate::study::read::Method| method.refined == results.study.methods[0].refined;
+    let refined = match results.study.methods.iter().all(same) {
+        true => results.study.methods[0].refined.clone(),
         false => "refined".to_owned(),
     };
     let mut header: Vec<String> = vec!["method".to_owned(), refined];
     header.extend(["status", "seconds", "iterations"].map(str::to_owned));
     header.extend(judged.iter().map(|judged| judged.measure.head()));
     let mut rows = vec![header];
-    for (m, (method, points)) in study.methods.iter().zip(&results.methods).enumerate() {
+    for (m, (method, points)) in results.each().enumerate() {
         for (k, done) in points.iter().enumerate() {
             let iterations = done.seen.as_ref().map(|seen| seen.iterations.to_string());
             let mut row = vec![

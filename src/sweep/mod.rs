@@ -1,33 +1,28 @@
 //! Variants of one problem, solved in parallel, each in a folder of its own; variants that are solved already are not solved again.
 //!
-//! - `request`: the command; `read`, `values`: the sweep file and its variants.
-//! - `variant_record`: record of a variant; `table`, `page`: all of them together.
+//! - `read`, `values`: the sweep file and its variants.
+//! - `variant_record`: record of a variant; `table`: all of them together, and their page.
 
-mod page;
 mod read;
-mod request;
 mod table;
 mod values;
 mod variant_record;
 
-pub use request::{Shard, SweepRequest};
-
-use std::collections::{BTreeMap, BTreeSet};
-use std::ops::ControlFlow;
-use std::path::{Path, PathBuf};
-use std::time::Instant;
-
 use crate::app::{
-    Batch, CommandError, CommandInput, CommandOutput, Found, PageWanted, Progress, RunEnd,
-    check_run_in, make_folder, run_all,
+    Batch, CommandError, CommandInput, CommandOutput, FolderRecord, Found, PageWanted, Progress,
+    ProgressDisplay, RunEnd, RunIn, check_run_in, make_folder, run_all,
 };
-use crate::ipopt;
 use crate::report::origin::Origin;
 use crate::report::table::cells_csv;
 use crate::report::{Figures, atomic};
 use crate::stop;
 use crate::sweep::read::{Sweep, Variant, read_sweep};
 use crate::sweep::variant_record::VariantRecord;
+use std::collections::{BTreeMap, BTreeSet};
+use std::ops::ControlFlow;
+use std::path::{Path, PathBuf};
+use std::str::FromStr;
+use std::time::Instant;
 
 /// Folder of the variants within that of the results.
 const VARIANTS: &str = "variants";
@@ -101,7 +96,7 @@ struct Before {
 impl Before {
     /// The end of a variant, where its folder holds all of it.
     fn of(&mut self, variant: &Variant, folder: &Path) -> Option<VariantRecord> {
-        match VariantRecord::found(variant, folder) {
+        match VariantRecord::found(folder, variant.identity.as_str()) {
             Found::Whole(kept) => {
                 self.found += 1;
                 Some(kept)
@@ -155,7 +150,9 @@ fn solve<'a>(
     run_all(&batch, &mut |index, end| {
         let mut kept = VariantRecord::from_end(todo[index], &end, &folder(todo[index]));
         if !kept.is_unfinished() {
-            unwritten = kept.write(&folder(todo[index])).err();
+            let folder = folder(todo[index]);
+            let written = make_folder(&folder).and_then(|()| kept.write(&folder));
+            unwritten = written.err();
         }
         counts[0] += 1;
         counts[1] += usize::from(kept.is_solved);
@@ -166,7 +163,7 @@ fn solve<'a>(
             None => ControlFlow::Continue(()),
         }
     })?;
-    unwritten.map_or(Ok(()), Err)
+    unwritten.map_or(Ok(()), |error| Err(error.into()))
 }
 
 /// Writes table and page.
@@ -176,16 +173,11 @@ fn write(
     ends: &[VariantRecord],
     folder: &Path,
 ) -> Result<(), CommandError> {
-    let origin = Origin {
-        command: request.command.clone(),
-        input: request.input.display().to_string(),
-        version: Origin::program(),
-        ipopt: ipopt::VERSION.to_owned(),
-    };
+    let origin = Origin::new(&request.command, &request.input, true);
     let table = table::table(sweep, ends);
     let csv = cells_csv(&table, &origin);
     atomic::write(&folder.join("sweep.csv"), csv.as_bytes())?;
-    let page = page::html(sweep, ends, &table, &origin);
+    let page = table::html(sweep, ends, &table, &origin);
     Ok(atomic::write(&folder.join("report.html"), page.as_bytes())?)
 }
 
@@ -246,4 +238,63 @@ fn first(mut notes: Vec<String>) -> Vec<String> {
         notes.push(format!("and {more} more like this"));
     }
     notes
+}
+
+/// A command on a sweep file.
+#[derive(Clone, Debug)]
+pub struct SweepRequest {
+    /// The command as typed.
+    pub command: String,
+    /// The sweep file as typed.
+    pub input: PathBuf,
+    /// Folder for the results; `results/sweeps/<name of the sweep>` where not given.
+    pub output: Option<PathBuf>,
+    /// The part of the variants that is solved.
+    pub shard: Shard,
+    /// Processes or threads in which variants are solved.
+    pub run_in: RunIn,
+    /// Seconds that the whole command may take.
+    pub max_seconds: Option<f64>,
+    /// Display of progress.
+    pub progress: ProgressDisplay,
+}
+
+impl SweepRequest {
+    /// Folder for the results.
+    pub fn folder(&self) -> PathBuf {
+        self.output.clone().unwrap_or_else(|| {
+            let stem = self.input.file_stem().unwrap_or_default();
+            PathBuf::from("results/sweeps").join(stem)
+        })
+    }
+}
+
+/// Each n-th variant, from the i-th one: what one of n machines does.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Shard {
+    number: usize,
+    of: usize,
+}
+
+impl Shard {
+    /// All variants.
+    pub const ALL: Self = Self { number: 1, of: 1 };
+
+    /// Returns true if the variant with an index belongs to it.
+    pub(crate) fn has(self, index: usize) -> bool {
+        index % self.of == self.number - 1
+    }
+}
+
+impl FromStr for Shard {
+    type Err = String;
+
+    fn from_str(text: &str) -> Result<Self, String> {
+        let parts = text.split_once('/');
+        let parsed = parts.and_then(|(i, n)| Some((i.parse().ok()?, n.parse().ok()?)));
+        match parsed {
+            Some((number, of)) if (1..=of).contains(&number) => Ok(Self { number, of }),
+            _ => Err("expected i/n with 1 <= i <= n, such as 2/8".to_owned()),
+        }
+    }
 }

@@ -7,11 +7,7 @@ use csv::ReaderBuilder;
 use serde::{Deserialize, Serialize};
 use serde_json::{Map, Value};
 
-use crate::app::{
-    CommandError, Ending, FileRecords, Found, OF_VARIANT, RunEnd, Said, is_unfinished, make_folder,
-};
-use crate::files::lay_out;
-use crate::report::atomic::{self, WriteError};
+use crate::app::{Ending, FileRecords, FolderRecord, OF_VARIANT, RunEnd, Said, is_unfinished};
 use crate::sweep::read::Variant;
 
 /// Begins the headings of numbers at the end of a motion, or at rest.
@@ -54,25 +50,24 @@ struct Summary {
 impl VariantRecord {
     /// Makes the record of a variant that ended with this; the files of its solve are in `folder`.
     pub(super) fn from_end(variant: &Variant, end: &RunEnd, folder: &Path) -> Self {
-        let (word, message) = match &end.said {
-            Said::NotStarted => ("not_started", None),
-            Said::Solved => ("solved", None),
-            Said::Unsolved(message) => ("failed", Some(message)),
-            Said::Failed(message) => ("failed", Some(message)),
-            Said::Refused(message) => ("refused", Some(message)),
+        let word = match &end.said {
+            Said::NotStarted => "not_started",
+            Said::Solved => "solved",
+            Said::Unsolved(_) | Said::Failed(_) => "failed",
+            Said::Refused(_) => "refused",
         };
         let mut kept = Self {
             set: variant.set.clone(),
             identity: variant.identity.as_str().to_owned(),
             status: word.to_owned(),
             is_solved: end.said == Said::Solved,
-            message: message.filter(|text| !text.is_empty()).cloned(),
+            message: end.message(),
             seconds: end.seconds,
             numbers: Map::new(),
             files: FileRecords::default(),
             is_stopped_early: false,
         };
-        if matches!(end.said, Said::Solved | Said::Unsolved(_)) {
+        if end.may_have_files() {
             kept.read_results(folder);
         }
         kept
@@ -85,38 +80,9 @@ impl VariantRecord {
         Self::from_end(variant, &end, Path::new(""))
     }
 
-    /// Returns the record in the folder of a variant, if nothing is left to do for it.
-    pub(super) fn found(variant: &Variant, folder: &Path) -> Found<Self> {
-        let Ok(text) = fs::read_to_string(folder.join(OF_VARIANT)) else {
-            return Found::Nothing;
-        };
-        let Ok(kept) = serde_json::from_str::<Self>(&text) else {
-            return Found::Deviates(format!("{OF_VARIANT} is not as it was written"));
-        };
-        if kept.identity != variant.identity.as_str() || kept.is_unfinished() {
-            return Found::Nothing;
-        }
-        match kept.files.deviation(folder) {
-            Some(words) => Found::Deviates(words),
-            None => Found::Whole(kept),
-        }
-    }
-
     /// Returns true if another attempt may end otherwise.
     pub(super) fn is_unfinished(&self) -> bool {
         is_unfinished(&self.status) || self.is_stopped_early
-    }
-
-    /// Writes it into the folder of the variant, with the hashes of the files there.
-    pub(super) fn write(&mut self, folder: &Path) -> Result<(), CommandError> {
-        make_folder(folder)?;
-        let path = folder.join(OF_VARIANT);
-        self.files = FileRecords::from_folder(folder).map_err(|cause| WriteError {
-            path: path.clone(),
-            cause,
-        })?;
-        let text = serde_json::to_string(self).expect("words and numbers are JSON");
-        Ok(atomic::write(&path, lay_out(&text).as_bytes())?)
     }
 
     fn read_results(&mut self, folder: &Path) {
@@ -137,6 +103,18 @@ impl VariantRecord {
         for table in ["trajectory.csv", "equilibrium.csv"] {
             self.numbers.extend(last_row(&folder.join(table)));
         }
+    }
+}
+
+impl FolderRecord for VariantRecord {
+    const NAME: &'static str = OF_VARIANT;
+
+    fn identity(&self) -> &str {
+        &self.identity
+    }
+
+    fn files(&mut self) -> &mut FileRecords {
+        &mut self.files
     }
 }
 

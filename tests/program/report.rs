@@ -14,7 +14,7 @@ use proboscis::report::pose::Shown;
 use proboscis::report::skins::Skins;
 use proboscis::report::viewpoint::Viewpoint;
 use proboscis::report::{
-    PageContent, Run, curves, markup, pose, style, table, tip_path, write_run,
+    PageContent, Run, curves, pose, quoting, style, table, tip_path, write_run,
 };
 
 fn origin() -> Origin {
@@ -362,7 +362,7 @@ fn a_run_leaves_all_its_files_and_the_page_escapes_names() {
     ));
     assert!(!html.contains("<b>muscle") && !html.contains("alert(1)</script>"));
     assert!(html.contains("\"rows\":[[\"status\",\"a \\u003c b\"]]"));
-    assert_eq!(markup::escape("\"'"), "&quot;&#39;");
+    assert_eq!(quoting::escape("\"'"), "&quot;&#39;");
 }
 
 #[test]

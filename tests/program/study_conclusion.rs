@@ -81,6 +81,7 @@ fn said(study: &Study, points: &[[(f64, f64); 4]], change: impl Fn(&mut Results<
         }
     };
     let mut results = Results {
+        study,
         methods: (0..points.len())
             .map(|m| (0..STEPS.len()).map(|k| done(m, k)).collect())
             .collect(),
@@ -88,8 +89,8 @@ fn said(study: &Study, points: &[[(f64, f64); 4]], change: impl Fn(&mut Results<
         is_interrupted: false,
     };
     change(&mut results);
-    let judged = judge(study, &results);
-    let table = cost_table(study, &results, &judged);
+    let judged = judge(&results);
+    let table = cost_table(&results, &judged);
     let cells = |line: &str| -> Vec<String> {
         let cells = line.split("  ").map(str::trim);
         cells
@@ -98,7 +99,7 @@ fn said(study: &Study, points: &[[(f64, f64); 4]], change: impl Fn(&mut Results<
             .collect()
     };
     Said {
-        conclusion: conclusion(study, &results, &judged),
+        conclusion: conclusion(&results, &judged),
         rows: table.lines().map(cells).collect(),
     }
 }

@@ -1,16 +1,18 @@
-//! A solve as typed on the command line, and a process of it.
+//! A solve as typed on the command line, a process of it, and its end; the engines that run solves.
 //!
 //! End of the processes of a batch with the program that started them, however that ends.
 //!
 //! The program holds one end of a pipe, of which the other one is the standard input of the process. The operating system closes
 //! what a program held when it is gone, also after `kill -9`, and the process reads the end of its input. Nothing is sent.
 
-use crate::app::batch::end::RunIn;
 use crate::app::progress::ProgressDisplay;
 use crate::app::request::{CommandInput, PageWanted};
-use crate::report::shell;
+use crate::control::problem::Task;
+use crate::ipopt::Options;
+use crate::report::quoting;
 use crate::report::viewpoint::Viewpoint;
 use crate::stop;
+use serde::Serialize;
 use std::ffi::OsString;
 use std::fs::File;
 use std::path::Path;
@@ -32,7 +34,7 @@ pub(super) fn as_typed(request: CommandInput) -> CommandInput {
     let typed = typed.iter().map(|word| word.to_string_lossy());
     let typed: Vec<_> = ["proboscis".into()].into_iter().chain(typed).collect();
     CommandInput {
-        command: shell::command(&typed),
+        command: quoting::command(&typed),
         progress: ProgressDisplay::Never,
         ..request
     }
@@ -147,5 +149,108 @@ impl Batch<'_> {
     fn left(&self) -> Option<f64> {
         let spent = self.began.elapsed().as_secs_f64();
         self.max_seconds.map(|limit| limit - spent)
+    }
+}
+
+/// Engine that runs the solves of a batch.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
+#[serde(rename_all = "snake_case")]
+pub enum RunIn {
+    /// In threads of this process, where the linear solver allows that; in processes elsewhere.
+    Threads,
+    /// In this process: in threads, where the linear solver allows that, one after the other elsewhere.
+    Here,
+    /// One after the other, in this process.
+    InTurn,
+    /// Each in a process of its own.
+    Processes,
+    /// Each as a task of a HyperQueue server.
+    #[serde(rename = "hyperqueue")]
+    HyperQueue,
+}
+
+impl RunIn {
+    /// The same for solves that may run in parallel with others in one process or not.
+    pub(crate) fn of_tasks(self, run_at_once: bool) -> Self {
+        match self {
+            Self::Threads if !run_at_once => Self::Processes,
+            Self::Here if run_at_once => Self::Threads,
+            Self::Here => Self::InTurn,
+            other => other,
+        }
+    }
+}
+
+/// Returns true if a task may run in parallel with others in one process.
+pub(crate) fn task_runs_at_once(task: &Task) -> bool {
+    let solver = match task {
+        Task::Control(control) => &control.solver,
+        Task::Motions(motions) => &motions.list[0].control.solver,
+        Task::Simulate(_) | Task::Equilibrium(_) | Task::Identify(_) => return true,
+    };
+    let options = Options {
+        linear_solver: solver.linear_solver,
+        extra: solver.ipopt.clone(),
+        ..Options::default()
+    };
+    options.run_at_once()
+}
+
+/// End of a solve.
+#[derive(Clone, Debug, PartialEq)]
+pub(crate) enum Said {
+    /// There was no time for it.
+    NotStarted,
+    /// The question has an answer.
+    Solved,
+    /// Its files give the reason; where it left none, these words do.
+    Unsolved(String),
+    /// It broke off.
+    Failed(String),
+    /// The input is wrong.
+    Refused(String),
+}
+
+/// Returns the end of a process with a status and words on standard error; no status where a signal ended it.
+pub(super) fn of_status(status: Option<i32>, words: &str) -> Said {
+    let words = words.trim_end();
+    let words = words.strip_prefix("error: ").unwrap_or(words).to_owned();
+    match status {
+        Some(0) => Said::Solved,
+        Some(1) => Said::Unsolved(words),
+        Some(2) => Said::Refused(words),
+        _ => Said::Failed(words),
+    }
+}
+
+/// The end of a solve.
+#[derive(Clone, Debug, PartialEq)]
+pub(crate) struct RunEnd {
+    /// End, with the words of the solve.
+    pub(crate) said: Said,
+    /// Wall time in s.
+    pub(crate) seconds: f64,
+}
+
+impl RunEnd {
+    /// There was no time for it.
+    pub(crate) const NOT_STARTED: Self = Self {
+        said: Said::NotStarted,
+        seconds: 0.0,
+    };
+
+    /// Returns true if it came so far that it may have written its files.
+    pub(crate) fn may_have_files(&self) -> bool {
+        matches!(self.said, Said::Solved | Said::Unsolved(_))
+    }
+
+    /// Its words, where there are some.
+    pub(crate) fn message(&self) -> Option<String> {
+        match &self.said {
+            Said::NotStarted | Said::Solved => None,
+            Said::Unsolved(words) | Said::Failed(words) | Said::Refused(words) => {
+                Some(words.clone()).filter(|words| !words.is_empty())
+            }
+        }
     }
 }

@@ -1,21 +1,21 @@
 //! Several solves in parallel, as many as there are cores: the starts of a problem, or the variants of a sweep.
 //!
-//! - `end`: the end of a solve; `launch`: a solve as typed, and a process of it; `threads`, `processes`, `hyperqueue`: engines.
+//! - `launch`: a solve as typed, a process of it, and its end; `processes`, `hyperqueue`: engines beside the threads of this process.
 
-mod end;
 mod hyperqueue;
 mod launch;
 mod processes;
-mod threads;
 
-use std::ops::ControlFlow;
+pub(crate) use launch::{Batch, RunEnd, Said, task_runs_at_once};
+pub use launch::{RunIn, end_with_parent};
 
 use crate::app::error::CommandError;
-use crate::workflow::parallel_map::cores;
-pub use end::RunIn;
-pub(crate) use end::{RunEnd, Said, task_runs_at_once};
-pub(crate) use launch::Batch;
-pub use launch::end_with_parent;
+use crate::app::request::CommandInput;
+use crate::app::task;
+use crate::workflow::parallel_map::{cores, parallel_map};
+use std::ops::ControlFlow;
+use std::sync::atomic::{AtomicBool, Ordering};
+use std::time::Instant;
 
 /// Runs all of a batch; `told` is called at each end, in the thread that calls, and may let no other one begin.
 ///
@@ -26,14 +26,8 @@ pub(crate) fn run_all(
     told: &mut dyn FnMut(usize, RunEnd) -> ControlFlow<()>,
 ) -> Result<(), CommandError> {
     match batch.run_in {
-        RunIn::Threads | RunIn::Here => {
-            threads::run_all(batch, cores(), told);
-            Ok(())
-        }
-        RunIn::InTurn => {
-            threads::run_all(batch, 1, told);
-            Ok(())
-        }
+        RunIn::Threads | RunIn::Here => run_in_threads(batch, cores(), told),
+        RunIn::InTurn => run_in_threads(batch, 1, told),
         RunIn::Processes => processes::run_all(batch, told),
         RunIn::HyperQueue => hyperqueue::run_all(batch, told),
     }
@@ -47,5 +41,51 @@ pub(crate) fn check_run_in(run_in: RunIn) -> Result<(), CommandError> {
     match run_in {
         RunIn::Threads | RunIn::Here | RunIn::InTurn | RunIn::Processes => Ok(()),
         RunIn::HyperQueue => hyperqueue::check(),
+    }
+}
+
+/// Runs all of a batch in threads of this process, at most this number in parallel.
+fn run_in_threads(
+    batch: &Batch<'_>,
+    threads: usize,
+    told: &mut dyn FnMut(usize, RunEnd) -> ControlFlow<()>,
+) -> Result<(), CommandError> {
+    let is_over = AtomicBool::new(false);
+    let solve = |run: &CommandInput| {
+        let command = batch.command(run);
+        let Some(command) = command.filter(|_| !is_over.load(Ordering::Relaxed)) else {
+            return RunEnd::NOT_STARTED;
+        };
+        let began = Instant::now();
+        let said = match task::run_observed(&command, batch.text, &mut |_| {}) {
+            Ok(output) if output.is_solved => Said::Solved,
+            Ok(_) => Said::Unsolved(String::new()),
+            Err(error) => said(&error),
+        };
+        RunEnd {
+            said,
+            seconds: began.elapsed().as_secs_f64(),
+        }
+    };
+    parallel_map(batch.runs, threads, solve, |index, answered| {
+        let end = answered.clone().unwrap_or_else(|panic| RunEnd {
+            said: Said::Failed(panic),
+            seconds: 0.0,
+        });
+        if told(index, end).is_break() {
+            is_over.store(true, Ordering::Relaxed);
+        }
+    });
+    Ok(())
+}
+
+fn said(error: &CommandError) -> Said {
+    let text = match error.excerpt() {
+        Some(excerpt) => format!("{error}\n{}", excerpt.trim_end()),
+        None => error.to_string(),
+    };
+    match error.exit_status() {
+        2 => Said::Refused(text),
+        _ => Said::Unsolved(text),
     }
 }

@@ -9,8 +9,7 @@ use std::time::{Duration, Instant};
 #[cfg(unix)]
 use rustix::process::{Pid, Signal, kill_process};
 
-use super::end::{RunEnd, Said, of_status};
-use super::launch::{Batch, Running, launch};
+use super::launch::{Batch, RunEnd, Running, Said, launch, of_status};
 use crate::app::error::CommandError;
 use crate::report::atomic::WriteError;
 use crate::stop;
@@ -57,10 +56,9 @@ pub(super) fn run_all(
                 continue;
             };
             let launched = launch(&command, index);
-            running.0.push(launched.map_err(|cause| WriteError {
-                path: command.folder(),
-                cause,
-            })?);
+            running
+                .0
+                .push(launched.map_err(WriteError::at(command.folder()))?);
         }
         if stop_at.is_some_and(|time| Instant::now() > time) {
             for running in &mut running.0 {

@@ -1,30 +1,66 @@
-//! End of one start, and comparison of the optima of several.
+//! Starts of a problem, their ends, and the comparison of the optima of several.
 
 use super::rank::Rank;
-use super::start::{Start, folder_of};
 use crate::app::batch::{RunEnd, Said};
 use crate::app::error::CommandError;
+use crate::app::request::CommandInput;
 use crate::stop;
 use crate::workflow::remark::Remarks;
 use serde::{Deserialize, Serialize};
 use std::collections::BTreeMap;
-use std::fs::{self};
+use std::fs;
 use std::path::{Path, PathBuf};
 
 /// Relative difference of the objectives of one optimum.
-pub(super) const SAME_OBJECTIVE: f64 = 1e-6;
+const SAME_OBJECTIVE: f64 = 1e-6;
 
 /// Difference of the voltages of one optimum, relative to the largest: weakly bounded ones are known to 1e-4.
-pub(super) const SAME_VOLTAGE: f64 = 1e-3;
+const SAME_VOLTAGE: f64 = 1e-3;
 
 /// Warnings about an optimum whose goal is not held, or whose period does not come back.
 const LEAVES: [&str; 2] = ["goal_not_held", "not_periodic"];
 
-/// The word of a start for which there was no time.
-const NOT_STARTED: &str = "not_started";
+/// Folder of the starts within that of the results.
+pub(super) const FOLDER: &str = "starts";
+
+/// Folder of one start.
+pub(super) fn folder_of(folder: &Path, start: usize) -> PathBuf {
+    folder.join(FOLDER).join(format!("{start:02}"))
+}
+
+/// A starting point of a plan.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Start {
+    /// Its number, from 1.
+    pub(super) number: usize,
+    /// Seed of a random guess; none for the guess of the problem itself.
+    pub(super) seed: Option<u64>,
+}
+
+impl Start {
+    /// Its solve, of a problem whose guesses stand at these `places`.
+    ///
+    /// All guesses have one seed, so that inputs which motions share begin alike.
+    pub(super) fn run(
+        self,
+        request: &CommandInput,
+        folder: &Path,
+        places: &[String],
+    ) -> CommandInput {
+        let mut run = CommandInput {
+            output: Some(folder_of(folder, self.number)),
+            ..request.clone()
+        };
+        if let Some(seed) = self.seed {
+            let guess = |place| format!("{place}={{\"random\":{{\"seed\":{seed}}}}}");
+            run.set.extend(places.iter().map(guess));
+        }
+        run
+    }
+}
 
 /// End of one start.
-#[derive(Clone, Debug, Serialize)]
+#[derive(Clone, Debug, Default, Serialize)]
 pub(super) struct Ended {
     /// Its number, from 1.
     pub(super) start: usize,
@@ -56,24 +92,24 @@ pub(super) struct Ended {
 
 /// Entries that are read of the summary of a start.
 #[derive(Deserialize)]
-pub(super) struct Summary {
-    pub(super) status: String,
-    pub(super) objective: Option<f64>,
-    pub(super) iterations: Option<usize>,
-    pub(super) infeasibility: Option<f64>,
-    pub(super) seconds: Seconds,
+struct Summary {
+    status: String,
+    objective: Option<f64>,
+    iterations: Option<usize>,
+    infeasibility: Option<f64>,
+    seconds: Seconds,
     #[serde(default)]
-    pub(super) notes: Remarks,
+    notes: Remarks,
     /// Motions with summaries of their own.
     #[serde(default)]
-    pub(super) motions: Vec<MotionFolder>,
+    motions: Vec<MotionFolder>,
 }
 
 /// The folder of one of several motions.
 #[derive(Deserialize)]
-pub(super) struct MotionFolder {
-    pub(super) name: String,
-    pub(super) folder: PathBuf,
+struct MotionFolder {
+    name: String,
+    folder: PathBuf,
 }
 
 impl Summary {
@@ -91,70 +127,59 @@ impl Summary {
 }
 
 #[derive(Deserialize)]
-pub(super) struct Seconds {
-    pub(super) total: f64,
+struct Seconds {
+    total: f64,
 }
 
 /// Entries that are read of the solution of a start.
 #[derive(Deserialize)]
-pub(super) struct SolutionRecord {
-    pub(super) voltages: BTreeMap<String, Vec<f64>>,
+struct SolutionRecord {
+    voltages: BTreeMap<String, Vec<f64>>,
 }
 
 impl Ended {
-    /// A start that left no files.
-    pub(super) fn without_files(start: Start, status: &str, seconds: f64) -> Self {
-        Self {
-            start: start.number,
-            seed: start.seed,
-            status: status.to_owned(),
-            message: None,
-            objective: None,
-            iterations: None,
-            infeasibility: None,
-            seconds,
-            optimum: None,
-            is_solved: false,
-            is_held: true,
-            voltages: Vec::new(),
-            notes: Vec::new(),
-        }
-    }
-
     /// Reads what a start left.
     ///
     /// # Errors
     /// It says that the input is wrong.
     pub(super) fn from_run(
         start: Start,
-        RunEnd { said, seconds }: RunEnd,
+        end: &RunEnd,
         folder: &Path,
     ) -> Result<Self, CommandError> {
-        let failed = |message: String| match stop::requested() {
-            true => Self::without_files(start, "interrupted", seconds),
-            false => Self {
-                message: Some(message).filter(|message| !message.is_empty()),
-                ..Self::without_files(start, "failed", seconds)
-            },
-        };
-        let (is_solved, message) = match said {
-            Said::NotStarted => return Ok(Self::without_files(start, NOT_STARTED, seconds)),
-            Said::Solved => (true, String::new()),
-            Said::Unsolved(message) => (false, message),
-            Said::Failed(message) => return Ok(failed(message)),
-            Said::Refused(message) => {
-                return Err(CommandError::Start {
-                    start: start.number,
-                    message,
-                });
-            }
-        };
+        if let Said::Refused(message) = &end.said {
+            return Err(CommandError::Start {
+                start: start.number,
+                message: message.clone(),
+            });
+        }
         let path = folder_of(folder, start.number);
-        let Some(summary) = parsed::<Summary>(&path.join("summary.json")) else {
-            return Ok(failed(message));
+        let summary = end
+            .may_have_files()
+            .then(|| parsed(&path.join("summary.json")));
+        let mut ended = Self {
+            start: start.number,
+            seed: start.seed,
+            seconds: end.seconds,
+            is_held: true,
+            ..Self::default()
         };
-        let folders = summary.folders(&path);
-        let mut remarks = vec![(None, summary.notes.clone())];
+        match summary.flatten() {
+            Some(summary) => ended.read(summary, &path, end.said == Said::Solved),
+            None if end.said == Said::NotStarted => "not_started".clone_into(&mut ended.status),
+            None if stop::requested() => "interrupted".clone_into(&mut ended.status),
+            None => {
+                "failed".clone_into(&mut ended.status);
+                ended.message = end.message();
+            }
+        }
+        Ok(ended)
+    }
+
+    /// Takes the numbers of a summary, and voltages and notes of the motions beside it.
+    fn read(&mut self, summary: Summary, path: &Path, is_solved: bool) {
+        let folders = summary.folders(path);
+        let mut remarks = vec![(None, summary.notes)];
         for (motion, own) in summary.motions.iter().zip(&folders) {
             let own = parsed::<Summary>(&own.join("summary.json"));
             remarks.extend(own.map(|own| (Some(motion.name.clone()), own.notes)));
@@ -162,22 +187,18 @@ impl Ended {
         let solutions = folders.iter().filter(|_| is_solved);
         let solutions =
             solutions.filter_map(|own| parsed::<SolutionRecord>(&own.join("solution.json")));
-        let voltages = solutions.flat_map(|one| one.voltages.into_values().flatten());
-        Ok(Self {
-            status: summary.status,
-            objective: summary.objective,
-            iterations: summary.iterations,
-            infeasibility: summary.infeasibility,
-            seconds: summary.seconds.total,
-            is_solved,
-            is_held: !remarks
-                .iter()
-                .flat_map(|(_, own)| &own.0)
-                .any(|one| LEAVES.contains(&&*one.code)),
-            voltages: voltages.collect(),
-            notes: remarks.iter().flat_map(texts).collect(),
-            ..Self::without_files(start, "", seconds)
-        })
+        let mut all = remarks.iter().flat_map(|(_, own)| &own.0);
+        self.is_held = !all.any(|one| LEAVES.contains(&&*one.code));
+        self.voltages = solutions
+            .flat_map(|one| one.voltages.into_values().flatten())
+            .collect();
+        self.notes = remarks.iter().flat_map(texts).collect();
+        self.status = summary.status;
+        self.objective = summary.objective;
+        self.iterations = summary.iterations;
+        self.infeasibility = summary.infeasibility;
+        self.seconds = summary.seconds.total;
+        self.is_solved = is_solved;
     }
 
     /// Its rank.
@@ -218,7 +239,7 @@ fn texts((motion, remarks): &(Option<String>, Remarks)) -> Vec<String> {
         .collect()
 }
 
-pub(super) fn parsed<T: for<'de> Deserialize<'de>>(path: &Path) -> Option<T> {
+fn parsed<T: for<'de> Deserialize<'de>>(path: &Path) -> Option<T> {
     serde_json::from_str(&fs::read_to_string(path).ok()?).ok()
 }
 

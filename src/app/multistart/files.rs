@@ -1,7 +1,6 @@
 //! The files of the best start, and the table of all.
 
-use super::ended::{Ended, best};
-use super::start::folder_of;
+use super::ended::{Ended, best, folder_of};
 use crate::app::batch::{Batch, RunIn};
 use crate::app::error::CommandError;
 use crate::app::overwrite_check::make_folder;
@@ -174,7 +173,7 @@ pub(super) fn copy(from: &Path, to: &Path, section: &Section<'_>) -> Result<(), 
     let path = from.join("summary.json");
     let summary = match fs::read_to_string(&path) {
         Err(cause) if cause.kind() == ErrorKind::NotFound => "{}".to_owned(),
-        read => read.map_err(|cause| WriteError { path, cause })?,
+        read => read.map_err(WriteError::at(path))?,
     };
     files.add("summary.json", with_section(&summary, section).as_bytes())?;
     files.finish()
@@ -187,12 +186,8 @@ fn copy_folder(
     to: &Path,
     files: &mut FileSet,
 ) -> Result<(), WriteError> {
-    let failed = |path: &Path| {
-        let path = path.to_owned();
-        move |cause| WriteError { path, cause }
-    };
-    for entry in fs::read_dir(from).map_err(failed(from))? {
-        let path = entry.map_err(failed(from))?.path();
+    for entry in fs::read_dir(from).map_err(WriteError::at(from))? {
+        let path = entry.map_err(WriteError::at(from))?.path();
         let Some(name) = path.file_name() else {
             continue;
         };
@@ -201,7 +196,7 @@ fn copy_folder(
             make_folder(&to.join(&name))?;
             copy_folder(&path, &name.to_string_lossy(), to, files)?;
         } else if name != Path::new("summary.json") {
-            let bytes = fs::read(&path).map_err(failed(&path))?;
+            let bytes = fs::read(&path).map_err(WriteError::at(&path))?;
             files.add(name, &bytes)?;
         }
     }

@@ -6,7 +6,6 @@
 mod ended;
 mod files;
 mod rank;
-mod start;
 
 use std::fs;
 use std::ops::ControlFlow;
@@ -15,19 +14,18 @@ use std::time::Instant;
 
 use crate::app::batch::{Batch, RunIn, run_all, task_runs_at_once};
 use crate::app::error::CommandError;
-use crate::app::messages::key;
 use crate::app::no_equilibrium;
 use crate::app::overwrite_check::{make_folder, make_folder_of};
 use crate::app::progress::Progress;
+use crate::app::request::key;
 use crate::app::request::{CommandInput, CommandOutput};
 use crate::app::task::{read, refuse_replacing};
 use crate::control::Motion;
 use crate::control::problem::Task;
 use crate::files::{Loaded, is_standard_input};
 use crate::workflow::program::resolve;
-use ended::{Ended, best, number_optima};
+use ended::{Ended, FOLDER, Start, best, number_optima};
 use files::write;
-use start::{FOLDER, Start};
 
 /// Most starting points of one command; the seed of a start is that of the command times this number and its own.
 const MOST: usize = 1000;
@@ -93,10 +91,7 @@ pub fn solve_text_from_starts(
 }
 
 fn wrong_option(reason: String) -> CommandError {
-    CommandError::Option {
-        option: "--starts",
-        reason,
-    }
+    CommandError::option("--starts", reason)
 }
 
 fn check_number(starts: usize) -> Result<(), CommandError> {
@@ -160,7 +155,7 @@ fn run_starts(
     let mut ended: Vec<Ended> = Vec::new();
     let mut refused = None;
     run_all(batch, &mut |index, end| {
-        match Ended::from_run(plan[index], end, batch.folder) {
+        match Ended::from_run(plan[index], &end, batch.folder) {
             Ok(one) => ended.push(one),
             Err(error) => refused = refused.take().or(Some(error)),
         }

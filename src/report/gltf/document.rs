@@ -56,7 +56,7 @@ pub(super) enum Mode {
 }
 
 /// A file under construction.
-#[derive(Debug)]
+#[derive(Debug, Default)]
 pub(super) struct Document {
     bytes: Vec<u8>,
     views: Vec<Value>,
@@ -73,17 +73,7 @@ pub(super) struct Document {
 impl Document {
     /// An empty file of instants in s.
     pub(super) fn new(times: &[f64]) -> Self {
-        let mut document = Self {
-            bytes: Vec::new(),
-            views: Vec::new(),
-            accessors: Vec::new(),
-            materials: Vec::new(),
-            meshes: Vec::new(),
-            nodes: Vec::new(),
-            samplers: Vec::new(),
-            channels: Vec::new(),
-            times: None,
-        };
+        let mut document = Self::default();
         if times.len() > 1 {
             let times: Vec<[f64; 1]> = times.iter().map(|&t| [t]).collect();
             document.times = Some(document.floats("SCALAR", &times, None));

@@ -12,7 +12,7 @@ use nalgebra::{Matrix3, Rotation3, UnitQuaternion, Vector3};
 use crate::dynamics::trajectory::Trajectory;
 use crate::kinematics::Pose;
 use crate::model::system::{Marker, Shape, System};
-use crate::report::drawing::{lumped, marker_colour};
+use crate::report::drawing::{component_lines, lumped, marker_colour};
 use crate::report::gltf::document::{
     Document, METRE, Mode, Moving, Placed, body, cube, sphere, triangles,
 };
@@ -20,7 +20,7 @@ use crate::report::load_arrows::LoadArrows;
 use crate::report::origin::Origin;
 use crate::report::skins::{Skins, shown};
 use crate::report::solids::Prism;
-use crate::report::{style, ties};
+use crate::report::style;
 
 /// Opacity of bodies, so that muscles within show.
 const GLASS: f32 = 0.35;
@@ -127,7 +127,7 @@ impl Motion<'_> {
 
     /// Springs and tendons.
     fn add_ties(&self, document: &mut Document) {
-        let lines = self.each(|k| ties::lines(self.system, self.trajectory, k));
+        let lines = self.each(|k| component_lines(self.system, self.trajectory, k));
         for (c, component) in self.system.components.iter().enumerate() {
             let material = document.material(component.name(), style::TIE, 1.0);
             let mut places: Vec<_> = lines.iter().map(|lines| metres(&lines[c])).collect();

@@ -133,12 +133,7 @@ fn curves(
     out
 }
 
-fn panel(title: &str, [x, y]: [&str; 2], is_equal: bool, curves: Vec<Value>) -> Value {
-    json!({
-        "title": title,
-        "x": axis(x, Scale::Linear),
-        "y": axis(y, Scale::Linear),
-        "equal": is_equal,
-        "series": curves,
-    })
+fn panel(title: &str, axes: [&str; 2], is_equal: bool, curves: Vec<Value>) -> Value {
+    let [x, y] = axes.map(|label| axis(label, Scale::Linear));
+    json!({ "title": title, "x": x, "y": y, "equal": is_equal, "series": curves })
 }

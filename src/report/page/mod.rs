@@ -4,16 +4,16 @@
 //! code, which stands on three.js and Chart.js.
 
 mod charts;
-mod code;
 pub mod compared;
 mod disturbance;
 mod scene;
 
-use serde_json::{Value, json};
-
-use crate::report::markup::escape;
 use crate::report::origin::Origin;
+use crate::report::quoting::escape;
 use crate::report::{PageContent, Run};
+use base64::Engine;
+use base64::engine::general_purpose::STANDARD;
+use serde_json::{Value, json};
 
 /// The page of a run, or of a path of equilibria.
 pub fn html(run: &Run<'_>, content: &PageContent) -> String {
@@ -51,7 +51,7 @@ fn data(subject: &str, content: &PageContent, charts: Vec<Value>, origin: &Origi
 
 /// A page with its title, its origin, and its contents.
 fn page(title: &str, origin: &Origin, data: &Value) -> String {
-    framed(code::FRAME, title, origin, data, &code::MODULES)
+    framed(FRAME, title, origin, data, &MODULES)
 }
 
 /// A frame with its places `{{name}}` filled: `title`, `origin`, `sheet`, `data`, `script`, and `libraries`, the code of others;
@@ -64,10 +64,10 @@ pub fn framed(frame: &str, title: &str, origin: &Origin, data: &Value, modules: 
         &[
             ("title", &escape(title)),
             ("origin", &escape(&origin.line())),
-            ("sheet", code::SHEET),
+            ("sheet", SHEET),
             ("data", &data),
-            ("libraries", &code::libraries()),
-            ("script", &code::script(modules)),
+            ("libraries", &libraries()),
+            ("script", &script(modules)),
         ],
     )
 }
@@ -83,4 +83,51 @@ fn filled(frame: &str, parts: &[(&str, &str)]) -> String {
         text.push_str(rest);
     }
     text
+}
+
+/// A library: the name of its element, and its code, packed by gzip.
+const LIBRARIES: [(&str, &[u8]); 2] = [
+    (
+        "three",
+        include_bytes!(concat!(env!("OUT_DIR"), "/three.min.js.gz")),
+    ),
+    (
+        "chart",
+        include_bytes!(concat!(env!("OUT_DIR"), "/chart.min.js.gz")),
+    ),
+];
+
+/// The page around everything, with places `{{name}}` for what differs.
+const FRAME: &str = include_str!("page.html");
+/// Style sheet of the page.
+const SHEET: &str = include_str!("page.css");
+/// Scripts that all pages share.
+const HELPERS: [&str; 2] = [include_str!("read.js"), include_str!("theme.js")];
+/// The modules of the page of a run in the order in which they need each other.
+const MODULES: [&str; 10] = [
+    include_str!("clock.js"),
+    include_str!("camera.js"),
+    include_str!("parts.js"),
+    include_str!("picture.js"),
+    include_str!("ground.js"),
+    include_str!("scene.js"),
+    include_str!("charts.js"),
+    include_str!("answer.js"),
+    include_str!("print.js"),
+    include_str!("start.js"),
+];
+
+/// A page's own code: one function around helpers and modules.
+fn script(modules: &[&str]) -> String {
+    let (helpers, modules) = (HELPERS.concat(), modules.concat());
+    format!("(() => {{\n\"use strict\";\n{helpers}{modules}}})();\n")
+}
+
+/// The elements of the libraries, which the page unpacks.
+fn libraries() -> String {
+    let element = |(name, code): (&str, &[u8])| {
+        let text = STANDARD.encode(code);
+        format!("<script type=\"application/gzip\" id=\"library-{name}\">{text}</script>\n")
+    };
+    LIBRARIES.map(element).concat()
 }

@@ -3,12 +3,11 @@
 use crate::kinematics::Pose;
 use crate::mesh::triangulated::Surface;
 use crate::model::system::{Attachment, Joint, JointKind, Marker};
-use crate::report::drawing::lumped;
-use crate::report::frame::{ground_plate, held_faces};
+use crate::report::drawing::{component_lines, ground_plate, held_faces, lumped};
 use crate::report::load_arrows::LoadArrows;
 use crate::report::skins::{Skin, shown};
 use crate::report::solids::Prism;
-use crate::report::{Run, solids, style, ties};
+use crate::report::{Run, solids, style};
 use base64::Engine;
 use base64::engine::general_purpose::STANDARD;
 use nalgebra::Vector3;
@@ -174,7 +173,7 @@ impl Stage<'_> {
         let (system, trajectory) = (self.run.system, self.run.trajectory);
         let mut all: Vec<Vec<Vec<Vector3<f64>>>> = Vec::new();
         for &k in self.instants {
-            let lines = ties::lines(system, trajectory, k);
+            let lines = component_lines(system, trajectory, k);
             all.resize(lines.len(), Vec::new());
             all.iter_mut()
                 .zip(lines)
@@ -282,25 +281,22 @@ fn chosen(count: usize) -> impl Iterator<Item = usize> + Clone {
 
 /// Numbers in single precision; NaN stays NaN.
 pub(super) fn numbers(values: impl IntoIterator<Item = f64>) -> Value {
-    let bytes = values
-        .into_iter()
-        .flat_map(|value| (value as f32).to_le_bytes());
-    STANDARD.encode(bytes.collect::<Vec<u8>>()).into()
+    let values = values.into_iter();
+    packed(values.flat_map(|value| (value as f32).to_le_bytes()))
 }
 
 /// Indices below 2³².
-pub(super) fn indices(values: impl IntoIterator<Item = usize>) -> Value {
-    let bytes = values
-        .into_iter()
-        .flat_map(|value| (value as u32).to_le_bytes());
+fn indices(values: impl IntoIterator<Item = usize>) -> Value {
+    let values = values.into_iter();
+    packed(values.flat_map(|value| (value as u32).to_le_bytes()))
+}
+
+fn packed(bytes: impl Iterator<Item = u8>) -> Value {
     STANDARD.encode(bytes.collect::<Vec<u8>>()).into()
 }
 
 /// Coordinates of places in mm, one after the other.
-pub(super) fn places<'a>(places: impl IntoIterator<Item = &'a Vector3<f64>>) -> Value {
-    numbers(
-        places
-            .into_iter()
-            .flat_map(|place| [place.x, place.y, place.z]),
-    )
+fn places<'a>(places: impl IntoIterator<Item = &'a Vector3<f64>>) -> Value {
+    let places = places.into_iter();
+    numbers(places.flat_map(|place| [place.x, place.y, place.z]))
 }

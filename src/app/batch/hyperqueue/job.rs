@@ -1,7 +1,6 @@
 //! Record of a job until all its ends are collected: its name, and the folder of each of its tasks.
 
-use crate::app::batch::end::{RunEnd, Said, of_status};
-use crate::app::batch::launch::words;
+use crate::app::batch::launch::{RunEnd, Said, of_status, words};
 use crate::app::error::CommandError;
 use crate::app::overwrite_check::make_folder;
 use crate::app::request::CommandInput;
@@ -127,13 +126,7 @@ impl Job {
 /// The absolute folder of the results of a solve.
 fn whole(command: &CommandInput) -> Result<PathBuf, CommandError> {
     let folder = command.folder();
-    path::absolute(&folder).map_err(|cause| {
-        WriteError {
-            path: folder,
-            cause,
-        }
-        .into()
-    })
+    Ok(path::absolute(&folder).map_err(WriteError::at(folder))?)
 }
 
 /// A solve as one types it in a shell.
@@ -145,10 +138,11 @@ fn line(command: &CommandInput) -> Result<String, CommandError> {
     let words = words(command).into_iter().chain(["--once".into()]);
     for word in [program.into_os_string()].into_iter().chain(words) {
         let word = word.into_string().ok().filter(|word| !word.contains('\n'));
-        let word = word.ok_or_else(|| CommandError::Option {
-            option: "--engine hyperqueue",
-            reason: "paths that are no UTF-8, or with line breaks, cannot be handed to it"
-                .to_owned(),
+        let word = word.ok_or_else(|| {
+            CommandError::option(
+                "--engine hyperqueue",
+                "paths that are no UTF-8, or with line breaks, cannot be handed to it",
+            )
         })?;
         quoted.push(format!("'{}'", word.replace('\'', r"'\''")));
     }
@@ -212,10 +206,7 @@ const PROGRAM: &str = "hq";
 /// # Errors
 /// There is none, or the command `hq` is not there.
 pub(in crate::app::batch) fn check() -> Result<(), CommandError> {
-    let refused = |reason: String| CommandError::Option {
-        option: "--engine hyperqueue",
-        reason,
-    };
+    let refused = |reason: String| CommandError::option("--engine hyperqueue", reason);
     match output(&["job", "list"]) {
         Ok(output) if output.status.success() => Ok(()),
         Ok(output) => {

@@ -13,8 +13,7 @@ use std::ops::ControlFlow;
 use std::thread;
 use std::time::{Duration, Instant};
 
-use super::end::RunEnd;
-use super::launch::Batch;
+use super::launch::{Batch, RunEnd};
 use crate::app::error::CommandError;
 use crate::app::request::CommandInput;
 use job::Job;

@@ -1,4 +1,4 @@
-//! Commands as a shell takes them.
+//! Texts as a shell and HTML take them.
 
 /// The command that these words make, in quotes where the shell would take them apart.
 pub fn command<S: AsRef<str>>(words: impl IntoIterator<Item = S>) -> String {
@@ -12,4 +12,20 @@ fn quoted(word: &str) -> String {
         true => word.to_owned(),
         false => format!("'{}'", word.replace('\'', r"'\''")),
     }
+}
+
+/// Text as HTML: what could be read as markup becomes an entity.
+pub fn escape(text: &str) -> String {
+    let mut escaped = String::with_capacity(text.len());
+    for c in text.chars() {
+        match c {
+            '&' => escaped.push_str("&amp;"),
+            '<' => escaped.push_str("&lt;"),
+            '>' => escaped.push_str("&gt;"),
+            '"' => escaped.push_str("&quot;"),
+            '\'' => escaped.push_str("&#39;"),
+            _ => escaped.push(c),
+        }
+    }
+    escaped
 }
