@@ -37,64 +37,110 @@ pub enum MaterialConstant {
     RelaxationTime(usize),
 }
 
-/// A constant of a component, by the index of the component in the system.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Constant {
-    /// A constant of a material.
-    Material(MaterialOf, MaterialConstant),
-    /// A side, 0 or 1, of the cross-section of a muscle in mm.
-    Side(usize, usize),
-    /// Thickness of a layer of a muscle in mm.
-    Layer(usize),
-    /// A component, 0 to 2, of the place of an end of a muscle, 0 for `from` and 1 for `to`, in mm.
-    End(usize, usize, usize),
-    /// Stretch before a muscle was glued between its ends.
-    Prestretch(usize),
-    /// Resistance in series with the electrodes of a source in Ω.
-    Resistance(usize),
-    /// Resistance parallel to the electrodes of a source in Ω.
-    Leakage(usize),
-    /// Stiffness of a spring in N/mm.
-    SpringStiffness(usize),
-    /// Damping of a spring in N ms/mm.
-    SpringDamping(usize),
-    /// Length of a spring without force in mm.
-    SpringLength(usize),
-    /// A component of the place of an end of a spring in mm, as of a muscle.
-    SpringEnd(usize, usize, usize),
-    /// Stiffness of a tendon in N/mm.
-    TendonStiffness(usize),
-    /// Length in mm up to which a tendon is slack.
-    TendonLength(usize),
-    /// A component, 0 to 2, of the place of a point of a tendon, by its number along it, in mm.
-    TendonPoint(usize, usize, usize),
-    /// Damping of a joint in N mm ms or N ms/mm.
-    JointDamping(usize),
-    /// Stiffness of a joint in N mm/rad or N/mm.
-    JointStiffness(usize),
-    /// Coordinate of a joint without force of its spring in rad or mm.
-    JointRest(usize),
-    /// Mass of a body in g.
-    Mass(usize),
-    /// A principal moment of inertia, 0 to 2, of a body in g mm².
-    Inertia(usize, usize),
-    /// A component, 0 to 2, of the place of a body in mm.
-    BodyPlace(usize, usize),
-    /// A size of the shape of a body in mm, which is drawn: length and radius of a cylinder, edges of a box, radius of a sphere.
-    BodySize(usize, usize),
-    /// A component, 0 to 2, of the place of a joint in mm.
-    JointPlace(usize, usize),
-    /// A component, 0 to 2, of the place of a marker in mm.
-    MarkerPlace(usize, usize),
-    /// A component, 0 to 2, of gravity in mm/ms².
-    Gravity(usize),
-    /// No constant of a component: the largest voltage in V of sources that are free, which quantities read.
-    PeakVoltage,
-    /// No constant of a component: the factor between the input that a recording says of a source and that which acts.
-    Gain(usize),
-    /// No constant of a component: the time in ms by which the input of a source acts later than a recording says.
-    Delay(usize),
+/// The table of all constants of parts of a system, for a macro: the parts with their number in a `system`, and of each constant its further
+/// indices, its unit with the factor from the unit inside, whether it must be positive to have a meaning, the reason of a part that does not
+/// have it, and its place.
+macro_rules! table {
+    ($to:ident) => { $to! { system;
+        axis "axis" in 3 => {
+            /// A component, 0 to 2, of gravity in mm/ms².
+            Gravity(): ("m/s^2", 1e3), ANY, "the scene has no gravity", system.gravity.as_mut()?.get_mut(axis);
+        }
+        m "muscle" in system.muscles.len() => {
+            /// A side, 0 or 1, of the cross-section of a muscle in mm.
+            Side(side "side" of 2): LENGTH, POSITIVE, NONE, system.muscles.get_mut(m)?.cross_section.get_mut(side);
+            /// Thickness of a layer of a muscle in mm.
+            Layer(): LENGTH, POSITIVE, NONE, Some(&mut system.muscles.get_mut(m)?.layer_thickness);
+            /// Stretch before a muscle was glued between its ends.
+            Prestretch(): RATIO, POSITIVE, "the muscle has no prestretch", system.muscles.get_mut(m)?.prestretch.as_mut();
+            /// A component, 0 to 2, of the place of an end of a muscle, 0 for `from` and 1 for `to`, in mm.
+            End(end "end" of 2, axis "axis" of 3): LENGTH, ANY, NONE, {
+                let muscle = system.muscles.get_mut(m)?;
+                at_end([&mut muscle.from, &mut muscle.to], end)?.get_mut(axis)
+            };
+        }
+        s "source" in system.sources().len() => {
+            /// Resistance in series with the electrodes of a source in Ω.
+            Resistance(): OHM, POSITIVE, "the source has no resistor", circuit(system, s)?.resistance.as_mut();
+            /// Resistance parallel to the electrodes of a source in Ω.
+            Leakage(): OHM, POSITIVE, "the source has no leak", circuit(system, s)?.leakage.as_mut();
+            /// No constant of a component: the factor between the input that a recording says of a source and that which acts.
+            Gain(): RATIO, POSITIVE, NONE, None;
+            /// No constant of a component: the time in ms by which the input of a source acts later than a recording says.
+            Delay(): ("s", 1e-3), ANY, NONE, None;
+        }
+        s "spring" in system.components.springs.len() => {
+            /// Stiffness of a spring in N/mm.
+            SpringStiffness(): ("N/m", 1e3), POSITIVE, NO_SPRING, spring(system, s)?.stiffness.as_mut();
+            /// Damping of a spring in N ms/mm.
+            SpringDamping(): ("N s/m", 1.0), POSITIVE, "the spring has no damping", spring(system, s)?.damping.as_mut();
+            /// Length of a spring without force in mm.
+            SpringLength(): LENGTH, POSITIVE, NO_SPRING, Some(&mut spring(system, s)?.rest_length);
+            /// A component of the place of an end of a spring in mm, as of a muscle.
+            SpringEnd(end "end" of 2, axis "axis" of 3): LENGTH, ANY, NO_SPRING, {
+                let spring = spring(system, s)?;
+                at_end([&mut spring.from, &mut spring.to], end)?.get_mut(axis)
+            };
+        }
+        t "tendon" in system.components.tendons.len() => {
+            /// Stiffness of a tendon in N/mm.
+            TendonStiffness(): ("N/m", 1e3), POSITIVE, NONE, Some(&mut tendon(system, t)?.stiffness);
+            /// Length in mm up to which a tendon is slack.
+            TendonLength(): LENGTH, POSITIVE, NONE, Some(&mut tendon(system, t)?.rest_length);
+            /// A component, 0 to 2, of the place of a point of a tendon, by its number along it, in mm.
+            TendonPoint(point "point" of points(system, t), axis "axis" of 3): LENGTH, ANY, NONE,
+                tendon(system, t)?.through.get_mut(point)?.at.get_mut(axis);
+        }
+        j "joint" in system.joints.len() => {
+            /// Damping of a joint in N mm ms or N ms/mm.
+            JointDamping(): of_joint(system, j, [("N m s/rad", 1e-6), ("N s/m", 1.0)]), POSITIVE, "the joint has no damping",
+                system.joints.get_mut(j)?.damping.as_mut();
+            /// Stiffness of a joint in N mm/rad or N/mm.
+            JointStiffness(): of_joint(system, j, [("N m/rad", 1e-3), ("N/m", 1e3)]), POSITIVE, NO_JOINT_SPRING,
+                Some(&mut system.joints.get_mut(j)?.spring.as_mut()?.stiffness);
+            /// Coordinate of a joint without force of its spring in rad or mm.
+            JointRest(): of_joint(system, j, [("rad", 1.0), LENGTH]), ANY, NO_JOINT_SPRING,
+                Some(&mut system.joints.get_mut(j)?.spring.as_mut()?.rest);
+            /// A component, 0 to 2, of the place of a joint in mm.
+            JointPlace(axis "axis" of 3): LENGTH, ANY, NONE, system.joints.get_mut(j)?.at.get_mut(axis);
+        }
+        b "body" in system.bodies.len() => {
+            /// Mass of a body in g.
+            Mass(): ("kg", 1e-3), POSITIVE, NONE, Some(&mut system.bodies.get_mut(b)?.mass);
+            /// A principal moment of inertia, 0 to 2, of a body in g mm².
+            Inertia(axis "axis" of 3): ("kg m^2", 1e-9), ANY, NONE, system.bodies.get_mut(b)?.inertia.get_mut(axis);
+            /// A size of the shape of a body in mm, which is drawn: length and radius of a cylinder, edges of a box, radius of a sphere.
+            BodySize(size "size" of 3): LENGTH, POSITIVE, NONE, system.bodies.get_mut(b)?.shape.size_mut(size);
+            /// A component, 0 to 2, of the place of a body in mm.
+            BodyPlace(axis "axis" of 3): LENGTH, ANY, NONE, system.bodies.get_mut(b)?.centre.get_mut(axis);
+        }
+        m "marker" in system.markers.len() => {
+            /// A component, 0 to 2, of the place of a marker in mm.
+            MarkerPlace(axis "axis" of 3): LENGTH, ANY, NONE, system.markers.get_mut(m)?.point.at.get_mut(axis);
+        }
+    } };
 }
+pub(super) use table;
+
+/// Declares the constants of the table, and those of materials and of quantities.
+macro_rules! declare {
+    (@number $index:ident) => { usize };
+    ($system:ident; $($part:ident $word:literal in $count:expr => {
+        $($(#[$about:meta])* $name:ident($($index:ident $what:literal of $most:expr),*):
+            $unit:expr, $sign:expr, $lacking:expr, $place:expr;)*
+    })*) => {
+        /// A constant of a component, by the index of the component in the system.
+        #[derive(Clone, Copy, Debug, PartialEq, Eq)]
+        pub enum Constant {
+            $($($(#[$about])* $name(usize $(, declare!(@number $index))*),)*)*
+            /// A constant of a material.
+            Material(MaterialOf, MaterialConstant),
+            /// No constant of a component: the largest voltage in V of sources that are free, which quantities read.
+            PeakVoltage,
+        }
+    };
+}
+table!(declare);
 
 /// A unit of the International System: its symbol, and the factor from the unit of a constant.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -180,24 +226,21 @@ impl Constant {
         matches!(self, Self::Side(..) | Self::End(..) | Self::Prestretch(_))
     }
 
-    /// Returns true if it must be positive to have a meaning.
-    pub fn is_positive(self) -> bool {
-        use MaterialConstant::{C1, C2, LameLambda, Law, Permittivity};
-        !matches!(
+    /// Returns true if it is a place of which others in the tree of joints follow, or a place that they move.
+    pub fn is_place(self) -> bool {
+        matches!(
             self,
-            Self::End(..)
-                | Self::SpringEnd(..)
-                | Self::TendonPoint(..)
-                | Self::JointRest(_)
-                | Self::BodyPlace(..)
-                | Self::JointPlace(..)
-                | Self::MarkerPlace(..)
-                | Self::Inertia(..)
-                | Self::Gravity(_)
-                | Self::PeakVoltage
-                | Self::Delay(_)
-                | Self::Material(_, Law(_) | LameLambda | C1 | C2 | Permittivity)
+            Self::BodyPlace(..) | Self::JointPlace(..) | Self::MarkerPlace(..)
         )
+    }
+
+    /// Returns true if formulas read it as a vector alone, which moves along a straight line.
+    pub fn is_point(self) -> bool {
+        self.is_place()
+            || matches!(
+                self,
+                Self::End(..) | Self::SpringEnd(..) | Self::TendonPoint(..)
+            )
     }
 }
 
@@ -222,25 +265,6 @@ impl Follower {
             higher: [c * c * a, c * c * c * b],
             ..self
         }
-    }
-}
-
-impl Constant {
-    /// Returns true if it is a place of which others in the tree of joints follow, or a place that they move.
-    pub fn is_place(self) -> bool {
-        matches!(
-            self,
-            Self::BodyPlace(..) | Self::JointPlace(..) | Self::MarkerPlace(..)
-        )
-    }
-
-    /// Returns true if formulas read it as a vector alone, which moves along a straight line.
-    pub fn is_point(self) -> bool {
-        self.is_place()
-            || matches!(
-                self,
-                Self::End(..) | Self::SpringEnd(..) | Self::TendonPoint(..)
-            )
     }
 }
 
