@@ -55,13 +55,14 @@ impl<N: Points> Branch<N> {
     /// Writes the energy; its gradient if `ORDER` ≥ 1; its tangent if `ORDER` ≥ 2.
     #[inline(always)]
     pub(super) fn write<const ORDER: usize, const NODES: usize>(
-        (token, mu): (N::Token, f64),
+        token: N::Token,
+        mu: f64,
         shape: &ElementGeometry<NODES>,
         x: &[Three<N::Uniform>; NODES],
         q: [N; COORDINATES],
         out: &mut impl Output<N::Uniform>,
     ) {
-        let branch = Self::new((token, mu), shape, x, q);
+        let branch = Self::new(token, mu, shape, x, q);
         let density = (branch.s * branch.theta) - branch.w_mu.scaled(3.0);
         out.energy(density.scaled(0.5).sum());
         if ORDER >= 1 {
@@ -74,7 +75,8 @@ impl<N: Points> Branch<N> {
 
     #[inline(always)]
     fn new<const NODES: usize>(
-        (token, mu): (N::Token, f64),
+        token: N::Token,
+        mu: f64,
         shape: &ElementGeometry<NODES>,
         x: &[Three<N::Uniform>; NODES],
         [z1, z2, a, b, c]: [N; COORDINATES],

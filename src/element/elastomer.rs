@@ -1,14 +1,12 @@
 //! The material law of an elastomer, passive or dielectric, and the energy of an element of it.
 
-use super::dispatch::{Task, dispatch};
 use super::dual::{Dual, moving};
 use super::geometry::ElementGeometry;
 use super::isochoric::{ElementLaw, IsochoricLaw};
-use super::lanes::Lanes;
+use super::lanes::{Lanes, Task, dispatch};
 use super::law::{Dielectric, Field, Passive, Volume};
 use super::local::{Local, Output, Pair};
-use super::state::ElementState;
-use super::variations::Variations;
+use super::variations::{ElementState, Variations};
 use crate::energy::NeoHooke;
 use crate::math::Vector;
 use pulp::Simd;
@@ -94,11 +92,16 @@ impl<F: Field, L: ElementLaw> Elastomer<F, L> {
 
     /// The law without the field.
     pub fn passive(&self) -> Elastomer<Passive, L> {
+        self.with(Passive)
+    }
+
+    /// The same elasticity with another field.
+    pub fn with<G>(&self, field: G) -> Elastomer<G, L> {
         Elastomer {
             shear_modulus: self.shear_modulus,
             lame_lambda: self.lame_lambda,
             volume: self.volume,
-            field: Passive,
+            field,
             law: self.law,
         }
     }
@@ -111,13 +114,7 @@ impl<F: Field, L: ElementLaw> Elastomer<F, L> {
         potentials: &F::Potentials<NODES>,
     ) -> f64 {
         let mut energy = 0.0;
-        dispatch(DerivativesTask::<_, _, _, 0, NODES> {
-            law: self,
-            shape,
-            x,
-            potentials,
-            out: &mut energy,
-        });
+        self.write::<0, NODES>(shape, x, potentials, &mut energy);
         energy
     }
 
@@ -129,13 +126,7 @@ impl<F: Field, L: ElementLaw> Elastomer<F, L> {
         potentials: &F::Potentials<NODES>,
         local: &mut Local<F, NODES>,
     ) {
-        dispatch(DerivativesTask::<_, _, _, 1, NODES> {
-            law: self,
-            shape,
-            x,
-            potentials,
-            out: local,
-        });
+        self.write::<1, NODES>(shape, x, potentials, local);
     }
 
     /// Fills everything: energy, gradient, and stiffness, coupling and permittivity.
@@ -146,13 +137,7 @@ impl<F: Field, L: ElementLaw> Elastomer<F, L> {
         potentials: &F::Potentials<NODES>,
         local: &mut Local<F, NODES>,
     ) {
-        dispatch(DerivativesTask::<_, _, _, 2, NODES> {
-            law: self,
-            shape,
-            x,
-            potentials,
-            out: local,
-        });
+        self.write::<2, NODES>(shape, x, potentials, local);
     }
 
     /// Fills `plain` as [`tangent`](Self::tangent) does, and `along` with the derivatives of all of it along
@@ -183,6 +168,24 @@ impl<F: Field, L: ElementLaw> Elastomer<F, L> {
     }
 }
 
+impl<F: Field, L: ElementLaw> Elastomer<F, L> {
+    fn write<const ORDER: usize, const NODES: usize>(
+        &self,
+        shape: &ElementGeometry<NODES>,
+        x: &[Vector; NODES],
+        potentials: &F::Potentials<NODES>,
+        out: &mut impl Output<f64>,
+    ) {
+        dispatch(DerivativesTask::<_, _, _, ORDER, NODES> {
+            law: self,
+            shape,
+            x,
+            potentials,
+            out,
+        });
+    }
+}
+
 /// Derivatives to the order `ORDER` at a state.
 struct DerivativesTask<'a, F: Field, L, O, const ORDER: usize, const NODES: usize> {
     law: &'a Elastomer<F, L>,
@@ -195,8 +198,6 @@ struct DerivativesTask<'a, F: Field, L, O, const ORDER: usize, const NODES: usiz
 impl<F: Field, L: ElementLaw, O: Output<f64>, const ORDER: usize, const NODES: usize> Task
     for DerivativesTask<'_, F, L, O, ORDER, NODES>
 {
-    type Output = ();
-
     #[inline(always)]
     fn run<S: Simd, const K: usize>(self, unit: S) {
         let mut x = [[0.0; 3]; NODES];
@@ -231,8 +232,6 @@ struct RatesTask<'a, F: Field, L, const NODES: usize> {
 }
 
 impl<F: Field, L: ElementLaw, const NODES: usize> Task for RatesTask<'_, F, L, NODES> {
-    type Output = ();
-
     #[inline(always)]
     fn run<S: Simd, const K: usize>(mut self, unit: S) {
         let dual = |value: f64, rate: f64| Dual { value, rate };

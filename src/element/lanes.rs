@@ -1,7 +1,7 @@
 //! Eight numbers in the registers of a vector unit.
 
 use super::number::{Points, Real};
-use pulp::Simd;
+use pulp::{Arch, Simd, WithSimd};
 use std::ops::{Add, Mul, Neg, Sub};
 
 /// Eight numbers in `K` registers of the vector unit `S`.
@@ -182,4 +182,33 @@ impl<S: Simd, const K: usize> Points for Lanes<S, K> {
         registers.copy_from_slice(&self.registers);
         values
     }
+}
+
+/// Work that is compiled for each vector unit.
+pub(super) trait Task {
+    /// Does it with eight numbers in `K` registers.
+    fn run<S: Simd, const K: usize>(self, unit: S);
+}
+
+struct Eight<T>(T);
+
+impl<T: Task> WithSimd for Eight<T> {
+    type Output = ();
+
+    #[inline(always)]
+    fn with_simd<S: Simd>(self, unit: S) {
+        match S::F64_LANES {
+            8 => self.0.run::<S, 1>(unit),
+            4 => self.0.run::<S, 2>(unit),
+            2 => self.0.run::<S, 4>(unit),
+            1 => self.0.run::<S, 8>(unit),
+            lanes => unreachable!("vector units have 1, 2, 4 or 8 lanes of 64 bits, not {lanes}"),
+        }
+    }
+}
+
+/// Does a task with the widest vector unit of this machine.
+#[inline]
+pub(super) fn dispatch<T: Task>(task: T) {
+    Arch::new().dispatch(Eight(task));
 }

@@ -2,10 +2,9 @@
 
 use super::branch::Branch;
 use super::branch_local::{BranchLocal, COORDINATES, Output, Pair};
-use super::dispatch::{Task, dispatch};
 use super::dual::{Dual, moving};
 use super::geometry::ElementGeometry;
-use super::lanes::Lanes;
+use super::lanes::{Lanes, Task, dispatch};
 use super::number::Points;
 use crate::math::{Matrix, Vector};
 use pulp::Simd;
@@ -129,8 +128,6 @@ struct Plain<'a, O, const ORDER: usize, const NODES: usize> {
 }
 
 impl<O: Output<f64>, const ORDER: usize, const NODES: usize> Task for Plain<'_, O, ORDER, NODES> {
-    type Output = ();
-
     #[inline(always)]
     fn run<S: Simd, const K: usize>(self, unit: S) {
         let mut x = [[0.0; 3]; NODES];
@@ -141,8 +138,8 @@ impl<O: Output<f64>, const ORDER: usize, const NODES: usize> Task for Plain<'_, 
         for m in 0..COORDINATES {
             q[m] = Lanes::<S, K>::load(unit, &self.strains[m]);
         }
-        let law = (unit, self.law.shear_modulus);
-        Branch::write::<ORDER, NODES>(law, self.shape, &x, q, self.out);
+        let mu = self.law.shear_modulus;
+        Branch::write::<ORDER, NODES>(unit, mu, self.shape, &x, q, self.out);
     }
 }
 
@@ -156,8 +153,6 @@ struct Along<'a, const NODES: usize> {
 }
 
 impl<const NODES: usize> Task for Along<'_, NODES> {
-    type Output = ();
-
     #[inline(always)]
     fn run<S: Simd, const K: usize>(mut self, unit: S) {
         let x = moving(self.at.0, self.direction.0);
@@ -168,8 +163,8 @@ impl<const NODES: usize> Task for Along<'_, NODES> {
                 rate: Lanes::<S, K>::load(unit, &self.direction.1[m]),
             };
         }
-        let law = (unit, self.law.shear_modulus);
-        Branch::write::<2, NODES>(law, self.shape, &x, q, &mut self.out);
+        let mu = self.law.shear_modulus;
+        Branch::write::<2, NODES>(unit, mu, self.shape, &x, q, &mut self.out);
     }
 }
 

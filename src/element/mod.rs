@@ -20,7 +20,6 @@
 mod branch;
 mod branch_local;
 mod dilatation;
-mod dispatch;
 mod dual;
 mod elastomer;
 mod fields;
@@ -31,7 +30,6 @@ mod law;
 mod local;
 mod maxwell_spring;
 mod number;
-mod state;
 mod variations;
 mod viscosity;
 

@@ -2,7 +2,7 @@
 //!
 //! A formula of an element is written once over [`Points`]. Over [`Lanes`](super::lanes::Lanes) it is evaluated at all Gauss points side by
 //! side; over dual numbers of lanes, [`Dual`](super::dual::Dual), its result carries the derivative along a direction of its arguments.
-//! [`dispatch`](super::dispatch::dispatch()) chooses the widest vector unit of the machine at run time.
+//! [`dispatch`](super::lanes::dispatch()) chooses the widest vector unit of the machine at run time.
 //!
 //! Vectors and linear maps of space over the numbers of a formula.
 //!

@@ -20,14 +20,13 @@
 //! A block is its symmetric part plus its skew part, α g_j⊗g_i + β g_i⊗g_j + d⊗e − e⊗d having the axial vector
 //! (β − α)/2 g_i × g_j + d × e.
 
-use crate::element::geometry::{Kinematics, load, minus_gradient_of};
-use crate::element::isochoric::Isochoric;
+use crate::element::geometry::{ElementGeometry, Kinematics, load, minus_gradient_of};
+use crate::element::isochoric::{Isochoric, IsochoricLaw};
 use crate::element::law::{Dielectric, Volume};
 use crate::element::local::Output;
 use crate::element::number::{
     Nine, Points, Real, Three, apply, apply_plain, cross, dot, dot_plain, scale, sums, transpose,
 };
-use crate::element::state::{ElectricField, ElementState};
 
 /// Quantities at the Gauss points that energy, gradient and tangent share.
 #[expect(non_snake_case, reason = "notation of the law")]
@@ -429,4 +428,35 @@ impl<N: Points, const NODES: usize> Charged<N, NODES> {
             self.pushed[i] = apply_plain(F, G);
         }
     }
+}
+
+/// A law and the state at which it is evaluated.
+pub(super) struct ElementState<'a, N: Points, const NODES: usize> {
+    pub(super) token: N::Token,
+    pub(super) shear_modulus: f64,
+    pub(super) lame_lambda: f64,
+    /// Absent at compile time for a neo-Hookean law.
+    pub(super) isochoric: Option<(IsochoricLaw, f64)>,
+    pub(super) volume: Volume,
+    pub(super) shape: &'a ElementGeometry<NODES>,
+    pub(super) x: &'a [[N::Uniform; 3]; NODES],
+    /// Absent at compile time for a passive law.
+    pub(super) electric: Option<(&'a Dielectric, &'a [N::Uniform; NODES])>,
+}
+
+/// The electric field at the Gauss points.
+#[derive(Clone, Copy)]
+pub(super) struct ElectricField<N> {
+    /// E.
+    pub(super) reference: Three<N>,
+    /// e = F⁻ᵀE.
+    pub(super) spatial: Three<N>,
+    /// ω = F⁻¹e.
+    pub(super) pulled: Three<N>,
+    /// FE.
+    pub(super) pushed: Three<N>,
+    /// κ = εJ.
+    pub(super) kappa: N,
+    /// κ/2 e·e.
+    pub(super) pressure: N,
 }

@@ -17,12 +17,11 @@
 //!                      + ½ (g_i·g_j)(lᵀY + Yᵀl) + ½ l_j⊗Y_i + ½ Y_j⊗l_i }.
 //! ```
 
-use crate::element::dispatch::{Task, dispatch};
 use crate::element::geometry::{ElementGeometry, Kinematics, gradient_of, load};
-use crate::element::lanes::Lanes;
+use crate::element::lanes::{Lanes, Task, dispatch};
 use crate::element::number::{
-    Nine, Points, Real, Three, apply, apply_plain, contracted, dot, product, scale, scale_all,
-    sums, symmetric, transpose,
+    Nine, Points, Three, apply, apply_plain, contracted, dot, product, scale, scale_all, sums,
+    symmetric, transpose,
 };
 use crate::math::{Matrix, Vector};
 use pulp::Simd;
@@ -46,13 +45,9 @@ impl Viscosity {
         x: &[Vector; NODES],
         v: &[Vector; NODES],
     ) -> f64 {
-        let viscosity = self.viscosity;
-        dispatch(Power {
-            viscosity,
-            shape,
-            x,
-            v,
-        })
+        let mut power = 0.0;
+        self.read(shape, [x, v], Power(&mut power));
+        power
     }
 
     /// Fills the forces f_i.
@@ -63,14 +58,7 @@ impl Viscosity {
         v: &[Vector; NODES],
         forces: &mut [Vector; NODES],
     ) {
-        let viscosity = self.viscosity;
-        dispatch(Forces {
-            viscosity,
-            shape,
-            x,
-            v,
-            forces,
-        });
+        self.read(shape, [x, v], Forces(forces));
     }
 
     /// Fills the forces and their derivatives.
@@ -81,14 +69,7 @@ impl Viscosity {
         v: &[Vector; NODES],
         local: &mut ViscousLocal<NODES>,
     ) {
-        let viscosity = self.viscosity;
-        dispatch(Tangent {
-            viscosity,
-            shape,
-            x,
-            v,
-            local,
-        });
+        self.read(shape, [x, v], Tangent(local));
     }
 
     /// Fills s = Σ y_i·f_i(x, v), its gradient and its Hessian.
@@ -100,59 +81,92 @@ impl Viscosity {
         y: &[Vector; NODES],
         out: &mut ViscousContraction<NODES>,
     ) {
-        let viscosity = self.viscosity;
-        dispatch(Contraction {
-            viscosity,
+        self.read(shape, [x, v], Contraction { y, out });
+    }
+
+    fn read<const NODES: usize>(
+        &self,
+        shape: &ElementGeometry<NODES>,
+        [x, v]: [&[Vector; NODES]; 2],
+        reader: impl Reader<NODES>,
+    ) {
+        dispatch(Reading {
+            viscosity: self.viscosity,
             shape,
             x,
             v,
-            y,
-            out,
+            reader,
         });
     }
 }
 
+/// Writes what is asked for of an element in motion.
+trait Reader<const NODES: usize> {
+    fn read<N: Points<Uniform = f64>>(self, flow: &Flow<'_, N, NODES>);
+}
+
+/// An element in motion, of which something is asked for.
+struct Reading<'a, R, const NODES: usize> {
+    viscosity: f64,
+    shape: &'a ElementGeometry<NODES>,
+    x: &'a [Vector; NODES],
+    v: &'a [Vector; NODES],
+    reader: R,
+}
+
+impl<R: Reader<NODES>, const NODES: usize> Task for Reading<'_, R, NODES> {
+    #[inline(always)]
+    fn run<S: Simd, const K: usize>(self, unit: S) {
+        let (shape, viscosity) = (self.shape, self.viscosity);
+        let flow = Flow::<Lanes<S, K>, NODES>::new(unit, shape, viscosity, [self.x, self.v]);
+        self.reader.read(&flow);
+    }
+}
+
 /// Spatial gradients, and rates of deformation, at the Gauss points.
-struct Flow<N: Points> {
+struct Flow<'a, N: Points, const NODES: usize> {
     token: N::Token,
+    shape: &'a ElementGeometry<NODES>,
     /// F⁻ᵀ.
     inverse: Nine<N>,
     /// c = w η J.
     c: N,
+    /// l.
+    l: Nine<N>,
 }
 
-impl<N: Points<Uniform = f64>> Flow<N> {
+impl<'a, N: Points<Uniform = f64>, const NODES: usize> Flow<'a, N, NODES> {
     #[inline(always)]
-    fn new<const NODES: usize>(
+    fn new(
         token: N::Token,
+        shape: &'a ElementGeometry<NODES>,
         viscosity: f64,
-        shape: &ElementGeometry<NODES>,
-        x: &[Vector; NODES],
+        [x, v]: [&[Vector; NODES]; 2],
     ) -> Self {
         let k = Kinematics::<N>::new(token, shape, &coordinates(x));
-        Self {
+        let mut flow = Self {
             token,
+            shape,
+            l: k.T,
             inverse: k.T,
             c: k.J.scaled(viscosity).times(k.w),
-        }
+        };
+        flow.l = flow.rate(v);
+        flow
     }
 
     /// Σ v_i ⊗ g_i.
     #[inline(always)]
-    fn rate<const NODES: usize>(
-        &self,
-        shape: &ElementGeometry<NODES>,
-        v: &[Vector; NODES],
-    ) -> Nine<N> {
-        let rate = gradient_of::<N, NODES>(self.token, shape, &coordinates(v));
+    fn rate(&self, v: &[Vector; NODES]) -> Nine<N> {
+        let rate = gradient_of::<N, NODES>(self.token, self.shape, &coordinates(v));
         product(&rate, &transpose(&self.inverse))
     }
 
     /// g_i.
     #[inline(always)]
-    fn gradients<const NODES: usize>(&self, shape: &ElementGeometry<NODES>) -> [Three<N>; NODES] {
+    fn gradients(&self) -> [Three<N>; NODES] {
         let mut g = [[N::constant(self.token, 0.0); 3]; NODES];
-        for (g, gradient) in g.iter_mut().zip(shape.gradients()) {
+        for (g, gradient) in g.iter_mut().zip(self.shape.gradients()) {
             *g = apply_plain(&self.inverse, load::<N>(self.token, gradient));
         }
         g
@@ -160,7 +174,7 @@ impl<N: Points<Uniform = f64>> Flow<N> {
 
     /// Writes ∂f_i/∂x_j of the rate `l` for all i and j.
     #[inline(always)]
-    fn by_place<const NODES: usize>(
+    fn by_place(
         &self,
         g: &[Three<N>; NODES],
         l: &Nine<N>,
@@ -197,65 +211,36 @@ impl<N: Points<Uniform = f64>> Flow<N> {
     }
 }
 
-struct Power<'a, const NODES: usize> {
-    viscosity: f64,
-    shape: &'a ElementGeometry<NODES>,
-    x: &'a [Vector; NODES],
-    v: &'a [Vector; NODES],
-}
+struct Power<'a>(&'a mut f64);
 
-impl<const NODES: usize> Task for Power<'_, NODES> {
-    type Output = f64;
-
+impl<const NODES: usize> Reader<NODES> for Power<'_> {
     #[inline(always)]
-    fn run<S: Simd, const K: usize>(self, unit: S) -> f64 {
-        let flow = Flow::<Lanes<S, K>>::new(unit, self.viscosity, self.shape, self.x);
-        let d = symmetric(&flow.rate(self.shape, self.v));
-        (flow.c * contracted(&d, &d)).sum()
+    fn read<N: Points<Uniform = f64>>(self, flow: &Flow<'_, N, NODES>) {
+        let d = symmetric(&flow.l);
+        *self.0 = (flow.c * contracted(&d, &d)).sum();
     }
 }
 
-struct Forces<'a, const NODES: usize> {
-    viscosity: f64,
-    shape: &'a ElementGeometry<NODES>,
-    x: &'a [Vector; NODES],
-    v: &'a [Vector; NODES],
-    forces: &'a mut [Vector; NODES],
-}
+struct Forces<'a, const NODES: usize>(&'a mut [Vector; NODES]);
 
-impl<const NODES: usize> Task for Forces<'_, NODES> {
-    type Output = ();
-
+impl<const NODES: usize> Reader<NODES> for Forces<'_, NODES> {
     #[inline(always)]
-    fn run<S: Simd, const K: usize>(self, unit: S) {
-        let flow = Flow::<Lanes<S, K>>::new(unit, self.viscosity, self.shape, self.x);
-        let d = symmetric(&flow.rate(self.shape, self.v));
-        let stress = product(&scale_all(&d, flow.c), &flow.inverse);
-        for (force, gradient) in self.forces.iter_mut().zip(self.shape.gradients()) {
-            let gradient = load::<Lanes<S, K>>(unit, gradient);
-            *force = vector(sums(apply(&stress, gradient)));
+    fn read<N: Points<Uniform = f64>>(self, flow: &Flow<'_, N, NODES>) {
+        let stress = product(&scale_all(&symmetric(&flow.l), flow.c), &flow.inverse);
+        for (force, gradient) in self.0.iter_mut().zip(flow.shape.gradients()) {
+            *force = vector(sums(apply_plain(&stress, load::<N>(flow.token, gradient))));
         }
     }
 }
 
-struct Tangent<'a, const NODES: usize> {
-    viscosity: f64,
-    shape: &'a ElementGeometry<NODES>,
-    x: &'a [Vector; NODES],
-    v: &'a [Vector; NODES],
-    local: &'a mut ViscousLocal<NODES>,
-}
+struct Tangent<'a, const NODES: usize>(&'a mut ViscousLocal<NODES>);
 
-impl<const NODES: usize> Task for Tangent<'_, NODES> {
-    type Output = ();
-
+impl<const NODES: usize> Reader<NODES> for Tangent<'_, NODES> {
     #[inline(always)]
-    fn run<S: Simd, const K: usize>(self, unit: S) {
-        let flow = Flow::<Lanes<S, K>>::new(unit, self.viscosity, self.shape, self.x);
-        let l = flow.rate(self.shape, self.v);
-        let g = flow.gradients(self.shape);
-        let local = self.local;
-        let d = scale_all(&symmetric(&l), flow.c);
+    fn read<N: Points<Uniform = f64>>(self, flow: &Flow<'_, N, NODES>) {
+        let g = flow.gradients();
+        let local = self.0;
+        let d = scale_all(&symmetric(&flow.l), flow.c);
         let half = flow.c.scaled(0.5);
         for i in 0..NODES {
             local.forces[i] = vector(sums(apply(&d, g[i])));
@@ -274,32 +259,26 @@ impl<const NODES: usize> Task for Tangent<'_, NODES> {
                 local.by_velocity[i][j] = block;
             }
         }
-        flow.by_place(&g, &l, |i, j, block| local.by_place[i][j] = matrix(block));
+        flow.by_place(&g, &flow.l, |i, j, block| {
+            local.by_place[i][j] = matrix(block);
+        });
     }
 }
 
 struct Contraction<'a, const NODES: usize> {
-    viscosity: f64,
-    shape: &'a ElementGeometry<NODES>,
-    x: &'a [Vector; NODES],
-    v: &'a [Vector; NODES],
     y: &'a [Vector; NODES],
     out: &'a mut ViscousContraction<NODES>,
 }
 
-impl<const NODES: usize> Task for Contraction<'_, NODES> {
-    type Output = ();
-
+impl<const NODES: usize> Reader<NODES> for Contraction<'_, NODES> {
     #[inline(always)]
-    fn run<S: Simd, const K: usize>(self, unit: S) {
-        let flow = Flow::<Lanes<S, K>>::new(unit, self.viscosity, self.shape, self.x);
-        let zero = Lanes::<S, K>::constant(unit, 0.0);
+    fn read<N: Points<Uniform = f64>>(self, flow: &Flow<'_, N, NODES>) {
+        let zero = N::constant(flow.token, 0.0);
         let half = flow.c.scaled(0.5);
-        let l = flow.rate(self.shape, self.v);
-        let y = flow.rate(self.shape, self.y);
-        let g = flow.gradients(self.shape);
-        let (d, z) = (symmetric(&l), symmetric(&y));
-        let (lt, yt) = (transpose(&l), transpose(&y));
+        let y = flow.rate(self.y);
+        let g = flow.gradients();
+        let (d, z) = (symmetric(&flow.l), symmetric(&y));
+        let (lt, yt) = (transpose(&flow.l), transpose(&y));
         let out = self.out;
 
         let power = flow.c * contracted(&d, &z);
