@@ -157,12 +157,9 @@ impl Reduced {
         let Scratch {
             interval, local, ..
         } = scratch;
-        let (plain, contracted) = (&interval.plain, &interval.contracted);
-        match order {
-            Order::Third => plan.third([a, b], [plain, contracted], sides, &target, local, values),
-            _ => plan.hessian([a, b], plain, sides, &target, local, values),
-        }
+        plan.add(order, [a, b], interval, sides, &target, [local, values]);
         if horizon == Horizon::Free {
+            let (plain, contracted) = (&interval.plain, &interval.contracted);
             let part = if order == Order::Third {
                 contracted
             } else {
@@ -233,19 +230,8 @@ impl Reduced {
         let Scratch {
             interval, local, ..
         } = scratch;
-        let (plain, contracted) = (&interval.plain, &interval.contracted);
-        let ends = [last, last];
-        match order {
-            Order::Third => plan.third(
-                ends,
-                [plain, contracted],
-                BlockMask::HERE,
-                &target,
-                local,
-                values,
-            ),
-            _ => plan.hessian(ends, plain, BlockMask::HERE, &target, local, values),
-        }
+        let (ends, here) = ([last, last], BlockMask::HERE);
+        plan.add(order, ends, interval, here, &target, [local, values]);
     }
 
     /// Evaluates an instant and adds its forces.
@@ -307,25 +293,8 @@ impl Reduced {
             local,
             ..
         } = scratch;
-        let (plain, contracted) = (&output.plain, &output.contracted);
-        match order {
-            Order::Third => plan.third(
-                [instant, instant],
-                [plain, contracted],
-                BlockMask::HERE,
-                &target,
-                local,
-                values,
-            ),
-            _ => plan.hessian(
-                [instant, instant],
-                plain,
-                BlockMask::HERE,
-                &target,
-                local,
-                values,
-            ),
-        }
+        let (ends, here) = ([&*instant, &*instant], BlockMask::HERE);
+        plan.add(order, ends, output, here, &target, [local, values]);
         if let Some(tree) = &self.map.tree {
             let values = &mut values[same..];
             match order {

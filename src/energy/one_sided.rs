@@ -19,7 +19,7 @@ use nalgebra::SVector;
 
 /// Energy W, force W′, stiffness W″ and W‴ at `x` beyond the point, of stiffness k over a width w. Up to −w/2, which is included, all are
 /// zero.
-pub(super) fn one_sided<T: Number>((k, w): (T, f64), x: T) -> [T; 4] {
+pub(super) fn one_sided<T: Number>(k: T, w: f64, x: T) -> [T; 4] {
     // A place that is no number stays none.
     if x.real() <= -0.5 * w {
         return [T::zero(); 4];
@@ -56,9 +56,8 @@ impl Energy<3> for CoordinateStops {
     type Local<const ORDER: usize> = Jet<3, ORDER>;
 
     fn at<const ORDER: usize>(&self, p: &SVector<f64, 3>, w: &SVector<f64, 3>) -> Jet<3, ORDER> {
-        let law = (self.stiffness, self.smoothing);
-        let above = one_sided(law, p[0] - self.at[1]);
-        let below = one_sided(law, self.at[0] - p[0]);
+        let of = |beyond| one_sided(self.stiffness, self.smoothing, beyond);
+        let (above, below) = (of(p[0] - self.at[1]), of(self.at[0] - p[0]));
         let signs = [1.0, -1.0, 1.0, -1.0];
         Jet::argument(0, p, w).map(std::array::from_fn(|d| above[d] + signs[d] * below[d]))
     }
@@ -79,6 +78,6 @@ impl<T: Number> Cable<T> {
     /// Energy W, tension W′, stiffness W″ and W‴ at a length. Slack is the left of ℓ − w/2, ℓ − w/2 included.
     pub fn of_length(&self, length: T) -> [T; 4] {
         let beyond = length - self.length;
-        one_sided((self.stiffness, self.smoothing), beyond)
+        one_sided(self.stiffness, self.smoothing, beyond)
     }
 }

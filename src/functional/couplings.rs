@@ -60,6 +60,16 @@ impl Couplings {
         }
     }
 
+    /// All couplings: vectors with full blocks, with multiples of the identity, vectors and scalars, then scalars.
+    pub fn list(&self) -> impl Iterator<Item = Coupling> + '_ {
+        let full = self.full.iter().map(|&(a, b)| Coupling::Full(a, b));
+        let isotropic = self.isotropic.iter();
+        let isotropic = isotropic.map(|&(a, b)| Coupling::Isotropic(a, b));
+        let mixed = self.mixed.iter().map(|&(a, s)| Coupling::Mixed(a, s));
+        let scalars = self.scalars.iter().map(|&(s, t)| Coupling::Scalars(s, t));
+        full.chain(isotropic).chain(mixed).chain(scalars)
+    }
+
     /// Slot of a full block of the vectors a, b.
     pub fn add_full(&mut self, a: usize, b: usize) -> usize {
         Self::slot(&mut self.slots, &mut self.full, 0, (b, a));
@@ -106,6 +116,31 @@ pub struct Blocks {
     pub mixed: Vec<[Vector; 2]>,
     /// Scalar against scalar.
     pub scalars: Vec<f64>,
+}
+
+impl Blocks {
+    /// Adds c times blocks at slots, those of the sides that are asked for.
+    pub(super) fn add(
+        &mut self,
+        from: &Self,
+        c: f64,
+        slots: &mut impl Iterator<Item = usize>,
+        mask: &[bool; 4],
+    ) {
+        let sides = || (0..4).filter(|&side| mask[side]);
+        for (from, slot) in from.full.iter().zip(&mut *slots) {
+            sides().for_each(|side| self.full[slot][side] += from[side] * c);
+        }
+        for (from, slot) in from.isotropic.iter().zip(&mut *slots) {
+            sides().for_each(|side| self.isotropic[slot][side] += from[side] * c);
+        }
+        for (from, slot) in from.mixed.iter().zip(&mut *slots) {
+            (0..2).for_each(|side| self.mixed[slot][side] += from[side] * c);
+        }
+        for (from, slot) in from.scalars.iter().zip(&mut *slots) {
+            self.scalars[slot] += from * c;
+        }
+    }
 }
 
 /// Order of the derivatives by free parameters for which a reader asks: among second derivatives of a sum and their rates.

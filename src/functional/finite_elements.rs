@@ -73,18 +73,20 @@ impl Electrical for Dielectric {
 #[derive(Debug)]
 pub struct FiniteElements<F, L = NeoHooke, const NODES: usize = 8>(PhantomData<(F, L)>);
 
-/// Derivatives of the energy of an element, and their rates along the direction.
-#[derive(Debug)]
-pub struct Variations<F: Field, const NODES: usize> {
-    plain: Local<F, NODES>,
-    along: Local<F, NODES>,
+/// Derivatives of the scalar of an element, and those of its contraction with the direction.
+#[derive(Debug, Default)]
+pub struct Variations<P, A = P> {
+    pub(super) plain: P,
+    pub(super) along: A,
 }
 
-impl<F: Field, const NODES: usize> Default for Variations<F, NODES> {
-    fn default() -> Self {
-        Self {
-            plain: Local::default(),
-            along: Local::default(),
+impl<P: Derivatives, A: Derivatives> Variations<P, A> {
+    /// Hands them over.
+    #[inline(always)]
+    pub(super) fn hand(&self, order: Order, to: &mut impl Scatter) {
+        to.plain(&self.plain);
+        if order == Order::Third {
+            to.along(&self.plain, &self.along);
         }
     }
 }
@@ -136,7 +138,7 @@ impl<F: Field, const NODES: usize> Derivatives for Local<F, NODES> {
 
 impl<F: Electrical, L: ElementLaw, const NODES: usize> Kernel for FiniteElements<F, L, NODES> {
     type Element = FiniteElement<F, L, NODES>;
-    type Storage = Variations<F, NODES>;
+    type Storage = Variations<Local<F, NODES>>;
 
     const PARTS: Option<[&'static str; 2]> = F::PARTS;
 
@@ -152,10 +154,7 @@ impl<F: Electrical, L: ElementLaw, const NODES: usize> Kernel for FiniteElements
 
     #[inline(always)]
     fn vector(element: &FiniteElement<F, L, NODES>, i: usize) -> VectorArg {
-        VectorArg {
-            vector: element.nodes[i],
-            stencil: Stencil::Mid,
-        }
+        Stencil::Mid.of(element.nodes[i])
     }
 
     #[inline(always)]
@@ -202,7 +201,7 @@ impl<F: Electrical, L: ElementLaw, const NODES: usize> Kernel for FiniteElements
         element: &FiniteElement<F, L, NODES>,
         order: Order,
         sample: &Sample<'_>,
-        Variations { plain, along }: &mut Variations<F, NODES>,
+        Variations { plain, along }: &mut Variations<Local<F, NODES>>,
     ) {
         let FiniteElement { shape, law, .. } = element;
         let x = middle(sample.vectors, &element.nodes);
@@ -224,13 +223,10 @@ impl<F: Electrical, L: ElementLaw, const NODES: usize> Kernel for FiniteElements
         _: &FiniteElement<F, L, NODES>,
         order: Order,
         _: &Sample<'_>,
-        Variations { plain, along }: &Variations<F, NODES>,
+        variations: &Variations<Local<F, NODES>>,
         to: &mut S,
     ) {
-        to.plain(plain);
-        if order == Order::Third {
-            to.along(plain, along);
-        }
+        variations.hand(order, to);
     }
 }
 
@@ -253,13 +249,7 @@ pub enum ElementFields<const NODES: usize = 8> {}
 
 impl<const NODES: usize> ElementField<NODES> {
     fn field(&self, sample: &Sample<'_>) -> SpatialField<NODES> {
-        let read = |vector| {
-            let arg = VectorArg {
-                vector,
-                stencil: self.at,
-            };
-            arg.read(sample.h, sample.vectors)
-        };
+        let read = |vector| self.at.of(vector).read(sample.h, sample.vectors);
         let potentials = self.terminals.map(|arg| arg.read(sample.scalars));
         self.point.at(&self.nodes.map(read), &potentials)
     }
@@ -301,10 +291,7 @@ impl<const NODES: usize> Kernel for ElementFields<NODES> {
     }
 
     fn vector(element: &ElementField<NODES>, i: usize) -> VectorArg {
-        VectorArg {
-            vector: element.nodes[i],
-            stencil: element.at,
-        }
+        element.at.of(element.nodes[i])
     }
 
     fn scalar(element: &ElementField<NODES>, s: usize) -> Option<(usize, f64)> {

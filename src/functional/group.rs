@@ -1,10 +1,9 @@
 //! Elements of one kind as a term of the sum: static inside, one virtual call outside.
 
 use crate::functional::border::{Border, BorderAlong, Rates};
-use crate::functional::scatter::{ALL, Places};
-use crate::functional::slots::Slots;
+use crate::functional::scatter::{ALL, Places, Slots, couple};
 use crate::functional::{
-    Coupling, Horizon, Kernel, Order, Output, Sample, Scatter, Term, TermKind, slots,
+    Coupling, Horizon, Kernel, Order, Output, Sample, Scatter, Term, TermKind,
 };
 use crate::math::{Derivatives, Vector, has_pool, join};
 use crate::stop;
@@ -61,7 +60,7 @@ impl<K: Kernel> Group<K> {
         // Multipliers do not meet in second derivatives.
         let has_scalars = self.site == Site::Intervals;
         for element in &self.elements {
-            slots::couple::<K>(element, has_scalars, to);
+            couple::<K>(element, has_scalars, to);
         }
     }
 

@@ -250,19 +250,8 @@ macro_rules! add {
 impl Measure for Impulse {
     fn couple(&self, couplings: &mut Couplings, slots: &mut Vec<u32>) {
         let own = self.functional.couplings();
+        slots.extend(own.list().map(|coupling| couplings.add(Some(coupling))));
         let mut add = |slot: usize| slots.push(slot as u32);
-        own.full
-            .iter()
-            .for_each(|&(a, b)| add(couplings.add_full(a, b)));
-        own.isotropic
-            .iter()
-            .for_each(|&(a, b)| add(couplings.add_isotropic(a, b)));
-        own.mixed
-            .iter()
-            .for_each(|&(a, s)| add(couplings.add_mixed(a, s)));
-        own.scalars
-            .iter()
-            .for_each(|&(s, t)| add(couplings.add_scalars(s, t)));
         let [full, isotropic, mixed] = &self.turned;
         let of_vectors = full.iter().map(|&(t, pair)| (t, own.full[pair]));
         let of_vectors =
@@ -343,27 +332,7 @@ impl Measure for Impulse {
         add!(&self.scalars, own.rows, c, part.rows);
         let mut slots = slots.iter().map(|&slot| slot as usize);
         let mask = &sample.sides.blocks;
-        for (from, slot) in own.blocks.full.iter().zip(&mut slots) {
-            let to = &mut part.blocks.full[slot];
-            (0..4)
-                .filter(|&side| mask[side])
-                .for_each(|side| to[side] += from[side] * c);
-        }
-        for (from, slot) in own.blocks.isotropic.iter().zip(&mut slots) {
-            let to = &mut part.blocks.isotropic[slot];
-            (0..4)
-                .filter(|&side| mask[side])
-                .for_each(|side| to[side] += from[side] * c);
-        }
-        for (from, slot) in own.blocks.mixed.iter().zip(&mut slots) {
-            let to = &mut part.blocks.mixed[slot];
-            to.iter_mut()
-                .zip(from)
-                .for_each(|(to, from)| *to += from * c);
-        }
-        for (from, slot) in own.blocks.scalars.iter().zip(&mut slots) {
-            part.blocks.scalars[slot] += from * c;
-        }
+        part.blocks.add(&own.blocks, c, &mut slots, mask);
         self.add_turned_blocks(c, &plain.blocks, &mut slots, mask, &mut part.blocks);
         if let Some(((_, r, _), slot)) = self.span(sample).zip(slots.next()) {
             let m = self.product(&evaluation.along, &plain.forces);

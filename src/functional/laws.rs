@@ -13,11 +13,10 @@
 //! material vectors e_a, which are arguments of the element like r₀.
 
 use crate::energy::{Energy, Law};
-use crate::functional::by_parameters::{ByParameter, ByParameters, OfElement, Values, contraction};
-use crate::functional::law::{LawElement, MOST_PARAMETERS, Move};
-use crate::functional::{Kernel, Order, ParameterOrder, Sample, Scatter, VectorArg};
-use crate::math::{Derivatives, Dual, Gradient, HyperDual, Local, Number, Vector};
+use crate::functional::{Element, Kernel, Order, ParameterOrder, Sample, Scatter, VectorArg};
+use crate::math::{Derivatives, Dual, Gradient, HyperDual, Local, Matrix, Number, Vector};
 use nalgebra::{SVector, Vector3};
+use smallvec::SmallVec;
 use std::fmt;
 use std::marker::PhantomData;
 
@@ -58,9 +57,7 @@ impl<L: Law<M>, const M: usize, const NV: usize, const NS: usize> Laws<L, M, NV,
         for (i, &arg) in element.vectors.iter().enumerate() {
             let mut value: Vector3<T> = read(i, arg).map(T::of);
             for one in element.moves.iter().filter(|one| one.of == i % Self::BASE) {
-                let VectorArg { stencil, .. } = arg;
-                let vector = one.vector;
-                let along = read(i, VectorArg { vector, stencil });
+                let along = read(i, arg.stencil.of(one.vector));
                 value += along.map(T::of) * parameters[one.parameter].shifted(-one.at);
             }
             p.fixed_rows_mut::<3>(3 * i).copy_from(&value);
@@ -108,7 +105,8 @@ impl<L: Law<M>, const M: usize, const NV: usize, const NS: usize> Laws<L, M, NV,
     /// Fills first derivatives by the seeded parameter, and where the contraction is asked for, those of it.
     fn first<const ORDER: usize>(
         element: &LawElement<L, NV, NS>,
-        (order, sample): (Order, &Sample<'_>),
+        order: Order,
+        sample: &Sample<'_>,
         seeded: &[Dual<f64>],
         plain: &mut ByParameter<NV, NS>,
         along: Option<&mut ByParameter<NV, NS>>,
@@ -157,8 +155,10 @@ impl<L: Law<M>, const M: usize, const NV: usize, const NS: usize> Laws<L, M, NV,
     /// Fills the second derivative by the seeded parameters, `b` one of them, and where it is asked for, that of the contraction.
     fn second(
         element: &LawElement<L, NV, NS>,
-        (order, sample): (Order, &Sample<'_>),
-        (b, seeded): (usize, &[HyperDual]),
+        order: Order,
+        sample: &Sample<'_>,
+        b: usize,
+        seeded: &[HyperDual],
         plain: &mut ByParameter<NV, NS>,
         along: Option<&mut ByParameter<NV, NS>>,
     ) {
@@ -175,27 +175,31 @@ impl<L: Law<M>, const M: usize, const NV: usize, const NS: usize> Laws<L, M, NV,
     /// Fills all derivatives by parameters, those by two of them where `pairs` are asked for.
     fn by_parameters(
         element: &LawElement<L, NV, NS>,
-        (order, sample, pairs): (Order, &Sample<'_>, bool),
+        order: Order,
+        sample: &Sample<'_>,
+        pairs: bool,
         values: &Values<f64>,
         plain: &mut [ByParameter<NV, NS>],
         mut along: Option<&mut [ByParameter<NV, NS>]>,
     ) {
         let count = element.parameters.len();
-        let at = (order, sample);
         for (a, plain) in plain.iter_mut().enumerate() {
             let mut seeded = values.map(Dual::of);
             seeded[a].part = 1.0;
             let seeds = &seeded[..count];
             match along.as_deref_mut() {
-                None => Self::first::<1>(element, at, seeds, plain, None),
-                Some(along) => Self::first::<2>(element, at, seeds, plain, Some(&mut along[a])),
+                None => Self::first::<1>(element, order, sample, seeds, plain, None),
+                Some(along) => {
+                    let along = Some(&mut along[a]);
+                    Self::first::<2>(element, order, sample, seeds, plain, along);
+                }
             }
             for b in (0..=a).filter(|_| pairs) {
                 let mut seeded = values.map(HyperDual::of);
                 seeded[a].value.part = 1.0;
                 seeded[b].part.value = 1.0;
                 let along = along.as_deref_mut().map(|along| &mut along[a]);
-                Self::second(element, at, (b, &seeded[..count]), plain, along);
+                Self::second(element, order, sample, b, &seeded[..count], plain, along);
             }
         }
     }
@@ -220,7 +224,8 @@ impl<L: Law<M>, const M: usize, const NV: usize, const NS: usize> Laws<L, M, NV,
     /// It knows no receiver, so that it is compiled once for all.
     fn evaluated<const ORDER: usize>(
         element: &LawElement<L, NV, NS>,
-        (order, sample): (Order, &Sample<'_>),
+        order: Order,
+        sample: &Sample<'_>,
         of_parameters: bool,
         values: &Values<f64>,
         [by, by_along]: [&mut ByParameters<NV, NS>; 2],
@@ -242,9 +247,8 @@ impl<L: Law<M>, const M: usize, const NV: usize, const NS: usize> Laws<L, M, NV,
                 Order::Hessian => of_parameters,
                 Order::Third => asked == ParameterOrder::Second,
             };
-            let at = (order, sample, pairs);
             let along = const { ORDER == 3 }.then_some(&mut by_along[..]);
-            Self::by_parameters(element, at, values, by, along);
+            Self::by_parameters(element, order, sample, pairs, values, by, along);
         }
         element.law.formula(parameters).at::<ORDER>(&p, &w)
     }
@@ -258,8 +262,8 @@ impl<L: Law<M>, const M: usize, const NV: usize, const NS: usize> Laws<L, M, NV,
         let values = Self::values(element, sample);
         let (mut by, mut by_along) = (ByParameters::new(), ByParameters::new());
         let both = [&mut by, &mut by_along];
-        let at = (order, sample);
-        let local = Self::evaluated::<ORDER>(element, at, S::OF_PARAMETERS, &values, both);
+        let is_asked = S::OF_PARAMETERS;
+        let local = Self::evaluated::<ORDER>(element, order, sample, is_asked, &values, both);
         let plain = Self::of_element(element, &values, local.plain::<NV>(), &by);
         if const { ORDER == 1 } {
             return to.plain(&Gradient(&plain));
@@ -351,4 +355,173 @@ impl<L: Law<M>, const M: usize, const NV: usize, const NS: usize> Kernel for Law
             Self::hand::<3, S>(element, order, sample, to);
         }
     }
+}
+
+/// Most parameters that one element reads: as many as a law has constants, each of which follows one or is given. A muscle under voltage by a
+/// law of two terms has six components of its ends, a prestretch, two sides, a layer, a modulus, three constants of the law and three of the
+/// field.
+pub const MOST_PARAMETERS: usize = 17;
+
+/// A parameter that moves a point which an element reads.
+#[derive(Clone, Copy, Debug)]
+pub struct Move {
+    /// Place of the moved vector among those of the element.
+    pub of: usize,
+    /// The vector e along which it moves.
+    pub vector: usize,
+    /// Place of the parameter among those of the element.
+    pub parameter: usize,
+    /// Its value π⁰ at which the vector is what it is without the move.
+    pub at: f64,
+}
+
+/// One element: a law, its arguments, and the parameters that it reads.
+#[derive(Clone, Debug)]
+pub struct LawElement<L, const NV: usize, const NS: usize> {
+    /// The law.
+    pub law: L,
+    /// Vectors, in the order of the arguments.
+    pub vectors: [VectorArg; NV],
+    /// Scalars of the interval, after the vectors.
+    pub scalars: [usize; NS],
+    /// Parameters, scalars of the interval, no more than [`MOST_PARAMETERS`].
+    pub parameters: Vec<usize>,
+    /// Those that move points.
+    pub moves: Vec<Move>,
+}
+
+impl<L, const NV: usize, const NS: usize> LawElement<L, NV, NS> {
+    /// The element of a formula that it is where it reads no parameter.
+    pub fn given<const M: usize>(&self) -> Option<Element<L::Formula<f64>, NV, NS>>
+    where
+        L: Law<M>,
+    {
+        self.parameters.is_empty().then(|| Element {
+            energy: self.law.formula(&[]),
+            vectors: self.vectors,
+            scalars: self.scalars,
+        })
+    }
+}
+
+/// Values of the parameters of an element, as many as it has.
+pub(super) type Values<T> = [T; MOST_PARAMETERS];
+
+/// First and second derivatives by one parameter.
+#[derive(Clone, Copy)]
+pub(super) struct ByParameter<const NV: usize, const NS: usize> {
+    pub(super) row: f64,
+    pub(super) column: [Vector; NV],
+    pub(super) mixed: [f64; NS],
+    /// By this parameter and those up to it.
+    pub(super) entries: Values<f64>,
+}
+
+/// First and second derivatives by the parameters of an element.
+pub(super) type ByParameters<const NV: usize, const NS: usize> =
+    SmallVec<[ByParameter<NV, NS>; MOST_PARAMETERS]>;
+
+impl<const NV: usize, const NS: usize> ByParameter<NV, NS> {
+    pub(super) const ZERO: Self = Self {
+        row: 0.0,
+        column: [Vector::new(0.0, 0.0, 0.0); NV],
+        mixed: [0.0; NS],
+        entries: [0.0; MOST_PARAMETERS],
+    };
+}
+
+/// Derivatives by the arguments of an element from those by the arguments of its formula, or rates from rates.
+pub(super) struct OfElement<'a, D, L, const NV: usize, const NS: usize> {
+    pub(super) element: &'a LawElement<L, NV, NS>,
+    pub(super) values: &'a Values<f64>,
+    /// Number of vectors of the formula.
+    pub(super) base: usize,
+    /// Says which vectors of the formula have mixed second derivatives.
+    pub(super) couples: fn(usize, usize) -> bool,
+    pub(super) formula: D,
+    pub(super) by: &'a [ByParameter<NV, NS>],
+}
+
+impl<D: Derivatives, L, const NV: usize, const NS: usize> OfElement<'_, D, L, NV, NS> {
+    /// Argument of the formula that argument `i` of the element enters, the factor, and the parameter that is the factor.
+    fn argument(&self, i: usize) -> (usize, f64, Option<usize>) {
+        let vectors = self.base + self.element.moves.len();
+        let (reading, a) = (i / vectors, i % vectors);
+        match a.checked_sub(self.base) {
+            None => (reading * self.base + a, 1.0, None),
+            Some(moved) => {
+                let Move {
+                    of, parameter, at, ..
+                } = self.element.moves[moved];
+                let factor = self.values[parameter] - at;
+                (reading * self.base + of, factor, Some(parameter))
+            }
+        }
+    }
+}
+
+impl<D: Derivatives, L, const NV: usize, const NS: usize> Derivatives
+    for OfElement<'_, D, L, NV, NS>
+{
+    fn force(&self, i: usize) -> Vector {
+        let (argument, factor, _) = self.argument(i);
+        self.formula.force(argument) * factor
+    }
+
+    fn row(&self, s: usize) -> f64 {
+        match s.checked_sub(NS) {
+            None => self.formula.row(s),
+            Some(a) => self.by[a].row,
+        }
+    }
+
+    fn block(&self, i: usize, j: usize) -> Matrix {
+        let ((i, c, _), (j, d, _)) = (self.argument(i), self.argument(j));
+        match (self.couples)(i, j) {
+            true => self.formula.block(i, j) * (c * d),
+            false => Matrix::zeros(),
+        }
+    }
+
+    fn column(&self, i: usize, s: usize) -> Vector {
+        let (argument, factor, own) = self.argument(i);
+        match s.checked_sub(NS) {
+            None => self.formula.column(argument, s) * factor,
+            Some(a) if own == Some(a) => {
+                self.by[a].column[argument] * factor + self.formula.force(argument)
+            }
+            Some(a) => self.by[a].column[argument] * factor,
+        }
+    }
+
+    fn entry(&self, s: usize, t: usize) -> f64 {
+        match (s.checked_sub(NS), t.checked_sub(NS)) {
+            (None, None) => self.formula.entry(s, t),
+            (Some(a), None) => self.by[a].mixed[t],
+            (None, Some(b)) => self.by[b].mixed[s],
+            (Some(a), Some(b)) => self.by[a.max(b)].entries[a.min(b)],
+        }
+    }
+}
+
+/// ∇E·w.
+pub(super) fn contraction<
+    T: Number,
+    D: Derivatives<T>,
+    const NV: usize,
+    const NS: usize,
+    const M: usize,
+>(
+    d: &D,
+    w: &SVector<T, M>,
+) -> T {
+    let mut sum = T::zero();
+    for i in 0..NV {
+        let along: Vector3<T> = w.fixed_rows::<3>(3 * i).into();
+        sum += d.force(i).dot(&along);
+    }
+    for s in 0..NS {
+        sum += d.row(s) * w[3 * NV + s];
+    }
+    sum
 }

@@ -1,7 +1,7 @@
 //! Springs of Maxwell branches of finite elements: energies W(x̄, q̄) of places of nodes and viscous strains at Gauss points.
 
 use crate::element::{BranchLocal, ElementGeometry, MaxwellSpring, ViscousStrains};
-use crate::functional::finite_elements::middle;
+use crate::functional::finite_elements::{Variations, middle};
 use crate::functional::{Kernel, Order, Sample, Scatter, Stencil, VectorArg};
 use crate::math::{Derivatives, Matrix, Vector};
 use std::sync::Arc;
@@ -26,13 +26,6 @@ pub struct MaxwellElement<const NODES: usize = 8> {
 /// Gauss point.
 #[derive(Debug)]
 pub enum MaxwellElements<const NODES: usize = 8> {}
-
-/// Derivatives of the energy of an element, and their rates along the direction.
-#[derive(Debug, Default)]
-pub struct MaxwellVariations<const NODES: usize> {
-    plain: BranchLocal<NODES>,
-    along: BranchLocal<NODES>,
-}
 
 /// Gauss point of an argument, and which of its vectors it is; `None` for a node.
 #[inline(always)]
@@ -111,7 +104,7 @@ impl<const NODES: usize> Derivatives for BranchLocal<NODES> {
 
 impl<const NODES: usize> Kernel for MaxwellElements<NODES> {
     type Element = MaxwellElement<NODES>;
-    type Storage = MaxwellVariations<NODES>;
+    type Storage = Variations<BranchLocal<NODES>>;
 
     /// Strains of different points do not meet.
     #[inline(always)]
@@ -134,13 +127,10 @@ impl<const NODES: usize> Kernel for MaxwellElements<NODES> {
 
     #[inline(always)]
     fn vector(element: &MaxwellElement<NODES>, i: usize) -> VectorArg {
-        VectorArg {
-            vector: match point::<NODES>(i) {
-                None => element.nodes[i],
-                Some((g, part)) => element.strains[g][part],
-            },
-            stencil: Stencil::Mid,
-        }
+        Stencil::Mid.of(match point::<NODES>(i) {
+            None => element.nodes[i],
+            Some((g, part)) => element.strains[g][part],
+        })
     }
 
     fn scalar(_: &MaxwellElement<NODES>, _s: usize) -> Option<(usize, f64)> {
@@ -157,7 +147,7 @@ impl<const NODES: usize> Kernel for MaxwellElements<NODES> {
         element: &MaxwellElement<NODES>,
         order: Order,
         sample: &Sample<'_>,
-        MaxwellVariations { plain, along }: &mut MaxwellVariations<NODES>,
+        Variations { plain, along }: &mut Variations<BranchLocal<NODES>>,
     ) {
         let MaxwellElement { shape, law, .. } = element;
         let x = middle(sample.vectors, &element.nodes);
@@ -178,12 +168,9 @@ impl<const NODES: usize> Kernel for MaxwellElements<NODES> {
         _: &MaxwellElement<NODES>,
         order: Order,
         _: &Sample<'_>,
-        MaxwellVariations { plain, along }: &MaxwellVariations<NODES>,
+        variations: &Variations<BranchLocal<NODES>>,
         to: &mut S,
     ) {
-        to.plain(plain);
-        if order == Order::Third {
-            to.along(plain, along);
-        }
+        variations.hand(order, to);
     }
 }

@@ -1,8 +1,7 @@
 //! Elements of one kind as a quantity that is read by itself.
 
 use crate::functional::border::{QuantityBorder, Rates};
-use crate::functional::scatter::{ALL, Places};
-use crate::functional::slots::Slots;
+use crate::functional::scatter::{ALL, Places, Slots};
 use crate::functional::{
     Couplings, Group, Horizon, Kernel, Measure, Order, Outer, Sample, Scatter, Stencil,
     SumDerivatives, VectorArg,

@@ -13,7 +13,6 @@
 //! All terms but [`Inertia`] are a [`Group`] of elements of one kind, a [`Kernel`], whose [derivatives](crate::math::Derivatives) one loop adds up.
 
 mod border;
-mod by_parameters;
 mod couplings;
 mod curved_sum;
 mod finite_elements;
@@ -22,7 +21,6 @@ mod group;
 mod impulse;
 mod inertia;
 mod kernel;
-mod law;
 mod laws;
 mod maxwell_elements;
 mod measured;
@@ -31,9 +29,7 @@ mod paths;
 mod pressure;
 mod scaled;
 mod scatter;
-mod slots;
 mod stencil;
-mod sum_derivatives;
 mod term;
 mod varied_elements;
 mod viscous_elements;
@@ -48,8 +44,7 @@ pub use group::Group;
 pub use impulse::{Displacement, Impulse, Turn};
 pub use inertia::{Inertia, Mass};
 pub use kernel::{Kernel, Scatter};
-pub use law::{LawElement, MOST_PARAMETERS, Move};
-pub use laws::Laws;
+pub use laws::{LawElement, Laws, MOST_PARAMETERS, Move};
 pub use maxwell_elements::{MaxwellElement, MaxwellElements, POINTS};
 pub use measured::Curved;
 pub use node_blocks::{NodeBlocks, NodeVolume, Pressures, ScalarPlace, VectorPlace};
@@ -58,8 +53,8 @@ pub use pressure::{PressureFace, PressureFaces};
 pub use scaled::{Scaled, ScaledElement};
 pub use stencil::ScalarArg;
 pub use stencil::{Stencil, VectorArg};
-pub use sum_derivatives::Outer;
-pub use sum_derivatives::SumDerivatives;
-pub use term::{Functional, Horizon, Measure, Order, Output, Sample, Term, TermKind};
+pub use term::{
+    Functional, Horizon, Measure, Order, Outer, Output, Sample, SumDerivatives, Term, TermKind,
+};
 pub use varied_elements::{VariedElement, VariedElements};
-pub use viscous_elements::{ViscousElement, ViscousElements, ViscousVariations};
+pub use viscous_elements::{ViscousElement, ViscousElements};

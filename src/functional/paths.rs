@@ -328,13 +328,10 @@ impl Kernel for Paths {
     }
 
     fn vector(path: &Path, i: usize) -> VectorArg {
-        VectorArg {
-            vector: match path.argument(i) {
-                (span, None) => path.spans[span],
-                (_, Some(one)) => one.vector,
-            },
-            stencil: Stencil::Mid,
-        }
+        Stencil::Mid.of(match path.argument(i) {
+            (span, None) => path.spans[span],
+            (_, Some(one)) => one.vector,
+        })
     }
 
     fn scalar(path: &Path, s: usize) -> Option<(usize, f64)> {

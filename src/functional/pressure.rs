@@ -145,10 +145,7 @@ impl Kernel for PressureFaces {
     }
 
     fn vector(element: &PressureFace, i: usize) -> VectorArg {
-        VectorArg {
-            vector: element.nodes[i % 4],
-            stencil: Stencil::Mid,
-        }
+        Stencil::Mid.of(element.nodes[i % 4])
     }
 
     fn scalar(element: &PressureFace, _: usize) -> Option<(usize, f64)> {

@@ -18,6 +18,13 @@ pub enum Stencil {
 }
 
 impl Stencil {
+    /// The reading of a vector.
+    #[inline(always)]
+    pub fn of(self, vector: usize) -> VectorArg {
+        let stencil = self;
+        VectorArg { vector, stencil }
+    }
+
     /// Weights of the two instants for the interval length h.
     #[inline(always)]
     pub fn weights(self, h: f64) -> [f64; 2] {

@@ -5,7 +5,7 @@
 
 use crate::element::{Elastomer, ElementGeometry, IsochoricLaw, Local, Passive};
 use crate::energy::Coefficient;
-use crate::functional::finite_elements::middle;
+use crate::functional::finite_elements::{Variations, middle};
 use crate::functional::{Kernel, Order, Sample, Scatter, Stencil, VectorArg};
 use crate::math::{Derivatives, HyperDual, Matrix, Number, Vector};
 use std::sync::Arc;
@@ -30,11 +30,7 @@ pub struct VariedElement<const NODES: usize = 8> {
 pub enum VariedElements<const NODES: usize = 8> {}
 
 /// Derivatives of the energy W of an element and of W_J and W_JJ, and their rates along the direction.
-#[derive(Debug, Default)]
-pub struct LimitVariations<const NODES: usize> {
-    plain: [Local<Passive, NODES>; 3],
-    along: [Local<Passive, NODES>; 3],
-}
+type LimitVariations<const NODES: usize> = Variations<[Local<Passive, NODES>; 3]>;
 
 /// The limit with its derivatives J′ and J″ by the parameter.
 fn limit<const NODES: usize>(element: &VariedElement<NODES>, sample: &Sample<'_>) -> HyperDual {
@@ -102,10 +98,7 @@ impl<const NODES: usize> Kernel for VariedElements<NODES> {
 
     #[inline(always)]
     fn vector(element: &VariedElement<NODES>, i: usize) -> VectorArg {
-        VectorArg {
-            vector: element.nodes[i],
-            stencil: Stencil::Mid,
-        }
+        Stencil::Mid.of(element.nodes[i])
     }
 
     #[inline(always)]
@@ -123,7 +116,7 @@ impl<const NODES: usize> Kernel for VariedElements<NODES> {
         element: &VariedElement<NODES>,
         order: Order,
         sample: &Sample<'_>,
-        LimitVariations { plain, along }: &mut LimitVariations<NODES>,
+        Variations { plain, along }: &mut LimitVariations<NODES>,
     ) {
         let x = middle(sample.vectors, &element.nodes);
         let w = middle(sample.along, &element.nodes);
@@ -144,7 +137,7 @@ impl<const NODES: usize> Kernel for VariedElements<NODES> {
         element: &VariedElement<NODES>,
         order: Order,
         sample: &Sample<'_>,
-        LimitVariations { plain, along }: &LimitVariations<NODES>,
+        Variations { plain, along }: &LimitVariations<NODES>,
         to: &mut S,
     ) {
         let limit = limit(element, sample);

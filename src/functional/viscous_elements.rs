@@ -4,7 +4,7 @@
 //! derive by it.
 
 use crate::element::{ElementGeometry, Viscosity, ViscousContraction, ViscousLocal};
-use crate::functional::finite_elements::middle;
+use crate::functional::finite_elements::{Variations, middle};
 use crate::functional::{Kernel, Order, Sample, Scatter, Stencil, VectorArg};
 use crate::math::{Derivatives, Matrix, Vector};
 use std::sync::Arc;
@@ -26,11 +26,8 @@ pub struct ViscousElement<const NODES: usize = 8> {
 pub enum ViscousElements<const NODES: usize = 8> {}
 
 /// Derivatives of the virtual work, and of its contraction.
-#[derive(Debug, Default)]
-pub struct ViscousVariations<const NODES: usize> {
-    plain: ViscousLocal<NODES>,
-    along: ViscousContraction<NODES>,
-}
+type ViscousVariations<const NODES: usize> =
+    Variations<ViscousLocal<NODES>, ViscousContraction<NODES>>;
 
 /// Node and reading of an argument: 0 virtual displacement, 1 place, 2 velocity.
 #[inline(always)]
@@ -110,13 +107,11 @@ impl<const NODES: usize> Kernel for ViscousElements<NODES> {
     #[inline(always)]
     fn vector(element: &ViscousElement<NODES>, i: usize) -> VectorArg {
         let (node, reading) = node::<NODES>(i);
-        VectorArg {
-            vector: element.nodes[node],
-            stencil: match reading {
-                2 => Stencil::Rate,
-                _ => Stencil::Mid,
-            },
-        }
+        let stencil = match reading {
+            2 => Stencil::Rate,
+            _ => Stencil::Mid,
+        };
+        stencil.of(element.nodes[node])
     }
 
     fn scalar(_: &ViscousElement<NODES>, _s: usize) -> Option<(usize, f64)> {
@@ -132,7 +127,7 @@ impl<const NODES: usize> Kernel for ViscousElements<NODES> {
         element: &ViscousElement<NODES>,
         order: Order,
         sample: &Sample<'_>,
-        ViscousVariations { plain, along }: &mut ViscousVariations<NODES>,
+        Variations { plain, along }: &mut ViscousVariations<NODES>,
     ) {
         let ViscousElement { shape, law, nodes } = element;
         let [x, v] = element.state(sample);
@@ -151,12 +146,9 @@ impl<const NODES: usize> Kernel for ViscousElements<NODES> {
         _: &ViscousElement<NODES>,
         order: Order,
         _: &Sample<'_>,
-        ViscousVariations { plain, along }: &ViscousVariations<NODES>,
+        variations: &ViscousVariations<NODES>,
         to: &mut S,
     ) {
-        to.plain(plain);
-        if order == Order::Third {
-            to.along(plain, along);
-        }
+        variations.hand(order, to);
     }
 }

@@ -3,7 +3,7 @@
 use crate::coordinates::pattern::StepPattern;
 use crate::coordinates::pull_back::destination::{Destination, Site};
 use crate::coordinates::pull_back::group::Group;
-use crate::coordinates::pull_back::pair::{BlockKind, Pair};
+use crate::coordinates::pull_back::images::{BlockKind, Pair};
 use crate::coordinates::tree::{LANES, TangentColumns};
 use crate::functional::{BlockMask, Blocks};
 use pulp::{Arch, Scalar, Simd, WithSimd};
@@ -37,7 +37,8 @@ impl Groups {
     /// Adds a pair of vectors with these columns.
     pub(super) fn add(
         &mut self,
-        (kind, pair): (BlockKind, Pair),
+        kind: BlockKind,
+        pair: Pair,
         [a, b]: [&TangentColumns; 2],
         layout: &mut StepPattern,
         site: Site,

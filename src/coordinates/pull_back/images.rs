@@ -1,6 +1,5 @@
 //! Columns of vectors, and their images under the blocks of pairs: three rows for each pair, as long as the columns.
 
-use crate::coordinates::pull_back::pair::{BlockKind, Pair};
 use crate::functional::Blocks;
 use crate::math::Matrix;
 use pulp::Simd;
@@ -75,7 +74,7 @@ impl Pairs {
         }
         for (pair, image) in of_isotropic.iter().zip(b.images(to_isotropic)) {
             let h = blocks.isotropic[pair.slot as usize][side];
-            isotropic(unit, (h, b.of(pair.first[1])), image);
+            isotropic(unit, h, b.of(pair.first[1]), image);
         }
     }
 
@@ -136,7 +135,7 @@ fn full<S: Simd, const N: usize>(unit: S, terms: [(Matrix, &[f64]); N], image: &
 
 /// c b.
 #[inline(always)]
-fn isotropic<S: Simd>(unit: S, (c, b): (f64, &[f64]), image: &mut [f64]) {
+fn isotropic<S: Simd>(unit: S, c: f64, b: &[f64], image: &mut [f64]) {
     let c = unit.splat_f64s(c);
     let sums = S::as_mut_simd_f64s(image).0.iter_mut();
     for (sum, &b) in sums.zip(simd::<S>(b)) {
@@ -158,4 +157,22 @@ fn two_isotropic<S: Simd>(unit: S, c: f64, b: &[f64], d: f64, e: &[f64], image: 
 #[inline(always)]
 fn simd<S: Simd>(row: &[f64]) -> &[S::f64s] {
     S::as_simd_f64s(row).0
+}
+
+/// Kind of the block of a pair.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) enum BlockKind {
+    Full,
+    /// A multiple of the identity; it comes from an energy, and is the same for the pair in the other order.
+    Isotropic,
+}
+
+/// A coupled pair of vectors.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Pair {
+    pub(super) slot: u32,
+    /// Slot of the pair in the other order.
+    pub(super) transposed: u32,
+    /// Offsets at which the columns of both start.
+    pub(super) first: [u32; 2],
 }

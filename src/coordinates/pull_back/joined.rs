@@ -4,7 +4,7 @@ use crate::coordinates::map::LinearPart;
 use crate::coordinates::pattern::StepPattern;
 use crate::coordinates::pull_back::articulated::Ends;
 use crate::coordinates::pull_back::destination::{Destination, Site};
-use crate::coordinates::pull_back::pair::BlockKind;
+use crate::coordinates::pull_back::images::BlockKind;
 use crate::coordinates::tree::TangentColumns;
 use crate::functional::BlockMask;
 use crate::math::{Matrix, Vector};

@@ -6,21 +6,20 @@ mod group;
 mod images;
 mod joined;
 mod mixed;
-mod pair;
 mod product;
 
 use crate::coordinates::configuration::Configuration;
 use crate::coordinates::map::{CoordinateMap, Dependence};
 use crate::coordinates::pattern::StepPattern;
-use crate::functional::{BlockMask, Couplings, SumDerivatives};
+use crate::functional::{BlockMask, Couplings, Order, Output, SumDerivatives};
 use crate::math::compact_index;
 use articulated::{BlockDestination, Ends, Groups};
 pub use destination::Destination;
 use destination::Linear;
 pub(super) use destination::Site;
+use images::{BlockKind, Pair};
 use joined::Joined;
 use mixed::Mixed;
-use pair::{BlockKind, Pair};
 
 /// The plan of a pull-back: which blocks go where.
 #[derive(Clone, Debug, Default)]
@@ -82,7 +81,7 @@ impl PullBack {
                     transposed: compact_index(transposed),
                     first: [compact_index(a.first), compact_index(b.first)],
                 };
-                self.articulated.add((kind, pair), [a, b], layout, site);
+                self.articulated.add(kind, pair, [a, b], layout, site);
             }
             (Linear { parts: s, .. }, Linear { parts: t, .. }) => match kind {
                 BlockKind::Full => self.linear.add_full(slot, [s, t], layout, site),
@@ -101,6 +100,23 @@ impl PullBack {
     /// Size of the local storage that an evaluation needs.
     pub(super) fn local(&self) -> usize {
         self.articulated.local()
+    }
+
+    /// Adds second derivatives up to an order: ∇², or the lower blocks of ∇³ along the direction.
+    pub(super) fn add(
+        &self,
+        order: Order,
+        ends: [&Configuration; 2],
+        out: &Output,
+        sides: BlockMask,
+        target: &Destination,
+        [local, values]: [&mut [f64]; 2],
+    ) {
+        let (plain, contracted) = (&out.plain, &out.contracted);
+        match order {
+            Order::Third => self.third(ends, [plain, contracted], sides, target, local, values),
+            _ => self.hessian(ends, plain, sides, target, local, values),
+        }
     }
 
     /// Adds Pᵀ H P.
@@ -134,7 +150,7 @@ impl PullBack {
     }
 
     /// Adds the lower blocks of `Pᵀ H_w P + P′_lᵀ H P + Pᵀ Hᵀ P′_l`.
-    pub(super) fn third(
+    fn third(
         &self,
         ends: [&Configuration; 2],
         [plain, contracted]: [&SumDerivatives; 2],

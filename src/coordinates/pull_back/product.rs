@@ -1,6 +1,6 @@
 //! The dense product of a group, with the sums of a few rows and columns in registers.
 
-use crate::coordinates::pull_back::pair::Pair;
+use crate::coordinates::pull_back::images::Pair;
 use crate::coordinates::tree::LANES;
 use pulp::Simd;
 
@@ -84,7 +84,7 @@ impl Product<'_> {
 
 #[cfg(test)]
 mod tests {
-    use crate::coordinates::pull_back::pair::Pair;
+    use crate::coordinates::pull_back::images::Pair;
     use crate::coordinates::pull_back::product::Product;
     use pulp::{Arch, Scalar, Simd, WithSimd};
 
