@@ -1,9 +1,10 @@
 //! The analysis of a system, as far as it decides which terms the model needs.
 
-use crate::model::constant::{Constant, Parameter};
-use crate::model::maxwell::Response;
-use crate::model::quantity::Quantity;
+use crate::model::constants::constant::{Constant, Parameter};
+use crate::model::quantities::quantity::Quantity;
+use crate::model::system::maxwell::Response;
 use std::collections::BTreeSet;
+use thiserror::Error;
 
 /// Coordinates in which a problem is solved.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -93,4 +94,35 @@ impl Analysis {
             ..Self::of_motion(1.0)
         }
     }
+}
+
+/// A system does not permit the analysis.
+#[derive(Clone, Debug, Error, PartialEq)]
+pub enum ModelError {
+    /// Reduced coordinates need a tree.
+    #[error(
+        "reduced coordinates need joints that form a tree, but joint \"{joint}\" closes a loop; choose \"coordinates\": \"redundant\""
+    )]
+    NoTree {
+        /// The joint that closes a loop.
+        joint: String,
+    },
+    /// A loop is closed in the reference configuration only.
+    #[error(
+        "the joints that close loops ({joints}) contradict each other along the motion: places and axes leave a gap of {gap:.1e} (rad, or of the length of the system), expected none; write them with more digits, as all axes of a plane linkage along one direction, or use spherical joints"
+    )]
+    OpenLoop {
+        /// The joints.
+        joints: String,
+        /// The gap that stays.
+        gap: f64,
+    },
+    /// An element has no volume, or is inverted.
+    #[error("element {element} of block \"{solid}\" is inverted or degenerate")]
+    Inverted {
+        /// The block.
+        solid: String,
+        /// The element.
+        element: usize,
+    },
 }

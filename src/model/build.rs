@@ -6,33 +6,34 @@ use crate::functional::{Element, Functional, Term};
 use crate::kinematics::{MaterialVector, Pose, Vectors};
 use crate::math::Matrix;
 use crate::mesh::grid::Grid;
-use crate::model::analysis::{Analysis, Coordinates};
-use crate::model::components::{Load, body, circuit, electrode_circuit, muscle};
-use crate::model::constant::Constant;
-use crate::model::error::ModelError;
-use crate::model::free_parameters::Sought;
-use crate::model::graph::Graph;
-use crate::model::internal::Internals;
-use crate::model::joints::{JointReading, triad};
-use crate::model::loops::Loops;
-use crate::model::measures::Measures;
+use crate::model::analysis::{Analysis, Coordinates, ModelError};
+use crate::model::components::{Load, body, circuit, muscle};
+use crate::model::constants::constant::Constant;
+use crate::model::constants::free_parameters::Sought;
+use crate::model::layout::internal::Internals;
+use crate::model::layout::named::Named;
+use crate::model::layout::solids::{Circuits, Solids};
+use crate::model::layout::variables::{Role, Size, Time, Variable, Variables};
 use crate::model::model::{Model, length};
-use crate::model::named::Named;
-use crate::model::no_terms::{carriers, no_terms};
-use crate::model::plan::{LeftOut, Present};
-use crate::model::presolved::{Presolved, clamp};
-use crate::model::quantity::Quantity;
-use crate::model::solids::{Circuits, Solids};
+use crate::model::presolve::graph::Graph;
+use crate::model::presolve::loops::Loops;
+use crate::model::presolve::prescribed;
+use crate::model::presolve::presolved::{Presolved, clamp};
+use crate::model::presolve::tree_drifts;
+use crate::model::quantities::measures;
+use crate::model::quantities::measures::Measures;
+use crate::model::quantities::quantity::Quantity;
+use crate::model::system::joints::{JointReading, triad};
 use crate::model::system::{
     Attachment, Body, Discretisation, Electrode, Fidelity, Glue, JointSpring, JointStops, Marker,
     Muscle, Potential, Solid, Source, System,
 };
 use crate::model::term_order::rank;
-use crate::model::terms::{Terms, mid};
-use crate::model::variables::{Role, Size, Time, Variable, Variables};
-use crate::model::{
-    constraints, field_extent, joint_constraints, loads, measures, plan, prescribed, tree_drifts,
-};
+use crate::model::terms::constraints;
+use crate::model::terms::field_extent;
+use crate::model::terms::joint_constraints;
+use crate::model::terms::loads;
+use crate::model::terms::{GRAVITY, LeftOut, Present, Terms, mid, settle};
 use nalgebra::Vector3;
 use std::collections::BTreeSet;
 use std::sync::Arc;
@@ -92,12 +93,13 @@ impl Model {
             |block| field_extent::charged(&system, block, &analysis.zero_inputs),
             coordinates == Coordinates::Redundant,
             &Circuits::new(&system, &analysis),
-            (&mut variables, &mut vectors),
+            &mut variables,
+            &mut vectors,
         )?;
-        let (scene, joined) = ((&system, &presolved), (coordinates, &graph));
-        let internals = Internals::new(scene, &analysis, joined, &blocks);
+        let internals =
+            Internals::new(&system, &presolved, &analysis, coordinates, &graph, &blocks);
         let size = length(rest, &blocks.nodes);
-        let loops = Loops::new(coordinates, (rest, &graph), &reference, size)?;
+        let loops = Loops::new(coordinates, rest, &graph, &reference, size)?;
         let construction = Construction {
             system: &system,
             presolved: &presolved,
@@ -112,8 +114,13 @@ impl Model {
         let spans = construction.spans(&mut vectors);
         let (intervals, made) = construction.sums(&spans, &variables, &mut vectors);
         let markers = construction.markers(&mut vectors);
-        let balance = (&intervals[..], &made.present[..]);
-        let measures = construction.measures((&variables, &markers), balance, &mut vectors);
+        let measures = construction.measures(
+            &variables,
+            &markers,
+            &intervals,
+            &made.present,
+            &mut vectors,
+        );
         let list = vectors.list();
         let map = construction.coordinate_map(list, made.multipliers.len());
         let scalars = variables.of(Time::Interval).len();
@@ -132,7 +139,7 @@ impl Model {
             electrode_circuits: blocks.circuits,
             nodes: blocks.nodes,
             node_names: blocks.names,
-            prescribed: prescribed::prescribed((&system, &presolved), &internals),
+            prescribed: prescribed::prescribed(&system, &presolved, &internals),
             internals: internals.list,
             of_elements: internals.of_elements,
             spans,
@@ -230,14 +237,15 @@ impl Construction<'_> {
     /// The free parameters.
     fn sought(&self, variables: &Variables) -> Sought {
         let parameters = &self.analysis.parameters;
-        let of = (self.system, self.presolved);
-        let drifts = tree_drifts::of_tree(parameters, of, self.graph, self.reference);
+        let (system, presolved) = (self.system, self.presolved);
+        let drifts =
+            tree_drifts::of_tree(parameters, system, presolved, self.graph, self.reference);
         Sought::new(parameters, variables.range(Role::Parameter).start, drifts)
     }
 
     /// Vector of the span of each muscle.
     fn spans(&self, vectors: &mut Vectors) -> Vec<usize> {
-        let carriers = carriers((self.system, self.presolved, self.reference));
+        let carriers = self.presolved.carriers(self.reference);
         let span = |m: &Muscle| {
             let [from, to] = [&m.from, &m.to].map(|end| carriers.point(end));
             vectors.index(MaterialVector::span(&from, &to))
@@ -256,7 +264,7 @@ impl Construction<'_> {
         let made = self.constraints(vectors);
         present.extend(made.present);
         left_out.extend(made.left_out);
-        plan::settle(&present, &mut left_out, rank);
+        settle(&present, &mut left_out, rank);
         let made = constraints::Made {
             present,
             left_out,
@@ -273,20 +281,20 @@ impl Construction<'_> {
         vectors: &mut Vectors,
     ) -> (Vec<Box<dyn Term>>, Vec<Present>, Vec<LeftOut>) {
         let system = self.system;
-        let of = (system, self.presolved, self.reference);
-        let called = (self.analysis, self.sought(variables));
-        let mut terms = no_terms(of, called, variables, vectors);
+        let (presolved, reference, sought) =
+            (self.presolved, self.reference, self.sought(variables));
+        let mut terms = presolved.no_terms(reference, self.analysis, sought, variables, vectors);
         body::build(&self.presolved.system.bodies, self.reference, &mut terms);
         body::build_sought(&system.bodies, &mut terms);
         muscle::build(&system.muscles, spans, self.internals, &mut terms);
         circuit::build(&system.muscles, spans, self.internals, &mut terms);
-        electrode_circuit::build(&self.blocks.circuits, self.internals, &mut terms);
+        circuit::build_electrodes(&self.blocks.circuits, self.internals, &mut terms);
         self.blocks.build(self.internals, &mut terms);
         let no_weight = match system.gravity {
             None => "the scene names no gravity",
             Some(_) => "nothing that moves has a mass",
         };
-        terms.without(plan::GRAVITY, no_weight);
+        terms.without(GRAVITY, no_weight);
         joint_constraints::build_dampers(
             self.presolved,
             self.reference,
@@ -296,7 +304,9 @@ impl Construction<'_> {
         add_joint_springs(self.presolved, self.internals, &mut terms);
         loads::build(
             system,
-            (self.presolved, self.internals, self.blocks),
+            self.presolved,
+            self.internals,
+            self.blocks,
             spans,
             &mut terms,
         );
@@ -336,8 +346,10 @@ impl Construction<'_> {
     /// Measures of the quantities of the analysis, from variables, markers, terms of the intervals and what is present.
     fn measures(
         &self,
-        (variables, markers): (&Variables, &[usize]),
-        (terms, present): (&[Arc<dyn Term>], &[Present]),
+        variables: &Variables,
+        markers: &[usize],
+        terms: &[Arc<dyn Term>],
+        present: &[Present],
         vectors: &mut Vectors,
     ) -> Measures {
         let known = measures::Known {
@@ -433,7 +445,7 @@ pub(super) fn add_joint_springs(
             };
             let coordinate = terms.vector(coordinate);
             let element = read.element(law, [mid(coordinate)], []);
-            terms.add_law((ELASTICITY, "stiffness of"), &joint.name, element);
+            terms.add_law(ELASTICITY, "stiffness of", &joint.name, element);
         }
         if let (Some(stops), Some(coordinate)) = (joint.stops, internals.joint(index)) {
             let JointStops {

@@ -1,90 +1,48 @@
 //! The model: from a checked system to sums of terms over its coordinates, where physics meets indices.
 
 mod analysis;
-mod block_inertia;
-mod block_terms;
-mod bodies;
-mod branch_terms;
 mod build;
-mod charge_measures;
-mod charged;
-mod check;
-mod circuit;
-mod component;
 pub mod components;
-mod constant;
-mod constant_places;
-mod constraints;
-mod electrode_circuits;
-mod error;
-mod field_extent;
-mod free_parameters;
-mod graph;
-mod immobile;
-mod internal;
-mod joint_constraints;
-mod joint_sections;
-mod joints;
-mod linkage;
-mod loads;
-mod loops;
-mod marker_measures;
-mod maxwell;
-mod measures;
+mod constants;
+mod layout;
 #[expect(clippy::module_inception, reason = "the file of the type of that name")]
 mod model;
-mod named;
-mod no_terms;
-mod node_grids;
-mod parameter;
-mod parametric_elements;
-pub mod plan;
-mod prescribed;
-mod presolved;
-mod prestretch;
-mod pull;
-mod quantity;
-mod redundancy;
-mod solid_block;
-mod solids;
-mod states;
+mod presolve;
+mod quantities;
 pub mod system;
 pub mod term_order;
 mod terms;
-mod tree_drifts;
-mod unknown_positions;
-mod variables;
-mod what;
 
-pub use analysis::{Analysis, Coordinates, InitiallyMoving};
-pub use check::{MOST_ELEMENTS, check_axes, check_elements};
-pub use component::Component;
-pub use constant::{
+pub use analysis::{Analysis, Coordinates, InitiallyMoving, ModelError};
+pub use components::Component;
+pub use constants::constant::{
     Constant, Follower, FoundParameter, MaterialConstant, MaterialOf, Parameter, SiUnit,
 };
-pub use error::ModelError;
-pub use error::SystemError;
-pub use free_parameters::{Read, Sought};
-pub use graph::Graph;
-pub use immobile::Immobile;
-pub use joint_constraints::DAMPING as JOINT_DAMPING;
-pub use joint_sections::JointSection;
-pub use joints::{JointReading, Prescribed, Screw, nearest_turn};
-pub use loops::{Loops, OPEN};
-pub use maxwell::{MOST_BRANCHES, MaxwellBranch, MaxwellBranches, NO_BRANCHES, Response};
+pub use constants::free_parameters::{Read, Sought};
+pub use constants::parameter::{
+    NotSought, check as check_parameters, unit as unit_of, with_parameters,
+};
+pub use layout::joint_sections::JointSection;
+pub use layout::named::Freedom;
+pub(crate) use layout::node_grids::has_nodes_alone;
+pub use layout::node_grids::{NoGrids, NodeGrids};
+pub use layout::solid_block::SolidBlock;
+pub use layout::states::{MuscleReading, SourceFlow};
+pub use layout::variables::{Role, Size, Time, Variable, Variables};
 pub use model::Floating;
 pub use model::Model;
-pub use named::Freedom;
-pub(crate) use node_grids::has_nodes_alone;
-pub use node_grids::{NoGrids, NodeGrids};
-pub use parameter::{NotSought, check as check_parameters, unit as unit_of, with_parameters};
-pub use plan::{LeftOut, Present};
-pub use presolved::{BodyLocation, Presolved};
-pub use quantity::{MILLIAMPERE, Quantity};
-pub use solid_block::SolidBlock;
-pub use states::{MuscleReading, SourceFlow};
+pub use presolve::graph::Graph;
+pub use presolve::immobile::Immobile;
+pub use presolve::loops::{Loops, OPEN};
+pub use presolve::presolved::{BodyLocation, Presolved};
+pub use quantities::quantity::{MILLIAMPERE, Quantity};
+pub use quantities::what::{
+    At, FieldPlace, Of, PartKind, Plane, Pulling, Reaction, Region, What, joint_unit,
+};
 pub use system::Amount;
+pub use system::check::{MOST_ELEMENTS, SystemError, check_axes, check_elements};
+pub use system::joints::{JointReading, Prescribed, Screw, nearest_turn};
+pub use system::maxwell::{MOST_BRANCHES, MaxwellBranch, MaxwellBranches, NO_BRANCHES, Response};
 pub use system::{System, VACUUM_PERMITTIVITY};
-pub use terms::{Terms, mid, rate};
-pub use variables::{Role, Size, Time, Variable, Variables};
-pub use what::{At, FieldPlace, Of, PartKind, Plane, Pulling, Reaction, Region, What, joint_unit};
+pub use terms::joint_constraints::DAMPING as JOINT_DAMPING;
+pub use terms::{LeftOut, Present, Terms, mid, rate};

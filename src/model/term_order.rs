@@ -1,7 +1,7 @@
 //! Order of the terms in the sum of the action: inertia, potentials, virtual works, constraints. Terms of other crates follow.
 
 use crate::model::components::{DISSIPATIONS, POTENTIALS};
-use crate::model::plan::GRAVITY;
+use crate::model::terms::GRAVITY;
 
 /// Inertia and potentials before those of components.
 const FIRST: [&str; 18] = [

@@ -4,7 +4,7 @@
 use crate::sources::sources;
 
 /// Files that know the order of variables.
-const OWNERS: [&str; 2] = ["model/variables.rs", "control/numbering.rs"];
+const OWNERS: [&str; 2] = ["model/layout/variables.rs", "control/numbering.rs"];
 
 /// Lists and ranges of variables of a role.
 const NAMES: [&str; 4] = ["voltages", "potentials", "inputs", "algebraic"];

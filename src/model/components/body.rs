@@ -4,11 +4,10 @@ use crate::energy::{Coefficient, KineticEnergy};
 use crate::functional::Mass;
 use crate::kinematics::{MaterialVector, Pose};
 use crate::math::Vector;
-use crate::model::constant::Constant;
-use crate::model::free_parameters::{MovedPoint, Read};
-use crate::model::plan::GRAVITY;
+use crate::model::constants::constant::Constant;
+use crate::model::constants::free_parameters::{MovedPoint, Read};
 use crate::model::system::{Attachment, Body};
-use crate::model::terms::{Terms, mid, rate, weight};
+use crate::model::terms::{GRAVITY, Terms, mid, rate, weight};
 
 const INERTIA: &str = "body inertia";
 
@@ -90,14 +89,14 @@ fn point_mass(
     if let Some(gravity) = terms.gravity(&mut of_weight) {
         let weight = weight(&weighed, gravity);
         let element = of_weight.element(weight, [mid(centre)], []);
-        terms.add_law((GRAVITY, "gravity of"), "the scene", element);
+        terms.add_law(GRAVITY, "gravity of", "the scene", element);
     }
     if terms.is_of_motion() {
         let mut read = read;
         let mass = mass(&mut read);
         let law = KineticEnergy { mass };
         let element = read.element(law, [rate(centre)], []);
-        terms.add_kinetic_law((INERTIA, "mass of"), &body.name, element);
+        terms.add_kinetic_law(INERTIA, "mass of", &body.name, element);
     }
 }
 
@@ -115,7 +114,7 @@ fn turning(b: usize, body: &Body, place: &Attachment, terms: &mut Terms<'_>) {
             mass: euler[i].clone(),
         };
         let element = read.element(law, [rate(terms.vector(director))], []);
-        terms.add_kinetic_law((INERTIA, "mass of"), &body.name, element);
+        terms.add_kinetic_law(INERTIA, "mass of", &body.name, element);
     }
 }
 

@@ -5,10 +5,11 @@ use crate::functional::Element;
 use crate::math::Vector;
 use crate::model::components::muscle::{CHARGES, constants};
 use crate::model::components::muscle_constants::capacitance;
-use crate::model::constant::Constant;
-use crate::model::free_parameters::Read;
-use crate::model::internal::{InternalKind, Internals};
+use crate::model::constants::constant::Constant;
+use crate::model::constants::free_parameters::Read;
+use crate::model::layout::internal::{InternalKind, Internals};
 use crate::model::system::Muscle;
+use crate::model::system::electrode_circuits::ElectrodeCircuit;
 use crate::model::terms::{Terms, mid, rate};
 use nalgebra::Vector3;
 
@@ -55,7 +56,7 @@ fn circuit(
     let mut constants = constants(muscle, index, terms);
     if let Some(law) = constants.flowing_charge() {
         let element = constants.element(law, [mid(span), mid(charge)], []);
-        terms.add_law((CHARGES, WHY), &muscle.name, element);
+        terms.add_law(CHARGES, WHY, &muscle.name, element);
     }
     if let (Some(circuit), Some(series)) = (&muscle.circuit, series) {
         let wires = Wires {
@@ -110,7 +111,7 @@ pub(super) fn add_circuit(
         let none = Coefficient::from(0.0);
         let force = Vector3::new(part.scaled(unit), none.clone(), none);
         let element = read.element(DeadLoad { force }, [mid(charge)], [voltage]);
-        terms.add_law((SOURCES, WHY), name, element);
+        terms.add_law(SOURCES, WHY, name, element);
     }
     let mut read = terms.sought().read();
     let [series, part] = wires.read(&mut read);
@@ -118,7 +119,7 @@ pub(super) fn add_circuit(
         coefficient: (&part * &series).scaled(unit).scaled(unit),
     };
     let element = read.element(law, [mid(charge), rate(charge)], []);
-    terms.add_law((RESISTANCE, WHY), name, element);
+    terms.add_law(RESISTANCE, WHY, name, element);
 }
 
 /// Adds the energy of a charge in its unit at a voltage, which is a scalar of the interval times a factor.
@@ -138,4 +139,44 @@ pub(super) fn add_voltage(
         scalars: [voltage],
     };
     terms.add::<_, 4, 1, 1>(term, WHY, name, element);
+}
+
+const ELECTRODE_CHARGES: &str = "electrode charges";
+
+/// Terms of the circuits of electrodes.
+pub(in crate::model) fn build_electrodes(
+    circuits: &[ElectrodeCircuit],
+    internals: &Internals,
+    terms: &mut Terms<'_>,
+) {
+    for of in circuits {
+        let Some(charge) = internals.vector(InternalKind::Charge(of.source)) else {
+            continue;
+        };
+        let (charge, unit) = (terms.vector(charge), of.unit_of_charge);
+        let (potential, volts) = of.potential;
+        add_voltage(
+            ELECTRODE_CHARGES,
+            &of.name,
+            charge,
+            -(unit * volts),
+            potential,
+            terms,
+        );
+        let series = of.circuit.resistance.unwrap_or(0.0);
+        let wires = Wires {
+            source: of.source,
+            series,
+            leakage: of.circuit.leakage,
+            unit,
+        };
+        add_circuit(&of.name, charge, Some(of.input), &wires, terms);
+    }
+    terms.without(
+        ELECTRODE_CHARGES,
+        match terms.is_of_motion() {
+            true => "no electrode of finite elements names a circuit with a resistor",
+            false => "at rest no charge flows",
+        },
+    );
 }

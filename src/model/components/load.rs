@@ -2,7 +2,7 @@
 //! sought.
 
 use crate::math::Vector;
-use crate::model::bodies::Attachment;
+use crate::model::system::bodies::Attachment;
 
 /// A load on the system.
 #[derive(Clone, Debug, PartialEq)]

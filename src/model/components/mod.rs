@@ -2,23 +2,22 @@
 
 pub(super) mod body;
 pub(super) mod circuit;
-pub(super) mod electrode_circuit;
-mod kind;
+pub(super) mod component;
 pub(super) mod load;
 pub(super) mod muscle;
 pub(super) mod muscle_constants;
 mod spring;
 mod tendon;
 
-pub(crate) use kind::Kind;
+pub use component::Component;
+pub(crate) use component::Kind;
 pub use load::{BlockLoad, Faces, Load, LoadPlace};
 pub use muscle_constants::capacitance;
 pub use spring::Spring;
 pub use tendon::Tendon;
 
-use crate::model::component::Component;
 use crate::model::terms::Terms;
-use kind::build;
+use component::build;
 use std::sync::Arc;
 
 /// Declares the kinds of components between points: a line for each, `list: Type`, in the order in which they are built.

@@ -5,10 +5,9 @@ use crate::functional::Mass;
 use crate::kinematics::MaterialVector;
 use crate::math::{Derivatives, Local, Vector};
 use crate::model::components::muscle_constants::MuscleConstants;
-use crate::model::internal::{InternalKind, Internals};
-use crate::model::plan::GRAVITY;
+use crate::model::layout::internal::{InternalKind, Internals};
 use crate::model::system::{Fidelity, Muscle};
-use crate::model::terms::{Terms, UNRELAXED, mid, rate};
+use crate::model::terms::{GRAVITY, Terms, UNRELAXED, mid, rate};
 use nalgebra::SVector;
 
 const INERTIA: &str = "muscle inertia";
@@ -77,20 +76,20 @@ fn lumped(muscle: &Muscle, source: usize, span: usize, terms: &mut Terms<'_>) {
     match muscle.material.law {
         None => {
             let named = [ELASTICITY, ELECTROELASTICITY];
-            elasticity(constants.clone(), NeoHooke, named, input, span, terms);
+            elasticity(&constants, NeoHooke, named, input, span, terms);
         }
         Some(law) => {
             let is_driven = input.is_some() && muscle.material.electric.is_some();
             terms.note(GENERAL[usize::from(is_driven)], named(law), &muscle.name);
             let mut constants = constants.clone();
             let law = constants.law(law);
-            elasticity(constants, law, GENERAL, input, span, terms);
+            elasticity(&constants, law, GENERAL, input, span, terms);
             for term in [ELASTICITY, ELECTROELASTICITY] {
                 terms.without(term, "every lumped muscle names a law of elasticity");
             }
         }
     }
-    viscosity(constants, span, terms);
+    viscosity(&constants, span, terms);
 }
 
 /// The constants of a muscle, by its index.
@@ -150,7 +149,7 @@ fn inertia(muscle: &Muscle, index: usize, span: usize, terms: &mut Terms<'_>) {
         ] {
             if let Some(mass) = constants.inertia(factor) {
                 let element = constants.element(mass, [rate(vector)], []);
-                terms.add_kinetic_law((INERTIA, OF_MASS), name, element);
+                terms.add_kinetic_law(INERTIA, OF_MASS, name, element);
             }
         }
     }
@@ -158,7 +157,7 @@ fn inertia(muscle: &Muscle, index: usize, span: usize, terms: &mut Terms<'_>) {
         None => terms.without(SECTION, "no muscle with a density names section_inertia"),
         Some(section) => {
             let element = of_span.element(section, [mid(span), rate(span)], []);
-            terms.add_kinetic_law((SECTION, "density and section_inertia of"), name, element);
+            terms.add_kinetic_law(SECTION, "density and section_inertia of", name, element);
         }
     }
 }
@@ -169,7 +168,7 @@ fn sought_weight(muscle: &Muscle, index: usize, middle: &MaterialVector, terms: 
     if let Some(weight) = constants.weight(terms) {
         let middle = terms.vector(middle.clone());
         let element = constants.element(weight, [mid(middle)], []);
-        terms.add_law((GRAVITY, "gravity of"), "the scene", element);
+        terms.add_law(GRAVITY, "gravity of", "the scene", element);
     }
 }
 
@@ -232,7 +231,7 @@ fn first_force<L: Law<M>, const M: usize>(law: &L, arguments: [f64; M]) -> Vecto
 }
 
 fn elasticity<L: ElasticConstants>(
-    mut constants: MuscleConstants<'_>,
+    constants: &MuscleConstants<'_>,
     law: L,
     names: [&'static str; 2],
     input: Option<usize>,
@@ -244,10 +243,9 @@ fn elasticity<L: ElasticConstants>(
     let (vectors, name) = ([mid(span)], &muscle.name);
     match (muscle.material.electric, input) {
         (Some(electric), Some(voltage)) => {
-            let law = constants.driven(electric, law);
-            let element = constants.element(law, vectors, [voltage]);
+            let element = constants.with(|own| own.driven(electric, law), vectors, [voltage]);
             let why = "electric constants and a voltage of";
-            terms.add_law((electroelasticity, why), name, element);
+            terms.add_law(electroelasticity, why, name, element);
             terms.without(elasticity, "every lumped muscle takes a voltage");
         }
         (electric, _) => {
@@ -256,9 +254,8 @@ fn elasticity<L: ElasticConstants>(
                 Some(_) => "0 V all the time at",
                 None => "no electric constants of",
             };
-            let law = constants.elastic(law);
-            let element = constants.element(law, vectors, []);
-            terms.add_law((elasticity, why), name, element);
+            let element = constants.with(|own| own.elastic(law), vectors, []);
+            terms.add_law(elasticity, why, name, element);
             terms.without(
                 electroelasticity,
                 "no lumped muscle takes a voltage other than 0",
@@ -267,7 +264,7 @@ fn elasticity<L: ElasticConstants>(
     }
 }
 
-fn viscosity(mut constants: MuscleConstants<'_>, span: usize, terms: &mut Terms<'_>) {
+fn viscosity(constants: &MuscleConstants<'_>, span: usize, terms: &mut Terms<'_>) {
     let muscle = constants.muscle();
     match muscle.material.viscosity {
         _ if !terms.is_of_motion() => {
@@ -275,9 +272,9 @@ fn viscosity(mut constants: MuscleConstants<'_>, span: usize, terms: &mut Terms<
         }
         None => terms.without(VISCOSITY, "no lumped muscle names a viscosity"),
         Some(viscosity) => {
-            let law = constants.viscous(viscosity);
-            let element = constants.element(law, [mid(span), mid(span), rate(span)], []);
-            terms.add_law((VISCOSITY, "viscosity of"), &muscle.name, element);
+            let vectors = [mid(span), mid(span), rate(span)];
+            let element = constants.with(|own| own.viscous(viscosity), vectors, []);
+            terms.add_law(VISCOSITY, "viscosity of", &muscle.name, element);
         }
     }
 }
@@ -289,10 +286,8 @@ fn unrelaxed(muscle: &Muscle, index: usize, span: usize, terms: &mut Terms<'_>) 
     }
     let known = constants(muscle, index, terms);
     for (branch, of) in muscle.material.maxwell.list().iter().enumerate() {
-        let mut constants = known.clone();
-        let law = constants.unrelaxed_spring(branch, of);
-        let element = constants.element(law, [mid(span)], []);
-        terms.add_law((MAXWELL_ELASTICITY, UNRELAXED), &muscle.name, element);
+        let element = known.with(|own| own.unrelaxed_spring(branch, of), [mid(span)], []);
+        terms.add_law(MAXWELL_ELASTICITY, UNRELAXED, &muscle.name, element);
     }
 }
 
@@ -315,13 +310,11 @@ fn relaxation(
         };
         let viscous = terms.vector(viscous);
         let known = constants(muscle, index, terms);
-        let mut constants = known.clone();
-        let law = constants.branch_spring(branch, of);
-        let element = constants.element(law, [mid(span), mid(viscous)], []);
-        terms.add_law((MAXWELL_ELASTICITY, why), &muscle.name, element);
-        let mut constants = known.still();
-        let law = constants.branch_damper(branch, of);
-        let element = constants.element(law, [mid(viscous), rate(viscous)], []);
-        terms.add_law((MAXWELL_VISCOSITY, why), &muscle.name, element);
+        let vectors = [mid(span), mid(viscous)];
+        let element = known.with(|own| own.branch_spring(branch, of), vectors, []);
+        terms.add_law(MAXWELL_ELASTICITY, why, &muscle.name, element);
+        let (still, vectors) = (known.still(), [mid(viscous), rate(viscous)]);
+        let element = still.with(|own| own.branch_damper(branch, of), vectors, []);
+        terms.add_law(MAXWELL_VISCOSITY, why, &muscle.name, element);
     }
 }

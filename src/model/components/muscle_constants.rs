@@ -8,9 +8,9 @@ use crate::energy::{
 use crate::functional::{LawElement, VectorArg};
 use crate::kinematics::MaterialVector;
 use crate::math::Vector;
-use crate::model::constant::{Constant, MaterialConstant};
-use crate::model::free_parameters::{MovedPoint, Read};
-use crate::model::maxwell::MaxwellBranch;
+use crate::model::constants::constant::{Constant, MaterialConstant};
+use crate::model::constants::free_parameters::{MovedPoint, Read};
+use crate::model::system::maxwell::MaxwellBranch;
 use crate::model::system::{ElectricConstants, Fidelity, Muscle};
 use crate::model::terms::{Terms, weight};
 
@@ -106,6 +106,18 @@ impl<'a> MuscleConstants<'a> {
         scalars: [usize; NS],
     ) -> LawElement<L, NV, NS> {
         self.read.element(law, vectors, scalars)
+    }
+
+    /// The element of a law of what is read of them.
+    pub(in crate::model) fn with<L, const NV: usize, const NS: usize>(
+        &self,
+        law: impl FnOnce(&mut Self) -> L,
+        vectors: [VectorArg; NV],
+        scalars: [usize; NS],
+    ) -> LawElement<L, NV, NS> {
+        let mut own = self.clone();
+        let law = law(&mut own);
+        own.element(law, vectors, scalars)
     }
 
     /// Elasticity by a law.

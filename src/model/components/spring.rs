@@ -2,11 +2,10 @@
 
 use crate::energy::{LinearSpring, SpanDamper};
 use crate::math::{Fault, not_negative, rule};
-use crate::model::bodies::Attachment;
-use crate::model::component::Component;
-use crate::model::components::kind::Kind;
-use crate::model::constant::Constant;
-use crate::model::free_parameters::{MovedPoint, Read};
+use crate::model::components::component::{Component, Kind};
+use crate::model::constants::constant::Constant;
+use crate::model::constants::free_parameters::{MovedPoint, Read};
+use crate::model::system::bodies::Attachment;
 use crate::model::terms::{Terms, mid, rate};
 use nalgebra::Vector3;
 
@@ -48,20 +47,12 @@ impl Spring {
             None => Read::nothing(),
         };
         let index = index.unwrap_or_default();
-        let from = |axis| Constant::SpringEnd(index, 0, axis);
-        let to = |axis| Constant::SpringEnd(index, 1, axis);
-        let ends = [
-            MovedPoint {
-                weight: -1.0,
-                body: terms.carrier(&self.from),
-                place: Some(&from),
-            },
-            MovedPoint {
-                weight: 1.0,
-                body: terms.carrier(&self.to),
-                place: Some(&to),
-            },
-        ];
+        let places = [0, 1].map(|end| move |axis| Constant::SpringEnd(index, end, axis));
+        let ends = [0, 1].map(|end| MovedPoint {
+            weight: [-1.0, 1.0][end],
+            body: terms.carrier([&self.from, &self.to][end]),
+            place: Some(&places[end]),
+        });
         nothing.moves(0, ends, |moved| terms.vector(moved));
         let name = &self.name;
         match self.stiffness {
@@ -72,7 +63,7 @@ impl Spring {
                     length: read.constant(Constant::SpringLength(index), self.rest_length),
                 };
                 let element = read.element(law, [mid(span)], []);
-                terms.add_law((ELASTICITY, "stiffness of"), name, element);
+                terms.add_law(ELASTICITY, "stiffness of", name, element);
             }
             None => terms.without(ELASTICITY, "no spring that moves names a stiffness"),
         }
@@ -82,7 +73,7 @@ impl Spring {
                 let coefficient = read.constant(Constant::SpringDamping(index), damping);
                 let law = SpanDamper { coefficient };
                 let element = read.element(law, [mid(span), mid(span), rate(span)], []);
-                terms.add_law((DAMPING, "damping of"), name, element);
+                terms.add_law(DAMPING, "damping of", name, element);
             }
             Some(_) => terms.without(DAMPING, "a state of rest dissipates nothing"),
             None => terms.without(DAMPING, "no spring that moves names a damping"),

@@ -3,11 +3,10 @@
 use crate::energy::Cable;
 use crate::functional::Path;
 use crate::math::{Fault, not_negative, positive, rule, value};
-use crate::model::bodies::Attachment;
-use crate::model::component::Component;
-use crate::model::components::kind::Kind;
-use crate::model::constant::Constant;
-use crate::model::free_parameters::{MovedPoint, Read};
+use crate::model::components::component::{Component, Kind};
+use crate::model::constants::constant::Constant;
+use crate::model::constants::free_parameters::{MovedPoint, Read};
+use crate::model::system::bodies::Attachment;
 use crate::model::terms::Terms;
 use nalgebra::Vector3;
 

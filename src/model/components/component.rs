@@ -1,0 +1,86 @@
+//! Component of a scene: the parts that it connects, the terms of the action that it makes and their reasons, and its
+//! observations.
+
+use crate::math::Fault;
+use crate::model::system::bodies::Attachment;
+use crate::model::terms::Terms;
+use nalgebra::Vector3;
+use std::fmt::Debug;
+
+/// A part of a scene between material points of bodies.
+///
+/// [`Spring`](crate::model::components::Spring) and [`Tendon`](crate::model::components::Tendon) are two; other crates may add
+/// their own to a system as [`Other`](crate::model::components::Other).
+pub trait Component: Debug + Send + Sync {
+    /// Name, unique among the components of a scene.
+    fn name(&self) -> &str;
+
+    /// The points that it ties together, in the order in which a picture joins them by lines.
+    fn points(&self) -> Vec<Attachment>;
+
+    /// Checks its constants.
+    ///
+    /// # Errors
+    /// The first constant that makes no sense.
+    fn check(&self) -> Result<(), Fault> {
+        Ok(())
+    }
+
+    /// Returns true if it exerts a force in the reference configuration: then it may move what it ties, otherwise nothing starts to
+    /// move because of it.
+    fn is_prestressed(&self) -> bool;
+
+    /// Makes its terms, with reasons; or says why one is left out.
+    fn build(&self, terms: &mut Terms<'_>);
+
+    /// Names and units of its tabulated quantities at every instant: `[("length", "mm")]`.
+    fn columns(&self) -> Vec<(&'static str, &'static str)> {
+        Vec::new()
+    }
+
+    /// Values of these columns where its points are at the given places in mm.
+    fn observe(&self, _places: &[Vector3<f64>]) -> Vec<f64> {
+        Vec::new()
+    }
+
+    /// Returns true if pictures draw a coil between its two points, in place of a line.
+    fn is_coiled(&self) -> bool {
+        false
+    }
+
+    /// Energy in mJ that is typical of it, where it can store any.
+    fn typical_energy(&self) -> f64 {
+        0.0
+    }
+}
+
+/// A kind of component; [`Components`](super::Components) lists all of them.
+pub trait Kind: Component + Sized {
+    /// A part of this kind in words: "spring".
+    const NAME: &'static str;
+
+    /// Reason why its terms are absent from a scene without such a part.
+    const ABSENT: &'static str;
+
+    /// Names of its terms with a potential, in the order of the sum.
+    const POTENTIALS: &'static [&'static str];
+
+    /// Names of its terms that dissipate, in the order of the sum.
+    const DISSIPATIONS: &'static [&'static str] = &[];
+
+    /// Its unique name.
+    fn name_mut(&mut self) -> &mut String;
+
+    /// Makes the terms of the part with this index in the list; an index is needed where its constants can be free.
+    fn build_at(&self, _index: usize, terms: &mut Terms<'_>) {
+        self.build(terms);
+    }
+}
+
+/// Makes the terms of all parts of a kind.
+pub(super) fn build<K: Kind>(parts: &[K], terms: &mut Terms<'_>) {
+    let parts = parts.iter().enumerate();
+    parts.for_each(|(index, part)| part.build_at(index, terms));
+    let names = K::POTENTIALS.iter().chain(K::DISSIPATIONS);
+    names.for_each(|term| terms.without(term, K::ABSENT));
+}

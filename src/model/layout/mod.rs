@@ -1,0 +1,10 @@
+//! Variables of a model and their places: coordinates, internal ones, nodes of blocks, states read from instants.
+
+pub(super) mod internal;
+pub(super) mod joint_sections;
+pub(super) mod named;
+pub(super) mod node_grids;
+pub(super) mod solid_block;
+pub(super) mod solids;
+pub(super) mod states;
+pub(super) mod variables;

@@ -1,0 +1,362 @@
+//! Coordinates and rates of states that are given by joints, poses and velocities of bodies.
+
+use crate::coordinates::Configuration;
+use crate::energy::{Angle, Energy, Projection};
+use crate::kinematics::Pose;
+use crate::math::{Derivatives, Jet, Local, Matrix, Vector};
+use crate::model::analysis::Coordinates;
+use crate::model::components::{capacitance, muscle};
+use crate::model::model::Model;
+use crate::model::quantities::quantity::MEGAVOLT_PER_METRE;
+use crate::model::system::circuit::Circuit;
+use crate::model::system::joints::{JointCoordinate, JointReading};
+use crate::model::system::{Fidelity, Muscle};
+use crate::model::terms::charged::{ChargePlace, Charged};
+use nalgebra::SVector;
+use std::collections::BTreeMap;
+use std::ops::Range;
+
+impl Model {
+    /// Rates of director coordinates at joint coordinates with given rates.
+    pub fn redundant_rates(&self, joints: &[f64], rates: &[f64]) -> Vec<f64> {
+        let moving = self.moving(joints, rates, &BTreeMap::new());
+        let instant = moving.expect("no body is named");
+        instant.w.iter().flat_map(|w| [w.x, w.y, w.z]).collect()
+    }
+
+    /// Rates of the coordinates of the bodies at joint coordinates (by joint) with given rates, and velocities of the centre and
+    /// of rotation of some bodies of the scene, both in the ground frame.
+    ///
+    /// # Errors
+    /// The first of these bodies that is neither free nor on a spherical or floating joint: its motion follows from its joints.
+    pub fn rates_at(
+        &self,
+        joints: &[f64],
+        rates: &[f64],
+        velocities: &BTreeMap<usize, [Vector; 2]>,
+    ) -> Result<Vec<f64>, usize> {
+        let instant = self.moving(joints, rates, velocities)?;
+        Ok(match self.coordinates {
+            Coordinates::Reduced => instant.l[..self.action.map.of_bodies].to_vec(),
+            Coordinates::Redundant => instant.w.iter().flat_map(|w| [w.x, w.y, w.z]).collect(),
+        })
+    }
+
+    /// Returns true if some body turns in ways that joint coordinates in files do not give: it is free, or on a spherical joint.
+    pub fn turns_freely(&self) -> bool {
+        let mut joints = self.presolved.system.joints.iter();
+        !self.graph.free().is_empty() || joints.any(|joint| joint.kind.freedoms() > 1)
+    }
+
+    /// Coordinates of the body that carries a body of the scene, in directors; none of one that does not move.
+    pub fn coordinates_of_body(&self, body: usize) -> Range<usize> {
+        let carrier = self.presolved.carrier(Some(body));
+        carrier.map_or(0..0, |b| 12 * b..12 * (b + 1))
+    }
+
+    /// Returns true if joints close loops of bodies.
+    pub fn has_loops(&self) -> bool {
+        !self.graph.loops().is_empty()
+    }
+
+    /// First coordinate and coordinates at poses of the joints of several coordinates without a chart.
+    fn several(&self, poses: &[Pose]) -> Vec<(usize, Vec<f64>)> {
+        let mut next = 0;
+        let mut list = Vec::new();
+        for joint in &self.presolved.system.joints {
+            let values = joint.several(poses, &self.reference);
+            list.extend(values.map(|values| (next, values)));
+            next += joint.kind.freedoms();
+        }
+        list
+    }
+
+    /// The tree in motion, with the vectors φ, d₁, d₂, d₃ of all bodies.
+    fn moving(
+        &self,
+        joints: &[f64],
+        rates: &[f64],
+        velocities: &BTreeMap<usize, [Vector; 2]>,
+    ) -> Result<Configuration, usize> {
+        let [joints, rates] = [joints, rates].map(|values| self.presolved.by_joint(values));
+        let (motion, mut instant) =
+            self.graph
+                .moving(&self.presolved.system, &self.reference, &joints, &rates);
+        // A body before those that it carries.
+        let mut named: Vec<_> = velocities.iter().collect();
+        named.sort_by_key(|&(&body, _)| {
+            self.presolved
+                .carrier(Some(body))
+                .map(|b| motion.place_in_tree(b))
+        });
+        for (&body, &[velocity, spin]) in named {
+            let poses = motion.poses(&instant, self.reference.len());
+            let all = self.presolved.poses(&poses, &self.system.bodies);
+            let kept = self.presolved.carrier(Some(body)).ok_or(body)?;
+            let arm = poses[kept].centre - all[body].centre;
+            let velocity = velocity + spin.cross(&arm);
+            if !motion.set_in_motion(kept, [velocity, spin], &mut instant) {
+                return Err(body);
+            }
+        }
+        Ok(instant)
+    }
+
+    /// Coordinates of an instant at given poses of the bodies of the scene and joint coordinates (by joint), as these are known
+    /// without whole turns; nodes at their reference places.
+    pub fn coordinates_of_poses(&self, poses: &[Pose], joints: &[f64]) -> Vec<f64> {
+        let z = self.coordinates_at(joints);
+        if self
+            .graph
+            .has_one_coordinate_a_joint(&self.presolved.system)
+        {
+            return z;
+        }
+        let poses = self.presolved.condense(poses, &self.reference);
+        let map = &self.action.map;
+        match &map.tree {
+            None => self.coordinates_of(&poses, joints),
+            Some(_) => {
+                let mut instant = map.placed(&z);
+                map.follow(&poses, &mut instant);
+                for (first, values) in self.several(&poses) {
+                    instant.z[first..first + values.len()].copy_from_slice(&values);
+                }
+                map.place(&mut instant);
+                self.place_internals(&mut instant.z, joints);
+                instant.z
+            }
+        }
+    }
+}
+
+impl Model {
+    /// Joints of the scene with exactly one coordinate, which can change.
+    pub fn moving_joints(&self) -> Vec<usize> {
+        let joints = self.system.joints.iter().enumerate();
+        let moving = joints
+            .filter(|(j, joint)| joint.has_coordinate() && self.presolved.joint(*j).is_some());
+        moving.map(|(j, _)| j).collect()
+    }
+
+    /// Markers that can move, each with its vector.
+    pub fn moving_markers(&self) -> Vec<(usize, usize)> {
+        let markers = self.markers.iter().copied().enumerate();
+        let moves = |&(_, vector): &(usize, usize)| !self.action.map.support(vector).is_empty();
+        markers.filter(moves).collect()
+    }
+
+    /// Rate of the coordinate of a [moving joint](Self::moving_joints) in rad/ms or mm/ms, at a placed instant of which `l` holds the
+    /// rates of the coordinates.
+    pub fn joint_rate(&self, joint: usize, instant: &Configuration) -> f64 {
+        let index = self.presolved.joint(joint).expect("a joint that moves");
+        match self.coordinates {
+            Coordinates::Reduced => {
+                let coordinate = self.joint_readings[joint].coordinate;
+                instant.l[coordinate.expect("a joint of one coordinate")]
+            }
+            Coordinates::Redundant => {
+                let joint = &self.presolved.system.joints[index];
+                let reading = JointReading::new(joint, None, &self.reference);
+                let bodies = instant.l.chunks_exact(12);
+                let bodies = bodies.take(self.presolved.system.bodies.len());
+                let rates: Vec<Pose> = bodies.map(pose).collect();
+                reading.rate(&self.condensed_poses(instant), &rates)
+            }
+        }
+    }
+}
+
+/// Centre and directors, or their rates, of twelve numbers.
+fn pose(q: &[f64]) -> Pose {
+    Pose {
+        centre: Vector::from_column_slice(&q[..3]),
+        directors: Matrix::from_column_slice(&q[3..]),
+    }
+}
+
+impl JointReading {
+    /// Rate of the coordinate at poses with these rates; zero where there is no coordinate.
+    fn rate(&self, poses: &[Pose], rates: &[Pose]) -> f64 {
+        match &self.measure {
+            JointCoordinate::Angle { vectors } => {
+                let [p, w] = [
+                    vectors.each_ref().map(|v| v.at(poses, &[])),
+                    vectors.each_ref().map(|v| v.rate(rates)),
+                ];
+                let [p, w] = [p, w].map(|v| SVector::<f64, 9>::from_iterator(scalars(&v)));
+                let angle: Jet<9, 3> = Angle { near: 0.0 }.at(&p, &w);
+                angle.value_w
+            }
+            JointCoordinate::Displacement { axis, span } => {
+                let [p, w] = [
+                    [axis, span].map(|v| v.at(poses, &[])),
+                    [axis, span].map(|v| v.rate(rates)),
+                ];
+                let [p, w] = [p, w].map(|v| SVector::<f64, 6>::from_iterator(scalars(&v)));
+                let displacement: Jet<6, 3> = Projection.at(&p, &w);
+                displacement.value_w
+            }
+            JointCoordinate::None => 0.0,
+        }
+    }
+}
+
+fn scalars(vectors: &[Vector]) -> impl Iterator<Item = f64> + '_ {
+    vectors.iter().flat_map(|v| v.iter().copied())
+}
+
+/// A lumped muscle whose state is read at times: a placed configuration with rates `w` of the vectors, and the scalars there.
+#[derive(Clone, Debug)]
+pub struct MuscleReading {
+    /// Index of the muscle.
+    pub muscle: usize,
+    /// Coordinates of its Maxwell branches.
+    branches: Vec<usize>,
+    drive: Option<Drive>,
+}
+
+/// Origin of the voltage between the electrodes.
+#[derive(Clone, Copy, Debug)]
+enum Drive {
+    /// The scalar of a source.
+    Source(usize),
+    /// The charge that flows through a circuit, with the scalar of its source where it is ever other than zero.
+    Circuit(Charged, Option<usize>),
+    /// A given charge.
+    Charge(Charged),
+}
+
+/// Electrical state of a muscle with a source.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct SourceFlow {
+    /// Current from the source in A.
+    pub current: f64,
+    /// Power of the source in W.
+    pub power: f64,
+}
+
+impl Model {
+    /// The lumped muscles.
+    pub fn muscle_readings(&self) -> Vec<MuscleReading> {
+        let lumped = self.system.muscles.iter().enumerate();
+        let lumped = lumped.filter(|(_, muscle)| muscle.fidelity == Fidelity::Lumped);
+        let readings = lumped.map(|(m, _)| MuscleReading {
+            muscle: m,
+            branches: self.branches_of(m),
+            drive: self.drive(m),
+        });
+        readings.collect()
+    }
+
+    fn drive(&self, muscle: usize) -> Option<Drive> {
+        let input = self.variables.input(muscle);
+        let charged = self.charged().find(|charged| charged.muscle == muscle);
+        match charged {
+            Some(charged) => Some(match charged.place {
+                ChargePlace::Coordinate(_) => Drive::Circuit(charged, input),
+                ChargePlace::Input(_) => Drive::Charge(charged),
+            }),
+            None => input.map(Drive::Source),
+        }
+    }
+}
+
+impl MuscleReading {
+    /// Returns true if there is a voltage between its electrodes, so that it has a field.
+    pub fn has_voltage(&self) -> bool {
+        self.drive.is_some()
+    }
+
+    /// Returns true if a source supplies its charge.
+    pub fn has_source(&self) -> bool {
+        matches!(self.drive, Some(Drive::Source(_) | Drive::Circuit(..)))
+    }
+
+    fn voltage(&self, model: &Model, at: &Configuration, scalars: &[f64]) -> Option<f64> {
+        let of = &model.system.muscles[self.muscle];
+        Some(match self.drive? {
+            Drive::Source(scalar) => of.voltage_at_rest(scalars[scalar]),
+            Drive::Circuit(charged, _) | Drive::Charge(charged) => {
+                charged.voltage(model, at, scalars)
+            }
+        })
+    }
+
+    /// Force in N with which it pulls its ends together: of elasticity, voltage, viscosity and Maxwell branches.
+    pub fn tension(&self, model: &Model, at: &Configuration, scalars: &[f64]) -> f64 {
+        let (of, span) = (&model.system.muscles[self.muscle], model.spans[self.muscle]);
+        let voltage = self.voltage(model, at, scalars);
+        let viscous = self.branches.iter().map(|&coordinate| at.z[coordinate]);
+        muscle::tension(of, [&at.x[span], &at.w[span]], voltage, viscous)
+    }
+
+    /// True electric field |V|/(t Λ) in V/µm; zero without a voltage.
+    pub fn field(&self, model: &Model, at: &Configuration, scalars: &[f64]) -> f64 {
+        let of = &model.system.muscles[self.muscle];
+        let stretch = at.x[model.spans[self.muscle]].norm() / of.length();
+        let voltage = self.voltage(model, at, scalars).unwrap_or(0.0);
+        voltage.abs() / (of.layer_thickness * stretch) / MEGAVOLT_PER_METRE
+    }
+
+    /// Current and power of its source while the voltage of the source is constant: `V ∂C/∂r·ṙ` with that through a leak, or
+    /// `(V − Q/C)/R` through a resistor.
+    pub fn flow(&self, model: &Model, at: &Configuration, scalars: &[f64]) -> Option<SourceFlow> {
+        let of = &model.system.muscles[self.muscle];
+        let span = model.spans[self.muscle];
+        let (voltage, current) = match self.drive? {
+            Drive::Source(scalar) => {
+                let voltage = scalars[scalar];
+                let charging = voltage * capacitance_rate(of, [&at.x[span], &at.w[span]])?;
+                let leak = of.circuit.as_ref().and_then(Circuit::leak_conductance);
+                (voltage, leak.map_or(charging, |g| charging + g * voltage))
+            }
+            Drive::Circuit(charged, scalar) => {
+                let voltage = scalar.map_or(0.0, |scalar| scalars[scalar]);
+                let across = charged.voltage(model, at, scalars);
+                (voltage, (voltage - across) / of.circuit?.resistance?)
+            }
+            Drive::Charge(_) => return None,
+        };
+        let power = voltage * current;
+        Some(SourceFlow { current, power })
+    }
+
+    /// Current in A and power in W that charge it while its voltage changes at a rate, at a placed instant: `C V̇` and `C V V̇`; none through
+    /// a resistor.
+    pub fn charging(
+        &self,
+        model: &Model,
+        at: &Configuration,
+        [scalars, rates]: [&[f64]; 2],
+    ) -> [f64; 2] {
+        let Some(Drive::Source(scalar)) = self.drive else {
+            return [0.0; 2];
+        };
+        let current = self.capacitance(model, at) * rates[scalar];
+        [current, scalars[scalar] * current]
+    }
+
+    /// Charge and energy that the source supplies where its voltage switches, in mC and mJ, at a placed instant: `C (V₂ − V₁)` and
+    /// `½ C (V₂² − V₁²)`; none through a resistor.
+    pub fn switched(&self, model: &Model, at: &Configuration, scalars: [&[f64]; 2]) -> [f64; 2] {
+        let Some(Drive::Source(scalar)) = self.drive else {
+            return [0.0; 2];
+        };
+        let [before, after] = scalars.map(|scalars| scalars[scalar]);
+        let charge = self.capacitance(model, at) * (after - before);
+        [charge, 0.5 * charge * (after + before)]
+    }
+
+    fn capacitance(&self, model: &Model, at: &Configuration) -> f64 {
+        let length = at.x[model.spans[self.muscle]].norm();
+        let of = capacitance(&model.system.muscles[self.muscle]);
+        of.map_or(0.0, |of| of.at_length(length))
+    }
+}
+
+/// ∂C/∂r·ṙ in mC/(V ms) of a span and its rate.
+fn capacitance_rate(muscle: &Muscle, [r, rate]: [&Vector; 2]) -> Option<f64> {
+    let local = capacitance(muscle)?.at::<1>(r, &SVector::zeros());
+    Some(local.plain::<1>().force(0).dot(rate))
+}

@@ -1,0 +1,248 @@
+//! Motions that joints permit, and joint coordinates read from poses.
+
+use crate::kinematics::{MaterialVector, Pose};
+use crate::math::{Signal, Vector};
+use crate::model::system::{Joint, JointKind, JointStops, System};
+
+/// Two unit vectors that complete a unit vector n to a right-handed triad (a, b, n).
+pub(crate) fn triad(n: &Vector) -> [Vector; 2] {
+    let helper = if n.x.abs() < 0.6 {
+        Vector::x()
+    } else if n.y.abs() < 0.6 {
+        Vector::y()
+    } else {
+        Vector::z()
+    };
+    let a = helper.cross(n).normalize();
+    [a, n.cross(&a)]
+}
+
+/// An angle and as many whole turns as bring it nearest to another one.
+pub fn nearest_turn(angle: f64, near: f64) -> f64 {
+    use std::f64::consts::TAU;
+    angle + ((near - angle) / TAU).round() * TAU
+}
+
+/// A joint coordinate whose value is prescribed.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Prescribed {
+    /// The coordinate.
+    pub coordinate: usize,
+    /// Its joint of the scene.
+    pub joint: usize,
+    /// Its value in rad or mm.
+    pub motion: Signal,
+}
+
+/// Reading of the coordinate of a joint from the poses of its bodies.
+#[derive(Clone, Debug)]
+pub struct JointReading {
+    /// Index among the joint coordinates; `None` where the joint has none.
+    pub coordinate: Option<usize>,
+    /// Vectors a, b of the parent and c of the child, whose angle is the coordinate; or n, span for a displacement.
+    pub measure: JointCoordinate,
+}
+
+/// Formula of the coordinate.
+#[derive(Clone, Debug)]
+pub enum JointCoordinate {
+    /// atan2(b·c, a·c).
+    Angle {
+        /// a, b, c.
+        vectors: [MaterialVector; 3],
+    },
+    /// n·r.
+    Displacement {
+        /// n, fixed in the parent.
+        axis: MaterialVector,
+        /// Span r from the parent to the child.
+        span: MaterialVector,
+    },
+    /// No coordinate.
+    None,
+}
+
+/// One degree of freedom of a joint, about or along a unit axis in the ground frame.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Screw {
+    /// Rotation about the axis.
+    Turn(Vector),
+    /// Translation along the axis.
+    Slide(Vector),
+}
+
+impl JointKind {
+    /// Returns its screws from the parent outwards, and the number of screws in front of its chart, where they give any rotation.
+    pub fn screws(&self) -> (Vec<Screw>, Option<usize>) {
+        let axes = [Vector::x(), Vector::y(), Vector::z()];
+        match *self {
+            Self::Fixed => (Vec::new(), None),
+            Self::Revolute { axis } => (vec![Screw::Turn(axis)], None),
+            Self::Prismatic { axis } => (vec![Screw::Slide(axis)], None),
+            Self::Universal { axes } => (axes.map(Screw::Turn).to_vec(), None),
+            Self::Cylindrical { axis } => (vec![Screw::Slide(axis), Screw::Turn(axis)], None),
+            Self::Planar { normal } => {
+                let slides = triad(&normal).map(Screw::Slide).into_iter();
+                (slides.chain([Screw::Turn(normal)]).collect(), None)
+            }
+            Self::Spherical => (axes.map(Screw::Turn).to_vec(), Some(0)),
+            Self::Floating => {
+                let slides = axes.map(Screw::Slide).into_iter();
+                (slides.chain(axes.map(Screw::Turn)).collect(), Some(3))
+            }
+        }
+    }
+
+    /// The axes with which it is written.
+    pub(crate) fn axes(&self) -> Vec<Vector> {
+        match *self {
+            Self::Revolute { axis } | Self::Prismatic { axis } | Self::Cylindrical { axis } => {
+                vec![axis]
+            }
+            Self::Universal { axes } => axes.to_vec(),
+            Self::Planar { normal } => vec![normal],
+            Self::Spherical | Self::Floating | Self::Fixed => Vec::new(),
+        }
+    }
+
+    /// Number of its coordinates.
+    pub fn freedoms(&self) -> usize {
+        self.screws().0.len()
+    }
+}
+
+impl Joint {
+    /// Returns true if it has one coordinate: revolute and prismatic joints do.
+    pub fn has_coordinate(&self) -> bool {
+        self.kind.freedoms() == 1
+    }
+
+    /// Names and units of the coordinates of a kind of several coordinates without a chart: `wrist_angle1`.
+    pub fn several_names(&self) -> Vec<(String, &'static str)> {
+        let parts: &[_] = match self.kind {
+            JointKind::Universal { .. } => &[("angle1", "rad"), ("angle2", "rad")],
+            JointKind::Cylindrical { .. } => &[("slide", "mm"), ("angle", "rad")],
+            JointKind::Planar { .. } => &[("slide1", "mm"), ("slide2", "mm"), ("angle", "rad")],
+            _ => &[],
+        };
+        let named = |&(part, unit)| (format!("{}_{part}", self.name), unit);
+        parts.iter().map(named).collect()
+    }
+
+    /// Returns true if it transmits a torque.
+    pub fn has_torque(&self) -> bool {
+        self.kind != JointKind::Spherical
+    }
+
+    /// Coordinates at poses of the bodies, for a kind of several coordinates without a chart: angles without whole turns.
+    pub fn several(&self, poses: &[Pose], reference: &[Pose]) -> Option<Vec<f64>> {
+        let pose = |poses: &[Pose], body: Option<usize>| body.map_or(Pose::GROUND, |b| poses[b]);
+        // Rotations and places of both bodies relative to the reference configuration.
+        let [p, c] = [self.parent, Some(self.child)].map(|body| {
+            let (here, there) = (pose(poses, body), pose(reference, body));
+            let turn = here.directors * there.directors.transpose();
+            (turn, here.point(&there.local(&self.at)))
+        });
+        let turn = p.0.tr_mul(&c.0);
+        let moved = p.0.tr_mul(&(c.1 - p.1));
+        // Angle about an axis from one direction across it to another.
+        let angle = |axis: &Vector, from: &Vector, to: Vector| {
+            axis.cross(from).dot(&to).atan2(from.dot(&to))
+        };
+        let about = |axis: &Vector| {
+            let [a, _] = triad(axis);
+            angle(axis, &a, turn * a)
+        };
+        match self.kind {
+            JointKind::Universal { axes: [a, b] } => Some(vec![
+                angle(&a, &b, turn * b),
+                -angle(&b, &a, turn.tr_mul(&a)),
+            ]),
+            JointKind::Cylindrical { axis } => Some(vec![axis.dot(&moved), about(&axis)]),
+            JointKind::Planar { normal } => {
+                let [a, b] = triad(&normal);
+                Some(vec![a.dot(&moved), b.dot(&moved), about(&normal)])
+            }
+            _ => None,
+        }
+    }
+
+    /// Returns true if a spring, stops or its prescribed motion take it out of the reference configuration.
+    pub fn moves_by_itself(&self) -> bool {
+        let presses = |stops: JointStops| stops.beyond(0.0) > -0.5 * stops.smoothing;
+        let moves = |motion: &Signal| !motion.is_zero();
+        self.spring.is_some_and(|spring| spring.rest != 0.0)
+            || self.stops.is_some_and(presses)
+            || self.motion.as_ref().is_some_and(moves)
+    }
+}
+
+impl System {
+    /// Index of the coordinate of each joint that has exactly one. The coordinates of the joints stand one joint after the other in the
+    /// order of the scene; those of free bodies follow.
+    pub fn joint_coordinates(&self) -> Vec<Option<usize>> {
+        let mut next = 0;
+        let index = |joint: &Joint| {
+            let first = next;
+            next += joint.kind.freedoms();
+            joint.has_coordinate().then_some(first)
+        };
+        self.joints.iter().map(index).collect()
+    }
+
+    /// Returns the effect of a unit force on each joint coordinate on the whole system, as a force and a torque about the origin: between
+    /// two bodies nothing, from the ground the axis of the joint. Joints with several coordinates take no such force.
+    pub fn joint_pulls(&self) -> Vec<[Vector; 2]> {
+        let none = [Vector::zeros(); 2];
+        let pulls = |joint: &Joint| match (joint.kind, joint.parent) {
+            (JointKind::Revolute { axis }, None) => vec![[Vector::zeros(), axis]],
+            (JointKind::Prismatic { axis }, None) => vec![[axis, joint.at.cross(&axis)]],
+            (kind, _) => vec![none; kind.freedoms()],
+        };
+        self.joints.iter().flat_map(pulls).collect()
+    }
+}
+
+impl JointReading {
+    /// The reading of joint `index` of a system; `coordinates` are those of [`System::joint_coordinates`].
+    pub fn new(joint: &Joint, coordinate: Option<usize>, reference: &[Pose]) -> Self {
+        let parent =
+            |direction: &Vector| MaterialVector::direction(joint.parent, direction, reference);
+        let child =
+            |direction: &Vector| MaterialVector::direction(Some(joint.child), direction, reference);
+        let measure = match joint.kind {
+            JointKind::Revolute { axis } => {
+                let [a, b] = triad(&axis);
+                JointCoordinate::Angle {
+                    vectors: [parent(&a), parent(&b), child(&a)],
+                }
+            }
+            JointKind::Prismatic { axis } => JointCoordinate::Displacement {
+                axis: parent(&axis),
+                span: MaterialVector::span(
+                    &MaterialVector::point(joint.parent, &joint.at, reference),
+                    &MaterialVector::point(Some(joint.child), &joint.at, reference),
+                ),
+            },
+            _ => JointCoordinate::None,
+        };
+        Self {
+            coordinate,
+            measure,
+        }
+    }
+
+    /// The coordinate at poses; an angle in the branch nearest to `near`; zero where there is none.
+    pub fn read(&self, poses: &[Pose], near: f64) -> f64 {
+        match &self.measure {
+            JointCoordinate::Angle { vectors } => {
+                let [a, b, c] = vectors.each_ref().map(|v| v.at(poses, &[]));
+                nearest_turn(b.dot(&c).atan2(a.dot(&c)), near)
+            }
+            JointCoordinate::Displacement { axis, span } => {
+                axis.at(poses, &[]).dot(&span.at(poses, &[]))
+            }
+            JointCoordinate::None => 0.0,
+        }
+    }
+}

@@ -1,0 +1,239 @@
+//! Constraints that redundant coordinates leave open: rigid bodies and joints, times their multipliers.
+
+use crate::energy::{Coincidence, Energy, JointAngle, JointDisplacement, Orthogonality};
+use crate::functional::{Element, Formulas, Group, Stencil, Term};
+use crate::kinematics::{MaterialVector, Pose, Vectors};
+use crate::model::layout::internal::{InternalKind, Internals};
+use crate::model::layout::solids::Solids;
+use crate::model::presolve::loops::Loops;
+use crate::model::system::joints::{JointCoordinate, JointReading};
+use crate::model::system::{Glue, System};
+use crate::model::terms::joint_constraints::{JointConstraints, Product};
+use crate::model::terms::{LeftOut, Present, note};
+use std::mem::take;
+use std::sync::Arc;
+
+/// Terms of constraints.
+const RIGID: &str = "rigid bodies";
+const DIRECTIONS: &str = "joint directions";
+const POINTS: &str = "joint points";
+const COORDINATES: &str = "joint coordinates";
+/// Term of the nodes that constraints glue to bodies.
+pub(crate) const GLUE: &str = "glue";
+
+/// Makes the constraints of a system.
+pub(crate) struct Builder<'a> {
+    pub(crate) system: &'a System,
+    pub(crate) reference: &'a [Pose],
+    pub(crate) vectors: &'a mut Vectors,
+    /// Elastic blocks.
+    pub(crate) blocks: &'a Solids,
+    /// Internal coordinates, those of joints among them.
+    pub(crate) internals: &'a Internals,
+    /// Closing constraints that loops leave out.
+    pub(crate) loops: &'a Loops,
+}
+
+/// Constraints collected for the action, with the names of their multipliers.
+#[derive(Default)]
+pub(crate) struct Made {
+    pub(crate) terms: Vec<Arc<dyn Term>>,
+    pub(crate) multipliers: Vec<String>,
+    pub(crate) present: Vec<Present>,
+    pub(crate) left_out: Vec<LeftOut>,
+}
+
+impl Made {
+    /// No constraints: reduced coordinates leave none.
+    pub(crate) fn none() -> Self {
+        let why = "reduced coordinates leave no constraint";
+        let left_out =
+            [RIGID, DIRECTIONS, POINTS, COORDINATES, GLUE].map(|term| LeftOut { term, why });
+        Self {
+            left_out: left_out.to_vec(),
+            ..Self::default()
+        }
+    }
+
+    /// Adds a term of elements for the parts of the scene that are named; without elements it is left out.
+    fn add<E, const M: usize, const NV: usize, const NS: usize>(
+        &mut self,
+        term: &'static str,
+        scale: f64,
+        elements: Vec<Element<E, NV, NS>>,
+        reason: (&'static str, &[&str]),
+        otherwise: &'static str,
+    ) where
+        E: Energy<M> + 'static,
+    {
+        if elements.is_empty() {
+            let why = otherwise;
+            return self.left_out.push(LeftOut { term, why });
+        }
+        let (why, names) = reason;
+        for name in names {
+            note(&mut self.present, term, why, name);
+        }
+        let group = Group::<Formulas<E, M, NV, NS>>::instants(term, scale, elements);
+        self.terms.push(Arc::new(group));
+    }
+}
+
+impl Builder<'_> {
+    /// Constraints of redundant coordinates, `−h₀ λ·g`.
+    pub(crate) fn constraints(&mut self, h0: f64) -> Made {
+        let mut all = Constraints::default();
+        for (b, body) in self.system.bodies.iter().enumerate() {
+            let axis = |i: usize| {
+                MaterialVector::direction(Some(b), &body.directors.column(i).into(), self.reference)
+            };
+            let d = [axis(0), axis(1), axis(2)];
+            for i in 0..3 {
+                for j in i..3 {
+                    let (product, factor) = if i == j { (1.0, 0.5) } else { (0.0, 1.0) };
+                    let name = format!("{} d{}.d{}", body.name, i + 1, j + 1);
+                    all.dot(self.vectors, name, &d[i], &d[j], product, factor);
+                }
+            }
+        }
+        let rigid = take(&mut all.dots);
+        self.joints(&mut all);
+        let points = take(&mut all.points);
+        for (span, name) in &self.blocks.ties {
+            all.point(self.vectors, name, span.clone());
+        }
+        self.joint_coordinates(&mut all);
+        let bodies = self.system.bodies.iter().map(|body| body.name.as_str());
+        let bodies: Vec<&str> = bodies.collect();
+        let named = self.system.joints.iter().map(|joint| joint.name.as_str());
+        let named: Vec<&str> = named.collect();
+        let is_glued = |glue: &Glue| glue.body.is_some();
+        let glued = self.blocks.list.iter().filter(|c| !c.is_immobile);
+        let glued = glued.filter(|c| c.solid.glued.iter().any(is_glued));
+        let glued: Vec<&str> = glued.map(|c| c.solid.name.as_str()).collect();
+        let (directors, ends) = (
+            ("directors of", &bodies[..]),
+            ("redundant coordinates at the ends of", &named[..]),
+        );
+        let mut made = Made {
+            multipliers: all.names,
+            ..Made::default()
+        };
+        made.add::<_, 7, _, _>(RIGID, -h0, rigid, directors, "no body that moves");
+        let none = "no joint that calls for one";
+        made.add::<_, 7, _, _>(DIRECTIONS, -h0, all.dots, ends, none);
+        made.add::<_, 6, _, _>(POINTS, -h0, points, ends, none);
+        let none = "no joint names a stiffness";
+        let of: Vec<&str> = all.of.iter().map(String::as_str).collect();
+        let of = ("stiffness of", &of[..]);
+        made.add::<_, 13, _, _>(COORDINATES, -h0, all.angles, of, none);
+        made.add::<_, 10, _, _>(COORDINATES, -h0, all.displacements, of, none);
+        let none = "no node is glued to a body that moves";
+        made.add::<_, 6, _, _>(GLUE, -h0, all.points, ("glued nodes of", &glued), none);
+        made
+    }
+
+    /// Constraints of the joints, those that close loops without what is left out.
+    fn joints(&mut self, out: &mut Constraints) {
+        for (j, joint) in self.system.joints.iter().enumerate() {
+            if let Some(products) = self.loops.kept(j) {
+                out.products(self.vectors, products.to_vec());
+                continue;
+            }
+            let made = JointConstraints::new(joint, self.reference);
+            out.products(self.vectors, made.products);
+            if let Some(span) = made.point {
+                out.point(self.vectors, &joint.name, span);
+            }
+        }
+    }
+
+    /// Internal coordinates are those of their joints.
+    fn joint_coordinates(&mut self, out: &mut Constraints) {
+        for (internal, value) in self.internals.vectors() {
+            let InternalKind::Joint(index) = internal.kind else {
+                continue;
+            };
+            let joint = &self.system.joints[index];
+            let value = Stencil::Here.of(self.vectors.index(value));
+            let scalars = [out.names.len()];
+            out.names.push(internal.name.clone());
+            out.of.push(joint.name.clone());
+            let mut index = |v: MaterialVector| Stencil::Here.of(self.vectors.index(v));
+            match JointReading::new(joint, None, self.reference).measure {
+                JointCoordinate::Angle { vectors } => {
+                    let [a, b, c] = vectors.map(&mut index);
+                    out.angles.push(Element {
+                        energy: JointAngle,
+                        vectors: [a, b, c, value],
+                        scalars,
+                    });
+                }
+                JointCoordinate::Displacement { axis, span } => out.displacements.push(Element {
+                    energy: JointDisplacement,
+                    vectors: [index(axis), index(span), value],
+                    scalars,
+                }),
+                JointCoordinate::None => unreachable!("its joint has a coordinate"),
+            }
+        }
+    }
+}
+
+/// Constraints collected for groups; multipliers are numbered in the order of the names.
+#[derive(Default)]
+struct Constraints {
+    dots: Vec<Element<Orthogonality, 2, 1>>,
+    points: Vec<Element<Coincidence, 1, 3>>,
+    angles: Vec<Element<JointAngle, 4, 1>>,
+    displacements: Vec<Element<JointDisplacement, 3, 1>>,
+    names: Vec<String>,
+    /// Joints of the coordinates.
+    of: Vec<String>,
+}
+
+impl Constraints {
+    fn dot(
+        &mut self,
+        vectors: &mut Vectors,
+        name: String,
+        a: &MaterialVector,
+        b: &MaterialVector,
+        product: f64,
+        factor: f64,
+    ) {
+        let scalar = self.names.len();
+        self.names.push(name);
+        let args = [
+            Stencil::Here.of(vectors.index(a.clone())),
+            Stencil::Here.of(vectors.index(b.clone())),
+        ];
+        self.dots.push(Element {
+            energy: Orthogonality { product, factor },
+            vectors: args,
+            scalars: [scalar],
+        });
+    }
+
+    fn products(&mut self, vectors: &mut Vectors, products: Vec<Product>) {
+        for Product {
+            name,
+            vectors: [a, b],
+        } in products
+        {
+            self.dot(vectors, name, &a, &b, 0.0, 1.0);
+        }
+    }
+
+    fn point(&mut self, vectors: &mut Vectors, joint: &str, span: MaterialVector) {
+        let first = self.names.len();
+        self.names
+            .extend(["x", "y", "z"].map(|axis| format!("{joint} point {axis}")));
+        let args = [Stencil::Here.of(vectors.index(span))];
+        self.points.push(Element {
+            energy: Coincidence,
+            vectors: args,
+            scalars: [first, first + 1, first + 2],
+        });
+    }
+}

@@ -1,0 +1,538 @@
+//! Collection of the terms of components: elements of one kind make one term, those that read nothing that moves are left out, and the
+//! reasons are recorded.
+
+pub(super) mod block_inertia;
+pub(super) mod block_terms;
+pub(super) mod branch_terms;
+pub(super) mod charged;
+pub(super) mod constraints;
+pub(super) mod field_extent;
+pub(super) mod joint_constraints;
+pub(super) mod loads;
+pub(super) mod parametric_elements;
+
+use crate::element::ElementLaw;
+use crate::energy::{Coefficient, Energy, Gravity, Law, MaxwellDamper};
+use crate::functional::{
+    Electrical, Element, FiniteElement, FiniteElements, Formulas, Group, Inertia, Kernel,
+    LawElement, Laws, Mass, MaxwellElement, MaxwellElements, Path, Paths, PressureFace,
+    PressureFaces, Scaled, ScaledElement, Stencil, Term, VariedElement, VariedElements, VectorArg,
+    ViscousElement, ViscousElements,
+};
+use crate::kinematics::{Carrier, MaterialVector, Pose, Vectors};
+use crate::math::Vector;
+use crate::model::constants::constant::Constant;
+use crate::model::constants::free_parameters::{Read, Sought};
+use crate::model::layout::variables::Variables;
+use crate::model::system::bodies::Attachment;
+use crate::model::system::maxwell::Response;
+use std::any::Any;
+use std::fmt;
+
+/// Reason for the springs of branches at rest.
+pub(super) const UNRELAXED: &str = "unrelaxed Maxwell branches of";
+
+/// The bodies of the presolved system that carry those of the scene.
+pub(crate) struct Carriers<'a> {
+    /// The presolved body of each body of the scene; `None` is the ground.
+    pub(super) of: Vec<Option<usize>>,
+    /// Poses of the presolved bodies in the reference configuration.
+    pub(super) reference: &'a [Pose],
+}
+
+impl Carriers<'_> {
+    fn carrier(&self, body: Option<usize>) -> Option<usize> {
+        self.of[body?]
+    }
+
+    /// The point as a vector, whose body is the one that carries it.
+    pub(super) fn point(&self, point: &Attachment) -> MaterialVector {
+        MaterialVector::point(self.carrier(point.body), &point.at, self.reference)
+    }
+}
+
+/// Terms of components collected for the action.
+pub struct Terms<'a> {
+    bodies: Carriers<'a>,
+    gravity: Option<Vector>,
+    vectors: &'a mut Vectors,
+    variables: &'a Variables,
+    of_motion: bool,
+    response: Response,
+    sought: Sought,
+    collected: Vec<Collected>,
+    present: Vec<Present>,
+    left_out: Vec<LeftOut>,
+}
+
+impl fmt::Debug for Terms<'_> {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.debug_list().entries(&self.present).finish()
+    }
+}
+
+/// Reason for a term: the name of the term, words such as "stiffness of", and the component.
+#[derive(Clone, Copy)]
+pub(super) struct Call<'a> {
+    pub(super) term: &'static str,
+    pub(super) why: &'static str,
+    pub(super) of: &'a str,
+}
+
+impl Call<'_> {
+    /// Adds an element.
+    pub(super) fn add<Kind, T: Member<Kind>>(self, element: T, terms: &mut Terms<'_>) {
+        terms.collect(self.term, self.why, self.of, element);
+    }
+
+    /// Adds an element, of those that are no formulas of constants, times a constant that follows parameters.
+    pub(super) fn add_scaled<E: OfKind>(
+        self,
+        of: E,
+        factor: Coefficient,
+        read: Read,
+        terms: &mut Terms<'_>,
+    ) {
+        let parameters = read.scalars();
+        let element = ScaledElement {
+            of,
+            factor,
+            parameters,
+        };
+        self.add::<(), _>(element, terms);
+    }
+
+    /// Adds an element as it is given, or where parameters are read that of the constant one times the constant.
+    pub(super) fn add_times<Kind, E: OfKind + Member<Kind>>(
+        self,
+        given: E,
+        unit: E,
+        factor: Coefficient,
+        read: Read,
+        terms: &mut Terms<'_>,
+    ) {
+        match read.is_empty() {
+            true => self.add::<Kind, _>(given, terms),
+            false => self.add_scaled(unit, factor, read, terms),
+        }
+    }
+}
+
+/// Elements of one type under one name.
+struct Collected {
+    term: &'static str,
+    /// A vector of the type.
+    list: Box<dyn Any>,
+    finish: fn(&str, Box<dyn Any>) -> Box<dyn Term>,
+}
+
+impl<'a> Terms<'a> {
+    pub(super) fn new(
+        bodies: Carriers<'a>,
+        gravity: Option<Vector>,
+        of_motion: bool,
+        response: Response,
+        sought: Sought,
+        variables: &'a Variables,
+        vectors: &'a mut Vectors,
+    ) -> Self {
+        Self {
+            bodies,
+            gravity,
+            vectors,
+            variables,
+            of_motion,
+            response,
+            sought,
+            collected: Vec::new(),
+            present: Vec::new(),
+            left_out: Vec::new(),
+        }
+    }
+
+    /// Returns true if inertia and dissipation count: a state of rest has neither.
+    pub fn is_of_motion(&self) -> bool {
+        self.of_motion
+    }
+
+    /// Returns true if Maxwell branches are springs that have not relaxed.
+    pub(super) fn is_instantaneous(&self) -> bool {
+        !self.of_motion && self.response == Response::Instantaneous
+    }
+
+    /// Says why terms of Maxwell branches are left out, should they be; `none` where nothing names a branch.
+    pub(super) fn without_branches(
+        &mut self,
+        [elasticity, viscosity]: [&'static str; 2],
+        none: &'static str,
+    ) {
+        let reasons = match (self.of_motion, self.response) {
+            (true, _) => [none; 2],
+            (false, Response::Relaxed) => ["at rest Maxwell branches are relaxed"; 2],
+            (false, Response::Instantaneous) => [none, "a state of rest dissipates nothing"],
+        };
+        self.without(elasticity, reasons[0]);
+        self.without(viscosity, reasons[1]);
+    }
+
+    /// The point as a vector, whose body is the one that carries it.
+    pub fn point(&self, point: &Attachment) -> MaterialVector {
+        self.bodies.point(point)
+    }
+
+    /// The body of the presolved system that carries a point; none is the ground.
+    pub(super) fn carrier(&self, point: &Attachment) -> Option<usize> {
+        self.bodies.carrier(point.body)
+    }
+
+    /// Returns true if nothing moves the points.
+    pub fn is_immobile(&self, points: &[Attachment]) -> bool {
+        let mut carriers = points.iter().map(|p| self.bodies.carrier(p.body));
+        carriers.all(|carrier| carrier.is_none())
+    }
+
+    /// The direction fixed in the body of a point that it has in the reference configuration.
+    pub fn direction(&self, point: &Attachment, direction: &Vector) -> MaterialVector {
+        let body = self.bodies.carrier(point.body);
+        MaterialVector::direction(body, direction, self.bodies.reference)
+    }
+
+    /// The free parameters.
+    pub fn sought(&self) -> &Sought {
+        &self.sought
+    }
+
+    /// Index of a vector, for [`mid`] and [`rate`].
+    pub fn vector(&mut self, vector: MaterialVector) -> usize {
+        self.vectors.index(vector)
+    }
+
+    /// Index of a vector that is known to be new.
+    pub(super) fn new_vector(&mut self, vector: MaterialVector) -> usize {
+        self.vectors.push(vector)
+    }
+
+    /// Index of the vector from one point to another; `None` where no motion of the robot changes its length.
+    pub fn span(&mut self, from: &Attachment, to: &Attachment) -> Option<usize> {
+        let [a, b] = [from, to].map(|end| self.bodies.carrier(end.body));
+        (a != b).then(|| {
+            let span = MaterialVector::span(&self.point(from), &self.point(to));
+            self.vectors.index(span)
+        })
+    }
+
+    /// Index of a vector that stays as it is.
+    pub(super) fn on_ground(&mut self, vector: &Vector) -> usize {
+        let fixed = MaterialVector::direction(None, vector, self.bodies.reference);
+        self.vectors.index(fixed)
+    }
+
+    /// Returns true if a vector of the list moves with a body, a node or a coordinate.
+    pub fn moves(&self, vector: usize) -> bool {
+        let mut parts = self.vectors.list()[vector].terms.iter();
+        parts.any(|part| part.carrier != Carrier::Ground)
+    }
+
+    /// Returns true if a scalar of the intervals has an equation of its own.
+    pub fn is_unknown(&self, scalar: usize) -> bool {
+        self.variables.place(scalar).is_some()
+    }
+
+    /// Scalar of the voltage of a source; `None` where it is zero all the time, or does nothing.
+    pub fn input(&self, source: usize) -> Option<usize> {
+        self.variables.input(source)
+    }
+
+    /// Adds a formula of vectors of the intervals: a potential energy, or where it has virtual displacements a virtual work.
+    ///
+    /// `term` names the term in reports, which holds all elements of that name; `why` says what of the component `of` calls for
+    /// it: "stiffness of".
+    pub fn add<E, const M: usize, const NV: usize, const NS: usize>(
+        &mut self,
+        term: &'static str,
+        why: &'static str,
+        of: &str,
+        element: Element<E, NV, NS>,
+    ) where
+        E: Energy<M> + 'static,
+    {
+        self.collect::<Formula<M, false>, _>(term, why, of, element);
+    }
+
+    /// Adds the formula of a law, like [`add`](Self::add); with the parameters that it reads where constants of it are free.
+    pub fn add_law<L, const M: usize, const NV: usize, const NS: usize>(
+        &mut self,
+        term: &'static str,
+        why: &'static str,
+        of: &str,
+        element: LawElement<L, NV, NS>,
+    ) where
+        L: Law<M>,
+    {
+        match element.given() {
+            Some(given) => self.add(term, why, of, given),
+            None => self.collect::<Formula<M, false>, _>(term, why, of, element),
+        }
+    }
+
+    /// Adds the kinetic energy of a law, like [`add_law`](Self::add_law).
+    pub(super) fn add_kinetic_law<L, const M: usize, const NV: usize, const NS: usize>(
+        &mut self,
+        term: &'static str,
+        why: &'static str,
+        of: &str,
+        element: LawElement<L, NV, NS>,
+    ) where
+        L: Law<M>,
+    {
+        match element.given() {
+            Some(given) => self.add_kinetic(term, why, of, given),
+            None => self.collect::<Formula<M, true>, _>(term, why, of, element),
+        }
+    }
+
+    /// Adds a kinetic energy of vectors and rates of the intervals.
+    pub(super) fn add_kinetic<E, const M: usize, const NV: usize, const NS: usize>(
+        &mut self,
+        term: &'static str,
+        why: &'static str,
+        of: &str,
+        element: Element<E, NV, NS>,
+    ) where
+        E: Energy<M> + 'static,
+    {
+        self.collect::<Formula<M, true>, _>(term, why, of, element);
+    }
+
+    /// Notes that a part of the scene calls for a term.
+    pub(super) fn note(&mut self, term: &'static str, why: &'static str, of: &str) {
+        note(&mut self.present, term, why, of);
+    }
+
+    /// Gravity in mm/ms² as an element reads it, where there is any.
+    pub(super) fn gravity(&self, read: &mut Read) -> Option<[Coefficient; 3]> {
+        let g = self.gravity?;
+        Some([0, 1, 2].map(|axis| read.constant(Constant::Gravity(axis), g[axis])))
+    }
+
+    /// Adds the weight of a mass in g at a point, where there is gravity.
+    pub(super) fn weigh(&mut self, point: &MaterialVector, mass: f64) {
+        if self.gravity.is_some() {
+            let vector = self.vectors.index(point.clone());
+            self.weigh_vector(vector, mass);
+        }
+    }
+
+    /// Adds the weight of a mass in g at the point of a vector of the list, where there is gravity.
+    pub(super) fn weigh_vector(&mut self, vector: usize, mass: f64) {
+        let mut read = self.sought.read();
+        if let Some(gravity) = self.gravity(&mut read) {
+            let element = read.element(weight(&mass.into(), gravity), [mid(vector)], []);
+            self.add_law(GRAVITY, "gravity of", "the scene", element);
+        }
+    }
+
+    /// Adds the energy of the length of a path.
+    pub fn add_path(&mut self, term: &'static str, why: &'static str, of: &str, path: Path) {
+        self.collect::<(), _>(term, why, of, path);
+    }
+
+    /// Says why a term is left out, should it be; the first reason counts.
+    pub fn without(&mut self, term: &'static str, why: &'static str) {
+        if self.left_out.iter().all(|known| known.term != term) {
+            self.left_out.push(LeftOut { term, why });
+        }
+    }
+
+    /// Adds an element to those of its type under the same name.
+    pub(super) fn collect<Kind, T: Member<Kind>>(
+        &mut self,
+        term: &'static str,
+        why: &'static str,
+        of: &str,
+        element: T,
+    ) {
+        self.note(term, why, of);
+        self.push::<Kind, T>(term, element);
+    }
+
+    /// Adds an element whose parts of the scene are [noted](Self::note) by themselves.
+    pub(super) fn push<Kind, T: Member<Kind>>(&mut self, term: &'static str, element: T) {
+        let mut same = self.collected.iter_mut().filter(|c| c.term == term);
+        if let Some(list) = same.find_map(|c| c.list.downcast_mut::<Vec<T>>()) {
+            list.push(element);
+            return;
+        }
+        self.collected.push(Collected {
+            term,
+            list: Box::new(vec![element]),
+            finish: |name, list| {
+                let list = list.downcast::<Vec<T>>();
+                T::term(name, *list.expect("a list of its own elements"))
+            },
+        });
+    }
+
+    /// Returns the terms in the order of the sum, in which `rank` is the place of each, their reasons, and the absent terms.
+    pub(super) fn finish(
+        mut self,
+        rank: impl Fn(&str) -> usize,
+    ) -> (Vec<Box<dyn Term>>, Vec<Present>, Vec<LeftOut>) {
+        self.collected.sort_by_key(|collected| rank(collected.term));
+        let collected = self.collected.into_iter();
+        let terms = collected.map(|c| (c.finish)(c.term, c.list));
+        (terms.collect(), self.present, self.left_out)
+    }
+}
+
+/// Weight of a mass in g under gravity in mm/ms².
+pub(super) fn weight(mass: &Coefficient, gravity: [Coefficient; 3]) -> Gravity<Coefficient> {
+    Gravity {
+        weight: gravity.map(|g| &g * mass).into(),
+    }
+}
+
+/// The vector in the middle of an interval.
+pub fn mid(vector: usize) -> VectorArg {
+    Stencil::Mid.of(vector)
+}
+
+/// The rate of the vector in an interval.
+pub fn rate(vector: usize) -> VectorArg {
+    Stencil::Rate.of(vector)
+}
+
+/// Element that makes one term together with all of its type.
+pub(super) trait Member<Kind = ()>: Sized + 'static {
+    fn term(name: &str, list: Vec<Self>) -> Box<dyn Term>;
+}
+
+impl Member for Mass {
+    fn term(name: &str, list: Vec<Self>) -> Box<dyn Term> {
+        Box::new(Inertia::new(name, list))
+    }
+}
+
+/// An element that is no formula of constants, and its kind.
+pub(super) trait OfKind: Clone + Send + Sync + 'static {
+    type Kind: Kernel<Element = Self>;
+}
+
+impl<F: Electrical, L: ElementLaw> OfKind for FiniteElement<F, L> {
+    type Kind = FiniteElements<F, L>;
+}
+
+impl OfKind for VariedElement {
+    type Kind = VariedElements;
+}
+
+impl OfKind for ViscousElement {
+    type Kind = ViscousElements;
+}
+
+impl OfKind for MaxwellElement {
+    type Kind = MaxwellElements;
+}
+
+impl OfKind for Element<MaxwellDamper, 6, 0> {
+    type Kind = Formulas<MaxwellDamper, 18, 6, 0>;
+}
+
+impl OfKind for PressureFace {
+    type Kind = PressureFaces;
+}
+
+impl OfKind for Path {
+    type Kind = Paths;
+}
+
+impl<E: OfKind> OfKind for ScaledElement<E> {
+    type Kind = Scaled<E::Kind>;
+}
+
+/// Potentials are subtracted, virtual works added.
+impl<E: OfKind> Member for E {
+    fn term(name: &str, list: Vec<Self>) -> Box<dyn Term> {
+        let scale = if E::Kind::VIRTUAL > 0 { 1.0 } else { -1.0 };
+        Box::new(Group::<E::Kind>::intervals(name, scale, list))
+    }
+}
+
+/// Elements of a formula of `M` arguments; `KINETIC` is true for a kinetic energy.
+pub(super) struct Formula<const M: usize, const KINETIC: bool>;
+
+impl<E, const M: usize, const NV: usize, const NS: usize, const KINETIC: bool>
+    Member<Formula<M, KINETIC>> for Element<E, NV, NS>
+where
+    E: Energy<M> + 'static,
+{
+    fn term(name: &str, list: Vec<Self>) -> Box<dyn Term> {
+        // The action has the kinetic energy less the potential one; a virtual work is added.
+        let scale = if KINETIC || E::VIRTUAL > 0 { 1.0 } else { -1.0 };
+        Box::new(Group::<Formulas<E, M, NV, NS>>::intervals(
+            name, scale, list,
+        ))
+    }
+}
+
+impl<L, const M: usize, const NV: usize, const NS: usize, const KINETIC: bool>
+    Member<Formula<M, KINETIC>> for LawElement<L, NV, NS>
+where
+    L: Law<M>,
+{
+    fn term(name: &str, list: Vec<Self>) -> Box<dyn Term> {
+        let is_added = KINETIC || L::Formula::<f64>::VIRTUAL > 0;
+        let scale = if is_added { 1.0 } else { -1.0 };
+        Box::new(Group::<Laws<L, M, NV, NS>>::intervals(name, scale, list))
+    }
+}
+
+/// Weight, the one term that acts in every place with a mass.
+pub(super) const GRAVITY: &str = "gravity";
+
+/// Term that is present, with its reason.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Present {
+    /// Name of the term.
+    pub term: &'static str,
+    /// Reason, before the names: "stiffness of".
+    pub why: &'static str,
+    /// Names of the parts of the scene that do.
+    pub of: Vec<String>,
+}
+
+/// A term that is left out.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct LeftOut {
+    /// Name of the term.
+    pub term: &'static str,
+    /// Reason why it is absent.
+    pub why: &'static str,
+}
+
+/// Keeps the first reason for each term that is not there, in the order of the sum, in which `rank` is the place of a term.
+pub(super) fn settle(
+    present: &[Present],
+    left_out: &mut Vec<LeftOut>,
+    rank: impl Fn(&str) -> usize,
+) {
+    let is_there = |term| present.iter().any(|p| p.term == term);
+    left_out.retain(|l| !is_there(l.term));
+    left_out.sort_by_key(|l| rank(l.term));
+    left_out.dedup_by_key(|l| l.term);
+}
+
+/// Notes that a part of the scene calls for a term.
+pub(super) fn note(present: &mut Vec<Present>, term: &'static str, why: &'static str, of: &str) {
+    let same = |p: &&mut Present| p.term == term && p.why == why;
+    match present.iter_mut().rev().find(same) {
+        // Parts come one after the other.
+        Some(known) if known.of.last().is_some_and(|last| last == of) => {}
+        Some(known) => known.of.push(of.to_owned()),
+        None => present.push(Present {
+            term,
+            why,
+            of: vec![of.to_owned()],
+        }),
+    }
+}
