@@ -1,9 +1,9 @@
 //! Values of the matrix of a solver: the volumes of elements, and copies of all.
 
-use crate::sparse::multigrid::boxes::{Parts, products};
 use crate::sparse::multigrid::node_grid::{
-    COMPONENTS, CORNERS, ENTRIES, ElementVolume, GridNode, NEIGHBOURS, NodeBlock, OWN, offsets,
+    COMPONENTS, CORNERS, ENTRIES, ElementVolume, GridNode, NodeBlock,
 };
+use crate::sparse::multigrid::parts::{Parts, products};
 use crate::sparse::multigrid::solver::Multigrid;
 
 /// Numbers of a volume.
@@ -94,31 +94,15 @@ impl Multigrid {
 impl Parts {
     /// Replaces the matrix by its symmetric part.
     pub(super) fn symmetrise(&mut self) {
-        for (part, one) in self.boxes.iter().enumerate() {
-            let offsets = offsets(one.levels[0].counts);
-            let nodes = self.nodes(part);
-            let blocks = &mut self.matrix[NEIGHBOURS * nodes.start..NEIGHBOURS * nodes.end];
-            for node in 0..nodes.len() {
-                for (neighbour, offset) in offsets.iter().enumerate().skip(OWN) {
-                    let other = node + *offset as usize;
-                    if other >= nodes.len() {
-                        continue;
-                    }
-                    let here = NEIGHBOURS * node + neighbour;
-                    let there = NEIGHBOURS * other + (NEIGHBOURS - 1 - neighbour);
+        for (part, one) in self.list.iter().enumerate() {
+            let blocks = &mut self.matrix[self.first_blocks[part]..self.first_blocks[part + 1]];
+            let pattern = one.pattern();
+            pattern.each(|here, [node, other]| {
+                if node <= other {
+                    let there = pattern.transposed(here, [node, other]);
                     symmetrise_pair(blocks, here, there);
                 }
-            }
-        }
-        for (mesh, one) in self.meshes.iter().enumerate() {
-            let blocks = self.blocks(self.boxes.len() + mesh);
-            let (blocks, rows) = (&mut self.matrix[blocks], &one.levels[0].matrix.rows);
-            for (here, (node, other)) in rows.entries().enumerate() {
-                if node <= other {
-                    let there = rows.find(other, node);
-                    symmetrise_pair(blocks, here, there.expect("neighbours are so both ways"));
-                }
-            }
+            });
         }
     }
 }

@@ -242,9 +242,12 @@ impl ElementVolume {
 /// A block of the matrix, by column.
 pub(super) type Block = [f32; COMPONENTS * COMPONENTS];
 
+/// Values of the components of a node.
+pub(super) type AtNode = [f32; COMPONENTS];
+
 /// Values at the nodes: as a rule those of the components in single precision.
 #[derive(Clone, Debug)]
-pub(super) struct Field<T = [f32; COMPONENTS]> {
+pub(super) struct Field<T = AtNode> {
     pub(super) values: Vec<T>,
     pub(super) margin: usize,
 }
@@ -281,12 +284,36 @@ impl<T: Copy + Default> Field<T> {
 
 /// Adds a block times a vector.
 #[inline(always)]
-pub(super) fn add(sum: &mut [f32; COMPONENTS], block: &Block, x: &[f32; COMPONENTS]) {
+pub(super) fn add(sum: &mut AtNode, block: &Block, x: &AtNode) {
     for (column, x) in block.chunks_exact(COMPONENTS).zip(x) {
         for (sum, entry) in sum.iter_mut().zip(column) {
             *sum += entry * x;
         }
     }
+}
+
+/// Adds a block in double precision times a vector.
+#[inline(always)]
+pub(super) fn add_double<T: Copy + Into<f64>>(
+    sum: &mut [f64; COMPONENTS],
+    block: &NodeBlock,
+    x: &[T; COMPONENTS],
+) {
+    for (column, x) in block.chunks_exact(COMPONENTS).zip(x) {
+        let x: f64 = (*x).into();
+        for (sum, entry) in sum.iter_mut().zip(column) {
+            *sum += entry * x;
+        }
+    }
+}
+
+/// The values of a node with this inverse of its diagonal block, of which its neighbours have this sum.
+#[inline(always)]
+pub(super) fn solved(inverse: &Block, rhs: &AtNode, sum: &AtNode) -> AtNode {
+    let left: AtNode = std::array::from_fn(|c| rhs[c] - sum[c]);
+    let mut solution = AtNode::default();
+    add(&mut solution, inverse, &left);
+    solution
 }
 
 /// The inverse of a block on the diagonal, in which rows and columns of given values are zero; `None` where it is singular.
@@ -311,7 +338,7 @@ pub(super) fn inverse_of(block: &Block) -> Option<Block> {
 
 /// Adds the transpose of a block times a vector.
 #[inline(always)]
-pub(super) fn add_transposed(sum: &mut [f32; COMPONENTS], block: &Block, x: &[f32; COMPONENTS]) {
+pub(super) fn add_transposed(sum: &mut AtNode, block: &Block, x: &AtNode) {
     for (column, sum) in block.chunks_exact(COMPONENTS).zip(sum) {
         for (x, entry) in x.iter().zip(column) {
             *sum += entry * x;
@@ -342,40 +369,4 @@ pub(super) fn add_transposed_product(sum: &mut Block, a: &Block, b: &Block) {
         }
     }
     add_product(sum, &turned, b);
-}
-
-/// A level with its matrix in single precision, and the transfer to the next coarser one.
-pub(super) trait GridLevel {
-    /// Inverts the diagonal blocks; returns the node whose block is singular, if there is one.
-    fn invert(&mut self) -> Result<(), usize>;
-
-    /// Makes the matrix of the next coarser level.
-    fn coarsen(&mut self, coarse: &mut Self);
-
-    /// A forward sweep from zero, then what it leaves of the right-hand side.
-    fn sweep_down(&mut self);
-
-    /// Makes what is left the right-hand side of the next coarser level.
-    fn restrict(&self, coarse: &mut Self);
-
-    /// Adds the solution of the next coarser level.
-    fn correct(&mut self, coarse: &Self);
-
-    /// A backward sweep.
-    fn sweep_up(&mut self);
-
-    /// For each node, a bit for each component without a given value.
-    fn free(&self) -> &[u8];
-
-    /// The right-hand side, as the coarsest level is solved for it.
-    fn condensed_rhs(&mut self) -> &[[f32; COMPONENTS]];
-
-    /// Takes the solution of the coarsest level.
-    fn take_solution(&mut self, x: impl Iterator<Item = [f32; COMPONENTS]>);
-
-    /// Calls `visit` with row, column and value of each entry of the matrix, in a fixed order.
-    fn visit(&self, visit: &mut dyn FnMut(usize, usize, f64));
-
-    /// Bytes of its matrix and what belongs to it.
-    fn bytes(&self) -> usize;
 }

@@ -2,11 +2,8 @@
 
 use crate::math::{IsOver, Stopped};
 use crate::sparse::Singular;
-use crate::sparse::multigrid::boxes::Parts;
-use crate::sparse::multigrid::hierarchy::Hierarchy;
-use crate::sparse::multigrid::level::Level;
-use crate::sparse::multigrid::mesh_level::MeshLevel;
-use crate::sparse::multigrid::node_grid::{Block, COMPONENTS, ENTRIES, Field, NEIGHBOURS, offsets};
+use crate::sparse::multigrid::node_grid::{Block, COMPONENTS, ENTRIES, Field};
+use crate::sparse::multigrid::parts::{Part, Parts};
 
 /// Component of the potential.
 pub(super) const POTENTIAL: usize = COMPONENTS - 1;
@@ -21,8 +18,7 @@ type Values = [f64; COMPONENTS];
 /// The part of a matrix between potentials, made positive by a sign.
 #[derive(Debug)]
 pub(super) struct Potentials {
-    boxes: Vec<Hierarchy<Level>>,
-    meshes: Vec<Hierarchy<MeshLevel>>,
+    list: Vec<Part>,
     /// First node of each part, and the number of all.
     starts: Vec<usize>,
     /// First entry of each part, and the number of all.
@@ -51,29 +47,13 @@ impl Potentials {
         let of_potentials = parts.matrix.iter();
         let of_potentials = of_potentials.map(|block| sign * block[ENTRIES - 1]);
         let matrix: Vec<f64> = of_potentials.collect();
-        let (mut boxes, mut meshes) = (Vec::new(), Vec::new());
-        for (part, one) in parts.boxes.iter().enumerate() {
-            let finest = &one.levels[0];
-            let mut one = Hierarchy::between(&finest.planes, free_of(&finest.free), false);
+        let mut list = Vec::new();
+        for (part, one) in parts.list.iter().enumerate() {
+            let mut one = one.of_scalars(free_of(one.free()));
             let entries = &matrix[parts.blocks(part)];
-            let rows = one.levels[0].matrix.rows_mut();
-            rows.write(|node, row| {
-                for (block, entry) in row.iter_mut().zip(&entries[NEIGHBOURS * node..]) {
-                    *block = of_scalar(*entry);
-                }
-            });
+            one.write(|block| of_scalar(entries[block]));
             one.prepare()?;
-            boxes.push(one);
-        }
-        for (part, one) in (boxes.len()..).zip(&parts.meshes) {
-            let finest = &one.levels[0];
-            let mut one = Hierarchy::of_scalars(finest, free_of(&finest.free));
-            let entries = &matrix[parts.blocks(part)];
-            one.levels[0]
-                .matrix
-                .write(|block| of_scalar(entries[block]));
-            one.prepare()?;
-            meshes.push(one);
+            list.push(one);
         }
         let zero = || vec![Values::default(); parts.node_count()];
         Ok(Some(Self {
@@ -85,8 +65,7 @@ impl Potentials {
             products: zero(),
             solution: zero(),
             matrix,
-            boxes,
-            meshes,
+            list,
         }))
     }
 
@@ -152,29 +131,11 @@ impl Potentials {
 
     /// Multiplies the directions; returns their products with the results.
     fn multiply(&mut self) -> Values {
-        for (part, one) in self.boxes.iter().enumerate() {
-            let (offsets, field) = (offsets(one.levels[0].counts), &self.direction[part]);
+        for (part, one) in self.list.iter().enumerate() {
             let nodes = self.starts[part]..self.starts[part + 1];
-            let rows = self.matrix[self.first_entries[part]..].chunks_exact(NEIGHBOURS);
-            let rows = rows.zip(&mut self.products[nodes]);
-            for (node, (row, product)) in rows.enumerate() {
-                let at = (node + field.margin) as isize;
-                *product = Values::default();
-                for (entry, offset) in row.iter().zip(&offsets) {
-                    add(product, *entry, &field.values[(at + offset) as usize]);
-                }
-            }
-        }
-        for (part, one) in (self.boxes.len()..).zip(&self.meshes) {
-            let (pattern, x) = (&one.levels[0].matrix.rows, self.direction[part].nodes());
             let entries = &self.matrix[self.first_entries[part]..];
-            let nodes = self.starts[part]..self.starts[part + 1];
-            for (node, product) in self.products[nodes].iter_mut().enumerate() {
-                *product = Values::default();
-                for block in pattern.range(node) {
-                    add(product, entries[block], &x[pattern.column(block)]);
-                }
-            }
+            let (field, products) = (&self.direction[part], &mut self.products[nodes]);
+            one.pattern().multiply(entries, field, products, add);
         }
         let mut along = Values::default();
         for (part, field) in self.direction.iter().enumerate() {
@@ -201,27 +162,14 @@ impl Potentials {
     }
 
     fn precondition(&mut self) {
-        for (part, one) in self.boxes.iter_mut().enumerate() {
+        for (part, one) in self.list.iter_mut().enumerate() {
             let nodes = self.starts[part]..self.starts[part + 1];
-            let rhs = one.levels[0].rhs.nodes_mut().iter_mut();
-            for (to, from) in rhs.zip(&self.residual[nodes.clone()]) {
+            for (to, from) in one.rhs_mut().iter_mut().zip(&self.residual[nodes.clone()]) {
                 *to = from.map(|value| value as f32);
             }
             one.cycle();
-            let x = one.levels[0].x.nodes();
-            for (to, from) in self.corrections[nodes].iter_mut().zip(x) {
-                *to = from.map(f64::from);
-            }
-        }
-        for (part, one) in (self.boxes.len()..).zip(&mut self.meshes) {
-            let nodes = self.starts[part]..self.starts[part + 1];
-            let rhs = one.levels[0].rhs.iter_mut();
-            for (to, from) in rhs.zip(&self.residual[nodes.clone()]) {
-                *to = from.map(|value| value as f32);
-            }
-            one.cycle();
-            let x = one.levels[0].x.iter();
-            for (to, from) in self.corrections[nodes].iter_mut().zip(x) {
+            let corrections = self.corrections[nodes].iter_mut();
+            for (to, from) in corrections.zip(one.x().nodes()) {
                 *to = from.map(f64::from);
             }
         }
@@ -239,7 +187,7 @@ fn of_scalar(entry: f64) -> Block {
 
 /// Adds an entry times the values at a node.
 #[inline(always)]
-fn add(sum: &mut Values, entry: f64, there: &Values) {
+fn add(sum: &mut Values, entry: &f64, there: &Values) {
     for (sum, value) in sum.iter_mut().zip(there) {
         *sum += entry * value;
     }

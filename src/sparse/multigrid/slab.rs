@@ -2,7 +2,7 @@
 //!
 //! Slabs follow from the grid alone, so that results are the same for any number of threads.
 
-use crate::sparse::multigrid::node_grid::{Block, COMPONENTS, Field, NEIGHBOURS, OWN, add};
+use crate::sparse::multigrid::node_grid::{AtNode, Block, Field, NEIGHBOURS, OWN, add, solved};
 use crate::sparse::multigrid::triangles::Triangles;
 use std::ops::Range;
 
@@ -123,14 +123,11 @@ impl Equations<'_> {
             .zip(&offsets[of])
     }
 
-    /// Solves the equations of a node, of which its neighbours have this sum.
+    /// The values of a node, of which its neighbours have this sum.
     #[inline(always)]
-    fn solved(&self, node: usize, sum: [f32; COMPONENTS]) -> [f32; COMPONENTS] {
-        let rhs = self.rhs.values[node + self.rhs.margin];
-        let left: [f32; COMPONENTS] = std::array::from_fn(|c| rhs[c] - sum[c]);
-        let mut solution = [0.0; COMPONENTS];
-        add(&mut solution, &self.inverse[node], &left);
-        solution
+    fn solved(&self, node: usize, sum: &AtNode) -> AtNode {
+        let rhs = &self.rhs.values[node + self.rhs.margin];
+        solved(&self.inverse[node], rhs, sum)
     }
 
     /// Place in a slab of the first node of one of its planes.
@@ -145,23 +142,23 @@ impl Equations<'_> {
             let [lower, upper] = slab.swept(plane);
             for (place, node) in self.nodes(plane).enumerate() {
                 let x = (first + place, &slab.x.values[..]);
-                let mut sum = [0.0; COMPONENTS];
+                let mut sum = AtNode::default();
                 add_all(&mut sum, self.lower(node, lower..OWN), x);
                 add_all(&mut sum, self.upper(node, upper..OWN), x);
-                slab.x.values[first + place] = self.solved(node, sum);
+                slab.x.values[first + place] = self.solved(node, &sum);
             }
         }
     }
 
     /// Writes the part of the right-hand side that a forward sweep over a slab leaves, node by node.
-    pub(super) fn leave(&self, slab: &Slab, x: &Field, residual: &mut [[f32; COMPONENTS]]) {
+    pub(super) fn leave(&self, slab: &Slab, x: &Field, residual: &mut [AtNode]) {
         let nodes = slab.planes.clone().flat_map(|plane| {
             let swept = slab.swept(plane);
             self.nodes(plane).map(move |node| (node, swept))
         });
         for ((node, [lower, upper]), residual) in nodes.zip(residual) {
             let x = (node + x.margin, &x.values[..]);
-            let mut sum = [0.0; COMPONENTS];
+            let mut sum = AtNode::default();
             add_all(&mut sum, self.lower(node, 0..lower), x);
             add_all(&mut sum, self.upper(node, 0..upper), x);
             *residual = sum.map(|s| -s);
@@ -169,11 +166,11 @@ impl Equations<'_> {
     }
 
     /// Writes what any field leaves of the right-hand side at the nodes of a slab.
-    pub(super) fn leave_all(&self, slab: &Slab, x: &Field, residual: &mut [[f32; COMPONENTS]]) {
+    pub(super) fn leave_all(&self, slab: &Slab, x: &Field, residual: &mut [AtNode]) {
         let nodes = slab.planes.clone().flat_map(|plane| self.nodes(plane));
         for (node, residual) in nodes.zip(residual) {
             let x = (node + x.margin, &x.values[..]);
-            let mut sum = [0.0; COMPONENTS];
+            let mut sum = AtNode::default();
             add_all(&mut sum, self.lower(node, 0..OWN), x);
             add(&mut sum, self.matrix.diagonal(node), &x.1[x.0]);
             add_all(&mut sum, self.upper(node, 0..OWN), x);
@@ -188,10 +185,10 @@ impl Equations<'_> {
             let first = self.first_place(slab, plane);
             for (place, node) in self.nodes(plane).enumerate().rev() {
                 let x = (first + place, &slab.x.values[..]);
-                let mut sum = [0.0; COMPONENTS];
+                let mut sum = AtNode::default();
                 add_all(&mut sum, self.upper(node, 0..OWN).rev(), x);
                 add_all(&mut sum, self.lower(node, 0..OWN).rev(), x);
-                slab.x.values[first + place] = self.solved(node, sum);
+                slab.x.values[first + place] = self.solved(node, &sum);
             }
         }
     }
@@ -208,9 +205,9 @@ type Coupling<'m> = (&'m Block, &'m isize);
 /// Adds blocks times unknowns of neighbours; the node is at a place in a list of these.
 #[inline(always)]
 fn add_all<'m>(
-    sum: &mut [f32; COMPONENTS],
+    sum: &mut AtNode,
     couplings: impl Iterator<Item = Coupling<'m>>,
-    (at, x): (usize, &[[f32; COMPONENTS]]),
+    (at, x): (usize, &[AtNode]),
 ) {
     for (block, offset) in couplings {
         add(sum, block, &x[(at as isize + offset) as usize]);
@@ -221,8 +218,8 @@ fn add_all<'m>(
 pub(super) fn split<'l>(
     slabs: &'l [Slab],
     [n_x, n_y, _]: [usize; 3],
-    list: &'l mut [[f32; COMPONENTS]],
-) -> impl Iterator<Item = (&'l Slab, &'l mut [[f32; COMPONENTS]])> {
+    list: &'l mut [AtNode],
+) -> impl Iterator<Item = (&'l Slab, &'l mut [AtNode])> {
     let mut rest = list;
     slabs.iter().map(move |slab| {
         let (own, behind) = std::mem::take(&mut rest).split_at_mut(n_x * n_y * slab.planes.len());

@@ -5,11 +5,11 @@
 
 use crate::math::{IsOver, Stopped};
 use crate::sparse::Singular;
-use crate::sparse::multigrid::boxes::Parts;
 use crate::sparse::multigrid::krylov::{Iterated, Krylov, norm};
 use crate::sparse::multigrid::node_grid::{
     COMPONENTS, ENTRIES, ElementVolume, GridNode, NodeBlock, NodeGrid, PLANES, indices,
 };
+use crate::sparse::multigrid::parts::{Part, Parts};
 use crate::sparse::multigrid::stiffness::{LowestModes, Workspace, lowest_modes};
 use crate::sparse::multigrid::triangles::{BlockPlaces, NodeMesh};
 use std::sync::Arc;
@@ -130,14 +130,14 @@ impl Multigrid {
             return None;
         }
         let (node, component) = (place as usize / COMPONENTS, place as usize % COMPONENTS);
-        let (boxes, starts) = (&self.parts.boxes, &self.parts.starts);
+        let (list, starts) = (&self.parts.list, &self.parts.starts);
         let part = starts.partition_point(|&start| start <= node) - 1;
-        if part >= boxes.len() {
+        let Some(counts) = list[part].counts() else {
             return Some((GridNode::of_mesh(node), component));
-        }
-        let counts = |part: usize| boxes[part].levels[0].counts;
-        let below: usize = (0..part).map(|part| counts(part)[2] + 2).sum();
-        let [x, y, z] = indices(counts(part), node - starts[part]);
+        };
+        let planes = list[..part].iter().filter_map(Part::counts);
+        let below: usize = planes.map(|[_, _, z]| z + 2).sum();
+        let [x, y, z] = indices(counts, node - starts[part]);
         Some((GridNode::new(node, [x, y, below + z]), component))
     }
 

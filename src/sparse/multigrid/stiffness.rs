@@ -2,14 +2,12 @@
 //!
 //! With a matrix c [[K, B], [Bᵀ, −C]] of displacements u and potentials, potentials that follow are C⁻¹ Bᵀ u, and the stiffness is K + B C⁻¹ Bᵀ.
 
-use crate::math::{IsOver, Random, Stopped, join};
+use crate::math::{IsOver, Random, Stopped};
 use crate::sparse::Singular;
-use crate::sparse::multigrid::boxes::Parts;
 use crate::sparse::multigrid::krylov::Krylov;
 use crate::sparse::multigrid::lobpcg::{AtNode, COUNT, Pairs, SymmetricMatrix, lowest};
-use crate::sparse::multigrid::node_grid::{
-    COMPONENTS, ENTRIES, Field, NEIGHBOURS, NodeBlock, offsets,
-};
+use crate::sparse::multigrid::node_grid::{COMPONENTS, Field, NodeBlock, add_double};
+use crate::sparse::multigrid::parts::{Part, Parts};
 use crate::sparse::multigrid::potentials::{POTENTIAL, Potentials};
 
 /// Rounding of a product, relative to the largest entry of the diagonal.
@@ -122,49 +120,22 @@ impl Parts {
 
     /// Zero at the nodes of each part.
     pub(super) fn fields<T: Copy + Default>(&self) -> Vec<Field<T>> {
-        let of_boxes = self.boxes.iter();
-        let of_boxes = of_boxes.map(|one| Field::new(one.levels[0].counts));
-        let of_meshes = self.meshes.iter();
-        let of_meshes = of_meshes.map(|one| Field::of_mesh(one.levels[0].free.len()));
-        of_boxes.chain(of_meshes).collect()
+        self.list.iter().map(Part::field).collect()
     }
 
     /// For each node, a bit for each component without a given value.
     pub(super) fn free(&self) -> impl Iterator<Item = u8> {
-        let of_boxes = self.boxes.iter().flat_map(|one| &one.levels[0].free);
-        let of_meshes = self.meshes.iter().flat_map(|one| &one.levels[0].free);
-        of_boxes.chain(of_meshes).copied()
+        self.list.iter().flat_map(Part::free).copied()
     }
 }
 
 impl Stiffness<'_> {
     /// Multiplies the vectors in the fields.
     fn multiply(&self, product: &mut [AtNode]) {
-        for (part, one) in self.parts.boxes.iter().enumerate() {
-            let (nodes, field) = (self.parts.nodes(part), &self.fields[part]);
-            let offsets = offsets(one.levels[0].counts);
-            let blocks = &self.parts.matrix[NEIGHBOURS * nodes.start..NEIGHBOURS * nodes.end];
-            let half = nodes.len() / 2;
-            let (lower, upper) = product[nodes].split_at_mut(half);
-            let rows = |first: usize, product: &mut [AtNode]| {
-                rows((blocks, &offsets), field, first, product);
-            };
-            join(|| rows(0, lower), || rows(half, upper));
-        }
-        for (part, pattern) in self.parts.of_meshes() {
-            let (nodes, x) = (self.parts.nodes(part), self.fields[part].nodes());
+        for (part, one) in self.parts.list.iter().enumerate() {
             let blocks = &self.parts.matrix[self.parts.blocks(part)];
-            let half = nodes.len() / 2;
-            let (lower, upper) = product[nodes].split_at_mut(half);
-            let rows = |first: usize, product: &mut [AtNode]| {
-                for (row, product) in (first..).zip(product) {
-                    *product = AtNode::default();
-                    for block in pattern.range(row) {
-                        add(product, &blocks[block], &x[pattern.column(block)]);
-                    }
-                }
-            };
-            join(|| rows(0, lower), || rows(half, upper));
+            let (field, product) = (&self.fields[part], &mut product[self.parts.nodes(part)]);
+            one.pattern().multiply(blocks, field, product, add);
         }
     }
 
@@ -172,7 +143,7 @@ impl Stiffness<'_> {
     ///
     /// One cycle leaves changes of volumes that a great stiffness makes greater than the residual.
     fn are_solutions(&self) -> bool {
-        !(self.parts.volumes.is_empty() && self.parts.meshes.is_empty())
+        !self.parts.volumes.is_empty() || self.parts.list.iter().any(|part| part.counts().is_none())
     }
 
     /// Lets potentials follow the displacements with these products, and adds what they do; returns the lengths of that times the part of it that may be off.
@@ -267,8 +238,8 @@ impl SymmetricMatrix for Stiffness<'_> {
             let length = squares.sum::<f64>().sqrt();
             let unit = if length > 0.0 { length.recip() } else { 0.0 };
             match self.are_solutions() {
-                true => self.solve((r, unit), v, x, is_over)?,
-                false => self.cycle((r, unit), v, x),
+                true => self.solve(r, unit, v, x, is_over)?,
+                false => self.cycle(r, unit, v, x),
             }
         }
         Ok(())
@@ -277,17 +248,15 @@ impl SymmetricMatrix for Stiffness<'_> {
 
 impl Stiffness<'_> {
     /// Writes what one cycle makes of a multiple of the residual of a vector.
-    fn cycle(&mut self, (r, unit): (&[AtNode], f64), v: usize, x: &mut [AtNode]) {
-        for (part, one) in self.parts.boxes.iter_mut().enumerate() {
+    fn cycle(&mut self, r: &[AtNode], unit: f64, v: usize, x: &mut [AtNode]) {
+        for (part, one) in self.parts.list.iter_mut().enumerate() {
             let scales = &self.parts.scales[part];
             let nodes = self.parts.starts[part]..self.parts.starts[part + 1];
-            let rhs = one.levels[0].rhs.nodes_mut().iter_mut();
-            for (to, from) in rhs.zip(&r[nodes.clone()]) {
+            for (to, from) in one.rhs_mut().iter_mut().zip(&r[nodes.clone()]) {
                 *to = std::array::from_fn(|c| (unit * from[v][c] * scales[c]) as f32);
             }
             one.cycle();
-            let found = one.levels[0].x.nodes().iter();
-            for (to, from) in x[nodes].iter_mut().zip(found) {
+            for (to, from) in x[nodes].iter_mut().zip(one.x().nodes()) {
                 to[v] = std::array::from_fn(|c| f64::from(from[c]) * scales[c]);
                 to[v][POTENTIAL] = 0.0;
             }
@@ -297,7 +266,8 @@ impl Stiffness<'_> {
     /// Writes the solution for a multiple of the residual of a vector, potentials and pressures following, of the accuracy of a correction.
     fn solve(
         &mut self,
-        (r, unit): (&[AtNode], f64),
+        r: &[AtNode],
+        unit: f64,
         v: usize,
         x: &mut [AtNode],
         is_over: IsOver<'_>,
@@ -329,32 +299,10 @@ impl Stiffness<'_> {
     }
 }
 
-/// Adds up the rows of nodes from one on.
-fn rows(
-    (blocks, offsets): (&[[f64; ENTRIES]], &[isize; NEIGHBOURS]),
-    field: &Field<AtNode>,
-    first: usize,
-    product: &mut [AtNode],
-) {
-    for (row, product) in product.iter_mut().enumerate() {
-        let at = (first + row + field.margin) as isize;
-        let mut sums = AtNode::default();
-        let blocks = &blocks[NEIGHBOURS * (first + row)..][..NEIGHBOURS];
-        for (block, offset) in blocks.iter().zip(offsets) {
-            add(&mut sums, block, &field.values[(at + offset) as usize]);
-        }
-        *product = sums;
-    }
-}
-
 /// Adds a block times the vectors at a node.
 #[inline(always)]
 fn add(sums: &mut AtNode, block: &NodeBlock, there: &AtNode) {
     for (sum, vector) in sums.iter_mut().zip(there) {
-        for (column, value) in block.chunks_exact(COMPONENTS).zip(vector) {
-            for (sum, entry) in sum.iter_mut().zip(column) {
-                *sum += entry * value;
-            }
-        }
+        add_double(sum, block, vector);
     }
 }

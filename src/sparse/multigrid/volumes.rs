@@ -3,8 +3,9 @@
 //! With the derivatives b of a volume and the factor k of b bᵀ in the matrix, a pressure p stands for k b·u: rows of displacements have
 //! b (p − k b·u) in addition, and p has the row b·u − p/k. Vectors hold the pressures behind the components of all nodes.
 
+use crate::sparse::multigrid::grid::Grid;
 use crate::sparse::multigrid::level::Level;
-use crate::sparse::multigrid::mesh_level::MeshLevel;
+use crate::sparse::multigrid::mesh::Mesh;
 use crate::sparse::multigrid::node_grid::{
     COMPONENTS, CORNERS, ENTRIES, ElementVolume, NEIGHBOURS, NodeBlock, VolumePlaces, neighbour_of,
 };
@@ -119,16 +120,19 @@ impl Volumes {
     }
 
     /// Hands volumes over to the finest grid, whose matrix is that of the rest.
-    pub(super) fn take_out(&self, part: usize, blocks: &[NodeBlock], level: &mut Level) {
+    pub(super) fn take_out(&self, part: usize, blocks: &[NodeBlock], level: &mut Level<Grid>) {
         let volumes = self.of(part);
         let Some(pressures) = &mut level.pressures else {
             return;
         };
-        let lists = pressures.slopes.iter_mut().zip(&mut pressures.compliance);
+        let slopes = pressures.slopes.chunks_exact_mut(CORNERS);
+        let lists = slopes.zip(&mut pressures.compliance);
         for ((slopes, compliance), volume) in lists.zip(volumes) {
-            (*slopes, *compliance) = volume.in_single_precision();
+            let (of_volume, compliance_of_volume) = volume.in_single_precision();
+            slopes.copy_from_slice(&of_volume);
+            *compliance = compliance_of_volume;
         }
-        level.matrix.rows_mut().write(|node, row| {
+        level.nodes.matrix.rows_mut().write(|node, row| {
             let mut rest = [[0.0; ENTRIES]; NEIGHBOURS];
             rest.copy_from_slice(&blocks[NEIGHBOURS * node..][..NEIGHBOURS]);
             for corner in 0..CORNERS {
@@ -148,7 +152,7 @@ impl Volumes {
         &self,
         part: usize,
         blocks: &[NodeBlock],
-        level: &mut MeshLevel,
+        level: &mut Level<Mesh>,
     ) {
         let Some(pressures) = &mut level.pressures else {
             return;
@@ -160,13 +164,14 @@ impl Volumes {
             pressures.take(element, &nodes, &slopes, compliance);
             for (row, own) in nodes.iter().zip(&volume.slopes) {
                 for (column, there) in nodes.iter().zip(&volume.slopes) {
-                    let block = level.matrix.rows.find(*row, *column);
+                    let block = level.nodes.matrix.rows.find(*row, *column);
                     let block = block.expect("nodes of an element are coupled");
                     volume.take_block(own, there, &mut rest[block]);
                 }
             }
         }
         level
+            .nodes
             .matrix
             .write(|block| rest[block].map(|entry| entry as f32));
     }

@@ -1,0 +1,448 @@
+//! Box grids and meshes side by side: their matrix in double precision, by blocks, with its product and its preconditioner.
+
+use crate::math::join;
+use crate::sparse::Singular;
+use crate::sparse::multigrid::block_rows::BlockRows;
+use crate::sparse::multigrid::grid::Grid;
+use crate::sparse::multigrid::krylov::Operator;
+use crate::sparse::multigrid::level::{Hierarchy, Nodes};
+use crate::sparse::multigrid::mesh::Mesh;
+use crate::sparse::multigrid::node_grid::{
+    AtNode, Block, COMPONENTS, ENTRIES, Field, NEIGHBOURS, NodeBlock, NodeGrid, VolumePlaces,
+    add_double, corners, offsets,
+};
+use crate::sparse::multigrid::triangles::{BlockPlaces, NodeMesh};
+use crate::sparse::multigrid::volumes::{Volumes, scale_of_mean};
+use std::ops::Range;
+use std::sync::Arc;
+
+/// The levels of a box or a mesh.
+#[derive(Debug)]
+pub(super) enum Part {
+    Box(Hierarchy<Grid>),
+    Mesh(Hierarchy<Mesh>),
+}
+
+/// Evaluates an expression of the levels of a part, whatever they are.
+macro_rules! of_levels {
+    ($part:expr, $one:ident => $value:expr) => {
+        match $part {
+            Part::Box($one) => $value,
+            Part::Mesh($one) => $value,
+        }
+    };
+}
+
+impl Part {
+    /// Number of planes along each axis; `None` of a mesh.
+    pub(super) fn counts(&self) -> Option<[usize; 3]> {
+        match self {
+            Self::Box(one) => Some(one.levels[0].nodes.counts),
+            Self::Mesh(_) => None,
+        }
+    }
+
+    /// Pattern of the matrix.
+    pub(super) fn pattern(&self) -> Pattern<'_> {
+        match self {
+            Self::Box(one) => Pattern::Grid(one.levels[0].nodes.counts),
+            Self::Mesh(one) => Pattern::Rows(&one.levels[0].nodes.matrix.rows),
+        }
+    }
+
+    /// The levels without matrices of scalars at the same nodes, a component each; `free` has a bit for each one without a given value.
+    pub(super) fn of_scalars(&self, free: Vec<u8>) -> Self {
+        match self {
+            Self::Box(one) => {
+                Self::Box(Hierarchy::between(&one.levels[0].nodes.planes, free, false))
+            }
+            Self::Mesh(one) => Self::Mesh(Hierarchy::of_scalars(&one.levels[0].nodes, free)),
+        }
+    }
+
+    /// Writes the blocks of the finest matrix, which count by node and neighbour.
+    pub(super) fn write(&mut self, of: impl Fn(usize) -> Block) {
+        match self {
+            Self::Box(one) => one.levels[0].nodes.matrix.rows_mut().write(|node, row| {
+                for (neighbour, block) in row.iter_mut().enumerate() {
+                    *block = of(NEIGHBOURS * node + neighbour);
+                }
+            }),
+            Self::Mesh(one) => one.levels[0].nodes.matrix.write(of),
+        }
+    }
+
+    /// For each node, a bit for each component without a given value.
+    pub(super) fn free(&self) -> &[u8] {
+        of_levels!(self, one => &one.levels[0].free)
+    }
+
+    /// Zero at all nodes.
+    pub(super) fn field<T: Copy + Default>(&self) -> Field<T> {
+        of_levels!(self, one => one.levels[0].nodes.field())
+    }
+
+    /// Makes the matrices of all levels from that of the finest one.
+    pub(super) fn prepare(&mut self) -> Result<(), Singular> {
+        of_levels!(self, one => one.prepare())
+    }
+
+    /// One V-cycle.
+    pub(super) fn cycle(&mut self) {
+        of_levels!(self, one => one.cycle());
+    }
+
+    /// Its right-hand side.
+    pub(super) fn rhs_mut(&mut self) -> &mut [AtNode] {
+        of_levels!(self, one => one.levels[0].rhs.nodes_mut())
+    }
+
+    /// Its solution.
+    pub(super) fn x(&self) -> &Field {
+        of_levels!(self, one => &one.levels[0].x)
+    }
+
+    fn x_mut(&mut self) -> &mut [AtNode] {
+        of_levels!(self, one => one.levels[0].x.nodes_mut())
+    }
+
+    /// The right-hand side of pressures; nothing where there are none.
+    fn rhs_of_pressures_mut(&mut self) -> &mut [f32] {
+        of_levels!(self, one => match &mut one.levels[0].pressures {
+            Some(pressures) => pressures.rhs.nodes_mut(),
+            None => &mut [],
+        })
+    }
+
+    /// The pressures; nothing where there are none.
+    fn pressures(&self) -> &[f32] {
+        of_levels!(self, one => match &one.levels[0].pressures {
+            Some(pressures) => pressures.p.nodes(),
+            None => &[],
+        })
+    }
+}
+
+/// Pattern of the matrix of a part.
+pub(super) enum Pattern<'p> {
+    /// Number of planes along each axis: blocks count by node and neighbour.
+    Grid([usize; 3]),
+    Rows(&'p Arc<BlockRows>),
+}
+
+impl Pattern<'_> {
+    /// Number of blocks.
+    fn blocks(&self) -> usize {
+        match self {
+            Self::Grid(counts) => NEIGHBOURS * counts.iter().product::<usize>(),
+            Self::Rows(rows) => rows.blocks(),
+        }
+    }
+
+    /// Calls `visit` with number, row and column of each block.
+    pub(super) fn each(&self, mut visit: impl FnMut(usize, [usize; 2])) {
+        match self {
+            Self::Grid(counts) => {
+                let (nodes, offsets) = (counts.iter().product(), offsets(*counts));
+                for node in 0..nodes {
+                    for (neighbour, offset) in offsets.iter().enumerate() {
+                        let other = node.checked_add_signed(*offset);
+                        if let Some(other) = other.filter(|other| *other < nodes) {
+                            visit(NEIGHBOURS * node + neighbour, [node, other]);
+                        }
+                    }
+                }
+            }
+            Self::Rows(rows) => {
+                for (number, (row, column)) in rows.entries().enumerate() {
+                    visit(number, [row, column]);
+                }
+            }
+        }
+    }
+
+    /// Number of the block across the diagonal of one with this number, row and column.
+    pub(super) fn transposed(&self, number: usize, [row, column]: [usize; 2]) -> usize {
+        match self {
+            Self::Grid(..) => NEIGHBOURS * (column + 1) - 1 - number % NEIGHBOURS,
+            Self::Rows(rows) => {
+                let found = rows.find(column, row);
+                found.expect("neighbours are so both ways")
+            }
+        }
+    }
+
+    /// Writes products of the rows, both halves at once: `add` adds that of a block and what stands at a node.
+    #[inline]
+    pub(super) fn multiply<B: Sync, X: Sync, Y: Default + Send>(
+        &self,
+        blocks: &[B],
+        x: &Field<X>,
+        product: &mut [Y],
+        add: impl Fn(&mut Y, &B, &X) + Sync,
+    ) {
+        let half = product.len() / 2;
+        let (lower, upper) = product.split_at_mut(half);
+        match self {
+            Self::Grid(counts) => {
+                let offsets = offsets(*counts);
+                let rows = |first: usize, product: &mut [Y]| {
+                    for (row, product) in (first..).zip(product) {
+                        let at = (row + x.margin) as isize;
+                        let mut sum = Y::default();
+                        let blocks = &blocks[NEIGHBOURS * row..][..NEIGHBOURS];
+                        for (block, offset) in blocks.iter().zip(&offsets) {
+                            add(&mut sum, block, &x.values[(at + offset) as usize]);
+                        }
+                        *product = sum;
+                    }
+                };
+                join(|| rows(0, lower), || rows(half, upper));
+            }
+            Self::Rows(pattern) => {
+                let rows = |first: usize, product: &mut [Y]| {
+                    for (row, product) in (first..).zip(product) {
+                        let mut sum = Y::default();
+                        let blocks = blocks[pattern.range(row)].iter();
+                        for (block, column) in blocks.zip(pattern.columns(row)) {
+                            add(&mut sum, block, &x.values[*column as usize]);
+                        }
+                        *product = sum;
+                    }
+                };
+                join(|| rows(0, lower), || rows(half, upper));
+            }
+        }
+    }
+}
+
+/// The boxes, the meshes behind them, and their matrix.
+#[derive(Debug)]
+pub(super) struct Parts {
+    pub(super) list: Vec<Part>,
+    /// First node of each part, and the number of all.
+    pub(super) starts: Vec<usize>,
+    /// First block of each part, and the number of all.
+    pub(super) first_blocks: Vec<usize>,
+    pub(super) places: Arc<BlockPlaces>,
+    /// Blocks by node and neighbour, each by column.
+    pub(super) matrix: Vec<NodeBlock>,
+    /// Factors of rows and columns of a part by component.
+    pub(super) scales: Vec<[f64; COMPONENTS]>,
+    /// Volumes of elements; none where no part has pressures.
+    pub(super) volumes: Volumes,
+}
+
+impl Parts {
+    /// The parts without a matrix.
+    pub(super) fn new(grids: &[NodeGrid], meshes: &[NodeMesh]) -> Self {
+        let mut volumes = Volumes::default();
+        let mut list = Vec::new();
+        for grid in grids {
+            let count = match grid.has_pressures {
+                true => grid.unknowns.len(),
+                false => 0,
+            };
+            volumes.add(count, VolumePlaces::Box(corners(grid.counts())));
+            list.push(Part::Box(Hierarchy::of(grid)));
+        }
+        for mesh in meshes {
+            let part = Part::Mesh(Hierarchy::of_mesh(mesh));
+            let elements = match mesh.has_pressures {
+                true => &mesh.elements[..],
+                false => &[],
+            };
+            let places = VolumePlaces::of_mesh(elements, part.free());
+            volumes.add(elements.len(), places);
+            list.push(part);
+        }
+        let (mut starts, mut first_blocks) = (vec![0], vec![0]);
+        let mut places = BlockPlaces::default();
+        for (part, one) in list.iter().enumerate() {
+            let (node, block) = (starts[part], first_blocks[part]);
+            starts.push(node + one.free().len());
+            first_blocks.push(block + one.pattern().blocks());
+            match one.pattern() {
+                Pattern::Grid(..) => places.of_boxes = starts[part + 1],
+                Pattern::Rows(rows) => places.meshes.push((node, block, rows.clone())),
+            }
+        }
+        Self {
+            matrix: vec![[0.0; ENTRIES]; first_blocks[list.len()]],
+            scales: vec![[1.0; COMPONENTS]; list.len()],
+            volumes,
+            places: Arc::new(places),
+            list,
+            starts,
+            first_blocks,
+        }
+    }
+
+    /// Number of nodes of all parts.
+    pub(super) fn node_count(&self) -> usize {
+        self.starts[self.starts.len() - 1]
+    }
+
+    /// Number of levels of the part that has most.
+    pub(super) fn levels(&self) -> usize {
+        let counts = self.list.iter();
+        let counts = counts.map(|part| of_levels!(part, one => one.levels.len()));
+        counts.max().unwrap_or(0)
+    }
+
+    /// Bytes of all levels.
+    pub(super) fn bytes(&self) -> usize {
+        let parts = self.list.iter();
+        parts.map(|part| of_levels!(part, one => one.bytes())).sum()
+    }
+
+    /// Nodes of a part.
+    pub(super) fn nodes(&self, part: usize) -> Range<usize> {
+        self.starts[part]..self.starts[part + 1]
+    }
+
+    /// Blocks of a part.
+    pub(super) fn blocks(&self, part: usize) -> Range<usize> {
+        self.first_blocks[part]..self.first_blocks[part + 1]
+    }
+
+    /// Factor of the row and column at a place.
+    pub(super) fn scale_of(&self, place: usize) -> f64 {
+        let part = match self.scales.len() {
+            1 => 0,
+            _ => {
+                self.starts
+                    .partition_point(|&start| start <= place / COMPONENTS)
+                    - 1
+            }
+        };
+        self.scales[part][place % COMPONENTS]
+    }
+
+    /// Finds scales that make the mean of the diagonal one: of all displacements of a part, and of its potentials.
+    pub(super) fn find_scales(&mut self) {
+        for part in 0..self.scales.len() {
+            let mut sums = [[0.0; 2]; COMPONENTS];
+            for node in self.nodes(part) {
+                let own = &self.matrix[self.places.diagonal(node)];
+                for (component, [sum, count]) in sums.iter_mut().enumerate() {
+                    let diagonal = own[(COMPONENTS + 1) * component].abs();
+                    *sum += diagonal;
+                    *count += f64::from(u8::from(diagonal > 0.0));
+                }
+            }
+            sums[0][0] -= self.volumes.resistance(part);
+            let scale = |parts: Range<usize>| {
+                let (sum, count) = sums[parts]
+                    .iter()
+                    .fold((0.0, 0.0), |(s, c), [sum, count]| (s + sum, c + count));
+                scale_of_mean(sum / count)
+            };
+            let displacement = scale(0..3);
+            self.volumes.find_scale(part, displacement);
+            self.scales[part] = [displacement, displacement, displacement, scale(3..4)];
+        }
+    }
+
+    /// Multiplies rows and columns by their factors.
+    pub(super) fn scale(&mut self) {
+        for part in 0..self.scales.len() {
+            let products = products(&self.scales[part]);
+            let blocks = self.blocks(part);
+            for block in &mut self.matrix[blocks] {
+                for (entry, product) in block.iter_mut().zip(&products) {
+                    *entry *= product;
+                }
+            }
+            self.volumes.scale(part, &self.scales[part]);
+        }
+    }
+
+    /// Product of the matrix with a vector by node on either side.
+    pub(super) fn along(&self, x: &[[f64; COMPONENTS]]) -> f64 {
+        let mut sum = 0.0;
+        for (part, one) in self.list.iter().enumerate() {
+            let (x, blocks) = (&x[self.nodes(part)], &self.matrix[self.blocks(part)]);
+            one.pattern().each(|number, [node, other]| {
+                for (column, value) in blocks[number].chunks_exact(COMPONENTS).zip(&x[other]) {
+                    let along: f64 = column.iter().zip(&x[node]).map(|(a, x)| a * x).sum();
+                    sum += along * value;
+                }
+            });
+        }
+        sum
+    }
+
+    /// Makes the grids of the present matrix.
+    pub(super) fn prepare(&mut self) -> Result<(), Singular> {
+        for part in 0..self.list.len() {
+            let blocks = self.blocks(part);
+            let (blocks, one) = (&self.matrix[blocks], &mut self.list[part]);
+            one.write(|block| blocks[block].map(|entry| entry as f32));
+            match one {
+                Part::Box(one) => self.volumes.take_out(part, blocks, &mut one.levels[0]),
+                Part::Mesh(one) => {
+                    self.volumes
+                        .take_out_of_mesh(part, blocks, &mut one.levels[0]);
+                }
+            }
+            one.prepare()?;
+        }
+        Ok(())
+    }
+}
+
+impl Operator for Parts {
+    fn apply(&mut self, x: &[f32], product: &mut [f64]) {
+        for part in 0..self.list.len() {
+            let nodes = self.nodes(part);
+            let own = COMPONENTS * nodes.start..COMPONENTS * nodes.end;
+            let field = self.list[part].x_mut().as_flattened_mut();
+            field.copy_from_slice(&x[own.clone()]);
+            let (one, blocks) = (&self.list[part], &self.matrix[self.blocks(part)]);
+            let (product_of_part, _) = product[own].as_chunks_mut();
+            one.pattern()
+                .multiply(blocks, one.x(), product_of_part, add_double);
+            self.volumes.apply(part, nodes.start, x, product);
+        }
+    }
+
+    fn precondition(&mut self, r: &[f64], x: &mut [f32]) {
+        let behind = COMPONENTS * self.node_count();
+        for part in 0..self.list.len() {
+            let (nodes, volumes) = (self.nodes(part), self.volumes.range(part));
+            let own = COMPONENTS * nodes.start..COMPONENTS * nodes.end;
+            let of_pressures = behind + volumes.start..behind + volumes.end;
+            let one = &mut self.list[part];
+            let rhs = one.rhs_mut().as_flattened_mut().iter_mut();
+            for (value, r) in rhs.zip(&r[own.clone()]) {
+                *value = *r as f32;
+            }
+            let rhs = one.rhs_of_pressures_mut().iter_mut();
+            for (value, r) in rhs.zip(&r[of_pressures.clone()]) {
+                *value = *r as f32;
+            }
+            one.cycle();
+            x[own].copy_from_slice(one.x().nodes().as_flattened());
+            x[of_pressures].copy_from_slice(one.pressures());
+        }
+    }
+
+    fn is_reduced(&self) -> bool {
+        !self.volumes.is_empty()
+    }
+
+    fn reduce(&self, residual: &mut [f64]) {
+        for part in 0..self.scales.len() {
+            self.volumes.condense(part, self.starts[part], residual);
+        }
+    }
+}
+
+/// Factors of the entries of a block.
+pub(super) fn products(factors: &[f64; COMPONENTS]) -> [f64; ENTRIES] {
+    std::array::from_fn(|entry| factors[entry % COMPONENTS] * factors[entry / COMPONENTS])
+}
+
+// The finest grids are in the form in which products read them.
+const _: () = assert!(size_of::<Block>() == 64);
